@@ -1,0 +1,58 @@
+//! The two coordinate types, `f32` and `f64`.
+
+use core::cmp::Ordering;
+use core::fmt::Debug;
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
+
+/// A coordinate: `f32` or `f64`, and nothing else (the trait is sealed).
+///
+/// Coordinates are compared exactly as given: no rounding, no epsilon. Behind the door, where
+/// NaN has been refused, `<` and `<=` order them totally, with `-0.0` equal to `0.0`.
+pub trait Scalar:
+    sealed::Sealed + Copy + Debug + Default + PartialOrd + Send + Sync + 'static
+{
+    /// Positive infinity.
+    const INFINITY: Self;
+    /// Negative infinity.
+    const NEG_INFINITY: Self;
+
+    /// The coordinate as `f64`, which holds every `f32` exactly.
+    fn to_f64(self) -> f64;
+
+    /// The order of two coordinates that are not NaN; a NaN would count as equal to everything.
+    #[inline]
+    fn order(self, other: Self) -> Ordering {
+        if self < other {
+            Ordering::Less
+        } else if other < self {
+            Ordering::Greater
+        } else {
+            Ordering::Equal
+        }
+    }
+}
+
+impl Scalar for f32 {
+    const INFINITY: Self = f32::INFINITY;
+    const NEG_INFINITY: Self = f32::NEG_INFINITY;
+
+    #[inline]
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+}
+
+impl Scalar for f64 {
+    const INFINITY: Self = f64::INFINITY;
+    const NEG_INFINITY: Self = f64::NEG_INFINITY;
+
+    #[inline]
+    fn to_f64(self) -> f64 {
+        self
+    }
+}
