@@ -1,0 +1,116 @@
+# Sourced by ./run and ./test: finds or installs what they need, and says in one sentence what
+# it cannot install. Quick when everything is there.
+
+say() { printf '\033[1m%s\033[0m\n' "$*" >&2; }
+
+fail() {
+  printf '%s\n' "$*" >&2
+  exit 1
+}
+
+have() { command -v "$1" >/dev/null 2>&1; }
+
+as_root() {
+  if [ "$(id -u)" = 0 ]; then
+    "$@"
+  elif have sudo; then
+    sudo "$@"
+  else
+    return 1
+  fi
+}
+
+# install_packages COMMAND PACKAGE...: system packages by the machine's own package manager.
+# A package may be written "debian|fedora|arch|alpine|brew" where the names differ.
+install_packages() {
+  local needed=$1 spec
+  shift
+  local apt=() dnf=() pacman=() apk=() brew=()
+  for spec in "$@"; do
+    local names
+    IFS='|' read -r -a names <<<"$spec"
+    apt+=("${names[0]}")
+    dnf+=("${names[1]:-${names[0]}}")
+    pacman+=("${names[2]:-${names[0]}}")
+    apk+=("${names[3]:-${names[0]}}")
+    brew+=("${names[4]:-${names[0]}}")
+  done
+  say "Installing $* ..."
+  if have apt-get; then
+    { as_root apt-get update -q && as_root env DEBIAN_FRONTEND=noninteractive apt-get install -qy "${apt[@]}"; } >&2
+  elif have dnf; then
+    as_root dnf install -qy "${dnf[@]}" >&2
+  elif have pacman; then
+    as_root pacman -Sy --noconfirm --needed "${pacman[@]}" >&2
+  elif have apk; then
+    as_root apk add -q "${apk[@]}" >&2
+  elif have brew; then
+    brew install -q "${brew[@]}" >&2
+  else
+    false
+  fi || fail "'$needed' is missing and could not be installed: please install $* and start again."
+}
+
+setup_rust() {
+  have cc || install_packages cc "build-essential|gcc|base-devel|build-base|gcc"
+  export PATH="$PATH:${CARGO_HOME:-$HOME/.cargo}/bin"
+  if ! have rustup; then
+    have curl || install_packages curl curl
+    say "Installing Rust by rustup ..."
+    local installer
+    installer=$(mktemp)
+    { curl -sSf --proto '=https' --tlsv1.2 https://sh.rustup.rs -o "$installer" ||
+      curl -sSf --proto '=https' --tlsv1.2 https://static.rust-lang.org/rustup/rustup-init.sh -o "$installer"; } 2>/dev/null &&
+      sh "$installer" -y --no-modify-path --profile minimal --default-toolchain none >&2 ||
+      fail "Rust is missing and rustup could not be installed: please install it from https://rustup.rs and start again."
+    rm -f "$installer"
+  fi
+  # rust-toolchain.toml names the toolchain, its components and its wasm32 target.
+  local libraries
+  libraries=$(RUSTUP_AUTO_INSTALL=0 rustc --print target-libdir --target wasm32-unknown-unknown 2>/dev/null)
+  if ! { [ -d "$libraries" ] && RUSTUP_AUTO_INSTALL=0 cargo fmt --version && RUSTUP_AUTO_INSTALL=0 cargo clippy --version; } >/dev/null 2>&1; then
+    say "Installing the Rust toolchain of rust-toolchain.toml ..."
+    rustup toolchain install >&2 ||
+      fail "The Rust toolchain of rust-toolchain.toml could not be installed: is the network reachable?"
+  fi
+}
+
+node_is_recent() {
+  have node && have npm && node -e '
+    const [major, minor] = process.versions.node.split(".").map(Number);
+    process.exit(major > 20 || (major === 20 && minor >= 19) ? 0 : 1)'
+}
+
+setup_node() {
+  # A Node.js of our own from an earlier start, where the system's was too old.
+  export PATH="$root/.tools/node_modules/.bin:$PATH"
+  if ! node_is_recent; then
+    have npm || install_packages npm "nodejs npm|nodejs-npm|npm|npm|node"
+    if ! node_is_recent; then
+      say "Installing a Node.js of version 22 into .tools/ ..."
+      npm install --silent --no-save --prefix "$root/.tools" node@22 npm@11 >&2 ||
+        fail "Node.js 20.19 or later is missing and could not be installed: please install it and start again."
+      hash -r
+    fi
+    node_is_recent || fail "Node.js 20.19 or later is needed, but 'node' here is $(node --version)."
+  fi
+  if [ ! -f node_modules/.package-lock.json ] || [ package-lock.json -nt node_modules/.package-lock.json ]; then
+    say "Installing Node packages ..."
+    npm ci --silent --no-fund --no-audit >&2 || fail "Node's packages could not be installed: is the network reachable?"
+    touch node_modules/.package-lock.json
+  fi
+}
+
+setup_chromium() {
+  local name
+  for name in "${CHROMIUM:-}" chromium chromium-browser google-chrome; do
+    if [ -n "$name" ] && have "$name"; then
+      CHROMIUM=$(command -v "$name")
+      export CHROMIUM
+      return
+    fi
+  done
+  install_packages chromium chromium
+  CHROMIUM=$(command -v chromium) || fail "Chromium was installed but cannot be found: set CHROMIUM to its path."
+  export CHROMIUM
+}
