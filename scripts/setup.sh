@@ -85,7 +85,7 @@ setup_node() {
   # A Node.js of our own from an earlier start, where the system's was too old.
   export PATH="$root/.tools/node_modules/.bin:$PATH"
   if ! node_is_recent; then
-    have npm || install_packages npm "nodejs npm|nodejs-npm|npm|npm|node"
+    have npm || install_packages npm "nodejs|nodejs|nodejs|nodejs|node" "npm|npm|npm|npm|node"
     if ! node_is_recent; then
       say "Installing a Node.js of version 22 into .tools/ ..."
       npm install --silent --no-save --prefix "$root/.tools" node@22 npm@11 >&2 ||

@@ -1,0 +1,59 @@
+// The documents tell the truth: every path that they name exists, every command that they give
+// is one we have, and the README's JavaScript example does what it says. (Its Rust example is a
+// doc test of the core crate.)
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { existsSync, readFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { test } from "node:test";
+import { fileURLToPath } from "node:url";
+
+const root = dirname(dirname(fileURLToPath(import.meta.url)));
+const read = (path) => readFileSync(join(root, path), "utf8");
+const withoutBlocks = (text) => text.replace(/^```.*?^```/gms, "");
+const tracked = new Set(execFileSync("git", ["ls-files"], { cwd: root, encoding: "utf8" }).split("\n"));
+const isTracked = (path) =>
+  tracked.has(path) || [...tracked].some((file) => file.startsWith(path.replace(/\/?$/, "/")));
+
+/** What stands in backticks and looks like a path of this repository: it has a slash or an ending. */
+function pathsNamed(text) {
+  const spans = [...withoutBlocks(text).matchAll(/`([^`\n]+)`/g)].map((match) => match[1]);
+  return spans.filter(
+    (span) => /^[\w.][\w./-]*$/.test(span) && (span.includes("/") || /\.(rs|toml|md|json|mjs|ts|sh)$/.test(span)),
+  );
+}
+
+for (const document of ["ARCHITECTURE.md", "README.md", "CONTRIBUTING.md"]) {
+  test(`every path that ${document} names exists`, () => {
+    const paths = pathsNamed(read(document));
+    assert.ok(paths.length > 0, "no path found: is the pattern still right?");
+    const missing = paths.filter((path) => !isTracked(path.replace(/^\.\//, "")));
+    assert.deepEqual(missing, []);
+  });
+
+  test(`every relative link of ${document} leads somewhere`, () => {
+    const links = [...read(document).matchAll(/(?:\]\(|src(?:set)?=")([^)"#]+)/g)].map((match) => match[1].trim());
+    const relative = links.filter((link) => !/^[a-z]+:/.test(link));
+    const broken = relative.filter((link) => !existsSync(join(root, link)));
+    assert.deepEqual(broken, []);
+  });
+}
+
+test("every folder at the top has its line in ARCHITECTURE.md", () => {
+  const folders = new Set([...tracked].filter((file) => file.includes("/")).map((file) => file.split("/")[0]));
+  const text = read("ARCHITECTURE.md");
+  const unnamed = [...folders].filter((folder) => !text.includes(`\`${folder}/`));
+  assert.deepEqual(unnamed, []);
+});
+
+test("the README's JavaScript example prints what it says", async () => {
+  const example = /```js\n(.*?)```/s.exec(read("README.md"))?.[1];
+  assert.ok(example, "the README has no JavaScript example");
+  const expected = [...example.matchAll(/console\.log\(.*?\);\s*\/\/ (.*)/g)].map((match) => match[1]);
+  assert.ok(expected.length > 0, "the example prints nothing that could be checked");
+  const printed = execFileSync(process.execPath, ["--input-type=module", "--eval", example], {
+    cwd: join(root, "js"),
+    encoding: "utf8",
+  });
+  assert.deepEqual(printed.trim().split("\n"), expected);
+});
