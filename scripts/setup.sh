@@ -37,7 +37,7 @@ install_packages() {
   done
   say "Installing $* ..."
   if have apt-get; then
-    { as_root apt-get update -q && as_root env DEBIAN_FRONTEND=noninteractive apt-get install -qy "${apt[@]}"; } >&2
+    { as_root apt-get update -q && as_root env DEBIAN_FRONTEND=noninteractive apt-get install -qy --no-install-recommends "${apt[@]}"; } >&2
   elif have dnf; then
     as_root dnf install -qy "${dnf[@]}" >&2
   elif have pacman; then
@@ -67,7 +67,7 @@ setup_rust() {
   fi
   # rust-toolchain.toml names the toolchain, its components and its wasm32 target.
   local libraries
-  libraries=$(RUSTUP_AUTO_INSTALL=0 rustc --print target-libdir --target wasm32-unknown-unknown 2>/dev/null)
+  libraries=$(RUSTUP_AUTO_INSTALL=0 rustc --print target-libdir --target wasm32-unknown-unknown 2>/dev/null) || true
   if ! { [ -d "$libraries" ] && RUSTUP_AUTO_INSTALL=0 cargo fmt --version && RUSTUP_AUTO_INSTALL=0 cargo clippy --version; } >/dev/null 2>&1; then
     say "Installing the Rust toolchain of rust-toolchain.toml ..."
     rustup toolchain install >&2 ||
