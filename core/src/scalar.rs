@@ -24,6 +24,9 @@ pub trait Scalar:
     /// The coordinate as `f64`, which holds every `f32` exactly.
     fn to_f64(self) -> f64;
 
+    /// The coordinate nearest to an `f64`, ties to even; beyond the range of `f32` an infinity.
+    fn from_f64(at: f64) -> Self;
+
     /// The order of two coordinates that are not NaN; a NaN would count as equal to everything.
     #[inline]
     fn order(self, other: Self) -> Ordering {
@@ -45,6 +48,11 @@ impl Scalar for f32 {
     fn to_f64(self) -> f64 {
         f64::from(self)
     }
+
+    #[inline]
+    fn from_f64(at: f64) -> Self {
+        at as f32
+    }
 }
 
 impl Scalar for f64 {
@@ -54,5 +62,10 @@ impl Scalar for f64 {
     #[inline]
     fn to_f64(self) -> f64 {
         self
+    }
+
+    #[inline]
+    fn from_f64(at: f64) -> Self {
+        at
     }
 }
