@@ -1,0 +1,65 @@
+/** 1, 2 or 3. */
+export type Dimensions = 1 | 2 | 3;
+
+/**
+ * Boxes, one row after another: the least corner and then the greatest, so
+ * `minX, minY, maxX, maxY` in 2D.
+ *
+ * Coordinates are compared exactly as given: `Float32Array` in single, `Float64Array` in double
+ * precision. A plain array of numbers is checked and copied to a `Float64Array` at each call:
+ * convenient, and several times slower.
+ */
+export type Boxes = Float32Array | Float64Array | readonly number[];
+
+/** @internal The dimensions, checked. */
+export function checkDimensions(dimensions: unknown): Dimensions {
+  if (dimensions === 1 || dimensions === 2 || dimensions === 3) return dimensions;
+  throw new RangeError(`dimensions must be 1, 2 or 3, not ${String(dimensions)}`);
+}
+
+/** @internal The boxes as a typed array of whole rows. Their coordinates are not looked at. */
+export function checkBoxes(boxes: unknown, dimensions: Dimensions): Float32Array | Float64Array {
+  const rows = Array.isArray(boxes) ? fromNumbers(boxes) : boxes;
+  if (!isFloatArray(rows)) {
+    throw new TypeError(
+      `boxes must be a Float32Array, a Float64Array or an array of numbers, not ${describe(boxes)}`,
+    );
+  }
+  if (rows.length === 0) refuseDetached(rows);
+  const width = 2 * dimensions;
+  if (rows.length % width !== 0) {
+    throw new RangeError(
+      `boxes holds ${rows.length} numbers, which is not a multiple of ${width}: ` +
+        `a box in ${dimensions}D is ${dimensions} of its least and ${dimensions} of its greatest corner`,
+    );
+  }
+  return rows;
+}
+
+function fromNumbers(numbers: readonly unknown[]): Float64Array {
+  return Float64Array.from(numbers, (value, at) => {
+    if (typeof value === "number") return value;
+    throw new TypeError(`boxes[${at}] must be a number, not ${describe(value)}`);
+  });
+}
+
+/** By its tag, not by `instanceof`: arrays of another realm (a frame, a test runner) are as good. */
+function isFloatArray(value: unknown): value is Float32Array | Float64Array {
+  if (!ArrayBuffer.isView(value)) return false;
+  const tag = (value as Float32Array)[Symbol.toStringTag] as string;
+  return tag === "Float32Array" || tag === "Float64Array";
+}
+
+/** A detached array looks like an empty one; only its methods tell. */
+function refuseDetached(rows: Float32Array | Float64Array): void {
+  try {
+    rows.indexOf(0);
+  } catch {
+    throw new TypeError("the buffer of boxes is detached: it was transferred, or its memory has grown");
+  }
+}
+
+function describe(value: unknown): string {
+  if (value === null || typeof value !== "object") return typeof value === "string" ? "a string" : String(value);
+  return `a ${value.constructor?.name ?? "object"}`;
+}

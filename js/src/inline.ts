@@ -1,0 +1,19 @@
+/**
+ * The same as `sweep-and-prune`, with the compiled core inside the module: nothing to load, and a
+ * third larger.
+ *
+ * @module
+ */
+import scalar from "../dist/sweep-and-prune.wasm";
+import simd from "../dist/sweep-and-prune.simd.wasm";
+import { type InitOptions, start, type Started } from "./init.js";
+
+export * from "./api.js";
+
+/**
+ * Starts the compiled core: once, before the first call of anything else. Later and concurrent
+ * calls get the promise of the first, whose options are the ones that count.
+ */
+export function init(options: InitOptions = {}): Promise<Started> {
+  return start({ simd: () => simd, scalar: () => scalar }, options);
+}
