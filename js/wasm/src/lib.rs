@@ -1,0 +1,16 @@
+//! The exports of the npm package: plain functions over linear memory, called by `js/src/`.
+//!
+//! A function that can fail gives a code, with details in the [`status`] area. Handles and
+//! pointers are those that this module gave out.
+#![cfg_attr(target_arch = "wasm32", no_std)]
+// SAFETY of the exports: each has a name that no other symbol has, and is called by `js/src/`
+// alone, which keeps handles private, passes none after it was freed, and never calls in while
+// another call is under way. Counts are checked here, where memory depends on them.
+#![allow(unsafe_code)]
+
+extern crate alloc;
+
+mod finder;
+#[cfg(target_arch = "wasm32")]
+mod runtime;
+mod status;

@@ -1,0 +1,60 @@
+//! What the standard library would provide: the allocator, and what happens on a panic.
+//!
+//! Neither may trap. Where the core can go on no further it calls JavaScript, which throws.
+
+use core::alloc::{GlobalAlloc, Layout};
+use core::panic::PanicInfo;
+use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+use dlmalloc::GlobalDlmalloc;
+
+#[link(wasm_import_module = "sweep_and_prune")]
+unsafe extern "C" {
+    /// Throws: `OutOfMemoryError`, or an internal error.
+    safe fn fail(is_out_of_memory: bool) -> !;
+}
+
+/// The allocator, which notes whether its last allocation failed.
+struct Noting;
+
+static LAST_FAILED: AtomicBool = AtomicBool::new(false);
+
+fn note(pointer: *mut u8) -> *mut u8 {
+    LAST_FAILED.store(pointer.is_null(), Relaxed);
+    pointer
+}
+
+// SAFETY: each method hands its arguments, with their contract, to the same method of another
+// allocator, and returns what that returned.
+unsafe impl GlobalAlloc for Noting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        // SAFETY: as above.
+        note(unsafe { GlobalDlmalloc.alloc(layout) })
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        // SAFETY: as above.
+        note(unsafe { GlobalDlmalloc.alloc_zeroed(layout) })
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        // SAFETY: as above.
+        note(unsafe { GlobalDlmalloc.realloc(pointer, layout, size) })
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { GlobalDlmalloc.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Noting = Noting;
+
+/// A panic is a bug, or one of the two ways in which `alloc` says that memory has run out: after
+/// an allocation that failed, or before one that 32 bits cannot measure.
+#[panic_handler]
+fn panic(info: &PanicInfo) -> ! {
+    let is_too_large = info.message().as_str() == Some("capacity overflow");
+    fail(LAST_FAILED.load(Relaxed) || is_too_large)
+}
