@@ -71,7 +71,7 @@ pub struct Step<'a> {
 /// assert_eq!((counts.comparisons, counts.swaps, counts.tests), (2, 0, 1));
 /// # Ok::<(), sweep_and_prune::Error>(())
 /// ```
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Runner<const D: usize, T = f32> {
     options: RunnerOptions,
     sorted: SortedPairwise<T>,
