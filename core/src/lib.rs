@@ -30,3 +30,8 @@ pub use aabb::{Aabb, validate};
 pub use error::Error;
 pub use finder::{PairFinder, find_pairs};
 pub use scalar::Scalar;
+
+/// The examples of the README, run as doc tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;
