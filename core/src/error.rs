@@ -25,6 +25,52 @@ pub enum Error {
         /// How many there are.
         dimensions: usize,
     },
+    /// An id of a body that was removed, or that another world gave out.
+    StaleProxy {
+        /// The position of the id in the slice that was passed, 0 for a single one.
+        index: usize,
+    },
+    /// Two slices that go together differ in length.
+    LengthMismatch {
+        /// How many ids.
+        ids: usize,
+        /// How many boxes.
+        boxes: usize,
+    },
+    /// A margin or a prediction that is negative, infinite or NaN.
+    InvalidMargin,
+    /// A query with a centre, direction, length or radius that is NaN, infinite where it has to be
+    /// finite, or negative where that means nothing.
+    InvalidQuery {
+        /// The position of the query in the slice that was passed, 0 for a single one.
+        index: usize,
+    },
+    /// Bytes that are no snapshot of such a world.
+    InvalidSnapshot(SnapshotFault),
+}
+
+/// What is wrong with the bytes of a snapshot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SnapshotFault {
+    /// They do not begin as a snapshot does.
+    Foreign,
+    /// They were written by a version that this one cannot read.
+    Version {
+        /// The version that they name.
+        found: u8,
+    },
+    /// They hold a world of other dimensions or of the other coordinate type.
+    OtherWorld {
+        /// Its dimensions.
+        dimensions: usize,
+        /// The size of its coordinates, 4 or 8.
+        scalar_bytes: usize,
+    },
+    /// They end too early.
+    Truncated,
+    /// Their parts contradict each other or their checksum.
+    Corrupt,
 }
 
 impl Error {
@@ -44,6 +90,31 @@ impl fmt::Display for Error {
             Error::InvalidAxis { axis, dimensions } => {
                 write!(f, "axis {axis} does not exist in {dimensions} dimensions")
             }
+            Error::StaleProxy { index } => {
+                write!(f, "proxy id {index} is stale: its body was removed or is of another world")
+            }
+            Error::LengthMismatch { ids, boxes } => {
+                write!(f, "{ids} ids do not go with {boxes} boxes")
+            }
+            Error::InvalidMargin => {
+                write!(f, "a margin and a prediction must be finite and not negative")
+            }
+            Error::InvalidQuery { index } => {
+                write!(f, "query {index} has a part that is NaN, infinite or negative")
+            }
+            Error::InvalidSnapshot(fault) => match fault {
+                SnapshotFault::Foreign => write!(f, "these bytes are not a snapshot"),
+                SnapshotFault::Version { found } => {
+                    write!(f, "the snapshot is of version {found}, which cannot be read here")
+                }
+                SnapshotFault::OtherWorld { dimensions, scalar_bytes } => write!(
+                    f,
+                    "the snapshot holds a world of {dimensions} dimensions and {scalar_bytes}-byte \
+                     coordinates"
+                ),
+                SnapshotFault::Truncated => write!(f, "the snapshot ends too early"),
+                SnapshotFault::Corrupt => write!(f, "the snapshot is corrupt"),
+            },
         }
     }
 }

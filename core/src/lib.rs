@@ -27,7 +27,7 @@ mod finder;
 mod scalar;
 
 pub use aabb::{Aabb, validate};
-pub use error::Error;
+pub use error::{Error, SnapshotFault};
 pub use finder::{PairFinder, find_pairs};
 pub use scalar::Scalar;
 
