@@ -1,0 +1,46 @@
+//! What two sets of pairs are compared by.
+
+use serde::{Deserialize, Serialize};
+
+/// The number of pairs and a hash that depends neither on their order nor on which box of a pair
+/// comes first, but on how often each is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Fingerprint {
+    /// How many pairs there are.
+    pub pairs: u64,
+    /// The sum of a hash of each.
+    pub hash: u64,
+}
+
+impl Fingerprint {
+    /// O(pairs) time.
+    pub fn of(pairs: &[[u32; 2]]) -> Self {
+        let hash = |&[a, b]: &[u32; 2]| mix(u64::from(a.min(b)) << 32 | u64::from(a.max(b)));
+        let sum = pairs.iter().map(hash).fold(0, u64::wrapping_add);
+        Self { pairs: pairs.len() as u64, hash: sum }
+    }
+}
+
+/// The finalizer of SplitMix64 (Steele, Lea and Flood, 2014).
+fn mix(mut x: u64) -> u64 {
+    x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Fingerprint;
+
+    #[test]
+    fn order_and_orientation_do_not_matter_and_everything_else_does() {
+        let of = Fingerprint::of;
+        let pairs = of(&[[1, 2], [3, 4]]);
+        assert_eq!(pairs, of(&[[4, 3], [1, 2]]));
+        assert_ne!(pairs, of(&[[1, 2]]));
+        assert_ne!(pairs, of(&[[1, 3], [2, 4]]));
+        assert_ne!(pairs, of(&[[1, 2], [1, 2]]));
+        assert_ne!(of(&[[1, 2], [1, 2], [3, 4]]), of(&[[1, 2], [3, 4], [3, 4]]));
+    }
+}

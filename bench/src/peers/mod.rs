@@ -1,0 +1,116 @@
+//! The contenders: ours and its peers, each in its own short file, used as its own documentation
+//! recommends for finding all pairs of a set of boxes once.
+
+use anyhow::Result;
+use sweep_and_prune::Aabb;
+
+mod ours;
+mod plain;
+
+#[cfg(feature = "light")]
+mod broccoli;
+#[cfg(feature = "light")]
+mod geo_index;
+#[cfg(feature = "light")]
+mod obvhs;
+#[cfg(feature = "light")]
+mod packed_spatial_index;
+#[cfg(feature = "light")]
+mod parry;
+#[cfg(feature = "light")]
+mod rstar;
+
+/// The name of the contender that every ratio is taken against.
+pub const OURS: &str = "ours";
+
+/// Finds all pairs, from raw boxes to pairs stored in memory.
+///
+/// A contender may keep buffers and workspaces between calls, but no knowledge of the boxes:
+/// every call starts from the boxes alone.
+pub trait Contender<const D: usize> {
+    /// The pairs of indices of `boxes` that overlap, each once, in any order and orientation.
+    fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]>;
+
+    /// Called untimed before each timed call with the same boxes in another order, so that a
+    /// contender that learns from call to call has nothing to start from.
+    fn forget(&mut self, _shuffled: &[Aabb<D>]) -> Result<()> {
+        Ok(())
+    }
+}
+
+type Maker<const D: usize> = fn() -> Box<dyn Contender<D>>;
+
+/// A contender as the harness knows it.
+pub struct Peer {
+    /// How tables, plots and the command line call it.
+    pub name: &'static str,
+    /// Where it comes from, for the version.
+    pub origin: Origin,
+    /// In one line: which of its functions are called, and what was adapted.
+    pub how: &'static str,
+    /// Whether it competes with ours, or is ours in another setting.
+    pub rival: bool,
+    /// Makes it for two dimensions.
+    pub two: Option<Maker<2>>,
+    /// Makes it for three dimensions.
+    pub three: Option<Maker<3>>,
+}
+
+/// Where a contender comes from.
+pub enum Origin {
+    /// This repository.
+    Here,
+    /// A crate of this name.
+    Crate(&'static str),
+    /// A Debian package of this name.
+    #[allow(dead_code, reason = "only some features have peers from Debian")]
+    Debian(&'static str),
+}
+
+/// All contenders that were compiled in, ours first.
+pub fn all() -> Vec<Peer> {
+    let mut peers = vec![ours::PEER, ours::FRESH, plain::SWEEP, plain::BRUTE_FORCE];
+    #[cfg(feature = "light")]
+    peers.extend([
+        broccoli::PEER,
+        geo_index::PEER,
+        obvhs::PEER,
+        packed_spatial_index::PEER,
+        parry::PEER,
+        rstar::PEER,
+    ]);
+    peers
+}
+
+impl Peer {
+    /// The version that was compiled in, or a word on where it comes from.
+    pub fn version(&self) -> String {
+        match self.origin {
+            Origin::Here => "this repository".into(),
+            Origin::Crate(name) => crate_version(name).unwrap_or("unknown").into(),
+            Origin::Debian(package) => debian_version(package).unwrap_or_else(|| "unknown".into()),
+        }
+    }
+}
+
+/// The highest version of a crate in the lock file, which lists them in ascending order.
+fn crate_version(name: &str) -> Option<&'static str> {
+    let lock = include_str!("../../Cargo.lock");
+    let start = format!("name = \"{name}\"\nversion = \"");
+    let from = lock.rfind(&start)? + start.len();
+    lock[from..].split('"').next()
+}
+
+fn debian_version(package: &str) -> Option<String> {
+    let asked = std::process::Command::new("dpkg-query")
+        .args(["--show", "--showformat=${Version}", package])
+        .output()
+        .ok()?;
+    asked.status.success().then(|| String::from_utf8_lossy(&asked.stdout).into_owned())
+}
+
+/// A corner in three dimensions for peers that know no others: the missing coordinates are 0.
+#[allow(dead_code, reason = "not every set of features has such a peer")]
+fn lift<const D: usize>(corner: [f32; D]) -> [f32; 3] {
+    std::array::from_fn(|axis| corner.get(axis).copied().unwrap_or(0.0))
+}

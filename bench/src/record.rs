@@ -1,0 +1,164 @@
+//! What is kept of a run: one file a machine and day, in JSON.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use serde::{Deserialize, Serialize};
+
+/// One file of results.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Record {
+    /// The date of the run, year-month-day.
+    pub date: String,
+    /// Where it ran.
+    pub machine: Machine,
+    /// The compiler, as `rustc --version` says it.
+    pub rustc: String,
+    /// The contenders and their versions.
+    pub versions: BTreeMap<String, String>,
+    /// The contenders and how each was called.
+    pub how: BTreeMap<String, String>,
+    /// The cases, by scene, dimensions and number of boxes.
+    pub cases: Vec<Case>,
+}
+
+/// The machine, as far as the times depend on it.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Machine {
+    /// The processor's name, family and model.
+    pub cpu: String,
+    /// The processors that the process may use.
+    pub cores: usize,
+    /// The vector extensions that the processor has, of those that matter here.
+    pub vectors: Vec<String>,
+    /// The main memory in bytes.
+    pub memory_bytes: Option<u64>,
+    /// The operating system.
+    pub system: String,
+    /// The rate of the time stamp counter in MHz, measured; `None` off x86-64.
+    pub tsc_mhz: Option<f64>,
+    /// Bytes read plus bytes written a second when one thread copies a large buffer.
+    pub copy_bytes_per_second: f64,
+    /// The machine's load average when the run began: above 0.5 others were at work.
+    pub load: Option<f64>,
+}
+
+/// One set of boxes and what the contenders made of it.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Case {
+    /// The scene's name.
+    pub scene: String,
+    /// 2 or 3.
+    pub dimensions: usize,
+    /// The number of boxes.
+    pub boxes: usize,
+    /// The number of pairs.
+    pub pairs: u64,
+    /// What every contender's pairs were checked against.
+    pub reference: String,
+    /// What each contender did.
+    pub results: Vec<Entry>,
+}
+
+/// One contender on one set of boxes.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Entry {
+    /// The contender's name.
+    pub name: String,
+    /// Whether it competes with ours, or is ours in another setting.
+    pub rival: bool,
+    /// What came of it.
+    pub outcome: Outcome,
+}
+
+/// What came of a contender.
+#[derive(Clone, Serialize, Deserialize)]
+pub enum Outcome {
+    /// Its pairs were right, and it was timed.
+    Timed(Times),
+    /// It was not timed: too slow, in error, or with other pairs than the reference.
+    Untimed {
+        /// Why.
+        why: String,
+    },
+}
+
+/// The times of a contender, from raw boxes to stored pairs.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Times {
+    /// The median over the rounds.
+    pub median_ns: f64,
+    /// The least over the rounds.
+    pub min_ns: f64,
+    /// Each round's time (the median of its repeats).
+    pub rounds_ns: Vec<f64>,
+    /// The median over the rounds of this contender's time over ours in the same round.
+    pub ratio: Option<f64>,
+    /// The most memory in use during the first call beyond the boxes.
+    pub peak_bytes: Option<u64>,
+}
+
+impl Entry {
+    /// The times, if it was timed.
+    pub fn times(&self) -> Option<&Times> {
+        match &self.outcome {
+            Outcome::Timed(times) => Some(times),
+            Outcome::Untimed { .. } => None,
+        }
+    }
+}
+
+impl Case {
+    /// The times of a contender.
+    pub fn times(&self, name: &str) -> Option<&Times> {
+        self.results.iter().find(|entry| entry.name == name)?.times()
+    }
+
+    /// The rivals that were timed, the fastest first.
+    pub fn ranking(&self) -> Vec<(&str, &Times)> {
+        let rivals = self.results.iter().filter(|entry| entry.rival);
+        let mut ranking: Vec<_> =
+            rivals.filter_map(|entry| Some((entry.name.as_str(), entry.times()?))).collect();
+        ranking.sort_by(|(_, a), (_, b)| a.median_ns.total_cmp(&b.median_ns));
+        ranking
+    }
+
+    fn key(&self) -> (&str, usize, usize) {
+        (&self.scene, self.dimensions, self.boxes)
+    }
+}
+
+impl Record {
+    /// Reads a file of results.
+    pub fn read(path: &Path) -> Result<Self> {
+        let text = std::fs::read(path).with_context(|| format!("reading {}", path.display()))?;
+        serde_json::from_slice(&text).with_context(|| format!("parsing {}", path.display()))
+    }
+
+    /// Writes the file anew.
+    pub fn write(&self, path: &Path) -> Result<()> {
+        let text = serde_json::to_string_pretty(self)? + "\n";
+        std::fs::write(path, text).with_context(|| format!("writing {}", path.display()))
+    }
+
+    /// Adds a case, or replaces the one of the same boxes.
+    pub fn put(&mut self, case: Case) {
+        match self.cases.iter_mut().find(|kept| kept.key() == case.key()) {
+            Some(kept) => *kept = case,
+            None => self.cases.push(case),
+        }
+    }
+}
+
+/// The median of at least one number; the mean of the middle two of an even count.
+pub fn median(numbers: &[f64]) -> f64 {
+    let mut sorted = numbers.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let middle = sorted.len() / 2;
+    if sorted.len().is_multiple_of(2) {
+        (sorted[middle - 1] + sorted[middle]) / 2.0
+    } else {
+        sorted[middle]
+    }
+}

@@ -1,0 +1,90 @@
+//! The harness's end of a worker.
+
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::Duration;
+
+use anyhow::{Result, bail};
+
+use crate::worker::{MARK, Reply, Request};
+
+/// How long a worker may take to make its boxes.
+const START_LIMIT: Duration = Duration::from_secs(120);
+
+/// A worker that runs; dropped, it is stopped.
+pub struct Remote {
+    child: Child,
+    requests: ChildStdin,
+    replies: Receiver<String>,
+}
+
+/// What came of a request.
+pub enum Outcome {
+    /// The worker answered.
+    Reply(Reply),
+    /// It took longer than it may, or crashed, and is gone; why, in words.
+    Lost(String),
+}
+
+impl Remote {
+    /// Starts a worker and waits until it has its boxes.
+    pub fn start(peer: &str, scene: &str, dimensions: usize, boxes: usize) -> Result<Self> {
+        let mut child = Command::new(std::env::current_exe()?)
+            .args(["worker", "--peer", peer, "--scene", scene])
+            .args(["--dimensions", &dimensions.to_string(), "--boxes", &boxes.to_string()])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::inherit())
+            .spawn()?;
+        let (Some(requests), Some(output)) = (child.stdin.take(), child.stdout.take()) else {
+            bail!("a worker without pipes");
+        };
+        let (sender, replies) = channel();
+        std::thread::spawn(move || {
+            for line in BufReader::new(output).lines().map_while(Result::ok) {
+                if let Some(reply) = line.strip_prefix(MARK)
+                    && sender.send(reply.to_owned()).is_err()
+                {
+                    return;
+                }
+            }
+        });
+        let mut remote = Self { child, requests, replies };
+        match remote.receive(START_LIMIT)? {
+            Outcome::Reply(_) => Ok(remote),
+            Outcome::Lost(why) => bail!("the worker of {peer} did not start: {why}"),
+        }
+    }
+
+    /// Sends a request and waits for the reply for as long as `limit`.
+    pub fn ask(&mut self, request: &Request, limit: Duration) -> Result<Outcome> {
+        if writeln!(self.requests, "{}", serde_json::to_string(request)?).is_err() {
+            return Ok(Outcome::Lost(self.epitaph()));
+        }
+        self.receive(limit)
+    }
+
+    fn receive(&mut self, limit: Duration) -> Result<Outcome> {
+        match self.replies.recv_timeout(limit) {
+            Ok(reply) => Ok(Outcome::Reply(serde_json::from_str(&reply)?)),
+            Err(RecvTimeoutError::Timeout) => {
+                let _ = self.child.kill();
+                Ok(Outcome::Lost(format!("over {} s", limit.as_secs_f64().round())))
+            }
+            Err(RecvTimeoutError::Disconnected) => Ok(Outcome::Lost(self.epitaph())),
+        }
+    }
+
+    /// How the worker ended.
+    fn epitaph(&mut self) -> String {
+        self.child.wait().map_or_else(|error| error.to_string(), |status| status.to_string())
+    }
+}
+
+impl Drop for Remote {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
