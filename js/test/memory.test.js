@@ -1,0 +1,34 @@
+// Running out of memory is an error like any other. A file of its own: it needs gigabytes for a
+// moment, and gives them back when its process ends.
+import assert from "node:assert/strict";
+import { before, test } from "node:test";
+import { findPairs, init, OutOfMemoryError, PairFinder } from "sweep-and-prune";
+
+before(() => init());
+
+const good = new Float32Array([0, 1, 1, 2]);
+
+test("boxes that do not fit", () => {
+  // The system hands these out without touching them: they cost nothing.
+  const boxes = new Float64Array(2 ** 29);
+  const finder = new PairFinder({ dimensions: 1 });
+  for (let i = 0; i < 3; i++) {
+    assert.throws(() => findPairs(boxes, { dimensions: 1 }), OutOfMemoryError);
+    assert.throws(() => finder.find(boxes), OutOfMemoryError);
+    assert.deepEqual([...finder.find(good)], [0, 1]);
+  }
+  finder.free();
+});
+
+test("pairs that do not fit, again and again", () => {
+  // All of them overlap: n(n-1)/2 pairs of 8 bytes are over 2 GiB.
+  const boxes = new Float32Array(2 * 24_000);
+  const finder = new PairFinder({ dimensions: 1 });
+  for (let i = 0; i < 3; i++) {
+    assert.throws(() => finder.find(boxes), OutOfMemoryError);
+    assert.deepEqual([...finder.find(good)], [0, 1]);
+  }
+  finder.free();
+  assert.throws(() => findPairs(boxes, { dimensions: 1 }), OutOfMemoryError);
+  assert.equal(findPairs(boxes.subarray(0, 2000), { dimensions: 1 }).length, 1000 * 999);
+});
