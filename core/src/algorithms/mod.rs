@@ -4,21 +4,36 @@
 //! [`find_pairs`](crate::find_pairs).
 //!
 //! Every algorithm runs over the same boxes through one interface, the [`Runner`], and tells an
-//! [`Observer`] what it does. All agree on what a pair is: closed intervals, each pair once, the
-//! smaller index first.
+//! [`Observer`] what it does: [`Counts`] counts it, [`Trace`] records it, [`Player`] plays the
+//! recording forward and backward. All agree on what a pair is: closed intervals, each pair once,
+//! the smaller index first.
+//!
+//! In the order in which to read them: `pairwise.rs`, `sorted_pairwise.rs`, `endpoint_array.rs`,
+//! `one_to_n.rs`, `endpoint_sweep.rs`, `axis_sweeps.rs`, `swap_sweep.rs`.
 
 mod axis;
+mod axis_sweeps;
+mod counts;
 mod endpoint;
+mod endpoint_array;
+mod endpoint_sweep;
 mod observer;
+mod one_to_n;
 mod pairwise;
+mod player;
 mod runner;
 mod sorted_pairwise;
 mod sorts;
+mod swap_sweep;
+mod touching;
+mod trace;
 
 pub use axis::Axis;
+pub use counts::Counts;
 pub use endpoint::{Edge, Endpoint, Side};
-pub use observer::{Counts, Observer, Separation};
-pub use pairwise::{pairwise, pairwise_observed};
+pub use observer::{Observer, Separation};
+pub use pairwise::pairwise;
+pub use player::{Player, PlayerState};
 pub use runner::{Method, Runner, RunnerOptions, Step};
-pub use sorted_pairwise::SortedPairwise;
 pub use sorts::Sort;
+pub use trace::{Event, Trace, TracedArray};

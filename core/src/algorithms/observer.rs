@@ -1,6 +1,6 @@
-//! Who watches an algorithm at work, and the simplest watcher, which counts.
+//! Who watches an algorithm at work, and why two boxes are apart.
 
-use super::endpoint::Edge;
+use super::endpoint::{Edge, Endpoint};
 use crate::{Aabb, Scalar};
 
 /// Sees every step of an algorithm. Each method does nothing unless it is overridden, and `()`
@@ -9,10 +9,26 @@ use crate::{Aabb, Scalar};
 /// The words mean the same for every algorithm:
 /// a *comparison* and a *swap* are the sort's; a *test* is one pair of boxes handed to the box
 /// test; an *axis overlap* is a pair found to overlap on an axis that is swept; an *overlap* is a
-/// pair that overlaps on every axis.
+/// pair that overlaps on every axis: what a narrow phase receives, told once a step for each pair
+/// by every algorithm. The two forms that sweep every axis need no box test, so they make none.
+///
+/// The events are enough to draw an algorithm at work without knowing the algorithm:
+/// [`Trace`](super::Trace) records them, [`Player`](super::Player) turns them back into a state.
+/// Two observers watch together as a pair, `&mut (counts, trace)`.
 pub trait Observer {
     /// Whether anyone is watching. Algorithms skip work that only an observer would see.
     const ACTIVE: bool = true;
+
+    /// A step begins, along `axis`. Axis overlaps told in earlier steps still stand if
+    /// `keeps_axis_overlaps` (the persistent swap-driven forms tell only what changes); otherwise
+    /// they are found anew.
+    #[inline]
+    fn step(&mut self, _axis: usize, _keeps_axis_overlaps: bool) {}
+
+    /// This is now the array of endpoints on `axis`; the comparisons, swaps and visits that follow
+    /// are of its positions, up to the next call.
+    #[inline]
+    fn array<T: Scalar>(&mut self, _axis: usize, _endpoints: &[Endpoint<T>]) {}
 
     /// The sort compared two endpoints.
     #[inline]
@@ -22,6 +38,10 @@ pub trait Observer {
     /// `positions[0]`, is now at `positions[1]`, and `b` the other way round.
     #[inline]
     fn swap(&mut self, _positions: [usize; 2], _a: Edge, _b: Edge) {}
+
+    /// The sweep line, or a scan, reached the endpoint at this position of the array.
+    #[inline]
+    fn visit(&mut self, _position: usize, _edge: Edge) {}
 
     /// The sweep reached a box.
     #[inline]
@@ -40,17 +60,118 @@ pub trait Observer {
     #[inline]
     fn test(&mut self, _a: u32, _b: u32, _separation: Option<Separation>) {}
 
-    /// Two boxes overlap on a swept axis.
+    /// Two boxes overlap on a swept axis, or from now on do; the smaller index first.
     #[inline]
     fn axis_overlap(&mut self, _axis: usize, _a: u32, _b: u32) {}
+
+    /// Two boxes that overlapped on a swept axis no longer do; the smaller index first.
+    #[inline]
+    fn axis_apart(&mut self, _axis: usize, _a: u32, _b: u32) {}
 
     /// Two boxes overlap on every axis: a pair, the smaller index first.
     #[inline]
     fn overlap(&mut self, _a: u32, _b: u32) {}
+
+    /// A pair that was none after the last step; the smaller index first.
+    #[inline]
+    fn begin(&mut self, _a: u32, _b: u32) {}
+
+    /// What was a pair after the last step is none any more; the smaller index first.
+    #[inline]
+    fn end(&mut self, _a: u32, _b: u32) {}
 }
 
 impl Observer for () {
     const ACTIVE: bool = false;
+}
+
+/// Two observers watch at once, the first of the pair first.
+impl<A: Observer, B: Observer> Observer for (A, B) {
+    const ACTIVE: bool = A::ACTIVE || B::ACTIVE;
+
+    #[inline]
+    fn step(&mut self, axis: usize, keeps_axis_overlaps: bool) {
+        self.0.step(axis, keeps_axis_overlaps);
+        self.1.step(axis, keeps_axis_overlaps);
+    }
+
+    #[inline]
+    fn array<T: Scalar>(&mut self, axis: usize, endpoints: &[Endpoint<T>]) {
+        self.0.array(axis, endpoints);
+        self.1.array(axis, endpoints);
+    }
+
+    #[inline]
+    fn compare(&mut self, a: Edge, b: Edge) {
+        self.0.compare(a, b);
+        self.1.compare(a, b);
+    }
+
+    #[inline]
+    fn swap(&mut self, positions: [usize; 2], a: Edge, b: Edge) {
+        self.0.swap(positions, a, b);
+        self.1.swap(positions, a, b);
+    }
+
+    #[inline]
+    fn visit(&mut self, position: usize, edge: Edge) {
+        self.0.visit(position, edge);
+        self.1.visit(position, edge);
+    }
+
+    #[inline]
+    fn enter(&mut self, id: u32) {
+        self.0.enter(id);
+        self.1.enter(id);
+    }
+
+    #[inline]
+    fn leave(&mut self, id: u32) {
+        self.0.leave(id);
+        self.1.leave(id);
+    }
+
+    #[inline]
+    fn prune(&mut self, separation: Separation) {
+        self.0.prune(separation);
+        self.1.prune(separation);
+    }
+
+    #[inline]
+    fn test(&mut self, a: u32, b: u32, separation: Option<Separation>) {
+        self.0.test(a, b, separation);
+        self.1.test(a, b, separation);
+    }
+
+    #[inline]
+    fn axis_overlap(&mut self, axis: usize, a: u32, b: u32) {
+        self.0.axis_overlap(axis, a, b);
+        self.1.axis_overlap(axis, a, b);
+    }
+
+    #[inline]
+    fn axis_apart(&mut self, axis: usize, a: u32, b: u32) {
+        self.0.axis_apart(axis, a, b);
+        self.1.axis_apart(axis, a, b);
+    }
+
+    #[inline]
+    fn overlap(&mut self, a: u32, b: u32) {
+        self.0.overlap(a, b);
+        self.1.overlap(a, b);
+    }
+
+    #[inline]
+    fn begin(&mut self, a: u32, b: u32) {
+        self.0.begin(a, b);
+        self.1.begin(a, b);
+    }
+
+    #[inline]
+    fn end(&mut self, a: u32, b: u32) {
+        self.0.end(a, b);
+        self.1.end(a, b);
+    }
 }
 
 /// Why two boxes are apart: on `axis`, `left.max < right.min`.
@@ -68,7 +189,7 @@ impl Separation {
     /// The first axis that separates two of `boxes`, trying `first_axis`, then the ones after it,
     /// then those before; `None` if the two overlap.
     #[inline]
-    pub fn find<const D: usize, T: Scalar>(
+    pub(super) fn find<const D: usize, T: Scalar>(
         boxes: &[Aabb<D, T>],
         a: u32,
         b: u32,
@@ -77,9 +198,21 @@ impl Separation {
         (first_axis..D).chain(0..first_axis).find_map(|axis| Self::on_axis(boxes, a, b, axis))
     }
 
+    /// As [`find`](Self::find) for two boxes that are known to overlap on `known_axis`: that axis
+    /// is not tried.
+    #[inline]
+    pub(super) fn find_beside<const D: usize, T: Scalar>(
+        boxes: &[Aabb<D, T>],
+        a: u32,
+        b: u32,
+        known_axis: usize,
+    ) -> Option<Self> {
+        (known_axis + 1..D).chain(0..known_axis).find_map(|axis| Self::on_axis(boxes, a, b, axis))
+    }
+
     /// How one axis separates two of `boxes`, if it does.
     #[inline]
-    pub fn on_axis<const D: usize, T: Scalar>(
+    fn on_axis<const D: usize, T: Scalar>(
         boxes: &[Aabb<D, T>],
         a: u32,
         b: u32,
@@ -96,44 +229,8 @@ impl Separation {
     }
 }
 
-/// An observer that counts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// Comparisons of the sort.
-    pub comparisons: u64,
-    /// Swaps of the sort.
-    pub swaps: u64,
-    /// Pairs of boxes handed to the box test.
-    pub tests: u64,
-    /// Pairs found to overlap on a swept axis.
-    pub axis_overlaps: u64,
-    /// Pairs that overlap on every axis.
-    pub pairs: u64,
-}
-
-impl Observer for Counts {
-    #[inline]
-    fn compare(&mut self, _: Edge, _: Edge) {
-        self.comparisons += 1;
-    }
-
-    #[inline]
-    fn swap(&mut self, _: [usize; 2], _: Edge, _: Edge) {
-        self.swaps += 1;
-    }
-
-    #[inline]
-    fn test(&mut self, _: u32, _: u32, _: Option<Separation>) {
-        self.tests += 1;
-    }
-
-    #[inline]
-    fn axis_overlap(&mut self, _: usize, _: u32, _: u32) {
-        self.axis_overlaps += 1;
-    }
-
-    #[inline]
-    fn overlap(&mut self, _: u32, _: u32) {
-        self.pairs += 1;
-    }
+/// A pair as it is reported: the smaller index first.
+#[inline]
+pub(super) fn pair(a: u32, b: u32) -> [u32; 2] {
+    if a < b { [a, b] } else { [b, a] }
 }

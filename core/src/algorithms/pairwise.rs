@@ -6,9 +6,12 @@
 //!         if overlaps(boxes[i], boxes[j]): pair (i, j)
 //! ```
 //!
-//! Always n(n-1)/2 tests and no memory of its own. It is too slow beyond a few hundred boxes and
-//! too simple to be wrong, which makes it the oracle that every other path is compared with.
-//! Its pairs come sorted.
+//! Always n(n-1)/2 tests, in the best case and the worst, and no memory of its own. It is too slow
+//! beyond a few hundred boxes and too simple to be wrong, which makes it the oracle that every
+//! other path is compared with. Its pairs come sorted.
+//!
+//! Unlike the article's listing it tests closed intervals (touching boxes overlap), and hands the
+//! pairs over instead of bouncing the boxes while it still goes through them.
 
 use alloc::vec::Vec;
 
@@ -29,22 +32,23 @@ use crate::{Aabb, Error, Scalar, validate};
 /// ```
 pub fn pairwise<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>]) -> Result<Vec<[u32; 2]>, Error> {
     validate(boxes)?;
+    let ids: Vec<u32> = (0..boxes.len() as u32).collect();
     let mut pairs = Vec::new();
-    pairwise_observed(boxes, 0, &mut (), &mut pairs);
+    pairwise_observed(boxes, &ids, 0, &mut (), &mut pairs);
     Ok(pairs)
 }
 
-/// Global pairwise under observation, appending to `pairs`. `first_axis`, less than `D`, is the
-/// one that the box test tries first. The boxes must be valid.
-pub fn pairwise_observed<const D: usize, T: Scalar, O: Observer>(
+/// Global pairwise under observation over the boxes `ids` (ascending), appending to `pairs`.
+/// `first_axis`, less than `D`, is the one that the box test tries first.
+pub(super) fn pairwise_observed<const D: usize, T: Scalar, O: Observer>(
     boxes: &[Aabb<D, T>],
+    ids: &[u32],
     first_axis: usize,
     observer: &mut O,
     pairs: &mut Vec<[u32; 2]>,
 ) {
-    let n = boxes.len() as u32;
-    for a in 0..n {
-        for b in a + 1..n {
+    for (i, &a) in ids.iter().enumerate() {
+        for &b in &ids[i + 1..] {
             let separation = Separation::find(boxes, a, b, first_axis);
             observer.test(a, b, separation);
             if separation.is_none_or(|found| found.axis != first_axis) {

@@ -3,31 +3,73 @@
 use alloc::vec::Vec;
 
 use super::axis::Axis;
+use super::axis_sweeps::AxisSweeps;
+use super::endpoint_array::EndpointArray;
+use super::endpoint_sweep::endpoint_sweep;
 use super::observer::Observer;
+use super::one_to_n::one_to_n;
 use super::pairwise::pairwise_observed;
-use super::sorted_pairwise::SortedPairwise;
+use super::sorted_pairwise::sorted_pairwise;
 use super::sorts::Sort;
-use crate::{Aabb, Error, Scalar, validate};
+use super::swap_sweep::SwapSweep;
+use super::touching::Touching;
+use crate::{Aabb, Error, Scalar};
 
 /// Which algorithm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Method {
-    /// Global pairwise: every box against every other.
+    /// Global pairwise: every box against every other. Pairs sorted.
     Pairwise,
-    /// Sort by left edge, test each box against those that begin before it ends.
+    /// Sort by left edge, test each box against those that begin before it ends. Pairs in the
+    /// order of the sweep.
     SortedPairwise,
+    /// The one-to-n scan of the endpoints between this box's own: the pairs of one box, and not
+    /// even all of those. It misses boxes that enclose it on the axis.
+    OneToN(u32),
+    /// Sweep a line over both endpoints of every box. Pairs in the order of the sweep.
+    EndpointSweep,
+    /// The endpoint sweep on every axis; a pair must be flagged on each. Pairs in the order of the
+    /// last sweep.
+    AxisSweeps,
+    /// Insertion sort whose swaps tell what begins and ends, on one axis. Pairs sorted.
+    SwapSweep,
+    /// The swap-driven form on every axis. Pairs sorted.
+    AxisSwapSweeps,
 }
 
 impl Method {
-    /// Every method.
-    pub const ALL: [Method; 2] = [Method::Pairwise, Method::SortedPairwise];
+    /// Every method that finds all the pairs, so not the one-to-n scan.
+    pub const ALL: [Method; 6] = [
+        Method::Pairwise,
+        Method::SortedPairwise,
+        Method::EndpointSweep,
+        Method::AxisSweeps,
+        Method::SwapSweep,
+        Method::AxisSwapSweeps,
+    ];
 
     /// The name that a person reads.
     pub const fn name(self) -> &'static str {
         match self {
             Method::Pairwise => "global pairwise",
             Method::SortedPairwise => "sorted pairwise",
+            Method::OneToN(_) => "one-to-n scan",
+            Method::EndpointSweep => "endpoint sweep",
+            Method::AxisSweeps => "endpoint sweep on every axis",
+            Method::SwapSweep => "swap-driven sweep",
+            Method::AxisSwapSweeps => "swap-driven sweep on every axis",
         }
+    }
+
+    /// Whether it keeps endpoints sorted, so that [`Sort`] matters. In the swap-driven forms that
+    /// is how boxes which come are sorted; those which move are always sorted by insertion.
+    pub const fn sorts(self) -> bool {
+        !matches!(self, Method::Pairwise)
+    }
+
+    /// Whether it keeps overlaps from step to step, when persistent.
+    const fn keeps_axis_overlaps(self) -> bool {
+        matches!(self, Method::SwapSweep | Method::AxisSwapSweeps)
     }
 }
 
@@ -40,53 +82,136 @@ pub struct RunnerOptions {
     pub sort: Sort,
     /// Along which axis it sweeps, chosen anew each step.
     pub axis: Axis,
-    /// Whether the order of one step is where the next begins.
+    /// Whether the state of one step is where the next begins: the order of the endpoints, in the
+    /// swap-driven forms the overlaps too. Only then are begun and ended pairs told.
     pub persistent: bool,
 }
 
 /// What one step found.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<'a> {
-    /// The overlapping pairs, each once, smaller index first, in the order found.
+    /// The overlapping pairs, each once, smaller index first, in the order of the method; the
+    /// same in every build and on every machine.
     pub pairs: &'a [[u32; 2]],
-    /// The axis that was swept.
+    /// The pairs that the step before did not have, sorted. Empty unless persistent.
+    pub begun: &'a [[u32; 2]],
+    /// The pairs that only the step before had, sorted. Empty unless persistent.
+    pub ended: &'a [[u32; 2]],
+    /// The axis that was swept, or was the first to be.
     pub axis: usize,
 }
 
 /// Runs one algorithm over the boxes of one step after another.
 ///
+/// A box is its index: the box at index 3 in one step is the one at index 3 in the next. Boxes
+/// are added and removed, one or many at a time, by a slice that is longer or shorter, or, with
+/// [`step_where`](Self::step_where), anywhere within it.
+///
 /// ```
 /// use sweep_and_prune::Aabb;
 /// use sweep_and_prune::algorithms::{Axis, Counts, Method, Runner, RunnerOptions, Sort};
 ///
-/// let boxes = [Aabb::new([0.0], [2.0]), Aabb::new([1.0], [3.0]), Aabb::new([5.0], [6.0])];
+/// let mut boxes = [Aabb::new([0.0], [2.0]), Aabb::new([1.0], [3.0]), Aabb::new([5.0], [6.0])];
 /// let mut runner = Runner::new(RunnerOptions {
-///     method: Method::SortedPairwise,
-///     sort: Sort::Insertion,
+///     method: Method::SwapSweep,
+///     sort: Sort::Standard,
 ///     axis: Axis::Fixed(0),
 ///     persistent: true,
 /// });
+/// assert_eq!(runner.step(&boxes, &mut ())?.pairs, [[0, 1]]);
+///
+/// boxes[1] = Aabb::new([4.0], [7.0]);
 /// let mut counts = Counts::default();
-/// assert_eq!(runner.step(&boxes, &mut counts)?.pairs, [[0, 1]]);
-/// assert_eq!((counts.comparisons, counts.swaps, counts.tests), (2, 0, 1));
+/// let step = runner.step(&boxes, &mut counts)?;
+/// assert_eq!((step.begun, step.ended), (&[[1, 2]][..], &[[0, 1]][..]));
+/// // The left end of box 1 passed the right end of box 0; its right end passed both of box 2.
+/// assert_eq!(counts.swaps, 3);
 /// # Ok::<(), sweep_and_prune::Error>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Runner<const D: usize, T = f32> {
     options: RunnerOptions,
-    sorted: SortedPairwise<T>,
+    /// The boxes of the last step, ascending, and how those of this step differ.
+    ids: Vec<u32>,
+    next_ids: Vec<u32>,
+    came: Vec<u32>,
+    went: Vec<u32>,
+    state: State<D, T>,
     pairs: Vec<[u32; 2]>,
+    /// The pairs of the last step, sorted; of the methods that do not keep them themselves.
+    last_pairs: Vec<[u32; 2]>,
+    begun: Vec<[u32; 2]>,
+    ended: Vec<[u32; 2]>,
+}
+
+/// What a method works on.
+#[derive(Clone, Debug)]
+enum State<const D: usize, T> {
+    Nothing,
+    Lefts(EndpointArray<T>),
+    Endpoints(EndpointArray<T>, Touching),
+    Axes(AxisSweeps<D, T>),
+    Swaps(SwapSweep<T>),
+}
+
+impl<const D: usize, T: Scalar> State<D, T> {
+    fn new(method: Method) -> Self {
+        match method {
+            Method::Pairwise => State::Nothing,
+            Method::SortedPairwise => State::Lefts(EndpointArray::default()),
+            Method::OneToN(_) | Method::EndpointSweep => {
+                State::Endpoints(EndpointArray::default(), Touching::default())
+            }
+            Method::AxisSweeps => State::Axes(AxisSweeps::new()),
+            Method::SwapSweep => State::Swaps(SwapSweep::on_axis(0)),
+            Method::AxisSwapSweeps => State::Swaps(SwapSweep::on_every_axis(D)),
+        }
+    }
+
+    /// Starts again from no boxes, in the same memory where that is simple.
+    fn forget(&mut self, method: Method) {
+        match self {
+            State::Nothing => {}
+            State::Lefts(array) | State::Endpoints(array, _) => array.endpoints.clear(),
+            State::Axes(sweeps) => sweeps.arrays.iter_mut().for_each(|a| a.endpoints.clear()),
+            State::Swaps(_) => *self = Self::new(method),
+        }
+    }
 }
 
 impl<const D: usize, T: Scalar> Runner<D, T> {
     /// A runner with no state yet.
     pub fn new(options: RunnerOptions) -> Self {
-        Self { options, sorted: SortedPairwise::new(), pairs: Vec::new() }
+        Self {
+            options,
+            ids: Vec::new(),
+            next_ids: Vec::new(),
+            came: Vec::new(),
+            went: Vec::new(),
+            state: State::new(options.method),
+            pairs: Vec::new(),
+            last_pairs: Vec::new(),
+            begun: Vec::new(),
+            ended: Vec::new(),
+        }
     }
 
     /// The options it was made with.
     pub fn options(&self) -> RunnerOptions {
         self.options
+    }
+
+    /// The memory that the algorithm holds to work with, in bytes: endpoints, flags and pairs that
+    /// it keeps; not the pairs that it hands out, which are the same for all. Of ordered maps the
+    /// entries are counted, not what the tree adds to them.
+    pub fn bytes(&self) -> usize {
+        match &self.state {
+            State::Nothing => 0,
+            State::Lefts(lefts) => lefts.bytes(),
+            State::Endpoints(array, touching) => array.bytes() + touching.bytes(),
+            State::Axes(sweeps) => sweeps.bytes(),
+            State::Swaps(sweep) => sweep.bytes(),
+        }
     }
 
     /// Finds all overlapping pairs of `boxes`, telling the observer every step.
@@ -99,19 +224,125 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
         boxes: &[Aabb<D, T>],
         observer: &mut O,
     ) -> Result<Step<'_>, Error> {
-        validate(boxes)?;
-        let RunnerOptions { method, sort, axis, persistent } = self.options;
-        let axis = axis.choose(boxes)?;
-        self.pairs.clear();
-        match method {
-            Method::Pairwise => pairwise_observed(boxes, axis, observer, &mut self.pairs),
-            Method::SortedPairwise => {
-                if !persistent {
-                    self.sorted.forget();
-                }
-                self.sorted.find(boxes, axis, sort, observer, &mut self.pairs);
+        self.step_where(boxes, |_| true, observer)
+    }
+
+    /// As [`step`](Self::step), with only those boxes whose index is `present`. The others are
+    /// holes: their coordinates are not read and need not be valid.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn step_where<O: Observer>(
+        &mut self,
+        boxes: &[Aabb<D, T>],
+        present: impl Fn(u32) -> bool,
+        observer: &mut O,
+    ) -> Result<Step<'_>, Error> {
+        if boxes.len() > Error::BOX_LIMIT {
+            return Err(Error::TooManyBoxes { count: boxes.len() });
+        }
+        self.next_ids.clear();
+        self.next_ids.extend((0..boxes.len() as u32).filter(|&id| present(id)));
+        for &id in &self.next_ids {
+            if let Some(axis) = boxes[id as usize].invalid_axis() {
+                return Err(Error::InvalidBox { index: id as usize, axis });
             }
         }
-        Ok(Step { pairs: &self.pairs, axis })
+        let axis = self.options.axis.choose_among(boxes, &self.next_ids)?;
+        // Nothing can fail from here on.
+        let RunnerOptions { method, persistent, .. } = self.options;
+        observer.step(axis, persistent && method.keeps_axis_overlaps());
+        self.enrol(axis, observer);
+        self.pairs.clear();
+        self.begun.clear();
+        self.ended.clear();
+        self.find(boxes, axis, observer);
+        if persistent {
+            self.tell_changes(observer);
+        }
+        Ok(Step { pairs: &self.pairs, begun: &self.begun, ended: &self.ended, axis })
+    }
+
+    /// Brings `ids` up to `next_ids`, and finds who came and who went.
+    fn enrol<O: Observer>(&mut self, axis: usize, observer: &mut O) {
+        if !self.options.persistent {
+            self.state.forget(self.options.method);
+            self.ids.clear();
+        }
+        if let State::Swaps(sweep) = &mut self.state
+            && sweep.axis().is_some_and(|last| last != axis)
+        {
+            sweep.turn_to(axis, &self.ids, observer);
+            self.ids.clear();
+        }
+        difference(&self.next_ids, &self.ids, &mut self.came);
+        difference(&self.ids, &self.next_ids, &mut self.went);
+        core::mem::swap(&mut self.ids, &mut self.next_ids);
+    }
+
+    fn find<O: Observer>(&mut self, boxes: &[Aabb<D, T>], axis: usize, observer: &mut O) {
+        let Self { options, ids, came, went, state, pairs, .. } = self;
+        let RunnerOptions { method, sort, .. } = *options;
+        match state {
+            State::Nothing => pairwise_observed(boxes, ids, axis, observer, pairs),
+            State::Lefts(lefts) => {
+                lefts.remove(went);
+                lefts.append_lefts(came);
+                sorted_pairwise(boxes, lefts, axis, sort, observer, pairs);
+            }
+            State::Endpoints(array, touching) => {
+                array.remove(went);
+                array.append(came);
+                if let Method::OneToN(focus) = method {
+                    one_to_n(boxes, array, focus, axis, sort, observer, pairs);
+                } else {
+                    endpoint_sweep(boxes, array, touching, axis, sort, observer, pairs);
+                }
+            }
+            State::Axes(sweeps) => {
+                for array in &mut sweeps.arrays {
+                    array.remove(went);
+                    array.append(came);
+                }
+                sweeps.find(boxes, axis, sort, observer, pairs);
+            }
+            State::Swaps(sweep) => {
+                sweep.remove(went, observer);
+                sweep.move_all(boxes, observer);
+                sweep.insert(boxes, came, sort, observer);
+                sweep.report(boxes, observer, pairs);
+            }
+        }
+    }
+
+    /// Finds which pairs began and ended. The swap-driven forms know; for the others the pairs of
+    /// two steps are compared.
+    fn tell_changes<O: Observer>(&mut self, observer: &mut O) {
+        if let State::Swaps(sweep) = &mut self.state {
+            sweep.changes(&mut self.begun, &mut self.ended);
+        } else {
+            let mut sorted = self.pairs.clone();
+            sorted.sort_unstable();
+            difference(&sorted, &self.last_pairs, &mut self.begun);
+            difference(&self.last_pairs, &sorted, &mut self.ended);
+            self.last_pairs = sorted;
+        }
+        self.begun.iter().for_each(|&[a, b]| observer.begin(a, b));
+        self.ended.iter().for_each(|&[a, b]| observer.end(a, b));
+    }
+}
+
+/// What is in `a` and not in `b`, both ascending, into `out`.
+fn difference<V: Copy + Ord>(a: &[V], b: &[V], out: &mut Vec<V>) {
+    out.clear();
+    if a == b {
+        return;
+    }
+    let mut b = b.iter().peekable();
+    for &value in a {
+        while b.next_if(|&&other| other < value).is_some() {}
+        if b.peek() != Some(&&value) {
+            out.push(value);
+        }
     }
 }

@@ -2,7 +2,6 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
-use core::cmp::Ordering;
 
 use super::endpoint::Endpoint;
 use super::observer::Observer;
@@ -21,11 +20,19 @@ pub enum Sort {
     /// Insertion sort: O(n + s) for s inversions, so O(n) when hardly anything has moved and
     /// n(n-1)/2 swaps on a full reversal. Its swaps are exactly the inversions.
     Insertion,
+    /// Merge sort, top down: O(n log n) always, and O(n) memory. Of each merge the observer sees
+    /// the comparisons, and afterwards the fewest swaps that have the same effect.
+    Merge,
+    /// As Timsort (Peters 2002), without its galloping: merge sort that starts from the runs
+    /// which the array already has, short ones completed by insertion. O(n + n log r) for r runs:
+    /// O(n) when sorted or reversed, O(n log n) at worst. O(n) memory.
+    Timsort,
 }
 
 impl Sort {
     /// Every sort.
-    pub const ALL: [Sort; 3] = [Sort::Standard, Sort::Quicksort, Sort::Insertion];
+    pub const ALL: [Sort; 5] =
+        [Sort::Standard, Sort::Quicksort, Sort::Insertion, Sort::Merge, Sort::Timsort];
 
     /// The name that a person reads.
     pub const fn name(self) -> &'static str {
@@ -33,16 +40,35 @@ impl Sort {
             Sort::Standard => "standard library",
             Sort::Quicksort => "quicksort",
             Sort::Insertion => "insertion sort",
+            Sort::Merge => "merge sort",
+            Sort::Timsort => "Timsort",
+        }
+    }
+
+    /// Sorts `endpoints[from..]` in place. Positions are told as those of the whole array.
+    pub(super) fn sort_tail<T: Scalar, O: Observer>(
+        self,
+        endpoints: &mut [Endpoint<T>],
+        from: usize,
+        observer: &mut O,
+    ) {
+        let tail = &mut endpoints[from..];
+        match self {
+            Sort::Standard => standard(tail, from, observer),
+            Sort::Quicksort => quicksort(tail, from, observer),
+            Sort::Insertion => insertion(tail, 1, from, observer),
+            Sort::Merge => merge_sort(tail, from, observer),
+            Sort::Timsort => timsort(tail, from, observer),
         }
     }
 
     /// Sorts endpoints in place.
-    pub fn sort<T: Scalar, O: Observer>(self, endpoints: &mut [Endpoint<T>], observer: &mut O) {
-        match self {
-            Sort::Standard => standard(endpoints, observer),
-            Sort::Quicksort => quicksort(endpoints, 0, observer),
-            Sort::Insertion => insertion(endpoints, 0, observer),
-        }
+    pub(super) fn sort<T: Scalar, O: Observer>(
+        self,
+        endpoints: &mut [Endpoint<T>],
+        observer: &mut O,
+    ) {
+        self.sort_tail(endpoints, 0, observer);
     }
 }
 
@@ -66,13 +92,15 @@ fn swap<T: Scalar, O: Observer>(
     endpoints.swap(i, j);
 }
 
-/// The article's loop: carry each endpoint left, swap by swap, to where it belongs.
+/// The article's loop: carry each endpoint left, swap by swap, to where it belongs. The first
+/// `sorted >= 1` endpoints are in order already.
 fn insertion<T: Scalar, O: Observer>(
     endpoints: &mut [Endpoint<T>],
+    sorted: usize,
     offset: usize,
     observer: &mut O,
 ) {
-    for i in 1..endpoints.len() {
+    for i in sorted..endpoints.len() {
         for j in (0..i).rev() {
             if !precedes(&endpoints[j + 1], &endpoints[j], observer) {
                 break;
@@ -82,7 +110,8 @@ fn insertion<T: Scalar, O: Observer>(
     }
 }
 
-/// Below this many endpoints quicksort leaves the rest to insertion sort.
+/// Below this many endpoints quicksort leaves the rest to insertion sort, and Timsort's runs are
+/// at least so long.
 const SMALL: usize = 8;
 
 /// Partition about the median of first, middle and last; recurse into the smaller part and go on
@@ -103,7 +132,7 @@ fn quicksort<T: Scalar, O: Observer>(
             endpoints = left;
         }
     }
-    insertion(endpoints, offset, observer);
+    insertion(endpoints, 1, offset, observer);
 }
 
 /// Hoare's partition. Returns `middle` with `0 < middle < len`: nothing in `..middle` stands
@@ -138,37 +167,231 @@ fn partition<T: Scalar, O: Observer>(
     }
 }
 
-fn standard<T: Scalar, O: Observer>(endpoints: &mut [Endpoint<T>], observer: &mut O) {
+/// Sort each half, then merge them.
+fn merge_sort<T: Scalar, O: Observer>(
+    endpoints: &mut [Endpoint<T>],
+    offset: usize,
+    observer: &mut O,
+) {
+    let middle = endpoints.len() / 2;
+    if middle == 0 {
+        return;
+    }
+    merge_sort(&mut endpoints[..middle], offset, observer);
+    merge_sort(&mut endpoints[middle..], offset + middle, observer);
+    merge(endpoints, middle, offset, observer);
+}
+
+/// Merges `endpoints[..middle]` and `endpoints[middle..]`, each in order, into one.
+pub(super) fn merge<T: Scalar, O: Observer>(
+    endpoints: &mut [Endpoint<T>],
+    middle: usize,
+    offset: usize,
+    observer: &mut O,
+) {
+    let before: Vec<_> = if O::ACTIVE { endpoints.to_vec() } else { Vec::new() };
+    let mut target = vec![0; before.len()];
+    let left = endpoints[..middle].to_vec();
+    let (mut i, mut j) = (0, middle);
+    for place in 0..endpoints.len() {
+        let from_right =
+            i == left.len() || j < endpoints.len() && precedes(&endpoints[j], &left[i], observer);
+        let source = if from_right { &mut j } else { &mut i };
+        endpoints[place] = if from_right { endpoints[*source] } else { left[*source] };
+        if O::ACTIVE {
+            target[*source] = place;
+        }
+        *source += 1;
+    }
+    tell_swaps(before, target, offset, observer);
+}
+
+/// Cut the array into the runs it has, and merge neighbours so that their lengths stay balanced.
+fn timsort<T: Scalar, O: Observer>(endpoints: &mut [Endpoint<T>], offset: usize, observer: &mut O) {
+    // The lengths of the sorted runs that `endpoints[..end]` consists of.
+    let mut runs: Vec<usize> = Vec::new();
+    let mut end = 0;
+    while end < endpoints.len() {
+        let rest = &mut endpoints[end..];
+        let natural = natural_run(rest, offset + end, observer);
+        let run = natural.max(SMALL).min(rest.len());
+        insertion(&mut rest[..run], natural, offset + end, observer);
+        runs.push(run);
+        end += run;
+        while let Some(k) = unbalanced(&runs) {
+            merge_runs(endpoints, &mut runs, k, end, offset, observer);
+        }
+    }
+    while runs.len() > 1 {
+        let k = runs.len() - 2;
+        merge_runs(endpoints, &mut runs, k, end, offset, observer);
+    }
+}
+
+/// The length of the run that the slice begins with; one that goes down is turned round.
+fn natural_run<T: Scalar, O: Observer>(
+    endpoints: &mut [Endpoint<T>],
+    offset: usize,
+    observer: &mut O,
+) -> usize {
+    let n = endpoints.len();
+    if n < 2 {
+        return n;
+    }
+    let down = precedes(&endpoints[1], &endpoints[0], observer);
+    let mut run = 2;
+    while run < n && precedes(&endpoints[run], &endpoints[run - 1], observer) == down {
+        run += 1;
+    }
+    if down {
+        for i in 0..run / 2 {
+            swap(endpoints, offset, i, run - 1 - i, observer);
+        }
+    }
+    run
+}
+
+/// The run to merge with the one after it, so that from the end backward each is longer than the
+/// next two together.
+fn unbalanced(runs: &[usize]) -> Option<usize> {
+    let short = |k: usize| runs[k] <= runs[k + 1] + runs.get(k + 2).copied().unwrap_or(0);
+    let last = runs.len().checked_sub(2)?;
+    if last >= 1 && short(last - 1) || last >= 2 && short(last - 2) {
+        Some(if runs[last - 1] < runs[last + 1] { last - 1 } else { last })
+    } else {
+        (runs[last] <= runs[last + 1]).then_some(last)
+    }
+}
+
+/// Merges run `k` with the one after it; the last run ends at `end`.
+fn merge_runs<T: Scalar, O: Observer>(
+    endpoints: &mut [Endpoint<T>],
+    runs: &mut Vec<usize>,
+    k: usize,
+    end: usize,
+    offset: usize,
+    observer: &mut O,
+) {
+    let start = end - runs[k..].iter().sum::<usize>();
+    let both = start..start + runs[k] + runs[k + 1];
+    merge(&mut endpoints[both], runs[k], offset + start, observer);
+    runs[k] += runs.remove(k + 1);
+}
+
+fn standard<T: Scalar, O: Observer>(
+    endpoints: &mut [Endpoint<T>],
+    offset: usize,
+    observer: &mut O,
+) {
     let before: Vec<_> = if O::ACTIVE { endpoints.to_vec() } else { Vec::new() };
     endpoints.sort_unstable_by(|a, b| {
         observer.compare(a.edge, b.edge);
         a.order(b)
     });
-    if O::ACTIVE {
-        tell_swaps(before, endpoints, observer);
-    }
-}
-
-/// Tells the observer the fewest swaps that turn `array` into `sorted`: one cycle of the
-/// permutation after another.
-fn tell_swaps<T: Scalar, O: Observer>(
-    mut array: Vec<Endpoint<T>>,
-    sorted: &[Endpoint<T>],
-    observer: &mut O,
-) {
     // Where each endpoint belongs, found by its place in the order.
-    let mut by_order: Vec<usize> = (0..array.len()).collect();
-    by_order.sort_unstable_by(|&i, &j| array[i].order(&array[j]));
-    let mut target = vec![0; array.len()];
+    let mut by_order: Vec<usize> = (0..before.len()).collect();
+    by_order.sort_unstable_by(|&i, &j| before[i].order(&before[j]));
+    let mut target = vec![0; before.len()];
     for (place, &i) in by_order.iter().enumerate() {
         target[i] = place;
     }
-    debug_assert!(by_order.iter().zip(sorted).all(|(&i, s)| array[i].order(s) == Ordering::Equal));
+    tell_swaps(before, target, offset, observer);
+}
+
+/// Tells the observer the fewest swaps that bring each `array[i]` to `target[i]`: one cycle of
+/// the permutation after another.
+fn tell_swaps<T: Scalar, O: Observer>(
+    mut array: Vec<Endpoint<T>>,
+    mut target: Vec<usize>,
+    offset: usize,
+    observer: &mut O,
+) {
     for i in 0..array.len() {
         while target[i] != i {
             let j = target[i];
-            swap(&mut array, 0, i, j, observer);
+            swap(&mut array, offset, i, j, observer);
             target.swap(i, j);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::algorithms::{Counts, Edge};
+    use proptest::prelude::*;
+
+    /// Follows the swaps on a copy of the array.
+    struct Mirror(Vec<Edge>);
+
+    impl Observer for Mirror {
+        fn swap(&mut self, [i, j]: [usize; 2], a: Edge, b: Edge) {
+            assert_eq!([self.0[i], self.0[j]], [a, b], "what is told to stand there does");
+            self.0.swap(i, j);
+        }
+    }
+
+    fn endpoints(coordinates: &[i8]) -> Vec<Endpoint<f32>> {
+        coordinates
+            .iter()
+            .enumerate()
+            .map(|(i, &at)| match i % 3 {
+                0 => Endpoint::right(f32::from(at), i as u32),
+                _ => Endpoint::left(f32::from(at), i as u32),
+            })
+            .collect()
+    }
+
+    fn inversions(endpoints: &[Endpoint<f32>]) -> u64 {
+        let n = endpoints.len();
+        (0..n)
+            .map(|i| (i..n).filter(|&j| endpoints[j].precedes(&endpoints[i])).count() as u64)
+            .sum()
+    }
+
+    proptest! {
+        #[test]
+        fn every_sort_gives_the_one_order_and_tells_how(
+            coordinates in proptest::collection::vec(-3i8..4, 0..200),
+            from in 0usize..20,
+        ) {
+            let array = endpoints(&coordinates);
+            let from = from.min(array.len());
+            let mut expected = array.clone();
+            expected[from..].sort_by(|a, b| a.order(b));
+            for sort in Sort::ALL {
+                let mut sorted = array.clone();
+                let mut mirror = Mirror(array.iter().map(|e| e.edge).collect());
+                sort.sort_tail(&mut sorted, from, &mut mirror);
+                prop_assert_eq!(&sorted, &expected, "{}", sort.name());
+                let told: Vec<Edge> = expected.iter().map(|e| e.edge).collect();
+                prop_assert_eq!(mirror.0, told, "{}", sort.name());
+                let mut unobserved = array.clone();
+                sort.sort_tail(&mut unobserved, from, &mut ());
+                prop_assert_eq!(&unobserved, &expected, "{}", sort.name());
+            }
+        }
+
+        #[test]
+        fn insertion_sort_swaps_once_for_each_inversion(
+            coordinates in proptest::collection::vec(-3i8..4, 0..60),
+        ) {
+            let mut array = endpoints(&coordinates);
+            let expected = inversions(&array);
+            let mut counts = Counts::default();
+            Sort::Insertion.sort(&mut array, &mut counts);
+            prop_assert_eq!(counts.swaps, expected);
+        }
+    }
+
+    #[test]
+    fn timsort_takes_a_sorted_and_a_reversed_array_in_one_pass() {
+        let up: Vec<_> = (0..1000).map(|i| Endpoint::left(i as f32, i)).collect();
+        let down: Vec<_> = up.iter().rev().copied().collect();
+        for mut array in [up, down] {
+            let mut counts = Counts::default();
+            Sort::Timsort.sort(&mut array, &mut counts);
+            assert_eq!(counts.comparisons, 999);
         }
     }
 }

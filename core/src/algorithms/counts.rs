@@ -1,0 +1,92 @@
+//! The simplest observer: it counts.
+
+use super::endpoint::Edge;
+use super::observer::{Observer, Separation};
+
+/// Counts what an algorithm does, over as many steps as it watches. The same thing is counted for
+/// every algorithm, so the numbers can be put side by side.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Comparisons of the sort.
+    pub comparisons: u64,
+    /// Swaps of the sort.
+    pub swaps: u64,
+    /// Pairs of boxes handed to the box test, those that it rejects included.
+    pub tests: u64,
+    /// Pairs found to overlap on a swept axis. The persistent swap-driven forms tell only those
+    /// that begin to, so there `axis_overlaps - axis_ends` is how many there are.
+    pub axis_overlaps: u64,
+    /// Pairs found to overlap no longer on a swept axis.
+    pub axis_ends: u64,
+    /// Pairs that overlap on every axis.
+    pub pairs: u64,
+    /// Pairs that began.
+    pub begun: u64,
+    /// Pairs that ended.
+    pub ended: u64,
+    /// How many boxes the sweep line is in.
+    pub active: u64,
+    /// The most boxes that the sweep line has been in at once.
+    pub max_active: u64,
+}
+
+impl Counts {
+    /// Everything an algorithm spends time on, as one number: comparisons, swaps, tests, axis
+    /// overlaps and their ends. What the complexity table is fitted to.
+    pub fn operations(&self) -> u64 {
+        self.comparisons + self.swaps + self.tests + self.axis_overlaps + self.axis_ends
+    }
+}
+
+impl Observer for Counts {
+    #[inline]
+    fn compare(&mut self, _: Edge, _: Edge) {
+        self.comparisons += 1;
+    }
+
+    #[inline]
+    fn swap(&mut self, _: [usize; 2], _: Edge, _: Edge) {
+        self.swaps += 1;
+    }
+
+    #[inline]
+    fn enter(&mut self, _: u32) {
+        self.active += 1;
+        self.max_active = self.max_active.max(self.active);
+    }
+
+    #[inline]
+    fn leave(&mut self, _: u32) {
+        self.active = self.active.saturating_sub(1);
+    }
+
+    #[inline]
+    fn test(&mut self, _: u32, _: u32, _: Option<Separation>) {
+        self.tests += 1;
+    }
+
+    #[inline]
+    fn axis_overlap(&mut self, _: usize, _: u32, _: u32) {
+        self.axis_overlaps += 1;
+    }
+
+    #[inline]
+    fn axis_apart(&mut self, _: usize, _: u32, _: u32) {
+        self.axis_ends += 1;
+    }
+
+    #[inline]
+    fn overlap(&mut self, _: u32, _: u32) {
+        self.pairs += 1;
+    }
+
+    #[inline]
+    fn begin(&mut self, _: u32, _: u32) {
+        self.begun += 1;
+    }
+
+    #[inline]
+    fn end(&mut self, _: u32, _: u32) {
+        self.ended += 1;
+    }
+}

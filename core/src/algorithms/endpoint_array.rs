@@ -1,0 +1,60 @@
+//! The endpoint array: two entries a box, kept in step with the boxes.
+//!
+//! The article leaves out how ("an implementation detail"). Each entry knows its box and its
+//! side, so new coordinates are read in place, whatever order the entries stand in. Boxes that
+//! went are dropped and the others close ranks; boxes that came are appended. Then the array is
+//! in the last order but for what moved: just what insertion sort wants to find.
+
+use alloc::vec::Vec;
+
+use super::endpoint::{Endpoint, Side};
+use crate::{Aabb, Scalar};
+
+/// Endpoints on one axis, in the order of the last sort.
+#[derive(Clone, Debug, Default)]
+pub struct EndpointArray<T> {
+    /// The entries. A sort may reorder them.
+    pub endpoints: Vec<Endpoint<T>>,
+}
+
+impl<T: Scalar> EndpointArray<T> {
+    /// Appends both endpoints of each box, without coordinates.
+    pub fn append(&mut self, ids: &[u32]) {
+        let both =
+            |&id: &u32| [Endpoint::left(T::default(), id), Endpoint::right(T::default(), id)];
+        self.endpoints.extend(ids.iter().flat_map(both));
+    }
+
+    /// Appends the left endpoint of each box, without coordinates.
+    pub fn append_lefts(&mut self, ids: &[u32]) {
+        self.endpoints.extend(ids.iter().map(|&id| Endpoint::left(T::default(), id)));
+    }
+
+    /// Drops the endpoints of these boxes, `ids` ascending. O(n log k), the rest stays in order.
+    pub fn remove(&mut self, ids: &[u32]) {
+        if !ids.is_empty() {
+            self.endpoints.retain(|endpoint| ids.binary_search(&endpoint.edge.id).is_err());
+        }
+    }
+
+    /// Reads every coordinate anew.
+    pub fn refresh<const D: usize>(&mut self, boxes: &[Aabb<D, T>], axis: usize) {
+        self.refresh_from(0, boxes, axis);
+    }
+
+    /// Reads the coordinates of `endpoints[from..]` anew.
+    pub fn refresh_from<const D: usize>(&mut self, from: usize, boxes: &[Aabb<D, T>], axis: usize) {
+        for endpoint in &mut self.endpoints[from..] {
+            let aabb = &boxes[endpoint.edge.id as usize];
+            endpoint.at = match endpoint.edge.side {
+                Side::Left => aabb.min[axis],
+                Side::Right => aabb.max[axis],
+            };
+        }
+    }
+
+    /// The memory it holds.
+    pub fn bytes(&self) -> usize {
+        self.endpoints.capacity() * size_of::<Endpoint<T>>()
+    }
+}

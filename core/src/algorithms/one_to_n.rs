@@ -1,0 +1,69 @@
+//! The one-to-n scan: which boxes overlap this one? Flawed, and kept to show how.
+//!
+//! ```text
+//! sort the endpoints
+//! for each endpoint between the left and the right endpoint of the focus
+//!     its box overlaps the focus on the axis
+//! ```
+//!
+//! Time: the sort, plus O(n) to find the focus, plus the endpoints in between. Memory: O(n).
+//!
+//! The flaw: a box that encloses the focus on the axis has no endpoint in between, and is missed.
+//! The article says that the scan is flawed and hides it by focusing the largest ball. Scanning
+//! from *every* box would mend it, since of two intervals that overlap one has an endpoint within
+//! the other; then most overlaps are found twice. The sweep is the better repair: see
+//! `endpoint_sweep.rs`.
+//!
+//! Unlike the article's demo, the endpoints at the focus's own coordinates are in between or not
+//! by the total order, left before right, so boxes that only touch the focus are found.
+
+use alloc::vec::Vec;
+
+use super::endpoint::{Edge, Endpoint, Side};
+use super::endpoint_array::EndpointArray;
+use super::observer::{Observer, Separation, pair};
+use super::sorts::Sort;
+use crate::{Aabb, Scalar};
+
+/// Appends the pairs of box `focus` that the scan finds. Without such a box in `array` there are
+/// none.
+pub(super) fn one_to_n<const D: usize, T: Scalar, O: Observer>(
+    boxes: &[Aabb<D, T>],
+    array: &mut EndpointArray<T>,
+    focus: u32,
+    axis: usize,
+    sort: Sort,
+    observer: &mut O,
+    pairs: &mut Vec<[u32; 2]>,
+) {
+    array.refresh(boxes, axis);
+    observer.array(axis, &array.endpoints);
+    sort.sort(&mut array.endpoints, observer);
+    let begin = Edge { side: Side::Left, id: focus };
+    let Some(first) = array.endpoints.iter().position(|endpoint| endpoint.edge == begin) else {
+        return;
+    };
+    let left = array.endpoints[first];
+    observer.visit(first, begin);
+    observer.enter(focus);
+    for (position, endpoint) in array.endpoints.iter().enumerate().skip(first + 1) {
+        let Edge { side, id } = endpoint.edge;
+        observer.visit(position, endpoint.edge);
+        if id == focus {
+            break;
+        }
+        // A box with both endpoints in between is met at its left one.
+        let began_before = || Endpoint::left(boxes[id as usize].min[axis], id).precedes(&left);
+        if side == Side::Left || began_before() {
+            let [least, other] = pair(focus, id);
+            observer.axis_overlap(axis, least, other);
+            let separation = Separation::find_beside(boxes, focus, id, axis);
+            observer.test(focus, id, separation);
+            if separation.is_none() {
+                observer.overlap(least, other);
+                pairs.push([least, other]);
+            }
+        }
+    }
+    observer.leave(focus);
+}

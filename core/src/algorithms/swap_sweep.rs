@@ -1,0 +1,311 @@
+//! The swap-driven sweep, the article's final form: insertion sort, and whoever watches its swaps
+//! knows every overlap. On one axis, or on every axis at once.
+//!
+//! ```text
+//! for i in 1..len                                    insertion sort of last step's endpoints
+//!     for j in i-1 down to 0
+//!         if not endpoints[j+1] < endpoints[j]: break
+//!         swap endpoints[j], endpoints[j+1]
+//!         what was  )(  and is  ()  :  the two boxes begin to overlap on this axis
+//!         what was  ()  and is  )(  :  the two boxes cease to
+//!         ((  and  ))               :  nothing
+//! ```
+//!
+//! A right endpoint carried left is a small sweep line of its own: each left endpoint that it
+//! passes ceases to overlap its box, and a left endpoint carried left begins to overlap each box
+//! whose right endpoint it passes.
+//!
+//! Time: O(n + s) for s swaps, which are exactly the inversions: none in a world at rest, a few
+//! when it moves a little, n(2n-1) on a full reversal. On one axis the pairs that overlap there are
+//! then tested on the others, O(m); on every axis a pair must be flagged on each, and nothing is
+//! tested. A change of the pairs kept costs O(log m). Memory: O(n + m), m the overlaps on *all*
+//! swept axes.
+//!
+//! What differs from the article, and why:
+//! - It must start from what overlaps. The article's listing, run on endpoints that were sorted
+//!   first, never sees the overlaps that exist at the start. Here boxes come in bulk: their
+//!   endpoints are sorted, merged in, and one sweep finds what they overlap. The first step is
+//!   the case of an empty array. To leave is the same backward.
+//! - The order is total. With the article's strict `<`, equal coordinates swap in every step:
+//!   touching boxes flicker, and a flat box begins to overlap itself.
+//! - The pairs have one key, smaller id first, however the two met.
+//! - `begun` and `ended` are net. A body thrown past k others makes up to 4k swaps and no pair,
+//!   because what begins and ends within one update cancels.
+
+use alloc::collections::BTreeMap;
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::endpoint::{Edge, Side};
+use super::endpoint_array::EndpointArray;
+use super::observer::{Observer, Separation, pair};
+use super::sorts::{Sort, merge};
+use super::touching::Touching;
+use crate::{Aabb, Scalar};
+
+/// Endpoints and overlaps that live from step to step. A step is: [`remove`](Self::remove) who
+/// went, [`move_all`](Self::move_all), [`insert`](Self::insert) who came, then
+/// [`report`](Self::report).
+#[derive(Clone, Debug, Default)]
+pub(super) struct SwapSweep<T> {
+    /// The axes that are swept, each with its sorted endpoints.
+    sweeps: Vec<(usize, EndpointArray<T>)>,
+    /// Whether those are all the axes there are: then nothing is left to test.
+    every_axis: bool,
+    overlaps: Overlaps,
+    /// The boxes that the sweep line touches: those that stay, and those that come or go.
+    staying: Touching,
+    marked: Touching,
+}
+
+impl<T: Scalar> SwapSweep<T> {
+    /// No boxes yet, and this one axis to sweep.
+    pub fn on_axis(axis: usize) -> Self {
+        Self { sweeps: vec![(axis, EndpointArray::default())], ..Self::default() }
+    }
+
+    /// No boxes yet, and all of so many axes to sweep.
+    pub fn on_every_axis(dimensions: usize) -> Self {
+        let sweeps = (0..dimensions).map(|axis| (axis, EndpointArray::default())).collect();
+        let overlaps = Overlaps { axes: dimensions, ..Overlaps::default() };
+        Self { sweeps, every_axis: true, overlaps, ..Self::default() }
+    }
+
+    /// Goes on along another axis, for the form that sweeps one: forgets the endpoints and ends
+    /// every overlap. What is inserted again and overlaps as before is no change.
+    pub fn turn_to<O: Observer>(&mut self, axis: usize, ids: &[u32], observer: &mut O) {
+        self.remove(ids, observer);
+        self.sweeps[0].0 = axis;
+    }
+
+    /// The axis it sweeps, if it is only one of several.
+    pub fn axis(&self) -> Option<usize> {
+        if self.every_axis { None } else { self.sweeps.first().map(|(axis, _)| *axis) }
+    }
+
+    /// Ends every overlap of these boxes and drops them, `ids` ascending. O(n log k + their
+    /// overlaps) an axis.
+    pub fn remove<O: Observer>(&mut self, ids: &[u32], observer: &mut O) {
+        if ids.is_empty() {
+            return;
+        }
+        for k in 0..self.sweeps.len() {
+            let (axis, array) = &self.sweeps[k];
+            observer.array(*axis, &array.endpoints);
+            self.sweep_marked(k, ids, observer, |overlaps, observer, axis, [a, b]| {
+                observer.axis_apart(axis, a, b);
+                overlaps.cease([a, b]);
+            });
+            self.sweeps[k].1.remove(ids);
+        }
+    }
+
+    /// Reads the boxes anew and lets the swaps of insertion sort tell what changed. O(n + swaps).
+    pub fn move_all<const D: usize, O: Observer>(
+        &mut self,
+        boxes: &[Aabb<D, T>],
+        observer: &mut O,
+    ) {
+        for (axis, array) in &mut self.sweeps {
+            array.refresh(boxes, *axis);
+            observer.array(*axis, &array.endpoints);
+            let mut watch = Watch { axis: *axis, overlaps: &mut self.overlaps, observer };
+            Sort::Insertion.sort(&mut array.endpoints, &mut watch);
+        }
+    }
+
+    /// Merges these boxes in and begins every overlap of theirs, `ids` ascending and none in it.
+    /// O(n + k log k + their overlaps) an axis.
+    pub fn insert<const D: usize, O: Observer>(
+        &mut self,
+        boxes: &[Aabb<D, T>],
+        ids: &[u32],
+        sort: Sort,
+        observer: &mut O,
+    ) {
+        if ids.is_empty() {
+            return;
+        }
+        for k in 0..self.sweeps.len() {
+            let (axis, array) = &mut self.sweeps[k];
+            let old = array.endpoints.len();
+            array.append(ids);
+            array.refresh_from(old, boxes, *axis);
+            observer.array(*axis, &array.endpoints);
+            sort.sort_tail(&mut array.endpoints, old, observer);
+            merge(&mut array.endpoints, old, 0, observer);
+            self.sweep_marked(k, ids, observer, |overlaps, observer, axis, [a, b]| {
+                observer.axis_overlap(axis, a, b);
+                overlaps.begin([a, b]);
+            });
+        }
+    }
+
+    /// Appends all overlapping pairs, sorted.
+    pub fn report<const D: usize, O: Observer>(
+        &mut self,
+        boxes: &[Aabb<D, T>],
+        observer: &mut O,
+        pairs: &mut Vec<[u32; 2]>,
+    ) {
+        let one_axis = self.axis();
+        let Overlaps { flagged, changed, .. } = &mut self.overlaps;
+        for (&[a, b], reported) in flagged.iter_mut() {
+            let separation = one_axis.and_then(|axis| {
+                let separation = Separation::find_beside(boxes, a, b, axis);
+                observer.test(a, b, separation);
+                separation
+            });
+            let overlaps = separation.is_none();
+            if overlaps {
+                observer.overlap(a, b);
+                pairs.push([a, b]);
+            }
+            if *reported != overlaps {
+                *reported = overlaps;
+                changed.push([a, b]);
+            }
+        }
+    }
+
+    /// Appends which pairs of the last report are new in it, and which of the one before are not
+    /// in it any more, each sorted. O(c log c + c log m) for c changes.
+    pub fn changes(&mut self, begun: &mut Vec<[u32; 2]>, ended: &mut Vec<[u32; 2]>) {
+        let Overlaps { flagged, changed, .. } = &mut self.overlaps;
+        // Each entry turns the pair from reported to not or back, so an even number cancels.
+        changed.sort_unstable();
+        for turns in changed.chunk_by(|a, b| a == b).filter(|turns| turns.len() % 2 == 1) {
+            let pair = turns[0];
+            let reported = flagged.get(&pair) == Some(&true);
+            if reported { begun.push(pair) } else { ended.push(pair) }
+        }
+        changed.clear();
+    }
+
+    /// Sweeps the sorted endpoints of axis number `k` and calls `meet` for each pair that
+    /// overlaps there and has a box among the `ids`. Those that have none are not even looked at.
+    fn sweep_marked<O: Observer>(
+        &mut self,
+        k: usize,
+        ids: &[u32],
+        observer: &mut O,
+        meet: impl Fn(&mut Overlaps, &mut O, usize, [u32; 2]),
+    ) {
+        let Self { sweeps, overlaps, staying, marked, .. } = self;
+        let (axis, array) = &sweeps[k];
+        let everyone = ids.len() * 2 == array.endpoints.len();
+        for (position, endpoint) in array.endpoints.iter().enumerate() {
+            let Edge { side, id } = endpoint.edge;
+            let is_marked = everyone || ids.binary_search(&id).is_ok();
+            observer.visit(position, endpoint.edge);
+            if side == Side::Right {
+                if is_marked {
+                    marked.remove(id)
+                } else {
+                    staying.remove(id)
+                }
+                observer.leave(id);
+                continue;
+            }
+            observer.enter(id);
+            for &other in marked.ids() {
+                meet(overlaps, observer, *axis, pair(other, id));
+            }
+            if is_marked {
+                for &other in staying.ids() {
+                    meet(overlaps, observer, *axis, pair(other, id));
+                }
+                marked.add(id);
+            } else {
+                staying.add(id);
+            }
+        }
+    }
+
+    /// The memory it holds; of the pairs the entries alone.
+    pub fn bytes(&self) -> usize {
+        let arrays: usize = self.sweeps.iter().map(|(_, array)| array.bytes()).sum();
+        arrays + self.staying.bytes() + self.marked.bytes() + self.overlaps.bytes()
+    }
+}
+
+/// Watches insertion sort and draws the conclusions; hands everything on to the observer.
+struct Watch<'a, O> {
+    axis: usize,
+    overlaps: &'a mut Overlaps,
+    observer: &'a mut O,
+}
+
+impl<O: Observer> Observer for Watch<'_, O> {
+    #[inline]
+    fn compare(&mut self, a: Edge, b: Edge) {
+        self.observer.compare(a, b);
+    }
+
+    /// `a` stood before `b` and now stands behind it.
+    #[inline]
+    fn swap(&mut self, positions: [usize; 2], a: Edge, b: Edge) {
+        self.observer.swap(positions, a, b);
+        let [least, other] = pair(a.id, b.id);
+        match (a.side, b.side) {
+            (Side::Right, Side::Left) => {
+                self.observer.axis_overlap(self.axis, least, other);
+                self.overlaps.begin([least, other]);
+            }
+            (Side::Left, Side::Right) => {
+                self.observer.axis_apart(self.axis, least, other);
+                self.overlaps.cease([least, other]);
+            }
+            (Side::Left, Side::Left) | (Side::Right, Side::Right) => {}
+        }
+    }
+}
+
+/// Which pairs overlap on which swept axes. The maps are ordered, so that whatever is listed from
+/// them comes sorted.
+#[derive(Clone, Debug, Default)]
+struct Overlaps {
+    /// How many axes are swept.
+    axes: usize,
+    /// The pairs that overlap on every swept axis, and whether the last report had them.
+    flagged: BTreeMap<[u32; 2], bool>,
+    /// On how many swept axes a pair overlaps, if on any. Not needed for a single one.
+    counts: BTreeMap<[u32; 2], usize>,
+    /// The pairs that turned from reported to not reported or back, since the last report.
+    changed: Vec<[u32; 2]>,
+}
+
+impl Overlaps {
+    /// A pair begins to overlap on an axis.
+    fn begin(&mut self, pair: [u32; 2]) {
+        if self.axes > 1 {
+            let count = self.counts.entry(pair).or_insert(0);
+            *count += 1;
+            if *count < self.axes {
+                return;
+            }
+        }
+        self.flagged.insert(pair, false);
+    }
+
+    /// A pair ceases to overlap on an axis.
+    fn cease(&mut self, pair: [u32; 2]) {
+        if self.axes > 1
+            && let Some(count) = self.counts.get_mut(&pair)
+        {
+            *count -= 1;
+            if *count == 0 {
+                self.counts.remove(&pair);
+            }
+        }
+        if self.flagged.remove(&pair) == Some(true) {
+            self.changed.push(pair);
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        self.flagged.len() * size_of::<([u32; 2], bool)>()
+            + self.counts.len() * size_of::<([u32; 2], usize)>()
+            + self.changed.capacity() * size_of::<[u32; 2]>()
+    }
+}
