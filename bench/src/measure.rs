@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use sweep_and_prune::algorithms::pairwise;
@@ -230,7 +230,10 @@ impl Setting<'_> {
         }
         self.bar.inc(1);
 
-        let (reference, fingerprint) = self.reference(&running)?;
+        let Some((reference, fingerprint)) = self.reference(&running)? else {
+            self.bar.inc(self.options.rounds() as u64);
+            return Ok(Err("no two contenders agree".into()));
+        };
         running.retain(|contender| {
             let right = contender.fingerprint == fingerprint;
             if !right {
@@ -300,26 +303,22 @@ impl Setting<'_> {
         Ok(Ok(Running { peer, worker, first, fingerprint, peak_bytes, rounds, spent }))
     }
 
-    /// The right pairs, and in words how we know.
-    fn reference(&self, running: &[Running]) -> Result<(String, Fingerprint)> {
+    /// The right pairs, and in words how we know; nothing if no two contenders agree.
+    fn reference(&self, running: &[Running]) -> Result<Option<(String, Fingerprint)>> {
         if self.boxes <= ORACLE_LIMIT {
             let pairs = match self.dimensions {
                 2 => pairwise(&scene::boxes::<2>(self.scene, self.boxes)?)?,
                 _ => pairwise(&scene::boxes::<3>(self.scene, self.boxes)?)?,
             };
-            return Ok(("brute force".into(), Fingerprint::of(&pairs)));
+            return Ok(Some(("brute force".into(), Fingerprint::of(&pairs))));
         }
         // All of ours count as one witness.
-        let witnesses: Vec<_> =
-            running.iter().filter(|one| one.peer.rival || one.peer.name == OURS).collect();
-        let agreed = witnesses.iter().enumerate().rev().find_map(|(at, one)| {
-            let other = witnesses[..at].iter().rev();
-            let other = other.clone().find(|other| other.fingerprint == one.fingerprint)?;
+        let witness = |one: &&Running| one.peer.rival || one.peer.name == OURS;
+        let witnesses: Vec<_> = running.iter().filter(witness).rev().collect();
+        Ok(witnesses.iter().enumerate().find_map(|(at, one)| {
+            let other = witnesses[at + 1..].iter().find(|it| it.fingerprint == one.fingerprint)?;
             Some((format!("{} and {} agree", other.peer.name, one.peer.name), one.fingerprint))
-        });
-        agreed.with_context(|| {
-            format!("no two contenders agree on {} {}D {}", self.scene, self.dimensions, self.boxes)
-        })
+        }))
     }
 
     /// Runs every contender once, each round beginning with another.

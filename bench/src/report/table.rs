@@ -1,0 +1,382 @@
+//! The tables, in Markdown.
+
+use std::collections::BTreeSet;
+use std::fmt::Write;
+
+use crate::peers::OURS;
+use crate::record::{Case, Entry, Outcome, Record, Times};
+
+/// What stands above the results of all machines.
+pub const INTRODUCTION: &str = "\
+# Finding all pairs: results
+
+Made by `bench/report` from the files in `bench/results`; `bench/run` measures anew.
+
+Every time is from raw boxes to pairs stored in memory, everything included, on one thread unless \
+the name says otherwise. A contender is timed only if its pairs are exactly the right ones. Each \
+round runs every contender in turn; a time is the median over the rounds, and a ratio the median \
+over the rounds of a contender's time over ours in the same round, so that what slowed the machine \
+in a round slowed both. Above 1 means slower than ours.
+";
+
+/// The goals of the geometric mean of (fastest rival / ours), by number of boxes.
+const GOALS: [(usize, f64); 3] = [(10_000, 2.0), (100_000, 3.0), (1_000_000, 5.0)];
+
+/// Terdiman's scene: boxes, units of 1,024 cycles that the published best takes, and that ours may
+/// take at most.
+const CLASSIC: [(usize, f64, f64); 2] =
+    [(10_000, 2_413.0, 1_000.0), (100_000, 182_715.0, 50_000.0)];
+
+/// The results of one machine.
+pub fn section(record: &Record, plots: &[String]) -> String {
+    let mut text = heading(record);
+    text += &classic(record);
+    text += &fastest(record);
+    text += &means(record);
+    text += &flat(record);
+    text += &limits(record);
+    text += "\n### Plots\n\n";
+    for plot in plots {
+        let name = plot.rsplit('/').next().unwrap_or(plot).trim_end_matches(".svg");
+        text += &format!("![{name}]({plot})\n");
+    }
+    text += &everything(record);
+    text += &contenders(record);
+    text
+}
+
+fn heading(record: &Record) -> String {
+    let machine = &record.machine;
+    let mut text = format!("\n## {}, {}\n\n", machine.cpu, record.date);
+    text += &format!("{} cores", machine.cores);
+    if let Some(bytes) = machine.memory_bytes {
+        text += &format!(", {:.0} GiB", bytes as f64 / (1u64 << 30) as f64);
+    }
+    if !machine.vectors.is_empty() {
+        text += &format!(", {}", machine.vectors.join(" "));
+    }
+    text += &format!(", {}, {}.", machine.system, record.rustc);
+    if let Some(mhz) = machine.tsc_mhz {
+        text += &format!(" Time stamp counter {mhz:.0} MHz.");
+    }
+    text += &format!(
+        " One thread copies {:.1} GB/s (read plus written).",
+        machine.copy_bytes_per_second / 1e9
+    );
+    if let Some(load) = machine.load.filter(|&load| load > 0.5) {
+        text += &format!(
+            " The load was {load} when the run began: others were at work, so trust the ratios \
+             more than the times."
+        );
+    }
+    text + "\n"
+}
+
+fn classic(record: &Record) -> String {
+    let Some(mhz) = record.machine.tsc_mhz else { return String::new() };
+    let mut rows = String::new();
+    for (boxes, published, goal) in CLASSIC {
+        let Some(case) = find(record, "box-pruning", 3, boxes) else { continue };
+        let Some(ours) = case.times(OURS) else { continue };
+        let cycles = |times: &Times| times.median_ns * mhz / 1e3 / 1024.0;
+        let rival = case
+            .ranking()
+            .first()
+            .map_or("-".into(), |(name, times)| format!("{} ({name})", thousands(cycles(times))));
+        let _ = writeln!(
+            rows,
+            "| {} | {} | {} | {} | {rival} | {} |",
+            count(boxes as u64),
+            count(case.pairs),
+            thousands(cycles(ours)),
+            thousands(goal),
+            thousands(published),
+        );
+    }
+    if rows.is_empty() {
+        return rows;
+    }
+    format!(
+        "\n### The classic scene\n\n\
+         Pierre Terdiman's scene, in his units of 1,024 cycles of the time stamp counter. The \
+         published best (his BoxPruning v17, AVX assembly, one thread; at 100,000 with buckets) \
+         counts the pairs without storing them, on another machine.\n\n\
+         | boxes | pairs | ours | at most | fastest rival here | published best |\n\
+         |--:|--:|--:|--:|--:|--:|\n{rows}"
+    )
+}
+
+fn fastest(record: &Record) -> String {
+    let mut text = String::from(
+        "\n### Ours against the fastest\n\n\
+         | scene | boxes | pairs | ours | fastest rival | ratio | next | ratio |\n\
+         |---|--:|--:|--:|---|--:|---|--:|\n",
+    );
+    for case in sorted(record) {
+        let Some(ours) = case.times(OURS) else { continue };
+        let ranking = case.ranking();
+        let rival = |at: usize| match ranking.get(at) {
+            Some((name, times)) => format!(
+                "{name} {} | {}",
+                time(times.median_ns),
+                times.ratio.map_or("-".into(), ratio)
+            ),
+            None => "- | -".into(),
+        };
+        let _ = writeln!(
+            text,
+            "| {} {}D | {} | {} | {} | {} | {} |",
+            case.scene,
+            case.dimensions,
+            count(case.boxes as u64),
+            count(case.pairs),
+            time(ours.median_ns),
+            rival(0),
+            rival(1),
+        );
+    }
+    text
+}
+
+fn means(record: &Record) -> String {
+    let mut text = String::new();
+    for boxes in sizes(record) {
+        let cases = record.cases.iter().filter(|case| case.boxes == boxes);
+        let ratios: Vec<_> = cases.filter_map(advantage).collect();
+        if ratios.is_empty() {
+            continue;
+        }
+        let mean = (ratios.iter().map(|ratio| ratio.ln()).sum::<f64>() / ratios.len() as f64).exp();
+        let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
+        let goal = GOALS.iter().find(|(goal, _)| *goal == boxes);
+        let goal = goal.map_or("-".into(), |(_, goal)| format!("{goal:.0}"));
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {goal} | {} |",
+            count(boxes as u64),
+            ratios.len(),
+            ratio(mean),
+            ratio(least)
+        );
+    }
+    format!(
+        "\n### The fastest rival of each scene over ours\n\n\
+         | boxes | scenes | geometric mean | goal | least |\n|--:|--:|--:|--:|--:|\n{text}"
+    )
+}
+
+fn flat(record: &Record) -> String {
+    let each = |case: &Case| {
+        let ours = case.times(OURS)?;
+        Some(ours.median_ns / (case.boxes as f64 + case.pairs as f64))
+    };
+    let sizes: Vec<_> = sizes(record).into_iter().collect();
+    let mut text = String::from(
+        "\n### Flat: ours, nanoseconds for each box and each pair\n\n\
+         Goals: at 100,000 boxes at most 4 times those of uniform on any scene; from 10,000 to \
+         1,000,000 at most 2 times as many on any scene.\n\n| scene |",
+    );
+    for boxes in &sizes {
+        let _ = write!(text, " {} |", count(*boxes as u64));
+    }
+    text += " over uniform at 100,000 | 1,000,000 over 10,000 |\n|---|";
+    text += &"--:|".repeat(sizes.len() + 2);
+    text += "\n";
+    for (scene, dimensions) in scenes(record) {
+        let at = |boxes| find(record, &scene, dimensions, boxes).and_then(each);
+        let _ = write!(text, "| {scene} {dimensions}D |");
+        for &boxes in &sizes {
+            let _ = write!(text, " {} |", at(boxes).map_or("-".into(), |ns| format!("{ns:.1}")));
+        }
+        let uniform = find(record, "uniform", dimensions, 100_000).and_then(each);
+        let over = at(100_000).zip(uniform).map_or("-".into(), |(ns, uniform)| ratio(ns / uniform));
+        let growth = at(1_000_000).zip(at(10_000));
+        let growth = growth.map_or("-".into(), |(large, small)| ratio(large / small));
+        let _ = writeln!(text, " {over} | {growth} |");
+    }
+    text
+}
+
+fn limits(record: &Record) -> String {
+    let mut rows = String::new();
+    for case in sorted(record).into_iter().filter(|case| case.boxes >= 100_000) {
+        let Some(ours) = case.times(OURS) else { continue };
+        let bytes = least_bytes(case);
+        let least_ns = bytes / record.machine.copy_bytes_per_second * 1e9;
+        let _ = writeln!(
+            rows,
+            "| {} {}D | {} | {:.1} MB | {} | {} | {:.0} % | {} |",
+            case.scene,
+            case.dimensions,
+            count(case.boxes as u64),
+            bytes / 1e6,
+            time(least_ns),
+            time(ours.median_ns),
+            100.0 * least_ns / ours.median_ns,
+            ours.peak_bytes
+                .map_or("-".into(), |peak| format!("{:.0}", peak as f64 / case.boxes as f64)),
+        );
+    }
+    if rows.is_empty() {
+        return rows;
+    }
+    format!(
+        "\n### Close to the machine\n\n\
+         What no method can avoid: to read every box once and to write every pair once, at the \
+         rate at which one thread copies. The last column is the most memory in use beyond the \
+         boxes, in bytes a box.\n\n\
+         | scene | boxes | least traffic | its time | ours | share | memory |\n\
+         |---|--:|--:|--:|--:|--:|--:|\n{rows}"
+    )
+}
+
+/// Every box read once, every pair written once.
+fn least_bytes(case: &Case) -> f64 {
+    (case.boxes * 2 * case.dimensions * size_of::<f32>()) as f64
+        + case.pairs as f64 * size_of::<[u32; 2]>() as f64
+}
+
+fn everything(record: &Record) -> String {
+    let mut text =
+        String::from("\n### Every contender\n\nMedian time, and in brackets the ratio to ours.\n");
+    for (scene, dimensions) in scenes(record) {
+        let cases: Vec<_> = sorted(record)
+            .into_iter()
+            .filter(|case| case.scene == scene && case.dimensions == dimensions)
+            .collect();
+        let _ = write!(text, "\n#### {scene} {dimensions}D\n\n| boxes |");
+        for case in &cases {
+            let _ = write!(text, " {} |", count(case.boxes as u64));
+        }
+        let _ = write!(text, "\n|---|{}\n| *pairs* |", "--:|".repeat(cases.len()));
+        for case in &cases {
+            let _ = write!(text, " {} |", count(case.pairs));
+        }
+        text += "\n";
+        for name in names(&cases) {
+            let _ = write!(text, "| {name} |");
+            for case in &cases {
+                let entry = case.results.iter().find(|entry| entry.name == name);
+                let _ = write!(text, " {} |", entry.map_or("-".into(), cell));
+            }
+            text += "\n";
+        }
+        let _ = write!(text, "| *checked against* |");
+        for case in &cases {
+            let _ = write!(text, " {} |", case.reference);
+        }
+        text += "\n";
+    }
+    text
+}
+
+fn cell(entry: &Entry) -> String {
+    match &entry.outcome {
+        Outcome::Timed(times) => {
+            let ratio = times.ratio.map_or(String::new(), |times| format!(" ({})", ratio(times)));
+            format!("{}{ratio}", time(times.median_ns))
+        }
+        Outcome::Untimed { why } => why.clone(),
+    }
+}
+
+fn contenders(record: &Record) -> String {
+    let mut text = String::from(
+        "\n### The contenders\n\n| name | version | how it is called |\n|---|---|---|\n",
+    );
+    for (name, how) in &record.how {
+        let version = record.versions.get(name).map_or("unknown", String::as_str);
+        let _ = writeln!(text, "| {name} | {version} | {how} |");
+    }
+    text
+}
+
+/// How many times ours the fastest rival takes.
+pub fn advantage(case: &Case) -> Option<f64> {
+    case.ranking().first()?.1.ratio
+}
+
+/// The cases by scene in order of first appearance, then dimensions, then boxes.
+fn sorted(record: &Record) -> Vec<&Case> {
+    let mut cases: Vec<_> = record.cases.iter().collect();
+    let order = scenes(record);
+    cases.sort_by_key(|case| {
+        let scene = (case.scene.clone(), case.dimensions);
+        (order.iter().position(|one| *one == scene), case.boxes)
+    });
+    cases
+}
+
+/// The scenes and dimensions in order of first appearance.
+pub fn scenes(record: &Record) -> Vec<(String, usize)> {
+    let mut scenes = Vec::new();
+    for case in &record.cases {
+        let scene = (case.scene.clone(), case.dimensions);
+        if !scenes.contains(&scene) {
+            scenes.push(scene);
+        }
+    }
+    scenes
+}
+
+fn sizes(record: &Record) -> BTreeSet<usize> {
+    record.cases.iter().map(|case| case.boxes).collect()
+}
+
+/// The contenders of some cases, in order of first appearance.
+pub fn names(cases: &[&Case]) -> Vec<String> {
+    let mut names = Vec::new();
+    for entry in cases.iter().flat_map(|case| &case.results) {
+        if !names.contains(&entry.name) {
+            names.push(entry.name.clone());
+        }
+    }
+    names
+}
+
+fn find<'a>(record: &'a Record, scene: &str, dimensions: usize, boxes: usize) -> Option<&'a Case> {
+    let wanted =
+        |case: &&Case| case.scene == scene && case.dimensions == dimensions && case.boxes == boxes;
+    record.cases.iter().find(wanted)
+}
+
+/// Three significant digits and the unit.
+fn time(nanoseconds: f64) -> String {
+    let (number, unit) = match nanoseconds {
+        ns if ns < 1e6 => (ns / 1e3, "µs"),
+        ns if ns < 1e9 => (ns / 1e6, "ms"),
+        ns => (ns / 1e9, "s"),
+    };
+    format!("{} {unit}", significant(number))
+}
+
+fn ratio(ratio: f64) -> String {
+    significant(ratio)
+}
+
+/// Three significant digits, but never fewer than those before the point.
+fn significant(number: f64) -> String {
+    let digits = match number {
+        n if n < 10.0 => 2,
+        n if n < 100.0 => 1,
+        _ => 0,
+    };
+    if digits == 0 { count(number.round() as u64) } else { format!("{number:.digits$}") }
+}
+
+fn thousands(number: f64) -> String {
+    count(number.round() as u64)
+}
+
+/// A number with a comma every three digits.
+fn count(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}

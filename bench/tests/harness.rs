@@ -1,0 +1,137 @@
+//! The harness itself, on small scenes: every contender finds the right pairs, is timed, and
+//! appears in the table and the plots.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+
+/// Scenes of ties as well as easy ones, so that a contender that takes touching boxes for apart
+/// is found out.
+const SCENES: [&str; 6] = ["uniform", "grid", "points", "mixed", "tower", "box-pruning"];
+const EVERYWHERE: [&str; 8] = [
+    "ours",
+    "ours, fresh",
+    "plain sweep",
+    "brute force",
+    "obvhs",
+    "packed_spatial_index",
+    "parry",
+    "rstar",
+];
+const ONLY_IN_2D: [&str; 2] = ["broccoli", "geo-index"];
+
+fn bench(arguments: &[&str]) -> String {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_sweep-and-prune-bench"));
+    let output = command.args(arguments).output().unwrap();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?} failed: {errors}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name).join("results");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn measure(file: &Path, arguments: &[&str]) -> (String, Value) {
+    let shared = ["measure", "--rounds", "2", "--output", file.to_str().unwrap()];
+    let said = bench(&[&shared, arguments].concat());
+    (said, serde_json::from_slice(&fs::read(file).unwrap()).unwrap())
+}
+
+fn cases(record: &Value) -> &Vec<Value> {
+    record["cases"].as_array().unwrap()
+}
+
+#[test]
+fn every_contender_is_right_and_timed_and_reported() {
+    let folder = folder("all");
+    let file = folder.join("here.json");
+    let (_, record) = measure(&file, &["--sizes", "300", "--scenes", &SCENES.join(",")]);
+    // Every scene in two dimensions and in three, but for the one that is only in 3D.
+    assert_eq!(cases(&record).len(), 2 * SCENES.len() - 1);
+    for case in cases(&record) {
+        let results = case["results"].as_array().unwrap();
+        let two = case["dimensions"] == 2;
+        let expected = EVERYWHERE.iter().chain(ONLY_IN_2D.iter().filter(|_| two));
+        for name in expected.clone() {
+            let entry = results.iter().find(|entry| entry["name"] == **name);
+            let entry = entry.unwrap_or_else(|| panic!("{name} is missing in {case}"));
+            let times = &entry["outcome"]["Timed"];
+            assert!(times["median_ns"].as_f64().is_some_and(|ns| ns > 0.0), "{entry} in {case}");
+            assert_eq!(times["rounds_ns"].as_array().unwrap().len(), 2);
+            assert!(times["ratio"].as_f64().is_some_and(|ratio| ratio > 0.0));
+        }
+        assert!(results.len() >= expected.count());
+        assert_eq!(case["reference"], "brute force");
+    }
+    for name in EVERYWHERE.iter().chain(&ONLY_IN_2D) {
+        assert_ne!(record["versions"][name], "unknown");
+    }
+
+    bench(&["report", "--results", folder.to_str().unwrap()]);
+    let report = fs::read_to_string(folder.with_file_name("RESULTS.md")).unwrap();
+    for scene in SCENES {
+        assert!(report.contains(&format!("#### {scene} 3D")), "{scene} is missing");
+        let plot = fs::read_to_string(folder.join(format!("here/{scene}-3d.svg"))).unwrap();
+        assert!(plot.contains("<svg") && plot.contains("parry"), "{scene} has no plot");
+    }
+    for name in EVERYWHERE.iter().chain(&ONLY_IN_2D) {
+        assert!(report.contains(&format!("| {name} |")), "{name} is missing");
+    }
+}
+
+#[test]
+fn beyond_the_oracle_two_contenders_have_to_agree() {
+    let folder = folder("witnesses");
+    let arguments = ["--sizes", "11000", "--scenes", "slab", "--dimensions", "2"];
+    let peers = ["--peers", "plain,broccoli"];
+    let (_, record) = measure(&folder.join("here.json"), &[&arguments[..], &peers[..]].concat());
+    assert_eq!(cases(&record)[0]["reference"], "plain sweep and broccoli agree");
+}
+
+#[test]
+fn what_takes_too_long_is_stopped_and_recorded() {
+    let folder = folder("slow");
+    let arguments = ["--sizes", "100000", "--scenes", "tower", "--dimensions", "2"];
+    let few = ["--peers", "plain,brute,broccoli", "--limit", "1"];
+    let (_, record) = measure(&folder.join("here.json"), &[&arguments[..], &few[..]].concat());
+    let results = cases(&record)[0]["results"].as_array().unwrap();
+    let slow = results.iter().find(|entry| entry["name"] == "brute force").unwrap();
+    assert_eq!(slow["outcome"]["Untimed"]["why"], "over 1 s");
+    let fast = results.iter().find(|entry| entry["name"] == "plain sweep").unwrap();
+    assert!(fast["outcome"]["Timed"].is_object(), "{fast}");
+}
+
+#[test]
+fn too_many_pairs_are_left_out_and_new_cases_join_the_old() {
+    let folder = folder("joined");
+    let file = folder.join("here.json");
+    let few = ["--peers", "plain", "--dimensions", "2"];
+    let (_, record) =
+        measure(&file, &[&few[..], &["--scenes", "uniform", "--sizes", "100"]].concat());
+    assert_eq!(cases(&record).len(), 1);
+    let (said, record) =
+        measure(&file, &[&few[..], &["--scenes", "nested", "--sizes", "100,100000"]].concat());
+    assert_eq!(cases(&record).len(), 2);
+    assert!(said.contains("nested 2D 100000: left out"), "{said}");
+    let (_, record) =
+        measure(&file, &[&few[..], &["--scenes", "nested", "--sizes", "100"]].concat());
+    assert_eq!(cases(&record).len(), 2);
+}
+
+#[test]
+fn a_file_of_raw_boxes_is_a_scene() {
+    let folder = folder("file");
+    let boxes = folder.join("boxes.f32");
+    let rows = [[0.0f32, 0.0, 1.0, 1.0], [1.0, 1.0, 2.0, 2.0], [1.5, 0.0, 2.0, 0.5]];
+    let bytes: Vec<u8> = rows.iter().flatten().flat_map(|at| at.to_le_bytes()).collect();
+    fs::write(&boxes, bytes).unwrap();
+    let arguments = ["--scenes", boxes.to_str().unwrap(), "--sizes", "3", "--dimensions", "2"];
+    let (_, record) = measure(&folder.join("here.json"), &arguments);
+    assert_eq!(cases(&record)[0]["pairs"], 1);
+}
