@@ -1,0 +1,317 @@
+import { SimulationClient } from "../simulation/client.ts";
+import type { Begun, Choices, Frame, Method } from "../simulation/messages.ts";
+import { onThemeChange, readTheme } from "../view/theme.ts";
+import type { View } from "../view/view.ts";
+import { onAwake, whenNear } from "./awake.ts";
+import { COUNTERS, formatCount, type Shown } from "./counters.ts";
+import { LARGEST_SEED, RANGES, readSettings, type Settings, setupOf, writeSettings } from "./settings.ts";
+
+const FRAME_MS = 1000 / 60;
+/** Numbers that change more often than this cannot be read. */
+const COUNTER_MS = 120;
+/** A slider that is being dragged begins a new world at most this often. */
+const DRAG_MS = 100;
+/** The time of drawing is the mean of this many pictures. */
+const WINDOW = 30;
+
+/**
+ * `<ball-lab dimensions="2 or 3" bodies="200" most="10000">`: bodies that fall, the algorithm that
+ * finds which of them may touch, and what that costs. Its inside is written by `markup.ts`. While
+ * it cannot be seen it sleeps; where the visitor wants less motion it begins paused.
+ */
+export class BallLab extends HTMLElement {
+  readonly #dimensions = this.getAttribute("dimensions") === "2" ? 2 : 3;
+  readonly #mostBodies = Number(this.getAttribute("most"));
+  #defaults!: Settings;
+  #settings!: Settings;
+  #client: SimulationClient | undefined;
+  #view: View | undefined;
+  #begun: Begun | undefined;
+  #frame: Frame | undefined;
+  #wanted = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+  #awake = false;
+  #ready = false;
+  #drawn = false;
+  #countersAt = -Infinity;
+  #drawingTimes: number[] = [];
+  #left = new AbortController();
+
+  connectedCallback(): void {
+    this.#left = new AbortController();
+    void whenNear(this, this.#left.signal).then(() => this.#start());
+  }
+
+  disconnectedCallback(): void {
+    this.#left.abort();
+    this.#client?.close();
+  }
+
+  #start(): void {
+    const { signal } = this.#left;
+    this.#client = new SimulationClient({
+      ready: (choices) => this.#setUp(choices),
+      begun: (world) => (this.#begun = world),
+      frame: (frame) => this.#receive(frame),
+      failed: (message) => this.#say(message),
+    });
+    this.#openView().then(
+      (view) => {
+        this.#view = view;
+        onThemeChange(() => {
+          view.setTheme(readTheme());
+          this.#requestDraw();
+        }, signal);
+        const resized = new ResizeObserver(() => this.#fit());
+        resized.observe(this.#part("canvas"));
+        signal.addEventListener("abort", () => resized.disconnect());
+        this.#showBegun();
+      },
+      (error: unknown) => this.#message(`There is no picture: ${error instanceof Error ? error.message : String(error)}`),
+    );
+    onAwake(this, (awake) => {
+      this.#awake = awake;
+      this.#updateRunning();
+    }, signal);
+  }
+
+  async #openView(): Promise<View> {
+    const canvas = this.#part<HTMLCanvasElement>("canvas");
+    if (this.#dimensions === 2) {
+      const { DiscView } = await import("../view/disc-view.ts");
+      return new DiscView(canvas, readTheme());
+    }
+    const { SphereView } = await import("../view/sphere-view.ts");
+    return new SphereView(canvas, this.#part("orbit"), readTheme(), () => this.#requestDraw());
+  }
+
+  // Controls
+
+  #setUp(choices: Choices): void {
+    const preferred = (names: readonly string[], attribute: string): string => {
+      const name = this.getAttribute(attribute) ?? "";
+      return names.includes(name) ? name : (names[0] ?? "");
+    };
+    this.#defaults = {
+      algorithm: preferred(choices.algorithms, "algorithm"),
+      sort: preferred(choices.sorts, "sort"),
+      axis: preferred(choices.axes, "axis"),
+      bodies: Number(this.getAttribute("bodies")),
+      size: 100,
+      spread: Number(this.getAttribute("spread") ?? 1),
+      seed: 1,
+    };
+    this.#settings = readSettings(this.id, this.#defaults, this.#mostBodies);
+    this.#bindChoice("algorithm", choices.algorithms);
+    this.#bindChoice("sort", choices.sorts);
+    this.#bindChoice("axis", choices.axes);
+    this.#bindSlider("bodies", RANGES.bodies.filter((n) => n <= this.#mostBodies), formatCount);
+    this.#bindSlider("size", RANGES.size, (size) => `${size}%`);
+    this.#bindSlider("spread", RANGES.spread, (spread) => `${spread} : 1`);
+    this.#bindSeed();
+    this.#bindButtons();
+    for (const control of this.querySelectorAll<HTMLInputElement>(":disabled")) control.disabled = false;
+    this.#ready = true;
+    this.#begin();
+    this.#updateRunning();
+  }
+
+  #bindChoice(key: keyof Method, names: readonly string[]): void {
+    const select = this.#part<HTMLSelectElement>(key);
+    select.replaceChildren(...names.map((name) => new Option(name)));
+    if (!names.includes(this.#settings[key])) this.#settings = { ...this.#settings, [key]: this.#defaults[key] };
+    select.value = this.#settings[key];
+    select.addEventListener("change", () => {
+      this.#change({ [key]: select.value });
+      this.#client?.setMethod(this.#settings);
+      this.#describe();
+    });
+  }
+
+  #bindSlider(key: "bodies" | "size" | "spread", values: readonly number[], format: (value: number) => string): void {
+    const slider = this.#part<HTMLInputElement>(key);
+    const output = this.#part<HTMLOutputElement>(`${key}-value`);
+    const show = (): void => {
+      output.value = format(this.#settings[key]);
+      slider.setAttribute("aria-valuetext", output.value);
+    };
+    slider.max = String(values.length - 1);
+    slider.value = String(nearest(values, this.#settings[key]));
+    show();
+    let waiting: ReturnType<typeof setTimeout> | undefined;
+    slider.addEventListener("input", () => {
+      this.#settings = { ...this.#settings, [key]: values[slider.valueAsNumber] };
+      show();
+      waiting ??= setTimeout(() => {
+        waiting = undefined;
+        this.#begin();
+      }, DRAG_MS);
+    });
+    slider.addEventListener("change", () => this.#change({}));
+  }
+
+  #bindSeed(): void {
+    const input = this.#part<HTMLInputElement>("seed");
+    input.value = String(this.#settings.seed);
+    input.addEventListener("change", () => {
+      const seed = Math.min(Math.max(Math.round(input.valueAsNumber || 0), 0), LARGEST_SEED);
+      input.value = String(seed);
+      this.#change({ seed });
+      this.#begin();
+    });
+  }
+
+  #bindButtons(): void {
+    const onClick = (part: string, act: () => void): void => this.#part(part).addEventListener("click", act);
+    onClick("play", () => {
+      this.#wanted = !this.#wanted;
+      this.#updateRunning();
+    });
+    onClick("step", () => {
+      this.#wanted = false;
+      this.#updateRunning();
+      this.#client?.step();
+    });
+    onClick("reset", () => this.#begin());
+    const lines = this.querySelector<HTMLInputElement>('[data-part="lines"]');
+    lines?.addEventListener("change", () => this.#client?.listPairs(lines.checked));
+  }
+
+  #change(settings: Partial<Settings>): void {
+    this.#settings = { ...this.#settings, ...settings };
+    writeSettings(this.id, this.#settings, this.#defaults);
+  }
+
+  #begin(): void {
+    this.#client?.begin(setupOf(this.#settings, this.#dimensions), this.#settings);
+    this.#describe();
+  }
+
+  #updateRunning(): void {
+    if (!this.#ready) return;
+    this.#client?.setRunning(this.#wanted && this.#awake);
+    this.#part("play").textContent = this.#wanted ? "Pause" : "Play";
+    this.#describe();
+    if (this.#awake) this.#requestDraw();
+  }
+
+  // What comes from the simulation
+
+  #receive(frame: Frame): void {
+    const first = this.#frame?.run !== frame.run;
+    this.#frame = frame;
+    if (first) this.#showBegun();
+    if (!this.#wanted) this.#describe();
+    this.#requestDraw();
+  }
+
+  /** Gives a new world to the view, once there are both, and paints its bodies by their height. */
+  #showBegun(): void {
+    if (!this.#view || !this.#begun || this.#frame?.run !== this.#begun.run) return;
+    const { size, radii } = this.#begun;
+    const { positions } = this.#frame;
+    const tints = radii.map((_, body) => (positions[this.#dimensions * body + 1] ?? 0) / (size[1] ?? 1));
+    this.#view.begin({ size }, radii, tints);
+    this.#fit();
+    this.#message("");
+  }
+
+  #fit(): void {
+    const { clientWidth, clientHeight } = this.#part("canvas");
+    this.#view?.resize(clientWidth, clientHeight);
+    this.#draw();
+  }
+
+  #requestDraw(): void {
+    if (this.#drawn || !this.#awake) return;
+    this.#drawn = true;
+    requestAnimationFrame(() => {
+      this.#drawn = false;
+      this.#draw();
+    });
+  }
+
+  #draw(): void {
+    if (!this.#frame) return;
+    const started = performance.now();
+    this.#view?.draw(this.#frame);
+    const ended = performance.now();
+    this.#drawingTimes.push(ended - started);
+    if (this.#drawingTimes.length > WINDOW) this.#drawingTimes.shift();
+    if (!this.#wanted || ended - this.#countersAt >= COUNTER_MS) {
+      this.#countersAt = ended;
+      this.#showCounters(this.#frame);
+    }
+  }
+
+  // What the visitor reads
+
+  #showCounters({ step, pace, hash, measurement }: Frame): void {
+    this.dataset["step"] = String(step);
+    this.dataset["hash"] = hash;
+    this.#part("moment").textContent =
+      `Step ${formatCount(step)}${this.#wanted && pace > 0 ? `, ${pace} a second` : ""}`;
+    const drawing = this.#drawingTimes.reduce((sum, time) => sum + time, 0) / this.#drawingTimes.length;
+    for (const { key, read } of COUNTERS) {
+      const cell = this.#counter(key);
+      const text = measurement ? read({ ...measurement, drawing }) : "–";
+      if (cell.textContent !== (text ?? "–")) cell.textContent = text ?? "–";
+      cell.title = text === null ? "not counted: this algorithm does not do it or does not tell" : "";
+    }
+    if (measurement) this.#showBudget({ ...measurement, drawing });
+  }
+
+  #showBudget(times: Shown): void {
+    const bar = (stage: string, time: number): void => {
+      const part = this.querySelector<HTMLElement>(`[data-stage="${stage}"]`);
+      if (part) part.style.width = `${Math.min((100 * time) / FRAME_MS, 100)}%`;
+    };
+    bar("broad-phase", times.broadPhase);
+    bar("narrow-phase", times.narrowPhase);
+    bar("drawing", times.drawing);
+  }
+
+  /** Tells in words what is going on: seldom enough to be read out. */
+  #describe(): void {
+    const { bodies, algorithm, sort } = this.#settings;
+    const noun = this.#dimensions === 2 ? "disc" : "sphere";
+    const who = `${formatCount(bodies)} ${noun}${bodies === 1 ? "" : "s"}`;
+    const by = this.#part<HTMLSelectElement>("sort").disabled ? algorithm : `${algorithm}, ${sort}`;
+    if (this.#wanted) {
+      this.#say(`${who} by ${by}.`);
+    } else if (this.#frame?.measurement && this.#frame.run === this.#begun?.run) {
+      const { step, hash, measurement } = this.#frame;
+      const tests = measurement.tests === null ? "" : `${formatCount(measurement.tests)} tests found `;
+      this.#say(`Paused after step ${formatCount(step)}: ${tests}${formatCount(measurement.pairs)} pairs. State ${hash}.`);
+    } else {
+      this.#say(`Paused at the beginning: ${who} by ${by}.`);
+    }
+  }
+
+  #say(text: string): void {
+    const status = this.#part("status");
+    if (status.textContent !== text) status.textContent = text;
+  }
+
+  #message(text: string): void {
+    this.#part("message").textContent = text;
+  }
+
+  #counter(key: string): HTMLElement {
+    return this.#find(`[data-counter="${key}"] dd`);
+  }
+
+  #part<E extends HTMLElement = HTMLElement>(name: string): E {
+    return this.#find<E>(`[data-part="${name}"]`);
+  }
+
+  #find<E extends HTMLElement = HTMLElement>(selector: string): E {
+    const found = this.querySelector<E>(selector);
+    if (!found) throw new Error(`<ball-lab> has no ${selector}`);
+    return found;
+  }
+}
+
+/** The position of the value nearest to `target`. */
+function nearest(values: readonly number[], target: number): number {
+  return values.reduce((best, value, i) => (Math.abs(value - target) < Math.abs((values[best] ?? 0) - target) ? i : best), 0);
+}

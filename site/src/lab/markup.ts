@@ -1,0 +1,104 @@
+// The inside of a `<ball-lab>`, written into the page when it is built: the page has its final
+// shape before any script runs. `ball-lab.ts` finds the parts by their `data-part`.
+
+import { bruteForceTests, COUNTERS, formatCount } from "./counters.ts";
+
+interface LabOptions {
+  readonly id: string;
+  readonly dimensions: 2 | 3;
+  /** How many bodies it begins with. */
+  readonly bodies: number;
+}
+
+/** Fills every empty `<ball-lab …></ball-lab>` of a page. */
+export function expandLabs(page: string): string {
+  return page.replace(/<ball-lab([^>]*)><\/ball-lab>/g, (_, attributes: string) => {
+    const attribute = (name: string): string => {
+      const value = new RegExp(`\\b${name}="([^"]*)"`).exec(attributes)?.[1];
+      if (value === undefined) throw new Error(`<ball-lab${attributes}> has no ${name}`);
+      return value;
+    };
+    const options: LabOptions = {
+      id: attribute("id"),
+      dimensions: attribute("dimensions") === "2" ? 2 : 3,
+      bodies: Number(attribute("bodies")),
+    };
+    return `<ball-lab${attributes}>${labMarkup(options)}</ball-lab>`;
+  });
+}
+
+function labMarkup({ id, dimensions, bodies }: LabOptions): string {
+  return `
+    <div class="lab" role="group" aria-labelledby="${id}-heading">
+      <div class="lab-stage">
+        ${dimensions === 2 ? discStage() : sphereStage()}
+        <p class="stage-message" data-part="message">Loading</p>
+      </div>
+
+      <div class="lab-transport">
+        <button type="button" class="primary" data-part="play" disabled>Pause</button>
+        <button type="button" data-part="step" disabled>Step</button>
+        <button type="button" data-part="reset" disabled>Reset</button>
+        <p class="moment" data-part="moment">Step 0</p>
+        <p class="status" role="status" data-part="status"></p>
+      </div>
+
+      <div class="lab-controls">
+        ${choice(id, "algorithm", "Algorithm")}
+        ${choice(id, "sort", "Sort")}
+        ${choice(id, "axis", "Sweep axis")}
+        ${slider(id, "bodies", dimensions === 2 ? "Discs" : "Spheres", formatCount(bodies))}
+        ${slider(id, "size", "Size", "100%")}
+        ${slider(id, "spread", "Largest : smallest", "1 : 1")}
+        <div class="field">
+          <label for="${id}-seed">Seed</label>
+          <input id="${id}-seed" data-part="seed" type="number" inputmode="numeric" min="0" max="4294967295" step="1" value="1" autocomplete="off" disabled />
+        </div>
+        ${dimensions === 2 ? linesSwitch() : ""}
+      </div>
+
+      <div class="lab-counters">
+        ${counterList("work", "Work of one pass", bodies)}
+        ${counterList("time", "Time of one step", bodies)}
+        <div class="budget" data-part="budget" aria-hidden="true">
+          <div class="budget-track"><i data-stage="broad-phase"></i><i data-stage="narrow-phase"></i><i data-stage="drawing"></i></div>
+          <p><span>0</span><span>one frame, 16.7 ms</span></p>
+        </div>
+      </div>
+      
+    </div>`;
+}
+
+const discStage = (): string =>
+  `<canvas data-part="canvas" role="img" aria-label="Discs falling into a box"></canvas>`;
+
+const sphereStage = (): string =>
+  `<div class="orbit" data-part="orbit" tabindex="0" role="application" aria-label="Spheres falling into a box. Arrow keys turn the view, plus and minus come closer and move away.">
+          <canvas data-part="canvas"></canvas>
+        </div>`;
+
+const choice = (id: string, part: string, label: string): string =>
+  `<div class="field">
+          <label for="${id}-${part}">${label}</label>
+          <select id="${id}-${part}" data-part="${part}" autocomplete="off" disabled></select>
+        </div>`;
+
+const slider = (id: string, part: string, label: string, value: string): string =>
+  `<div class="field">
+          <label for="${id}-${part}">${label}</label>
+          <output for="${id}-${part}" data-part="${part}-value">${value}</output>
+          <input id="${id}-${part}" data-part="${part}" type="range" autocomplete="off" disabled />
+        </div>`;
+
+const linesSwitch = (): string =>
+  `<label class="switch"><input type="checkbox" data-part="lines" autocomplete="off" disabled /> <span>Join the pairs by lines</span></label>`;
+
+function counterList(group: "work" | "time", title: string, bodies: number): string {
+  const rows = COUNTERS.filter((counter) => counter.group === group).map(
+    ({ key, label, meaning }) =>
+      `<div class="counter" data-counter="${key}"><dt title="${meaning}">${label}</dt><dd>${
+        key === "brute-force" ? formatCount(bruteForceTests(bodies)) : "–"
+      }</dd></div>`,
+  );
+  return `<section><h3>${title}</h3><dl>${rows.join("")}</dl></section>`;
+}

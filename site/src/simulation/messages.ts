@@ -1,0 +1,80 @@
+// What the page and the thread of the simulation say to each other.
+
+/** How the pairs are found. Names are those that `Choices` lists. */
+export interface Method {
+  readonly algorithm: string;
+  readonly sort: string;
+  readonly axis: string;
+}
+
+/** Every name that a `Method` may hold, as the compiled simulation gives them. */
+export interface Choices {
+  readonly algorithms: readonly string[];
+  readonly sorts: readonly string[];
+  readonly axes: readonly string[];
+}
+
+/** A world to begin with. The same setup gives the same world, step for step, bit for bit. */
+export interface Setup {
+  readonly dimensions: 2 | 3;
+  readonly bodies: number;
+  /** The middle radius; the box is 10 wide. */
+  readonly radius: number;
+  /** The greatest radius over the least. */
+  readonly spread: number;
+  readonly seed: number;
+}
+
+/** The counters of one step. `null` is not counted: the algorithm does not do this, or does not tell. */
+export interface Measurement {
+  readonly bodies: number;
+  /** Counts of the step's last broad phase. */
+  readonly tests: number | null;
+  readonly axisOverlaps: number | null;
+  readonly pairs: number;
+  readonly comparisons: number | null;
+  readonly swaps: number | null;
+  /** Milliseconds a step, the mean of the last steps. */
+  readonly broadPhase: number;
+  readonly narrowPhase: number;
+}
+
+export type ToSimulation =
+  | { readonly type: "begin"; readonly run: number; readonly setup: Setup; readonly method: Method }
+  | { readonly type: "method"; readonly method: Method }
+  | { readonly type: "pace"; readonly running: boolean }
+  | { readonly type: "step" }
+  /** Whether frames carry the pairs. */
+  | { readonly type: "list-pairs"; readonly on: boolean }
+  /** A buffer of positions, drawn and free for the next frame. */
+  | { readonly type: "recycle"; readonly run: number; readonly positions: Float32Array };
+
+/** A world has begun. Lengths are in the units of the box, which begins at the origin. */
+export interface Begun {
+  readonly type: "begun";
+  /** The number that the page gave this world; what an earlier one still sends is stale. */
+  readonly run: number;
+  readonly size: readonly number[];
+  readonly radii: Float32Array;
+}
+
+/** The state after a step. */
+export interface Frame {
+  readonly type: "frame";
+  readonly run: number;
+  readonly step: number;
+  /** Steps of the last second; 0 while paused. */
+  readonly pace: number;
+  /** 16 hexadecimal digits of all positions and velocities. */
+  readonly hash: string;
+  readonly positions: Float32Array;
+  readonly pairs: Uint32Array;
+  /** Absent before the first step. */
+  readonly measurement?: Measurement;
+}
+
+export type FromSimulation =
+  | { readonly type: "ready"; readonly choices: Choices; readonly simd: boolean }
+  | Begun
+  | Frame
+  | { readonly type: "failed"; readonly message: string };

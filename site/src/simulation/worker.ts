@@ -1,0 +1,201 @@
+// The thread of the simulation: steps the world at its own pace, sixty times a second if it can,
+// and sends what it has when the page has a buffer free for it.
+
+import { Simulation, type StepReport } from "../../../simulation/wasm/simulation.js";
+import scalarWasm from "../generated/simulation.wasm?url";
+import simdWasm from "../generated/simulation.simd.wasm?url";
+import type { FromSimulation, Measurement, Method, Setup, ToSimulation } from "./messages.ts";
+
+const STEP_MS = 1000 / 60;
+/** Positions are sent in this many buffers: one that the page shows, one on its way. */
+const BUFFERS = 2;
+/** Times are means of this many steps: a browser's clock is coarse. */
+const WINDOW = 30;
+
+interface World {
+  readonly run: number;
+  readonly simulation: Simulation;
+  readonly buffers: Float32Array[];
+  /** The latest reports, at most `WINDOW` of them. */
+  readonly reports: StepReport[];
+  /** When the steps of the last second were taken. */
+  readonly taken: number[];
+  /** Whether the page has not seen the latest state. */
+  unseen: boolean;
+}
+
+let world: World | undefined;
+let running = false;
+let listPairs = false;
+let due = 0;
+let timer: ReturnType<typeof setTimeout> | undefined;
+
+const send = (message: FromSimulation, transfer: Transferable[] = []): void =>
+  self.postMessage(message, { transfer });
+
+function begin(run: number, setup: Setup, method: Method): void {
+  world?.simulation.free();
+  const { dimensions, bodies, radius, spread, seed } = setup;
+  const simulation = new Simulation({
+    scene: "falling",
+    dimensions,
+    bodies,
+    size: radius,
+    spread,
+    seed,
+    broadPhase: method,
+  });
+  const buffers = Array.from({ length: BUFFERS }, () => new Float32Array(simulation.positions.length));
+  world = { run, simulation, buffers, reports: [], taken: [], unseen: true };
+  const { min, max } = simulation.bounds;
+  send({ type: "begun", run, size: max.map((high, axis) => high - (min[axis] ?? 0)), radii: simulation.radii.slice() });
+  show(world);
+}
+
+function step(world: World): void {
+  world.reports.push(world.simulation.step());
+  if (world.reports.length > WINDOW) world.reports.shift();
+  const now = performance.now();
+  world.taken.push(now);
+  while ((world.taken[0] ?? now) < now - 1000) world.taken.shift();
+  world.unseen = true;
+}
+
+/** Sends the latest state, if a buffer is free; otherwise it is sent when one comes back. */
+function show(world: World): void {
+  const positions = world.buffers.pop();
+  if (!positions) return;
+  const { run, simulation } = world;
+  positions.set(simulation.positions);
+  const pairs = listPairs ? simulation.pairs.slice() : new Uint32Array(0);
+  world.unseen = false;
+  send(
+    {
+      type: "frame",
+      run,
+      step: simulation.steps,
+      pace: running ? world.taken.length : 0,
+      hash: simulation.hash(),
+      positions,
+      pairs,
+      measurement: measure(world),
+    },
+    [positions.buffer, pairs.buffer],
+  );
+}
+
+/** Sends a state that the page has seen, because something else about it has changed. */
+function showAgain(world: World): void {
+  world.unseen = true;
+  show(world);
+}
+
+function measure({ simulation, reports }: World): Measurement | undefined {
+  const latest = reports.at(-1);
+  if (!latest) return undefined;
+  const mean = (time: (report: StepReport) => number): number =>
+    reports.reduce((sum, report) => sum + time(report), 0) / reports.length;
+  const { tests, axisOverlaps, pairs, comparisons, swaps } = latest;
+  return {
+    bodies: simulation.bodies,
+    tests,
+    axisOverlaps,
+    pairs,
+    comparisons,
+    swaps,
+    broadPhase: mean((report) => report.broadPhaseMs),
+    narrowPhase: mean((report) => report.narrowPhaseMs),
+  };
+}
+
+/** One step if it is time, then back to the queue of messages. A late world does not catch up. */
+function tick(): void {
+  timer = undefined;
+  if (!running || !world) return;
+  const now = performance.now();
+  if (now >= due) {
+    due = Math.max(due + STEP_MS, now - STEP_MS);
+    guarded(() => world && (step(world), show(world)));
+  }
+  timer = setTimeout(tick, due - performance.now());
+}
+
+function setRunning(on: boolean): void {
+  running = on;
+  clearTimeout(timer);
+  world?.taken.splice(0);
+  if (on) {
+    due = performance.now();
+    timer = setTimeout(tick);
+  } else if (world) {
+    showAgain(world);
+  }
+}
+
+function receive(message: ToSimulation): void {
+  switch (message.type) {
+    case "begin":
+      begin(message.run, message.setup, message.method);
+      break;
+    case "method":
+      world?.simulation.setBroadPhase(message.method);
+      world?.reports.splice(0);
+      break;
+    case "pace":
+      setRunning(message.running);
+      break;
+    case "step":
+      if (world) {
+        step(world);
+        show(world);
+      }
+      break;
+    case "list-pairs":
+      listPairs = message.on;
+      if (world && !running) showAgain(world);
+      break;
+    case "recycle":
+      if (world && message.run === world.run) {
+        world.buffers.push(message.positions);
+        if (world.unseen) show(world);
+      }
+      break;
+  }
+}
+
+/** An error of the simulation is told to the page, and stops it. */
+function guarded(work: () => void): void {
+  try {
+    work();
+  } catch (error) {
+    running = false;
+    send({ type: "failed", message: error instanceof Error ? error.message : String(error) });
+  }
+}
+
+/** Whether the engine takes the smallest function with a vector instruction. */
+function hasSimd(): boolean {
+  // prettier-ignore
+  return WebAssembly.validate(new Uint8Array([
+    0, 97, 115, 109, 1, 0, 0, 0, // "\0asm", version 1
+    1, 5, 1, 96, 0, 1, 123, // one type: () -> v128
+    3, 2, 1, 0, // one function of it
+    10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11, // i32.const 0; i8x16.splat; i8x16.popcnt; end
+  ]));
+}
+
+const simd = hasSimd();
+// Messages that come before the module is there wait for it, in their order.
+const loaded = Simulation.load(new URL(simd ? simdWasm : scalarWasm, self.location.href)).then(
+  () => {
+    const { algorithms, sorts, axes } = Simulation;
+    send({ type: "ready", choices: { algorithms, sorts, axes }, simd });
+  },
+  (error: unknown) => {
+    send({ type: "failed", message: `The simulation could not be loaded: ${String(error)}` });
+    throw error;
+  },
+);
+self.addEventListener("message", ({ data }: MessageEvent<ToSimulation>) => {
+  void loaded.then(() => guarded(() => receive(data)), () => undefined);
+});

@@ -1,0 +1,97 @@
+import type { Theme } from "./theme.ts";
+import { type Picture, pixelRatio, type View, type World } from "./view.ts";
+
+/** Bodies of one shade are drawn as one path: the fewer shades, the fewer paths. */
+const SHADES = 24;
+/** Left around the world, in CSS pixels. */
+const PADDING = 10;
+
+/** Discs on a two-dimensional canvas. */
+export class DiscView implements View {
+  readonly #canvas: HTMLCanvasElement;
+  readonly #context: CanvasRenderingContext2D;
+  #theme: Theme;
+  #world: World = { size: [1, 1] };
+  #radii: Float32Array = new Float32Array(0);
+  /** The bodies of each shade. */
+  #shades: number[][] = [];
+  #colours: string[] = [];
+
+  constructor(canvas: HTMLCanvasElement, theme: Theme) {
+    const context = canvas.getContext("2d");
+    if (!context) throw new Error("This browser cannot draw on a canvas.");
+    this.#canvas = canvas;
+    this.#context = context;
+    this.#theme = theme;
+    this.setTheme(theme);
+  }
+
+  begin(world: World, radii: Float32Array, tints: Float32Array): void {
+    this.#world = world;
+    this.#radii = radii;
+    this.#shades = Array.from({ length: SHADES }, () => []);
+    tints.forEach((tint, body) => this.#shades[Math.round(tint * (SHADES - 1))]?.push(body));
+  }
+
+  setTheme(theme: Theme): void {
+    this.#theme = theme;
+    this.#colours = Array.from({ length: SHADES }, (_, shade) => mixRamp(theme.ramp, shade / (SHADES - 1)));
+  }
+
+  resize(width: number, height: number): void {
+    this.#canvas.width = Math.round(width * pixelRatio());
+    this.#canvas.height = Math.round(height * pixelRatio());
+  }
+
+  draw({ positions, pairs }: Picture): void {
+    const context = this.#context;
+    const { width, height } = this.#canvas;
+    const [worldWidth = 1, worldHeight = 1] = this.#world.size;
+    const padding = PADDING * pixelRatio();
+    const scale = Math.min((width - 2 * padding) / worldWidth, (height - 2 * padding) / worldHeight);
+    const left = (width - worldWidth * scale) / 2;
+    const floor = (height + worldHeight * scale) / 2;
+    const x = (body: number): number => left + (positions[2 * body] ?? 0) * scale;
+    const y = (body: number): number => floor - (positions[2 * body + 1] ?? 0) * scale;
+
+    context.clearRect(0, 0, width, height);
+    context.fillStyle = this.#theme.floor;
+    context.fillRect(0, floor, width, height - floor);
+
+    // A hair's breadth between bodies that touch.
+    const gap = Math.min(0.35 * pixelRatio(), 0.1 * (this.#radii[0] ?? 0) * scale);
+    this.#shades.forEach((bodies, shade) => {
+      context.beginPath();
+      for (const body of bodies) {
+        const radius = Math.max((this.#radii[body] ?? 0) * scale - gap, 0.5);
+        context.moveTo(x(body) + radius, y(body));
+        context.arc(x(body), y(body), radius, 0, 2 * Math.PI);
+      }
+      context.fillStyle = this.#colours[shade] ?? this.#theme.edge;
+      context.fill();
+    });
+
+    context.beginPath();
+    for (let i = 0; i + 1 < pairs.length; i += 2) {
+      const [a = 0, b = 0] = [pairs[i], pairs[i + 1]];
+      context.moveTo(x(a), y(a));
+      context.lineTo(x(b), y(b));
+    }
+    context.strokeStyle = this.#theme.pair;
+    context.lineWidth = 2 * pixelRatio();
+    context.stroke();
+  }
+}
+
+/** The colour at `t`, from 0 to 1, of a ramp of colours written `#rrggbb`. */
+function mixRamp(ramp: readonly string[], t: number): string {
+  const at = t * (ramp.length - 1);
+  const below = Math.min(Math.floor(at), ramp.length - 2);
+  const share = at - below;
+  const channels = (stop: number): number[] =>
+    [1, 3, 5].map((i) => Number.parseInt((ramp[stop] ?? "#000000").slice(i, i + 2), 16));
+  const above = channels(below + 1);
+  return `rgb(${channels(below)
+    .map((value, i) => Math.round(value + share * ((above[i] ?? value) - value)))
+    .join(" ")})`;
+}

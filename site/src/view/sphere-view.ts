@@ -1,0 +1,200 @@
+import {
+  BoxGeometry,
+  Color,
+  DynamicDrawUsage,
+  EdgesGeometry,
+  InstancedBufferAttribute,
+  InstancedBufferGeometry,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshBasicMaterial,
+  PerspectiveCamera,
+  PlaneGeometry,
+  Scene,
+  ShaderMaterial,
+  Spherical,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import type { Theme } from "./theme.ts";
+import { type Picture, pixelRatio, type View, type World } from "./view.ts";
+
+/** Where the eye is at first, seen from the middle of the world. */
+const DIRECTION = new Vector3(0.5, 0.36, 1).normalize();
+/** Where the light comes from. */
+const LIGHT = new Vector3(0.45, 1, 0.55).normalize();
+
+/**
+ * Spheres in a box, all in one draw call. Each instance is a square that faces the eye, shaded as
+ * the half of a sphere that can be seen: perfectly round, two triangles a body, and what is sent
+ * to the graphics processor for a picture is just the array of positions.
+ */
+export class SphereView implements View {
+  readonly #renderer: WebGLRenderer;
+  readonly #scene = new Scene();
+  readonly #camera = new PerspectiveCamera(32, 4 / 3, 0.01, 1000);
+  readonly #controls: OrbitControls;
+  readonly #spheres: Mesh<InstancedBufferGeometry, ShaderMaterial>;
+  readonly #floor = new Mesh(new PlaneGeometry(1, 1).rotateX(-Math.PI / 2), new MeshBasicMaterial());
+  readonly #edges = new LineSegments(new EdgesGeometry(new BoxGeometry(1, 1, 1)), new LineBasicMaterial());
+  readonly #changed: () => void;
+  #world: World = { size: [1, 1, 1] };
+
+  /**
+   * `surface` takes the pointer and the keys that turn the view; `changed` is called when it has
+   * turned and must be drawn again.
+   */
+  constructor(canvas: HTMLCanvasElement, surface: HTMLElement, theme: Theme, changed: () => void) {
+    this.#changed = changed;
+    this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.#spheres = new Mesh(squares(0), sphereMaterial());
+    this.#spheres.frustumCulled = false;
+    this.#scene.add(this.#floor, this.#edges, this.#spheres);
+    this.setTheme(theme);
+
+    this.#controls = new OrbitControls(this.#camera, surface);
+    this.#controls.enablePan = false;
+    this.#controls.maxPolarAngle = 0.5 * Math.PI;
+    surface.style.touchAction = "pan-y";
+    // The wheel scrolls the page until the stage has been chosen by a click or by the keyboard.
+    this.#controls.enableZoom = false;
+    surface.addEventListener("focus", () => (this.#controls.enableZoom = true));
+    surface.addEventListener("blur", () => (this.#controls.enableZoom = false));
+    surface.addEventListener("keydown", (event) => this.#turnByKey(event));
+    this.#controls.addEventListener("change", changed);
+  }
+
+  begin(world: World, radii: Float32Array, tints: Float32Array): void {
+    this.#world = world;
+    const [width = 1, height = 1, depth = 1] = world.size;
+    this.#edges.scale.set(width, height, depth);
+    this.#edges.position.set(width / 2, height / 2, depth / 2);
+    this.#floor.scale.set(width, 1, depth);
+    this.#floor.position.set(width / 2, 0, depth / 2);
+
+    const geometry = squares(radii.length);
+    geometry.setAttribute("radius", new InstancedBufferAttribute(radii, 1));
+    geometry.setAttribute("tint", new InstancedBufferAttribute(tints, 1));
+    this.#spheres.geometry.dispose();
+    this.#spheres.geometry = geometry;
+    this.#frame();
+  }
+
+  setTheme(theme: Theme): void {
+    this.#spheres.material.uniforms["ramp"] = { value: theme.ramp.map((colour) => new Color(colour)) };
+    this.#floor.material.color.set(theme.floor);
+    this.#edges.material.color.set(theme.edge);
+  }
+
+  resize(width: number, height: number): void {
+    this.#renderer.setPixelRatio(pixelRatio());
+    this.#renderer.setSize(width, height, false);
+    this.#camera.aspect = width / height;
+    this.#camera.updateProjectionMatrix();
+    this.#frame();
+  }
+
+  draw({ positions }: Picture): void {
+    const centres = this.#spheres.geometry.getAttribute("centre") as InstancedBufferAttribute;
+    if (centres.array.length === positions.length) {
+      centres.array.set(positions);
+      centres.needsUpdate = true;
+    }
+    this.#renderer.render(this.#scene, this.#camera);
+  }
+
+  /** Stands back just as far as the whole world needs, looking from where it looks now. */
+  #frame(): void {
+    const [width = 1, height = 1, depth = 1] = this.#world.size;
+    const { position, fov, aspect } = this.#camera;
+    const target = this.#controls.target.set(width / 2, height / 2, depth / 2);
+    const back = position.lengthSq() === 0 ? DIRECTION.clone() : position.clone().sub(target).normalize();
+    const right = new Vector3(0, 1, 0).cross(back).normalize();
+    const up = back.clone().cross(right);
+    const slopeUp = Math.tan((fov * Math.PI) / 360);
+    let distance = 0;
+    for (let corner = 0; corner < 8; corner++) {
+      const sign = (bit: number): number => (corner & bit ? 0.53 : -0.53);
+      const at = new Vector3(sign(1) * width, sign(2) * height, sign(4) * depth);
+      const needed = Math.max(Math.abs(at.dot(up)) / slopeUp, Math.abs(at.dot(right)) / (slopeUp * aspect));
+      distance = Math.max(distance, at.dot(back) + needed);
+    }
+    this.#controls.minDistance = 0.2 * distance;
+    this.#controls.maxDistance = 2 * distance;
+    position.copy(target).addScaledVector(back, distance);
+    this.#camera.near = distance / 50;
+    this.#camera.far = distance * 5;
+    this.#camera.updateProjectionMatrix();
+    this.#controls.update();
+  }
+
+  #turnByKey(event: KeyboardEvent): void {
+    const { target } = this.#controls;
+    const eye = new Spherical().setFromVector3(this.#camera.position.clone().sub(target));
+    switch (event.key) {
+      case "ArrowLeft": eye.theta -= 0.1; break;
+      case "ArrowRight": eye.theta += 0.1; break;
+      case "ArrowUp": eye.phi -= 0.1; break;
+      case "ArrowDown": eye.phi += 0.1; break;
+      case "+": case "=": eye.radius *= 0.9; break;
+      case "-": eye.radius /= 0.9; break;
+      default: return;
+    }
+    event.preventDefault();
+    eye.phi = Math.min(Math.max(eye.phi, 0.05), 0.5 * Math.PI);
+    this.#camera.position.setFromSpherical(eye).add(target);
+    this.#controls.update();
+    this.#changed();
+  }
+}
+
+/** A square for each body, from (-1, -1) to (1, 1). */
+function squares(bodies: number): InstancedBufferGeometry {
+  const geometry = new InstancedBufferGeometry().copy(new PlaneGeometry(2, 2) as unknown as InstancedBufferGeometry);
+  const centres = new InstancedBufferAttribute(new Float32Array(3 * bodies), 3).setUsage(DynamicDrawUsage);
+  geometry.setAttribute("centre", centres);
+  geometry.instanceCount = bodies;
+  return geometry;
+}
+
+function sphereMaterial(): ShaderMaterial {
+  return new ShaderMaterial({
+    uniforms: { ramp: { value: [] }, light: { value: LIGHT } },
+    // Edges are smoothed by how many samples of a pixel they cover.
+    alphaToCoverage: true,
+    vertexShader: `
+      attribute vec3 centre;
+      attribute float radius;
+      attribute float tint;
+      uniform vec3 ramp[5];
+      varying vec2 corner;
+      varying vec3 colour;
+
+      void main() {
+        corner = position.xy;
+        float at = clamp(tint, 0.0, 0.9999) * 4.0;
+        int below = int(at);
+        colour = mix(ramp[below], ramp[below + 1], fract(at));
+        vec4 middle = modelViewMatrix * vec4(centre, 1.0);
+        gl_Position = projectionMatrix * (middle + vec4(radius * corner, 0.0, 0.0));
+      }`,
+    fragmentShader: `
+      uniform vec3 light;
+      varying vec2 corner;
+      varying vec3 colour;
+
+      void main() {
+        float outward = length(corner);
+        float coverage = clamp((1.0 - outward) / fwidth(outward) + 0.5, 0.0, 1.0);
+        if (coverage == 0.0) discard;
+        vec3 normal = vec3(corner, sqrt(max(1.0 - outward * outward, 0.0)));
+        float sun = max(dot(normal, (viewMatrix * vec4(light, 0.0)).xyz), 0.0);
+        float sky = 0.5 + 0.5 * dot(normal, (viewMatrix * vec4(0.0, 1.0, 0.0, 0.0)).xyz);
+        float rim = mix(0.7, 1.0, smoothstep(0.0, 0.5, normal.z));
+        gl_FragColor = vec4(colour * rim * (0.16 + 0.42 * sky + 0.62 * sun), coverage);
+        #include <colorspace_fragment>
+      }`,
+  });
+}

@@ -1,0 +1,26 @@
+/** The colours of the page as drawings need them, read from the custom properties of the style sheet. */
+export interface Theme {
+  /** From the floor up. */
+  readonly ramp: readonly string[];
+  readonly stage: string;
+  readonly floor: string;
+  readonly edge: string;
+  readonly pair: string;
+}
+
+export function readTheme(): Theme {
+  const style = getComputedStyle(document.documentElement);
+  const colour = (name: string): string => style.getPropertyValue(`--${name}`).trim();
+  return {
+    ramp: [0, 1, 2, 3, 4].map((stop) => colour(`ramp-${stop}`)),
+    stage: colour("stage"),
+    floor: colour("floor"),
+    edge: colour("edge"),
+    pair: colour("pair"),
+  };
+}
+
+/** Calls `changed` whenever the page turns light or dark. */
+export function onThemeChange(changed: () => void, signal: AbortSignal): void {
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", changed, { signal });
+}
