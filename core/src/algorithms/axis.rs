@@ -50,7 +50,7 @@ impl Axis {
     }
 
     /// The axis for the boxes `ids`.
-    pub(super) fn choose_among<const D: usize, T: Scalar>(
+    pub(crate) fn choose_among<const D: usize, T: Scalar>(
         self,
         boxes: &[Aabb<D, T>],
         ids: &[u32],

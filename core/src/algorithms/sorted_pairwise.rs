@@ -25,7 +25,7 @@ use crate::{Aabb, Scalar};
 
 /// Appends all overlapping pairs of the boxes in `lefts`, which holds their left endpoints, in
 /// the order in which the sweep along `axis` finds them.
-pub(super) fn sorted_pairwise<const D: usize, T: Scalar, O: Observer>(
+pub(crate) fn sorted_pairwise<const D: usize, T: Scalar, O: Observer>(
     boxes: &[Aabb<D, T>],
     lefts: &mut EndpointArray<T>,
     axis: usize,

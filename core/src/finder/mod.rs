@@ -1,10 +1,11 @@
 //! Find pairs: the road that users take. For now it is the sorted pairwise sweep on the axis of
-//! largest variance.
+//! largest variance, called by itself: through [`Runner`](crate::algorithms::Runner) every other
+//! algorithm would come along, which triples what a page has to download.
 
 use alloc::vec::Vec;
 
-use crate::algorithms::{Axis, Method, Runner, RunnerOptions, Sort};
-use crate::{Aabb, Error, Scalar};
+use crate::algorithms::{Axis, EndpointArray, Sort, sorted_pairwise};
+use crate::{Aabb, Error, Scalar, validate};
 
 /// All pairs of boxes that overlap, each once, smaller index first, in a deterministic order.
 ///
@@ -20,20 +21,15 @@ pub fn find_pairs<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>]) -> Result<Vec
 /// Finds all pairs again and again, and keeps its buffers between calls.
 #[derive(Debug)]
 pub struct PairFinder<const D: usize, T = f32> {
-    runner: Runner<D, T>,
+    ids: Vec<u32>,
+    lefts: EndpointArray<T>,
+    pairs: Vec<[u32; 2]>,
 }
 
 impl<const D: usize, T: Scalar> PairFinder<D, T> {
     /// A finder with empty buffers.
     pub fn new() -> Self {
-        Self {
-            runner: Runner::new(RunnerOptions {
-                method: Method::SortedPairwise,
-                sort: Sort::Standard,
-                axis: Axis::LargestVariance,
-                persistent: false,
-            }),
-        }
+        Self { ids: Vec::new(), lefts: EndpointArray::default(), pairs: Vec::new() }
     }
 
     /// As [`find_pairs`], into a buffer that stays valid until the next call.
@@ -41,7 +37,16 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
     /// # Errors
     /// As [`find_pairs`]; after an error the buffers are unchanged.
     pub fn find(&mut self, boxes: &[Aabb<D, T>]) -> Result<&[[u32; 2]], Error> {
-        Ok(self.runner.step(boxes, &mut ())?.pairs)
+        validate(boxes)?;
+        let Self { ids, lefts, pairs } = self;
+        ids.clear();
+        ids.extend(0..boxes.len() as u32);
+        let axis = Axis::LargestVariance.choose_among(boxes, ids)?;
+        lefts.endpoints.clear();
+        lefts.append_lefts(ids);
+        pairs.clear();
+        sorted_pairwise(boxes, lefts, axis, Sort::Standard, &mut (), pairs);
+        Ok(pairs)
     }
 }
 
