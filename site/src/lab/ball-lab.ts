@@ -200,8 +200,18 @@ export class BallLab extends HTMLElement {
     const first = this.#frame?.run !== frame.run;
     this.#frame = frame;
     if (first) this.#showBegun();
+    // With one body there is nothing to compare, whatever the algorithm.
+    if (frame.measurement && frame.measurement.bodies > 1) this.#setSorts(Boolean(frame.measurement.comparisons));
     if (!this.#wanted) this.#describe();
     this.#requestDraw();
+  }
+
+  /** A choice of sort means something only where the algorithm sorts and tells so. */
+  #setSorts(sorts: boolean): void {
+    const select = this.#part<HTMLSelectElement>("sort");
+    if (select.disabled !== sorts) return;
+    select.disabled = !sorts;
+    this.#describe();
   }
 
   /** Gives a new world to the view, once there are both, and paints its bodies by their height. */

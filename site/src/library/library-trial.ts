@@ -1,0 +1,89 @@
+import { findPairs, init } from "sweep-and-prune";
+import { bruteForceTests, formatCount } from "../lab/counters.ts";
+
+/** Up to so many boxes brute force answers before a visitor wonders what is going on. */
+const CHECKED = 5_000;
+/** The side of a cube at which a box of `n` in the unit cube meets about two others. */
+const side = (n: number): number => 0.5 * Math.cbrt(4 / n);
+
+/**
+ * `<library-trial>`: the package, called by this page as any program calls it: random boxes in,
+ * how many pairs and how long out, and brute force in plain JavaScript beside it.
+ */
+export class LibraryTrial extends HTMLElement {
+  connectedCallback(): void {
+    const button = this.querySelector("button");
+    const slider = this.querySelector("input");
+    const count = this.querySelector("output");
+    const result = this.querySelector<HTMLElement>("[role=status]");
+    if (!button || !slider || !count || !result) throw new Error("<library-trial> lacks its parts");
+
+    const boxes = (): number => Math.round(10 ** slider.valueAsNumber / 10) * 10;
+    const showCount = (): void => {
+      count.value = formatCount(boxes());
+      slider.setAttribute("aria-valuetext", count.value);
+    };
+    showCount();
+    slider.addEventListener("input", showCount);
+    slider.disabled = button.disabled = false;
+    button.addEventListener("click", async () => {
+      result.textContent = await trial(boxes()).catch((error: unknown) => `That did not work: ${String(error)}`);
+    });
+  }
+}
+
+/** Runs the library, and brute force where it is quick enough, on `n` random boxes; says what came out. */
+async function trial(n: number): Promise<string> {
+  await init();
+  const boxes = randomBoxes(n);
+  findPairs(boxes, { dimensions: 3 }); // once unmeasured, so that the compiler has seen it
+  const started = performance.now();
+  const pairs = findPairs(boxes, { dimensions: 3 });
+  const time = performance.now() - started;
+  const found = `${formatCount(pairs.length / 2)} pairs among ${formatCount(n)} boxes in ${time.toFixed(1)} ms.`;
+
+  const tests = formatCount(bruteForceTests(n));
+  if (n > CHECKED) return `${found} Brute force would make ${tests} tests; it is tried up to ${formatCount(CHECKED)} boxes.`;
+  const begun = performance.now();
+  const expected = bruteForce(boxes);
+  const bruteTime = performance.now() - begun;
+  const agreement = sameSets(pairs, expected) ? "the same pairs" : "DIFFERENT pairs: please tell us";
+  return `${found} Brute force, ${tests} tests in plain JavaScript: ${agreement}, ${bruteTime.toFixed(1)} ms.`;
+}
+
+/** Boxes in the unit cube, a row each: least corner, greatest corner. */
+function randomBoxes(n: number): Float32Array {
+  const boxes = new Float32Array(6 * n);
+  for (let row = 0; row < boxes.length; row += 6) {
+    for (let axis = 0; axis < 3; axis++) {
+      boxes[row + axis] = Math.random();
+      boxes[row + 3 + axis] = (boxes[row + axis] ?? 0) + side(n) * (0.5 + Math.random());
+    }
+  }
+  return boxes;
+}
+
+function bruteForce(boxes: Float32Array): number[] {
+  const pairs: number[] = [];
+  const at = (index: number): number => boxes[index] as number;
+  for (let a = 0; a < boxes.length; a += 6) {
+    for (let b = a + 6; b < boxes.length; b += 6) {
+      if (at(a) > at(b + 3) || at(b) > at(a + 3)) continue;
+      if (at(a + 1) > at(b + 4) || at(b + 1) > at(a + 4)) continue;
+      if (at(a + 2) > at(b + 5) || at(b + 2) > at(a + 5)) continue;
+      pairs.push(a / 6, b / 6);
+    }
+  }
+  return pairs;
+}
+
+/** Whether two lists of pairs hold the same ones, in whatever order. */
+function sameSets(found: ArrayLike<number>, expected: ArrayLike<number>): boolean {
+  const keys = (list: ArrayLike<number>): Set<string> => {
+    const all = new Set<string>();
+    for (let i = 0; i + 1 < list.length; i += 2) all.add(`${list[i]} ${list[i + 1]}`);
+    return all;
+  };
+  const foundKeys = keys(found);
+  return found.length === expected.length && [...keys(expected)].every((key) => foundKeys.has(key));
+}
