@@ -1,7 +1,7 @@
 //! What every scene and every motion promises, and what the classic ones are known for.
 
 use sweep_and_prune::{Aabb, Scalar, find_pairs, validate};
-use sweep_and_prune_scenes::{Motion, Scene, golden_report};
+use sweep_and_prune_scenes::{Motion, Scene, golden_report, hash, hash_boxes, hash_pairs};
 
 /// Runs a generic check `fn check<const D: usize, T: Scalar>()` in every dimension and type.
 macro_rules! in_all_dimensions {
@@ -91,6 +91,17 @@ fn scenes_exist_where_they_say() {
     assert!(Motion::Drift.start::<4, f32>(9, 1).is_none());
 }
 
+/// The test vectors of the authors of FNV.
+#[test]
+fn the_hash_is_fnv_1a() {
+    assert_eq!(hash([]), 0xcbf2_9ce4_8422_2325);
+    assert_eq!(hash(*b"a"), 0xaf63_dc4c_8601_ec8c);
+    assert_eq!(hash(*b"foobar"), 0x8594_4171_f739_67e8);
+    assert_eq!(hash_pairs(&[[1, 2]]), hash([1, 0, 0, 0, 2, 0, 0, 0]));
+    let zero = |zero: f32| hash_boxes(&[Aabb::new([zero], [1.0])]);
+    assert_ne!(zero(0.0), zero(-0.0));
+}
+
 /// The counts that Terdiman published.
 #[test]
 fn box_pruning_has_its_known_pairs() {
@@ -173,18 +184,20 @@ fn orders_are_what_they_say() {
 #[test]
 fn moving_boxes_keep_to_the_cube_and_to_their_size() {
     fn check<const D: usize, T: Scalar>() {
-        for motion in Motion::ALL {
-            for n in [0, 1, 2, 40] {
-                let mut moving = motion.start::<D, T>(n, 2).unwrap();
-                for _ in 0..300 {
-                    moving.advance();
-                    assert_eq!(moving.boxes().len(), n);
-                    assert_eq!(validate(moving.boxes()), Ok(()));
-                    for aabb in moving.boxes() {
-                        for k in 0..D {
-                            let centre = (aabb.min[k].to_f64() + aabb.max[k].to_f64()) / 2.0;
-                            assert!((-1e-6..=1.0 + 1e-6).contains(&centre), "{centre}");
-                        }
+        // One box is wider than the cube, and fast enough to meet two walls in a frame.
+        let runs = (0..20).flat_map(|seed| [(0, seed), (1, seed), (2, seed)]).chain([(40, 2)]);
+        for (motion, (n, seed)) in
+            Motion::ALL.into_iter().flat_map(|m| runs.clone().map(move |r| (m, r)))
+        {
+            let mut moving = motion.start::<D, T>(n, seed).unwrap();
+            for _ in 0..100 {
+                moving.advance();
+                assert_eq!(moving.boxes().len(), n);
+                assert_eq!(validate(moving.boxes()), Ok(()));
+                for aabb in moving.boxes() {
+                    for k in 0..D {
+                        let centre = (aabb.min[k].to_f64() + aabb.max[k].to_f64()) / 2.0;
+                        assert!((-1e-6..=1.0 + 1e-6).contains(&centre), "{centre}");
                     }
                 }
             }
