@@ -37,10 +37,13 @@ export function checkBoxes(boxes: unknown, dimensions: Dimensions): Float32Array
 }
 
 function fromNumbers(numbers: readonly unknown[]): Float64Array {
-  return Float64Array.from(numbers, (value, at) => {
-    if (typeof value === "number") return value;
-    throw new TypeError(`boxes[${at}] must be a number, not ${describe(value)}`);
-  });
+  const rows = new Float64Array(numbers.length);
+  for (let at = 0; at < rows.length; at++) {
+    const value = numbers[at];
+    if (typeof value !== "number") throw new TypeError(`boxes[${at}] must be a number, not ${describe(value)}`);
+    rows[at] = value;
+  }
+  return rows;
 }
 
 /** By its tag, not by `instanceof`: arrays of another realm (a frame, a test runner) are as good. */

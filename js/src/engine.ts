@@ -18,28 +18,13 @@ const enum Code {
   OutOfMemory = 2,
 }
 
-/** An instance of the compiled core, and what its calls need around them. */
+/** The compiled core at work, and what its calls need around them. */
 export class Engine {
-  readonly exports: Exports;
   readonly #statusAt: number;
   #words = new Uint32Array(0);
 
-  constructor(
-    module: WebAssembly.Module,
-    /** Whether this is the build with vector instructions. */
-    readonly simd: boolean,
-  ) {
-    // Rust calls this where it can go on no further. Throwing skips its frames, so that the stack
-    // pointer has to be put back; no call into Rust is ever nested in another.
-    const fail = (outOfMemory: number): never => {
-      stackPointer.value = stackTop;
-      throw outOfMemory ? new OutOfMemoryError() : new SweepAndPruneError("internal error: please report it");
-    };
-    const instance = new WebAssembly.Instance(module, { sweep_and_prune: { fail } });
-    this.exports = instance.exports as unknown as Exports;
-    const stackPointer = this.exports.__stack_pointer;
-    const stackTop = stackPointer.value;
-    this.#statusAt = (this.exports.status() >>> 0) / 4;
+  constructor(readonly exports: Exports) {
+    this.#statusAt = (exports.status() >>> 0) / 4;
   }
 
   /** A word of detail about the last call: which box, which axis, where, how many. */
@@ -66,13 +51,24 @@ export class Engine {
 
 let ready: Engine | undefined;
 
-/** The engine, once `init()` is done. */
+/** The engine, once {@link startEngine} is done. */
 export function engine(): Engine {
   if (ready === undefined) throw new NotInitializedError();
   return ready;
 }
 
-/** @internal Makes the engine of every later call. */
-export function setEngine(engine: Engine): void {
-  ready = engine;
+/** Starts the engine of every later call. */
+export async function startEngine(module: WebAssembly.Module): Promise<void> {
+  // Rust calls this where it can go on no further. Throwing skips its frames, so that the stack
+  // pointer has to be put back; no call into Rust is ever nested in another.
+  const fail = (isOutOfMemory: number): never => {
+    stackPointer.value = stackTop;
+    throw isOutOfMemory ? new OutOfMemoryError() : new SweepAndPruneError("internal error: please report it");
+  };
+  // Not `new WebAssembly.Instance`, which some browsers refuse on the main thread.
+  const instance = await WebAssembly.instantiate(module, { sweep_and_prune: { fail } });
+  const exports = instance.exports as unknown as Exports;
+  const stackPointer = exports.__stack_pointer;
+  const stackTop = stackPointer.value;
+  ready = new Engine(exports);
 }

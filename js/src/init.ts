@@ -1,4 +1,4 @@
-import { Engine, setEngine } from "./engine.js";
+import { startEngine } from "./engine.js";
 
 /** How to start. */
 export interface InitOptions {
@@ -39,14 +39,13 @@ export function start(sources: Sources, options: InitOptions): Promise<Started> 
 
 async function load(sources: Sources, options: InitOptions): Promise<Started> {
   const simd = options.simd ?? hasSimd();
-  const module = await compile(options.wasm ?? (simd ? sources.simd() : sources.scalar()));
-  setEngine(new Engine(module, simd));
+  await startEngine(await compile(options.wasm ?? (simd ? sources.simd() : sources.scalar())));
   return { simd };
 }
 
 async function compile(wasm: NonNullable<InitOptions["wasm"]>): Promise<WebAssembly.Module> {
   if (wasm instanceof WebAssembly.Module) return wasm;
-  if (typeof wasm !== "string" && !(wasm instanceof URL)) return WebAssembly.compile(wasm);
+  if (typeof wasm !== "string" && !("href" in wasm)) return WebAssembly.compile(wasm);
   const address = String(wasm);
   if (address.startsWith("file:")) {
     const fs = nodeFiles();
