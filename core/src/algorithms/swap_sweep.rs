@@ -16,7 +16,8 @@
 //! whose right endpoint it passes.
 //!
 //! Time: O(n + s) for s swaps, which are exactly the inversions: none in a world at rest, a few
-//! when it moves a little, n(2n-1) on a full reversal. On one axis the pairs that overlap there are
+//! when it moves a little, at worst n(2n-1) - n = 2n(n-1), a full reversal of the 2n endpoints but
+//! for the n pairs that belong to one box and never change places. On one axis the pairs that overlap there are
 //! then tested on the others, O(m); on every axis a pair must be flagged on each, and nothing is
 //! tested. A change of the pairs kept costs O(log m). Memory: O(n + m), m the overlaps on *all*
 //! swept axes.
