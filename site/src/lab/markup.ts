@@ -43,10 +43,23 @@ function labMarkup({ id, dimensions, bodies }: LabOptions): string {
         <p class="status" role="status" data-part="status"></p>
       </div>
 
-      <div class="lab-controls">
-        ${choice(id, "algorithm", "Algorithm")}
-        ${choice(id, "sort", "Sort")}
-        ${choice(id, "axis", "Sweep axis")}
+      <div class="lab-side">
+        <div class="lab-method">
+          ${choice(id, "algorithm", "Algorithm")}
+          ${choice(id, "sort", "Sort")}
+          ${choice(id, "axis", "Sweep axis")}
+        </div>
+        <div class="lab-counters">
+          ${counterList("work", "Work of one pass", bodies)}
+          ${counterList("time", "Time of one step", bodies)}
+          <div class="budget" aria-hidden="true">
+            <div class="budget-track"><i data-stage="broad-phase"></i><i data-stage="narrow-phase"></i><i data-stage="drawing"></i></div>
+            <p><span>0</span><span>one frame, 16.7 ms</span></p>
+          </div>
+        </div>
+      </div>
+
+      <div class="lab-world">
         ${slider(id, "bodies", dimensions === 2 ? "Discs" : "Spheres", formatCount(bodies))}
         ${slider(id, "size", "Size", "100%")}
         ${slider(id, "spread", "Largest : smallest", "1 : 1")}
@@ -56,16 +69,6 @@ function labMarkup({ id, dimensions, bodies }: LabOptions): string {
         </div>
         ${dimensions === 2 ? linesSwitch() : ""}
       </div>
-
-      <div class="lab-counters">
-        ${counterList("work", "Work of one pass", bodies)}
-        ${counterList("time", "Time of one step", bodies)}
-        <div class="budget" data-part="budget" aria-hidden="true">
-          <div class="budget-track"><i data-stage="broad-phase"></i><i data-stage="narrow-phase"></i><i data-stage="drawing"></i></div>
-          <p><span>0</span><span>one frame, 16.7 ms</span></p>
-        </div>
-      </div>
-      
     </div>`;
 }
 

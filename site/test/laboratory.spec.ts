@@ -1,0 +1,205 @@
+import { expect, test } from "@playwright/test";
+import { Lab } from "./lab.ts";
+
+const IDS = ["discs", "spheres"] as const;
+
+test.describe("running", () => {
+  for (const id of IDS) {
+    test(`${id}: counters move, pause holds them, the world goes on afterwards`, async ({ page }) => {
+      await page.goto(`/?${id}.algorithm=sorted+pairwise`);
+      const lab = await new Lab(page, id).open();
+      const seen = new Set<string>();
+      await expect
+        .poll(async () => seen.add(await lab.counter("tests")).size, { message: "tests change" })
+        .toBeGreaterThan(3);
+      for (const key of ["tests", "axis-overlaps", "pairs", "comparisons", "broad-phase", "narrow-phase", "drawing"]) {
+        await expect.poll(() => lab.value(key), { message: key }).toBeGreaterThan(0);
+      }
+
+      await lab.pause();
+      const [step, hash] = [await lab.stepNumber(), await lab.hash()];
+      await page.waitForTimeout(500);
+      expect([await lab.stepNumber(), await lab.hash()]).toEqual([step, hash]);
+
+      await lab.play.click();
+      await expect.poll(() => lab.stepNumber()).toBeGreaterThan(step);
+    });
+  }
+
+  test("sleeps while it is off the screen", async ({ page }) => {
+    await page.goto("/");
+    const lab = await new Lab(page, "discs").open();
+    await expect.poll(() => lab.stepNumber()).toBeGreaterThan(5);
+    await page.locator("footer").scrollIntoViewIfNeeded();
+    await page.waitForTimeout(300);
+    const before = await lab.stepNumber();
+    await page.waitForTimeout(2500);
+    await lab.root.scrollIntoViewIfNeeded();
+    await expect.poll(() => lab.stepNumber()).toBeGreaterThan(before);
+    // Awake it would have gone on by 150 steps.
+    expect(await lab.stepNumber()).toBeLessThan(before + 75);
+  });
+});
+
+test.describe("paused", () => {
+  test.use({ contextOptions: { reducedMotion: "reduce" } });
+
+  for (const id of IDS) {
+    test(`${id}: begins paused where less motion is wanted, and the first step is the first`, async ({ page }) => {
+      await page.goto("/");
+      const lab = await new Lab(page, id).open();
+      await expect(lab.play).toHaveText("Play");
+      expect(await lab.stepNumber()).toBe(0);
+      await lab.step(1);
+      expect(await lab.stepNumber()).toBe(1);
+    });
+
+    test(`${id}: the same seed gives the same states, another seed others`, async ({ page }) => {
+      await page.goto(`/?${id}.bodies=500`);
+      const lab = await new Lab(page, id).open();
+      const states = async (): Promise<string[]> => {
+        const all = [await lab.hash()];
+        for (let step = 0; step < 8; step++) {
+          await lab.step(1);
+          all.push(await lab.hash());
+        }
+        return all;
+      };
+      const first = await states();
+      expect(new Set(first).size).toBe(first.length);
+      await lab.reset();
+      expect(await states()).toEqual(first);
+      await lab.root.getByLabel("Seed").fill("2");
+      await lab.root.getByLabel("Seed").press("Enter");
+      await expect(lab.root).toHaveAttribute("data-step", "0");
+      await expect.poll(() => lab.hash()).not.toBe(first[0]);
+    });
+
+    test(`${id}: all algorithms, with every sort, find the same pairs and leave the same state`, async ({ page }) => {
+      await page.goto(`/?${id}.bodies=700`);
+      const lab = await new Lab(page, id).open();
+      const outcomes = new Map<string, unknown>();
+      for (const algorithm of await lab.algorithms()) {
+        await lab.reset();
+        await lab.algorithm.selectOption(algorithm);
+        await lab.step(2);
+        const sort = lab.root.getByLabel("Sort", { exact: true });
+        const sorts = (await sort.isEnabled()) ? await sort.locator("option").allTextContents() : [""];
+        for (const name of sorts) {
+          await lab.reset();
+          if (name) await sort.selectOption(name);
+          await lab.step(6);
+          outcomes.set(`${algorithm}, ${name}`, { pairs: await lab.value("pairs"), hash: await lab.hash() });
+        }
+      }
+      expect(outcomes.size).toBeGreaterThanOrEqual(5);
+      const [expected] = outcomes.values();
+      for (const [name, outcome] of outcomes) expect(outcome, name).toEqual(expected);
+    });
+  }
+
+  test("switching the algorithm in the middle does not disturb the motion", async ({ page }) => {
+    await page.goto("/");
+    const lab = await new Lab(page, "discs").open();
+    await lab.step(6);
+    const undisturbed = await lab.hash();
+    await lab.reset();
+    for (const algorithm of (await lab.algorithms()).slice(0, 6)) {
+      await lab.algorithm.selectOption(algorithm);
+      await lab.step(1);
+    }
+    expect(await lab.hash()).toBe(undisturbed);
+  });
+
+  test("brute force counts n(n - 1)/2 tests, sorted pairwise far fewer, for the same pairs", async ({ page }) => {
+    await page.goto("/?discs.bodies=1000");
+    const lab = await new Lab(page, "discs").open();
+    await lab.algorithm.selectOption("global pairwise");
+    await lab.step(3);
+    expect(await lab.counter("brute-force")).toBe("499,500");
+    expect(await lab.counter("tests")).toBe("499,500");
+    const pairs = await lab.value("pairs");
+    await lab.reset();
+    await lab.algorithm.selectOption("sorted pairwise");
+    await lab.step(3);
+    expect(await lab.value("tests")).toBeLessThan(100_000);
+    expect(await lab.value("pairs")).toBe(pairs);
+  });
+
+  test("what is not counted is an en dash that says why", async ({ page }) => {
+    await page.goto("/");
+    const lab = await new Lab(page, "spheres").open();
+    await lab.step(1);
+    const [library = ""] = await lab.algorithms();
+    await expect(lab.algorithm).toHaveValue(library);
+    for (const key of ["tests", "axis-overlaps", "comparisons", "swaps"]) {
+      const cell = lab.root.locator(`[data-counter="${key}"] dd`);
+      await expect(cell).toHaveText("–");
+      await expect(cell).toHaveAttribute("title", /not counted/);
+    }
+    expect(await lab.value("pairs")).toBeGreaterThan(0);
+  });
+
+  test("the address keeps what was chosen, and nothing else", async ({ page }) => {
+    await page.goto("/");
+    const lab = await new Lab(page, "discs").open();
+    expect(new URL(page.url()).search).toBe("");
+    await lab.algorithm.selectOption("global pairwise");
+    await lab.root.getByLabel("Discs").fill("3");
+    await lab.root.getByLabel("Seed").fill("7");
+    await lab.root.getByLabel("Seed").press("Enter");
+    await expect(lab.root.locator('[data-part="bodies-value"]')).toHaveText("5");
+    const query = new URL(page.url()).searchParams;
+    expect(Object.fromEntries(query)).toEqual({
+      "discs.algorithm": "global pairwise",
+      "discs.bodies": "5",
+      "discs.seed": "7",
+    });
+    await expect.poll(() => lab.counter("brute-force").then(Number).catch(() => NaN)).not.toBeNaN();
+
+    await page.reload();
+    await lab.open();
+    await expect(lab.algorithm).toHaveValue("global pairwise");
+    await expect(lab.root.getByLabel("Seed")).toHaveValue("7");
+    await lab.step(1);
+    expect(await lab.counter("brute-force")).toBe("10");
+  });
+
+  test("an address that makes no sense is ignored", async ({ page }) => {
+    await page.goto("/?discs.bodies=-3&discs.seed=abc&discs.size=NaN&discs.spread=1e9&discs.algorithm=magic&discs.axis=");
+    const lab = await new Lab(page, "discs").open();
+    await lab.step(2);
+    expect(await lab.counter("brute-force")).toBe("19,900");
+    await expect(lab.root.getByLabel("Seed")).toHaveValue("1");
+  });
+
+  test("works by the keyboard alone", async ({ page }) => {
+    await page.goto("/");
+    const lab = await new Lab(page, "discs").open();
+    await lab.play.focus();
+    await page.keyboard.press("Tab");
+    await page.keyboard.press("Enter");
+    await expect(lab.root).toHaveAttribute("data-step", "1");
+    await page.keyboard.press("Shift+Tab");
+    await page.keyboard.press("Space");
+    await expect(lab.play).toHaveText("Pause");
+    await expect.poll(() => lab.stepNumber()).toBeGreaterThan(3);
+
+    const spheres = await new Lab(page, "spheres").open();
+    await spheres.root.getByRole("application").focus();
+    const canvas = spheres.root.locator("canvas");
+    const before = await canvas.screenshot();
+    await page.keyboard.press("ArrowRight");
+    await page.keyboard.press("ArrowRight");
+    await expect.poll(async () => before.equals(await canvas.screenshot())).toBe(false);
+  });
+
+  test("one body and the most there are", async ({ page }) => {
+    for (const [id, bodies] of [["discs", 1], ["discs", 10_000], ["spheres", 1], ["spheres", 30_000]] as const) {
+      await page.goto(`/?${id}.bodies=${bodies}&${id}.spread=20&${id}.size=150`);
+      const lab = await new Lab(page, id).open();
+      await lab.step(2);
+      expect(await lab.value("brute-force")).toBe((bodies * (bodies - 1)) / 2);
+    }
+  });
+});
