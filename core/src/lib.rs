@@ -22,11 +22,16 @@ extern crate alloc;
 
 mod aabb;
 pub mod algorithms;
+mod broad_phase;
 mod error;
 mod finder;
 mod scalar;
 
 pub use aabb::{Aabb, validate};
+pub use broad_phase::{
+    BroadPhase, Cast, Changes, Filter, Hit, Lists, Neighbour, Options, Pairs, ProxyId, Queries,
+    Report,
+};
 pub use error::{Error, SnapshotFault};
 pub use finder::{PairFinder, find_pairs};
 pub use scalar::Scalar;

@@ -1,0 +1,79 @@
+//! Which bodies may pair at all.
+
+/// Which bodies may pair: category and mask bits, a group, and static against dynamic.
+///
+/// Two bodies pair if their boxes overlap and
+/// 1. at least one of them is not static;
+/// 2. they are of the same group, other than 0, and it is positive; or they are not of the same
+///    group (or of group 0), and each one's category has a bit in the other's mask.
+///
+/// So a shared negative group keeps bodies apart and a shared positive one joins them, whatever
+/// their masks; these are box2d's rules. The default is category 1, all bits in the mask, no
+/// group, dynamic.
+///
+/// ```
+/// use sweep_and_prune::Filter;
+///
+/// let wall = Filter { is_static: true, ..Filter::default() };
+/// let ghost = Filter { category: 2, mask: 2, ..Filter::default() };
+/// assert!(wall.allows(&Filter::default()));
+/// assert!(!wall.allows(&wall));
+/// assert!(!wall.allows(&ghost));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Filter {
+    /// What the body is: bits.
+    pub category: u32,
+    /// What it pairs with: the categories of others.
+    pub mask: u32,
+    /// 0, or a number that decides over category and mask between two of the same group.
+    pub group: i32,
+    /// Whether it is a static body: two of these never pair.
+    pub is_static: bool,
+}
+
+impl Filter {
+    /// Category 1, all bits in the mask, no group, static.
+    pub const STATIC: Self = Self { category: 1, mask: u32::MAX, group: 0, is_static: true };
+
+    /// All categories and all bits in the mask: what a query sees the world with unless told
+    /// otherwise.
+    pub const ALL: Self = Self { category: u32::MAX, mask: u32::MAX, group: 0, is_static: false };
+
+    /// Whether two bodies with these filters may pair. Symmetric.
+    #[inline]
+    pub const fn allows(&self, other: &Self) -> bool {
+        if self.is_static && other.is_static {
+            false
+        } else if self.group == other.group && self.group != 0 {
+            self.group > 0
+        } else {
+            self.category & other.mask != 0 && other.category & self.mask != 0
+        }
+    }
+}
+
+impl Default for Filter {
+    fn default() -> Self {
+        Self { category: 1, mask: u32::MAX, group: 0, is_static: false }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_decide_over_masks_and_static_over_groups() {
+        let none = Filter { mask: 0, ..Filter::default() };
+        let joined = Filter { group: 3, ..none };
+        let apart = Filter { group: -3, ..Filter::default() };
+        assert!(!none.allows(&none));
+        assert!(joined.allows(&joined));
+        assert!(!apart.allows(&apart));
+        assert!(apart.allows(&Filter::default()));
+        let fixed = Filter { is_static: true, ..joined };
+        assert!(!fixed.allows(&fixed) && fixed.allows(&joined));
+    }
+}

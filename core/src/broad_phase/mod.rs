@@ -1,0 +1,393 @@
+//! The living world: bodies that are inserted, moved and removed, and what begins and ends.
+
+mod changes;
+mod filter;
+mod hash;
+mod options;
+mod proxy;
+mod queries;
+#[cfg(feature = "serde")]
+mod serde;
+mod snapshot;
+mod update;
+
+use alloc::vec::Vec;
+
+pub use changes::{Changes, Pairs};
+pub use filter::Filter;
+pub use options::{Options, Report};
+pub use proxy::ProxyId;
+pub use queries::{Cast, Hit, Lists, Neighbour, Queries};
+
+use crate::{Aabb, Error, Scalar};
+use options::{contains, displacement, hull};
+use proxy::{Slots, flag};
+use update::Updater;
+
+/// A world of boxes that tells which overlaps began and which ended.
+///
+/// Bodies are [inserted](Self::insert), [set](Self::set) and [removed](Self::remove) as often as
+/// one likes; [`update`](Self::update) then reports the pairs that began and those that ended
+/// since the last update, each once, sorted by id. Touching boxes overlap; which bodies may pair
+/// at all is their [`Filter`]'s to say. What a body that rests costs is its memory.
+///
+/// [`queries`](Self::queries) answers what overlaps a box, a point or a sphere, what a ray or a
+/// moving box hits, and which bodies are nearest.
+///
+/// Same calls, same results: bit for bit, on every platform. A refused call changes nothing.
+///
+/// ```
+/// use sweep_and_prune::{Aabb, BroadPhase};
+///
+/// let mut world = BroadPhase::<2>::new();
+/// let hero = world.insert(Aabb::new([0.0, 0.0], [1.0, 2.0]))?;
+/// let door = world.insert(Aabb::new([3.0, 0.0], [4.0, 2.0]))?;
+/// assert_eq!(world.update().begun().len(), 0);
+///
+/// world.set(hero, Aabb::new([2.5, 0.0], [3.5, 2.0]))?;
+/// for pair in world.update().begun() {
+///     assert_eq!(pair, [hero, door]);
+/// }
+/// assert_eq!(world.pairs(), [[hero, door]]);
+///
+/// world.remove(door)?;
+/// assert_eq!(world.update().ended().next(), Some([hero, door]));
+/// # Ok::<(), sweep_and_prune::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct BroadPhase<const D: usize, T: Scalar = f32> {
+    options: Options<T>,
+    slots: Slots,
+    /// By slot, the boxes whose overlaps are reported.
+    boxes: Vec<Aabb<D, T>>,
+    /// By slot, the boxes as given, where these are not the ones reported; else empty.
+    shapes: Vec<Aabb<D, T>>,
+    filters: Vec<Filter>,
+    /// The slots of [`flag::CHANGED`], each once, and those of bodies that left since.
+    changed: Vec<u32>,
+    /// The slots of [`flag::LEAVING`].
+    leaving: Vec<u32>,
+    /// By slot, where the bodies of [`flag::SWEPT`] are after the next update; as long as the
+    /// greatest slot that was ever swept needs.
+    rests: Vec<Aabb<D, T>>,
+    /// The slots of [`flag::SWEPT`], and others, some twice.
+    swept: Vec<u32>,
+    updater: Updater<D, T>,
+}
+
+impl<const D: usize, T: Scalar> BroadPhase<D, T> {
+    /// An empty world that reports the pairs of the exact boxes.
+    pub fn new() -> Self {
+        Self::from_options(Options::default())
+    }
+
+    /// An empty world with margins.
+    ///
+    /// # Errors
+    /// [`Error::InvalidMargin`] if the margin or the prediction is negative, infinite or NaN.
+    pub fn with_options(options: Options<T>) -> Result<Self, Error> {
+        options.check()?;
+        Ok(Self::from_options(options))
+    }
+
+    fn from_options(options: Options<T>) -> Self {
+        Self {
+            options,
+            slots: Slots::default(),
+            boxes: Vec::new(),
+            shapes: Vec::new(),
+            filters: Vec::new(),
+            changed: Vec::new(),
+            leaving: Vec::new(),
+            rests: Vec::new(),
+            swept: Vec::new(),
+            updater: Updater::new(),
+        }
+    }
+
+    /// The options it was made with.
+    pub fn options(&self) -> Options<T> {
+        self.options
+    }
+
+    /// How many bodies there are.
+    pub fn len(&self) -> usize {
+        self.slots.live
+    }
+
+    /// Whether there is no body.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The ids of all bodies, sorted.
+    pub fn ids(&self) -> impl Iterator<Item = ProxyId> + '_ {
+        (0..self.slots.len() as u32)
+            .filter(|&slot| self.slots.has(slot, flag::LIVE))
+            .map(|slot| self.slots.id(slot))
+    }
+
+    /// Whether an id names a body that was inserted here and not removed.
+    pub fn contains(&self, id: ProxyId) -> bool {
+        self.slots.find(id).is_some()
+    }
+
+    /// The box of a body as last given: for a swept one, until the next update, the whole way.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`].
+    pub fn aabb(&self, id: ProxyId) -> Result<Aabb<D, T>, Error> {
+        Ok(*self.shape(self.slots.check(id, 0)?))
+    }
+
+    /// The box of a body whose overlaps are reported: its [`aabb`](Self::aabb), or with
+    /// [`Report::Fat`] its fat box.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`].
+    pub fn reported_aabb(&self, id: ProxyId) -> Result<Aabb<D, T>, Error> {
+        Ok(self.boxes[self.slots.check(id, 0)? as usize])
+    }
+
+    /// The filter of a body.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`].
+    pub fn filter(&self, id: ProxyId) -> Result<Filter, Error> {
+        Ok(self.filters[self.slots.check(id, 0)? as usize])
+    }
+
+    /// Adds a body with the default filter.
+    ///
+    /// # Errors
+    /// [`Error::InvalidBox`]; [`Error::TooManyBoxes`] if no slot is left.
+    pub fn insert(&mut self, aabb: Aabb<D, T>) -> Result<ProxyId, Error> {
+        self.insert_with(aabb, Filter::default())
+    }
+
+    /// Adds a body.
+    ///
+    /// # Errors
+    /// As [`insert`](Self::insert).
+    pub fn insert_with(&mut self, aabb: Aabb<D, T>, filter: Filter) -> Result<ProxyId, Error> {
+        check_box(&aabb, 0)?;
+        self.slots.check_room(1)?;
+        Ok(self.add(aabb, filter))
+    }
+
+    /// Adds bodies with one filter. Their ids are in the order of their boxes.
+    ///
+    /// # Errors
+    /// As [`insert`](Self::insert), with the index of the first bad box; then none was added.
+    pub fn insert_many(
+        &mut self,
+        boxes: &[Aabb<D, T>],
+        filter: Filter,
+    ) -> Result<Vec<ProxyId>, Error> {
+        for (index, aabb) in boxes.iter().enumerate() {
+            check_box(aabb, index)?;
+        }
+        self.slots.check_room(boxes.len())?;
+        Ok(boxes.iter().map(|&aabb| self.add(aabb, filter)).collect())
+    }
+
+    /// Gives a body its new box.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`], [`Error::InvalidBox`].
+    pub fn set(&mut self, id: ProxyId, aabb: Aabb<D, T>) -> Result<(), Error> {
+        self.set_many(&[id], &[aabb])
+    }
+
+    /// Gives each of many bodies its new box; of an id that comes twice the last box counts.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`]; [`Error::StaleProxy`] or [`Error::InvalidBox`] with the index
+    /// of the first that is bad. Then no box has changed.
+    pub fn set_many(&mut self, ids: &[ProxyId], boxes: &[Aabb<D, T>]) -> Result<(), Error> {
+        if ids.len() != boxes.len() {
+            return Err(Error::LengthMismatch { ids: ids.len(), boxes: boxes.len() });
+        }
+        for (index, (&id, aabb)) in ids.iter().zip(boxes).enumerate() {
+            self.slots.check(id, index)?;
+            check_box(aabb, index)?;
+        }
+        for (id, aabb) in ids.iter().zip(boxes) {
+            self.slots.lower(id.slot(), flag::SWEPT);
+            self.place(id.slot(), aabb);
+        }
+        Ok(())
+    }
+
+    /// Moves a fast body all the way from one box to another: until the next update its box is
+    /// the smallest that holds both, and from then on `to`. So it pairs with what it would have
+    /// jumped over (and, on a diagonal way, with what lies beside it).
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`]; [`Error::InvalidBox`] with index 0 for `from` and 1 for `to`.
+    pub fn set_swept(
+        &mut self,
+        id: ProxyId,
+        from: Aabb<D, T>,
+        to: Aabb<D, T>,
+    ) -> Result<(), Error> {
+        let slot = self.slots.check(id, 0)?;
+        check_box(&from, 0)?;
+        check_box(&to, 1)?;
+        self.sweep_to(slot, to);
+        self.place(slot, &hull(&from, &to));
+        Ok(())
+    }
+
+    /// Changes which others a body may pair with; pairs begin or end by it at the next update.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`].
+    pub fn set_filter(&mut self, id: ProxyId, filter: Filter) -> Result<(), Error> {
+        let slot = self.slots.check(id, 0)?;
+        if self.filters[slot as usize] != filter {
+            self.filters[slot as usize] = filter;
+            self.touch(slot, flag::IRREGULAR);
+        }
+        Ok(())
+    }
+
+    /// Removes a body. Its id is stale from now on; the next update reports its ended pairs.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`].
+    pub fn remove(&mut self, id: ProxyId) -> Result<(), Error> {
+        self.remove_many(&[id])
+    }
+
+    /// Removes many bodies.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`] with the index of the first id that is stale, or that came before.
+    /// Then none was removed.
+    pub fn remove_many(&mut self, ids: &[ProxyId]) -> Result<(), Error> {
+        for (index, &id) in ids.iter().enumerate() {
+            match self.slots.find(id) {
+                Some(slot) if !self.slots.has(slot, flag::MARKED) => {
+                    self.slots.raise(slot, flag::MARKED);
+                }
+                _ => {
+                    for before in &ids[..index] {
+                        self.slots.lower(before.slot(), flag::MARKED);
+                    }
+                    return Err(Error::StaleProxy { index });
+                }
+            }
+        }
+        for id in ids {
+            self.slots.lower(id.slot(), flag::MARKED);
+            self.slots.retire(id.slot());
+            self.leaving.push(id.slot());
+        }
+        Ok(())
+    }
+
+    /// The box of a body as given.
+    fn shape(&self, slot: u32) -> &Aabb<D, T> {
+        match self.options.report {
+            Report::Exact => &self.boxes[slot as usize],
+            Report::Fat => &self.shapes[slot as usize],
+        }
+    }
+
+    fn add(&mut self, aabb: Aabb<D, T>, filter: Filter) -> ProxyId {
+        let slot = self.slots.take();
+        let boxed = match self.options.report {
+            Report::Exact => aabb,
+            Report::Fat => {
+                put(&mut self.shapes, slot, aabb);
+                self.options.fatten(&aabb, [T::default(); D])
+            }
+        };
+        put(&mut self.boxes, slot, boxed);
+        put(&mut self.filters, slot, filter);
+        self.updater.add(slot, boxed);
+        self.touch(slot, flag::IRREGULAR);
+        self.slots.id(slot)
+    }
+
+    /// Puts a body's box, which is valid, where it is told.
+    #[inline]
+    fn place(&mut self, slot: u32, aabb: &Aabb<D, T>) {
+        let at = slot as usize;
+        match self.options.report {
+            Report::Exact => {
+                if self.boxes[at] != *aabb {
+                    self.boxes[at] = *aabb;
+                    self.touch(slot, 0);
+                }
+            }
+            Report::Fat => {
+                let before = core::mem::replace(&mut self.shapes[at], *aabb);
+                if !contains(&self.boxes[at], aabb) {
+                    self.boxes[at] = self.options.fatten(aabb, displacement(&before, aabb));
+                    self.touch(slot, 0);
+                }
+            }
+        }
+    }
+
+    /// Has the next update look at a body.
+    #[inline]
+    fn touch(&mut self, slot: u32, flags: u8) {
+        if !self.slots.has(slot, flag::CHANGED) {
+            self.changed.push(slot);
+        }
+        self.slots.raise(slot, flag::CHANGED | flags);
+    }
+
+    /// Notes where a sweep ends.
+    fn sweep_to(&mut self, slot: u32, to: Aabb<D, T>) {
+        if !self.slots.has(slot, flag::SWEPT) {
+            self.slots.raise(slot, flag::SWEPT);
+            self.swept.push(slot);
+        }
+        if self.rests.len() <= slot as usize {
+            self.rests.resize(self.slots.len(), to);
+        }
+        self.rests[slot as usize] = to;
+    }
+
+    /// Puts swept bodies where their way ended.
+    fn settle(&mut self) {
+        while let Some(slot) = self.swept.pop() {
+            if self.slots.has(slot, flag::SWEPT) {
+                self.slots.lower(slot, flag::SWEPT);
+                let to = self.rests[slot as usize];
+                if self.options.report == Report::Fat {
+                    self.shapes[slot as usize] = to;
+                    self.boxes[slot as usize] = self.options.fatten(&to, [T::default(); D]);
+                    self.touch(slot, 0);
+                } else {
+                    self.place(slot, &to);
+                }
+            }
+        }
+    }
+}
+
+impl<const D: usize, T: Scalar> Default for BroadPhase<D, T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+fn check_box<const D: usize, T: Scalar>(aabb: &Aabb<D, T>, index: usize) -> Result<(), Error> {
+    match aabb.invalid_axis() {
+        None => Ok(()),
+        Some(axis) => Err(Error::InvalidBox { index, axis }),
+    }
+}
+
+/// Writes to a table by slot, which grows by one where the slot is new.
+fn put<V>(table: &mut Vec<V>, slot: u32, value: V) {
+    match table.get_mut(slot as usize) {
+        Some(place) => *place = value,
+        None => table.push(value),
+    }
+}

@@ -1,0 +1,179 @@
+//! The ids of bodies, and the slots behind them.
+
+use alloc::collections::BinaryHeap;
+use alloc::vec::Vec;
+use core::cmp::Reverse;
+
+use crate::Error;
+
+/// The name of a body in a [`BroadPhase`](super::BroadPhase): a slot and a generation.
+///
+/// A slot is used again after its body was removed, under the next generation, so an id never
+/// comes to mean another body. Ids are ordered by slot and then by generation; a pair holds the
+/// smaller first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ProxyId {
+    slot: u32,
+    generation: u32,
+}
+
+impl ProxyId {
+    /// The index of the body, less than the greatest number of bodies there ever were at once
+    /// (those counted in that were removed since the last update): for a table of one's own.
+    #[inline]
+    pub const fn slot(self) -> u32 {
+        self.slot
+    }
+
+    /// How many bodies have had the slot, this one included: at least 1.
+    #[inline]
+    pub const fn generation(self) -> u32 {
+        self.generation
+    }
+
+    /// The id as one number, generation above slot; never 0.
+    #[inline]
+    pub const fn to_bits(self) -> u64 {
+        (self.generation as u64) << 32 | self.slot as u64
+    }
+
+    /// The id of a number. Any number is taken; one that was never given out is a stale id.
+    #[inline]
+    pub const fn from_bits(bits: u64) -> Self {
+        Self { slot: bits as u32, generation: (bits >> 32) as u32 }
+    }
+}
+
+/// What is true of a slot, as bits.
+pub(super) mod flag {
+    /// A body lives here.
+    pub const LIVE: u8 = 1;
+    /// Its body was removed since the last update, which has yet to report its ended pairs.
+    pub const LEAVING: u8 = 2;
+    /// Its box or filter changed since the last update, or it is new: it stands in the list of
+    /// those to look at.
+    pub const CHANGED: u8 = 4;
+    /// The last update did not know it with this filter.
+    pub const IRREGULAR: u8 = 8;
+    /// Its box is swept until the next update.
+    pub const SWEPT: u8 = 16;
+    /// A mark of the update at work; never set between two calls.
+    pub const MARKED: u8 = 32;
+}
+
+/// Generations, flags and free slots.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Slots {
+    pub generations: Vec<u32>,
+    pub flags: Vec<u8>,
+    /// The least free slot is given out first, so which it is follows from which are free.
+    pub free: BinaryHeap<Reverse<u32>>,
+    pub live: usize,
+}
+
+impl Slots {
+    /// How many slots there are, free ones counted in.
+    #[inline]
+    pub fn len(&self) -> usize {
+        self.flags.len()
+    }
+
+    #[inline]
+    pub fn has(&self, slot: u32, flags: u8) -> bool {
+        self.flags[slot as usize] & flags != 0
+    }
+
+    #[inline]
+    pub fn raise(&mut self, slot: u32, flags: u8) {
+        self.flags[slot as usize] |= flags;
+    }
+
+    #[inline]
+    pub fn lower(&mut self, slot: u32, flags: u8) {
+        self.flags[slot as usize] &= !flags;
+    }
+
+    /// The id of the body that is, or was last, in a slot.
+    #[inline]
+    pub fn id(&self, slot: u32) -> ProxyId {
+        ProxyId { slot, generation: self.generations[slot as usize] }
+    }
+
+    /// The slot of a living body.
+    #[inline]
+    pub fn find(&self, id: ProxyId) -> Option<u32> {
+        let index = id.slot as usize;
+        let lives = index < self.flags.len()
+            && self.generations[index] == id.generation
+            && self.flags[index] & flag::LIVE != 0;
+        lives.then_some(id.slot)
+    }
+
+    /// The slot of the id at `index` of what was passed.
+    #[inline]
+    pub fn check(&self, id: ProxyId, index: usize) -> Result<u32, Error> {
+        self.find(id).ok_or(Error::StaleProxy { index })
+    }
+
+    /// Whether `count` more bodies have room.
+    pub fn check_room(&self, count: usize) -> Result<(), Error> {
+        let more = count.saturating_sub(self.free.len());
+        let total = self.len().saturating_add(more);
+        if total > Error::BOX_LIMIT { Err(Error::TooManyBoxes { count: total }) } else { Ok(()) }
+    }
+
+    /// A slot for a new body; `slot == len - 1` afterwards if none was free.
+    pub fn take(&mut self) -> u32 {
+        self.live += 1;
+        if let Some(Reverse(slot)) = self.free.pop() {
+            self.generations[slot as usize] += 1;
+            self.flags[slot as usize] = flag::LIVE;
+            slot
+        } else {
+            self.generations.push(1);
+            self.flags.push(flag::LIVE);
+            (self.len() - 1) as u32
+        }
+    }
+
+    /// Ends a body's life; its slot stays taken until [`release`](Self::release).
+    pub fn retire(&mut self, slot: u32) {
+        self.live -= 1;
+        self.lower(slot, flag::LIVE | flag::SWEPT);
+        self.raise(slot, flag::LEAVING);
+    }
+
+    /// Makes the slot of a retired body free. A slot whose generations are used up stays out of
+    /// use.
+    pub fn release(&mut self, slot: u32) {
+        self.flags[slot as usize] = 0;
+        if self.generations[slot as usize] < u32::MAX {
+            self.free.push(Reverse(slot));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slot_whose_generations_are_used_up_is_not_given_out_again() {
+        let mut slots = Slots::default();
+        assert_eq!(slots.take(), 0);
+        slots.generations[0] = u32::MAX - 1;
+        slots.retire(0);
+        slots.release(0);
+        assert_eq!((slots.take(), slots.generations[0]), (0, u32::MAX));
+        slots.retire(0);
+        slots.release(0);
+        assert_eq!((slots.take(), slots.len()), (1, 2));
+    }
+
+    #[test]
+    fn ids_survive_the_trip_through_a_number() {
+        let id = ProxyId { slot: 7, generation: u32::MAX };
+        assert_eq!(ProxyId::from_bits(id.to_bits()), id);
+    }
+}

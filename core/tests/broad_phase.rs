@@ -1,0 +1,464 @@
+//! The living world against brute force: random sequences of every operation, with coordinates so
+//! few that ties are common, in 1D to 3D, `f32` and `f64`.
+
+mod broad_phase_model;
+
+use std::ops::ControlFlow;
+
+use broad_phase_model::{Model, Pair};
+use sweep_and_prune::{
+    Aabb, BroadPhase, Cast, Error, Filter, Hit, Options, ProxyId, Report, Scalar, SnapshotFault,
+};
+use sweep_and_prune_scenes::Random;
+
+/// 10,000 in all as users run it.
+const SEQUENCES: u64 = if cfg!(debug_assertions) { 20 } else { 1667 };
+const STEPS: usize = 200;
+
+#[test]
+fn random_sequences_in_1d_agree_with_the_oracle() {
+    (0..SEQUENCES).for_each(Sequence::<1, f32>::run);
+    (0..SEQUENCES).for_each(Sequence::<1, f64>::run);
+}
+
+#[test]
+fn random_sequences_in_2d_agree_with_the_oracle() {
+    (0..SEQUENCES).for_each(Sequence::<2, f32>::run);
+    (0..SEQUENCES).for_each(Sequence::<2, f64>::run);
+}
+
+#[test]
+fn random_sequences_in_3d_agree_with_the_oracle() {
+    (0..SEQUENCES).for_each(Sequence::<3, f32>::run);
+    (0..SEQUENCES).for_each(Sequence::<3, f64>::run);
+}
+
+/// A world and its model under the same random calls.
+struct Sequence<const D: usize, T: Scalar> {
+    random: Random,
+    world: BroadPhase<D, T>,
+    model: Model<D, T>,
+    /// Ids of bodies that are gone.
+    stale: Vec<ProxyId>,
+    /// Size and place of the world.
+    unit: f64,
+    origin: f64,
+    /// About how many bodies.
+    crowd: usize,
+}
+
+impl<const D: usize, T: Scalar> Sequence<D, T> {
+    fn run(seed: u64) {
+        let mut random = Random::new(seed * 3 + D as u64);
+        let pick = |random: &mut Random, of: &[f64]| of[random.below(of.len())];
+        let report = if random.below(3) == 0 { Report::Fat } else { Report::Exact };
+        let options = Options {
+            margin: T::from_f64(pick(&mut random, &[0.0, 0.0, 0.5, 1.0])),
+            prediction: T::from_f64(pick(&mut random, &[0.0, 0.0, 1.0, 2.5])),
+            report,
+        };
+        let unit = pick(&mut random, &[1.0, 1.0, 1.0, 0.25, 1e30, 1e-30]);
+        let origin = if unit == 1.0 { pick(&mut random, &[0.0, 0.0, 1e7, -3e7]) } else { 0.0 };
+        let crowd = if random.below(16) == 0 { 150 } else { 2 + random.below(14) };
+        let world = BroadPhase::with_options(options).unwrap();
+        let model = Model::new(options);
+        let mut sequence = Self { random, world, model, stale: vec![], unit, origin, crowd };
+        for step in 0..STEPS {
+            sequence.step();
+            sequence.check_state();
+            if std::env::var_os("TRACE").is_some() {
+                eprintln!("seed {seed} step {step}");
+            }
+        }
+    }
+
+    fn step(&mut self) {
+        match self.random.below(24) {
+            0..=3 => self.insert(),
+            4..=5 => self.remove(),
+            6..=8 => self.set_some(),
+            9..=11 => self.drift(),
+            12 => self.sweep(),
+            13 => self.refilter(),
+            14 => self.snapshot(),
+            15 => self.query(),
+            16 => self.misuse(),
+            _ => self.update(),
+        }
+    }
+
+    fn chance(&mut self, one_in: usize) -> bool {
+        self.random.below(one_in) == 0
+    }
+
+    fn coordinate(&mut self) -> f64 {
+        self.random.below(8) as f64
+    }
+
+    fn scale(&self, at: f64) -> T {
+        T::from_f64(at * self.unit + self.origin)
+    }
+
+    fn aabb(&mut self) -> Aabb<D, T> {
+        let is_special = self.chance(20);
+        let kind = self.random.below(4);
+        let mut aabb = Aabb::new([T::default(); D], [T::default(); D]);
+        for axis in 0..D {
+            let low = self.coordinate();
+            let high = low + self.random.below(3) as f64;
+            (aabb.min[axis], aabb.max[axis]) = (self.scale(low), self.scale(high));
+            if is_special {
+                match kind {
+                    0 => aabb.min[axis] = T::NEG_INFINITY,
+                    1 => aabb.max[axis] = T::INFINITY,
+                    2 => (aabb.min[axis], aabb.max[axis]) = (T::INFINITY, T::INFINITY),
+                    _ => {
+                        aabb.min[axis] = self.scale(-1e6);
+                        aabb.max[axis] = self.scale(1e6);
+                    }
+                }
+            }
+        }
+        aabb
+    }
+
+    fn new_filter(&mut self) -> Filter {
+        if self.chance(2) {
+            return Filter::default();
+        }
+        Filter {
+            category: 1 << self.random.below(2),
+            mask: self.random.below(4) as u32 | u32::MAX << 2,
+            group: self.random.below(5) as i32 - 2,
+            is_static: self.chance(3),
+        }
+    }
+
+    fn some_ids(&mut self) -> Vec<ProxyId> {
+        let part = 1 + self.random.below(8);
+        let ids: Vec<_> = self.world.ids().collect();
+        ids.into_iter().filter(|_| self.random.below(part) == 0).collect()
+    }
+
+    fn some_id(&mut self) -> Option<ProxyId> {
+        let ids: Vec<_> = self.world.ids().collect();
+        (!ids.is_empty()).then(|| ids[self.random.below(ids.len())])
+    }
+
+    fn insert(&mut self) {
+        if self.model.bodies.len() >= 2 * self.crowd {
+            return;
+        }
+        let filter = self.new_filter();
+        if self.chance(3) {
+            let boxes: Vec<_> = (0..self.crowd / 2).map(|_| self.aabb()).collect();
+            let ids = self.world.insert_many(&boxes, filter).unwrap();
+            for (&id, &aabb) in ids.iter().zip(&boxes) {
+                self.model.insert(id, aabb, filter);
+            }
+        } else {
+            let aabb = self.aabb();
+            let id = self.world.insert_with(aabb, filter).unwrap();
+            self.model.insert(id, aabb, filter);
+        }
+    }
+
+    fn remove(&mut self) {
+        let ids =
+            if self.chance(6) { self.some_ids() } else { self.some_id().into_iter().collect() };
+        self.world.remove_many(&ids).unwrap();
+        for &id in &ids {
+            self.model.remove(id);
+        }
+        self.stale.extend(ids);
+    }
+
+    /// Gives some bodies boxes anywhere.
+    fn set_some(&mut self) {
+        let ids = self.some_ids();
+        let boxes: Vec<_> = ids.iter().map(|_| self.aabb()).collect();
+        self.world.set_many(&ids, &boxes).unwrap();
+        for (&id, &aabb) in ids.iter().zip(&boxes) {
+            self.model.set(id, aabb);
+        }
+    }
+
+    /// Moves some bodies by a little, or by the same step as all others.
+    fn drift(&mut self) {
+        let ids = self.some_ids();
+        let step = self.random.below(3) as f64 * 0.5 - 0.5;
+        for id in ids {
+            let mut aabb = self.world.aabb(id).unwrap();
+            for axis in 0..D {
+                let way = T::from_f64(step * self.unit);
+                aabb.min[axis] = aabb.min[axis] + way;
+                aabb.max[axis] = aabb.max[axis] + way;
+            }
+            self.world.set(id, aabb).unwrap();
+            self.model.set(id, aabb);
+        }
+    }
+
+    fn sweep(&mut self) {
+        if let Some(id) = self.some_id() {
+            let (from, to) = (self.aabb(), self.aabb());
+            self.world.set_swept(id, from, to).unwrap();
+            self.model.set_swept(id, from, to);
+        }
+    }
+
+    fn refilter(&mut self) {
+        if let Some(id) = self.some_id() {
+            let filter = self.new_filter();
+            self.world.set_filter(id, filter).unwrap();
+            self.model.set_filter(id, filter);
+        }
+    }
+
+    fn update(&mut self) {
+        let changes = self.world.update();
+        let (begun, ended): (Vec<Pair>, Vec<Pair>) =
+            (changes.begun().collect(), changes.ended().collect());
+        assert_eq!((begun, ended), self.model.update());
+        assert_eq!(self.world.pairs(), self.model.pairs());
+    }
+
+    /// What has to be so at any time.
+    fn check_state(&mut self) {
+        assert!(self.world.ids().eq(self.model.bodies.keys().copied()));
+        assert_eq!(self.world.len(), self.model.bodies.len());
+        if let Some(id) = self.some_id() {
+            let body = &self.model.bodies[&id];
+            assert_eq!(self.world.aabb(id).unwrap(), body.aabb);
+            assert_eq!(self.world.reported_aabb(id).unwrap(), body.reported);
+            assert_eq!(self.world.filter(id).unwrap(), body.filter);
+            assert_eq!(self.world.pairs_of(id).unwrap(), self.model.pairs_of(id));
+        }
+    }
+
+    /// Goes on with a restored world, or with both side by side for a while.
+    fn snapshot(&mut self) {
+        let bytes = self.world.snapshot();
+        let mut restored = BroadPhase::<D, T>::from_snapshot(&bytes).unwrap();
+        assert_eq!(restored.snapshot(), bytes);
+        assert_eq!(restored.state_hash(), self.world.state_hash());
+        assert_eq!(restored.pairs(), self.world.pairs());
+        if self.chance(2) {
+            // Same calls, same ids, same events.
+            let aabb = self.aabb();
+            let mut other = self.world.clone();
+            for world in [&mut restored, &mut other] {
+                world.insert(aabb).unwrap();
+                world.update();
+                world.insert(aabb).unwrap();
+            }
+            let events = |world: &mut BroadPhase<D, T>| {
+                let changes = world.update();
+                (changes.begun().collect::<Vec<_>>(), changes.ended().collect::<Vec<_>>())
+            };
+            assert_eq!(events(&mut restored), events(&mut other));
+            assert_eq!(restored.snapshot(), other.snapshot());
+        } else {
+            self.world = restored;
+        }
+        // Any truncation and any flipped bit is noticed.
+        let cut = self.random.below(bytes.len());
+        assert!(BroadPhase::<D, T>::from_snapshot(&bytes[..cut]).is_err());
+        let mut damaged = bytes;
+        damaged[cut] ^= 1 << self.random.below(8);
+        assert!(BroadPhase::<D, T>::from_snapshot(&damaged).is_err());
+    }
+
+    fn query(&mut self) {
+        let filter = if self.chance(2) { Filter::ALL } else { self.new_filter() };
+        let area = self.aabb();
+        let point: [T; D] = std::array::from_fn(|_| {
+            let at = self.coordinate();
+            self.scale(at)
+        });
+        let radius = T::from_f64(self.random.below(5) as f64 * self.unit);
+        let direction: [T; D] =
+            std::array::from_fn(|_| T::from_f64((self.random.below(5) as f64 - 2.0) * self.unit));
+        let limit = T::from_f64([0.0, 0.5, 1.0, 3.0, f64::INFINITY][self.random.below(5)]);
+        let k = self.random.below(6);
+        let corner = Aabb::new(point, point);
+        let from = if self.chance(2) {
+            corner
+        } else {
+            Aabb::new(point, point.map(|at| at + T::from_f64(self.unit)))
+        };
+        let cast = Cast { from, direction, limit };
+
+        let queries = self.world.queries().with_filter(filter);
+        let model = &self.model;
+        assert_eq!(queries.overlapping(&area).unwrap(), model.overlapping(&area, &filter));
+        assert_eq!(queries.containing(point).unwrap(), model.overlapping(&corner, &filter));
+        assert_eq!(queries.within(point, radius).unwrap(), model.within(point, radius, &filter));
+        let hits = model.hits(&cast, &filter);
+        let pairs = |hits: Vec<Hit>| hits.iter().map(|hit| (hit.at, hit.id)).collect::<Vec<_>>();
+        assert_eq!(pairs(queries.cast_all(&cast).unwrap()), hits);
+        let first = queries.cast(&cast).unwrap();
+        assert_eq!(first.map(|hit| (hit.at, hit.id)), hits.first().copied());
+        let nearest = queries.nearest(point, k).unwrap();
+        let nearest: Vec<_> = nearest.iter().map(|it| (it.distance_squared, it.id)).collect();
+        assert_eq!(nearest, model.nearest(point, k, &filter));
+
+        // Whoever breaks off is not asked again.
+        let mut left = k;
+        let mut count = 0;
+        queries
+            .visit_overlapping(&area, |_| {
+                count += 1;
+                left = left.saturating_sub(1);
+                if left == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            })
+            .unwrap();
+        assert_eq!(count, model.overlapping(&area, &filter).len().min(k.max(1)));
+        let mut seen = vec![];
+        queries
+            .cast_with(&cast, |hit| {
+                seen.push((hit.at, hit.id));
+                if seen.len() == k {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(f64::INFINITY)
+                }
+            })
+            .unwrap();
+        assert!(seen.iter().all(|hit| hits.contains(hit)));
+        assert_eq!(seen.len(), if k == 0 { hits.len() } else { hits.len().min(k) });
+    }
+
+    /// Calls that are refused, after which nothing has changed.
+    fn misuse(&mut self) {
+        let before = self.world.snapshot();
+        let good = self.aabb();
+        let mut bad = good;
+        let axis = self.random.below(D);
+        bad.min[axis] = T::from_f64(f64::NAN);
+        let mut inverted = good;
+        (inverted.min[axis], inverted.max[axis]) = (T::INFINITY, T::NEG_INFINITY);
+        let invalid = |index| Error::InvalidBox { index, axis };
+        let world = &mut self.world;
+        assert_eq!(world.insert(bad), Err(invalid(0)));
+        assert_eq!(world.insert_many(&[good, inverted], Filter::default()), Err(invalid(1)));
+        if let Some(&gone) = self.stale.last() {
+            let stale = Err(Error::StaleProxy { index: 0 });
+            assert_eq!(world.set(gone, good), stale);
+            assert_eq!(world.set_swept(gone, good, good), stale);
+            assert_eq!(world.set_filter(gone, Filter::ALL), stale);
+            assert_eq!(world.remove(gone), stale);
+            assert_eq!(world.aabb(gone), Err(Error::StaleProxy { index: 0 }));
+            assert!(world.pairs_of(gone).is_err() && !world.contains(gone));
+        }
+        let alive: Option<ProxyId> = world.ids().last();
+        if let Some(id) = alive {
+            assert_eq!(world.set(id, bad), Err(invalid(0)));
+            assert_eq!(world.set_swept(id, good, inverted), Err(invalid(1)));
+            assert_eq!(world.set_many(&[id, id], &[good, bad]), Err(invalid(1)));
+            let mismatch = Error::LengthMismatch { ids: 1, boxes: 2 };
+            assert_eq!(world.set_many(&[id], &[good, good]), Err(mismatch));
+            assert_eq!(world.remove_many(&[id, id]), Err(Error::StaleProxy { index: 1 }));
+            let foreign = ProxyId::from_bits(id.to_bits() + (1 << 32));
+            assert_eq!(
+                world.set_many(&[id, foreign], &[good; 2]),
+                Err(Error::StaleProxy { index: 1 })
+            );
+            assert_eq!(world.remove_many(&[id, foreign]), Err(Error::StaleProxy { index: 1 }));
+        }
+        let nan = [T::from_f64(f64::NAN); D];
+        let zero = [T::default(); D];
+        let queries = world.queries();
+        let refused = Error::InvalidQuery { index: 0 };
+        assert_eq!(queries.overlapping(&bad), Err(invalid(0)));
+        assert_eq!(queries.containing(nan), Err(refused));
+        assert_eq!(queries.within(zero, T::from_f64(-1.0)), Err(refused));
+        assert_eq!(queries.within([T::INFINITY; D], T::default()), Err(refused));
+        assert_eq!(queries.nearest(nan, 3), Err(refused));
+        assert_eq!(queries.cast(&Cast::ray(zero, nan, T::INFINITY)), Err(refused));
+        assert_eq!(queries.cast(&Cast::ray(zero, zero, T::from_f64(-1.0))), Err(refused));
+        assert_eq!(world.snapshot(), before);
+    }
+}
+
+#[test]
+fn negative_infinite_and_nan_margins_are_refused() {
+    for bad in [-1.0, f32::INFINITY, f32::NAN] {
+        let margin = Options { margin: bad, ..Options::default() };
+        let prediction = Options { prediction: bad, ..Options::default() };
+        for options in [margin, prediction] {
+            let world = BroadPhase::<2>::with_options(options);
+            assert_eq!(world.map(|_| ()), Err(Error::InvalidMargin));
+        }
+    }
+}
+
+#[test]
+fn a_pair_that_begins_and_ends_between_two_updates_is_not_reported() {
+    let mut world = BroadPhase::<1>::new();
+    let a = world.insert(Aabb::new([0.0], [1.0])).unwrap();
+    let b = world.insert(Aabb::new([5.0], [6.0])).unwrap();
+    world.update();
+    world.set(b, Aabb::new([0.0], [1.0])).unwrap();
+    world.set(b, Aabb::new([5.0], [6.0])).unwrap();
+    assert!(world.update().is_empty());
+    let c = world.insert(Aabb::new([0.0], [1.0])).unwrap();
+    world.remove(c).unwrap();
+    assert!(world.update().is_empty());
+    assert!(world.pairs_of(a).unwrap().is_empty());
+}
+
+#[test]
+fn a_slot_is_not_reused_until_its_ended_pairs_were_reported() {
+    let mut world = BroadPhase::<1>::new();
+    let a = world.insert(Aabb::new([0.0], [1.0])).unwrap();
+    let b = world.insert(Aabb::new([0.0], [1.0])).unwrap();
+    world.update();
+    world.remove(b).unwrap();
+    let c = world.insert(Aabb::new([0.0], [1.0])).unwrap();
+    assert_ne!(c.slot(), b.slot());
+    let changes = world.update();
+    assert!(changes.ended().eq([[a, b]]) && changes.begun().eq([[a, c]]));
+    let d = world.insert(Aabb::new([9.0], [9.0])).unwrap();
+    assert_eq!((d.slot(), d.generation()), (b.slot(), b.generation() + 1));
+    assert!(!world.contains(b));
+}
+
+#[test]
+fn snapshots_of_other_worlds_and_other_files_are_refused_with_the_reason() {
+    let mut world = BroadPhase::<2>::new();
+    world.insert(Aabb::new([0.0, 0.0], [1.0, 1.0])).unwrap();
+    let bytes = world.snapshot();
+    let fault = |bytes: &[u8]| match BroadPhase::<2>::from_snapshot(bytes) {
+        Err(Error::InvalidSnapshot(fault)) => fault,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(fault(b"PNG and more"), SnapshotFault::Foreign);
+    assert_eq!(fault(&[]), SnapshotFault::Truncated);
+    let mut newer = bytes.clone();
+    newer[4] = 9;
+    assert_eq!(fault(&newer), SnapshotFault::Version { found: 9 });
+    for cut in 0..bytes.len() {
+        assert_eq!(fault(&bytes[..cut]), SnapshotFault::Truncated, "cut to {cut}");
+    }
+    let longer: Vec<u8> = bytes.iter().copied().chain([0]).collect();
+    assert_eq!(fault(&longer), SnapshotFault::Corrupt);
+    let other =
+        Err(Error::InvalidSnapshot(SnapshotFault::OtherWorld { dimensions: 2, scalar_bytes: 4 }));
+    assert_eq!(BroadPhase::<3>::from_snapshot(&bytes).map(|_| ()), other);
+    assert_eq!(BroadPhase::<2, f64>::from_snapshot(&bytes).map(|_| ()), other);
+}
+
+#[test]
+fn swept_boxes_find_what_a_jump_passes_over() {
+    let mut world = BroadPhase::<1>::new();
+    let wall = world.insert(Aabb::new([5.0], [5.5])).unwrap();
+    let bullet = world.insert(Aabb::new([0.0], [0.25])).unwrap();
+    world.update();
+    let (from, to) = (Aabb::new([0.0], [0.25]), Aabb::new([9.0], [9.25]));
+    world.set_swept(bullet, from, to).unwrap();
+    assert_eq!(world.aabb(bullet).unwrap(), Aabb::new([0.0], [9.25]));
+    assert!(world.update().begun().eq([[wall, bullet]]));
+    assert_eq!(world.aabb(bullet).unwrap(), to);
+    assert!(world.update().ended().eq([[wall, bullet]]));
+}
