@@ -10,13 +10,10 @@
 export interface Ball {
   x: number;
   y: number;
-  /** 3D only; 0 if absent. */
-  z?: number;
   radius: number;
   /** Velocity in units a second; 0 if absent. */
   vx?: number;
   vy?: number;
-  vz?: number;
 }
 
 /**

@@ -1,0 +1,139 @@
+//! The state: where the balls are and how fast they go.
+
+use std::array::from_fn;
+
+use sweep_and_prune::Aabb;
+use sweep_and_prune_scenes::hash;
+
+use crate::setup::{Ball, Setup};
+use crate::vector::{greater, lesser};
+
+/// The balls, one array a property.
+#[derive(Clone, Debug)]
+pub struct Bodies<const D: usize> {
+    pub positions: Vec<[f32; D]>,
+    /// Half a substep ahead of the positions, as leapfrog keeps them.
+    pub velocities: Vec<[f32; D]>,
+    pub radii: Vec<f32>,
+    pub inverse_masses: Vec<f32>,
+}
+
+impl<const D: usize> Bodies<D> {
+    pub fn new(balls: &[Ball<D>]) -> Self {
+        Self {
+            positions: balls.iter().map(|ball| ball.centre).collect(),
+            velocities: balls.iter().map(|ball| ball.velocity).collect(),
+            radii: balls.iter().map(|ball| ball.radius).collect(),
+            inverse_masses: balls.iter().map(|ball| 1.0 / mass::<D>(ball.radius)).collect(),
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.radii.len()
+    }
+
+    /// Adds the same to every velocity.
+    pub fn kick(&mut self, change: [f32; D]) {
+        for velocity in &mut self.velocities {
+            for axis in 0..D {
+                velocity[axis] += change[axis];
+            }
+        }
+    }
+
+    /// Moves every ball on along its velocity for `time`. No ball goes further than the box is
+    /// wide: faster ones are slowed down, so that no coordinate ever overflows.
+    pub fn drift(&mut self, time: f32, bounds: &Aabb<D>) {
+        let limit: [f32; D] =
+            from_fn(|axis| (bounds.max[axis] - bounds.min[axis]) / time);
+        for (position, velocity) in self.positions.iter_mut().zip(&mut self.velocities) {
+            for axis in 0..D {
+                velocity[axis] = velocity[axis].clamp(-limit[axis], limit[axis]);
+                position[axis] += velocity[axis] * time;
+            }
+        }
+    }
+
+    /// Puts balls that went through a wall back to it, and gives the velocity across the wall the
+    /// speed that it had there: it has since fallen or risen by the depth.
+    ///
+    /// So a ball that comes back from the floor has no more energy than it came with, however deep
+    /// a step had carried it.
+    pub fn stop_at_walls(&mut self, gravity: [f32; D], bounds: &Aabb<D>) {
+        for ((position, velocity), &radius) in
+            self.positions.iter_mut().zip(&mut self.velocities).zip(&self.radii)
+        {
+            for axis in 0..D {
+                let inside = inside_walls(position[axis], radius, bounds, axis);
+                let way_back = inside - position[axis];
+                if way_back != 0.0 {
+                    let speed = velocity[axis];
+                    let square = speed * speed + 2.0 * gravity[axis] * way_back;
+                    let speed_at_wall = greater(square, 0.0).sqrt();
+                    velocity[axis] = if speed < 0.0 { -speed_at_wall } else { speed_at_wall };
+                    position[axis] = inside;
+                }
+            }
+        }
+    }
+
+    /// The box that each ball sweeps out while it moves on for `time`, `kick` added to its
+    /// velocity.
+    pub fn write_boxes(&self, kick: [f32; D], time: f32, boxes: &mut Vec<Aabb<D>>) {
+        boxes.clear();
+        let bodies = self.positions.iter().zip(&self.velocities).zip(&self.radii);
+        boxes.extend(bodies.map(|((position, velocity), &radius)| {
+            let next: [f32; D] =
+                from_fn(|axis| position[axis] + (velocity[axis] + kick[axis]) * time);
+            Aabb::new(
+                from_fn(|axis| lesser(position[axis], next[axis]) - radius),
+                from_fn(|axis| greater(position[axis], next[axis]) + radius),
+            )
+        }));
+    }
+
+    /// Kinetic and potential energy per unit of mass. See
+    /// [`Simulation::energy`](crate::Simulation::energy).
+    pub fn energy(&self, gravity: [f32; D], half_kick: [f32; D], bounds: &Aabb<D>) -> [f64; 2] {
+        let (mut kinetic, mut potential, mut mass) = (0.0, 0.0, 0.0);
+        for index in 0..self.len() {
+            let m = 1.0 / f64::from(self.inverse_masses[index]);
+            mass += m;
+            for axis in 0..D {
+                let speed = f64::from(self.velocities[index][axis] - half_kick[axis]);
+                kinetic += 0.5 * m * speed * speed;
+                let ground = if gravity[axis] > 0.0 { bounds.max[axis] } else { bounds.min[axis] };
+                let height = f64::from(self.positions[index][axis]) - f64::from(ground);
+                potential -= m * f64::from(gravity[axis]) * height;
+            }
+        }
+        if mass > 0.0 { [kinetic / mass, potential / mass] } else { [0.0, 0.0] }
+    }
+
+    /// The hash of positions and velocities, bit for bit.
+    pub fn hash(&self) -> u64 {
+        let state = self.positions.iter().chain(&self.velocities).flatten();
+        hash(state.flat_map(|x| x.to_bits().to_le_bytes()))
+    }
+}
+
+/// The coordinate nearest to `at` where a ball is inside the walls of one axis.
+pub fn inside_walls<const D: usize>(at: f32, radius: f32, bounds: &Aabb<D>, axis: usize) -> f32 {
+    greater(lesser(at, bounds.max[axis] - radius), bounds.min[axis] + radius)
+}
+
+/// The area or volume: the mass at density 1.
+fn mass<const D: usize>(radius: f32) -> f32 {
+    const PI: f32 = std::f32::consts::PI;
+    match D {
+        1 => 2.0 * radius,
+        2 => PI * radius * radius,
+        _ => 4.0 / 3.0 * PI * radius * radius * radius,
+    }
+}
+
+impl<const D: usize> From<&Setup<D>> for Bodies<D> {
+    fn from(setup: &Setup<D>) -> Self {
+        Self::new(&setup.balls)
+    }
+}

@@ -1,0 +1,52 @@
+//! Which broad phase finds the pairs: a choice at run time.
+
+use sweep_and_prune::algorithms::{Counts, Runner, RunnerOptions};
+use sweep_and_prune::{Aabb, Error, PairFinder};
+
+/// Who finds the pairs of boxes. The motion is the same, bit for bit, whichever it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BroadPhase {
+    /// The library's [`PairFinder`], the fast road.
+    #[default]
+    Library,
+    /// One of the [`algorithms`](sweep_and_prune::algorithms).
+    Algorithm(RunnerOptions),
+}
+
+/// The chosen one with what it keeps from step to step.
+#[derive(Debug)]
+pub enum Engine<const D: usize> {
+    Library(PairFinder<D>),
+    Algorithm(Runner<D>),
+}
+
+impl<const D: usize> Engine<D> {
+    /// # Errors
+    /// [`Error::InvalidAxis`].
+    pub fn new(choice: BroadPhase) -> Result<Self, Error> {
+        match choice {
+            BroadPhase::Library => Ok(Engine::Library(PairFinder::new())),
+            BroadPhase::Algorithm(options) => {
+                options.axis.choose::<D, f32>(&[])?;
+                Ok(Engine::Algorithm(Runner::new(options)))
+            }
+        }
+    }
+
+    /// The overlapping pairs, unobserved: as fast as it goes.
+    pub fn find(&mut self, boxes: &[Aabb<D>]) -> Result<&[[u32; 2]], Error> {
+        match self {
+            Engine::Library(finder) => finder.find(boxes),
+            Engine::Algorithm(runner) => Ok(runner.step(boxes, &mut ())?.pairs),
+        }
+    }
+
+    /// What [`find`](Self::find) would do next, counted; on a copy, so that counting neither
+    /// costs the real run time nor sorts its array for it. The library's finder counts nothing.
+    pub fn count(&self, boxes: &[Aabb<D>]) -> Result<Option<Counts>, Error> {
+        let Engine::Algorithm(runner) = self else { return Ok(None) };
+        let mut counts = Counts::default();
+        runner.clone().step(boxes, &mut counts)?;
+        Ok(Some(counts))
+    }
+}

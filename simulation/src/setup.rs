@@ -1,0 +1,134 @@
+//! What a simulation starts from, and what is refused.
+
+use std::fmt;
+
+use sweep_and_prune::Aabb;
+
+/// A disc (`D = 2`) or a sphere (`D = 3`) of density 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball<const D: usize> {
+    /// The centre.
+    pub centre: [f32; D],
+    /// The radius, [`Setup::LEAST_LENGTH`] to [`Setup::GREATEST_LENGTH`].
+    pub radius: f32,
+    /// The velocity, in units a second.
+    pub velocity: [f32; D],
+}
+
+impl<const D: usize> Ball<D> {
+    /// A ball at rest.
+    pub fn at_rest(centre: [f32; D], radius: f32) -> Self {
+        Self { centre, radius, velocity: [0.0; D] }
+    }
+}
+
+/// The balls, the box they live in and the laws they obey. [`scenes`](crate::scenes) makes the
+/// usual ones.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setup<const D: usize> {
+    /// The balls, which may overlap each other, inside `bounds`.
+    pub balls: Vec<Ball<D>>,
+    /// The box whose walls no ball leaves.
+    pub bounds: Aabb<D>,
+    /// Acceleration, in units/s².
+    pub gravity: [f32; D],
+    /// How much of its speed a bounce leaves, 0 to 1, between balls and at walls alike.
+    pub restitution: f32,
+    /// Seconds a step.
+    pub time_step: f32,
+    /// Equal parts of a step, each with its own broad phase, 1 to [`Setup::MOST_SUBSTEPS`].
+    pub substeps: u32,
+}
+
+impl<const D: usize> Setup<D> {
+    /// The least radius.
+    pub const LEAST_LENGTH: f32 = 1e-6;
+    /// The greatest radius, coordinate of a wall, or gravity on one axis.
+    pub const GREATEST_LENGTH: f32 = 1e6;
+    /// The shortest time step; the longest is a second.
+    pub const LEAST_TIME_STEP: f32 = 1e-5;
+    /// The most substeps.
+    pub const MOST_SUBSTEPS: u32 = 32;
+
+    /// Whether a simulation can start from this.
+    ///
+    /// Within these limits no sum or product of the simulation overflows, so its state stays
+    /// finite for ever.
+    ///
+    /// # Errors
+    /// [`SetupError::Parameter`] or [`SetupError::Ball`], the first at fault.
+    pub fn validate(&self) -> Result<(), SetupError> {
+        let within = |x: f32| (-Self::GREATEST_LENGTH..=Self::GREATEST_LENGTH).contains(&x);
+        let Aabb { min, max } = self.bounds;
+        if !(0..D).all(|axis| within(min[axis]) && within(max[axis]) && min[axis] < max[axis]) {
+            return Err(SetupError::Parameter { name: "bounds" });
+        }
+        if !self.gravity.into_iter().all(within) {
+            return Err(SetupError::Parameter { name: "gravity" });
+        }
+        if !(0.0..=1.0).contains(&self.restitution) {
+            return Err(SetupError::Parameter { name: "restitution" });
+        }
+        if !(Self::LEAST_TIME_STEP..=1.0).contains(&self.time_step) {
+            return Err(SetupError::Parameter { name: "time_step" });
+        }
+        if !(1..=Self::MOST_SUBSTEPS).contains(&self.substeps) {
+            return Err(SetupError::Parameter { name: "substeps" });
+        }
+        if u32::try_from(self.balls.len()).is_err() {
+            return Err(SetupError::Parameter { name: "balls" });
+        }
+        match self.balls.iter().position(|ball| !self.admits(ball)) {
+            Some(index) => Err(SetupError::Ball { index }),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether a ball is well formed and inside the walls.
+    fn admits(&self, ball: &Ball<D>) -> bool {
+        let Ball { centre, radius, velocity } = *ball;
+        (Self::LEAST_LENGTH..=Self::GREATEST_LENGTH).contains(&radius)
+            && velocity.into_iter().all(f32::is_finite)
+            && (0..D).all(|axis| {
+                let (low, high) = (self.bounds.min[axis] + radius, self.bounds.max[axis] - radius);
+                (low..=high).contains(&centre[axis])
+            })
+    }
+}
+
+/// Why a simulation cannot start, or a setting is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SetupError {
+    /// A parameter is NaN or out of its range.
+    Parameter {
+        /// Its name.
+        name: &'static str,
+    },
+    /// A ball is malformed (a NaN, an infinity, a bad radius) or not inside the walls.
+    Ball {
+        /// The first at fault.
+        index: usize,
+    },
+    /// No place was found for a ball that overlaps no other.
+    NoRoom {
+        /// How many had been placed.
+        placed: usize,
+    },
+}
+
+impl fmt::Display for SetupError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            SetupError::Parameter { name } => write!(f, "{name} is NaN or out of its range"),
+            SetupError::Ball { index } => {
+                write!(f, "ball {index} is malformed or not inside the walls")
+            }
+            SetupError::NoRoom { placed } => {
+                write!(f, "no room for more than {placed} balls that do not overlap")
+            }
+        }
+    }
+}
+
+impl std::error::Error for SetupError {}

@@ -1,0 +1,326 @@
+//! One step after another.
+
+use sweep_and_prune::algorithms::Counts;
+use sweep_and_prune::{Aabb, Error};
+
+use crate::bodies::Bodies;
+use crate::broad_phase::{BroadPhase, Engine};
+use crate::contacts::Contacts;
+use crate::setup::{Setup, SetupError};
+use crate::solver;
+
+/// What one step did.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepReport {
+    /// How often the broad phase ran: once a substep.
+    pub broad_phases: u32,
+    /// What the algorithm did in the last broad phase of the step; `None` is not counted: the
+    /// library's finder does not report it, or counting is off.
+    pub counts: Option<Counts>,
+    /// Overlapping pairs of boxes in the last broad phase.
+    pub pairs: usize,
+    /// Those of them whose balls touch.
+    pub contacts: usize,
+    /// Milliseconds of all broad phases of the step: from boxes to pairs.
+    pub broad_phase_ms: f64,
+    /// Milliseconds of all narrow phases: exact test, impulses, projection.
+    pub narrow_phase_ms: f64,
+    /// Milliseconds of the step, those of counting left out.
+    pub total_ms: f64,
+}
+
+/// Kinetic and potential energy per unit of mass, in units²/s².
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Of the velocities at the time of the positions.
+    pub kinetic: f64,
+    /// Of the heights above the walls that gravity points to.
+    pub potential: f64,
+}
+
+impl Energy {
+    /// Kinetic and potential.
+    pub fn total(self) -> f64 {
+        self.kinetic + self.potential
+    }
+}
+
+/// Balls in a box: see the [crate](crate) for what it does and why.
+#[derive(Debug)]
+pub struct Simulation<const D: usize> {
+    bodies: Bodies<D>,
+    bounds: Aabb<D>,
+    gravity: [f32; D],
+    restitution: f32,
+    time_step: f32,
+    substeps: u32,
+    collisions: bool,
+    counting: bool,
+    steps: u64,
+    engine: Engine<D>,
+    contacts: Contacts<D>,
+    // Buffers.
+    boxes: Vec<Aabb<D>>,
+    pairs: Vec<[u32; 2]>,
+    velocities_before: Vec<[f32; D]>,
+    before: Vec<[f32; D]>,
+}
+
+impl<const D: usize> Simulation<D> {
+    /// A simulation at time 0, its broad phase the library's.
+    ///
+    /// # Errors
+    /// As [`Setup::validate`].
+    pub fn new(setup: &Setup<D>) -> Result<Self, SetupError> {
+        setup.validate()?;
+        let mut simulation = Self {
+            bodies: Bodies::new(&setup.balls),
+            bounds: setup.bounds,
+            gravity: setup.gravity,
+            restitution: setup.restitution,
+            time_step: setup.time_step,
+            substeps: setup.substeps,
+            collisions: true,
+            counting: true,
+            steps: 0,
+            engine: Engine::new(BroadPhase::Library).expect("the library's finder takes any axis"),
+            contacts: Contacts::new(),
+            boxes: Vec::new(),
+            pairs: Vec::new(),
+            velocities_before: Vec::new(),
+            before: Vec::new(),
+        };
+        simulation.bodies.kick(simulation.half_kick());
+                Ok(simulation)
+    }
+
+    /// One time step. `now` tells the time in milliseconds, from any origin; `|| 0.0` if the
+    /// times of the report do not matter. The clock has no influence on the motion.
+    ///
+    /// # Errors
+    /// Those of the broad phase, which by [`Setup::validate`] do not happen.
+    pub fn step(&mut self, now: impl Fn() -> f64) -> Result<StepReport, Error> {
+        let mut report = StepReport { broad_phases: self.substeps, ..StepReport::default() };
+        for substep in 1..=self.substeps {
+            let counted = self.counting && substep == self.substeps;
+            self.substep(counted, &now, &mut report)?;
+        }
+        self.steps += 1;
+        Ok(report)
+    }
+
+    fn substep(
+        &mut self,
+        counted: bool,
+        now: &impl Fn() -> f64,
+        report: &mut StepReport,
+    ) -> Result<(), Error> {
+        let start = now();
+        let energy = self.energy().total();
+        // Leapfrog: velocities live half a substep ahead, where they carry the positions exactly.
+        self.bodies.drift(self.substep_time(), &self.bounds);
+        self.bodies.kick(self.half_kick());
+        self.bodies.stop_at_walls(self.gravity, &self.bounds);
+        self.bodies.write_boxes(self.half_kick(), self.substep_time(), &mut self.boxes);
+        let integrated = now();
+
+        if counted {
+            report.counts = self.engine.count(&self.boxes)?;
+        }
+        let counted = now();
+
+        let pairs = self.engine.find(&self.boxes)?;
+        let found = now();
+
+        self.pairs.clear();
+        self.pairs.extend_from_slice(pairs);
+        let time = self.substep_time();
+        self.contacts.find(&self.pairs, &self.bodies, time, &self.bounds);
+        report.pairs = self.pairs.len();
+        report.contacts = self.contacts.balls.len();
+        if !self.collisions {
+            self.contacts.balls.clear();
+        }
+        self.resolve(energy);
+        let resolved = now();
+
+        report.broad_phase_ms += found - counted;
+        report.narrow_phase_ms += resolved - found;
+        report.total_ms += integrated - start + resolved - counted;
+        Ok(())
+    }
+
+    /// Bounces act on the velocities at the time of the positions, rest on those that carry the
+    /// balls on.
+    fn resolve(&mut self, energy_before: f64) {
+        let threshold = self.bounce_threshold();
+        solver::bounce(&self.contacts, &mut self.bodies, self.restitution, threshold);
+        self.bodies.kick(self.half_kick());
+        solver::rest(&mut self.contacts, &mut self.bodies, &mut self.velocities_before);
+        let lost = self.energy();
+        self.before.clone_from(&self.bodies.positions);
+        solver::project(&self.contacts, &mut self.bodies, &self.bounds);
+        let raised = self.energy().potential - lost.potential;
+        let budget = energy_before - lost.total();
+        if raised > budget && raised > 0.0 {
+            let share = (budget.max(0.0) / raised) as f32;
+            for (position, before) in self.bodies.positions.iter_mut().zip(&self.before) {
+                for axis in 0..D {
+                    position[axis] = before[axis] + (position[axis] - before[axis]) * share;
+                }
+            }
+        }
+    }
+
+    fn substep_time(&self) -> f32 {
+        self.time_step / self.substeps as f32
+    }
+
+    /// What gravity adds to a velocity in half a substep.
+    fn half_kick(&self) -> [f32; D] {
+        let half = self.substep_time() * 0.5;
+        self.gravity.map(|g| g * half)
+    }
+
+    /// Balls that meet slower than this do not bounce: twice the speed that a ball at rest gains
+    /// in a substep on any axis, before its support is felt.
+    fn bounce_threshold(&self) -> f32 {
+        let kick = self.half_kick().into_iter().fold(0.0, |most: f32, kick| {
+            let kick = if kick < 0.0 { -kick } else { kick };
+            if kick > most { kick } else { most }
+        });
+        4.0 * kick
+    }
+
+    /// Chooses the broad phase from the next step on.
+    ///
+    /// # Errors
+    /// [`Error::InvalidAxis`]; then the choice is what it was.
+    pub fn set_broad_phase(&mut self, choice: BroadPhase) -> Result<(), Error> {
+        self.engine = Engine::new(choice)?;
+        Ok(())
+    }
+
+    /// Changes gravity, in units/s².
+    ///
+    /// # Errors
+    /// [`SetupError::Parameter`] for NaN and beyond [`Setup::GREATEST_LENGTH`].
+    pub fn set_gravity(&mut self, gravity: [f32; D]) -> Result<(), SetupError> {
+        let limit = Setup::<D>::GREATEST_LENGTH;
+        if !gravity.into_iter().all(|g| (-limit..=limit).contains(&g)) {
+            return Err(SetupError::Parameter { name: "gravity" });
+        }
+        self.gravity = gravity;
+        Ok(())
+    }
+
+    /// Changes the restitution.
+    ///
+    /// # Errors
+    /// [`SetupError::Parameter`] if it is not within 0 and 1.
+    pub fn set_restitution(&mut self, restitution: f32) -> Result<(), SetupError> {
+        if !(0.0..=1.0).contains(&restitution) {
+            return Err(SetupError::Parameter { name: "restitution" });
+        }
+        self.restitution = restitution;
+        Ok(())
+    }
+
+    /// Changes the number of substeps.
+    ///
+    /// # Errors
+    /// [`SetupError::Parameter`] if it is not within 1 and [`Setup::MOST_SUBSTEPS`].
+    pub fn set_substeps(&mut self, substeps: u32) -> Result<(), SetupError> {
+        if !(1..=Setup::<D>::MOST_SUBSTEPS).contains(&substeps) {
+            return Err(SetupError::Parameter { name: "substeps" });
+        }
+        self.substeps = substeps;
+        Ok(())
+    }
+
+    /// Whether balls meet each other, as they do at first, or only the walls. Pairs and contacts
+    /// are found either way.
+    pub fn set_collisions(&mut self, collisions: bool) {
+        self.collisions = collisions;
+    }
+
+    /// Whether steps count what the algorithm does, as they do at first. Counting runs the last
+    /// broad phase of a step once more, on a copy, outside the times of the report.
+    pub fn set_counting(&mut self, counting: bool) {
+        self.counting = counting;
+    }
+
+    /// Gravity, in units/s².
+    pub fn gravity(&self) -> [f32; D] {
+        self.gravity
+    }
+
+    /// The restitution.
+    pub fn restitution(&self) -> f32 {
+        self.restitution
+    }
+
+    /// The number of substeps.
+    pub fn substeps(&self) -> u32 {
+        self.substeps
+    }
+
+    /// Whether balls meet each other.
+    pub fn collisions(&self) -> bool {
+        self.collisions
+    }
+
+    /// Whether steps count.
+    pub fn counting(&self) -> bool {
+        self.counting
+    }
+
+    /// Steps so far.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// The box.
+    pub fn bounds(&self) -> Aabb<D> {
+        self.bounds
+    }
+
+    /// The centres.
+    pub fn positions(&self) -> &[[f32; D]] {
+        &self.bodies.positions
+    }
+
+    /// The velocities, in units a second, half a substep later than the positions.
+    pub fn velocities(&self) -> &[[f32; D]] {
+        &self.bodies.velocities
+    }
+
+    /// The radii.
+    pub fn radii(&self) -> &[f32] {
+        &self.bodies.radii
+    }
+
+    /// The boxes that the last broad phase saw; before the first step, those of the start.
+    pub fn boxes(&self) -> &[Aabb<D>] {
+        &self.boxes
+    }
+
+    /// The pairs of the last broad phase, in the order in which it found them.
+    pub fn pairs(&self) -> &[[u32; 2]] {
+        &self.pairs
+    }
+
+    /// The energy, per unit of mass. It never grows, but for rounding and as the setters change
+    /// the laws.
+    pub fn energy(&self) -> Energy {
+        let [kinetic, potential] =
+            self.bodies.energy(self.gravity, self.half_kick(), &self.bounds);
+        Energy { kinetic, potential }
+    }
+
+    /// A hash of all positions and velocities, bit for bit: the same on every platform, in debug
+    /// and in release, for every broad phase.
+    pub fn hash(&self) -> u64 {
+        self.bodies.hash()
+    }
+}

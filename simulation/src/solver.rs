@@ -1,0 +1,170 @@
+//! What contacts do to balls: bounce, rest, and give way.
+
+use sweep_and_prune::Aabb;
+
+use crate::bodies::{Bodies, inside_walls};
+use crate::contacts::{Contact, Contacts, WallContact, normal_and_distance};
+use crate::vector::{add_scaled, difference, dot, lesser};
+
+/// How often a bounce is passed on within one substep, from ball to ball.
+const BOUNCE_PASSES: usize = 4;
+/// Sweeps of the resting solver.
+const REST_ITERATIONS: usize = 6;
+/// Sweeps of the projection.
+const PROJECT_ITERATIONS: usize = 4;
+/// The share of an overlap that one sweep takes away.
+const PROJECT_SHARE: f32 = 0.6;
+/// The overlap that is left alone, in radii of the smaller ball: contacts at rest last.
+const SLOP: f32 = 0.01;
+
+/// Bounces all that meet faster than `threshold`: each impulse turns the speed of approach into
+/// `restitution` times as much speed of parting.
+///
+/// Each impulse by itself keeps momentum and, with restitution at most 1, adds no energy; so
+/// neither does any number of them, one after another.
+pub fn bounce<const D: usize>(
+    contacts: &Contacts<D>,
+    bodies: &mut Bodies<D>,
+    restitution: f32,
+    threshold: f32,
+) {
+    for _ in 0..BOUNCE_PASSES {
+        let mut quiet = true;
+        for contact in &contacts.balls {
+            let speed = speed_of_parting(contact, bodies);
+            if speed < -threshold && speed < -contact.slack {
+                let impulse = -(1.0 + restitution) * speed * contact.mass;
+                push_apart(contact, impulse, bodies);
+                quiet = false;
+            }
+        }
+        for wall in &contacts.walls {
+            let speed = speed_from_wall(wall, bodies);
+            if *speed * wall.inward < -threshold {
+                *speed *= -restitution;
+                quiet = false;
+            }
+        }
+        if quiet {
+            break;
+        }
+    }
+}
+
+/// Lets no two that touch approach each other: the smallest change of velocities, measured in
+/// energy, after which no contact closes (projected Gauss-Seidel on the contact impulses).
+///
+/// It starts from the impulses of the substep before, taken as far as they lower the energy.
+/// Each sweep lowers it further, so none of this ever adds energy, converged or not.
+pub fn rest<const D: usize>(
+    contacts: &mut Contacts<D>,
+    bodies: &mut Bodies<D>,
+    velocities_before: &mut Vec<[f32; D]>,
+) {
+    velocities_before.clone_from(&bodies.velocities);
+    for contact in &contacts.balls {
+        push_apart(contact, contact.impulse, bodies);
+    }
+    for wall in &contacts.walls {
+        *speed_from_wall(wall, bodies) += wall.inward * wall.push;
+    }
+    let slack: f64 =
+        contacts.balls.iter().map(|c| f64::from(c.impulse) * f64::from(c.slack)).sum();
+    let share = share_of_least_energy(bodies, velocities_before, slack);
+    if share < 1.0 {
+        for (velocity, before) in bodies.velocities.iter_mut().zip(velocities_before) {
+            let change = difference(*velocity, *before);
+            *velocity = *before;
+            add_scaled(velocity, change, share);
+        }
+        contacts.balls.iter_mut().for_each(|contact| contact.impulse *= share);
+        contacts.walls.iter_mut().for_each(|wall| wall.push *= share);
+    }
+
+    for _ in 0..REST_ITERATIONS {
+        for contact in &mut contacts.balls {
+            let speed = speed_of_parting(contact, bodies) + contact.slack;
+            let change = -speed * contact.mass;
+            let impulse = at_least_zero(contact.impulse + change);
+            push_apart(contact, impulse - contact.impulse, bodies);
+            contact.impulse = impulse;
+        }
+        for wall in &mut contacts.walls {
+            let speed = speed_from_wall(wall, bodies);
+            let push = at_least_zero(wall.push - *speed * wall.inward);
+            *speed += wall.inward * (push - wall.push);
+            wall.push = push;
+        }
+    }
+}
+
+/// Between `before` (0) and the velocities now (1), where the kinetic energy is least: it is a
+/// parabola on the way.
+fn share_of_least_energy<const D: usize>(bodies: &Bodies<D>, before: &[[f32; D]], slack: f64) -> f32 {
+    let (mut slope, mut curvature) = (slack, 0.0);
+    for ((velocity, before), &inverse_mass) in
+        bodies.velocities.iter().zip(before).zip(&bodies.inverse_masses)
+    {
+        let change = difference(*velocity, *before);
+        slope += f64::from(dot(*before, change) / inverse_mass);
+        curvature += f64::from(dot(change, change) / inverse_mass);
+    }
+    if slope < 0.0 { lesser((-slope / curvature) as f32, 1.0) } else { 0.0 }
+}
+
+/// Moves balls that overlap apart, and back inside the walls, without touching velocities.
+///
+/// The centre of mass of two balls stays where it is, so in uniform gravity moving them apart
+/// adds no energy.
+pub fn project<const D: usize>(
+    contacts: &Contacts<D>,
+    bodies: &mut Bodies<D>,
+    bounds: &Aabb<D>,
+) {
+    for _ in 0..PROJECT_ITERATIONS {
+        for contact in &contacts.balls {
+            let [a, b] = contact.pair.map(|id| id as usize);
+            let (normal, distance) = normal_and_distance(contact.pair, bodies);
+            let (radius_a, radius_b) = (bodies.radii[a], bodies.radii[b]);
+            let overlap = radius_a + radius_b - distance - SLOP * lesser(radius_a, radius_b);
+            if overlap > 0.0 {
+                let share = overlap * PROJECT_SHARE * contact.mass;
+                add_scaled(&mut bodies.positions[a], normal, -share * bodies.inverse_masses[a]);
+                add_scaled(&mut bodies.positions[b], normal, share * bodies.inverse_masses[b]);
+            }
+        }
+        for (position, &radius) in bodies.positions.iter_mut().zip(&bodies.radii) {
+            for axis in 0..D {
+                position[axis] = inside_walls(position[axis], radius, bounds, axis);
+            }
+        }
+    }
+}
+
+/// How fast two balls part; negative if they approach.
+#[inline]
+fn speed_of_parting<const D: usize>(contact: &Contact<D>, bodies: &Bodies<D>) -> f32 {
+    let [a, b] = contact.pair.map(|id| bodies.velocities[id as usize]);
+    dot(difference(b, a), contact.normal)
+}
+
+#[inline]
+fn push_apart<const D: usize>(contact: &Contact<D>, impulse: f32, bodies: &mut Bodies<D>) {
+    let [a, b] = contact.pair.map(|id| id as usize);
+    add_scaled(&mut bodies.velocities[a], contact.normal, -impulse * bodies.inverse_masses[a]);
+    add_scaled(&mut bodies.velocities[b], contact.normal, impulse * bodies.inverse_masses[b]);
+}
+
+/// The velocity across the wall; along `inward` it parts from the wall.
+#[inline]
+fn speed_from_wall<'a, const D: usize>(
+    wall: &WallContact,
+    bodies: &'a mut Bodies<D>,
+) -> &'a mut f32 {
+    &mut bodies.velocities[wall.body as usize][wall.axis as usize]
+}
+
+#[inline]
+fn at_least_zero(x: f32) -> f32 {
+    if x > 0.0 { x } else { 0.0 }
+}
