@@ -11,6 +11,11 @@ use crate::recipes::{self, Draw};
 macro_rules! scenes {
     ($($variant:ident, $name:literal, $dimensions:expr, $recipe:ident, $description:literal;)*) => {
         /// A recipe for a set of boxes at rest.
+        ///
+        /// Most have about as many pairs as boxes, however many boxes there are. The pairs of
+        /// `Coincident`, `Nested`, `Giants` and `Infinite`, in 1D and 2D those of `Needles` and
+        /// `Beams`, and in 1D those of `Slab`, `Flat` and `NeedlesX`, grow with the square of `n`:
+        /// thousands of these boxes have millions of pairs.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Scene {
             $(#[doc = $description] $variant,)*
@@ -50,7 +55,7 @@ scenes! {
     Tower, "tower", 1..=3, tower,
         "One tall stack that only y (x in 1D) separates: a sweep along any other axis tests every pair.";
     Slab, "slab", 1..=3, slab,
-        "A floor of bodies that all overlap on the last axis: a sweep along it tests every pair.";
+        "A thin floor of bodies, hardly spread on the last axis: a sweep along it tests far too many.";
     Mixed, "mixed", 1..=3, mixed,
         "Power-law sizes over one ground box: a grid sized for the mean box suits neither end.";
     Coincident, "coincident", 1..=3, coincident,
