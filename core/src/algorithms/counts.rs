@@ -32,9 +32,10 @@ pub struct Counts {
 
 impl Counts {
     /// Everything an algorithm spends time on, as one number: comparisons, swaps, tests, axis
-    /// overlaps and their ends. What the complexity table is fitted to.
+    /// overlaps and their ends, and pairs reported. What the complexity table is fitted to.
     pub fn operations(&self) -> u64 {
-        self.comparisons + self.swaps + self.tests + self.axis_overlaps + self.axis_ends
+        let sort = self.comparisons + self.swaps;
+        sort + self.tests + self.axis_overlaps + self.axis_ends + self.pairs
     }
 }
 

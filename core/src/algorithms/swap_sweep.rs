@@ -16,11 +16,11 @@
 //! whose right endpoint it passes.
 //!
 //! Time: O(n + s) for s swaps, which are exactly the inversions: none in a world at rest, a few
-//! when it moves a little, at worst n(2n-1) - n = 2n(n-1), a full reversal of the 2n endpoints but
-//! for the n pairs that belong to one box and never change places. On one axis the pairs that overlap there are
-//! then tested on the others, O(m); on every axis a pair must be flagged on each, and nothing is
-//! tested. A change of the pairs kept costs O(log m). Memory: O(n + m), m the overlaps on *all*
-//! swept axes.
+//! when it moves a little, at worst 2n(n-1): a full reversal of the 2n endpoints, n(2n-1), but for
+//! the n pairs that belong to one box, which never change places. On one axis the pairs that
+//! overlap there are then tested on the others, O(m); on every axis a pair must be flagged on
+//! each, and nothing is tested. A change of the pairs kept costs O(log m). Memory: O(n + m), m the
+//! overlaps on *all* swept axes.
 //!
 //! What differs from the article, and why:
 //! - It must start from what overlaps. The article's listing, run on endpoints that were sorted
