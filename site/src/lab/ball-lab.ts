@@ -1,5 +1,5 @@
 import { SimulationClient } from "../simulation/client.ts";
-import type { Begun, Choices, Frame, Method } from "../simulation/messages.ts";
+import { AXIS_NAMES, type Begun, type Choices, type Frame, type Method } from "../simulation/messages.ts";
 import { onThemeChange, readTheme } from "../view/theme.ts";
 import type { View } from "../view/view.ts";
 import { onAwake, whenNear } from "./awake.ts";
@@ -103,7 +103,7 @@ export class BallLab extends HTMLElement {
     this.#settings = readSettings(this.id, this.#defaults, this.#mostBodies);
     this.#bindChoice("algorithm", choices.algorithms);
     this.#bindChoice("sort", choices.sorts);
-    this.#bindChoice("axis", choices.axes);
+    this.#bindChoice("axis", [...choices.axes, ...AXIS_NAMES.slice(0, this.#dimensions)]);
     this.#bindSlider("bodies", RANGES.bodies.filter((n) => n <= this.#mostBodies), formatCount);
     this.#bindSlider("size", RANGES.size, (size) => `${size}%`);
     this.#bindSlider("spread", RANGES.spread, (spread) => `${spread} : 1`);

@@ -1,9 +1,13 @@
 // What the page and the thread of the simulation say to each other.
 
+/** The axes by name. */
+export const AXIS_NAMES: readonly string[] = ["x", "y", "z"];
+
 /** How the pairs are found. Names are those that `Choices` lists. */
 export interface Method {
   readonly algorithm: string;
   readonly sort: string;
+  /** A rule, or one of `AXIS_NAMES`. */
   readonly axis: string;
 }
 

@@ -1,10 +1,10 @@
 // The thread of the simulation: steps the world at its own pace, sixty times a second if it can,
 // and sends what it has when the page has a buffer free for it.
 
-import { Simulation, type StepReport } from "../../../simulation/wasm/simulation.js";
+import { type BroadPhaseOptions, Simulation, type StepReport } from "../../../simulation/wasm/simulation.js";
 import scalarWasm from "../generated/simulation.wasm?url";
 import simdWasm from "../generated/simulation.simd.wasm?url";
-import type { FromSimulation, Measurement, Method, Setup, ToSimulation } from "./messages.ts";
+import { AXIS_NAMES, type FromSimulation, type Measurement, type Method, type Setup, type ToSimulation } from "./messages.ts";
 
 const STEP_MS = 1000 / 60;
 /** Positions are sent in this many buffers: one that the page shows, one on its way. */
@@ -43,13 +43,19 @@ function begin(run: number, setup: Setup, method: Method): void {
     size: radius,
     spread,
     seed,
-    broadPhase: method,
+    broadPhase: broadPhaseOf(method),
   });
   const buffers = Array.from({ length: BUFFERS }, () => new Float32Array(simulation.positions.length));
   world = { run, simulation, buffers, reports: [], taken: [], unseen: true };
   const { min, max } = simulation.bounds;
   send({ type: "begun", run, size: max.map((high, axis) => high - (min[axis] ?? 0)), radii: simulation.radii.slice() });
   show(world);
+}
+
+/** An axis is a rule by its name, or one of the axes by its number. */
+function broadPhaseOf({ algorithm, sort, axis }: Method): BroadPhaseOptions {
+  const fixed = AXIS_NAMES.indexOf(axis);
+  return { algorithm, sort, axis: fixed < 0 ? axis : fixed };
 }
 
 function step(world: World): void {
@@ -138,7 +144,7 @@ function receive(message: ToSimulation): void {
       begin(message.run, message.setup, message.method);
       break;
     case "method":
-      world?.simulation.setBroadPhase(message.method);
+      world?.simulation.setBroadPhase(broadPhaseOf(message.method));
       world?.reports.splice(0);
       break;
     case "pace":
