@@ -9,6 +9,8 @@ mod plain;
 
 #[cfg(feature = "light")]
 mod broccoli;
+#[cfg(feature = "cpp")]
+mod cpp;
 #[cfg(feature = "light")]
 mod geo_index;
 #[cfg(feature = "light")]
@@ -41,6 +43,7 @@ pub trait Contender<const D: usize> {
 type Maker<const D: usize> = fn() -> Box<dyn Contender<D>>;
 
 /// A contender as the harness knows it.
+#[derive(Clone, Copy)]
 pub struct Peer {
     /// How tables, plots and the command line call it.
     pub name: &'static str,
@@ -57,6 +60,7 @@ pub struct Peer {
 }
 
 /// Where a contender comes from.
+#[derive(Clone, Copy)]
 pub enum Origin {
     /// This repository.
     Here,
@@ -79,6 +83,8 @@ pub fn all() -> Vec<Peer> {
         parry::PEER,
         rstar::PEER,
     ]);
+    #[cfg(feature = "cpp")]
+    peers.extend_from_slice(cpp::PEERS);
     peers
 }
 

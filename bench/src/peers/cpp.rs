@@ -1,0 +1,107 @@
+//! The peers in C++ that Debian packages, behind the functions of `cpp/`.
+#![allow(unsafe_code)]
+
+use std::ffi::c_void;
+
+use anyhow::Result;
+use sweep_and_prune::Aabb;
+
+use super::{Contender, Origin, Peer};
+
+/// `Boxes` in `cpp/peers.h`.
+#[repr(C)]
+struct Boxes {
+    rows: *const f32,
+    count: usize,
+    dimensions: usize,
+}
+
+/// A peer: appends the pairs of the boxes to a C++ vector.
+type Find = unsafe extern "C" fn(*const Boxes, *mut c_void);
+
+unsafe extern "C" {
+    fn bench_pairs_new() -> *mut c_void;
+    fn bench_pairs_delete(pairs: *mut c_void);
+    fn bench_pairs_clear(pairs: *mut c_void);
+    fn bench_pairs_count(pairs: *const c_void) -> usize;
+    fn bench_pairs_data(pairs: *const c_void) -> *const u32;
+}
+
+/// A peer and the C++ vector of its pairs.
+struct Cpp {
+    find: Find,
+    pairs: *mut c_void,
+}
+
+impl Cpp {
+    fn boxed(find: Find) -> Box<Self> {
+        // SAFETY: it takes nothing; the vector is deleted in `drop`.
+        Box::new(Self { find, pairs: unsafe { bench_pairs_new() } })
+    }
+}
+
+impl Drop for Cpp {
+    fn drop(&mut self) {
+        // SAFETY: made by `bench_pairs_new` and deleted only here.
+        unsafe { bench_pairs_delete(self.pairs) }
+    }
+}
+
+impl<const D: usize> Contender<D> for Cpp {
+    fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]> {
+        // A box is a row of 2 * D floats in memory, as `Aabb` promises.
+        let boxes = Boxes { rows: boxes.as_ptr().cast(), count: boxes.len(), dimensions: D };
+        // SAFETY: the boxes are valid for the calls; the vector is ours alone; its elements are
+        // two u32 each and stay in place until the next call, which needs `self` exclusively.
+        unsafe {
+            bench_pairs_clear(self.pairs);
+            (self.find)(&boxes, self.pairs);
+            let count = bench_pairs_count(self.pairs);
+            if count == 0 {
+                return Ok(&[]);
+            }
+            Ok(std::slice::from_raw_parts(bench_pairs_data(self.pairs).cast(), count))
+        }
+    }
+}
+
+/// Declares a peer and the C++ function behind it.
+macro_rules! peers {
+    ($($constant:ident, $function:ident, $name:literal, $package:literal, $how:literal;)*) => {
+        unsafe extern "C" {
+            $(fn $function(boxes: *const Boxes, pairs: *mut c_void);)*
+        }
+        $(
+            #[doc = $how]
+            const $constant: Peer = Peer {
+                name: $name,
+                origin: Origin::Debian($package),
+                how: $how,
+                rival: true,
+                two: Some(|| Cpp::boxed($function)),
+                three: Some(|| Cpp::boxed($function)),
+            };
+        )*
+        /// All of them.
+        pub const PEERS: &[Peer] = &[$($constant),*];
+    };
+}
+
+peers! {
+    CGAL, bench_cgal, "CGAL", "libcgal-dev",
+        "`box_self_intersection_d` over `Box_with_info_d<float>`, closed, default cutoff";
+    BOOST, bench_boost, "Boost.Geometry", "libboost-dev",
+        "`rtree<rstar<16>>` packed from all boxes, one `intersects` query a box in the tree's order";
+    BULLET_TREE, bench_bullet_tree, "Bullet tree", "libbullet-dev",
+        "`btDbvt` bare: `insert`, `collideTT` with itself (`optimizeTopDown` in between makes it slower)";
+    BULLET_BROADPHASE, bench_bullet_broadphase, "Bullet broadphase", "libbullet-dev",
+        "`btDbvtBroadphase` with its pair cache, collision deferred until all boxes are in";
+    BULLET_SWEEP, bench_bullet_sweep, "Bullet sweep", "libbullet-dev",
+        "`btAxisSweep3` (32 bits from 16,384 boxes), made anew; it rounds coordinates, so its pairs are tested once more";
+    ODE_SWEEP, bench_ode_sweep, "ODE sweep", "libode-dev",
+        "`dSweepAndPruneSpace`, axis of largest variance first, one `dSpaceCollide`";
+    ODE_HASH, bench_ode_hash, "ODE hash", "libode-dev",
+        "`dHashSpace` with its default levels, one `dSpaceCollide`";
+    FCL, bench_fcl, "FCL", "libfcl-dev",
+        "`DynamicAABBTreeCollisionManagerd`: `registerObjects`, `setup`, `collide` with itself";
+}
