@@ -6,8 +6,8 @@ export type Dimensions = 1 | 2 | 3;
  * `minX, minY, maxX, maxY` in 2D.
  *
  * Coordinates are compared exactly as given: `Float32Array` in single, `Float64Array` in double
- * precision. A plain array of numbers is checked and copied to a `Float64Array` at each call:
- * convenient, and several times slower.
+ * precision. A plain array of numbers is the slower door: each number is checked and copied to a
+ * `Float64Array` at each call.
  */
 export type Boxes = Float32Array | Float64Array | readonly number[];
 
