@@ -1,10 +1,12 @@
 //! What two sets of pairs are compared by.
 
+use std::ops::Add;
+
 use serde::{Deserialize, Serialize};
 
 /// The number of pairs and a hash that depends neither on their order nor on which box of a pair
 /// comes first, but on how often each is given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fingerprint {
     /// How many pairs there are.
     pub pairs: u64,
@@ -18,6 +20,15 @@ impl Fingerprint {
         let hash = |&[a, b]: &[u32; 2]| mix(u64::from(a.min(b)) << 32 | u64::from(a.max(b)));
         let sum = pairs.iter().map(hash).fold(0, u64::wrapping_add);
         Self { pairs: pairs.len() as u64, hash: sum }
+    }
+}
+
+/// That of the pairs of both together.
+impl Add for Fingerprint {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { pairs: self.pairs + other.pairs, hash: self.hash.wrapping_add(other.hash) }
     }
 }
 

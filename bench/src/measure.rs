@@ -9,7 +9,6 @@ use std::time::Duration;
 use anyhow::{Result, ensure};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use sweep_and_prune::algorithms::pairwise;
 
 use crate::fingerprint::Fingerprint;
 use crate::peers::{self, OURS, Peer};
@@ -22,6 +21,8 @@ use crate::{machine, scene};
 const ORACLE_LIMIT: usize = 10_000;
 /// Short runs are repeated until a round of a contender takes about so long.
 const ROUND: Duration = Duration::from_millis(20);
+/// Fewer boxes than this are found in batches of calls, of about so many boxes together.
+const BATCHED: usize = 1000;
 /// No contender takes part in more rounds once it has taken so long, but for the first three.
 const PATIENCE: Duration = Duration::from_secs(8);
 /// Sets of boxes with more pairs than about this are left out.
@@ -33,7 +34,8 @@ pub struct Options {
     /// Few boxes and few rounds: a minute instead of an hour.
     #[arg(long)]
     quick: bool,
-    /// Names of scenes, or files of raw boxes (rows of 2 × D little-endian f32) that end in .f32.
+    /// Names of scenes (all for every one) or of motions, or files of raw boxes (rows of 2 × D
+    /// little-endian f32) that end in .f32.
     #[arg(long, value_delimiter = ',', default_values = scene::DEFAULT)]
     scenes: Vec<String>,
     /// Numbers of boxes.
@@ -89,10 +91,11 @@ pub fn run(options: &Options) -> Result<()> {
     );
     let peers = peers::all();
     let mut plan = Vec::new();
-    for name in &options.scenes {
+    for name in &scene::named(&options.scenes) {
         for &dimensions in &options.dimensions {
             if scene::exists(name, dimensions)? {
-                plan.extend(options.sizes().into_iter().map(|boxes| (name, dimensions, boxes)));
+                let sizes = options.sizes().into_iter();
+                plan.extend(sizes.map(|boxes| (name.clone(), dimensions, boxes)));
             }
         }
     }
@@ -110,7 +113,7 @@ pub fn run(options: &Options) -> Result<()> {
     bar.set_style(ProgressStyle::with_template("{elapsed} {wide_bar} {pos}/{len} {msg:60!}")?);
     let mut slow = HashMap::new();
     for (name, dimensions, boxes) in plan {
-        let case = Setting { options, scene: name, dimensions, boxes, bar: &bar };
+        let case = Setting { options, scene: &name, dimensions, boxes, bar: &bar };
         let contenders = peers.iter().filter(|peer| options.wants(peer, dimensions)).collect();
         match case.measure(contenders, &mut slow)? {
             Ok(case) => {
@@ -266,7 +269,7 @@ impl Setting<'_> {
             scene: self.scene.into(),
             dimensions: self.dimensions,
             boxes: self.boxes,
-            pairs: fingerprint.pairs,
+            pairs: fingerprint.pairs / scene::frames_checked(self.scene) as u64,
             reference,
             results: timed.chain(untimed).collect(),
         }))
@@ -275,27 +278,24 @@ impl Setting<'_> {
     /// Starts a contender's worker and has it find the pairs once, or says why it cannot be timed.
     fn check<'a>(&self, peer: &'a Peer, slow: &mut Slow) -> Result<Result<Running<'a>, String>> {
         let limit = self.options.limit();
+        let too_slow = format!("over {} s", self.options.limit);
         let key = (self.scene.to_owned(), self.dimensions, peer.name);
         if let Some(&(boxes, took)) = slow.get(&key) {
             // Nothing here takes less than proportionally longer for more boxes.
-            if took.saturating_mul((self.boxes / boxes) as u32) > limit {
-                let seconds = limit.as_secs_f64().round();
-                return Ok(Err(format!("over {seconds} s, as its time for {boxes} boxes shows")));
+            if took.saturating_mul((self.boxes / boxes.max(1)) as u32) > limit {
+                return Ok(Err(format!("{too_slow}, as its time for {boxes} boxes shows")));
             }
         }
         let mut worker = Remote::start(peer.name, self.scene, self.dimensions, self.boxes)?;
-        let outcome = worker.ask(&Request::Check, limit)?;
-        let remote::Outcome::Reply(reply) = outcome else {
-            slow.insert(key, (self.boxes, Duration::MAX));
-            let remote::Outcome::Lost(why) = outcome else { unreachable!() };
-            return Ok(Err(why));
-        };
-        let (fingerprint, nanoseconds, peak_bytes) = match reply {
-            Reply::Checked { fingerprint, nanoseconds, peak_bytes } => {
+        let (fingerprint, nanoseconds, peak_bytes) = match worker.ask(&Request::Check, limit)? {
+            remote::Outcome::Reply(Reply::Checked { fingerprint, nanoseconds, peak_bytes }) => {
                 (fingerprint, nanoseconds, peak_bytes)
             }
-            Reply::Failed { message } => return Ok(Err(message)),
-            _ => return Ok(Err("an answer to another question".into())),
+            remote::Outcome::Late => {
+                slow.insert(key, (self.boxes, Duration::MAX));
+                return Ok(Err(too_slow));
+            }
+            other => return Ok(Err(failure(other))),
         };
         let first = Duration::from_nanos(nanoseconds);
         slow.insert(key, (self.boxes, first));
@@ -306,11 +306,11 @@ impl Setting<'_> {
     /// The right pairs, and in words how we know; nothing if no two contenders agree.
     fn reference(&self, running: &[Running]) -> Result<Option<(String, Fingerprint)>> {
         if self.boxes <= ORACLE_LIMIT {
-            let pairs = match self.dimensions {
-                2 => pairwise(&scene::boxes::<2>(self.scene, self.boxes)?)?,
-                _ => pairwise(&scene::boxes::<3>(self.scene, self.boxes)?)?,
+            let right = match self.dimensions {
+                2 => scene::oracle::<2>(self.scene, self.boxes)?,
+                _ => scene::oracle::<3>(self.scene, self.boxes)?,
             };
-            return Ok(Some(("brute force".into(), Fingerprint::of(&pairs))));
+            return Ok(Some(("brute force".into(), right)));
         }
         // All of ours count as one witness.
         let witness = |one: &&Running| one.peer.rival || one.peer.name == OURS;
@@ -335,20 +335,17 @@ impl Setting<'_> {
             if round >= 3 && contender.spent > PATIENCE {
                 continue;
             }
-            let repeats = ROUND.as_nanos() / contender.first.as_nanos().max(1);
-            let request = Request::Time { repeats: repeats.clamp(1, 200) as usize };
+            let batch = (BATCHED / self.boxes.max(1)).clamp(1, 256);
+            let repeats = ROUND.as_nanos() / (contender.first.as_nanos().max(1) * batch as u128);
+            let request = Request::Time { repeats: repeats.clamp(1, 200) as usize, batch };
             // The limit is for what takes too long once; here it only guards against hanging.
             match contender.worker.ask(&request, 10 * self.options.limit() + 20 * ROUND)? {
                 remote::Outcome::Reply(Reply::Timed { nanoseconds }) => {
-                    let times: Vec<_> = nanoseconds.iter().map(|&time| time as f64).collect();
-                    contender.spent += Duration::from_nanos(nanoseconds.iter().sum());
-                    contender.rounds.push((round, median(&times)));
+                    let all = nanoseconds.iter().sum::<f64>() * batch as f64;
+                    contender.spent += Duration::from_nanos(all as u64);
+                    contender.rounds.push((round, median(&nanoseconds)));
                 }
-                remote::Outcome::Reply(Reply::Failed { message }) => lost.push((at, message)),
-                remote::Outcome::Reply(_) => {
-                    lost.push((at, "an answer to another question".into()))
-                }
-                remote::Outcome::Lost(why) => lost.push((at, why)),
+                other => lost.push((at, failure(other))),
             }
         }
         lost.sort_unstable();
@@ -356,6 +353,16 @@ impl Setting<'_> {
             untimed.push((running.remove(at).peer, why));
         }
         Ok(())
+    }
+}
+
+/// What went wrong, of an outcome that is not what was asked for.
+fn failure(outcome: remote::Outcome) -> String {
+    match outcome {
+        remote::Outcome::Reply(Reply::Failed { message }) => message,
+        remote::Outcome::Reply(_) => "an answer to another question".into(),
+        remote::Outcome::Late => "no answer any more".into(),
+        remote::Outcome::Ended(how) => how,
     }
 }
 

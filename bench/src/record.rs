@@ -53,7 +53,7 @@ pub struct Case {
     pub dimensions: usize,
     /// The number of boxes.
     pub boxes: usize,
-    /// The number of pairs.
+    /// The number of pairs; of boxes in motion the mean over the frames checked.
     pub pairs: u64,
     /// What every contender's pairs were checked against.
     pub reference: String,

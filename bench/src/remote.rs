@@ -23,8 +23,10 @@ pub struct Remote {
 pub enum Outcome {
     /// The worker answered.
     Reply(Reply),
-    /// It took longer than it may, or crashed, and is gone; why, in words.
-    Lost(String),
+    /// It took longer than it may, and was stopped.
+    Late,
+    /// It ended by itself; how, in words.
+    Ended(String),
 }
 
 impl Remote {
@@ -53,14 +55,15 @@ impl Remote {
         let mut remote = Self { child, requests, replies };
         match remote.receive(START_LIMIT)? {
             Outcome::Reply(_) => Ok(remote),
-            Outcome::Lost(why) => bail!("the worker of {peer} did not start: {why}"),
+            Outcome::Late => bail!("the worker of {peer} does not start"),
+            Outcome::Ended(how) => bail!("the worker of {peer} did not start: {how}"),
         }
     }
 
     /// Sends a request and waits for the reply for as long as `limit`.
     pub fn ask(&mut self, request: &Request, limit: Duration) -> Result<Outcome> {
         if writeln!(self.requests, "{}", serde_json::to_string(request)?).is_err() {
-            return Ok(Outcome::Lost(self.epitaph()));
+            return Ok(Outcome::Ended(self.epitaph()));
         }
         self.receive(limit)
     }
@@ -70,9 +73,9 @@ impl Remote {
             Ok(reply) => Ok(Outcome::Reply(serde_json::from_str(&reply)?)),
             Err(RecvTimeoutError::Timeout) => {
                 let _ = self.child.kill();
-                Ok(Outcome::Lost(format!("over {} s", limit.as_secs_f64().round())))
+                Ok(Outcome::Late)
             }
-            Err(RecvTimeoutError::Disconnected) => Ok(Outcome::Lost(self.epitaph())),
+            Err(RecvTimeoutError::Disconnected) => Ok(Outcome::Ended(self.epitaph())),
         }
     }
 

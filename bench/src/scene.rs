@@ -1,10 +1,13 @@
-//! The boxes that are measured on: a scene of the crate `scenes`, or a file of raw boxes.
+//! The boxes that are measured on: a scene or a motion of the crate `scenes`, or a file of raw
+//! boxes.
 
 use std::path::Path;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Error, Result, bail, ensure};
 use sweep_and_prune::Aabb;
-use sweep_and_prune_scenes::{Random, Scene};
+use sweep_and_prune_scenes::{Motion, Moving, Random, Scene};
+
+use crate::fingerprint::Fingerprint;
 
 /// The scenes measured unless others are named.
 pub const DEFAULT: [&str; 6] = ["uniform", "clustered", "mixed", "slab", "tower", "box-pruning"];
@@ -12,28 +15,90 @@ pub const DEFAULT: [&str; 6] = ["uniform", "clustered", "mixed", "slab", "tower"
 /// The seed of every scene, so that two runs measure the same boxes.
 const SEED: u64 = 1;
 
+/// How many frames of boxes in motion are checked.
+const FRAMES_CHECKED: usize = 4;
+
+/// The name that stands for every scene at rest.
+pub const ALL: &str = "all";
+
 /// Whether a scene exists in so many dimensions.
 pub fn exists(name: &str, dimensions: usize) -> Result<bool> {
-    if is_file(name) {
+    if is_file(name) || Motion::from_name(name).is_some() {
         return Ok(true);
     }
     let scene = Scene::from_name(name).with_context(|| format!("there is no scene '{name}'"))?;
     Ok(scene.dimensions().contains(&dimensions))
 }
 
+/// How many frames of a scene are checked: more than one of boxes in motion.
+pub fn frames_checked(name: &str) -> usize {
+    if Motion::from_name(name).is_some() { FRAMES_CHECKED } else { 1 }
+}
+
+/// The scenes of these names, [`ALL`] spelt out.
+pub fn named(names: &[String]) -> Vec<String> {
+    let mut named = Vec::new();
+    for name in names {
+        match name.as_str() {
+            ALL => named.extend(Scene::ALL.iter().map(|scene| scene.name().to_owned())),
+            _ => named.push(name.clone()),
+        }
+    }
+    named
+}
+
 /// Whether a scene's name is a path: a file that ends in `.f32` holds rows of 2 × D little-endian
 /// f32, the minimum corner and then the maximum corner of a box.
-pub fn is_file(name: &str) -> bool {
+fn is_file(name: &str) -> bool {
     name.ends_with(".f32")
 }
 
-/// The `n` boxes of a scene, or the first `n` of a file.
-pub fn boxes<const D: usize>(name: &str, n: usize) -> Result<Vec<Aabb<D>>> {
-    if is_file(name) {
-        return read(Path::new(name), n);
+/// The boxes of a scene, which may move.
+pub enum Boxes<const D: usize> {
+    /// Boxes at rest, in two orders.
+    AtRest {
+        /// As the scene gives them.
+        boxes: Vec<Aabb<D>>,
+        /// The same in a random order.
+        shuffled: Vec<Aabb<D>>,
+    },
+    /// Boxes of which a frame differs little from the last.
+    InMotion(Moving<D, f32>),
+}
+
+impl<const D: usize> Boxes<D> {
+    /// The `n` boxes of a scene, or the first `n` of a file.
+    pub fn new(name: &str, n: usize) -> Result<Self> {
+        if let Some(motion) = Motion::from_name(name) {
+            let moving = motion.start(n, SEED);
+            return Ok(Self::InMotion(moving.context("motion needs 1 to 3 dimensions")?));
+        }
+        let boxes = if is_file(name) {
+            read(Path::new(name), n)?
+        } else {
+            let scene = Scene::from_name(name);
+            let scene = scene.with_context(|| format!("there is no scene '{name}'"))?;
+            let boxes = scene.boxes(n, SEED);
+            boxes.with_context(|| format!("'{name}' does not exist in {D} dimensions"))?
+        };
+        let mut shuffled = boxes.clone();
+        Random::new(SEED).shuffle(&mut shuffled);
+        Ok(Self::AtRest { boxes, shuffled })
     }
-    let scene = Scene::from_name(name).with_context(|| format!("there is no scene '{name}'"))?;
-    scene.boxes(n, SEED).with_context(|| format!("'{name}' does not exist in {D} dimensions"))
+
+    /// The frames that pairs are checked on, one after another: each is given to `check`.
+    pub fn frames(&mut self, mut check: impl FnMut(&[Aabb<D>]) -> Result<()>) -> Result<()> {
+        match self {
+            Self::AtRest { boxes, .. } => check(boxes),
+            Self::InMotion(moving) => {
+                for _ in 0..FRAMES_CHECKED {
+                    check(moving.boxes())?;
+                    moving.advance();
+                }
+                Ok(())
+            }
+        }
+    }
 }
 
 fn read<const D: usize>(path: &Path, n: usize) -> Result<Vec<Aabb<D>>> {
@@ -55,13 +120,6 @@ fn read<const D: usize>(path: &Path, n: usize) -> Result<Vec<Aabb<D>>> {
     Ok(boxes)
 }
 
-/// The same boxes in a random order.
-pub fn shuffled<const D: usize>(boxes: &[Aabb<D>]) -> Vec<Aabb<D>> {
-    let mut shuffled = boxes.to_vec();
-    Random::new(SEED).shuffle(&mut shuffled);
-    shuffled
-}
-
 /// About how many pairs a scene has, from small versions of it: a scene whose pairs grow with
 /// the square of its boxes is worth knowing of before memory is full.
 pub fn estimated_pairs<const D: usize>(name: &str, n: usize) -> Result<f64> {
@@ -70,11 +128,18 @@ pub fn estimated_pairs<const D: usize>(name: &str, n: usize) -> Result<f64> {
     if n <= LARGE {
         return Ok(0.5 * (n as f64).powi(2));
     }
-    let pairs = |n| -> Result<f64> {
-        let pairs = sweep_and_prune::algorithms::pairwise(&boxes::<D>(name, n)?)?;
-        Ok(pairs.len() as f64)
-    };
+    let pairs = |n| Ok::<_, Error>(oracle::<D>(name, n)?.pairs as f64);
     let (small, large) = (pairs(SMALL)?, pairs(LARGE)?);
     let growth = f64::log2(large.max(1.0) / small.max(1.0)) / f64::log2((LARGE / SMALL) as f64);
     Ok(large * (n as f64 / LARGE as f64).powf(growth.max(1.0)))
+}
+
+/// The right pairs of all frames that are checked, by brute force.
+pub fn oracle<const D: usize>(name: &str, n: usize) -> Result<Fingerprint> {
+    let mut sum = Fingerprint::default();
+    Boxes::<D>::new(name, n)?.frames(|boxes| {
+        sum = sum + Fingerprint::of(&sweep_and_prune::algorithms::pairwise(boxes)?);
+        Ok(())
+    })?;
+    Ok(sum)
 }

@@ -13,8 +13,9 @@ use serde::{Deserialize, Serialize};
 use sweep_and_prune::Aabb;
 
 use crate::fingerprint::Fingerprint;
+use crate::machine;
 use crate::peers::{self, Contender};
-use crate::{machine, scene};
+use crate::scene::Boxes;
 
 /// What to run.
 #[derive(Args)]
@@ -38,6 +39,8 @@ pub enum Request {
     Time {
         /// How many times.
         repeats: usize,
+        /// How many calls are timed together, where one alone is too short for the clock.
+        batch: usize,
     },
 }
 
@@ -50,7 +53,7 @@ pub enum Reply {
     Checked {
         /// The pairs.
         fingerprint: Fingerprint,
-        /// How long this first call took.
+        /// How long the longest of these first calls took.
         nanoseconds: u64,
         /// The most memory in use during the call, less what was in use before; `None` where
         /// the system does not tell.
@@ -58,8 +61,8 @@ pub enum Reply {
     },
     /// The answer to [`Request::Time`].
     Timed {
-        /// How long each call took.
-        nanoseconds: Vec<u64>,
+        /// How long each call took, in the mean of a batch.
+        nanoseconds: Vec<f64>,
     },
     /// The contender returned an error.
     Failed {
@@ -83,13 +86,12 @@ pub fn run(options: &Options) -> Result<()> {
 }
 
 fn serve<const D: usize>(mut contender: Box<dyn Contender<D>>, options: &Options) -> Result<()> {
-    let boxes = scene::boxes::<D>(&options.scene, options.boxes)?;
-    let shuffled = scene::shuffled(&boxes);
+    let mut boxes = Boxes::<D>::new(&options.scene, options.boxes)?;
     answer(&Reply::Ready)?;
     for line in std::io::stdin().lock().lines() {
         let reply = match serde_json::from_str(&line?)? {
-            Request::Check => check(&mut *contender, &boxes),
-            Request::Time { repeats } => time(&mut *contender, &boxes, &shuffled, repeats),
+            Request::Check => check(&mut *contender, &mut boxes),
+            Request::Time { repeats, batch } => time(&mut *contender, &mut boxes, repeats, batch),
         };
         answer(&reply.unwrap_or_else(|error| Reply::Failed { message: format!("{error:#}") }))?;
     }
@@ -103,29 +105,55 @@ fn answer(reply: &Reply) -> Result<()> {
     Ok(out.flush()?)
 }
 
-fn check<const D: usize>(contender: &mut dyn Contender<D>, boxes: &[Aabb<D>]) -> Result<Reply> {
+fn check<const D: usize>(contender: &mut dyn Contender<D>, boxes: &mut Boxes<D>) -> Result<Reply> {
     machine::reset_peak_memory();
     let before = machine::memory();
-    let start = Instant::now();
-    let pairs = contender.find(boxes)?;
-    let nanoseconds = start.elapsed().as_nanos() as u64;
-    let fingerprint = Fingerprint::of(pairs);
+    let mut fingerprint = Fingerprint::default();
+    let mut nanoseconds = 0;
+    boxes.frames(|boxes| {
+        let start = Instant::now();
+        let pairs = contender.find(boxes)?;
+        nanoseconds = nanoseconds.max(start.elapsed().as_nanos() as u64);
+        fingerprint = fingerprint + Fingerprint::of(pairs);
+        Ok(())
+    })?;
     let peak_bytes = machine::peak_memory().zip(before).map(|(peak, start)| peak - start.min(peak));
     Ok(Reply::Checked { fingerprint, nanoseconds, peak_bytes })
 }
 
+/// Times calls on boxes in motion frame by frame, and on boxes at rest so that nothing known from
+/// the last call helps.
 fn time<const D: usize>(
     contender: &mut dyn Contender<D>,
-    boxes: &[Aabb<D>],
-    shuffled: &[Aabb<D>],
+    boxes: &mut Boxes<D>,
     repeats: usize,
+    batch: usize,
 ) -> Result<Reply> {
     let mut nanoseconds = Vec::with_capacity(repeats);
     for _ in 0..repeats {
-        contender.forget(shuffled)?;
-        let start = Instant::now();
-        black_box(contender.find(black_box(boxes))?);
-        nanoseconds.push(start.elapsed().as_nanos() as u64);
+        match boxes {
+            Boxes::InMotion(moving) => {
+                moving.advance();
+                nanoseconds.push(clock(contender, &[moving.boxes()])?);
+            }
+            Boxes::AtRest { boxes, shuffled } if batch == 1 => {
+                contender.forget(shuffled)?;
+                nanoseconds.push(clock(contender, &[boxes])?);
+            }
+            Boxes::AtRest { boxes, shuffled } => {
+                let turns: Vec<&[Aabb<D>]> = [&**boxes, &**shuffled].repeat(batch.div_ceil(2));
+                nanoseconds.push(clock(contender, &turns)?);
+            }
+        }
     }
     Ok(Reply::Timed { nanoseconds })
+}
+
+/// The mean time of a call, in nanoseconds.
+fn clock<const D: usize>(contender: &mut dyn Contender<D>, turns: &[&[Aabb<D>]]) -> Result<f64> {
+    let start = Instant::now();
+    for boxes in turns {
+        black_box(contender.find(black_box(boxes))?);
+    }
+    Ok(start.elapsed().as_nanos() as f64 / turns.len() as f64)
 }

@@ -125,6 +125,21 @@ fn too_many_pairs_are_left_out_and_new_cases_join_the_old() {
 }
 
 #[test]
+fn boxes_in_motion_are_checked_frame_by_frame_and_small_inputs_against_brute_force() {
+    let folder = folder("motion");
+    let file = folder.join("here.json");
+    let scenes = ["--scenes", "teleport,uniform", "--dimensions", "3", "--peers", "plain,brute"];
+    let (_, record) = measure(&file, &[&scenes[..], &["--sizes", "0,1,20,300"]].concat());
+    assert_eq!(cases(&record).len(), 8);
+    for entry in cases(&record).iter().flat_map(|case| case["results"].as_array().unwrap()) {
+        assert!(entry["outcome"]["Timed"].is_object(), "{entry}");
+    }
+    bench(&["report", "--results", folder.to_str().unwrap()]);
+    let report = fs::read_to_string(folder.with_file_name("RESULTS.md")).unwrap();
+    assert!(report.contains("### Small inputs"), "{report}");
+}
+
+#[test]
 fn a_file_of_raw_boxes_is_a_scene() {
     let folder = folder("file");
     let boxes = folder.join("boxes.f32");

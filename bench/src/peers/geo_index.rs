@@ -25,6 +25,10 @@ struct GeoIndex {
 impl Contender<2> for GeoIndex {
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<2>]) -> Result<&'a [[u32; 2]]> {
         self.pairs.clear();
+        // It has no root to join without a box.
+        if boxes.is_empty() {
+            return Ok(&self.pairs);
+        }
         let mut builder = RTreeBuilder::<f32>::new(boxes.len() as u32);
         for aabb in boxes {
             builder.add(aabb.min[0], aabb.min[1], aabb.max[0], aabb.max[1]);

@@ -19,6 +19,8 @@ mod obvhs;
 mod packed_spatial_index;
 #[cfg(feature = "light")]
 mod parry;
+#[cfg(feature = "physx")]
+mod physx;
 #[cfg(feature = "light")]
 mod rstar;
 
@@ -85,6 +87,8 @@ pub fn all() -> Vec<Peer> {
     ]);
     #[cfg(feature = "cpp")]
     peers.extend_from_slice(cpp::PEERS);
+    #[cfg(feature = "physx")]
+    peers.extend([physx::AUTOMATIC, physx::MULTIPLE]);
     peers
 }
 

@@ -7,6 +7,7 @@ use anyhow::{Context, Result};
 
 use crate::record::Record;
 
+mod format;
 mod plot;
 mod table;
 

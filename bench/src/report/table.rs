@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
+use super::format::{count, rounded, significant, time};
 use crate::peers::OURS;
 use crate::record::{Case, Entry, Outcome, Record, Times};
 
@@ -33,6 +34,7 @@ pub fn section(record: &Record, plots: &[String]) -> String {
     text += &classic(record);
     text += &fastest(record);
     text += &means(record);
+    text += &small(record);
     text += &flat(record);
     text += &limits(record);
     text += "\n### Plots\n\n";
@@ -82,15 +84,15 @@ fn classic(record: &Record) -> String {
         let rival = case
             .ranking()
             .first()
-            .map_or("-".into(), |(name, times)| format!("{} ({name})", thousands(cycles(times))));
+            .map_or("-".into(), |(name, times)| format!("{} ({name})", rounded(cycles(times))));
         let _ = writeln!(
             rows,
             "| {} | {} | {} | {} | {rival} | {} |",
             count(boxes as u64),
             count(case.pairs),
-            thousands(cycles(ours)),
-            thousands(goal),
-            thousands(published),
+            rounded(cycles(ours)),
+            rounded(goal),
+            rounded(published),
         );
     }
     if rows.is_empty() {
@@ -112,14 +114,14 @@ fn fastest(record: &Record) -> String {
          | scene | boxes | pairs | ours | fastest rival | ratio | next | ratio |\n\
          |---|--:|--:|--:|---|--:|---|--:|\n",
     );
-    for case in sorted(record) {
+    for case in sorted(record).into_iter().filter(|case| case.boxes > SMALL) {
         let Some(ours) = case.times(OURS) else { continue };
         let ranking = case.ranking();
         let rival = |at: usize| match ranking.get(at) {
             Some((name, times)) => format!(
                 "{name} {} | {}",
                 time(times.median_ns),
-                times.ratio.map_or("-".into(), ratio)
+                times.ratio.map_or("-".into(), significant)
             ),
             None => "- | -".into(),
         };
@@ -140,7 +142,7 @@ fn fastest(record: &Record) -> String {
 
 fn means(record: &Record) -> String {
     let mut text = String::new();
-    for boxes in sizes(record) {
+    for boxes in sizes(record).into_iter().filter(|&boxes| boxes > SMALL) {
         let cases = record.cases.iter().filter(|case| case.boxes == boxes);
         let ratios: Vec<_> = cases.filter_map(advantage).collect();
         if ratios.is_empty() {
@@ -155,8 +157,8 @@ fn means(record: &Record) -> String {
             "| {} | {} | {} | {goal} | {} |",
             count(boxes as u64),
             ratios.len(),
-            ratio(mean),
-            ratio(least)
+            significant(mean),
+            significant(least)
         );
     }
     format!(
@@ -165,12 +167,44 @@ fn means(record: &Record) -> String {
     )
 }
 
+/// Inputs of at most so many boxes are compared with brute force.
+const SMALL: usize = 100;
+
+fn small(record: &Record) -> String {
+    let mut rows = String::new();
+    for boxes in sizes(record).into_iter().filter(|&boxes| boxes <= SMALL) {
+        let cases = record.cases.iter().filter(|case| case.boxes == boxes);
+        let mut slowdowns: Vec<_> = cases
+            .filter_map(|case| {
+                let slowdown = 1.0 / case.times("brute force")?.ratio?;
+                Some((slowdown, format!("{} {}D", case.scene, case.dimensions)))
+            })
+            .collect();
+        slowdowns.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        let Some((worst, scene)) = slowdowns.last() else { continue };
+        let middle = slowdowns[slowdowns.len() / 2].0;
+        let _ = writeln!(
+            rows,
+            "| {boxes} | {} | {} | {scene} |",
+            significant(middle),
+            significant(*worst)
+        );
+    }
+    if rows.is_empty() {
+        return rows;
+    }
+    format!(
+        "\n### Small inputs: ours over brute force\n\nGoal: at most 1.33.\n\n\
+         | boxes | median scene | worst scene | which |\n|--:|--:|--:|---|\n{rows}"
+    )
+}
+
 fn flat(record: &Record) -> String {
     let each = |case: &Case| {
         let ours = case.times(OURS)?;
         Some(ours.median_ns / (case.boxes as f64 + case.pairs as f64))
     };
-    let sizes: Vec<_> = sizes(record).into_iter().collect();
+    let sizes: Vec<_> = sizes(record).into_iter().filter(|&boxes| boxes > SMALL).collect();
     let mut text = String::from(
         "\n### Flat: ours, nanoseconds for each box and each pair\n\n\
          Goals: at 100,000 boxes at most 4 times those of uniform on any scene; from 10,000 to \
@@ -189,9 +223,10 @@ fn flat(record: &Record) -> String {
             let _ = write!(text, " {} |", at(boxes).map_or("-".into(), |ns| format!("{ns:.1}")));
         }
         let uniform = find(record, "uniform", dimensions, 100_000).and_then(each);
-        let over = at(100_000).zip(uniform).map_or("-".into(), |(ns, uniform)| ratio(ns / uniform));
+        let over =
+            at(100_000).zip(uniform).map_or("-".into(), |(ns, uniform)| significant(ns / uniform));
         let growth = at(1_000_000).zip(at(10_000));
-        let growth = growth.map_or("-".into(), |(large, small)| ratio(large / small));
+        let growth = growth.map_or("-".into(), |(large, small)| significant(large / small));
         let _ = writeln!(text, " {over} | {growth} |");
     }
     text
@@ -273,7 +308,8 @@ fn everything(record: &Record) -> String {
 fn cell(entry: &Entry) -> String {
     match &entry.outcome {
         Outcome::Timed(times) => {
-            let ratio = times.ratio.map_or(String::new(), |times| format!(" ({})", ratio(times)));
+            let ratio =
+                times.ratio.map_or(String::new(), |times| format!(" ({})", significant(times)));
             format!("{}{ratio}", time(times.median_ns))
         }
         Outcome::Untimed { why } => why.clone(),
@@ -338,45 +374,4 @@ fn find<'a>(record: &'a Record, scene: &str, dimensions: usize, boxes: usize) ->
     let wanted =
         |case: &&Case| case.scene == scene && case.dimensions == dimensions && case.boxes == boxes;
     record.cases.iter().find(wanted)
-}
-
-/// Three significant digits and the unit.
-fn time(nanoseconds: f64) -> String {
-    let (number, unit) = match nanoseconds {
-        ns if ns < 1e6 => (ns / 1e3, "µs"),
-        ns if ns < 1e9 => (ns / 1e6, "ms"),
-        ns => (ns / 1e9, "s"),
-    };
-    format!("{} {unit}", significant(number))
-}
-
-fn ratio(ratio: f64) -> String {
-    significant(ratio)
-}
-
-/// Three significant digits, but never fewer than those before the point.
-fn significant(number: f64) -> String {
-    let digits = match number {
-        n if n < 10.0 => 2,
-        n if n < 100.0 => 1,
-        _ => 0,
-    };
-    if digits == 0 { count(number.round() as u64) } else { format!("{number:.digits$}") }
-}
-
-fn thousands(number: f64) -> String {
-    count(number.round() as u64)
-}
-
-/// A number with a comma every three digits.
-fn count(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (at, digit) in digits.chars().enumerate() {
-        if at > 0 && (digits.len() - at).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
 }

@@ -1,0 +1,155 @@
+//! PhysX: its stand-alone broad phases, box pruning in regions that it makes itself (ABP) or that
+//! it is given (MBP), by Pierre Terdiman.
+#![allow(unsafe_code)]
+
+use std::ptr;
+use std::sync::Once;
+
+use anyhow::{Result, ensure};
+use physx_sys::*;
+use sweep_and_prune::Aabb;
+
+use super::{Contender, Origin, Peer, lift};
+
+/// The one that it recommends on average.
+pub const AUTOMATIC: Peer = Peer {
+    name: "PhysX ABP",
+    origin: Origin::Crate("physx-sys"),
+    how: "`PxCreateBroadPhase` (ABP) anew, one `update` that creates all objects, on one thread",
+    rival: true,
+    two: Some(|| Box::new(PhysX::new(PxBroadPhaseType::Abp))),
+    three: Some(|| Box::new(PhysX::new(PxBroadPhaseType::Abp))),
+};
+
+/// The one that may be faster with well-chosen regions.
+pub const MULTIPLE: Peer = Peer {
+    name: "PhysX MBP",
+    origin: Origin::Crate("physx-sys"),
+    how: "`PxCreateBroadPhase` (MBP) anew with 4 × 4 regions of the world's bounds, one `update` \
+          that creates all objects; it rounds coordinates, so its pairs are tested once more",
+    rival: true,
+    two: Some(|| Box::new(PhysX::new(PxBroadPhaseType::Mbp))),
+    three: Some(|| Box::new(PhysX::new(PxBroadPhaseType::Mbp))),
+};
+
+/// Regions along each of two axes, as PhysX recommends.
+const REGIONS: u32 = 4;
+
+struct PhysX {
+    kind: PxBroadPhaseType,
+    bounds: Vec<PxBounds3>,
+    created: Vec<u32>,
+    groups: Vec<u32>,
+    distances: Vec<f32>,
+    pairs: Vec<[u32; 2]>,
+}
+
+impl PhysX {
+    fn new(kind: PxBroadPhaseType) -> Self {
+        static FOUNDATION: Once = Once::new();
+        // SAFETY: called once in the process, before anything else of PhysX.
+        FOUNDATION.call_once(|| unsafe {
+            physx_create_foundation();
+        });
+        let (bounds, created, groups) = (Vec::new(), Vec::new(), Vec::new());
+        Self { kind, bounds, created, groups, distances: Vec::new(), pairs: Vec::new() }
+    }
+
+    /// The bounds of all boxes, in the four by four regions.
+    fn regions(&self) -> [PxBounds3; (REGIONS * REGIONS) as usize] {
+        let mut world = self.bounds[0];
+        for bounds in &self.bounds {
+            world.minimum = per_axis(f32::min, world.minimum, bounds.minimum);
+            world.maximum = per_axis(f32::max, world.maximum, bounds.maximum);
+        }
+        let mut regions = [world; (REGIONS * REGIONS) as usize];
+        const Z_IS_UP: u32 = 2;
+        // SAFETY: it writes REGIONS² bounds, for which there is room.
+        unsafe {
+            PxBroadPhaseExt_createRegionsFromWorldBounds(
+                regions.as_mut_ptr(),
+                &world,
+                REGIONS,
+                Z_IS_UP,
+            );
+        }
+        regions
+    }
+}
+
+fn per_axis(choose: fn(f32, f32) -> f32, a: PxVec3, b: PxVec3) -> PxVec3 {
+    PxVec3 { x: choose(a.x, b.x), y: choose(a.y, b.y), z: choose(a.z, b.z) }
+}
+
+fn corner<const D: usize>(corner: [f32; D]) -> PxVec3 {
+    let [x, y, z] = lift(corner);
+    PxVec3 { x, y, z }
+}
+
+impl<const D: usize> Contender<D> for PhysX {
+    fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]> {
+        self.pairs.clear();
+        if boxes.is_empty() {
+            return Ok(&self.pairs);
+        }
+        let count = boxes.len() as u32;
+        self.bounds.clear();
+        // PhysX may read past the last box.
+        self.bounds.extend(
+            boxes
+                .iter()
+                .chain(boxes.last())
+                .map(|aabb| PxBounds3 { minimum: corner(aabb.min), maximum: corner(aabb.max) }),
+        );
+        self.created.clear();
+        self.created.extend(0..count);
+        self.groups.clear();
+        // SAFETY: it only computes a number.
+        self.groups
+            .extend((0..count).map(|id| unsafe { phys_PxGetBroadPhaseDynamicFilterGroup(id) }));
+        self.distances.clear();
+        self.distances.resize(boxes.len(), 0.0);
+
+        // SAFETY: the broad phase lives from its creation to its release below; the arrays hold as
+        // many elements as it is told, and outlive it; the pairs are copied before the release.
+        unsafe {
+            let broad_phase = phys_PxCreateBroadPhase(&PxBroadPhaseDesc_new(self.kind));
+            ensure!(!broad_phase.is_null(), "PhysX makes no broad phase");
+            let regions = PxBroadPhase_getRegions_mut(broad_phase);
+            if !regions.is_null() {
+                for bounds in self.regions() {
+                    let region = PxBroadPhaseRegion { mBounds: bounds, mUserData: ptr::null_mut() };
+                    let (bounds, distances) = (self.bounds.as_ptr(), self.distances.as_ptr());
+                    PxBroadPhaseRegions_addRegion_mut(regions, &region, false, bounds, distances);
+                }
+            }
+            let update = PxBroadPhaseUpdateData_new(
+                self.created.as_ptr(),
+                count,
+                ptr::null(),
+                0,
+                ptr::null(),
+                0,
+                self.bounds.as_ptr(),
+                self.groups.as_ptr(),
+                self.distances.as_ptr(),
+                count,
+            );
+            let mut results = PxBroadPhaseResults_new();
+            PxBroadPhase_update_mut_1(broad_phase, &mut results, &update);
+            let found = match results.mNbCreatedPairs {
+                0 => &[],
+                found => std::slice::from_raw_parts(results.mCreatedPairs, found as usize),
+            };
+            let pairs = found.iter().map(|pair| [pair.mID0, pair.mID1]);
+            if self.kind == PxBroadPhaseType::Abp {
+                self.pairs.extend(pairs);
+            } else {
+                let overlap = |&[a, b]: &[u32; 2]| boxes[a as usize].overlaps(&boxes[b as usize]);
+                self.pairs.extend(pairs.filter(overlap));
+            }
+            PxBroadPhase_release_mut(broad_phase);
+        }
+        Ok(&self.pairs)
+    }
+}
