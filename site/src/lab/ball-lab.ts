@@ -217,10 +217,11 @@ export class BallLab extends HTMLElement {
   /** Gives a new world to the view, once there are both, and paints its bodies by their height. */
   #showBegun(): void {
     if (!this.#view || !this.#begun || this.#frame?.run !== this.#begun.run) return;
-    const { size, radii } = this.#begun;
+    const { min, max, radii } = this.#begun;
     const { positions } = this.#frame;
-    const tints = radii.map((_, body) => (positions[this.#dimensions * body + 1] ?? 0) / (size[1] ?? 1));
-    this.#view.begin({ size }, radii, tints);
+    const [floor = 0, ceiling = 1] = [min[1], max[1]];
+    const tints = radii.map((_, body) => ((positions[this.#dimensions * body + 1] ?? 0) - floor) / (ceiling - floor));
+    this.#view.begin({ min, max }, radii, tints);
     this.#fit();
     this.#message("");
   }

@@ -13,14 +13,14 @@ export interface Settings extends Method {
 /** The numbers that the sliders offer. */
 export const RANGES = {
   bodies: [1, 2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100, 150, 200, 300, 500, 700, 1000, 1500, 2000, 3000, 5000, 7000, 10000, 15000, 20000, 30000],
-  size: [40, 50, 60, 70, 80, 90, 100, 110, 120, 130, 140, 150],
+  size: [40, 50, 60, 70, 80, 90, 100, 110, 120, 130, 140],
   spread: [1, 1.5, 2, 3, 4, 5, 6, 8, 10, 15, 20],
 } as const;
 
 export const LARGEST_SEED = 2 ** 32 - 1;
 
 /** What the bodies of 100% fill together: an area in 2D, a volume in 3D. The box is 10 wide. */
-const FILLED = { 2: 25, 3: 335 } as const;
+const FILLED = { 2: 32, 3: 335 } as const;
 
 /** The world of these settings. More bodies are smaller bodies: they fill the same space. */
 export function setupOf({ bodies, size, spread, seed }: Settings, dimensions: 2 | 3): Setup {

@@ -53,12 +53,13 @@ export type ToSimulation =
   /** A buffer of positions, drawn and free for the next frame. */
   | { readonly type: "recycle"; readonly run: number; readonly positions: Float32Array };
 
-/** A world has begun. Lengths are in the units of the box, which begins at the origin. */
+/** A world has begun: bodies of these radii in the box from `min` to `max`, the second axis up. */
 export interface Begun {
   readonly type: "begun";
   /** The number that the page gave this world; what an earlier one still sends is stale. */
   readonly run: number;
-  readonly size: readonly number[];
+  readonly min: readonly number[];
+  readonly max: readonly number[];
   readonly radii: Float32Array;
 }
 

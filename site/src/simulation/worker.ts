@@ -47,8 +47,7 @@ function begin(run: number, setup: Setup, method: Method): void {
   });
   const buffers = Array.from({ length: BUFFERS }, () => new Float32Array(simulation.positions.length));
   world = { run, simulation, buffers, reports: [], taken: [], unseen: true };
-  const { min, max } = simulation.bounds;
-  send({ type: "begun", run, size: max.map((high, axis) => high - (min[axis] ?? 0)), radii: simulation.radii.slice() });
+  send({ type: "begun", run, ...simulation.bounds, radii: simulation.radii.slice() });
   show(world);
 }
 

@@ -1,5 +1,5 @@
 import type { Theme } from "./theme.ts";
-import { type Picture, pixelRatio, type View, type World } from "./view.ts";
+import { type Picture, pixelRatio, shownHeight, type View, type World } from "./view.ts";
 
 /** Bodies of one shade are drawn as one path: the fewer shades, the fewer paths. */
 const SHADES = 24;
@@ -11,7 +11,8 @@ export class DiscView implements View {
   readonly #canvas: HTMLCanvasElement;
   readonly #context: CanvasRenderingContext2D;
   #theme: Theme;
-  #world: World = { size: [1, 1] };
+  #world: World = { min: [0, 0], max: [1, 1] };
+  #shownHeight = 1;
   #radii: Float32Array = new Float32Array(0);
   /** The bodies of each shade. */
   #shades: number[][] = [];
@@ -28,6 +29,7 @@ export class DiscView implements View {
 
   begin(world: World, radii: Float32Array, tints: Float32Array): void {
     this.#world = world;
+    this.#shownHeight = shownHeight(world, radii);
     this.#radii = radii;
     this.#shades = Array.from({ length: SHADES }, () => []);
     tints.forEach((tint, body) => this.#shades[Math.round(tint * (SHADES - 1))]?.push(body));
@@ -46,17 +48,20 @@ export class DiscView implements View {
   draw({ positions, pairs }: Picture): void {
     const context = this.#context;
     const { width, height } = this.#canvas;
-    const [worldWidth = 1, worldHeight = 1] = this.#world.size;
+    const [left = 0, bottom = 0] = this.#world.min;
+    const worldWidth = (this.#world.max[0] ?? 1) - left;
     const padding = PADDING * pixelRatio();
-    const scale = Math.min((width - 2 * padding) / worldWidth, (height - 2 * padding) / worldHeight);
-    const left = (width - worldWidth * scale) / 2;
-    const floor = (height + worldHeight * scale) / 2;
-    const x = (body: number): number => left + (positions[2 * body] ?? 0) * scale;
-    const y = (body: number): number => floor - (positions[2 * body + 1] ?? 0) * scale;
+    const scale = Math.min((width - 2 * padding) / worldWidth, (height - padding) / this.#shownHeight);
+    const wall = (width - worldWidth * scale) / 2;
+    const floor = height - padding;
+    const x = (body: number): number => wall + ((positions[2 * body] ?? 0) - left) * scale;
+    const y = (body: number): number => floor - ((positions[2 * body + 1] ?? 0) - bottom) * scale;
 
     context.clearRect(0, 0, width, height);
     context.fillStyle = this.#theme.floor;
     context.fillRect(0, floor, width, height - floor);
+    context.fillRect(0, 0, wall, height);
+    context.fillRect(wall + worldWidth * scale, 0, wall, height);
 
     // A hair's breadth between bodies that touch.
     const gap = Math.min(0.35 * pixelRatio(), 0.1 * (this.#radii[0] ?? 0) * scale);

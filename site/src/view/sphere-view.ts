@@ -19,7 +19,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Theme } from "./theme.ts";
-import { type Picture, pixelRatio, type View, type World } from "./view.ts";
+import { type Picture, pixelRatio, shownHeight, type View, type World } from "./view.ts";
 
 /** Where the eye is at first, seen from the middle of the world. */
 const DIRECTION = new Vector3(0.5, 0.36, 1).normalize();
@@ -40,7 +40,10 @@ export class SphereView implements View {
   readonly #floor = new Mesh(new PlaneGeometry(1, 1).rotateX(-Math.PI / 2), new MeshBasicMaterial());
   readonly #edges = new LineSegments(new EdgesGeometry(new BoxGeometry(1, 1, 1)), new LineBasicMaterial());
   readonly #changed: () => void;
-  #world: World = { size: [1, 1, 1] };
+  #framed = false;
+  /** The part of the world that is shown: its middle and its sides. */
+  readonly #middle = new Vector3();
+  readonly #sides = new Vector3(1, 1, 1);
 
   /**
    * `surface` takes the pointer and the keys that turn the view; `changed` is called when it has
@@ -67,12 +70,14 @@ export class SphereView implements View {
   }
 
   begin(world: World, radii: Float32Array, tints: Float32Array): void {
-    this.#world = world;
-    const [width = 1, height = 1, depth = 1] = world.size;
-    this.#edges.scale.set(width, height, depth);
-    this.#edges.position.set(width / 2, height / 2, depth / 2);
-    this.#floor.scale.set(width, 1, depth);
-    this.#floor.position.set(width / 2, 0, depth / 2);
+    const [left = 0, bottom = 0, back = 0] = world.min;
+    const [right = 1, , front = 1] = world.max;
+    this.#sides.set(right - left, shownHeight(world, radii), front - back);
+    this.#middle.set(left, bottom, back).addScaledVector(this.#sides, 0.5);
+    this.#edges.scale.copy(this.#sides);
+    this.#edges.position.copy(this.#middle);
+    this.#floor.scale.set(this.#sides.x, 1, this.#sides.z);
+    this.#floor.position.set(this.#middle.x, bottom, this.#middle.z);
 
     const geometry = squares(radii.length);
     geometry.setAttribute("radius", new InstancedBufferAttribute(radii, 1));
@@ -107,17 +112,18 @@ export class SphereView implements View {
 
   /** Stands back just as far as the whole world needs, looking from where it looks now. */
   #frame(): void {
-    const [width = 1, height = 1, depth = 1] = this.#world.size;
     const { position, fov, aspect } = this.#camera;
-    const target = this.#controls.target.set(width / 2, height / 2, depth / 2);
-    const back = position.lengthSq() === 0 ? DIRECTION.clone() : position.clone().sub(target).normalize();
+    const target = this.#controls.target;
+    const back = this.#framed ? position.clone().sub(target).normalize() : DIRECTION.clone();
+    this.#framed = true;
+    target.copy(this.#middle);
     const right = new Vector3(0, 1, 0).cross(back).normalize();
     const up = back.clone().cross(right);
     const slopeUp = Math.tan((fov * Math.PI) / 360);
     let distance = 0;
     for (let corner = 0; corner < 8; corner++) {
       const sign = (bit: number): number => (corner & bit ? 0.53 : -0.53);
-      const at = new Vector3(sign(1) * width, sign(2) * height, sign(4) * depth);
+      const at = new Vector3(sign(1), sign(2), sign(4)).multiply(this.#sides);
       const needed = Math.max(Math.abs(at.dot(up)) / slopeUp, Math.abs(at.dot(right)) / (slopeUp * aspect));
       distance = Math.max(distance, at.dot(back) + needed);
     }
