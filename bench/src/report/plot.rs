@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::{Result, anyhow};
 use plotters::prelude::*;
 
-use super::table::{advantage, names, scenes};
+use super::table::{GOALS, advantage, names, scenes};
 use crate::peers::OURS;
 use crate::record::{Case, Record};
 
@@ -43,6 +43,11 @@ pub fn write(record: &Record, folder: &Path) -> Result<Vec<String>> {
         draw(&folder.join(&file), &title, "milliseconds", times(&cases, &contenders))?;
         written.push(file);
     }
+    advantages.push(Series {
+        name: "goal of the mean".into(),
+        points: GOALS.map(|(boxes, goal)| (boxes as f64, goal)).to_vec(),
+        style: BLACK.stroke_width(4),
+    });
     let title = "How many times ours the fastest rival takes";
     draw(&folder.join("advantage.svg"), title, "fastest rival / ours", advantages)?;
     written.insert(0, "advantage.svg".into());
