@@ -87,6 +87,7 @@ fn scenes_exist_where_they_say() {
     assert!(Scene::BoxPruning.boxes::<3, f32>(9, 1).is_some());
     assert!(Scene::NeedlesY.boxes::<1, f32>(9, 1).is_none());
     assert!(Scene::Uniform.boxes::<4, f32>(9, 1).is_none());
+    assert!(Scene::Uniform.boxes::<0, f32>(9, 1).is_none());
     assert!(Motion::Drift.start::<0, f32>(9, 1).is_none());
     assert!(Motion::Drift.start::<4, f32>(9, 1).is_none());
 }
