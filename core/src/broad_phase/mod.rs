@@ -1,15 +1,22 @@
 //! The living world: bodies that are inserted, moved and removed, and what begins and ends.
 
+mod candidates;
 mod changes;
 mod filter;
+mod follow;
 mod hash;
 mod options;
+mod predict;
 mod proxy;
 mod queries;
+mod rebuild;
 #[cfg(feature = "serde")]
 mod serde;
 mod snapshot;
+mod sort;
+mod tree;
 mod update;
+mod updater;
 
 use alloc::vec::Vec;
 
@@ -22,7 +29,7 @@ pub use queries::{Cast, Hit, Lists, Neighbour, Queries};
 use crate::{Aabb, Error, Scalar};
 use options::{contains, displacement, hull};
 use proxy::{Slots, flag};
-use update::Updater;
+use updater::Updater;
 
 /// A world of boxes that tells which overlaps began and which ended.
 ///
@@ -63,7 +70,7 @@ pub struct BroadPhase<const D: usize, T: Scalar = f32> {
     /// By slot, the boxes as given, where these are not the ones reported; else empty.
     shapes: Vec<Aabb<D, T>>,
     filters: Vec<Filter>,
-    /// The slots of [`flag::CHANGED`], each once, and those of bodies that left since.
+    /// The slots of [`flag::CHANGED`], at least once each, and those of bodies that left since.
     changed: Vec<u32>,
     /// The slots of [`flag::LEAVING`].
     leaving: Vec<u32>,
@@ -245,9 +252,12 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// [`Error::StaleProxy`].
     pub fn set_filter(&mut self, id: ProxyId, filter: Filter) -> Result<(), Error> {
         let slot = self.slots.check(id, 0)?;
-        if self.filters[slot as usize] != filter {
-            self.filters[slot as usize] = filter;
-            self.touch(slot, flag::IRREGULAR);
+        let before = core::mem::replace(&mut self.filters[slot as usize], filter);
+        if before != filter {
+            if !self.slots.has(slot, flag::NEW | flag::REFILTERED) {
+                self.note_old_filter(slot, before);
+            }
+            self.touch(slot);
         }
         Ok(())
     }
@@ -306,8 +316,11 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         };
         put(&mut self.boxes, slot, boxed);
         put(&mut self.filters, slot, filter);
-        self.updater.add(slot, boxed);
-        self.touch(slot, flag::IRREGULAR);
+        if self.updater.fat.len() < self.boxes.len() {
+            self.updater.add_slot(boxed);
+        }
+        self.slots.raise(slot, flag::NEW);
+        self.touch(slot);
         self.slots.id(slot)
     }
 
@@ -319,26 +332,38 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             Report::Exact => {
                 if self.boxes[at] != *aabb {
                     self.boxes[at] = *aabb;
-                    self.touch(slot, 0);
+                    self.touch(slot);
                 }
             }
             Report::Fat => {
                 let before = core::mem::replace(&mut self.shapes[at], *aabb);
                 if !contains(&self.boxes[at], aabb) {
                     self.boxes[at] = self.options.fatten(aabb, displacement(&before, aabb));
-                    self.touch(slot, 0);
+                    self.touch(slot);
                 }
             }
         }
     }
 
-    /// Has the next update look at a body.
+    /// Has the next update look at a body, and the next query too.
     #[inline]
-    fn touch(&mut self, slot: u32, flags: u8) {
-        if !self.slots.has(slot, flag::CHANGED) {
+    fn touch(&mut self, slot: u32) {
+        let flags = &mut self.slots.flags[slot as usize];
+        if *flags & (flag::CHANGED | flag::KNOWN) != flag::CHANGED {
             self.changed.push(slot);
+            *flags = (*flags | flag::CHANGED) & !flag::KNOWN;
         }
-        self.slots.raise(slot, flag::CHANGED | flags);
+    }
+
+    /// Keeps the filter that the last update knew a body with.
+    fn note_old_filter(&mut self, slot: u32, filter: Filter) {
+        let Updater { old_filters, any_refiltered, .. } = &mut self.updater;
+        self.slots.raise(slot, flag::REFILTERED);
+        *any_refiltered = true;
+        if old_filters.len() <= slot as usize {
+            old_filters.resize(self.slots.len(), filter);
+        }
+        old_filters[slot as usize] = filter;
     }
 
     /// Notes where a sweep ends.
@@ -362,7 +387,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
                 if self.options.report == Report::Fat {
                     self.shapes[slot as usize] = to;
                     self.boxes[slot as usize] = self.options.fatten(&to, [T::default(); D]);
-                    self.touch(slot, 0);
+                    self.touch(slot);
                 } else {
                     self.place(slot, &to);
                 }

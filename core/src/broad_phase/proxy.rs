@@ -52,10 +52,14 @@ pub(super) mod flag {
     /// Its body was removed since the last update, which has yet to report its ended pairs.
     pub const LEAVING: u8 = 2;
     /// Its box or filter changed since the last update, or it is new: it stands in the list of
-    /// those to look at.
+    /// the changed.
     pub const CHANGED: u8 = 4;
-    /// The last update did not know it with this filter.
-    pub const IRREGULAR: u8 = 8;
+    /// The last update did not know its body.
+    pub const NEW: u8 = 8;
+    /// The last update knew its body with another filter.
+    pub const REFILTERED: u8 = 64;
+    /// The tree knows its box since it changed.
+    pub const KNOWN: u8 = 128;
     /// Its box is swept until the next update.
     pub const SWEPT: u8 = 16;
     /// A mark of the update at work; never set between two calls.

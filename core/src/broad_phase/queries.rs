@@ -1,8 +1,8 @@
 //! Queries: what overlaps a box, a point or a sphere, what a ray or a moving box hits, what is
 //! nearest.
 //!
-//! Each query is a [`Search`]: a lower bound for all bodies in a box, by which whole parts of the
-//! world are passed over, and the same formula for one body. Formulas are in `f64` and made of
+//! Each query is a [`Search`] of the tree: a lower bound for all bodies in a box, by which whole
+//! parts of the world are passed over, and the same formula for one body. Formulas are in `f64` and made of
 //! operations that round monotonically, so what holds a body is never farther than the body.
 
 use alloc::collections::BinaryHeap;
@@ -13,6 +13,7 @@ use core::ops::{ControlFlow, Index};
 use super::BroadPhase;
 use super::filter::Filter;
 use super::proxy::{ProxyId, flag};
+use super::tree::Search;
 use crate::{Aabb, Error, Scalar};
 
 /// A box or a point on its way: from where, in which direction, how far.
@@ -167,27 +168,9 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// # Ok::<(), sweep_and_prune::Error>(())
     /// ```
     pub fn queries(&mut self) -> Queries<'_, D, T> {
+        self.refresh_tree();
         Queries { world: self, filter: Filter::ALL }
     }
-
-    /// Walks all bodies that a search does not exclude.
-    fn search(&self, search: &mut impl Search<D, T>) -> ControlFlow<()> {
-        for slot in 0..self.slots.len() as u32 {
-            if self.slots.has(slot, flag::LIVE) && search.bound(self.shape(slot)).is_some() {
-                search.visit(slot, self.shape(slot))?;
-            }
-        }
-        ControlFlow::Continue(())
-    }
-}
-
-/// What a query looks for.
-trait Search<const D: usize, T> {
-    /// How near the nearest body in `bounds` may be; `None` if none in there can matter.
-    fn bound(&self, bounds: &Aabb<D, T>) -> Option<f64>;
-
-    /// Looks at one body.
-    fn visit(&mut self, slot: u32, aabb: &Aabb<D, T>) -> ControlFlow<()>;
 }
 
 impl<const D: usize, T: Scalar> Queries<'_, D, T> {
@@ -351,7 +334,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         for &point in points {
             search.point = point;
             if k > 0 {
-                let _ = self.world.search(&mut search);
+                let _ = self.world.updater.tree.search(&mut search);
             }
             sorted.extend(search.nearest.drain());
             sorted.sort_unstable();
@@ -403,17 +386,19 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         is_near: impl Fn(&Aabb<D, T>) -> bool,
         visit: impl FnMut(ProxyId) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        self.world.search(&mut Region { queries: self, is_near, visit })
+        self.world.updater.tree.search(&mut Region { queries: self, is_near, visit })
     }
 
     fn run_cast(&self, cast: &Cast<D, T>, visit: impl FnMut(Hit) -> ControlFlow<(), f64>) {
         let limit = cast.limit.to_f64();
         // Whoever broke off knows it.
-        let _ = self.world.search(&mut Casting { queries: self, cast, limit, visit });
+        let _ = self.world.updater.tree.search(&mut Casting { queries: self, cast, limit, visit });
     }
 
+    /// Whether a body is there, which the tree alone does not say, and not filtered out.
     fn sees(&self, slot: u32) -> bool {
-        self.filter.allows(&self.world.filters[slot as usize])
+        self.world.slots.has(slot, flag::LIVE)
+            && self.filter.allows(&self.world.filters[slot as usize])
     }
 }
 
@@ -435,8 +420,8 @@ where
         (self.is_near)(bounds).then_some(0.0)
     }
 
-    fn visit(&mut self, slot: u32, aabb: &Aabb<D, T>) -> ControlFlow<()> {
-        if (self.is_near)(aabb) && self.queries.sees(slot) {
+    fn visit(&mut self, slot: u32) -> ControlFlow<()> {
+        if (self.is_near)(self.queries.world.shape(slot)) && self.queries.sees(slot) {
             (self.visit)(self.queries.world.slots.id(slot))?;
         }
         ControlFlow::Continue(())
@@ -461,8 +446,8 @@ where
         self.cast.touches(bounds, self.limit)
     }
 
-    fn visit(&mut self, slot: u32, aabb: &Aabb<D, T>) -> ControlFlow<()> {
-        if let Some(at) = self.cast.touches(aabb, self.limit)
+    fn visit(&mut self, slot: u32) -> ControlFlow<()> {
+        if let Some(at) = self.cast.touches(self.queries.world.shape(slot), self.limit)
             && self.queries.sees(slot)
         {
             let limit = (self.visit)(Hit { id: self.queries.world.slots.id(slot), at });
@@ -492,8 +477,9 @@ impl<const D: usize, T: Scalar> Search<D, T> for Nearest<'_, D, T> {
         farthest.is_none_or(|&(bits, _)| distance.to_bits() <= bits).then_some(distance)
     }
 
-    fn visit(&mut self, slot: u32, aabb: &Aabb<D, T>) -> ControlFlow<()> {
+    fn visit(&mut self, slot: u32) -> ControlFlow<()> {
         if self.queries.sees(slot) {
+            let aabb = self.queries.world.shape(slot);
             self.nearest.push((distance_squared(&self.point, aabb).to_bits(), slot));
             if self.nearest.len() > self.k {
                 self.nearest.pop();

@@ -2,17 +2,21 @@
 //!
 //! ```text
 //! "SaPw"  version u8  dimensions u8  scalar bytes u8  report u8   margin  prediction
-//! slots: count, then of each      kind bits u8, generation, and of a living body
-//!                                 its box [its reported box] [where its sweep ends] [its filter]
-//! pairs: count, then of each      a less the a before it, b less the b before it or less a
-//! checksum u64
+//! count of slots, then of each slot
+//!     what it holds, bits of u8; generation
+//!     its box [its fat box, if these are reported]       of a living body
+//!     [where its sweep ends]                             of a swept one
+//!     [its filter]                                       if not the default
+//!     [its box at the last update]                       if another
+//!     [its filter at the last update]                    if another
+//! hash of all this, u64
 //! ```
-//! Counts, generations and differences are LEB128; all else is little-endian. Equal states give
-//! equal bytes.
+//! Counts and generations are LEB128, all else is little-endian. Live pairs need not be written:
+//! they are those of the boxes and filters of the last update. Equal states give equal bytes.
 
 use alloc::vec::Vec;
 
-use super::hash::Mixer;
+use super::hash::hash;
 use super::options::{Options, Report, contains};
 use super::proxy::flag;
 use super::{BroadPhase, Filter, check_box};
@@ -22,22 +26,27 @@ const MAGIC: [u8; 4] = *b"SaPw";
 const VERSION: u8 = 1;
 const HEADER: usize = 8;
 
-/// What follows a slot's kind.
-mod kind {
-    pub const LIVE: u8 = 1;
+/// What a slot holds.
+mod holds {
+    /// A living body.
+    pub const BODY: u8 = 1;
+    /// A body that was removed since the last update.
     pub const LEAVING: u8 = 2;
-    pub const SWEPT: u8 = 4;
-    pub const FILTERED: u8 = 8;
-    pub const ALL: u8 = 15;
+    /// Its body came since the last update.
+    pub const NEW: u8 = 4;
+    pub const SWEEP: u8 = 8;
+    pub const FILTER: u8 = 16;
+    pub const OLD_BOX: u8 = 32;
+    pub const OLD_FILTER: u8 = 64;
 }
 
 impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// The whole state as bytes. A world [restored](Self::from_snapshot) from them gives, for the
     /// same calls, the same ids, events and results, bit for bit.
     ///
-    /// O(n + pairs log pairs) time; about `2 * D * size_of::<T>() + 2` bytes a body and 3 a pair.
+    /// O(n) time; about `2 * D * size_of::<T>() + 2` bytes for each body at rest.
     pub fn snapshot(&self) -> Vec<u8> {
-        let mut bytes = Vec::new();
+        let mut bytes = Vec::with_capacity(64 + self.slots.len() * (2 * D * T::BYTES + 2));
         bytes.extend(MAGIC);
         bytes.extend([VERSION, D as u8, T::BYTES as u8, self.options.report as u8]);
         put_scalars(&mut bytes, &[self.options.margin, self.options.prediction]);
@@ -45,58 +54,122 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         for slot in 0..self.slots.len() as u32 {
             self.put_slot(&mut bytes, slot);
         }
-        let pairs = self.updater.live();
-        put_number(&mut bytes, pairs.len() as u64);
-        let mut before = [0; 2];
-        for &[a, b] in pairs {
-            put_number(&mut bytes, u64::from(a - before[0]));
-            put_number(&mut bytes, u64::from(b - if a == before[0] { before[1] } else { a }));
-            before = [a, b];
-        }
-        let sum = checksum(&bytes);
+        let sum = hash(&bytes);
         bytes.extend(sum.to_le_bytes());
         bytes
     }
 
     fn put_slot(&self, bytes: &mut Vec<u8>, slot: u32) {
         let at = slot as usize;
-        let is_live = self.slots.has(slot, flag::LIVE);
-        let filter = is_live.then(|| self.filters[at]).filter(|&it| it != Filter::default());
-        let is_swept = self.slots.has(slot, flag::SWEPT);
+        let flags = self.slots.flags[at];
+        let is_known = flags & (flag::LIVE | flag::LEAVING) != 0 && flags & flag::NEW == 0;
+        let old_box = Some(&self.updater.previous[at]).filter(|_| is_known);
+        let old_filter = Some(self.old_filter(slot)).filter(|_| is_known);
+        // A body that left is only what it was at the last update.
+        let is_live = flags & flag::LIVE != 0;
+        let (filter, old_box, old_filter) = if is_live {
+            let filter = &self.filters[at];
+            let old_box = old_box.filter(|&old| *old != self.boxes[at]);
+            (Some(filter), old_box, old_filter.filter(|&old| old != filter))
+        } else {
+            (old_filter, old_box, None)
+        };
+        let filter = filter.filter(|&filter| *filter != Filter::default());
         let bit = |is_set, bit| if is_set { bit } else { 0 };
         bytes.push(
-            bit(is_live, kind::LIVE)
-                | bit(self.slots.has(slot, flag::LEAVING), kind::LEAVING)
-                | bit(is_swept, kind::SWEPT)
-                | bit(filter.is_some(), kind::FILTERED),
+            bit(is_live, holds::BODY)
+                | bit(flags & flag::LEAVING != 0, holds::LEAVING)
+                | bit(flags & flag::NEW != 0, holds::NEW)
+                | bit(flags & flag::SWEPT != 0, holds::SWEEP)
+                | bit(filter.is_some(), holds::FILTER)
+                | bit(old_box.is_some(), holds::OLD_BOX)
+                | bit(old_filter.is_some(), holds::OLD_FILTER),
         );
         put_number(bytes, u64::from(self.slots.generations[at]));
-        if !is_live {
-            return;
-        }
-        put_box(bytes, self.shape(slot));
-        if self.options.report == Report::Fat {
-            put_box(bytes, &self.boxes[at]);
-        }
-        if is_swept {
-            put_box(bytes, &self.rests[at]);
-        }
-        if let Some(filter) = filter {
-            for word in [filter.category, filter.mask, filter.group as u32] {
-                bytes.extend(word.to_le_bytes());
+        if is_live {
+            put_box(bytes, self.shape(slot));
+            if self.options.report == Report::Fat {
+                put_box(bytes, &self.boxes[at]);
             }
-            bytes.push(u8::from(filter.is_static));
+            if flags & flag::SWEPT != 0 {
+                put_box(bytes, &self.rests[at]);
+            }
         }
+        filter.into_iter().for_each(|filter| put_filter(bytes, filter));
+        old_box.into_iter().for_each(|aabb| put_box(bytes, aabb));
+        old_filter.into_iter().for_each(|filter| put_filter(bytes, filter));
     }
 
     /// The world of a snapshot.
     ///
     /// # Errors
     /// [`Error::InvalidSnapshot`] for bytes that are truncated, changed, of another version, of a
-    /// world with other dimensions or coordinates, or no snapshot at all. O(n + pairs) time, and
-    /// memory in proportion to the bytes.
+    /// world with other dimensions or coordinates, or no snapshot at all.
+    ///
+    /// Takes the time of finding all pairs, and memory in proportion to the bytes and the pairs.
     pub fn from_snapshot(bytes: &[u8]) -> Result<Self, Error> {
         read(bytes).map_err(Error::InvalidSnapshot)
+    }
+
+    /// Reads the next slot into a world that holds those before it.
+    fn read_slot(&mut self, slot: u32, reader: &mut Reader) -> Result<(), SnapshotFault> {
+        let [held] = reader.take()?;
+        let has = |bits: u8| held & bits != 0;
+        let generation = u32::try_from(reader.number()?).map_err(|_| SnapshotFault::Corrupt)?;
+        let is_live = has(holds::BODY);
+        let is_known = (is_live || has(holds::LEAVING)) && !has(holds::NEW);
+        let is_absurd = generation == 0
+            || held & 128 != 0
+            || is_live && has(holds::LEAVING)
+            || !is_live
+                && (has(holds::SWEEP | holds::OLD_FILTER) || has(holds::OLD_BOX) != is_known)
+            || !is_live && !is_known && has(holds::FILTER)
+            || !is_known && has(holds::OLD_BOX | holds::OLD_FILTER)
+            || has(holds::NEW) && !is_live && !has(holds::LEAVING);
+        if is_absurd {
+            return Err(SnapshotFault::Corrupt);
+        }
+        let nothing = Aabb::new([T::default(); D], [T::default(); D]);
+        let (mut shape, mut boxed) = (nothing, nothing);
+        self.slots.generations.push(generation);
+        self.slots.flags.push(0);
+        if is_live {
+            self.slots.live += 1;
+            self.slots.raise(slot, flag::LIVE);
+            shape = reader.aabb()?;
+            boxed = if self.options.report == Report::Fat { reader.aabb()? } else { shape };
+            if !contains(&boxed, &shape) {
+                return Err(SnapshotFault::Corrupt);
+            }
+            if has(holds::SWEEP) {
+                let to = reader.aabb()?;
+                self.sweep_to(slot, to);
+            }
+        } else if has(holds::LEAVING) {
+            self.slots.raise(slot, flag::LEAVING);
+            self.leaving.push(slot);
+        } else {
+            self.slots.release(slot);
+        }
+        let filter = if has(holds::FILTER) { reader.filter()? } else { Filter::default() };
+        let old_box = if has(holds::OLD_BOX) { reader.aabb()? } else { boxed };
+        self.boxes.push(boxed);
+        self.filters.push(filter);
+        if self.options.report == Report::Fat {
+            self.shapes.push(shape);
+        }
+        self.updater.add_slot(old_box);
+        if has(holds::NEW) {
+            self.slots.raise(slot, flag::NEW);
+        }
+        if has(holds::OLD_FILTER) {
+            let old = reader.filter()?;
+            self.note_old_filter(slot, old);
+        }
+        if is_live && has(holds::NEW | holds::OLD_BOX | holds::OLD_FILTER) {
+            self.touch(slot);
+        }
+        Ok(())
     }
 }
 
@@ -105,7 +178,7 @@ fn read<const D: usize, T: Scalar>(bytes: &[u8]) -> Result<BroadPhase<D, T>, Sna
     if bytes[..known] != MAGIC[..known] {
         return Err(SnapshotFault::Foreign);
     }
-    let Some((&[_, _, _, _, version, dimensions, scalar_bytes, report], _)) =
+    let Some((&[_, _, _, _, version, dimensions, scalar_bytes, report], body)) =
         bytes.split_first_chunk::<HEADER>()
     else {
         return Err(SnapshotFault::Truncated);
@@ -117,9 +190,8 @@ fn read<const D: usize, T: Scalar>(bytes: &[u8]) -> Result<BroadPhase<D, T>, Sna
     if (dimensions, scalar_bytes) != (D, T::BYTES) {
         return Err(SnapshotFault::OtherWorld { dimensions, scalar_bytes });
     }
-    let mut reader = Reader { bytes: &bytes[HEADER..] };
-    let margin = reader.scalar()?;
-    let prediction = reader.scalar()?;
+    let mut reader = Reader { bytes: body };
+    let (margin, prediction) = (reader.scalar()?, reader.scalar()?);
     let report = match report {
         0 => Report::Exact,
         1 => Report::Fat,
@@ -128,110 +200,16 @@ fn read<const D: usize, T: Scalar>(bytes: &[u8]) -> Result<BroadPhase<D, T>, Sna
     let options = Options { margin, prediction, report };
     let mut world = BroadPhase::with_options(options).map_err(|_| SnapshotFault::Corrupt)?;
     let count = reader.number()?;
-    if count > Error::BOX_LIMIT as u64 {
-        return Err(SnapshotFault::Corrupt);
-    }
-    for slot in 0..count as u32 {
+    let count = u32::try_from(count).map_err(|_| SnapshotFault::Corrupt)?;
+    for slot in 0..count {
         world.read_slot(slot, &mut reader)?;
     }
-    let pairs = read_pairs(&mut reader, |slot| {
-        slot < count && world.slots.has(slot as u32, flag::LIVE | flag::LEAVING)
-    })?;
-    let body = &bytes[..bytes.len() - reader.bytes.len()];
-    let sum = reader.take::<8>()?;
-    if sum != checksum(body).to_le_bytes() || !reader.bytes.is_empty() {
+    let sum = hash(&bytes[..bytes.len() - reader.bytes.len()]);
+    if reader.take()? != sum.to_le_bytes() || !reader.bytes.is_empty() {
         return Err(SnapshotFault::Corrupt);
     }
-    world.updater.restore(pairs);
+    world.restore_candidates();
     Ok(world)
-}
-
-impl<const D: usize, T: Scalar> BroadPhase<D, T> {
-    /// Reads the next slot into a world that holds those before it.
-    fn read_slot(&mut self, slot: u32, reader: &mut Reader) -> Result<(), SnapshotFault> {
-        let [kinds] = reader.take::<1>()?;
-        let is_live = kinds & kind::LIVE != 0;
-        let generation = u32::try_from(reader.number()?).map_err(|_| SnapshotFault::Corrupt)?;
-        let makes_sense = generation > 0
-            && kinds & !kind::ALL == 0
-            && !(is_live && kinds & kind::LEAVING != 0)
-            && (is_live || kinds & (kind::SWEPT | kind::FILTERED) == 0);
-        if !makes_sense {
-            return Err(SnapshotFault::Corrupt);
-        }
-        self.slots.generations.push(generation);
-        self.slots.flags.push(0);
-        let nothing = Aabb::new([T::default(); D], [T::default(); D]);
-        if !is_live {
-            put(&mut self.boxes, &mut self.shapes, self.options.report, nothing, nothing);
-            self.filters.push(Filter::default());
-            self.updater.add(slot, nothing);
-            if kinds & kind::LEAVING != 0 {
-                self.slots.raise(slot, flag::LEAVING);
-                self.leaving.push(slot);
-            } else {
-                self.slots.release(slot);
-            }
-            return Ok(());
-        }
-        self.slots.raise(slot, flag::LIVE);
-        self.slots.live += 1;
-        let shape = reader.aabb()?;
-        let boxed = match self.options.report {
-            Report::Exact => shape,
-            Report::Fat => reader.aabb()?,
-        };
-        if !contains(&boxed, &shape) {
-            return Err(SnapshotFault::Corrupt);
-        }
-        put(&mut self.boxes, &mut self.shapes, self.options.report, boxed, shape);
-        if kinds & kind::SWEPT != 0 {
-            let to = reader.aabb()?;
-            if !contains(&shape, &to) {
-                return Err(SnapshotFault::Corrupt);
-            }
-            self.sweep_to(slot, to);
-        }
-        let filter = if kinds & kind::FILTERED != 0 { reader.filter()? } else { Filter::default() };
-        self.filters.push(filter);
-        self.updater.add(slot, boxed);
-        self.touch(slot, flag::IRREGULAR);
-        return Ok(());
-
-        fn put<B>(boxes: &mut Vec<B>, shapes: &mut Vec<B>, report: Report, boxed: B, shape: B) {
-            boxes.push(boxed);
-            if report == Report::Fat {
-                shapes.push(shape);
-            }
-        }
-    }
-}
-
-/// Pairs that are sorted, each once, smaller slot first, of slots that are in use.
-fn read_pairs(
-    reader: &mut Reader,
-    is_used: impl Fn(u64) -> bool,
-) -> Result<Vec<[u32; 2]>, SnapshotFault> {
-    let count = reader.number()?;
-    // A pair takes two bytes at least: no more memory is asked for than the bytes can fill.
-    if count > reader.bytes.len() as u64 / 2 {
-        return Err(SnapshotFault::Truncated);
-    }
-    let mut pairs = Vec::with_capacity(count as usize);
-    let mut before = [0u64; 2];
-    for _ in 0..count {
-        let step = reader.number()?;
-        let a = before[0].saturating_add(step);
-        let from = if step == 0 { before[1].max(a) } else { a };
-        let ahead = reader.number()?;
-        let b = from.saturating_add(ahead);
-        if ahead == 0 || !is_used(a) || !is_used(b) {
-            return Err(SnapshotFault::Corrupt);
-        }
-        pairs.push([a as u32, b as u32]);
-        before = [a, b];
-    }
-    Ok(pairs)
 }
 
 fn put_number(bytes: &mut Vec<u8>, mut number: u64) {
@@ -253,15 +231,11 @@ fn put_box<const D: usize, T: Scalar>(bytes: &mut Vec<u8>, aabb: &Aabb<D, T>) {
     put_scalars(bytes, &aabb.max);
 }
 
-fn checksum(bytes: &[u8]) -> u64 {
-    let mut mixer = Mixer::new();
-    mixer.add(bytes.len() as u64);
-    for chunk in bytes.chunks(8) {
-        let mut word = [0; 8];
-        word[..chunk.len()].copy_from_slice(chunk);
-        mixer.add(u64::from_le_bytes(word));
+fn put_filter(bytes: &mut Vec<u8>, filter: &Filter) {
+    for word in [filter.category, filter.mask, filter.group as u32] {
+        bytes.extend(word.to_le_bytes());
     }
-    mixer.finish()
+    bytes.push(u8::from(filter.is_static));
 }
 
 /// Takes bytes from the front, as long as there are any.

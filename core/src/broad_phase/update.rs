@@ -1,122 +1,124 @@
-//! The update: from boxes to the pairs that began and ended.
+//! The update: from boxes that changed to the pairs that began and ended.
+//!
+//! Every body has a fat box around its box, and the pairs of fat boxes are kept as candidates. As
+//! long as bodies stay within their fat boxes only candidates can begin or end, and an update
+//! tests those of the bodies that moved. A body that leaves its fat box gets a new one, which
+//! reaches ahead in the direction of its motion, and a tree tells what that overlaps (`follow`).
+//! When so many leave that it is cheaper, the finder finds all candidates anew (`rebuild`).
+//!
+//! Neither the fat boxes nor the choice of the way show in what is reported. A pair is live if
+//! the last update knew both bodies, their boxes then overlapped and their filters then allowed
+//! it: that is a fact about boxes and filters, whatever else is kept.
 
 use alloc::vec::Vec;
 
 use super::BroadPhase;
 use super::changes::Changes;
+use super::options::contains;
 use super::proxy::{ProxyId, flag};
-use crate::finder::PairFinder;
-use crate::{Aabb, Error, Scalar};
+use super::sort::PairSorter;
+use super::updater::{TreeState, Updater};
+use crate::{Aabb, Scalar};
 
-/// What updates keep from one to the next.
-#[derive(Debug)]
-pub(super) struct Updater<const D: usize, T: Scalar> {
-    finder: PairFinder<D, T>,
-    dense: Vec<Aabb<D, T>>,
-    slot_of: Vec<u32>,
-    live: Vec<[u32; 2]>,
-    found: Vec<[u32; 2]>,
-    begun: Vec<[u32; 2]>,
-    ended: Vec<[u32; 2]>,
-}
-
-impl<const D: usize, T: Scalar> Clone for Updater<D, T> {
-    fn clone(&self) -> Self {
-        Self { live: self.live.clone(), ..Self::new() }
-    }
-}
-
-impl<const D: usize, T: Scalar> Updater<D, T> {
-    pub fn new() -> Self {
-        Self {
-            finder: PairFinder::new(),
-            dense: Vec::new(),
-            slot_of: Vec::new(),
-            live: Vec::new(),
-            found: Vec::new(),
-            begun: Vec::new(),
-            ended: Vec::new(),
-        }
-    }
-
-    /// Learns of a new body.
-    pub fn add(&mut self, _slot: u32, _aabb: Aabb<D, T>) {}
-
-    /// Takes over the live pairs of a snapshot, which are sorted.
-    pub fn restore(&mut self, live: Vec<[u32; 2]>) {
-        self.live = live;
-    }
-
-    /// The live pairs as slots, sorted.
-    pub fn live(&self) -> &[[u32; 2]] {
-        &self.live
-    }
-}
+/// To follow a body that left its fat box costs as much as to find the candidates of so many
+/// bodies anew.
+const REBUILD: usize = 6;
 
 impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Reports the pairs that began and ended since the last update.
+    ///
+    /// Time in proportion to the bodies that changed and their neighbours, and not much more than
+    /// finding all pairs takes.
     pub fn update(&mut self) -> Changes<'_> {
-        let Updater { finder, dense, slot_of, live, found, begun, ended } = &mut self.updater;
-        dense.clear();
-        slot_of.clear();
-        for slot in 0..self.slots.len() as u32 {
-            if self.slots.has(slot, flag::LIVE) {
-                dense.push(self.boxes[slot as usize]);
-                slot_of.push(slot);
-            }
+        self.updater.begun.clear();
+        self.updater.ended.clear();
+        self.find_escaped();
+        let moves = self.updater.scratch.escaped.len() + self.leaving.len();
+        if moves * REBUILD > self.len() {
+            self.rebuild();
+        } else {
+            self.follow();
         }
-        found.clear();
-        if let Ok(pairs) = finder.find(dense) {
-            let as_slots = |&[a, b]: &[u32; 2]| [slot_of[a as usize], slot_of[b as usize]];
-            let filters = &self.filters;
-            let allowed = |[a, b]: &[u32; 2]| filters[*a as usize].allows(&filters[*b as usize]);
-            found.extend(pairs.iter().map(as_slots).filter(allowed));
-        }
-        found.sort_unstable();
-        begun.clear();
-        ended.clear();
-        let mut before = live.iter().copied().peekable();
-        for &pair in found.iter() {
-            while let Some(gone) = before.next_if(|&old| old < pair) {
-                ended.push(gone);
-            }
-            if before.next_if_eq(&pair).is_none() {
-                begun.push(pair);
-            }
-        }
-        ended.extend(before);
-        core::mem::swap(live, found);
+        let slots = self.slots.len();
+        let Updater { scratch, begun, ended, .. } = &mut self.updater;
+        scratch.sorter.sort(begun, slots);
+        scratch.sorter.sort(ended, slots);
+        self.end_update();
+        let Updater { begun, ended, .. } = &self.updater;
+        Changes { slots: &self.slots, begun, ended }
+    }
 
-        for slot in self.changed.drain(..) {
-            self.slots.lower(slot, flag::CHANGED | flag::IRREGULAR);
+    /// Lists the bodies that need a new fat box: those that left theirs, are new, or may pair with
+    /// others than before. Leaves each changed body that lives in the list of the changed, once.
+    fn find_escaped(&mut self) {
+        let Updater { fat, scratch, .. } = &mut self.updater;
+        scratch.escaped.clear();
+        let (slots, boxes) = (&mut self.slots, &self.boxes);
+        self.changed.retain(|&slot| {
+            let flags = slots.flags[slot as usize];
+            slots.lower(slot, flag::CHANGED | flag::KNOWN);
+            let is_first = flags & flag::CHANGED != 0 && flags & flag::LIVE != 0;
+            let is_irregular = flags & (flag::NEW | flag::REFILTERED) != 0;
+            let at = slot as usize;
+            if is_first && (is_irregular || !contains(&fat[at], &boxes[at])) {
+                scratch.escaped.push(slot);
+            }
+            is_first
+        });
+    }
+
+    /// Makes the world of now the world of the last update.
+    fn end_update(&mut self) {
+        let Updater { previous, tree_state, any_refiltered, .. } = &mut self.updater;
+        for &slot in &self.changed {
+            previous[slot as usize] = self.boxes[slot as usize];
+            self.slots.lower(slot, flag::NEW | flag::REFILTERED);
+        }
+        self.changed.clear();
+        *any_refiltered = false;
+        if let TreeState::Fresh { known } = tree_state {
+            *known = 0;
         }
         for slot in self.leaving.drain(..) {
             self.slots.release(slot);
         }
         self.settle();
-        let Updater { begun, ended, .. } = &self.updater;
-        Changes { slots: &self.slots, begun, ended }
     }
 
-    /// The pairs that overlapped at the last update, sorted.
+    /// The pairs that overlapped at the last update, sorted. O(pairs) time.
     pub fn pairs(&self) -> Vec<[ProxyId; 2]> {
-        let id = |slot| self.slots.id(slot);
-        self.updater.live.iter().map(|pair| pair.map(id)).collect()
+        let mut pairs: Vec<_> = self.updater.candidates.live_pairs().collect();
+        PairSorter::default().sort(&mut pairs, self.slots.len());
+        pairs.into_iter().map(|pair| pair.map(|slot| self.slots.id(slot))).collect()
     }
 
     /// The bodies that overlapped this one at the last update, sorted.
     ///
+    /// Time in proportion to their number and that of near misses; after an update in which most
+    /// bodies left their neighbourhood, once O(pairs).
+    ///
     /// # Errors
-    /// [`Error::StaleProxy`].
-    pub fn pairs_of(&mut self, id: ProxyId) -> Result<Vec<ProxyId>, Error> {
+    /// [`Error::StaleProxy`](crate::Error::StaleProxy).
+    pub fn pairs_of(&mut self, id: ProxyId) -> Result<Vec<ProxyId>, crate::Error> {
         let slot = self.slots.check(id, 0)?;
-        let others = self
-            .updater
-            .live
-            .iter()
-            .filter_map(|&[a, b]| if a == slot { Some(b) } else { (b == slot).then_some(a) });
-        let mut others: Vec<_> = others.map(|slot| self.slots.id(slot)).collect();
+        let candidates = &mut self.updater.candidates;
+        candidates.link(self.slots.len());
+        let mut others = Vec::new();
+        let mut next = candidates.first(slot);
+        while let Some(index) = next {
+            let (other, later) = candidates.step(index, slot);
+            if candidates.live[index as usize] {
+                others.push(self.slots.id(other));
+            }
+            next = later;
+        }
         others.sort_unstable();
         Ok(others)
     }
+}
+
+/// Whether two boxes overlap, without a branch: what is asked of candidates is hard to guess.
+#[inline]
+pub(super) fn overlap<const D: usize, T: Scalar>(a: &Aabb<D, T>, b: &Aabb<D, T>) -> bool {
+    (0..D).fold(true, |all, axis| all & (a.min[axis] <= b.max[axis]) & (b.min[axis] <= a.max[axis]))
 }

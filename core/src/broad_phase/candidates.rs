@@ -1,0 +1,138 @@
+//! The pairs whose fat boxes overlap: those that may begin or end without anyone leaving his fat
+//! box. Each knows whether it is live, that is whether the last update counted it as overlapping.
+//!
+//! They stand in one flat list, to be gone through in a row when most bodies move, and in a doubly
+//! linked list a body, to be found one by one when few do. The links are made when first asked
+//! for: a world in which everything moves never pays for them.
+
+use alloc::vec::Vec;
+
+const NONE: u32 = u32::MAX;
+
+/// Where a pair stands in the lists of its two bodies.
+#[derive(Clone, Copy, Debug)]
+struct Links {
+    next: [u32; 2],
+    previous: [u32; 2],
+}
+
+#[derive(Clone, Debug, Default)]
+pub(super) struct Candidates {
+    /// Slots, smaller first. A place that is free holds twice the same, which as a pair would
+    /// always be live.
+    pub pairs: Vec<[u32; 2]>,
+    pub live: Vec<bool>,
+    links: Vec<Links>,
+    /// By slot, the first of its pairs.
+    heads: Vec<u32>,
+    free: Vec<u32>,
+    is_linked: bool,
+}
+
+/// Marks a free place.
+const FREE: [u32; 2] = [0, 0];
+
+impl Candidates {
+    /// Forgets all pairs.
+    pub fn clear(&mut self) {
+        self.pairs.clear();
+        self.live.clear();
+        self.free.clear();
+        self.is_linked = false;
+    }
+
+    /// The live pairs, in no particular order.
+    pub fn live_pairs(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+        let live = self.pairs.iter().zip(&self.live);
+        live.filter(|&(pair, &is_live)| is_live && pair[0] != pair[1]).map(|(&pair, _)| pair)
+    }
+
+    /// Links the pairs to their bodies, of which there are `slots`, if they are not yet.
+    pub fn link(&mut self, slots: usize) {
+        if self.is_linked {
+            self.heads.resize(slots, NONE);
+            return;
+        }
+        self.is_linked = true;
+        self.heads.clear();
+        self.heads.resize(slots, NONE);
+        self.links.clear();
+        for index in 0..self.pairs.len() as u32 {
+            let links = Links { next: [NONE; 2], previous: [NONE; 2] };
+            self.links.push(links);
+            self.hang(index);
+        }
+    }
+
+    /// Adds a pair of linked bodies.
+    pub fn add(&mut self, a: u32, b: u32, is_live: bool) {
+        let pair = [a.min(b), a.max(b)];
+        let index = if let Some(index) = self.free.pop() {
+            self.pairs[index as usize] = pair;
+            self.live[index as usize] = is_live;
+            index
+        } else {
+            self.pairs.push(pair);
+            self.live.push(is_live);
+            self.links.push(Links { next: [NONE; 2], previous: [NONE; 2] });
+            (self.pairs.len() - 1) as u32
+        };
+        self.hang(index);
+    }
+
+    /// Removes a linked pair.
+    pub fn remove(&mut self, index: u32) {
+        let pair = self.pairs[index as usize];
+        let links = self.links[index as usize];
+        for (side, &slot) in pair.iter().enumerate() {
+            let (next, previous) = (links.next[side], links.previous[side]);
+            if previous == NONE {
+                self.heads[slot as usize] = next;
+            } else {
+                let side = self.side(previous, slot);
+                self.links[previous as usize].next[side] = next;
+            }
+            if next != NONE {
+                let side = self.side(next, slot);
+                self.links[next as usize].previous[side] = previous;
+            }
+        }
+        self.pairs[index as usize] = FREE;
+        self.live[index as usize] = true;
+        self.free.push(index);
+    }
+
+    /// The first pair of a linked body.
+    #[inline]
+    pub fn first(&self, slot: u32) -> Option<u32> {
+        Some(self.heads[slot as usize]).filter(|&index| index != NONE)
+    }
+
+    /// The other body of a pair of this one, and the next pair of this one.
+    #[inline]
+    pub fn step(&self, index: u32, slot: u32) -> (u32, Option<u32>) {
+        let side = self.side(index, slot);
+        let next = self.links[index as usize].next[side];
+        (self.pairs[index as usize][1 - side], Some(next).filter(|&next| next != NONE))
+    }
+
+    #[inline]
+    fn side(&self, index: u32, slot: u32) -> usize {
+        usize::from(self.pairs[index as usize][0] != slot)
+    }
+
+    /// Puts a pair first in the lists of its bodies.
+    #[inline]
+    fn hang(&mut self, index: u32) {
+        let pair = self.pairs[index as usize];
+        for (side, &slot) in pair.iter().enumerate() {
+            let head = core::mem::replace(&mut self.heads[slot as usize], index);
+            self.links[index as usize].next[side] = head;
+            self.links[index as usize].previous[side] = NONE;
+            if head != NONE {
+                let side = self.side(head, slot);
+                self.links[head as usize].previous[side] = index;
+            }
+        }
+    }
+}

@@ -1,0 +1,561 @@
+//! A tree of boxes: what one body's box overlaps, and what a query looks for.
+//!
+//! An R-tree (Guttman 1984) of 16 boxes a node, held axis by axis so that the compiler tests
+//! several at once. Built from the top by cutting in the middle, along the axis on which the
+//! centres spread most for the size of the boxes; bodies that are far larger than others go into
+//! trees of their own under one root, so that a giant does not widen the node of a dwarf.
+
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
+
+use super::options::{contains, hull};
+use crate::{Aabb, Scalar};
+
+const NONE: u32 = u32::MAX;
+/// Boxes a node holds at most.
+const FAN: usize = 16;
+/// Bodies a leaf is built with, which leaves room for more.
+const FILL: usize = 12;
+/// A leaf with fewer is given up.
+const LEAST: usize = 3;
+
+/// What a query looks for.
+pub(super) trait Search<const D: usize, T> {
+    /// How near the nearest body in `bounds` may be; `None` if none in there can matter.
+    fn bound(&self, bounds: &Aabb<D, T>) -> Option<f64>;
+
+    /// Looks at the body in a slot.
+    fn visit(&mut self, slot: u32) -> ControlFlow<()>;
+}
+
+/// Up to 16 boxes, each of a child node or of a body.
+#[derive(Clone, Copy, Debug)]
+struct Node<const D: usize, T> {
+    min: [[T; FAN]; D],
+    max: [[T; FAN]; D],
+    /// Slots in a leaf, else nodes.
+    items: [u32; FAN],
+    count: usize,
+    parent: u32,
+    is_leaf: bool,
+}
+
+impl<const D: usize, T: Scalar> Node<D, T> {
+    fn new(is_leaf: bool) -> Self {
+        let nothing = [[T::default(); FAN]; D];
+        Self { min: nothing, max: nothing, items: [NONE; FAN], count: 0, parent: NONE, is_leaf }
+    }
+
+    #[inline]
+    fn aabb(&self, lane: usize) -> Aabb<D, T> {
+        Aabb::new(
+            core::array::from_fn(|axis| self.min[axis][lane]),
+            core::array::from_fn(|axis| self.max[axis][lane]),
+        )
+    }
+
+    #[inline]
+    fn set_aabb(&mut self, lane: usize, aabb: &Aabb<D, T>) {
+        for axis in 0..D {
+            self.min[axis][lane] = aabb.min[axis];
+            self.max[axis][lane] = aabb.max[axis];
+        }
+    }
+
+    fn push(&mut self, item: u32, aabb: &Aabb<D, T>) {
+        self.items[self.count] = item;
+        self.set_aabb(self.count, aabb);
+        self.count += 1;
+    }
+
+    fn swap_remove(&mut self, lane: usize) {
+        self.count -= 1;
+        let last = self.aabb(self.count);
+        self.set_aabb(lane, &last);
+        self.items[lane] = self.items[self.count];
+    }
+
+    #[inline]
+    fn lane_of(&self, item: u32) -> usize {
+        (0..self.count).find(|&lane| self.items[lane] == item).unwrap_or(0)
+    }
+
+    /// The smallest box that holds all.
+    fn bounds(&self) -> Aabb<D, T> {
+        let mut bounds = self.aabb(0);
+        for axis in 0..D {
+            for lane in 1..self.count {
+                let (min, max) = (self.min[axis][lane], self.max[axis][lane]);
+                bounds.min[axis] = if min < bounds.min[axis] { min } else { bounds.min[axis] };
+                bounds.max[axis] = if max > bounds.max[axis] { max } else { bounds.max[axis] };
+            }
+        }
+        bounds
+    }
+
+    /// A bit for each box that overlaps `area`.
+    #[inline]
+    fn overlapping(&self, area: &Aabb<D, T>) -> u32 {
+        let mut overlap = [true; FAN];
+        for axis in 0..D {
+            let (min, max) = (&self.min[axis], &self.max[axis]);
+            for lane in 0..FAN {
+                overlap[lane] &= (min[lane] <= area.max[axis]) & (area.min[axis] <= max[lane]);
+            }
+        }
+        let bits = (0..FAN).fold(0, |bits, lane| bits | u32::from(overlap[lane]) << lane);
+        bits & ((1 << self.count) - 1)
+    }
+}
+
+/// The tree, by slots. Bodies' boxes may be larger than the bodies.
+#[derive(Clone, Debug)]
+pub(super) struct Tree<const D: usize, T> {
+    nodes: Vec<Node<D, T>>,
+    free: Vec<u32>,
+    root: u32,
+    /// By slot, its leaf.
+    leaves: Vec<u32>,
+    count: usize,
+    /// The size of the leaves as built, and the number of bodies then.
+    built: (f64, usize),
+}
+
+impl<const D: usize, T: Scalar> Tree<D, T> {
+    pub fn new() -> Self {
+        Self {
+            nodes: Vec::new(),
+            free: Vec::new(),
+            root: NONE,
+            leaves: Vec::new(),
+            count: 0,
+            built: (0.0, 0),
+        }
+    }
+
+    /// How many bodies it holds.
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    pub fn clear(&mut self) {
+        self.nodes.clear();
+        self.free.clear();
+        self.leaves.clear();
+        self.root = NONE;
+        self.count = 0;
+    }
+
+    pub fn holds(&self, slot: u32) -> bool {
+        self.leaves.get(slot as usize).is_some_and(|&leaf| leaf != NONE)
+    }
+
+    /// Builds the tree anew of these slots, which it puts into another order. O(n log n) time.
+    pub fn build(&mut self, slots: &mut [u32], boxes: &[Aabb<D, T>]) {
+        self.clear();
+        self.leaves.resize(boxes.len(), NONE);
+        self.count = slots.len();
+        let class = |slot: u32| size_class(&boxes[slot as usize]);
+        slots.sort_unstable_by_key(|&slot| (class(slot), slot));
+        let mut roots: Vec<(u32, Aabb<D, T>)> = Vec::new();
+        let mut rest = &mut *slots;
+        while let Some(&first) = rest.first() {
+            // Where there are more classes than a node has room for, the last holds the others.
+            let is_last = roots.len() == FAN - 1;
+            let end = rest.partition_point(|&slot| is_last || class(slot) == class(first));
+            let (now, later) = rest.split_at_mut(end);
+            let leaves = now.len().div_ceil(FILL);
+            roots.push(self.build_node(now, boxes, leaves));
+            rest = later;
+        }
+        self.root = match roots[..] {
+            [] => NONE,
+            [(root, _)] => root,
+            _ => self.add_inner(&roots),
+        };
+        self.built = (self.leaf_size(), self.count);
+    }
+
+    /// A node over slots that go into `leaves` leaves, and its bounds.
+    fn build_node(
+        &mut self,
+        slots: &mut [u32],
+        boxes: &[Aabb<D, T>],
+        leaves: usize,
+    ) -> (u32, Aabb<D, T>) {
+        if leaves <= 1 {
+            let mut leaf = Node::new(true);
+            for &slot in slots.iter() {
+                leaf.push(slot, &boxes[slot as usize]);
+                self.leaves[slot as usize] = self.nodes.len() as u32;
+            }
+            self.nodes.push(leaf);
+            return ((self.nodes.len() - 1) as u32, leaf.bounds());
+        }
+        // As few children as hold the leaves when they are full to the bottom.
+        let mut room = 1;
+        while room * FAN < leaves {
+            room *= FAN;
+        }
+        let mut children = Vec::with_capacity(FAN);
+        self.build_children(slots, boxes, leaves, room, &mut children);
+        let bounds = children[1..].iter().fold(children[0].1, |all, child| hull(&all, &child.1));
+        (self.add_inner(&children), bounds)
+    }
+
+    /// Cuts slots in two until what is left goes into a child of `room` leaves.
+    fn build_children(
+        &mut self,
+        slots: &mut [u32],
+        boxes: &[Aabb<D, T>],
+        leaves: usize,
+        room: usize,
+        children: &mut Vec<(u32, Aabb<D, T>)>,
+    ) {
+        let count = leaves.div_ceil(room);
+        if count <= 1 {
+            children.push(self.build_node(slots, boxes, leaves));
+            return;
+        }
+        let left = (leaves * (count / 2)).div_ceil(count);
+        let middle = slots.len() * left / leaves;
+        let axis = widest_axis(slots, boxes);
+        let centre = |slot: &u32| boxes[*slot as usize].centre(axis);
+        slots.select_nth_unstable_by(middle, |a, b| centre(a).total_cmp(&centre(b)).then(a.cmp(b)));
+        let (low, high) = slots.split_at_mut(middle);
+        self.build_children(low, boxes, left, room, children);
+        self.build_children(high, boxes, leaves - left, room, children);
+    }
+
+    fn add_inner(&mut self, children: &[(u32, Aabb<D, T>)]) -> u32 {
+        let mut inner = Node::new(false);
+        for (child, bounds) in children {
+            inner.push(*child, bounds);
+        }
+        let index = self.add_node(inner);
+        for &(child, _) in children {
+            self.nodes[child as usize].parent = index;
+        }
+        index
+    }
+
+    fn add_node(&mut self, node: Node<D, T>) -> u32 {
+        if let Some(index) = self.free.pop() {
+            self.nodes[index as usize] = node;
+            index
+        } else {
+            self.nodes.push(node);
+            (self.nodes.len() - 1) as u32
+        }
+    }
+
+    /// Takes over new boxes of all bodies. Says whether the tree has become much worse than it
+    /// was when built. O(n) time.
+    pub fn refit(&mut self, boxes: &[Aabb<D, T>]) -> bool {
+        if self.root != NONE {
+            self.refit_node(self.root, boxes);
+        }
+        let (size, count) = self.built;
+        self.leaf_size() * (count as f64) > 1.5 * size * self.count as f64
+    }
+
+    fn refit_node(&mut self, index: u32, boxes: &[Aabb<D, T>]) -> Aabb<D, T> {
+        for lane in 0..self.nodes[index as usize].count {
+            let node = &self.nodes[index as usize];
+            let item = node.items[lane];
+            let aabb =
+                if node.is_leaf { boxes[item as usize] } else { self.refit_node(item, boxes) };
+            self.nodes[index as usize].set_aabb(lane, &aabb);
+        }
+        self.nodes[index as usize].bounds()
+    }
+
+    /// The sum of the sizes of the leaves.
+    fn leaf_size(&self) -> f64 {
+        let leaves = self.nodes.iter().filter(|node| node.is_leaf && node.count > 0);
+        leaves.map(|leaf| size(&leaf.bounds())).sum()
+    }
+
+    /// Adds a body. O(log n) time.
+    pub fn insert(&mut self, slot: u32, aabb: &Aabb<D, T>) {
+        if self.leaves.len() <= slot as usize {
+            self.leaves.resize(slot as usize + 1, NONE);
+        }
+        self.count += 1;
+        if self.root == NONE {
+            self.root = self.add_node(Node::new(true));
+        }
+        let mut index = self.root;
+        loop {
+            let node = &mut self.nodes[index as usize];
+            if node.is_leaf {
+                break;
+            }
+            let lane = cheapest_lane(node, aabb);
+            let grown = hull(&node.aabb(lane), aabb);
+            node.set_aabb(lane, &grown);
+            index = node.items[lane];
+        }
+        self.leaves[slot as usize] = index;
+        self.push(index, slot, aabb);
+    }
+
+    /// Adds a box to a node; a full one splits.
+    fn push(&mut self, index: u32, item: u32, aabb: &Aabb<D, T>) {
+        let node = &mut self.nodes[index as usize];
+        if node.count < FAN {
+            node.push(item, aabb);
+            return;
+        }
+        let (is_leaf, parent) = (node.is_leaf, node.parent);
+        let (low, high) = split(node, item, aabb);
+        *node = Node { parent, ..low };
+        let (low_bounds, high_bounds) = (node.bounds(), high.bounds());
+        let other = self.add_node(Node { parent, ..high });
+        for lane in 0..high.count {
+            let moved = high.items[lane] as usize;
+            if is_leaf {
+                self.leaves[moved] = other;
+            } else {
+                self.nodes[moved].parent = other;
+            }
+        }
+        if parent == NONE {
+            self.root = self.add_inner(&[(index, low_bounds), (other, high_bounds)]);
+        } else {
+            let above = &mut self.nodes[parent as usize];
+            let lane = above.lane_of(index);
+            above.set_aabb(lane, &low_bounds);
+            self.push(parent, other, &high_bounds);
+        }
+    }
+
+    /// Removes a body, if it is there. O(log n) time.
+    pub fn remove(&mut self, slot: u32) {
+        if !self.holds(slot) {
+            return;
+        }
+        let index = core::mem::replace(&mut self.leaves[slot as usize], NONE);
+        self.count -= 1;
+        let leaf = &mut self.nodes[index as usize];
+        leaf.swap_remove(leaf.lane_of(slot));
+        if leaf.count >= LEAST || leaf.parent == NONE && leaf.count > 0 {
+            self.tighten(index);
+            return;
+        }
+        let few = *leaf;
+        self.give_up(index);
+        for lane in 0..few.count {
+            self.count -= 1;
+            self.insert(few.items[lane], &few.aabb(lane));
+        }
+    }
+
+    /// Takes a node out of the tree, and those above it that it leaves empty.
+    fn give_up(&mut self, index: u32) {
+        self.free.push(index);
+        let node = &mut self.nodes[index as usize];
+        node.count = 0;
+        if node.parent == NONE {
+            self.root = NONE;
+            return;
+        }
+        let parent = node.parent;
+        let above = &mut self.nodes[parent as usize];
+        above.swap_remove(above.lane_of(index));
+        if above.count == 0 {
+            self.give_up(parent);
+        } else {
+            self.tighten(parent);
+        }
+    }
+
+    /// Fits the boxes above a node to it, as far up as that changes one.
+    fn tighten(&mut self, mut index: u32) {
+        loop {
+            let node = &self.nodes[index as usize];
+            if node.parent == NONE {
+                return;
+            }
+            let (bounds, parent) = (node.bounds(), node.parent);
+            let above = &mut self.nodes[parent as usize];
+            let lane = above.lane_of(index);
+            if above.aabb(lane) == bounds {
+                return;
+            }
+            above.set_aabb(lane, &bounds);
+            index = parent;
+        }
+    }
+
+    /// Gives a body its new box; adds it if it is not there. O(log n) time.
+    pub fn set(&mut self, slot: u32, aabb: &Aabb<D, T>) {
+        if !self.holds(slot) {
+            self.insert(slot, aabb);
+            return;
+        }
+        let index = self.leaves[slot as usize];
+        let leaf = &mut self.nodes[index as usize];
+        let parent = leaf.parent;
+        let lane = leaf.lane_of(slot);
+        if parent != NONE {
+            let above = &self.nodes[parent as usize];
+            if !contains(&above.aabb(above.lane_of(index)), aabb) {
+                self.remove(slot);
+                self.insert(slot, aabb);
+                return;
+            }
+        }
+        self.nodes[index as usize].set_aabb(lane, aabb);
+        self.tighten(index);
+    }
+
+    /// Shows all bodies whose box overlaps `area`.
+    pub fn overlapping(&self, area: &Aabb<D, T>, visit: &mut impl FnMut(u32)) {
+        if self.root != NONE {
+            self.overlapping_in(self.root, area, visit);
+        }
+    }
+
+    fn overlapping_in(&self, index: u32, area: &Aabb<D, T>, visit: &mut impl FnMut(u32)) {
+        let node = &self.nodes[index as usize];
+        let mut bits = node.overlapping(area);
+        while bits != 0 {
+            let item = node.items[bits.trailing_zeros() as usize];
+            if node.is_leaf {
+                visit(item);
+            } else {
+                self.overlapping_in(item, area, visit);
+            }
+            bits &= bits - 1;
+        }
+    }
+
+    /// Goes through what a search does not exclude, the nearer of a node's parts first.
+    pub fn search(&self, search: &mut impl Search<D, T>) -> ControlFlow<()> {
+        if self.root == NONE {
+            ControlFlow::Continue(())
+        } else {
+            self.search_in(self.root, search)
+        }
+    }
+
+    fn search_in(&self, index: u32, search: &mut impl Search<D, T>) -> ControlFlow<()> {
+        let node = &self.nodes[index as usize];
+        let mut parts = [(0.0, 0); FAN];
+        let mut count = 0;
+        for lane in 0..node.count {
+            if let Some(bound) = search.bound(&node.aabb(lane)) {
+                parts[count] = (bound, lane);
+                count += 1;
+            }
+        }
+        let parts = &mut parts[..count];
+        parts.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for &mut (_, lane) in parts {
+            // What was seen since may exclude it now.
+            if search.bound(&node.aabb(lane)).is_none() {
+                continue;
+            }
+            if node.is_leaf {
+                search.visit(node.items[lane])?;
+            } else {
+                self.search_in(node.items[lane], search)?;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+impl<const D: usize, T: Scalar> Aabb<D, T> {
+    /// The centre on an axis, doubled and kept finite: to sort by.
+    fn centre(&self, axis: usize) -> f64 {
+        finite(self.min[axis]) + finite(self.max[axis])
+    }
+}
+
+fn finite<T: Scalar>(at: T) -> f64 {
+    at.to_f64().clamp(-1e300, 1e300)
+}
+
+/// Half the perimeter, in proportion to which a box is met by chance. Finite.
+fn size<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> f64 {
+    (0..D).map(|axis| finite(aabb.max[axis]) - finite(aabb.min[axis])).sum()
+}
+
+/// Sizes that differ by less than a factor of 8 on the longest axis are of one class, or of two
+/// neighbouring ones.
+fn size_class<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> u32 {
+    let longest =
+        (0..D).map(|axis| finite(aabb.max[axis]) - finite(aabb.min[axis])).fold(0.0, f64::max);
+    // The exponent, in threes; larger first, so that the many small classes are the ones to share.
+    let exponent = (longest.to_bits() >> 52) as u32;
+    2047 / 3 - exponent / 3
+}
+
+/// The axis on which the centres spread most for the size of the boxes.
+fn widest_axis<const D: usize, T: Scalar>(slots: &[u32], boxes: &[Aabb<D, T>]) -> usize {
+    let mut best = (0, -1.0, 0.0);
+    for axis in 0..D {
+        let (mut low, mut high, mut width) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
+        for &slot in slots {
+            let aabb = &boxes[slot as usize];
+            let centre = aabb.centre(axis);
+            low = low.min(centre);
+            high = high.max(centre);
+            width += finite(aabb.max[axis]) - finite(aabb.min[axis]);
+        }
+        let spread = high - low;
+        let ratio = if spread > 0.0 { spread / width } else { 0.0 };
+        if ratio > best.1 || ratio == best.1 && spread > best.2 {
+            best = (axis, ratio, spread);
+        }
+    }
+    best.0
+}
+
+/// The child that has to grow least to take in a box; of several the smallest.
+fn cheapest_lane<const D: usize, T: Scalar>(node: &Node<D, T>, aabb: &Aabb<D, T>) -> usize {
+    let mut best = (0, f64::INFINITY, f64::INFINITY);
+    for lane in 0..node.count {
+        let bounds = node.aabb(lane);
+        let before = size(&bounds);
+        let growth = size(&hull(&bounds, aabb)) - before;
+        if growth < best.1 || growth == best.1 && before < best.2 {
+            best = (lane, growth, before);
+        }
+    }
+    best.0
+}
+
+/// Divides a full node's boxes and one more in two halves: in the order of an axis or of size,
+/// whichever makes the smallest halves.
+fn split<const D: usize, T: Scalar>(
+    node: &Node<D, T>,
+    item: u32,
+    aabb: &Aabb<D, T>,
+) -> (Node<D, T>, Node<D, T>) {
+    let mut entries = [(item, *aabb); FAN + 1];
+    for (lane, entry) in entries[..FAN].iter_mut().enumerate() {
+        *entry = (node.items[lane], node.aabb(lane));
+    }
+    let halves = |order: usize| {
+        let mut sorted = entries;
+        let key = |aabb: &Aabb<D, T>| if order < D { aabb.centre(order) } else { size(aabb) };
+        sorted.sort_unstable_by(|a, b| key(&a.1).total_cmp(&key(&b.1)).then(a.0.cmp(&b.0)));
+        let mut halves = (Node::new(node.is_leaf), Node::new(node.is_leaf));
+        for (index, (item, aabb)) in sorted.iter().enumerate() {
+            let half = if index < FAN.div_ceil(2) { &mut halves.0 } else { &mut halves.1 };
+            half.push(*item, aabb);
+        }
+        halves
+    };
+    let cost =
+        |halves: &(Node<D, T>, Node<D, T>)| size(&halves.0.bounds()) + size(&halves.1.bounds());
+    (1..=D).map(halves).fold(
+        halves(0),
+        |best, other| {
+            if cost(&other) < cost(&best) { other } else { best }
+        },
+    )
+}
