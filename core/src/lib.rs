@@ -19,6 +19,8 @@
 #![no_std]
 
 extern crate alloc;
+#[cfg(feature = "std")]
+extern crate std;
 
 mod aabb;
 pub mod algorithms;
@@ -33,7 +35,7 @@ pub use broad_phase::{
     Report,
 };
 pub use error::{Error, SnapshotFault};
-pub use finder::{PairFinder, find_pairs};
+pub use finder::{Kernel, PairFinder, count_pairs, find_pairs, find_pairs_between};
 pub use scalar::Scalar;
 
 /// The examples of the README, run as doc tests.

@@ -4,6 +4,8 @@ use core::cmp::Ordering;
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Sub};
 
+use crate::finder::Number;
+
 mod sealed {
     pub trait Sealed {}
     impl Sealed for f32 {}
@@ -16,6 +18,7 @@ mod sealed {
 /// NaN has been refused, `<` and `<=` order them totally, with `-0.0` equal to `0.0`.
 pub trait Scalar:
     sealed::Sealed
+    + Number
     + Copy
     + Debug
     + Default

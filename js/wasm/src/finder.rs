@@ -16,7 +16,7 @@ trait Find {
     fn find(&mut self, count: usize) -> Result<&[[u32; 2]], Error>;
 }
 
-struct Rows<const D: usize, T> {
+struct Rows<const D: usize, T: Scalar> {
     boxes: Vec<Aabb<D, T>>,
     finder: PairFinder<D, T>,
 }

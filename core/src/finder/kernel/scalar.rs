@@ -1,0 +1,39 @@
+//! The definition: one box at a time. Every other kernel gives the same pairs in the same order.
+
+use super::vector::Vector;
+
+/// A vector of one.
+#[derive(Clone, Copy)]
+pub(super) struct One<T>(T);
+
+// SAFETY: reads one coordinate, and no instructions beyond the baseline.
+unsafe impl<T: Copy + PartialOrd> Vector<T> for One<T> {
+    const LANES: usize = 1;
+    type Mask = bool;
+
+    #[inline(always)]
+    unsafe fn splat(value: T) -> Self {
+        One(value)
+    }
+
+    #[inline(always)]
+    unsafe fn load(from: *const T) -> Self {
+        // SAFETY: the caller's promise.
+        One(unsafe { *from })
+    }
+
+    #[inline(always)]
+    unsafe fn le(a: Self, b: Self) -> bool {
+        a.0 <= b.0
+    }
+
+    #[inline(always)]
+    unsafe fn and_le(mask: bool, a: Self, b: Self) -> bool {
+        mask && a.0 <= b.0
+    }
+
+    #[inline(always)]
+    unsafe fn bits(mask: bool) -> u32 {
+        u32::from(mask)
+    }
+}

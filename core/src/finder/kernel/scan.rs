@@ -1,0 +1,187 @@
+//! The sweep itself, once for every instruction set: each box against those ahead of it.
+//!
+//! ```text
+//! for each box in sweep order                      (the probe)
+//!     for each box ahead, LANES at a time
+//!         report those that overlap on every axis and are not reported by another column
+//!         stop when a left edge passes the probe's right edge
+//! ```
+//!
+//! The order of the pairs (by probe, then by position) does not depend on the number of lanes.
+
+use super::Coordinate;
+use super::column::Column;
+use super::vector::{Arrange, Reporter, Vector};
+
+/// Where a sweep stands when its output is full: it is called again to go on.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Cursor {
+    /// The next probe of the first column, and of the second where there are two.
+    pub first: usize,
+    pub second: usize,
+    /// How far ahead of the probe the scan has come.
+    pub ahead: usize,
+    pub done: bool,
+}
+
+/// Pairs of one column. Writes to `out` and returns how many; `cursor.done` tells whether that
+/// was all. The scan of a box stops where `out` has no room for a full vector.
+///
+/// # Safety
+/// The instructions of `V` are present; `column.is_ready(K)`; `out.len() >= V::LANES`.
+#[inline(always)]
+pub(super) unsafe fn within<T: Coordinate, V: Vector<T>, const K: usize>(
+    column: &Column<T>,
+    cursor: &mut Cursor,
+    out: &mut [[u32; 2]],
+) -> usize {
+    let len = column.len();
+    let room = out.len() - V::LANES;
+    let mut written = 0;
+    while cursor.first < len {
+        let i = cursor.first;
+        // SAFETY: i < len, and the scan begins at i + 1 + ahead, which the last vector of the
+        // sentinels ends.
+        let finished = unsafe {
+            let probe = Probe::<V, K>::new(column, i, true, false);
+            probe.scan(column, i + 1, &mut cursor.ahead, out, &mut written, room)
+        };
+        if finished {
+            cursor.first = i + 1;
+            cursor.ahead = 0;
+        }
+        if written > room {
+            return written;
+        }
+    }
+    cursor.done = true;
+    written
+}
+
+/// Pairs of one box of each column. The probe is whichever comes first in sweep order, the first
+/// column's where both begin together.
+///
+/// # Safety
+/// The instructions of `V` are present; both columns are ready for `K`; `out.len() >= V::LANES`.
+#[inline(always)]
+pub(super) unsafe fn between<T: Coordinate, V: Vector<T>, const K: usize>(
+    [a, b]: [&Column<T>; 2],
+    arrange: Arrange,
+    cursor: &mut Cursor,
+    out: &mut [[u32; 2]],
+) -> usize {
+    let ascending = arrange == Arrange::Ascending;
+    let room = out.len() - V::LANES;
+    let mut written = 0;
+    // Where one column has ended, nothing of it is ahead of the rest of the other.
+    while cursor.first < a.len() && cursor.second < b.len() {
+        let Cursor { first: i, second: j, .. } = *cursor;
+        // SAFETY: i and j are positions of boxes; a scan begins at a box or at the sentinels.
+        let finished = unsafe {
+            if *a.left.get_unchecked(i) <= *b.left.get_unchecked(j) {
+                let probe = Probe::<V, K>::new(a, i, ascending, false);
+                let finished = probe.scan(b, j, &mut cursor.ahead, out, &mut written, room);
+                cursor.first += usize::from(finished);
+                finished
+            } else {
+                let probe = Probe::<V, K>::new(b, j, ascending, !ascending);
+                let finished = probe.scan(a, i, &mut cursor.ahead, out, &mut written, room);
+                cursor.second += usize::from(finished);
+                finished
+            }
+        };
+        if finished {
+            cursor.ahead = 0;
+        }
+        if written > room {
+            return written;
+        }
+    }
+    cursor.done = true;
+    written
+}
+
+/// One box, spread over vectors.
+struct Probe<V, const K: usize> {
+    right: V,
+    min: [V; K],
+    max: [V; K],
+    reporter: Reporter,
+}
+
+impl<V: Copy, const K: usize> Probe<V, K> {
+    /// # Safety
+    /// `i` is the position of a box in a column that is ready for `K`.
+    #[inline(always)]
+    unsafe fn new<T: Coordinate>(
+        column: &Column<T>,
+        i: usize,
+        swap_if_smaller: bool,
+        swap_always: bool,
+    ) -> Self
+    where
+        V: Vector<T>,
+    {
+        // SAFETY: i is inside every array.
+        unsafe {
+            Self {
+                right: V::splat(*column.right.get_unchecked(i)),
+                min: core::array::from_fn(|k| V::splat(*column.min[k].get_unchecked(i))),
+                max: core::array::from_fn(|k| V::splat(*column.max[k].get_unchecked(i))),
+                reporter: Reporter {
+                    id: *column.id.get_unchecked(i),
+                    marks: *column.marks.get_unchecked(i),
+                    swap_if_smaller,
+                    swap_always,
+                },
+            }
+        }
+    }
+
+    /// Tests the boxes from `start + ahead` on. Returns false if it stopped because `written`
+    /// passed `room`; then `ahead` tells where to go on.
+    ///
+    /// # Safety
+    /// `start + ahead <= column.len()`, and the column is ready for `K`.
+    #[inline(always)]
+    unsafe fn scan<T: Coordinate>(
+        &self,
+        column: &Column<T>,
+        start: usize,
+        ahead: &mut usize,
+        out: &mut [[u32; 2]],
+        written: &mut usize,
+        room: usize,
+    ) -> bool
+    where
+        V: Vector<T>,
+    {
+        let all = u32::MAX >> (32 - V::LANES);
+        let mut j = start + *ahead;
+        loop {
+            // SAFETY: j <= len, so LANES <= PAD entries from j are inside every array: a vector
+            // that reaches the sentinels ends the scan. `written <= room`, so LANES pairs fit.
+            let more = unsafe {
+                let begun = V::le(V::load(column.left.as_ptr().add(j)), self.right);
+                let mut hits = begun;
+                for k in 0..K {
+                    hits = V::and_le(hits, V::load(column.min[k].as_ptr().add(j)), self.max[k]);
+                    hits = V::and_le(hits, self.min[k], V::load(column.max[k].as_ptr().add(j)));
+                }
+                let ids = column.id.as_ptr().add(j);
+                let marks = column.marks.as_ptr().add(j);
+                *written +=
+                    V::report(hits, &self.reporter, ids, marks, out.as_mut_ptr().add(*written));
+                V::bits(begun) == all
+            };
+            if !more {
+                return true;
+            }
+            j += V::LANES;
+            if *written > room {
+                *ahead = j - start;
+                return false;
+            }
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! SSE2, AVX2 and AVX-512 for x86-64: 4, 8 and 16 `f32`, or half as many `f64`.
+
+use core::arch::x86_64::*;
+
+use super::vector::{Reporter, Vector};
+
+/// A vector of SSE2, part of every x86-64 processor.
+#[derive(Clone, Copy)]
+pub(super) struct Sse2<V>(V);
+
+/// A vector of AVX2.
+#[derive(Clone, Copy)]
+pub(super) struct Avx2<V>(V);
+
+/// A vector of AVX-512 (F and VL).
+#[derive(Clone, Copy)]
+pub(super) struct Avx512<V>(V);
+
+macro_rules! masks_in_vectors {
+    ($name:ident, $vector:ty, $scalar:ty, $lanes:literal, $splat:ident, $load:ident, $le:expr, $and:ident, $bits:ident) => {
+        // SAFETY: one load of exactly LANES coordinates; `report` is the trait's own.
+        unsafe impl Vector<$scalar> for $name<$vector> {
+            const LANES: usize = $lanes;
+            type Mask = $vector;
+
+            #[inline(always)]
+            unsafe fn splat(value: $scalar) -> Self {
+                // SAFETY: the caller has the instructions.
+                Self(unsafe { $splat(value) })
+            }
+
+            #[inline(always)]
+            unsafe fn load(from: *const $scalar) -> Self {
+                // SAFETY: the caller has the instructions, and LANES coordinates at `from`.
+                Self(unsafe { $load(from) })
+            }
+
+            #[inline(always)]
+            unsafe fn le(a: Self, b: Self) -> $vector {
+                // SAFETY: the caller has the instructions.
+                unsafe { $le(a.0, b.0) }
+            }
+
+            #[inline(always)]
+            unsafe fn and_le(mask: $vector, a: Self, b: Self) -> $vector {
+                // SAFETY: the caller has the instructions.
+                unsafe { $and(mask, $le(a.0, b.0)) }
+            }
+
+            #[inline(always)]
+            unsafe fn bits(mask: $vector) -> u32 {
+                // SAFETY: the caller has the instructions.
+                unsafe { $bits(mask) as u32 }
+            }
+        }
+    };
+}
+
+masks_in_vectors!(
+    Sse2,
+    __m128,
+    f32,
+    4,
+    _mm_set1_ps,
+    _mm_loadu_ps,
+    _mm_cmple_ps,
+    _mm_and_ps,
+    _mm_movemask_ps
+);
+masks_in_vectors!(
+    Sse2,
+    __m128d,
+    f64,
+    2,
+    _mm_set1_pd,
+    _mm_loadu_pd,
+    _mm_cmple_pd,
+    _mm_and_pd,
+    _mm_movemask_pd
+);
+masks_in_vectors!(
+    Avx2,
+    __m256,
+    f32,
+    8,
+    _mm256_set1_ps,
+    _mm256_loadu_ps,
+    _mm256_cmp_ps::<_CMP_LE_OQ>,
+    _mm256_and_ps,
+    _mm256_movemask_ps
+);
+masks_in_vectors!(
+    Avx2,
+    __m256d,
+    f64,
+    4,
+    _mm256_set1_pd,
+    _mm256_loadu_pd,
+    _mm256_cmp_pd::<_CMP_LE_OQ>,
+    _mm256_and_pd,
+    _mm256_movemask_pd
+);
+
+macro_rules! masks_in_registers {
+    ($vector:ty, $scalar:ty, $lanes:literal, $mask:ty, $splat:ident, $load:ident, $le:ident, $and_le:ident, $ids:expr) => {
+        // SAFETY: one load of exactly LANES coordinates; `report` reads LANES ids and marks and
+        // writes LANES pairs.
+        unsafe impl Vector<$scalar> for Avx512<$vector> {
+            const LANES: usize = $lanes;
+            type Mask = $mask;
+
+            #[inline(always)]
+            unsafe fn splat(value: $scalar) -> Self {
+                // SAFETY: the caller has the instructions.
+                Self(unsafe { $splat(value) })
+            }
+
+            #[inline(always)]
+            unsafe fn load(from: *const $scalar) -> Self {
+                // SAFETY: the caller has the instructions, and LANES coordinates at `from`.
+                Self(unsafe { $load(from) })
+            }
+
+            #[inline(always)]
+            unsafe fn le(a: Self, b: Self) -> $mask {
+                // SAFETY: the caller has the instructions.
+                unsafe { $le::<_CMP_LE_OQ>(a.0, b.0) }
+            }
+
+            #[inline(always)]
+            unsafe fn and_le(mask: $mask, a: Self, b: Self) -> $mask {
+                // SAFETY: the caller has the instructions.
+                unsafe { $and_le::<_CMP_LE_OQ>(mask, a.0, b.0) }
+            }
+
+            #[inline(always)]
+            unsafe fn bits(mask: $mask) -> u32 {
+                u32::from(mask)
+            }
+
+            #[inline(always)]
+            unsafe fn report(
+                hits: $mask,
+                probe: &Reporter,
+                ids: *const u32,
+                marks: *const u32,
+                out: *mut [u32; 2],
+            ) -> usize {
+                // SAFETY: the caller has the instructions, LANES ids and marks, and room for
+                // LANES pairs.
+                unsafe { compress(u16::from(hits), $ids(ids), $ids(marks), probe, out, $lanes) }
+            }
+        }
+    };
+}
+
+masks_in_registers!(
+    __m512,
+    f32,
+    16,
+    __mmask16,
+    _mm512_set1_ps,
+    _mm512_loadu_ps,
+    _mm512_cmp_ps_mask,
+    _mm512_mask_cmp_ps_mask,
+    load_sixteen
+);
+masks_in_registers!(
+    __m512d,
+    f64,
+    8,
+    __mmask8,
+    _mm512_set1_pd,
+    _mm512_loadu_pd,
+    _mm512_cmp_pd_mask,
+    _mm512_mask_cmp_pd_mask,
+    load_eight
+);
+
+/// # Safety
+/// AVX-512 F; sixteen numbers at `from`.
+#[inline(always)]
+unsafe fn load_sixteen(from: *const u32) -> __m512i {
+    // SAFETY: the caller's promise.
+    unsafe { _mm512_loadu_si512(from.cast()) }
+}
+
+/// # Safety
+/// AVX-512 F; eight numbers at `from`. The upper half is undefined.
+#[inline(always)]
+unsafe fn load_eight(from: *const u32) -> __m512i {
+    // SAFETY: the caller's promise.
+    unsafe { _mm512_castsi256_si512(_mm256_loadu_si256(from.cast())) }
+}
+
+/// The pairs of the lanes in `hits`, packed to the front without a branch.
+///
+/// # Safety
+/// AVX-512 F; room for `lanes` (8 or 16) pairs at `out`; no hit beyond `lanes`.
+#[inline(always)]
+unsafe fn compress(
+    hits: __mmask16,
+    ids: __m512i,
+    marks: __m512i,
+    probe: &Reporter,
+    out: *mut [u32; 2],
+    lanes: usize,
+) -> usize {
+    // SAFETY: the caller's promise; eight pairs are one vector.
+    unsafe {
+        let own = _mm512_set1_epi32(probe.id as i32);
+        let reported =
+            _mm512_mask_testn_epi32_mask(hits, marks, _mm512_set1_epi32(probe.marks as i32));
+        let smaller =
+            _mm512_cmplt_epu32_mask(ids, own) & (probe.swap_if_smaller as u16).wrapping_neg();
+        let swapped = smaller | (probe.swap_always as u16).wrapping_neg();
+        let first =
+            _mm512_maskz_compress_epi32(reported, _mm512_mask_blend_epi32(swapped, own, ids));
+        let second =
+            _mm512_maskz_compress_epi32(reported, _mm512_mask_blend_epi32(swapped, ids, own));
+        let low = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+        _mm512_storeu_si512(out.cast(), _mm512_permutex2var_epi32(first, low, second));
+        if lanes == 16 {
+            let high =
+                _mm512_setr_epi32(8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
+            _mm512_storeu_si512(out.add(8).cast(), _mm512_permutex2var_epi32(first, high, second));
+        }
+        reported.count_ones() as usize
+    }
+}

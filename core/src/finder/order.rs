@@ -1,0 +1,166 @@
+//! Stage 2: the boxes of a column in the order of their left edges, as a structure of arrays.
+//!
+//! A counting pass spreads the edges over about as many equal intervals as there are edges, and
+//! insertion sort finishes. Where many edges fall into one interval (clusters, equal edges), the
+//! standard library's sort does that interval, so the whole is O(n log n) on any input.
+
+use alloc::vec::Vec;
+
+use super::bins::Source;
+use super::kernel::Column;
+use crate::Scalar;
+
+/// Up to this many keys insertion sort has no need of intervals.
+const FEW: usize = 24;
+
+/// An interval with more keys than this goes to the standard sort.
+const CROWD: u32 = 16;
+
+/// The buffers of the sort.
+#[derive(Debug)]
+pub(super) struct Sorter<T: Scalar> {
+    keys: Vec<T::Key>,
+    sorted: Vec<T::Key>,
+    intervals: Vec<u32>,
+    ends: Vec<u32>,
+}
+
+impl<T: Scalar> Sorter<T> {
+    pub const fn new() -> Self {
+        Self { keys: Vec::new(), sorted: Vec::new(), intervals: Vec::new(), ends: Vec::new() }
+    }
+
+    /// Fills `column` with the boxes of `source` in the order of left edge on `axis`, then place
+    /// in the source.
+    pub fn order<const D: usize, S: Source<D, T>>(
+        &mut self,
+        source: S,
+        axis: usize,
+        column: &mut Column<T>,
+    ) {
+        let len = source.len();
+        column.reset(len, D - 1);
+        self.sort(source, axis);
+        for (at, &key) in self.sorted[..len].iter().enumerate() {
+            put(column, at, source, T::place(key) as usize, axis);
+        }
+    }
+
+    /// Fills `column` with the boxes as they stand, all axes beside the sweep axis, on which all
+    /// overlap. For so few boxes that each against each is quickest.
+    pub fn unordered<const D: usize, S: Source<D, T>>(source: S, column: &mut Column<T>) {
+        column.reset(source.len(), D);
+        for at in 0..source.len() {
+            let record = source.record(at);
+            column.left[at] = T::ZERO;
+            column.right[at] = T::ZERO;
+            for axis in 0..D {
+                column.min[axis][at] = record.aabb.min[axis];
+                column.max[axis][at] = record.aabb.max[axis];
+            }
+            column.id[at] = record.id;
+            column.marks[at] = record.marks;
+        }
+    }
+
+    /// Leaves the sorted keys of the boxes in `sorted`.
+    fn sort<const D: usize, S: Source<D, T>>(&mut self, source: S, axis: usize) {
+        let len = source.len();
+        grow(&mut self.keys, len);
+        grow(&mut self.sorted, len);
+        if len <= FEW {
+            for (i, key) in self.sorted[..len].iter_mut().enumerate() {
+                *key = edge(source, i, axis).key(i as u32);
+            }
+            return insertion(&mut self.sorted[..len]);
+        }
+        let (mut low, mut high) = (T::INFINITY, T::NEG_INFINITY);
+        for i in 0..len {
+            let left = edge(source, i, axis);
+            low = if left < low { left } else { low };
+            high = if left > high { left } else { high };
+        }
+        let low = low.to_f64().clamp(-T::LIMIT, T::LIMIT);
+        let high = high.to_f64().clamp(-T::LIMIT, T::LIMIT);
+        let count = len.next_power_of_two().min(1 << 16);
+        let last = T::from_f64((count - 1) as f64);
+        let (origin, scale) = (T::from_f64(low), T::from_f64((count - 1) as f64 / (high - low)));
+
+        grow(&mut self.intervals, len);
+        self.ends.clear();
+        self.ends.resize(count, 0);
+        for i in 0..len {
+            let left = edge(source, i, axis);
+            let interval = left.cell(origin, scale, last);
+            self.keys[i] = left.key(i as u32);
+            self.intervals[i] = interval;
+            self.ends[interval as usize] += 1;
+        }
+        let (mut total, mut most) = (0, 0);
+        for end in &mut self.ends {
+            most = most.max(*end);
+            total += core::mem::replace(end, total);
+        }
+        for (&key, &interval) in self.keys[..len].iter().zip(&self.intervals[..len]) {
+            let end = &mut self.ends[interval as usize];
+            self.sorted[*end as usize] = key;
+            *end += 1;
+        }
+        if most > CROWD {
+            let mut begin = 0;
+            for &end in &self.ends {
+                if end - begin > CROWD {
+                    self.sorted[begin as usize..end as usize].sort_unstable();
+                }
+                begin = end;
+            }
+        }
+        insertion(&mut self.sorted[..len]);
+    }
+}
+
+#[inline(always)]
+fn edge<const D: usize, T: Scalar, S: Source<D, T>>(source: S, i: usize, axis: usize) -> T {
+    source.record(i).aabb.min[axis]
+}
+
+fn grow<V: Copy + Default>(array: &mut Vec<V>, size: usize) {
+    if array.len() < size {
+        array.resize(size + size / 8, V::default());
+    }
+}
+
+/// Insertion sort: linear where each key is near its place.
+fn insertion<K: Copy + Ord>(keys: &mut [K]) {
+    for i in 1..keys.len() {
+        let key = keys[i];
+        let mut at = i;
+        while at > 0 && key < keys[at - 1] {
+            keys[at] = keys[at - 1];
+            at -= 1;
+        }
+        keys[at] = key;
+    }
+}
+
+/// Writes box `i` of the source to its position in the column.
+#[inline(always)]
+fn put<const D: usize, T: Scalar, S: Source<D, T>>(
+    column: &mut Column<T>,
+    at: usize,
+    source: S,
+    i: usize,
+    axis: usize,
+) {
+    let record = source.record(i);
+    column.left[at] = record.aabb.min[axis];
+    column.right[at] = record.aabb.max[axis];
+    let mut other = axis;
+    for k in 0..D - 1 {
+        other = if other + 1 == D { 0 } else { other + 1 };
+        column.min[k][at] = record.aabb.min[other];
+        column.max[k][at] = record.aabb.max[other];
+    }
+    column.id[at] = record.id;
+    column.marks[at] = record.marks;
+}

@@ -1,0 +1,344 @@
+//! How to go about a set of boxes: a sample of them, and a model of the cost.
+//!
+//! Two costs pull against each other. Narrower columns leave fewer candidates to test; but a box
+//! is copied to each column that it touches, `1 + size / width` of them on the average. The plan
+//! takes the sweep axis and the numbers of columns for which the model is least. Its constants
+//! are the same for every kernel, since the order of the pairs follows from the plan.
+
+use super::bins::{Cells, Grid, Source};
+use crate::Scalar;
+
+/// Nanoseconds to place, sort and lay out one record, and to begin its scan.
+const RECORD: f64 = 24.0;
+/// Nanoseconds for one candidate: between what 16 lanes take and what 4 do.
+pub(super) const CANDIDATE: f64 = 0.25;
+/// Nanoseconds to begin and end a column.
+const COLUMN: f64 = 250.0;
+/// Records in a slab: they, their keys and their column fit the second cache.
+const SLAB: f64 = 4096.0;
+/// Most cells on an axis.
+const MOST: f64 = 1e6;
+/// Most boxes in a sample.
+const SAMPLE: usize = 256;
+
+/// What to do with one set of boxes, or with two.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Plan<T> {
+    /// Cut into columns (perhaps one) and sweep each.
+    Cut(Grid<T>),
+    /// Part the boxes of one set (0 or 1) by their size on an axis, and take the parts by
+    /// themselves.
+    Part { set: usize, axis: usize, size: f64 },
+}
+
+/// A plan and the nanoseconds that it is expected to take.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Planned<T> {
+    pub plan: Plan<T>,
+    pub cost: f64,
+}
+
+/// Plans for one set (pairs within it) or two (pairs between them).
+pub(super) fn plan<const D: usize, T: Scalar, S: Source<D, T>>(
+    sets: &[S],
+    may_part: bool,
+) -> Planned<T> {
+    let first = Sample::<D>::take::<T, S>(sets[0]);
+    let second;
+    let samples: &[&Sample<D>] = if let Some(&source) = sets.get(1) {
+        second = Sample::<D>::take::<T, S>(source);
+        &[&first, &second]
+    } else {
+        &[&first]
+    };
+    let field = Field::new(samples);
+    let mut shapes =
+        [Shape::new(samples[0], &field), Shape::new(samples[samples.len() - 1], &field)];
+    let (cut, cost) = field.cut(&shapes[..samples.len()]);
+    let boxes: f64 = shapes[..samples.len()].iter().map(|shape| shape.count).sum();
+    let mut best = Planned { plan: Plan::Cut(cut.grid(&field)), cost };
+    if may_part && cost > 3.0 * RECORD * boxes {
+        for set in 0..samples.len() {
+            let whole = shapes[set];
+            for axis in 0..D {
+                for size in samples[set].quantiles(&field, axis) {
+                    let [small, large] = Shape::parted(samples[set], &field, axis, size);
+                    if small.count == 0.0 || large.count == 0.0 {
+                        continue;
+                    }
+                    let cost = if samples.len() == 1 {
+                        field.cut(&[small]).1 + field.cut(&[large]).1 + field.cut(&[small, large]).1
+                    } else {
+                        shapes[set] = small;
+                        let with_small = field.cut(&shapes).1;
+                        shapes[set] = large;
+                        let with_large = field.cut(&shapes).1;
+                        shapes[set] = whole;
+                        with_small + with_large
+                    };
+                    if cost < 0.8 * best.cost {
+                        best = Planned { plan: Plan::Part { set, axis, size }, cost };
+                    }
+                }
+            }
+        }
+    }
+    best
+}
+
+/// Boxes drawn evenly from a set, one at a random place of each stretch. The randomness is the
+/// same on every run.
+struct Sample<const D: usize> {
+    /// Boxes in the set.
+    count: f64,
+    len: usize,
+    /// Edges by axis, held within the limit of the coordinate type.
+    min: [[f64; SAMPLE]; D],
+    max: [[f64; SAMPLE]; D],
+    /// The lower edges once more, sorted.
+    sorted: [[f64; SAMPLE]; D],
+}
+
+impl<const D: usize> Sample<D> {
+    fn take<T: Scalar, S: Source<D, T>>(source: S) -> Self {
+        let count = source.len();
+        let len = (count / 16).clamp(16, SAMPLE).min(count);
+        let mut sample = Self {
+            count: count as f64,
+            len,
+            min: [[0.0; SAMPLE]; D],
+            max: [[0.0; SAMPLE]; D],
+            sorted: [[0.0; SAMPLE]; D],
+        };
+        let mut random = 0x9E37_79B9_7F4A_7C15u64;
+        for i in 0..len {
+            random = random.wrapping_mul(0x5851_F42D_4C95_7F2D).wrapping_add(1);
+            let (from, to) = (i * count / len, (i + 1) * count / len);
+            let at = from + ((random >> 33) as usize) % (to - from);
+            let aabb = source.record(at).aabb;
+            for axis in 0..D {
+                sample.min[axis][i] = aabb.min[axis].to_f64().clamp(-T::LIMIT, T::LIMIT);
+                sample.max[axis][i] = aabb.max[axis].to_f64().clamp(-T::LIMIT, T::LIMIT);
+            }
+        }
+        for axis in 0..D {
+            sample.sorted[axis] = sample.min[axis];
+            sample.sorted[axis][..len].sort_unstable_by(f64::total_cmp);
+        }
+        sample
+    }
+
+    /// A box's size on an axis, as far as it lies in the field.
+    fn size(&self, field: &Field<D>, axis: usize, i: usize) -> f64 {
+        field.clip(axis, self.max[axis][i]) - field.clip(axis, self.min[axis][i])
+    }
+
+    /// Sizes that part the largest half, quarter .. of the sample on an axis.
+    fn quantiles(&self, field: &Field<D>, axis: usize) -> impl Iterator<Item = f64> {
+        let mut sizes = [0.0; SAMPLE];
+        for (i, size) in sizes[..self.len].iter_mut().enumerate() {
+            *size = self.size(field, axis, i);
+        }
+        sizes[..self.len].sort_unstable_by(f64::total_cmp);
+        let len = self.len;
+        (1..6).map(move |part| sizes[len - 1 - (len >> part)])
+    }
+}
+
+/// Where the boxes are: the same for the parts of a set as for the whole.
+struct Field<const D: usize> {
+    /// From where to where, but for a few outliers.
+    low: [f64; D],
+    high: [f64; D],
+    /// The extent over which evenly spread boxes would be as near to each other as these are:
+    /// less than `high - low` if they are clustered.
+    spread: [f64; D],
+}
+
+impl<const D: usize> Field<D> {
+    fn new(samples: &[&Sample<D>]) -> Self {
+        let mut field = Field { low: [0.0; D], high: [0.0; D], spread: [0.0; D] };
+        for axis in 0..D {
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            for sample in samples {
+                let sorted = &sample.sorted[axis][..sample.len];
+                let tail = sample.len / 20;
+                let (least, most) = (sorted[tail], sorted[sample.len - 1 - tail]);
+                let margin = 0.125 * (most - least);
+                low = low.min((least - margin).max(sorted[0]));
+                high = high.max((most + margin).min(sorted[sample.len - 1]));
+            }
+            (field.low[axis], field.high[axis]) = (low, high);
+            let extent = high - low;
+            let reach = extent / 32.0;
+            let near = nearby(samples, axis, reach);
+            field.spread[axis] = (2.0 * reach / near).min(extent);
+        }
+        field
+    }
+
+    fn clip(&self, axis: usize, coordinate: f64) -> f64 {
+        // Not `clamp`: unchecked boxes come this far, and a NaN must not panic.
+        coordinate.max(self.low[axis]).min(self.high[axis])
+    }
+
+    fn extent(&self, axis: usize) -> f64 {
+        self.high[axis] - self.low[axis]
+    }
+
+    /// The cheapest way to cut, and its cost.
+    fn cut(&self, shapes: &[Shape<D>]) -> (Cut<D>, f64) {
+        let mut best = (Cut { sweep: 0, columns: [1.0; D] }, f64::INFINITY);
+        for sweep in 0..D {
+            let mut cut = Cut { sweep, columns: [1.0; D] };
+            let mut cost = self.cost(shapes, &cut);
+            loop {
+                let mut next = (cut, cost);
+                for axis in (0..D).filter(|&axis| axis != sweep && self.extent(axis) > 0.0) {
+                    let mut finer = cut;
+                    finer.columns[axis] = whole(cut.columns[axis] * 1.25) + 1.0;
+                    let cost = self.cost(shapes, &finer);
+                    if cost < next.1 {
+                        next = (finer, cost);
+                    }
+                }
+                if next.1 >= cost {
+                    break;
+                }
+                (cut, cost) = next;
+            }
+            if cost < best.1 {
+                best = (cut, cost);
+            }
+        }
+        let (cut, _) = &mut best;
+        let records: f64 = shapes.iter().map(|shape| shape.records(self, cut)).sum();
+        let slabs = whole(records / cut.columns.iter().product::<f64>() / SLAB);
+        // Only if few boxes reach from slab to slab.
+        let largest = shapes.iter().map(|shape| shape.mean[cut.sweep]).fold(0.0, f64::max);
+        if slabs > 1.0 && largest * slabs < 0.25 * self.extent(cut.sweep) {
+            cut.columns[cut.sweep] = slabs;
+        }
+        best
+    }
+
+    fn cost(&self, shapes: &[Shape<D>], cut: &Cut<D>) -> f64 {
+        let columns: f64 = cut.columns.iter().product();
+        // The chance that two boxes are in the same column.
+        let mut together = 1.0;
+        for axis in 0..D {
+            if cut.columns[axis] > 1.0 {
+                together *= (self.extent(axis) / cut.columns[axis] / self.spread[axis]).min(1.0);
+            }
+        }
+        let mut records = 0.0;
+        let mut candidates = together;
+        let mut chance = 0.0;
+        for shape in shapes {
+            let count = shape.records(self, cut);
+            records += count;
+            candidates *= count;
+            chance += if self.spread[cut.sweep] > 0.0 {
+                (shape.mean[cut.sweep] / self.spread[cut.sweep]).min(1.0)
+            } else {
+                1.0
+            };
+        }
+        if let [shape] = shapes {
+            candidates *= shape.records(self, cut);
+        }
+        let pairs = candidates * chance.min(1.0);
+        records * RECORD + pairs * CANDIDATE + columns * COLUMN
+    }
+}
+
+/// The whole part; `f64::floor` is not in `core`.
+fn whole(value: f64) -> f64 {
+    value as u32 as f64
+}
+
+/// The chance that two boxes begin within `reach` of each other.
+fn nearby<const D: usize>(samples: &[&Sample<D>], axis: usize, reach: f64) -> f64 {
+    let first = &samples[0].sorted[axis][..samples[0].len];
+    let second = samples[samples.len() - 1];
+    let second = &second.sorted[axis][..second.len];
+    let (mut from, mut to, mut near) = (0, 0, 0);
+    for &coordinate in first {
+        while from < second.len() && second[from] < coordinate - reach {
+            from += 1;
+        }
+        while to < second.len() && second[to] <= coordinate + reach {
+            to += 1;
+        }
+        near += to - from;
+    }
+    // A box is near itself.
+    let own = if samples.len() == 1 { first.len() } else { 0 };
+    let of = first.len() * second.len() - own;
+    ((near - own) as f64).max(0.5) / (of as f64).max(1.0)
+}
+
+/// How many boxes, and how large on the average.
+#[derive(Clone, Copy)]
+struct Shape<const D: usize> {
+    count: f64,
+    mean: [f64; D],
+}
+
+impl<const D: usize> Shape<D> {
+    fn new(sample: &Sample<D>, field: &Field<D>) -> Self {
+        Self::of(sample, field, |_| true)
+    }
+
+    /// The boxes up to a size on an axis, and those above.
+    fn parted(sample: &Sample<D>, field: &Field<D>, axis: usize, size: f64) -> [Self; 2] {
+        [
+            Self::of(sample, field, |i| sample.size(field, axis, i) <= size),
+            Self::of(sample, field, |i| sample.size(field, axis, i) > size),
+        ]
+    }
+
+    fn of(sample: &Sample<D>, field: &Field<D>, belongs: impl Fn(usize) -> bool) -> Self {
+        let (mut len, mut sum) = (0.0, [0.0; D]);
+        for i in (0..sample.len).filter(|&i| belongs(i)) {
+            len += 1.0;
+            for (axis, sum) in sum.iter_mut().enumerate() {
+                *sum += sample.size(field, axis, i) / SAMPLE as f64;
+            }
+        }
+        let scale = if len > 0.0 { SAMPLE as f64 / len } else { 0.0 };
+        Self { count: sample.count * len / sample.len as f64, mean: sum.map(|sum| sum * scale) }
+    }
+
+    /// Boxes and copies.
+    fn records(&self, field: &Field<D>, cut: &Cut<D>) -> f64 {
+        let mut records = self.count;
+        for axis in 0..D {
+            if cut.columns[axis] > 1.0 {
+                records *= 1.0 + self.mean[axis] / field.extent(axis) * cut.columns[axis];
+            }
+        }
+        records
+    }
+}
+
+/// A sweep axis; columns on the others, slabs on it.
+#[derive(Clone, Copy)]
+struct Cut<const D: usize> {
+    sweep: usize,
+    columns: [f64; D],
+}
+
+impl<const D: usize> Cut<D> {
+    fn grid<T: Scalar>(&self, field: &Field<D>) -> Grid<T> {
+        let cells = core::array::from_fn(|axis| {
+            if self.columns[axis] > 1.0 {
+                let count = self.columns[axis].min(MOST);
+                Cells::new(axis, field.low[axis], field.high[axis], count as u32)
+            } else {
+                Cells::one(axis)
+            }
+        });
+        Grid::new::<D>(self.sweep, cells)
+    }
+}

@@ -1,0 +1,322 @@
+//! The stages put together, for one set (pairs within it) or two (pairs between them): plan, put
+//! into bins, order each, sweep it. A bin that turns out crowded is planned anew.
+
+use alloc::vec::Vec;
+use core::mem::take;
+use core::ops::ControlFlow;
+
+use super::bins::{Bins, Grid, Record, Refusal, Source};
+use super::kernel::{Arrange, Column, Kernel};
+use super::order::Sorter;
+use super::plan::{CANDIDATE, Plan, plan};
+use super::sink::Sink;
+use super::sweep::{Sweep, candidates};
+use super::watch::Watch;
+use crate::Scalar;
+
+/// Up to this many boxes each is tested against each.
+pub(super) const FEW: usize = 64;
+
+/// Plans within plans: cuts of crowded bins, and parts by size.
+const DEPTH: u32 = 12;
+
+/// A bin with fewer boxes is never planned anew,
+const SMALL: usize = 512;
+/// nor is one with fewer candidates a box.
+const CROWDED: usize = 96;
+
+/// Copies are held to this many records a box.
+const COPIES: u64 = 4;
+/// Where they are more, boxes wider than this many columns are parted from the rest.
+const WIDE: f64 = 8.0;
+
+/// Buffers of one thread, kept between calls.
+#[derive(Debug)]
+pub(super) struct Search<const D: usize, T: Scalar> {
+    pub kernel: Kernel,
+    sorter: Sorter<T>,
+    columns: [Column<T>; 2],
+    /// The records of one bin, where several threads have filled it.
+    gathered: [Vec<Record<D, T>>; 2],
+    /// Spare bins and parts: as many as plans were ever nested.
+    bins: Vec<[Bins<D, T>; 2]>,
+    parts: Vec<[Vec<Record<D, T>>; 3]>,
+    #[cfg(feature = "parallel")]
+    pub team: super::threads::Team<D, T>,
+}
+
+/// What holds for a search and all within it.
+#[derive(Clone, Copy)]
+pub(super) struct Task<'a> {
+    pub arrange: Arrange,
+    pub watch: Option<&'a Watch<'a>>,
+    /// How much of the whole this is.
+    pub share: f64,
+    pub depth: u32,
+}
+
+impl<'a> Task<'a> {
+    pub fn new(arrange: Arrange, watch: Option<&'a Watch<'a>>) -> Self {
+        Self { arrange, watch, share: 1.0, depth: 0 }
+    }
+
+    /// A part of the task.
+    fn part(self, share: f64) -> Self {
+        Self { depth: self.depth + 1, share: self.share * share, ..self }
+    }
+
+    fn done(self, share: f64) -> Result<(), Stop> {
+        match self.watch.map(|watch| watch.add(self.share * share)) {
+            Some(ControlFlow::Break(())) => Err(Stop::Enough),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// How a search ends before its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Stop {
+    /// A box is inverted or NaN; no pair has been found.
+    Invalid,
+    /// The sink or the watch had enough.
+    Enough,
+}
+
+impl<const D: usize, T: Scalar> Search<D, T> {
+    pub fn new(kernel: Kernel) -> Self {
+        const { assert!(1 <= D && D <= 3, "boxes have one, two or three dimensions") };
+        Self {
+            kernel,
+            sorter: Sorter::new(),
+            columns: [Column::new(), Column::new()],
+            gathered: [Vec::new(), Vec::new()],
+            bins: Vec::new(),
+            parts: Vec::new(),
+            #[cfg(feature = "parallel")]
+            team: super::threads::Team::default(),
+        }
+    }
+
+    /// Sends all pairs within one set, or between two, to the sink. Up to [`FEW`] boxes are not
+    /// validated.
+    pub fn run<S: Source<D, T>, O: Sink>(
+        &mut self,
+        sets: &[S],
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<(), Stop> {
+        if sets.iter().any(|set| set.len() == 0) {
+            return Ok(());
+        }
+        if sets.iter().all(|set| set.len() <= FEW) {
+            for (set, column) in sets.iter().zip(&mut self.columns) {
+                Sorter::unordered(*set, column);
+            }
+            return self.sweep(sets.len(), D, task, sink);
+        }
+        let planned = plan(sets, task.depth < DEPTH);
+        self.follow(planned.plan, sets, task, sink)
+    }
+
+    fn follow<S: Source<D, T>, O: Sink>(
+        &mut self,
+        plan: Plan<T>,
+        sets: &[S],
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<(), Stop> {
+        match plan {
+            Plan::Cut(grid) => self.cut(sets, &grid, task, sink),
+            Plan::Part { set, axis, size } => self.part(sets, set, axis, size, task, sink),
+        }
+    }
+
+    /// Puts the boxes into the bins of a grid and finds the pairs of each bin.
+    fn cut<S: Source<D, T>, O: Sink>(
+        &mut self,
+        sets: &[S],
+        grid: &Grid<T>,
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<(), Stop> {
+        #[cfg(feature = "parallel")]
+        if let Some(result) = super::threads::cut(self, sets, grid, task, sink) {
+            return result.unwrap_or_else(|refusal| self.refused(refusal, sets, grid, task, sink));
+        }
+        let mut bins = self.bins.pop().unwrap_or([Bins::new(), Bins::new()]);
+        let filled = sets.iter().zip(&mut bins).try_for_each(|(&set, bins)| {
+            let all = 0..set.len();
+            let total = bins.count(set, all.clone(), grid).ok_or(Refusal::Invalid)?;
+            if total > limit(set.len()) {
+                return Err(Refusal::TooMany);
+            }
+            bins.scatter(set, all, grid);
+            Ok(())
+        });
+        let result = match filled {
+            Ok(()) => (0..grid.len())
+                .try_for_each(|bin| self.bin(&[&bins], sets.len(), bin, grid, task, sink)),
+            Err(refusal) => self.refused(refusal, sets, grid, task, sink),
+        };
+        self.bins.push(bins);
+        result
+    }
+
+    /// Another plan where a grid would make too many copies, of boxes that the sample has missed:
+    /// part the wide ones from the rest, or do not cut.
+    fn refused<S: Source<D, T>, O: Sink>(
+        &mut self,
+        refusal: Refusal,
+        sets: &[S],
+        grid: &Grid<T>,
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<(), Stop> {
+        if refusal == Refusal::Invalid {
+            return Err(Stop::Invalid);
+        }
+        for (axis, width) in grid.widths().filter(|_| task.depth < DEPTH) {
+            for (set, source) in sets.iter().enumerate() {
+                let size = WIDE * width;
+                let wide = |i| extent(&source.record(i), axis) > size;
+                if (0..source.len()).any(wide) && !(0..source.len()).all(wide) {
+                    return self.part(sets, set, axis, size, task, sink);
+                }
+            }
+        }
+        self.cut(sets, &Grid::uncut(grid.sweep), task, sink)
+    }
+
+    /// The pairs of one bin, filled in one piece or several: orders and sweeps it, or plans it
+    /// anew if it is crowded.
+    pub fn bin<O: Sink>(
+        &mut self,
+        pieces: &[&[Bins<D, T>; 2]],
+        sets: usize,
+        bin: usize,
+        grid: &Grid<T>,
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<(), Stop> {
+        if let [piece] = pieces {
+            let records = [piece[0].bin(bin), if sets == 2 { piece[1].bin(bin) } else { &[] }];
+            self.records(&records[..sets], grid.sweep, task, sink)?;
+        } else {
+            let mut gathered = take(&mut self.gathered);
+            for (set, records) in gathered[..sets].iter_mut().enumerate() {
+                records.clear();
+                pieces.iter().for_each(|piece| records.extend_from_slice(piece[set].bin(bin)));
+            }
+            let records = [&gathered[0][..], &gathered[1][..]];
+            let result = self.records(&records[..sets], grid.sweep, task, sink);
+            self.gathered = gathered;
+            result?;
+        }
+        if task.watch.is_some() {
+            let of =
+                |piece: &&[Bins<D, T>; 2]| piece[0].bin(bin).len() as f64 / piece[0].len() as f64;
+            task.done(pieces.iter().map(of).sum::<f64>() / pieces.len() as f64)?;
+        }
+        Ok(())
+    }
+
+    fn records<O: Sink>(
+        &mut self,
+        sets: &[&[Record<D, T>]],
+        axis: usize,
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<(), Stop> {
+        if sets.iter().any(|set| set.is_empty()) {
+            return Ok(());
+        }
+        for (&set, column) in sets.iter().zip(&mut self.columns) {
+            self.sorter.order(set, axis, column);
+        }
+        let boxes: usize = sets.iter().map(|set| set.len()).sum();
+        if boxes >= SMALL && task.depth < DEPTH {
+            let columns = &self.columns[..sets.len()];
+            // A few probes tell that all is well; more, before anything is done about it.
+            if candidates(columns, 32) > CROWDED * boxes {
+                let candidates = candidates(columns, 512);
+                if candidates > CROWDED * boxes {
+                    let planned = plan(sets, true);
+                    if planned.cost < 0.6 * CANDIDATE * candidates as f64 {
+                        return self.follow(planned.plan, sets, task.part(0.0), sink);
+                    }
+                }
+            }
+        }
+        self.sweep(sets.len(), D - 1, task, sink)
+    }
+
+    /// Parts the boxes of a set by their size on an axis and takes the parts by themselves.
+    fn part<S: Source<D, T>, O: Sink>(
+        &mut self,
+        sets: &[S],
+        set: usize,
+        axis: usize,
+        size: f64,
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<(), Stop> {
+        let mut parts = self.parts.pop().unwrap_or([Vec::new(), Vec::new(), Vec::new()]);
+        parts.iter_mut().for_each(Vec::clear);
+        let mut valid = true;
+        for i in 0..sets[set].len() {
+            let record = sets[set].record(i);
+            valid &= record.aabb.is_valid();
+            parts[usize::from(extent(&record, axis) > size)].push(record);
+        }
+        let [small, large, other] = &mut parts;
+        if sets.len() == 2 {
+            // The other set is copied as it is: all parts are then of one type.
+            for i in 0..sets[1 - set].len() {
+                let record = sets[1 - set].record(i);
+                valid &= record.aabb.is_valid();
+                other.push(record);
+            }
+        }
+        let (small, large, other) = (&small[..], &large[..], &other[..]);
+        let result = if !valid {
+            Err(Stop::Invalid)
+        } else if sets.len() == 1 {
+            self.run(&[small], task.part(0.4), sink)
+                .and_then(|()| self.run(&[large], task.part(0.2), sink))
+                .and_then(|()| self.run(&[large, small], task.part(0.4), sink))
+        } else {
+            [small, large].into_iter().try_for_each(|part| {
+                let sets = if set == 0 { [part, other] } else { [other, part] };
+                self.run(&sets, task.part(0.5), sink)
+            })
+        };
+        self.parts.push(parts);
+        result
+    }
+
+    /// Sweeps the columns that stand ordered.
+    fn sweep<O: Sink>(
+        &self,
+        sets: usize,
+        others: usize,
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<(), Stop> {
+        let Task { arrange, watch, .. } = task;
+        let sweep = Sweep { kernel: self.kernel, others, arrange, watch };
+        match sweep.run(&self.columns[..sets], sink) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(Stop::Enough),
+        }
+    }
+}
+
+/// The most records that so many boxes may become.
+pub(super) fn limit(boxes: usize) -> u64 {
+    (COPIES * boxes as u64 + SMALL as u64).min(u32::MAX.into())
+}
+
+/// The size of a box on an axis; a NaN if it lies at infinity.
+fn extent<const D: usize, T: Scalar>(record: &Record<D, T>, axis: usize) -> f64 {
+    record.aabb.max[axis].to_f64() - record.aabb.min[axis].to_f64()
+}

@@ -1,0 +1,162 @@
+//! Where pairs go: a growing buffer, a counter, or the caller's own function.
+
+use alloc::vec;
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
+
+use super::kernel::PAD;
+
+/// Pairs that are stored between two looks at the watch, at most.
+const STRETCH: usize = 1 << 16;
+
+/// Pairs in a buffer that is handed on when it is full.
+const BUFFER: usize = 4096;
+
+/// Takes pairs a buffer at a time.
+#[cfg_attr(not(feature = "parallel"), allow(dead_code))]
+pub(super) trait Sink {
+    /// What takes a stretch of the pairs on another thread.
+    type Fork: Sink + Send;
+
+    /// Room for at least [`PAD`] pairs.
+    fn room(&mut self) -> &mut [[u32; 2]];
+
+    /// Takes the first `count` pairs of the room. Break ends the search.
+    fn take(&mut self, count: usize) -> ControlFlow<()>;
+
+    /// An empty sink for another thread; none if the pairs must come in order, one by one.
+    fn fork(&mut self) -> Option<Self::Fork>;
+
+    /// Takes the pairs of forks, in this order, after its own.
+    fn join(&mut self, forks: Vec<Self::Fork>);
+}
+
+/// Stores pairs. The buffer is longer than what it holds, and only grows.
+#[derive(Debug, Default)]
+pub(super) struct Store {
+    buffer: Vec<[u32; 2]>,
+    len: usize,
+    /// Forks of earlier calls, kept for their buffers.
+    #[cfg_attr(not(feature = "parallel"), allow(dead_code))]
+    spare: Vec<Store>,
+}
+
+impl Store {
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    pub fn pairs(&self) -> &[[u32; 2]] {
+        &self.buffer[..self.len]
+    }
+
+    pub fn into_pairs(mut self) -> Vec<[u32; 2]> {
+        self.buffer.truncate(self.len);
+        self.buffer
+    }
+}
+
+impl Sink for Store {
+    type Fork = Store;
+
+    #[inline]
+    fn room(&mut self) -> &mut [[u32; 2]] {
+        if self.buffer.len() - self.len < PAD {
+            self.buffer.resize(2 * self.buffer.len() + BUFFER, [0; 2]);
+        }
+        let end = self.buffer.len().min(self.len + STRETCH);
+        &mut self.buffer[self.len..end]
+    }
+
+    #[inline]
+    fn take(&mut self, count: usize) -> ControlFlow<()> {
+        self.len += count;
+        ControlFlow::Continue(())
+    }
+
+    fn fork(&mut self) -> Option<Store> {
+        Some(self.spare.pop().unwrap_or_default())
+    }
+
+    fn join(&mut self, forks: Vec<Store>) {
+        let len = self.len + forks.iter().map(|fork| fork.len).sum::<usize>();
+        if self.buffer.len() < len {
+            self.buffer.resize(len, [0; 2]);
+        }
+        for mut fork in forks {
+            self.buffer[self.len..][..fork.len].copy_from_slice(fork.pairs());
+            self.len += fork.len;
+            fork.clear();
+            self.spare.push(fork);
+        }
+    }
+}
+
+/// Counts pairs.
+#[derive(Debug)]
+pub(super) struct Count {
+    buffer: Vec<[u32; 2]>,
+    pub count: u64,
+}
+
+impl Count {
+    pub fn new() -> Self {
+        Self { buffer: vec![[0; 2]; BUFFER], count: 0 }
+    }
+}
+
+impl Sink for Count {
+    type Fork = Count;
+
+    #[inline]
+    fn room(&mut self) -> &mut [[u32; 2]] {
+        &mut self.buffer
+    }
+
+    #[inline]
+    fn take(&mut self, count: usize) -> ControlFlow<()> {
+        self.count += count as u64;
+        ControlFlow::Continue(())
+    }
+
+    fn fork(&mut self) -> Option<Count> {
+        Some(Count::new())
+    }
+
+    fn join(&mut self, forks: Vec<Count>) {
+        self.count += forks.iter().map(|fork| fork.count).sum::<u64>();
+    }
+}
+
+/// Hands pairs to a function, in order, and stores only a buffer of them.
+#[derive(Debug)]
+pub(super) struct Stream<F> {
+    buffer: Vec<[u32; 2]>,
+    each: F,
+}
+
+impl<F: FnMut([u32; 2]) -> ControlFlow<()>> Stream<F> {
+    pub fn new(each: F) -> Self {
+        Self { buffer: vec![[0; 2]; BUFFER], each }
+    }
+}
+
+impl<F: FnMut([u32; 2]) -> ControlFlow<()>> Sink for Stream<F> {
+    type Fork = Count;
+
+    #[inline]
+    fn room(&mut self) -> &mut [[u32; 2]] {
+        &mut self.buffer
+    }
+
+    #[inline]
+    fn take(&mut self, count: usize) -> ControlFlow<()> {
+        self.buffer[..count].iter().try_for_each(|&pair| (self.each)(pair))
+    }
+
+    fn fork(&mut self) -> Option<Count> {
+        None
+    }
+
+    fn join(&mut self, _: Vec<Count>) {}
+}

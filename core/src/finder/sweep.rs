@@ -1,0 +1,58 @@
+//! Stage 3: the sweep. The kernels do the work; here their output is handed on as it fills up.
+
+use core::ops::ControlFlow;
+
+use super::kernel::{Arrange, Column, Cursor, Kernel};
+use super::sink::Sink;
+use super::watch::Watch;
+use crate::Scalar;
+
+/// How to sweep.
+#[derive(Clone, Copy)]
+pub(super) struct Sweep<'a> {
+    pub kernel: Kernel,
+    /// How many axes are tested beside the sweep axis.
+    pub others: usize,
+    pub arrange: Arrange,
+    pub watch: Option<&'a Watch<'a>>,
+}
+
+impl Sweep<'_> {
+    /// Sends the pairs within the one column, or between the two, to the sink.
+    pub fn run<T: Scalar, O: Sink>(self, columns: &[Column<T>], sink: &mut O) -> ControlFlow<()> {
+        let mut cursor = Cursor::default();
+        loop {
+            let room = sink.room();
+            let count = if let [first, second] = columns {
+                self.kernel.between([first, second], self.others, self.arrange, &mut cursor, room)
+            } else {
+                self.kernel.within(&columns[0], self.others, &mut cursor, room)
+            };
+            sink.take(count)?;
+            if cursor.done {
+                return ControlFlow::Continue(());
+            }
+            self.watch.map_or(ControlFlow::Continue(()), Watch::look)?;
+        }
+    }
+}
+
+/// About how many candidates a sweep would test, from `probes` of its boxes.
+pub(super) fn candidates<T: Scalar>(columns: &[Column<T>], probes: usize) -> usize {
+    let last = &columns[columns.len() - 1];
+    let one_way = |column: &Column<T>, against: &Column<T>| {
+        let left = &against.left[..against.len()];
+        let ahead: usize = (0..probes)
+            .map(|probe| {
+                let i = (2 * probe + 1) * column.len() / (2 * probes);
+                left.partition_point(|&left| left <= column.right[i])
+                    - left.partition_point(|&left| left < column.left[i])
+            })
+            .sum();
+        (ahead as u64 * column.len() as u64 / probes as u64) as usize
+    };
+    match columns {
+        [first, _] => one_way(first, last) + one_way(last, first),
+        _ => one_way(last, last),
+    }
+}

@@ -1,0 +1,138 @@
+//! Threads: each puts a stretch of the boxes into bins, then each takes the next group of bins
+//! until none is left. The pairs of the groups are strung together in the order of the bins, which
+//! is the order of one thread.
+
+use alloc::vec::Vec;
+use core::ops::Range;
+use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::Mutex;
+
+use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
+
+use super::bins::{Bins, Grid, Refusal, Source};
+use super::search::{Search, Stop, Task, limit};
+use super::sink::Sink;
+use crate::Scalar;
+
+/// With fewer boxes threads do not pay.
+const WORTH: usize = 4096;
+/// Groups of bins for each thread: some are harder than others.
+const GROUPS: usize = 16;
+
+/// The other threads' buffers.
+#[derive(Debug)]
+pub(super) struct Team<const D: usize, T: Scalar> {
+    /// How many threads.
+    pub threads: usize,
+    workers: Vec<Search<D, T>>,
+    pieces: Vec<[Bins<D, T>; 2]>,
+}
+
+impl<const D: usize, T: Scalar> Default for Team<D, T> {
+    fn default() -> Self {
+        Self { threads: 1, workers: Vec::new(), pieces: Vec::new() }
+    }
+}
+
+/// As the serial search, on threads; none if that does not pay.
+pub(super) fn cut<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
+    search: &mut Search<D, T>,
+    sets: &[S],
+    grid: &Grid<T>,
+    task: Task<'_>,
+    sink: &mut O,
+) -> Option<Result<Result<(), Stop>, Refusal>> {
+    let threads = search.team.threads;
+    let boxes: usize = sets.iter().map(|set| set.len()).sum();
+    if threads < 2 || boxes < WORTH {
+        return None;
+    }
+    let first = sink.fork()?;
+    let mut workers = core::mem::take(&mut search.team.workers);
+    let mut pieces = core::mem::take(&mut search.team.pieces);
+    workers.resize_with(threads, || Search::new(search.kernel));
+    pieces.resize_with(threads, || [Bins::new(), Bins::new()]);
+
+    let result = fill(sets, grid, &mut pieces).map(|()| {
+        let groups = group(&pieces, sets.len(), grid.len(), threads * GROUPS);
+        let mut forks = alloc::vec![Mutex::new(first)];
+        forks.extend(groups[1..].iter().filter_map(|_| sink.fork()).map(Mutex::new));
+        let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
+        let borrowed: Vec<&[Bins<D, T>; 2]> = pieces.iter().collect();
+        let work = |worker: &mut Search<D, T>| {
+            worker.kernel = search.kernel;
+            loop {
+                let at = next.fetch_add(1, Ordering::Relaxed);
+                let (Some(group), Some(fork)) = (groups.get(at), forks.get(at)) else { return };
+                let Ok(mut fork) = fork.lock() else { return };
+                for bin in group.clone() {
+                    let result = worker.bin(&borrowed, sets.len(), bin, grid, task, &mut *fork);
+                    if result.is_err() || failed.load(Ordering::Relaxed) {
+                        failed.store(true, Ordering::Relaxed);
+                        return;
+                    }
+                }
+            }
+        };
+        rayon::scope(|scope| {
+            for worker in &mut workers {
+                scope.spawn(|_| work(worker));
+            }
+        });
+        if failed.into_inner() {
+            return Err(Stop::Enough);
+        }
+        sink.join(forks.into_iter().filter_map(|fork| fork.into_inner().ok()).collect());
+        Ok(())
+    });
+    search.team.workers = workers;
+    search.team.pieces = pieces;
+    Some(result)
+}
+
+/// Each thread puts its stretch of the boxes into bins of its own.
+fn fill<const D: usize, T: Scalar, S: Source<D, T>>(
+    sets: &[S],
+    grid: &Grid<T>,
+    pieces: &mut [[Bins<D, T>; 2]],
+) -> Result<(), Refusal> {
+    let threads = pieces.len();
+    let stretch = |set: &S, at: usize| set.len() * at / threads..set.len() * (at + 1) / threads;
+    for (at, set) in sets.iter().enumerate() {
+        let total: Option<u64> = pieces
+            .par_iter_mut()
+            .enumerate()
+            .map(|(thread, bins)| bins[at].count(*set, stretch(set, thread), grid))
+            .sum();
+        if total.ok_or(Refusal::Invalid)? > limit(set.len()) {
+            return Err(Refusal::TooMany);
+        }
+    }
+    pieces.par_iter_mut().enumerate().for_each(|(thread, bins)| {
+        for (set, bins) in sets.iter().zip(bins) {
+            bins.scatter(*set, stretch(set, thread), grid);
+        }
+    });
+    Ok(())
+}
+
+/// Stretches of bins with about as many records each.
+fn group<const D: usize, T: Scalar>(
+    pieces: &[[Bins<D, T>; 2]],
+    sets: usize,
+    bins: usize,
+    groups: usize,
+) -> Vec<Range<usize>> {
+    let filled = || pieces.iter().flat_map(|piece| &piece[..sets]);
+    let share = filled().map(Bins::len).sum::<usize>() / groups + 1;
+    let mut stretches = Vec::with_capacity(groups + 1);
+    let (mut start, mut records) = (0, 0);
+    for bin in 0..bins {
+        records += filled().map(|piece| piece.bin(bin).len()).sum::<usize>();
+        if records >= share || bin + 1 == bins {
+            stretches.push(start..bin + 1);
+            (start, records) = (bin + 1, 0);
+        }
+    }
+    stretches
+}

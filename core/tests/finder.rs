@@ -1,0 +1,336 @@
+//! The finder against global pairwise, on every road through it: each kernel, each number of
+//! threads, one set and two, stored, counted and streamed; with scenes that each defeat some
+//! simple design.
+
+mod common;
+
+use std::ops::ControlFlow;
+
+use common::{coordinate, valid_boxes};
+use proptest::prelude::*;
+use sweep_and_prune::algorithms::pairwise;
+use sweep_and_prune::{
+    Aabb, Error, Kernel, PairFinder, Scalar, count_pairs, find_pairs, find_pairs_between, validate,
+};
+use sweep_and_prune_scenes::Random;
+
+type Boxes<const D: usize, T> = Vec<Aabb<D, T>>;
+
+/// A box about a centre; the edges are rounded to the type.
+fn around<const D: usize, T: Scalar>(centre: [f64; D], half: [f64; D]) -> Aabb<D, T> {
+    Aabb::new(
+        core::array::from_fn(|k| T::from_f64(centre[k] - half[k])),
+        core::array::from_fn(|k| T::from_f64(centre[k] + half[k])),
+    )
+}
+
+/// Boxes in the unit cube, each with about this half size.
+fn some<const D: usize, T: Scalar>(n: usize, half: f64) -> Boxes<D, T> {
+    let mut random = Random::new(n as u64);
+    (0..n).map(|_| around(random.point(), [half * (0.5 + random.unit()); D])).collect()
+}
+
+/// The half size at which boxes in the unit cube overlap one other on the average.
+fn half_size<const D: usize>(n: usize) -> f64 {
+    0.25 * (2.0 / n as f64).powf(1.0 / D as f64)
+}
+
+/// Scenes, each against some shortcut.
+fn adversaries<const D: usize, T: Scalar>(n: usize) -> Vec<(&'static str, Boxes<D, T>)> {
+    let half = half_size::<D>(n);
+    let uniform: Boxes<D, T> = some(n, half);
+    let with = |every: usize, change: &dyn Fn(usize, &mut Aabb<D, T>)| {
+        let mut boxes = uniform.clone();
+        boxes.iter_mut().enumerate().step_by(every).for_each(|(i, aabb)| change(i, aabb));
+        boxes
+    };
+    let scaled = |factor: f64, offset: f64| {
+        let scale = |at: T| T::from_f64(at.to_f64() * factor + offset);
+        uniform.iter().map(|b| Aabb::new(b.min.map(scale), b.max.map(scale))).collect::<Vec<_>>()
+    };
+    let by_left = |reverse: bool| {
+        let mut boxes = uniform.clone();
+        boxes.sort_by(|a, b| a.min[0].partial_cmp(&b.min[0]).unwrap());
+        if reverse {
+            boxes.reverse();
+        }
+        boxes
+    };
+    let (least, most, low) = (T::NEG_INFINITY, T::INFINITY, T::from_f64(0.3));
+    let far = |i: usize, aabb: &mut Aabb<D, T>, axes: std::ops::Range<usize>| {
+        for axis in axes {
+            let offset = T::from_f64(if i.is_multiple_of(4) { 1e4 } else { 3e4 });
+            aabb.min[axis] = aabb.min[axis] + offset;
+            aabb.max[axis] = aabb.max[axis] + offset;
+        }
+    };
+    vec![
+        ("uniform", uniform.clone()),
+        ("dense", some(n, 3.0 * half)),
+        ("points", some(n, 0.0)),
+        ("sorted", by_left(false)),
+        ("reversed", by_left(true)),
+        ("at 1e30", scaled(1e30, 0.0)),
+        ("at 1e-30", scaled(1e-30, 0.0)),
+        ("beyond the plan's limit", scaled(1e38, -2e38)),
+        ("far from the origin", scaled(1.0, 1e5)),
+        ("one spans all", with(n, &|_, b| (b.min, b.max) = ([low; D].map(|_| least), [most; D]))),
+        ("one in ten spans all", with(10, &|_, b| (b.min, b.max) = ([least; D], [most; D]))),
+        ("half spaces", with(50, &|i, b| (b.min, b.max[i % D]) = ([least; D], low))),
+        (
+            "needles",
+            with(1, &|i, b| (b.min[i % D], b.max[i % D]) = (T::from_f64(-1.0), T::from_f64(2.0))),
+        ),
+        ("long on an axis", with(3, &|_, b| b.max[0] = T::from_f64(2.0))),
+        ("all reach to infinity", with(1, &|_, b| b.max[D - 1] = most)),
+        ("all at infinity", with(1, &|_, b| (b.min[0], b.max[0]) = (most, most))),
+        ("two far clusters", with(2, &|i, b| far(i, b, 0..D))),
+        ("two clusters far on an axis", with(2, &|i, b| far(i, b, 0..1))),
+        ("one outlier", with(n, &|_, b| *b = around([1e20; D], [1.0; D]))),
+        ("in one plane", with(1, &|_, b| (b.min[D - 1], b.max[D - 1]) = (low, low))),
+        ("on a line", with(1, &|_, b| (b.min, b.max) = ([b.min[0]; D], [b.max[0]; D]))),
+        ("scales", {
+            let mut boxes = uniform.clone();
+            for (i, aabb) in boxes.iter_mut().enumerate() {
+                let scale = |at: T| T::from_f64(at.to_f64() * 0.01f64.powi(i as i32 % 4));
+                *aabb = Aabb::new(aabb.min.map(scale), aabb.max.map(scale));
+            }
+            boxes
+        }),
+        ("nested", {
+            let half = |i: usize| 0.99f64.powi(i as i32);
+            (0..n.min(600)).map(|i| around([0.5; D], [half(i); D])).collect()
+        }),
+        ("coincident", vec![around([0.5; D], [0.5; D]); n.min(600)]),
+        ("lattice of touching boxes", {
+            let side = (n as f64).powf(1.0 / D as f64).ceil() as usize;
+            let at = |i: usize| core::array::from_fn(|k| (i / side.pow(k as u32) % side) as f64);
+            (0..n).map(|i| around(at(i), [0.5; D])).collect()
+        }),
+        ("power-law sizes", {
+            let mut random = Random::new(5);
+            let size = |r: f64| (0.3 * half * (1.0 - r).powf(-0.7)).min(1.0);
+            (0..n).map(|_| around(random.point(), [size(random.unit()); D])).collect()
+        }),
+    ]
+}
+
+fn sorted(pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
+    let mut pairs = pairs.to_vec();
+    pairs.sort_unstable();
+    pairs
+}
+
+/// Every finder that this build offers: the scalar one first, which is the definition.
+fn finders<const D: usize, T: Scalar>() -> Vec<(String, PairFinder<D, T>)> {
+    let mut all = Vec::new();
+    for kernel in Kernel::available() {
+        let finder = PairFinder::new().kernel(kernel);
+        #[cfg(feature = "parallel")]
+        for threads in [2, 3] {
+            let name = format!("{} on {threads} threads", kernel.name());
+            all.push((name, PairFinder::new().kernel(kernel).threads(threads)));
+        }
+        all.push((kernel.name().into(), finder));
+    }
+    all
+}
+
+/// Pairs between two sets by global pairwise.
+fn pairwise_between<const D: usize, T: Scalar>(
+    a: &[Aabb<D, T>],
+    b: &[Aabb<D, T>],
+) -> Vec<[u32; 2]> {
+    let mut pairs = Vec::new();
+    for (i, first) in a.iter().enumerate() {
+        let partners = (0..b.len()).filter(|&j| first.overlaps(&b[j]));
+        pairs.extend(partners.map(|j| [i as u32, j as u32]));
+    }
+    pairs
+}
+
+/// All roads give the right pairs, in the same order.
+fn check<const D: usize, T: Scalar>(name: &str, boxes: &[Aabb<D, T>]) {
+    // The oracle takes its time, and there is nothing to learn from the second million of pairs.
+    let mut boxes = boxes;
+    while count_pairs(boxes).unwrap() > 1_000_000 {
+        boxes = &boxes[..boxes.len() / 2];
+    }
+    let found = find_pairs(boxes).unwrap();
+    assert!(sorted(&found) == pairwise(boxes).unwrap(), "{name}, {D}D, {} boxes", boxes.len());
+    for (with, mut finder) in finders() {
+        assert!(finder.find(boxes).unwrap() == found, "{name}, {D}D, {with}");
+        assert_eq!(finder.count(boxes).unwrap(), found.len() as u64, "{name}, {D}D, {with}");
+    }
+    let mut streamed = Vec::new();
+    let flow = PairFinder::new().for_each(boxes, |pair| {
+        streamed.push(pair);
+        ControlFlow::<()>::Continue(())
+    });
+    assert!(flow == Ok(ControlFlow::Continue(())) && streamed == found, "{name}, {D}D, streamed");
+}
+
+fn check_between<const D: usize, T: Scalar>(name: &str, a: &[Aabb<D, T>], b: &[Aabb<D, T>]) {
+    let (mut a, mut b) = (a, b);
+    while PairFinder::new().count_between(a, b).unwrap() > 1_000_000 {
+        (a, b) = (&a[..a.len().div_ceil(2)], &b[..b.len().div_ceil(2)]);
+    }
+    let found = find_pairs_between(a, b).unwrap();
+    assert!(sorted(&found) == pairwise_between(a, b), "{name}, {D}D, {} {}", a.len(), b.len());
+    for (with, mut finder) in finders() {
+        assert!(finder.find_between(a, b).unwrap() == found, "{name}, {D}D, {with}");
+        assert_eq!(finder.count_between(a, b).unwrap(), found.len() as u64, "{name}, {with}");
+    }
+    let mut streamed = Vec::new();
+    let flow = PairFinder::new().for_each_between(a, b, |pair| {
+        streamed.push(pair);
+        ControlFlow::<()>::Continue(())
+    });
+    assert!(flow == Ok(ControlFlow::Continue(())) && streamed == found, "{name}, {D}D, streamed");
+}
+
+/// Where the oracle is not a debug build, enough boxes for many bins, and for threads.
+const MANY: usize = if cfg!(debug_assertions) { 700 } else { 5000 };
+
+fn adversaries_in_one_set<const D: usize, T: Scalar>() {
+    for n in [66, 300, MANY] {
+        for (name, boxes) in adversaries::<D, T>(n) {
+            check(name, &boxes);
+        }
+    }
+}
+in_all_dimensions!(every_road_finds_the_pairs_of_every_adversary, adversaries_in_one_set);
+
+fn adversaries_in_two_sets<const D: usize, T: Scalar>() {
+    let few: Boxes<D, T> = some(7, 0.3);
+    let uniform: Boxes<D, T> = some(MANY, half_size::<D>(MANY));
+    for (name, boxes) in adversaries::<D, T>(MANY / 2) {
+        check_between(name, &boxes, &uniform);
+        check_between(name, &few, &boxes);
+        check_between(name, &boxes, &few);
+        check_between(name, &boxes[..1], &boxes);
+        check_between(name, &boxes, &[]);
+    }
+}
+in_all_dimensions!(every_road_finds_the_pairs_between_sets, adversaries_in_two_sets);
+
+fn random_boxes<const D: usize, T: Scalar>() {
+    proptest!(ProptestConfig::with_cases(96), |(boxes in valid_boxes::<D, T>(150))| {
+        check("random", &boxes);
+    });
+    proptest!(ProptestConfig::with_cases(48), |(a in valid_boxes::<D, T>(90), b in valid_boxes::<D, T>(150))| {
+        check_between("random", &a, &b);
+    });
+    // So many boxes that the plan cuts, on so few coordinates that edges of boxes and bins meet.
+    let whole = |k: usize| move |random: &mut Random| random.below(k) as f64;
+    let mut random = Random::new(17);
+    for k in [3, 10, 40] {
+        let coordinate = whole(k);
+        let mut next = || T::from_f64(coordinate(&mut random));
+        let boxes: Boxes<D, T> = (0..MANY / 4)
+            .map(|_| {
+                let min: [T; D] = core::array::from_fn(|_| next());
+                let one = T::from_f64(1.0);
+                Aabb::new(
+                    min,
+                    core::array::from_fn(|k| if next() > one { min[k] } else { min[k] + one }),
+                )
+            })
+            .collect();
+        check("whole numbers", &boxes);
+    }
+}
+in_all_dimensions!(every_road_finds_the_pairs_of_random_boxes, random_boxes);
+
+/// Boxes as they come, most of them bad.
+fn refuses_bad_boxes<const D: usize, T: Scalar>() {
+    let bad = |a: T, b: T| Aabb::new([a; D], [b; D]);
+    let nan = T::from_f64(f64::NAN);
+    let corner = || prop_oneof![4 => coordinate::<T>(), 1 => Just(nan)];
+    let boxes = prop::collection::vec((corner(), corner()), 0..200);
+    proptest!(ProptestConfig::with_cases(64), |(corners in boxes, n in 0..3000usize)| {
+        let corners: Boxes<D, T> = corners.into_iter().map(|(a, b)| bad(a, b)).collect();
+        let mut boxes: Boxes<D, T> = some(n, 0.01);
+        let error = validate(&[&boxes[..], &corners[..]].concat()).err();
+        if let Some(error) = error {
+            prop_assert_eq!(find_pairs_between(&boxes, &corners), Err(error));
+            boxes.extend(corners);
+            prop_assert_eq!(find_pairs(&boxes), Err(error));
+            prop_assert_eq!(count_pairs(&boxes), Err(error));
+            for (_, mut finder) in finders::<D, T>() {
+                prop_assert_eq!(finder.find(&boxes), Err(error));
+                prop_assert_eq!(finder.for_each(&boxes, |_| -> ControlFlow<()> { panic!("a pair") }), Err(error));
+            }
+        }
+    });
+}
+in_all_dimensions!(bad_boxes_are_refused_by_index, refuses_bad_boxes);
+
+#[test]
+fn indices_of_the_second_set_go_on_from_the_first() {
+    let (good, bad) = (Aabb::new([0.0f32], [1.0]), Aabb::new([1.0f32], [0.0]));
+    let error = Error::InvalidBox { index: 3, axis: 0 };
+    assert_eq!(find_pairs_between(&[good, good], &[good, bad]), Err(error));
+    assert_eq!(find_pairs_between(&[], &[good, good, good, bad]), Err(error));
+    assert_eq!(find_pairs_between(&[good; 3], &[bad; 3000]), Err(error));
+}
+
+#[test]
+fn a_stream_ends_when_it_is_told() {
+    let boxes: Boxes<2, f32> = some(3000, 0.05);
+    let all = find_pairs(&boxes).unwrap();
+    for end in [0, 1, 5000, all.len() - 1] {
+        let mut seen = Vec::new();
+        let flow = PairFinder::new().for_each(&boxes, |pair| {
+            seen.push(pair);
+            if seen.len() > end { ControlFlow::Break(pair) } else { ControlFlow::Continue(()) }
+        });
+        assert_eq!(flow, Ok(ControlFlow::Break(all[end])));
+        assert_eq!(seen, all[..=end]);
+    }
+}
+
+#[test]
+fn a_watch_hears_of_progress_and_ends_the_search() {
+    use std::sync::Mutex;
+    let boxes: Boxes<3, f64> = some(60_000, half_size::<3>(60_000));
+    for (name, mut finder) in finders() {
+        let shares = Mutex::new(Vec::new());
+        let found = finder.find_watched(&boxes, &|share| {
+            shares.lock().unwrap().push(share);
+            ControlFlow::Continue(())
+        });
+        assert!(found.unwrap().is_some());
+        let mut shares = shares.into_inner().unwrap();
+        shares.sort_by(f64::total_cmp);
+        assert!(shares.len() > 10, "{name}: {shares:?}");
+        assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)), "{name}: {shares:?}");
+        assert!(*shares.last().unwrap() > 0.95, "{name}: {shares:?}");
+
+        let half =
+            |share| if share > 0.5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+        assert_eq!(finder.find_watched(&boxes, &half), Ok(None), "{name}");
+    }
+    // One bin full of pairs: the watch is asked while they are found.
+    let heap = vec![Aabb::new([0.0f32], [1.0]); 20_000];
+    let asked = Mutex::new(0);
+    let mut finder = PairFinder::new();
+    let found = finder.find_watched(&heap, &|_| {
+        *asked.lock().unwrap() += 1;
+        if *asked.lock().unwrap() == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert_eq!(found.unwrap(), None);
+}
+
+#[test]
+fn a_billion_pairs_are_counted_in_bounded_memory() {
+    let n = if cfg!(debug_assertions) { 2000u64 } else { 50_000 };
+    let boxes = vec![Aabb::new([1.0f32, 2.0, 3.0], [2.0, 3.0, 4.0]); n as usize];
+    assert_eq!(count_pairs(&boxes), Ok(n * (n - 1) / 2));
+    let mut streamed = 0;
+    let flow = PairFinder::new().for_each(&boxes, |_| {
+        streamed += 1;
+        ControlFlow::<()>::Continue(())
+    });
+    assert_eq!((flow, streamed), (Ok(ControlFlow::Continue(())), n * (n - 1) / 2));
+}
