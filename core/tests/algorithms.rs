@@ -429,6 +429,15 @@ fn boxes_without_dimensions_are_refused() {
     }
 }
 
+#[test]
+fn every_name_names_one_thing() {
+    assert!(Method::ALL.into_iter().all(|method| Method::from_name(method.name()) == Some(method)));
+    assert!(Sort::ALL.into_iter().all(|sort| Sort::from_name(sort.name()) == Some(sort)));
+    assert!(Axis::ALL.into_iter().all(|axis| Axis::from_name(axis.name()) == Some(axis)));
+    assert_eq!(Method::from_name(Method::OneToN(7).name()), Some(Method::OneToN(0)));
+    assert_eq!(Method::from_name("bogosort"), None);
+}
+
 /// Which axis each way to choose takes.
 #[test]
 fn axes_are_chosen_by_their_measure() {

@@ -37,6 +37,11 @@ impl Axis {
         }
     }
 
+    /// The way to choose of this [`name`](Self::name); axis 0 for the fixed one.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|axis| axis.name() == name)
+    }
+
     /// The axis for these valid boxes. Of equals the first is taken.
     ///
     /// # Errors

@@ -61,6 +61,11 @@ impl Method {
         }
     }
 
+    /// The method of this [`name`](Self::name); the one-to-n scan of box 0.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().chain([Method::OneToN(0)]).find(|method| method.name() == name)
+    }
+
     /// Whether it keeps endpoints sorted, so that [`Sort`] matters. In the swap-driven forms that
     /// is how boxes which come are sorted; those which move are always sorted by insertion.
     pub const fn sorts(self) -> bool {
@@ -80,7 +85,8 @@ pub struct RunnerOptions {
     pub method: Method,
     /// How it sorts, if it does.
     pub sort: Sort,
-    /// Along which axis it sweeps, chosen anew each step.
+    /// Along which axis it sweeps, chosen anew each step. The persistent swap-driven form starts
+    /// over when the axis changes; what began and ended is told right all the same.
     pub axis: Axis,
     /// Whether the state of one step is where the next begins: the order of the endpoints, in the
     /// swap-driven forms the overlaps too. Only then are begun and ended pairs told.

@@ -45,6 +45,11 @@ impl Sort {
         }
     }
 
+    /// The sort of this [`name`](Self::name).
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|sort| sort.name() == name)
+    }
+
     /// Sorts `endpoints[from..]` in place. Positions are told as those of the whole array.
     pub(super) fn sort_tail<T: Scalar, O: Observer>(
         self,
