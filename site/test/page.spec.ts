@@ -82,8 +82,9 @@ for (const width of [320, 390, 820, 1280]) {
     await page.goto("/");
     for (const id of ["discs", "spheres"] as const) await new Lab(page, id).open();
     await page.getByRole("button", { name: "Find pairs" }).click();
-    const { scrollWidth, clientWidth } = await page.evaluate(() => document.documentElement);
-    expect(scrollWidth).toBeLessThanOrEqual(clientWidth);
+    expect(
+      await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth),
+    ).toBeLessThanOrEqual(0);
   });
 }
 
@@ -117,7 +118,7 @@ test("the library's pairs are those of brute force", async ({ page }) => {
   await page.goto("/");
   await page.getByRole("button", { name: "Find pairs" }).click();
   await expect(page.locator(".trial-result")).toContainText("the same pairs");
-  await page.getByLabel("Random boxes in 3D").fill("5");
+  await page.getByLabel("Random boxes in 3D").fill("10");
   await page.getByRole("button", { name: "Find pairs" }).click();
-  await expect(page.locator(".trial-result")).toContainText("among 100,000 boxes");
+  await expect(page.locator(".trial-result")).toContainText("among 20,000 boxes");
 });

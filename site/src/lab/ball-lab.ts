@@ -11,6 +11,7 @@ const FRAME_MS = 1000 / 60;
 const COUNTER_MS = 120;
 /** A slider that is being dragged begins a new world at most this often. */
 const DRAG_MS = 100;
+const NOT_COUNTED = "not counted: this algorithm does not do it or does not tell";
 /** The time of drawing is the mean of this many pictures. */
 const WINDOW = 30;
 
@@ -129,10 +130,11 @@ export class BallLab extends HTMLElement {
 
   #bindSlider(key: "bodies" | "size" | "spread", values: readonly number[], format: (value: number) => string): void {
     const slider = this.#part<HTMLInputElement>(key);
-    const output = this.#part<HTMLOutputElement>(`${key}-value`);
+    const output = this.#part(`${key}-value`);
     const show = (): void => {
-      output.value = format(this.#settings[key]);
-      slider.setAttribute("aria-valuetext", output.value);
+      const text = format(this.#settings[key]);
+      output.textContent = text;
+      slider.setAttribute("aria-valuetext", text);
     };
     slider.max = String(values.length - 1);
     slider.value = String(nearest(values, this.#settings[key]));
@@ -200,9 +202,9 @@ export class BallLab extends HTMLElement {
     const first = this.#frame?.run !== frame.run;
     this.#frame = frame;
     if (first) this.#showBegun();
+    const { bodies, pairs, comparisons } = frame.measurement;
     // With one body there is nothing to compare, whatever the algorithm.
-    if (frame.measurement && frame.measurement.bodies > 1) this.#setSorts(Boolean(frame.measurement.comparisons));
-    if (!this.#wanted) this.#describe();
+    if (pairs !== null && bodies > 1) this.#setSorts(Boolean(comparisons));
     this.#requestDraw();
   }
 
@@ -252,6 +254,7 @@ export class BallLab extends HTMLElement {
       this.#countersAt = ended;
       this.#showCounters(this.#frame);
     }
+    if (!this.#wanted) this.#describe();
   }
 
   // What the visitor reads
@@ -264,17 +267,17 @@ export class BallLab extends HTMLElement {
     const drawing = this.#drawingTimes.reduce((sum, time) => sum + time, 0) / this.#drawingTimes.length;
     for (const { key, read } of COUNTERS) {
       const cell = this.#counter(key);
-      const text = measurement ? read({ ...measurement, drawing }) : "–";
+      const text = read({ ...measurement, drawing });
       if (cell.textContent !== (text ?? "–")) cell.textContent = text ?? "–";
-      cell.title = text === null ? "not counted: this algorithm does not do it or does not tell" : "";
+      cell.title = text !== null ? "" : measurement.pairs === null ? "no step yet" : NOT_COUNTED;
     }
-    if (measurement) this.#showBudget({ ...measurement, drawing });
+    this.#showBudget({ ...measurement, drawing });
   }
 
   #showBudget(times: Shown): void {
-    const bar = (stage: string, time: number): void => {
+    const bar = (stage: string, time: number | null): void => {
       const part = this.querySelector<HTMLElement>(`[data-stage="${stage}"]`);
-      if (part) part.style.width = `${Math.min((100 * time) / FRAME_MS, 100)}%`;
+      if (part) part.style.width = `${Math.min((100 * (time ?? 0)) / FRAME_MS, 100)}%`;
     };
     bar("broad-phase", times.broadPhase);
     bar("narrow-phase", times.narrowPhase);
@@ -287,14 +290,17 @@ export class BallLab extends HTMLElement {
     const noun = this.#dimensions === 2 ? "disc" : "sphere";
     const who = `${formatCount(bodies)} ${noun}${bodies === 1 ? "" : "s"}`;
     const by = this.#part<HTMLSelectElement>("sort").disabled ? algorithm : `${algorithm}, ${sort}`;
+    const frame = this.#frame?.run === this.#begun?.run ? this.#frame : undefined;
     if (this.#wanted) {
       this.#say(`${who} by ${by}.`);
-    } else if (this.#frame?.measurement && this.#frame.run === this.#begun?.run) {
-      const { step, hash, measurement } = this.#frame;
-      const tests = measurement.tests === null ? "" : `${formatCount(measurement.tests)} tests found `;
-      this.#say(`Paused after step ${formatCount(step)}: ${tests}${formatCount(measurement.pairs)} pairs. State ${hash}.`);
+    } else if (frame?.running) {
+      this.#say("Finishing this step.");
+    } else if (frame && frame.measurement.pairs !== null) {
+      const { tests, pairs } = frame.measurement;
+      const found = `${tests === null ? "" : `${formatCount(tests)} tests found `}${formatCount(pairs)} pairs`;
+      this.#say(`Paused after step ${formatCount(frame.step)}: ${found}. State ${frame.hash}.`);
     } else {
-      this.#say(`Paused at the beginning: ${who} by ${by}.`);
+      this.#say(`Paused: ${who} by ${by}.`);
     }
   }
 

@@ -23,7 +23,7 @@ const milliseconds = new Intl.NumberFormat("en", { minimumFractionDigits: 2, max
 export const formatCount = (count: number): string => whole.format(count);
 
 const count = (value: number | null): string | null => (value === null ? null : whole.format(value));
-const time = (value: number): string => `${milliseconds.format(value)} ms`;
+const time = (value: number | null): string | null => (value === null ? null : `${milliseconds.format(value)} ms`);
 
 /** What brute force tests: each of `n` bodies with each other, once. */
 export const bruteForceTests = (n: number): number => (n * (n - 1)) / 2;

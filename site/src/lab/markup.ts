@@ -89,7 +89,7 @@ const choice = (id: string, part: string, label: string): string =>
 const slider = (id: string, part: string, label: string, value: string): string =>
   `<div class="field">
           <label for="${id}-${part}">${label}</label>
-          <output for="${id}-${part}" data-part="${part}-value">${value}</output>
+          <span class="value" data-part="${part}-value" aria-hidden="true">${value}</span>
           <input id="${id}-${part}" data-part="${part}" type="range" autocomplete="off" disabled />
         </div>`;
 

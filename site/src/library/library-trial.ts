@@ -1,6 +1,8 @@
 import { findPairs, init } from "sweep-and-prune";
 import { bruteForceTests, formatCount } from "../lab/counters.ts";
 
+/** The numbers of boxes that the slider offers; more would keep the thread of the page too long. */
+const BOXES = [10, 20, 50, 100, 200, 500, 1_000, 2_000, 5_000, 10_000, 20_000, 50_000];
 /** Up to so many boxes brute force answers before a visitor wonders what is going on. */
 const CHECKED = 5_000;
 /** The side of a cube at which a box of `n` in the unit cube meets about two others. */
@@ -14,14 +16,15 @@ export class LibraryTrial extends HTMLElement {
   connectedCallback(): void {
     const button = this.querySelector("button");
     const slider = this.querySelector("input");
-    const count = this.querySelector("output");
+    const count = this.querySelector(".value");
     const result = this.querySelector<HTMLElement>("[role=status]");
     if (!button || !slider || !count || !result) throw new Error("<library-trial> lacks its parts");
 
-    const boxes = (): number => Math.round(10 ** slider.valueAsNumber / 10) * 10;
+    slider.max = String(BOXES.length - 1);
+    const boxes = (): number => BOXES[slider.valueAsNumber] ?? CHECKED;
     const showCount = (): void => {
-      count.value = formatCount(boxes());
-      slider.setAttribute("aria-valuetext", count.value);
+      count.textContent = formatCount(boxes());
+      slider.setAttribute("aria-valuetext", count.textContent);
     };
     showCount();
     slider.addEventListener("input", showCount);

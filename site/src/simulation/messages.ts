@@ -29,18 +29,21 @@ export interface Setup {
   readonly seed: number;
 }
 
-/** The counters of one step. `null` is not counted: the algorithm does not do this, or does not tell. */
+/**
+ * The counters of one step. `null` is not counted: the algorithm does not do this, or does not
+ * tell; all but `bodies` are `null` before it has taken a step.
+ */
 export interface Measurement {
   readonly bodies: number;
   /** Counts of the step's last broad phase. */
   readonly tests: number | null;
   readonly axisOverlaps: number | null;
-  readonly pairs: number;
+  readonly pairs: number | null;
   readonly comparisons: number | null;
   readonly swaps: number | null;
   /** Milliseconds a step, the mean of the last steps. */
-  readonly broadPhase: number;
-  readonly narrowPhase: number;
+  readonly broadPhase: number | null;
+  readonly narrowPhase: number | null;
 }
 
 export type ToSimulation =
@@ -68,14 +71,15 @@ export interface Frame {
   readonly type: "frame";
   readonly run: number;
   readonly step: number;
-  /** Steps of the last second; 0 while paused. */
+  /** Whether steps follow by themselves. */
+  readonly running: boolean;
+  /** Steps of the last second. */
   readonly pace: number;
   /** 16 hexadecimal digits of all positions and velocities. */
   readonly hash: string;
   readonly positions: Float32Array;
   readonly pairs: Uint32Array;
-  /** Absent before the first step. */
-  readonly measurement?: Measurement;
+  readonly measurement: Measurement;
 }
 
 export type FromSimulation =

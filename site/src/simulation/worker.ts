@@ -79,7 +79,8 @@ function show(world: World): void {
       type: "frame",
       run,
       step: simulation.steps,
-      pace: running ? world.taken.length : 0,
+      running,
+      pace: world.taken.length,
       hash: simulation.hash(),
       positions,
       pairs,
@@ -95,19 +96,17 @@ function showAgain(world: World): void {
   show(world);
 }
 
-function measure({ simulation, reports }: World): Measurement | undefined {
+function measure({ simulation, reports }: World): Measurement {
   const latest = reports.at(-1);
-  if (!latest) return undefined;
-  const mean = (time: (report: StepReport) => number): number =>
-    reports.reduce((sum, report) => sum + time(report), 0) / reports.length;
-  const { tests, axisOverlaps, pairs, comparisons, swaps } = latest;
+  const mean = (time: (report: StepReport) => number): number | null =>
+    latest ? reports.reduce((sum, report) => sum + time(report), 0) / reports.length : null;
   return {
     bodies: simulation.bodies,
-    tests,
-    axisOverlaps,
-    pairs,
-    comparisons,
-    swaps,
+    tests: latest?.tests ?? null,
+    axisOverlaps: latest?.axisOverlaps ?? null,
+    pairs: latest?.pairs ?? null,
+    comparisons: latest?.comparisons ?? null,
+    swaps: latest?.swaps ?? null,
     broadPhase: mean((report) => report.broadPhaseMs),
     narrowPhase: mean((report) => report.narrowPhaseMs),
   };
@@ -143,8 +142,11 @@ function receive(message: ToSimulation): void {
       begin(message.run, message.setup, message.method);
       break;
     case "method":
-      world?.simulation.setBroadPhase(broadPhaseOf(message.method));
-      world?.reports.splice(0);
+      if (world) {
+        world.simulation.setBroadPhase(broadPhaseOf(message.method));
+        world.reports.splice(0);
+        showAgain(world);
+      }
       break;
     case "pace":
       setRunning(message.running);
