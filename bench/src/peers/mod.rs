@@ -27,6 +27,9 @@ mod rstar;
 /// The name of the contender that every ratio is taken against.
 pub const OURS: &str = "ours";
 
+/// The name of ours on two threads.
+pub const OURS_ON_TWO: &str = "ours, 2 threads";
+
 /// Finds all pairs, from raw boxes to pairs stored in memory.
 ///
 /// A contender may keep buffers and workspaces between calls, but no knowledge of the boxes:
@@ -75,7 +78,8 @@ pub enum Origin {
 
 /// All contenders that were compiled in, ours first.
 pub fn all() -> Vec<Peer> {
-    let mut peers = vec![ours::PEER, ours::FRESH, plain::SWEEP, plain::BRUTE_FORCE];
+    let mut peers =
+        vec![ours::PEER, ours::TWO_THREADS, ours::FRESH, plain::SWEEP, plain::BRUTE_FORCE];
     #[cfg(feature = "light")]
     peers.extend([
         broccoli::PEER,

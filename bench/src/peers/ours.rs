@@ -3,7 +3,7 @@
 use anyhow::Result;
 use sweep_and_prune::{Aabb, PairFinder};
 
-use super::{Contender, OURS, Origin, Peer};
+use super::{Contender, OURS, OURS_ON_TWO, Origin, Peer};
 
 /// A finder that keeps its buffers.
 pub const PEER: Peer = Peer {
@@ -13,6 +13,16 @@ pub const PEER: Peer = Peer {
     rival: false,
     two: Some(|| Box::new(Warm(PairFinder::<2>::new()))),
     three: Some(|| Box::new(Warm(PairFinder::<3>::new()))),
+};
+
+/// The same on two threads.
+pub const TWO_THREADS: Peer = Peer {
+    name: OURS_ON_TWO,
+    origin: Origin::Here,
+    how: "`PairFinder::find` with `threads(2)`, one finder for all calls",
+    rival: false,
+    two: Some(|| Box::new(Warm(PairFinder::<2>::new().threads(2)))),
+    three: Some(|| Box::new(Warm(PairFinder::<3>::new().threads(2)))),
 };
 
 /// A new finder for each call.

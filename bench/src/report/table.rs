@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use super::format::{count, rounded, significant, time};
-use crate::peers::OURS;
+use crate::peers::{OURS, OURS_ON_TWO};
 use crate::record::{Case, Entry, Outcome, Record, Times};
 
 /// What stands above the results of all machines.
@@ -28,12 +28,16 @@ pub const GOALS: [(usize, f64); 3] = [(10_000, 2.0), (100_000, 3.0), (1_000_000,
 const CLASSIC: [(usize, f64, f64); 2] =
     [(10_000, 2_413.0, 1_000.0), (100_000, 182_715.0, 50_000.0)];
 
+/// From so many boxes on, threads and the memory's speed are looked at.
+const MANY: usize = 100_000;
+
 /// The results of one machine.
 pub fn section(record: &Record, plots: &[String]) -> String {
     let mut text = heading(record);
     text += &classic(record);
     text += &fastest(record);
     text += &means(record);
+    text += &threads(record);
     text += &small(record);
     text += &flat(record);
     text += &limits(record);
@@ -199,6 +203,31 @@ fn small(record: &Record) -> String {
     )
 }
 
+fn threads(record: &Record) -> String {
+    let mut rows = String::new();
+    for case in sorted(record).into_iter().filter(|case| case.boxes >= MANY) {
+        let (Some(one), Some(two)) = (case.times(OURS), case.times(OURS_ON_TWO)) else { continue };
+        let Some(share) = two.ratio else { continue };
+        let _ = writeln!(
+            rows,
+            "| {} {}D | {} | {} | {} | {} |",
+            case.scene,
+            case.dimensions,
+            count(case.boxes as u64),
+            time(one.median_ns),
+            time(two.median_ns),
+            significant(1.0 / share)
+        );
+    }
+    if rows.is_empty() {
+        return rows;
+    }
+    format!(
+        "\n### Two threads: ours\n\nGoal: at least 1.7 times as fast as one.\n\n\
+         | scene | boxes | one thread | two threads | gain |\n|---|--:|--:|--:|--:|\n{rows}"
+    )
+}
+
 fn flat(record: &Record) -> String {
     let each = |case: &Case| {
         let ours = case.times(OURS)?;
@@ -234,7 +263,7 @@ fn flat(record: &Record) -> String {
 
 fn limits(record: &Record) -> String {
     let mut rows = String::new();
-    for case in sorted(record).into_iter().filter(|case| case.boxes >= 100_000) {
+    for case in sorted(record).into_iter().filter(|case| case.boxes >= MANY) {
         let Some(ours) = case.times(OURS) else { continue };
         let bytes = least_bytes(case);
         let least_ns = bytes / record.machine.copy_bytes_per_second * 1e9;
