@@ -8,7 +8,7 @@
 //! the pairs flagged on every axis overlap
 //! ```
 //!
-//! Time: D sorts, plus O(n + m log m) where m is the sum of the overlaps on *all* the axes. No box
+//! Time: D sorts, plus O(n + m) where m is the sum of the overlaps on *all* the axes. No box
 //! is ever tested against another: the flags replace the test. That is no gain by itself. Each
 //! axis costs as much as a one-axis sweep with its tests, so this form only pays where the flags
 //! are kept and seldom change: see `swap_sweep.rs`.
@@ -17,15 +17,15 @@
 //! dropped at once, so only the overlaps of the first axis are ever stored; the sweep begins with
 //! the axis that was chosen, which should be the one with the fewest.
 //!
-//! Unlike the article, which only describes this form, the flags are a count in an ordered map: a
+//! Unlike the article, which only describes this form, the flags are a count in a hash table: a
 //! pair overlaps once it has been counted on all D axes.
 
-use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 
 use super::endpoint_array::EndpointArray;
 use super::endpoint_sweep::sweep;
 use super::observer::{Observer, pair};
+use super::pair_map::PairMap;
 use super::sorts::Sort;
 use super::touching::Touching;
 use crate::{Aabb, Scalar};
@@ -37,7 +37,7 @@ pub(super) struct AxisSweeps<const D: usize, T> {
     pub arrays: [EndpointArray<T>; D],
     touching: Touching,
     /// On how many axes, in the order in which they are swept, a pair overlaps.
-    flags: BTreeMap<[u32; 2], usize>,
+    flags: PairMap<usize>,
 }
 
 impl<const D: usize, T: Scalar> AxisSweeps<D, T> {
@@ -46,7 +46,7 @@ impl<const D: usize, T: Scalar> AxisSweeps<D, T> {
         Self {
             arrays: core::array::from_fn(|_| EndpointArray::default()),
             touching: Touching::default(),
-            flags: BTreeMap::new(),
+            flags: PairMap::new(),
         }
     }
 
@@ -72,8 +72,7 @@ impl<const D: usize, T: Scalar> AxisSweeps<D, T> {
                 observer.axis_overlap(axis, pair[0], pair[1]);
                 if already == 0 {
                     flags.insert(pair, 1);
-                } else if let Some(count) = flags.get_mut(&pair).filter(|count| **count == already)
-                {
+                } else if let Some(count) = flags.get_mut(pair).filter(|count| **count == already) {
                     *count += 1;
                 } else {
                     return;
@@ -86,9 +85,9 @@ impl<const D: usize, T: Scalar> AxisSweeps<D, T> {
         }
     }
 
-    /// The memory it holds; of the flags the entries alone.
+    /// The memory it holds.
     pub fn bytes(&self) -> usize {
         let arrays: usize = self.arrays.iter().map(EndpointArray::bytes).sum();
-        arrays + self.touching.bytes() + self.flags.len() * size_of::<([u32; 2], usize)>()
+        arrays + self.touching.bytes() + self.flags.bytes()
     }
 }

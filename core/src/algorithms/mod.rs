@@ -19,6 +19,7 @@ mod endpoint_array;
 mod endpoint_sweep;
 mod observer;
 mod one_to_n;
+mod pair_map;
 mod pairwise;
 mod player;
 mod runner;

@@ -31,9 +31,10 @@ pub enum Method {
     /// The endpoint sweep on every axis; a pair must be flagged on each. Pairs in the order of the
     /// last sweep.
     AxisSweeps,
-    /// Insertion sort whose swaps tell what begins and ends, on one axis. Pairs sorted.
+    /// Insertion sort whose swaps tell what begins and ends, on one axis. Pairs in an order that
+    /// depends only on the steps so far.
     SwapSweep,
-    /// The swap-driven form on every axis. Pairs sorted.
+    /// The swap-driven form on every axis. Pairs as in `SwapSweep`.
     AxisSwapSweeps,
 }
 
@@ -208,8 +209,7 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
     }
 
     /// The memory that the algorithm holds to work with, in bytes: endpoints, flags and pairs that
-    /// it keeps; not the pairs that it hands out, which are the same for all. Of ordered maps the
-    /// entries are counted, not what the tree adds to them.
+    /// it keeps; not the pairs that it hands out, which are the same for all.
     pub fn bytes(&self) -> usize {
         match &self.state {
             State::Nothing => 0,

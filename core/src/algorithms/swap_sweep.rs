@@ -19,8 +19,8 @@
 //! when it moves a little, at worst 2n(n-1): a full reversal of the 2n endpoints, n(2n-1), but for
 //! the n pairs that belong to one box, which never change places. On one axis the pairs that
 //! overlap there are then tested on the others, O(m); on every axis a pair must be flagged on
-//! each, and nothing is tested. A change of the pairs kept costs O(log m). Memory: O(n + m), m the
-//! overlaps on *all* swept axes.
+//! each, and nothing is tested. The pairs are kept in a hash table, so a change of them is
+//! expected O(1). Memory: O(n + m), m the overlaps on *all* swept axes.
 //!
 //! What differs from the article, and why:
 //! - It must start from what overlaps. The article's listing, run on endpoints that were sorted
@@ -33,13 +33,13 @@
 //! - `begun` and `ended` are net. A body thrown past k others makes up to 4k swaps and no pair,
 //!   because what begins and ends within one update cancels.
 
-use alloc::collections::BTreeMap;
 use alloc::vec;
 use alloc::vec::Vec;
 
 use super::endpoint::{Edge, Side};
 use super::endpoint_array::EndpointArray;
 use super::observer::{Observer, Separation, pair};
+use super::pair_map::PairMap;
 use super::sorts::{Sort, merge};
 use super::touching::Touching;
 use crate::{Aabb, Scalar};
@@ -142,7 +142,7 @@ impl<T: Scalar> SwapSweep<T> {
         }
     }
 
-    /// Appends all overlapping pairs, sorted.
+    /// Appends all overlapping pairs, in an order that depends only on the steps so far.
     pub fn report<const D: usize, O: Observer>(
         &mut self,
         boxes: &[Aabb<D, T>],
@@ -151,7 +151,7 @@ impl<T: Scalar> SwapSweep<T> {
     ) {
         let one_axis = self.axis();
         let Overlaps { flagged, changed, .. } = &mut self.overlaps;
-        for (&[a, b], reported) in flagged.iter_mut() {
+        for &mut ([a, b], ref mut reported) in flagged.iter_mut() {
             let separation = one_axis.and_then(|axis| {
                 let separation = Separation::find_beside(boxes, a, b, axis);
                 observer.test(a, b, separation);
@@ -170,14 +170,14 @@ impl<T: Scalar> SwapSweep<T> {
     }
 
     /// Appends which pairs of the last report are new in it, and which of the one before are not
-    /// in it any more, each sorted. O(c log c + c log m) for c changes.
+    /// in it any more, each sorted. O(c log c) for c changes.
     pub fn changes(&mut self, begun: &mut Vec<[u32; 2]>, ended: &mut Vec<[u32; 2]>) {
         let Overlaps { flagged, changed, .. } = &mut self.overlaps;
         // Each entry turns the pair from reported to not or back, so an even number cancels.
         changed.sort_unstable();
         for turns in changed.chunk_by(|a, b| a == b).filter(|turns| turns.len() % 2 == 1) {
             let pair = turns[0];
-            let reported = flagged.get(&pair) == Some(&true);
+            let reported = flagged.get_mut(pair).is_some_and(|reported| *reported);
             if reported { begun.push(pair) } else { ended.push(pair) }
         }
         changed.clear();
@@ -223,7 +223,7 @@ impl<T: Scalar> SwapSweep<T> {
         }
     }
 
-    /// The memory it holds; of the pairs the entries alone.
+    /// The memory it holds.
     pub fn bytes(&self) -> usize {
         let arrays: usize = self.sweeps.iter().map(|(_, array)| array.bytes()).sum();
         arrays + self.staying.bytes() + self.marked.bytes() + self.overlaps.bytes()
@@ -262,16 +262,15 @@ impl<O: Observer> Observer for Watch<'_, O> {
     }
 }
 
-/// Which pairs overlap on which swept axes. The maps are ordered, so that whatever is listed from
-/// them comes sorted.
+/// Which pairs overlap on which swept axes.
 #[derive(Clone, Debug, Default)]
 struct Overlaps {
     /// How many axes are swept.
     axes: usize,
     /// The pairs that overlap on every swept axis, and whether the last report had them.
-    flagged: BTreeMap<[u32; 2], bool>,
+    flagged: PairMap<bool>,
     /// On how many swept axes a pair overlaps, if on any. Not needed for a single one.
-    counts: BTreeMap<[u32; 2], usize>,
+    counts: PairMap<usize>,
     /// The pairs that turned from reported to not reported or back, since the last report.
     changed: Vec<[u32; 2]>,
 }
@@ -280,7 +279,9 @@ impl Overlaps {
     /// A pair begins to overlap on an axis.
     fn begin(&mut self, pair: [u32; 2]) {
         if self.axes > 1 {
-            let count = self.counts.entry(pair).or_insert(0);
+            let Some(count) = self.counts.get_mut(pair) else {
+                return self.counts.insert(pair, 1);
+            };
             *count += 1;
             if *count < self.axes {
                 return;
@@ -292,21 +293,20 @@ impl Overlaps {
     /// A pair ceases to overlap on an axis.
     fn cease(&mut self, pair: [u32; 2]) {
         if self.axes > 1
-            && let Some(count) = self.counts.get_mut(&pair)
+            && let Some(count) = self.counts.get_mut(pair)
         {
             *count -= 1;
             if *count == 0 {
-                self.counts.remove(&pair);
+                self.counts.remove(pair);
             }
         }
-        if self.flagged.remove(&pair) == Some(true) {
+        if self.flagged.remove(pair) == Some(true) {
             self.changed.push(pair);
         }
     }
 
     fn bytes(&self) -> usize {
-        self.flagged.len() * size_of::<([u32; 2], bool)>()
-            + self.counts.len() * size_of::<([u32; 2], usize)>()
-            + self.changed.capacity() * size_of::<[u32; 2]>()
+        let changed = self.changed.capacity() * size_of::<[u32; 2]>();
+        self.flagged.bytes() + self.counts.bytes() + changed
     }
 }
