@@ -274,14 +274,16 @@ export class BallLab extends HTMLElement {
     this.#showBudget({ ...measurement, drawing });
   }
 
-  #showBudget(times: Shown): void {
-    const bar = (stage: string, time: number | null): void => {
-      const part = this.querySelector<HTMLElement>(`[data-stage="${stage}"]`);
-      if (part) part.style.width = `${Math.min((100 * (time ?? 0)) / FRAME_MS, 100)}%`;
-    };
-    bar("broad-phase", times.broadPhase);
-    bar("narrow-phase", times.narrowPhase);
-    bar("drawing", times.drawing);
+  /** The stages as shares of a frame, or of all the frames that they take. */
+  #showBudget({ passes, broadPhase, narrowPhase, drawing }: Shown): void {
+    const stages = { "broad-phase": broadPhase ?? 0, "narrow-phase": narrowPhase ?? 0, drawing };
+    const frames = (stages["broad-phase"] + stages["narrow-phase"] + drawing) / FRAME_MS;
+    for (const [stage, time] of Object.entries(stages)) {
+      const share = time / FRAME_MS / Math.max(frames, 1);
+      this.#find(`[data-stage="${stage}"]`).style.width = `${100 * share}%`;
+    }
+    this.#part("budget").textContent = frames <= 1 ? "of one frame, 16.7 ms" : `${frames.toFixed(1)} frames of 16.7 ms`;
+    this.#part("time-title").textContent = `Time of one step${passes === null ? "" : `, ${passes} passes`}`;
   }
 
   /** Tells in words what is going on: seldom enough to be read out. */

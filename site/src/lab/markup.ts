@@ -54,7 +54,7 @@ function labMarkup({ id, dimensions, bodies }: LabOptions): string {
           ${counterList("time", "Time of one step", bodies)}
           <div class="budget" aria-hidden="true">
             <div class="budget-track"><i data-stage="broad-phase"></i><i data-stage="narrow-phase"></i><i data-stage="drawing"></i></div>
-            <p><span>0</span><span>one frame, 16.7 ms</span></p>
+            <p data-part="budget">of one frame, 16.7 ms</p>
           </div>
         </div>
       </div>
@@ -103,5 +103,5 @@ function counterList(group: "work" | "time", title: string, bodies: number): str
         key === "brute-force" ? formatCount(bruteForceTests(bodies)) : "–"
       }</dd></div>`,
   );
-  return `<section><h3>${title}</h3><dl>${rows.join("")}</dl></section>`;
+  return `<section><h3 data-part="${group}-title">${title}</h3><dl>${rows.join("")}</dl></section>`;
 }

@@ -35,13 +35,15 @@ export interface Setup {
  */
 export interface Measurement {
   readonly bodies: number;
-  /** Counts of the step's last broad phase. */
+  /** How often the broad phase ran in the step. */
+  readonly passes: number | null;
+  /** Counts of the last of these passes. */
   readonly tests: number | null;
   readonly axisOverlaps: number | null;
   readonly pairs: number | null;
   readonly comparisons: number | null;
   readonly swaps: number | null;
-  /** Milliseconds a step, the mean of the last steps. */
+  /** Milliseconds of all passes of a step, the mean of the last steps. */
   readonly broadPhase: number | null;
   readonly narrowPhase: number | null;
 }

@@ -102,6 +102,7 @@ function measure({ simulation, reports }: World): Measurement {
     latest ? reports.reduce((sum, report) => sum + time(report), 0) / reports.length : null;
   return {
     bodies: simulation.bodies,
+    passes: latest?.broadPhases ?? null,
     tests: latest?.tests ?? null,
     axisOverlaps: latest?.axisOverlaps ?? null,
     pairs: latest?.pairs ?? null,
