@@ -1,5 +1,6 @@
 //! What the times depend on: the processor, its clock, its memory.
 
+use std::fmt::Display;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -95,6 +96,15 @@ fn copy_bandwidth() -> f64 {
     };
     let best = std::iter::repeat_with(copy).take(6).min().unwrap_or(Duration::MAX);
     2.0 * BYTES as f64 / best.as_secs_f64()
+}
+
+/// How long the main thread of a process has waited for a processor, because other programs had
+/// them all; nothing where the system does not tell.
+pub fn waited(process: impl Display) -> Duration {
+    // Nanoseconds run, nanoseconds waited, time slices.
+    let text = std::fs::read_to_string(format!("/proc/{process}/schedstat")).unwrap_or_default();
+    let waited = text.split(' ').nth(1).and_then(|number| number.parse().ok());
+    Duration::from_nanos(waited.unwrap_or(0))
 }
 
 /// The memory that the process has in use, in bytes; `None` off Linux.

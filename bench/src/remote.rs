@@ -3,11 +3,15 @@
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use anyhow::{Result, bail};
 
+use crate::machine;
 use crate::worker::{MARK, Reply, Request};
+
+/// How many times its limit a worker may take where other programs keep it from running.
+const PATIENCE: u32 = 20;
 
 /// How long a worker may take to make its boxes.
 const START_LIMIT: Duration = Duration::from_secs(120);
@@ -68,14 +72,25 @@ impl Remote {
         self.receive(limit)
     }
 
+    /// Waits for a reply until the worker has run for as long as `limit`: the time for which other
+    /// programs kept it from running does not count, up to [`PATIENCE`] times the limit.
     fn receive(&mut self, limit: Duration) -> Result<Outcome> {
-        match self.replies.recv_timeout(limit) {
-            Ok(reply) => Ok(Outcome::Reply(serde_json::from_str(&reply)?)),
-            Err(RecvTimeoutError::Timeout) => {
-                let _ = self.child.kill();
-                Ok(Outcome::Late)
+        let worker = self.child.id();
+        let (waited, start) = (machine::waited(worker), Instant::now());
+        let mut left = limit;
+        loop {
+            match self.replies.recv_timeout(left) {
+                Ok(reply) => return Ok(Outcome::Reply(serde_json::from_str(&reply)?)),
+                Err(RecvTimeoutError::Disconnected) => return Ok(Outcome::Ended(self.epitaph())),
+                Err(RecvTimeoutError::Timeout) => {}
             }
-            Err(RecvTimeoutError::Disconnected) => Ok(Outcome::Ended(self.epitaph())),
+            let elapsed = start.elapsed();
+            let ran = elapsed.saturating_sub(machine::waited(worker).saturating_sub(waited));
+            if ran >= limit || elapsed > PATIENCE * limit {
+                let _ = self.child.kill();
+                return Ok(Outcome::Late);
+            }
+            left = limit - ran;
         }
     }
 

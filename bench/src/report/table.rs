@@ -17,7 +17,8 @@ Every time is from raw boxes to pairs stored in memory, everything included, on 
 the name says otherwise. A contender is timed only if its pairs are exactly the right ones. Each \
 round runs every contender in turn; a time is the median over the rounds, and a ratio the median \
 over the rounds of a contender's time over ours in the same round, so that what slowed the machine \
-in a round slowed both. Above 1 means slower than ours.
+in a round slowed both. Above 1 means slower than ours. What a contender waited for a processor \
+because other programs had them all is not counted.
 ";
 
 /// The goals of the geometric mean of (fastest rival / ours), by number of boxes.
