@@ -50,9 +50,9 @@ pub struct Measurement {
     pub residual: f64,
     /// Operations for each that the claim expects, at the largest n.
     pub ratio: f64,
-    /// The slope of log(bytes / claim) over log n; without meaning where none are claimed.
+    /// Bytes for each that the claim expects, at each n; without meaning where none are claimed.
     #[serde(skip)]
-    pub space_residual: f64,
+    pub space_ratios: Vec<f64>,
 }
 
 /// How many pairs are in memory at once.
@@ -79,10 +79,9 @@ pub fn measure(variant: &Variant, claim: &Claim, limits: Limits) -> Measurement 
         claimed_slope: 0.0,
         ratio: 0.0,
         residual: 0.0,
-        space_residual: 0.0,
+        space_ratios: Vec::new(),
     };
     let mut costs = Vec::new();
-    let mut spaces = Vec::new();
     for n in (limits.least..=limits.most).map(|log| 1 << log) {
         let (before, now) = claim.world.steps(n);
         let facts = Facts::of(claim.world, before.as_ref(), &now);
@@ -98,7 +97,7 @@ pub fn measure(variant: &Variant, claim: &Claim, limits: Limits) -> Measurement 
         let mut counts = Counts::default();
         runner.step(&now, &mut counts).expect("valid boxes");
         costs.push(cost);
-        spaces.push((variant.space_cost)(&facts));
+        result.space_ratios.push(runner.bytes() as f64 / (variant.space_cost)(&facts));
         result.n.push(n);
         result.operations.push(counts.operations());
         result.overlaps.push(facts.m as u64);
@@ -107,8 +106,6 @@ pub fn measure(variant: &Variant, claim: &Claim, limits: Limits) -> Measurement 
     }
     let operations: Vec<f64> = result.operations.iter().map(|&count| count as f64).collect();
     let ratios: Vec<f64> = operations.iter().zip(&costs).map(|(a, b)| a / b).collect();
-    let bytes = result.bytes.iter().zip(&spaces).map(|(&a, b)| a as f64 / b);
-    result.space_residual = slope(&result.n, &bytes.collect::<Vec<_>>());
     result.slope = slope(&result.n, &operations);
     result.claimed_slope = slope(&result.n, &costs);
     result.ratio = round(ratios[ratios.len() - 1]);

@@ -201,8 +201,8 @@ Timsort are, on input that is in order throughout; a few exchanges and it is n l
 fewer in practice.
 - Nothing that sorts takes O(1) space: the order is an array of its own, so that the caller's is \
 left alone. Quicksort needs O(log n) more for its stack, merge sort and Timsort O(n) for merging.
-- A change of the kept pairs costs the swap-driven forms O(log m) besides, since the pairs are \
-held in order; with a hash table it would be O(1) expected.
+- The forms that keep overlaps keep them in a hash table; that a change of it is O(1) is expected, \
+not certain.
 ";
 
 const MEASURED_HEAD: &str = "
