@@ -7,8 +7,8 @@ use std::collections::BTreeSet;
 use common::{valid_box, valid_boxes};
 use proptest::prelude::*;
 use sweep_and_prune::algorithms::{
-    Axis, Counts, Edge, Event, Method, Player, PlayerState, Runner, RunnerOptions, Separation,
-    Side, Sort, Trace, pairwise,
+    Axis, Counts, Edge, Event, Method, Observer, Player, PlayerState, Runner, RunnerOptions,
+    Separation, Side, Sort, Trace, pairwise,
 };
 use sweep_and_prune::{Aabb, Scalar};
 use sweep_and_prune_scenes::Motion;
@@ -110,6 +110,38 @@ proptest! {
                 }
                 prop_assert_eq!(&alone, &together.1);
             }
+        }
+    }
+}
+
+/// What an observer is told, in the order in which it is.
+#[derive(Default)]
+struct Told(Vec<(u32, u32, Option<Separation>)>);
+
+impl Observer for Told {
+    fn test(&mut self, a: u32, b: u32, separation: Option<Separation>) {
+        self.0.push((a, b, separation));
+    }
+
+    fn prune(&mut self, separation: Separation) {
+        self.0.push((u32::MAX, u32::MAX, Some(separation)));
+    }
+}
+
+proptest! {
+    /// The inequality that decided comes out of the trace as it went in.
+    #[test]
+    fn a_trace_keeps_the_inequality_that_decided(boxes in valid_boxes::<3, f64>(12)) {
+        for method in METHODS {
+            let mut told = (Told::default(), Trace::new());
+            let options = on_x(method, Sort::Standard, false);
+            Runner::new(options).step(&boxes, &mut told).unwrap();
+            let played = told.1.events().filter_map(|event| match event {
+                Event::Test { a, b, separation } => Some((a, b, separation)),
+                Event::Prune { separation } => Some((u32::MAX, u32::MAX, Some(separation))),
+                _ => None,
+            });
+            prop_assert_eq!(played.collect::<Vec<_>>(), told.0.0);
         }
     }
 }
