@@ -262,8 +262,8 @@ export class BallLab extends HTMLElement {
   #showCounters({ step, pace, hash, measurement }: Frame): void {
     this.dataset["step"] = String(step);
     this.dataset["hash"] = hash;
-    this.#part("moment").textContent =
-      `Step ${formatCount(step)}${this.#wanted && pace > 0 ? `, ${pace} a second` : ""}`;
+    const often = this.#wanted && pace > 0 ? `, ${pace.toFixed(pace < 10 ? 1 : 0)} a second` : "";
+    this.#part("moment").textContent = `Step ${formatCount(step)}${often}`;
     const drawing = this.#drawingTimes.reduce((sum, time) => sum + time, 0) / this.#drawingTimes.length;
     for (const { key, read } of COUNTERS) {
       const cell = this.#counter(key);

@@ -75,7 +75,7 @@ export interface Frame {
   readonly step: number;
   /** Whether steps follow by themselves. */
   readonly running: boolean;
-  /** Steps of the last second. */
+  /** Steps a second, of late; 0 while that is not known. */
   readonly pace: number;
   /** 16 hexadecimal digits of all positions and velocities. */
   readonly hash: string;

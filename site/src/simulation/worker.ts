@@ -18,7 +18,7 @@ interface World {
   readonly buffers: Float32Array[];
   /** The latest reports, at most `WINDOW` of them. */
   readonly reports: StepReport[];
-  /** When the steps of the last second were taken. */
+  /** When the steps of the last second were taken, and at least the last two. */
   readonly taken: number[];
   /** Whether the page has not seen the latest state. */
   unseen: boolean;
@@ -62,7 +62,7 @@ function step(world: World): void {
   if (world.reports.length > WINDOW) world.reports.shift();
   const now = performance.now();
   world.taken.push(now);
-  while ((world.taken[0] ?? now) < now - 1000) world.taken.shift();
+  while (world.taken.length > 2 && (world.taken[0] ?? now) < now - 1000) world.taken.shift();
   world.unseen = true;
 }
 
@@ -80,7 +80,7 @@ function show(world: World): void {
       run,
       step: simulation.steps,
       running,
-      pace: world.taken.length,
+      pace: paceOf(world.taken),
       hash: simulation.hash(),
       positions,
       pairs,
@@ -94,6 +94,12 @@ function show(world: World): void {
 function showAgain(world: World): void {
   world.unseen = true;
   show(world);
+}
+
+/** Steps a second; 0 until there are two of them. */
+function paceOf(taken: readonly number[]): number {
+  const [first = 0, last = 0] = [taken[0], taken.at(-1)];
+  return last > first ? (1000 * (taken.length - 1)) / (last - first) : 0;
 }
 
 function measure({ simulation, reports }: World): Measurement {
