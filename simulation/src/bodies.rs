@@ -5,7 +5,7 @@ use std::array::from_fn;
 use sweep_and_prune::Aabb;
 use sweep_and_prune_scenes::hash;
 
-use crate::setup::{Ball, Setup};
+use crate::setup::Ball;
 use crate::vector::{greater, lesser};
 
 /// The balls, one array a property.
@@ -41,11 +41,19 @@ impl<const D: usize> Bodies<D> {
         }
     }
 
+    /// Leaves only a share of each velocity, measured from `ahead`.
+    pub fn slow_down(&mut self, ahead: [f32; D], share: f32) {
+        for velocity in &mut self.velocities {
+            for axis in 0..D {
+                velocity[axis] = ahead[axis] + (velocity[axis] - ahead[axis]) * share;
+            }
+        }
+    }
+
     /// Moves every ball on along its velocity for `time`. No ball goes further than the box is
     /// wide: faster ones are slowed down, so that no coordinate ever overflows.
     pub fn drift(&mut self, time: f32, bounds: &Aabb<D>) {
-        let limit: [f32; D] =
-            from_fn(|axis| (bounds.max[axis] - bounds.min[axis]) / time);
+        let limit: [f32; D] = from_fn(|axis| (bounds.max[axis] - bounds.min[axis]) / time);
         for (position, velocity) in self.positions.iter_mut().zip(&mut self.velocities) {
             for axis in 0..D {
                 velocity[axis] = velocity[axis].clamp(-limit[axis], limit[axis]);
@@ -92,22 +100,36 @@ impl<const D: usize> Bodies<D> {
         }));
     }
 
-    /// Kinetic and potential energy per unit of mass. See
-    /// [`Simulation::energy`](crate::Simulation::energy).
-    pub fn energy(&self, gravity: [f32; D], half_kick: [f32; D], bounds: &Aabb<D>) -> [f64; 2] {
-        let (mut kinetic, mut potential, mut mass) = (0.0, 0.0, 0.0);
-        for index in 0..self.len() {
-            let m = 1.0 / f64::from(self.inverse_masses[index]);
+    /// Per unit of mass, of the velocities less `ahead`, what gravity has added to them since the
+    /// time of the positions.
+    pub fn kinetic_energy(&self, ahead: [f32; D]) -> f64 {
+        self.mean_by_mass(|index| {
+            let velocity = self.velocities[index];
+            let speeds = (0..D).map(|axis| f64::from(velocity[axis] - ahead[axis]));
+            speeds.map(|speed| 0.5 * speed * speed).sum()
+        })
+    }
+
+    /// Per unit of mass, above the walls that gravity points to.
+    pub fn potential_energy(&self, gravity: [f32; D], bounds: &Aabb<D>) -> f64 {
+        let ground: [f32; D] =
+            from_fn(|axis| if gravity[axis] > 0.0 { bounds.max[axis] } else { bounds.min[axis] });
+        self.mean_by_mass(|index| {
+            let position = self.positions[index];
+            let heights = (0..D).map(|axis| f64::from(ground[axis]) - f64::from(position[axis]));
+            heights.zip(gravity).map(|(height, g)| f64::from(g) * height).sum()
+        })
+    }
+
+    /// The mean over all balls, weighted by mass; 0 if there are none.
+    fn mean_by_mass(&self, value: impl Fn(usize) -> f64) -> f64 {
+        let (mut sum, mut mass) = (0.0, 0.0);
+        for (index, &inverse_mass) in self.inverse_masses.iter().enumerate() {
+            let m = 1.0 / f64::from(inverse_mass);
+            sum += m * value(index);
             mass += m;
-            for axis in 0..D {
-                let speed = f64::from(self.velocities[index][axis] - half_kick[axis]);
-                kinetic += 0.5 * m * speed * speed;
-                let ground = if gravity[axis] > 0.0 { bounds.max[axis] } else { bounds.min[axis] };
-                let height = f64::from(self.positions[index][axis]) - f64::from(ground);
-                potential -= m * f64::from(gravity[axis]) * height;
-            }
         }
-        if mass > 0.0 { [kinetic / mass, potential / mass] } else { [0.0, 0.0] }
+        if mass > 0.0 { sum / mass } else { 0.0 }
     }
 
     /// The hash of positions and velocities, bit for bit.
@@ -129,11 +151,5 @@ fn mass<const D: usize>(radius: f32) -> f32 {
         1 => 2.0 * radius,
         2 => PI * radius * radius,
         _ => 4.0 / 3.0 * PI * radius * radius * radius,
-    }
-}
-
-impl<const D: usize> From<&Setup<D>> for Bodies<D> {
-    fn from(setup: &Setup<D>) -> Self {
-        Self::new(&setup.balls)
     }
 }

@@ -16,8 +16,8 @@ pub enum BroadPhase {
 /// The chosen one with what it keeps from step to step.
 #[derive(Debug)]
 pub enum Engine<const D: usize> {
-    Library(PairFinder<D>),
-    Algorithm(Runner<D>),
+    Library(Box<PairFinder<D>>),
+    Algorithm(Box<Runner<D>>),
 }
 
 impl<const D: usize> Engine<D> {
@@ -25,10 +25,10 @@ impl<const D: usize> Engine<D> {
     /// [`Error::InvalidAxis`].
     pub fn new(choice: BroadPhase) -> Result<Self, Error> {
         match choice {
-            BroadPhase::Library => Ok(Engine::Library(PairFinder::new())),
+            BroadPhase::Library => Ok(Engine::Library(Box::default())),
             BroadPhase::Algorithm(options) => {
                 options.axis.choose::<D, f32>(&[])?;
-                Ok(Engine::Algorithm(Runner::new(options)))
+                Ok(Engine::Algorithm(Box::new(Runner::new(options))))
             }
         }
     }

@@ -3,9 +3,10 @@
 use sweep_and_prune::Aabb;
 
 use crate::bodies::Bodies;
+use crate::order::{LevelOrder, PairOrder};
 use crate::vector::{difference, dot};
 
-/// Two balls that touch.
+/// Two balls that touch, or will before the substep ends.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact<const D: usize> {
     /// The balls, smaller index first.
@@ -34,15 +35,32 @@ pub struct WallContact {
     pub push: f32,
 }
 
-/// The contacts of a substep. They are in the order of their indices, whatever the order in which
-/// the broad phase found the pairs, and remember their impulses of the substep before.
-#[derive(Clone, Debug)]
+/// The contacts of a substep, with the impulses that those that last had in the substep before.
+/// Their order depends on the balls alone, not on the order in which a broad phase found them.
+#[derive(Clone, Debug, Default)]
 pub struct Contacts<const D: usize> {
+    /// From the top down, as gravity sees it; those on one level by their indices.
     pub balls: Vec<Contact<D>>,
+    /// By index and axis.
     pub walls: Vec<WallContact>,
+    /// Where in `balls` each contact is, the contacts sorted by their indices.
+    places: Vec<u32>,
     balls_before: Vec<Contact<D>>,
     walls_before: Vec<WallContact>,
-    order: PairOrder,
+    places_before: Vec<u32>,
+    pair_order: PairOrder,
+    level_order: LevelOrder,
+}
+
+/// What the narrow phase must know beside pairs and balls.
+#[derive(Clone, Copy, Debug)]
+pub struct Surroundings<const D: usize> {
+    /// The walls.
+    pub bounds: Aabb<D>,
+    /// Which way is down.
+    pub gravity: [f32; D],
+    /// How long the substep is.
+    pub time: f32,
 }
 
 /// How near to a wall a ball touches it, in radii. A ball at rest on the floor stays a contact
@@ -50,43 +68,30 @@ pub struct Contacts<const D: usize> {
 const WALL_MARGIN: f32 = 0.01;
 
 impl<const D: usize> Contacts<D> {
-    pub fn new() -> Self {
-        Self {
-            balls: Vec::new(),
-            walls: Vec::new(),
-            balls_before: Vec::new(),
-            walls_before: Vec::new(),
-            order: PairOrder::default(),
-        }
-    }
-
     /// Finds the contacts among `pairs`, in any order, and at the walls.
-    pub fn find(
-        &mut self,
-        pairs: &[[u32; 2]],
-        bodies: &Bodies<D>,
-        time: f32,
-        bounds: &Aabb<D>,
-    ) {
+    pub fn find(&mut self, pairs: &[[u32; 2]], bodies: &Bodies<D>, around: &Surroundings<D>) {
         std::mem::swap(&mut self.balls, &mut self.balls_before);
         std::mem::swap(&mut self.walls, &mut self.walls_before);
-        self.balls.clear();
-        let touching = pairs.iter().copied().filter(|&pair| touch(pair, bodies, time));
-        let sorted = self.order.sort(touching, bodies.len());
-        self.balls.extend(sorted.iter().map(|&pair| contact(pair, bodies, time)));
-        find_walls(bodies, bounds, &mut self.walls);
-        self.remember_impulses();
-    }
+        std::mem::swap(&mut self.places, &mut self.places_before);
+        let touching = pairs.iter().copied().filter(|&pair| touch(pair, bodies, around.time));
+        let sorted = self.pair_order.sort(touching, bodies.len());
 
-    /// Both lists are sorted: one walk along each finds the contacts that last.
-    fn remember_impulses(&mut self) {
-        let mut before = self.balls_before.iter().peekable();
-        for contact in &mut self.balls {
-            while before.next_if(|old| old.pair < contact.pair).is_some() {}
-            if let Some(old) = before.next_if(|old| old.pair == contact.pair) {
-                contact.impulse = old.impulse;
-            }
+        let height = |[a, b]: [u32; 2]| {
+            let (a, b) = (bodies.positions[a as usize], bodies.positions[b as usize]);
+            -dot(around.gravity, a) - dot(around.gravity, b)
+        };
+        self.level_order.sort(sorted.iter().map(|&pair| height(pair)), &mut self.places);
+
+        let mut before =
+            self.places_before.iter().map(|&place| self.balls_before[place as usize]).peekable();
+        self.balls.resize(sorted.len(), Contact::NONE);
+        for (&pair, &place) in sorted.iter().zip(&self.places) {
+            while before.next_if(|old| old.pair < pair).is_some() {}
+            let impulse = before.next_if(|old| old.pair == pair).map_or(0.0, |old| old.impulse);
+            self.balls[place as usize] = contact(pair, impulse, bodies, around.time);
         }
+
+        find_walls(bodies, &around.bounds, &mut self.walls);
         let key = |wall: &WallContact| (wall.body, wall.axis);
         let mut before = self.walls_before.iter().peekable();
         for wall in &mut self.walls {
@@ -96,6 +101,17 @@ impl<const D: usize> Contacts<D> {
             }
         }
     }
+
+    /// Forgets the contacts of balls with each other.
+    pub fn part_balls(&mut self) {
+        self.balls.clear();
+        self.places.clear();
+    }
+}
+
+impl<const D: usize> Contact<D> {
+    /// To fill an array with.
+    const NONE: Self = Self { pair: [0; 2], normal: [0.0; D], slack: 0.0, mass: 0.0, impulse: 0.0 };
 }
 
 /// The exact test: whether two balls touch now, or will before `time` has passed if nothing
@@ -122,13 +138,18 @@ fn touch<const D: usize>([a, b]: [u32; 2], bodies: &Bodies<D>, time: f32) -> boo
     }
 }
 
-fn contact<const D: usize>(pair: [u32; 2], bodies: &Bodies<D>, time: f32) -> Contact<D> {
+fn contact<const D: usize>(
+    pair: [u32; 2],
+    impulse: f32,
+    bodies: &Bodies<D>,
+    time: f32,
+) -> Contact<D> {
     let [a, b] = pair.map(|id| id as usize);
     let (normal, distance) = normal_and_distance(pair, bodies);
     let gap = distance - bodies.radii[a] - bodies.radii[b];
     let slack = if gap > 0.0 { gap / time } else { 0.0 };
     let mass = 1.0 / (bodies.inverse_masses[a] + bodies.inverse_masses[b]);
-    Contact { pair, normal, slack, mass, impulse: 0.0 }
+    Contact { pair, normal, slack, mass, impulse }
 }
 
 /// The unit vector from the first centre to the second, and how far apart they are.
@@ -146,7 +167,7 @@ pub fn normal_and_distance<const D: usize>(
     if square < 1e-30 {
         let mut normal = [0.0; D];
         let direction = a.wrapping_add(b) as usize % (2 * D);
-        normal[direction / 2] = if direction % 2 == 0 { 1.0 } else { -1.0 };
+        normal[direction / 2] = if direction.is_multiple_of(2) { 1.0 } else { -1.0 };
         return (normal, 0.0);
     }
     let distance = square.sqrt();
@@ -158,55 +179,15 @@ fn find_walls<const D: usize>(bodies: &Bodies<D>, bounds: &Aabb<D>, walls: &mut 
     walls.clear();
     for (body, (position, &radius)) in (0..).zip(bodies.positions.iter().zip(&bodies.radii)) {
         let reach = radius + radius * WALL_MARGIN;
-        for axis in 0..D {
+        for (axis, &at) in position.iter().enumerate() {
             let mut touch = |inward| {
                 walls.push(WallContact { body, axis: axis as u32, inward, push: 0.0 });
             };
-            if position[axis] - bounds.min[axis] <= reach {
+            if at - bounds.min[axis] <= reach {
                 touch(1.0);
-            } else if bounds.max[axis] - position[axis] <= reach {
+            } else if bounds.max[axis] - at <= reach {
                 touch(-1.0);
             }
         }
-    }
-}
-
-/// Sorts pairs by (a, b): counted into one bucket an `a`, each bucket then sorted by `b`.
-#[derive(Clone, Debug, Default)]
-struct PairOrder {
-    unsorted: Vec<[u32; 2]>,
-    sorted: Vec<[u32; 2]>,
-    ends: Vec<u32>,
-}
-
-impl PairOrder {
-    /// The pairs of indices below `n`, sorted. O(n + pairs) for few pairs a body.
-    fn sort(&mut self, pairs: impl Iterator<Item = [u32; 2]>, n: usize) -> &[[u32; 2]] {
-        self.unsorted.clear();
-        self.unsorted.extend(pairs);
-        if self.unsorted.is_sorted() {
-            return &self.unsorted;
-        }
-        self.ends.clear();
-        self.ends.resize(n + 1, 0);
-        for &[a, _] in &self.unsorted {
-            self.ends[a as usize + 1] += 1;
-        }
-        for a in 0..n {
-            self.ends[a + 1] += self.ends[a];
-        }
-        self.sorted.resize(self.unsorted.len(), [0; 2]);
-        // While scattering, `ends[a]` is where the next of bucket `a` goes, and so ends as its end.
-        for &pair in &self.unsorted {
-            let place = &mut self.ends[pair[0] as usize];
-            self.sorted[*place as usize] = pair;
-            *place += 1;
-        }
-        let mut start = 0;
-        for &end in &self.ends[..n] {
-            self.sorted[start..end as usize].sort_unstable();
-            start = end as usize;
-        }
-        &self.sorted
     }
 }

@@ -4,6 +4,7 @@ use sweep_and_prune::Aabb;
 
 use crate::scatter::Scatter;
 use crate::setup::{Ball, Setup, SetupError};
+use crate::vector::greater;
 
 /// How many balls, how large.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,13 +30,17 @@ impl Population {
 const WIDTH: f32 = 10.0;
 /// The largest ball that may fall.
 pub const LARGEST_FALLING: f32 = WIDTH / 4.0;
-/// The greatest height of the box that balls fall into.
+/// The most balls of a random start.
+pub const MOST_BODIES: u32 = 1_000_000;
+/// About the greatest height of the box that balls fall into.
 const GREATEST_HEIGHT: f32 = 60.0;
 /// How far above the floor the lowest ball begins.
 const DROP: f32 = 2.5;
 /// The share of the space that the balls take up at the start: well below what random placing
 /// can fill.
-const FILL: f32 = 0.25;
+fn fill<const D: usize>() -> f32 {
+    if D == 2 { 0.4 } else { 0.25 }
+}
 
 /// Balls that fall into a box 10 wide, `y` up, gravity 9.81 downwards.
 ///
@@ -49,26 +54,32 @@ pub fn falling<const D: usize>(population: Population) -> Result<Setup<D>, Setup
     let mut population = population;
     check(&population, LARGEST_FALLING * 1.001)?;
     let ground: f32 = (1..D).map(|_| WIDTH).product();
-    let mut cloud = volume_bound::<D>(&population) / (FILL * ground);
-    while cloud > GREATEST_HEIGHT - DROP {
+    let height = |population: &Population| volume::<D>(population) / (fill::<D>() * ground);
+    while height(&population) > GREATEST_HEIGHT - DROP {
         population.size *= 0.95;
-        cloud = volume_bound::<D>(&population) / (FILL * ground);
     }
-    let cloud = cloud.max(4.0 * population.radii()[1]);
+    // Large balls cannot come near the walls, and a few of them may need more room than the mean.
+    let mut cloud = height(&population) + 2.0 * population.radii()[1];
     let half = WIDTH / 2.0;
-    let bounds = box_of([-half; D], [half; D], 0.0, (DROP + cloud).max(WIDTH));
-    let region = box_of([-half; D], [half; D], DROP, DROP + cloud);
-    let balls = Scatter {
-        bodies: population.bodies,
-        radii: population.radii(),
-        region,
-        speed: [0.5; D],
-        seed: population.seed,
-    }
-    .balls()?;
+    let balls = loop {
+        let scatter = Scatter {
+            bodies: population.bodies,
+            radii: population.radii(),
+            region: upright([-half; D], [half; D], DROP, DROP + cloud),
+            speed: [0.5; D],
+            seed: population.seed,
+        };
+        match scatter.balls() {
+            Err(SetupError::NoRoom { .. }) => cloud *= 1.25,
+            balls => break balls?,
+        }
+    };
+    let bounds = upright([-half; D], [half; D], 0.0, greater(DROP + cloud, WIDTH));
     let mut gravity = [0.0; D];
     gravity[1] = -9.81;
-    Ok(Setup { balls, bounds, gravity, restitution: 0.4, time_step: 1.0 / 60.0, substeps: 4 })
+    // Discs lie in higher heaps than spheres do, and small substeps carry those.
+    let substeps = if D == 2 { 8 } else { 4 };
+    Ok(Setup { balls, bounds, gravity, restitution: 0.4, time_step: 1.0 / 60.0, substeps })
 }
 
 /// A canvas of `width` x `height` pixels, `y` down, with balls at random, none overlapping.
@@ -103,30 +114,109 @@ pub fn canvas(balls: Vec<Ball<2>>, size: [f32; 2]) -> Setup<2> {
     }
 }
 
-fn box_of<const D: usize>(
-    mut min: [f32; D],
-    mut max: [f32; D],
-    bottom: f32,
-    top: f32,
-) -> Aabb<D> {
+/// The box with these corners, its second axis from `bottom` to `top`.
+fn upright<const D: usize>(mut min: [f32; D], mut max: [f32; D], bottom: f32, top: f32) -> Aabb<D> {
     (min[1], max[1]) = (bottom, top);
     Aabb::new(min, max)
 }
 
-fn volume_bound<const D: usize>(p: &Population) -> f32 {
-    let [least, greatest] = p.radii();
-    // The mean of r^D under the density r^-2.
-    let mean = if D == 2 { least * greatest } else { least * greatest * 0.5 * (least + greatest) };
-    let unit = if D == 2 { std::f32::consts::PI } else { 4.0 / 3.0 * std::f32::consts::PI };
-    p.bodies as f32 * mean * unit
+/// What the balls fill, on average over all seeds.
+fn volume<const D: usize>(population: &Population) -> f32 {
+    const PI: f32 = std::f32::consts::PI;
+    let [least, greatest] = population.radii();
+    // The mean of r², or of r³, where radii have the density r^-2.
+    let mean = match D {
+        2 => PI * least * greatest,
+        _ => 4.0 / 3.0 * PI * least * greatest * 0.5 * (least + greatest),
+    };
+    population.bodies as f32 * mean
 }
 
-fn check(p: &Population, greatest: f32) -> Result<(), SetupError> {
-    if !(1.0..=100.0).contains(&p.spread) {
-        return Err(SetupError::Parameter { name: "spread" });
+fn check(population: &Population, largest: f32) -> Result<(), SetupError> {
+    let refuse = |name| Err(SetupError::Parameter { name });
+    if population.bodies > MOST_BODIES {
+        refuse("bodies")
+    } else if !(1.0..=100.0).contains(&population.spread) {
+        refuse("spread")
+    } else if !(1e-4..=largest).contains(&population.radii()[1]) {
+        refuse("size")
+    } else {
+        Ok(())
     }
-    if !(1e-6..=greatest).contains(&p.radii()[1]) {
-        return Err(SetupError::Parameter { name: "size" });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vector::{difference, dot};
+
+    fn assert_apart<const D: usize>(setup: &Setup<D>) {
+        assert_eq!(setup.validate(), Ok(()));
+        for (index, a) in setup.balls.iter().enumerate() {
+            for b in &setup.balls[..index] {
+                let apart = difference(a.centre, b.centre);
+                assert!(dot(apart, apart) > (a.radius + b.radius) * (a.radius + b.radius));
+            }
+        }
     }
-    Ok(())
+
+    #[test]
+    fn balls_start_apart_and_inside() {
+        for (bodies, size, spread) in
+            [(0, 0.2, 1.0), (1, 2.5, 1.0), (7, 0.25, 100.0), (100, 0.5, 1.0), (300, 2.0, 1.5)]
+        {
+            for seed in 0..5 {
+                let population = Population { bodies, size, spread, seed };
+                let flat = falling::<2>(population).unwrap();
+                let solid = falling::<3>(population).unwrap();
+                assert_eq!(
+                    (flat.balls.len(), solid.balls.len()),
+                    (bodies as usize, bodies as usize)
+                );
+                assert_apart(&flat);
+                assert_apart(&solid);
+            }
+        }
+        let population = Population { bodies: 25, size: 20.0, spread: 4.0, seed: 1 };
+        assert_apart(&bouncing(population, [600.0, 400.0]).unwrap());
+    }
+
+    #[test]
+    fn radii_keep_to_their_bounds_and_are_mostly_small() {
+        let population = Population { bodies: 1000, size: 0.1, spread: 9.0, seed: 2 };
+        let radii: Vec<f32> =
+            falling::<2>(population).unwrap().balls.iter().map(|ball| ball.radius).collect();
+        assert!(radii.iter().all(|radius| (0.0333..=0.3001).contains(radius)));
+        // With the density r^-2 three quarters are below the middle: (3 - 1) / (3 - 1/3).
+        let small = radii.iter().filter(|&&radius| radius < 0.1).count();
+        assert!((700..800).contains(&small), "{small}");
+    }
+
+    #[test]
+    fn seeds_differ() {
+        let balls = |seed| {
+            falling::<3>(Population { bodies: 10, size: 0.2, spread: 1.0, seed }).unwrap().balls
+        };
+        assert_eq!(balls(1), balls(1));
+        assert_ne!(balls(1), balls(2));
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused() {
+        let good = Population { bodies: 10, size: 0.2, spread: 1.0, seed: 1 };
+        for (bad, name) in [
+            (Population { size: f32::NAN, ..good }, "size"),
+            (Population { size: 0.0, ..good }, "size"),
+            (Population { size: 3.0, ..good }, "size"),
+            (Population { spread: 0.5, ..good }, "spread"),
+            (Population { spread: f32::INFINITY, ..good }, "spread"),
+            (Population { bodies: u32::MAX, ..good }, "bodies"),
+        ] {
+            assert_eq!(falling::<2>(bad), Err(SetupError::Parameter { name }));
+        }
+        let crowd = Population { bodies: 100, size: 60.0, ..good };
+        assert!(matches!(bouncing(crowd, [600.0, 400.0]), Err(SetupError::NoRoom { .. })));
+        let nowhere = bouncing(good, [f32::NAN, 400.0]);
+        assert_eq!(nowhere, Err(SetupError::Parameter { name: "bounds" }));
+    }
 }

@@ -132,3 +132,54 @@ impl fmt::Display for SetupError {
 }
 
 impl std::error::Error for SetupError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Simulation;
+    use crate::scenes::canvas;
+
+    #[test]
+    fn refusals_name_what_is_at_fault() {
+        let setup = canvas(vec![Ball::at_rest([50.0, 50.0], 10.0)], [100.0, 100.0]);
+        assert_eq!(setup.validate(), Ok(()));
+        let nan = f32::NAN;
+        for (bad, name) in [
+            (Setup { bounds: Aabb::new([0.0; 2], [0.0, 100.0]), ..setup.clone() }, "bounds"),
+            (Setup { bounds: Aabb::new([0.0; 2], [2e6, 100.0]), ..setup.clone() }, "bounds"),
+            (Setup { gravity: [0.0, nan], ..setup.clone() }, "gravity"),
+            (Setup { restitution: 1.1, ..setup.clone() }, "restitution"),
+            (Setup { restitution: nan, ..setup.clone() }, "restitution"),
+            (Setup { time_step: 0.0, ..setup.clone() }, "time_step"),
+            (Setup { substeps: 0, ..setup.clone() }, "substeps"),
+            (Setup { substeps: 33, ..setup.clone() }, "substeps"),
+        ] {
+            assert_eq!(Simulation::new(&bad).err(), Some(SetupError::Parameter { name }));
+        }
+        let good = setup.balls[0];
+        for bad in [
+            Ball { radius: 0.0, ..good },
+            Ball { radius: nan, ..good },
+            Ball { centre: [nan, 50.0], ..good },
+            Ball { centre: [50.0, 90.5], ..good },
+            Ball { radius: 50.5, ..good },
+            Ball { velocity: [f32::INFINITY, 0.0], ..good },
+        ] {
+            let balls = vec![good, bad, bad];
+            let error = Setup { balls, ..setup.clone() }.validate();
+            assert_eq!(error, Err(SetupError::Ball { index: 1 }));
+        }
+    }
+
+    #[test]
+    fn settings_out_of_range_change_nothing() {
+        let setup = canvas(vec![Ball::at_rest([50.0, 50.0], 10.0)], [100.0, 100.0]);
+        let mut simulation = Simulation::new(&setup).unwrap();
+        assert!(simulation.set_gravity([f32::NAN, 0.0]).is_err());
+        assert!(simulation.set_restitution(-0.1).is_err());
+        assert!(simulation.set_substeps(0).is_err());
+        assert_eq!(simulation.gravity(), setup.gravity);
+        assert_eq!(simulation.restitution(), setup.restitution);
+        assert_eq!(simulation.substeps(), setup.substeps);
+    }
+}

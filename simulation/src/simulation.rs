@@ -5,9 +5,10 @@ use sweep_and_prune::{Aabb, Error};
 
 use crate::bodies::Bodies;
 use crate::broad_phase::{BroadPhase, Engine};
-use crate::contacts::Contacts;
+use crate::contacts::{Contacts, Surroundings};
 use crate::setup::{Setup, SetupError};
 use crate::solver;
+use crate::vector::dot;
 
 /// What one step did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -57,13 +58,15 @@ pub struct Simulation<const D: usize> {
     collisions: bool,
     counting: bool,
     steps: u64,
+    /// The least that the energy has been under these laws.
+    least_energy: f64,
     engine: Engine<D>,
     contacts: Contacts<D>,
     // Buffers.
     boxes: Vec<Aabb<D>>,
     pairs: Vec<[u32; 2]>,
     velocities_before: Vec<[f32; D]>,
-    before: Vec<[f32; D]>,
+    positions_before: Vec<[f32; D]>,
 }
 
 impl<const D: usize> Simulation<D> {
@@ -83,15 +86,16 @@ impl<const D: usize> Simulation<D> {
             collisions: true,
             counting: true,
             steps: 0,
+            least_energy: f64::INFINITY,
             engine: Engine::new(BroadPhase::Library).expect("the library's finder takes any axis"),
-            contacts: Contacts::new(),
+            contacts: Contacts::default(),
             boxes: Vec::new(),
             pairs: Vec::new(),
             velocities_before: Vec::new(),
-            before: Vec::new(),
+            positions_before: Vec::new(),
         };
         simulation.bodies.kick(simulation.half_kick());
-                Ok(simulation)
+        Ok(simulation)
     }
 
     /// One time step. `now` tells the time in milliseconds, from any origin; `|| 0.0` if the
@@ -116,7 +120,7 @@ impl<const D: usize> Simulation<D> {
         report: &mut StepReport,
     ) -> Result<(), Error> {
         let start = now();
-        let energy = self.energy().total();
+        self.least_energy = self.energy().total().min(self.least_energy);
         // Leapfrog: velocities live half a substep ahead, where they carry the positions exactly.
         self.bodies.drift(self.substep_time(), &self.bounds);
         self.bodies.kick(self.half_kick());
@@ -134,14 +138,15 @@ impl<const D: usize> Simulation<D> {
 
         self.pairs.clear();
         self.pairs.extend_from_slice(pairs);
-        let time = self.substep_time();
-        self.contacts.find(&self.pairs, &self.bodies, time, &self.bounds);
+        let around =
+            Surroundings { bounds: self.bounds, gravity: self.gravity, time: self.substep_time() };
+        self.contacts.find(&self.pairs, &self.bodies, &around);
         report.pairs = self.pairs.len();
         report.contacts = self.contacts.balls.len();
         if !self.collisions {
-            self.contacts.balls.clear();
+            self.contacts.part_balls();
         }
-        self.resolve(energy);
+        self.resolve(&around);
         let resolved = now();
 
         report.broad_phase_ms += found - counted;
@@ -151,24 +156,32 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Bounces act on the velocities at the time of the positions, rest on those that carry the
-    /// balls on.
-    fn resolve(&mut self, energy_before: f64) {
+    /// balls on. How far the energy is then below its least is what moving
+    /// overlapping balls apart may add.
+    fn resolve(&mut self, around: &Surroundings<D>) {
         let threshold = self.bounce_threshold();
         solver::bounce(&self.contacts, &mut self.bodies, self.restitution, threshold);
         self.bodies.kick(self.half_kick());
         solver::rest(&mut self.contacts, &mut self.bodies, &mut self.velocities_before);
-        let lost = self.energy();
-        self.before.clone_from(&self.bodies.positions);
-        solver::project(&self.contacts, &mut self.bodies, &self.bounds);
-        let raised = self.energy().potential - lost.potential;
-        let budget = energy_before - lost.total();
-        if raised > budget && raised > 0.0 {
-            let share = (budget.max(0.0) / raised) as f32;
-            for (position, before) in self.bodies.positions.iter_mut().zip(&self.before) {
-                for axis in 0..D {
-                    position[axis] = before[axis] + (position[axis] - before[axis]) * share;
-                }
-            }
+        self.take_surplus();
+        let allowance = self.least_energy - self.energy().total();
+        let Self { contacts, bodies, positions_before, .. } = self;
+        solver::project(contacts, bodies, around, allowance, positions_before);
+    }
+
+    /// Slows everything down by a hair where the energy has grown: contacts turn while balls slide
+    /// over each other, and within a substep the solver does not see it.
+    ///
+    /// A ball that comes to rest keeps half a kick as its velocity at the time of the positions, so
+    /// that much is no surplus.
+    fn take_surplus(&mut self) {
+        let half_kick = self.half_kick();
+        let energy = self.energy();
+        let of_rest = 0.5 * f64::from(dot(half_kick, half_kick));
+        let surplus = energy.total() - (self.least_energy + of_rest);
+        if surplus > 0.0 {
+            let share = (1.0 - surplus / energy.kinetic).max(0.0).sqrt();
+            self.bodies.slow_down(half_kick, share as f32);
         }
     }
 
@@ -211,6 +224,7 @@ impl<const D: usize> Simulation<D> {
             return Err(SetupError::Parameter { name: "gravity" });
         }
         self.gravity = gravity;
+        self.least_energy = f64::INFINITY;
         Ok(())
     }
 
@@ -235,6 +249,7 @@ impl<const D: usize> Simulation<D> {
             return Err(SetupError::Parameter { name: "substeps" });
         }
         self.substeps = substeps;
+        self.least_energy = f64::INFINITY;
         Ok(())
     }
 
@@ -313,9 +328,10 @@ impl<const D: usize> Simulation<D> {
     /// The energy, per unit of mass. It never grows, but for rounding and as the setters change
     /// the laws.
     pub fn energy(&self) -> Energy {
-        let [kinetic, potential] =
-            self.bodies.energy(self.gravity, self.half_kick(), &self.bounds);
-        Energy { kinetic, potential }
+        Energy {
+            kinetic: self.bodies.kinetic_energy(self.half_kick()),
+            potential: self.bodies.potential_energy(self.gravity, &self.bounds),
+        }
     }
 
     /// A hash of all positions and velocities, bit for bit: the same on every platform, in debug

@@ -1,20 +1,18 @@
-//! What contacts do to balls: bounce, rest, and give way.
-
-use sweep_and_prune::Aabb;
+//! What contacts do to balls: bounce, rest, and give way. The crate's front page says why so.
 
 use crate::bodies::{Bodies, inside_walls};
-use crate::contacts::{Contact, Contacts, WallContact, normal_and_distance};
+use crate::contacts::{Contact, Contacts, Surroundings, WallContact, normal_and_distance};
 use crate::vector::{add_scaled, difference, dot, lesser};
 
 /// How often a bounce is passed on within one substep, from ball to ball.
 const BOUNCE_PASSES: usize = 4;
-/// Sweeps of the resting solver.
-const REST_ITERATIONS: usize = 6;
-/// Sweeps of the projection.
-const PROJECT_ITERATIONS: usize = 4;
+/// Sweeps of the resting solver: up and down twice.
+const REST_SWEEPS: usize = 4;
+/// Sweeps of the projection: up and down twice.
+const PROJECT_SWEEPS: usize = 4;
 /// The share of an overlap that one sweep takes away.
 const PROJECT_SHARE: f32 = 0.6;
-/// The overlap that is left alone, in radii of the smaller ball: contacts at rest last.
+/// The overlap that is left alone, in radii of the smaller ball: so contacts at rest last.
 const SLOP: f32 = 0.01;
 
 /// Bounces all that meet faster than `threshold`: each impulse turns the speed of approach into
@@ -54,8 +52,8 @@ pub fn bounce<const D: usize>(
 /// Lets no two that touch approach each other: the smallest change of velocities, measured in
 /// energy, after which no contact closes (projected Gauss-Seidel on the contact impulses).
 ///
-/// It starts from the impulses of the substep before, taken as far as they lower the energy.
-/// Each sweep lowers it further, so none of this ever adds energy, converged or not.
+/// It starts from the impulses of the substep before, as far as they bring that minimum nearer.
+/// Each correction brings it nearer still; so none of this ever adds energy, converged or not.
 pub fn rest<const D: usize>(
     contacts: &mut Contacts<D>,
     bodies: &mut Bodies<D>,
@@ -68,8 +66,11 @@ pub fn rest<const D: usize>(
     for wall in &contacts.walls {
         *speed_from_wall(wall, bodies) += wall.inward * wall.push;
     }
-    let slack: f64 =
-        contacts.balls.iter().map(|c| f64::from(c.impulse) * f64::from(c.slack)).sum();
+    let slack: f64 = contacts
+        .balls
+        .iter()
+        .map(|contact| f64::from(contact.impulse) * f64::from(contact.slack))
+        .sum();
     let share = share_of_least_energy(bodies, velocities_before, slack);
     if share < 1.0 {
         for (velocity, before) in bodies.velocities.iter_mut().zip(velocities_before) {
@@ -81,14 +82,9 @@ pub fn rest<const D: usize>(
         contacts.walls.iter_mut().for_each(|wall| wall.push *= share);
     }
 
-    for _ in 0..REST_ITERATIONS {
-        for contact in &mut contacts.balls {
-            let speed = speed_of_parting(contact, bodies) + contact.slack;
-            let change = -speed * contact.mass;
-            let impulse = at_least_zero(contact.impulse + change);
-            push_apart(contact, impulse - contact.impulse, bodies);
-            contact.impulse = impulse;
-        }
+    for sweep in 0..REST_SWEEPS {
+        let hold = |contact: &mut Contact<D>| hold_apart(contact, bodies);
+        up_and_down(sweep, contacts.balls.iter_mut(), hold);
         for wall in &mut contacts.walls {
             let speed = speed_from_wall(wall, bodies);
             let push = at_least_zero(wall.push - *speed * wall.inward);
@@ -98,9 +94,33 @@ pub fn rest<const D: usize>(
     }
 }
 
-/// Between `before` (0) and the velocities now (1), where the kinetic energy is least: it is a
-/// parabola on the way.
-fn share_of_least_energy<const D: usize>(bodies: &Bodies<D>, before: &[[f32; D]], slack: f64) -> f32 {
+/// Corrects the impulse of one contact: as much as it takes, as little as it can be.
+#[inline]
+fn hold_apart<const D: usize>(contact: &mut Contact<D>, bodies: &mut Bodies<D>) {
+    let speed = speed_of_parting(contact, bodies) + contact.slack;
+    let impulse = at_least_zero(contact.impulse - speed * contact.mass);
+    push_apart(contact, impulse - contact.impulse, bodies);
+    contact.impulse = impulse;
+}
+
+/// Goes through contacts that are sorted from the top down: first upwards, so that the floor
+/// supports a whole heap within one sweep, then downwards, so that the floor bears its weight.
+#[inline]
+fn up_and_down<C>(
+    sweep: usize,
+    contacts: impl DoubleEndedIterator<Item = C>,
+    visit: impl FnMut(C),
+) {
+    if sweep.is_multiple_of(2) { contacts.rev().for_each(visit) } else { contacts.for_each(visit) }
+}
+
+/// Between the velocities `before` (0) and now (1), where what the resting solver minimizes is
+/// least: it is a parabola on the way. `slack` is what the slack of the contacts adds to its slope.
+fn share_of_least_energy<const D: usize>(
+    bodies: &Bodies<D>,
+    before: &[[f32; D]],
+    slack: f64,
+) -> f32 {
     let (mut slope, mut curvature) = (slack, 0.0);
     for ((velocity, before), &inverse_mass) in
         bodies.velocities.iter().zip(before).zip(&bodies.inverse_masses)
@@ -115,29 +135,52 @@ fn share_of_least_energy<const D: usize>(bodies: &Bodies<D>, before: &[[f32; D]]
 /// Moves balls that overlap apart, and back inside the walls, without touching velocities.
 ///
 /// The centre of mass of two balls stays where it is, so in uniform gravity moving them apart
-/// adds no energy.
+/// costs no energy; but moving a heap off the floor lifts it. What that adds must not exceed
+/// `allowance`, per unit of mass: else the balls are moved only that part of the way.
 pub fn project<const D: usize>(
     contacts: &Contacts<D>,
     bodies: &mut Bodies<D>,
-    bounds: &Aabb<D>,
+    around: &Surroundings<D>,
+    allowance: f64,
+    positions_before: &mut Vec<[f32; D]>,
 ) {
-    for _ in 0..PROJECT_ITERATIONS {
-        for contact in &contacts.balls {
-            let [a, b] = contact.pair.map(|id| id as usize);
-            let (normal, distance) = normal_and_distance(contact.pair, bodies);
-            let (radius_a, radius_b) = (bodies.radii[a], bodies.radii[b]);
-            let overlap = radius_a + radius_b - distance - SLOP * lesser(radius_a, radius_b);
-            if overlap > 0.0 {
-                let share = overlap * PROJECT_SHARE * contact.mass;
-                add_scaled(&mut bodies.positions[a], normal, -share * bodies.inverse_masses[a]);
-                add_scaled(&mut bodies.positions[b], normal, share * bodies.inverse_masses[b]);
-            }
-        }
+    positions_before.clone_from(&bodies.positions);
+    let potential_before = bodies.potential_energy(around.gravity, &around.bounds);
+    for sweep in 0..PROJECT_SWEEPS {
+        let part = |contact: &Contact<D>| move_apart(contact, bodies);
+        up_and_down(sweep, contacts.balls.iter(), part);
         for (position, &radius) in bodies.positions.iter_mut().zip(&bodies.radii) {
-            for axis in 0..D {
-                position[axis] = inside_walls(position[axis], radius, bounds, axis);
+            for (axis, at) in position.iter_mut().enumerate() {
+                *at = inside_walls(*at, radius, &around.bounds, axis);
             }
         }
+    }
+    let lift = bodies.potential_energy(around.gravity, &around.bounds) - potential_before;
+    if lift > 0.0 && lift > allowance {
+        // The potential energy is linear in the positions, and the inside of a box is convex.
+        let share = if allowance > 0.0 { (allowance / lift) as f32 } else { 0.0 };
+        for ((position, before), &radius) in
+            bodies.positions.iter_mut().zip(positions_before).zip(&bodies.radii)
+        {
+            for axis in 0..D {
+                let at = before[axis] + (position[axis] - before[axis]) * share;
+                position[axis] = inside_walls(at, radius, &around.bounds, axis);
+            }
+        }
+    }
+}
+
+/// Takes away part of the overlap of two balls.
+#[inline]
+fn move_apart<const D: usize>(contact: &Contact<D>, bodies: &mut Bodies<D>) {
+    let [a, b] = contact.pair.map(|id| id as usize);
+    let (normal, distance) = normal_and_distance(contact.pair, bodies);
+    let (radius_a, radius_b) = (bodies.radii[a], bodies.radii[b]);
+    let overlap = radius_a + radius_b - distance - SLOP * lesser(radius_a, radius_b);
+    if overlap > 0.0 {
+        let share = overlap * PROJECT_SHARE * contact.mass;
+        add_scaled(&mut bodies.positions[a], normal, -share * bodies.inverse_masses[a]);
+        add_scaled(&mut bodies.positions[b], normal, share * bodies.inverse_masses[b]);
     }
 }
 

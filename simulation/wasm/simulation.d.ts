@@ -54,7 +54,10 @@ export interface SimulationOptions {
   gravity?: number;
   /** 0 (no bounce) to 1 (no loss); default 0.4 (`falling`) or 0.96 (`bouncing`). */
   restitution?: number;
-  /** Substeps of one step of 1/60 s, 1 to 32; default 4. Each runs the broad phase once. */
+  /**
+   * Substeps of one step of 1/60 s, 1 to 32; default 4, of discs that fall 8. Each runs the broad
+   * phase once.
+   */
   substeps?: number;
   /** Whether balls meet each other, or only the walls; default true. */
   collisions?: boolean;
@@ -86,15 +89,18 @@ export interface StepReport {
   broadPhases: number;
   /** Pairs of boxes handed to the box test. */
   tests: number | null;
-  /** Pairs found to overlap on a swept axis. */
+  /** Pairs found to overlap on a swept axis; by the swap-driven algorithms, found to begin to. */
   axisOverlaps: number | null;
   /** Comparisons of the sort. */
   comparisons: number | null;
   /** Swaps of the sort. */
   swaps: number | null;
-  /** Overlapping pairs of boxes: what the broad phase hands to the narrow phase. */
+  /**
+   * Overlapping pairs of boxes: what the broad phase hands to the narrow phase. A ball's box
+   * encloses all that it sweeps through in the substep.
+   */
   pairs: number;
-  /** Pairs of balls that really touch: what the narrow phase leaves. */
+  /** Pairs of balls that touch, or will within the substep: what the narrow phase leaves. */
   contacts: number;
   /** Milliseconds of all broad phases of the step: boxes in, pairs out. */
   broadPhaseMs: number;
@@ -164,7 +170,7 @@ export class Simulation {
   /** 1/60 s. */
   step(): StepReport;
 
-  /** Kinetic plus potential energy, per unit of mass; potential 0 at the lower wall. */
+  /** Kinetic plus potential energy, per unit of mass; potential 0 at the wall that is down. */
   energy(): number;
   /** 16 hexadecimal digits of the state: positions and velocities, bit for bit. */
   hash(): string;

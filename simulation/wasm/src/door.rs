@@ -48,7 +48,7 @@ struct Inside<const D: usize> {
 
 impl<const D: usize> Door for Inside<D> {
     fn step(&mut self) -> Result<[f64; 10], Code> {
-        let report = self.simulation.step(|| now()).map_err(|_| Code::Internal)?;
+        let report = self.simulation.step(now).map_err(|_| Code::Internal)?;
         let counted = |count: fn(&Counts) -> u64| {
             report.counts.as_ref().map_or(-1.0, |counts| count(counts) as f64)
         };
@@ -104,9 +104,8 @@ impl<const D: usize> Door for Inside<D> {
                 simulation.set_gravity(gravity)
             }
             1 => simulation.set_restitution(value.clamp(0.0, 1.0) as f32),
-            2 => simulation.set_substeps(
-                value.clamp(1.0, f64::from(Setup::<D>::MOST_SUBSTEPS)) as u32,
-            ),
+            2 => simulation
+                .set_substeps(value.clamp(1.0, f64::from(Setup::<D>::MOST_SUBSTEPS)) as u32),
             3 => {
                 simulation.set_collisions(value != 0.0);
                 Ok(())

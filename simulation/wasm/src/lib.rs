@@ -176,9 +176,11 @@ pub extern "C" fn sim_set_broad_phase(
     persistent: u32,
 ) -> Code {
     let choice = names::broad_phase(algorithm, sort, axis, persistent != 0);
-    code(choice.and_then(|choice| {
-        with(handle, |simulation| simulation.set_broad_phase(choice)).flatten()
-    }))
+    code(
+        choice.and_then(|choice| {
+            with(handle, |simulation| simulation.set_broad_phase(choice)).flatten()
+        }),
+    )
 }
 
 /// The names of algorithms (0), sorts (1) or axis rules (2), in UTF-8, one a line. How many bytes

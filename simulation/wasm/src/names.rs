@@ -26,7 +26,12 @@ pub fn list(kind: u32) -> &'static str {
 }
 
 /// The choice that has these numbers in the lists.
-pub fn broad_phase(algorithm: u32, sort: u32, axis: u32, persistent: bool) -> Result<BroadPhase, Code> {
+pub fn broad_phase(
+    algorithm: u32,
+    sort: u32,
+    axis: u32,
+    persistent: bool,
+) -> Result<BroadPhase, Code> {
     let Some(method) = (algorithm as usize).checked_sub(1) else { return Ok(BroadPhase::Library) };
     let axis = match AXES.get(axis as usize) {
         Some(&(rule, _)) => rule,

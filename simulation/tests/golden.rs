@@ -1,0 +1,138 @@
+//! The same bits in every build, over every broad phase.
+
+use sweep_and_prune::algorithms::{Axis, Method, RunnerOptions, Sort};
+use sweep_and_prune_simulation::scenes::{self, Population};
+use sweep_and_prune_simulation::{BroadPhase, Setup, Simulation};
+
+const GOLDEN: &str = include_str!("../golden.txt");
+
+/// The hash after `steps` steps, with one broad phase or another.
+fn hash<const D: usize>(setup: &Setup<D>, steps: u32, choice: BroadPhase) -> u64 {
+    let mut simulation = Simulation::new(setup).unwrap();
+    simulation.set_broad_phase(choice).unwrap();
+    for _ in 0..steps {
+        simulation.step(|| 0.0).unwrap();
+    }
+    simulation.hash()
+}
+
+/// One line of the file: scene, dimensions, bodies, size, spread, seed, steps, hash.
+fn line_anew(line: &str, choice: BroadPhase) -> String {
+    let fields: Vec<&str> = line.split(' ').collect();
+    let [scene, dimensions, bodies, size, spread, seed, steps, _] = fields[..] else {
+        panic!("'{line}' has not eight fields")
+    };
+    let population = Population {
+        bodies: bodies.parse().unwrap(),
+        size: size.parse().unwrap(),
+        spread: spread.parse().unwrap(),
+        seed: seed.parse().unwrap(),
+    };
+    let number = steps.parse().unwrap();
+    let hash = match (scene, dimensions) {
+        ("falling", "2") => hash(&scenes::falling::<2>(population).unwrap(), number, choice),
+        ("falling", "3") => hash(&scenes::falling::<3>(population).unwrap(), number, choice),
+        ("bouncing", "2") => {
+            hash(&scenes::bouncing(population, [600.0, 400.0]).unwrap(), number, choice)
+        }
+        _ => panic!("'{line}' names no scene"),
+    };
+    format!("{scene} {dimensions} {bodies} {size} {spread} {seed} {steps} {hash:016x}")
+}
+
+fn report(choice: BroadPhase) -> String {
+    let lines = GOLDEN.lines().map(|line| line_anew(line, choice) + "\n");
+    lines.collect()
+}
+
+#[test]
+fn state_is_golden() {
+    let report = report(BroadPhase::Library);
+    assert_eq!(report, GOLDEN, "if the change is meant, this is the new golden.txt:\n{report}");
+}
+
+/// Every algorithm finds its pairs in an order of its own; none of it may be felt.
+#[test]
+fn every_algorithm_gives_the_same_state() {
+    for method in Method::ALL {
+        for (sort, persistent) in [(Sort::Insertion, true), (Sort::Standard, false)] {
+            let axis = if persistent { Axis::Fixed(0) } else { Axis::LargestVariance };
+            let options = RunnerOptions { method, sort, axis, persistent };
+            assert_eq!(report(BroadPhase::Algorithm(options)), GOLDEN, "{options:?}");
+        }
+    }
+}
+
+/// Neither counting nor a change of algorithm on the way leaves a trace.
+#[test]
+fn switching_and_counting_leave_no_trace() {
+    let population = Population { bodies: 150, size: 0.5, spread: 3.0, seed: 5 };
+    let setup = scenes::falling::<2>(population).unwrap();
+    let mut plain = Simulation::new(&setup).unwrap();
+    plain.set_counting(false);
+    let mut restless = Simulation::new(&setup).unwrap();
+    for step in 0..70 {
+        let method = Method::ALL[step % Method::ALL.len()];
+        let axis = Axis::Fixed(step % 2);
+        let options = RunnerOptions { method, sort: Sort::Insertion, axis, persistent: true };
+        restless.set_broad_phase(BroadPhase::Algorithm(options)).unwrap();
+        let counts = restless.step(|| 0.0).unwrap().counts;
+        assert!(counts.is_some());
+        assert!(plain.step(|| 0.0).unwrap().counts.is_none());
+        assert_eq!(plain.hash(), restless.hash());
+    }
+}
+
+#[test]
+fn counts_mean_the_same_for_each() {
+    let population = Population { bodies: 60, size: 0.5, spread: 1.0, seed: 5 };
+    let setup = scenes::falling::<3>(population).unwrap();
+    let reports = [Method::Pairwise, Method::SortedPairwise].map(|method| {
+        let mut simulation = Simulation::new(&setup).unwrap();
+        let axis = Axis::Fixed(0);
+        let options = RunnerOptions { method, sort: Sort::Standard, axis, persistent: false };
+        simulation.set_broad_phase(BroadPhase::Algorithm(options)).unwrap();
+        for _ in 0..60 {
+            simulation.step(|| 0.0).unwrap();
+        }
+        let report = simulation.step(|| 0.0).unwrap();
+        assert_eq!(report.pairs, simulation.pairs().len());
+        (report.counts.unwrap(), report.pairs as u64)
+    });
+    let [(brute, brute_pairs), (swept, swept_pairs)] = reports;
+    assert_eq!(brute.tests, 60 * 59 / 2);
+    assert_eq!((brute.comparisons, brute.swaps), (0, 0));
+    assert_eq!(brute.axis_overlaps, swept.axis_overlaps);
+    assert_eq!(swept.tests, swept.axis_overlaps);
+    assert_eq!((brute.pairs, swept.pairs), (brute_pairs, swept_pairs));
+    assert_eq!(brute_pairs, swept_pairs);
+}
+
+#[test]
+fn refused_axis_changes_nothing() {
+    let population = Population { bodies: 10, size: 0.5, spread: 1.0, seed: 5 };
+    let mut simulation = Simulation::new(&scenes::falling::<2>(population).unwrap()).unwrap();
+    let (method, sort) = (Method::SortedPairwise, Sort::Standard);
+    let options = |axis| RunnerOptions { method, sort, axis: Axis::Fixed(axis), persistent: true };
+    simulation.set_broad_phase(BroadPhase::Algorithm(options(1))).unwrap();
+    assert!(simulation.set_broad_phase(BroadPhase::Algorithm(options(2))).is_err());
+    assert!(simulation.step(|| 0.0).unwrap().counts.is_some());
+}
+
+/// The clock is read, and nothing but the report depends on it.
+#[test]
+fn times_come_from_the_clock() {
+    let population = Population { bodies: 10, size: 0.5, spread: 1.0, seed: 5 };
+    let mut simulation = Simulation::new(&scenes::falling::<2>(population).unwrap()).unwrap();
+    let ticks = std::cell::Cell::new(0.0);
+    let report = simulation
+        .step(|| {
+            ticks.set(ticks.get() + 1.0);
+            ticks.get()
+        })
+        .unwrap();
+    let substeps = f64::from(simulation.substeps());
+    assert_eq!(report.broad_phase_ms, substeps);
+    assert_eq!(report.narrow_phase_ms, substeps);
+    assert_eq!(report.total_ms, 3.0 * substeps, "all but the counting");
+}
