@@ -1,4 +1,12 @@
 export type { Boxes, Dimensions } from "./boxes.js";
 export { InvalidBoxError, NotInitializedError, OutOfMemoryError, SweepAndPruneError } from "./errors.js";
 export type { InitOptions, Started } from "./init.js";
-export { findPairs, type FindPairsOptions, PairFinder } from "./pair-finder.js";
+export {
+  countPairs,
+  type EachPair,
+  findPairs,
+  findPairsBetween,
+  type FindPairsOptions,
+  forEachPair,
+  PairFinder,
+} from "./pair-finder.js";

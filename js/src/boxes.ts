@@ -18,29 +18,55 @@ export function checkDimensions(dimensions: unknown): Dimensions {
 }
 
 /** @internal The boxes as a typed array of whole rows. Their coordinates are not looked at. */
-export function checkBoxes(boxes: unknown, dimensions: Dimensions): Float32Array | Float64Array {
-  const rows = Array.isArray(boxes) ? fromNumbers(boxes) : boxes;
-  if (!isFloatArray(rows)) {
-    throw new TypeError(
-      `boxes must be a Float32Array, a Float64Array or an array of numbers, not ${describe(boxes)}`,
-    );
-  }
-  if (rows.length === 0) refuseDetached(rows);
+export function checkBoxes(boxes: unknown, dimensions: Dimensions, name = "boxes"): Float32Array | Float64Array {
+  const rows = checkNumbers(boxes, name);
   const width = 2 * dimensions;
   if (rows.length % width !== 0) {
     throw new RangeError(
-      `boxes holds ${rows.length} numbers, which is not a multiple of ${width}: ` +
+      `${name} holds ${rows.length} numbers, which is not a multiple of ${width}: ` +
         `a box in ${dimensions}D is ${dimensions} of its least and ${dimensions} of its greatest corner`,
     );
   }
   return rows;
 }
 
-function fromNumbers(numbers: readonly unknown[]): Float64Array {
+/** @internal Numbers as a typed array. */
+export function checkNumbers(values: unknown, name: string): Float32Array | Float64Array {
+  const numbers = Array.isArray(values) ? fromNumbers(values, name) : values;
+  if (!isFloatArray(numbers)) {
+    throw new TypeError(`${name} must be a Float32Array, a Float64Array or an array of numbers, not ${describe(values)}`);
+  }
+  if (numbers.length === 0) refuseDetached(numbers, name);
+  return numbers;
+}
+
+/**
+ * @internal Writes rows of boxes to memory that has at least as many dimensions; the boxes are flat
+ * on those that are added.
+ */
+export function writeRows(
+  rows: Float32Array | Float64Array,
+  dimensions: Dimensions,
+  into: Float32Array | Float64Array,
+  stored: Dimensions,
+): void {
+  if (dimensions === stored) {
+    into.set(rows);
+    return;
+  }
+  for (let from = 0, to = 0; from < rows.length; from += 2 * dimensions, to += 2 * stored) {
+    for (let axis = 0; axis < stored; axis++) {
+      into[to + axis] = axis < dimensions ? rows[from + axis]! : 0;
+      into[to + stored + axis] = axis < dimensions ? rows[from + dimensions + axis]! : 0;
+    }
+  }
+}
+
+function fromNumbers(numbers: readonly unknown[], name: string): Float64Array {
   const rows = new Float64Array(numbers.length);
   for (let at = 0; at < rows.length; at++) {
     const value = numbers[at];
-    if (typeof value !== "number") throw new TypeError(`boxes[${at}] must be a number, not ${describe(value)}`);
+    if (typeof value !== "number") throw new TypeError(`${name}[${at}] must be a number, not ${describe(value)}`);
     rows[at] = value;
   }
   return rows;
@@ -54,11 +80,11 @@ function isFloatArray(value: unknown): value is Float32Array | Float64Array {
 }
 
 /** A detached array looks like an empty one; only its methods tell. */
-function refuseDetached(rows: Float32Array | Float64Array): void {
+function refuseDetached(rows: Float32Array | Float64Array, name: string): void {
   try {
     rows.indexOf(0);
   } catch {
-    throw new TypeError("the buffer of boxes is detached: it was transferred, or its memory has grown");
+    throw new TypeError(`the buffer of ${name} is detached: it was transferred, or its memory has grown`);
   }
 }
 

@@ -37,3 +37,32 @@ export class OutOfMemoryError extends SweepAndPruneError {
     super("out of memory: the boxes or their pairs do not fit in WebAssembly's memory");
   }
 }
+
+/** A proxy id is of a body that was removed, or was never given out by this world. */
+export class StaleProxyError extends SweepAndPruneError {
+  override name = "StaleProxyError";
+
+  constructor(
+    /** The position of the id among those that were passed, 0 for a single one. */
+    readonly index: number,
+  ) {
+    super(`proxy id ${index} is stale: its body was removed, or is of another world`);
+  }
+}
+
+/** Bytes that are no snapshot of such a world. */
+export class SnapshotError extends SweepAndPruneError {
+  override name = "SnapshotError";
+
+  /** @internal */
+  constructor(fault: number, found: number) {
+    const faults = [
+      "it does not begin as one does",
+      `it is of version ${found}, which cannot be read here`,
+      "it holds a world of other dimensions or of the other precision",
+      "it ends too early",
+      "its parts contradict each other or their checksum",
+    ];
+    super(`these bytes are no snapshot of such a world: ${faults[fault] ?? "they are damaged"}`);
+  }
+}

@@ -15,6 +15,7 @@
  * @module
  */
 import { type InitOptions, start, type Started } from "./init.js";
+import { finderCore } from "./pair-finder.js";
 
 export * from "./api.js";
 
@@ -27,6 +28,7 @@ export * from "./api.js";
  */
 export function init(options: InitOptions = {}): Promise<Started> {
   return start(
+    finderCore,
     {
       simd: () => new URL("./sweep-and-prune.simd.wasm", import.meta.url),
       scalar: () => new URL("./sweep-and-prune.wasm", import.meta.url),

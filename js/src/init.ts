@@ -1,4 +1,4 @@
-import { startEngine } from "./engine.js";
+import type { Core, Exports } from "./engine.js";
 
 /** How to start. */
 export interface InitOptions {
@@ -26,20 +26,25 @@ export interface Sources {
   scalar(): NonNullable<InitOptions["wasm"]>;
 }
 
-let starting: Promise<Started> | undefined;
+/** Starts cores: each once, whichever entry asks first. */
+const starting = new Map<unknown, Promise<Started>>();
 
-/** Starts the engine once: later and concurrent calls get the first one's promise. */
-export function start(sources: Sources, options: InitOptions): Promise<Started> {
-  starting ??= load(sources, options).catch((error: unknown) => {
-    starting = undefined; // the network may be back: the next call tries again
-    throw error;
-  });
-  return starting;
+/** Starts a core once: later and concurrent calls get the first one's promise. */
+export function start<E extends Exports>(core: Core<E>, sources: Sources, options: InitOptions): Promise<Started> {
+  let promise = starting.get(core);
+  if (promise === undefined) {
+    promise = load(core, sources, options).catch((error: unknown) => {
+      starting.delete(core); // the network may be back: the next call tries again
+      throw error;
+    });
+    starting.set(core, promise);
+  }
+  return promise;
 }
 
-async function load(sources: Sources, options: InitOptions): Promise<Started> {
+async function load<E extends Exports>(core: Core<E>, sources: Sources, options: InitOptions): Promise<Started> {
   const simd = options.simd ?? hasSimd();
-  await startEngine(await compile(options.wasm ?? (simd ? sources.simd() : sources.scalar())));
+  await core.start(await compile(options.wasm ?? (simd ? sources.simd() : sources.scalar())));
   return { simd };
 }
 

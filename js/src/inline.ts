@@ -7,6 +7,7 @@
 import scalar from "../dist/sweep-and-prune.wasm";
 import simd from "../dist/sweep-and-prune.simd.wasm";
 import { type InitOptions, start, type Started } from "./init.js";
+import { finderCore } from "./pair-finder.js";
 
 export * from "./api.js";
 
@@ -15,5 +16,5 @@ export * from "./api.js";
  * calls get the promise of the first, whose options are the ones that count.
  */
 export function init(options: InitOptions = {}): Promise<Started> {
-  return start({ simd: () => simd, scalar: () => scalar }, options);
+  return start(finderCore, { simd: () => simd, scalar: () => scalar }, options);
 }

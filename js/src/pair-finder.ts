@@ -1,13 +1,41 @@
 /// <reference lib="esnext.disposable" preserve="true" />
-import { type Boxes, checkBoxes, checkDimensions, type Dimensions } from "./boxes.js";
-import { engine, type Engine } from "./engine.js";
+import { type Boxes, checkBoxes, checkDimensions, type Dimensions, writeRows } from "./boxes.js";
+import { Core, type Each, type Engine, type Exports } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
+import { view } from "./views.js";
 
 /** How to find pairs. */
 export interface FindPairsOptions {
   /** How many dimensions the boxes have. */
   dimensions: Dimensions;
 }
+
+/** Takes a pair. If it returns `false` it gets no more. */
+export type EachPair = (a: number, b: number) => unknown;
+
+/** What js/wasm/src/finder.rs exports. */
+interface FinderExports extends Exports {
+  finder_new(dimensions: number, double: number): number;
+  finder_rows(finder: number, set: number, count: number): number;
+  finder_find(finder: number, a: number, b: number, use: Use): number;
+  finder_free(finder: number): void;
+}
+
+/** What becomes of the pairs; js/wasm/src/finder.rs has the same list. */
+const enum Use {
+  Store = 0,
+  Count = 1,
+  Stream = 2,
+}
+
+/** In place of the count of the second set where there is only one. */
+const noSet = -1;
+
+/** In place of the second set where there is only one. */
+const alone = Symbol("no second set");
+
+/** The core that finds pairs. */
+export const finderCore: Core<FinderExports> = new Core();
 
 /**
  * All pairs of boxes that overlap: `a0, b0, a1, b1, ...`, indices of boxes, each pair once and
@@ -16,7 +44,7 @@ export interface FindPairsOptions {
  * Touching boxes overlap. Points, flat boxes and infinite edges are allowed. The result is a copy
  * of your own; nothing else is kept. To find pairs again and again, keep a {@link PairFinder}.
  *
- * Time O(n log n + overlaps on the sweep axis), memory O(n + pairs).
+ * Time O(n log n + pairs) on scenes that anything helps with, memory O(n + pairs).
  *
  * @throws {@link InvalidBoxError} for the first box that is inverted or NaN.
  * @throws {@link OutOfMemoryError} if the boxes or their pairs do not fit in memory.
@@ -31,9 +59,50 @@ export interface FindPairsOptions {
  * ```
  */
 export function findPairs(boxes: Boxes, options: FindPairsOptions): Uint32Array<ArrayBuffer> {
+  return once(options, (finder) => copy(finder.find(boxes)));
+}
+
+/**
+ * All pairs of a box of `a` and a box of `b` that overlap: `a0, b0, a1, b1, ...`, the index in `a`
+ * first. Otherwise as {@link findPairs}. If one set is in double precision, both are compared so.
+ *
+ * @throws As {@link findPairs}; the boxes of `b` are counted after those of `a`.
+ *
+ * @example
+ * ```js
+ * const bullets = [0, 0, 1, 1,  5, 5, 6, 6];
+ * const targets = [4, 4, 7, 7];
+ * findPairsBetween(bullets, targets, { dimensions: 2 }); // Uint32Array [1, 0]
+ * ```
+ */
+export function findPairsBetween(a: Boxes, b: Boxes, options: FindPairsOptions): Uint32Array<ArrayBuffer> {
+  return once(options, (finder) => copy(finder.findBetween(a, b)));
+}
+
+/**
+ * How many pairs {@link findPairs} would find. Stores none of them.
+ *
+ * @throws As {@link findPairs}.
+ */
+export function countPairs(boxes: Boxes, options: FindPairsOptions): number {
+  return once(options, (finder) => finder.count(boxes));
+}
+
+/**
+ * Calls `each(a, b)` with every pair that {@link findPairs} would find, in the same order, until
+ * it returns `false`. Stores no pairs but a small buffer of them. Returns whether it came to the
+ * end.
+ *
+ * @throws As {@link findPairs}, before the first call of `each`; and what `each` throws.
+ */
+export function forEachPair(boxes: Boxes, options: FindPairsOptions, each: EachPair): boolean {
+  return once(options, (finder) => finder.forEach(boxes, each));
+}
+
+function once<R>(options: FindPairsOptions, use: (finder: PairFinder) => R): R {
   const finder = new PairFinder(options);
   try {
-    return copy(finder.find(boxes));
+    return use(finder);
   } finally {
     finder.free();
   }
@@ -64,7 +133,7 @@ export class PairFinder {
   /** How many dimensions the boxes have. */
   readonly dimensions: Dimensions;
   readonly #owned: Owned;
-  #rows: Float32Array | Float64Array | undefined;
+  readonly #rows: [Rows?, Rows?] = [];
   #pairs: Uint32Array | undefined;
 
   /**
@@ -75,7 +144,7 @@ export class PairFinder {
    */
   constructor(options: FindPairsOptions) {
     this.dimensions = checkDimensions(options?.dimensions);
-    this.#owned = { engine: engine(), single: 0, double: 0, isFreed: false };
+    this.#owned = { engine: finderCore.engine(), single: 0, double: 0, isBusy: false, isFreed: false };
     forgotten?.register(this, this.#owned, this.#owned);
   }
 
@@ -87,40 +156,134 @@ export class PairFinder {
    * @throws As {@link findPairs}, and `TypeError` if the finder was freed. It stays usable.
    */
   find(boxes: Boxes): Uint32Array {
+    return this.#store(boxes, alone);
+  }
+
+  /**
+   * As {@link findPairsBetween}, a view as that of {@link PairFinder.find}.
+   *
+   * @throws As {@link findPairsBetween}, and `TypeError` if the finder was freed.
+   */
+  findBetween(a: Boxes, b: Boxes): Uint32Array {
+    return this.#store(a, b);
+  }
+
+  /**
+   * As {@link countPairs}.
+   *
+   * @throws As {@link countPairs}, and `TypeError` if the finder was freed.
+   */
+  count(boxes: Boxes): number {
+    return this.#count(boxes, alone);
+  }
+
+  /**
+   * How many pairs {@link PairFinder.findBetween} would find. Stores none of them.
+   *
+   * @throws As {@link PairFinder.findBetween}.
+   */
+  countBetween(a: Boxes, b: Boxes): number {
+    return this.#count(a, b);
+  }
+
+  /**
+   * As {@link forEachPair}. Within `each` this finder cannot be used; others can.
+   *
+   * @throws As {@link forEachPair}, and `TypeError` if the finder was freed.
+   */
+  forEach(boxes: Boxes, each: EachPair): boolean {
+    return this.#stream(each, boxes, alone);
+  }
+
+  /**
+   * As {@link PairFinder.forEach}, with the pairs of {@link PairFinder.findBetween}.
+   *
+   * @throws As {@link PairFinder.findBetween}; and what `each` throws.
+   */
+  forEachBetween(a: Boxes, b: Boxes, each: EachPair): boolean {
+    return this.#stream(each, a, b);
+  }
+
+  #store(a: Boxes, b: Boxes | typeof alone): Uint32Array {
+    const { engine } = this.#owned;
+    this.#search(Use.Store, a, b, undefined);
+    const { buffer } = engine.exports.memory;
+    this.#pairs = view(Uint32Array, this.#pairs, buffer, engine.detail(0), 2 * engine.detail(1));
+    return this.#pairs;
+  }
+
+  #count(a: Boxes, b: Boxes | typeof alone): number {
+    const { engine } = this.#owned;
+    this.#search(Use.Count, a, b, undefined);
+    return engine.detail(0) + 2 ** 32 * engine.detail(1);
+  }
+
+  #stream(each: EachPair, a: Boxes, b: Boxes | typeof alone): boolean {
+    if (typeof each !== "function") throw new TypeError("each must be a function");
+    const { engine } = this.#owned;
+    let isComplete = true;
+    this.#search(Use.Stream, a, b, (at, count) => {
+      const begin = at / 4;
+      for (let word = begin; word < begin + 2 * count; word += 2) {
+        const words = engine.words();
+        isComplete = each(words[word]!, words[word + 1]!) !== false;
+        if (!isComplete) break;
+      }
+      return isComplete;
+    });
+    return isComplete;
+  }
+
+  #search(use: Use, a: Boxes, b: Boxes | typeof alone, each: Each | undefined): void {
     const owned = this.#owned;
     if (owned.isFreed) throw new TypeError("this PairFinder was freed");
-    const rows = checkBoxes(boxes, this.dimensions);
+    if (owned.isBusy) throw new TypeError("this PairFinder is at work: its callback needs another one");
+    const first = checkBoxes(a, this.dimensions, b === alone ? "boxes" : "a");
+    const second = b === alone ? undefined : checkBoxes(b, this.dimensions, "b");
+    const isDouble = (first.BYTES_PER_ELEMENT | (second?.BYTES_PER_ELEMENT ?? 0)) >= 8;
+    // There is no core for doubles in the plane, nor for a line: see js/wasm/src/finder.rs.
+    const stored = isDouble ? 3 : (Math.max(2, this.dimensions) as Dimensions);
+    owned.isBusy = true;
     try {
-      return this.#find(rows, rows.length / (2 * this.dimensions));
+      const { engine } = owned;
+      const finder = (owned[isDouble ? "double" : "single"] ||= engine.exports.finder_new(stored, Number(isDouble)));
+      const countA = this.#write(finder, 0, first, isDouble, stored);
+      const countB = second ? this.#write(finder, 1, second, isDouble, stored) : noSet;
+      if (each) engine.stream(() => engine.exports.finder_find(finder, countA, countB, use), each);
+      else engine.check(engine.exports.finder_find(finder, countA, countB, use));
     } catch (error) {
       // Whoever ran out of memory should not go on holding what it got.
       if (error instanceof OutOfMemoryError) release(owned);
       throw error;
+    } finally {
+      owned.isBusy = false;
     }
   }
 
-  #find(rows: Float32Array | Float64Array, count: number): Uint32Array {
-    const owned = this.#owned;
-    const { engine } = owned;
-    const { exports } = engine;
-    const precision = rows.BYTES_PER_ELEMENT === 8 ? "double" : "single";
-    const finder = (owned[precision] ||= exports.finder_new(this.dimensions, Number(precision === "double")));
-    const at = exports.finder_rows(finder, count) >>> 0;
+  /** Writes the rows of a set, and returns how many boxes they are. */
+  #write(finder: number, set: 0 | 1, rows: Rows, isDouble: boolean, stored: Dimensions): number {
+    const { exports } = this.#owned.engine;
+    const count = rows.length / (2 * this.dimensions);
+    const at = exports.finder_rows(finder, set, count) >>> 0;
     if (at === 0) throw new OutOfMemoryError();
     const { buffer } = exports.memory;
-    this.#rows =
-      precision === "double"
-        ? view(Float64Array, this.#rows, buffer, at, rows.length)
-        : view(Float32Array, this.#rows, buffer, at, rows.length);
-    this.#rows.set(rows);
-    engine.check(exports.finder_find(finder, count));
-    this.#pairs = view(Uint32Array, this.#pairs, exports.memory.buffer, engine.detail(0), 2 * engine.detail(1));
-    return this.#pairs;
+    const length = 2 * stored * count;
+    const into = isDouble
+      ? view(Float64Array, this.#rows[set], buffer, at, length)
+      : view(Float32Array, this.#rows[set], buffer, at, length);
+    this.#rows[set] = into;
+    writeRows(rows, this.dimensions, into, stored);
+    return count;
   }
 
-  /** Gives the memory back. The finder cannot be used any more; to free it twice is no error. */
+  /**
+   * Gives the memory back. The finder cannot be used any more; to free it twice is no error.
+   *
+   * @throws `TypeError` within the callback of its own `forEach`.
+   */
   free(): void {
     if (this.#owned.isFreed) return;
+    if (this.#owned.isBusy) throw new TypeError("this PairFinder is at work: free it after its callback");
     this.#owned.isFreed = true;
     forgotten?.unregister(this.#owned);
     release(this.#owned);
@@ -132,11 +295,15 @@ export class PairFinder {
   }
 }
 
+type Rows = Float32Array | Float64Array;
+
 /** What a finder holds on the other side: a handle for each precision, or 0. */
 interface Owned {
-  readonly engine: Engine;
+  readonly engine: Engine<FinderExports>;
   single: number;
   double: number;
+  /** Whether a call is under way: then Rust holds the handle, and only a callback can come here. */
+  isBusy: boolean;
   isFreed: boolean;
 }
 
@@ -150,18 +317,3 @@ function release(owned: Owned): void {
 /** Frees the finders that nobody freed and nobody can reach. */
 const forgotten =
   typeof FinalizationRegistry === "undefined" ? undefined : new FinalizationRegistry<Owned>(release);
-
-type View = Float32Array | Float64Array | Uint32Array;
-
-/** The last view if it still is the one asked for, which saves the garbage, or a new one. */
-function view<T extends View>(
-  Type: new (buffer: ArrayBuffer, at: number, length: number) => T,
-  last: View | undefined,
-  buffer: ArrayBuffer,
-  at: number,
-  length: number,
-): T {
-  const isSame =
-    last instanceof Type && last.buffer === buffer && last.byteOffset === at && last.length === length;
-  return isSame ? last : new Type(buffer, at, length);
-}

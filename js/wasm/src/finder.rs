@@ -1,80 +1,196 @@
-//! Finding pairs: a finder for any number of dimensions and either precision, chosen at run time.
+//! Finding pairs: a finder of either precision, chosen at run time.
+//!
+//! Each type of box costs nine kilobytes to download, so there are three: single precision in the
+//! plane and in space, double precision in space. Fewer dimensions are boxes that are flat on the
+//! others; JavaScript writes them so.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
+use core::ops::ControlFlow::{self, Break, Continue};
 
 use sweep_and_prune::{Aabb, Error, PairFinder, Scalar};
 
 use crate::status::{Code, tell, tell_error};
 
+/// What becomes of the pairs; `js/src/pair-finder.ts` has the same list.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Use {
+    Store,
+    Count,
+    Stream,
+}
+
+/// Stands for the count of the second set where there is only one.
+const NO_SET: usize = usize::MAX;
+
+/// Pairs that are counted or handed on together.
+const BUFFER: usize = 4096;
+
+/// Takes pairs one by one. It is the same for every use, so that the search, which is compiled
+/// for what takes its pairs, is compiled once; what differs is what happens when the buffer is
+/// full.
+struct Taker {
+    buffer: Vec<[u32; 2]>,
+    purpose: Use,
+    /// How full the buffer gets.
+    limit: usize,
+    /// The pairs that went through the buffer before those that are in it.
+    before: u64,
+}
+
+impl Taker {
+    #[inline]
+    fn take(&mut self, pair: [u32; 2]) -> ControlFlow<()> {
+        if self.buffer.len() == self.limit {
+            self.make_room()?;
+        }
+        self.buffer.push(pair);
+        Continue(())
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn make_room(&mut self) -> ControlFlow<()> {
+        if self.purpose != Use::Store {
+            return self.flush();
+        }
+        self.buffer.reserve(BUFFER);
+        self.limit = self.buffer.capacity();
+        Continue(())
+    }
+
+    fn start(&mut self, purpose: Use) {
+        self.buffer.clear();
+        if purpose != Use::Store {
+            self.buffer.reserve(BUFFER);
+        }
+        self.purpose = purpose;
+        self.limit = if purpose == Use::Store { self.buffer.capacity() } else { BUFFER };
+        self.before = 0;
+    }
+
+    /// Hands on what is in the buffer, or only counts it.
+    fn flush(&mut self) -> ControlFlow<()> {
+        let goes_on = match self.purpose {
+            Use::Store | Use::Count => true,
+            Use::Stream => hand_on(&self.buffer),
+        };
+        self.before += self.buffer.len() as u64;
+        self.buffer.clear();
+        if goes_on { Continue(()) } else { Break(()) }
+    }
+}
+
+#[cfg(target_arch = "wasm32")]
+fn hand_on(pairs: &[[u32; 2]]) -> bool {
+    crate::runtime::each(pairs.as_ptr(), pairs.len())
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+fn hand_on(_: &[[u32; 2]]) -> bool {
+    true
+}
+
 /// A finder with the rows that it reads, whatever their type.
 trait Find {
-    /// Where to write `count` boxes; `None` if there is no memory for them.
-    fn rows(&mut self, count: usize) -> Option<*mut u8>;
+    /// Where to write `count` boxes of a set; `None` if there is no memory for them.
+    fn rows(&mut self, set: usize, count: usize) -> Option<*mut u8>;
 
-    /// The pairs of the first `count` boxes written.
-    fn find(&mut self, count: usize) -> Result<&[[u32; 2]], Error>;
+    /// Finds the pairs of the first boxes of one set, or of two.
+    fn find(&mut self, counts: [usize; 2], taker: &mut Taker) -> Result<(), Error>;
 }
 
 struct Rows<const D: usize, T: Scalar> {
-    boxes: Vec<Aabb<D, T>>,
+    sets: [Vec<Aabb<D, T>>; 2],
     finder: PairFinder<D, T>,
 }
 
 impl<const D: usize, T: Scalar> Rows<D, T> {
     fn boxed() -> Box<dyn Find> {
-        Box::new(Self { boxes: Vec::new(), finder: PairFinder::new() })
+        Box::new(Self { sets: [Vec::new(), Vec::new()], finder: PairFinder::new() })
     }
 }
 
 impl<const D: usize, T: Scalar> Find for Rows<D, T> {
-    fn rows(&mut self, count: usize) -> Option<*mut u8> {
-        if let Some(more) = count.checked_sub(self.boxes.len()) {
-            self.boxes.try_reserve(more).ok()?;
-            self.boxes.resize(count, Aabb::new([T::default(); D], [T::default(); D]));
+    fn rows(&mut self, set: usize, count: usize) -> Option<*mut u8> {
+        let boxes = self.sets.get_mut(set)?;
+        if let Some(more) = count.checked_sub(boxes.len()) {
+            boxes.try_reserve(more).ok()?;
+            boxes.resize(count, Aabb::new([T::default(); D], [T::default(); D]));
         }
-        Some(self.boxes.as_mut_ptr().cast())
+        Some(boxes.as_mut_ptr().cast())
     }
 
-    fn find(&mut self, count: usize) -> Result<&[[u32; 2]], Error> {
-        let count = count.min(self.boxes.len());
-        self.finder.find(&self.boxes[..count])
+    fn find(&mut self, counts: [usize; 2], taker: &mut Taker) -> Result<(), Error> {
+        let [a, b] = &self.sets;
+        let a = &a[..counts[0].min(a.len())];
+        // One closure for both: the search is compiled for its type.
+        let each = |pair| taker.take(pair);
+        if counts[1] == NO_SET {
+            let _ = self.finder.for_each(a, each)?;
+        } else {
+            let b = &b[..counts[1].min(b.len())];
+            let _ = self.finder.for_each_between(a, b, each)?;
+        }
+        Ok(())
     }
 }
 
 /// What JavaScript holds a pointer to.
-struct Finder(Box<dyn Find>);
+struct Finder {
+    find: Box<dyn Find>,
+    taker: Taker,
+}
 
-/// A new finder, to be freed by [`finder_free`]; null if there are not that many dimensions.
+/// A new finder, to be freed by [`finder_free`]; null if there is none for such boxes.
 #[unsafe(no_mangle)]
 extern "C" fn finder_new(dimensions: u32, is_double: bool) -> Option<Box<Finder>> {
     let find = match (dimensions, is_double) {
-        (1, false) => Rows::<1, f32>::boxed(),
         (2, false) => Rows::<2, f32>::boxed(),
         (3, false) => Rows::<3, f32>::boxed(),
-        (1, true) => Rows::<1, f64>::boxed(),
-        (2, true) => Rows::<2, f64>::boxed(),
         (3, true) => Rows::<3, f64>::boxed(),
         _ => return None,
     };
-    Some(Box::new(Finder(find)))
+    let taker = Taker { buffer: Vec::new(), purpose: Use::Store, limit: 0, before: 0 };
+    Some(Box::new(Finder { find, taker }))
 }
 
-/// Where to write `count` rows of boxes, valid until the next call with this finder; null if
-/// there is no memory for them.
+/// Where to write `count` rows of boxes of set 0 or 1, valid until the next call with this finder;
+/// null if there is no memory for them.
 #[unsafe(no_mangle)]
-extern "C" fn finder_rows(finder: Option<&mut Finder>, count: usize) -> *mut u8 {
-    finder.and_then(|finder| finder.0.rows(count)).unwrap_or(core::ptr::null_mut())
+extern "C" fn finder_rows(finder: Option<&mut Finder>, set: usize, count: usize) -> *mut u8 {
+    finder.and_then(|finder| finder.find.rows(set, count)).unwrap_or(core::ptr::null_mut())
 }
 
-/// Finds the pairs of the first `count` rows. Details: where they are and how many; they are
-/// valid until the next call with this finder.
+/// Finds the pairs of the first `a` rows of set 0, or those between them and the first `b` of
+/// set 1, if `b` is not 2^32 - 1. Details, by `purpose`:
+/// 0, to store: where the pairs are and how many, valid until the next call with this finder;
+/// 1, to count: how many, the low and the high word;
+/// 2, to stream, through the import `each`: none.
 #[unsafe(no_mangle)]
-extern "C" fn finder_find(finder: Option<&mut Finder>, count: usize) -> Code {
-    let Some(finder) = finder else { return tell(Code::Internal, [0, 0]) };
-    match finder.0.find(count) {
-        Ok(pairs) => tell(Code::Ok, [pairs.as_ptr().addr(), pairs.len()]),
-        Err(error) => tell_error(error),
+extern "C" fn finder_find(finder: Option<&mut Finder>, a: usize, b: usize, purpose: u32) -> Code {
+    let Some(Finder { find, taker }) = finder else { return tell(Code::Internal, [0, 0]) };
+    taker.start(match purpose {
+        0 => Use::Store,
+        1 => Use::Count,
+        _ => Use::Stream,
+    });
+    if let Err(error) = find.find([a, b], taker) {
+        return tell_error(error);
+    }
+    match taker.purpose {
+        Use::Store => tell(Code::Ok, [taker.buffer.as_ptr().addr(), taker.buffer.len()]),
+        Use::Count => {
+            let count = taker.before + taker.buffer.len() as u64;
+            tell(Code::Ok, [count as usize, (count >> 32) as usize])
+        }
+        Use::Stream => {
+            // Empty if the callback broke off.
+            if !taker.buffer.is_empty() {
+                let _ = taker.flush();
+            }
+            tell(Code::Ok, [0, 0])
+        }
     }
 }
 

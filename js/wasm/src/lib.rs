@@ -4,8 +4,8 @@
 //! pointers are those that this module gave out.
 #![cfg_attr(target_arch = "wasm32", no_std)]
 // SAFETY of the exports: each has a name that no other symbol has, and is called by `js/src/`
-// alone, which keeps handles private, passes none after it was freed, and never calls in while
-// another call is under way. Counts are checked here, where memory depends on them.
+// alone, which keeps handles private, passes none after it was freed, and while a call with one
+// is under way (which calls back) passes none but others. Counts are checked here, where memory depends on them.
 #![allow(unsafe_code)]
 
 extern crate alloc;

@@ -12,6 +12,10 @@ use dlmalloc::GlobalDlmalloc;
 unsafe extern "C" {
     /// Throws: `OutOfMemoryError`, or an internal error.
     safe fn fail(is_out_of_memory: bool) -> !;
+
+    /// Hands so many pairs to the callback of the call under way; whether it wants more. Never
+    /// throws: what the callback throws is thrown when the call has returned.
+    pub safe fn each(pairs: *const [u32; 2], count: usize) -> bool;
 }
 
 /// The allocator, which notes whether its last allocation failed.
