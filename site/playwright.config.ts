@@ -1,6 +1,18 @@
+import { once } from "node:events";
+import { type AddressInfo, createServer } from "node:net";
 import { defineConfig } from "@playwright/test";
 
-const port = Number(process.env["PORT"] ?? 4273);
+/** A port that nobody listens on. */
+async function freePort(): Promise<number> {
+  const server = createServer().listen(0);
+  await once(server, "listening");
+  const { port } = server.address() as AddressInfo;
+  server.close();
+  return port;
+}
+
+// The processes of the tests read this file again and must find the same port.
+const port = Number((process.env["SITE_TEST_PORT"] ??= String(await freePort())));
 
 /** The built page in the system's Chromium, which draws in software: no graphics card is needed. */
 export default defineConfig({

@@ -2,7 +2,7 @@ import { findPairs, init } from "sweep-and-prune";
 import { bruteForceTests, formatCount } from "../lab/counters.ts";
 
 /** The numbers of boxes that the slider offers; more would keep the thread of the page too long. */
-const BOXES = [10, 20, 50, 100, 200, 500, 1_000, 2_000, 5_000, 10_000, 20_000, 50_000];
+const BOXES = [10, 20, 50, 100, 200, 500, 1_000, 2_000, 5_000, 10_000, 20_000, 50_000, 100_000, 200_000, 500_000, 1_000_000];
 /** Up to so many boxes brute force answers before a visitor wonders what is going on. */
 const CHECKED = 5_000;
 /** The side of a cube at which a box of `n` in the unit cube meets about two others. */
