@@ -1,7 +1,7 @@
 // Compiles the simulation to WebAssembly, with and without vector instructions, into
 // src/generated/. Quick when nothing has changed.
 
-import { execFileSync } from "node:child_process";
+import { spawnSync } from "node:child_process";
 import { copyFileSync, mkdirSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -20,11 +20,12 @@ const builds = [
 mkdirSync(output, { recursive: true });
 for (const { file, folder, flags } of builds) {
   const targetDir = join(target, folder);
-  execFileSync(
+  const { status } = spawnSync(
     "cargo",
     ["build", "--quiet", "--release", "--target", "wasm32-unknown-unknown", "--package", crate, "--target-dir", targetDir],
     { cwd: root, stdio: "inherit", env: { ...process.env, RUSTFLAGS: flags } },
   );
+  if (status !== 0) process.exit(status ?? 1); // cargo has said why
   const built = join(targetDir, "wasm32-unknown-unknown/release", `${crate.replaceAll("-", "_")}.wasm`);
   copyFileSync(built, join(output, file));
 }

@@ -82,8 +82,12 @@ export class DiscView implements View {
       context.moveTo(x(a), y(a));
       context.lineTo(x(b), y(b));
     }
-    context.strokeStyle = this.#theme.pair;
-    context.lineWidth = 2 * pixelRatio();
+    // On a seam of the background's colour a line can be seen on discs of any shade.
+    context.strokeStyle = this.#theme.stage;
+    context.lineWidth = 4.5 * pixelRatio();
+    context.stroke();
+    context.strokeStyle = this.#theme.line;
+    context.lineWidth = 1.75 * pixelRatio();
     context.stroke();
   }
 }

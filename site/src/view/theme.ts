@@ -5,7 +5,7 @@ export interface Theme {
   readonly stage: string;
   readonly floor: string;
   readonly edge: string;
-  readonly pair: string;
+  readonly line: string;
 }
 
 export function readTheme(): Theme {
@@ -16,7 +16,7 @@ export function readTheme(): Theme {
     stage: colour("stage"),
     floor: colour("floor"),
     edge: colour("edge"),
-    pair: colour("pair"),
+    line: colour("ink"),
   };
 }
 
