@@ -34,10 +34,15 @@ export class Engine<E extends Exports> {
   #stackTop = 0;
   #statusAt = 0;
   #words = new Uint32Array(0);
+  /** How many calls have been made that may overwrite what a view shows; see {@link guard}. */
+  calls = 0;
 
-  private constructor(readonly exports: E) {}
+  private constructor(
+    readonly exports: E,
+    readonly isDevelopment: boolean,
+  ) {}
 
-  static async start<E extends Exports>(module: WebAssembly.Module): Promise<Engine<E>> {
+  static async start<E extends Exports>(module: WebAssembly.Module, isDevelopment: boolean): Promise<Engine<E>> {
     let engine: Engine<E>;
     const imports = {
       fail: (isOutOfMemory: number) => engine.#fail(isOutOfMemory !== 0),
@@ -45,7 +50,7 @@ export class Engine<E extends Exports> {
     };
     // Not `new WebAssembly.Instance`, which some browsers refuse on the main thread.
     const instance = await WebAssembly.instantiate(module, { sweep_and_prune: imports });
-    engine = new Engine(instance.exports as unknown as E);
+    engine = new Engine(instance.exports as unknown as E, isDevelopment);
     engine.#stackTop = engine.exports.__stack_pointer.value;
     engine.#statusAt = (engine.exports.status() >>> 0) / 4;
     return engine;
@@ -132,7 +137,7 @@ export class Core<E extends Exports> {
     return this.#engine;
   }
 
-  async start(module: WebAssembly.Module): Promise<void> {
-    this.#engine = await Engine.start<E>(module);
+  async start(module: WebAssembly.Module, isDevelopment: boolean): Promise<void> {
+    this.#engine = await Engine.start<E>(module, isDevelopment);
   }
 }

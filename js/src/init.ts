@@ -12,6 +12,11 @@ export interface InitOptions {
    * module compiled already. It must be the build that `simd` names.
    */
   wasm?: string | URL | BufferSource | WebAssembly.Module;
+  /**
+   * Whether views that are used after their time throw a `TypeError`, at a price in speed: they
+   * are then proxies of typed arrays. For development; off by default.
+   */
+  development?: boolean;
 }
 
 /** What `init()` started. */
@@ -44,7 +49,7 @@ export function start<E extends Exports>(core: Core<E>, sources: Sources, option
 
 async function load<E extends Exports>(core: Core<E>, sources: Sources, options: InitOptions): Promise<Started> {
   const simd = options.simd ?? hasSimd();
-  await core.start(await compile(options.wasm ?? (simd ? sources.simd() : sources.scalar())));
+  await core.start(await compile(options.wasm ?? (simd ? sources.simd() : sources.scalar())), options.development === true);
   return { simd };
 }
 

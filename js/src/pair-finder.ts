@@ -2,7 +2,7 @@
 import { type Boxes, checkBoxes, checkDimensions, type Dimensions, writeRows } from "./boxes.js";
 import { Core, type Each, type Engine, type Exports } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
-import { view } from "./views.js";
+import { guard, view } from "./views.js";
 
 /** How to find pairs. */
 export interface FindPairsOptions {
@@ -209,7 +209,7 @@ export class PairFinder {
     this.#search(Use.Store, a, b, undefined);
     const { buffer } = engine.exports.memory;
     this.#pairs = view(Uint32Array, this.#pairs, buffer, engine.detail(0), 2 * engine.detail(1));
-    return this.#pairs;
+    return guard(engine, this.#pairs);
   }
 
   #count(a: Boxes, b: Boxes | typeof alone): number {
@@ -246,6 +246,7 @@ export class PairFinder {
     owned.isBusy = true;
     try {
       const { engine } = owned;
+      engine.calls++;
       const finder = (owned[isDouble ? "double" : "single"] ||= engine.exports.finder_new(stored, Number(isDouble)));
       const countA = this.#write(finder, 0, first, isDouble, stored);
       const countB = second ? this.#write(finder, 1, second, isDouble, stored) : noSet;

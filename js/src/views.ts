@@ -13,3 +13,36 @@ export function view<T extends Typed>(
     last instanceof Type && last.buffer === buffer && last.byteOffset === at && last.length === length;
   return isSame ? last : new Type(buffer, at, length);
 }
+
+/** What knows whether its memory may have changed since. */
+interface Clock {
+  /** Whether views are to be watched. */
+  readonly isDevelopment: boolean;
+  /** How many calls have been made that may overwrite what a view shows. */
+  readonly calls: number;
+}
+
+/**
+ * The view itself; in development mode something like it, which throws when it is used after it
+ * has become stale.
+ */
+export function guard<T extends Typed>(clock: Clock, view: T): T {
+  if (!clock.isDevelopment) return view;
+  const { calls } = clock;
+  const check = (): void => {
+    if (clock.calls !== calls) {
+      throw new TypeError("this view is stale: views are valid until the next call of sweep-and-prune; copy it first");
+    }
+  };
+  return new Proxy(view, {
+    get(target, key) {
+      check();
+      const value: unknown = Reflect.get(target, key, target);
+      return typeof value === "function" && key !== "constructor" ? value.bind(target) : value;
+    },
+    set(target, key, value) {
+      check();
+      return Reflect.set(target, key, value, target);
+    },
+  });
+}

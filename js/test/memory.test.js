@@ -51,3 +51,22 @@ test("pairs that do not fit, again and again", () => {
   for (const finder of [...finders, another]) finder.free();
   assert.equal(findPairs(boxes.subarray(0, 2 * 1000), { dimensions: 1 }).length, 1000 * 999);
 });
+
+test("a call nested in a callback that runs out of memory leaves the outer one whole", () => {
+  const finder = new PairFinder({ dimensions: 2 });
+  const boxes = new Float32Array(4 * 300); // all overlap: more pairs than one buffer holds
+  const expected = findPairs(boxes, { dimensions: 2 });
+  const tooMany = new Float32Array(2 * 24_000);
+  let calls = 0;
+  /** @type {number[]} */
+  const streamed = [];
+  finder.forEach(boxes, (a, b) => {
+    streamed.push(a, b);
+    if (++calls !== 100) return;
+    const stack = stackPointer.value;
+    assert.throws(() => findPairs(tooMany, { dimensions: 1 }), OutOfMemoryError);
+    assert.equal(stackPointer.value, stack, "what is called next would overwrite the frames of the outer call");
+  });
+  assert.deepEqual(streamed, [...expected]);
+  finder.free();
+});

@@ -8,7 +8,6 @@ import {
   forEachPair,
   init,
   InvalidBoxError,
-  OutOfMemoryError,
   PairFinder,
 } from "sweep-and-prune";
 import { boxesAmong, boxesSpread, oracle, random, sorted } from "./support/boxes.js";
@@ -146,18 +145,15 @@ test("within a callback other finders work, this one refuses", () => {
   finder.free();
 });
 
-test("a nested call that runs out of memory, or lets it grow, leaves the outer one whole", () => {
+test("a nested call that lets the memory grow leaves the outer one whole", () => {
   const finder = new PairFinder({ dimensions: 1 });
-  const boxes = Float32Array.from({ length: 2 * 300 }, (_, i) => i >> 1);
-  boxes.fill(0, 0, 200); // the first hundred overlap
+  const boxes = new Float32Array(2 * 300); // all overlap
   const expected = findPairs(boxes, { dimensions: 1 });
-  const tooMany = new Float64Array(2 ** 29); // the system hands these out without touching them
   /** @type {number[]} */
   const streamed = [];
   finder.forEach(boxes, (a, b) => {
     streamed.push(a, b);
-    if (streamed.length === 100) assert.throws(() => findPairs(tooMany, { dimensions: 1 }), OutOfMemoryError);
-    if (streamed.length === 200) findPairs(new Float32Array(2 * 3000), { dimensions: 1 });
+    if (streamed.length === 200) findPairs(new Float32Array(2 * 9000), { dimensions: 1 });
   });
   assert.deepEqual(streamed, [...expected]);
   finder.free();

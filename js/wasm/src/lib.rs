@@ -1,5 +1,7 @@
 //! The exports of the npm package: plain functions over linear memory, called by `js/src/`.
 //!
+//! Each feature is a build of its own, a file that a page loads if it uses it.
+//!
 //! A function that can fail gives a code, with details in the [`status`] area. Handles and
 //! pointers are those that this module gave out.
 #![cfg_attr(target_arch = "wasm32", no_std)]
@@ -10,6 +12,9 @@
 
 extern crate alloc;
 
+#[cfg(feature = "broad-phase")]
+mod broad_phase;
+#[cfg(feature = "finder")]
 mod finder;
 #[cfg(target_arch = "wasm32")]
 mod runtime;

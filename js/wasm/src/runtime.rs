@@ -15,6 +15,7 @@ unsafe extern "C" {
 
     /// Hands so many pairs to the callback of the call under way; whether it wants more. Never
     /// throws: what the callback throws is thrown when the call has returned.
+    #[cfg(feature = "finder")]
     pub safe fn each(pairs: *const [u32; 2], count: usize) -> bool;
 }
 

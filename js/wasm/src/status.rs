@@ -2,7 +2,7 @@
 
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-use sweep_and_prune::Error;
+use sweep_and_prune::{Error, SnapshotFault};
 
 /// What a call returns; `js/src/engine.ts` has the same list.
 #[repr(u32)]
@@ -16,6 +16,13 @@ pub enum Code {
     OutOfMemory = 2,
     /// An error that these exports should never meet. No details.
     Internal = 3,
+    /// Details: the position of the id.
+    StaleProxy = 4,
+    /// Details: the position of the query or number.
+    InvalidArgument = 5,
+    /// Details: what is wrong, as `SnapshotError` in `js/src/errors.ts` lists it, and the version
+    /// found.
+    InvalidSnapshot = 6,
 }
 
 /// Atomic only because a static must be: in WebAssembly these are plain loads and stores.
@@ -34,6 +41,18 @@ pub fn tell_error(error: Error) -> Code {
     match error {
         Error::InvalidBox { index, axis } => tell(Code::InvalidBox, [index, axis]),
         Error::TooManyBoxes { .. } => tell(Code::OutOfMemory, [0, 0]),
+        Error::StaleProxy { index } => tell(Code::StaleProxy, [index, 0]),
+        Error::InvalidQuery { index } => tell(Code::InvalidArgument, [index, 0]),
+        Error::InvalidSnapshot(fault) => {
+            let fault = match fault {
+                SnapshotFault::Foreign => [0, 0],
+                SnapshotFault::Version { found } => [1, found.into()],
+                SnapshotFault::OtherWorld { .. } => [2, 0],
+                SnapshotFault::Truncated => [3, 0],
+                _ => [4, 0],
+            };
+            tell(Code::InvalidSnapshot, fault)
+        }
         _ => tell(Code::Internal, [0, 0]),
     }
 }

@@ -1,0 +1,46 @@
+import { Core, type Exports } from "./engine.js";
+
+/** What js/wasm/src/broad_phase.rs exports. */
+export interface WorldExports extends Exports {
+  world_new(dimensions: number, double: number, margin: number, prediction: number, fat: number): number;
+  world_free(world: number): void;
+  world_numbers(world: number): number;
+  world_rows(world: number, count: number): number;
+  world_ids_in(world: number, count: number): number;
+  world_bytes(world: number, count: number): number;
+  world_insert(world: number): number;
+  world_insert_many(world: number, count: number, ...filter: FilterWords): number;
+  world_set(world: number, id: number): number;
+  world_set_many(world: number, count: number): number;
+  world_set_swept(world: number, id: number): number;
+  world_set_filter(world: number, id: number, ...filter: FilterWords): number;
+  world_filter(world: number, id: number): number;
+  world_box(world: number, id: number): number;
+  world_has(world: number, id: number): number;
+  world_remove_many(world: number, count: number): number;
+  world_update(world: number): number;
+  world_pairs(world: number): number;
+  world_pairs_of(world: number, id: number): number;
+  world_ids(world: number): number;
+  world_len(world: number): number;
+  world_query(world: number, query: Query, k: number, ...filter: FilterWords): number;
+  world_snapshot(world: number): number;
+  world_restore(world: number): number;
+  world_hash(world: number): number;
+}
+
+/** Category, mask, group, static. */
+export type FilterWords = [number, number, number, number];
+
+/** What is asked; js/wasm/src/broad_phase.rs has the same list. */
+export const enum Query {
+  Overlapping = 0,
+  Containing = 1,
+  Within = 2,
+  Cast = 3,
+  CastAll = 4,
+  Nearest = 5,
+}
+
+/** The core of living worlds. */
+export const worldCore: Core<WorldExports> = new Core();

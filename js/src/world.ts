@@ -1,0 +1,609 @@
+/// <reference lib="esnext.disposable" preserve="true" />
+import { type Boxes, checkBoxes, checkDimensions, checkNumbers, type Dimensions, writeRows } from "./boxes.js";
+import type { Engine } from "./engine.js";
+import { OutOfMemoryError } from "./errors.js";
+import { defaultFilter, everything, type Filter, filterWords } from "./filter.js";
+import { guard, view } from "./views.js";
+import { Query, worldCore, type WorldExports } from "./world-core.js";
+
+/**
+ * The name of a body: a whole number below 2^53. The lower 26 bits are its slot (see
+ * {@link slotOf}), the others tell how many bodies have had the slot. So an id never comes to mean
+ * another body before its slot has had 134 million others.
+ */
+export type ProxyId = number;
+
+/**
+ * The slot of a body, less than the greatest number of bodies there ever were at once: an index
+ * into tables of your own.
+ */
+export function slotOf(id: ProxyId): number {
+  return id % 2 ** 26;
+}
+
+/** How a world treats its boxes. */
+export interface BroadPhaseOptions {
+  /** How many dimensions the boxes have. */
+  dimensions: Dimensions;
+  /**
+   * In which precision coordinates are kept and compared: `"single"`, to which they are rounded,
+   * or `"double"`. Single by default.
+   */
+  precision?: "single" | "double";
+  /** Which boxes the reported pairs are those of: as given, or the fat ones. Exact by default. */
+  report?: "exact" | "fat";
+  /** With fat boxes, what they have around the body's own, in units of length. 0 by default. */
+  margin?: number;
+  /** With fat boxes, how many displacements they reach ahead. 0 by default. */
+  prediction?: number;
+}
+
+/** What an update found; see {@link BroadPhase.update}. */
+export interface Changes {
+  /** The pairs that overlap now and did not at the last update: `a0, b0, a1, b1, ...`. */
+  begun: Float64Array;
+  /** The pairs that overlapped at the last update and do not now; some ids may be stale. */
+  ended: Float64Array;
+}
+
+/** A body that a ray or a moving box hits. */
+export interface Hit {
+  /** The body. */
+  id: ProxyId;
+  /** How many directions from the start; 0 if they overlap there. */
+  at: number;
+}
+
+/** A body near a point. */
+export interface Neighbour {
+  /** The body. */
+  id: ProxyId;
+  /** The distance from the point to its box; 0 if the point is in it. */
+  distance: number;
+}
+
+type Numbers = readonly number[] | Float32Array | Float64Array;
+
+/**
+ * A world of boxes that tells which overlaps began and which ended.
+ *
+ * ```js
+ * using world = new BroadPhase({ dimensions: 2 });
+ * const hero = world.insert(0, 0, 1, 2);
+ * world.set(hero, 3.5, 0, 4.5, 2);
+ * const { begun, ended } = world.update();
+ * ```
+ *
+ * Arrays that it returns are views, valid until the next call of anything in this package; copy
+ * them (`begun.slice()`) to keep them. Same calls, same results, on every machine. A refused call
+ * changes nothing, except that a world which ran out of memory is freed.
+ */
+export class BroadPhase {
+  /** How many dimensions the boxes have. */
+  readonly dimensions: Dimensions;
+  /** The precision of the coordinates. */
+  readonly precision: "single" | "double";
+  readonly #owned: Owned;
+  readonly #stored: Dimensions;
+  readonly #numbersAt: number;
+  #numbers: Float64Array | undefined;
+  #rows: Float32Array | Float64Array | undefined;
+  #ids: Float64Array | undefined;
+  #out: Float64Array | undefined;
+  #begun: Float64Array | undefined;
+  #ended: Float64Array | undefined;
+  readonly #changes: Changes = { begun: new Float64Array(0), ended: new Float64Array(0) };
+
+  /**
+   * An empty world.
+   *
+   * @throws {@link NotInitializedError} before `init()` is done.
+   * @throws `RangeError` for dimensions other than 1, 2 and 3, or a margin or prediction that is
+   *   negative, infinite or NaN.
+   */
+  constructor(options: BroadPhaseOptions) {
+    const { precision = "single", report = "exact", margin = 0, prediction = 0 } = options ?? {};
+    this.dimensions = checkDimensions(options?.dimensions);
+    if (precision !== "single" && precision !== "double") {
+      throw new RangeError(`precision must be "single" or "double", not ${String(precision)}`);
+    }
+    if (report !== "exact" && report !== "fat") {
+      throw new RangeError(`report must be "exact" or "fat", not ${String(report)}`);
+    }
+    this.precision = precision;
+    const isDouble = precision === "double";
+    // There is no core for doubles in the plane, nor for a line: see js/wasm/src/broad_phase.rs.
+    this.#stored = isDouble ? 3 : (Math.max(2, this.dimensions) as Dimensions);
+    const engine = worldCore.engine();
+    const { world_new, world_numbers } = engine.exports;
+    const world = world_new(this.#stored, Number(isDouble), margin, prediction, Number(report === "fat"));
+    if (world === 0) throw new RangeError("margin and prediction must be finite and not negative");
+    this.#owned = { engine, world };
+    this.#numbersAt = world_numbers(world) >>> 0;
+    forgotten?.register(this, this.#owned, this.#owned);
+  }
+
+  /**
+   * The world of a {@link BroadPhase.snapshot}: for the same calls it gives the same ids, events
+   * and results. Precision, margins and what is reported are in the bytes.
+   *
+   * @throws {@link SnapshotError} if they are not those of a world of so many dimensions.
+   */
+  static fromSnapshot(bytes: Uint8Array, options: { dimensions: Dimensions }): BroadPhase {
+    if (!(ArrayBuffer.isView(bytes) && bytes[Symbol.toStringTag] === "Uint8Array")) {
+      throw new TypeError("a snapshot must be a Uint8Array");
+    }
+    const scalarBytes = bytes[6];
+    const world = new BroadPhase({ ...options, precision: scalarBytes === 8 ? "double" : "single" });
+    try {
+      world.#restore(bytes);
+      return world;
+    } catch (error) {
+      world.free();
+      throw error;
+    }
+  }
+
+  #restore(bytes: Uint8Array): void {
+    this.#call((exports, world) => {
+      const at = exports.world_bytes(world, bytes.length) >>> 0;
+      if (at === 0) throw new OutOfMemoryError();
+      new Uint8Array(exports.memory.buffer, at, bytes.length).set(bytes);
+      return exports.world_restore(world);
+    });
+  }
+
+  /** How many bodies there are. */
+  get size(): number {
+    return this.#exports().world_len(this.#owned.world) >>> 0;
+  }
+
+  /** The ids of all bodies, sorted by slot. */
+  ids(): Float64Array {
+    return this.#answer((exports, world) => exports.world_ids(world));
+  }
+
+  /** Whether an id names a body that was inserted here and not removed. */
+  has(id: ProxyId): boolean {
+    return this.#exports().world_has(this.#owned.world, id) !== 0;
+  }
+
+  /**
+   * Adds a body: its least corner and then its greatest. Its filter is the default one, until
+   * {@link BroadPhase.setFilter}.
+   *
+   * @throws {@link InvalidBoxError} if the box is inverted or NaN, as a coordinate left out is.
+   */
+  insert(a: number, b: number, c?: number, d?: number, e?: number, f?: number): ProxyId {
+    this.#writeBox(0, a, b, c, d, e, f);
+    this.#call((exports, world) => exports.world_insert(world));
+    return this.#numbersNow()[0]!;
+  }
+
+  /**
+   * Adds bodies with one filter. Their ids are in the order of their boxes.
+   *
+   * @throws {@link InvalidBoxError} with the index of the first bad box; then none was added.
+   */
+  insertMany(boxes: Boxes, filter: Partial<Filter> = defaultFilter): Float64Array {
+    const words = filterWords(filter, defaultFilter);
+    const count = this.#writeRows(boxes);
+    return this.#answer((exports, world) => exports.world_insert_many(world, count, ...words));
+  }
+
+  /**
+   * Gives a body its new box.
+   *
+   * @throws {@link StaleProxyError}, {@link InvalidBoxError}.
+   */
+  set(id: ProxyId, a: number, b: number, c?: number, d?: number, e?: number, f?: number): void {
+    this.#writeBox(0, a, b, c, d, e, f);
+    this.#call((exports, world) => exports.world_set(world, id));
+  }
+
+  /**
+   * Gives each of many bodies its new box; of an id that comes twice the last box counts. Where
+   * ids and boxes are those of {@link BroadPhase.buffers} nothing is copied.
+   *
+   * @throws {@link StaleProxyError} or {@link InvalidBoxError} with the index of the first that is
+   *   bad, `RangeError` if there are more of one than of the other. Then no box has changed.
+   */
+  setMany(ids: Numbers, boxes: Boxes): void {
+    const rows = checkBoxes(boxes, this.dimensions);
+    const names = checkNumbers(ids, "ids");
+    if (names.length * 2 * this.dimensions !== rows.length) {
+      throw new RangeError(`${names.length} ids do not go with ${rows.length / (2 * this.dimensions)} boxes`);
+    }
+    this.#writeRows(rows);
+    this.#writeIds(names);
+    this.#call((exports, world) => exports.world_set_many(world, names.length));
+  }
+
+  /**
+   * Arrays to write many ids and boxes to, which {@link BroadPhase.setMany} then need not copy:
+   * views of memory, valid until the next call. Where the boxes are stored in another form
+   * (lines; doubles in the plane) they are ordinary arrays.
+   */
+  buffers(count: number): { ids: Float64Array; boxes: Float32Array | Float64Array } {
+    if (!(Number.isInteger(count) && count >= 0)) throw new RangeError(`count must be a whole number, not ${count}`);
+    const width = 2 * this.dimensions;
+    if (this.#stored !== this.dimensions) {
+      const boxes = this.precision === "double" ? new Float64Array(width * count) : new Float32Array(width * count);
+      return { ids: new Float64Array(count), boxes };
+    }
+    this.#rowsFor(count);
+    const ids = this.#idsFor(count);
+    return { ids, boxes: this.#rowsFor(count) };
+  }
+
+  /**
+   * Moves a fast body all the way from one box to another: until the next update its box is the
+   * smallest that holds both, and from then on `to`. So it pairs with what it would have jumped
+   * over (and, on a diagonal way, with what lies beside it).
+   *
+   * @throws {@link StaleProxyError}; {@link InvalidBoxError} with index 0 for `from`, 1 for `to`.
+   */
+  setSwept(id: ProxyId, from: Numbers, to: Numbers): void {
+    this.#writeNumbers(0, from, 2, "from");
+    this.#writeNumbers(2 * this.#stored, to, 2, "to");
+    this.#call((exports, world) => exports.world_set_swept(world, id));
+  }
+
+  /**
+   * The box of a body as last given: least corner, greatest corner. An array of your own.
+   *
+   * @throws {@link StaleProxyError}.
+   */
+  box(id: ProxyId): number[] {
+    this.#call((exports, world) => exports.world_box(world, id));
+    const [numbers, stored] = [this.#numbersNow(), this.#stored];
+    return [
+      ...numbers.subarray(0, this.dimensions),
+      ...numbers.subarray(stored, stored + this.dimensions),
+    ];
+  }
+
+  /**
+   * Removes a body. Its id is stale from now on; the next update reports its ended pairs.
+   *
+   * @throws {@link StaleProxyError}.
+   */
+  remove(id: ProxyId): void {
+    this.#writeIds([id]);
+    this.#call((exports, world) => exports.world_remove_many(world, 1));
+  }
+
+  /**
+   * Removes many bodies.
+   *
+   * @throws {@link StaleProxyError} with the index of the first id that is stale or came before.
+   *   Then none was removed.
+   */
+  removeMany(ids: Numbers): void {
+    const names = checkNumbers(ids, "ids");
+    this.#writeIds(names);
+    this.#call((exports, world) => exports.world_remove_many(world, names.length));
+  }
+
+  /**
+   * The filter of a body.
+   *
+   * @throws {@link StaleProxyError}.
+   */
+  filter(id: ProxyId): Filter {
+    this.#call((exports, world) => exports.world_filter(world, id));
+    const [category = 0, mask = 0, group = 0, isStatic = 0] = this.#numbersNow();
+    return { category, mask, group, isStatic: isStatic !== 0 };
+  }
+
+  /**
+   * Changes which others a body may pair with; what is left out is that of the default filter.
+   * Pairs begin or end by it at the next update.
+   *
+   * @throws {@link StaleProxyError}; `RangeError` if a part is not a whole number of 32 bits.
+   */
+  setFilter(id: ProxyId, filter: Partial<Filter>): void {
+    const words = filterWords(filter, defaultFilter);
+    this.#call((exports, world) => exports.world_set_filter(world, id, ...words));
+  }
+
+  /**
+   * The pairs that began and ended since the last update, each with its smaller id first, sorted.
+   * Time in proportion to the bodies that changed and their neighbours. It returns the same object
+   * each time, with views that are valid until the next call.
+   */
+  update(): Changes {
+    this.#call((exports, world) => exports.world_update(world));
+    const { engine } = this.#owned;
+    const { buffer } = engine.exports.memory;
+    const [at, total, begun] = [engine.detail(0), engine.detail(1), this.#numbersNow()[0]!];
+    this.#begun = view(Float64Array, this.#begun, buffer, at, begun);
+    this.#ended = view(Float64Array, this.#ended, buffer, at + 8 * begun, total - begun);
+    this.#changes.begun = guard(engine, this.#begun);
+    this.#changes.ended = guard(engine, this.#ended);
+    return this.#changes;
+  }
+
+  /** The pairs that overlapped at the last update: `a0, b0, a1, b1, ...`, sorted. */
+  pairs(): Float64Array {
+    return this.#answer((exports, world) => exports.world_pairs(world));
+  }
+
+  /**
+   * The bodies that overlapped this one at the last update, sorted.
+   *
+   * @throws {@link StaleProxyError}.
+   */
+  pairsOf(id: ProxyId): Float64Array {
+    return this.#answer((exports, world) => exports.world_pairs_of(world, id));
+  }
+
+  /**
+   * The bodies whose boxes, as last given, overlap a box: least corner, greatest corner. Sorted.
+   *
+   * Here as in all queries, `filter` is that of a body which asks; without it all are found.
+   *
+   * @throws {@link InvalidBoxError}.
+   */
+  overlapping(box: Numbers, filter?: Partial<Filter>): Float64Array {
+    this.#writeNumbers(0, box, 2, "box");
+    return this.#ask(Query.Overlapping, 0, filter);
+  }
+
+  /**
+   * The bodies whose boxes hold a point, sorted.
+   *
+   * @throws `RangeError` for a NaN.
+   */
+  containing(point: Numbers, filter?: Partial<Filter>): Float64Array {
+    this.#writeNumbers(0, point, 1, "point");
+    return this.#ask(Query.Containing, 0, filter);
+  }
+
+  /**
+   * The bodies whose boxes are at most `radius` away from `centre`, sorted.
+   *
+   * @throws `RangeError` if the centre is not finite, or the radius negative or NaN.
+   */
+  within(centre: Numbers, radius: number, filter?: Partial<Filter>): Float64Array {
+    this.#writeNumbers(0, centre, 1, "centre");
+    this.#numbersNow()[this.#stored] = radius;
+    return this.#ask(Query.Within, 0, filter);
+  }
+
+  /**
+   * The body that a ray hits first, `limit` directions far at most; of several at once the least
+   * id. `direction` may be of any length.
+   *
+   * @throws `RangeError` if the origin or the direction is not finite, or the limit negative.
+   */
+  rayCast(origin: Numbers, direction: Numbers, limit: number = Infinity, filter?: Partial<Filter>): Hit | undefined {
+    this.#writeRay(origin, direction, limit);
+    return hits(this.#ask(Query.Cast, 0, filter))[0];
+  }
+
+  /**
+   * All that a ray hits, nearest first.
+   *
+   * @throws As {@link BroadPhase.rayCast}.
+   */
+  rayCastAll(origin: Numbers, direction: Numbers, limit: number = Infinity, filter?: Partial<Filter>): Hit[] {
+    this.#writeRay(origin, direction, limit);
+    return hits(this.#ask(Query.CastAll, 0, filter));
+  }
+
+  /**
+   * The body that a moving box hits first.
+   *
+   * @throws As {@link BroadPhase.rayCast}, also if the box is inverted.
+   */
+  boxCast(box: Numbers, direction: Numbers, limit: number = Infinity, filter?: Partial<Filter>): Hit | undefined {
+    this.#writeCast(box, direction, limit);
+    return hits(this.#ask(Query.Cast, 0, filter))[0];
+  }
+
+  /**
+   * All that a moving box hits, nearest first.
+   *
+   * @throws As {@link BroadPhase.boxCast}.
+   */
+  boxCastAll(box: Numbers, direction: Numbers, limit: number = Infinity, filter?: Partial<Filter>): Hit[] {
+    this.#writeCast(box, direction, limit);
+    return hits(this.#ask(Query.CastAll, 0, filter));
+  }
+
+  /**
+   * The `k` bodies nearest to a point, or all if there are fewer, by distance and then by id.
+   *
+   * @throws `RangeError` if the point is not finite, or `k` not a whole number.
+   */
+  nearest(point: Numbers, k: number = 1, filter?: Partial<Filter>): Neighbour[] {
+    if (!(Number.isInteger(k) && k >= 0 && k < 2 ** 32)) throw new RangeError(`k must be a whole number, not ${k}`);
+    this.#writeNumbers(0, point, 1, "point");
+    const found = this.#ask(Query.Nearest, k, filter);
+    return Array.from({ length: found.length / 2 }, (_, i) => ({
+      id: found[2 * i]!,
+      distance: Math.sqrt(found[2 * i + 1]!),
+    }));
+  }
+
+  /**
+   * The whole state as bytes of your own, for rollback, replay and saved games. Equal states give
+   * equal bytes.
+   */
+  snapshot(): Uint8Array<ArrayBuffer> {
+    const { engine } = this.#owned;
+    this.#call((exports, world) => exports.world_snapshot(world));
+    return new Uint8Array(engine.exports.memory.buffer, engine.detail(0), engine.detail(1)).slice();
+  }
+
+  /** A 64-bit hash of the whole state, equal for equal states on every machine. */
+  hash(): bigint {
+    const { engine } = this.#owned;
+    this.#call((exports, world) => exports.world_hash(world));
+    return (BigInt(engine.detail(1)) << 32n) | BigInt(engine.detail(0));
+  }
+
+  /** Gives the memory back. The world cannot be used any more; to free it twice is no error. */
+  free(): void {
+    forgotten?.unregister(this.#owned);
+    release(this.#owned);
+  }
+
+  /** As {@link BroadPhase.free}, for `using`. */
+  [Symbol.dispose](): void {
+    this.free();
+  }
+
+  #exports(): WorldExports {
+    if (this.#owned.world === 0) throw new TypeError("this BroadPhase was freed");
+    return this.#owned.engine.exports;
+  }
+
+  /** Makes a call and throws what its code stands for. */
+  #call(call: (exports: WorldExports, world: number) => number): void {
+    const owned = this.#owned;
+    const exports = this.#exports();
+    owned.engine.calls++;
+    try {
+      owned.engine.check(call(exports, owned.world));
+    } catch (error) {
+      // It stopped half-way: there is no world left to go on with.
+      if (error instanceof OutOfMemoryError) this.free();
+      throw error;
+    }
+  }
+
+  /** Makes a call and returns the numbers that it tells of. */
+  #answer(call: (exports: WorldExports, world: number) => number): Float64Array {
+    this.#call(call);
+    const { engine } = this.#owned;
+    const { buffer } = engine.exports.memory;
+    this.#out = view(Float64Array, this.#out, buffer, engine.detail(0), engine.detail(1));
+    return guard(engine, this.#out);
+  }
+
+  #ask(query: Query, k: number, filter: Partial<Filter> | undefined): Float64Array {
+    const words = filterWords(filter ?? everything, defaultFilter);
+    return this.#answer((exports, world) => exports.world_query(world, query, k, ...words));
+  }
+
+  /** The numbers that go in and out, where they are now. */
+  #numbersNow(): Float64Array {
+    const { buffer } = this.#exports().memory;
+    return (this.#numbers = view(Float64Array, this.#numbers, buffer, this.#numbersAt, 16));
+  }
+
+  /** Writes a box from separate numbers; a missing one becomes NaN, which no box may hold. */
+  #writeBox(at: number, a: number, b: number, c = NaN, d = NaN, e = NaN, f = NaN): void {
+    const [numbers, stored] = [this.#numbersNow(), this.#stored];
+    switch (this.dimensions) {
+      case 1:
+        this.#writeAxes(numbers, at, a, 0, 0);
+        this.#writeAxes(numbers, at + stored, b, 0, 0);
+        break;
+      case 2:
+        this.#writeAxes(numbers, at, a, b, 0);
+        this.#writeAxes(numbers, at + stored, c, d, 0);
+        break;
+      case 3:
+        this.#writeAxes(numbers, at, a, b, c);
+        this.#writeAxes(numbers, at + stored, d, e, f);
+    }
+  }
+
+  #writeAxes(numbers: Float64Array, at: number, x: number, y: number, z: number): void {
+    numbers[at] = x;
+    numbers[at + 1] = y;
+    if (this.#stored === 3) numbers[at + 2] = z;
+  }
+
+  /** Writes one or two corners; numbers on axes that the world does not have are 0. */
+  #writeNumbers(at: number, values: Numbers, corners: number, name: string): void {
+    const { dimensions } = this;
+    const given = checkNumbers(values, name);
+    if (given.length !== corners * dimensions) {
+      throw new RangeError(`${name} must be ${corners * dimensions} numbers, not ${given.length}`);
+    }
+    const numbers = this.#numbersNow();
+    for (let corner = 0; corner < corners; corner++) {
+      for (let axis = 0; axis < this.#stored; axis++) {
+        numbers[at + corner * this.#stored + axis] = axis < dimensions ? given[corner * dimensions + axis]! : 0;
+      }
+    }
+  }
+
+  #writeRay(origin: Numbers, direction: Numbers, limit: number): void {
+    this.#writeNumbers(0, origin, 1, "origin");
+    this.#writeNumbers(this.#stored, origin, 1, "origin");
+    this.#writeWay(direction, limit);
+  }
+
+  #writeCast(box: Numbers, direction: Numbers, limit: number): void {
+    this.#writeNumbers(0, box, 2, "box");
+    this.#writeWay(direction, limit);
+  }
+
+  #writeWay(direction: Numbers, limit: number): void {
+    this.#writeNumbers(2 * this.#stored, direction, 1, "direction");
+    this.#numbersNow()[3 * this.#stored] = limit;
+  }
+
+  /** The rows of memory for `count` boxes. */
+  #rowsFor(count: number): Float32Array | Float64Array {
+    const exports = this.#exports();
+    const at = exports.world_rows(this.#owned.world, count) >>> 0;
+    if (at === 0) throw new OutOfMemoryError();
+    const { buffer } = exports.memory;
+    const length = 2 * this.#stored * count;
+    return (this.#rows =
+      this.precision === "double"
+        ? view(Float64Array, this.#rows, buffer, at, length)
+        : view(Float32Array, this.#rows, buffer, at, length));
+  }
+
+  /** Writes boxes to the rows, unless they are there, and returns how many they are. */
+  #writeRows(boxes: Boxes): number {
+    const rows = checkBoxes(boxes, this.dimensions);
+    const count = rows.length / (2 * this.dimensions);
+    const into = this.#rowsFor(count);
+    if (!isSame(rows, into)) writeRows(rows, this.dimensions, into, this.#stored);
+    return count;
+  }
+
+  #idsFor(count: number): Float64Array {
+    const exports = this.#exports();
+    const at = exports.world_ids_in(this.#owned.world, count) >>> 0;
+    if (at === 0) throw new OutOfMemoryError();
+    return (this.#ids = view(Float64Array, this.#ids, exports.memory.buffer, at, count));
+  }
+
+  #writeIds(ids: Numbers): void {
+    const into = this.#idsFor(ids.length);
+    if (!isSame(ids, into)) into.set(ids);
+  }
+}
+
+/** Whether an array lies where another does. */
+function isSame(a: Numbers, b: Float32Array | Float64Array): boolean {
+  return ArrayBuffer.isView(a) && a.buffer === b.buffer && a.byteOffset === b.byteOffset;
+}
+
+function hits(found: Float64Array): Hit[] {
+  return Array.from({ length: found.length / 2 }, (_, i) => ({ id: found[2 * i]!, at: found[2 * i + 1]! }));
+}
+
+/** What a world holds on the other side: a handle, or 0 once it is freed. */
+interface Owned {
+  readonly engine: Engine<WorldExports>;
+  world: number;
+}
+
+function release(owned: Owned): void {
+  if (owned.world !== 0) owned.engine.exports.world_free(owned.world);
+  owned.world = 0;
+}
+
+/** Frees the worlds that nobody freed and nobody can reach. */
+const forgotten =
+  typeof FinalizationRegistry === "undefined" ? undefined : new FinalizationRegistry<Owned>(release);

@@ -1,0 +1,302 @@
+// A world against a model: a map of boxes, and brute force.
+import assert from "node:assert/strict";
+import { before, test } from "node:test";
+import {
+  BroadPhase,
+  init,
+  InvalidBoxError,
+  NotInitializedError,
+  SnapshotError,
+  slotOf,
+  StaleProxyError,
+} from "sweep-and-prune/broad-phase";
+import { boxesAmong, boxesSpread, oracle, random } from "./support/boxes.js";
+
+/** @typedef {1 | 2 | 3} Dimensions */
+
+assert.throws(() => new BroadPhase({ dimensions: 2 }), NotInitializedError);
+before(() => init());
+
+const every = /** @type {const} */ ([1, 2, 3]);
+const precisions = /** @type {const} */ (["single", "double"]);
+
+/** @param {Float64Array} ids */
+function pairsOf(ids) {
+  return Array.from({ length: ids.length / 2 }, (_, i) => `${ids[2 * i]}-${ids[2 * i + 1]}`);
+}
+
+/**
+ * The pairs of a map of boxes, sorted as a world sorts them.
+ *
+ * @param {Map<number, number[]>} model
+ * @param {Dimensions} dimensions
+ */
+function modelPairs(model, dimensions) {
+  const ids = [...model.keys()].sort((a, b) => slotOf(a) - slotOf(b));
+  const rows = ids.flatMap((id) => model.get(id) ?? []);
+  return oracle(rows, dimensions).map(([a, b]) => `${ids[a]}-${ids[b]}`);
+}
+
+for (const dimensions of every) {
+  for (const precision of precisions) {
+    test(`equals the model in ${dimensions}D, ${precision} precision`, () => {
+      const next = random(30 + dimensions);
+      const world = new BroadPhase({ dimensions, precision });
+      /** @type {Map<number, number[]>} */
+      const model = new Map();
+      const row = () => boxesAmong(next, 1, dimensions).map((at) => (precision === "single" ? Math.fround(at) : at));
+      /** @type {string[]} */
+      let pairs = [];
+      for (let step = 0; step < 300; step++) {
+        const ids = [...model.keys()];
+        const some = ids.filter(() => next() < 0.2);
+        switch (Math.floor(next() * 6)) {
+          case 0: {
+            const box = row();
+            model.set(world.insert(.../** @type {[number, number]} */ (/** @type {unknown} */ (box))), box);
+            break;
+          }
+          case 1: {
+            const boxes = Array.from({ length: Math.floor(next() * 4) }, row);
+            world.insertMany(boxes.flat()).forEach((id, i) => model.set(id, boxes[i] ?? []));
+            break;
+          }
+          case 2:
+            for (const id of some.slice(0, 2)) {
+              const box = row();
+              world.set(id, .../** @type {[number, number]} */ (/** @type {unknown} */ (box)));
+              model.set(id, box);
+            }
+            break;
+          case 3: {
+            const boxes = some.map(row);
+            const into = world.buffers(some.length);
+            into.ids.set(some);
+            into.boxes.set(boxes.flat());
+            world.setMany(into.ids, into.boxes);
+            some.forEach((id, i) => model.set(id, boxes[i] ?? []));
+            break;
+          }
+          case 4:
+            if (next() < 0.5) world.removeMany(some.slice(0, 2));
+            else some.slice(0, 2).forEach((id) => world.remove(id));
+            some.slice(0, 2).forEach((id) => model.delete(id));
+            break;
+          case 5: {
+            const { begun, ended } = world.update();
+            const now = modelPairs(model, dimensions);
+            assert.deepEqual(pairsOf(begun).sort(), now.filter((pair) => !pairs.includes(pair)).sort());
+            assert.deepEqual(pairsOf(ended).sort(), pairs.filter((pair) => !now.includes(pair)).sort());
+            assert.deepEqual(pairsOf(world.pairs()), now);
+            pairs = now;
+            for (const id of some) {
+              const others = now.flatMap((pair) => pair.split("-").map(Number)).filter((_, i, all) => all[i ^ 1] === id);
+              assert.deepEqual([...world.pairsOf(id)], others.sort((a, b) => slotOf(a) - slotOf(b)));
+            }
+          }
+        }
+        assert.equal(world.size, model.size);
+        for (const id of some.filter((id) => model.has(id))) assert.deepEqual(world.box(id).map((at) => at + 0), model.get(id)?.map((at) => at + 0));
+      }
+      assert.deepEqual([...world.ids()].sort(), [...model.keys()].sort());
+      world.free();
+    });
+  }
+}
+
+test("an id goes stale, and its slot comes back under another", () => {
+  const world = new BroadPhase({ dimensions: 2 });
+  const first = world.insert(0, 0, 1, 1);
+  world.remove(first);
+  world.update();
+  const second = world.insert(0, 0, 1, 1);
+  assert.equal(slotOf(first), slotOf(second));
+  assert.notEqual(first, second);
+  assert.ok(Number.isSafeInteger(second));
+  assert.equal(world.has(first), false);
+  assert.equal(world.has(second), true);
+  const stale = [first, -1, 0.5, NaN, Infinity, 2 ** 60, second + 1, /** @type {any} */ (undefined)];
+  for (const id of stale) {
+    assert.throws(() => world.set(id, 0, 0, 1, 1), StaleProxyError);
+    assert.throws(() => world.remove(id), StaleProxyError);
+    assert.throws(() => world.box(id), StaleProxyError);
+    assert.throws(() => world.filter(id), StaleProxyError);
+    assert.throws(() => world.pairsOf(id), StaleProxyError);
+    assert.throws(() => world.setSwept(id, [0, 0, 1, 1], [0, 0, 1, 1]), StaleProxyError);
+    const many = [second, second, Number(id)];
+    assert.throws(
+      () => world.setMany(many, new Float32Array(12)),
+      (error) => error instanceof StaleProxyError && error.index === 2,
+    );
+    assert.throws(() => world.removeMany([Number(id)]), StaleProxyError);
+  }
+  assert.throws(() => world.removeMany([second, second]), StaleProxyError);
+  assert.deepEqual(world.box(second), [0, 0, 1, 1]);
+  world.free();
+});
+
+test("a refused call changes nothing", () => {
+  const world = new BroadPhase({ dimensions: 2 });
+  const id = world.insert(0, 0, 1, 1);
+  const before = world.hash();
+  assert.throws(() => world.insert(0, 0, 1), InvalidBoxError);
+  assert.throws(() => world.insert(2, 0, 1, 1), InvalidBoxError);
+  assert.throws(() => world.set(id, 0, 0, 1, NaN), InvalidBoxError);
+  assert.throws(
+    () => world.insertMany([0, 0, 1, 1, 0, 3, 1, 1]),
+    (error) => error instanceof InvalidBoxError && error.index === 1 && error.axis === 1,
+  );
+  assert.throws(() => world.insertMany([0, 0, 1]), RangeError);
+  assert.throws(() => world.setMany([id], new Float32Array(8)), RangeError);
+  assert.throws(() => world.setMany([id, id], [0, 0, 9, 9, 1, 0, 0, 0]), InvalidBoxError);
+  assert.throws(() => world.setFilter(id, { category: 2 ** 32 }), RangeError);
+  assert.throws(() => world.setFilter(id, { group: 1.5 }), RangeError);
+  assert.throws(() => world.overlapping([0, 0, 1]), RangeError);
+  assert.throws(() => world.overlapping([1, 0, 0, 1]), InvalidBoxError);
+  assert.throws(() => world.rayCast([NaN, 0], [1, 0]), RangeError);
+  assert.throws(() => world.within([0, 0], -1), RangeError);
+  assert.throws(() => world.nearest([0, Infinity]), RangeError);
+  assert.throws(() => world.nearest([0, 0], 0.5), RangeError);
+  assert.throws(() => world.buffers(-1), RangeError);
+  assert.equal(world.hash(), before);
+  assert.throws(() => new BroadPhase({ dimensions: 2, margin: -1 }), RangeError);
+  assert.throws(() => new BroadPhase({ dimensions: 2, margin: NaN }), RangeError);
+  assert.throws(() => new BroadPhase({ dimensions: 2, precision: /** @type {any} */ ("half") }), RangeError);
+  assert.throws(() => new BroadPhase({ dimensions: /** @type {any} */ (4) }), RangeError);
+  world.free();
+  world.free();
+  assert.throws(() => world.insert(0, 0, 1, 1), /^TypeError: this BroadPhase was freed/);
+});
+
+test("filters: masks, groups, static bodies", () => {
+  const world = new BroadPhase({ dimensions: 1 });
+  const [a, b] = [world.insert(0, 1), world.insert(0, 1)];
+  const pairs = () => (world.update(), world.pairs().length / 2);
+  assert.equal(pairs(), 1);
+  assert.deepEqual(world.filter(a), { category: 1, mask: 2 ** 32 - 1, group: 0, isStatic: false });
+  world.setFilter(a, { mask: ~1 });
+  assert.equal(world.filter(a).mask, 2 ** 32 - 2);
+  assert.equal(pairs(), 0);
+  world.setFilter(a, { mask: 0, group: 7 });
+  world.setFilter(b, { group: 7 });
+  assert.equal(pairs(), 1);
+  world.setFilter(a, { group: -7 });
+  world.setFilter(b, { group: -7 });
+  assert.equal(pairs(), 0);
+  world.setFilter(a, { isStatic: true });
+  world.setFilter(b, { isStatic: true });
+  assert.equal(pairs(), 0);
+  assert.equal(world.overlapping([0, 1]).length, 2);
+  assert.equal(world.overlapping([0, 1], { isStatic: true }).length, 0);
+  world.free();
+});
+
+test("a swept body meets what it would have jumped over", () => {
+  const world = new BroadPhase({ dimensions: 2 });
+  const wall = world.insert(5, -5, 5.1, 5);
+  const bullet = world.insert(0, 0, 0.1, 0.1);
+  world.update();
+  world.setSwept(bullet, [0, 0, 0.1, 0.1], [10, 0, 10.1, 0.1]);
+  assert.deepEqual([...world.update().begun], [wall, bullet]);
+  assert.deepEqual([...world.update().ended], [wall, bullet]);
+  assert.equal(world.box(bullet)[0], 10);
+  world.free();
+});
+
+test("fat boxes meet within the margin", () => {
+  const world = new BroadPhase({ dimensions: 3, margin: 0.5, report: "fat" });
+  world.insert(0, 0, 0, 1, 1, 1);
+  world.insert(1.75, 0, 0, 2, 1, 1);
+  assert.equal(world.update().begun.length, 2);
+  const exact = new BroadPhase({ dimensions: 3, margin: 0.5 });
+  exact.insert(0, 0, 0, 1, 1, 1);
+  exact.insert(1.75, 0, 0, 2, 1, 1);
+  assert.equal(exact.update().begun.length, 0);
+});
+
+test("queries equal brute force", () => {
+  for (const dimensions of every) {
+    const next = random(40 + dimensions);
+    const rows = Float32Array.from(boxesSpread(next, 400, dimensions));
+    const world = new BroadPhase({ dimensions });
+    const ids = world.insertMany(rows).slice();
+    const width = 2 * dimensions;
+    const at = (/** @type {number} */ i) => Array.from(rows.subarray(i * width, (i + 1) * width));
+    /** @param {number[]} point @param {number[]} box */
+    const distance = (point, box) =>
+      Math.hypot(...point.map((x, axis) => Math.max(0, (box[axis] ?? 0) - x, x - (box[axis + dimensions] ?? 0))));
+    for (let round = 0; round < 30; round++) {
+      const point = Array.from({ length: dimensions }, () => Math.fround(next()));
+      const area = [...point, ...point.map((x) => Math.fround(x + 0.1))];
+      const expected = [...ids].filter((_, i) => oracle([...at(i), ...area], dimensions).length > 0);
+      assert.deepEqual([...world.overlapping(area)], expected);
+      const holding = [...ids].filter((_, i) => distance(point, at(i)) === 0);
+      assert.deepEqual([...world.containing(point)], holding);
+      const near = [...ids].filter((_, i) => distance(point, at(i)) <= 0.125);
+      assert.deepEqual([...world.within(point, 0.125)], near);
+      const nearest = world.nearest(point, 5);
+      const distances = [...ids].map((_, i) => distance(point, at(i))).sort((a, b) => a - b);
+      nearest.forEach((neighbour, i) => assert.ok(Math.abs(neighbour.distance - (distances[i] ?? NaN)) < 1e-9));
+      assert.equal(nearest.length, 5);
+      const direction = [1, ...point.slice(1).map(() => 0)];
+      const hit = world.rayCast(point, direction, 2);
+      const all = world.rayCastAll(point, direction, 2);
+      assert.deepEqual(all[0], hit);
+      const end = [...point];
+      end[0] = 2;
+      const way = [...point, ...point];
+      way[dimensions] = 3;
+      assert.deepEqual(all.map((hit) => hit.id).sort(), [...world.overlapping(way)].sort());
+      assert.deepEqual(world.boxCast([...point, ...point], direction, 2), hit);
+      assert.deepEqual(world.boxCastAll([...point, ...point], direction, 2), all);
+    }
+    world.free();
+  }
+});
+
+test("a restored world goes on as the first would have", () => {
+  for (const precision of precisions) {
+    const next = random(50);
+    const world = new BroadPhase({ dimensions: 2, precision });
+    const ids = world.insertMany(boxesSpread(next, 200, 2)).slice();
+    world.update();
+    world.removeMany(ids.subarray(0, 20));
+    world.set(ids[30] ?? 0, 0, 0, 1, 1);
+    const bytes = world.snapshot();
+    const copy = BroadPhase.fromSnapshot(bytes, { dimensions: 2 });
+    assert.equal(copy.precision, precision);
+    assert.equal(copy.hash(), world.hash());
+    assert.deepEqual(copy.snapshot(), bytes);
+    const changes = [world, copy].map((each) => {
+      each.set(ids[40] ?? 0, 0.25, 0.25, 0.75, 0.75);
+      const { begun, ended } = each.update();
+      return [begun.slice(), ended.slice(), each.insert(0, 0, 1, 1)];
+    });
+    assert.ok(/** @type {Float64Array} */ (changes[0]?.[0]).length > 0);
+    assert.deepEqual(changes[0], changes[1]);
+    assert.equal(copy.hash(), world.hash());
+    assert.throws(() => copy.set(ids[0] ?? 0, 0, 0, 1, 1), StaleProxyError);
+
+    const changed = bytes.slice();
+    changed[50] = (changed[50] ?? 0) ^ 1;
+    const bad = [new Uint8Array(0), bytes.subarray(0, 30), bytes.subarray(1), changed];
+    for (const each of bad) assert.throws(() => BroadPhase.fromSnapshot(each, { dimensions: 2 }), SnapshotError);
+    if (precision === "single") assert.throws(() => BroadPhase.fromSnapshot(bytes, { dimensions: 3 }), /other dimensions/);
+    assert.throws(() => BroadPhase.fromSnapshot(/** @type {any} */ ([...bytes]), { dimensions: 2 }), TypeError);
+  }
+});
+
+test("a steady state makes no new view", () => {
+  const world = new BroadPhase({ dimensions: 2 });
+  const id = world.insert(0, 0, 1, 1);
+  world.insert(0, 0, 1, 1);
+  world.update();
+  const { begun } = world.update();
+  world.set(id, 0, 0, 1, 2);
+  assert.equal(world.update().begun, begun);
+  const { ids, boxes } = world.buffers(1);
+  ids[0] = id;
+  world.setMany(ids, boxes);
+  assert.equal(world.buffers(1).boxes, boxes);
+  world.free();
+});
