@@ -20,10 +20,20 @@ pub(super) struct Record<const D: usize, T> {
     pub marks: u32,
 }
 
-/// Boxes to be found pairs among: the caller's, or those of a column that is cut again.
+/// Boxes to find pairs of: the caller's, or those of a bin that is cut again.
 pub(super) trait Source<const D: usize, T>: Copy + Sync {
     fn len(&self) -> usize;
-    fn record(&self, i: usize) -> Record<D, T>;
+    fn aabb(&self, i: usize) -> &Aabb<D, T>;
+    fn id(&self, i: usize) -> u32;
+    fn marks(&self, i: usize) -> u32;
+
+    #[inline(always)]
+    fn record(&self, i: usize) -> Record<D, T>
+    where
+        T: Copy,
+    {
+        Record { aabb: *self.aabb(i), id: self.id(i), marks: self.marks(i) }
+    }
 }
 
 impl<const D: usize, T: Scalar> Source<D, T> for &[Aabb<D, T>] {
@@ -33,8 +43,18 @@ impl<const D: usize, T: Scalar> Source<D, T> for &[Aabb<D, T>] {
     }
 
     #[inline(always)]
-    fn record(&self, i: usize) -> Record<D, T> {
-        Record { aabb: self[i], id: i as u32, marks: 0 }
+    fn aabb(&self, i: usize) -> &Aabb<D, T> {
+        &self[i]
+    }
+
+    #[inline(always)]
+    fn id(&self, i: usize) -> u32 {
+        i as u32
+    }
+
+    #[inline(always)]
+    fn marks(&self, _: usize) -> u32 {
+        0
     }
 }
 
@@ -45,8 +65,18 @@ impl<const D: usize, T: Scalar> Source<D, T> for &[Record<D, T>] {
     }
 
     #[inline(always)]
-    fn record(&self, i: usize) -> Record<D, T> {
-        self[i]
+    fn aabb(&self, i: usize) -> &Aabb<D, T> {
+        &self[i].aabb
+    }
+
+    #[inline(always)]
+    fn id(&self, i: usize) -> u32 {
+        self[i].id
+    }
+
+    #[inline(always)]
+    fn marks(&self, i: usize) -> u32 {
+        self[i].marks
     }
 }
 
@@ -81,11 +111,11 @@ impl<T: Scalar> Cells<T> {
 
     /// The cells that a box touches, from and to. A NaN counts as the first.
     #[inline(always)]
-    fn of<const D: usize>(&self, aabb: &Aabb<D, T>) -> (usize, usize) {
+    fn of<const D: usize>(&self, aabb: &Aabb<D, T>) -> (u32, u32) {
         if self.count == 1 {
             return (0, 0);
         }
-        let cell = |at: T| at.cell(self.origin, self.scale, self.last) as usize;
+        let cell = |at: T| at.cell(self.origin, self.scale, self.last);
         (cell(aabb.min[self.axis]), cell(aabb.max[self.axis]))
     }
 }
@@ -126,27 +156,46 @@ impl<T: Scalar> Grid<T> {
         self.cells.iter().map(|cells| cells.count as usize).product()
     }
 
-    /// Calls `each(bin, marks)` for every bin that a box touches, in ascending order.
+    /// The mark of each axis, in the place where [`Copied`] holds it.
+    fn marks(&self) -> [u32; 3] {
+        self.cells.map(|cells| 1 << BIN_BITS << cells.axis)
+    }
+
+    /// The bin of a box's lower corner, and how many more cells the box touches on each axis.
     #[inline(always)]
-    fn for_each_bin<const D: usize>(&self, aabb: &Aabb<D, T>, mut each: impl FnMut(usize, u32)) {
+    fn place<const D: usize>(&self, aabb: &Aabb<D, T>) -> (u32, [u32; 3]) {
         let [x, y, z] = &self.cells;
         // Which of the axes exist is known to the compiler.
         let (x0, x1) = if D > 2 { x.of(aabb) } else { (0, 0) };
         let (y0, y1) = if D > 1 { y.of(aabb) } else { (0, 0) };
         let (z0, z1) = z.of(aabb);
-        let bin = |i: usize, j: usize, k: usize| (i * y.count as usize + j) * z.count as usize + k;
-        if x0 == x1 && y0 == y1 && z0 == z1 {
-            return each(bin(x0, y0, z0), 0);
-        }
-        for i in x0..=x1 {
-            let mark = u32::from(i > x0) << x.axis;
-            for j in y0..=y1 {
-                let mark = mark | u32::from(j > y0) << y.axis;
-                for k in z0..=z1 {
-                    each(bin(i, j, k), mark | u32::from(k > z0) << z.axis);
-                }
-            }
-        }
+        // An inverted box would touch less than none; it will be refused.
+        let more = [x1.saturating_sub(x0), y1.saturating_sub(y0), z1.saturating_sub(z0)];
+        ((x0 * y.count + y0) * z.count + z0, more)
+    }
+}
+
+/// One copy of a box to a bin.
+#[derive(Clone, Copy, Debug, Default)]
+struct Copied {
+    /// The bin, and above it the marks that the copy adds.
+    bin: u32,
+    /// The box's position in the source.
+    of: u32,
+}
+
+/// Bits of [`Copied::bin`] that are the bin.
+const BIN_BITS: u32 = 29;
+
+impl Copied {
+    #[inline(always)]
+    fn bin(self) -> usize {
+        (self.bin & ((1 << BIN_BITS) - 1)) as usize
+    }
+
+    #[inline(always)]
+    fn marks(self) -> u32 {
+        self.bin >> BIN_BITS
     }
 }
 
@@ -154,59 +203,132 @@ impl<T: Scalar> Grid<T> {
 #[derive(Debug)]
 pub(super) struct Bins<const D: usize, T> {
     records: Vec<Record<D, T>>,
+    /// Box by box, what goes where; the rest of the array is scratch.
+    copies: Vec<Copied>,
+    len: usize,
+    bins: usize,
     /// Where each bin ends.
     ends: Vec<u32>,
 }
 
 impl<const D: usize, T: Scalar> Bins<D, T> {
     pub const fn new() -> Self {
-        Self { records: Vec::new(), ends: Vec::new() }
+        Self { records: Vec::new(), copies: Vec::new(), len: 0, bins: 0, ends: Vec::new() }
     }
 
-    /// Counts the records that these boxes of the source become, bin by bin. Returns their sum, or
-    /// none if a box is inverted or NaN.
-    pub fn count<S: Source<D, T>>(
+    /// Lists the copies that these boxes of the source become, and returns how many.
+    ///
+    /// # Errors
+    /// [`Refusal`], of more than `limit` copies as soon as there are.
+    pub fn list<S: Source<D, T>>(
         &mut self,
         source: S,
         boxes: Range<usize>,
         grid: &Grid<T>,
-    ) -> Option<u64> {
-        self.ends.clear();
-        self.ends.resize(grid.len(), 0);
+        limit: u64,
+    ) -> Result<u64, Refusal> {
+        self.bins = grid.len();
+        let beside = grid.cells[2].count;
+        let above = grid.cells[1].count * beside;
+        let [above_mark, beside_mark, _] = grid.marks();
         let mut valid = true;
+        let mut len = 0;
         for i in boxes {
-            let aabb = source.record(i).aabb;
+            if len + 4 > self.copies.len() {
+                self.copies.resize(2 * self.copies.len() + 1024, Copied::default());
+            }
+            let aabb = source.aabb(i);
             valid &= (0..D).fold(true, |valid, axis| valid & (aabb.min[axis] <= aabb.max[axis]));
-            grid.for_each_bin(&aabb, |bin, _| self.ends[bin] += 1);
+            let (bin, more) = grid.place(aabb);
+            let of = i as u32;
+            if more[0] <= 1 && more[1] <= 1 && more[2] == 0 {
+                // Nearly always. How many copies there are cannot be foretold, and a branch would
+                // cost more than writing all four; those that are none are overwritten by the next.
+                let to = &mut self.copies[len..len + 4];
+                let row = 1 + more[1] as usize;
+                to[0] = Copied { bin, of };
+                if D > 1 {
+                    to[1] = Copied { bin: bin + beside + beside_mark, of };
+                }
+                if D > 2 {
+                    to[row] = Copied { bin: bin + above + above_mark, of };
+                    to[row + 1] =
+                        Copied { bin: bin + above + beside + above_mark + beside_mark, of };
+                }
+                len += row << more[0];
+            } else {
+                len = self.list_many(len, of, bin, more, grid, limit)?;
+            }
         }
-        valid.then(|| self.ends.iter().map(|&count| u64::from(count)).sum())
+        self.len = len;
+        match (valid, len as u64 <= limit) {
+            (true, true) => Ok(len as u64),
+            (true, false) => Err(Refusal::TooMany),
+            (false, _) => Err(Refusal::Invalid),
+        }
     }
 
-    /// Copies the boxes that were counted to their bins. There must be less than 2^32 records.
-    pub fn scatter<S: Source<D, T>>(&mut self, source: S, boxes: Range<usize>, grid: &Grid<T>) {
+    /// Lists the copies of a box that touches any number of bins, from position `len` on. Returns
+    /// the position behind them.
+    #[cold]
+    fn list_many(
+        &mut self,
+        mut len: usize,
+        of: u32,
+        bin: u32,
+        more: [u32; 3],
+        grid: &Grid<T>,
+        limit: u64,
+    ) -> Result<usize, Refusal> {
+        let [_, y, z] = &grid.cells;
+        let marks = grid.marks();
+        let mark = |axis: usize, at: u32| if at > 0 { marks[axis] } else { 0 };
+        for i in 0..=more[0] {
+            for j in 0..=more[1] {
+                if len as u64 > limit {
+                    return Err(Refusal::TooMany);
+                }
+                let end = len + more[2] as usize + 1;
+                if end > self.copies.len() {
+                    self.copies.resize(2 * end, Copied::default());
+                }
+                let first = bin + (i * y.count + j) * z.count;
+                for (k, to) in (0..).zip(&mut self.copies[len..end]) {
+                    *to = Copied { bin: first + k + mark(0, i) + mark(1, j) + mark(2, k), of };
+                }
+                len = end;
+            }
+        }
+        Ok(len)
+    }
+
+    /// Copies the boxes to their bins as listed. There must be less than 2^32 copies.
+    pub fn scatter<S: Source<D, T>>(&mut self, source: S) {
+        self.ends.clear();
+        self.ends.resize(self.bins, 0);
+        for copy in &self.copies[..self.len] {
+            self.ends[copy.bin()] += 1;
+        }
         // From counts to where each bin begins; the copying moves that to where it ends.
         let mut total = 0;
         for end in &mut self.ends {
             total += core::mem::replace(end, total);
         }
-        if self.records.len() < total as usize {
+        if self.records.len() < self.len {
             let aabb = Aabb::new([T::ZERO; D], [T::ZERO; D]);
-            let size = total as usize + total as usize / 16;
-            self.records.resize(size, Record { aabb, id: 0, marks: 0 });
+            self.records.resize(self.len + self.len / 16, Record { aabb, id: 0, marks: 0 });
         }
-        for i in boxes {
-            let record = source.record(i);
-            grid.for_each_bin(&record.aabb, |bin, marks| {
-                let at = self.ends[bin];
-                self.ends[bin] = at + 1;
-                self.records[at as usize] = Record { marks: record.marks | marks, ..record };
-            });
+        for copy in &self.copies[..self.len] {
+            let record = source.record(copy.of as usize);
+            let end = &mut self.ends[copy.bin()];
+            self.records[*end as usize] = Record { marks: record.marks | copy.marks(), ..record };
+            *end += 1;
         }
     }
 
     /// How many records there are.
     pub fn len(&self) -> usize {
-        self.ends.last().map_or(0, |&end| end as usize)
+        self.len
     }
 
     /// The records of a bin.

@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 
 use super::bins::Source;
 use super::kernel::Column;
-use crate::Scalar;
+use crate::{Aabb, Scalar};
 
 /// Up to this many keys insertion sort has no need of intervals.
 const FEW: usize = 24;
@@ -21,13 +21,20 @@ const CROWD: u32 = 16;
 pub(super) struct Sorter<T: Scalar> {
     keys: Vec<T::Key>,
     sorted: Vec<T::Key>,
+    lefts: Vec<T>,
     intervals: Vec<u32>,
     ends: Vec<u32>,
 }
 
 impl<T: Scalar> Sorter<T> {
     pub const fn new() -> Self {
-        Self { keys: Vec::new(), sorted: Vec::new(), intervals: Vec::new(), ends: Vec::new() }
+        Self {
+            keys: Vec::new(),
+            sorted: Vec::new(),
+            lefts: Vec::new(),
+            intervals: Vec::new(),
+            ends: Vec::new(),
+        }
     }
 
     /// Fills `column` with the boxes of `source` in the order of left edge on `axis`, then place
@@ -51,19 +58,20 @@ impl<T: Scalar> Sorter<T> {
     pub fn unordered<const D: usize, S: Source<D, T>>(source: S, column: &mut Column<T>) {
         column.reset(source.len(), D);
         for at in 0..source.len() {
-            let record = source.record(at);
+            let Aabb { min, max } = source.aabb(at);
             column.left[at] = T::ZERO;
             column.right[at] = T::ZERO;
             for axis in 0..D {
-                column.min[axis][at] = record.aabb.min[axis];
-                column.max[axis][at] = record.aabb.max[axis];
+                column.min[axis][at] = min[axis];
+                column.max[axis][at] = max[axis];
             }
-            column.id[at] = record.id;
-            column.marks[at] = record.marks;
+            column.id[at] = source.id(at);
+            column.marks[at] = source.marks(at);
         }
     }
 
     /// Leaves the sorted keys of the boxes in `sorted`.
+    #[inline(never)]
     fn sort<const D: usize, S: Source<D, T>>(&mut self, source: S, axis: usize) {
         let len = source.len();
         grow(&mut self.keys, len);
@@ -74,26 +82,30 @@ impl<T: Scalar> Sorter<T> {
             }
             return insertion(&mut self.sorted[..len]);
         }
-        let (mut low, mut high) = (T::INFINITY, T::NEG_INFINITY);
-        for i in 0..len {
-            let left = edge(source, i, axis);
-            low = if left < low { left } else { low };
-            high = if left > high { left } else { high };
+        // The least and the greatest by their keys: comparing whole numbers takes less time.
+        let (mut least, mut greatest) =
+            (edge(source, 0, axis).key(0), edge(source, 0, axis).key(0));
+        grow(&mut self.lefts, len);
+        for (i, (key, left)) in self.keys.iter_mut().zip(&mut self.lefts[..len]).enumerate() {
+            *left = edge(source, i, axis);
+            *key = left.key(i as u32);
+            least = least.min(*key);
+            greatest = greatest.max(*key);
         }
-        let low = low.to_f64().clamp(-T::LIMIT, T::LIMIT);
-        let high = high.to_f64().clamp(-T::LIMIT, T::LIMIT);
+        let limited =
+            |key| edge(source, T::place(key) as usize, axis).to_f64().clamp(-T::LIMIT, T::LIMIT);
+        let (low, high) = (limited(least), limited(greatest));
         let count = len.next_power_of_two().min(1 << 16);
         let last = T::from_f64((count - 1) as f64);
         let (origin, scale) = (T::from_f64(low), T::from_f64((count - 1) as f64 / (high - low)));
 
         grow(&mut self.intervals, len);
+        for (interval, left) in self.intervals.iter_mut().zip(&self.lefts[..len]) {
+            *interval = left.cell(origin, scale, last);
+        }
         self.ends.clear();
         self.ends.resize(count, 0);
-        for i in 0..len {
-            let left = edge(source, i, axis);
-            let interval = left.cell(origin, scale, last);
-            self.keys[i] = left.key(i as u32);
-            self.intervals[i] = interval;
+        for &interval in &self.intervals[..len] {
             self.ends[interval as usize] += 1;
         }
         let (mut total, mut most) = (0, 0);
@@ -121,7 +133,7 @@ impl<T: Scalar> Sorter<T> {
 
 #[inline(always)]
 fn edge<const D: usize, T: Scalar, S: Source<D, T>>(source: S, i: usize, axis: usize) -> T {
-    source.record(i).aabb.min[axis]
+    source.aabb(i).min[axis]
 }
 
 fn grow<V: Copy + Default>(array: &mut Vec<V>, size: usize) {
@@ -130,6 +142,7 @@ fn grow<V: Copy + Default>(array: &mut Vec<V>, size: usize) {
     }
 }
 
+#[inline(never)]
 /// Insertion sort: linear where each key is near its place.
 fn insertion<K: Copy + Ord>(keys: &mut [K]) {
     for i in 1..keys.len() {
@@ -152,15 +165,15 @@ fn put<const D: usize, T: Scalar, S: Source<D, T>>(
     i: usize,
     axis: usize,
 ) {
-    let record = source.record(i);
-    column.left[at] = record.aabb.min[axis];
-    column.right[at] = record.aabb.max[axis];
+    let Aabb { min, max } = source.aabb(i);
+    column.left[at] = min[axis];
+    column.right[at] = max[axis];
     let mut other = axis;
     for k in 0..D - 1 {
         other = if other + 1 == D { 0 } else { other + 1 };
-        column.min[k][at] = record.aabb.min[other];
-        column.max[k][at] = record.aabb.max[other];
+        column.min[k][at] = min[other];
+        column.max[k][at] = max[other];
     }
-    column.id[at] = record.id;
-    column.marks[at] = record.marks;
+    column.id[at] = source.id(i);
+    column.marks[at] = source.marks(i);
 }

@@ -17,7 +17,13 @@ const COLUMN: f64 = 250.0;
 /// Records in a slab: they, their keys and their column fit the second cache.
 const SLAB: f64 = 4096.0;
 /// Most cells on an axis.
-const MOST: f64 = 1e6;
+const MOST: f64 = 65535.0;
+/// Most columns, nearly: with a last step and with slabs still less than 2^29.
+const MOST_COLUMNS: f64 = (1 << 24) as f64;
+/// Cells are halved so often, less one, to see how boxes cluster.
+const LEVELS: usize = 11;
+/// A chance that a sample can tell from none.
+const SURE: f64 = 1.0 / 2048.0;
 /// Most boxes in a sample.
 const SAMPLE: usize = 256;
 
@@ -29,6 +35,13 @@ pub(super) enum Plan<T> {
     /// Part the boxes of one set (0 or 1) by their size on an axis, and take the parts by
     /// themselves.
     Part { set: usize, axis: usize, size: f64 },
+}
+
+impl<T: Scalar> Plan<T> {
+    /// Whether there is anything to it but to sweep all at once.
+    pub fn divides(&self) -> bool {
+        !matches!(self, Plan::Cut(grid) if grid.len() == 1)
+    }
 }
 
 /// A plan and the nanoseconds that it is expected to take.
@@ -115,7 +128,7 @@ impl<const D: usize> Sample<D> {
             random = random.wrapping_mul(0x5851_F42D_4C95_7F2D).wrapping_add(1);
             let (from, to) = (i * count / len, (i + 1) * count / len);
             let at = from + ((random >> 33) as usize) % (to - from);
-            let aabb = source.record(at).aabb;
+            let aabb = source.aabb(at);
             for axis in 0..D {
                 sample.min[axis][i] = aabb.min[axis].to_f64().clamp(-T::LIMIT, T::LIMIT);
                 sample.max[axis][i] = aabb.max[axis].to_f64().clamp(-T::LIMIT, T::LIMIT);
@@ -150,6 +163,8 @@ struct Field<const D: usize> {
     /// From where to where, but for a few outliers.
     low: [f64; D],
     high: [f64; D],
+    /// The chance that two boxes begin in the same of 1, 2, 4 .. equal cells.
+    together: [[f64; LEVELS]; D],
     /// The extent over which evenly spread boxes would be as near to each other as these are:
     /// less than `high - low` if they are clustered.
     spread: [f64; D],
@@ -157,7 +172,8 @@ struct Field<const D: usize> {
 
 impl<const D: usize> Field<D> {
     fn new(samples: &[&Sample<D>]) -> Self {
-        let mut field = Field { low: [0.0; D], high: [0.0; D], spread: [0.0; D] };
+        let mut field =
+            Field { low: [0.0; D], high: [0.0; D], together: [[1.0; LEVELS]; D], spread: [0.0; D] };
         for axis in 0..D {
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
             for sample in samples {
@@ -170,9 +186,12 @@ impl<const D: usize> Field<D> {
             }
             (field.low[axis], field.high[axis]) = (low, high);
             let extent = high - low;
-            let reach = extent / 32.0;
-            let near = nearby(samples, axis, reach);
-            field.spread[axis] = (2.0 * reach / near).min(extent);
+            field.together[axis] = together(samples, axis, low, extent);
+            // As fine as the sample can tell.
+            let level = (0..LEVELS).rev().find(|&level| field.together[axis][level] > SURE);
+            let level = level.unwrap_or(0);
+            let cells = (1u32 << level) as f64;
+            field.spread[axis] = (extent / cells / field.together[axis][level]).min(extent);
         }
         field
     }
@@ -192,7 +211,7 @@ impl<const D: usize> Field<D> {
         for sweep in 0..D {
             let mut cut = Cut { sweep, columns: [1.0; D] };
             let mut cost = self.cost(shapes, &cut);
-            loop {
+            while cut.columns.iter().product::<f64>() < MOST_COLUMNS {
                 let mut next = (cut, cost);
                 for axis in (0..D).filter(|&axis| axis != sweep && self.extent(axis) > 0.0) {
                     let mut finer = cut;
@@ -222,14 +241,21 @@ impl<const D: usize> Field<D> {
         best
     }
 
+    /// The chance that two boxes begin in the same of so many columns.
+    fn together(&self, axis: usize, columns: f64) -> f64 {
+        // Between the powers of two, and beyond the last, as if evenly spread.
+        let level = ((columns as u32).ilog2() as usize).min(LEVELS - 1);
+        let beyond = columns / f64::from(1u32 << level);
+        let finer = self.together[axis][(level + 1).min(LEVELS - 1)];
+        (self.together[axis][level] / beyond).max(finer)
+    }
+
     fn cost(&self, shapes: &[Shape<D>], cut: &Cut<D>) -> f64 {
         let columns: f64 = cut.columns.iter().product();
         // The chance that two boxes are in the same column.
         let mut together = 1.0;
-        for axis in 0..D {
-            if cut.columns[axis] > 1.0 {
-                together *= (self.extent(axis) / cut.columns[axis] / self.spread[axis]).min(1.0);
-            }
+        for axis in (0..D).filter(|&axis| cut.columns[axis] > 1.0) {
+            together *= self.together(axis, cut.columns[axis]);
         }
         let mut records = 0.0;
         let mut candidates = together;
@@ -257,25 +283,41 @@ fn whole(value: f64) -> f64 {
     value as u32 as f64
 }
 
-/// The chance that two boxes begin within `reach` of each other.
-fn nearby<const D: usize>(samples: &[&Sample<D>], axis: usize, reach: f64) -> f64 {
-    let first = &samples[0].sorted[axis][..samples[0].len];
-    let second = samples[samples.len() - 1];
-    let second = &second.sorted[axis][..second.len];
-    let (mut from, mut to, mut near) = (0, 0, 0);
-    for &coordinate in first {
-        while from < second.len() && second[from] < coordinate - reach {
-            from += 1;
+/// The chance that two boxes begin in the same of 1, 2, 4 .. equal cells, from the finest up.
+fn together<const D: usize>(
+    samples: &[&Sample<D>],
+    axis: usize,
+    low: f64,
+    extent: f64,
+) -> [f64; LEVELS] {
+    const FINEST: usize = 1 << (LEVELS - 1);
+    let mut counts = [[0u32; FINEST]; 2];
+    let scale = if extent > 0.0 { FINEST as f64 / extent } else { 0.0 };
+    for (counts, sample) in counts.iter_mut().zip(samples) {
+        for at in &sample.min[axis][..sample.len] {
+            let cell = ((at - low) * scale) as usize; // below and beyond: the outermost
+            counts[cell.min(FINEST - 1)] += 1;
         }
-        while to < second.len() && second[to] <= coordinate + reach {
-            to += 1;
-        }
-        near += to - from;
     }
-    // A box is near itself.
-    let own = if samples.len() == 1 { first.len() } else { 0 };
-    let of = first.len() * second.len() - own;
-    ((near - own) as f64).max(0.5) / (of as f64).max(1.0)
+    let mut chances = [1.0; LEVELS];
+    let [first, second] = &mut counts;
+    let len = samples[0].len as f64;
+    for level in (0..LEVELS).rev() {
+        let cells = 1 << level;
+        let pairs: u32 = if samples.len() == 1 {
+            first[..cells].iter().map(|&count| count * count.saturating_sub(1)).sum()
+        } else {
+            first[..cells].iter().zip(&second[..cells]).map(|(a, b)| a * b).sum()
+        };
+        let all = if samples.len() == 1 { len * (len - 1.0) } else { len * samples[1].len as f64 };
+        chances[level] = if all > 0.0 { f64::from(pairs) / all } else { 1.0 };
+        for counts in [&mut *first, &mut *second].into_iter().take(samples.len()) {
+            for cell in 0..cells / 2 {
+                counts[cell] = counts[2 * cell] + counts[2 * cell + 1];
+            }
+        }
+    }
+    chances
 }
 
 /// How many boxes, and how large on the average.

@@ -12,7 +12,7 @@ use super::plan::{CANDIDATE, Plan, plan};
 use super::sink::Sink;
 use super::sweep::{Sweep, candidates};
 use super::watch::Watch;
-use crate::Scalar;
+use crate::{Aabb, Scalar};
 
 /// Up to this many boxes each is tested against each.
 pub(super) const FEW: usize = 64;
@@ -24,6 +24,9 @@ const DEPTH: u32 = 12;
 const SMALL: usize = 512;
 /// nor is one with fewer candidates a box.
 const CROWDED: usize = 96;
+
+/// One with more is planned anew before it is ordered: that many were not expected.
+const LARGE: usize = 16384;
 
 /// Copies are held to this many records a box.
 const COPIES: u64 = 4;
@@ -145,12 +148,8 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         }
         let mut bins = self.bins.pop().unwrap_or([Bins::new(), Bins::new()]);
         let filled = sets.iter().zip(&mut bins).try_for_each(|(&set, bins)| {
-            let all = 0..set.len();
-            let total = bins.count(set, all.clone(), grid).ok_or(Refusal::Invalid)?;
-            if total > limit(set.len()) {
-                return Err(Refusal::TooMany);
-            }
-            bins.scatter(set, all, grid);
+            bins.list(set, 0..set.len(), grid, limit(set.len()))?;
+            bins.scatter(set);
             Ok(())
         });
         let result = match filled {
@@ -178,7 +177,7 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         for (axis, width) in grid.widths().filter(|_| task.depth < DEPTH) {
             for (set, source) in sets.iter().enumerate() {
                 let size = WIDE * width;
-                let wide = |i| extent(&source.record(i), axis) > size;
+                let wide = |i| extent(source.aabb(i), axis) > size;
                 if (0..source.len()).any(wide) && !(0..source.len()).all(wide) {
                     return self.part(sets, set, axis, size, task, sink);
                 }
@@ -230,10 +229,17 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         if sets.iter().any(|set| set.is_empty()) {
             return Ok(());
         }
+        let boxes: usize = sets.iter().map(|set| set.len()).sum();
+        let again = Task { depth: task.depth + 1, share: 0.0, ..task };
+        if boxes >= LARGE && task.depth < DEPTH {
+            let planned = plan(sets, true);
+            if planned.plan.divides() {
+                return self.follow(planned.plan, sets, again, sink);
+            }
+        }
         for (&set, column) in sets.iter().zip(&mut self.columns) {
             self.sorter.order(set, axis, column);
         }
-        let boxes: usize = sets.iter().map(|set| set.len()).sum();
         if boxes >= SMALL && task.depth < DEPTH {
             let columns = &self.columns[..sets.len()];
             // A few probes tell that all is well; more, before anything is done about it.
@@ -242,7 +248,7 @@ impl<const D: usize, T: Scalar> Search<D, T> {
                 if candidates > CROWDED * boxes {
                     let planned = plan(sets, true);
                     if planned.cost < 0.6 * CANDIDATE * candidates as f64 {
-                        return self.follow(planned.plan, sets, task.part(0.0), sink);
+                        return self.follow(planned.plan, sets, again, sink);
                     }
                 }
             }
@@ -266,7 +272,7 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         for i in 0..sets[set].len() {
             let record = sets[set].record(i);
             valid &= record.aabb.is_valid();
-            parts[usize::from(extent(&record, axis) > size)].push(record);
+            parts[usize::from(extent(&record.aabb, axis) > size)].push(record);
         }
         let [small, large, other] = &mut parts;
         if sets.len() == 2 {
@@ -317,6 +323,6 @@ pub(super) fn limit(boxes: usize) -> u64 {
 }
 
 /// The size of a box on an axis; a NaN if it lies at infinity.
-fn extent<const D: usize, T: Scalar>(record: &Record<D, T>, axis: usize) -> f64 {
-    record.aabb.max[axis].to_f64() - record.aabb.min[axis].to_f64()
+fn extent<const D: usize, T: Scalar>(aabb: &Aabb<D, T>, axis: usize) -> f64 {
+    aabb.max[axis].to_f64() - aabb.min[axis].to_f64()
 }

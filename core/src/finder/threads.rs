@@ -99,18 +99,19 @@ fn fill<const D: usize, T: Scalar, S: Source<D, T>>(
     let threads = pieces.len();
     let stretch = |set: &S, at: usize| set.len() * at / threads..set.len() * (at + 1) / threads;
     for (at, set) in sets.iter().enumerate() {
-        let total: Option<u64> = pieces
+        let limit = limit(set.len());
+        let total: Result<u64, Refusal> = pieces
             .par_iter_mut()
             .enumerate()
-            .map(|(thread, bins)| bins[at].count(*set, stretch(set, thread), grid))
+            .map(|(thread, bins)| bins[at].list(*set, stretch(set, thread), grid, limit))
             .sum();
-        if total.ok_or(Refusal::Invalid)? > limit(set.len()) {
+        if total? > limit {
             return Err(Refusal::TooMany);
         }
     }
-    pieces.par_iter_mut().enumerate().for_each(|(thread, bins)| {
+    pieces.par_iter_mut().for_each(|bins| {
         for (set, bins) in sets.iter().zip(bins) {
-            bins.scatter(*set, stretch(set, thread), grid);
+            bins.scatter(*set);
         }
     });
     Ok(())

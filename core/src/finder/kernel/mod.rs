@@ -43,15 +43,15 @@ pub enum Instructions {
     Simd128,
 }
 
-/// Whether the processor has an instruction set: asked at run time with `std`, known from the
-/// build without.
+/// Whether the processor has all of some instruction sets: asked at run time with `std`, known
+/// from the build without.
 #[cfg(target_arch = "x86_64")]
 macro_rules! has {
-    ($feature:tt) => {{
+    ($($feature:tt),+) => {{
         #[cfg(feature = "std")]
-        let has = std::arch::is_x86_feature_detected!($feature);
+        let has = $(std::arch::is_x86_feature_detected!($feature))&&+;
         #[cfg(not(feature = "std"))]
-        let has = cfg!(target_feature = $feature);
+        let has = cfg!(all($(target_feature = $feature),+));
         has
     }};
 }
@@ -73,9 +73,9 @@ impl Kernel {
             #[cfg(target_arch = "x86_64")]
             Some(Kernel(Instructions::Sse2)),
             #[cfg(target_arch = "x86_64")]
-            has!("avx2").then_some(Kernel(Instructions::Avx2)),
+            has!("avx2", "bmi1", "popcnt").then_some(Kernel(Instructions::Avx2)),
             #[cfg(target_arch = "x86_64")]
-            has!("avx512f").then_some(Kernel(Instructions::Avx512)),
+            has!("avx512f", "bmi1", "popcnt").then_some(Kernel(Instructions::Avx512)),
             #[cfg(target_arch = "aarch64")]
             Some(Kernel(Instructions::Neon)),
             #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
@@ -252,14 +252,14 @@ macro_rules! coordinate {
                 avx2,
                 $scalar,
                 x86::Avx2<core::arch::x86_64::$x256>,
-                "avx2"
+                "avx2,bmi1,popcnt"
             );
             shell!(
                 #[cfg(target_arch = "x86_64")]
                 avx512,
                 $scalar,
                 x86::Avx512<core::arch::x86_64::$x512>,
-                "avx512f"
+                "avx512f,bmi1,popcnt"
             );
             shell!(
                 #[cfg(target_arch = "aarch64")]
