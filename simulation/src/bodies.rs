@@ -15,16 +15,21 @@ pub struct Bodies<const D: usize> {
     /// Half a substep ahead of the positions, as leapfrog keeps them.
     pub velocities: Vec<[f32; D]>,
     pub radii: Vec<f32>,
+    pub masses: Vec<f32>,
     pub inverse_masses: Vec<f32>,
+    total_mass: f64,
 }
 
 impl<const D: usize> Bodies<D> {
     pub fn new(balls: &[Ball<D>]) -> Self {
+        let masses: Vec<f32> = balls.iter().map(|ball| mass::<D>(ball.radius)).collect();
         Self {
             positions: balls.iter().map(|ball| ball.centre).collect(),
             velocities: balls.iter().map(|ball| ball.velocity).collect(),
             radii: balls.iter().map(|ball| ball.radius).collect(),
-            inverse_masses: balls.iter().map(|ball| 1.0 / mass::<D>(ball.radius)).collect(),
+            inverse_masses: masses.iter().map(|mass| 1.0 / mass).collect(),
+            total_mass: masses.iter().copied().map(f64::from).sum(),
+            masses,
         }
     }
 
@@ -123,13 +128,11 @@ impl<const D: usize> Bodies<D> {
 
     /// The mean over all balls, weighted by mass; 0 if there are none.
     fn mean_by_mass(&self, value: impl Fn(usize) -> f64) -> f64 {
-        let (mut sum, mut mass) = (0.0, 0.0);
-        for (index, &inverse_mass) in self.inverse_masses.iter().enumerate() {
-            let m = 1.0 / f64::from(inverse_mass);
-            sum += m * value(index);
-            mass += m;
+        let mut sum = 0.0;
+        for (index, &mass) in self.masses.iter().enumerate() {
+            sum += f64::from(mass) * value(index);
         }
-        if mass > 0.0 { sum / mass } else { 0.0 }
+        if self.total_mass > 0.0 { sum / self.total_mass } else { 0.0 }
     }
 
     /// The hash of positions and velocities, bit for bit.

@@ -122,12 +122,10 @@ fn share_of_least_energy<const D: usize>(
     slack: f64,
 ) -> f32 {
     let (mut slope, mut curvature) = (slack, 0.0);
-    for ((velocity, before), &inverse_mass) in
-        bodies.velocities.iter().zip(before).zip(&bodies.inverse_masses)
-    {
+    for ((velocity, before), &mass) in bodies.velocities.iter().zip(before).zip(&bodies.masses) {
         let change = difference(*velocity, *before);
-        slope += f64::from(dot(*before, change) / inverse_mass);
-        curvature += f64::from(dot(change, change) / inverse_mass);
+        slope += f64::from(dot(*before, change) * mass);
+        curvature += f64::from(dot(change, change) * mass);
     }
     if slope < 0.0 { lesser((-slope / curvature) as f32, 1.0) } else { 0.0 }
 }
@@ -174,11 +172,12 @@ pub fn project<const D: usize>(
 #[inline]
 fn move_apart<const D: usize>(contact: &Contact<D>, bodies: &mut Bodies<D>) {
     let [a, b] = contact.pair.map(|id| id as usize);
-    let (normal, distance) = normal_and_distance(contact.pair, bodies);
     let (radius_a, radius_b) = (bodies.radii[a], bodies.radii[b]);
-    let overlap = radius_a + radius_b - distance - SLOP * lesser(radius_a, radius_b);
-    if overlap > 0.0 {
-        let share = overlap * PROJECT_SHARE * contact.mass;
+    let reach = radius_a + radius_b - SLOP * lesser(radius_a, radius_b);
+    let apart = difference(bodies.positions[b], bodies.positions[a]);
+    if dot(apart, apart) < reach * reach {
+        let (normal, distance) = normal_and_distance(contact.pair, bodies);
+        let share = at_least_zero(reach - distance) * PROJECT_SHARE * contact.mass;
         add_scaled(&mut bodies.positions[a], normal, -share * bodies.inverse_masses[a]);
         add_scaled(&mut bodies.positions[b], normal, share * bodies.inverse_masses[b]);
     }

@@ -27,16 +27,16 @@ fn fall<const D: usize>(setup: &Setup<D>, steps: u32) -> Vec<f64> {
 #[test]
 fn falls_and_heaps() {
     let p = |bodies, size, spread| Population { bodies, size, spread, seed: 3 };
-    fall(&scenes::falling::<3>(p(400, 0.5, 1.0)).unwrap(), 400);
-    fall(&scenes::falling::<3>(p(200, 0.5, 6.0)).unwrap(), 300);
-    fall(&scenes::falling::<2>(p(300, 0.2, 1.0)).unwrap(), 300);
-    fall(&scenes::falling::<2>(p(200, 0.2, 20.0)).unwrap(), 300);
+    fall(&scenes::falling::<3>(p(150, 0.6, 1.0)).unwrap(), 300);
+    fall(&scenes::falling::<3>(p(100, 0.5, 6.0)).unwrap(), 200);
+    fall(&scenes::falling::<2>(p(120, 0.3, 1.0)).unwrap(), 200);
+    fall(&scenes::falling::<2>(p(80, 0.3, 20.0)).unwrap(), 200);
 }
 
 /// A heap at rest is neither compressed nor lifted: its energy stays where it is.
 #[test]
 fn heap_at_rest_stays() {
-    let population = Population { bodies: 150, size: 0.5, spread: 1.0, seed: 3 };
+    let population = Population { bodies: 60, size: 0.7, spread: 1.0, seed: 3 };
     let energies = fall(&scenes::falling::<3>(population).unwrap(), 1500);
     let (settled, last) = (energies[1000], energies[1499]);
     assert!((last - settled).abs() < 0.0005 * settled, "{settled} became {last}");

@@ -41,8 +41,7 @@ fn line_anew(line: &str, choice: BroadPhase) -> String {
 }
 
 fn report(choice: BroadPhase) -> String {
-    let lines = GOLDEN.lines().map(|line| line_anew(line, choice) + "\n");
-    lines.collect()
+    GOLDEN.lines().map(|line| line_anew(line, choice) + "\n").collect()
 }
 
 #[test]
@@ -55,11 +54,9 @@ fn state_is_golden() {
 #[test]
 fn every_algorithm_gives_the_same_state() {
     for method in Method::ALL {
-        for (sort, persistent) in [(Sort::Insertion, true), (Sort::Standard, false)] {
-            let axis = if persistent { Axis::Fixed(0) } else { Axis::LargestVariance };
-            let options = RunnerOptions { method, sort, axis, persistent };
-            assert_eq!(report(BroadPhase::Algorithm(options)), GOLDEN, "{options:?}");
-        }
+        let (sort, axis, persistent) = (Sort::Insertion, Axis::LargestVariance, true);
+        let options = RunnerOptions { method, sort, axis, persistent };
+        assert_eq!(report(BroadPhase::Algorithm(options)), GOLDEN, "{options:?}");
     }
 }
 
