@@ -21,6 +21,7 @@ const target = process.env.CARGO_TARGET_DIR ?? join(root, "target");
 const cores = [
   { name: "sweep-and-prune", feature: "finder", budget: 43_000 },
   { name: "broad-phase", feature: "broad-phase", budget: 110_000 },
+  { name: "algorithms", feature: "algorithms", budget: 60_000 },
 ];
 
 /** The entries, with budgets of what they import in all; of those that carry a core inside, none. */
@@ -29,6 +30,7 @@ const entries = [
   { name: "inline" },
   { name: "broad-phase", budget: 8_000 },
   { name: "broad-phase-inline" },
+  { name: "algorithms", budget: 6_000 },
 ];
 
 /** Without and with vector instructions. */
@@ -41,7 +43,8 @@ const started = Date.now();
 mkdirSync(dist, { recursive: true });
 const tools = await wabt();
 for (const core of cores) {
-  for (const build of builds) {
+  // The algorithms have no vector instructions.
+  for (const build of core.name === "algorithms" ? builds.slice(0, 1) : builds) {
     buildCore(core, build);
     checkCore(core, build);
   }

@@ -12,6 +12,8 @@
 
 extern crate alloc;
 
+#[cfg(feature = "algorithms")]
+mod algorithms;
 #[cfg(feature = "broad-phase")]
 mod broad_phase;
 #[cfg(feature = "finder")]

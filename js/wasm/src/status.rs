@@ -42,6 +42,7 @@ pub fn tell_error(error: Error) -> Code {
         Error::InvalidBox { index, axis } => tell(Code::InvalidBox, [index, axis]),
         Error::TooManyBoxes { .. } => tell(Code::OutOfMemory, [0, 0]),
         Error::StaleProxy { index } => tell(Code::StaleProxy, [index, 0]),
+        Error::InvalidAxis { axis, .. } => tell(Code::InvalidArgument, [axis, 0]),
         Error::InvalidQuery { index } => tell(Code::InvalidArgument, [index, 0]),
         Error::InvalidSnapshot(fault) => {
             let fault = match fault {

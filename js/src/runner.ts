@@ -1,0 +1,246 @@
+/// <reference lib="esnext.disposable" preserve="true" />
+import { type Boxes, checkBoxes, checkDimensions, type Dimensions } from "./boxes.js";
+import { Core, type Engine, type Exports } from "./engine.js";
+import { OutOfMemoryError } from "./errors.js";
+
+/** What js/wasm/src/algorithms.rs exports. */
+export interface AlgorithmsExports extends Exports {
+  runner_new(dimensions: number, traceWords: number): number;
+  runner_free(runner: number): void;
+  runner_text(runner: number, length: number): number;
+  runner_choose(runner: number, part: number, index: number): number;
+  runner_start(runner: number, persistent: number): void;
+  runner_rows(runner: number, count: number): number;
+  runner_step(runner: number, count: number): number;
+  runner_list(runner: number, which: number): number;
+  runner_is_truncated(runner: number): number;
+  runner_clear_trace(runner: number): void;
+  player_new(runner: number): number;
+  player_free(player: number): void;
+  player_seek(player: number, position: number): number;
+  player_state(player: number): number;
+}
+
+/** The core of the observable algorithms. */
+export const algorithmsCore: Core<AlgorithmsExports> = new Core();
+
+/** The algorithms, by name. The one-to-n scan finds the pairs of one box, and not even all of those. */
+export const methods = [
+  "global pairwise",
+  "sorted pairwise",
+  "endpoint sweep",
+  "endpoint sweep on every axis",
+  "swap-driven sweep",
+  "swap-driven sweep on every axis",
+  "one-to-n scan",
+] as const;
+
+/** How endpoints are sorted, by name. */
+export const sorts = ["standard library", "quicksort", "insertion sort", "merge sort", "Timsort"] as const;
+
+/** How the sweep axis is chosen, by name. */
+export const axes = ["fixed axis", "longest extent", "largest variance", "fewest expected overlaps"] as const;
+
+/** An algorithm and how to run it. */
+export interface RunnerOptions {
+  /** How many dimensions the boxes have. */
+  dimensions: Dimensions;
+  /** Which algorithm. */
+  method: (typeof methods)[number];
+  /** How it sorts, if it does. `"standard library"` by default. */
+  sort?: (typeof sorts)[number];
+  /** Along which axis it sweeps: chosen at each step, or this one. `"largest variance"` by default. */
+  axis?: Exclude<(typeof axes)[number], "fixed axis"> | 0 | 1 | 2;
+  /** Whether a step goes on where the last one ended. Only then are begun and ended pairs told. */
+  persistent?: boolean;
+  /** The box of the one-to-n scan. 0 by default. */
+  focus?: number;
+  /** How many words of trace to record; 0, nothing, by default. */
+  traceWords?: number;
+}
+
+/** What an algorithm did; the same is counted for every algorithm. */
+export interface Counts {
+  /** Comparisons of the sort. */
+  comparisons: number;
+  /** Swaps of the sort. */
+  swaps: number;
+  /** Pairs of boxes handed to the box test. */
+  tests: number;
+  /** Pairs found to overlap on a swept axis. */
+  axisOverlaps: number;
+  /** Pairs found to overlap no longer on a swept axis. */
+  axisEnds: number;
+  /** Pairs that overlap on every axis. */
+  pairs: number;
+  /** Pairs that began. */
+  begun: number;
+  /** Pairs that ended. */
+  ended: number;
+  /** How many boxes the sweep line is in. */
+  active: number;
+  /** The most boxes that it has been in at once. */
+  maxActive: number;
+}
+
+/** What a step found: arrays of your own. */
+export interface Step {
+  /** The overlapping pairs, in the order of the method: `a0, b0, a1, b1, ...`. */
+  pairs: Uint32Array;
+  /** The pairs that the step before did not have, sorted. */
+  begun: Uint32Array;
+  /** The pairs that only the step before had, sorted. */
+  ended: Uint32Array;
+  /** The axis that was swept, or was the first to be. */
+  axis: number;
+  /** What was done. */
+  counts: Counts;
+  /** The memory that the algorithm holds to work with, in bytes. */
+  bytes: number;
+}
+
+/**
+ * Runs one of the classic algorithms, over the boxes of one step after another, and records what
+ * it does. To only get the pairs, fast, use `findPairs` of `sweep-and-prune`.
+ *
+ * ```js
+ * const runner = new Runner({ dimensions: 1, method: "swap-driven sweep", persistent: true });
+ * runner.step([0, 2, 1, 3]).pairs; // Uint32Array [0, 1]
+ * ```
+ */
+export class Runner {
+  /** How many dimensions the boxes have. */
+  readonly dimensions: Dimensions;
+  readonly #owned: Owned;
+
+  /**
+   * A runner with no state yet.
+   *
+   * @throws {@link NotInitializedError} before `init()` is done; `RangeError` for a name that does
+   *   not exist, or an axis or dimensions that do not.
+   */
+  constructor(options: RunnerOptions) {
+    this.dimensions = checkDimensions(options?.dimensions);
+    const { method, sort = "standard library", axis = "largest variance", persistent = false } = options;
+    const { focus = 0, traceWords = 0 } = options;
+    for (const [name, value] of [["focus", focus], ["traceWords", traceWords]] as const) {
+      if (!(Number.isInteger(value) && value >= 0 && value < 2 ** 32)) {
+        throw new RangeError(`${name} must be a whole number, not ${String(value)}`);
+      }
+    }
+    const isFixed = typeof axis === "number";
+    if (isFixed && !(Number.isInteger(axis) && axis >= 0 && axis < this.dimensions)) {
+      throw new RangeError(`axis ${axis} does not exist in ${this.dimensions} dimensions`);
+    }
+    const engine = algorithmsCore.engine();
+    const runner = engine.exports.runner_new(this.dimensions, traceWords);
+    this.#owned = { engine, free: () => engine.exports.runner_free(runner), handle: runner };
+    this.#choose(0, "method", method, focus);
+    this.#choose(1, "sort", sort, 0);
+    this.#choose(2, "axis", isFixed ? "fixed axis" : axis, isFixed ? axis : 0);
+    engine.exports.runner_start(runner, Number(persistent));
+    forgotten?.register(this, this.#owned, this.#owned);
+  }
+
+  /**
+   * Finds the pairs of these boxes. A box is its row: the third in one step is the third in the
+   * next.
+   *
+   * @throws {@link InvalidBoxError}; then nothing has changed.
+   */
+  step(boxes: Boxes): Step {
+    const { engine, runner } = this.#live();
+    const { exports } = engine;
+    const rows = checkBoxes(boxes, this.dimensions);
+    const count = rows.length / (2 * this.dimensions);
+    const at = exports.runner_rows(runner, count) >>> 0;
+    if (at === 0) throw new OutOfMemoryError();
+    new Float64Array(exports.memory.buffer, at, rows.length).set(rows);
+    engine.check(exports.runner_step(runner, count));
+    const numbers = new Float64Array(exports.memory.buffer, engine.detail(0), engine.detail(1));
+    const [axis = 0, bytes = 0] = numbers;
+    const counts = readCounts(numbers, 2);
+    return { pairs: this.#list(0), begun: this.#list(1), ended: this.#list(2), axis, counts, bytes };
+  }
+
+  /** The words recorded so far, an array of your own. {@link events} reads them. */
+  trace(): Uint32Array<ArrayBuffer> {
+    return this.#list(3);
+  }
+
+  /** Whether something was not recorded, because it was beyond the limit. */
+  get isTruncated(): boolean {
+    const { engine, runner } = this.#live();
+    return engine.exports.runner_is_truncated(runner) !== 0;
+  }
+
+  /** Forgets what was recorded. */
+  clearTrace(): void {
+    const { engine, runner } = this.#live();
+    engine.exports.runner_clear_trace(runner);
+  }
+
+  /** @internal The handle of a player of what was recorded. */
+  newPlayer(): { engine: Engine<AlgorithmsExports>; player: number } {
+    const { engine, runner } = this.#live();
+    return { engine, player: engine.exports.player_new(runner) };
+  }
+
+  /** Gives the memory back. To free it twice is no error. */
+  free(): void {
+    forgotten?.unregister(this.#owned);
+    release(this.#owned);
+  }
+
+  /** As {@link Runner.free}, for `using`. */
+  [Symbol.dispose](): void {
+    this.free();
+  }
+
+  #live(): { engine: Engine<AlgorithmsExports>; runner: number } {
+    const { engine, handle } = this.#owned;
+    if (handle === 0) throw new TypeError("this Runner was freed");
+    return { engine, runner: handle };
+  }
+
+  #choose(part: number, kind: string, name: string, index: number): void {
+    const { engine, runner } = this.#live();
+    const text = new TextEncoder().encode(String(name));
+    const at = engine.exports.runner_text(runner, text.length) >>> 0;
+    new Uint8Array(engine.exports.memory.buffer, at, text.length).set(text);
+    if (engine.exports.runner_choose(runner, part, index) === 0) {
+      this.free();
+      throw new RangeError(`there is no ${kind} named "${String(name)}"`);
+    }
+  }
+
+  #list(which: number): Uint32Array<ArrayBuffer> {
+    const { engine, runner } = this.#live();
+    engine.check(engine.exports.runner_list(runner, which));
+    return new Uint32Array(engine.exports.memory.buffer, engine.detail(0), engine.detail(1)).slice();
+  }
+}
+
+/** @internal Counts in the order in which js/wasm/src/algorithms.rs has them. */
+export function readCounts(numbers: Float64Array, from: number): Counts {
+  const [comparisons = 0, swaps = 0, tests = 0, axisOverlaps = 0, axisEnds = 0] = numbers.subarray(from);
+  const [pairs = 0, begun = 0, ended = 0, active = 0, maxActive = 0] = numbers.subarray(from + 5);
+  return { comparisons, swaps, tests, axisOverlaps, axisEnds, pairs, begun, ended, active, maxActive };
+}
+
+/** @internal What lies on the other side, and how to free it: a handle, or 0 once it is freed. */
+export interface Owned {
+  readonly engine: Engine<AlgorithmsExports>;
+  readonly free: () => void;
+  handle: number;
+}
+
+/** @internal */
+export function release(owned: Owned): void {
+  if (owned.handle !== 0) owned.free();
+  owned.handle = 0;
+}
+
+/** @internal Frees what nobody freed and nobody can reach. */
+export const forgotten: FinalizationRegistry<Owned> | undefined =
+  typeof FinalizationRegistry === "undefined" ? undefined : new FinalizationRegistry<Owned>(release);

@@ -1,0 +1,292 @@
+//! The observable algorithms: a runner chosen by names, its counts and trace, and a player of it.
+//!
+//! All boxes are doubles, which hold those in single precision exactly and compare alike.
+
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+
+use sweep_and_prune::algorithms::{
+    Axis, Counts, Endpoint, Method, Player, Runner, RunnerOptions, Side, Sort, Trace,
+};
+use sweep_and_prune::{Aabb, Error};
+
+use crate::status::{Code, tell, tell_error};
+
+/// A runner of any dimensions, with the rows that it reads.
+trait Steps {
+    fn rows(&mut self, count: usize) -> Option<*mut f64>;
+    fn step(
+        &mut self,
+        count: usize,
+        observer: &mut (Counts, Trace),
+        lists: &mut [Vec<[u32; 2]>; 3],
+    ) -> Result<usize, Error>;
+    fn bytes(&self) -> usize;
+}
+
+struct Typed<const D: usize> {
+    boxes: Vec<Aabb<D, f64>>,
+    runner: Runner<D, f64>,
+}
+
+impl<const D: usize> Typed<D> {
+    fn boxed(options: RunnerOptions) -> Box<dyn Steps> {
+        Box::new(Self { boxes: Vec::new(), runner: Runner::new(options) })
+    }
+}
+
+impl<const D: usize> Steps for Typed<D> {
+    fn rows(&mut self, count: usize) -> Option<*mut f64> {
+        if let Some(more) = count.checked_sub(self.boxes.len()) {
+            self.boxes.try_reserve(more).ok()?;
+            self.boxes.resize(count, Aabb::new([0.0; D], [0.0; D]));
+        }
+        Some(self.boxes.as_mut_ptr().cast())
+    }
+
+    fn step(
+        &mut self,
+        count: usize,
+        observer: &mut (Counts, Trace),
+        lists: &mut [Vec<[u32; 2]>; 3],
+    ) -> Result<usize, Error> {
+        let boxes = &self.boxes[..count.min(self.boxes.len())];
+        let step = self.runner.step(boxes, observer)?;
+        for (list, found) in lists.iter_mut().zip([step.pairs, step.begun, step.ended]) {
+            list.clear();
+            list.extend_from_slice(found);
+        }
+        Ok(step.axis)
+    }
+
+    fn bytes(&self) -> usize {
+        self.runner.bytes()
+    }
+}
+
+/// What JavaScript holds a pointer to.
+struct Handle {
+    dimensions: u32,
+    text: Vec<u8>,
+    /// None until it is started.
+    steps: Option<Box<dyn Steps>>,
+    method: Method,
+    sort: Sort,
+    axis: Axis,
+    observer: (Counts, Trace),
+    /// Pairs, begun, ended.
+    lists: [Vec<[u32; 2]>; 3],
+    /// Axis, bytes, and the counts.
+    numbers: [f64; 12],
+}
+
+/// A new runner, to be chosen and started; records up to so many words of trace.
+#[unsafe(no_mangle)]
+extern "C" fn runner_new(dimensions: u32, trace_words: usize) -> Option<Box<Handle>> {
+    (1..=3).contains(&dimensions).then(|| {
+        Box::new(Handle {
+            dimensions,
+            text: Vec::new(),
+            steps: None,
+            method: Method::Pairwise,
+            sort: Sort::Standard,
+            axis: Axis::default(),
+            observer: (Counts::default(), Trace::with_limit(trace_words)),
+            lists: [Vec::new(), Vec::new(), Vec::new()],
+            numbers: [0.0; 12],
+        })
+    })
+}
+
+/// Frees a runner and all that it holds.
+#[unsafe(no_mangle)]
+extern "C" fn runner_free(handle: Option<Box<Handle>>) {
+    drop(handle);
+}
+
+/// Where to write a name of so many bytes.
+#[unsafe(no_mangle)]
+extern "C" fn runner_text(handle: &mut Handle, length: usize) -> *mut u8 {
+    handle.text.clear();
+    handle.text.resize(length, 0);
+    handle.text.as_mut_ptr()
+}
+
+/// Chooses the method (0), the sort (1) or the axis (2) of the name in the text. Whether there is
+/// one. `index` is the box of the one-to-n scan, or the fixed axis.
+#[unsafe(no_mangle)]
+extern "C" fn runner_choose(handle: &mut Handle, part: u32, index: u32) -> bool {
+    let Ok(name) = core::str::from_utf8(&handle.text) else { return false };
+    match part {
+        0 => Method::from_name(name).map(|method| {
+            handle.method = match method {
+                Method::OneToN(_) => Method::OneToN(index),
+                method => method,
+            };
+        }),
+        1 => Sort::from_name(name).map(|sort| handle.sort = sort),
+        _ => Axis::from_name(name).map(|axis| {
+            handle.axis = match axis {
+                Axis::Fixed(_) => Axis::Fixed(index as usize),
+                axis => axis,
+            };
+        }),
+    }
+    .is_some()
+}
+
+/// Starts it as chosen.
+#[unsafe(no_mangle)]
+extern "C" fn runner_start(handle: &mut Handle, persistent: bool) {
+    let Handle { method, sort, axis, .. } = *handle;
+    let options = RunnerOptions { method, sort, axis, persistent };
+    handle.steps = Some(match handle.dimensions {
+        1 => Typed::<1>::boxed(options),
+        2 => Typed::<2>::boxed(options),
+        _ => Typed::<3>::boxed(options),
+    });
+}
+
+/// Where to write `count` rows of boxes; null if there is no memory for them.
+#[unsafe(no_mangle)]
+extern "C" fn runner_rows(handle: &mut Handle, count: usize) -> *mut f64 {
+    handle.steps.as_mut().and_then(|steps| steps.rows(count)).unwrap_or(core::ptr::null_mut())
+}
+
+/// Runs one step over the first `count` rows. Details: where the numbers are.
+#[unsafe(no_mangle)]
+extern "C" fn runner_step(handle: &mut Handle, count: usize) -> Code {
+    let Handle { steps: Some(steps), observer, lists, numbers, .. } = handle else {
+        return tell(Code::Internal, [0, 0]);
+    };
+    let before = core::mem::take(&mut observer.0);
+    match steps.step(count, observer, lists) {
+        Ok(axis) => {
+            let bytes = steps.bytes();
+            *numbers = numbers_of(axis, bytes, &observer.0);
+            tell(Code::Ok, [numbers.as_ptr().addr(), numbers.len()])
+        }
+        Err(error) => {
+            observer.0 = before;
+            tell_error(error)
+        }
+    }
+}
+
+/// `js/src/runner.ts` reads them in this order.
+fn numbers_of(axis: usize, bytes: usize, counts: &Counts) -> [f64; 12] {
+    let counts = [
+        counts.comparisons,
+        counts.swaps,
+        counts.tests,
+        counts.axis_overlaps,
+        counts.axis_ends,
+        counts.pairs,
+        counts.begun,
+        counts.ended,
+        counts.active,
+        counts.max_active,
+    ];
+    let mut numbers = [0.0; 12];
+    numbers[0] = axis as f64;
+    numbers[1] = bytes as f64;
+    for (number, count) in numbers[2..].iter_mut().zip(counts) {
+        *number = count as f64;
+    }
+    numbers
+}
+
+/// Details: where a list is, and how many words: pairs (0), begun (1) or ended (2) ones of the
+/// last step, or the trace (3).
+#[unsafe(no_mangle)]
+extern "C" fn runner_list(handle: &mut Handle, which: usize) -> Code {
+    match handle.lists.get(which) {
+        Some(list) => tell(Code::Ok, [list.as_ptr().addr(), 2 * list.len()]),
+        None => {
+            let words = handle.observer.1.words();
+            tell(Code::Ok, [words.as_ptr().addr(), words.len()])
+        }
+    }
+}
+
+/// Whether something was not recorded.
+#[unsafe(no_mangle)]
+extern "C" fn runner_is_truncated(handle: &mut Handle) -> bool {
+    handle.observer.1.is_truncated()
+}
+
+/// Forgets the trace.
+#[unsafe(no_mangle)]
+extern "C" fn runner_clear_trace(handle: &mut Handle) {
+    handle.observer.1.clear();
+}
+
+/// What JavaScript holds a pointer to.
+struct Playing {
+    player: Player,
+    state: Vec<f64>,
+}
+
+/// A player of what a runner has recorded, to be freed by [`player_free`].
+#[unsafe(no_mangle)]
+extern "C" fn player_new(handle: &mut Handle) -> Box<Playing> {
+    Box::new(Playing { player: Player::new(handle.observer.1.clone()), state: Vec::new() })
+}
+
+/// Frees a player and all that it holds.
+#[unsafe(no_mangle)]
+extern "C" fn player_free(playing: Option<Box<Playing>>) {
+    drop(playing);
+}
+
+/// Plays or undoes until so many events have been played, or all there are; how many those are.
+#[unsafe(no_mangle)]
+extern "C" fn player_seek(playing: &mut Playing, position: usize) -> usize {
+    playing.player.seek(position);
+    playing.player.position()
+}
+
+/// Details: where the state is, and how many numbers. These are the axis, the axis of the current
+/// array, the position and edge of the line or -1, the ten counts; and then lists, each with its
+/// length in front: active boxes, overlaps, held pairs, axis overlaps (axis, a, b), and of each
+/// axis the endpoints (edge, at). `js/src/player.ts` reads them.
+#[unsafe(no_mangle)]
+extern "C" fn player_state(playing: &mut Playing) -> Code {
+    let state = playing.player.state();
+    let out = &mut playing.state;
+    out.clear();
+    let line = state.line.map_or([-1.0, -1.0], |(position, edge)| {
+        [position as f64, edge_number(edge.id, edge.side)]
+    });
+    out.extend([state.axis as f64, state.array_axis as f64]);
+    out.extend(line);
+    out.extend(&numbers_of(0, 0, &state.counts)[2..]);
+    out.push(state.active.len() as f64);
+    out.extend(state.active.iter().map(|&id| f64::from(id)));
+    for pairs in [&state.overlaps, &state.held] {
+        out.push(2.0 * pairs.len() as f64);
+        out.extend(pairs.iter().flatten().map(|&id| f64::from(id)));
+    }
+    out.push(3.0 * state.axis_overlaps.len() as f64);
+    out.extend(
+        state
+            .axis_overlaps
+            .iter()
+            .flat_map(|&(axis, [a, b])| [axis as f64, f64::from(a), f64::from(b)]),
+    );
+    out.push(state.arrays.len() as f64);
+    for array in &state.arrays {
+        out.push(2.0 * array.len() as f64);
+        out.extend(
+            array.iter().flat_map(|&Endpoint { at, edge }| {
+                [edge_number(edge.id, edge.side), f64::from(at)]
+            }),
+        );
+    }
+    tell(Code::Ok, [out.as_ptr().addr(), out.len()])
+}
+
+/// As in a trace: twice the box, and one more for the right endpoint.
+fn edge_number(id: u32, side: Side) -> f64 {
+    2.0 * f64::from(id) + f64::from(side as u8)
+}
