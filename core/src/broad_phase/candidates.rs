@@ -18,12 +18,12 @@ struct Links {
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Candidates {
-    /// Slots, smaller first. A place that is free holds twice the same, which as a pair would
+    /// Seats, smaller first. A place that is free holds twice the same, which as a pair would
     /// always be live.
     pub pairs: Vec<[u32; 2]>,
     pub live: Vec<bool>,
     links: Vec<Links>,
-    /// By slot, the first of its pairs.
+    /// By seat, the first of its pairs.
     heads: Vec<u32>,
     free: Vec<u32>,
     is_linked: bool,
@@ -47,15 +47,24 @@ impl Candidates {
         live.filter(|&(pair, &is_live)| is_live && pair[0] != pair[1]).map(|(&pair, _)| pair)
     }
 
-    /// Links the pairs to their bodies, of which there are `slots`, if they are not yet.
-    pub fn link(&mut self, slots: usize) {
+    /// Gives the bodies other seats. There must be no free place.
+    pub fn rename(&mut self, renamed: &[u32]) {
+        self.is_linked = false;
+        for pair in &mut self.pairs {
+            let [a, b] = pair.map(|seat| renamed[seat as usize]);
+            *pair = [a.min(b), a.max(b)];
+        }
+    }
+
+    /// Links the pairs to their bodies, of which there are `seats`, if they are not yet.
+    pub fn link(&mut self, seats: usize) {
         if self.is_linked {
-            self.heads.resize(slots, NONE);
+            self.heads.resize(seats, NONE);
             return;
         }
         self.is_linked = true;
         self.heads.clear();
-        self.heads.resize(slots, NONE);
+        self.heads.resize(seats, NONE);
         self.links.clear();
         for index in 0..self.pairs.len() as u32 {
             let links = Links { next: [NONE; 2], previous: [NONE; 2] };
@@ -84,16 +93,16 @@ impl Candidates {
     pub fn remove(&mut self, index: u32) {
         let pair = self.pairs[index as usize];
         let links = self.links[index as usize];
-        for (side, &slot) in pair.iter().enumerate() {
+        for (side, &seat) in pair.iter().enumerate() {
             let (next, previous) = (links.next[side], links.previous[side]);
             if previous == NONE {
-                self.heads[slot as usize] = next;
+                self.heads[seat as usize] = next;
             } else {
-                let side = self.side(previous, slot);
+                let side = self.side(previous, seat);
                 self.links[previous as usize].next[side] = next;
             }
             if next != NONE {
-                let side = self.side(next, slot);
+                let side = self.side(next, seat);
                 self.links[next as usize].previous[side] = previous;
             }
         }
@@ -104,33 +113,33 @@ impl Candidates {
 
     /// The first pair of a linked body.
     #[inline]
-    pub fn first(&self, slot: u32) -> Option<u32> {
-        Some(self.heads[slot as usize]).filter(|&index| index != NONE)
+    pub fn first(&self, seat: u32) -> Option<u32> {
+        Some(self.heads[seat as usize]).filter(|&index| index != NONE)
     }
 
     /// The other body of a pair of this one, and the next pair of this one.
     #[inline]
-    pub fn step(&self, index: u32, slot: u32) -> (u32, Option<u32>) {
-        let side = self.side(index, slot);
+    pub fn step(&self, index: u32, seat: u32) -> (u32, Option<u32>) {
+        let side = self.side(index, seat);
         let next = self.links[index as usize].next[side];
         (self.pairs[index as usize][1 - side], Some(next).filter(|&next| next != NONE))
     }
 
     #[inline]
-    fn side(&self, index: u32, slot: u32) -> usize {
-        usize::from(self.pairs[index as usize][0] != slot)
+    fn side(&self, index: u32, seat: u32) -> usize {
+        usize::from(self.pairs[index as usize][0] != seat)
     }
 
     /// Puts a pair first in the lists of its bodies.
     #[inline]
     fn hang(&mut self, index: u32) {
         let pair = self.pairs[index as usize];
-        for (side, &slot) in pair.iter().enumerate() {
-            let head = core::mem::replace(&mut self.heads[slot as usize], index);
+        for (side, &seat) in pair.iter().enumerate() {
+            let head = core::mem::replace(&mut self.heads[seat as usize], index);
             self.links[index as usize].next[side] = head;
             self.links[index as usize].previous[side] = NONE;
             if head != NONE {
-                let side = self.side(head, slot);
+                let side = self.side(head, seat);
                 self.links[head as usize].previous[side] = index;
             }
         }

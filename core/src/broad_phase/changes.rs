@@ -52,7 +52,7 @@ impl Iterator for Pairs<'_> {
 
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
-        self.pairs.next().map(|pair| pair.map(|slot| self.slots.id(slot)))
+        self.pairs.next().map(|pair| pair.map(|slot| self.slots.id_of_slot(slot)))
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
@@ -62,7 +62,7 @@ impl Iterator for Pairs<'_> {
 
 impl DoubleEndedIterator for Pairs<'_> {
     fn next_back(&mut self) -> Option<Self::Item> {
-        self.pairs.next_back().map(|pair| pair.map(|slot| self.slots.id(slot)))
+        self.pairs.next_back().map(|pair| pair.map(|slot| self.slots.id_of_slot(slot)))
     }
 }
 

@@ -4,35 +4,40 @@
 use super::BroadPhase;
 use super::options::{contains, hull};
 use super::proxy::flag;
-use super::update::overlap;
-use super::updater::{TreeState, Updater};
+use super::update::{overlap, push_wanted};
+use super::updater::{Scratch, TreeState, Updater};
 use crate::Scalar;
 
-/// If more than one in so many bodies moved, it is faster to test all candidates in a row.
-const MANY: usize = 4;
+/// To go from one candidate of a body to the next takes as long as to test so many in a row.
+const MANY: usize = 20;
+
+/// A search of a tree with leaves twice too large costs so many times more than it should what
+/// building the tree costs for a body.
+const WORSE: usize = 4;
 
 impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Reports what begins and ends, given who changed, escaped and left.
     pub(super) fn follow(&mut self) {
-        let is_few = self.changed.len() * MANY < self.len();
+        let is_few = self.changed.len() * MANY < self.updater.candidates.pairs.len();
         let escaped = core::mem::take(&mut self.updater.scratch.escaped);
         if is_few || !escaped.is_empty() || !self.leaving.is_empty() {
             self.updater.candidates.link(self.slots.len());
         }
         self.drop_leaving();
         if !escaped.is_empty() {
+            self.updater.tree_uses += escaped.len();
             self.ready_tree();
         }
         let Updater { tree, fat, previous, prediction, .. } = &mut self.updater;
-        for &slot in &escaped {
-            let at = slot as usize;
-            let is_new = self.slots.has(slot, flag::NEW);
+        for &seat in &escaped {
+            let at = seat as usize;
+            let is_new = self.slots.has(seat, flag::NEW);
             let before = if is_new { &self.boxes[at] } else { &previous[at] };
             fat[at] = prediction.alone(before, &self.boxes[at], &self.options);
-            tree.set(slot, &fat[at]);
+            tree.set(seat, &fat[at]);
         }
-        for &slot in &escaped {
-            self.rematch(slot);
+        for &seat in &escaped {
+            self.rematch(seat);
         }
         self.updater.scratch.escaped = escaped;
         if is_few {
@@ -47,11 +52,11 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Ends the pairs of bodies that were removed.
     fn drop_leaving(&mut self) {
         let Updater { candidates, tree, ended, .. } = &mut self.updater;
-        for &slot in &self.leaving {
-            tree.remove(slot);
-            let mut next = candidates.first(slot);
+        for &seat in &self.leaving {
+            tree.remove(seat);
+            let mut next = candidates.first(seat);
             while let Some(index) = next {
-                next = candidates.step(index, slot).1;
+                next = candidates.step(index, seat).1;
                 if candidates.live[index as usize] {
                     ended.push(candidates.pairs[index as usize]);
                 }
@@ -61,20 +66,27 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     }
 
     /// Gives a body with a new fat box its candidates: some of those it had, and new ones.
-    fn rematch(&mut self, slot: u32) {
+    fn rematch(&mut self, seat: u32) {
         let Updater { candidates, tree, fat, scratch, begun, ended, .. } = &mut self.updater;
-        let (aabb, own_fat) = (&self.boxes[slot as usize], &fat[slot as usize]);
-        let filter = &self.filters[slot as usize];
-        let search = scratch.begin_search(self.slots.len());
-        let (seen, found) = (&mut scratch.seen, &mut scratch.found);
-        seen[slot as usize] = search;
-        let mut next = candidates.first(slot);
+        let is_allowed = |other: u32| {
+            !self.any_filter || self.filters[seat as usize].allows(&self.filters[other as usize])
+        };
+        let (found, is_old) = (&mut scratch.found, &mut scratch.is_old);
+        found.clear();
+        tree.overlapping(&fat[seat as usize], &mut |other| {
+            if other != seat && is_allowed(other) {
+                found.push(other);
+            }
+        });
+        found.sort_unstable();
+        is_old.clear();
+        is_old.resize(found.len(), false);
+        let mut next = candidates.first(seat);
         while let Some(index) = next {
-            let (other, later) = candidates.step(index, slot);
+            let (other, later) = candidates.step(index, seat);
             next = later;
-            let at = other as usize;
-            if filter.allows(&self.filters[at]) && overlap(own_fat, &fat[at]) {
-                seen[at] = search;
+            if let Ok(place) = found.binary_search(&other) {
+                is_old[place] = true;
             } else {
                 if candidates.live[index as usize] {
                     ended.push(candidates.pairs[index as usize]);
@@ -82,28 +94,22 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
                 candidates.remove(index);
             }
         }
-        found.clear();
-        tree.overlapping(own_fat, &mut |other| found.push(other));
-        for &other in found.iter() {
-            let at = other as usize;
-            if seen[at] != search && filter.allows(&self.filters[at]) {
-                let is_live = overlap(aabb, &self.boxes[at]);
-                if is_live {
-                    begun.push([slot.min(other), slot.max(other)]);
-                }
-                candidates.add(slot, other, is_live);
+        for (&other, _) in found.iter().zip(is_old).filter(|(_, is_old)| !**is_old) {
+            let is_live = overlap(&self.boxes[seat as usize], &self.boxes[other as usize]);
+            if is_live {
+                begun.push([seat, other]);
             }
+            candidates.add(seat, other, is_live);
         }
     }
 
     /// Tests the candidates of one body.
-    #[inline]
-    fn test_candidates_of(&mut self, slot: u32) {
+    fn test_candidates_of(&mut self, seat: u32) {
         let Updater { candidates, begun, ended, .. } = &mut self.updater;
-        let aabb = &self.boxes[slot as usize];
-        let mut next = candidates.first(slot);
+        let aabb = &self.boxes[seat as usize];
+        let mut next = candidates.first(seat);
         while let Some(index) = next {
-            let (other, later) = candidates.step(index, slot);
+            let (other, later) = candidates.step(index, seat);
             next = later;
             let is_live = overlap(aabb, &self.boxes[other as usize]);
             let at = index as usize;
@@ -116,29 +122,37 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
 
     /// Tests all candidates.
     fn test_all_candidates(&mut self) {
-        let Updater { candidates, begun, ended, .. } = &mut self.updater;
-        for (pair, was_live) in candidates.pairs.iter().zip(&mut candidates.live) {
-            let is_live = overlap(&self.boxes[pair[0] as usize], &self.boxes[pair[1] as usize]);
-            if is_live != *was_live {
-                *was_live = is_live;
-                if is_live { &mut *begun } else { &mut *ended }.push(*pair);
-            }
+        let Updater { candidates, scratch, begun, ended, .. } = &mut self.updater;
+        let (pairs, live) = (&candidates.pairs, &mut candidates.live);
+        let changed = &mut scratch.pairs;
+        changed.clear();
+        push_wanted(changed, pairs, |index, [a, b]| {
+            let is_live = overlap(&self.boxes[a as usize], &self.boxes[b as usize]);
+            ([a, b], core::mem::replace(&mut live[index], is_live) != is_live)
+        });
+        for pair in changed.iter() {
+            let [a, b] = pair.map(|seat| seat as usize);
+            let is_live = overlap(&self.boxes[a], &self.boxes[b]);
+            if is_live { &mut *begun } else { &mut *ended }.push(*pair);
         }
     }
 
     /// Has the tree hold the fat boxes of all bodies that are not new.
     fn ready_tree(&mut self) {
-        let Updater { tree, tree_state, fat, scratch, .. } = &mut self.updater;
+        let Updater { tree, tree_state, tree_uses, fat, scratch, .. } = &mut self.updater;
         match *tree_state {
             TreeState::Fresh { .. } => return,
-            TreeState::Old if !tree.refit(fat) => {}
+            // A tree whose leaves have become large costs time whenever it is searched.
+            TreeState::Old
+                if (tree.refit(fat) - 1.0) * (*tree_uses * WORSE) as f64 <= tree.len() as f64 => {}
             _ => {
-                let is_known = |slot: &u32| {
-                    self.slots.has(*slot, flag::LIVE) && !self.slots.has(*slot, flag::NEW)
+                *tree_uses = 0;
+                let is_known = |seat: &u32| {
+                    self.slots.has(*seat, flag::LIVE) && !self.slots.has(*seat, flag::NEW)
                 };
-                scratch.slots.clear();
-                scratch.slots.extend((0..self.slots.len() as u32).filter(is_known));
-                tree.build(&mut scratch.slots, fat);
+                scratch.seats.clear();
+                scratch.seats.extend((0..self.slots.len() as u32).filter(is_known));
+                tree.build(&mut scratch.seats, fat);
             }
         }
         *tree_state = TreeState::Fresh { known: 0 };
@@ -146,40 +160,50 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
 
     /// Has the tree hold every body with a box around its own, for queries.
     pub(super) fn refresh_tree(&mut self) {
+        // Who asks once may ask often.
+        self.updater.tree_uses += self.len() / 4;
         self.ready_tree();
         let Updater { tree, tree_state, fat, .. } = &mut self.updater;
         let TreeState::Fresh { known } = tree_state else { return };
-        while let Some(&slot) = self.changed.get(*known) {
+        while let Some(&seat) = self.changed.get(*known) {
             *known += 1;
-            let at = slot as usize;
-            if !self.slots.has(slot, flag::LIVE) {
+            let at = seat as usize;
+            if !self.slots.has(seat, flag::LIVE) {
                 continue;
             }
-            self.slots.raise(slot, flag::KNOWN);
-            if self.slots.has(slot, flag::NEW) {
-                tree.set(slot, &self.boxes[at]);
+            self.slots.raise(seat, flag::KNOWN);
+            if self.slots.has(seat, flag::NEW) {
+                tree.set(seat, &self.boxes[at]);
             } else if !contains(&fat[at], &self.boxes[at]) {
-                tree.set(slot, &hull(&fat[at], &self.boxes[at]));
+                tree.set(seat, &hull(&fat[at], &self.boxes[at]));
             }
         }
     }
 
     /// Notes that all fat boxes are new.
     pub(super) fn age_tree(&mut self) {
-        let Updater { tree, tree_state, scratch, fat, .. } = &mut self.updater;
+        let Updater { tree, tree_state, scratch, fat, previous, prediction, .. } =
+            &mut self.updater;
         if *tree_state == TreeState::Unbuilt {
             return;
         }
-        for &slot in &self.leaving {
-            tree.remove(slot);
+        for &seat in &self.leaving {
+            tree.remove(seat);
         }
-        let newcomers = || scratch.escaped.iter().filter(|&&slot| self.slots.has(slot, flag::NEW));
-        if newcomers().count() * 2 > tree.len() {
+        // A body that is far from where it was must not stretch the leaf where it was.
+        let is_elsewhere = |seat: u32| {
+            let at = seat as usize;
+            self.slots.has(seat, flag::NEW) || prediction.is_jump(&previous[at], &self.boxes[at])
+        };
+        let Scratch { escaped, seats, .. } = scratch;
+        seats.clear();
+        seats.extend(escaped.iter().copied().filter(|&seat| is_elsewhere(seat)));
+        if seats.len() * 2 > tree.len() {
             *tree_state = TreeState::Unbuilt;
             return;
         }
-        for &slot in newcomers() {
-            tree.set(slot, &fat[slot as usize]);
+        for &seat in seats.iter() {
+            tree.set(seat, &fat[seat as usize]);
         }
         *tree_state = TreeState::Old;
     }

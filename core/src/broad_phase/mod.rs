@@ -10,6 +10,7 @@ mod predict;
 mod proxy;
 mod queries;
 mod rebuild;
+mod seating;
 #[cfg(feature = "serde")]
 mod serde;
 mod snapshot;
@@ -65,19 +66,22 @@ use updater::Updater;
 pub struct BroadPhase<const D: usize, T: Scalar = f32> {
     options: Options<T>,
     slots: Slots,
-    /// By slot, the boxes whose overlaps are reported.
+    /// By seat, the boxes whose overlaps are reported.
     boxes: Vec<Aabb<D, T>>,
-    /// By slot, the boxes as given, where these are not the ones reported; else empty.
+    /// By seat, the boxes as given, where these are not the ones reported; else empty.
     shapes: Vec<Aabb<D, T>>,
+    /// By seat.
     filters: Vec<Filter>,
-    /// The slots of [`flag::CHANGED`], at least once each, and those of bodies that left since.
+    /// Whether a body ever had another filter than the default: if not, every pair is allowed.
+    any_filter: bool,
+    /// The seats of [`flag::CHANGED`], at least once each, and those of bodies that left since.
     changed: Vec<u32>,
-    /// The slots of [`flag::LEAVING`].
+    /// The seats of [`flag::LEAVING`].
     leaving: Vec<u32>,
-    /// By slot, where the bodies of [`flag::SWEPT`] are after the next update; as long as the
-    /// greatest slot that was ever swept needs.
+    /// By seat, where the bodies of [`flag::SWEPT`] are after the next update; as long as the
+    /// last seat of one ever needed.
     rests: Vec<Aabb<D, T>>,
-    /// The slots of [`flag::SWEPT`], and others, some twice.
+    /// The seats of [`flag::SWEPT`], and others, some twice.
     swept: Vec<u32>,
     updater: Updater<D, T>,
 }
@@ -104,6 +108,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             boxes: Vec::new(),
             shapes: Vec::new(),
             filters: Vec::new(),
+            any_filter: false,
             changed: Vec::new(),
             leaving: Vec::new(),
             rests: Vec::new(),
@@ -129,9 +134,8 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
 
     /// The ids of all bodies, sorted.
     pub fn ids(&self) -> impl Iterator<Item = ProxyId> + '_ {
-        (0..self.slots.len() as u32)
-            .filter(|&slot| self.slots.has(slot, flag::LIVE))
-            .map(|slot| self.slots.id(slot))
+        let seats = self.slots.seats.iter();
+        seats.filter(|&&seat| self.slots.has(seat, flag::LIVE)).map(|&seat| self.slots.id(seat))
     }
 
     /// Whether an id names a body that was inserted here and not removed.
@@ -220,8 +224,9 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             check_box(aabb, index)?;
         }
         for (id, aabb) in ids.iter().zip(boxes) {
-            self.slots.lower(id.slot(), flag::SWEPT);
-            self.place(id.slot(), aabb);
+            let seat = self.slots.seats[id.slot() as usize];
+            self.slots.lower(seat, flag::SWEPT);
+            self.place(seat, aabb);
         }
         Ok(())
     }
@@ -238,11 +243,11 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         from: Aabb<D, T>,
         to: Aabb<D, T>,
     ) -> Result<(), Error> {
-        let slot = self.slots.check(id, 0)?;
+        let seat = self.slots.check(id, 0)?;
         check_box(&from, 0)?;
         check_box(&to, 1)?;
-        self.sweep_to(slot, to);
-        self.place(slot, &hull(&from, &to));
+        self.sweep_to(seat, to);
+        self.place(seat, &hull(&from, &to));
         Ok(())
     }
 
@@ -251,13 +256,14 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// # Errors
     /// [`Error::StaleProxy`].
     pub fn set_filter(&mut self, id: ProxyId, filter: Filter) -> Result<(), Error> {
-        let slot = self.slots.check(id, 0)?;
-        let before = core::mem::replace(&mut self.filters[slot as usize], filter);
+        let seat = self.slots.check(id, 0)?;
+        let before = core::mem::replace(&mut self.filters[seat as usize], filter);
+        self.any_filter |= filter != Filter::default();
         if before != filter {
-            if !self.slots.has(slot, flag::NEW | flag::REFILTERED) {
-                self.note_old_filter(slot, before);
+            if !self.slots.has(seat, flag::NEW | flag::REFILTERED) {
+                self.note_old_filter(seat, before);
             }
-            self.touch(slot);
+            self.touch(seat);
         }
         Ok(())
     }
@@ -278,68 +284,70 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     pub fn remove_many(&mut self, ids: &[ProxyId]) -> Result<(), Error> {
         for (index, &id) in ids.iter().enumerate() {
             match self.slots.find(id) {
-                Some(slot) if !self.slots.has(slot, flag::MARKED) => {
-                    self.slots.raise(slot, flag::MARKED);
+                Some(seat) if !self.slots.has(seat, flag::MARKED) => {
+                    self.slots.raise(seat, flag::MARKED);
                 }
                 _ => {
                     for before in &ids[..index] {
-                        self.slots.lower(before.slot(), flag::MARKED);
+                        self.slots.lower(self.slots.seats[before.slot() as usize], flag::MARKED);
                     }
                     return Err(Error::StaleProxy { index });
                 }
             }
         }
         for id in ids {
-            self.slots.lower(id.slot(), flag::MARKED);
-            self.slots.retire(id.slot());
-            self.leaving.push(id.slot());
+            let seat = self.slots.seats[id.slot() as usize];
+            self.slots.lower(seat, flag::MARKED);
+            self.slots.retire(seat);
+            self.leaving.push(seat);
         }
         Ok(())
     }
 
     /// The box of a body as given.
-    fn shape(&self, slot: u32) -> &Aabb<D, T> {
+    fn shape(&self, seat: u32) -> &Aabb<D, T> {
         match self.options.report {
-            Report::Exact => &self.boxes[slot as usize],
-            Report::Fat => &self.shapes[slot as usize],
+            Report::Exact => &self.boxes[seat as usize],
+            Report::Fat => &self.shapes[seat as usize],
         }
     }
 
     fn add(&mut self, aabb: Aabb<D, T>, filter: Filter) -> ProxyId {
-        let slot = self.slots.take();
+        let seat = self.slots.take();
         let boxed = match self.options.report {
             Report::Exact => aabb,
             Report::Fat => {
-                put(&mut self.shapes, slot, aabb);
+                put(&mut self.shapes, seat, aabb);
                 self.options.fatten(&aabb, [T::default(); D])
             }
         };
-        put(&mut self.boxes, slot, boxed);
-        put(&mut self.filters, slot, filter);
+        put(&mut self.boxes, seat, boxed);
+        put(&mut self.filters, seat, filter);
+        self.any_filter |= filter != Filter::default();
         if self.updater.fat.len() < self.boxes.len() {
-            self.updater.add_slot(boxed);
+            self.updater.add_seat(boxed);
         }
-        self.slots.raise(slot, flag::NEW);
-        self.touch(slot);
-        self.slots.id(slot)
+        self.slots.raise(seat, flag::NEW);
+        self.touch(seat);
+        self.slots.id(seat)
     }
 
     /// Puts a body's box, which is valid, where it is told.
     #[inline]
-    fn place(&mut self, slot: u32, aabb: &Aabb<D, T>) {
-        let at = slot as usize;
+    fn place(&mut self, seat: u32, aabb: &Aabb<D, T>) {
+        let at = seat as usize;
         match self.options.report {
             Report::Exact => {
                 if self.boxes[at] != *aabb {
                     self.boxes[at] = *aabb;
-                    self.touch(slot);
+                    self.touch(seat);
                 }
             }
             Report::Fat => {
                 let before = core::mem::replace(&mut self.shapes[at], *aabb);
                 if !contains(&self.boxes[at], aabb) {
                     self.boxes[at] = self.options.fatten(aabb, displacement(&before, aabb));
-                    self.touch(slot);
+                    self.touch(seat);
                 }
             }
         }
@@ -347,49 +355,49 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
 
     /// Has the next update look at a body, and the next query too.
     #[inline]
-    fn touch(&mut self, slot: u32) {
-        let flags = &mut self.slots.flags[slot as usize];
+    fn touch(&mut self, seat: u32) {
+        let flags = &mut self.slots.flags[seat as usize];
         if *flags & (flag::CHANGED | flag::KNOWN) != flag::CHANGED {
-            self.changed.push(slot);
+            self.changed.push(seat);
             *flags = (*flags | flag::CHANGED) & !flag::KNOWN;
         }
     }
 
     /// Keeps the filter that the last update knew a body with.
-    fn note_old_filter(&mut self, slot: u32, filter: Filter) {
+    fn note_old_filter(&mut self, seat: u32, filter: Filter) {
         let Updater { old_filters, any_refiltered, .. } = &mut self.updater;
-        self.slots.raise(slot, flag::REFILTERED);
+        self.slots.raise(seat, flag::REFILTERED);
         *any_refiltered = true;
-        if old_filters.len() <= slot as usize {
+        if old_filters.len() <= seat as usize {
             old_filters.resize(self.slots.len(), filter);
         }
-        old_filters[slot as usize] = filter;
+        old_filters[seat as usize] = filter;
     }
 
     /// Notes where a sweep ends.
-    fn sweep_to(&mut self, slot: u32, to: Aabb<D, T>) {
-        if !self.slots.has(slot, flag::SWEPT) {
-            self.slots.raise(slot, flag::SWEPT);
-            self.swept.push(slot);
+    fn sweep_to(&mut self, seat: u32, to: Aabb<D, T>) {
+        if !self.slots.has(seat, flag::SWEPT) {
+            self.slots.raise(seat, flag::SWEPT);
+            self.swept.push(seat);
         }
-        if self.rests.len() <= slot as usize {
+        if self.rests.len() <= seat as usize {
             self.rests.resize(self.slots.len(), to);
         }
-        self.rests[slot as usize] = to;
+        self.rests[seat as usize] = to;
     }
 
     /// Puts swept bodies where their way ended.
     fn settle(&mut self) {
-        while let Some(slot) = self.swept.pop() {
-            if self.slots.has(slot, flag::SWEPT) {
-                self.slots.lower(slot, flag::SWEPT);
-                let to = self.rests[slot as usize];
+        while let Some(seat) = self.swept.pop() {
+            if self.slots.has(seat, flag::SWEPT) {
+                self.slots.lower(seat, flag::SWEPT);
+                let to = self.rests[seat as usize];
                 if self.options.report == Report::Fat {
-                    self.shapes[slot as usize] = to;
-                    self.boxes[slot as usize] = self.options.fatten(&to, [T::default(); D]);
-                    self.touch(slot);
+                    self.shapes[seat as usize] = to;
+                    self.boxes[seat as usize] = self.options.fatten(&to, [T::default(); D]);
+                    self.touch(seat);
                 } else {
-                    self.place(slot, &to);
+                    self.place(seat, &to);
                 }
             }
         }
@@ -409,9 +417,9 @@ fn check_box<const D: usize, T: Scalar>(aabb: &Aabb<D, T>, index: usize) -> Resu
     }
 }
 
-/// Writes to a table by slot, which grows by one where the slot is new.
-fn put<V>(table: &mut Vec<V>, slot: u32, value: V) {
-    match table.get_mut(slot as usize) {
+/// Writes to a table by seat, which grows by one where the seat is new.
+fn put<V>(table: &mut Vec<V>, seat: u32, value: V) {
+    match table.get_mut(seat as usize) {
         Some(place) => *place = value,
         None => table.push(value),
     }

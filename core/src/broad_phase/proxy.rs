@@ -66,55 +66,69 @@ pub(super) mod flag {
     pub const MARKED: u8 = 32;
 }
 
-/// Generations, flags and free slots.
+/// Who is where. A *slot* is what an id names; a *seat* is where what is known of its body stands
+/// in the tables. Seats are dealt anew now and then so that bodies that are near in space are near
+/// in memory; slots stay.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Slots {
+    /// By slot, how many bodies have had it.
     pub generations: Vec<u32>,
+    /// By slot, its seat.
+    pub seats: Vec<u32>,
+    /// By seat, its slot.
+    pub slots: Vec<u32>,
+    /// By seat.
     pub flags: Vec<u8>,
     /// The least free slot is given out first, so which it is follows from which are free.
-    pub free: BinaryHeap<Reverse<u32>>,
+    free: BinaryHeap<Reverse<u32>>,
     pub live: usize,
 }
 
 impl Slots {
-    /// How many slots there are, free ones counted in.
+    /// How many slots there are, free ones counted in; and as many seats.
     #[inline]
     pub fn len(&self) -> usize {
         self.flags.len()
     }
 
     #[inline]
-    pub fn has(&self, slot: u32, flags: u8) -> bool {
-        self.flags[slot as usize] & flags != 0
+    pub fn has(&self, seat: u32, flags: u8) -> bool {
+        self.flags[seat as usize] & flags != 0
     }
 
     #[inline]
-    pub fn raise(&mut self, slot: u32, flags: u8) {
-        self.flags[slot as usize] |= flags;
+    pub fn raise(&mut self, seat: u32, flags: u8) {
+        self.flags[seat as usize] |= flags;
     }
 
     #[inline]
-    pub fn lower(&mut self, slot: u32, flags: u8) {
-        self.flags[slot as usize] &= !flags;
+    pub fn lower(&mut self, seat: u32, flags: u8) {
+        self.flags[seat as usize] &= !flags;
     }
 
     /// The id of the body that is, or was last, in a slot.
     #[inline]
-    pub fn id(&self, slot: u32) -> ProxyId {
+    pub fn id_of_slot(&self, slot: u32) -> ProxyId {
         ProxyId { slot, generation: self.generations[slot as usize] }
     }
 
-    /// The slot of a living body.
+    /// The id of the body that has, or had last, a seat.
     #[inline]
-    pub fn find(&self, id: ProxyId) -> Option<u32> {
-        let index = id.slot as usize;
-        let lives = index < self.flags.len()
-            && self.generations[index] == id.generation
-            && self.flags[index] & flag::LIVE != 0;
-        lives.then_some(id.slot)
+    pub fn id(&self, seat: u32) -> ProxyId {
+        self.id_of_slot(self.slots[seat as usize])
     }
 
-    /// The slot of the id at `index` of what was passed.
+    /// The seat of a living body.
+    #[inline]
+    pub fn find(&self, id: ProxyId) -> Option<u32> {
+        let slot = id.slot as usize;
+        if *self.generations.get(slot)? != id.generation {
+            return None;
+        }
+        Some(self.seats[slot]).filter(|&seat| self.has(seat, flag::LIVE))
+    }
+
+    /// The seat of the body of the id at `index` of what was passed.
     #[inline]
     pub fn check(&self, id: ProxyId, index: usize) -> Result<u32, Error> {
         self.find(id).ok_or(Error::StaleProxy { index })
@@ -127,33 +141,51 @@ impl Slots {
         if total > Error::BOX_LIMIT { Err(Error::TooManyBoxes { count: total }) } else { Ok(()) }
     }
 
-    /// A slot for a new body; `slot == len - 1` afterwards if none was free.
+    /// The seat for a new body; the last one if no slot was free.
     pub fn take(&mut self) -> u32 {
-        self.live += 1;
-        if let Some(Reverse(slot)) = self.free.pop() {
+        let seat = if let Some(Reverse(slot)) = self.free.pop() {
             self.generations[slot as usize] += 1;
-            self.flags[slot as usize] = flag::LIVE;
-            slot
+            self.seats[slot as usize]
         } else {
-            self.generations.push(1);
-            self.flags.push(flag::LIVE);
-            (self.len() - 1) as u32
-        }
+            self.add(1)
+        };
+        self.live += 1;
+        self.flags[seat as usize] = flag::LIVE;
+        seat
+    }
+
+    /// Adds a slot that is not in use, with the last seat.
+    pub fn add(&mut self, generation: u32) -> u32 {
+        let slot = self.len() as u32;
+        self.generations.push(generation);
+        self.seats.push(slot);
+        self.slots.push(slot);
+        self.flags.push(0);
+        slot
     }
 
     /// Ends a body's life; its slot stays taken until [`release`](Self::release).
-    pub fn retire(&mut self, slot: u32) {
+    pub fn retire(&mut self, seat: u32) {
         self.live -= 1;
-        self.lower(slot, flag::LIVE | flag::SWEPT);
-        self.raise(slot, flag::LEAVING);
+        self.lower(seat, flag::LIVE | flag::SWEPT);
+        self.raise(seat, flag::LEAVING);
     }
 
-    /// Makes the slot of a retired body free. A slot whose generations are used up stays out of
-    /// use.
-    pub fn release(&mut self, slot: u32) {
-        self.flags[slot as usize] = 0;
+    /// Makes the slot of a body that is no more free. A slot whose generations are used up stays
+    /// out of use.
+    pub fn release(&mut self, seat: u32) {
+        self.flags[seat as usize] = 0;
+        let slot = self.slots[seat as usize];
         if self.generations[slot as usize] < u32::MAX {
             self.free.push(Reverse(slot));
+        }
+    }
+
+    /// Turns pairs of seats into pairs of slots, smaller first.
+    pub fn name_pairs(&self, pairs: &mut [[u32; 2]]) {
+        for pair in pairs {
+            let [a, b] = pair.map(|seat| self.slots[seat as usize]);
+            *pair = [a.min(b), a.max(b)];
         }
     }
 }

@@ -341,7 +341,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
             let neighbours: Vec<_> = sorted
                 .drain(..)
                 .map(|(bits, slot)| Neighbour {
-                    id: self.world.slots.id(slot),
+                    id: self.world.slots.id_of_slot(slot),
                     distance_squared: f64::from_bits(bits),
                 })
                 .collect();
@@ -396,9 +396,9 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     }
 
     /// Whether a body is there, which the tree alone does not say, and not filtered out.
-    fn sees(&self, slot: u32) -> bool {
-        self.world.slots.has(slot, flag::LIVE)
-            && self.filter.allows(&self.world.filters[slot as usize])
+    fn sees(&self, seat: u32) -> bool {
+        self.world.slots.has(seat, flag::LIVE)
+            && self.filter.allows(&self.world.filters[seat as usize])
     }
 }
 
@@ -420,9 +420,9 @@ where
         (self.is_near)(bounds).then_some(0.0)
     }
 
-    fn visit(&mut self, slot: u32) -> ControlFlow<()> {
-        if (self.is_near)(self.queries.world.shape(slot)) && self.queries.sees(slot) {
-            (self.visit)(self.queries.world.slots.id(slot))?;
+    fn visit(&mut self, seat: u32) -> ControlFlow<()> {
+        if (self.is_near)(self.queries.world.shape(seat)) && self.queries.sees(seat) {
+            (self.visit)(self.queries.world.slots.id(seat))?;
         }
         ControlFlow::Continue(())
     }
@@ -446,11 +446,11 @@ where
         self.cast.touches(bounds, self.limit)
     }
 
-    fn visit(&mut self, slot: u32) -> ControlFlow<()> {
-        if let Some(at) = self.cast.touches(self.queries.world.shape(slot), self.limit)
-            && self.queries.sees(slot)
+    fn visit(&mut self, seat: u32) -> ControlFlow<()> {
+        if let Some(at) = self.cast.touches(self.queries.world.shape(seat), self.limit)
+            && self.queries.sees(seat)
         {
-            let limit = (self.visit)(Hit { id: self.queries.world.slots.id(slot), at });
+            let limit = (self.visit)(Hit { id: self.queries.world.slots.id(seat), at });
             self.limit = self.limit.min(match limit {
                 ControlFlow::Continue(limit) => limit,
                 ControlFlow::Break(()) => return ControlFlow::Break(()),
@@ -477,9 +477,10 @@ impl<const D: usize, T: Scalar> Search<D, T> for Nearest<'_, D, T> {
         farthest.is_none_or(|&(bits, _)| distance.to_bits() <= bits).then_some(distance)
     }
 
-    fn visit(&mut self, slot: u32) -> ControlFlow<()> {
-        if self.queries.sees(slot) {
-            let aabb = self.queries.world.shape(slot);
+    fn visit(&mut self, seat: u32) -> ControlFlow<()> {
+        if self.queries.sees(seat) {
+            let aabb = self.queries.world.shape(seat);
+            let slot = self.queries.world.slots.slots[seat as usize];
             self.nearest.push((distance_squared(&self.point, aabb).to_bits(), slot));
             if self.nearest.len() > self.k {
                 self.nearest.pop();

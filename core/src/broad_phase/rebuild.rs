@@ -4,49 +4,60 @@ use super::BroadPhase;
 use super::filter::Filter;
 use super::options::hull;
 use super::proxy::flag;
-use super::update::overlap;
+use super::update::{overlap, push_wanted};
 use super::updater::{Scratch, Updater};
 use crate::Scalar;
 
 impl<const D: usize, T: Scalar> BroadPhase<D, T> {
-    /// Reports what begins and ends, given who changed, escaped and left.
-    pub(super) fn rebuild(&mut self) {
+    /// Reports what begins and ends, given who changed, escaped and left. Says whether seats
+    /// should be dealt anew.
+    pub(super) fn rebuild(&mut self) -> bool {
         let has_same_bodies = self.leaving.is_empty() && !self.updater.any_refiltered;
-        let is_new = |slot: &u32| self.slots.has(*slot, flag::NEW);
-        let has_new = self.updater.scratch.escaped.iter().any(is_new);
+        let is_new = |seat: &u32| self.slots.has(*seat, flag::NEW);
+        let new = self.updater.scratch.escaped.iter().filter(|seat| is_new(seat)).count();
 
         let Updater { candidates, ended, .. } = &mut self.updater;
-        for pair in candidates.live_pairs() {
-            let [a, b] = pair.map(|slot| slot as usize);
-            let may_go_on = has_same_bodies
-                || self.slots.flags[a] & self.slots.flags[b] & flag::LIVE != 0
-                    && self.filters[a].allows(&self.filters[b]);
-            if !(may_go_on && overlap(&self.boxes[a], &self.boxes[b])) {
-                ended.push(pair);
-            }
+        let (flags, boxes, filters) = (&self.slots.flags, &self.boxes, &self.filters);
+        push_wanted(ended, &candidates.pairs, |index, [a, b]| {
+            let is_apart = !overlap(&boxes[a as usize], &boxes[b as usize]);
+            ([a, b], candidates.live[index] & is_apart)
+        });
+        if !has_same_bodies {
+            // The boxes alone do not say what ends.
+            ended.clear();
+            ended.extend(candidates.live_pairs().filter(|pair| {
+                let [a, b] = pair.map(|seat| seat as usize);
+                flags[a] & flags[b] & flag::LIVE == 0
+                    || !filters[a].allows(&filters[b])
+                    || !overlap(&boxes[a], &boxes[b])
+            }));
         }
 
-        self.fatten_all();
+        let are_fat = self.fatten_all();
         self.find_candidates(|flags| flags & flag::LIVE != 0);
-        let filters = &self.filters;
-        self.updater
-            .candidates
-            .pairs
-            .retain(|&[a, b]| filters[a as usize].allows(&filters[b as usize]));
+        if self.any_filter {
+            let filters = &self.filters;
+            let is_allowed = |[a, b]: &[u32; 2]| filters[*a as usize].allows(&filters[*b as usize]);
+            self.updater.candidates.pairs.retain(is_allowed);
+        }
 
         let mut begun = core::mem::take(&mut self.updater.begun);
         let Updater { candidates, previous, .. } = &mut self.updater;
-        candidates.live.clear();
-        for pair in &candidates.pairs {
-            let [a, b] = pair.map(|slot| slot as usize);
-            let is_live = overlap(&self.boxes[a], &self.boxes[b]);
-            candidates.live.push(is_live);
-            if is_live && !overlap(&previous[a], &previous[b]) {
-                begun.push(*pair);
-            }
+        let (pairs, live) = (&candidates.pairs, &mut candidates.live);
+        live.resize(pairs.len(), true);
+        if are_fat {
+            push_wanted(&mut begun, pairs, |index, [a, b]| {
+                let (first, second) = (a as usize, b as usize);
+                live[index] = overlap(&self.boxes[first], &self.boxes[second]);
+                ([a, b], live[index] & !overlap(&previous[first], &previous[second]))
+            });
+        } else {
+            push_wanted(&mut begun, pairs, |_, [a, b]| {
+                ([a, b], !overlap(&previous[a as usize], &previous[b as usize]))
+            });
         }
-        if has_new || !has_same_bodies {
-            // The boxes alone do not say what was live.
+        if new > 0 || !has_same_bodies {
+            // Nor what began.
             begun.clear();
             begun.extend(
                 self.updater.candidates.live_pairs().filter(|&[a, b]| !self.was_live(a, b)),
@@ -54,27 +65,36 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         }
         self.updater.begun = begun;
         self.age_tree();
+        self.wear_seating(self.updater.scratch.escaped.len(), new)
     }
 
-    /// Gives all bodies new fat boxes; the fat box of a body that rests is its own.
-    fn fatten_all(&mut self) {
+    /// Gives all bodies new fat boxes; the fat box of a body that rests is its own. Says whether
+    /// any is larger.
+    fn fatten_all(&mut self) -> bool {
         let Updater { fat, previous, prediction, .. } = &mut self.updater;
-        fat.copy_from_slice(&self.boxes);
-        let known = |slot: &&u32| !self.slots.has(**slot, flag::NEW);
-        prediction.look(self.changed.iter().filter(known).map(|&slot| {
-            let at = slot as usize;
-            (&previous[at], &self.boxes[at])
+        prediction.look(self.changed.iter().map(|&seat| {
+            let at = seat as usize;
+            // Of a body that is new this is no motion.
+            let before = if self.slots.has(seat, flag::NEW) { &self.boxes } else { &*previous };
+            (&before[at], &self.boxes[at])
         }));
-        for &slot in self.changed.iter().filter(known) {
-            let at = slot as usize;
-            fat[at] = prediction.together(&previous[at], &self.boxes[at], &self.options);
+        fat.copy_from_slice(&self.boxes);
+        let are_fat = prediction.reaches() || self.options.margin > T::default();
+        if are_fat {
+            for &seat in &self.changed {
+                let at = seat as usize;
+                if !self.slots.has(seat, flag::NEW) {
+                    fat[at] = prediction.together(&previous[at], &self.boxes[at], &self.options);
+                }
+            }
         }
+        are_fat
     }
 
-    /// Replaces the candidates by all pairs of fat boxes of the slots with such flags.
+    /// Replaces the candidates by all pairs of fat boxes of the seats with such flags.
     fn find_candidates(&mut self, takes_part: impl Fn(u8) -> bool) {
         let Updater { fat, candidates, scratch, .. } = &mut self.updater;
-        let Scratch { finder, boxes, slots, .. } = scratch;
+        let Scratch { finder, boxes, seats, .. } = scratch;
         candidates.clear();
         let flags = &self.slots.flags;
         // Boxes were checked when they came and fat boxes are no worse: the finder takes them.
@@ -82,12 +102,12 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             candidates.pairs.extend_from_slice(finder.find(fat).unwrap_or_default());
             return;
         }
-        slots.clear();
-        slots.extend((0..flags.len() as u32).filter(|&slot| takes_part(flags[slot as usize])));
+        seats.clear();
+        seats.extend((0..flags.len() as u32).filter(|&seat| takes_part(flags[seat as usize])));
         boxes.clear();
-        boxes.extend(slots.iter().map(|&slot| fat[slot as usize]));
+        boxes.extend(seats.iter().map(|&seat| fat[seat as usize]));
         let pairs = finder.find(boxes).unwrap_or_default();
-        candidates.pairs.extend(pairs.iter().map(|pair| pair.map(|index| slots[index as usize])));
+        candidates.pairs.extend(pairs.iter().map(|pair| pair.map(|index| seats[index as usize])));
     }
 
     /// Whether a pair was live at the last update.
@@ -100,22 +120,22 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     }
 
     /// The filter of a body at the last update.
-    pub(super) fn old_filter(&self, slot: u32) -> &Filter {
-        if self.slots.has(slot, flag::REFILTERED) {
-            &self.updater.old_filters[slot as usize]
+    pub(super) fn old_filter(&self, seat: u32) -> &Filter {
+        if self.slots.has(seat, flag::REFILTERED) {
+            &self.updater.old_filters[seat as usize]
         } else {
-            &self.filters[slot as usize]
+            &self.filters[seat as usize]
         }
     }
 
     /// Makes up what follows from the world of the last update, which was read from a snapshot.
     pub(super) fn restore_candidates(&mut self) {
         let Updater { fat, previous, .. } = &mut self.updater;
-        for slot in 0..self.slots.len() {
-            let is_live = self.slots.flags[slot] & flag::LIVE != 0;
-            fat[slot] = previous[slot];
+        for seat in 0..self.slots.len() {
+            let is_live = self.slots.flags[seat] & flag::LIVE != 0;
+            fat[seat] = previous[seat];
             if is_live {
-                fat[slot] = hull(&previous[slot], &self.boxes[slot]);
+                fat[seat] = hull(&previous[seat], &self.boxes[seat]);
             }
         }
         self.find_candidates(|flags| {

@@ -51,20 +51,20 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         bytes.extend([VERSION, D as u8, T::BYTES as u8, self.options.report as u8]);
         put_scalars(&mut bytes, &[self.options.margin, self.options.prediction]);
         put_number(&mut bytes, self.slots.len() as u64);
-        for slot in 0..self.slots.len() as u32 {
-            self.put_slot(&mut bytes, slot);
+        for &seat in &self.slots.seats {
+            self.put_slot(&mut bytes, seat);
         }
         let sum = hash(&bytes);
         bytes.extend(sum.to_le_bytes());
         bytes
     }
 
-    fn put_slot(&self, bytes: &mut Vec<u8>, slot: u32) {
-        let at = slot as usize;
+    fn put_slot(&self, bytes: &mut Vec<u8>, seat: u32) {
+        let at = seat as usize;
         let flags = self.slots.flags[at];
         let is_known = flags & (flag::LIVE | flag::LEAVING) != 0 && flags & flag::NEW == 0;
         let old_box = Some(&self.updater.previous[at]).filter(|_| is_known);
-        let old_filter = Some(self.old_filter(slot)).filter(|_| is_known);
+        let old_filter = Some(self.old_filter(seat)).filter(|_| is_known);
         // A body that left is only what it was at the last update.
         let is_live = flags & flag::LIVE != 0;
         let (filter, old_box, old_filter) = if is_live {
@@ -85,9 +85,9 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
                 | bit(old_box.is_some(), holds::OLD_BOX)
                 | bit(old_filter.is_some(), holds::OLD_FILTER),
         );
-        put_number(bytes, u64::from(self.slots.generations[at]));
+        put_number(bytes, u64::from(self.slots.id(seat).generation()));
         if is_live {
-            put_box(bytes, self.shape(slot));
+            put_box(bytes, self.shape(seat));
             if self.options.report == Report::Fat {
                 put_box(bytes, &self.boxes[at]);
             }
@@ -112,7 +112,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     }
 
     /// Reads the next slot into a world that holds those before it.
-    fn read_slot(&mut self, slot: u32, reader: &mut Reader) -> Result<(), SnapshotFault> {
+    fn read_slot(&mut self, reader: &mut Reader) -> Result<(), SnapshotFault> {
         let [held] = reader.take()?;
         let has = |bits: u8| held & bits != 0;
         let generation = u32::try_from(reader.number()?).map_err(|_| SnapshotFault::Corrupt)?;
@@ -131,11 +131,10 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         }
         let nothing = Aabb::new([T::default(); D], [T::default(); D]);
         let (mut shape, mut boxed) = (nothing, nothing);
-        self.slots.generations.push(generation);
-        self.slots.flags.push(0);
+        let seat = self.slots.add(generation);
         if is_live {
             self.slots.live += 1;
-            self.slots.raise(slot, flag::LIVE);
+            self.slots.raise(seat, flag::LIVE);
             shape = reader.aabb()?;
             boxed = if self.options.report == Report::Fat { reader.aabb()? } else { shape };
             if !contains(&boxed, &shape) {
@@ -143,31 +142,32 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             }
             if has(holds::SWEEP) {
                 let to = reader.aabb()?;
-                self.sweep_to(slot, to);
+                self.sweep_to(seat, to);
             }
         } else if has(holds::LEAVING) {
-            self.slots.raise(slot, flag::LEAVING);
-            self.leaving.push(slot);
+            self.slots.raise(seat, flag::LEAVING);
+            self.leaving.push(seat);
         } else {
-            self.slots.release(slot);
+            self.slots.release(seat);
         }
         let filter = if has(holds::FILTER) { reader.filter()? } else { Filter::default() };
         let old_box = if has(holds::OLD_BOX) { reader.aabb()? } else { boxed };
         self.boxes.push(boxed);
         self.filters.push(filter);
+        self.any_filter |= filter != Filter::default();
         if self.options.report == Report::Fat {
             self.shapes.push(shape);
         }
-        self.updater.add_slot(old_box);
+        self.updater.add_seat(old_box);
         if has(holds::NEW) {
-            self.slots.raise(slot, flag::NEW);
+            self.slots.raise(seat, flag::NEW);
         }
         if has(holds::OLD_FILTER) {
             let old = reader.filter()?;
-            self.note_old_filter(slot, old);
+            self.note_old_filter(seat, old);
         }
         if is_live && has(holds::NEW | holds::OLD_BOX | holds::OLD_FILTER) {
-            self.touch(slot);
+            self.touch(seat);
         }
         Ok(())
     }
@@ -201,8 +201,8 @@ fn read<const D: usize, T: Scalar>(bytes: &[u8]) -> Result<BroadPhase<D, T>, Sna
     let mut world = BroadPhase::with_options(options).map_err(|_| SnapshotFault::Corrupt)?;
     let count = reader.number()?;
     let count = u32::try_from(count).map_err(|_| SnapshotFault::Corrupt)?;
-    for slot in 0..count {
-        world.read_slot(slot, &mut reader)?;
+    for _ in 0..count {
+        world.read_slot(&mut reader)?;
     }
     let sum = hash(&bytes[..bytes.len() - reader.bytes.len()]);
     if reader.take()? != sum.to_le_bytes() || !reader.bytes.is_empty() {

@@ -24,8 +24,8 @@ pub(super) trait Search<const D: usize, T> {
     /// How near the nearest body in `bounds` may be; `None` if none in there can matter.
     fn bound(&self, bounds: &Aabb<D, T>) -> Option<f64>;
 
-    /// Looks at the body in a slot.
-    fn visit(&mut self, slot: u32) -> ControlFlow<()>;
+    /// Looks at the body in a seat.
+    fn visit(&mut self, seat: u32) -> ControlFlow<()>;
 }
 
 /// Up to 16 boxes, each of a child node or of a body.
@@ -33,7 +33,7 @@ pub(super) trait Search<const D: usize, T> {
 struct Node<const D: usize, T> {
     min: [[T; FAN]; D],
     max: [[T; FAN]; D],
-    /// Slots in a leaf, else nodes.
+    /// Seats in a leaf, else nodes.
     items: [u32; FAN],
     count: usize,
     parent: u32,
@@ -81,16 +81,42 @@ impl<const D: usize, T: Scalar> Node<D, T> {
     }
 
     /// The smallest box that holds all.
+    #[inline]
     fn bounds(&self) -> Aabb<D, T> {
         let mut bounds = self.aabb(0);
         for axis in 0..D {
-            for lane in 1..self.count {
-                let (min, max) = (self.min[axis][lane], self.max[axis][lane]);
-                bounds.min[axis] = if min < bounds.min[axis] { min } else { bounds.min[axis] };
-                bounds.max[axis] = if max > bounds.max[axis] { max } else { bounds.max[axis] };
+            let (mut least, mut most) = (bounds.min[axis], bounds.max[axis]);
+            for &min in &self.min[axis][..self.count] {
+                least = if min < least { min } else { least };
             }
+            for &max in &self.max[axis][..self.count] {
+                most = if max > most { max } else { most };
+            }
+            (bounds.min[axis], bounds.max[axis]) = (least, most);
         }
         bounds
+    }
+
+    /// The box that has to grow least to take in another; of several the smallest.
+    fn cheapest(&self, aabb: &Aabb<D, T>) -> usize {
+        let (mut growth, mut before) = ([T::default(); FAN], [T::default(); FAN]);
+        for axis in 0..D {
+            let (min, max) = (aabb.min[axis], aabb.max[axis]);
+            for lane in 0..FAN {
+                let (low, high) = (self.min[axis][lane], self.max[axis][lane]);
+                let (down, up) = (low - min, max - high);
+                let zero = T::default();
+                let grown = if down > zero { down } else { zero };
+                growth[lane] = growth[lane] + grown + if up > zero { up } else { zero };
+                before[lane] = before[lane] + (high - low);
+            }
+        }
+        // With infinite boxes some of these are NaN, which is never less.
+        (1..self.count).fold(0, |best, lane| {
+            let is_less = growth[lane] < growth[best]
+                || growth[lane] == growth[best] && before[lane] < before[best];
+            if is_less { lane } else { best }
+        })
     }
 
     /// A bit for each box that overlaps `area`.
@@ -108,13 +134,13 @@ impl<const D: usize, T: Scalar> Node<D, T> {
     }
 }
 
-/// The tree, by slots. Bodies' boxes may be larger than the bodies.
+/// The tree, by seats. Bodies' boxes may be larger than the bodies.
 #[derive(Clone, Debug)]
 pub(super) struct Tree<const D: usize, T> {
     nodes: Vec<Node<D, T>>,
     free: Vec<u32>,
     root: u32,
-    /// By slot, its leaf.
+    /// By seat, its leaf.
     leaves: Vec<u32>,
     count: usize,
     /// The size of the leaves as built, and the number of bodies then.
@@ -146,23 +172,23 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         self.count = 0;
     }
 
-    pub fn holds(&self, slot: u32) -> bool {
-        self.leaves.get(slot as usize).is_some_and(|&leaf| leaf != NONE)
+    pub fn holds(&self, seat: u32) -> bool {
+        self.leaves.get(seat as usize).is_some_and(|&leaf| leaf != NONE)
     }
 
-    /// Builds the tree anew of these slots, which it puts into another order. O(n log n) time.
-    pub fn build(&mut self, slots: &mut [u32], boxes: &[Aabb<D, T>]) {
+    /// Builds the tree anew of these seats, which it puts into another order. O(n log n) time.
+    pub fn build(&mut self, seats: &mut [u32], boxes: &[Aabb<D, T>]) {
         self.clear();
         self.leaves.resize(boxes.len(), NONE);
-        self.count = slots.len();
-        let class = |slot: u32| size_class(&boxes[slot as usize]);
-        slots.sort_unstable_by_key(|&slot| (class(slot), slot));
+        self.count = seats.len();
+        let class = |seat: u32| size_class(&boxes[seat as usize]);
+        seats.sort_unstable_by_key(|&seat| (class(seat), seat));
         let mut roots: Vec<(u32, Aabb<D, T>)> = Vec::new();
-        let mut rest = &mut *slots;
+        let mut rest = &mut *seats;
         while let Some(&first) = rest.first() {
             // Where there are more classes than a node has room for, the last holds the others.
             let is_last = roots.len() == FAN - 1;
-            let end = rest.partition_point(|&slot| is_last || class(slot) == class(first));
+            let end = rest.partition_point(|&seat| is_last || class(seat) == class(first));
             let (now, later) = rest.split_at_mut(end);
             let leaves = now.len().div_ceil(FILL);
             roots.push(self.build_node(now, boxes, leaves));
@@ -176,18 +202,18 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         self.built = (self.leaf_size(), self.count);
     }
 
-    /// A node over slots that go into `leaves` leaves, and its bounds.
+    /// A node over seats that go into `leaves` leaves, and its bounds.
     fn build_node(
         &mut self,
-        slots: &mut [u32],
+        seats: &mut [u32],
         boxes: &[Aabb<D, T>],
         leaves: usize,
     ) -> (u32, Aabb<D, T>) {
         if leaves <= 1 {
             let mut leaf = Node::new(true);
-            for &slot in slots.iter() {
-                leaf.push(slot, &boxes[slot as usize]);
-                self.leaves[slot as usize] = self.nodes.len() as u32;
+            for &seat in seats.iter() {
+                leaf.push(seat, &boxes[seat as usize]);
+                self.leaves[seat as usize] = self.nodes.len() as u32;
             }
             self.nodes.push(leaf);
             return ((self.nodes.len() - 1) as u32, leaf.bounds());
@@ -198,15 +224,15 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
             room *= FAN;
         }
         let mut children = Vec::with_capacity(FAN);
-        self.build_children(slots, boxes, leaves, room, &mut children);
+        self.build_children(seats, boxes, leaves, room, &mut children);
         let bounds = children[1..].iter().fold(children[0].1, |all, child| hull(&all, &child.1));
         (self.add_inner(&children), bounds)
     }
 
-    /// Cuts slots in two until what is left goes into a child of `room` leaves.
+    /// Cuts seats in two until what is left goes into a child of `room` leaves.
     fn build_children(
         &mut self,
-        slots: &mut [u32],
+        seats: &mut [u32],
         boxes: &[Aabb<D, T>],
         leaves: usize,
         room: usize,
@@ -214,15 +240,15 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
     ) {
         let count = leaves.div_ceil(room);
         if count <= 1 {
-            children.push(self.build_node(slots, boxes, leaves));
+            children.push(self.build_node(seats, boxes, leaves));
             return;
         }
         let left = (leaves * (count / 2)).div_ceil(count);
-        let middle = slots.len() * left / leaves;
-        let axis = widest_axis(slots, boxes);
-        let centre = |slot: &u32| boxes[*slot as usize].centre(axis);
-        slots.select_nth_unstable_by(middle, |a, b| centre(a).total_cmp(&centre(b)).then(a.cmp(b)));
-        let (low, high) = slots.split_at_mut(middle);
+        let middle = seats.len() * left / leaves;
+        let axis = widest_axis(seats, boxes);
+        let centre = |seat: &u32| boxes[*seat as usize].centre(axis);
+        seats.select_nth_unstable_by(middle, |a, b| centre(a).total_cmp(&centre(b)).then(a.cmp(b)));
+        let (low, high) = seats.split_at_mut(middle);
         self.build_children(low, boxes, left, room, children);
         self.build_children(high, boxes, leaves - left, room, children);
     }
@@ -249,14 +275,15 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         }
     }
 
-    /// Takes over new boxes of all bodies. Says whether the tree has become much worse than it
-    /// was when built. O(n) time.
-    pub fn refit(&mut self, boxes: &[Aabb<D, T>]) -> bool {
+    /// Takes over new boxes of all bodies. Returns how many times as large as when built the
+    /// leaves are in the mean. O(n) time.
+    pub fn refit(&mut self, boxes: &[Aabb<D, T>]) -> f64 {
         if self.root != NONE {
             self.refit_node(self.root, boxes);
         }
         let (size, count) = self.built;
-        self.leaf_size() * (count as f64) > 1.5 * size * self.count as f64
+        let (size, now) = (size / count as f64, self.leaf_size() / self.count as f64);
+        if now > size { now / size } else { 1.0 }
     }
 
     fn refit_node(&mut self, index: u32, boxes: &[Aabb<D, T>]) -> Aabb<D, T> {
@@ -276,28 +303,44 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         leaves.map(|leaf| size(&leaf.bounds())).sum()
     }
 
+    /// Gives the bodies other seats. O(n) time.
+    pub fn rename(&mut self, renamed: &[u32]) {
+        self.leaves.clear();
+        self.leaves.resize(renamed.len(), NONE);
+        for (index, node) in self.nodes.iter_mut().enumerate().filter(|(_, node)| node.is_leaf) {
+            for seat in &mut node.items[..node.count] {
+                *seat = renamed[*seat as usize];
+                self.leaves[*seat as usize] = index as u32;
+            }
+        }
+    }
+
     /// Adds a body. O(log n) time.
-    pub fn insert(&mut self, slot: u32, aabb: &Aabb<D, T>) {
-        if self.leaves.len() <= slot as usize {
-            self.leaves.resize(slot as usize + 1, NONE);
+    pub fn insert(&mut self, seat: u32, aabb: &Aabb<D, T>) {
+        if self.leaves.len() <= seat as usize {
+            self.leaves.resize(seat as usize + 1, NONE);
         }
         self.count += 1;
         if self.root == NONE {
             self.root = self.add_node(Node::new(true));
         }
-        let mut index = self.root;
+        self.insert_below(self.root, seat, aabb);
+    }
+
+    /// Adds a body somewhere below a node whose own box need not grow for it.
+    fn insert_below(&mut self, mut index: u32, seat: u32, aabb: &Aabb<D, T>) {
         loop {
             let node = &mut self.nodes[index as usize];
             if node.is_leaf {
                 break;
             }
-            let lane = cheapest_lane(node, aabb);
+            let lane = node.cheapest(aabb);
             let grown = hull(&node.aabb(lane), aabb);
             node.set_aabb(lane, &grown);
             index = node.items[lane];
         }
-        self.leaves[slot as usize] = index;
-        self.push(index, slot, aabb);
+        self.leaves[seat as usize] = index;
+        self.push(index, seat, aabb);
     }
 
     /// Adds a box to a node; a full one splits.
@@ -331,14 +374,14 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
     }
 
     /// Removes a body, if it is there. O(log n) time.
-    pub fn remove(&mut self, slot: u32) {
-        if !self.holds(slot) {
+    pub fn remove(&mut self, seat: u32) {
+        if !self.holds(seat) {
             return;
         }
-        let index = core::mem::replace(&mut self.leaves[slot as usize], NONE);
+        let index = core::mem::replace(&mut self.leaves[seat as usize], NONE);
         self.count -= 1;
         let leaf = &mut self.nodes[index as usize];
-        leaf.swap_remove(leaf.lane_of(slot));
+        leaf.swap_remove(leaf.lane_of(seat));
         if leaf.count >= LEAST || leaf.parent == NONE && leaf.count > 0 {
             self.tighten(index);
             return;
@@ -389,25 +432,43 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
     }
 
     /// Gives a body its new box; adds it if it is not there. O(log n) time.
-    pub fn set(&mut self, slot: u32, aabb: &Aabb<D, T>) {
-        if !self.holds(slot) {
-            self.insert(slot, aabb);
+    pub fn set(&mut self, seat: u32, aabb: &Aabb<D, T>) {
+        if !self.holds(seat) {
+            self.insert(seat, aabb);
             return;
         }
-        let index = self.leaves[slot as usize];
+        let index = self.leaves[seat as usize];
+        let fits = self.fits(index, aabb);
         let leaf = &mut self.nodes[index as usize];
-        let parent = leaf.parent;
-        let lane = leaf.lane_of(slot);
-        if parent != NONE {
-            let above = &self.nodes[parent as usize];
-            if !contains(&above.aabb(above.lane_of(index)), aabb) {
-                self.remove(slot);
-                self.insert(slot, aabb);
-                return;
-            }
+        let lane = leaf.lane_of(seat);
+        if fits {
+            leaf.set_aabb(lane, aabb);
+            self.tighten(index);
+            return;
         }
-        self.nodes[index as usize].set_aabb(lane, aabb);
+        if leaf.count <= LEAST {
+            self.remove(seat);
+            self.insert(seat, aabb);
+            return;
+        }
+        // It leaves for another leaf, which most often is near.
+        leaf.swap_remove(lane);
+        let mut above = leaf.parent;
+        while !self.fits(above, aabb) {
+            above = self.nodes[above as usize].parent;
+        }
+        self.insert_below(above, seat, aabb);
         self.tighten(index);
+    }
+
+    /// Whether a box does not reach beyond the box of a node. The root has none.
+    fn fits(&self, index: u32, aabb: &Aabb<D, T>) -> bool {
+        let parent = self.nodes[index as usize].parent;
+        if parent == NONE {
+            return true;
+        }
+        let above = &self.nodes[parent as usize];
+        contains(&above.aabb(above.lane_of(index)), aabb)
     }
 
     /// Shows all bodies whose box overlaps `area`.
@@ -494,12 +555,12 @@ fn size_class<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> u32 {
 }
 
 /// The axis on which the centres spread most for the size of the boxes.
-fn widest_axis<const D: usize, T: Scalar>(slots: &[u32], boxes: &[Aabb<D, T>]) -> usize {
+fn widest_axis<const D: usize, T: Scalar>(seats: &[u32], boxes: &[Aabb<D, T>]) -> usize {
     let mut best = (0, -1.0, 0.0);
     for axis in 0..D {
         let (mut low, mut high, mut width) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
-        for &slot in slots {
-            let aabb = &boxes[slot as usize];
+        for &seat in seats {
+            let aabb = &boxes[seat as usize];
             let centre = aabb.centre(axis);
             low = low.min(centre);
             high = high.max(centre);
@@ -509,20 +570,6 @@ fn widest_axis<const D: usize, T: Scalar>(slots: &[u32], boxes: &[Aabb<D, T>]) -
         let ratio = if spread > 0.0 { spread / width } else { 0.0 };
         if ratio > best.1 || ratio == best.1 && spread > best.2 {
             best = (axis, ratio, spread);
-        }
-    }
-    best.0
-}
-
-/// The child that has to grow least to take in a box; of several the smallest.
-fn cheapest_lane<const D: usize, T: Scalar>(node: &Node<D, T>, aabb: &Aabb<D, T>) -> usize {
-    let mut best = (0, f64::INFINITY, f64::INFINITY);
-    for lane in 0..node.count {
-        let bounds = node.aabb(lane);
-        let before = size(&bounds);
-        let growth = size(&hull(&bounds, aabb)) - before;
-        if growth < best.1 || growth == best.1 && before < best.2 {
-            best = (lane, growth, before);
         }
     }
     best.0

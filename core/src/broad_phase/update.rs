@@ -24,6 +24,9 @@ use crate::{Aabb, Scalar};
 /// bodies anew.
 const REBUILD: usize = 6;
 
+/// To look at a body out of order takes as long as to pass over so many in order.
+const SOME: usize = 16;
+
 impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Reports the pairs that began and ended since the last update.
     ///
@@ -34,16 +37,22 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         self.updater.ended.clear();
         self.find_escaped();
         let moves = self.updater.scratch.escaped.len() + self.leaving.len();
+        let mut is_worn = false;
         if moves * REBUILD > self.len() {
-            self.rebuild();
+            is_worn = self.rebuild();
         } else {
             self.follow();
         }
         let slots = self.slots.len();
         let Updater { scratch, begun, ended, .. } = &mut self.updater;
-        scratch.sorter.sort(begun, slots);
-        scratch.sorter.sort(ended, slots);
+        for pairs in [begun, ended] {
+            self.slots.name_pairs(pairs);
+            scratch.sorter.sort(pairs, slots);
+        }
         self.end_update();
+        if is_worn {
+            self.deal_seats();
+        }
         let Updater { begun, ended, .. } = &self.updater;
         Changes { slots: &self.slots, begun, ended }
     }
@@ -53,15 +62,22 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     fn find_escaped(&mut self) {
         let Updater { fat, scratch, .. } = &mut self.updater;
         scratch.escaped.clear();
-        let (slots, boxes) = (&mut self.slots, &self.boxes);
-        self.changed.retain(|&slot| {
-            let flags = slots.flags[slot as usize];
-            slots.lower(slot, flag::CHANGED | flag::KNOWN);
-            let is_first = flags & flag::CHANGED != 0 && flags & flag::LIVE != 0;
-            let is_irregular = flags & (flag::NEW | flag::REFILTERED) != 0;
-            let at = slot as usize;
+        if self.changed.len() * SOME > self.slots.len() {
+            // In the order of the seats, which is faster than that of the calls.
+            self.changed.clear();
+            push_wanted(&mut self.changed, &self.slots.flags, |seat, flags| {
+                (seat as u32, flags & flag::CHANGED != 0)
+            });
+        }
+        let (flags, boxes) = (&mut self.slots.flags, &self.boxes);
+        self.changed.retain(|&seat| {
+            let at = seat as usize;
+            let was = flags[at];
+            flags[at] &= !(flag::CHANGED | flag::KNOWN);
+            let is_first = was & (flag::CHANGED | flag::LIVE) == flag::CHANGED | flag::LIVE;
+            let is_irregular = was & (flag::NEW | flag::REFILTERED) != 0;
             if is_first && (is_irregular || !contains(&fat[at], &boxes[at])) {
-                scratch.escaped.push(slot);
+                scratch.escaped.push(seat);
             }
             is_first
         });
@@ -70,17 +86,17 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Makes the world of now the world of the last update.
     fn end_update(&mut self) {
         let Updater { previous, tree_state, any_refiltered, .. } = &mut self.updater;
-        for &slot in &self.changed {
-            previous[slot as usize] = self.boxes[slot as usize];
-            self.slots.lower(slot, flag::NEW | flag::REFILTERED);
+        for &seat in &self.changed {
+            previous[seat as usize] = self.boxes[seat as usize];
+            self.slots.lower(seat, flag::NEW | flag::REFILTERED);
         }
         self.changed.clear();
         *any_refiltered = false;
         if let TreeState::Fresh { known } = tree_state {
             *known = 0;
         }
-        for slot in self.leaving.drain(..) {
-            self.slots.release(slot);
+        for seat in self.leaving.drain(..) {
+            self.slots.release(seat);
         }
         self.settle();
     }
@@ -88,8 +104,9 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// The pairs that overlapped at the last update, sorted. O(pairs) time.
     pub fn pairs(&self) -> Vec<[ProxyId; 2]> {
         let mut pairs: Vec<_> = self.updater.candidates.live_pairs().collect();
+        self.slots.name_pairs(&mut pairs);
         PairSorter::default().sort(&mut pairs, self.slots.len());
-        pairs.into_iter().map(|pair| pair.map(|slot| self.slots.id(slot))).collect()
+        pairs.into_iter().map(|pair| pair.map(|slot| self.slots.id_of_slot(slot))).collect()
     }
 
     /// The bodies that overlapped this one at the last update, sorted.
@@ -100,13 +117,13 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// # Errors
     /// [`Error::StaleProxy`](crate::Error::StaleProxy).
     pub fn pairs_of(&mut self, id: ProxyId) -> Result<Vec<ProxyId>, crate::Error> {
-        let slot = self.slots.check(id, 0)?;
+        let seat = self.slots.check(id, 0)?;
         let candidates = &mut self.updater.candidates;
         candidates.link(self.slots.len());
         let mut others = Vec::new();
-        let mut next = candidates.first(slot);
+        let mut next = candidates.first(seat);
         while let Some(index) = next {
-            let (other, later) = candidates.step(index, slot);
+            let (other, later) = candidates.step(index, seat);
             if candidates.live[index as usize] {
                 others.push(self.slots.id(other));
             }
@@ -117,7 +134,28 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     }
 }
 
-/// Whether two boxes overlap, without a branch: what is asked of candidates is hard to guess.
+/// Appends what `choose` makes of each item and its index, if it says so, without a branch: it is
+/// hard to guess whether a candidate begins or ends.
+#[inline]
+pub(super) fn push_wanted<I: Copy, O: Copy + Default>(
+    out: &mut Vec<O>,
+    items: &[I],
+    mut choose: impl FnMut(usize, I) -> (O, bool),
+) {
+    const CHUNK: usize = 256;
+    for (chunk, items) in items.chunks(CHUNK).enumerate() {
+        let mut end = out.len();
+        out.resize(end + items.len(), O::default());
+        for (index, &item) in items.iter().enumerate() {
+            let (made, is_wanted) = choose(chunk * CHUNK + index, item);
+            out[end] = made;
+            end += usize::from(is_wanted);
+        }
+        out.truncate(end);
+    }
+}
+
+/// Whether two boxes overlap, without a branch.
 #[inline]
 pub(super) fn overlap<const D: usize, T: Scalar>(a: &Aabb<D, T>, b: &Aabb<D, T>) -> bool {
     (0..D).fold(true, |all, axis| all & (a.min[axis] <= b.max[axis]) & (b.min[axis] <= a.max[axis]))

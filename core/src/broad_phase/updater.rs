@@ -13,19 +13,23 @@ use crate::{Aabb, Scalar};
 /// The world of the last update, and what follows from it.
 #[derive(Debug)]
 pub(super) struct Updater<const D: usize, T: Scalar> {
-    /// By slot, the box at the last update. Means nothing for bodies of `flag::NEW`.
+    /// By seat, the box at the last update. Means nothing for bodies of `flag::NEW`.
     pub previous: Vec<Aabb<D, T>>,
-    /// By slot, the filter at the last update, for bodies of `flag::REFILTERED`; as long as the
-    /// greatest slot of one ever needed.
+    /// By seat, the filter at the last update, for bodies of `flag::REFILTERED`; as long as the
+    /// greatest seat of one ever needed.
     pub old_filters: Vec<Filter>,
     /// Whether there is such a body.
     pub any_refiltered: bool,
-    /// By slot, the fat box. Means nothing for bodies of `flag::NEW`.
+    /// By seat, the fat box. Means nothing for bodies of `flag::NEW`.
     pub fat: Vec<Aabb<D, T>>,
     pub candidates: Candidates,
     pub tree: Tree<D, T>,
     pub tree_state: TreeState,
+    /// How often the tree was searched since it was built, roughly.
+    pub tree_uses: usize,
     pub prediction: Prediction,
+    /// How much the order of the seats has suffered from motion.
+    pub wear: usize,
     pub scratch: Scratch<D, T>,
     pub begun: Vec<[u32; 2]>,
     pub ended: Vec<[u32; 2]>,
@@ -49,13 +53,15 @@ pub(super) struct Scratch<const D: usize, T: Scalar> {
     pub sorter: PairSorter,
     /// Boxes for the finder, and whose they are.
     pub boxes: Vec<Aabb<D, T>>,
-    pub slots: Vec<u32>,
+    pub seats: Vec<u32>,
     /// The bodies that need a new fat box.
     pub escaped: Vec<u32>,
     pub found: Vec<u32>,
-    /// By slot, the number of the search that last came upon it.
-    pub seen: Vec<u32>,
-    pub searches: u32,
+    pub pairs: Vec<[u32; 2]>,
+    pub is_old: Vec<bool>,
+    pub names: Vec<u32>,
+    pub filters: Vec<Filter>,
+    pub flags: Vec<u8>,
 }
 
 impl<const D: usize, T: Scalar> Updater<D, T> {
@@ -68,15 +74,17 @@ impl<const D: usize, T: Scalar> Updater<D, T> {
             candidates: Candidates::default(),
             tree: Tree::new(),
             tree_state: TreeState::Unbuilt,
+            tree_uses: 0,
             prediction: Prediction::default(),
+            wear: 0,
             scratch: Scratch::new(),
             begun: Vec::new(),
             ended: Vec::new(),
         }
     }
 
-    /// Makes room for a new slot.
-    pub fn add_slot(&mut self, aabb: Aabb<D, T>) {
+    /// Makes room for a new seat.
+    pub fn add_seat(&mut self, aabb: Aabb<D, T>) {
         self.previous.push(aabb);
         self.fat.push(aabb);
     }
@@ -92,7 +100,9 @@ impl<const D: usize, T: Scalar> Clone for Updater<D, T> {
             candidates: self.candidates.clone(),
             tree: self.tree.clone(),
             tree_state: self.tree_state,
+            tree_uses: self.tree_uses,
             prediction: self.prediction.clone(),
+            wear: self.wear,
             scratch: Scratch::new(),
             begun: Vec::new(),
             ended: Vec::new(),
@@ -106,22 +116,14 @@ impl<const D: usize, T: Scalar> Scratch<D, T> {
             finder: PairFinder::new(),
             sorter: PairSorter::default(),
             boxes: Vec::new(),
-            slots: Vec::new(),
+            seats: Vec::new(),
             escaped: Vec::new(),
             found: Vec::new(),
-            seen: Vec::new(),
-            searches: 0,
+            pairs: Vec::new(),
+            is_old: Vec::new(),
+            names: Vec::new(),
+            filters: Vec::new(),
+            flags: Vec::new(),
         }
-    }
-
-    /// The number of a new search among so many slots.
-    pub fn begin_search(&mut self, slots: usize) -> u32 {
-        self.searches = self.searches.wrapping_add(1);
-        if self.searches == 0 {
-            self.seen.fill(0);
-            self.searches = 1;
-        }
-        self.seen.resize(slots, 0);
-        self.searches
     }
 }

@@ -1,0 +1,68 @@
+//! Deals seats anew, in the order in which the finder comes upon the bodies: then to go through
+//! the candidates is to go through memory from front to back.
+//!
+//! In which order they are dealt shows in nothing but the speed.
+
+use alloc::vec::Vec;
+
+use super::BroadPhase;
+use super::updater::{Scratch, Updater};
+use crate::Scalar;
+
+/// Fewer bodies are near each other in memory whatever their order.
+const FEW: usize = 64;
+/// How often each body may get a new fat box before seats are dealt anew.
+const WEAR: usize = 16;
+
+impl<const D: usize, T: Scalar> BroadPhase<D, T> {
+    /// Notes that the finder just found the candidates of so many bodies that got new fat boxes,
+    /// some of them new; says whether the order of the seats is worn out by that.
+    pub(super) fn wear_seating(&mut self, moved: usize, new: usize) -> bool {
+        let bodies = self.len();
+        let wear = &mut self.updater.wear;
+        *wear = wear.saturating_add(moved).saturating_add(2 * WEAR * new);
+        let is_worn = *wear > WEAR * bodies && bodies >= FEW;
+        if is_worn {
+            *wear = 0;
+        }
+        is_worn
+    }
+
+    /// Deals seats in the order of the candidates; who has none comes last. To be called at the end
+    /// of an update in which the finder found the candidates. O(n + pairs) time.
+    pub(super) fn deal_seats(&mut self) {
+        let Updater { scratch, candidates, tree, previous, fat, .. } = &mut self.updater;
+        let Scratch { boxes: spare, seats: order, found: renamed, .. } = scratch;
+        order.clear();
+        renamed.clear();
+        renamed.resize(self.slots.len(), u32::MAX);
+        let everyone = 0..self.slots.len() as u32;
+        for old in candidates.pairs.iter().flatten().copied().chain(everyone) {
+            let new = &mut renamed[old as usize];
+            if *new == u32::MAX {
+                *new = order.len() as u32;
+                order.push(old);
+            }
+        }
+        for table in [&mut self.boxes, &mut self.shapes, previous, fat] {
+            reorder(table, order, spare);
+        }
+        reorder(&mut self.filters, order, &mut scratch.filters);
+        reorder(&mut self.slots.flags, order, &mut scratch.flags);
+        reorder(&mut self.slots.slots, order, &mut scratch.names);
+        for seat in self.slots.seats.iter_mut().chain(&mut self.changed) {
+            *seat = renamed[*seat as usize];
+        }
+        candidates.rename(renamed);
+        tree.rename(renamed);
+    }
+}
+
+/// Puts a table into a new order; an empty one stays empty.
+fn reorder<V: Copy>(table: &mut Vec<V>, order: &[u32], spare: &mut Vec<V>) {
+    if !table.is_empty() {
+        spare.clear();
+        spare.extend(order.iter().map(|&old| table[old as usize]));
+        core::mem::swap(table, spare);
+    }
+}
