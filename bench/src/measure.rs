@@ -35,7 +35,7 @@ pub struct Options {
     #[arg(long)]
     quick: bool,
     /// Names of scenes (all for every one) or of motions, or files of raw boxes (rows of 2 × D
-    /// little-endian f32) that end in .f32.
+    /// little-endian f32) that end in .f32, with their whole path.
     #[arg(long, value_delimiter = ',', default_values = scene::DEFAULT)]
     scenes: Vec<String>,
     /// Numbers of boxes.
