@@ -1,0 +1,224 @@
+// The packed package, installed as users install it, in the tools that they use, with no
+// configuration; what comes out runs in Chromium.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { once } from "node:events";
+import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createServer } from "node:http";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { extname, join } from "node:path";
+import { after, before, test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { nodeResolve } from "@rollup/plugin-node-resolve";
+import * as esbuild from "esbuild";
+import { chromium } from "playwright-core";
+import { rollup } from "rollup";
+import * as vite from "vite";
+import webpack from "webpack";
+
+const here = fileURLToPath(new URL("..", import.meta.url));
+/** A project with nothing in it but the package. */
+const project = mkdtempSync(join(tmpdir(), "sweep-and-prune-"));
+const installed = join(project, "node_modules/sweep-and-prune");
+
+/** @type {import("playwright-core").Browser} */
+let browser;
+
+before(async () => {
+  const packed = execFileSync("npm", ["pack", "--ignore-scripts", "--silent", "--pack-destination", project], {
+    cwd: here,
+    encoding: "utf8",
+  });
+  mkdirSync(installed, { recursive: true });
+  execFileSync("tar", ["-xzf", join(project, packed.trim()), "-C", installed, "--strip-components=1"]);
+  cpSync(join(here, "test/support/consumer"), project, { recursive: true });
+  writeFileSync(join(project, "package.json"), '{ "private": true, "type": "module" }');
+  browser = await chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: ["--no-sandbox", "--disable-background-networking", "--disable-component-update"],
+  });
+});
+
+after(async () => {
+  await browser?.close();
+  rmSync(project, { recursive: true, force: true });
+});
+
+const expected = { simd: true, pairs: [0, 2], begun: 2, swept: [0, 1], inWorker: 45 };
+const expectedInline = { simd: true, pairs: [0, 2], begun: 2 };
+
+/**
+ * What a page leaves in `result`.
+ *
+ * @param {string} address
+ */
+async function resultOf(address) {
+  const page = await browser.newPage();
+  /** @type {string[]} */
+  const errors = [];
+  page.on("pageerror", (error) => errors.push(String(error)));
+  page.on("requestfailed", (request) => errors.push(`cannot load ${request.url()}`));
+  try {
+    await page.goto(address);
+    await page.waitForFunction("globalThis.result !== undefined", undefined, { timeout: 60_000 });
+    return await page.evaluate("globalThis.result");
+  } catch (error) {
+    throw new Error(`${errors.join("\n")}\n${error}`);
+  } finally {
+    await page.close();
+  }
+}
+
+const types = { ".html": "text/html", ".js": "text/javascript", ".wasm": "application/wasm" };
+
+/**
+ * The result of a folder's index.html over http.
+ *
+ * @param {string} folder
+ */
+async function resultOfFolder(folder) {
+  const server = createServer((request, response) => {
+    const path = new URL(request.url ?? "/", "http://localhost").pathname;
+    try {
+      const bytes = readFileSync(join(folder, path === "/" ? "index.html" : path));
+      const type = /** @type {Record<string, string>} */ (types)[extname(path) || ".html"];
+      response.writeHead(200, { "content-type": type ?? "application/octet-stream" }).end(bytes);
+    } catch {
+      response.writeHead(404).end();
+    }
+  }).listen(0, "127.0.0.1");
+  await once(server, "listening");
+  const { port } = /** @type {import("node:net").AddressInfo} */ (server.address());
+  try {
+    return await resultOf(`http://127.0.0.1:${port}/`);
+  } finally {
+    server.close();
+  }
+}
+
+/**
+ * A page that runs a script.
+ *
+ * @param {string} folder
+ * @param {string} script
+ * @param {string} [head]
+ */
+function writePage(folder, script, head = "") {
+  mkdirSync(folder, { recursive: true });
+  writeFileSync(
+    join(folder, "index.html"),
+    `<!doctype html><html><head><title>t</title>${head}</head><body><script type="module" src="${script}"></script></body></html>`,
+  );
+}
+
+test("no bundler: a plain script, and a module worker", async () => {
+  const folder = join(project, "plain");
+  const base = "./node_modules/sweep-and-prune/dist";
+  mkdirSync(folder);
+  cpSync(join(project, "node_modules"), join(folder, "node_modules"), { recursive: true });
+  const entries = { "sweep-and-prune/algorithms": "algorithms", "sweep-and-prune/broad-phase": "broad-phase", "sweep-and-prune": "index" };
+  for (const name of ["app.js", "worker.js"]) {
+    let code = readFileSync(join(project, name), "utf8");
+    for (const [entry, file] of Object.entries(entries)) code = code.replaceAll(`"${entry}"`, `"${base}/${file}.js"`);
+    writeFileSync(join(folder, name), code);
+  }
+  writePage(folder, "./app.js");
+  assert.deepEqual(await resultOfFolder(folder), expected);
+});
+
+test("Vite, built", async () => {
+  const root = join(project, "vite");
+  viteProject(root);
+  await vite.build({ root, configFile: false, logLevel: "error", base: "./" });
+  assert.deepEqual(await resultOfFolder(join(root, "dist")), expected);
+});
+
+test("Vite, in development", async () => {
+  const root = join(project, "vite-dev");
+  viteProject(root);
+  const server = await vite.createServer({ root, configFile: false, logLevel: "error", server: { port: 0, host: "127.0.0.1" } });
+  try {
+    await server.listen();
+    const address = server.resolvedUrls?.local[0];
+    assert.ok(address);
+    assert.deepEqual(await resultOf(address), expected);
+  } finally {
+    await server.close();
+  }
+});
+
+/** @param {string} root */
+function viteProject(root) {
+  writePage(root, "./app.js");
+  for (const name of ["app.js", "worker.js", "package.json"]) cpSync(join(project, name), join(root, name));
+  cpSync(installed, join(root, "node_modules/sweep-and-prune"), { recursive: true });
+}
+
+test("webpack", async () => {
+  const folder = join(project, "webpack");
+  writePage(folder, "./main.js");
+  const stats = await new Promise((resolve, reject) =>
+    webpack(
+      { mode: "production", context: project, entry: "./app.js", output: { path: folder } },
+      (error, stats) => (error ? reject(error) : resolve(stats)),
+    ),
+  );
+  assert.equal(stats.hasErrors(), false, stats.toString());
+  assert.deepEqual(await resultOfFolder(folder), expected);
+});
+
+test("esbuild, the inline entries", async () => {
+  const folder = join(project, "esbuild");
+  writePage(folder, "./inline.js");
+  await esbuild.build({ absWorkingDir: project, entryPoints: ["inline.js"], bundle: true, format: "esm", outdir: folder });
+  assert.deepEqual(await resultOfFolder(folder), expectedInline);
+});
+
+test("Rollup, the inline entries", async () => {
+  const folder = join(project, "rollup");
+  writePage(folder, "./inline.js");
+  const bundle = await rollup({ input: join(project, "inline.js"), plugins: [nodeResolve()] });
+  await bundle.write({ dir: folder, format: "es" });
+  await bundle.close();
+  assert.deepEqual(await resultOfFolder(folder), expectedInline);
+});
+
+test("Node, and importing it on a server does nothing", () => {
+  const code = `
+    const before = Object.keys(globalThis).length;
+    globalThis.fetch = globalThis.WebAssembly.instantiate = () => { throw new Error("touched") };
+    const instantiate = WebAssembly.compile;
+    WebAssembly.compile = () => { throw new Error("touched") };
+    const entries = ["", "/inline", "/broad-phase", "/broad-phase/inline", "/algorithms"];
+    const loaded = [];
+    for (const entry of entries) loaded.push(typeof (await import("sweep-and-prune" + entry)).init);
+    console.log(loaded.join(), Object.keys(globalThis).length === before);`;
+  const run = (/** @type {string} */ code) =>
+    execFileSync(process.execPath, ["--input-type=module", "--eval", code], { cwd: project, encoding: "utf8" }).trim();
+  assert.equal(run(code), "function,function,function,function,function true");
+  const use = `
+    import { countPairs, init } from "sweep-and-prune";
+    await init();
+    console.log(countPairs([0, 1, 1, 2], { dimensions: 1 }));`;
+  assert.equal(run(use), "1");
+});
+
+test("TypeScript, as bundlers and as Node resolve", () => {
+  const typescript = join(createRequire(import.meta.url).resolve("typescript/package.json"), "..", "bin/tsc");
+  for (const [module, resolution] of [["esnext", "bundler"], ["nodenext", "nodenext"]]) {
+    const options = ["--noEmit", "--strict", "--target", "es2022", "--lib", "es2022,dom,esnext.disposable", "--types", ""];
+    const how = ["--module", module ?? "", "--moduleResolution", resolution ?? ""];
+    execFileSync(process.execPath, [typescript, ...options, ...how, "typed.ts"], { cwd: project, stdio: "pipe", encoding: "utf8" });
+  }
+});
+
+test("the package holds what it should and nothing else", () => {
+  const listed = execFileSync("npm", ["pack", "--dry-run", "--ignore-scripts", "--json"], { cwd: here, encoding: "utf8" });
+  const files = /** @type {{ path: string }[]} */ (JSON.parse(listed)[0].files).map(({ path }) => path);
+  for (const file of ["package.json", "README.md", "dist/index.js", "dist/index.d.ts", "dist/sweep-and-prune.simd.wasm", "dist/LICENSE-MIT"]) {
+    assert.ok(files.includes(file), file);
+  }
+  const odd = files.filter((path) => !/^(package\.json|README\.md|dist\/[\w.-]+\.(js|d\.ts|wasm)|dist\/LICENSE-\w+)$/.test(path));
+  assert.deepEqual(odd, []);
+});

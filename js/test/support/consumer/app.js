@@ -1,0 +1,26 @@
+// What a user writes: every entry that loads a file, in the page and in a module worker. Leaves its
+// result in `globalThis.result`.
+import { findPairs, init } from "sweep-and-prune";
+import { init as initAlgorithms, Runner } from "sweep-and-prune/algorithms";
+import { BroadPhase, init as initWorlds } from "sweep-and-prune/broad-phase";
+
+async function run() {
+  const { simd } = await init();
+  await Promise.all([initWorlds(), initAlgorithms()]);
+  const pairs = [...findPairs(new Float32Array([0, 0, 2, 2, 5, 5, 6, 6, 2, 1, 3, 4]), { dimensions: 2 })];
+  const world = new BroadPhase({ dimensions: 1 });
+  world.insertMany([0, 1, 1, 2]);
+  const begun = world.update().begun.length;
+  const swept = [...new Runner({ dimensions: 1, method: "endpoint sweep" }).step([0, 1, 1, 2]).pairs];
+  const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+  const inWorker = await new Promise((resolve, reject) => {
+    worker.onmessage = ({ data }) => resolve(data);
+    worker.onerror = ({ message }) => reject(new Error(message || "the worker did not start"));
+  });
+  return { simd, pairs, begun, swept, inWorker };
+}
+
+run().then(
+  (result) => (globalThis.result = result),
+  (error) => (globalThis.result = String(error?.stack ?? error)),
+);
