@@ -2,6 +2,7 @@
 
 use std::fmt::Display;
 use std::hint::black_box;
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use crate::record::Machine;
@@ -96,6 +97,15 @@ fn copy_bandwidth() -> f64 {
     };
     let best = std::iter::repeat_with(copy).take(6).min().unwrap_or(Duration::MAX);
     2.0 * BYTES as f64 / best.as_secs_f64()
+}
+
+/// The commit that is checked out, marked if files differ from it; `None` outside of Git.
+pub fn revision() -> Option<String> {
+    let git = Command::new("git")
+        .args(["-C", env!("CARGO_MANIFEST_DIR"), "describe", "--always", "--dirty"])
+        .output()
+        .ok()?;
+    git.status.success().then(|| String::from_utf8_lossy(&git.stdout).trim().to_owned())
 }
 
 /// How long the main thread of a process has waited for a processor, because other programs had

@@ -271,6 +271,7 @@ impl Setting<'_> {
             boxes: self.boxes,
             pairs: fingerprint.pairs / scene::frames_checked(self.scene) as u64,
             reference,
+            revision: machine::revision(),
             results: timed.chain(untimed).collect(),
         }))
     }

@@ -57,6 +57,8 @@ pub struct Case {
     pub pairs: u64,
     /// What every contender's pairs were checked against.
     pub reference: String,
+    /// The commit of this repository that was measured, where Git tells.
+    pub revision: Option<String>,
     /// What each contender did.
     pub results: Vec<Entry>,
 }

@@ -76,6 +76,12 @@ fn heading(record: &Record) -> String {
              more than the times."
         );
     }
+    let revisions: BTreeSet<_> =
+        record.cases.iter().filter_map(|case| case.revision.as_deref()).collect();
+    if !revisions.is_empty() {
+        let revisions: Vec<_> = revisions.into_iter().collect();
+        text += &format!(" Measured at {}.", revisions.join(", "));
+    }
     text + "\n"
 }
 
