@@ -9,7 +9,8 @@ pub enum BroadPhase {
     /// The library's [`PairFinder`], the fast road.
     #[default]
     Library,
-    /// One of the [`algorithms`](sweep_and_prune::algorithms).
+    /// One of the [`algorithms`](sweep_and_prune::algorithms) of
+    /// [`Method::ALL`](sweep_and_prune::algorithms::Method::ALL), which find all pairs.
     Algorithm(RunnerOptions),
 }
 

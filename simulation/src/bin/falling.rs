@@ -15,7 +15,7 @@ use sweep_and_prune_simulation::{Setup, Simulation};
 #[derive(Parser)]
 #[command(version)]
 struct Options {
-    /// How many bodies
+    /// How many bodies; with 100,000 brute force alone takes many seconds
     #[arg(long, default_value_t = 10_000, value_parser = value_parser!(u32).range(2..=100_000))]
     bodies: u32,
     /// How many steps of 1/60 s
@@ -75,10 +75,11 @@ fn run<const D: usize>(
     progress.finish_and_clear();
 
     println!(
-        "{} {what} fell for {:.1} s: {steps} steps of {} substeps, seed {seed}\n",
+        "{} {what} fell for {:.1} s: {} of {}, seed {seed}\n",
         grouped(bodies.into()),
         steps as f32 * setup.time_step,
-        setup.substeps,
+        several(steps.into(), "step"),
+        several(setup.substeps.into(), "substep"),
     );
     comparison.print();
     let steps = f64::from(steps);
@@ -134,9 +135,9 @@ impl Comparison {
         let swept = sorted(sweep.step(boxes, &mut counts)?.pairs);
 
         let start = now();
-        let forced = sorted(brute.step(boxes, &mut ())?.pairs);
+        let forced = brute.step(boxes, &mut ())?.pairs;
         let forced_ms = now() - start;
-        if forced != expected || swept != expected {
+        if sorted(forced) != expected || swept != expected {
             return Err("the contenders disagree on the pairs; this is a bug".into());
         }
 
@@ -166,9 +167,9 @@ impl Comparison {
         line("sorted pairwise", Some(self.sweep_tests), self.sweep_ms);
         line("find_pairs", None, self.finder_ms);
         println!(
-            "{} pairs, the same by all three; means of {} samples",
-            grouped(self.pairs / self.samples),
-            self.samples,
+            "{}, the same by all three; mean of {}",
+            several(self.pairs / self.samples, "pair"),
+            several(self.samples, "sample"),
         );
     }
 }
@@ -186,6 +187,11 @@ fn sorted(pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
     let mut pairs = pairs.to_vec();
     pairs.sort_unstable();
     pairs
+}
+
+/// "1 step", "2 steps".
+fn several(number: u64, noun: &str) -> String {
+    format!("{} {noun}{}", grouped(number), if number == 1 { "" } else { "s" })
 }
 
 /// 12345678 as 12,345,678.

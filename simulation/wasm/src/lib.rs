@@ -101,7 +101,7 @@ pub extern "C" fn sim_area() -> *const AtomicU64 {
     AREA.as_ptr()
 }
 
-/// Where to write `count` given balls, at most [`door::MOST_GIVEN`]; null if there are more.
+/// Where to write `count` given balls, at most 4,096; null if there are more.
 #[unsafe(no_mangle)]
 pub extern "C" fn sim_balls(count: u32) -> *mut f32 {
     if count > door::MOST_GIVEN {
