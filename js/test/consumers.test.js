@@ -1,7 +1,7 @@
 // The packed package, installed as users install it, in the tools that they use, with no
 // configuration; what comes out runs in Chromium.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
+import { execFileSync, spawnSync } from "node:child_process";
 import { once } from "node:events";
 import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
@@ -203,6 +203,21 @@ test("Node, and importing it on a server does nothing", () => {
     console.log(countPairs([0, 1, 1, 2], { dimensions: 1 }));`;
   assert.equal(run(use), "1");
 });
+
+for (const [runtime, ...args] of [["deno", "run", "--allow-read", "--node-modules-dir=manual"], ["bun"]]) {
+  const isThere = spawnSync(runtime ?? "", ["--version"]).status === 0;
+  test(`${runtime}`, { skip: !isThere && "not installed" }, () => {
+    writeFileSync(
+      join(project, "use.js"),
+      `import { countPairs, init } from "sweep-and-prune";
+      import { BroadPhase, init as initWorlds } from "sweep-and-prune/broad-phase";
+      await Promise.all([init(), initWorlds()]);
+      console.log(countPairs([0, 1, 1, 2], { dimensions: 1 }), new BroadPhase({ dimensions: 2 }).size);`,
+    );
+    const printed = execFileSync(runtime ?? "", [...args, "use.js"], { cwd: project, encoding: "utf8" });
+    assert.equal(printed.trim(), "1 0");
+  });
+}
 
 test("TypeScript, as bundlers and as Node resolve", () => {
   const typescript = join(createRequire(import.meta.url).resolve("typescript/package.json"), "..", "bin/tsc");
