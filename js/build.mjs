@@ -20,7 +20,7 @@ const target = process.env.CARGO_TARGET_DIR ?? join(root, "target");
  */
 const cores = [
   { name: "sweep-and-prune", feature: "finder", budget: 43_000 },
-  { name: "broad-phase", feature: "broad-phase", budget: 110_000 },
+  { name: "broad-phase", feature: "broad-phase", budget: 130_000 },
   { name: "algorithms", feature: "algorithms", budget: 60_000 },
 ];
 
