@@ -14,6 +14,7 @@ use crate::fingerprint::Fingerprint;
 use crate::peers::{self, OURS, Peer};
 use crate::record::{Case, Entry, Outcome, Record, Times, median};
 use crate::remote::{self, Remote};
+use crate::report::time;
 use crate::worker::{Reply, Request};
 use crate::{machine, scene};
 
@@ -167,14 +168,13 @@ fn open(
 
 /// One line on a case: ours and the fastest rival.
 fn summary(case: &Case) -> String {
-    let milliseconds = |times: &Times| times.median_ns / 1e6;
     let mut line =
         format!("{} {}D {}: {} pairs", case.scene, case.dimensions, case.boxes, case.pairs);
     if let Some(ours) = case.times(OURS) {
-        line += &format!(", {OURS} {:.3} ms", milliseconds(ours));
+        line += &format!(", {OURS} {}", time(ours.median_ns));
     }
     if let Some((name, times)) = case.ranking().first() {
-        line += &format!(", {name} {:.3} ms", milliseconds(times));
+        line += &format!(", {name} {}", time(times.median_ns));
         if let Some(ratio) = times.ratio {
             line += &format!(" ({ratio:.2} times)");
         }

@@ -3,6 +3,7 @@
 /// Three significant digits and the unit.
 pub fn time(nanoseconds: f64) -> String {
     let (number, unit) = match nanoseconds {
+        ns if ns < 1e3 => (ns, "ns"),
         ns if ns < 1e6 => (ns / 1e3, "µs"),
         ns if ns < 1e9 => (ns / 1e6, "ms"),
         ns => (ns / 1e9, "s"),

@@ -11,6 +11,8 @@ mod format;
 mod plot;
 mod table;
 
+pub use format::time;
+
 /// Reads every record in the folder and writes `RESULTS.md` beside it and the plots into it. Of
 /// each machine only the newest record is shown.
 pub fn write(results: &Path) -> Result<()> {
