@@ -1,4 +1,74 @@
 //! Find pairs: the fast road.
+//!
+//! ```text
+//! boxes -> plan -> bins -> order -> sweep -> pairs
+//! ```
+//!
+//! One sweep along one axis tests every box against all that overlap it on that axis: n^(5/3) of
+//! them in space, hopeless at a million. So the other axes are cut into columns, each of which is
+//! swept by itself, small enough for the caches:
+//!
+//! 1. [`plan`] draws a sample of at most 256 boxes and chooses the sweep axis and the number of
+//!    columns on the others for which a model of the cost is least.
+//! 2. [`bins`] lists the copies of each box, one for each column that it touches, and scatters
+//!    them as records, one column's side by side. Neither loop has a branch that depends on where
+//!    a box lies. Boxes are validated on the way.
+//! 3. [`order`] sorts a column by left edge, in linear time if the edges are spread at all evenly,
+//!    and lays it out as a structure of arrays.
+//! 4. [`sweep`] has a kernel test each box against those ahead, 1 to 16 at a time on all axes,
+//!    until a left edge passes its right edge.
+//!
+//! A pair that meets in several columns is reported by the one that holds the lower corner of the
+//! two boxes' intersection: where at least one of the two begins, on each cut axis. A bit for each
+//! axis tells that, and is tested along with the edges.
+//!
+//! # Why it is never slow
+//! **Copies.** A box of size s touches 1 + s / w columns of width w on the average, so the mean
+//! size of the boxes, not the largest, says how many copies there will be: a plan that pays makes
+//! 1.2 to 1.6 of each. The sample estimates the mean; what it missed is found when the copies are
+//! listed: at more than 4 a box the plan is dropped, and the boxes that are wider than 8 columns
+//! are parted from the rest.
+//!
+//! **Tests.** Where no width of columns suits all the boxes (one in ten spans the scene), the model
+//! finds a plan dear, and looks for a size on some axis that parts the small boxes from the large.
+//! Then pairs within the small ones, within the large ones and between the two are three searches,
+//! each with the axis and the columns that suit it; and each may part again. That takes care of
+//! needles along every axis and of power laws.
+//!
+//! **Clusters.** Columns of one width do not suit a scene that is dense here and sparse there. The
+//! model knows how likely two boxes are to share a column from a histogram of the sample at eleven
+//! resolutions; and a bin that holds far more boxes than expected, or whose sweep would test far
+//! more candidates (probes of the ordered column tell), is planned anew by itself, as if it were
+//! the whole. Plans are nested at most 12 deep. A cluster in a cluster costs one more pass over the
+//! boxes in it.
+//!
+//! **Long columns** (a tower has only one) are cut along the sweep axis too, into slabs that fit the
+//! caches and that threads can share.
+//!
+//! **Coincident and nested boxes** are pairs, all of them; nothing is tested in vain.
+//!
+//! # Why it is the same everywhere
+//! Cells come of one monotone function of a coordinate, so that a box cannot begin after it ends,
+//! whatever rounds, overflows or is infinite; what they decide is where a pair is found, never
+//! whether it is one: that takes comparisons of the coordinates as given. The plan depends on the
+//! boxes alone, the order in a column is total (left edge, then position), and the vectors' lanes
+//! are reported in turn: so the order of the pairs depends on neither processor nor threads. Behind
+//! the last box of a column stand NaN edges, which are `<=` nothing: unlike infinite sentinels they
+//! stop the sweep of an infinite box too.
+//!
+//! # Memory
+//! A record is a box, its index and a word: 32 bytes for a 3D `f32` box. With 1.2 to 1.6 copies of
+//! each, the list of them (8 bytes a copy), and one bin laid out at a time, a finder holds less than
+//! 100 bytes a 3D `f32` box beside the pairs; at the most 4 records a box, for each plan within a
+//! plan. All of it is kept for the next call: a steady state allocates nothing. Streaming and
+//! counting take the same, and nothing for the pairs.
+//!
+//! # Sources
+//! Baraff 1992 (sort and sweep); Terdiman 2017, *Box pruning revisited* (structure of arrays,
+//! sentinels, vector tests, buckets); Dittrich and Seeger 2000, *Data redundancy and duplicate
+//! detection in spatial join processing* (a pair is reported where the lower corner of its
+//! intersection lies).
+
 mod bins;
 mod kernel;
 mod numbers;
@@ -18,8 +88,8 @@ use crate::{Aabb, Error, Scalar, validate};
 use kernel::Arrange;
 pub use kernel::Kernel;
 pub use numbers::Number;
-use search::{Search, Stop, Task};
-use sink::{Count, Sink, Store, Stream};
+use search::{Search, Stop, Task, is_direct};
+use sink::{Buffer, Count, Sink, Store, Stream};
 use watch::Watch;
 
 /// All pairs of boxes that overlap, each once, smaller index first, in a deterministic order.
@@ -97,12 +167,19 @@ pub fn count_pairs<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>]) -> Result<u6
 pub struct PairFinder<const D: usize, T: Scalar = f32> {
     search: Search<D, T>,
     store: Store,
+    count: Count,
+    buffer: Buffer,
 }
 
 impl<const D: usize, T: Scalar> PairFinder<D, T> {
     /// A finder with empty buffers, one thread, and the best kernel of this processor.
     pub fn new() -> Self {
-        Self { search: Search::new(Kernel::best()), store: Store::default() }
+        Self {
+            search: Search::new(Kernel::best()),
+            store: Store::default(),
+            count: Count::default(),
+            buffer: Buffer::default(),
+        }
     }
 
     /// The same finder with a kernel of choice, for tests and comparisons.
@@ -174,9 +251,7 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
     /// # Errors
     /// As [`find_pairs`].
     pub fn count(&mut self, boxes: &[Aabb<D, T>]) -> Result<u64, Error> {
-        let mut sink = Count::new();
-        run(&mut self.search, &[boxes], None, &mut sink)?;
-        Ok(sink.count)
+        self.count_of(&[boxes])
     }
 
     /// How many pairs [`find_between`](Self::find_between) would find. Stores none of them.
@@ -184,9 +259,7 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
     /// # Errors
     /// As [`find_pairs_between`].
     pub fn count_between(&mut self, a: &[Aabb<D, T>], b: &[Aabb<D, T>]) -> Result<u64, Error> {
-        let mut sink = Count::new();
-        run(&mut self.search, &[a, b], None, &mut sink)?;
-        Ok(sink.count)
+        self.count_of(&[a, b])
     }
 
     /// Calls `each` with every pair, in the order of [`find`](Self::find), until it breaks. Stores
@@ -236,19 +309,26 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
         run(&mut self.search, sets, watch, &mut self.store)
     }
 
+    fn count_of(&mut self, sets: &[&[Aabb<D, T>]]) -> Result<u64, Error> {
+        self.count.count = 0;
+        run(&mut self.search, sets, None, &mut self.count)?;
+        Ok(self.count.count)
+    }
+
     fn for_each_of<B>(
         &mut self,
         sets: &[&[Aabb<D, T>]],
         mut each: impl FnMut([u32; 2]) -> ControlFlow<B>,
     ) -> Result<ControlFlow<B>, Error> {
         let mut end = ControlFlow::Continue(());
-        let mut sink = Stream::new(|pair| match each(pair) {
+        let each = |pair| match each(pair) {
             ControlFlow::Continue(()) => ControlFlow::Continue(()),
             ControlFlow::Break(with) => {
                 end = ControlFlow::Break(with);
                 ControlFlow::Break(())
             }
-        });
+        };
+        let mut sink = Stream { buffer: &mut self.buffer, each };
         run(&mut self.search, sets, None, &mut sink)?;
         Ok(end)
     }
@@ -267,11 +347,12 @@ fn run<const D: usize, T: Scalar, O: Sink>(
     watch: Option<&Watch<'_>>,
     sink: &mut O,
 ) -> Result<bool, Error> {
-    if sets.iter().all(|set| set.len() <= search::FEW) || sets.iter().any(|set| set.is_empty()) {
-        check(sets)?;
-    }
     if let Some(set) = sets.iter().find(|set| set.len() > Error::BOX_LIMIT) {
         return Err(Error::TooManyBoxes { count: set.len() });
+    }
+    // Others are validated on the way.
+    if is_direct(sets) {
+        check(sets)?;
     }
     let arrange = if sets.len() == 1 { Arrange::Ascending } else { Arrange::BySet };
     match search.run(sets, Task::new(arrange, watch), sink) {

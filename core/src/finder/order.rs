@@ -5,6 +5,7 @@
 //! standard library's sort does that interval, so the whole is O(n log n) on any input.
 
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use super::bins::Source;
 use super::kernel::Column;
@@ -53,20 +54,24 @@ impl<T: Scalar> Sorter<T> {
         }
     }
 
-    /// Fills `column` with the boxes as they stand, all axes beside the sweep axis, on which all
-    /// overlap. For so few boxes that each against each is quickest.
-    pub fn unordered<const D: usize, S: Source<D, T>>(source: S, column: &mut Column<T>) {
-        column.reset(source.len(), D);
-        for at in 0..source.len() {
-            let Aabb { min, max } = source.aabb(at);
-            column.left[at] = T::ZERO;
-            column.right[at] = T::ZERO;
+    /// Fills `column` with some of the boxes as they stand, all axes beside the sweep axis, on
+    /// which all overlap: for a sweep that tests each against each.
+    pub fn unordered<const D: usize, S: Source<D, T>>(
+        source: S,
+        boxes: Range<usize>,
+        column: &mut Column<T>,
+    ) {
+        column.reset(boxes.len(), D);
+        column.left[..boxes.len()].fill(T::ZERO);
+        column.right[..boxes.len()].fill(T::ZERO);
+        for (at, i) in boxes.enumerate() {
+            let Aabb { min, max } = source.aabb(i);
             for axis in 0..D {
                 column.min[axis][at] = min[axis];
                 column.max[axis][at] = max[axis];
             }
-            column.id[at] = source.id(at);
-            column.marks[at] = source.marks(at);
+            column.id[at] = source.id(i);
+            column.marks[at] = source.marks(i);
         }
     }
 

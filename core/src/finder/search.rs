@@ -14,8 +14,14 @@ use super::sweep::{Sweep, candidates};
 use super::watch::Watch;
 use crate::{Aabb, Scalar};
 
-/// Up to this many boxes each is tested against each.
-pub(super) const FEW: usize = 64;
+/// Up to this many boxes in a set each is tested against each,
+const FEW: usize = 128;
+/// and with two sets also if one of them has no more than this.
+const FEW_AGAINST_MANY: usize = 32;
+/// Up to this many it is not even worth while to lay them out for the vectors.
+const VERY_FEW: usize = 20;
+/// Boxes laid out at a time where many are tested against a few.
+const CHUNK: usize = 4096;
 
 /// Plans within plans: cuts of crowded bins, and parts by size.
 const DEPTH: u32 = 12;
@@ -100,8 +106,8 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         }
     }
 
-    /// Sends all pairs within one set, or between two, to the sink. Up to [`FEW`] boxes are not
-    /// validated.
+    /// Sends all pairs within one set, or between two, to the sink. Sets that are
+    /// [searched directly](is_direct) must be valid.
     pub fn run<S: Source<D, T>, O: Sink>(
         &mut self,
         sets: &[S],
@@ -111,14 +117,35 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         if sets.iter().any(|set| set.len() == 0) {
             return Ok(());
         }
-        if sets.iter().all(|set| set.len() <= FEW) {
-            for (set, column) in sets.iter().zip(&mut self.columns) {
-                Sorter::unordered(*set, column);
-            }
-            return self.sweep(sets.len(), D, task, sink);
+        if is_direct(sets) {
+            return self.direct(sets, task, sink);
         }
         let planned = plan(sets, task.depth < DEPTH);
         self.follow(planned.plan, sets, task, sink)
+    }
+
+    /// Tests each box against each, with nothing ordered.
+    fn direct<S: Source<D, T>, O: Sink>(
+        &mut self,
+        sets: &[S],
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<(), Stop> {
+        let [first, last] = [sets[0], sets[sets.len() - 1]];
+        if first.len() * last.len() <= VERY_FEW * VERY_FEW {
+            return very_few(first, last, sets.len() == 1, task, sink);
+        }
+        for start in (0..first.len()).step_by(CHUNK) {
+            Sorter::unordered(first, start..first.len().min(start + CHUNK), &mut self.columns[0]);
+            if sets.len() == 1 {
+                return self.sweep(1, D, task, sink);
+            }
+            for start in (0..last.len()).step_by(CHUNK) {
+                Sorter::unordered(last, start..last.len().min(start + CHUNK), &mut self.columns[1]);
+                self.sweep(2, D, task, sink)?;
+            }
+        }
+        Ok(())
     }
 
     fn follow<S: Source<D, T>, O: Sink>(
@@ -315,6 +342,35 @@ impl<const D: usize, T: Scalar> Search<D, T> {
             ControlFlow::Break(()) => Err(Stop::Enough),
         }
     }
+}
+
+/// Whether each box is simply tested against each.
+pub(super) fn is_direct<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[S]) -> bool {
+    let [first, last] = [sets[0].len(), sets[sets.len() - 1].len()];
+    first.max(last) <= FEW || (sets.len() == 2 && first.min(last) <= FEW_AGAINST_MANY)
+}
+
+/// The pairs of very few boxes, box by box.
+fn very_few<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
+    first: S,
+    last: S,
+    same: bool,
+    task: Task<'_>,
+    sink: &mut O,
+) -> Result<(), Stop> {
+    for i in 0..first.len() {
+        for j in if same { i + 1 } else { 0 }..last.len() {
+            if first.aabb(i).overlaps(last.aabb(j)) && first.marks(i) & last.marks(j) == 0 {
+                let (a, b) = (first.id(i), last.id(j));
+                let swap = task.arrange == Arrange::Ascending && b < a;
+                sink.room()[0] = if swap { [b, a] } else { [a, b] };
+                if sink.take(1).is_break() {
+                    return Err(Stop::Enough);
+                }
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The most records that so many boxes may become.

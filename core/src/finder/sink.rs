@@ -1,6 +1,5 @@
 //! Where pairs go: a growing buffer, a counter, or the caller's own function.
 
-use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
@@ -62,7 +61,7 @@ impl Sink for Store {
     #[inline]
     fn room(&mut self) -> &mut [[u32; 2]] {
         if self.buffer.len() - self.len < PAD {
-            self.buffer.resize(2 * self.buffer.len() + BUFFER, [0; 2]);
+            self.buffer.resize(2 * self.buffer.len() + 4 * PAD, [0; 2]);
         }
         let end = self.buffer.len().min(self.len + STRETCH);
         &mut self.buffer[self.len..end]
@@ -93,15 +92,23 @@ impl Sink for Store {
 }
 
 /// Counts pairs.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Count {
-    buffer: Vec<[u32; 2]>,
+    buffer: Buffer,
     pub count: u64,
 }
 
-impl Count {
-    pub fn new() -> Self {
-        Self { buffer: vec![[0; 2]; BUFFER], count: 0 }
+/// Room for a few pairs at a time.
+#[derive(Debug, Default)]
+pub(super) struct Buffer(Vec<[u32; 2]>);
+
+impl Buffer {
+    #[inline]
+    fn room(&mut self) -> &mut [[u32; 2]] {
+        if self.0.is_empty() {
+            self.0.resize(BUFFER, [0; 2]);
+        }
+        &mut self.0
     }
 }
 
@@ -110,7 +117,7 @@ impl Sink for Count {
 
     #[inline]
     fn room(&mut self) -> &mut [[u32; 2]] {
-        &mut self.buffer
+        self.buffer.room()
     }
 
     #[inline]
@@ -120,7 +127,7 @@ impl Sink for Count {
     }
 
     fn fork(&mut self) -> Option<Count> {
-        Some(Count::new())
+        Some(Count::default())
     }
 
     fn join(&mut self, forks: Vec<Count>) {
@@ -130,28 +137,22 @@ impl Sink for Count {
 
 /// Hands pairs to a function, in order, and stores only a buffer of them.
 #[derive(Debug)]
-pub(super) struct Stream<F> {
-    buffer: Vec<[u32; 2]>,
-    each: F,
+pub(super) struct Stream<'a, F> {
+    pub buffer: &'a mut Buffer,
+    pub each: F,
 }
 
-impl<F: FnMut([u32; 2]) -> ControlFlow<()>> Stream<F> {
-    pub fn new(each: F) -> Self {
-        Self { buffer: vec![[0; 2]; BUFFER], each }
-    }
-}
-
-impl<F: FnMut([u32; 2]) -> ControlFlow<()>> Sink for Stream<F> {
+impl<F: FnMut([u32; 2]) -> ControlFlow<()>> Sink for Stream<'_, F> {
     type Fork = Count;
 
     #[inline]
     fn room(&mut self) -> &mut [[u32; 2]] {
-        &mut self.buffer
+        self.buffer.room()
     }
 
     #[inline]
     fn take(&mut self, count: usize) -> ControlFlow<()> {
-        self.buffer[..count].iter().try_for_each(|&pair| (self.each)(pair))
+        self.buffer.0[..count].iter().try_for_each(|&pair| (self.each)(pair))
     }
 
     fn fork(&mut self) -> Option<Count> {
