@@ -7,9 +7,10 @@ use std::ops::ControlFlow;
 
 use broad_phase_model::{Model, Pair};
 use sweep_and_prune::{
-    Aabb, BroadPhase, Cast, Error, Filter, Hit, Options, ProxyId, Report, Scalar, SnapshotFault,
+    Aabb, BroadPhase, Cast, Error, Filter, Hit, Options, PairFinder, ProxyId, Report, Scalar,
+    SnapshotFault,
 };
-use sweep_and_prune_scenes::Random;
+use sweep_and_prune_scenes::{Random, Scene};
 
 /// 10,000 in all as users run it.
 const SEQUENCES: u64 = if cfg!(debug_assertions) { 20 } else { 1667 };
@@ -378,6 +379,97 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
         assert_eq!(queries.cast(&Cast::ray(zero, nan, T::INFINITY)), Err(refused));
         assert_eq!(queries.cast(&Cast::ray(zero, zero, T::from_f64(-1.0))), Err(refused));
         assert_eq!(world.snapshot(), before);
+    }
+}
+
+/// Larger worlds, in which trees have levels and seats are dealt anew: the pairs after each update
+/// are those of the finder, and the events what changed.
+fn follow_a_crowd<const D: usize>(scene: Scene, seed: u64, steps: usize) {
+    let count = if matches!(scene, Scene::Coincident | Scene::Nested) { 200 } else { 1500 };
+    let mut random = Random::new(seed);
+    let mut boxes = scene.boxes::<D, f64>(count, seed).unwrap();
+    let mut world = BroadPhase::<D, f64>::new();
+    let ids = world.insert_many(&boxes, Filter::default()).unwrap();
+    let mut finder = PairFinder::<D, f64>::new();
+    let mut live: Vec<Pair> = vec![];
+    for step in 0..steps {
+        // All drift, some jump, few or none move, everything is elsewhere.
+        let (share, jumps) =
+            [(1.0, 0.0), (1.0, 0.02), (0.02, 0.5), (0.1, 0.0), (0.0, 0.0), (1.0, 1.0)]
+                [if step % 7 == 6 { 5 } else { step / 8 % 5 }];
+        for aabb in &mut boxes {
+            if random.unit() < share {
+                let jump = if random.unit() < jumps { 1.0 } else { 0.002 };
+                for axis in 0..D {
+                    let way = jump * (random.unit() - 0.5);
+                    aabb.min[axis] += way;
+                    aabb.max[axis] = (aabb.max[axis] + way).max(aabb.min[axis]);
+                }
+            }
+        }
+        world.set_many(&ids, &boxes).unwrap();
+        let changes = world.update();
+        let (begun, ended): (Vec<Pair>, Vec<Pair>) =
+            (changes.begun().collect(), changes.ended().collect());
+        let pairs = finder.find(&boxes).unwrap();
+        let mut now: Vec<Pair> = pairs.iter().map(|p| p.map(|index| ids[index as usize])).collect();
+        now.sort_unstable();
+        let missing = |from: &[Pair], of: &[Pair]| -> Vec<Pair> {
+            of.iter().filter(|pair| from.binary_search(pair).is_err()).copied().collect()
+        };
+        assert_eq!(begun, missing(&live, &now), "{scene:?} {step}");
+        assert_eq!(ended, missing(&now, &live), "{scene:?} {step}");
+        assert_eq!(world.pairs(), now);
+        live = now;
+        let area = boxes[step % count];
+        let found = world.queries().overlapping(&area).unwrap();
+        let expected = ids.iter().zip(&boxes).filter(|(_, aabb)| aabb.overlaps(&area));
+        assert!(expected.map(|(&id, _)| id).eq(found));
+    }
+}
+
+#[test]
+fn any_crowd_is_followed_through_any_motion() {
+    let steps = if cfg!(debug_assertions) { 42 } else { 210 };
+    for scene in [
+        Scene::Uniform,
+        Scene::Clustered,
+        Scene::Tower,
+        Scene::Slab,
+        Scene::Mixed,
+        Scene::Coincident,
+        Scene::Nested,
+    ] {
+        follow_a_crowd::<2>(scene, 1, steps);
+        follow_a_crowd::<3>(scene, 2, steps);
+    }
+}
+
+#[test]
+fn sizes_may_differ_by_a_million_and_more() {
+    let mut world = BroadPhase::<3>::new();
+    let mut random = Random::new(5);
+    let mut boxes = vec![];
+    for index in 0..600 {
+        let half = 10f32.powi(index % 12 - 9);
+        let at: [f64; 3] = random.point();
+        let at = at.map(|at| at as f32);
+        boxes.push(Aabb::new(at.map(|at| at - half), at.map(|at| at + half)));
+    }
+    let ids = world.insert_many(&boxes, Filter::default()).unwrap();
+    for _ in 0..40 {
+        for aabb in boxes.iter_mut().step_by(13) {
+            let way = (random.unit() as f32 - 0.5) * 0.01;
+            for axis in 0..3 {
+                aabb.min[axis] += way;
+                aabb.max[axis] += way;
+            }
+        }
+        world.set_many(&ids, &boxes).unwrap();
+        world.update();
+        let pairs = sweep_and_prune::algorithms::pairwise(&boxes).unwrap();
+        let expected = pairs.iter().map(|pair| pair.map(|index| ids[index as usize]));
+        assert!(world.pairs().into_iter().eq(expected));
     }
 }
 

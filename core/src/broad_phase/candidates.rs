@@ -63,9 +63,15 @@ impl Candidates {
             return;
         }
         self.is_linked = true;
+        // Room for what moving bodies add and take away, so that it need not be found later.
+        self.pairs.reserve(self.pairs.len() / 4);
+        let room = self.pairs.capacity();
+        self.live.reserve(room - self.live.len());
+        self.links.clear();
+        self.links.reserve(room);
+        self.free.reserve(room / 4);
         self.heads.clear();
         self.heads.resize(seats, NONE);
-        self.links.clear();
         for index in 0..self.pairs.len() as u32 {
             let links = Links { next: [NONE; 2], previous: [NONE; 2] };
             self.links.push(links);

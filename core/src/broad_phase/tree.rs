@@ -183,23 +183,27 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         self.count = seats.len();
         let class = |seat: u32| size_class(&boxes[seat as usize]);
         seats.sort_unstable_by_key(|&seat| (class(seat), seat));
-        let mut roots: Vec<(u32, Aabb<D, T>)> = Vec::new();
+        let mut roots = Node::new(false);
         let mut rest = &mut *seats;
         while let Some(&first) = rest.first() {
             // Where there are more classes than a node has room for, the last holds the others.
-            let is_last = roots.len() == FAN - 1;
+            let is_last = roots.count == FAN - 1;
             let end = rest.partition_point(|&seat| is_last || class(seat) == class(first));
             let (now, later) = rest.split_at_mut(end);
             let leaves = now.len().div_ceil(FILL);
-            roots.push(self.build_node(now, boxes, leaves));
+            let (root, bounds) = self.build_node(now, boxes, leaves);
+            roots.push(root, &bounds);
             rest = later;
         }
-        self.root = match roots[..] {
-            [] => NONE,
-            [(root, _)] => root,
-            _ => self.add_inner(&roots),
+        self.root = match roots.count {
+            0 => NONE,
+            1 => roots.items[0],
+            _ => self.add_inner(roots),
         };
         self.built = (self.leaf_size(), self.count);
+        // Room for what moving bodies add and take away, so that it need not be found later.
+        self.nodes.reserve(self.nodes.len() / 2);
+        self.free.reserve(self.nodes.len() / 2);
     }
 
     /// A node over seats that go into `leaves` leaves, and its bounds.
@@ -223,10 +227,9 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         while room * FAN < leaves {
             room *= FAN;
         }
-        let mut children = Vec::with_capacity(FAN);
-        self.build_children(seats, boxes, leaves, room, &mut children);
-        let bounds = children[1..].iter().fold(children[0].1, |all, child| hull(&all, &child.1));
-        (self.add_inner(&children), bounds)
+        let mut inner = Node::new(false);
+        self.build_children(seats, boxes, leaves, room, &mut inner);
+        (self.add_inner(inner), inner.bounds())
     }
 
     /// Cuts seats in two until what is left goes into a child of `room` leaves.
@@ -236,11 +239,12 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         boxes: &[Aabb<D, T>],
         leaves: usize,
         room: usize,
-        children: &mut Vec<(u32, Aabb<D, T>)>,
+        inner: &mut Node<D, T>,
     ) {
         let count = leaves.div_ceil(room);
         if count <= 1 {
-            children.push(self.build_node(seats, boxes, leaves));
+            let (child, bounds) = self.build_node(seats, boxes, leaves);
+            inner.push(child, &bounds);
             return;
         }
         let left = (leaves * (count / 2)).div_ceil(count);
@@ -249,17 +253,13 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         let centre = |seat: &u32| boxes[*seat as usize].centre(axis);
         seats.select_nth_unstable_by(middle, |a, b| centre(a).total_cmp(&centre(b)).then(a.cmp(b)));
         let (low, high) = seats.split_at_mut(middle);
-        self.build_children(low, boxes, left, room, children);
-        self.build_children(high, boxes, leaves - left, room, children);
+        self.build_children(low, boxes, left, room, inner);
+        self.build_children(high, boxes, leaves - left, room, inner);
     }
 
-    fn add_inner(&mut self, children: &[(u32, Aabb<D, T>)]) -> u32 {
-        let mut inner = Node::new(false);
-        for (child, bounds) in children {
-            inner.push(*child, bounds);
-        }
+    fn add_inner(&mut self, inner: Node<D, T>) -> u32 {
         let index = self.add_node(inner);
-        for &(child, _) in children {
+        for &child in &inner.items[..inner.count] {
             self.nodes[child as usize].parent = index;
         }
         index
@@ -364,7 +364,10 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
             }
         }
         if parent == NONE {
-            self.root = self.add_inner(&[(index, low_bounds), (other, high_bounds)]);
+            let mut root = Node::new(false);
+            root.push(index, &low_bounds);
+            root.push(other, &high_bounds);
+            self.root = self.add_inner(root);
         } else {
             let above = &mut self.nodes[parent as usize];
             let lane = above.lane_of(index);
