@@ -474,6 +474,18 @@ fn sizes_may_differ_by_a_million_and_more() {
 }
 
 #[test]
+fn a_heap_of_static_bodies_costs_no_pairs() {
+    // 100,000 in one place would be five billion pairs.
+    let heap = vec![Aabb::new([0.0, 0.0], [1.0, 1.0]); 100_000];
+    let mut world = BroadPhase::<2>::new();
+    world.insert_many(&heap, Filter::STATIC).unwrap();
+    world.insert(Aabb::new([0.5, 0.5], [0.5, 0.5])).unwrap();
+    assert_eq!(world.update().begun().len(), heap.len());
+    let bytes = world.snapshot();
+    assert_eq!(BroadPhase::<2>::from_snapshot(&bytes).unwrap().pairs().len(), heap.len());
+}
+
+#[test]
 fn negative_infinite_and_nan_margins_are_refused() {
     for bad in [-1.0, f32::INFINITY, f32::NAN] {
         let margin = Options { margin: bad, ..Options::default() };

@@ -91,23 +91,45 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         are_fat
     }
 
-    /// Replaces the candidates by all pairs of fat boxes of the seats with such flags.
+    /// Replaces the candidates by the pairs of fat boxes of the seats with such flags. Those of two
+    /// bodies that are and were static are not even looked for.
     fn find_candidates(&mut self, takes_part: impl Fn(u8) -> bool) {
-        let Updater { fat, candidates, scratch, .. } = &mut self.updater;
-        let Scratch { finder, boxes, seats, .. } = scratch;
-        candidates.clear();
+        let mut seats = core::mem::take(&mut self.updater.scratch.seats);
         let flags = &self.slots.flags;
-        // Boxes were checked when they came and fat boxes are no worse: the finder takes them.
-        if flags.iter().all(|&flags| takes_part(flags)) {
-            candidates.pairs.extend_from_slice(finder.find(fat).unwrap_or_default());
-            return;
+        let is_whole = !self.any_filter && flags.iter().all(|&flags| takes_part(flags));
+        let mut movers = 0;
+        if !is_whole {
+            let everyone =
+                || (0..flags.len() as u32).filter(|&seat| takes_part(flags[seat as usize]));
+            let is_static = |seat: &u32| {
+                self.filters[*seat as usize].is_static && self.old_filter(*seat).is_static
+            };
+            seats.clear();
+            seats.extend(everyone().filter(|seat| !is_static(seat)));
+            movers = seats.len();
+            seats.extend(everyone().filter(is_static));
         }
-        seats.clear();
-        seats.extend((0..flags.len() as u32).filter(|&seat| takes_part(flags[seat as usize])));
-        boxes.clear();
-        boxes.extend(seats.iter().map(|&seat| fat[seat as usize]));
-        let pairs = finder.find(boxes).unwrap_or_default();
-        candidates.pairs.extend(pairs.iter().map(|pair| pair.map(|index| seats[index as usize])));
+        let Updater { fat, candidates, scratch, .. } = &mut self.updater;
+        let Scratch { finder, boxes, .. } = scratch;
+        candidates.clear();
+        let pairs = &mut candidates.pairs;
+        // Boxes were checked when they came and fat boxes are no worse: the finder takes them.
+        if is_whole {
+            pairs.extend_from_slice(finder.find(fat).unwrap_or_default());
+        } else {
+            boxes.clear();
+            boxes.extend(seats.iter().map(|&seat| fat[seat as usize]));
+            let (moving, fixed) = boxes.split_at(movers);
+            let (mover, other) = seats.split_at(movers);
+            let found = finder.find(moving).unwrap_or_default();
+            pairs.extend(found.iter().map(|pair| pair.map(|index| mover[index as usize])));
+            let found = finder.find_between(moving, fixed).unwrap_or_default();
+            pairs.extend(found.iter().map(|&[a, b]| {
+                let (a, b) = (mover[a as usize], other[b as usize]);
+                [a.min(b), a.max(b)]
+            }));
+        }
+        self.updater.scratch.seats = seats;
     }
 
     /// Whether a pair was live at the last update.
