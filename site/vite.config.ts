@@ -1,4 +1,5 @@
 import { defineConfig, type Plugin } from "vite";
+import { insertComplexity } from "./src/complexity/table.ts";
 import { expandLabs } from "./src/lab/markup.ts";
 
 /** Writes the inside of each `<ball-lab>` into the page, so that nothing moves when scripts arrive. */
@@ -7,9 +8,15 @@ const labs: Plugin = {
   transformIndexHtml: { order: "pre", handler: expandLabs },
 };
 
+/** Writes the measured complexity table into the page. */
+const complexity: Plugin = {
+  name: "complexity",
+  transformIndexHtml: { order: "pre", handler: insertComplexity },
+};
+
 export default defineConfig({
   base: "./",
-  plugins: [labs],
+  plugins: [labs, complexity],
   worker: { format: "es" },
   build: { target: "es2022", chunkSizeWarningLimit: 800 },
 });
