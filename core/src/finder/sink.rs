@@ -12,9 +12,9 @@ const STRETCH: usize = 1 << 16;
 const BUFFER: usize = 4096;
 
 /// Takes pairs a buffer at a time.
-#[cfg_attr(not(feature = "parallel"), allow(dead_code))]
 pub(super) trait Sink {
     /// What takes a stretch of the pairs on another thread.
+    #[cfg(feature = "parallel")]
     type Fork: Sink + Send;
 
     /// Room for at least [`PAD`] pairs.
@@ -24,9 +24,11 @@ pub(super) trait Sink {
     fn take(&mut self, count: usize) -> ControlFlow<()>;
 
     /// An empty sink for another thread; none if the pairs must come in order, one by one.
+    #[cfg(feature = "parallel")]
     fn fork(&mut self) -> Option<Self::Fork>;
 
     /// Takes the pairs of forks, in this order, after its own.
+    #[cfg(feature = "parallel")]
     fn join(&mut self, forks: Vec<Self::Fork>);
 }
 
@@ -36,7 +38,7 @@ pub(super) struct Store {
     buffer: Vec<[u32; 2]>,
     len: usize,
     /// Forks of earlier calls, kept for their buffers.
-    #[cfg_attr(not(feature = "parallel"), allow(dead_code))]
+    #[cfg(feature = "parallel")]
     spare: Vec<Store>,
 }
 
@@ -56,6 +58,7 @@ impl Store {
 }
 
 impl Sink for Store {
+    #[cfg(feature = "parallel")]
     type Fork = Store;
 
     #[inline]
@@ -73,21 +76,27 @@ impl Sink for Store {
         ControlFlow::Continue(())
     }
 
+    #[cfg(feature = "parallel")]
     fn fork(&mut self) -> Option<Store> {
         Some(self.spare.pop().unwrap_or_default())
     }
 
+    #[cfg(feature = "parallel")]
     fn join(&mut self, forks: Vec<Store>) {
         let len = self.len + forks.iter().map(|fork| fork.len).sum::<usize>();
         if self.buffer.len() < len {
             self.buffer.resize(len, [0; 2]);
         }
-        for mut fork in forks {
-            self.buffer[self.len..][..fork.len].copy_from_slice(fork.pairs());
-            self.len += fork.len;
-            fork.clear();
-            self.spare.push(fork);
+        let mut rest = &mut self.buffer[self.len..len];
+        let mut copies = Vec::with_capacity(forks.len());
+        for fork in &forks {
+            let (to, behind) = rest.split_at_mut(fork.len);
+            copies.push((to, fork.pairs()));
+            rest = behind;
         }
+        super::threads::copy(copies);
+        self.len = len;
+        self.spare.extend(forks.into_iter().map(|fork| Store { len: 0, ..fork }));
     }
 }
 
@@ -113,6 +122,7 @@ impl Buffer {
 }
 
 impl Sink for Count {
+    #[cfg(feature = "parallel")]
     type Fork = Count;
 
     #[inline]
@@ -126,10 +136,12 @@ impl Sink for Count {
         ControlFlow::Continue(())
     }
 
+    #[cfg(feature = "parallel")]
     fn fork(&mut self) -> Option<Count> {
         Some(Count::default())
     }
 
+    #[cfg(feature = "parallel")]
     fn join(&mut self, forks: Vec<Count>) {
         self.count += forks.iter().map(|fork| fork.count).sum::<u64>();
     }
@@ -143,6 +155,7 @@ pub(super) struct Stream<'a, F> {
 }
 
 impl<F: FnMut([u32; 2]) -> ControlFlow<()>> Sink for Stream<'_, F> {
+    #[cfg(feature = "parallel")]
     type Fork = Count;
 
     #[inline]
@@ -155,9 +168,11 @@ impl<F: FnMut([u32; 2]) -> ControlFlow<()>> Sink for Stream<'_, F> {
         self.buffer.0[..count].iter().try_for_each(|&pair| (self.each)(pair))
     }
 
+    #[cfg(feature = "parallel")]
     fn fork(&mut self) -> Option<Count> {
         None
     }
 
+    #[cfg(feature = "parallel")]
     fn join(&mut self, _: Vec<Count>) {}
 }

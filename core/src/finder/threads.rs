@@ -7,7 +7,7 @@ use core::ops::Range;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::Mutex;
 
-use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 use super::bins::{Bins, Grid, Refusal, Source};
 use super::search::{Search, Stop, Task, limit};
@@ -16,6 +16,8 @@ use crate::Scalar;
 
 /// With fewer boxes threads do not pay.
 const WORTH: usize = 4096;
+/// With fewer pairs threads do not pay to copy them.
+const MANY_PAIRS: usize = 1 << 18;
 /// Groups of bins for each thread: some are harder than others.
 const GROUPS: usize = 16;
 
@@ -74,11 +76,7 @@ pub(super) fn cut<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
                 }
             }
         };
-        rayon::scope(|scope| {
-            for worker in &mut workers {
-                scope.spawn(|_| work(worker));
-            }
-        });
+        on_threads(&mut workers, |_, worker| work(worker));
         if failed.into_inner() {
             return Err(Stop::Enough);
         }
@@ -90,6 +88,34 @@ pub(super) fn cut<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
     Some(result)
 }
 
+/// Has each of some threads work on its own; the calling one is the first.
+fn on_threads<W: Send>(own: &mut [W], work: impl Fn(usize, &mut W) + Sync) {
+    rayon::in_place_scope(|scope| {
+        let work = &work;
+        let mut own = own.iter_mut().enumerate();
+        let first = own.next();
+        for (thread, own) in own {
+            scope.spawn(move |_| work(thread, own));
+        }
+        if let Some((thread, own)) = first {
+            work(thread, own);
+        }
+    });
+}
+
+/// Where pairs go, and those pairs.
+pub(super) type Stretch<'a> = (&'a mut [[u32; 2]], &'a [[u32; 2]]);
+
+/// Copies pairs to their places, on threads if they are many.
+pub(super) fn copy(stretches: Vec<Stretch<'_>>) {
+    let pairs: usize = stretches.iter().map(|(_, from)| from.len()).sum();
+    if pairs < MANY_PAIRS {
+        stretches.into_iter().for_each(|(to, from)| to.copy_from_slice(from));
+    } else {
+        stretches.into_par_iter().for_each(|(to, from)| to.copy_from_slice(from));
+    }
+}
+
 /// Each thread puts its stretch of the boxes into bins of its own.
 fn fill<const D: usize, T: Scalar, S: Source<D, T>>(
     sets: &[S],
@@ -97,24 +123,32 @@ fn fill<const D: usize, T: Scalar, S: Source<D, T>>(
     pieces: &mut [[Bins<D, T>; 2]],
 ) -> Result<(), Refusal> {
     let threads = pieces.len();
-    let stretch = |set: &S, at: usize| set.len() * at / threads..set.len() * (at + 1) / threads;
-    for (at, set) in sets.iter().enumerate() {
-        let limit = limit(set.len());
-        let total: Result<u64, Refusal> = pieces
-            .par_iter_mut()
-            .enumerate()
-            .map(|(thread, bins)| bins[at].list(*set, stretch(set, thread), grid, limit))
-            .sum();
-        if total? > limit {
-            return Err(Refusal::TooMany);
+    let mut own: Vec<_> = pieces.iter_mut().map(|bins| (bins, Ok([0; 2]))).collect();
+    on_threads(&mut own, |thread, (bins, listed)| {
+        let list = |set: usize, bins: &mut Bins<D, T>| {
+            let of = sets[set].len();
+            let stretch = of * thread / threads..of * (thread + 1) / threads;
+            let count = bins.list(sets[set], stretch, grid, limit(of))?;
+            bins.scatter(sets[set]);
+            Ok(count)
+        };
+        let [first, second] = &mut **bins;
+        *listed = list(0, first)
+            .and_then(|count| Ok([count, if sets.len() == 2 { list(1, second)? } else { 0 }]));
+    });
+    let mut totals = [0; 2];
+    let mut refusal = None;
+    for (_, listed) in own {
+        match listed {
+            Ok(counts) => (0..2).for_each(|set| totals[set] += counts[set]),
+            Err(of) => {
+                refusal =
+                    Some(if refusal == Some(Refusal::Invalid) { Refusal::Invalid } else { of })
+            }
         }
     }
-    pieces.par_iter_mut().for_each(|bins| {
-        for (set, bins) in sets.iter().zip(bins) {
-            bins.scatter(*set);
-        }
-    });
-    Ok(())
+    let many = sets.iter().zip(totals).any(|(set, total)| total > limit(set.len()));
+    refusal.or(many.then_some(Refusal::TooMany)).map_or(Ok(()), Err)
 }
 
 /// Stretches of bins with about as many records each.
