@@ -84,25 +84,33 @@ fn switching_and_counting_leave_no_trace() {
 fn counts_mean_the_same_for_each() {
     let population = Population { bodies: 60, size: 0.5, spread: 1.0, seed: 5 };
     let setup = scenes::falling::<3>(population).unwrap();
-    let reports = [Method::Pairwise, Method::SortedPairwise].map(|method| {
+    let counts = |method, persistent| {
         let mut simulation = Simulation::new(&setup).unwrap();
         let axis = Axis::Fixed(0);
-        let options = RunnerOptions { method, sort: Sort::Standard, axis, persistent: false };
+        let options = RunnerOptions { method, sort: Sort::Standard, axis, persistent };
         simulation.set_broad_phase(BroadPhase::Algorithm(options)).unwrap();
         for _ in 0..60 {
             simulation.step(|| 0.0).unwrap();
         }
         let report = simulation.step(|| 0.0).unwrap();
+        let counts = report.counts.unwrap();
         assert_eq!(report.pairs, simulation.pairs().len());
-        (report.counts.unwrap(), report.pairs as u64)
-    });
-    let [(brute, brute_pairs), (swept, swept_pairs)] = reports;
-    assert_eq!(brute.tests, 60 * 59 / 2);
-    assert_eq!((brute.comparisons, brute.swaps), (0, 0));
-    assert_eq!(brute.axis_overlaps, swept.axis_overlaps);
-    assert_eq!(swept.tests, swept.axis_overlaps);
-    assert_eq!((brute.pairs, swept.pairs), (brute_pairs, swept_pairs));
-    assert_eq!(brute_pairs, swept_pairs);
+        assert_eq!(counts.pairs, report.pairs as u64);
+        counts
+    };
+    let brute = counts(Method::Pairwise, false);
+    assert_eq!((brute.tests, brute.comparisons, brute.swaps), (60 * 59 / 2, 0, 0));
+    for persistent in [false, true] {
+        for method in [Method::SortedPairwise, Method::EndpointSweep, Method::SwapSweep] {
+            let swept = counts(method, persistent);
+            assert_eq!(swept.axis_overlaps, brute.axis_overlaps, "{method:?}");
+            assert_eq!(swept.tests, brute.axis_overlaps, "{method:?}");
+            assert_eq!(swept.pairs, brute.pairs, "{method:?}");
+        }
+        let [sweeps, swaps] = [Method::AxisSweeps, Method::AxisSwapSweeps]
+            .map(|method| counts(method, persistent).axis_overlaps);
+        assert_eq!(sweeps, swaps, "summed over the axes");
+    }
 }
 
 #[test]

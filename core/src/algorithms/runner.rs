@@ -220,6 +220,16 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
         }
     }
 
+    /// How many overlaps on the swept axes stand after the last step, for the swap-driven forms,
+    /// which keep them and tell an observer only what changes. The others find all of them anew
+    /// and tell each; for them there is none to ask for.
+    pub fn kept_axis_overlaps(&self) -> Option<u64> {
+        match &self.state {
+            State::Swaps(sweep) => Some(sweep.axis_overlaps()),
+            _ => None,
+        }
+    }
+
     /// Finds all overlapping pairs of `boxes`, telling the observer every step.
     ///
     /// # Errors

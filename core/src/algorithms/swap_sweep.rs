@@ -223,6 +223,11 @@ impl<T: Scalar> SwapSweep<T> {
         }
     }
 
+    /// How many overlaps on the swept axes there are.
+    pub fn axis_overlaps(&self) -> u64 {
+        self.overlaps.standing
+    }
+
     /// The memory it holds.
     pub fn bytes(&self) -> usize {
         let arrays: usize = self.sweeps.iter().map(|(_, array)| array.bytes()).sum();
@@ -271,6 +276,8 @@ struct Overlaps {
     flagged: PairMap<bool>,
     /// On how many swept axes a pair overlaps, if on any. Not needed for a single one.
     counts: PairMap<usize>,
+    /// How many overlaps there are, summed over the swept axes.
+    standing: u64,
     /// The pairs that turned from reported to not reported or back, since the last report.
     changed: Vec<[u32; 2]>,
 }
@@ -278,6 +285,7 @@ struct Overlaps {
 impl Overlaps {
     /// A pair begins to overlap on an axis.
     fn begin(&mut self, pair: [u32; 2]) {
+        self.standing += 1;
         if self.axes > 1 {
             let Some(count) = self.counts.get_mut(pair) else {
                 return self.counts.insert(pair, 1);
@@ -292,6 +300,7 @@ impl Overlaps {
 
     /// A pair ceases to overlap on an axis.
     fn cease(&mut self, pair: [u32; 2]) {
+        self.standing -= 1;
         if self.axes > 1
             && let Some(count) = self.counts.get_mut(pair)
         {
