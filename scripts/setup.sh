@@ -20,6 +20,23 @@ as_root() {
   fi
 }
 
+# Runs a command and shows what it printed only if it failed: installers are wordy.
+quietly() {
+  local log
+  log=$(mktemp)
+  if ! "$@" >"$log" 2>&1 </dev/null; then
+    cat "$log" >&2
+    rm -f "$log"
+    return 1
+  fi
+  rm -f "$log"
+}
+
+apt_install() {
+  as_root apt-get update -q &&
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -qy --no-install-recommends "$@"
+}
+
 # install_packages COMMAND PACKAGE...: system packages by the machine's own package manager.
 # A package may be written "debian|fedora|arch|alpine|brew" where the names differ.
 install_packages() {
@@ -35,20 +52,20 @@ install_packages() {
     apk+=("${names[3]:-${names[0]}}")
     brew+=("${names[4]:-${names[0]}}")
   done
-  say "Installing $* ..."
+  say "Installing ${*%%|*} ..."
   if have apt-get; then
-    { as_root apt-get update -q && as_root env DEBIAN_FRONTEND=noninteractive apt-get install -qy --no-install-recommends "${apt[@]}"; } >&2
+    quietly apt_install "${apt[@]}"
   elif have dnf; then
-    as_root dnf install -qy "${dnf[@]}" >&2
+    quietly as_root dnf install -qy "${dnf[@]}"
   elif have pacman; then
-    as_root pacman -Sy --noconfirm --needed "${pacman[@]}" >&2
+    quietly as_root pacman -Sy --noconfirm --needed "${pacman[@]}"
   elif have apk; then
-    as_root apk add -q "${apk[@]}" >&2
+    quietly as_root apk add -q "${apk[@]}"
   elif have brew; then
-    brew install -q "${brew[@]}" >&2
+    quietly brew install -q "${brew[@]}"
   else
     false
-  fi || fail "'$needed' is missing and could not be installed: please install $* and start again."
+  fi || fail "'$needed' is missing and could not be installed: please install ${*%%|*} and start again."
 }
 
 setup_rust() {
@@ -61,7 +78,7 @@ setup_rust() {
     installer=$(mktemp)
     { curl -sSf --proto '=https' --tlsv1.2 https://sh.rustup.rs -o "$installer" ||
       curl -sSf --proto '=https' --tlsv1.2 https://static.rust-lang.org/rustup/rustup-init.sh -o "$installer"; } 2>/dev/null &&
-      sh "$installer" -y --no-modify-path --profile minimal --default-toolchain none >&2 ||
+      quietly sh "$installer" -y --no-modify-path --profile minimal --default-toolchain none ||
       fail "Rust is missing and rustup could not be installed: please install it from https://rustup.rs and start again."
     rm -f "$installer"
   fi
@@ -70,7 +87,7 @@ setup_rust() {
   libraries=$(RUSTUP_AUTO_INSTALL=0 rustc --print target-libdir --target wasm32-unknown-unknown 2>/dev/null) || true
   if ! { [ -d "$libraries" ] && RUSTUP_AUTO_INSTALL=0 cargo fmt --version && RUSTUP_AUTO_INSTALL=0 cargo clippy --version; } >/dev/null 2>&1; then
     say "Installing the Rust toolchain of rust-toolchain.toml ..."
-    rustup toolchain install >&2 ||
+    quietly rustup toolchain install ||
       fail "The Rust toolchain of rust-toolchain.toml could not be installed: is the network reachable?"
   fi
 }
