@@ -6,6 +6,7 @@ import { OutOfMemoryError } from "./errors.js";
 /** What js/wasm/src/algorithms.rs exports. */
 export interface AlgorithmsExports extends Exports {
   runner_new(dimensions: number, traceWords: number): number;
+  runner_copy(runner: number): number;
   runner_free(runner: number): void;
   runner_text(runner: number, length: number): number;
   runner_choose(runner: number, part: number, index: number): number;
@@ -15,6 +16,7 @@ export interface AlgorithmsExports extends Exports {
   runner_list(runner: number, which: number): number;
   runner_is_truncated(runner: number): number;
   runner_clear_trace(runner: number): void;
+  runner_trim_trace(runner: number): number;
   player_new(runner: number): number;
   player_free(player: number): void;
   player_seek(player: number, position: number): number;
@@ -114,12 +116,20 @@ export class Runner {
   readonly #owned: Owned;
 
   /**
-   * A runner with no state yet.
+   * A runner with no state yet; or, of another runner, a copy with the same state and trace, which
+   * goes on as that one would. Each is to be freed.
    *
    * @throws {@link NotInitializedError} before `init()` is done; `RangeError` for a name that does
    *   not exist, or an axis or dimensions that do not.
    */
-  constructor(options: RunnerOptions) {
+  constructor(options: RunnerOptions | Runner) {
+    if (options instanceof Runner) {
+      const { engine, runner } = options.#live();
+      this.dimensions = options.dimensions;
+      this.#owned = own(engine, engine.exports.runner_copy(runner));
+      forgotten?.register(this, this.#owned, this.#owned);
+      return;
+    }
     this.dimensions = checkDimensions(options?.dimensions);
     const { method, sort = "standard library", axis = "largest variance", persistent = false } = options;
     const { focus = 0, traceWords = 0 } = options;
@@ -134,7 +144,7 @@ export class Runner {
     }
     const engine = algorithmsCore.engine();
     const runner = engine.exports.runner_new(this.dimensions, traceWords);
-    this.#owned = { engine, free: () => engine.exports.runner_free(runner), handle: runner };
+    this.#owned = own(engine, runner);
     this.#choose(0, "method", method, focus);
     this.#choose(1, "sort", sort, 0);
     this.#choose(2, "axis", isFixed ? "fixed axis" : axis, isFixed ? axis : 0);
@@ -178,6 +188,18 @@ export class Runner {
   clearTrace(): void {
     const { engine, runner } = this.#live();
     engine.exports.runner_clear_trace(runner);
+  }
+
+  /**
+   * Forgets what was recorded but for what the next step goes on from: the arrays, the axis
+   * overlaps and the pairs held are now the only events. For a trace of one step at a time, which a
+   * {@link Player} can play by itself. O(what was recorded).
+   *
+   * @returns how many events there are now.
+   */
+  trimTrace(): number {
+    const { engine, runner } = this.#live();
+    return engine.exports.runner_trim_trace(runner) >>> 0;
   }
 
   /** @internal The handle of a player of what was recorded. */
@@ -233,6 +255,10 @@ export interface Owned {
   readonly engine: Engine<AlgorithmsExports>;
   readonly free: () => void;
   handle: number;
+}
+
+function own(engine: Engine<AlgorithmsExports>, runner: number): Owned {
+  return { engine, free: () => engine.exports.runner_free(runner), handle: runner };
 }
 
 /** @internal */

@@ -96,3 +96,30 @@ test("misuse", () => {
   assert.throws(() => runner.step([]), TypeError);
   assert.throws(() => new Player(runner), TypeError);
 });
+
+test("a copy goes on as its runner does, and a trimmed trace plays one step by itself", () => {
+  for (const method of methods) {
+    const next = random(80);
+    const worlds = Array.from({ length: 6 }, () => boxesAmong(next, 8, 2));
+    const options = /** @type {const} */ ({ dimensions: 2, method, sort: "insertion sort", persistent: true, traceWords: 1 << 20 });
+    const whole = new Runner(options);
+    let runner = new Runner(options);
+    for (const boxes of worlds) {
+      const before = runner.trimTrace();
+      const copy = new Runner(runner);
+      // What memory is held to spare is not copied.
+      const found = { ...runner.step(boxes), bytes: 0 };
+      assert.deepEqual({ ...copy.step(boxes), bytes: 0 }, found);
+      assert.deepEqual(copy.trace(), runner.trace());
+      assert.deepEqual({ ...whole.step(boxes), bytes: 0 }, found);
+      assert.equal([...events(runner.trace())][before]?.kind, "step");
+      const [short, long] = [new Player(runner), new Player(whole)];
+      short.seek(2 ** 32);
+      long.seek(2 ** 32);
+      assert.deepEqual(short.state(), long.state());
+      runner.free();
+      runner = copy; // goes on from the copy
+    }
+    assert.throws(() => new Runner(whole).step([NaN, 0, 0, 0]), InvalidBoxError);
+  }
+});

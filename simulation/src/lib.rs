@@ -87,4 +87,4 @@ mod vector;
 pub use broad_phase::BroadPhase;
 pub use scatter::Scatter;
 pub use setup::{Ball, Setup, SetupError};
-pub use simulation::{Energy, Simulation, StepReport};
+pub use simulation::{Energy, Moment, Simulation, StepReport};

@@ -3,7 +3,7 @@
 use sweep_and_prune::algorithms::Counts;
 use sweep_and_prune::{Aabb, Error};
 
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, inside_walls};
 use crate::broad_phase::{BroadPhase, Engine};
 use crate::contacts::{Contacts, Surroundings};
 use crate::setup::{Setup, SetupError};
@@ -69,6 +69,16 @@ pub struct Simulation<const D: usize> {
     positions_before: Vec<[f32; D]>,
 }
 
+/// A simulation at one moment, to go back to: all that its motion depends on but the laws.
+/// Memory: O(balls + contacts).
+#[derive(Clone, Debug)]
+pub struct Moment<const D: usize> {
+    bodies: Bodies<D>,
+    contacts: Contacts<D>,
+    steps: u64,
+    least_energy: f64,
+}
+
 impl<const D: usize> Simulation<D> {
     /// A simulation at time 0, its broad phase the library's.
     ///
@@ -111,6 +121,53 @@ impl<const D: usize> Simulation<D> {
         }
         self.steps += 1;
         Ok(report)
+    }
+
+    /// What it takes to come back to now.
+    pub fn save(&self) -> Moment<D> {
+        Moment {
+            bodies: self.bodies.clone(),
+            contacts: self.contacts.clone(),
+            steps: self.steps,
+            least_energy: self.least_energy,
+        }
+    }
+
+    /// Goes back, or forward again, to a saved moment of this simulation. From there the same steps
+    /// give the same bits as they did, if gravity, restitution, substeps and collisions are the
+    /// same. Pairs and boxes are those of the last step still.
+    pub fn restore(&mut self, moment: &Moment<D>) {
+        self.bodies.clone_from(&moment.bodies);
+        self.contacts.clone_from(&moment.contacts);
+        self.steps = moment.steps;
+        self.least_energy = moment.least_energy;
+    }
+
+    /// Puts a ball somewhere else, with this velocity. It may overlap others; outside the walls it
+    /// is put at the nearest place inside.
+    ///
+    /// # Errors
+    /// [`SetupError::Ball`] if there is no such ball, or a number is not finite; then nothing has
+    /// changed.
+    pub fn place(
+        &mut self,
+        index: usize,
+        centre: [f32; D],
+        velocity: [f32; D],
+    ) -> Result<(), SetupError> {
+        let finite = centre.into_iter().chain(velocity).all(f32::is_finite);
+        if index >= self.bodies.len() || !finite {
+            return Err(SetupError::Ball { index });
+        }
+        let radius = self.bodies.radii[index];
+        let half_kick = self.half_kick();
+        for axis in 0..D {
+            self.bodies.positions[index][axis] =
+                inside_walls(centre[axis], radius, &self.bounds, axis);
+            self.bodies.velocities[index][axis] = velocity[axis] + half_kick[axis];
+        }
+        self.least_energy = f64::INFINITY;
+        Ok(())
     }
 
     fn substep(

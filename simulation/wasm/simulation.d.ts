@@ -170,6 +170,23 @@ export class Simulation {
   /** 1/60 s. */
   step(): StepReport;
 
+  /**
+   * The moment, to come back to: from there the same steps give the same bits again, unless a
+   * setting has changed. A number; memory in the module until `forget` or `free`.
+   */
+  save(): number;
+  /** Goes back, or forward again, to a saved moment. `invalid-option` if there is no such one. */
+  restore(moment: number): void;
+  /** Gives the memory of a saved moment back. One that does not exist is no error. */
+  forget(moment: number): void;
+
+  /**
+   * Puts a ball at another place, with this velocity (at rest if absent); in 3D z stays. Outside
+   * the walls it is put at the nearest place inside. `invalid-option` for NaN and infinities, or
+   * if there is no such ball: then nothing has changed.
+   */
+  place(ball: number, to: { x: number; y: number; vx?: number; vy?: number }): void;
+
   /** Kinetic plus potential energy, per unit of mass; potential 0 at the wall that is down. */
   energy(): number;
   /** 16 hexadecimal digits of the state: positions and velocities, bit for bit. */

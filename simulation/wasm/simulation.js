@@ -231,6 +231,23 @@ export class Simulation {
     };
   }
 
+  save() {
+    attempt("sim_save", this.#live());
+    return area()[0];
+  }
+
+  restore(moment) {
+    attempt("sim_restore", this.#live(), moment);
+  }
+
+  forget(moment) {
+    attempt("sim_forget", this.#live(), moment);
+  }
+
+  place(ball, { x, y, vx = 0, vy = 0 }) {
+    attempt("sim_place", this.#live(), ball, x, y, vx, vy);
+  }
+
   energy() {
     return this.#call("sim_energy");
   }

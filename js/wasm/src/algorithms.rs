@@ -6,7 +6,7 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use sweep_and_prune::algorithms::{
-    Axis, Counts, Endpoint, Method, Player, Runner, RunnerOptions, Side, Sort, Trace,
+    Axis, Counts, Endpoint, Method, Observer, Player, Runner, RunnerOptions, Side, Sort, Trace,
 };
 use sweep_and_prune::{Aabb, Error};
 
@@ -22,8 +22,10 @@ trait Steps {
         lists: &mut [Vec<[u32; 2]>; 3],
     ) -> Result<usize, Error>;
     fn bytes(&self) -> usize;
+    fn copy(&self) -> Box<dyn Steps>;
 }
 
+#[derive(Clone)]
 struct Typed<const D: usize> {
     boxes: Vec<Aabb<D, f64>>,
     runner: Runner<D, f64>,
@@ -62,6 +64,10 @@ impl<const D: usize> Steps for Typed<D> {
     fn bytes(&self) -> usize {
         self.runner.bytes()
     }
+
+    fn copy(&self) -> Box<dyn Steps> {
+        Box::new(self.clone())
+    }
 }
 
 /// What JavaScript holds a pointer to.
@@ -95,6 +101,18 @@ extern "C" fn runner_new(dimensions: u32, trace_words: usize) -> Option<Box<Hand
             lists: [Vec::new(), Vec::new(), Vec::new()],
             numbers: [0.0; 12],
         })
+    })
+}
+
+/// A copy of a runner, which goes on as the runner would, to be freed as well.
+#[unsafe(no_mangle)]
+extern "C" fn runner_copy(handle: &Handle) -> Box<Handle> {
+    Box::new(Handle {
+        text: Vec::new(),
+        steps: handle.steps.as_ref().map(|steps| steps.copy()),
+        observer: handle.observer.clone(),
+        lists: handle.lists.clone(),
+        ..*handle
     })
 }
 
@@ -219,6 +237,27 @@ extern "C" fn runner_is_truncated(handle: &mut Handle) -> bool {
 #[unsafe(no_mangle)]
 extern "C" fn runner_clear_trace(handle: &mut Handle) {
     handle.observer.1.clear();
+}
+
+/// Forgets the trace but for what the next step goes on from (the arrays, the axis overlaps and
+/// the pairs held), which is recorded as the only events so far; how many those are.
+#[unsafe(no_mangle)]
+extern "C" fn runner_trim_trace(handle: &mut Handle) -> usize {
+    let trace = &mut handle.observer.1;
+    let mut player = Player::new(trace.clone());
+    player.seek(trace.len());
+    trace.clear();
+    let state = player.state();
+    for (axis, array) in state.arrays.iter().enumerate().filter(|(_, array)| !array.is_empty()) {
+        trace.array(axis, array);
+    }
+    for &(axis, [a, b]) in &state.axis_overlaps {
+        trace.axis_overlap(axis, a, b);
+    }
+    for &[a, b] in &state.held {
+        trace.begin(a, b);
+    }
+    trace.len()
 }
 
 /// What JavaScript holds a pointer to.

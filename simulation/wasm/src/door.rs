@@ -2,7 +2,7 @@
 
 use sweep_and_prune::algorithms::Counts;
 use sweep_and_prune_simulation::scenes::{self, Population};
-use sweep_and_prune_simulation::{Ball, BroadPhase, Setup, SetupError, Simulation};
+use sweep_and_prune_simulation::{Ball, BroadPhase, Moment, Setup, SetupError, Simulation};
 
 use crate::Code;
 
@@ -42,6 +42,10 @@ pub trait Door {
     fn pairs(&self) -> &[u32];
     fn energy(&self) -> f64;
     fn hash(&self) -> u64;
+    fn save(&mut self) -> usize;
+    fn restore(&mut self, moment: usize) -> Result<(), Code>;
+    fn forget(&mut self, moment: usize);
+    fn place(&mut self, ball: usize, centre: [f32; 2], velocity: [f32; 2]) -> Result<(), Code>;
 }
 
 /// A simulation, and which way down is.
@@ -49,6 +53,9 @@ struct Inside<const D: usize> {
     simulation: Simulation<D>,
     /// The sign of gravity downwards on the second axis.
     down: f32,
+    /// A saved moment is an index into these; places of forgotten ones are used again.
+    moments: Vec<Option<Moment<D>>>,
+    free_moments: Vec<usize>,
 }
 
 impl<const D: usize> Door for Inside<D> {
@@ -151,6 +158,42 @@ impl<const D: usize> Door for Inside<D> {
     fn hash(&self) -> u64 {
         self.simulation.hash()
     }
+
+    fn save(&mut self) -> usize {
+        let index = self.free_moments.pop().unwrap_or(self.moments.len());
+        if index == self.moments.len() {
+            self.moments.push(None);
+        }
+        self.moments[index] = Some(self.simulation.save());
+        index
+    }
+
+    fn restore(&mut self, moment: usize) -> Result<(), Code> {
+        let Some(Some(moment)) = self.moments.get(moment) else {
+            return Err(Code::InvalidOption);
+        };
+        self.simulation.restore(moment);
+        Ok(())
+    }
+
+    fn forget(&mut self, moment: usize) {
+        if self.moments.get_mut(moment).and_then(Option::take).is_some() {
+            self.free_moments.push(moment);
+        }
+    }
+
+    fn place(&mut self, ball: usize, centre: [f32; 2], velocity: [f32; 2]) -> Result<(), Code> {
+        // Further axes keep their coordinate and come to rest.
+        let Some(&(mut at)) = self.simulation.positions().get(ball) else {
+            return Err(Code::InvalidOption);
+        };
+        let mut speed = [0.0; D];
+        for axis in 0..2 {
+            at[axis] = centre[axis];
+            speed[axis] = velocity[axis];
+        }
+        self.simulation.place(ball, at, speed).map_err(refusal)
+    }
 }
 
 /// Which scene.
@@ -210,7 +253,7 @@ fn inside<const D: usize>(
     down: f32,
 ) -> Result<Box<dyn Door>, Code> {
     let simulation = setup.and_then(|setup| Simulation::new(&setup)).map_err(refusal)?;
-    Ok(Box::new(Inside { simulation, down }))
+    Ok(Box::new(Inside { simulation, down, moments: Vec::new(), free_moments: Vec::new() }))
 }
 
 fn refusal(error: SetupError) -> Code {

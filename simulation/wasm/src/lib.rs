@@ -222,6 +222,31 @@ pub extern "C" fn sim_pairs(handle: u32) -> *const u32 {
     pairs.unwrap_or(std::ptr::null())
 }
 
+/// Saves the moment; its number is then at index 0.
+#[unsafe(no_mangle)]
+pub extern "C" fn sim_save(handle: u32) -> Code {
+    code(with(handle, |simulation| write_area(&[simulation.save() as f64])))
+}
+
+/// Goes back to a saved moment.
+#[unsafe(no_mangle)]
+pub extern "C" fn sim_restore(handle: u32, moment: u32) -> Code {
+    code(with(handle, |simulation| simulation.restore(moment as usize)).flatten())
+}
+
+/// Forgets a saved moment, if there is such a one.
+#[unsafe(no_mangle)]
+pub extern "C" fn sim_forget(handle: u32, moment: u32) -> Code {
+    code(with(handle, |simulation| simulation.forget(moment as usize)))
+}
+
+/// Puts a ball at x, y, with this velocity.
+#[unsafe(no_mangle)]
+pub extern "C" fn sim_place(handle: u32, ball: u32, x: f32, y: f32, vx: f32, vy: f32) -> Code {
+    let place = |simulation: &mut dyn Door| simulation.place(ball as usize, [x, y], [vx, vy]);
+    code(with(handle, place).flatten())
+}
+
 /// Kinetic and potential energy per unit of mass; 0 without such a simulation.
 #[unsafe(no_mangle)]
 pub extern "C" fn sim_energy(handle: u32) -> f64 {

@@ -218,6 +218,36 @@ describe("loaded", () => {
     }
   });
 
+  test("a saved moment can be gone back to, until it is forgotten", () => {
+    const simulation = new Simulation({ scene: "bouncing", bodies: 12 });
+    run(simulation, 100);
+    const moment = simulation.save();
+    const here = simulation.hash();
+    run(simulation, 50);
+    const later = simulation.hash();
+    simulation.restore(moment);
+    assert.equal(simulation.hash(), here);
+    assert.equal(simulation.steps, 100);
+    run(simulation, 50);
+    assert.equal(simulation.hash(), later);
+    simulation.forget(moment);
+    simulation.forget(moment);
+    assertRefused("invalid-option", () => simulation.restore(moment));
+    assert.equal(simulation.hash(), later);
+    assert.equal(simulation.save(), moment, "its place is used again");
+    simulation.free();
+  });
+
+  test("a ball is placed, inside the walls", () => {
+    const simulation = new Simulation({ scene: "bouncing", balls: [{ x: 50, y: 50, radius: 10 }] });
+    simulation.place(0, { x: 1000, y: 60 });
+    assert.deepEqual([...simulation.positions], [590, 60]);
+    assertRefused("invalid-option", () => simulation.place(1, { x: 1, y: 1 }));
+    assertRefused("invalid-option", () => simulation.place(0, { x: NaN, y: 1 }));
+    assert.deepEqual([...simulation.positions], [590, 60]);
+    simulation.free();
+  });
+
   test("freed is freed, and its place is used again", () => {
     const simulation = new Simulation({ bodies: 10, size: 0.5 });
     simulation.free();
