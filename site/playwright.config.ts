@@ -14,7 +14,10 @@ async function freePort(): Promise<number> {
 // The processes of the tests read this file again and must find the same port.
 const port = Number((process.env["SITE_TEST_PORT"] ??= String(await freePort())));
 
-/** The built page in the system's Chromium, which draws in software: no graphics card is needed. */
+/** The folder of the build under test, if it is not dist. */
+const folder = process.env["SITE_TEST_DIST"];
+
+/** The built pages in the system's Chromium, which draws in software: no graphics card is needed. */
 export default defineConfig({
   testDir: "test",
   outputDir: "test-results",
@@ -39,7 +42,7 @@ export default defineConfig({
     },
   },
   webServer: {
-    command: `npx vite preview --strictPort --port ${port}`,
+    command: `npx vite preview --strictPort --port ${port}${folder ? ` --outDir ${folder}` : ""}`,
     port,
     reuseExistingServer: false,
   },

@@ -1,6 +1,7 @@
 import { defineConfig, type Plugin } from "vite";
 import { insertComplexity } from "./src/complexity/table.ts";
 import { expandLabs } from "./src/lab/markup.ts";
+import { pages, shell } from "./src/shell/pages.ts";
 
 /** Writes the inside of each `<ball-lab>` into the page, so that nothing moves when scripts arrive. */
 const labs: Plugin = {
@@ -16,7 +17,12 @@ const complexity: Plugin = {
 
 export default defineConfig({
   base: "./",
-  plugins: [labs, complexity],
+  appType: "mpa",
+  plugins: [shell, labs, complexity],
   worker: { format: "es" },
-  build: { target: "es2022", chunkSizeWarningLimit: 800 },
+  build: {
+    target: "es2022",
+    chunkSizeWarningLimit: 800,
+    rolldownOptions: { input: pages() },
+  },
 });

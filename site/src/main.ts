@@ -1,5 +1,4 @@
-import { BallLab } from "./lab/ball-lab.ts";
+// The explanation's own parts.
 import { LibraryTrial } from "./library/library-trial.ts";
 
-customElements.define("ball-lab", BallLab);
 customElements.define("library-trial", LibraryTrial);

@@ -6,7 +6,7 @@ const IDS = ["discs", "spheres"] as const;
 test.describe("running", () => {
   for (const id of IDS) {
     test(`${id}: counters move, pause holds them, the world goes on afterwards`, async ({ page }) => {
-      await page.goto(`/?${id}.algorithm=sorted+pairwise`);
+      await page.goto(`/falling.html?${id}.algorithm=sorted+pairwise`);
       const lab = await new Lab(page, id).open();
       const seen = new Set<string>();
       await expect
@@ -27,7 +27,7 @@ test.describe("running", () => {
   }
 
   test("sleeps while it is off the screen", async ({ page }) => {
-    await page.goto("/");
+    await page.goto("/falling.html");
     const lab = await new Lab(page, "discs").open();
     await expect.poll(() => lab.stepNumber()).toBeGreaterThan(5);
     await page.locator("footer").scrollIntoViewIfNeeded();
@@ -49,7 +49,7 @@ test.describe("paused", () => {
 
   for (const id of IDS) {
     test(`${id}: begins paused where less motion is wanted, and the first step is the first`, async ({ page }) => {
-      await page.goto("/");
+      await page.goto("/falling.html");
       const lab = await new Lab(page, id).open();
       await expect(lab.play).toHaveText("Play");
       expect(await lab.stepNumber()).toBe(0);
@@ -58,7 +58,7 @@ test.describe("paused", () => {
     });
 
     test(`${id}: the same seed gives the same states, another seed others`, async ({ page }) => {
-      await page.goto(`/?${id}.bodies=500`);
+      await page.goto(`/falling.html?${id}.bodies=500`);
       const lab = await new Lab(page, id).open();
       const states = async (): Promise<string[]> => {
         const all = [await lab.hash()];
@@ -80,7 +80,7 @@ test.describe("paused", () => {
 
     test(`${id}: all algorithms, with every sort, find the same pairs and leave the same state`, async ({ page }) => {
       test.slow(); // some hundred steps, each waited for until it is drawn
-      await page.goto(`/?${id}.bodies=300`);
+      await page.goto(`/falling.html?${id}.bodies=300`);
       const lab = await new Lab(page, id).open();
       const outcomes = new Map<string, unknown>();
       for (const algorithm of await lab.algorithms()) {
@@ -103,7 +103,7 @@ test.describe("paused", () => {
   }
 
   test("switching the algorithm in the middle does not disturb the motion", async ({ page }) => {
-    await page.goto("/");
+    await page.goto("/falling.html");
     const lab = await new Lab(page, "discs").open();
     await lab.step(6);
     const undisturbed = await lab.hash();
@@ -116,7 +116,7 @@ test.describe("paused", () => {
   });
 
   test("brute force counts n(n - 1)/2 tests, sorted pairwise far fewer, for the same pairs", async ({ page }) => {
-    await page.goto("/?discs.bodies=1000");
+    await page.goto("/falling.html?discs.bodies=1000");
     const lab = await new Lab(page, "discs").open();
     await lab.algorithm.selectOption("global pairwise");
     await lab.step(3);
@@ -131,7 +131,7 @@ test.describe("paused", () => {
   });
 
   test("what is not counted is an en dash that says why", async ({ page }) => {
-    await page.goto("/");
+    await page.goto("/falling.html");
     const lab = await new Lab(page, "spheres").open();
     await lab.step(1);
     const [library = ""] = await lab.algorithms();
@@ -145,7 +145,7 @@ test.describe("paused", () => {
   });
 
   test("the address keeps what was chosen, and nothing else", async ({ page }) => {
-    await page.goto("/");
+    await page.goto("/falling.html");
     const lab = await new Lab(page, "discs").open();
     expect(new URL(page.url()).search).toBe("");
     await lab.algorithm.selectOption("global pairwise");
@@ -170,7 +170,7 @@ test.describe("paused", () => {
   });
 
   test("an address that makes no sense is ignored", async ({ page }) => {
-    await page.goto("/?discs.bodies=-3&discs.seed=abc&discs.size=NaN&discs.spread=1e9&discs.algorithm=magic&discs.axis=");
+    await page.goto("/falling.html?discs.bodies=-3&discs.seed=abc&discs.size=NaN&discs.spread=1e9&discs.algorithm=magic&discs.axis=");
     const lab = await new Lab(page, "discs").open();
     await lab.step(2);
     expect(await lab.counter("brute-force")).toBe("19,900");
@@ -178,7 +178,7 @@ test.describe("paused", () => {
   });
 
   test("works by the keyboard alone", async ({ page }) => {
-    await page.goto("/");
+    await page.goto("/falling.html");
     const lab = await new Lab(page, "discs").open();
     await lab.play.focus();
     await page.keyboard.press("Tab");
@@ -200,7 +200,7 @@ test.describe("paused", () => {
 
   test("one body and the most there are", async ({ page }) => {
     for (const [id, bodies] of [["discs", 1], ["discs", 10_000], ["spheres", 1], ["spheres", 30_000]] as const) {
-      await page.goto(`/?${id}.bodies=${bodies}&${id}.spread=20&${id}.size=150`);
+      await page.goto(`/falling.html?${id}.bodies=${bodies}&${id}.spread=20&${id}.size=150`);
       const lab = await new Lab(page, id).open();
       await lab.step(2);
       expect(await lab.value("brute-force")).toBe((bodies * (bodies - 1)) / 2);

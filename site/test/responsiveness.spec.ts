@@ -5,7 +5,7 @@ import { Lab } from "./lab.ts";
 // so pictures a second say nothing here. What counts is the thread of the page, and the step.
 
 test("brute force at 10,000 spheres leaves the page responsive, and shows what it costs", async ({ page }) => {
-  await page.goto("/?spheres.algorithm=global+pairwise");
+  await page.goto("/falling.html?spheres.algorithm=global+pairwise");
   const lab = await new Lab(page, "spheres").open();
   await expect.poll(() => lab.stepNumber()).toBeGreaterThan(1);
   await expect.poll(() => lab.counter("tests")).toBe("49,995,000");
@@ -38,7 +38,7 @@ test("brute force at 10,000 spheres leaves the page responsive, and shows what i
 });
 
 test("10,000 spheres: the broad phase takes less than a frame", async ({ page }) => {
-  await page.goto("/");
+  await page.goto("/falling.html");
   const lab = await new Lab(page, "spheres").open();
   const [library = ""] = await lab.algorithms();
   const times = new Map<string, number>();

@@ -20,7 +20,4 @@ export function readTheme(): Theme {
   };
 }
 
-/** Calls `changed` whenever the page turns light or dark. */
-export function onThemeChange(changed: () => void, signal: AbortSignal): void {
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", changed, { signal });
-}
+export { onThemeChange } from "../shell/theme.ts";

@@ -1,0 +1,3 @@
+import { BallLab } from "./ball-lab.ts";
+
+customElements.define("ball-lab", BallLab);

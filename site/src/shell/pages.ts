@@ -1,0 +1,86 @@
+// The frame of every page, written when the site is built: what stands in the head, the header with
+// the navigation, the footer. A page is `<title>`, its own style and scripts, and `<main id="main">`.
+// `<html data-shell="bare">` asks for the head alone (a demo inside someone else's page).
+
+import { readdirSync, readFileSync } from "node:fs";
+import { basename } from "node:path";
+import type { IndexHtmlTransformContext, Plugin } from "vite";
+
+const here = new URL("./", import.meta.url);
+const site = new URL("../../", here);
+
+/** The pages of the navigation, in its order. */
+const NAVIGATION: readonly (readonly [file: string, name: string])[] = [
+  ["index.html", "Explanation"],
+  ["falling.html", "Falling balls"],
+  ["race.html", "Race"],
+  ["playground.html", "Playground"],
+  ["benchmark.html", "Benchmark"],
+  ["api.html", "API"],
+];
+
+/** Every page there is: each html file of the site's folder. */
+export function pages(): string[] {
+  return readdirSync(site).filter((file) => file.endsWith(".html"));
+}
+
+export const shell: Plugin = {
+  name: "shell",
+  transformIndexHtml: { order: "pre", handler: frame },
+};
+
+function frame(page: string, { filename }: IndexHtmlTransformContext): string {
+  const bare = /<html[^>]*data-shell="bare"/.test(page);
+  const framed = page.replace(/<head>/, () => `<head>${head()}`);
+  if (bare) return framed;
+  return framed
+    .replace(/<body([^>]*)>/, (tag) => `${tag}${header(basename(filename))}`)
+    .replace("</body>", () => `${footer()}</body>`);
+}
+
+/**
+ * Character set, icon, style and theme. The dark palette and the script that decides whether it
+ * holds stand in the page itself: the first picture already has the right colours.
+ */
+function head(): string {
+  return `
+    <meta charset="utf-8" />
+    <meta name="viewport" content="width=device-width, initial-scale=1" />
+    <link rel="icon" href="./icon.svg" type="image/svg+xml" />
+    <link rel="stylesheet" href="./src/style.css" />
+    <style id="dark" media="(prefers-color-scheme: dark)">${read("dark.css")}</style>
+    <script>${read("theme-first.js")}</script>
+    <script type="module" src="./src/shell/shell.ts"></script>`;
+}
+
+function header(file: string): string {
+  const links = NAVIGATION.map(
+    ([target, name]) => `<li><a href="./${target}"${target === file ? ' aria-current="page"' : ""}>${name}</a></li>`,
+  );
+  return `
+    <a class="skip" href="#main">Skip to the content</a>
+    <header class="site-header">
+      <a class="wordmark" href="./index.html">Sweep and prune</a>
+      <nav aria-label="Site"><ul>${links.join("")}</ul></nav>
+      <label class="theme"><span class="visually-hidden">Light or dark</span>
+        <select id="theme" autocomplete="off">
+          <option value="auto">Auto</option>
+          <option value="light">Light</option>
+          <option value="dark">Dark</option>
+        </select>
+      </label>
+    </header>`;
+}
+
+function footer(): string {
+  return `
+    <footer class="site-footer">
+      <p>
+        After the article <cite>Sort, sweep, and prune</cite> by Lean and the lesson on sweep and prune
+        in Matthias Müller’s <cite>Ten Minute Physics</cite>. Free under MIT or Apache 2.0, as you like.
+        The pages ask no other host for anything, and once visited they open without a network.
+      </p>
+    </footer>`;
+}
+
+const read = (file: string): string => readFileSync(new URL(file, here), "utf8");

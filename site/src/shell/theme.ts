@@ -1,0 +1,48 @@
+// Light or dark: what the visitor chose, or else what the system says.
+
+export type Choice = "auto" | "light" | "dark";
+
+const system = matchMedia("(prefers-color-scheme: dark)");
+const root = document.documentElement;
+
+/** What was chosen. */
+export function choice(): Choice {
+  const chosen = root.dataset["theme"];
+  return chosen === "light" || chosen === "dark" ? chosen : "auto";
+}
+
+/** Whether the page is dark now. */
+export function isDark(): boolean {
+  return choice() === "auto" ? system.matches : choice() === "dark";
+}
+
+/** Chooses, for this page and those visited later. */
+export function choose(chosen: Choice): void {
+  try {
+    if (chosen === "auto") localStorage.removeItem("theme");
+    else localStorage.setItem("theme", chosen);
+  } catch {
+    // Without storage the choice lasts as long as the page.
+  }
+  apply(chosen);
+}
+
+/** Calls `changed` whenever the page turns light or dark. */
+export function onThemeChange(changed: () => void, signal?: AbortSignal): void {
+  const options = signal ? { signal } : {};
+  system.addEventListener("change", changed, options);
+  window.addEventListener("themechange", changed, options);
+}
+
+function apply(chosen: Choice): void {
+  if (chosen === "auto") delete root.dataset["theme"];
+  else root.dataset["theme"] = chosen;
+  const dark = document.getElementById("dark") as HTMLStyleElement;
+  dark.media = { auto: "(prefers-color-scheme: dark)", light: "not all", dark: "all" }[chosen];
+  window.dispatchEvent(new Event("themechange"));
+}
+
+// Another tab of the site chose.
+window.addEventListener("storage", ({ key, newValue }) => {
+  if (key === "theme") apply(newValue === "light" || newValue === "dark" ? newValue : "auto");
+});
