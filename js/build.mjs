@@ -33,6 +33,8 @@ const entries = [
   { name: "broad-phase", budget: 8_000 },
   { name: "broad-phase-inline" },
   { name: "algorithms", budget: 6_000 },
+  // With Lit, which it draws its controls by.
+  { name: "demo", budget: 40_000 },
 ];
 
 /** Without and with vector instructions. */
@@ -55,24 +57,41 @@ for (const core of cores) {
     writeFileSync(path, bytes);
   }
 }
+buildSimulation();
 await buildModules();
 buildDeclarations();
+copyFileSync(join(here, "src/demo/demo.css"), join(dist, "demo.css"));
 for (const licence of ["LICENSE-MIT", "LICENSE-APACHE"]) copyFileSync(join(root, licence), join(dist, licence));
 removeStale();
 
+/** The balls of the demos. */
+function buildSimulation() {
+  const crate = "sweep-and-prune-simulation-wasm";
+  const bytes = compile(crate, ["--package", crate], { directory: "wasm-demo", vector: [] });
+  checkCore({ name: "simulation" }, { suffix: ".wasm", simd: false }, bytes);
+  report("simulation.wasm", [bytes], 110_000);
+  writeFileSync(join(dist, "simulation.wasm"), bytes);
+}
+
 /** Compiles the core; each build has a target folder of its own, so that neither undoes the other. */
 function compileCore({ feature }, { directory, vector }) {
-  const folder = join(directory, feature);
-  const profile = ["--profile", "wasm", "--target", "wasm32-unknown-unknown", "--no-default-features", "--features", feature];
+  const crate = "sweep-and-prune-wasm";
+  const what = ["--package", crate, "--no-default-features", "--features", feature];
+  return compile(crate, what, { directory: join(directory, feature), vector });
+}
+
+/** Compiles a crate to WebAssembly, into a target folder of its own. */
+function compile(crate, what, { directory, vector }) {
+  const profile = ["--profile", "wasm", "--target", "wasm32-unknown-unknown"];
   // Where a dependency lies on this machine is nobody's business.
   const flags = [...vector, `--remap-path-prefix=${registry}=registry`].join("\x1f");
   run(
     "cargo",
-    ["build", "--quiet", "--package", "sweep-and-prune-wasm", ...profile, "--target-dir", join(target, folder)],
+    ["build", "--quiet", ...what, ...profile, "--target-dir", join(target, directory)],
     // For size: 45 KB instead of 70 after gzip, for which the search takes a tenth longer.
     { ...process.env, CARGO_ENCODED_RUSTFLAGS: flags, CARGO_PROFILE_WASM_OPT_LEVEL: "s" },
   );
-  return readFileSync(join(target, folder, "wasm32-unknown-unknown/wasm/sweep_and_prune_wasm.wasm"));
+  return readFileSync(join(target, directory, `wasm32-unknown-unknown/wasm/${crate.replaceAll("-", "_")}.wasm`));
 }
 
 /** Whether it has vector instructions if and only if it should, and names nothing of this machine. */

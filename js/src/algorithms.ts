@@ -11,7 +11,7 @@ export type { Boxes, Dimensions } from "./boxes.js";
 export { InvalidBoxError, NotInitializedError, OutOfMemoryError, SweepAndPruneError } from "./errors.js";
 export type { InitOptions, Started } from "./init.js";
 export { Player, type PlayerState } from "./player.js";
-export { axes, type Counts, methods, Runner, type RunnerOptions, sorts, type Step } from "./runner.js";
+export { axes, type Counts, methods, Runner, type RunnerOptions, sorts, type Step, wrongMethods } from "./runner.js";
 export { events, type TraceEvent } from "./trace.js";
 
 /** Loads and starts the compiled algorithms; otherwise as that of `sweep-and-prune`. */

@@ -37,6 +37,12 @@ export const methods = [
   "one-to-n scan",
 ] as const;
 
+/**
+ * Algorithms with an error that is often made, to show what comes of it; by name. Never to be used:
+ * they miss pairs, or report ones that there are not.
+ */
+export const wrongMethods = ["strict ties (wrong)", "sorted start (wrong)", "sort by centre (wrong)"] as const;
+
 /** How endpoints are sorted, by name. */
 export const sorts = ["standard library", "quicksort", "insertion sort", "merge sort", "Timsort"] as const;
 
@@ -48,7 +54,7 @@ export interface RunnerOptions {
   /** How many dimensions the boxes have. */
   dimensions: Dimensions;
   /** Which algorithm. */
-  method: (typeof methods)[number];
+  method: (typeof methods)[number] | (typeof wrongMethods)[number];
   /** How it sorts, if it does. `"standard library"` by default. */
   sort?: (typeof sorts)[number];
   /** Along which axis it sweeps: chosen at each step, or this one. `"largest variance"` by default. */

@@ -234,6 +234,6 @@ test("the package holds what it should and nothing else", () => {
   for (const file of ["package.json", "README.md", "dist/index.js", "dist/index.d.ts", "dist/sweep-and-prune.simd.wasm", "dist/LICENSE-MIT"]) {
     assert.ok(files.includes(file), file);
   }
-  const odd = files.filter((path) => !/^(package\.json|README\.md|dist\/[\w.-]+\.(js|d\.ts|wasm)|dist\/LICENSE-\w+)$/.test(path));
+  const odd = files.filter((path) => !/^(package\.json|README\.md|dist\/(demo\/)?[\w.-]+\.(js|d\.ts|wasm|css)|dist\/LICENSE-\w+)$/.test(path));
   assert.deepEqual(odd, []);
 });

@@ -1,0 +1,72 @@
+import { OptionError } from "./options.js";
+
+/** A CSS colour, or undefined for the theme's own. */
+type Colour = string | undefined;
+
+/** What is drawn beside the balls, and in which colours. */
+export interface Decorations {
+  /** Each pair as it is tested, lit for so many milliseconds. */
+  readonly checks: { readonly colour: Colour; readonly ms: number } | undefined;
+  /** The sweep line, and the balls that it touches. */
+  readonly sweep: { readonly line: Colour; readonly inside: Colour } | undefined;
+  /** The endpoints of each ball. */
+  readonly edges: { readonly focus: boolean; readonly inside: Colour; readonly outside: Colour } | undefined;
+  /** The array of endpoints under the picture; its comparisons and swaps one by one, if so asked. */
+  readonly array: { readonly comparison: Colour; readonly swap: Colour; readonly isSortShown: boolean } | undefined;
+}
+
+/** How long a pair stays lit, unless told otherwise. */
+const CHECK_MS = 100;
+
+/**
+ * Reads a list like `checks:#4c8:600, sweep:red, edges:array:orange:blue`.
+ *
+ * @throws {@link OptionError}
+ */
+export function readDecorations(text: string, also: { array: boolean; checks: boolean }): Decorations {
+  let checks: Decorations["checks"] = also.checks ? { colour: undefined, ms: CHECK_MS } : undefined;
+  let sweep: Decorations["sweep"];
+  let edges: Decorations["edges"];
+  let array: Decorations["array"] = also.array ? { comparison: undefined, swap: undefined, isSortShown: false } : undefined;
+  for (const part of split(text, ",")) {
+    const [name = "", ...words] = split(part, ":");
+    const [first, second] = words;
+    if (name === "checks") {
+      const isTime = first !== undefined && words.length === 1 && /^\d+$/.test(first);
+      checks = { colour: isTime ? undefined : colour(first), ms: milliseconds(isTime ? first : second) };
+    } else if (name === "sweep") {
+      sweep = { line: colour(first), inside: colour(second) };
+    } else if (name === "edges" && first === "array") {
+      edges = { focus: false, inside: undefined, outside: undefined };
+      array = { comparison: colour(words[1]), swap: colour(words[2]), isSortShown: true };
+    } else if (name === "edges") {
+      const focus = first === "focus";
+      edges = { focus, inside: colour(focus ? words[1] : first), outside: colour(focus ? words[2] : second) };
+      if (words.includes("array")) array ??= { comparison: undefined, swap: undefined, isSortShown: true };
+    } else {
+      throw new OptionError(`decorations: there is no "${name}", only checks, sweep and edges`);
+    }
+  }
+  return { checks, sweep, edges, array };
+}
+
+/** Parts between separators, but not within brackets: `rgb(1, 2, 3)` is one. */
+function split(text: string, separator: "," | ":"): string[] {
+  const parts = text.split(separator === "," ? /,(?![^(]*\))/ : /:(?![^(]*\))/).map((part) => part.trim());
+  return separator === "," ? parts.filter((part) => part !== "") : parts;
+}
+
+function colour(text: string | undefined): Colour {
+  if (text === undefined || text === "" || text === "array") return undefined;
+  if (typeof CSS !== "undefined" && !CSS.supports("color", text)) {
+    throw new OptionError(`decorations: "${text}" is no colour`);
+  }
+  return text;
+}
+
+function milliseconds(text: string | undefined): number {
+  if (text === undefined || text === "") return CHECK_MS;
+  const ms = Number(text.replace(/ms$/, ""));
+  if (!(ms >= 0 && ms <= 60_000)) throw new OptionError(`decorations: "${text}" is no time in milliseconds`);
+  return ms;
+}

@@ -1,0 +1,227 @@
+import type { PlayerState } from "../player.js";
+import type { TraceEvent } from "../trace.js";
+import type { Decorations } from "./decorations.js";
+import { HEIGHT, WIDTH } from "./options.js";
+import { rainbow, type Theme } from "./theme.js";
+
+/** What one picture shows. */
+export interface Scene {
+  readonly positions: Float32Array;
+  readonly radii: Float32Array;
+  readonly state: PlayerState;
+  /** The event at work. */
+  readonly event: TraceEvent | undefined;
+  /** How far along it is on the way to the next stop, 0 to 1: the line moves smoothly. */
+  readonly lineAt: number | undefined;
+  readonly decorations: Decorations;
+  readonly labels: readonly string[];
+  readonly isRainbow: boolean;
+  readonly hasBoxes: boolean;
+  readonly focus: number | undefined;
+  /** The balls that the visitor has chosen, at most two. */
+  readonly chosen: readonly number[];
+  /** The axis that is swept. */
+  readonly axis: number;
+}
+
+/** Draws the world, 600 x 400, into a context that is scaled to it. */
+export function drawScene(context: CanvasRenderingContext2D, scene: Scene, theme: Theme): void {
+  context.clearRect(0, 0, WIDTH, HEIGHT);
+  context.lineJoin = "round";
+  context.lineCap = "butt";
+  const painter = new Painter(context, scene, theme);
+  painter.focusBand();
+  painter.edges();
+  painter.balls();
+  painter.overlaps();
+  painter.event();
+  painter.sweepLine();
+  painter.chosen();
+  painter.labels();
+}
+
+class Painter {
+  readonly #context: CanvasRenderingContext2D;
+  readonly #scene: Scene;
+  readonly #theme: Theme;
+
+  constructor(context: CanvasRenderingContext2D, scene: Scene, theme: Theme) {
+    this.#context = context;
+    this.#scene = scene;
+    this.#theme = theme;
+  }
+
+  balls(): void {
+    const { radii, isRainbow, hasBoxes, decorations, state } = this.#scene;
+    const active = new Set(decorations.sweep ? state.active : []);
+    const inside = decorations.sweep?.inside ?? this.#theme.inside;
+    this.#context.lineWidth = 1.5;
+    for (let ball = 0; ball < radii.length; ball++) {
+      const fill = active.has(ball) ? inside : isRainbow ? rainbow(ball, radii.length) : this.#theme.ball;
+      this.#disc(ball, radii[ball]!);
+      this.#context.fillStyle = fill;
+      this.#context.fill();
+      this.#context.strokeStyle = this.#theme.muted;
+      this.#context.stroke();
+      if (hasBoxes) this.#box(ball, this.#theme.muted);
+    }
+  }
+
+  /** The interval of the ball in focus, on the axis. */
+  focusBand(): void {
+    const { decorations, focus, axis } = this.#scene;
+    if (!decorations.edges?.focus || focus === undefined) return;
+    const [low, high] = this.#interval(focus, axis);
+    this.#context.globalAlpha = 0.16;
+    this.#context.fillStyle = decorations.edges.inside ?? this.#theme.chosen;
+    if (axis === 0) this.#context.fillRect(low, 0, high - low, HEIGHT);
+    else this.#context.fillRect(0, low, WIDTH, high - low);
+    this.#context.globalAlpha = 1;
+  }
+
+  /** Where each interval begins and ends, drawn to the foot of the picture. */
+  edges(): void {
+    const { decorations, radii, focus, axis } = this.#scene;
+    const { edges } = decorations;
+    if (!edges) return;
+    const outside = (edges.focus ? edges.outside : undefined) ?? this.#theme.edge;
+    const inside = (edges.focus ? edges.inside : undefined) ?? this.#theme.chosen;
+    const within = edges.focus && focus !== undefined ? this.#interval(focus, axis) : undefined;
+    for (let ball = 0; ball < radii.length; ball++) {
+      for (const [side, at] of this.#interval(ball, axis).entries()) {
+        const isInside = within !== undefined && at >= within[0] && at <= within[1];
+        this.#context.strokeStyle = isInside ? inside : outside;
+        this.#context.lineWidth = isInside ? 2 : 1;
+        this.#context.setLineDash(side === 0 ? [] : [4, 3]);
+        this.#across(axis, at, this.#centre(ball)[1 - axis]!);
+      }
+    }
+    this.#context.setLineDash([]);
+  }
+
+  /** The pairs found so far. */
+  overlaps(): void {
+    const { decorations, state } = this.#scene;
+    if (!decorations.checks) return;
+    this.#context.strokeStyle = this.#theme.overlap;
+    this.#context.lineWidth = 2;
+    for (let i = 0; i + 1 < state.overlaps.length; i += 2) this.#between(state.overlaps[i]!, state.overlaps[i + 1]!);
+  }
+
+  event(): void {
+    const { event, decorations } = this.#scene;
+    const check = decorations.checks?.colour ?? this.#theme.check;
+    if (event?.kind === "test" || event?.kind === "overlap") {
+      const [a, b] = [Number(event["a"]), Number(event["b"])];
+      this.#context.strokeStyle = check;
+      this.#context.lineWidth = 5;
+      this.#between(a, b);
+      this.#context.lineWidth = 4;
+      for (const ball of [a, b]) {
+        this.#disc(ball, this.#scene.radii[ball]! - 1);
+        this.#context.stroke();
+      }
+    } else if (event?.kind === "prune") {
+      this.#gap(Number(event["axis"]), Number(event["left"]), Number(event["right"]), this.#theme.skip);
+    }
+  }
+
+  sweepLine(): void {
+    const { decorations, lineAt, axis } = this.#scene;
+    if (!decorations.sweep || lineAt === undefined) return;
+    this.#context.strokeStyle = decorations.sweep.line ?? this.#theme.sweep;
+    this.#context.lineWidth = 2.5;
+    this.#across(axis, lineAt, undefined);
+  }
+
+  chosen(): void {
+    const { chosen, focus } = this.#scene;
+    this.#context.strokeStyle = this.#theme.chosen;
+    this.#context.lineWidth = 3;
+    for (const ball of new Set([...chosen, ...(focus === undefined ? [] : [focus])])) {
+      this.#context.setLineDash(chosen.includes(ball) ? [6, 4] : []);
+      this.#disc(ball, this.#scene.radii[ball]! + 4);
+      this.#context.stroke();
+    }
+    this.#context.setLineDash([]);
+  }
+
+  labels(): void {
+    const { labels, radii, isRainbow } = this.#scene;
+    this.#context.textAlign = "center";
+    this.#context.textBaseline = "middle";
+    labels.forEach((label, ball) => {
+      if (ball >= radii.length || label === "") return;
+      const [x, y] = this.#centre(ball);
+      const size = Math.max(9, Math.min(radii[ball]! * (label.length > 2 ? 0.7 : 1), 40));
+      this.#context.font = `600 ${size}px system-ui, sans-serif`;
+      this.#context.fillStyle = isRainbow ? "#1c2126" : this.#theme.ink;
+      this.#context.fillText(label, x, y + size * 0.05);
+    });
+  }
+
+  /** The gap between the right edge of one ball and the left edge of another. */
+  #gap(axis: number, left: number, right: number, colour: string): void {
+    const [, from] = this.#interval(left, axis);
+    const [to] = this.#interval(right, axis);
+    const [a, b] = [this.#centre(left)[1 - axis]!, this.#centre(right)[1 - axis]!];
+    this.#context.strokeStyle = colour;
+    this.#context.lineWidth = 2.5;
+    const point = (along: number, across: number): [number, number] => (axis === 0 ? [along, across] : [across, along]);
+    this.#context.beginPath();
+    for (const [at, across] of [[from, a], [to, b]] as const) {
+      this.#context.moveTo(...point(at, across - 16));
+      this.#context.lineTo(...point(at, across + 16));
+    }
+    this.#context.stroke();
+    this.#context.setLineDash([5, 5]);
+    this.#context.beginPath();
+    this.#context.moveTo(...point(from, a));
+    this.#context.lineTo(...point(to, b));
+    this.#context.stroke();
+    this.#context.setLineDash([]);
+  }
+
+  /** A line across the whole picture, or from `from` to its foot. */
+  #across(axis: number, at: number, from: number | undefined): void {
+    this.#context.beginPath();
+    if (axis === 0) {
+      this.#context.moveTo(at, from ?? 0);
+      this.#context.lineTo(at, HEIGHT);
+    } else {
+      this.#context.moveTo(from ?? WIDTH, at);
+      this.#context.lineTo(0, at);
+    }
+    this.#context.stroke();
+  }
+
+  #between(a: number, b: number): void {
+    this.#context.beginPath();
+    this.#context.moveTo(...this.#centre(a));
+    this.#context.lineTo(...this.#centre(b));
+    this.#context.stroke();
+  }
+
+  #disc(ball: number, radius: number): void {
+    this.#context.beginPath();
+    this.#context.arc(...this.#centre(ball), Math.max(radius, 0.5), 0, 2 * Math.PI);
+  }
+
+  #box(ball: number, colour: string): void {
+    const [x, y] = this.#centre(ball);
+    const radius = this.#scene.radii[ball]!;
+    this.#context.strokeStyle = colour;
+    this.#context.lineWidth = 1;
+    this.#context.strokeRect(x - radius, y - radius, 2 * radius, 2 * radius);
+  }
+
+  #centre(ball: number): [number, number] {
+    return [this.#scene.positions[2 * ball]!, this.#scene.positions[2 * ball + 1]!];
+  }
+
+  #interval(ball: number, axis: number): [number, number] {
+    const at = this.#centre(ball)[axis === 1 ? 1 : 0];
+    const radius = this.#scene.radii[ball]!;
+    return [at - radius, at + radius];
+  }
+}

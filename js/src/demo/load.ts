@@ -1,0 +1,16 @@
+import { init } from "../algorithms.js";
+import { loadWorlds } from "./world.js";
+
+let loading: Promise<void> | undefined;
+
+/** Loads the compiled algorithms and the compiled simulation, once; after a failure anew. */
+export function loadDemos(): Promise<void> {
+  loading ??= Promise.all([init(), loadWorlds()]).then(
+    () => undefined,
+    (error: unknown) => {
+      loading = undefined;
+      throw error;
+    },
+  );
+  return loading;
+}

@@ -1,0 +1,65 @@
+import type { TraceEvent } from "../trace.js";
+
+const axisNames = ["x", "y"];
+
+/** Numbers as a sentence has them: no more digits than it takes. */
+export function inWords(value: number): string {
+  return String(Math.round(value * 10) / 10);
+}
+
+/** What is known beside the event. */
+interface Known {
+  readonly boxes: Float64Array;
+  readonly names: readonly string[];
+}
+
+/** The inequality that keeps two boxes apart, with its numbers: A’s right 120 < B’s left 140.5. */
+export function separation({ boxes, names }: Known, axis: number, left: number, right: number): string {
+  const [high, low] = axis === 0 ? ["right", "left"] : ["bottom", "top"];
+  const max = boxes[4 * left + 2 + axis]!;
+  const min = boxes[4 * right + axis]!;
+  // As many digits as it takes to tell the two apart.
+  const [a, b] = inWords(max) === inWords(min) ? [max, min].map(String) : [inWords(max), inWords(min)];
+  return `${names[left]}’s ${high} ${a} < ${names[right]}’s ${low} ${b}`;
+}
+
+/** One event in words. */
+export function describeEvent(event: TraceEvent, known: Known): string {
+  const word = (name: string): number => Number(event[name]);
+  const name = (ball: number): string => known.names[ball] ?? String(ball);
+  const edge = (at: number): string => (at % 2 === 0 ? `(${name(at >> 1)}` : `${name(at >> 1)})`);
+  const [a, b] = [word("a"), word("b")];
+  switch (event.kind) {
+    case "test": {
+      const [axis, left] = [word("axis"), word("left")];
+      if (left === 2 ** 32 - 1) return `Test ${name(a)} and ${name(b)}: their boxes overlap.`;
+      const right = left === a ? b : a;
+      return `Test ${name(a)} and ${name(b)}: apart on ${axisNames[axis]}, ${separation(known, axis, left, right)}.`;
+    }
+    case "prune": {
+      const [axis, left, right] = [word("axis"), word("left"), word("right")];
+      return `Stop here for ${name(left)}: ${separation(known, axis, left, right)}, and all that follow begin later still.`;
+    }
+    case "compare":
+      return `Compare ${edge(a)} with ${edge(b)}.`;
+    case "swap":
+      if (Math.abs(word("i") - word("j")) !== 1) return `Swap ${edge(a)} and ${edge(b)}.`;
+      return `Swap ${edge(a)} and ${edge(b)}: ${swapCase(a, b, name)}`;
+    case "enter":
+      return `The line enters ${name(word("id"))}.`;
+    case "leave":
+      return `The line leaves ${name(word("id"))}.`;
+    case "overlap":
+      return `${name(a)} and ${name(b)} overlap.`;
+    default:
+      return "";
+  }
+}
+
+/** What a swap of neighbours means. `a` stood before `b`. */
+function swapCase(a: number, b: number, name: (ball: number) => string): string {
+  const pair = `${name(a >> 1)} and ${name(b >> 1)}`;
+  if (a % 2 === 1 && b % 2 === 0) return `)( becomes (), ${pair} begin to overlap here.`;
+  if (a % 2 === 0 && b % 2 === 1) return `() becomes )(, ${pair} cease to overlap here.`;
+  return `${a % 2 === 0 ? "((" : "))"} stays what it is, nothing changes.`;
+}

@@ -1,0 +1,156 @@
+import { css, type CSSResult, unsafeCSS } from "lit";
+import { declarations } from "./theme.js";
+
+export const styles: CSSResult = css`
+  :host {
+    ${unsafeCSS(declarations)}
+    display: block;
+    position: relative;
+    max-width: var(--sap-width, 600px);
+    color: var(--_ink);
+    font: 0.9375rem/1.4 var(--sap-font, system-ui, sans-serif);
+  }
+  :host([hidden]) {
+    display: none;
+  }
+  * {
+    box-sizing: border-box;
+  }
+  .heading {
+    margin: 0 0 0.4rem;
+    font-weight: 600;
+  }
+  .picture {
+    position: relative;
+    aspect-ratio: 600 / 400;
+    background: var(--_stage);
+    border-radius: 6px;
+    overflow: hidden;
+    user-select: none;
+    -webkit-user-select: none;
+  }
+  :host([draggable]) .picture canvas,
+  :host([explain]) .picture canvas {
+    cursor: grab;
+  }
+  .picture canvas,
+  .array {
+    display: block;
+    width: 100%;
+    height: 100%;
+  }
+  .array {
+    margin-top: 6px;
+  }
+  :focus-visible {
+    outline: 3px solid var(--_chosen);
+    outline-offset: 2px;
+  }
+  .wrong {
+    position: absolute;
+    inset: 0;
+    display: grid;
+    place-content: center;
+    margin: 0;
+    padding: 1rem;
+    text-align: center;
+    background: var(--_stage);
+  }
+  .said {
+    margin: 6px 0 0;
+    height: 2.8em;
+    overflow: hidden;
+    font-size: 0.875rem;
+    color: var(--_muted);
+    font-variant-numeric: tabular-nums;
+  }
+  .said[data-explains] {
+    color: var(--_ink);
+  }
+  .hidden {
+    position: absolute;
+    width: 1px;
+    height: 1px;
+    margin: -1px;
+    overflow: hidden;
+    clip-path: inset(50%);
+    white-space: nowrap;
+  }
+  .counters {
+    display: grid;
+    grid-template-columns: repeat(5, 1fr);
+    gap: 4px;
+    margin: 6px 0 0;
+    height: 2.6rem;
+  }
+  .counters div {
+    display: flex;
+    flex-direction: column-reverse;
+    justify-content: flex-end;
+    min-width: 0;
+  }
+  .counters dt {
+    font-size: 0.6875rem;
+    line-height: 1.2;
+    color: var(--_muted);
+    white-space: nowrap;
+  }
+  .counters dd {
+    margin: 0;
+    font-size: 1.0625rem;
+    line-height: 1.3;
+    font-weight: 600;
+    font-variant-numeric: tabular-nums;
+  }
+  .controls {
+    display: flex;
+    align-items: center;
+    gap: 4px;
+    margin-top: 6px;
+    height: 36px;
+  }
+  .controls button,
+  .controls select,
+  .guess button {
+    flex: none;
+    height: 36px;
+    min-width: 36px;
+    padding: 0 6px;
+    border: 1px solid var(--_line);
+    border-radius: 6px;
+    background: transparent;
+    color: inherit;
+    font: inherit;
+    cursor: pointer;
+  }
+  .controls button:hover:enabled,
+  .guess button:hover {
+    background: var(--_stage);
+  }
+  .controls button:disabled {
+    opacity: 0.4;
+    cursor: default;
+  }
+  .controls svg {
+    display: block;
+    width: 16px;
+    height: 16px;
+    margin: auto;
+    fill: currentColor;
+  }
+  .controls input {
+    flex: 1;
+    min-width: 40px;
+    height: 36px;
+    margin: 0 4px;
+    accent-color: var(--_ink);
+  }
+  .guess {
+    display: flex;
+    flex-wrap: wrap;
+    align-items: center;
+    gap: 6px;
+    margin-top: 6px;
+    min-height: 36px;
+  }
+`;
