@@ -1,0 +1,21 @@
+// Two entries for each box: where it begins and where it ends.
+export function endpointsOf(boxes, first = "left", last = "right") {
+  return boxes.flatMap((box) => [
+    { box, side: first, begins: true, at: box[first] },
+    { box, side: last, begins: false, at: box[last] },
+  ]);
+}
+
+// The boxes have moved: read the coordinates anew, keep the order.
+export function refresh(endpoints) {
+  for (const endpoint of endpoints) {
+    endpoint.at = endpoint.box[endpoint.side];
+  }
+}
+
+// Which of two endpoints comes first. Never both, never neither.
+export function precedes(p, q) {
+  if (p.at !== q.at) return p.at < q.at;
+  if (p.begins !== q.begins) return p.begins;
+  return p.box.id < q.box.id;
+}

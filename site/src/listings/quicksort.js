@@ -1,0 +1,19 @@
+import { precedes } from "./endpoints.js";
+
+export function quicksort(endpoints, low = 0, high = endpoints.length - 1) {
+  if (low >= high) return;
+  const pivot = endpoints[(low + high) >> 1];
+  let i = low;
+  let j = high;
+
+  while (i <= j) {
+    while (precedes(endpoints[i], pivot)) i++; // @compare
+    while (precedes(pivot, endpoints[j])) j--;
+    if (i > j) break;
+    [endpoints[i], endpoints[j]] = [endpoints[j], endpoints[i]]; // @swap
+    i++;
+    j--;
+  }
+  quicksort(endpoints, low, j);
+  quicksort(endpoints, i, high);
+}
