@@ -10,6 +10,7 @@ use sweep_and_prune::algorithms::{
 };
 use sweep_and_prune::{Aabb, Error};
 
+use crate::labs::{Wrong, WrongRunner};
 use crate::status::{Code, tell, tell_error};
 
 /// A runner of any dimensions, with the rows that it reads.
@@ -28,12 +29,22 @@ trait Steps {
 #[derive(Clone)]
 struct Typed<const D: usize> {
     boxes: Vec<Aabb<D, f64>>,
-    runner: Runner<D, f64>,
+    algorithm: Algorithm<D>,
+}
+
+#[derive(Clone)]
+enum Algorithm<const D: usize> {
+    Right(Box<Runner<D, f64>>),
+    Wrong(WrongRunner<D>),
 }
 
 impl<const D: usize> Typed<D> {
-    fn boxed(options: RunnerOptions) -> Box<dyn Steps> {
-        Box::new(Self { boxes: Vec::new(), runner: Runner::new(options) })
+    fn boxed(options: RunnerOptions, wrong: Option<Wrong>) -> Box<dyn Steps> {
+        let algorithm = match wrong {
+            None => Algorithm::Right(Box::new(Runner::new(options))),
+            Some(wrong) => Algorithm::Wrong(WrongRunner::new(wrong, options.axis)),
+        };
+        Box::new(Self { boxes: Vec::new(), algorithm })
     }
 }
 
@@ -53,16 +64,28 @@ impl<const D: usize> Steps for Typed<D> {
         lists: &mut [Vec<[u32; 2]>; 3],
     ) -> Result<usize, Error> {
         let boxes = &self.boxes[..count.min(self.boxes.len())];
-        let step = self.runner.step(boxes, observer)?;
-        for (list, found) in lists.iter_mut().zip([step.pairs, step.begun, step.ended]) {
-            list.clear();
-            list.extend_from_slice(found);
+        match &mut self.algorithm {
+            Algorithm::Right(runner) => {
+                let step = runner.step(boxes, observer)?;
+                for (list, found) in lists.iter_mut().zip([step.pairs, step.begun, step.ended]) {
+                    list.clear();
+                    list.extend_from_slice(found);
+                }
+                Ok(step.axis)
+            }
+            Algorithm::Wrong(runner) => {
+                let axis = runner.step(boxes, observer)?;
+                *lists = runner.found();
+                Ok(axis)
+            }
         }
-        Ok(step.axis)
     }
 
     fn bytes(&self) -> usize {
-        self.runner.bytes()
+        match &self.algorithm {
+            Algorithm::Right(runner) => runner.bytes(),
+            Algorithm::Wrong(runner) => runner.bytes(),
+        }
     }
 
     fn copy(&self) -> Box<dyn Steps> {
@@ -77,6 +100,8 @@ struct Handle {
     /// None until it is started.
     steps: Option<Box<dyn Steps>>,
     method: Method,
+    /// Instead of the method, one that is wrong.
+    wrong: Option<Wrong>,
     sort: Sort,
     axis: Axis,
     observer: (Counts, Trace),
@@ -95,6 +120,7 @@ extern "C" fn runner_new(dimensions: u32, trace_words: usize) -> Option<Box<Hand
             text: Vec::new(),
             steps: None,
             method: Method::Pairwise,
+            wrong: None,
             sort: Sort::Standard,
             axis: Axis::default(),
             observer: (Counts::default(), Trace::with_limit(trace_words)),
@@ -136,6 +162,10 @@ extern "C" fn runner_text(handle: &mut Handle, length: usize) -> *mut u8 {
 extern "C" fn runner_choose(handle: &mut Handle, part: u32, index: u32) -> bool {
     let Ok(name) = core::str::from_utf8(&handle.text) else { return false };
     match part {
+        0 if Wrong::from_name(name).is_some() => {
+            handle.wrong = Wrong::from_name(name);
+            handle.wrong.map(|_| ())
+        }
         0 => Method::from_name(name).map(|method| {
             handle.method = match method {
                 Method::OneToN(_) => Method::OneToN(index),
@@ -156,12 +186,12 @@ extern "C" fn runner_choose(handle: &mut Handle, part: u32, index: u32) -> bool 
 /// Starts it as chosen.
 #[unsafe(no_mangle)]
 extern "C" fn runner_start(handle: &mut Handle, persistent: bool) {
-    let Handle { method, sort, axis, .. } = *handle;
+    let Handle { method, wrong, sort, axis, .. } = *handle;
     let options = RunnerOptions { method, sort, axis, persistent };
     handle.steps = Some(match handle.dimensions {
-        1 => Typed::<1>::boxed(options),
-        2 => Typed::<2>::boxed(options),
-        _ => Typed::<3>::boxed(options),
+        1 => Typed::<1>::boxed(options, wrong),
+        2 => Typed::<2>::boxed(options, wrong),
+        _ => Typed::<3>::boxed(options, wrong),
     });
 }
 

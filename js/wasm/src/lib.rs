@@ -18,6 +18,8 @@ mod algorithms;
 mod broad_phase;
 #[cfg(feature = "finder")]
 mod finder;
+#[cfg(feature = "algorithms")]
+mod labs;
 #[cfg(target_arch = "wasm32")]
 mod runtime;
 mod status;

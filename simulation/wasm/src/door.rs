@@ -188,10 +188,8 @@ impl<const D: usize> Door for Inside<D> {
             return Err(Code::InvalidOption);
         };
         let mut speed = [0.0; D];
-        for axis in 0..2 {
-            at[axis] = centre[axis];
-            speed[axis] = velocity[axis];
-        }
+        at[..2].copy_from_slice(&centre);
+        speed[..2].copy_from_slice(&velocity);
         self.simulation.place(ball, at, speed).map_err(refusal)
     }
 }
