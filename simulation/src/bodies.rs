@@ -90,21 +90,6 @@ impl<const D: usize> Bodies<D> {
         }
     }
 
-    /// The box that each ball sweeps out while it moves on for `time`, `kick` added to its
-    /// velocity.
-    pub fn write_boxes(&self, kick: [f32; D], time: f32, boxes: &mut Vec<Aabb<D>>) {
-        boxes.clear();
-        let bodies = self.positions.iter().zip(&self.velocities).zip(&self.radii);
-        boxes.extend(bodies.map(|((position, velocity), &radius)| {
-            let next: [f32; D] =
-                from_fn(|axis| position[axis] + (velocity[axis] + kick[axis]) * time);
-            Aabb::new(
-                from_fn(|axis| lesser(position[axis], next[axis]) - radius),
-                from_fn(|axis| greater(position[axis], next[axis]) + radius),
-            )
-        }));
-    }
-
     /// Per unit of mass, of the velocities less `ahead`, what gravity has added to them since the
     /// time of the positions.
     pub fn kinetic_energy(&self, ahead: [f32; D]) -> f64 {

@@ -24,9 +24,11 @@
 //! 1. **Integrate** by leapfrog: velocities live half a substep ahead of positions. In constant
 //!    gravity that is exact, so free fall neither gains nor loses energy (Hairer, Lubich and Wanner
 //!    2003, "Geometric numerical integration illustrated by the Störmer-Verlet method").
-//! 2. **Boxes**: each encloses what its ball will sweep through in this substep.
-//! 3. **Pairs** of boxes, by the broad phase. All are collected before any is resolved: bouncing
-//!    while sweeping would invalidate the order that is being swept.
+//! 2. **Boxes**, once a step: each holds its ball to the end of the step, with a margin. A ball that
+//!    a bounce sends out of its box gets a new one before it gets there.
+//! 3. **Pairs** of boxes, by the broad phase, once a step; of the balls with new boxes, one by one.
+//!    All are collected before any is resolved: bouncing while sweeping would invalidate the order
+//!    that is being swept.
 //! 4. **Contacts**: the pairs whose balls touch, or will before the substep ends. They are sorted
 //!    by height and index, so the motion does not depend on the order of the pairs, and so on the
 //!    algorithm that found them.
@@ -75,7 +77,9 @@
 
 mod bodies;
 mod broad_phase;
+mod candidates;
 mod contacts;
+mod grid;
 mod order;
 mod scatter;
 pub mod scenes;

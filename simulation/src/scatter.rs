@@ -3,6 +3,7 @@
 use sweep_and_prune::Aabb;
 use sweep_and_prune_scenes::Random;
 
+use crate::grid::Grid;
 use crate::setup::{Ball, SetupError};
 use crate::vector::{difference, dot};
 
@@ -45,7 +46,7 @@ impl<const D: usize> Scatter<D> {
         for radius in radii {
             let centre = (0..Self::TRIES)
                 .map(|_| self.draw_place(radius, &mut random))
-                .find(|&centre| !grid.is_taken(&balls, centre, radius))
+                .find(|&centre| !is_taken(&grid, &balls, centre, radius))
                 .ok_or(SetupError::NoRoom { placed: balls.len() })?;
             let velocity = self.speed.map(|speed| between(&mut random, -speed, speed));
             grid.insert(centre);
@@ -67,65 +68,17 @@ fn between(random: &mut Random, low: f32, high: f32) -> f32 {
     low + random.unit() as f32 * (high - low)
 }
 
-/// A uniform grid of centres, its cells no smaller than the largest ball, so that balls which
-/// overlap lie in the same cell or in neighbours.
-struct Grid<const D: usize> {
-    region: Aabb<D>,
-    /// Cells on each axis.
-    cells: [usize; D],
-    /// The last ball put into each cell, and before each ball the one put there earlier.
-    heads: Vec<u32>,
-    links: Vec<u32>,
-}
-
-const NONE: u32 = u32::MAX;
-
-impl<const D: usize> Grid<D> {
-    fn new(region: Aabb<D>, bodies: u32, greatest_radius: f32) -> Self {
-        // No more cells than about one a body.
-        let most = (1..).find(|k: &usize| k.pow(D as u32) >= bodies as usize).unwrap_or(1);
-        let cells = std::array::from_fn(|axis| {
-            let extent = region.max[axis] - region.min[axis];
-            ((extent / (2.0 * greatest_radius)) as usize).clamp(1, most)
-        });
-        Self { region, cells, heads: vec![NONE; cells.iter().product()], links: Vec::new() }
-    }
-
-    fn cell(&self, at: [f32; D], axis: usize) -> usize {
-        let (min, max) = (self.region.min[axis], self.region.max[axis]);
-        let cell = (at[axis] - min) / (max - min) * self.cells[axis] as f32;
-        (cell as usize).min(self.cells[axis] - 1)
-    }
-
-    fn insert(&mut self, centre: [f32; D]) {
-        let cell = (0..D).fold(0, |index, axis| index * self.cells[axis] + self.cell(centre, axis));
-        self.links.push(self.heads[cell]);
-        self.heads[cell] = (self.links.len() - 1) as u32;
-    }
-
-    fn is_taken(&self, balls: &[Ball<D>], centre: [f32; D], radius: f32) -> bool {
-        // All 3^D neighbours, those beyond the rim left out.
-        (0..3usize.pow(D as u32)).any(|neighbour| {
-            let (mut index, mut digits) = (0, neighbour);
-            for axis in 0..D {
-                let cell = self.cell(centre, axis) + digits % 3;
-                digits /= 3;
-                if cell < 1 || cell > self.cells[axis] {
-                    return false;
-                }
-                index = index * self.cells[axis] + cell - 1;
-            }
-            let mut next = self.heads[index];
-            while next != NONE {
-                let ball = &balls[next as usize];
-                let apart = difference(ball.centre, centre);
-                let reach = ball.radius + radius;
-                if dot(apart, apart) <= reach * reach {
-                    return true;
-                }
-                next = self.links[next as usize];
-            }
-            false
-        })
-    }
+/// Whether a ball there would touch one of the others.
+fn is_taken<const D: usize>(
+    grid: &Grid<D>,
+    balls: &[Ball<D>],
+    centre: [f32; D],
+    radius: f32,
+) -> bool {
+    grid.any_near(centre, |other| {
+        let ball = &balls[other as usize];
+        let apart = difference(ball.centre, centre);
+        let reach = ball.radius + radius;
+        dot(apart, apart) <= reach * reach
+    })
 }

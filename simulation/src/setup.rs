@@ -36,7 +36,7 @@ pub struct Setup<const D: usize> {
     pub restitution: f32,
     /// Seconds a step.
     pub time_step: f32,
-    /// Equal parts of a step, each with its own broad phase, 1 to [`Setup::MOST_SUBSTEPS`].
+    /// Equal parts of a step, 1 to [`Setup::MOST_SUBSTEPS`].
     pub substeps: u32,
 }
 

@@ -5,6 +5,7 @@ use sweep_and_prune::{Aabb, Error};
 
 use crate::bodies::{Bodies, inside_walls};
 use crate::broad_phase::{BroadPhase, Engine};
+use crate::candidates::{Ahead, Candidates};
 use crate::contacts::{Contacts, Surroundings};
 use crate::setup::{Setup, SetupError};
 use crate::solver;
@@ -13,16 +14,17 @@ use crate::vector::dot;
 /// What one step did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepReport {
-    /// How often the broad phase ran: once a substep.
+    /// How often the broad phase ran over all balls: once at the beginning, and again where many
+    /// balls at once leave the boxes that were to hold them for the step.
     pub broad_phases: u32,
-    /// What the algorithm did in the last broad phase of the step; `None` is not counted: the
+    /// What the algorithm did in the first broad phase of the step; `None` is not counted: the
     /// library's finder does not report it, or counting is off.
     pub counts: Option<Counts>,
-    /// Overlapping pairs of boxes in the last broad phase.
+    /// Overlapping pairs of boxes in the last substep.
     pub pairs: usize,
-    /// Those of them whose balls touch.
+    /// The pairs whose balls touch in the last substep.
     pub contacts: usize,
-    /// Milliseconds of all broad phases of the step: from boxes to pairs.
+    /// Milliseconds of the broad phase in all substeps: from balls to boxes to pairs.
     pub broad_phase_ms: f64,
     /// Milliseconds of all narrow phases: exact test, impulses, projection.
     pub narrow_phase_ms: f64,
@@ -62,9 +64,8 @@ pub struct Simulation<const D: usize> {
     least_energy: f64,
     engine: Engine<D>,
     contacts: Contacts<D>,
+    candidates: Candidates<D>,
     // Buffers.
-    boxes: Vec<Aabb<D>>,
-    pairs: Vec<[u32; 2]>,
     velocities_before: Vec<[f32; D]>,
     positions_before: Vec<[f32; D]>,
 }
@@ -99,8 +100,7 @@ impl<const D: usize> Simulation<D> {
             least_energy: f64::INFINITY,
             engine: Engine::new(BroadPhase::Library).expect("the library's finder takes any axis"),
             contacts: Contacts::default(),
-            boxes: Vec::new(),
-            pairs: Vec::new(),
+            candidates: Candidates::default(),
             velocities_before: Vec::new(),
             positions_before: Vec::new(),
         };
@@ -114,10 +114,9 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// Those of the broad phase, which by [`Setup::validate`] do not happen.
     pub fn step(&mut self, now: impl Fn() -> f64) -> Result<StepReport, Error> {
-        let mut report = StepReport { broad_phases: self.substeps, ..StepReport::default() };
-        for substep in 1..=self.substeps {
-            let counted = self.counting && substep == self.substeps;
-            self.substep(counted, &now, &mut report)?;
+        let mut report = StepReport::default();
+        for substep in 0..self.substeps {
+            self.substep(substep, &now, &mut report)?;
         }
         self.steps += 1;
         Ok(report)
@@ -172,7 +171,7 @@ impl<const D: usize> Simulation<D> {
 
     fn substep(
         &mut self,
-        counted: bool,
+        substep: u32,
         now: &impl Fn() -> f64,
         report: &mut StepReport,
     ) -> Result<(), Error> {
@@ -182,23 +181,33 @@ impl<const D: usize> Simulation<D> {
         self.bodies.drift(self.substep_time(), &self.bounds);
         self.bodies.kick(self.half_kick());
         self.bodies.stop_at_walls(self.gravity, &self.bounds);
-        self.bodies.write_boxes(self.half_kick(), self.substep_time(), &mut self.boxes);
-        let integrated = now();
+        let moved = now();
 
-        if counted {
-            report.counts = self.engine.count(&self.boxes)?;
+        let ahead = Ahead {
+            kick: self.half_kick(),
+            gravity: self.gravity,
+            time: self.substep_time(),
+            substeps: self.substeps - substep,
+        };
+        if substep == 0 {
+            self.candidates.enclose(&self.bodies, &ahead);
+        } else {
+            self.candidates.follow(&self.bodies, &ahead);
+        }
+        let enclosed = now();
+
+        if substep == 0 && self.counting {
+            report.counts = self.candidates.count(&self.engine)?;
         }
         let counted = now();
 
-        let pairs = self.engine.find(&self.boxes)?;
+        report.broad_phases += u32::from(self.candidates.find(&mut self.engine)?);
+        report.pairs = self.candidates.pairs.len();
         let found = now();
 
-        self.pairs.clear();
-        self.pairs.extend_from_slice(pairs);
         let around =
             Surroundings { bounds: self.bounds, gravity: self.gravity, time: self.substep_time() };
-        self.contacts.find(&self.pairs, &self.bodies, &around);
-        report.pairs = self.pairs.len();
+        self.contacts.find(&self.candidates.pairs, &self.bodies, &around);
         report.contacts = self.contacts.balls.len();
         if !self.collisions {
             self.contacts.part_balls();
@@ -206,9 +215,9 @@ impl<const D: usize> Simulation<D> {
         self.resolve(&around);
         let resolved = now();
 
-        report.broad_phase_ms += found - counted;
+        report.broad_phase_ms += enclosed - moved + found - counted;
         report.narrow_phase_ms += resolved - found;
-        report.total_ms += integrated - start + resolved - counted;
+        report.total_ms += enclosed - start + resolved - counted;
         Ok(())
     }
 
@@ -316,7 +325,7 @@ impl<const D: usize> Simulation<D> {
         self.collisions = collisions;
     }
 
-    /// Whether steps count what the algorithm does, as they do at first. Counting runs the last
+    /// Whether steps count what the algorithm does, as they do at first. Counting runs the first
     /// broad phase of a step once more, on a copy, outside the times of the report.
     pub fn set_counting(&mut self, counting: bool) {
         self.counting = counting;
@@ -372,14 +381,14 @@ impl<const D: usize> Simulation<D> {
         &self.bodies.radii
     }
 
-    /// The boxes that the last broad phase saw; before the first step, those of the start.
+    /// The boxes that were to hold the balls during the last step; none before the first.
     pub fn boxes(&self) -> &[Aabb<D>] {
-        &self.boxes
+        &self.candidates.boxes
     }
 
-    /// The pairs of the last broad phase, in the order in which it found them.
+    /// The pairs of [`boxes`](Self::boxes) that overlap, in the order in which they were found.
     pub fn pairs(&self) -> &[[u32; 2]] {
-        &self.pairs
+        &self.candidates.pairs
     }
 
     /// The energy, per unit of mass. It never grows, but for rounding and as the setters change

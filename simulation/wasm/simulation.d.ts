@@ -55,8 +55,8 @@ export interface SimulationOptions {
   /** 0 (no bounce) to 1 (no loss); default 0.4 (`falling`) or 0.96 (`bouncing`). */
   restitution?: number;
   /**
-   * Substeps of one step of 1/60 s, 1 to 32; default 4, of discs that fall 8. Each runs the broad
-   * phase once.
+   * Substeps of one step of 1/60 s, 1 to 32; default 4, of discs that fall 8. The broad phase runs
+   * once for all of them.
    */
   substeps?: number;
   /** Whether balls meet each other, or only the walls; default true. */
@@ -79,13 +79,13 @@ export interface BroadPhaseOptions {
 }
 
 /**
- * What one step did. The counts are those of the step's *last* broad phase, so they compare
- * with n(n-1)/2 whatever the number of substeps, and they mean the same for every algorithm;
+ * What one step did. The counts are those of the broad phase at the step's beginning, so they
+ * compare with n(n-1)/2, and they mean the same for every algorithm;
  * `null` is "not counted": the library's pair finder reports no counts but its pairs, and with
  * `counting` off none are taken. Times are of the whole step; counting is never in them.
  */
 export interface StepReport {
-  /** How often the broad phase ran: once a substep. */
+  /** How often the broad phase ran over all balls: nearly always once. */
   broadPhases: number;
   /** Pairs of boxes handed to the box test. */
   tests: number | null;
@@ -97,12 +97,12 @@ export interface StepReport {
   swaps: number | null;
   /**
    * Overlapping pairs of boxes: what the broad phase hands to the narrow phase. A ball's box
-   * encloses all that it sweeps through in the substep.
+   * encloses all that it is expected to sweep through in the step.
    */
   pairs: number;
   /** Pairs of balls that touch, or will within the substep: what the narrow phase leaves. */
   contacts: number;
-  /** Milliseconds of all broad phases of the step: boxes in, pairs out. */
+  /** Milliseconds of the broad phase in all substeps: balls in, pairs out. */
   broadPhaseMs: number;
   /** Milliseconds of all narrow phases: exact test, impulses, projection. */
   narrowPhaseMs: number;
@@ -154,7 +154,7 @@ export class Simulation {
   readonly velocities: Float32Array;
   /** One radius a ball; a view, as `positions`. */
   readonly radii: Float32Array;
-  /** The pairs of the last broad phase, a0, b0, a1, b1, ..; a view, as `positions`. */
+  /** The pairs of the boxes of the last step, a0, b0, a1, b1, ..; a view, as `positions`. */
   readonly pairs: Uint32Array;
 
   /** Live settings; out-of-range numbers are clamped, NaN is refused. */

@@ -210,7 +210,7 @@ pub extern "C" fn sim_radii(handle: u32) -> *const f32 {
     with(handle, |simulation| simulation.radii().as_ptr()).unwrap_or(std::ptr::null())
 }
 
-/// The pairs of the last broad phase; null without such a simulation. How many is in the area
+/// The pairs of the boxes of the last step; null without such a simulation. How many is in the area
 /// at 0.
 #[unsafe(no_mangle)]
 pub extern "C" fn sim_pairs(handle: u32) -> *const u32 {
