@@ -1,4 +1,5 @@
 import { defineConfig, type Plugin } from "vite";
+import { article } from "./src/article/build.ts";
 import { insertComplexity } from "./src/complexity/table.ts";
 import { expandLabs } from "./src/lab/markup.ts";
 import { pages, shell } from "./src/shell/pages.ts";
@@ -18,7 +19,7 @@ const complexity: Plugin = {
 export default defineConfig({
   base: "./",
   appType: "mpa",
-  plugins: [shell, labs, complexity],
+  plugins: [shell, article, labs, complexity],
   worker: { format: "es" },
   build: {
     target: "es2022",

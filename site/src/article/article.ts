@@ -1,0 +1,59 @@
+// What the explanation does beside its demos: listings that follow them, the code of the three
+// balls, choices that change a demo, and the contents that say where one is.
+
+import { followDemos } from "./follow.ts";
+import { TransitivityCode } from "./transitivity.ts";
+
+export function startArticle(): void {
+  customElements.define("transitivity-code", TransitivityCode);
+  for (const listing of document.querySelectorAll<HTMLElement>(".listing")) copyable(listing);
+  followDemos();
+  for (const choices of document.querySelectorAll<HTMLElement>(".choices[data-for]")) applyChoices(choices);
+  markContents();
+}
+
+function copyable(listing: HTMLElement): void {
+  const button = listing.querySelector("[data-part=copy]");
+  const code = listing.querySelector("code");
+  button?.addEventListener("click", async () => {
+    const copied = await navigator.clipboard.writeText(`${code?.textContent ?? ""}\n`).then(
+      () => "Copied",
+      () => "Not allowed",
+    );
+    button.textContent = copied;
+    setTimeout(() => (button.textContent = "Copy"), 1500);
+  });
+}
+
+/** Each choice is an attribute of a demo. */
+function applyChoices(choices: HTMLElement): void {
+  const demo = document.querySelector(`#${choices.dataset["for"]} sap-demo`);
+  choices.addEventListener("change", ({ target }) => {
+    const select = target as HTMLSelectElement;
+    demo?.setAttribute(select.dataset["attribute"] ?? "", select.value);
+  });
+}
+
+/** Marks the section that is being read in the contents. */
+function markContents(): void {
+  const links = new Map(
+    [...document.querySelectorAll<HTMLAnchorElement>(".contents a")].map((link) => [link.hash.slice(1), link]),
+  );
+  const seen = new Set<string>();
+  const observer = new IntersectionObserver(
+    (entries) => {
+      for (const { target, isIntersecting } of entries) {
+        if (isIntersecting) seen.add(target.id);
+        else seen.delete(target.id);
+      }
+      const current = [...links.keys()].find((id) => seen.has(id));
+      for (const [id, link] of links) {
+        if (id === current) link.setAttribute("aria-current", "true");
+        else link.removeAttribute("aria-current");
+      }
+    },
+    // The upper third of the window is where one reads.
+    { rootMargin: "-10% 0px -66% 0px" },
+  );
+  for (const id of links.keys()) observer.observe(document.getElementById(id) as HTMLElement);
+}

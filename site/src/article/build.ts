@@ -1,0 +1,85 @@
+// Puts the explanation together when the site is built: its sections, contents, reading time,
+// listings and drawings. All of it is in the page as it is sent, so it can be read without scripts.
+
+import { readFileSync } from "node:fs";
+import type { Plugin } from "vite";
+import { figures } from "./figures/index.ts";
+import { highlight, listing } from "./listing.ts";
+
+/** The files of sections/, in the order in which they are read. */
+const SECTIONS = [
+  "naive",
+  "boxes",
+  "transitivity",
+  "sorted-pairwise",
+  "endpoints",
+  "sweep",
+  "pruning",
+  "sorting",
+  "swaps",
+  "axis",
+  "falling",
+  "beyond",
+  "cost",
+  "practice",
+  "reading",
+] as const;
+
+const WORDS_A_MINUTE = 200;
+
+export const article: Plugin = {
+  name: "article",
+  transformIndexHtml: { order: "pre", handler: (page) => (page.includes("<article-sections>") ? assemble(page) : page) },
+};
+
+function assemble(page: string): string {
+  const sections = SECTIONS.map((name) => section(name));
+  const minutes = Math.round(words(sections.map(({ html }) => html).join(" ")) / WORDS_A_MINUTE);
+  const contents = sections.map(({ name, title }) => `<li><a href="#${name}">${title}</a></li>`).join("");
+  const whole = page
+    .replace("<article-sections></article-sections>", () => sections.map(({ html }) => html).join("\n"))
+    .replace("<article-contents></article-contents>", () => `<ol>${contents}</ol>`)
+    .replace("<reading-time></reading-time>", () => `${minutes} minutes of reading, and as long as you like of playing`);
+  return expand(whole);
+}
+
+/** One section: its file begins with its heading. */
+function section(name: string): { name: string; title: string; html: string } {
+  const text = readFileSync(new URL(`./sections/${name}.html`, import.meta.url), "utf8");
+  const title = /^<h2>(.*?)<\/h2>/.exec(text)?.[1];
+  if (title === undefined) throw new Error(`sections/${name}.html does not begin with its <h2>`);
+  const anchor = `<a class="anchor" href="#${name}" aria-label="Link to: ${title}">#</a>`;
+  const body = text.slice(text.indexOf("</h2>") + 5);
+  const html = `<section id="${name}" aria-labelledby="${name}-heading">
+    <h2 id="${name}-heading">${title}${anchor}</h2>${body}</section>`;
+  return { name, title, html };
+}
+
+/** How the library is called. */
+const TRIAL = `import { init, findPairs } from "sweep-and-prune";
+
+await init();
+const boxes = new Float32Array([
+  0, 0, 2, 2, // minX, minY, maxX, maxY
+  5, 5, 6, 6,
+  2, 1, 3, 4,
+]);
+findPairs(boxes, { dimensions: 2 }); // 0, 2`;
+
+/** Fills in the listings and the drawings. */
+function expand(page: string): string {
+  return page
+    .replace("<trial-code></trial-code>", () => highlight(TRIAL, "how the library is called"))
+    .replace(/<code-listing name="([^"]*)"(?: follows="([^"]*)")?><\/code-listing>/g, (_, name: string, follows?: string) =>
+      listing(name, follows),
+    )
+    .replace(/<drawn-figure name="([^"]*)"><\/drawn-figure>/g, (_, name: string) => {
+      const draw = figures[name];
+      if (!draw) throw new Error(`there is no figure "${name}"`);
+      return draw();
+    });
+}
+
+function words(html: string): number {
+  return html.replace(/<[^>]*>/g, " ").split(/\s+/).filter(Boolean).length;
+}

@@ -1,0 +1,58 @@
+// Boxes and their shadows on the axes.
+
+import { overlaps } from "../../listings/overlaps.js";
+import { letter, line, rect, svg, text, type Box } from "./svg.ts";
+
+/** Two boxes that overlap on one axis only, and their shadows. */
+export function boxTest(): string {
+  const boxes: Box[] = [
+    { id: 0, left: 90, top: 30, right: 250, bottom: 110 },
+    { id: 1, left: 200, top: 140, right: 330, bottom: 210 },
+  ];
+  const [a, b] = boxes as [Box, Box];
+  if (overlaps(a, b)) throw new Error("they are meant to be apart");
+  const shadows = boxes.map((box, at) =>
+    [
+      line(box.left, 250 + 14 * at, box.right, 250 + 14 * at, `bar body-${at}`),
+      line(40 - 14 * at, box.top, 40 - 14 * at, box.bottom, `bar body-${at}`),
+    ].join(""),
+  );
+  const both = rect({ left: b.left, top: 236, right: a.right, bottom: 276 }, "mark");
+  const gap = rect({ left: 14, top: a.bottom, right: 54, bottom: b.top }, "gap");
+  return svg(
+    "box-test",
+    400,
+    300,
+    "Box A lies above and to the left of box B. Their shadows on the horizontal axis overlap; those on the vertical axis do not, so the boxes are apart.",
+    both + gap + boxes.map(body).join("") + shadows.join("") +
+      text(225, 294, "overlap on x") + text(62, 130, "apart on y", "label", "start"),
+  );
+}
+
+/** Three boxes in a row: two gaps, and the third that follows from them. */
+export function transitivity(): string {
+  const boxes: Box[] = [
+    { id: 0, left: 20, top: 60, right: 140, bottom: 140 },
+    { id: 1, left: 175, top: 20, right: 285, bottom: 110 },
+    { id: 2, left: 315, top: 50, right: 425, bottom: 150 },
+  ];
+  const gaps = [0, 1].map((at) => {
+    const [one, next] = [boxes[at] as Box, boxes[at + 1] as Box];
+    return rect({ left: one.right, top: 170, right: next.left, bottom: 186 }, "gap") +
+      text((one.right + next.left) / 2, 202, `${letter(at)} ends before ${letter(at + 1)} begins`, "label small");
+  });
+  const [a, , c] = boxes as [Box, Box, Box];
+  const whole = line(a.right, 222, c.left, 222, "arrow") + text((a.right + c.left) / 2, 240, "so A ends before C begins: no test needed");
+  const bars = boxes.map(({ id, left, right }) => line(left, 178, right, 178, `bar body-${id}`)).join("");
+  return svg(
+    "transitivity",
+    445,
+    252,
+    "Boxes A, B and C from left to right, with a gap between A and B and a gap between B and C. So there is one between A and C.",
+    boxes.map(body).join("") + gaps.join("") + bars + whole,
+  );
+}
+
+function body(box: Box): string {
+  return rect(box, `body body-${box.id}`) + text((box.left + box.right) / 2, (box.top + box.bottom) / 2 + 6, letter(box.id), "name");
+}

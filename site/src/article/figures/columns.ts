@@ -1,0 +1,101 @@
+// How the library divides a scene, worked out on a small one: the same rules, the same counts.
+
+import { overlaps } from "../../listings/overlaps.js";
+import { generator, line, rect, svg, text, type Box } from "./svg.ts";
+
+const SIDE = 330;
+const COLUMNS = 6;
+const HEIGHT = SIDE / COLUMNS;
+
+function scene(): Box[] {
+  const random = generator(7);
+  return Array.from({ length: 90 }, (_, id) => {
+    const [width, height] = [9 + 13 * random(), 9 + 13 * random()];
+    const [left, top] = [random() * (SIDE - width), random() * (SIDE - height)];
+    return { id, left, top, right: left + width, bottom: top + height };
+  });
+}
+
+/** The rows that a box touches: it is copied to each. */
+const rowsOf = ({ top, bottom }: Box): number[] => {
+  const [first, last] = [Math.floor(top / HEIGHT), Math.min(COLUMNS - 1, Math.floor(bottom / HEIGHT))];
+  return Array.from({ length: last - first + 1 }, (_, at) => first + at);
+};
+
+/** How many pairs overlap on x: what a sweep has to test. */
+function candidates(boxes: readonly Box[]): [Box, Box][] {
+  const sorted = [...boxes].sort((a, b) => a.left - b.left);
+  return sorted.flatMap((a, at) => {
+    const ahead = sorted.slice(at + 1);
+    const end = ahead.findIndex((b) => b.left > a.right);
+    return ahead.slice(0, end < 0 ? ahead.length : end).map((b): [Box, Box] => [a, b]);
+  });
+}
+
+/** One sweep over the whole, beside one in each column: copies made, tests saved, pairs found once. */
+export function columns(): string {
+  const boxes = scene();
+  const whole = candidates(boxes);
+  const parts = Array.from({ length: COLUMNS }, (_, row) => boxes.filter((box) => rowsOf(box).includes(row)));
+  const inParts = parts.flatMap((part, row) => candidates(part).map(([a, b]) => ({ a, b, row })));
+  const copies = parts.reduce((sum, part) => sum + part.length, 0);
+  const pairs = whole.filter(([a, b]) => overlaps(a, b));
+  // The column with the lower corner of the intersection reports the pair.
+  const reported = inParts.filter(({ a, b, row }) => overlaps(a, b) && Math.floor(Math.max(a.top, b.top) / HEIGHT) === row);
+  if (reported.length !== pairs.length) throw new Error("each pair once");
+
+  const hit = new Set(pairs.flatMap(([a, b]) => [a.id, b.id]));
+  const bodies = (shift: number): string =>
+    boxes.map(({ left, right, ...box }) => rect({ ...box, left: left + shift, right: right + shift }, hit.has(box.id) ? "small-body hit" : "small-body")).join("");
+  const second = SIDE + 50;
+  const cuts = Array.from({ length: COLUMNS - 1 }, (_, at) => line(second, HEIGHT * (at + 1), second + SIDE, HEIGHT * (at + 1), "cut"));
+  const frame = (left: number): string => rect({ left, top: 0.5, right: left + SIDE, bottom: SIDE }, "frame");
+  return svg(
+    "columns",
+    second + SIDE + 1,
+    SIDE + 52,
+    `${boxes.length} boxes, swept as one: ${whole.length} tests. The same, cut into ${COLUMNS} strips: ${copies} copies, ${inParts.length} tests. Both find ${pairs.length} pairs.`,
+    frame(0.5) + frame(second) + bodies(0) + bodies(second) + cuts.join("") +
+      text(SIDE / 2, SIDE + 22, "one sweep") + text(SIDE / 2, SIDE + 42, `${whole.length} tests for ${pairs.length} pairs`, "label strong") +
+      text(second + SIDE / 2, SIDE + 22, `${COLUMNS} strips, ${copies} copies of ${boxes.length} boxes`) +
+      text(second + SIDE / 2, SIDE + 42, `${inParts.length} tests for the same ${reported.length} pairs`, "label strong"),
+  );
+}
+
+/** One box of a sorted column and those ahead of it, tested eight at a time. */
+export function lanes(): string {
+  const WIDE = 8;
+  const sorted = scene().sort((a, b) => a.left - b.left);
+  const start = sorted.findIndex((a, at) => {
+    const ahead = sorted.slice(at + 1).filter((b) => b.left <= a.right).length;
+    return ahead >= 5 && ahead <= 7 && sorted.slice(at + 1, at + 8).some((b) => overlaps(a, b));
+  });
+  const a = sorted[start] as Box;
+  const ahead = sorted.slice(start + 1, start + 1 + WIDE);
+  const rows: [string, (b: Box) => boolean][] = [
+    ["b.left ≤ a.right", (b) => b.left <= a.right],
+    ["b.top ≤ a.bottom", (b) => b.top <= a.bottom],
+    ["b.bottom ≥ a.top", (b) => b.bottom >= a.top],
+    ["all of them", (b) => overlaps(a, b)],
+  ];
+  const cell = 46;
+  const left = 150;
+  const drawn = rows.map(([name, holds], row) => {
+    const y = 40 + 38 * row + (row === 3 ? 10 : 0);
+    const cells = ahead.map((b, at) => {
+      const yes = holds(b);
+      return rect({ left: left + cell * at, top: y, right: left + cell * at + cell - 6, bottom: y + 28 }, yes ? "lane yes" : "lane no") +
+        text(left + cell * at + cell / 2 - 3, y + 19, yes ? "1" : "0", yes ? "mono on" : "mono");
+    });
+    return text(left - 12, y + 19, name, "label", "end") + cells.join("");
+  });
+  const names = ahead.map((_, at) => text(left + cell * at + cell / 2 - 3, 26, `+${at + 1}`, "label small"));
+  const found = ahead.filter((b) => overlaps(a, b)).length;
+  return svg(
+    "lanes",
+    left + cell * WIDE + 10,
+    210,
+    `One box against the next eight of its column: each comparison is made for all eight at once, and the answers are put together. ${found} of the eight ${found === 1 ? "overlaps" : "overlap"} it, and the first comparison says where to stop.`,
+    names.join("") + drawn.join(""),
+  );
+}

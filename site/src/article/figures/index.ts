@@ -1,0 +1,20 @@
+// The figures of the explanation, by name.
+
+import { boxTest, transitivity } from "./boxes.ts";
+import { columns, lanes } from "./columns.ts";
+import { endpointArray, sweepLine } from "./endpoints.ts";
+import { allPairs, measured } from "./growth.ts";
+import { miniSweep, swapCases } from "./swaps.ts";
+
+export const figures: Readonly<Record<string, () => string>> = {
+  "all-pairs": allPairs,
+  "box-test": boxTest,
+  transitivity,
+  "endpoint-array": endpointArray,
+  "sweep-line": sweepLine,
+  "swap-cases": swapCases,
+  "mini-sweep": miniSweep,
+  columns,
+  lanes,
+  measured,
+};

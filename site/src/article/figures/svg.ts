@@ -1,0 +1,44 @@
+// What all figures are drawn with. Colours are classes of article.css, so that a figure is light or
+// dark with its page.
+
+export interface Box {
+  readonly id: number;
+  readonly left: number;
+  readonly top: number;
+  readonly right: number;
+  readonly bottom: number;
+}
+
+/** A whole figure: what it shows is said in `description`, for those who do not see it. */
+export function svg(name: string, width: number, height: number, description: string, inside: string): string {
+  return `<svg class="figure" data-figure="${name}" viewBox="0 0 ${width} ${height}" width="${width}" height="${height}" role="img" aria-label="${description}">${inside}</svg>`;
+}
+
+export const line = (x1: number, y1: number, x2: number, y2: number, kind: string): string =>
+  `<line x1="${round(x1)}" y1="${round(y1)}" x2="${round(x2)}" y2="${round(y2)}" class="${kind}"/>`;
+
+export const rect = ({ left, top, right, bottom }: Omit<Box, "id">, kind: string): string =>
+  `<rect x="${round(left)}" y="${round(top)}" width="${round(right - left)}" height="${round(bottom - top)}" class="${kind}"/>`;
+
+export const text = (x: number, y: number, words: string | number, kind = "label", anchor: "start" | "middle" | "end" = "middle"): string =>
+  `<text x="${round(x)}" y="${round(y)}" text-anchor="${anchor}" class="${kind}">${words}</text>`;
+
+export const path = (points: readonly (readonly [x: number, y: number])[], kind: string): string =>
+  `<path d="M${points.map(([x, y]) => `${round(x)} ${round(y)}`).join("L")}" class="${kind}"/>`;
+
+/** Numbers from 0 to 1, the same at each build. */
+export function generator(seed: number): () => number {
+  return () => {
+    seed = (seed + 0x6d2b79f5) | 0;
+    let t = Math.imul(seed ^ (seed >>> 15), 1 | seed);
+    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
+    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
+  };
+}
+
+/** Letters for the first of boxes. */
+export const letter = (id: number): string => String.fromCharCode(65 + id);
+
+export function round(value: number): number {
+  return Math.round(value * 10) / 10;
+}

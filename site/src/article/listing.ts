@@ -1,0 +1,48 @@
+// A listing of the explanation: a module of src/listings as text, its colours set when the site is
+// built. What a line does stands at its end as tags (`// @test`), which are not shown: the page
+// lights the line while a demo does just that.
+
+import { readFileSync } from "node:fs";
+import { createCssVariablesTheme, createHighlighter, type ShikiTransformer } from "shiki";
+
+const LANGUAGE = "javascript";
+const colours = createCssVariablesTheme({ name: "css-variables", variablePrefix: "--code-" });
+const highlighter = await createHighlighter({ langs: [LANGUAGE], themes: [colours] });
+
+/** Tags at the end of a line, with the slashes before them if nothing else stands behind those. */
+const TAGS = /\s*(?:\/\/)?((?:\s+@[a-z]+)+)\s*$/;
+
+/** A module's code as it is shown, and what each line does. */
+export function readListing(name: string): { code: string; kinds: string[] } {
+  const text = readFileSync(new URL(`../listings/${name}.js`, import.meta.url), "utf8");
+  const lines = text.replace(/^(import .*\n)*\n?/, "").trimEnd().split("\n");
+  const kinds = lines.map((line) => TAGS.exec(line)?.[1]?.trim().replaceAll("@", "") ?? "");
+  return { code: lines.map((line) => line.replace(TAGS, "")).join("\n"), kinds };
+}
+
+/** The listing of a module, as html; `follows` is the id of the demo whose events light its lines. */
+export function listing(name: string, follows: string | undefined): string {
+  const { code, kinds } = readListing(name);
+  const follow = follows
+    ? `<button type="button" class="small" data-part="follow" aria-pressed="true">Follow the demo</button>`
+    : "";
+  return `
+    <figure class="listing"${follows ? ` data-follows="${follows}"` : ""}>
+      <figcaption><span>${name}.js</span>${follow}<button type="button" class="small" data-part="copy">Copy</button></figcaption>
+      ${highlight(code, `${name}.js`, kinds)}
+    </figure>`;
+}
+
+/** Code in colour, each line with what it does. */
+export function highlight(code: string, label: string, kinds: readonly string[] = []): string {
+  const marks: ShikiTransformer = {
+    pre(node) {
+      node.properties = { tabindex: "0", role: "region", "aria-label": `Listing: ${label}` };
+    },
+    line(node, number) {
+      const kind = kinds[number - 1];
+      if (kind) node.properties["data-kinds"] = kind;
+    },
+  };
+  return highlighter.codeToHtml(code, { lang: LANGUAGE, theme: "css-variables", transformers: [marks] });
+}
