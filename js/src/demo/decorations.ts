@@ -19,7 +19,9 @@ export interface Decorations {
 const CHECK_MS = 100;
 
 /**
- * Reads a list like `checks:#4c8:600, sweep:red, edges:array:orange:blue`.
+ * Reads `checks[:colour][:ms]`, `sweep[:line[:inside]]` and `edges[:focus][:array][:colour:colour]`,
+ * whose colours are those of comparisons and swaps in the array, or without it those of the edges
+ * inside and outside the interval in focus. A list like `checks:#4c8:600, sweep:red, edges:array:orange:blue`.
  *
  * @throws {@link OptionError}
  */
@@ -36,13 +38,11 @@ export function readDecorations(text: string, also: { array: boolean; checks: bo
       checks = { colour: isTime ? undefined : colour(first), ms: milliseconds(isTime ? first : second) };
     } else if (name === "sweep") {
       sweep = { line: colour(first), inside: colour(second) };
-    } else if (name === "edges" && first === "array") {
-      edges = { focus: false, inside: undefined, outside: undefined };
-      array = { comparison: colour(words[1]), swap: colour(words[2]), isSortShown: true };
     } else if (name === "edges") {
-      const focus = first === "focus";
-      edges = { focus, inside: colour(focus ? words[1] : first), outside: colour(focus ? words[2] : second) };
-      if (words.includes("array")) array ??= { comparison: undefined, swap: undefined, isSortShown: true };
+      const [one, other] = words.filter((word) => word !== "focus" && word !== "array").map(colour);
+      const hasArray = words.includes("array");
+      edges = { focus: words.includes("focus"), inside: hasArray ? undefined : one, outside: hasArray ? undefined : other };
+      if (hasArray) array = { comparison: one, swap: other, isSortShown: true };
     } else {
       throw new OptionError(`decorations: there is no "${name}", only checks, sweep and edges`);
     }
@@ -57,7 +57,7 @@ function split(text: string, separator: "," | ":"): string[] {
 }
 
 function colour(text: string | undefined): Colour {
-  if (text === undefined || text === "" || text === "array") return undefined;
+  if (text === undefined || text === "") return undefined;
   if (typeof CSS !== "undefined" && !CSS.supports("color", text)) {
     throw new OptionError(`decorations: "${text}" is no colour`);
   }

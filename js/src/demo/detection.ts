@@ -17,25 +17,67 @@ export class Detection {
   /** Events of the trace before the first of this step. */
   readonly #before: number;
 
+  /** The edges that the sort has moved. */
+  readonly swapped: ReadonlySet<number>;
+  /** The pairs that it should have found and did not. Known where methods miss any. */
+  readonly missed: readonly (readonly [number, number])[];
+  #last: { position: number; state: PlayerState } | undefined;
+
   /** Runs one step of `runner`, whose trace is trimmed. */
-  constructor(runner: Runner, boxes: Float64Array) {
+  constructor(runner: Runner, boxes: Float64Array, oracle?: Oracle) {
     this.boxes = boxes;
     this.#before = runner.trimTrace();
     this.step = runner.step(boxes);
     this.isTruncated = runner.isTruncated;
     this.#player = new Player(runner);
     this.events = [...events(this.#player.words)].slice(this.#before);
+    this.missed = oracle?.missed(boxes, this.step.pairs) ?? [];
+    this.swapped = new Set(this.events.flatMap(({ kind, a, b }) => (kind === "swap" ? [Number(a), Number(b)] : [])));
   }
 
   /** What is to be drawn when so many of its events have been played. */
   stateAt(position: number): PlayerState {
-    this.#player.seek(this.#before + position);
-    return this.#player.state();
+    if (this.#last?.position !== position) {
+      this.#player.seek(this.#before + position);
+      this.#last = { position, state: this.#player.state() };
+    }
+    return this.#last.state;
   }
 
   free(): void {
     this.#player.free();
   }
+}
+
+/** Brute force, to tell what a method that is wrong has missed. */
+export class Oracle {
+  readonly #runner: Runner = new Runner({ dimensions: 2, method: "global pairwise" });
+  readonly #focus: number | undefined;
+
+  /** Of the pairs of one ball, or of all. */
+  constructor(focus: number | undefined) {
+    this.#focus = focus;
+  }
+
+  /** The pairs of boxes that overlap and are not among those found. */
+  missed(boxes: Float64Array, found: Uint32Array): [number, number][] {
+    const key = (a: number, b: number): number => Math.min(a, b) * 2 ** 24 + Math.max(a, b);
+    const known = new Set<number>();
+    for (let i = 0; i < found.length; i += 2) known.add(key(found[i]!, found[i + 1]!));
+    const { pairs } = this.#runner.step(boxes);
+    const all = Array.from({ length: pairs.length / 2 }, (_, i): [number, number] => [pairs[2 * i]!, pairs[2 * i + 1]!]);
+    return all.filter((pair) => !known.has(key(...pair)) && (this.#focus === undefined || pair.includes(this.#focus)));
+  }
+
+  free(): void {
+    this.#runner.free();
+  }
+}
+
+/** The oracle for a method that may miss pairs; none for the others. */
+export function oracleFor({ method, focus }: Detecting): Oracle | undefined {
+  if (method === "one-to-n scan") return new Oracle(focus);
+  return method.endsWith("(wrong)") ? new Oracle(undefined) : undefined;
 }
 
 /** A runner for what the attributes ask for. */

@@ -1,16 +1,16 @@
 import type { PlayerState } from "../player.js";
 import type { TraceEvent } from "../trace.js";
-import type { Decorations } from "./decorations.js";
+import type { Options } from "./options.js";
 import { rainbow, type Theme } from "./theme.js";
 
 /** What the array of endpoints looks like at one moment. */
 export interface ArrayScene {
   readonly state: PlayerState;
   readonly event: TraceEvent | undefined;
-  readonly decorations: Decorations;
+  readonly options: Options;
   readonly labels: readonly string[];
-  readonly isRainbow: boolean;
-  readonly focus: number | undefined;
+  /** The edges that the sort has moved in this detection. */
+  readonly moved: ReadonlySet<number>;
   readonly chosen: readonly number[];
 }
 
@@ -44,7 +44,8 @@ interface Place {
 }
 
 function drawOne(context: CanvasRenderingContext2D, edges: number[], scene: ArrayScene, place: Place, theme: Theme): void {
-  const { event, decorations, focus, labels, isRainbow, chosen, state } = scene;
+  const { event, options, labels, chosen, moved, state } = scene;
+  const { decorations, focus, isRainbow } = options;
   const perRow = Math.min(CELLS, Math.max(edges.length, 8));
   const cell = Math.min(46, place.width / perRow);
   const height = CELL_HEIGHT - 4;
@@ -74,6 +75,11 @@ function drawOne(context: CanvasRenderingContext2D, edges: number[], scene: Arra
     context.strokeRect(x + 1, y, cell - 2, height);
     context.fillStyle = isLit ? theme.stage : isRainbow && !isWithin ? "#1c2126" : theme.ink;
     const name = labels[ball] || String(ball);
+    if (decorations.array?.isSortShown && moved.has(edge)) {
+      context.fillStyle = swap;
+      context.fillRect(x + 1, y + height - 4, cell - 2, 4);
+      context.fillStyle = theme.ink;
+    }
     context.fillText(edge % 2 === 0 ? `(${name}` : `${name})`, x + cell / 2, y + height / 2 + 1);
   });
 }

@@ -1,7 +1,9 @@
 import type { PlayerState } from "../player.js";
 import type { TraceEvent } from "../trace.js";
 import type { Decorations } from "./decorations.js";
-import { HEIGHT, WIDTH } from "./options.js";
+import type { Detection } from "./detection.js";
+import type { Explanation } from "./explain.js";
+import { HEIGHT, type Options, WIDTH } from "./options.js";
 import { rainbow, type Theme } from "./theme.js";
 
 /** What one picture shows. */
@@ -11,17 +13,18 @@ export interface Scene {
   readonly state: PlayerState;
   /** The event at work. */
   readonly event: TraceEvent | undefined;
-  /** How far along it is on the way to the next stop, 0 to 1: the line moves smoothly. */
+  /** Where the sweep line is. */
   readonly lineAt: number | undefined;
-  readonly decorations: Decorations;
+  readonly options: Options;
   readonly labels: readonly string[];
-  readonly isRainbow: boolean;
-  readonly hasBoxes: boolean;
-  readonly focus: number | undefined;
-  /** The balls that the visitor has chosen, at most two. */
+  /** The balls that the visitor has chosen. */
   readonly chosen: readonly number[];
-  /** The axis that is swept. */
+  /** The axis that is swept, or the first to be. */
   readonly axis: number;
+  /** The pairs that should have been found. */
+  readonly missed: Detection["missed"];
+  /** The gap that an explanation speaks of. */
+  readonly gap: Explanation["gap"];
 }
 
 /** Draws the world, 600 x 400, into a context that is scaled to it. */
@@ -34,9 +37,11 @@ export function drawScene(context: CanvasRenderingContext2D, scene: Scene, theme
   painter.edges();
   painter.balls();
   painter.overlaps();
+  painter.missed();
   painter.event();
   painter.sweepLine();
   painter.chosen();
+  painter.explanation();
   painter.labels();
 }
 
@@ -52,11 +57,14 @@ class Painter {
   }
 
   balls(): void {
-    const { radii, isRainbow, hasBoxes, decorations, state } = this.#scene;
+    const { radii, state, options } = this.#scene;
+    const { decorations, isRainbow, hasBoxes } = options;
     const active = new Set(decorations.sweep ? state.active : []);
     const inside = decorations.sweep?.inside ?? this.#theme.inside;
     this.#context.lineWidth = 1.5;
-    for (let ball = 0; ball < radii.length; ball++) {
+    // Large ones first, so that none is hidden.
+    const balls = Array.from(radii.keys()).sort((a, b) => radii[b]! - radii[a]!);
+    for (const ball of balls) {
       const fill = active.has(ball) ? inside : isRainbow ? rainbow(ball, radii.length) : this.#theme.ball;
       this.#disc(ball, radii[ball]!);
       this.#context.fillStyle = fill;
@@ -69,7 +77,8 @@ class Painter {
 
   /** The interval of the ball in focus, on the axis. */
   focusBand(): void {
-    const { decorations, focus, axis } = this.#scene;
+    const { options, axis } = this.#scene;
+    const { decorations, focus } = options;
     if (!decorations.edges?.focus || focus === undefined) return;
     const [low, high] = this.#interval(focus, axis);
     this.#context.globalAlpha = 0.16;
@@ -81,9 +90,17 @@ class Painter {
 
   /** Where each interval begins and ends, drawn to the foot of the picture. */
   edges(): void {
-    const { decorations, radii, focus, axis } = this.#scene;
-    const { edges } = decorations;
+    const { edges } = this.#scene.options.decorations;
     if (!edges) return;
+    const { axis, state } = this.#scene;
+    const axes = state.arrays.length > 1 ? state.arrays.keys() : [axis];
+    for (const axis of axes) this.#edgesOn(axis, edges);
+    this.#context.setLineDash([]);
+  }
+
+  #edgesOn(axis: number, edges: NonNullable<Decorations["edges"]>): void {
+    const { radii, options } = this.#scene;
+    const { focus } = options;
     const outside = (edges.focus ? edges.outside : undefined) ?? this.#theme.edge;
     const inside = (edges.focus ? edges.inside : undefined) ?? this.#theme.chosen;
     const within = edges.focus && focus !== undefined ? this.#interval(focus, axis) : undefined;
@@ -96,21 +113,28 @@ class Painter {
         this.#across(axis, at, this.#centre(ball)[1 - axis]!);
       }
     }
-    this.#context.setLineDash([]);
   }
 
   /** The pairs found so far. */
   overlaps(): void {
-    const { decorations, state } = this.#scene;
-    if (!decorations.checks) return;
+    const { options, state } = this.#scene;
+    if (!options.decorations.checks) return;
     this.#context.strokeStyle = this.#theme.overlap;
     this.#context.lineWidth = 2;
     for (let i = 0; i + 1 < state.overlaps.length; i += 2) this.#between(state.overlaps[i]!, state.overlaps[i + 1]!);
   }
 
+  missed(): void {
+    this.#context.strokeStyle = this.#theme.sweep;
+    this.#context.lineWidth = 4;
+    this.#context.setLineDash([3, 5]);
+    for (const [a, b] of this.#scene.missed) this.#between(a, b);
+    this.#context.setLineDash([]);
+  }
+
   event(): void {
-    const { event, decorations } = this.#scene;
-    const check = decorations.checks?.colour ?? this.#theme.check;
+    const { event, options } = this.#scene;
+    const check = options.decorations.checks?.colour ?? this.#theme.check;
     if (event?.kind === "test" || event?.kind === "overlap") {
       const [a, b] = [Number(event["a"]), Number(event["b"])];
       this.#context.strokeStyle = check;
@@ -127,15 +151,17 @@ class Painter {
   }
 
   sweepLine(): void {
-    const { decorations, lineAt, axis } = this.#scene;
-    if (!decorations.sweep || lineAt === undefined) return;
-    this.#context.strokeStyle = decorations.sweep.line ?? this.#theme.sweep;
+    const { options, lineAt, state } = this.#scene;
+    const { sweep } = options.decorations;
+    if (!sweep || lineAt === undefined) return;
+    this.#context.strokeStyle = sweep.line ?? this.#theme.sweep;
     this.#context.lineWidth = 2.5;
-    this.#across(axis, lineAt, undefined);
+    this.#across(state.arrayAxis, lineAt, undefined);
   }
 
   chosen(): void {
-    const { chosen, focus } = this.#scene;
+    const { chosen, options } = this.#scene;
+    const { focus } = options;
     this.#context.strokeStyle = this.#theme.chosen;
     this.#context.lineWidth = 3;
     for (const ball of new Set([...chosen, ...(focus === undefined ? [] : [focus])])) {
@@ -146,8 +172,14 @@ class Painter {
     this.#context.setLineDash([]);
   }
 
+  explanation(): void {
+    const { gap } = this.#scene;
+    if (gap) this.#gap(gap.axis, gap.left, gap.right, this.#theme.skip);
+  }
+
   labels(): void {
-    const { labels, radii, isRainbow } = this.#scene;
+    const { labels, radii, options } = this.#scene;
+    const { isRainbow } = options;
     this.#context.textAlign = "center";
     this.#context.textBaseline = "middle";
     labels.forEach((label, ball) => {

@@ -1,151 +1,133 @@
-import { type CSSResult, html, LitElement, nothing, svg, type TemplateResult } from "lit";
+import { type CSSResult, html, LitElement, nothing, type TemplateResult } from "lit";
 import type { TraceEvent } from "../trace.js";
+import type { DemoEvent, DemoEventMap, DemoState, Row } from "./api.js";
+import { canvasContext } from "./canvas.js";
 import { clock } from "./clock.js";
 import { shownKinds } from "./detection.js";
 import { drawScene } from "./draw.js";
 import { arrayHeight, drawArray } from "./draw-array.js";
+import { explain, type Explanation } from "./explain.js";
+import { Grab } from "./grab.js";
 import { loadDemos } from "./load.js";
 import { namesOf } from "./names.js";
-import { describeEvent } from "./narrate.js";
-import { type Attribute, attributes, OptionError, type Options, readOptions, readStart, type Row, WIDTH } from "./options.js";
+import { describeEvent, summary } from "./narrate.js";
+import { attributes, booleans, isWorldKept, OptionError, type Options, readOptions, readStart, WIDTH } from "./options.js";
+import { Playback } from "./playback.js";
+import { type Question, questionOf } from "./predict.js";
+import { iframeOf, shareUrl } from "./share.js";
 import { styles } from "./styles.js";
+import { controls, counters, guessing, sharing } from "./templates.js";
 import { type Theme, ThemeProbe } from "./theme.js";
 import { Timeline } from "./timeline.js";
 import { rowsOf } from "./world.js";
 
-/** What a demo shows at one moment, in numbers. */
-export interface DemoState {
-  /** Ticks of 1/60 s since the beginning. */
-  tick: number;
-  /** How many events of the detection have been played. */
-  events: number;
-  /** Pairs of boxes handed to the box test. */
-  tests: number;
-  /** Pairs that overlap on the swept axes, as far as is known. */
-  axisOverlaps: number;
-  /** Pairs found to overlap. */
-  pairs: number;
-  /** Comparisons of the sort. */
-  comparisons: number;
-  /** Swaps of the sort. */
-  swaps: number;
-  /** Positions and velocities, bit for bit, in 16 hexadecimal digits. */
-  hash: string;
-}
-
-/** One event, as listeners of `sap-event` are told it. */
-export interface DemoEvent {
-  kind: "compare" | "swap" | "test" | "enter" | "leave" | "overlap" | "skip";
-  /** The balls; of `enter` and `leave` both are the one. */
-  a: number;
-  b: number;
-  /** Which event of the detection. */
-  index: number;
-}
-
-const MS_PER_TICK = 1000 / 60;
-/** How long each event of a sort stays lit. */
-const SORT_MS = 90;
-/** How fast the sweep line goes, in pixels of the world a millisecond. */
-const LINE_SPEED = 0.35;
 /** Numbers that change more often cannot be read. */
 const COUNTERS_MS = 100;
 /** The live region speaks no more often. */
 const SPEECH_MS = 700;
-/** Events in one frame, at most: fast-forward is no reason to stall. */
-const MOST_STOPS = 400;
+/** How far an arrow key moves a ball, and with shift. */
+const ARROW = 5;
+const FAR_ARROW = 25;
 
-/** Which class of event `sap-event` tells a trace event as. */
-const told: Partial<Record<TraceEvent["kind"], DemoEvent["kind"]>> = {
-  compare: "compare",
-  swap: "swap",
-  test: "test",
-  enter: "enter",
-  leave: "leave",
-  overlap: "overlap",
-  prune: "skip",
-};
-
-/**
- * `<sap-demo>`: balls, and an algorithm at work on them, step by step. What it does stands in its
- * attributes, which may change at any time; see the package's documentation of the element.
- */
-export class SapDemo extends LitElement {
+/** The class of `<sap-demo>`: api.ts says what others may count on. */
+export class SapDemoElement extends LitElement {
   static override styles: CSSResult = styles;
+  static override shadowRootOptions: ShadowRootInit = { ...LitElement.shadowRootOptions, delegatesFocus: true };
 
   static override get observedAttributes(): string[] {
     return [...super.observedAttributes, ...attributes];
   }
 
   #options: Options | undefined;
-  #wrong = "";
   #timeline: Timeline | undefined;
-  #isLoaded = false;
+  #playback: Playback | undefined;
+  /** What keeps it from beginning, to be said in its place. */
+  #wrong = "";
   #isPlaying = false;
-  /** Milliseconds spent at the stop, or since the last tick. */
-  #spent = 0;
+  #speed: number | undefined;
+  #hasChanged = false;
+  #wasDragged = false;
+  #names: string[] = [];
+  /** The balls chosen for an explanation, and the one that keys act on. */
+  #chosen: number[] = [];
+  #cursor: number | undefined;
+  #explanation: Explanation | undefined;
+  #guesses = { outcome: "", right: 0, made: 0 };
+  #grab: Grab | undefined;
   #theme: Theme | undefined;
   readonly #probe: ThemeProbe;
   #resized: ResizeObserver | undefined;
-  #names: string[] = [];
-  #chosen: number[] = [];
   #countersAt = -Infinity;
   #spokenAt = -Infinity;
   #speech: ReturnType<typeof setTimeout> | undefined;
+  #setReady: () => void = () => undefined;
+  readonly ready: Promise<void> = new Promise((resolve) => (this.#setReady = resolve));
 
   constructor() {
     super();
     this.#probe = new ThemeProbe(() => {
       this.#theme = undefined;
-      this.#draw();
+      this.#paint();
     });
   }
 
   // What others call
 
-  /** Plays on, from wherever it is. */
   play(): void {
     if (!this.#timeline || this.#isPlaying) return;
-    if (this.#options?.isStatic && this.#timeline.isDetected) this.#timeline.seek(0);
+    if (this.#options!.isStatic && this.#timeline.isDetected) this.#timeline.seek(0);
     this.#isPlaying = true;
-    this.#spent = 0;
-    this.#wake();
+    this.#playback!.restart();
+    this.#changed();
   }
 
   pause(): void {
+    if (!this.#isPlaying) return;
     this.#isPlaying = false;
-    this.#wake();
-  }
-
-  /** Goes on to the next event that is shown, or to the next detection. */
-  step(): void {
-    if (!this.#timeline) return;
-    this.pause();
-    if (this.#timeline.isDetected) this.#nextDetection();
-    if (!this.#timeline.isDetected) this.#tell(this.#timeline.nextStop());
+    this.#changed();
     this.#speak();
   }
 
-  /** Goes back to the event before, or the detection before. */
+  step(): void {
+    const timeline = this.#timeline;
+    if (!timeline) return;
+    this.#isPlaying = false;
+    if (timeline.isDetected && this.#options!.isStatic) timeline.seek(0);
+    else if (timeline.isDetected) this.#nextDetection();
+    if (!timeline.isDetected) this.#tell(timeline.nextStop());
+    this.#guesses.outcome = "";
+    this.#changed();
+    this.#speak();
+  }
+
   back(): void {
     if (!this.#timeline) return;
-    this.pause();
-    if (this.#timeline.back()) this.#tellEvent(this.#timeline.event, this.#timeline.position - 1);
-    this.#speak();
+    this.#isPlaying = false;
+    this.#timeline.back();
+    this.#arrived();
   }
 
-  /** Goes to one of the moments that are kept, counted from the oldest. */
   seek(k: number): void {
-    if (!this.#timeline || !Number.isFinite(k)) return;
-    this.pause();
+    if (!this.#timeline || Number.isNaN(k)) return;
+    this.#isPlaying = false;
     this.#timeline.seek(k);
-    this.#tellEvent(this.#timeline.event, this.#timeline.position - 1);
-    this.#speak();
+    this.#arrived();
   }
 
-  /** Begins anew, as the attributes say. */
   reset(): void {
     this.#begin();
+    this.#speak();
+  }
+
+  share(): string {
+    const start = this.#wasDragged ? 0 : (this.#timeline?.tick ?? 0);
+    const balls = this.#wasDragged ? JSON.stringify(this.#rows()) : this.getAttribute("balls");
+    const page = new URL(this.getAttribute("embed-url") ?? "embed.html", document.baseURI);
+    return shareUrl(page, (name) => this.getAttribute(name), { balls, start });
+  }
+
+  embedCode(): string {
+    return iframeOf(this.share(), this.#label, this.getBoundingClientRect().height + 32);
   }
 
   get isPlaying(): boolean {
@@ -157,28 +139,26 @@ export class SapDemo extends LitElement {
     return { tick, events: position, ...this.#counts, hash: this.#timeline?.hash() ?? "" };
   }
 
-  get #counts(): Pick<DemoState, "tests" | "axisOverlaps" | "pairs" | "comparisons" | "swaps"> {
-    const state = this.#timeline?.state;
-    const { tests = 0, pairs = 0, comparisons = 0, swaps = 0 } = state?.counts ?? {};
-    // Those that there are: also where the algorithm keeps them and tells only of changes.
-    return { tests, axisOverlaps: state?.axisOverlaps.length ?? 0, pairs, comparisons, swaps };
-  }
-
-  /** The event at work, if there is one. */
   get event(): DemoEvent | undefined {
     const { event, position = 0 } = this.#timeline ?? {};
     return event && toldAs(event, position - 1);
   }
 
-  /** The balls where they are: rows of x, y, radius. */
   get balls(): Row[] {
     return this.#timeline ? rowsOf(this.#timeline.positions, this.#timeline.radii) : [];
   }
 
-  /** The pairs found so far in this detection. */
+  set balls(value: number | readonly Row[]) {
+    this.setAttribute("balls", typeof value === "number" ? String(value) : JSON.stringify(value));
+  }
+
   get pairs(): [number, number][] {
     const { overlaps = [] } = this.#timeline?.state ?? {};
     return Array.from({ length: overlaps.length / 2 }, (_, i) => [overlaps[2 * i]!, overlaps[2 * i + 1]!]);
+  }
+
+  get chosen(): number[] {
+    return [...this.#chosen];
   }
 
   // Its life
@@ -186,17 +166,12 @@ export class SapDemo extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     clock.add(this, { frame: (ms) => this.#frame(ms) });
-    this.#resized = new ResizeObserver(() => this.#draw());
-    void loadDemos().then(
-      () => {
-        if (!this.isConnected || this.#timeline) return;
-        this.#isLoaded = true;
-        this.#begin();
-      },
-      (error: unknown) => {
-        this.#wrong = `This demo could not be loaded: ${error instanceof Error ? error.message : String(error)}`;
-        this.requestUpdate();
-      },
+    this.#resized = new ResizeObserver(() => this.#paint());
+    if (this.hasUpdated) this.#watchSize();
+    motionQuery.addEventListener("change", this.#onMotionChange);
+    loadDemos().then(
+      () => this.isConnected && !this.#timeline && this.#begin(),
+      (error: unknown) => this.#refuse(`This demo could not be loaded. ${error instanceof Error ? error.message : String(error)}`),
     );
   }
 
@@ -204,284 +179,435 @@ export class SapDemo extends LitElement {
     super.disconnectedCallback();
     clock.remove(this);
     this.#resized?.disconnect();
+    motionQuery.removeEventListener("change", this.#onMotionChange);
     clearTimeout(this.#speech);
+    // One that is only moved within the page goes on where it was.
+    setTimeout(() => {
+      if (this.isConnected) return;
+      this.#timeline?.free();
+      this.#timeline = undefined;
+    });
   }
 
   override attributeChangedCallback(name: string, old: string | null, value: string | null): void {
-    if (!(attributes as readonly string[]).includes(name)) super.attributeChangedCallback(name, old, value);
-    if (old === value || !this.#isLoaded) return;
-    queueMicrotask(() => this.#understand());
+    super.attributeChangedCallback(name, old, value);
+    if (old === value || !(attributes as readonly string[]).includes(name)) return;
+    if (!this.#timeline && this.#wrong === "") return;
+    if (name === "paused") return value === null ? this.play() : this.pause();
+    // Several that change at once are read at once.
+    if (!this.#hasChanged) queueMicrotask(() => this.#understand());
+    this.#hasChanged = true;
   }
 
-  /** Reads the attributes anew, and keeps what they leave as it is. */
+  /** Reads the attributes anew, and goes on in the same world if they leave it as it was. */
   #understand(): void {
-    this.#begin();
+    this.#hasChanged = false;
+    const before = this.#options;
+    const options = this.#readOptions();
+    if (!options) return;
+    if (!this.#timeline || !before || !isWorldKept(before, options)) return this.#begin();
+    const { tick } = this.#timeline;
+    this.#open(options, new Timeline(options, kindsOf(options), this.#timeline.release(), tick));
+    if (!this.#isPlaying) this.#timeline.finish();
+    this.#changed();
   }
 
   #begin(): void {
+    const options = this.#readOptions();
+    if (!options) return;
+    let timeline: Timeline;
+    try {
+      timeline = new Timeline(options, kindsOf(options));
+      const start = readStart(this.getAttribute("start"));
+      for (let tick = 0; tick < start; tick++) timeline.nextTick();
+    } catch (error) {
+      return this.#refuse(messageOf(error));
+    }
+    this.#timeline?.free();
+    this.#open(options, timeline);
+    this.#wasDragged = false;
+    this.#chosen = [];
+    this.#cursor = undefined;
+    this.#guesses = { outcome: "", right: 0, made: 0 };
+    const isStill = this.hasAttribute("paused") || options.isStatic || options.predicts || motionQuery.matches;
+    if (options.isStatic && !options.predicts) timeline.finish();
+    this.#isPlaying = !isStill;
+    this.#changed();
+    this.#emit("simulate", this.state);
+    void this.updateComplete.then(this.#setReady);
+  }
+
+  #open(options: Options, timeline: Timeline): void {
+    this.#wrong = "";
+    this.#options = options;
+    this.#timeline = timeline;
+    this.#playback = new Playback(timeline, options);
+    this.#names = namesOf(options.labels, timeline.radii.length);
+    this.#speed = undefined;
+  }
+
+  #readOptions(): Options | undefined {
+    try {
+      return readOptions((name) => this.getAttribute(name));
+    } catch (error) {
+      this.#refuse(messageOf(error));
+      return undefined;
+    }
+  }
+
+  /** Says what is wrong in the picture: an exception would tell nobody. */
+  #refuse(message: string): void {
     this.#timeline?.free();
     this.#timeline = undefined;
-    this.#wrong = "";
-    try {
-      const options = readOptions((name) => this.getAttribute(name));
-      const start = readStart(this.getAttribute("start"));
-      this.#options = options;
-      const hasTests = !options.detecting.method.endsWith("on every axis");
-      this.#timeline = new Timeline(options, shownKinds(options.decorations, hasTests));
-      for (let tick = 0; tick < start; tick++) this.#timeline.nextTick();
-      this.#names = namesOf(options.labels, this.#timeline.radii.length);
-      this.#chosen = [];
-      if (options.isStatic) this.#timeline.finish();
-    } catch (error) {
-      // What is wrong is said in the picture: an exception here would tell nobody.
-      this.#wrong = error instanceof OptionError ? error.message : `This demo cannot begin: ${String(error)}`;
-    }
+    this.#options = undefined;
     this.#isPlaying = false;
-    const isStill = this.hasAttribute("paused") || this.#options?.isStatic || prefersReducedMotion();
-    if (!isStill) this.play();
-    this.#countersAt = -Infinity;
+    this.#wrong = message;
     this.requestUpdate();
-    this.#wake();
+    void this.updateComplete.then(this.#setReady);
   }
+
+  readonly #onMotionChange = (): void => {
+    if (motionQuery.matches) this.pause();
+  };
 
   // Time
 
-  #wake(): void {
-    this.requestUpdate();
-    clock.wake(this);
-    if (!this.#isPlaying) this.#draw();
-  }
-
   #frame(ms: number): boolean {
     if (!this.#timeline) return false;
-    if (this.#isPlaying) this.#advance(ms * (this.#options?.speed ?? 1));
-    this.#draw();
+    if (this.#isPlaying) this.#isPlaying = this.#playback!.advance(ms * (this.#speed ?? this.#options!.speed), this.#listener);
+    this.#paint();
+    const now = performance.now();
+    if (!this.#isPlaying || now - this.#countersAt >= COUNTERS_MS) this.#update(now);
     return this.#isPlaying;
   }
 
-  #advance(ms: number): void {
-    const timeline = this.#timeline!;
-    this.#spent += ms;
-    for (let stops = 0; stops < MOST_STOPS; stops++) {
-      const needed = timeline.isDetected ? MS_PER_TICK : this.#duration();
-      if (this.#spent < needed) return;
-      if (timeline.isDetected && this.#options!.isStatic) return this.pause();
-      this.#spent -= needed;
-      if (timeline.isDetected) this.#nextTick();
-      else this.#tell(timeline.nextStop());
-    }
-    this.#spent = 0;
-  }
-
-  /** How long the stop at work lasts. */
-  #duration(): number {
-    const { event } = this.#timeline!;
-    const { checks } = this.#options!.decorations;
-    switch (event?.kind) {
-      case "test":
-      case "overlap":
-        return checks?.ms ?? 0;
-      case "compare":
-      case "swap":
-        return SORT_MS;
-      case "enter":
-      case "leave":
-        return this.#lineTravel().ms;
-      default:
-        return 0;
-    }
-  }
-
-  /** Where the sweep line is, where it goes to, and how long it takes. */
-  #lineTravel(): { from: number; to: number; ms: number } {
-    const { state, detection, position } = this.#timeline!;
-    const array = state.arrays[state.arrayAxis] ?? [];
-    const at = state.line ? (array[state.line.position]?.at ?? 0) : 0;
-    const next = detection.events.slice(position).find(({ kind }) => kind === "visit");
-    const to = next ? (array[Number(next["position"])]?.at ?? at) : at;
-    return { from: at, to, ms: Math.abs(to - at) / LINE_SPEED };
-  }
-
-  #nextTick(): void {
-    const timeline = this.#timeline!;
-    timeline.nextTick();
-    this.#skipStopless();
-    this.dispatchEvent(new CustomEvent("simulate", { detail: this.state, bubbles: true, composed: true }));
-  }
-
-  /** A detection of which no event is shown is done at once. */
-  #skipStopless(): void {
-    const timeline = this.#timeline!;
-    if (!timeline.isDetected && timeline.isStopless) timeline.finish();
-  }
+  readonly #listener = {
+    stopped: (events: readonly TraceEvent[]): void => this.#tell(events),
+    ticking: (): void => {
+      const { held, target } = this.#grab ?? {};
+      if (held !== undefined && target) this.#place(held, target.x, target.y, 0, 0);
+    },
+    ticked: (): void => {
+      this.#emit("simulate", this.state);
+    },
+  };
 
   #nextDetection(): void {
-    if (this.#options!.isStatic) return;
-    do this.#nextTick();
+    do this.#playback!.tick(this.#listener);
     while (!this.#timeline!.hasDetection);
+  }
+
+  /** Something is to be shown anew. */
+  #changed(): void {
+    if (this.#isPlaying) clock.wake(this);
+    this.#update(performance.now());
+  }
+
+  #update(now: number): void {
+    this.#countersAt = now;
+    this.#explanation = this.#explainChosen();
+    this.requestUpdate();
   }
 
   // Telling
 
+  #emit<K extends keyof DemoEventMap>(type: K, detail: DemoEventMap[K]["detail"]): void {
+    this.dispatchEvent(new CustomEvent(type, { detail, bubbles: true, composed: true }));
+  }
+
   #tell(events: readonly TraceEvent[]): void {
-    const { position } = this.#timeline!;
-    events.forEach((event, index) => this.#tellEvent(event, position - events.length + index));
+    const first = this.#timeline!.position - events.length;
+    events.forEach((event, index) => this.#tellEvent(event, first + index));
   }
 
   #tellEvent(event: TraceEvent | undefined, index: number): void {
     const detail = event && toldAs(event, index);
     if (!event || !detail) return;
-    const isSort = detail.kind === "compare" || detail.kind === "swap";
-    if (isSort) {
-      const i = Number(event["i"] ?? event["a"]);
-      const j = Number(event["j"] ?? event["b"]);
-      this.dispatchEvent(new CustomEvent("sap-sort", { detail: { kind: detail.kind, i, j }, bubbles: true, composed: true }));
+    if (detail.kind === "compare" || detail.kind === "swap") {
+      const [i, j] = detail.kind === "swap" ? [event["i"], event["j"]] : [event["a"], event["b"]];
+      this.#emit("sap-sort", { kind: detail.kind, i: Number(i), j: Number(j) });
     }
-    this.dispatchEvent(new CustomEvent("sap-event", { detail, bubbles: true, composed: true }));
+    this.#emit("sap-event", detail);
+  }
+
+  /** After a jump: what is at work here, and in words. */
+  #arrived(): void {
+    const { event, position } = this.#timeline!;
+    this.#tellEvent(event, position - 1);
+    this.#guesses.outcome = "";
+    this.#changed();
+    this.#speak();
   }
 
   get #sentence(): string {
     const timeline = this.#timeline;
     if (!timeline) return "";
+    if (this.#explanation) return this.#explanation.text;
     const { event, detection, tick } = timeline;
     if (event) return describeEvent(event, { boxes: detection.boxes, names: this.#names });
-    const { pairs, counts } = detection.step;
-    if (!timeline.isDetected) return `Tick ${tick}: the boxes are as drawn. Nothing has been tested yet.`;
-    const found = pairs.length / 2;
-    return `Tick ${tick}: ${counts.tests} ${counts.tests === 1 ? "test" : "tests"}, ${found} overlapping ${found === 1 ? "pair" : "pairs"}.`;
+    return summary(timeline.isDetected, tick, timeline.radii.length, detection, this.#names);
   }
 
   /** Lets the live region say where we are, soon and not too often. */
   #speak(): void {
-    const now = performance.now();
     clearTimeout(this.#speech);
+    const wait = Math.max(100, this.#spokenAt + SPEECH_MS - performance.now());
     this.#speech = setTimeout(() => {
       this.#spokenAt = performance.now();
       const region = this.renderRoot.querySelector(".live");
       if (region) region.textContent = this.#sentence;
-    }, Math.max(100, this.#spokenAt + SPEECH_MS - now));
+    }, wait);
   }
 
-  // Drawing
+  // Hands
 
-  #draw(): void {
-    this.#paint();
-    const now = performance.now();
-    if (this.#isPlaying && now - this.#countersAt < COUNTERS_MS) return;
-    this.#countersAt = now;
-    this.requestUpdate();
+  #rows(): number[][] {
+    const velocities = this.#timeline!.velocities();
+    const rounded = (value: number): number => Math.round(value * 100) / 100;
+    return this.balls.map((row, ball) => [...row.map(Number), velocities[2 * ball]!, velocities[2 * ball + 1]!].map(rounded));
   }
 
-  /** The canvases alone. */
-  #paint(): void {
-    const timeline = this.#timeline;
-    const options = this.#options;
-    if (!timeline || !options || !this.hasUpdated) return;
-    this.#theme ??= this.#probe.read();
-    const { state, event, position, detection } = timeline;
-    const { decorations, focus } = options;
-    const isRainbow = this.hasAttribute("rainbow");
-    let lineAt: number | undefined;
-    if (decorations.sweep && position > 0 && !timeline.isDetected) {
-      const { from, to, ms } = this.#lineTravel();
-      const isMoving = this.#isPlaying && ms > 0 && (event?.kind === "enter" || event?.kind === "leave");
-      const share = isMoving ? Math.min(1, this.#spent / ms) : 0;
-      lineAt = from + (to - from) * share;
+  #place(ball: number, x: number, y: number, vx: number, vy: number): void {
+    this.#timeline!.placeBall(ball, x, y, vx, vy);
+    this.#wasDragged = true;
+  }
+
+  /** A ball is moved by hand. Where the world stands still, the algorithm runs again at once. */
+  #moveBall(ball: number, x: number, y: number): void {
+    const timeline = this.#timeline!;
+    if (!this.#isPlaying) {
+      this.#place(ball, x, y, 0, 0);
+      timeline.detectAgain();
+      this.#emit("simulate", this.state);
     }
-    const common = { state, event, decorations, isRainbow, focus, chosen: this.#chosen };
-    const labels = options.labels === undefined ? [] : this.#names;
-    const { positions, radii } = timeline;
-    const context = contextOf(this.renderRoot.querySelector<HTMLCanvasElement>(".picture canvas"), WIDTH);
-    if (context) {
-      drawScene(context, { ...common, positions, radii, labels, lineAt, hasBoxes: this.hasAttribute("boxes"), axis: detection.step.axis }, this.#theme);
+    this.#emit("sap-drag", { ball, x: timeline.positions[2 * ball]!, y: timeline.positions[2 * ball + 1]! });
+    this.#changed();
+  }
+
+  #choose(ball: number | undefined): void {
+    this.#cursor = ball;
+    if (this.#options!.explains) {
+      if (ball === undefined) this.#chosen = [];
+      else if (this.#chosen.includes(ball)) this.#chosen = this.#chosen.filter((other) => other !== ball);
+      else this.#chosen = [...this.#chosen.slice(this.#chosen.length === 2 ? 2 : 0), ball];
+      if (this.#chosen.length === 2) this.pause();
     }
-    if (decorations.array) {
-      const canvas = this.renderRoot.querySelector<HTMLCanvasElement>("canvas.array");
-      const array = contextOf(canvas);
-      if (array && canvas) drawArray(array, canvas.clientWidth, { ...common, labels: this.#names }, this.#theme);
-    }
+    this.#changed();
+    if (this.#chosen.length === 2) this.#speak();
   }
 
-  override firstUpdated(): void {
-    this.renderRoot.append(this.#probe.element);
-    this.#resized?.observe(this.renderRoot.querySelector(".picture")!);
-  }
-
-  override updated(): void {
-    if (!this.#isPlaying) this.#paint();
-  }
-
-  override render(): TemplateResult {
-    const { decorations } = this.#options ?? {};
-    const label = this.getAttribute("aria-label") ?? this.getAttribute("heading") ?? "Demo of an algorithm that finds overlapping boxes";
-    const balls = this.#timeline?.radii.length ?? 0;
-    const axes = this.#options?.detecting.method.endsWith("every axis") ? 2 : 1;
-    return html`
-      <slot name="heading">${this.getAttribute("heading") ? html`<p class="heading">${this.getAttribute("heading")}</p>` : nothing}</slot>
-      <div class="picture" part="picture" role="application" tabindex="0" aria-label=${label} aria-describedby="keys" @keydown=${this.#onKey}>
-        <canvas></canvas>
-        ${this.#wrong ? html`<p class="wrong" role="alert">${this.#wrong}</p>` : nothing}
-      </div>
-      <p id="keys" class="hidden">Space: step, or pause. Brackets: step back and forward.</p>
-      ${decorations?.array
-        ? html`<canvas class="array" part="array" role="img" aria-label="The endpoints in the order of the array" style="height:${arrayHeight(2 * balls, axes)}px"></canvas>`
-        : nothing}
-      ${this.hasAttribute("no-controls") ? nothing : html`<p class="said" part="said" aria-hidden="true">${this.#sentence}</p>`}
-      <p class="live hidden" role="status" aria-live="polite"></p>
-      ${this.hasAttribute("no-counters") ? nothing : this.#counters()}
-      ${this.hasAttribute("no-controls") ? nothing : this.#controls()}
-      <slot name="caption"></slot>
-    `;
-  }
-
-  #counters(): TemplateResult {
-    const { tests, axisOverlaps, pairs, comparisons, swaps } = this.#counts;
-    const rows = { tests, "axis overlaps": axisOverlaps, pairs, comparisons, swaps };
-    return html`<dl class="counters" part="counters">
-      ${Object.entries(rows).map(([name, value]) => html`<div><dt>${name}</dt><dd data-counter=${name.replace(" ", "-")}>${value.toLocaleString("en")}</dd></div>`)}
-    </dl>`;
-  }
-
-  #controls(): TemplateResult {
-    const { at, of } = this.#timeline?.progress ?? { at: 0, of: 0 };
-    const none = this.#timeline === undefined;
-    return html`<div class="controls" part="controls" role="group" aria-label="Controls">
-      ${this.#button(this.#isPlaying ? "Pause" : "Play", this.#isPlaying ? icons.pause : icons.play, none, () => (this.#isPlaying ? this.pause() : this.play()))}
-      ${this.#button("Step back", icons.back, none || !this.#timeline!.hasPast, () => this.back())}
-      ${this.#button("Step", icons.step, none, () => this.step())}
-      <input type="range" aria-label="History" min="0" .max=${String(of)} .value=${String(at)} ?disabled=${none}
-        aria-valuetext="moment ${at} of ${of}" @input=${(event: Event) => this.seek(Number((event.target as HTMLInputElement).value))} />
-      ${this.#button("Reset", icons.reset, none, () => this.reset())}
-    </div>`;
-  }
-
-  #button(label: string, icon: TemplateResult, disabled: boolean, click: () => void): TemplateResult {
-    return html`<button type="button" aria-label=${label} title=${label} ?disabled=${disabled} @click=${click}>${icon}</button>`;
+  #explainChosen(): Explanation | undefined {
+    const [a, b] = this.#chosen;
+    if (!this.#timeline || a === undefined || b === undefined) return undefined;
+    return explain(this.#timeline.detection, this.#names, a, b);
   }
 
   readonly #onKey = (event: KeyboardEvent): void => {
-    if (event.altKey || event.ctrlKey || event.metaKey) return;
+    const timeline = this.#timeline;
+    if (!timeline || event.altKey || event.ctrlKey || event.metaKey) return;
     const actions: Record<string, () => void> = {
       " ": () => (this.#isPlaying ? this.pause() : this.step()),
       "[": () => this.back(),
       ",": () => this.back(),
       "]": () => this.step(),
       ".": () => this.step(),
+      b: () => this.#moveCursor(1),
+      B: () => this.#moveCursor(-1),
+      Enter: () => this.#cursor !== undefined && this.#choose(this.#cursor),
+      Escape: () => this.#choose(undefined),
+      ArrowLeft: () => this.#pushBall(-1, 0, event.shiftKey),
+      ArrowRight: () => this.#pushBall(1, 0, event.shiftKey),
+      ArrowUp: () => this.#pushBall(0, -1, event.shiftKey),
+      ArrowDown: () => this.#pushBall(0, 1, event.shiftKey),
+      1: () => this.#guess(0),
+      2: () => this.#guess(1),
     };
+    const isArrow = event.key.startsWith("Arrow");
+    if (isArrow && !this.#options!.isDraggable) return;
     const action = actions[event.key];
     if (!action) return;
     event.preventDefault();
     action();
   };
+
+  /** Which ball the keys act on: the next one, or the one before. */
+  #moveCursor(by: number): void {
+    const count = this.#timeline!.radii.length;
+    if (count === 0) return;
+    this.#cursor = this.#cursor === undefined ? (by > 0 ? 0 : count - 1) : (this.#cursor + by + count) % count;
+    this.#changed();
+    const region = this.renderRoot.querySelector(".live");
+    if (region) region.textContent = `Ball ${this.#names[this.#cursor]}`;
+  }
+
+  #pushBall(dx: number, dy: number, isFar: boolean): void {
+    this.#cursor ??= 0;
+    const { positions, radii } = this.#timeline!;
+    if (this.#cursor >= radii.length) return;
+    this.pause();
+    const by = isFar ? FAR_ARROW : ARROW;
+    this.#moveBall(this.#cursor, positions[2 * this.#cursor]! + dx * by, positions[2 * this.#cursor + 1]! + dy * by);
+    this.#speak();
+  }
+
+  // Guessing
+
+  get #question(): Question | undefined {
+    const timeline = this.#timeline;
+    if (!timeline || !this.#options?.predicts || this.#isPlaying) return undefined;
+    const { nextPosition, detection } = timeline;
+    const next = nextPosition === undefined ? undefined : detection.events[nextPosition - 1];
+    if (!next) return undefined;
+    const prunes = detection.events.some(({ kind }) => kind === "prune");
+    return questionOf(next, detection.events[nextPosition!], prunes, this.#names);
+  }
+
+  #guess(choice: 0 | 1): void {
+    const question = this.#question;
+    if (!question) return;
+    const isRight = choice === question.answer;
+    this.step();
+    this.#guesses = {
+      outcome: isRight ? "Right." : `No: ${question.choices[question.answer]}.`,
+      right: this.#guesses.right + Number(isRight),
+      made: this.#guesses.made + 1,
+    };
+  }
+
+  // Showing
+
+  get #counts(): Omit<DemoState, "tick" | "events" | "hash"> {
+    const state = this.#timeline?.state;
+    const { tests = 0, pairs = 0, comparisons = 0, swaps = 0 } = state?.counts ?? {};
+    // Those that there are: also where the algorithm keeps them and tells only of changes.
+    return { tests, axisOverlaps: state?.axisOverlaps.length ?? 0, pairs, comparisons, swaps };
+  }
+
+  get #label(): string {
+    return this.getAttribute("aria-label") ?? (this.#options?.heading || "Balls, and an algorithm that finds which of them overlap");
+  }
+
+  #paint(): void {
+    const [timeline, options] = [this.#timeline, this.#options];
+    if (!timeline || !options || !this.hasUpdated) return;
+    this.#theme ??= this.#probe.read();
+    const { state, event, detection, positions, radii } = timeline;
+    const chosen = this.#cursor === undefined ? this.#chosen : [...new Set([...this.#chosen, this.#cursor])];
+    const common = { state, event, chosen, options };
+    const picture = canvasContext(this.renderRoot.querySelector(".picture canvas"), WIDTH);
+    if (picture) {
+      const labels = options.labels === undefined && !options.explains && !options.predicts ? [] : this.#names;
+      const lineAt = options.decorations.sweep && this.#playback!.lineAt(this.#isPlaying);
+      const { axis } = detection.step;
+      const missed = timeline.isDetected ? detection.missed : [];
+      drawScene(picture, { ...common, positions, radii, labels, lineAt, axis, missed, gap: this.#explanation?.gap }, this.#theme);
+    }
+    const array = options.decorations.array && canvasContext(this.renderRoot.querySelector("canvas.array"));
+    if (array) {
+      const moved = timeline.isDetected ? detection.swapped : new Set<number>();
+      drawArray(array, array.canvas.clientWidth, { ...common, labels: this.#names, moved }, this.#theme);
+    }
+  }
+
+  #watchSize(): void {
+    this.#resized?.observe(this.renderRoot.querySelector(".picture")!);
+  }
+
+  override firstUpdated(): void {
+    this.renderRoot.append(this.#probe.element);
+    this.#watchSize();
+    this.#grab = new Grab(this.renderRoot.querySelector(".picture")!, {
+      balls: () => this.#timeline,
+      isDraggable: () => this.#options?.isDraggable === true,
+      move: (ball, x, y) => this.#moveBall(ball, x, y),
+      release: (ball, vx, vy) => {
+        if (this.#isPlaying) this.#place(ball, this.#timeline!.positions[2 * ball]!, this.#timeline!.positions[2 * ball + 1]!, vx, vy);
+      },
+      choose: (ball) => this.#options && this.#choose(ball),
+    });
+  }
+
+  override updated(): void {
+    this.#paint();
+  }
+
+  override render(): TemplateResult {
+    const options = this.#options;
+    const { tests, axisOverlaps, pairs, comparisons, swaps } = this.#counts;
+    const hasControls = options?.hasControls ?? !this.hasAttribute("no-controls");
+    const hasCounters = options?.hasCounters ?? !this.hasAttribute("no-counters");
+    return html`
+      <slot name="heading">${options?.heading ? html`<p class="heading">${options.heading}</p>` : nothing}</slot>
+      <div class="picture" part="picture" role="application" tabindex="0" aria-label=${this.#label} aria-describedby="keys" @keydown=${this.#onKey}>
+        <canvas></canvas>
+        ${this.#wrong ? html`<p class="wrong" role="alert">${this.#wrong}</p>` : nothing}
+      </div>
+      <p id="keys" class="hidden">${keysOf(options)}</p>
+      ${options?.decorations.array ? this.#array() : nothing}
+      ${hasControls ? html`<p class="said" part="said" aria-hidden="true" ?data-explains=${this.#explanation !== undefined}>${this.#sentence}</p>` : nothing}
+      ${options?.predicts ? guessing({ ...this.#guesses, question: this.#question, guess: (choice) => this.#guess(choice) }) : nothing}
+      <p class="live hidden" role="status" aria-live="polite"></p>
+      ${hasCounters ? counters({ tests, "axis overlaps": axisOverlaps, pairs, comparisons, swaps }) : nothing}
+      ${hasControls ? this.#controls() : nothing}
+      <slot name="caption"></slot>
+    `;
+  }
+
+  #array(): TemplateResult {
+    const axes = this.#options!.detecting.method.endsWith("every axis") ? 2 : 1;
+    const height = arrayHeight(2 * this.#timeline!.radii.length, axes);
+    return html`<canvas class="array" part="array" role="img" aria-label="The array of endpoints, in order" style="height:${height}px"></canvas>`;
+  }
+
+  #controls(): TemplateResult {
+    const timeline = this.#timeline;
+    const bar = controls({
+      isReady: timeline !== undefined,
+      isPlaying: this.#isPlaying,
+      canPlay: !(this.#options?.isStatic && timeline?.isStopless),
+      canGoBack: timeline?.hasPast === true,
+      progress: timeline?.progress ?? { at: 0, of: 0 },
+      speed: this.#speed ?? this.#options?.speed ?? 1,
+      playOrPause: () => (this.#isPlaying ? this.pause() : this.play()),
+      back: () => this.back(),
+      step: () => this.step(),
+      seek: (place) => this.seek(place),
+      setSpeed: (speed) => {
+        this.#speed = speed;
+        this.#changed();
+      },
+      reset: () => this.reset(),
+      share: () => {
+        this.#isSharing = true;
+        this.requestUpdate();
+        void this.updateComplete.then(() => this.renderRoot.querySelector<HTMLElement>(".share")?.togglePopover());
+      },
+    });
+    return html`${bar} ${this.#isSharing ? sharing(this.share(), this.embedCode()) : nothing}`;
+  }
+
+  #isSharing = false;
 }
 
-const icon = (path: string): TemplateResult => html`<svg viewBox="0 0 16 16" aria-hidden="true">${svg`<path d=${path} />`}</svg>`;
-const icons = {
-  play: icon("M3 1.5v13l11-6.5z"),
-  pause: icon("M3 2h3.5v12H3zM9.500 2H13v12H9.500z"),
-  step: icon("M2 1.500v13l9-6.500zM11.500 2H14v12h-2.500z"),
-  back: icon("M14 1.500v13L5 8zM2 2h2.500v12H2z"),
-  reset: icon("M8 2a6 6 0 1 1-5.700 4.100l1.900.6A4 4 0 1 0 8 4v2.500L3.800 3 8-.5z"),
+const motionQuery: MediaQueryList = matchMedia("(prefers-reduced-motion: reduce)");
+
+function kindsOf({ decorations, detecting }: Options): Set<TraceEvent["kind"]> {
+  return shownKinds(decorations, !detecting.method.endsWith("on every axis"));
+}
+
+function messageOf(error: unknown): string {
+  return error instanceof OptionError ? error.message : `This demo cannot begin. ${String(error)}`;
+}
+
+/** Which kind of event a listener is told a trace event as. */
+const told: Partial<Record<TraceEvent["kind"], DemoEvent["kind"]>> = {
+  compare: "compare",
+  swap: "swap",
+  test: "test",
+  enter: "enter",
+  leave: "leave",
+  overlap: "overlap",
+  prune: "skip",
 };
 
 function toldAs(event: TraceEvent, index: number): DemoEvent | undefined {
@@ -489,24 +615,32 @@ function toldAs(event: TraceEvent, index: number): DemoEvent | undefined {
   if (!kind) return undefined;
   const a = Number(event["a"] ?? event["left"] ?? event["id"]);
   const b = Number(event["b"] ?? event["right"] ?? event["id"]);
-  const isEdges = kind === "compare" || kind === "swap";
-  return { kind, a: isEdges ? a >> 1 : a, b: isEdges ? b >> 1 : b, index };
+  const isOfEdges = kind === "compare" || kind === "swap";
+  return { kind, a: isOfEdges ? a >> 1 : a, b: isOfEdges ? b >> 1 : b, index };
 }
 
-function prefersReducedMotion(): boolean {
-  return matchMedia("(prefers-reduced-motion: reduce)").matches;
+function keysOf(options: Options | undefined): string {
+  const keys = ["Space steps, or pauses.", "Comma and full stop step back and forward."];
+  if (options?.isDraggable || options?.explains) keys.push("B chooses the next ball.");
+  if (options?.isDraggable) keys.push("Arrow keys move it.");
+  if (options?.explains) keys.push("Enter takes it for an explanation of a pair.");
+  if (options?.predicts) keys.push("1 and 2 guess.");
+  return keys.join(" ");
 }
 
-/** The context of a canvas as large as it is shown, scaled to so many units across; or to CSS pixels. */
-function contextOf(canvas: HTMLCanvasElement | null, units?: number): CanvasRenderingContext2D | undefined {
-  const context = canvas?.getContext("2d");
-  if (!canvas || !context || canvas.clientWidth === 0) return undefined;
-  const ratio = Math.min(devicePixelRatio, 3);
-  const [width, height] = [Math.round(canvas.clientWidth * ratio), Math.round(canvas.clientHeight * ratio)];
-  if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
-  const scale = units === undefined ? ratio : width / units;
-  context.setTransform(scale, 0, 0, scale, 0, 0);
-  return context;
+/** Every attribute is a property as well, but for those that would hide one that elements have. */
+for (const name of attributes) {
+  const property = name.replace(/-(\w)/g, (_, letter: string) => letter.toUpperCase());
+  if (property in SapDemoElement.prototype) continue;
+  Object.defineProperty(SapDemoElement.prototype, property, {
+    configurable: true,
+    get(this: HTMLElement) {
+      const value = this.getAttribute(name);
+      return booleans.has(name) ? value !== null : value;
+    },
+    set(this: HTMLElement, value: unknown) {
+      if (value === null || value === undefined || value === false) this.removeAttribute(name);
+      else this.setAttribute(name, value === true ? "" : typeof value === "object" ? JSON.stringify(value) : String(value));
+    },
+  });
 }
-
-export type { Attribute };

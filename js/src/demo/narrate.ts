@@ -1,4 +1,5 @@
 import type { TraceEvent } from "../trace.js";
+import type { Detection } from "./detection.js";
 
 const axisNames = ["x", "y"];
 
@@ -21,6 +22,17 @@ export function separation({ boxes, names }: Known, axis: number, left: number, 
   // As many digits as it takes to tell the two apart.
   const [a, b] = inWords(max) === inWords(min) ? [max, min].map(String) : [inWords(max), inWords(min)];
   return `${names[left]}’s ${high} ${a} < ${names[right]}’s ${low} ${b}`;
+}
+
+/** A detection in words, when none of its events is at work. */
+export function summary(isDetected: boolean, tick: number, balls: number, detection: Detection, names: readonly string[]): string {
+  if (!isDetected) return `Tick ${tick}. Nothing has been tested yet.`;
+  const all = (balls * (balls - 1)) / 2;
+  const { counts, pairs } = detection.step;
+  const found = pairs.length / 2;
+  const tested = `${counts.tests} of ${all} pairs tested, ${found} ${found === 1 ? "overlaps" : "overlap"}`;
+  const missed = detection.missed.map(([a, b]) => `${names[a]} and ${names[b]}`);
+  return `Tick ${tick}: ${tested}.${missed.length > 0 ? ` Missed: ${missed.join(", ")}.` : ""}`;
 }
 
 /** One event in words. */

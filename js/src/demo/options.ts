@@ -1,4 +1,5 @@
 import type { RunnerOptions } from "../runner.js";
+import type { Row } from "./api.js";
 import { type Decorations, readDecorations } from "./decorations.js";
 
 /** The world, in its own units. Pictures scale it. */
@@ -10,12 +11,8 @@ export class OptionError extends Error {
   override readonly name = "OptionError";
 }
 
-/** A ball as it is given: its centre and radius; its velocity, in units a second, if it has one. */
-export type Row = readonly [x: number, y: number, radius: number, vx?: number, vy?: number];
-
 /** How the world moves from one tick to the next. */
-export const motions = ["bounce", "drift", "teleport", "rest"] as const;
-export type Motion = (typeof motions)[number];
+export type Motion = "bounce" | "drift" | "teleport" | "rest";
 
 /** What begins a world. */
 export interface WorldOptions {
@@ -43,6 +40,15 @@ export interface Options {
   readonly isDraggable: boolean;
   readonly labels: readonly string[] | "emoji" | undefined;
   readonly focus: number | undefined;
+  readonly isRainbow: boolean;
+  readonly hasBoxes: boolean;
+  /** Whether two balls may be chosen, to be told why they were tested or not. */
+  readonly explains: boolean;
+  /** Whether each event is asked for before it is shown. */
+  readonly predicts: boolean;
+  readonly heading: string;
+  readonly hasCounters: boolean;
+  readonly hasControls: boolean;
 }
 
 type Strategy = Pick<Detecting, "method"> & Partial<Pick<Detecting, "sort">>;
@@ -78,14 +84,75 @@ const axes = {
   "fewest-overlaps": "fewest expected overlaps",
 } as const satisfies Record<string, Detecting["axis"]>;
 
-/** Demonstrations of errors: what each is made of. `js/wasm/src/labs.rs` has the wrong algorithms. */
-export const labs: Readonly<Record<string, { method: Detecting["method"]; motion: Motion | undefined }>> = {
-  "strict-ties": { method: "strict ties (wrong)", motion: "rest" },
-  "wrong-start": { method: "sorted start (wrong)", motion: undefined },
-  "centre-sort": { method: "sort by centre (wrong)", motion: undefined },
-  "one-to-n": { method: "one-to-n scan", motion: undefined },
-  teleport: { method: "swap-driven sweep", motion: "teleport" },
+/** A laboratory: a method, and the attributes that it has unless the page says otherwise. */
+interface Lab {
+  readonly method: Detecting["method"];
+  readonly defaults: Readonly<Partial<Record<Attribute, string>>>;
+}
+
+/** Demonstrations of errors, and of what is costly. `js/wasm/src/labs.rs` has what is wrong. */
+export const labs: Readonly<Record<string, Lab>> = {
+  // Four balls in a row, each touching the next, at rest.
+  "strict-ties": {
+    method: "strict ties (wrong)",
+    defaults: {
+      balls: "[[120,160,60],[240,200,60],[360,160,60],[480,200,60]]",
+      motion: "rest",
+      "skip-interval": "45",
+      decorations: "checks:250,edges,edges:array",
+    },
+  },
+  // Three that overlap from the start, drift apart and meet again.
+  "wrong-start": {
+    method: "sorted start (wrong)",
+    defaults: {
+      balls: "[[240,170,60,-90,0],[300,220,55,0,0],[370,180,50,100,0]]",
+      motion: "drift",
+      "no-bounce": "",
+      boxes: "",
+      decorations: "checks:0",
+    },
+  },
+  // A small ball, a middle one, and a large one that reaches back over both.
+  "centre-sort": {
+    method: "sort by centre (wrong)",
+    defaults: {
+      balls: "[[130,170,40],[270,210,45],[320,200,170]]",
+      static: "",
+      draggable: "",
+      explain: "",
+      boxes: "",
+      decorations: "checks:700,edges",
+    },
+  },
+  // The ball in focus is enclosed by another, of which no edge lies between its own.
+  "one-to-n": {
+    method: "one-to-n scan",
+    defaults: {
+      balls: "[[300,200,40],[310,210,150],[360,120,45],[80,300,50],[520,110,50]]",
+      focus: "0",
+      static: "",
+      draggable: "",
+      boxes: "",
+      array: "",
+      decorations: "checks:700,edges:focus",
+    },
+  },
+  // One of many is thrown from side to side, past all the others.
+  teleport: {
+    method: "swap-driven sweep",
+    defaults: {
+      balls: "[[40,60,24],[100,130,14],[140,227,21],[180,324,16],[220,201,23],[260,298,18],[300,175,25],[340,272,20],[380,149,15],[420,246,22],[460,343,17],[500,220,24]]",
+      motion: "teleport",
+      "skip-interval": "60",
+      rainbow: "",
+      decorations: "edges:array",
+      speed: "2",
+    },
+  },
 };
+
+const motions: Readonly<Record<Motion, Motion>> = { bounce: "bounce", drift: "drift", teleport: "teleport", rest: "rest" };
 
 /** The most balls: what each of them is tested against stays in the tens of thousands. */
 const MOST_BALLS = 400;
@@ -119,54 +186,81 @@ export const attributes = [
   "heading",
   "no-counters",
   "no-controls",
+  "embed-url",
   "aria-label",
 ] as const;
 export type Attribute = (typeof attributes)[number];
+
+/** Those of them that are there or not. */
+export const booleans: ReadonlySet<Attribute> = new Set<Attribute>([
+  "static",
+  "draggable",
+  "rainbow",
+  "no-bounce",
+  "boxes",
+  "array",
+  "paused",
+  "explain",
+  "predict",
+  "no-counters",
+  "no-controls",
+]);
 
 /**
  * Reads the attributes.
  *
  * @throws {@link OptionError} for the first that cannot be done.
  */
-export function readOptions(get: (name: Attribute) => string | null): Options {
-  const has = (name: Attribute): boolean => get(name) !== null;
-  const lab = has("lab") ? choose("lab", labs, get("lab")!) : undefined;
+export function readOptions(attribute: (name: Attribute) => string | null): Options {
+  const labName = attribute("lab");
+  const lab = labName === null ? undefined : choose("lab", labs, labName);
+  const get = (name: Attribute): string | null => attribute(name) ?? lab?.defaults[name] ?? null;
+  const has = (name: Attribute): boolean => get(name) !== null && get(name) !== "false";
   const strategy = choose("strategy", strategies, get("strategy") ?? "sorted-pairwise");
   const axis = get("axis") ?? "x";
-  const method = lab?.method ?? (axis === "all" ? onAllAxes(strategy.method) : strategy.method);
-  const focus = has("focus") ? number("focus", get("focus")!, 0, MOST_BALLS - 1) : undefined;
-  const decorations = readDecorations(get("decorations") ?? "", {
-    array: has("array"),
-    checks: has("explain") || has("predict"),
-  });
   const balls = readBalls(get("balls") ?? "5");
   const count = typeof balls === "number" ? balls : balls.length;
+  const focus = get("focus") === null ? undefined : number("focus", get("focus")!, 0, MOST_BALLS - 1);
   if (focus !== undefined && focus >= count) {
     throw new OptionError(`focus="${focus}": there are ${count} balls, the first of which is 0`);
   }
-  const motion = has("motion") ? choose("motion", Object.fromEntries(motions.map((name) => [name, name])), get("motion")!) : "bounce";
   return {
     world: {
       balls,
       seed: number("seed", get("seed") ?? "1", 0, Number.MAX_SAFE_INTEGER),
-      motion: lab?.motion ?? (motion as Motion),
+      motion: choose("motion", motions, get("motion") ?? "bounce"),
       bounces: !has("no-bounce"),
       focus: focus ?? 0,
     },
     detecting: {
-      method,
-      sort: has("sort") ? choose("sort", sorts, get("sort")!) : (strategy.sort ?? "standard library"),
-      axis: axis === "all" ? 0 : choose("axis", { ...axes, all: 0 }, axis),
+      method: lab?.method ?? (axis === "all" ? onAllAxes(strategy.method) : strategy.method),
+      sort: get("sort") === null ? (strategy.sort ?? "standard library") : choose("sort", sorts, get("sort")!),
+      axis: choose("axis", { ...axes, all: 0 }, axis),
       focus: focus ?? 0,
     },
-    decorations,
+    decorations: readDecorations(get("decorations") ?? "", {
+      array: has("array"),
+      checks: has("explain") || has("predict"),
+    }),
     skip: number("skip-interval", get("skip-interval") ?? "0", 0, MOST_SKIPPED),
     speed: number("speed", get("speed") ?? "1", 0.01, 100, false),
     isStatic: has("static"),
-    isDraggable: has("draggable") && get("draggable") !== "false",
+    isDraggable: has("draggable"),
     labels: readLabels(get("labels")),
     focus,
+    isRainbow: has("rainbow"),
+    hasBoxes: has("boxes"),
+    explains: has("explain"),
+    predicts: has("predict"),
+    heading: get("heading") ?? "",
+    hasCounters: !has("no-counters"),
+    hasControls: !has("no-controls"),
   };
+}
+
+/** Whether a world of the one goes on as a world of the other. */
+export function isWorldKept(before: Options, after: Options): boolean {
+  return JSON.stringify([before.world, before.isStatic]) === JSON.stringify([after.world, after.isStatic]);
 }
 
 /** How many ticks to run before anything is shown. */

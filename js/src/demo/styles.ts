@@ -29,9 +29,14 @@ export const styles: CSSResult = css`
     user-select: none;
     -webkit-user-select: none;
   }
-  :host([draggable]) .picture canvas,
-  :host([explain]) .picture canvas {
+  :host([draggable]) .picture {
     cursor: grab;
+  }
+  :host([draggable]) .picture:active {
+    cursor: grabbing;
+  }
+  :host([explain]:not([draggable])) .picture {
+    cursor: pointer;
   }
   .picture canvas,
   .array {
@@ -145,12 +150,65 @@ export const styles: CSSResult = css`
     margin: 0 4px;
     accent-color: var(--_ink);
   }
+  .controls select {
+    min-width: 60px;
+    padding: 0 2px;
+  }
   .guess {
+    margin-top: 6px;
+    height: 5.2rem;
+  }
+  .guess p {
+    margin: 0 0 4px;
+    height: 2.8em;
+    overflow: hidden;
+  }
+  .guess div {
     display: flex;
-    flex-wrap: wrap;
     align-items: center;
     gap: 6px;
-    margin-top: 6px;
-    min-height: 36px;
+  }
+  .guess button {
+    min-width: 6rem;
+  }
+  .score {
+    margin-left: auto;
+    color: var(--_muted);
+    font-variant-numeric: tabular-nums;
+  }
+  .share {
+    width: min(34rem, 92vw);
+    padding: 1rem;
+    border: 1px solid var(--_line);
+    border-radius: 8px;
+    background: var(--_stage);
+    color: var(--_ink);
+  }
+  .share label {
+    display: block;
+    font-weight: 600;
+  }
+  .share textarea {
+    display: block;
+    width: 100%;
+    margin: 4px 0;
+    padding: 6px;
+    border: 1px solid var(--_line);
+    border-radius: 4px;
+    background: light-dark(#fff, #0f1214);
+    color: inherit;
+    font: 0.8125rem/1.4 ui-monospace, monospace;
+    font-weight: 400;
+    resize: none;
+  }
+  .share button {
+    margin-bottom: 0.75rem;
+    padding: 6px 12px;
+    border: 1px solid var(--_line);
+    border-radius: 6px;
+    background: transparent;
+    color: inherit;
+    font: inherit;
+    cursor: pointer;
   }
 `;

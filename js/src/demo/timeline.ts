@@ -1,7 +1,7 @@
 import type { PlayerState } from "../player.js";
 import { Runner } from "../runner.js";
 import type { TraceEvent } from "../trace.js";
-import { Detection, newRunner, stopsOf } from "./detection.js";
+import { Detection, newRunner, type Oracle, oracleFor, stopsOf } from "./detection.js";
 import type { Options } from "./options.js";
 import { boxesOf, World } from "./world.js";
 
@@ -31,6 +31,7 @@ export class Timeline {
   readonly #kinds: ReadonlySet<TraceEvent["kind"]>;
   readonly #options: Options;
   readonly #most: number;
+  readonly #oracle: Oracle | undefined;
   #runner: Runner;
   #ticks: Tick[] = [];
   /** Which tick is shown. */
@@ -48,6 +49,7 @@ export class Timeline {
     this.#kinds = kinds;
     this.#world = world;
     this.#most = Math.max(MOST_TICKS, LEAST_DETECTIONS * (options.skip + 1));
+    this.#oracle = oracleFor(options.detecting);
     this.#runner = newRunner(options.detecting);
     this.#record(tick, true);
   }
@@ -82,6 +84,11 @@ export class Timeline {
 
   get state(): PlayerState {
     return this.detection.stateAt(this.position);
+  }
+
+  /** How many events will have been played at the next stop, if there is one here. */
+  get nextPosition(): number | undefined {
+    return this.#stops[this.#stop + 1];
   }
 
   /** Whether the detection has been gone through, so that the world may move on. */
@@ -188,7 +195,7 @@ export class Timeline {
   }
 
   /** Puts a ball elsewhere, here and now: what was to come is forgotten. */
-  place(ball: number, x: number, y: number, vx: number, vy: number): void {
+  placeBall(ball: number, x: number, y: number, vx: number, vy: number): void {
     this.#bringWorld();
     this.#truncate();
     this.#world.place(ball, x, y, vx, vy);
@@ -206,6 +213,7 @@ export class Timeline {
     for (const tick of this.#ticks) this.#forget(tick);
     this.#detection?.free();
     this.#runner.free();
+    this.#oracle?.free();
     return this.#world;
   }
 
@@ -230,7 +238,7 @@ export class Timeline {
 
   #detect(runner: Runner, positions: Float32Array): void {
     this.#detection?.free();
-    this.#detection = new Detection(runner, boxesOf(positions, this.radii));
+    this.#detection = new Detection(runner, boxesOf(positions, this.radii), this.#oracle);
     this.#stops = stopsOf(this.#detection, this.#kinds);
     this.#stop = -1;
   }

@@ -1,5 +1,6 @@
 import { Simulation, SimulationError } from "../../../simulation/wasm/simulation.js";
-import { HEIGHT, OptionError, type Row, WIDTH, type WorldOptions } from "./options.js";
+import type { Row } from "./api.js";
+import { HEIGHT, OptionError, WIDTH, type WorldOptions } from "./options.js";
 
 /** Loads the compiled simulation: the file beside the bundle that this module is part of. */
 export function loadWorlds(): Promise<void> {
