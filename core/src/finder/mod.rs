@@ -182,7 +182,9 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
         }
     }
 
-    /// The same finder with a kernel of choice, for tests and comparisons.
+    /// The same finder with a kernel of choice, for tests and comparisons. Without `std` there is
+    /// no choice: others than the best are not compiled.
+    #[cfg(feature = "std")]
     #[must_use]
     pub fn kernel(mut self, kernel: Kernel) -> Self {
         self.search.kernel = kernel;

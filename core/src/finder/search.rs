@@ -336,7 +336,9 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         sink: &mut O,
     ) -> Result<(), Stop> {
         let Task { arrange, watch, .. } = task;
-        let sweep = Sweep { kernel: self.kernel, others, arrange, watch };
+        // Known to the compiler where there is no choice, so that the others are left out.
+        let kernel = if cfg!(feature = "std") { self.kernel } else { Kernel::best() };
+        let sweep = Sweep { kernel, others, arrange, watch };
         match sweep.run(&self.columns[..sets], sink) {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(Stop::Enough),

@@ -63,6 +63,10 @@ impl Kernel {
     /// The widest that this processor has. On x86-64 it is asked at run time if the feature `std`
     /// is on; elsewhere the build decides.
     pub fn best() -> Self {
+        // Said outright: what the compiler knows not to be used it leaves out.
+        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+        return Kernel(Instructions::Simd128);
+        #[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
         Self::available().last().unwrap_or(Self::SCALAR)
     }
 
