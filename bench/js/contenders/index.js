@@ -1,0 +1,187 @@
+// Who is measured, how, and where the module is that does it. Each module exports
+//
+//     create({ dimensions, isMoving, rows }) -> { find(rows), slotOf? }
+//
+// `rows` is the first frame: one row a box, the minimum corner and then the maximum corner. `find`
+// returns the pairs that overlap, `a0, b0, a1, b1, ...` in any order, or what began and ended since
+// the last frame, `{ begun, ended }`, of boxes in motion. It may keep buffers between calls; of
+// boxes at rest it may know nothing from one call to the next.
+//
+// The same modules run in Node and in the browser.
+
+/**
+ * @typedef {object} Contender
+ * @property {string} name
+ * @property {string} package where it comes from; empty if it stands here
+ * @property {readonly number[]} dimensions
+ * @property {readonly ("find" | "follow")[]} tasks
+ * @property {boolean} rival whether it competes with ours
+ * @property {string} how what is called
+ * @property {() => Promise<any>} load
+ */
+
+/** The name that the others are compared with. */
+export const OURS = "sweep-and-prune";
+/** Ours as a world that is followed. */
+export const WORLD = "sweep-and-prune, BroadPhase";
+/** The sweep that a good developer writes in an hour. */
+export const PLAIN = "plain sweep";
+
+const BOTH = Object.freeze(/** @type {const} */ (["find", "follow"]));
+
+/** @type {readonly Contender[]} */
+export const contenders = [
+  {
+    name: OURS,
+    package: "sweep-and-prune",
+    dimensions: [2, 3],
+    tasks: BOTH,
+    rival: false,
+    how: "`PairFinder.find` on all boxes",
+    load: () => import("./ours.js"),
+  },
+  {
+    name: WORLD,
+    package: "sweep-and-prune",
+    dimensions: [2, 3],
+    tasks: ["follow"],
+    rival: false,
+    how: "`BroadPhase.setMany` with all boxes, `update`",
+    load: () => import("./ours-broad-phase.js"),
+  },
+  {
+    name: PLAIN,
+    package: "",
+    dimensions: [2, 3],
+    tasks: BOTH,
+    rival: true,
+    how: "70 lines: sorted and swept along the axis of most variance, in typed arrays",
+    load: () => import("./plain-sweep.js"),
+  },
+  {
+    name: "box-intersect",
+    package: "box-intersect",
+    dimensions: [2, 3],
+    tasks: BOTH,
+    rival: true,
+    how: "`boxIntersect(boxes, visit)`, its arrays of boxes kept",
+    load: () => import("./box-intersect.js"),
+  },
+  {
+    name: "flatbush",
+    package: "flatbush",
+    dimensions: [2],
+    tasks: BOTH,
+    rival: true,
+    how: "index of `Float32Array` built anew, `search` for each box, pairs taken in its callback",
+    load: () => import("./flatbush.js"),
+  },
+  {
+    name: "rbush",
+    package: "rbush",
+    dimensions: [2],
+    tasks: BOTH,
+    rival: true,
+    how: "`load` of all boxes, `search` for each, its items kept",
+    load: () => import("./rbush.js"),
+  },
+  {
+    name: "rbush-3d",
+    package: "rbush-3d",
+    dimensions: [3],
+    tasks: BOTH,
+    rival: true,
+    how: "`load` of all boxes, `search` for each, its items kept",
+    load: () => import("./rbush-3d.js"),
+  },
+  {
+    name: "detect-collisions",
+    package: "detect-collisions",
+    dimensions: [2],
+    tasks: BOTH,
+    rival: true,
+    how: "`createBox` each, or `setPosition` of those that moved, and its tree's `search`",
+    load: () => import("./detect-collisions.js"),
+  },
+  {
+    name: "cannon-es",
+    package: "cannon-es",
+    dimensions: [3],
+    tasks: BOTH,
+    rival: true,
+    how: "`SAPBroadphase.collisionPairs`, axis detected, boxes written to its bodies",
+    load: () => import("./cannon-es.js"),
+  },
+  {
+    name: "matter-js",
+    package: "matter-js",
+    dimensions: [2],
+    tasks: BOTH,
+    rival: true,
+    how: "`Detector.collisions` without the exact test, boxes written to its bodies",
+    load: () => import("./matter-js.js"),
+  },
+  {
+    name: "p2-es",
+    package: "p2-es",
+    dimensions: [2],
+    tasks: BOTH,
+    rival: true,
+    how: "`SAPBroadphase.getCollisionPairs`, best axis, boxes written to its bodies",
+    load: () => import("./p2-es.js"),
+  },
+  {
+    name: "planck",
+    package: "planck",
+    dimensions: [2],
+    tasks: BOTH,
+    rival: true,
+    how: "`BroadPhase`: proxies created and its tree queried, or moved and `updatePairs`",
+    load: () => import("./planck.js"),
+  },
+  {
+    name: "rapier 2D",
+    package: "@dimforge/rapier2d-compat",
+    dimensions: [2],
+    tasks: BOTH,
+    rival: true,
+    how: "a world of sensors, `step`, collision events",
+    load: () => import("./rapier2d.js"),
+  },
+  {
+    name: "rapier 2D, SIMD",
+    package: "@dimforge/rapier2d-simd-compat",
+    dimensions: [2],
+    tasks: BOTH,
+    rival: true,
+    how: "as rapier 2D",
+    load: () => import("./rapier2d-simd.js"),
+  },
+  {
+    name: "rapier 3D",
+    package: "@dimforge/rapier3d-compat",
+    dimensions: [3],
+    tasks: BOTH,
+    rival: true,
+    how: "a world of sensors, `step`, collision events",
+    load: () => import("./rapier3d.js"),
+  },
+  {
+    name: "rapier 3D, SIMD",
+    package: "@dimforge/rapier3d-simd-compat",
+    dimensions: [3],
+    tasks: BOTH,
+    rival: true,
+    how: "as rapier 3D",
+    load: () => import("./rapier3d-simd.js"),
+  },
+  {
+    name: "jolt-physics",
+    package: "jolt-physics",
+    dimensions: [3],
+    tasks: BOTH,
+    rival: true,
+    how: "bodies added in bulk or moved, `BroadPhaseQuery.CollideAABox` for each",
+    load: () => import("./jolt-physics.js"),
+  },
+];

@@ -1,0 +1,114 @@
+//! The library compiled for this machine, measured as `bench/js/src/worker.js` measures the
+//! JavaScript package, and spoken to in the same way: a request a line, an answer a line.
+//!
+//!     native SCENE DIMENSIONS BOXES [world]
+
+use std::hint::black_box;
+use std::io::BufRead;
+use std::time::{Duration, Instant};
+
+use sweep_and_prune::{Aabb, BroadPhase, Error, PairFinder};
+use sweep_and_prune_js_bench::Boxes;
+
+/// Frames that are checked, as in JavaScript.
+const FRAMES_CHECKED: usize = 4;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [scene, dimensions, boxes, rest @ ..] = arguments.as_slice() else {
+        return Err("native SCENE DIMENSIONS BOXES [world]".into());
+    };
+    let (n, is_world) = (boxes.parse()?, rest.first().is_some_and(|word| word == "world"));
+    match dimensions.as_str() {
+        "2" => serve::<2>(scene, n, is_world),
+        "3" => serve::<3>(scene, n, is_world),
+        _ => Err("two or three dimensions".into()),
+    }
+}
+
+fn serve<const D: usize>(
+    scene: &str,
+    n: usize,
+    is_world: bool,
+) -> Result<(), Box<dyn std::error::Error>> {
+    let mut boxes = Boxes::<D>::new(scene, n).ok_or("there is no such scene")?;
+    let mut call = if is_world { world(boxes.turn(0))? } else { finder() };
+    println!(r#"{{"ready":true}}"#);
+    let mut turn = 0;
+    for line in std::io::stdin().lock().lines() {
+        let line = line?;
+        match line.split_once(' ').unwrap_or((&line, "")) {
+            ("check", _) => {
+                let frames = if matches!(boxes, Boxes::InMotion(_)) { FRAMES_CHECKED } else { 1 };
+                let mut longest = Duration::ZERO;
+                for _ in 0..frames {
+                    boxes.advance();
+                    let start = Instant::now();
+                    call(boxes.turn(0))?;
+                    longest = longest.max(start.elapsed());
+                }
+                println!(r#"{{"ns":{}}}"#, longest.as_nanos());
+            }
+            ("time", numbers) => {
+                let (repeats, batch) = numbers.split_once(' ').ok_or("time REPEATS BATCH")?;
+                let (repeats, batch): (usize, u32) = (repeats.parse()?, batch.parse()?);
+                let mut times = Vec::new();
+                for _ in 0..repeats {
+                    let mut sum = Duration::ZERO;
+                    for _ in 0..batch {
+                        turn += 1;
+                        boxes.advance();
+                        let now = black_box(boxes.turn(turn));
+                        let (waited, start) = (Waited::now(batch), Instant::now());
+                        call(now)?;
+                        sum += start.elapsed().saturating_sub(waited.since());
+                    }
+                    times.push((sum / batch).as_nanos());
+                }
+                println!(r#"{{"ns":{times:?}}}"#);
+            }
+            _ => return Err("check, or time REPEATS BATCH".into()),
+        }
+    }
+    Ok(())
+}
+
+/// What is measured: a call with boxes.
+type Call<const D: usize> = Box<dyn FnMut(&[Aabb<D>]) -> Result<(), Error>>;
+
+fn finder<const D: usize>() -> Call<D> {
+    let mut finder = PairFinder::new();
+    Box::new(move |boxes| finder.find(boxes).map(|pairs| _ = black_box(pairs)))
+}
+
+fn world<const D: usize>(first: &[Aabb<D>]) -> Result<Call<D>, Error> {
+    let mut world = BroadPhase::new();
+    let ids = first.iter().map(|&aabb| world.insert(aabb)).collect::<Result<Vec<_>, _>>()?;
+    world.update();
+    Ok(Box::new(move |boxes| {
+        world.set_many(&ids, boxes)?;
+        black_box(world.update());
+        Ok(())
+    }))
+}
+
+/// How long the thread has waited for a processor, because other programs had them all; nothing
+/// where the system does not tell. Of calls so short that they are timed in batches it is not
+/// asked: they are seldom interrupted, and to ask would take as long.
+struct Waited(Option<Duration>);
+
+impl Waited {
+    fn now(batch: u32) -> Self {
+        Self((batch == 1).then(Self::total))
+    }
+
+    fn since(&self) -> Duration {
+        self.0.map_or(Duration::ZERO, |before| Self::total().saturating_sub(before))
+    }
+
+    fn total() -> Duration {
+        let text = std::fs::read_to_string("/proc/self/schedstat").unwrap_or_default();
+        let waited = text.split(' ').nth(1).and_then(|number| number.parse().ok());
+        Duration::from_nanos(waited.unwrap_or(0))
+    }
+}

@@ -1,0 +1,237 @@
+// Measures one case: a scene, a number of dimensions, a number of boxes. Every contender runs in a
+// process of its own, its pairs are checked before it is timed, and every round times all of them
+// in turn, so that what slows the machine slows them all; ratios are taken within a round.
+import { fileURLToPath } from "node:url";
+import { OURS, WORLD } from "../contenders/index.js";
+import { load, revision } from "./machine.js";
+import { median } from "./record.js";
+import { contender as bruteForce, REFERENCE_LIMIT } from "./reference.js";
+import { NoAnswer, Remote } from "./remote.js";
+
+const WORKER = fileURLToPath(new URL("worker.js", import.meta.url));
+
+/** A contender's turn in a round takes about so long, in milliseconds. */
+const TURN = 20;
+/** Shorter calls are timed together until they take so long. */
+const BATCH = 1;
+/** No contender takes part in more rounds once it has taken so long, but for the first three. */
+const PATIENCE = 4000;
+
+/** The names of ours compiled for this machine. */
+export const NATIVE = "native";
+export const NATIVE_WORLD = "native, BroadPhase";
+
+/**
+ * @typedef {import("./record.js").Case} Case
+ * @typedef {import("./record.js").Entry} Entry
+ * @typedef {{ name: string, rival: boolean, package: string }} Who
+ * @typedef {{ who: Who, remote: Remote, fingerprint: string, pairs: number, peak_bytes: number | null,
+ *   estimate: number, rounds: number[], spent: number }} Running
+ */
+
+export class Measurement {
+  /** How long contenders took at how many boxes of a scene: what more boxes will take at least. */
+  #slow = new Map();
+
+  /**
+   * @param {{ rounds: number, limit: number, wasm: string, native: string | undefined }} options
+   *   `limit` in milliseconds
+   * @param {(done: number) => void} progress
+   */
+  constructor(options, progress) {
+    this.options = options;
+    this.progress = progress;
+  }
+
+  /**
+   * @param {import("./scenes.js").Listed} scene
+   * @param {number} dimensions
+   * @param {number} boxes
+   * @param {readonly import("../contenders/index.js").Contender[]} contenders
+   * @returns {Promise<Case | string>} why there is nothing, if there is nothing
+   */
+  async measure(scene, dimensions, boxes, contenders) {
+    const setting = [scene.name, String(dimensions), String(boxes)];
+    /** @type {Running[]} */
+    let running = [];
+    /** @type {Entry[]} */
+    const results = [];
+    const drop = (/** @type {Who} */ { name, rival }, /** @type {string} */ why) =>
+      results.push({ name, rival, outcome: { Untimed: { why } } });
+
+    try {
+      const right = boxes <= REFERENCE_LIMIT ? await this.#reference(setting) : undefined;
+      // Two at a time: nothing is timed yet but who is too slow.
+      for (let at = 0; at < contenders.length; at += 2) {
+        const two = contenders.slice(at, at + 2);
+        const checked = await Promise.all(two.map((who) => this.#check(who, setting)));
+        for (const [i, one] of checked.entries()) {
+          if (typeof one === "string") drop(/** @type {Who} */ (two[i]), one);
+          else running.push(one);
+        }
+        this.progress((0.5 * (at + 2)) / (contenders.length + 2));
+      }
+      const reference = right ?? agreement(running);
+      if (!reference) return "no two contenders agree";
+      for (const one of running) {
+        if (one.fingerprint !== reference.fingerprint) {
+          drop(one.who, `other pairs, ${one.pairs.toLocaleString("en")} of them`);
+          one.remote.stop();
+        }
+      }
+      running = running.filter((one) => one.fingerprint === reference.fingerprint);
+      running.push(...(await this.#natives(scene, setting)));
+      await this.#rounds(running, drop);
+
+      const base = (name) => running.find((one) => one.who.name === name)?.rounds;
+      const ours = (scene.task === "follow" ? base(WORLD) : undefined) ?? base(OURS) ?? [];
+      const timed = running.filter((one) => one.rounds.length > 0);
+      results.unshift(
+        ...timed.map((one) => ({ name: one.who.name, rival: one.who.rival, outcome: { Timed: times(one, ours) } })),
+      );
+      return {
+        scene: scene.name,
+        dimensions,
+        boxes,
+        pairs: reference.pairs,
+        reference: reference.how,
+        revision: revision(),
+        load: load(),
+        results,
+      };
+    } finally {
+      for (const one of running) one.remote.stop();
+    }
+  }
+
+  #start(/** @type {string} */ name, /** @type {string[]} */ setting) {
+    return new Remote(process.execPath, [WORKER, name, ...setting], { SCENES_WASM: this.options.wasm });
+  }
+
+  async #reference(/** @type {string[]} */ setting) {
+    const remote = this.#start(bruteForce.name, setting);
+    try {
+      await remote.ask("", 60_000);
+      const { fingerprint, pairs } = await remote.ask("check", 60_000);
+      return { fingerprint, pairs, how: bruteForce.name };
+    } finally {
+      remote.stop();
+    }
+  }
+
+  /**
+   * A contender that has found the pairs once and is warm, or why it is not.
+   *
+   * @param {Who} who
+   * @param {string[]} setting
+   * @returns {Promise<Running | string>}
+   */
+  async #check(who, setting) {
+    const { limit } = this.options;
+    const [scene, dimensions, boxes] = setting;
+    const key = `${scene} ${dimensions} ${who.name}`;
+    const known = this.#slow.get(key);
+    // Nothing here takes less than proportionally longer for more boxes.
+    if (known && (known.took * Number(boxes)) / known.boxes > limit) {
+      return `over ${limit / 1000} s, as its time for ${known.boxes.toLocaleString("en")} boxes shows`;
+    }
+    const remote = this.#start(who.name, setting);
+    try {
+      await remote.ask("", 10_000 + 4 * limit);
+      const { fingerprint, pairs, peak_bytes } = await remote.ask("check", 4 * limit);
+      await remote.ask("warm-up", 10_000 + limit);
+      const [estimate] = (await remote.ask("time 1 1", 10_000 + limit)).ms;
+      this.#slow.set(key, { boxes: Number(boxes), took: estimate });
+      if (estimate > limit) throw new NoAnswer(`over ${limit / 1000} s`);
+      return { who, remote, fingerprint, pairs, peak_bytes, estimate, rounds: [], spent: 0 };
+    } catch (error) {
+      remote.stop();
+      if (!(error instanceof NoAnswer)) throw error;
+      if (error.message.startsWith("over")) this.#slow.set(key, { boxes: Number(boxes), took: Infinity });
+      return error.message.startsWith("over") ? `over ${limit / 1000} s` : error.message;
+    }
+  }
+
+  /**
+   * The library compiled for this machine, if it was.
+   *
+   * @param {import("./scenes.js").Listed} scene
+   * @param {string[]} setting
+   * @returns {Promise<Running[]>}
+   */
+  async #natives(scene, setting) {
+    const { native } = this.options;
+    if (!native) return [];
+    const names = scene.task === "follow" ? [NATIVE, NATIVE_WORLD] : [NATIVE];
+    return Promise.all(
+      names.map(async (name) => {
+        const remote = new Remote(native, name === NATIVE_WORLD ? [...setting, "world"] : setting);
+        await remote.ask("", 20_000);
+        await remote.ask("check", 20_000);
+        const { ns } = await remote.ask("time 3 1", 20_000);
+        const who = { name, rival: false, package: "" };
+        return { who, remote, fingerprint: "", pairs: 0, peak_bytes: null, estimate: ns.at(-1) / 1e6, rounds: [], spent: 0 };
+      }),
+    );
+  }
+
+  /**
+   * @param {Running[]} running
+   * @param {(who: Who, why: string) => void} drop
+   */
+  async #rounds(running, drop) {
+    const { rounds, limit } = this.options;
+    const lost = new Set();
+    for (let round = 0; round < rounds; round++) {
+      for (let at = 0; at < running.length; at++) {
+        // Each round begins with another.
+        const one = /** @type {Running} */ (running[(at + round) % running.length]);
+        if (lost.has(one) || (round >= 3 && one.spent > PATIENCE)) continue;
+        const batch = Math.min(Math.max(1, Math.ceil(BATCH / one.estimate)), 100);
+        const repeats = Math.min(Math.max(1, Math.round(TURN / (batch * one.estimate))), 100);
+        try {
+          // The limit is for what takes too long once; here it only guards against hanging.
+          const { ms, ns } = await one.remote.ask(`time ${repeats} ${batch}`, 10 * limit + 10_000);
+          const all = ms ?? ns.map((/** @type {number} */ time) => time / 1e6);
+          one.spent += all.reduce((/** @type {number} */ sum, /** @type {number} */ time) => sum + time, 0) * batch;
+          one.rounds[round] = median(all) * 1e6;
+        } catch (error) {
+          if (!(error instanceof NoAnswer)) throw error;
+          lost.add(one);
+          one.rounds.length = 0;
+          drop(one.who, error.message);
+        }
+      }
+      this.progress(0.5 + (0.5 * (round + 1)) / rounds);
+    }
+  }
+}
+
+/**
+ * The pairs that ours and a rival agree on, or two rivals.
+ *
+ * @param {Running[]} running
+ */
+function agreement(running) {
+  for (const one of running) {
+    const other = running.find((it) => it !== one && it.who.package !== one.who.package && it.fingerprint === one.fingerprint);
+    if (other) return { fingerprint: one.fingerprint, pairs: one.pairs, how: `${one.who.name} and ${other.who.name} agree` };
+  }
+  return undefined;
+}
+
+/**
+ * @param {Running} one
+ * @param {number[]} ours
+ * @returns {import("./record.js").Times}
+ */
+function times({ rounds, peak_bytes }, ours) {
+  const ratios = rounds.flatMap((time, round) => (ours[round] === undefined ? [] : [time / ours[round]]));
+  return {
+    median_ns: median(rounds),
+    min_ns: Math.min(...rounds),
+    rounds_ns: rounds,
+    ratio: ratios.length > 0 ? median(ratios) : null,
+    peak_bytes,
+  };
+}

@@ -1,0 +1,160 @@
+// Makes RESULTS.md from the newest results that were kept.
+import { writeFileSync } from "node:fs";
+import { OURS, PLAIN, WORLD } from "../contenders/index.js";
+import { NATIVE, NATIVE_WORLD } from "./measure.js";
+import { all, timesOf } from "./record.js";
+
+/**
+ * @typedef {import("./record.js").Case} Case
+ * @typedef {import("./record.js").Kept} Kept
+ */
+
+export function writeReport() {
+  const [newest] = all();
+  if (!newest) return;
+  writeFileSync(new URL("../RESULTS.md", import.meta.url), report(newest));
+}
+
+/** @returns {string} */
+function report(/** @type {Kept} */ kept) {
+  const { machine } = kept;
+  const loads = [...kept.cases, ...kept.worlds].map((one) => one.load ?? 0);
+  return `# The JavaScript package beside its peers
+
+<!-- Made by bench/js/run from bench/js/results: change those, not this. -->
+
+${kept.date}, ${machine.cpu}, ${machine.cores} cores, ${kept.node}. ${loadText(loads)}
+Milliseconds from a \`Float32Array\` of boxes to stored pairs, everything included: the median of the
+rounds. A ratio is the median of the rounds' ratios: how many times as long as ours. Everybody's
+pairs were checked first.
+
+## Finding all pairs
+
+${table(kept.cases, [OURS])}
+
+## Following motion
+
+A frame: from the moved boxes to their pairs, or to what began and ended. Ratios are to the faster of
+ours.
+
+${table(kept.worlds, [OURS, WORLD])}
+
+## WebAssembly against native
+
+The same calls of the same library on the same boxes, compiled for this machine (without threads).
+
+${nativeTable(kept)}
+
+## Who is measured, and how
+
+| | version | what is called |
+|---|---|---|
+${Object.entries(kept.how)
+  .map(([name, how]) => `| ${name} | ${kept.versions[name] ?? ""} | ${how} |`)
+  .join("\n")}
+`;
+}
+
+function loadText(/** @type {number[]} */ loads) {
+  const [least, greatest] = [Math.min(...loads), Math.max(...loads)];
+  const range = `load average ${least.toFixed(1)} to ${greatest.toFixed(1)}`;
+  return greatest > 2.5
+    ? `**Provisional: other programs were at work (${range}); time spent waiting for a processor is not counted.**`
+    : `The machine was quiet but for this (${range}).`;
+}
+
+const order = ["uniform", "clustered", "mixed", "slab", "tower", "box-pruning", "drift", "fast", "mostly-still", "teleport"];
+const place = (/** @type {Case} */ one) => (order.indexOf(one.scene) + 1 || order.length + 1) * 1e9;
+
+const byScene = (/** @type {Case} */ a, /** @type {Case} */ b) =>
+  place(a) - place(b) || a.scene.localeCompare(b.scene) || a.dimensions - b.dimensions || a.boxes - b.boxes;
+
+/** The fastest of ours: its times. */
+function best(/** @type {Case} */ one, /** @type {readonly string[]} */ ours) {
+  const times = ours.flatMap((name) => timesOf(one, name) ?? []);
+  return times.sort((a, b) => a.median_ns - b.median_ns)[0];
+}
+
+/**
+ * Many a round's time is another's multiple: the median of the ratios, where both took part.
+ *
+ * @param {import("./record.js").Times} one
+ * @param {import("./record.js").Times} ours
+ */
+export function ratio(one, ours) {
+  const ratios = one.rounds_ns.flatMap((time, at) => (ours.rounds_ns[at] ? [time / ours.rounds_ns[at]] : []));
+  ratios.sort((a, b) => a - b);
+  return ratios[ratios.length >> 1] ?? NaN;
+}
+
+/**
+ * The peers that were timed, the fastest first, without the plain sweep.
+ *
+ * @param {Case} one
+ */
+export function peersOf(one) {
+  const rivals = one.results.filter((entry) => entry.rival && entry.name !== PLAIN && "Timed" in entry.outcome);
+  const found = rivals.map(({ name }) => ({ name, times: /** @type {import("./record.js").Times} */ (timesOf(one, name)) }));
+  return found.sort((a, b) => a.times.median_ns - b.times.median_ns);
+}
+
+/** What the package promises: at least so many times faster than the fastest peer. */
+export const goal = (/** @type {number} */ boxes) => (boxes >= 10_000 ? 10 : 3);
+/** And than the plain sweep. */
+export const PLAIN_GOAL = 1.5;
+
+function table(/** @type {Case[]} */ cases, /** @type {readonly string[]} */ ours) {
+  const head = ["scene", "boxes", "pairs", ...ours, "fastest peer", "ratio", "next", "plain sweep", "ratio"];
+  const rows = [...cases].sort(byScene).flatMap((one) => {
+    const mine = best(one, ours);
+    if (!mine) return [];
+    const [first, second] = peersOf(one);
+    const plain = timesOf(one, PLAIN);
+    const mark = (/** @type {number} */ is, /** @type {number} */ wanted) => `${figure(is)}${is < wanted ? " (goal " + wanted + ")" : ""}`;
+    return [
+      [
+        `${one.scene} ${one.dimensions}D`,
+        one.boxes.toLocaleString("en"),
+        Math.round(one.pairs).toLocaleString("en"),
+        ...ours.map((name) => ms(timesOf(one, name))),
+        first ? `${first.name} ${ms(first.times)}` : "",
+        first ? mark(ratio(first.times, mine), goal(one.boxes)) : "",
+        second ? `${second.name} ${ms(second.times)}` : "",
+        ms(plain),
+        plain ? mark(ratio(plain, mine), PLAIN_GOAL) : untimed(one, PLAIN),
+      ],
+    ];
+  });
+  return markdown(head, rows);
+}
+
+function nativeTable(/** @type {Kept} */ kept) {
+  const rows = [...kept.cases, ...kept.worlds].sort(byScene).flatMap((one) =>
+    [
+      [OURS, NATIVE],
+      [WORLD, NATIVE_WORLD],
+    ].flatMap(([name = "", native = ""]) => {
+      const [wasm, compiled] = [timesOf(one, name), timesOf(one, native)];
+      if (!wasm || !compiled) return [];
+      const what = name === WORLD ? "`BroadPhase`" : "`PairFinder`";
+      return [[`${one.scene} ${one.dimensions}D`, one.boxes.toLocaleString("en"), what, ms(wasm), ms(compiled), figure(ratio(wasm, compiled))]];
+    }),
+  );
+  return markdown(["scene", "boxes", "", "WebAssembly", "native", "ratio"], rows);
+}
+
+function untimed(/** @type {Case} */ one, /** @type {string} */ name) {
+  const outcome = one.results.find((entry) => entry.name === name)?.outcome;
+  return outcome && "Untimed" in outcome ? outcome.Untimed.why : "";
+}
+
+const figure = (/** @type {number} */ number) => (number >= 100 ? number.toFixed(0) : number.toPrecision(number >= 10 ? 3 : 2));
+
+function ms(/** @type {import("./record.js").Times | undefined} */ times) {
+  return times ? figure(times.median_ns / 1e6) : "";
+}
+
+function markdown(/** @type {readonly string[]} */ head, /** @type {readonly (readonly string[])[]} */ rows) {
+  const line = (/** @type {readonly string[]} */ cells) => `| ${cells.join(" | ")} |`;
+  return [line(head), line(head.map((_, at) => (at === 0 ? "---" : "---:"))), ...rows.map(line)].join("\n");
+}

@@ -1,0 +1,85 @@
+// Keeps the benchmark from rotting: every light peer is checked and timed on a few boxes. The heavy
+// peers (the engines in WebAssembly) take part where they are installed and asked for.
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { contenders } from "../contenders/index.js";
+import { Candidates } from "../contenders/candidates.js";
+import { create as plainSweep } from "../contenders/plain-sweep.js";
+import { create as bruteForce } from "../contenders/brute-force.js";
+import { Fingerprint } from "../src/fingerprint.js";
+
+const folder = mkdtempSync(join(tmpdir(), "bench-js-"));
+after(() => rmSync(folder, { recursive: true }));
+
+const heavy = /rapier|jolt/;
+const light = contenders.filter((one) => !heavy.test(one.name));
+
+test("every light contender finds the right pairs and is timed, at rest and in motion", () => {
+  const output = join(folder, "results.json");
+  const main = fileURLToPath(new URL("../src/main.js", import.meta.url));
+  const peers = light.map(({ name }) => name).join();
+  const { status, stdout, stderr } = spawnSync(
+    process.execPath,
+    [main, "--scenes", "mixed,drift", "--sizes", "150", "--rounds", "1", "--no-native", "--peers", peers, "--output", output],
+    { encoding: "utf8" },
+  );
+  assert.equal(status, 0, stderr);
+  const { cases, worlds, versions } = JSON.parse(readFileSync(output, "utf8"));
+  assert.deepEqual([cases.length, worlds.length], [2, 2], stdout);
+  for (const { scene, dimensions, boxes, pairs, reference, results } of [...cases, ...worlds]) {
+    assert.equal(boxes, 150);
+    assert.equal(reference, "brute force");
+    assert.ok(pairs > 20, `${pairs} pairs`);
+    const task = scene === "drift" ? "follow" : "find";
+    const expected = light.filter((one) => one.dimensions.includes(dimensions) && one.tasks.includes(task));
+    assert.deepEqual(
+      results.flatMap(({ name, outcome }) => ("Timed" in outcome && outcome.Timed.ratio > 0 ? [name] : [])).sort(),
+      expected.map(({ name }) => name).sort(),
+      `${scene} ${dimensions}D: ${JSON.stringify(results)}`,
+    );
+  }
+  for (const { package: name } of light) if (name) assert.match(versions[name === "sweep-and-prune" ? "sweep-and-prune" : name], /^\d/);
+});
+
+test("a fingerprint tells sets of pairs apart, however they are ordered", () => {
+  const of = (...pairs) => String(new Fingerprint().add(pairs));
+  assert.equal(of(1, 2, 3, 4), of(4, 3, 1, 2));
+  for (const other of [of(1, 2), of(1, 3, 2, 4), of(1, 2, 1, 2), of()]) assert.notEqual(of(1, 2, 3, 4), other);
+  assert.notEqual(of(1, 2, 1, 2, 3, 4), of(1, 2, 3, 4, 3, 4));
+});
+
+test("the plain sweep holds for ties, either zero and infinite edges", async () => {
+  for (const dimensions of [2, 3]) {
+    const [sweep, brute] = [await plainSweep({ dimensions }), await bruteForce({ dimensions })];
+    const edges = [-Infinity, -2, -1, -0, 0, 2 ** -149, 1, 2, 3, Infinity];
+    let state = 1;
+    const random = (n) => (state = Math.imul(state, 1103515245) + 12345) >>> 16 && (state >>> 16) % n;
+    for (let round = 0; round < 50; round++) {
+      const rows = new Float32Array(2 * dimensions * 40);
+      for (let at = 0; at < rows.length; at += 2 * dimensions) {
+        for (let axis = 0; axis < dimensions; axis++) {
+          const [a, b] = [random(edges.length), random(edges.length)];
+          rows[at + axis] = edges[Math.min(a, b)];
+          rows[at + dimensions + axis] = edges[Math.max(a, b)];
+        }
+      }
+      assert.equal(String(new Fingerprint().add(sweep.find(rows))), String(new Fingerprint().add(brute.find(rows))));
+    }
+  }
+});
+
+test("candidates come, go and are tested once more", () => {
+  const candidates = new Candidates(2, 3);
+  const rows = new Float32Array([0, 0, 2, 2, 1, 1, 3, 3, 2.5, 2.5, 4, 4]);
+  for (const [a, b] of [[0, 1], [1, 0], [0, 2], [2, 1]]) candidates.add(a, b);
+  assert.deepEqual([...candidates.exact(rows)], [0, 1, 2, 1]);
+  candidates.remove(1, 0);
+  assert.deepEqual([...candidates.exact(rows)], [2, 1]);
+  candidates.keep((a, b) => a + b !== 3);
+  assert.deepEqual([...candidates.exact(rows)], []);
+});
