@@ -79,15 +79,22 @@ fn is_interval<T: Scalar>(min: T, max: T) -> bool {
 /// [`Error::TooManyBoxes`], or [`Error::InvalidBox`] with the least index at fault and its first
 /// bad axis. O(n) time.
 pub fn validate<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>]) -> Result<(), Error> {
-    if boxes.len() > Error::BOX_LIMIT {
-        return Err(Error::TooManyBoxes { count: boxes.len() });
-    }
+    check_count(boxes.len())?;
     for (index, aabb) in boxes.iter().enumerate() {
         if let Some(axis) = aabb.invalid_axis() {
             return Err(Error::InvalidBox { index, axis });
         }
     }
     Ok(())
+}
+
+/// Checks that so many boxes can be told apart by a `u32`.
+///
+/// # Errors
+/// [`Error::TooManyBoxes`].
+pub(crate) fn check_count(count: usize) -> Result<(), Error> {
+    // Not `count > BOX_LIMIT`, which is absurd where addresses have 32 bits.
+    u32::try_from(count).map(|_| ()).map_err(|_| Error::TooManyBoxes { count })
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use super::sorted_pairwise::sorted_pairwise;
 use super::sorts::Sort;
 use super::swap_sweep::SwapSweep;
 use super::touching::Touching;
+use crate::aabb::check_count;
 use crate::{Aabb, Error, Scalar};
 
 /// Which algorithm.
@@ -254,9 +255,7 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
         present: impl Fn(u32) -> bool,
         observer: &mut O,
     ) -> Result<Step<'_>, Error> {
-        if boxes.len() > Error::BOX_LIMIT {
-            return Err(Error::TooManyBoxes { count: boxes.len() });
-        }
+        check_count(boxes.len())?;
         self.next_ids.clear();
         self.next_ids.extend((0..boxes.len() as u32).filter(|&id| present(id)));
         for &id in &self.next_ids {

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use core::cmp::Reverse;
 
 use crate::Error;
+use crate::aabb::check_count;
 
 /// The name of a body in a [`BroadPhase`](super::BroadPhase): a slot and a generation.
 ///
@@ -138,7 +139,7 @@ impl Slots {
     pub fn check_room(&self, count: usize) -> Result<(), Error> {
         let more = count.saturating_sub(self.free.len());
         let total = self.len().saturating_add(more);
-        if total > Error::BOX_LIMIT { Err(Error::TooManyBoxes { count: total }) } else { Ok(()) }
+        check_count(total)
     }
 
     /// The seat for a new body; the last one if no slot was free.

@@ -84,6 +84,8 @@ impl<const D: usize, T: Scalar> Source<D, T> for &[Record<D, T>] {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cells<T> {
     axis: usize,
+    /// What coordinates are multiplied by first: see [`Number::unit`](super::numbers::Number::unit).
+    unit: T,
     origin: T,
     scale: T,
     last: T,
@@ -93,14 +95,15 @@ pub(super) struct Cells<T> {
 impl<T: Scalar> Cells<T> {
     /// One cell, all of the axis.
     pub fn one(axis: usize) -> Self {
-        Cells { axis, origin: T::ZERO, scale: T::ZERO, last: T::ZERO, count: 1 }
+        Cells { axis, unit: T::ZERO, origin: T::ZERO, scale: T::ZERO, last: T::ZERO, count: 1 }
     }
 
-    /// `count` cells, less than 2^22, over `low ..= high`.
-    pub fn new(axis: usize, low: f64, high: f64, count: u32) -> Self {
+    /// `count` cells, less than 2^22, over `low ..= high`, which are coordinates times the unit.
+    pub fn new(axis: usize, unit: T, low: f64, high: f64, count: u32) -> Self {
         let scale = f64::from(count) / (high - low);
         Cells {
             axis,
+            unit,
             // `cell` rounds to the nearest, so the first begins half a cell below its middle.
             origin: T::from_f64(low + 0.5 / scale),
             scale: T::from_f64(scale),
@@ -115,7 +118,7 @@ impl<T: Scalar> Cells<T> {
         if self.count == 1 {
             return (0, 0);
         }
-        let cell = |at: T| at.cell(self.origin, self.scale, self.last);
+        let cell = |at: T| (at * self.unit).cell(self.origin, self.scale, self.last);
         (cell(aabb.min[self.axis]), cell(aabb.max[self.axis]))
     }
 }
@@ -148,7 +151,7 @@ impl<T: Scalar> Grid<T> {
     /// The axes that are cut, and how wide their cells are.
     pub fn widths(&self) -> impl Iterator<Item = (usize, f64)> {
         let cut = self.cells.into_iter().filter(|cells| cells.count > 1);
-        cut.map(|cells| (cells.axis, 1.0 / cells.scale.to_f64()))
+        cut.map(|cells| (cells.axis, 1.0 / cells.scale.to_f64() / cells.unit.to_f64()))
     }
 
     /// How many bins there are.

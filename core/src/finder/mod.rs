@@ -84,11 +84,12 @@ mod watch;
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
+use crate::aabb::check_count;
 use crate::{Aabb, Error, Scalar, validate};
 use kernel::Arrange;
 pub use kernel::Kernel;
 pub use numbers::Number;
-use search::{Search, Stop, Task, is_direct};
+use search::{Search, Stop, Task, is_direct, is_tiny, very_few};
 use sink::{Buffer, Count, Sink, Store, Stream};
 use watch::Watch;
 
@@ -302,6 +303,7 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
         self.for_each_of(&[a, b], each)
     }
 
+    #[inline]
     fn find_of(
         &mut self,
         sets: &[&[Aabb<D, T>]],
@@ -342,22 +344,36 @@ impl<const D: usize, T: Scalar> Default for PairFinder<D, T> {
     }
 }
 
-/// Checks the sets as far as the search does not, and searches. False if it was ended early.
+/// Searches sets that may be invalid. False if it was ended early.
+#[inline]
 fn run<const D: usize, T: Scalar, O: Sink>(
     search: &mut Search<D, T>,
     sets: &[&[Aabb<D, T>]],
     watch: Option<&Watch<'_>>,
     sink: &mut O,
 ) -> Result<bool, Error> {
-    if let Some(set) = sets.iter().find(|set| set.len() > Error::BOX_LIMIT) {
-        return Err(Error::TooManyBoxes { count: set.len() });
+    let arrange = if sets.len() == 1 { Arrange::Ascending } else { Arrange::BySet };
+    // A call for a handful of boxes takes little longer than their tests.
+    if is_tiny(sets) && sets.iter().all(|set| set.iter().all(Aabb::is_valid)) {
+        return Ok(very_few(sets, arrange, sink).is_ok());
     }
+    run_many(search, sets, Task::new(arrange, watch), sink)
+}
+
+/// Checks the sets as far as the search does not, and searches.
+#[inline(never)]
+fn run_many<const D: usize, T: Scalar, O: Sink>(
+    search: &mut Search<D, T>,
+    sets: &[&[Aabb<D, T>]],
+    task: Task<'_>,
+    sink: &mut O,
+) -> Result<bool, Error> {
+    sets.iter().try_for_each(|set| check_count(set.len()))?;
     // Others are validated on the way.
     if is_direct(sets) {
         check(sets)?;
     }
-    let arrange = if sets.len() == 1 { Arrange::Ascending } else { Arrange::BySet };
-    match search.run(sets, Task::new(arrange, watch), sink) {
+    match search.run(sets, task, sink) {
         Ok(()) => Ok(true),
         Err(Stop::Enough) => Ok(false),
         // Only now is it worth a look which box it is.

@@ -15,6 +15,10 @@ pub trait Number: Coordinate {
     /// enough from the greatest number for a few additions.
     const LIMIT: f64;
 
+    /// A power of two: coordinates of at most this magnitude, multiplied by it, can be subtracted
+    /// and have reciprocals without overflow. 1 for all but the very great and the very small.
+    fn unit(magnitude: f64) -> Self;
+
     /// See [`Key`](Self::Key).
     fn key(self, place: u32) -> Self::Key;
 
@@ -30,10 +34,19 @@ pub trait Number: Coordinate {
 }
 
 macro_rules! number {
-    ($scalar:ident, $bits:ident, $signed:ident, $key:ident, $limit:literal) => {
+    ($scalar:ident, $bits:ident, $signed:ident, $key:ident, $limit:literal, $tiny:literal, $up:literal) => {
         impl Number for $scalar {
             type Key = $key;
             const LIMIT: f64 = $limit;
+
+            fn unit(magnitude: f64) -> $scalar {
+                const UP: $scalar = (1u128 << $up) as $scalar;
+                match magnitude {
+                    ..$tiny => UP,
+                    ..=$limit => 1.0,
+                    _ => 1.0 / UP,
+                }
+            }
 
             #[inline(always)]
             fn key(self, place: u32) -> $key {
@@ -63,8 +76,8 @@ macro_rules! number {
     };
 }
 
-number!(f32, u32, i32, u64, 1e37);
-number!(f64, u64, i64, u128, 1e300);
+number!(f32, u32, i32, u64, 1e37, 1e-20, 64);
+number!(f64, u64, i64, u128, 1e300, 1e-280, 120);
 
 #[cfg(test)]
 mod tests {

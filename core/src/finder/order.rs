@@ -97,16 +97,16 @@ impl<T: Scalar> Sorter<T> {
             least = least.min(*key);
             greatest = greatest.max(*key);
         }
-        let limited =
-            |key| edge(source, T::place(key) as usize, axis).to_f64().clamp(-T::LIMIT, T::LIMIT);
-        let (low, high) = (limited(least), limited(greatest));
+        let ends = [least, greatest].map(|key| edge(source, T::place(key) as usize, axis).to_f64());
+        let unit = T::unit(ends[0].abs().max(ends[1].abs()));
+        let [low, high] = ends.map(|end| (end * unit.to_f64()).clamp(-T::LIMIT, T::LIMIT));
         let count = len.next_power_of_two().min(1 << 16);
         let last = T::from_f64((count - 1) as f64);
         let (origin, scale) = (T::from_f64(low), T::from_f64((count - 1) as f64 / (high - low)));
 
         grow(&mut self.intervals, len);
         for (interval, left) in self.intervals.iter_mut().zip(&self.lefts[..len]) {
-            *interval = left.cell(origin, scale, last);
+            *interval = (*left * unit).cell(origin, scale, last);
         }
         self.ends.clear();
         self.ends.resize(count, 0);

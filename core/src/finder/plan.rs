@@ -6,7 +6,7 @@
 //! are the same for every kernel, since the order of the pairs follows from the plan.
 
 use super::bins::{Cells, Grid, Source};
-use crate::Scalar;
+use crate::{Aabb, Scalar};
 
 /// Nanoseconds to place, sort and lay out one record, and to begin its scan.
 const RECORD: f64 = 24.0;
@@ -20,7 +20,7 @@ const SLAB: f64 = 4096.0;
 const MOST: f64 = 65535.0;
 /// Most columns, nearly: with a last step and with slabs still less than 2^29.
 const MOST_COLUMNS: f64 = (1 << 24) as f64;
-/// Cells are halved so often, less one, to see how boxes cluster.
+/// Cells are halved so often, less one, to see how boxes cluster: at most, with a full sample.
 const LEVELS: usize = 11;
 /// A chance that a sample can tell from none.
 const SURE: f64 = 1.0 / 2048.0;
@@ -56,10 +56,12 @@ pub(super) fn plan<const D: usize, T: Scalar, S: Source<D, T>>(
     sets: &[S],
     may_part: bool,
 ) -> Planned<T> {
-    let first = Sample::<D>::take::<T, S>(sets[0]);
+    let magnitude = |set: &S| sampled(*set).map(|i| magnitude(set.aabb(i))).fold(0.0, f64::max);
+    let unit = T::unit(sets.iter().map(magnitude).fold(0.0, f64::max));
+    let first = Sample::<D>::take(sets[0], unit);
     let second;
     let samples: &[&Sample<D>] = if let Some(&source) = sets.get(1) {
-        second = Sample::<D>::take::<T, S>(source);
+        second = Sample::<D>::take(source, unit);
         &[&first, &second]
     } else {
         &[&first]
@@ -69,7 +71,7 @@ pub(super) fn plan<const D: usize, T: Scalar, S: Source<D, T>>(
         [Shape::new(samples[0], &field), Shape::new(samples[samples.len() - 1], &field)];
     let (cut, cost) = field.cut(&shapes[..samples.len()]);
     let boxes: f64 = shapes[..samples.len()].iter().map(|shape| shape.count).sum();
-    let mut best = Planned { plan: Plan::Cut(cut.grid(&field)), cost };
+    let mut best = Planned { plan: Plan::Cut(cut.grid(&field, unit)), cost };
     if may_part && cost > 3.0 * RECORD * boxes {
         for set in 0..samples.len() {
             let whole = shapes[set];
@@ -90,6 +92,7 @@ pub(super) fn plan<const D: usize, T: Scalar, S: Source<D, T>>(
                         with_small + with_large
                     };
                     if cost < 0.8 * best.cost {
+                        let size = size / unit.to_f64();
                         best = Planned { plan: Plan::Part { set, axis, size }, cost };
                     }
                 }
@@ -101,11 +104,29 @@ pub(super) fn plan<const D: usize, T: Scalar, S: Source<D, T>>(
 
 /// Boxes drawn evenly from a set, one at a random place of each stretch. The randomness is the
 /// same on every run.
+fn sampled<const D: usize, T: Scalar, S: Source<D, T>>(source: S) -> impl Iterator<Item = usize> {
+    let count = source.len();
+    let len = (count / 32).clamp(24, SAMPLE).min(count);
+    let mut random = 0x9E37_79B9_7F4A_7C15u64;
+    (0..len).map(move |i| {
+        random = random.wrapping_mul(0x5851_F42D_4C95_7F2D).wrapping_add(1);
+        let (from, to) = (i * count / len, (i + 1) * count / len);
+        from + ((random >> 33) as usize) % (to - from)
+    })
+}
+
+/// The greatest coordinate by its magnitude, infinities left out.
+fn magnitude<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> f64 {
+    let magnitudes = aabb.min.iter().chain(&aabb.max).map(|at| at.to_f64().abs());
+    magnitudes.filter(|at| at.is_finite()).fold(0.0, f64::max)
+}
+
+/// The boxes that were drawn.
 struct Sample<const D: usize> {
     /// Boxes in the set.
     count: f64,
     len: usize,
-    /// Edges by axis, held within the limit of the coordinate type.
+    /// Edges by axis, times the unit, held within the limit of the coordinate type.
     min: [[f64; SAMPLE]; D],
     max: [[f64; SAMPLE]; D],
     /// The lower edges once more, sorted.
@@ -113,27 +134,24 @@ struct Sample<const D: usize> {
 }
 
 impl<const D: usize> Sample<D> {
-    fn take<T: Scalar, S: Source<D, T>>(source: S) -> Self {
-        let count = source.len();
-        let len = (count / 16).clamp(16, SAMPLE).min(count);
+    fn take<T: Scalar, S: Source<D, T>>(source: S, unit: T) -> Self {
         let mut sample = Self {
-            count: count as f64,
-            len,
+            count: source.len() as f64,
+            len: 0,
             min: [[0.0; SAMPLE]; D],
             max: [[0.0; SAMPLE]; D],
             sorted: [[0.0; SAMPLE]; D],
         };
-        let mut random = 0x9E37_79B9_7F4A_7C15u64;
-        for i in 0..len {
-            random = random.wrapping_mul(0x5851_F42D_4C95_7F2D).wrapping_add(1);
-            let (from, to) = (i * count / len, (i + 1) * count / len);
-            let at = from + ((random >> 33) as usize) % (to - from);
-            let aabb = source.aabb(at);
+        let limited = |at: T| (at.to_f64() * unit.to_f64()).clamp(-T::LIMIT, T::LIMIT);
+        for i in sampled(source) {
+            let aabb = source.aabb(i);
             for axis in 0..D {
-                sample.min[axis][i] = aabb.min[axis].to_f64().clamp(-T::LIMIT, T::LIMIT);
-                sample.max[axis][i] = aabb.max[axis].to_f64().clamp(-T::LIMIT, T::LIMIT);
+                sample.min[axis][sample.len] = limited(aabb.min[axis]);
+                sample.max[axis][sample.len] = limited(aabb.max[axis]);
             }
+            sample.len += 1;
         }
+        let len = sample.len;
         for axis in 0..D {
             sample.sorted[axis] = sample.min[axis];
             sort(&mut sample.sorted[axis][..len]);
@@ -179,17 +197,29 @@ struct Field<const D: usize> {
     /// From where to where, but for a few outliers.
     low: [f64; D],
     high: [f64; D],
-    /// The chance that two boxes begin in the same of 1, 2, 4 .. equal cells.
+    /// The chance that two boxes begin in the same of 1, 2, 4 .. equal cells,
     together: [[f64; LEVELS]; D],
+    /// so many of them: the fewer boxes were drawn, the less the finest cells would tell.
+    levels: usize,
     /// The extent over which evenly spread boxes would be as near to each other as these are:
     /// less than `high - low` if they are clustered.
     spread: [f64; D],
+    /// The chance that two boxes begin at the same coordinate.
+    ties: [f64; D],
 }
 
 impl<const D: usize> Field<D> {
     fn new(samples: &[&Sample<D>]) -> Self {
-        let mut field =
-            Field { low: [0.0; D], high: [0.0; D], together: [[1.0; LEVELS]; D], spread: [0.0; D] };
+        let drawn = samples.iter().map(|sample| sample.len).max().unwrap_or(1);
+        let levels = (drawn.next_power_of_two().ilog2() as usize + 3).min(LEVELS);
+        let mut field = Field {
+            levels,
+            low: [0.0; D],
+            high: [0.0; D],
+            together: [[1.0; LEVELS]; D],
+            spread: [0.0; D],
+            ties: core::array::from_fn(|axis| ties(samples, axis)),
+        };
         for axis in 0..D {
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
             for sample in samples {
@@ -202,9 +232,9 @@ impl<const D: usize> Field<D> {
             }
             (field.low[axis], field.high[axis]) = (low, high);
             let extent = high - low;
-            field.together[axis] = together(samples, axis, low, extent);
+            field.together[axis] = together(samples, axis, levels, low, extent);
             // As fine as the sample can tell.
-            let level = (0..LEVELS).rev().find(|&level| field.together[axis][level] > SURE);
+            let level = (0..levels).rev().find(|&level| field.together[axis][level] > SURE);
             let level = level.unwrap_or(0);
             let cells = (1u32 << level) as f64;
             field.spread[axis] = (extent / cells / field.together[axis][level]).min(extent);
@@ -260,9 +290,9 @@ impl<const D: usize> Field<D> {
     /// The chance that two boxes begin in the same of so many columns.
     fn together(&self, axis: usize, columns: f64) -> f64 {
         // Between the powers of two, and beyond the last, as if evenly spread.
-        let level = ((columns as u32).ilog2() as usize).min(LEVELS - 1);
+        let level = ((columns as u32).ilog2() as usize).min(self.levels - 1);
         let beyond = columns / f64::from(1u32 << level);
-        let finer = self.together[axis][(level + 1).min(LEVELS - 1)];
+        let finer = self.together[axis][(level + 1).min(self.levels - 1)];
         (self.together[axis][level] / beyond).max(finer)
     }
 
@@ -275,7 +305,7 @@ impl<const D: usize> Field<D> {
         }
         let mut records = 0.0;
         let mut candidates = together;
-        let mut chance = 0.0;
+        let mut chance = self.ties[cut.sweep];
         for shape in shapes {
             let count = shape.records(self, cut);
             records += count;
@@ -303,22 +333,23 @@ fn whole(value: f64) -> f64 {
 fn together<const D: usize>(
     samples: &[&Sample<D>],
     axis: usize,
+    levels: usize,
     low: f64,
     extent: f64,
 ) -> [f64; LEVELS] {
-    const FINEST: usize = 1 << (LEVELS - 1);
-    let mut counts = [[0u32; FINEST]; 2];
-    let scale = if extent > 0.0 { FINEST as f64 / extent } else { 0.0 };
+    let finest = 1 << (levels - 1);
+    let mut counts = [[0u32; 1 << (LEVELS - 1)]; 2];
+    let scale = if extent > 0.0 { finest as f64 / extent } else { 0.0 };
     for (counts, sample) in counts.iter_mut().zip(samples) {
         for at in &sample.min[axis][..sample.len] {
             let cell = ((at - low) * scale) as usize; // below and beyond: the outermost
-            counts[cell.min(FINEST - 1)] += 1;
+            counts[cell.min(finest - 1)] += 1;
         }
     }
     let mut chances = [1.0; LEVELS];
     let [first, second] = &mut counts;
     let len = samples[0].len as f64;
-    for level in (0..LEVELS).rev() {
+    for level in (0..levels).rev() {
         let cells = 1 << level;
         let pairs: u32 = if samples.len() == 1 {
             first[..cells].iter().map(|&count| count * count.saturating_sub(1)).sum()
@@ -334,6 +365,22 @@ fn together<const D: usize>(
         }
     }
     chances
+}
+
+/// The chance that two boxes begin at the same coordinate.
+fn ties<const D: usize>(samples: &[&Sample<D>], axis: usize) -> f64 {
+    let [first, last] = [samples[0], samples[samples.len() - 1]];
+    let mut pairs = 0;
+    let mut begin = 0;
+    for (i, at) in first.sorted[axis][..first.len].iter().enumerate() {
+        // In one sample, those before it; of another, all.
+        let others = &last.sorted[axis][..if samples.len() == 1 { i } else { last.len }];
+        begin += others[begin..].iter().take_while(|&other| other < at).count();
+        pairs += others[begin..].iter().take_while(|&other| other == at).count();
+    }
+    let all =
+        if samples.len() == 1 { first.len * (first.len - 1) / 2 } else { first.len * last.len };
+    pairs as f64 / all.max(1) as f64
 }
 
 /// How many boxes, and how large on the average.
@@ -388,15 +435,56 @@ struct Cut<const D: usize> {
 }
 
 impl<const D: usize> Cut<D> {
-    fn grid<T: Scalar>(&self, field: &Field<D>) -> Grid<T> {
+    fn grid<T: Scalar>(&self, field: &Field<D>, unit: T) -> Grid<T> {
         let cells = core::array::from_fn(|axis| {
             if self.columns[axis] > 1.0 {
                 let count = self.columns[axis].min(MOST);
-                Cells::new(axis, field.low[axis], field.high[axis], count as u32)
+                Cells::new(axis, unit, field.low[axis], field.high[axis], count as u32)
             } else {
                 Cells::one(axis)
             }
         });
         Grid::new::<D>(self.sweep, cells)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Boxes of a size at whole multiples of a step below 100, on two axes.
+    fn boxes<T: Scalar>(step: f64, size: f64) -> alloc::vec::Vec<Aabb<2, T>> {
+        let at = |i: u32| f64::from(i.wrapping_mul(0x9E37_79B9) >> 16) * (100.0 / 65536.0);
+        let edge = |i: u32, size: f64| T::from_f64((whole(at(i)) + size) * step);
+        let aabb = |i| {
+            let corner = |size| [edge(i, size), edge(i ^ 0xABCD_EF01, size)];
+            Aabb::new(corner(0.0), corner(size))
+        };
+        (0..10_000).map(aabb).collect()
+    }
+
+    /// How many columns are planned.
+    fn columns<T: Scalar>(step: f64, size: f64) -> usize {
+        match plan(&[&boxes::<T>(step, size)[..]], true).plan {
+            Plan::Cut(grid) => grid.len(),
+            Plan::Part { .. } => 0,
+        }
+    }
+
+    #[test]
+    fn points_on_few_coordinates_are_cut_as_boxes_are() {
+        assert!(columns::<f32>(1.0, 0.0) > 8);
+        assert!(columns::<f32>(1.0, 1.0) > 8);
+    }
+
+    #[test]
+    fn plans_do_not_depend_on_the_unit() {
+        let usual = columns::<f32>(1.0, 1.0);
+        for step in [f64::from(f32::from_bits(1)), 1e-40, 1e-30, 1e30, 3.3e36] {
+            assert_eq!(columns::<f32>(step, 1.0), usual, "{step}");
+        }
+        for step in [f64::from_bits(1), 1e-310, 1e-290, 1e290, 1.7e306] {
+            assert_eq!(columns::<f64>(step, 1.0), usual, "{step}");
+        }
     }
 }

@@ -31,8 +31,12 @@ const SMALL: usize = 512;
 /// nor is one with fewer candidates a box.
 const CROWDED: usize = 96;
 
-/// One with more is planned anew before it is ordered: that many were not expected.
+/// One with more, or with so many times what the mean bin holds, is planned anew before it is
+/// ordered: that many were not expected.
 const LARGE: usize = 16384;
+const UNEXPECTED: usize = 8;
+/// Fewer take less time to order than to plan.
+const WORTH_A_PLAN: usize = 2048;
 
 /// Copies are held to this many records a box.
 const COPIES: u64 = 4;
@@ -132,8 +136,8 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         sink: &mut O,
     ) -> Result<(), Stop> {
         let [first, last] = [sets[0], sets[sets.len() - 1]];
-        if first.len() * last.len() <= VERY_FEW * VERY_FEW {
-            return very_few(first, last, sets.len() == 1, task, sink);
+        if is_tiny(sets) {
+            return very_few(sets, task.arrange, sink);
         }
         for start in (0..first.len()).step_by(CHUNK) {
             Sorter::unordered(first, start..first.len().min(start + CHUNK), &mut self.columns[0]);
@@ -161,7 +165,8 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         }
     }
 
-    /// Puts the boxes into the bins of a grid and finds the pairs of each bin.
+    /// Puts the boxes into the bins of a grid and finds the pairs of each bin. One bin is not even
+    /// filled.
     fn cut<S: Source<D, T>, O: Sink>(
         &mut self,
         sets: &[S],
@@ -169,6 +174,16 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
+        if grid.len() == 1 {
+            let valid =
+                |set: &S| (0..set.len()).fold(true, |valid, i| valid & set.aabb(i).is_valid());
+            // Deeper down all are.
+            if task.depth == 0 && !sets.iter().all(valid) {
+                return Err(Stop::Invalid);
+            }
+            self.ordered(sets, grid.sweep, usize::MAX, task, sink)?;
+            return task.done(1.0);
+        }
         #[cfg(feature = "parallel")]
         if let Some(result) = super::threads::cut(self, sets, grid, task, sink) {
             return result.unwrap_or_else(|refusal| self.refused(refusal, sets, grid, task, sink));
@@ -224,9 +239,11 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
+        let total: usize = pieces.iter().flat_map(|piece| &piece[..sets]).map(Bins::len).sum();
+        let crowd = (UNEXPECTED * (total / grid.len())).clamp(WORTH_A_PLAN, LARGE);
         if let [piece] = pieces {
             let records = [piece[0].bin(bin), if sets == 2 { piece[1].bin(bin) } else { &[] }];
-            self.records(&records[..sets], grid.sweep, task, sink)?;
+            self.ordered(&records[..sets], grid.sweep, crowd, task, sink)?;
         } else {
             let mut gathered = take(&mut self.gathered);
             for (set, records) in gathered[..sets].iter_mut().enumerate() {
@@ -234,7 +251,7 @@ impl<const D: usize, T: Scalar> Search<D, T> {
                 pieces.iter().for_each(|piece| records.extend_from_slice(piece[set].bin(bin)));
             }
             let records = [&gathered[0][..], &gathered[1][..]];
-            let result = self.records(&records[..sets], grid.sweep, task, sink);
+            let result = self.ordered(&records[..sets], grid.sweep, crowd, task, sink);
             self.gathered = gathered;
             result?;
         }
@@ -246,19 +263,22 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         Ok(())
     }
 
-    fn records<O: Sink>(
+    /// The pairs of boxes that are taken together: orders and sweeps them, or plans them anew if
+    /// there are more than `crowd`, or more candidates than a better plan would leave.
+    fn ordered<S: Source<D, T>, O: Sink>(
         &mut self,
-        sets: &[&[Record<D, T>]],
+        sets: &[S],
         axis: usize,
+        crowd: usize,
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
-        if sets.iter().any(|set| set.is_empty()) {
+        if sets.iter().any(|set| set.len() == 0) {
             return Ok(());
         }
         let boxes: usize = sets.iter().map(|set| set.len()).sum();
         let again = Task { depth: task.depth + 1, share: 0.0, ..task };
-        if boxes >= LARGE && task.depth < DEPTH {
+        if boxes > crowd && task.depth < DEPTH {
             let planned = plan(sets, true);
             if planned.plan.divides() {
                 return self.follow(planned.plan, sets, again, sink);
@@ -352,27 +372,37 @@ pub(super) fn is_direct<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[S]) 
     first.max(last) <= FEW || (sets.len() == 2 && first.min(last) <= FEW_AGAINST_MANY)
 }
 
+/// Whether boxes are so few that nothing else is worth while.
+#[inline]
+pub(super) fn is_tiny<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[S]) -> bool {
+    sets[0].len() * sets[sets.len() - 1].len() <= VERY_FEW * VERY_FEW
+}
+
 /// The pairs of very few boxes, box by box.
-fn very_few<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
-    first: S,
-    last: S,
-    same: bool,
-    task: Task<'_>,
+#[inline]
+pub(super) fn very_few<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
+    sets: &[S],
+    arrange: Arrange,
     sink: &mut O,
 ) -> Result<(), Stop> {
+    let [first, last] = [sets[0], sets[sets.len() - 1]];
+    let mut room = sink.room();
+    let mut count = 0;
     for i in 0..first.len() {
-        for j in if same { i + 1 } else { 0 }..last.len() {
+        for j in if sets.len() == 1 { i + 1 } else { 0 }..last.len() {
             if first.aabb(i).overlaps(last.aabb(j)) && first.marks(i) & last.marks(j) == 0 {
-                let (a, b) = (first.id(i), last.id(j));
-                let swap = task.arrange == Arrange::Ascending && b < a;
-                sink.room()[0] = if swap { [b, a] } else { [a, b] };
-                if sink.take(1).is_break() {
-                    return Err(Stop::Enough);
+                if count == room.len() {
+                    sink.take(count).is_continue().then_some(()).ok_or(Stop::Enough)?;
+                    (room, count) = (sink.room(), 0);
                 }
+                let (a, b) = (first.id(i), last.id(j));
+                let swap = arrange == Arrange::Ascending && b < a;
+                room[count] = if swap { [b, a] } else { [a, b] };
+                count += 1;
             }
         }
     }
-    Ok(())
+    if sink.take(count).is_break() { Err(Stop::Enough) } else { Ok(()) }
 }
 
 /// The most records that so many boxes may become.
