@@ -140,7 +140,7 @@ export class Measurement {
       await remote.ask("", 10_000 + 4 * limit);
       const { fingerprint, pairs, peak_bytes } = await remote.ask("check", 4 * limit);
       await remote.ask("warm-up", 10_000 + limit);
-      const [estimate] = (await remote.ask("time 1 1", 10_000 + limit)).ms;
+      const estimate = median((await remote.ask("time 3 1", 10_000 + 3 * limit)).ms);
       this.#slow.set(key, { boxes: Number(boxes), took: estimate });
       if (estimate > limit) throw new NoAnswer(`over ${limit / 1000} s`);
       return { who, remote, fingerprint, pairs, peak_bytes, estimate, rounds: [], spent: 0 };
@@ -170,7 +170,7 @@ export class Measurement {
         await remote.ask("check", 20_000);
         const { ns } = await remote.ask("time 3 1", 20_000);
         const who = { name, rival: false, package: "" };
-        return { who, remote, fingerprint: "", pairs: 0, peak_bytes: null, estimate: ns.at(-1) / 1e6, rounds: [], spent: 0 };
+        return { who, remote, fingerprint: "", pairs: 0, peak_bytes: null, estimate: median(ns) / 1e6, rounds: [], spent: 0 };
       }),
     );
   }
@@ -187,8 +187,9 @@ export class Measurement {
         // Each round begins with another.
         const one = /** @type {Running} */ (running[(at + round) % running.length]);
         if (lost.has(one) || (round >= 3 && one.spent > PATIENCE)) continue;
-        const batch = Math.min(Math.max(1, Math.ceil(BATCH / one.estimate)), 100);
-        const repeats = Math.min(Math.max(1, Math.round(TURN / (batch * one.estimate))), 100);
+        const estimate = Math.max(one.estimate, 0.01);
+        const batch = Math.ceil(BATCH / estimate);
+        const repeats = Math.max(1, Math.round(TURN / (batch * estimate)));
         try {
           // The limit is for what takes too long once; here it only guards against hanging.
           const { ms, ns } = await one.remote.ask(`time ${repeats} ${batch}`, 10 * limit + 10_000);

@@ -1,0 +1,14 @@
+import type { ContenderModule } from "../contenders/index.js";
+import type { Scene } from "./scenes.js";
+
+export interface Clock {
+  start(): unknown;
+  since(start: never): number;
+}
+
+export class Trial {
+  static start(scene: Scene, dimensions: number, module: ContenderModule, clock: Clock): Promise<Trial>;
+  check(): { fingerprint: string; pairs: number; longest: number };
+  warmUp(): void;
+  time(repeats: number, batch?: number): number[];
+}
