@@ -54,7 +54,7 @@ function readNames(kind) {
   return Object.freeze(new TextDecoder().decode(bytes).split("\n"));
 }
 
-async function compile(source = new URL("./simulation.wasm", import.meta.url)) {
+async function compile(source = new URL(/* @vite-ignore */ "./simulation.wasm", import.meta.url)) {
   if (source instanceof WebAssembly.Module) return source;
   if (typeof source === "string" || source instanceof URL) source = await fetch(source);
   const bytes = source instanceof Response ? await source.arrayBuffer() : source;

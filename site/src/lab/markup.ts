@@ -1,7 +1,10 @@
 // The inside of a `<ball-lab>`, written into the page when it is built: the page has its final
 // shape before any script runs. `ball-lab.ts` finds the parts by their `data-part`.
 
+import { expandPlayground } from "../playground/markup.ts";
+import { expandRace } from "../race/markup.ts";
 import { bruteForceTests, COUNTERS, formatCount } from "./counters.ts";
+import { choice, slider } from "./parts.ts";
 
 interface LabOptions {
   readonly id: string;
@@ -10,9 +13,9 @@ interface LabOptions {
   readonly bodies: number;
 }
 
-/** Fills every empty `<ball-lab …></ball-lab>` of a page. */
+/** Fills every empty `<ball-lab …></ball-lab>` of a page, and the race and the playground. */
 export function expandLabs(page: string): string {
-  return page.replace(/<ball-lab([^>]*)><\/ball-lab>/g, (_, attributes: string) => {
+  return expandPlayground(expandRace(page)).replace(/<ball-lab([^>]*)><\/ball-lab>/g, (_, attributes: string) => {
     const attribute = (name: string): string => {
       const value = new RegExp(`\\b${name}="([^"]*)"`).exec(attributes)?.[1];
       if (value === undefined) throw new Error(`<ball-lab${attributes}> has no ${name}`);
@@ -78,19 +81,6 @@ const discStage = (): string =>
 const sphereStage = (): string =>
   `<div class="orbit" data-part="orbit" tabindex="0" role="application" aria-label="Spheres falling into a box. Arrow keys turn the view, plus and minus come closer and move away.">
           <canvas data-part="canvas"></canvas>
-        </div>`;
-
-const choice = (id: string, part: string, label: string): string =>
-  `<div class="field">
-          <label for="${id}-${part}">${label}</label>
-          <select id="${id}-${part}" data-part="${part}" autocomplete="off" disabled></select>
-        </div>`;
-
-const slider = (id: string, part: string, label: string, value: string): string =>
-  `<div class="field">
-          <label for="${id}-${part}">${label}</label>
-          <span class="value" data-part="${part}-value" aria-hidden="true">${value}</span>
-          <input id="${id}-${part}" data-part="${part}" type="range" autocomplete="off" disabled />
         </div>`;
 
 const linesSwitch = (): string =>

@@ -5,6 +5,7 @@ import { type BroadPhaseOptions, Simulation, type StepReport } from "../../../si
 import scalarWasm from "../generated/simulation.wasm?url";
 import simdWasm from "../generated/simulation.simd.wasm?url";
 import { AXIS_NAMES, type FromSimulation, type Measurement, type Method, type Setup, type ToSimulation } from "./messages.ts";
+import { hasSimd } from "./simd.ts";
 
 const STEP_MS = 1000 / 60;
 /** Positions are sent in this many buffers: one that the page shows, one on its way. */
@@ -185,17 +186,6 @@ function guarded(work: () => void): void {
     running = false;
     send({ type: "failed", message: error instanceof Error ? error.message : String(error) });
   }
-}
-
-/** Whether the engine takes the smallest function with a vector instruction. */
-function hasSimd(): boolean {
-  // prettier-ignore
-  return WebAssembly.validate(new Uint8Array([
-    0, 97, 115, 109, 1, 0, 0, 0, // "\0asm", version 1
-    1, 5, 1, 96, 0, 1, 123, // one type: () -> v128
-    3, 2, 1, 0, // one function of it
-    10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11, // i32.const 0; i8x16.splat; i8x16.popcnt; end
-  ]));
 }
 
 const simd = hasSimd();

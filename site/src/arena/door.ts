@@ -1,0 +1,188 @@
+// The compiled arena of site/wasm: scenes in motion, and who looks for their pairs. Its layout
+// stands in site/wasm/src/lib.rs. One arena a thread.
+
+import scalarWasm from "../generated/arena.wasm?url";
+import simdWasm from "../generated/arena.simd.wasm?url";
+import { hasSimd } from "../simulation/simd.ts";
+
+/** The axes by name. */
+export const AXIS_NAMES: readonly string[] = ["x", "y", "z"];
+
+/** A world. The same numbers and names give the same boxes, step for step, bit for bit. */
+export interface WorldOptions {
+  readonly dimensions: 2 | 3;
+  readonly scene: string;
+  readonly motion: string;
+  readonly boxes: number;
+  readonly seed: number;
+  /** How much larger the boxes are than the scene's. */
+  readonly size: number;
+  /** The largest factor over the least. */
+  readonly spread: number;
+}
+
+/** Who looks for the pairs, by names that `Lists` has. */
+export interface ContenderOptions {
+  readonly algorithm: string;
+  readonly sort: string;
+  /** A rule, or one of `AXIS_NAMES`. */
+  readonly axis: string;
+}
+
+/** A scene or a motion. */
+export interface Named {
+  readonly name: string;
+  readonly description: string;
+}
+
+/** Every name that the options may hold. */
+export interface Lists {
+  readonly algorithms: readonly string[];
+  readonly sorts: readonly string[];
+  readonly axes: readonly string[];
+  readonly scenes: readonly (Named & { readonly dimensions: readonly [least: number, most: number] })[];
+  readonly motions: readonly Named[];
+}
+
+/** What one run did. The counts mean the same for every algorithm; `null` is not counted. */
+export interface Report {
+  /** Milliseconds from boxes to the list of all pairs, unobserved. */
+  readonly ms: number;
+  readonly pairs: number;
+  /** 16 hexadecimal digits: the same for the same pairs, in whatever order. */
+  readonly fingerprint: string;
+  readonly tests: number | null;
+  readonly axisOverlaps: number | null;
+  readonly comparisons: number | null;
+  readonly swaps: number | null;
+}
+
+/** What a first run would cost. */
+export interface Forecast {
+  readonly tests: number;
+  /** Overlaps that the algorithm would have to keep in memory. */
+  readonly kept: number;
+}
+
+type Exports = Record<string, (...numbers: number[]) => number>;
+
+export class Arena {
+  readonly lists: Lists;
+  readonly #exports: Exports;
+  readonly #memory: WebAssembly.Memory;
+  #dimensions = 2;
+  #boxes = 0;
+  /** By contender, how many pairs its last run found. */
+  #found: number[] = [];
+
+  private constructor(instance: WebAssembly.Instance) {
+    const { memory, ...exports } = instance.exports;
+    this.#memory = memory as WebAssembly.Memory;
+    this.#exports = exports as unknown as Exports;
+    const named = (line: string): Named => {
+      const [name = "", description = ""] = line.split("\t");
+      return { name, description };
+    };
+    this.lists = {
+      algorithms: this.#names(0),
+      sorts: this.#names(1),
+      axes: [...this.#names(2), ...AXIS_NAMES],
+      scenes: this.#names(3).map((line) => {
+        const [, , least, most] = line.split("\t");
+        return { ...named(line), dimensions: [Number(least), Number(most)] as const };
+      }),
+      motions: this.#names(4).map(named),
+    };
+  }
+
+  static async load(): Promise<Arena> {
+    const response = await fetch(new URL(hasSimd() ? simdWasm : scalarWasm, self.location.href));
+    if (!response.ok) throw new Error(`the arena could not be loaded: ${response.status}`);
+    const env = { now: () => performance.now() };
+    return new Arena((await WebAssembly.instantiate(await response.arrayBuffer(), { env })).instance);
+  }
+
+  /** Makes a world at its first step, and forgets the one before and its contenders. */
+  begin(options: WorldOptions): void {
+    const { lists } = this;
+    const place = (list: readonly Named[], name: string): number => list.findIndex((item) => item.name === name);
+    const { dimensions, scene, motion, boxes, seed, size, spread } = options;
+    this.#area().set([dimensions, place(lists.scenes, scene), place(lists.motions, motion), boxes, seed, size, spread]);
+    this.#attempt("arena_begin");
+    this.#dimensions = dimensions;
+    this.#boxes = boxes;
+    this.#found = [];
+  }
+
+  advance(): void {
+    this.#attempt("arena_advance");
+  }
+
+  /** Rows of the least corner and the greatest: a view of the arena's memory, until the next call. */
+  get boxes(): Float32Array {
+    return new Float32Array(this.#memory.buffer, this.#call("arena_boxes"), 2 * this.#dimensions * this.#boxes);
+  }
+
+  /** How many pairs there are, without storing any. */
+  countPairs(): number {
+    return this.#exports["arena_count_pairs"]?.() ?? -1;
+  }
+
+  /** Adds a contender. They are numbered from 0. */
+  enter(options: ContenderOptions): void {
+    this.#attempt("arena_enter", ...this.#places(options), 1);
+  }
+
+  forecast(options: ContenderOptions): Forecast {
+    this.#attempt("arena_forecast", ...this.#places(options));
+    const [tests = 0, kept = 0] = this.#area();
+    return { tests, kept };
+  }
+
+  /** Lets a contender find the pairs of the world as it is; counted, if asked, on a copy. */
+  run(contender: number, counting: boolean): Report {
+    this.#attempt("arena_run", contender, Number(counting));
+    const [ms = 0, pairs = 0, upper = 0, lower = 0, ...counts] = this.#area();
+    const hex = (half: number): string => half.toString(16).padStart(8, "0");
+    const counted = (count = -1): number | null => (count < 0 ? null : count);
+    this.#found[contender] = pairs;
+    return {
+      ms,
+      pairs,
+      fingerprint: hex(upper) + hex(lower),
+      tests: counted(counts[0]),
+      axisOverlaps: counted(counts[1]),
+      comparisons: counted(counts[2]),
+      swaps: counted(counts[3]),
+    };
+  }
+
+  /** The pairs of a contender's last run, `a0, b0, a1, b1, ..`: a view, until the next call. */
+  pairs(contender: number): Uint32Array {
+    const at = this.#call("arena_pairs", contender);
+    return new Uint32Array(this.#memory.buffer, at, 2 * (this.#found[contender] ?? 0));
+  }
+
+  #places({ algorithm, sort, axis }: ContenderOptions): [number, number, number] {
+    const { algorithms, sorts, axes } = this.lists;
+    return [algorithms.indexOf(algorithm), sorts.indexOf(sort), axes.indexOf(axis)];
+  }
+
+  #names(kind: number): string[] {
+    const at = this.#call("arena_names", kind);
+    return new TextDecoder().decode(new Uint8Array(this.#memory.buffer, at, this.#area()[0])).split("\n");
+  }
+
+  /** The numbers of the door, a view anew each time: memory moves when it grows. */
+  #area(): Float64Array {
+    return new Float64Array(this.#memory.buffer, this.#call("arena_area"), 16);
+  }
+
+  #call(name: string, ...numbers: number[]): number {
+    return (this.#exports[name]?.(...numbers) ?? 0) >>> 0;
+  }
+
+  #attempt(name: string, ...numbers: number[]): void {
+    if (this.#call(name, ...numbers) !== 0) throw new RangeError("the arena does not have what it was asked for");
+  }
+}

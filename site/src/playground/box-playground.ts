@@ -1,0 +1,369 @@
+import { numberWithin, readAddress, writeAddress } from "../arena/address.ts";
+import { type BoxColours, drawBoxes, type Window2, windowOf } from "../arena/box-picture.ts";
+import type { ContenderOptions, Lists, WorldOptions } from "../arena/door.ts";
+import { onAwake } from "../lab/awake.ts";
+import { formatCount } from "../lab/counters.ts";
+import { bindSlider } from "../lab/slider.ts";
+import type { FromRace, RaceFrame, ToRace } from "../race/messages.ts";
+import { MEASURES, RaceRecord } from "../race/record.ts";
+import { onThemeChange } from "../shell/theme.ts";
+import { type Format, preview, type Snapshot, typeOf, write } from "./export.ts";
+import { COUNTERS } from "./markup.ts";
+import { bindView } from "./view.ts";
+
+/** What the sliders offer. */
+const RANGES = {
+  boxes: [1, 2, 3, 5, 10, 20, 50, 100, 200, 500, 1_000, 2_000, 5_000, 10_000, 20_000],
+  size: [0.1, 0.2, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10],
+  spread: [1, 2, 4, 8, 16, 32, 64, 100],
+} as const;
+const LARGEST_SEED = 2 ** 32 - 1;
+/** Numbers that change more often than this cannot be read. */
+const SHOW_MS = 150;
+const NOT_COUNTED = "not counted: this algorithm does not do it or does not tell";
+
+const DEFAULTS = {
+  dimensions: "2", scene: "clustered", motion: "drift", boxes: "500", seed: "1", size: "1", spread: "1",
+  algorithm: "sorted pairwise", sort: "insertion sort", axis: "largest variance", format: "js",
+};
+
+type Key = keyof typeof DEFAULTS;
+
+/**
+ * `<box-playground>`: a world of boxes of the visitor's own, one algorithm at work on it, and the
+ * way to take it home. It is a race with one contender: its thread is that of the race.
+ */
+export class BoxPlayground extends HTMLElement {
+  readonly #worker = new Worker(new URL("../race/worker.ts", import.meta.url), { type: "module" });
+  #lists!: Lists;
+  #state = readAddress<Key>(DEFAULTS);
+  #run = 0;
+  #record = new RaceRecord(1);
+  #frame: RaceFrame | undefined;
+  /** What is shown: all there was at first, or where the visitor went. */
+  #view: Window2 | undefined;
+  #wanted = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+  #awake = false;
+  #shownAt = -Infinity;
+  #asked = false;
+  #colours: BoxColours | undefined;
+  #left = new AbortController();
+
+  connectedCallback(): void {
+    this.#worker.addEventListener("message", ({ data }: MessageEvent<FromRace>) => this.#receive(data));
+    this.#worker.addEventListener("error", ({ message }) => this.#say(message));
+    const { signal } = this.#left;
+    onThemeChange(() => {
+      this.#colours = undefined;
+      this.#requestShow();
+    }, signal);
+    new ResizeObserver(() => {
+      this.#view = undefined;
+      this.#requestShow();
+    }).observe(this.#part("picture"));
+    onAwake(this, (awake) => {
+      this.#awake = awake;
+      this.#pace();
+    }, signal);
+    bindView(this.#part("surface"), () => this.#view, (view) => {
+      this.#view = view;
+      this.#requestShow();
+    });
+  }
+
+  disconnectedCallback(): void {
+    this.#left.abort();
+    this.#worker.terminate();
+  }
+
+  // Controls
+
+  #setUp(lists: Lists): void {
+    this.#lists = lists;
+    this.#bindChoice("dimensions", undefined, () => this.#fill());
+    this.#bindChoice("scene");
+    this.#bindChoice("motion", lists.motions.map(({ name }) => name));
+    this.#bindChoice("algorithm", lists.algorithms);
+    this.#bindChoice("sort", lists.sorts);
+    this.#bindChoice("axis");
+    this.#fill();
+    for (const key of ["boxes", "size", "spread"] as const) {
+      bindSlider({
+        slider: this.#part<HTMLInputElement>(key),
+        output: this.#part(`${key}-value`),
+        values: RANGES[key],
+        value: this.#world()[key],
+        format: key === "boxes" ? formatCount : (value) => (key === "size" ? `× ${value}` : `${value} : 1`),
+        changed: (value) => this.#change(key, String(value)),
+      });
+    }
+    const seed = this.#part<HTMLInputElement>("seed");
+    seed.value = String(this.#world().seed);
+    seed.addEventListener("change", () => {
+      seed.value = String(numberWithin(String(Math.round(seed.valueAsNumber)), 0, LARGEST_SEED, 1));
+      this.#change("seed", seed.value);
+    });
+    this.#bindButtons();
+    this.#bindExport();
+    for (const control of this.querySelectorAll<HTMLInputElement>(":disabled")) control.disabled = false;
+    this.#begin();
+    this.#pace();
+  }
+
+  #bindChoice(key: "dimensions" | "scene" | "motion" | keyof ContenderOptions, names?: readonly string[], before = (): void => {}): void {
+    const select = this.#part<HTMLSelectElement>(key);
+    if (names) select.replaceChildren(...names.map((name) => new Option(name)));
+    if (select.options.length > 0) this.#choose(key);
+    select.addEventListener("change", () => {
+      this.#state[key] = select.value;
+      before();
+      this.#change(key, select.value);
+    });
+  }
+
+  /** The scenes and the axes that exist in so many dimensions. */
+  #fill(): void {
+    const dimensions = Number(this.#state.dimensions);
+    const { scenes, axes } = this.#lists;
+    const there = scenes.filter(({ dimensions: [least, most] }) => least <= dimensions && dimensions <= most);
+    this.#part("scene").replaceChildren(...there.map(({ name }) => new Option(name)));
+    this.#part("axis").replaceChildren(...axes.slice(0, axes.length - 3 + dimensions).map((name) => new Option(name)));
+    this.#choose("scene");
+    this.#choose("axis");
+  }
+
+  /** Shows what the state says, or the default where there is no such thing, or the first. */
+  #choose(key: Key): void {
+    const select = this.#part<HTMLSelectElement>(key);
+    const names = [...select.options].map(({ value }) => value);
+    const name = [this.#state[key], DEFAULTS[key], names[0] ?? ""].find((name) => names.includes(name)) ?? "";
+    select.value = this.#state[key] = name;
+  }
+
+  #bindButtons(): void {
+    this.#onClick("play", () => {
+      this.#wanted = !this.#wanted;
+      this.#pace();
+    });
+    this.#onClick("step", () => {
+      this.#wanted = false;
+      this.#pace();
+      this.#send({ type: "step" });
+    });
+    this.#onClick("reset", () => this.#begin());
+    this.#onClick("fit", () => {
+      this.#view = undefined;
+      this.#requestShow();
+    });
+  }
+
+  #bindExport(): void {
+    this.#choose("format");
+    const format = this.#part<HTMLSelectElement>("format");
+    format.addEventListener("change", () => {
+      this.#keep("format", format.value);
+      this.#showPreview();
+    });
+    const written = async (): Promise<string> => {
+      const snapshot = this.#snapshot();
+      if (!snapshot) throw new Error("there is no world yet");
+      return write(snapshot, this.#format());
+    };
+    const told = (text: string, work: () => Promise<void>): void => {
+      const output = this.#part("exported");
+      work().then(
+        () => (output.textContent = text),
+        (error: unknown) => (output.textContent = `That did not work: ${error instanceof Error ? error.message : String(error)}`),
+      );
+    };
+    this.#onClick("copy", () => told("Copied.", async () => navigator.clipboard.writeText(await written())));
+    this.#onClick("share", () => told("Address copied.", () => navigator.clipboard.writeText(location.href)));
+    this.#onClick("download", () =>
+      told("Downloaded.", async () => {
+        const link = document.createElement("a");
+        link.href = URL.createObjectURL(new Blob([await written()], { type: typeOf(this.#format()) }));
+        link.download = `boxes.${this.#format() === "js" ? "mjs" : this.#format()}`;
+        link.click();
+        URL.revokeObjectURL(link.href);
+      }),
+    );
+  }
+
+  #onClick(part: string, act: () => void): void {
+    this.#part(part).addEventListener("click", act);
+  }
+
+  #format(): Format {
+    return this.#state.format as Format;
+  }
+
+  #keep(key: Key, text: string): void {
+    this.#state[key] = text;
+    writeAddress(this.#state, DEFAULTS);
+  }
+
+  #change(key: Key, text: string): void {
+    this.#keep(key, text);
+    this.#begin();
+  }
+
+  #world(): WorldOptions {
+    const { dimensions, scene, motion, boxes, seed, size, spread } = this.#state;
+    return {
+      dimensions: dimensions === "3" ? 3 : 2,
+      scene,
+      motion,
+      boxes: Math.round(numberWithin(boxes, 1, 20_000, Number(DEFAULTS.boxes))),
+      seed: Math.round(numberWithin(seed, 0, LARGEST_SEED, 1)),
+      size: numberWithin(size, 0.01, 100, 1),
+      spread: numberWithin(spread, 1, 1000, 1),
+    };
+  }
+
+  #method(): ContenderOptions {
+    const { algorithm, sort, axis } = this.#state;
+    return { algorithm, sort, axis };
+  }
+
+  #snapshot(): Snapshot | undefined {
+    const [lane] = this.#frame?.lanes ?? [];
+    if (!this.#frame || !lane || !("report" in lane)) return undefined;
+    const { step, boxes } = this.#frame;
+    return { world: this.#world(), method: this.#method(), step, boxes, pairs: lane.report.pairs, address: location.href };
+  }
+
+  #begin(): void {
+    this.#record = new RaceRecord(1);
+    this.#frame = undefined;
+    this.#view = undefined;
+    this.#part("message").textContent = "";
+    const { scenes, motions } = this.#lists;
+    const about = [scenes.find(({ name }) => name === this.#state.scene), motions.find(({ name }) => name === this.#state.motion)];
+    this.#part("about").textContent = about.map((item) => item?.description ?? "").join(" ");
+    this.#send({ type: "begin", run: ++this.#run, world: this.#world(), contenders: [this.#method()] });
+    this.#describe();
+  }
+
+  #pace(): void {
+    if (!this.#lists) return;
+    this.#send({ type: "pace", running: this.#wanted && this.#awake });
+    this.#part("play").textContent = this.#wanted ? "Pause" : "Play";
+    this.#describe();
+    this.#requestShow();
+  }
+
+  #send(message: ToRace): void {
+    this.#worker.postMessage(message);
+  }
+
+  // What comes from the thread
+
+  #receive(message: FromRace): void {
+    if ("run" in message && message.run !== this.#run) return;
+    switch (message.type) {
+      case "ready":
+        this.#setUp(message.lists);
+        break;
+      case "refused":
+        this.#part("message").textContent = message.reason;
+        this.dataset["step"] = "refused";
+        this.#requestShow();
+        break;
+      case "frame":
+        this.#frame = message;
+        this.#record.add(message);
+        this.#requestShow();
+        break;
+      case "failed":
+        this.#say(`That did not work: ${message.message}`);
+        break;
+    }
+  }
+
+  #requestShow(): void {
+    if (this.#asked) return;
+    this.#asked = true;
+    requestAnimationFrame(() => {
+      this.#asked = false;
+      this.#show();
+    });
+  }
+
+  #show(): void {
+    const frame = this.#frame;
+    if (!frame) return;
+    this.#draw(frame);
+    const now = performance.now();
+    if (!this.#wanted || frame.step === 0 || now - this.#shownAt >= SHOW_MS) {
+      this.#shownAt = now;
+      this.#showCounters(frame);
+      if (!this.#wanted || frame.step === 0) this.#showPreview();
+      if (!this.#wanted) this.#describe();
+    }
+    this.#send({ type: "seen", run: frame.run });
+  }
+
+  #draw({ boxes, pairs }: RaceFrame): void {
+    const canvas = this.#part<HTMLCanvasElement>("picture");
+    const { clientWidth: width, clientHeight: height } = canvas;
+    const { dimensions } = this.#world();
+    this.#view ??= windowOf(boxes, dimensions, width, height);
+    if (!this.#colours) {
+      const style = getComputedStyle(this);
+      const colour = (name: string): string => style.getPropertyValue(`--${name}`).trim();
+      this.#colours = { box: colour("ramp-1"), lit: colour("ramp-4"), line: colour("stage") };
+    }
+    drawBoxes(canvas, { width, height }, this.#view, boxes, dimensions, pairs, this.#colours);
+  }
+
+  #showCounters({ step, lanes }: RaceFrame): void {
+    const [lane] = lanes;
+    const report = lane && "report" in lane ? lane.report : undefined;
+    const ms = this.#record.level(0, MEASURES[0]);
+    this.dataset["step"] = String(step);
+    this.#part("moment").textContent = `Step ${formatCount(step)}`;
+    this.#part("message").textContent = lane && "out" in lane ? lane.out : "";
+    for (const { key } of COUNTERS) {
+      const value = key === "ms" ? ms : (report?.[key] ?? null);
+      const cell = this.#find(`[data-counter="${key}"] dd`);
+      cell.textContent = value === null ? "–" : key === "ms" ? `${value.toFixed(value < 100 ? 2 : 0)} ms` : formatCount(value);
+      cell.title = value === null && report ? NOT_COUNTED : "";
+    }
+    // A choice that would change nothing is not offered.
+    const { algorithm } = this.#state;
+    const plain = this.#lists.algorithms.slice(0, 3).includes(algorithm);
+    this.#part<HTMLSelectElement>("sort").disabled = plain;
+    this.#part<HTMLSelectElement>("axis").disabled = plain || algorithm.endsWith("every axis");
+  }
+
+  #showPreview(): void {
+    const snapshot = this.#snapshot();
+    const code = this.#part("preview");
+    const text = snapshot ? preview(snapshot, this.#format()) : " ";
+    if (code.textContent !== text) code.textContent = text;
+  }
+
+  /** Tells what is going on: seldom enough to be read out. */
+  #describe(): void {
+    const { boxes, scene, motion } = this.#world();
+    const where = `${formatCount(boxes)} boxes, ${scene}, ${motion}, by ${this.#state.algorithm}.`;
+    const [lane] = this.#frame?.lanes ?? [];
+    const found = lane && "report" in lane ? ` ${formatCount(lane.report.pairs)} pairs.` : "";
+    this.#say(this.#wanted ? where : `Paused after step ${formatCount(this.#frame?.step ?? 0)}: ${where}${found}`);
+  }
+
+  #say(text: string): void {
+    const status = this.#part("status");
+    if (status.textContent !== text) status.textContent = text;
+  }
+
+  #part<E extends HTMLElement = HTMLElement>(name: string): E {
+    return this.#find<E>(`[data-part="${name}"]`);
+  }
+
+  #find<E extends HTMLElement = HTMLElement>(selector: string): E {
+    const found = this.querySelector<E>(selector);
+    if (!found) throw new Error(`<box-playground> has no ${selector}`);
+    return found;
+  }
+}

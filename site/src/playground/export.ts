@@ -1,0 +1,130 @@
+// A world as it stands, written down: every coordinate in the fewest digits that give the same bits.
+
+import type { ContenderOptions, WorldOptions } from "../arena/door.ts";
+import { formatCount } from "../lab/counters.ts";
+
+/** What is written down. */
+export interface Snapshot {
+  readonly world: WorldOptions;
+  readonly method: ContenderOptions;
+  readonly step: number;
+  /** Rows of the least corner and the greatest. */
+  readonly boxes: Float32Array;
+  readonly pairs: number;
+  /** Where the world can be seen. */
+  readonly address: string;
+}
+
+export type Format = "js" | "rs" | "json";
+
+interface Language {
+  readonly type: string;
+  head(snapshot: Snapshot): string;
+  row(corners: readonly string[], dimensions: number): string;
+  /** Between two rows. */
+  readonly comma: string;
+  tail(snapshot: Snapshot): string;
+}
+
+const what = ({ world, step, pairs }: Snapshot): string =>
+  `${formatCount(world.boxes)} boxes of the scene "${world.scene}", seed ${world.seed}, step ${step}: ${formatCount(pairs)} pairs.`;
+
+const LANGUAGES: Record<Format, Language> = {
+  js: {
+    type: "text/javascript",
+    head: (snapshot) => `// ${what(snapshot)}
+// npm install sweep-and-prune
+import { findPairs, init } from "sweep-and-prune";
+
+// A box is a row: its least corner, then its greatest.
+const boxes = new Float32Array([
+`,
+    row: (corners) => `  ${corners.join(", ")},`,
+    comma: "",
+    tail: ({ world, pairs }) => `
+]);
+
+await init();
+const pairs = findPairs(boxes, { dimensions: ${world.dimensions} }); // a0, b0, a1, b1, ...
+console.log(pairs.length / 2); // ${pairs}
+`,
+  },
+  rs: {
+    type: "text/x-rust",
+    head: (snapshot) => `// ${what(snapshot)}
+// cargo add sweep-and-prune
+use sweep_and_prune::{Aabb, Error, find_pairs};
+
+fn main() -> Result<(), Error> {
+    let boxes: Vec<Aabb<${snapshot.world.dimensions}>> =
+        BOXES.iter().map(|&(min, max)| Aabb::new(min, max)).collect();
+    let pairs = find_pairs(&boxes)?;
+    println!("{}", pairs.len()); // ${snapshot.pairs}
+    Ok(())
+}
+
+/// The least corner of each box and its greatest.
+#[rustfmt::skip]
+#[allow(clippy::excessive_precision, clippy::approx_constant)]
+static BOXES: [([f32; ${snapshot.world.dimensions}], [f32; ${snapshot.world.dimensions}]); ${snapshot.world.boxes}] = [
+`,
+    row: (corners, dimensions) => {
+      const floats = corners.map((text) => (/[.e]/.test(text) ? text : `${text}.0`));
+      return `    ([${floats.slice(0, dimensions).join(", ")}], [${floats.slice(dimensions).join(", ")}]),`;
+    },
+    comma: "",
+    tail: () => "\n];\n",
+  },
+  json: {
+    type: "application/json",
+    head: ({ world, method, step, pairs, address }) => {
+      const about = JSON.stringify({ address, ...world, boxes: undefined, ...method, step, pairs, count: world.boxes }, null, 2);
+      return `${about.slice(0, -2)},\n  "boxes": [\n`;
+    },
+    row: (corners) => `    [${corners.join(", ")}]`,
+    comma: ",",
+    tail: () => "\n  ]\n}\n",
+  },
+};
+
+/** The media type of a format. */
+export const typeOf = (format: Format): string => LANGUAGES[format].type;
+
+/** Rows written before the page gets a chance to do something else. */
+const AT_ONCE = 250;
+
+/** All of it. */
+export async function write(snapshot: Snapshot, format: Format): Promise<string> {
+  const language = LANGUAGES[format];
+  const rows: string[] = [];
+  for (let box = 0; box < snapshot.world.boxes; box++) {
+    if (box % AT_ONCE === AT_ONCE - 1) await new Promise((resolve) => setTimeout(resolve));
+    rows.push(row(snapshot, language, box));
+  }
+  return language.head(snapshot) + rows.join(`${language.comma}\n`) + language.tail(snapshot);
+}
+
+/** The beginning and the end of it. */
+export function preview(snapshot: Snapshot, format: Format): string {
+  const language = LANGUAGES[format];
+  const shown = Math.min(snapshot.world.boxes, 3);
+  const rows = Array.from({ length: shown }, (_, box) => row(snapshot, language, box));
+  if (shown < snapshot.world.boxes) rows.push(`${format === "rs" || format === "json" ? "    " : "  "}... ${formatCount(snapshot.world.boxes - shown)} more`);
+  return language.head(snapshot) + rows.join(`${language.comma}\n`) + language.tail(snapshot);
+}
+
+function row({ boxes, world }: Snapshot, language: Language, box: number): string {
+  const length = 2 * world.dimensions;
+  const corners = Array.from(boxes.subarray(box * length, (box + 1) * length), shortest);
+  return language.row(corners, world.dimensions);
+}
+
+/** The fewest digits that are read back as the same single-precision number. */
+export function shortest(value: number): string {
+  if (Object.is(value, -0)) return "-0.0";
+  for (let digits = 6; digits < 9; digits++) {
+    const text = String(Number(value.toPrecision(digits)));
+    if (Math.fround(Number(text)) === value) return text;
+  }
+  return String(Number(value.toPrecision(9)));
+}

@@ -1,0 +1,3 @@
+import { BoxPlayground } from "./box-playground.ts";
+
+customElements.define("box-playground", BoxPlayground);

@@ -1,0 +1,78 @@
+// The inside of `<box-playground>`, written into the page when it is built. `box-playground.ts`
+// finds the parts by their `data-part`.
+
+import { choice, slider } from "../lab/parts.ts";
+
+/** The counters. */
+export const COUNTERS = [
+  { key: "ms", label: "Time", meaning: "from boxes to the list of all pairs; mean of the middle half of the last 60 steps" },
+  { key: "pairs", label: "Pairs", meaning: "pairs whose boxes overlap on every axis" },
+  { key: "tests", label: "Tests", meaning: "pairs of boxes handed to the box test" },
+  { key: "axisOverlaps", label: "Overlaps on the axis", meaning: "pairs whose intervals overlap on the axis that is swept" },
+  { key: "comparisons", label: "Comparisons of the sort", meaning: "how often the sort compared two edges" },
+  { key: "swaps", label: "Swaps of the sort", meaning: "how often the sort exchanged two edges" },
+] as const;
+
+export function expandPlayground(page: string): string {
+  return page.replace("<box-playground></box-playground>", () => `<box-playground>${markup()}</box-playground>`);
+}
+
+function markup(): string {
+  const rows = COUNTERS.map(
+    ({ key, label, meaning }) =>
+      `<div class="counter" data-counter="${key}"><dt title="${meaning}">${label}</dt><dd>–</dd></div>`,
+  );
+  return `
+    <div class="lab" role="group" aria-label="Playground">
+      <div class="lab-stage">
+        <div class="surface" data-part="surface" tabindex="0" role="application" aria-label="The boxes, those of a pair lit. Arrow keys move the view, plus and minus come closer and move away, zero shows all.">
+          <canvas data-part="picture"></canvas>
+        </div>
+        <p class="stage-message" data-part="message">Loading</p>
+      </div>
+      <div class="lab-transport">
+        <button type="button" class="primary" data-part="play" disabled>Pause</button>
+        <button type="button" data-part="step" disabled>Step</button>
+        <button type="button" data-part="reset" disabled>Reset</button>
+        <button type="button" data-part="fit" disabled>Show all</button>
+        <p class="moment" data-part="moment">Step 0</p>
+        <p class="status" role="status" data-part="status"></p>
+      </div>
+      <div class="lab-side">
+        <div class="lab-method">
+          ${choice("playground", "algorithm", "Algorithm")}
+          ${choice("playground", "sort", "Sort")}
+          ${choice("playground", "axis", "Sweep axis")}
+        </div>
+        <section><h2 class="small">This step</h2><dl>${rows.join("")}</dl></section>
+        <p class="about" data-part="about">&nbsp;</p>
+      </div>
+      <div class="lab-world">
+        ${choice("playground", "scene", "Scene")}
+        ${choice("playground", "motion", "Motion")}
+        ${choice("playground", "dimensions", "Dimensions", [["2", "2D"], ["3", "3D, seen along z"]])}
+        <div class="field">
+          <label for="playground-seed">Seed</label>
+          <input id="playground-seed" data-part="seed" type="number" inputmode="numeric" min="0" max="4294967295" step="1" value="1" autocomplete="off" disabled />
+        </div>
+        ${slider("playground", "boxes", "Boxes", "500")}
+        ${slider("playground", "size", "Size", "× 1")}
+        ${slider("playground", "spread", "Largest : smallest", "× 1")}
+      </div>
+    </div>
+    <section class="export" aria-labelledby="export-heading">
+      <h2 id="export-heading">Take it home</h2>
+      <p>
+        The boxes of this very step, every coordinate to the last bit, with the call that finds their
+        pairs. The address of this page brings the same world back.
+      </p>
+      <div class="export-choice">
+        ${choice("playground", "format", "As", [["js", "JavaScript"], ["rs", "Rust"], ["json", "JSON"]])}
+        <button type="button" data-part="copy" disabled>Copy</button>
+        <button type="button" data-part="download" disabled>Download</button>
+        <button type="button" data-part="share" disabled>Copy the address</button>
+        <p role="status" data-part="exported"></p>
+      </div>
+      <pre tabindex="0" aria-label="The beginning and the end of what is copied"><code data-part="preview"> </code></pre>
+    </section>`;
+}

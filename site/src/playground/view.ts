@@ -1,0 +1,79 @@
+// Moving about in a picture: by pointer, wheel and keys.
+
+import type { Window2 } from "../arena/box-picture.ts";
+
+/** A key moves the view by this share of what is shown. */
+const KEY_STEP = 0.1;
+const KEY_ZOOM = 1.25;
+
+/**
+ * Lets a surface be dragged, pinched and zoomed. `changed` gets the new window, nothing for all
+ * there is. The wheel scrolls the page until the surface has been chosen by a click or a key.
+ */
+export function bindView(
+  surface: HTMLElement,
+  view: () => Window2 | undefined,
+  changed: (view: Window2 | undefined) => void,
+): void {
+  const fingers = new Map<number, { x: number; y: number }>();
+  const move = (dx: number, dy: number): void => {
+    const now = view();
+    if (now) changed({ ...now, x: now.x - dx / now.scale, y: now.y + dy / now.scale });
+  };
+  /** Zooms about a point of the surface, in CSS pixels from its middle. */
+  const zoom = (factor: number, x = 0, y = 0): void => {
+    const now = view();
+    if (!now) return;
+    const scale = now.scale * factor;
+    if (!(scale > 0 && Number.isFinite(scale))) return;
+    changed({ x: now.x + x / now.scale - x / scale, y: now.y - y / now.scale + y / scale, scale });
+  };
+  const fromMiddle = ({ x, y }: { x: number; y: number }): [number, number] => {
+    const { left, top, width, height } = surface.getBoundingClientRect();
+    return [x - left - width / 2, y - top - height / 2];
+  };
+
+  surface.addEventListener("pointerdown", (event) => {
+    surface.setPointerCapture(event.pointerId);
+    fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+  });
+  surface.addEventListener("pointermove", (event) => {
+    const before = fingers.get(event.pointerId);
+    if (!before) return;
+    const now = { x: event.clientX, y: event.clientY };
+    const other = [...fingers].find(([id]) => id !== event.pointerId)?.[1];
+    if (other) {
+      const distance = (finger: { x: number; y: number }): number => Math.max(Math.hypot(finger.x - other.x, finger.y - other.y), 1);
+      zoom(distance(now) / distance(before), ...fromMiddle(other));
+    } else {
+      move(now.x - before.x, now.y - before.y);
+    }
+    fingers.set(event.pointerId, now);
+  });
+  for (const end of ["pointerup", "pointercancel"] as const) {
+    surface.addEventListener(end, (event) => fingers.delete(event.pointerId));
+  }
+  surface.addEventListener(
+    "wheel",
+    (event) => {
+      if (document.activeElement !== surface) return;
+      event.preventDefault();
+      zoom(Math.exp(-event.deltaY / 400), ...fromMiddle({ x: event.clientX, y: event.clientY }));
+    },
+    { passive: false },
+  );
+  surface.addEventListener("keydown", (event) => {
+    const { clientWidth: width, clientHeight: height } = surface;
+    switch (event.key) {
+      case "ArrowLeft": move(KEY_STEP * width, 0); break;
+      case "ArrowRight": move(-KEY_STEP * width, 0); break;
+      case "ArrowUp": move(0, KEY_STEP * height); break;
+      case "ArrowDown": move(0, -KEY_STEP * height); break;
+      case "+": case "=": zoom(KEY_ZOOM); break;
+      case "-": zoom(1 / KEY_ZOOM); break;
+      case "0": changed(undefined); break;
+      default: return;
+    }
+    event.preventDefault();
+  });
+}

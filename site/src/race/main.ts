@@ -1,0 +1,3 @@
+import { RaceTrack } from "./race-track.ts";
+
+customElements.define("race-track", RaceTrack);

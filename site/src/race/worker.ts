@@ -1,0 +1,155 @@
+// The thread of the race: one step of the world, then every contender on the same boxes, one after
+// another, so that none disturbs the clock of another.
+
+import { Arena, type ContenderOptions, type Report, type WorldOptions } from "../arena/door.ts";
+import { formatCount } from "../lab/counters.ts";
+import type { FromRace, Lane, ToRace } from "./messages.ts";
+
+/** More steps a second nobody can follow. */
+const STEP_MS = 50;
+/** A world with more pairs than this would fill the memory. */
+const MOST_PAIRS = 2_000_000;
+/** So many tests take about a second. */
+const MOST_TESTS = 3e8;
+/** So many overlaps to keep take about 200 MB. */
+const MOST_KEPT = 5e6;
+/** A contender that takes longer than this twice in a row is out: the others are waiting. */
+const BUDGET_MS = 400;
+
+interface Contender {
+  readonly options: ContenderOptions;
+  /** Its number in the arena. */
+  readonly number: number;
+  /** Steps over the budget in a row. */
+  late: number;
+  out: string | undefined;
+}
+
+interface Race {
+  readonly run: number;
+  readonly contenders: Contender[];
+  step: number;
+  /** Whether the page has not shown the last frame. */
+  unseen: boolean;
+}
+
+let race: Race | undefined;
+let running = false;
+let due = 0;
+let timer: ReturnType<typeof setTimeout> | undefined;
+
+const send = (message: FromRace, transfer: Transferable[] = []): void => self.postMessage(message, { transfer });
+
+function begin(arena: Arena, run: number, world: WorldOptions, options: readonly ContenderOptions[]): void {
+  race = undefined;
+  arena.begin(world);
+  const pairs = arena.countPairs();
+  if (pairs > MOST_PAIRS) {
+    const reason = `${formatCount(world.boxes)} boxes of this scene make ${formatCount(pairs)} pairs; there is room for ${formatCount(MOST_PAIRS)}. Fewer boxes, smaller ones, or another scene will do.`;
+    send({ type: "refused", run, reason });
+    return;
+  }
+  let number = 0;
+  const contenders = options.map((options): Contender => {
+    const out = refusal(arena, options);
+    if (out === undefined) arena.enter(options);
+    return { options, number: out === undefined ? number++ : -1, late: 0, out };
+  });
+  race = { run, contenders, step: 0, unseen: false };
+  compete(arena, race);
+}
+
+/** Why a contender cannot even begin, if it cannot. */
+function refusal(arena: Arena, options: ContenderOptions): string | undefined {
+  const { tests, kept } = arena.forecast(options);
+  if (tests > MOST_TESTS) return `Out: it would have to look at ${formatCount(tests)} pairs a step.`;
+  if (kept > MOST_KEPT) return `Out: it would have to keep ${formatCount(kept)} overlaps in memory.`;
+  return undefined;
+}
+
+/** Lets every contender that is in find the pairs, each step another one first. */
+function compete(arena: Arena, race: Race): void {
+  const { contenders, step } = race;
+  const reports = new Map<Contender, Report>();
+  contenders.forEach((_, place) => {
+    const contender = contenders[(place + step) % contenders.length];
+    if (!contender || contender.out !== undefined) return;
+    const report = arena.run(contender.number, true);
+    reports.set(contender, report);
+    // The first step sorts from scratch and makes room: it does not count.
+    contender.late = step > 0 && report.ms > BUDGET_MS ? contender.late + 1 : 0;
+    if (contender.late > 1) contender.out = `Out: a step took ${formatCount(report.ms)} ms; ${BUDGET_MS} are allowed.`;
+  });
+  const lanes = contenders.map((contender): Lane => {
+    const report = reports.get(contender);
+    return report ? { report } : { out: contender.out ?? "" };
+  });
+  const first = contenders.find((contender) => reports.has(contender));
+  const pairs = first ? arena.pairs(first.number).slice() : new Uint32Array(0);
+  const boxes = arena.boxes.slice();
+  race.unseen = true;
+  send({ type: "frame", run: race.run, step, boxes, pairs, lanes }, [boxes.buffer, pairs.buffer]);
+}
+
+function advance(arena: Arena): void {
+  if (!race) return;
+  arena.advance();
+  race.step++;
+  compete(arena, race);
+}
+
+/** One step if it is time and the page has shown the last, then back to the queue of messages. */
+function tick(arena: Arena): void {
+  timer = undefined;
+  if (!running || !race || race.unseen) return;
+  const now = performance.now();
+  if (now < due) {
+    timer = setTimeout(() => tick(arena), due - now);
+    return;
+  }
+  due = now + STEP_MS;
+  guarded(() => advance(arena));
+}
+
+function receive(arena: Arena, message: ToRace): void {
+  switch (message.type) {
+    case "begin":
+      begin(arena, message.run, message.world, message.contenders);
+      break;
+    case "pace":
+      running = message.running;
+      break;
+    case "step":
+      advance(arena);
+      break;
+    case "seen":
+      if (race && message.run === race.run) race.unseen = false;
+      break;
+  }
+  timer ??= setTimeout(() => tick(arena));
+}
+
+/** An error is told to the page, and stops the race. */
+function guarded(work: () => void): void {
+  try {
+    work();
+  } catch (error) {
+    running = false;
+    send({ type: "failed", message: error instanceof Error ? error.message : String(error) });
+  }
+}
+
+// Messages that come before the arena is there wait for it, in their order.
+const loaded = Arena.load().then(
+  (arena) => {
+    send({ type: "ready", lists: arena.lists });
+    return arena;
+  },
+  (error: unknown) => {
+    send({ type: "failed", message: String(error) });
+    throw error;
+  },
+);
+self.addEventListener("message", ({ data }: MessageEvent<ToRace>) => {
+  void loaded.then((arena) => guarded(() => receive(arena, data)), () => undefined);
+});

@@ -1,0 +1,84 @@
+//! A world of two or of three dimensions and its contenders, behind one trait.
+
+use sweep_and_prune::PairFinder;
+
+use crate::contender::{Choice, Contender, Forecast, Report, forecast};
+use crate::motion::{LAWS, Moving, resize};
+use crate::{SCENES, clock};
+
+/// The most boxes of a world.
+const MOST_BOXES: f64 = 100_000.0;
+
+/// What the exports do, whatever the dimensions. `None` is a refusal.
+pub trait Arena {
+    fn advance(&mut self);
+    fn boxes(&self) -> *const f32;
+    fn count_pairs(&self) -> Option<u64>;
+    fn enter(&mut self, choice: Choice) -> Option<()>;
+    fn forecast(&self, choice: Choice) -> Option<Forecast>;
+    fn run(&mut self, contender: usize, counting: bool) -> Option<Report>;
+    fn pairs(&self, contender: usize) -> Option<*const u32>;
+}
+
+struct Inside<const D: usize> {
+    world: Moving<D>,
+    contenders: Vec<Contender<D>>,
+}
+
+/// Makes the world that the area describes.
+pub fn open(area: &[f64; 16]) -> Option<Box<dyn Arena>> {
+    match area[0] as u32 {
+        2 => inside::<2>(area),
+        3 => inside::<3>(area),
+        _ => None,
+    }
+}
+
+fn inside<const D: usize>(area: &[f64; 16]) -> Option<Box<dyn Arena>> {
+    let [_, scene, law, boxes, seed, size, spread, ..] = *area;
+    let sensible = (0.0..=MOST_BOXES).contains(&boxes)
+        && (0.01..=100.0).contains(&size)
+        && (1.0..=1000.0).contains(&spread)
+        && scene >= 0.0
+        && law >= 0.0;
+    let scene = SCENES.get(scene as usize).filter(|_| sensible)?;
+    let seed = seed as u64;
+    let mut boxes = scene.boxes::<D, f32>(boxes as usize, seed)?;
+    resize(&mut boxes, size, spread, seed);
+    let world = Moving::new(boxes, LAWS.get(law as usize)?, seed);
+    Some(Box::new(Inside { world, contenders: Vec::new() }))
+}
+
+impl<const D: usize> Arena for Inside<D> {
+    fn advance(&mut self) {
+        self.world.advance();
+    }
+
+    fn boxes(&self) -> *const f32 {
+        // A box is its least corner and then its greatest, and nothing between or behind.
+        const { assert!(size_of::<sweep_and_prune::Aabb<D>>() == 8 * D) };
+        self.world.boxes().as_ptr().cast()
+    }
+
+    fn count_pairs(&self) -> Option<u64> {
+        PairFinder::new().count(self.world.boxes()).ok()
+    }
+
+    fn enter(&mut self, choice: Choice) -> Option<()> {
+        self.contenders.push(Contender::new(choice).ok()?);
+        Some(())
+    }
+
+    fn forecast(&self, choice: Choice) -> Option<Forecast> {
+        forecast(choice, self.world.boxes()).ok()
+    }
+
+    fn run(&mut self, contender: usize, counting: bool) -> Option<Report> {
+        let contender = self.contenders.get_mut(contender)?;
+        contender.run(self.world.boxes(), counting, clock).ok()
+    }
+
+    fn pairs(&self, contender: usize) -> Option<*const u32> {
+        Some(self.contenders.get(contender)?.pairs().as_ptr().cast())
+    }
+}

@@ -1,0 +1,221 @@
+//! What the race and the playground run on: the scenes in motion, and who looks for their pairs.
+//! A door of plain `extern "C"` functions over linear memory, called by `src/arena/door.ts`.
+//!
+//! # Layout
+//! Numbers pass through one area of 16 `f64` at [`arena_area`]:
+//!
+//! | index | in: [`arena_begin`] | out: [`arena_run`] | out: [`arena_forecast`] |
+//! |---|---|---|---|
+//! | 0 | dimensions: 2 or 3 | ms from boxes to pairs | tests |
+//! | 1 | scene, by its place in the list | pairs | overlaps to be kept |
+//! | 2 | motion, likewise | fingerprint, upper 32 bits | |
+//! | 3 | boxes | fingerprint, lower 32 bits | |
+//! | 4 | seed | tests, or -1: not counted | |
+//! | 5 | size | overlaps on the axis, or -1 | |
+//! | 6 | spread | comparisons, or -1 | |
+//! | 7 | | swaps, or -1 | |
+//!
+//! There is one world at a time. Contenders are numbered from 0 in the order in which they came;
+//! [`arena_begin`] forgets them.
+//!
+//! The module imports one function, `env.now() -> f64`: milliseconds from any origin.
+// SAFETY of the exports: their names begin with `arena_` and no other symbol has them. They take
+// numbers only and dereference no pointer.
+#![allow(unsafe_code)]
+
+mod arena;
+pub mod contender;
+pub mod motion;
+
+use std::cell::RefCell;
+use std::sync::LazyLock;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+use sweep_and_prune::algorithms::{Axis, Method, RunnerOptions, Sort};
+use sweep_and_prune_scenes::Scene;
+
+use arena::Arena;
+use contender::Choice;
+
+#[cfg(target_arch = "wasm32")]
+#[link(wasm_import_module = "env")]
+unsafe extern "C" {
+    /// Milliseconds from any origin.
+    safe fn now() -> f64;
+}
+
+/// Outside WebAssembly the crate is only checked, never timed.
+#[cfg(not(target_arch = "wasm32"))]
+fn now() -> f64 {
+    0.0
+}
+
+/// The imported function as one of Rust's own, which alone is an `Fn`.
+fn clock() -> f64 {
+    now()
+}
+
+/// Whether a call was done. What is not done has changed nothing.
+#[repr(u32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Code {
+    /// Done.
+    Ok = 0,
+    /// A number does not name anything, or there is no world.
+    Invalid = 1,
+}
+
+/// Atomic only because a static must be: in WebAssembly these are plain loads and stores.
+static AREA: [AtomicU64; 16] = [const { AtomicU64::new(0) }; 16];
+
+fn read_area() -> [f64; 16] {
+    std::array::from_fn(|index| f64::from_bits(AREA[index].load(Relaxed)))
+}
+
+fn write_area(numbers: &[f64]) {
+    for (word, number) in AREA.iter().zip(numbers) {
+        word.store(number.to_bits(), Relaxed);
+    }
+}
+
+thread_local! {
+    static ARENA: RefCell<Option<Box<dyn Arena>>> = const { RefCell::new(None) };
+}
+
+fn with<R>(run: impl FnOnce(&mut dyn Arena) -> Option<R>) -> Option<R> {
+    ARENA.with_borrow_mut(|arena| run(arena.as_mut()?.as_mut()))
+}
+
+fn code(done: Option<()>) -> Code {
+    if done.is_some() { Code::Ok } else { Code::Invalid }
+}
+
+/// The scenes that can be shown: not the three whose coordinates leave no room for a motion.
+static SCENES: LazyLock<Vec<Scene>> = LazyLock::new(|| {
+    let hidden = [Scene::Extreme, Scene::Subnormal, Scene::Infinite];
+    Scene::ALL.iter().copied().filter(|scene| !hidden.contains(scene)).collect()
+});
+
+/// The rules that choose the sweep axis; behind them come the axes themselves.
+const RULES: [Axis; 3] = [Axis::LargestVariance, Axis::LongestExtent, Axis::FewestOverlaps];
+
+/// Of each kind one item a line, its parts parted by tabs.
+static NAMES: LazyLock<[String; 5]> = LazyLock::new(|| {
+    let library = ["find pairs", "living world"].into_iter();
+    let scenes = SCENES.iter().map(|scene| {
+        let (least, most) = scene.dimensions().into_inner();
+        format!("{}\t{}\t{}\t{most}", scene.name(), scene.description(), least.max(2))
+    });
+    let motions = motion::LAWS.iter().map(|law| format!("{}\t{}", law.name, law.description));
+    [
+        library.chain(Method::ALL.map(Method::name)).collect::<Vec<_>>().join("\n"),
+        Sort::ALL.map(Sort::name).join("\n"),
+        RULES.map(Axis::name).join("\n"),
+        scenes.collect::<Vec<_>>().join("\n"),
+        motions.collect::<Vec<_>>().join("\n"),
+    ]
+});
+
+/// Where the area is.
+#[unsafe(no_mangle)]
+pub extern "C" fn arena_area() -> *const AtomicU64 {
+    AREA.as_ptr()
+}
+
+/// The names of contenders (0), sorts (1), axis rules (2), scenes with a sentence, their least and
+/// their greatest number of dimensions (3), motions with a sentence (4), in UTF-8. How many bytes
+/// there are is in the area at 0; none of a kind that does not exist.
+#[unsafe(no_mangle)]
+pub extern "C" fn arena_names(kind: u32) -> *const u8 {
+    let names = NAMES.get(kind as usize).map_or("", String::as_str);
+    write_area(&[names.len() as f64]);
+    names.as_ptr()
+}
+
+/// Makes the world in the area, and forgets the one before and its contenders.
+#[unsafe(no_mangle)]
+pub extern "C" fn arena_begin() -> Code {
+    let area = read_area();
+    let made = arena::open(&area);
+    let done = made.is_some().then_some(());
+    if made.is_some() {
+        ARENA.set(made);
+    }
+    code(done)
+}
+
+/// Moves the world on by one step.
+#[unsafe(no_mangle)]
+pub extern "C" fn arena_advance() -> Code {
+    code(with(|arena| {
+        arena.advance();
+        Some(())
+    }))
+}
+
+/// The boxes: rows of `f32`, the least corner and then the greatest; null without a world.
+#[unsafe(no_mangle)]
+pub extern "C" fn arena_boxes() -> *const f32 {
+    with(|arena| Some(arena.boxes())).unwrap_or(std::ptr::null())
+}
+
+/// How many pairs the world has now, by the library's finder, which stores none of them; -1 without
+/// a world.
+#[unsafe(no_mangle)]
+pub extern "C" fn arena_count_pairs() -> f64 {
+    with(|arena| arena.count_pairs()).map_or(-1.0, |count| count as f64)
+}
+
+/// Adds a contender: its place, its sort's and its axis' in the lists of [`arena_names`]; an axis
+/// beyond the list is that one, counted from there. Sorts and axes of the library's two are not read.
+#[unsafe(no_mangle)]
+pub extern "C" fn arena_enter(contender: u32, sort: u32, axis: u32, persistent: u32) -> Code {
+    code(choice(contender, sort, axis, persistent).and_then(|choice| with(|a| a.enter(choice))))
+}
+
+/// What a contender's first run would cost, into the area, without adding it.
+#[unsafe(no_mangle)]
+pub extern "C" fn arena_forecast(contender: u32, sort: u32, axis: u32) -> Code {
+    let forecast = choice(contender, sort, axis, 1).and_then(|c| with(|arena| arena.forecast(c)));
+    code(forecast.map(|forecast| write_area(&[forecast.tests, forecast.kept])))
+}
+
+/// Lets a contender find the pairs of the world as it is; its report into the area. It is counted
+/// what it does, on a copy, if `counting` is not 0.
+#[unsafe(no_mangle)]
+pub extern "C" fn arena_run(contender: u32, counting: u32) -> Code {
+    let report = with(|arena| arena.run(contender as usize, counting != 0));
+    code(report.map(|report| {
+        let count = |read: fn(&sweep_and_prune::algorithms::Counts) -> u64| {
+            report.counts.as_ref().map_or(-1.0, |counts| read(counts) as f64)
+        };
+        write_area(&[
+            report.ms,
+            report.pairs as f64,
+            (report.fingerprint >> 32) as f64,
+            f64::from(report.fingerprint as u32),
+            count(|counts| counts.tests),
+            count(|counts| counts.axis_overlaps),
+            count(|counts| counts.comparisons),
+            count(|counts| counts.swaps),
+        ]);
+    }))
+}
+
+/// The pairs of a contender's last run, as many as it reported; null without such a contender.
+#[unsafe(no_mangle)]
+pub extern "C" fn arena_pairs(contender: u32) -> *const u32 {
+    with(|arena| arena.pairs(contender as usize)).unwrap_or(std::ptr::null())
+}
+
+fn choice(contender: u32, sort: u32, axis: u32, persistent: u32) -> Option<Choice> {
+    let method = match contender as usize {
+        0 => return Some(Choice::Finder),
+        1 => return Some(Choice::World),
+        place => *Method::ALL.get(place - 2)?,
+    };
+    let sort = *Sort::ALL.get(sort as usize)?;
+    let axis = axis as usize;
+    let axis = RULES.get(axis).copied().unwrap_or(Axis::Fixed(axis.wrapping_sub(RULES.len())));
+    Some(Choice::Algorithm(RunnerOptions { method, sort, axis, persistent: persistent != 0 }))
+}
