@@ -1,7 +1,9 @@
 import { defineConfig, type Plugin } from "vite";
+import { api } from "./src/api/build.ts";
 import { article } from "./src/article/build.ts";
 import { insertComplexity } from "./src/complexity/table.ts";
 import { expandLabs } from "./src/lab/markup.ts";
+import { offline } from "./src/shell/offline.ts";
 import { pages, shell } from "./src/shell/pages.ts";
 
 /** Writes the inside of each `<ball-lab>` into the page, so that nothing moves when scripts arrive. */
@@ -19,7 +21,7 @@ const complexity: Plugin = {
 export default defineConfig({
   base: "./",
   appType: "mpa",
-  plugins: [shell, article, labs, complexity],
+  plugins: [shell, article, api, labs, complexity, offline],
   worker: { format: "es" },
   build: {
     target: "es2022",

@@ -1,5 +1,248 @@
 import { readFileSync } from "node:fs";
 import { expect, test } from "@playwright/test";
+import { Demo } from "./support/demo.ts";
+import { complaints } from "./support/pages.ts";
+
+test("every demo of the explanation starts, without a complaint", async ({ page }) => {
+  const heard = complaints(page);
+  await page.goto("/");
+  const demos = page.locator("sap-demo");
+  const count = await demos.count();
+  expect(count).toBeGreaterThan(30);
+  for (let at = 0; at < count; at++) {
+    const demo = demos.nth(at);
+    await demo.scrollIntoViewIfNeeded();
+    await expect.poll(() => demo.evaluate((element) => (element as unknown as { balls: unknown[] }).balls.length)).toBeGreaterThan(0);
+  }
+  expect(heard).toEqual([]);
+});
+
+test.describe("does what its caption says", () => {
+  test.beforeEach(({ page }) => page.goto("/"));
+
+  for (const [id, balls, tests] of [["d2", 5, 10], ["d3", 20, 190], ["d6a", 10, 45], ["d13a", 6, 15]] as const) {
+    test(`${id}: ${tests} tests for ${balls} balls, wherever they are`, async ({ page }) => {
+      const demo = await new Demo(page, id).open();
+      expect(await demo.balls()).toHaveLength(balls);
+      await demo.pause();
+      await demo.finish();
+      for (let detections = 0; detections < 3; detections++) {
+        const state = await demo.finish();
+        expect(state.tests).toBe(tests);
+      }
+    });
+  }
+
+  test("d4: two gaps save the third test, and the code says why", async ({ page }) => {
+    const demo = await new Demo(page, "d4").open();
+    const code = page.locator("transitivity-code");
+    await expect(code.locator("[data-part=ac]")).toHaveText("// A and C: skipped");
+    await demo.drag(1, -80);
+    await expect(code.locator("[data-part=ab]")).toContainText("false");
+    await expect(code.locator("[data-part=bc]")).toContainText("true");
+    await expect(code.locator("[data-part=ac]")).toContainText("A.right < C.left");
+    await expect(code.locator("[data-part=why]")).toContainText("must be tested");
+    await demo.drag(1, 80);
+    await expect(code.locator("[data-part=ac]")).toHaveText("// A and C: skipped");
+  });
+
+  test("d5, d11: fewer tests than pairs, as many as overlap on x", async ({ page }) => {
+    for (const id of ["d5", "d11", "d13b"]) {
+      const demo = await new Demo(page, id).open();
+      await demo.pause();
+      await demo.finish();
+      const { tests, axisOverlaps, balls } = await demo.finish();
+      let expected = 0;
+      for (const [at, [x = 0, , r = 0]] of balls.entries()) {
+        for (const [otherX = 0, , otherR = 0] of balls.slice(at + 1)) expected += Number(Math.abs(x - otherX) <= r + otherR);
+      }
+      expect(tests).toBe(expected);
+      expect(axisOverlaps).toBe(expected);
+      expect(tests).toBeLessThan((balls.length * (balls.length - 1)) / 2);
+    }
+  });
+
+  test("d9, d10: the line enters and leaves every ball once", async ({ page }) => {
+    for (const id of ["d9", "d10"]) {
+      const demo = await new Demo(page, id).open();
+      await demo.pause();
+      await demo.finish();
+      const kinds: string[] = [];
+      const before = (await demo.state()).tick;
+      while ((await demo.state()).tick === before) kinds.push(...(await demo.step(1)));
+      // The last step has begun the next sweep already.
+      const entered = kinds.filter((kind) => kind === "enter").length;
+      const left = kinds.filter((kind) => kind === "leave").length;
+      expect([8, 9]).toContain(entered);
+      expect(left).toBe(8);
+    }
+  });
+
+  test("d12, d13: two axes leave only pairs whose boxes overlap", async ({ page }) => {
+    for (const id of ["d12", "d13c"]) {
+      const demo = await new Demo(page, id).open();
+      await demo.pause();
+      await demo.finish();
+      const { tests, pairs, balls } = await demo.finish();
+      let expected = 0;
+      for (const [at, [x = 0, y = 0, r = 0]] of balls.entries()) {
+        for (const [otherX = 0, otherY = 0, otherR = 0] of balls.slice(at + 1)) {
+          expected += Number(Math.abs(x - otherX) <= r + otherR && Math.abs(y - otherY) <= r + otherR);
+        }
+      }
+      expect([tests, pairs]).toEqual([0, expected]);
+    }
+  });
+
+  test("d14, d15: quicksort compares far more than insertion sort, which needs 11 and one for each swap", async ({ page }) => {
+    const quick = await new Demo(page, "d14").open();
+    await quick.pause();
+    await quick.finish();
+    const insertion = await new Demo(page, "d15").open();
+    await insertion.pause();
+    await insertion.finish();
+    for (let detections = 0; detections < 3; detections++) {
+      const ofQuick = await quick.finish();
+      const ofInsertion = await insertion.finish();
+      expect(ofInsertion.comparisons).toBeGreaterThanOrEqual(11);
+      expect(ofInsertion.comparisons).toBeLessThanOrEqual(11 + ofInsertion.swaps);
+      expect(ofQuick.comparisons).toBeGreaterThan(ofInsertion.comparisons);
+    }
+  });
+
+  test("d17: each opening bracket that the right edge of A passes is a swap and an overlap more", async ({ page }) => {
+    const demo = await new Demo(page, "d17").open();
+    const before = await demo.state();
+    await demo.drag(0, 100);
+    await expect.poll(async () => (await demo.state()).axisOverlaps).toBeGreaterThan(before.axisOverlaps);
+  });
+
+  test("the axis: 53 and 9 for the tall world, none and 64 for the wide one, 56 and 8 for the clusters", async ({ page }) => {
+    const demo = await new Demo(page, "axis-demo").open();
+    const world = page.locator("#axis-demo").getByLabel("World");
+    const axis = page.locator("#axis-demo").getByLabel("Sweep along");
+    for (const [name, x, y] of [["Tall", 53, 9], ["Wide", 0, 64], ["Two clusters", 56, 8]] as const) {
+      await world.selectOption(name);
+      for (const [choice, tests] of [["x", x], ["y", y], ["fewest-overlaps", Math.min(x, y)]] as const) {
+        await axis.selectOption(choice);
+        await expect.poll(async () => (await demo.state()).tests, { message: `${name} along ${choice}` }).toBe(tests);
+      }
+    }
+    await axis.selectOption("widest");
+    await expect.poll(async () => (await demo.state()).tests, { message: "the variance is fooled" }).toBe(56);
+  });
+});
+
+test.describe("mistakes are shown to be mistakes", () => {
+  test.beforeEach(({ page }) => page.goto("/"));
+
+  /** How many pairs of boxes overlap. */
+  const overlapping = (balls: number[][]): number => {
+    let pairs = 0;
+    for (const [at, [x = 0, y = 0, r = 0]] of balls.entries()) {
+      for (const [otherX = 0, otherY = 0, otherR = 0] of balls.slice(at + 1)) {
+        pairs += Number(Math.abs(x - otherX) <= r + otherR && Math.abs(y - otherY) <= r + otherR);
+      }
+    }
+    return pairs;
+  };
+
+  for (const [id, missed] of [["centre-sort", 1], ["one-to-n-misses", 1], ["wrong-start-demo", 2]] as const) {
+    test(`${id}: ${missed} of the pairs ${missed === 1 ? "is" : "are"} missed`, async ({ page }) => {
+      const demo = await new Demo(page, id).open();
+      const { pairs } = await demo.state();
+      expect(overlapping(await demo.balls()) - pairs).toBeGreaterThanOrEqual(missed);
+    });
+  }
+
+  test("one-to-n finds the large ball once its edge slips in", async ({ page }) => {
+    const demo = await new Demo(page, "one-to-n-misses").open();
+    expect((await demo.state()).pairs).toBe(0);
+    await demo.drag(0, -150);
+    await expect.poll(async () => (await demo.state()).pairs).toBeGreaterThan(0);
+  });
+
+  test("a wrong start finds the pair when the two part and meet again", async ({ page }) => {
+    const demo = await new Demo(page, "wrong-start-demo").open();
+    expect((await demo.state()).pairs).toBe(0);
+    await demo.drag(0, -60);
+    await demo.drag(0, 60);
+    await expect.poll(async () => (await demo.state()).pairs).toBe(1);
+  });
+
+  test("ties under a strict comparison swap at rest, for ever", async ({ page }) => {
+    const demo = await new Demo(page, "strict-ties").open();
+    await demo.pause();
+    await demo.finish();
+    const swaps = [];
+    const pairs = new Set<number>();
+    for (let detections = 0; detections < 4; detections++) {
+      const state = await demo.finish();
+      swaps.push(state.swaps);
+      pairs.add(state.pairs);
+    }
+    expect(Math.min(...swaps)).toBeGreaterThan(0);
+    expect(pairs.size, "the overlaps flicker").toBeGreaterThan(1);
+  });
+});
+
+test.describe("listings", () => {
+  test("a line lights while the demo does what it says, until that is switched off", async ({ page }) => {
+    await page.goto("/");
+    const demo = await new Demo(page, "d2").open();
+    const listing = page.locator(".listing[data-follows=d2]");
+    await demo.pause();
+    await demo.step(2);
+    await expect(listing.locator(".at-work")).toHaveText(/overlaps\(boxes\[i\], boxes\[j\]\)/);
+    const follow = listing.getByRole("button", { name: "Follow the demo" });
+    await follow.click();
+    await expect(follow).toHaveAttribute("aria-pressed", "false");
+    await expect(listing.locator(".at-work")).toHaveCount(0);
+    await demo.step(2);
+    await expect(listing.locator(".at-work")).toHaveCount(0);
+    await page.reload();
+    await expect(page.locator(".listing [aria-pressed=true]")).toHaveCount(0);
+  });
+
+  test("what is copied is what is tested", async ({ page, context }) => {
+    await context.grantPermissions(["clipboard-read", "clipboard-write"]);
+    await page.goto("/");
+    for (const listing of await page.locator("figure.listing").all()) {
+      await listing.getByRole("button", { name: "Copy" }).click();
+      await expect(listing.getByRole("button", { name: "Copied" })).toBeVisible();
+      const copied = await page.evaluate(() => navigator.clipboard.readText());
+      const name = await listing.locator("figcaption span").textContent();
+      const source = readFileSync(new URL(`../src/listings/${name}`, import.meta.url), "utf8");
+      const shown = source.split("\n").filter((line) => !line.startsWith("import ")).join("\n");
+      // The tags are all that is missing.
+      expect(copied.replace(/\s+/g, "")).toBe(shown.replace(/(\/\/)?(\s+@[a-z]+)+$/gm, "").replace(/\s+/g, ""));
+      expect(copied).not.toContain("@");
+    }
+  });
+});
+
+test("the contents lead to every section and say where one is", async ({ page }) => {
+  await page.goto("/");
+  const contents = page.getByRole("navigation", { name: "Contents" });
+  const links = await contents.getByRole("link").all();
+  expect(links.length).toBeGreaterThan(12);
+  for (const link of [links[3], links.at(-1), links[0]]) {
+    await link?.click();
+    await expect(link as NonNullable<typeof link>).toHaveAttribute("aria-current", "true");
+  }
+});
+
+test.describe("without scripts", () => {
+  test.use({ javaScriptEnabled: false });
+
+  test("text, listings, figures and the table are all there", async ({ page }) => {
+    await page.goto("/");
+    await expect(page.locator("main section h2")).toHaveCount(15);
+    await expect(page.locator("figure.listing pre .line").first()).toBeVisible();
+    await expect(page.locator("svg.figure")).toHaveCount(10);
+    await expect(page.locator("#cost table")).toBeVisible();
+  });
+});
 
 test("the library's pairs are those of brute force", async ({ page }) => {
   await page.goto("/");
@@ -13,7 +256,7 @@ test("the library's pairs are those of brute force", async ({ page }) => {
 test("the complexity table shows every measured variant and what it claims", async ({ page }) => {
   await page.goto("/");
   const { variants } = JSON.parse(readFileSync(new URL("../../docs/complexity.json", import.meta.url), "utf8"));
-  const rows = page.locator(".table-scroll tbody tr");
+  const rows = page.locator("#cost tbody tr");
   await expect(rows).toHaveCount(variants.length);
   for (const [at, { method, sort, best, worst, space, rows: measured }] of variants.entries()) {
     const row = rows.nth(at);

@@ -69,7 +69,7 @@ findPairs(boxes, { dimensions: 2 }); // 0, 2`;
 /** Fills in the listings and the drawings. */
 function expand(page: string): string {
   return page
-    .replace("<trial-code></trial-code>", () => highlight(TRIAL, "how the library is called"))
+    .replace("<trial-code></trial-code>", () => highlight(TRIAL, "javascript", "how the library is called"))
     .replace(/<code-listing name="([^"]*)"(?: follows="([^"]*)")?><\/code-listing>/g, (_, name: string, follows?: string) =>
       listing(name, follows),
     )

@@ -5,9 +5,9 @@
 import { readFileSync } from "node:fs";
 import { createCssVariablesTheme, createHighlighter, type ShikiTransformer } from "shiki";
 
-const LANGUAGE = "javascript";
+type Language = "javascript" | "rust" | "python" | "shell";
 const colours = createCssVariablesTheme({ name: "css-variables", variablePrefix: "--code-" });
-const highlighter = await createHighlighter({ langs: [LANGUAGE], themes: [colours] });
+const highlighter = await createHighlighter({ langs: ["javascript", "rust", "python", "shell"], themes: [colours] });
 
 /** Tags at the end of a line, with the slashes before them if nothing else stands behind those. */
 const TAGS = /\s*(?:\/\/)?((?:\s+@[a-z]+)+)\s*$/;
@@ -29,12 +29,12 @@ export function listing(name: string, follows: string | undefined): string {
   return `
     <figure class="listing"${follows ? ` data-follows="${follows}"` : ""}>
       <figcaption><span>${name}.js</span>${follow}<button type="button" class="small" data-part="copy">Copy</button></figcaption>
-      ${highlight(code, `${name}.js`, kinds)}
+      ${highlight(code, "javascript", `${name}.js`, kinds)}
     </figure>`;
 }
 
 /** Code in colour, each line with what it does. */
-export function highlight(code: string, label: string, kinds: readonly string[] = []): string {
+export function highlight(code: string, lang: Language, label: string, kinds: readonly string[] = []): string {
   const marks: ShikiTransformer = {
     pre(node) {
       node.properties = { tabindex: "0", role: "region", "aria-label": `Listing: ${label}` };
@@ -44,5 +44,5 @@ export function highlight(code: string, label: string, kinds: readonly string[] 
       if (kind) node.properties["data-kinds"] = kind;
     },
   };
-  return highlighter.codeToHtml(code, { lang: LANGUAGE, theme: "css-variables", transformers: [marks] });
+  return highlighter.codeToHtml(code, { lang, theme: "css-variables", transformers: [marks] });
 }

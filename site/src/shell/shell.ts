@@ -11,3 +11,12 @@ if (select) {
   onThemeChange(show);
   select.addEventListener("change", () => choose(select.value as Choice));
 }
+
+// The pages are kept for when there is no network. Not where a demo stands in someone else's page.
+if (import.meta.env.PROD && select && "serviceWorker" in navigator) {
+  addEventListener("load", () => {
+    navigator.serviceWorker.register(new URL("../service-worker.js", import.meta.url)).catch(() => {
+      // Forbidden here, or no secure connection: then the pages need the network.
+    });
+  });
+}

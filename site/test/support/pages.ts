@@ -12,8 +12,9 @@ export const PAGES: readonly string[] = readdirSync(new URL("../../", import.met
 export function complaints(page: Page): string[] {
   const all: string[] = [];
   const hear = (complaint: string): void => {
-    // What the driver in software says of its own slowness is not the page's fault.
-    if (!/GPU stall|GL Driver Message|software WebGL/i.test(complaint)) all.push(complaint);
+    // What the driver in software says of its own slowness is not the page's fault, nor is that the
+    // tests forbid service workers.
+    if (!/GPU stall|GL Driver Message|software WebGL|blocked by Playwright/i.test(complaint)) all.push(complaint);
   };
   page.on("console", (message) => {
     if (message.type() === "error" || message.type() === "warning") hear(message.text());

@@ -32,9 +32,9 @@ export function boxTest(): string {
 /** Three boxes in a row: two gaps, and the third that follows from them. */
 export function transitivity(): string {
   const boxes: Box[] = [
-    { id: 0, left: 20, top: 60, right: 140, bottom: 140 },
-    { id: 1, left: 175, top: 20, right: 285, bottom: 110 },
-    { id: 2, left: 315, top: 50, right: 425, bottom: 150 },
+    { id: 0, left: 10, top: 60, right: 130, bottom: 140 },
+    { id: 1, left: 200, top: 20, right: 320, bottom: 110 },
+    { id: 2, left: 395, top: 50, right: 510, bottom: 150 },
   ];
   const gaps = [0, 1].map((at) => {
     const [one, next] = [boxes[at] as Box, boxes[at + 1] as Box];
@@ -46,7 +46,7 @@ export function transitivity(): string {
   const bars = boxes.map(({ id, left, right }) => line(left, 178, right, 178, `bar body-${id}`)).join("");
   return svg(
     "transitivity",
-    445,
+    520,
     252,
     "Boxes A, B and C from left to right, with a gap between A and B and a gap between B and C. So there is one between A and C.",
     boxes.map(body).join("") + gaps.join("") + bars + whole,

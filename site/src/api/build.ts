@@ -1,0 +1,68 @@
+// The page of the API: examples in colour, and links to the documentation where it has been made.
+
+import { existsSync } from "node:fs";
+import type { Plugin } from "vite";
+import { highlight } from "../article/listing.ts";
+
+const EXAMPLES = {
+  rust: {
+    language: "rust",
+    code: `use sweep_and_prune::{Aabb, find_pairs};
+
+let boxes = [
+    Aabb::new([0.0, 0.0], [2.0, 2.0]),
+    Aabb::new([5.0, 5.0], [6.0, 6.0]),
+    Aabb::new([2.0, 1.0], [3.0, 4.0]), // touches the first box
+];
+assert_eq!(find_pairs(&boxes)?, [[0, 2]]);`,
+  },
+  js: {
+    language: "javascript",
+    code: `import { init, findPairs } from "sweep-and-prune";
+
+await init(); // once
+const boxes = new Float32Array([
+  0, 0, 2, 2, // minX, minY, maxX, maxY
+  5, 5, 6, 6,
+  2, 1, 3, 4, // touches the first box
+]);
+findPairs(boxes, { dimensions: 2 }); // Uint32Array [0, 2]`,
+  },
+  python: {
+    language: "python",
+    code: `import numpy as np
+import sweep_and_prune as sap
+
+boxes = np.array([
+    [0, 0, 2, 2],  # min x, min y, max x, max y
+    [5, 5, 6, 6],
+    [2, 1, 3, 4],  # touches the first box
+], dtype=np.float32)
+sap.find_pairs(boxes)  # array([[0, 2]], dtype=uint32)`,
+  },
+} as const;
+
+/** Where each tool begins its documentation, below public/. */
+const DOCUMENTATION = {
+  rust: "api/rust/sweep_and_prune/index.html",
+  js: "api/js/index.html",
+  python: "api/python/index.html",
+} as const;
+
+export const api: Plugin = {
+  name: "api",
+  transformIndexHtml: {
+    order: "pre",
+    handler: (page) =>
+      page
+        .replace(/<api-example name="(rust|js|python)"><\/api-example>/g, (_, name: keyof typeof EXAMPLES) => {
+          const { language, code } = EXAMPLES[name];
+          return `<div class="listing">${highlight(code, language, `an example in ${language}`)}</div>`;
+        })
+        .replace(/<api-link name="(rust|js|python)">(.*?)<\/api-link>/g, (_, name: keyof typeof DOCUMENTATION, text: string) => {
+          const path = DOCUMENTATION[name];
+          const exists = existsSync(new URL(`../../public/${path}`, import.meta.url));
+          return exists ? `<p><a href="./${path}">${text}</a></p>` : "";
+        }),
+  },
+};
