@@ -1,6 +1,7 @@
 import { defineConfig, type Plugin } from "vite";
 import { api } from "./src/api/build.ts";
 import { article } from "./src/article/build.ts";
+import { benchmark, peers } from "./src/benchmark/build.ts";
 import { insertComplexity } from "./src/complexity/table.ts";
 import { expandLabs } from "./src/lab/markup.ts";
 import { offline } from "./src/shell/offline.ts";
@@ -21,8 +22,8 @@ const complexity: Plugin = {
 export default defineConfig({
   base: "./",
   appType: "mpa",
-  plugins: [shell, article, api, labs, complexity, offline],
-  worker: { format: "es" },
+  plugins: [shell, article, api, labs, complexity, benchmark, offline],
+  worker: { format: "es", plugins: () => [peers()] },
   build: {
     target: "es2022",
     chunkSizeWarningLimit: 800,

@@ -6,6 +6,9 @@ import type { Plugin } from "vite";
 
 const publicFiles = new URL("../../public/", import.meta.url);
 
+/** What is larger, the engines of the benchmark page, is fetched by who wants it. */
+const LARGE = 1_000_000;
+
 export const offline: Plugin = {
   name: "offline",
   apply: "build",
@@ -15,8 +18,10 @@ export const offline: Plugin = {
       const hash = createHash("sha256");
       const files: string[] = [];
       for (const output of Object.values(bundle)) {
+        const content = output.type === "chunk" ? output.code : output.source;
+        if (content.length > LARGE) continue;
         files.push(output.fileName);
-        hash.update(output.fileName).update(output.type === "chunk" ? output.code : output.source);
+        hash.update(output.fileName).update(content);
       }
       // Beside what is built, the single files that are copied as they are; folders of
       // documentation are too large to fetch unasked.

@@ -1,0 +1,100 @@
+// The recorded results, in the format of bench/README.md as far as the page shows it.
+
+export interface Times {
+  readonly median_ns: number;
+  readonly ratio: number | null;
+  readonly peak_bytes: number | null;
+}
+
+export type Outcome = { readonly Timed: Times } | { readonly Untimed: { readonly why: string } };
+
+export interface Entry {
+  readonly name: string;
+  readonly rival: boolean;
+  readonly outcome: Outcome;
+}
+
+export interface Case {
+  readonly scene: string;
+  readonly dimensions: number;
+  readonly boxes: number;
+  readonly pairs: number;
+  readonly reference: string;
+  readonly load: number | null;
+  readonly results: readonly Entry[];
+}
+
+export interface Machine {
+  readonly cpu: string;
+  readonly cores: number;
+  readonly load: number | null;
+  readonly system: string;
+}
+
+/** A file as it was kept. */
+export interface Recorded {
+  readonly date: string;
+  readonly machine: Machine;
+  readonly node?: string;
+  readonly rustc?: string;
+  readonly versions?: Readonly<Record<string, string>>;
+  readonly how?: Readonly<Record<string, string>>;
+  readonly cases?: readonly Case[];
+  readonly worlds?: readonly Case[];
+}
+
+/** A file as the page reads it. */
+export interface Run {
+  readonly kind: "native" | "javascript";
+  readonly name: string;
+  readonly address: string;
+  readonly date: string;
+  readonly machine: Machine;
+  readonly tools: string;
+  readonly versions: Readonly<Record<string, string>>;
+  readonly how: Readonly<Record<string, string>>;
+  readonly cases: readonly Case[];
+  readonly worlds: readonly Case[];
+}
+
+/** The sweep that a good developer writes in an hour: beside the peers, and not one of them. */
+export const PLAIN = /^plain\b/;
+
+export function timesOf({ outcome }: Entry): Times | undefined {
+  return "Timed" in outcome ? outcome.Timed : undefined;
+}
+
+/** The fastest of ours; in JavaScript beside native, that which JavaScript calls. */
+export function fastestOurs(one: Case): number | undefined {
+  const times = one.results.filter((entry) => !entry.rival && !/^native/.test(entry.name)).flatMap((entry) => timesOf(entry) ?? []);
+  return times.length > 0 ? Math.min(...times.map(({ median_ns }) => median_ns)) : undefined;
+}
+
+/** The fastest peer and how many times as long as ours it takes. */
+export function fastestPeer(one: Case): { name: string; ratio: number } | undefined {
+  const ours = fastestOurs(one);
+  const peers = one.results.filter((entry) => entry.rival && !PLAIN.test(entry.name));
+  const timed = peers.flatMap((entry) => (timesOf(entry) ? [{ name: entry.name, ns: timesOf(entry)?.median_ns ?? 0 }] : []));
+  const first = timed.sort((a, b) => a.ns - b.ns)[0];
+  return first && ours ? { name: first.name, ratio: first.ns / ours } : undefined;
+}
+
+/** A number of nanoseconds with a unit that suits it. */
+export function duration(ns: number): string {
+  if (ns < 1e3) return `${significant(ns)} ns`;
+  if (ns < 1e6) return `${significant(ns / 1e3)} µs`;
+  if (ns < 1e9) return `${significant(ns / 1e6)} ms`;
+  return `${significant(ns / 1e9)} s`;
+}
+
+/** A number of bytes with a unit that suits it. */
+export function bytes(count: number): string {
+  if (count < 1e6) return `${significant(count / 1e3)} KB`;
+  return count < 1e9 ? `${significant(count / 1e6)} MB` : `${significant(count / 1e9)} GB`;
+}
+
+export function significant(value: number): string {
+  return value >= 100 ? value.toFixed(0) : String(Number(value.toPrecision(value >= 10 ? 3 : 2)));
+}
+
+export const count = (value: number): string => Math.round(value).toLocaleString("en");

@@ -1,0 +1,188 @@
+// A run in this browser: contenders in workers, checked, then timed in rounds.
+
+import { type Contender, contenders, OURS, WORLD } from "../../../bench/js/contenders/index.js";
+import { contender as bruteForce, REFERENCE_LIMIT } from "../../../bench/js/src/reference.js";
+import type { Answer, Ready, Start, Time } from "./messages.ts";
+import type { Case, Entry } from "./results.ts";
+
+/** Who does not answer for so long is stopped, in ms. */
+const LIMIT = 10_000;
+/** Who takes longer for a call is not timed, in ms. */
+const TOO_SLOW = 3_000;
+const ROUNDS = 5;
+/** A contender's turn in a round, in ms. */
+const TURN = 30;
+
+export interface Wish {
+  readonly scene: string;
+  readonly dimensions: number;
+  readonly sizes: readonly number[];
+  readonly contenders: readonly Contender[];
+  readonly isMoving: boolean;
+}
+
+/** Runs it all, a case for each number of boxes; `progress` is told how far it is, from 0 to 1. */
+export async function* measure(
+  wish: Wish,
+  progress: (done: number, what: string) => void,
+  signal: AbortSignal,
+): AsyncGenerator<Case> {
+  const slow = new Map<string, number>();
+  for (const [at, boxes] of wish.sizes.entries()) {
+    const part = (share: number, what: string): void => progress((at + share) / wish.sizes.length, what);
+    yield await measureOne(wish, boxes, part, signal, slow);
+  }
+}
+
+interface Running {
+  readonly contender: Contender;
+  readonly remote: Remote;
+  readonly ready: Ready;
+  readonly rounds: number[];
+}
+
+async function measureOne(
+  { scene, dimensions, contenders: chosen, isMoving }: Wish,
+  boxes: number,
+  progress: (share: number, what: string) => void,
+  signal: AbortSignal,
+  slow: Map<string, number>,
+): Promise<Case> {
+  const setting = { scene, dimensions, boxes };
+  const remotes: Remote[] = [];
+  const results: Entry[] = [];
+  const drop = ({ name, rival }: Contender, why: string): void => {
+    results.push({ name, rival, outcome: { Untimed: { why } } });
+  };
+  const check = async (contender: Contender): Promise<Running | undefined> => {
+    const known = slow.get(contender.name);
+    if (known !== undefined && known * boxes > TOO_SLOW) {
+      drop(contender, "too slow, as fewer boxes showed");
+      return undefined;
+    }
+    const remote = new Remote(signal);
+    remotes.push(remote);
+    try {
+      const ready = await remote.start({ ...setting, contender: contender.name });
+      slow.set(contender.name, ready.estimate / boxes);
+      return { contender, remote, ready, rounds: [] };
+    } catch (error) {
+      signal.throwIfAborted();
+      if (error instanceof TooLong) slow.set(contender.name, Infinity);
+      drop(contender, error instanceof Error ? error.message : String(error));
+      return undefined;
+    }
+  };
+
+  try {
+    let running: Running[] = [];
+    const size = boxes.toLocaleString("en");
+    progress(0, `the right pairs of ${size} boxes`);
+    const right = boxes <= REFERENCE_LIMIT ? await check(bruteForce) : undefined;
+    for (const [at, contender] of chosen.entries()) {
+      progress((0.6 * (at + 1)) / (chosen.length + 1), `${contender.name} checked on ${size} boxes`);
+      const one = await check(contender);
+      if (one) running.push(one);
+    }
+    const agreed = right ?? running.find((one) => running.some((other) => isWitness(one, other)));
+    running = running.filter(({ contender, ready }) => {
+      const why = !agreed
+        ? "nobody to agree with"
+        : ready.fingerprint !== agreed.ready.fingerprint
+          ? `other pairs, ${ready.pairs} of them`
+          : ready.estimate > TOO_SLOW
+            ? `over ${TOO_SLOW / 1000} s`
+            : undefined;
+      if (why) drop(contender, why);
+      return !why;
+    });
+
+    for (let round = 0; round < ROUNDS; round++) {
+      progress(0.6 + (0.4 * round) / ROUNDS, `round ${round + 1} of ${ROUNDS} on ${size} boxes`);
+      for (let at = 0; at < running.length; at++) {
+        const one = running[(at + round) % running.length];
+        if (!one || (round >= 2 && one.ready.estimate > 500)) continue;
+        const calls = Math.min(Math.max(1, Math.round(TURN / Math.max(one.ready.estimate, 0.01))), 500);
+        one.rounds.push(await one.remote.time({ calls }));
+      }
+    }
+    const ours = (isMoving ? running.find(({ contender }) => contender.name === WORLD) : undefined) ?? running.find(({ contender }) => contender.name === OURS);
+    const timed = running.map(({ contender: { name, rival }, rounds }): Entry => {
+      const ratios = rounds.map((time, round) => time / (ours?.rounds[round] ?? NaN));
+      return { name, rival, outcome: { Timed: { median_ns: median(rounds) * 1e6, ratio: median(ratios), peak_bytes: null } } };
+    });
+    const reference = right ? bruteForce.name : agreed ? "two that agree" : "nothing";
+    return { ...setting, pairs: agreed?.ready.pairs ?? 0, reference, load: null, results: [...timed, ...results] };
+  } finally {
+    for (const remote of remotes) remote.stop();
+  }
+}
+
+/** Whether two contenders from different packages found the same. */
+function isWitness(one: Running, other: Running): boolean {
+  return one.contender.package !== other.contender.package && one.ready.fingerprint === other.ready.fingerprint;
+}
+
+class TooLong extends Error {}
+
+/** A contender in its worker. */
+class Remote {
+  readonly #worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
+  readonly #signal: AbortSignal;
+
+  constructor(signal: AbortSignal) {
+    this.#signal = signal;
+  }
+
+  async start(message: Start): Promise<Ready> {
+    const answer = await this.#ask(message);
+    if ("ready" in answer) return answer.ready;
+    throw new Error("an answer to another question");
+  }
+
+  async time(message: Time): Promise<number> {
+    const answer = await this.#ask(message);
+    return "time" in answer ? answer.time : NaN;
+  }
+
+  stop(): void {
+    this.#worker.terminate();
+  }
+
+  #ask(message: Start | Time): Promise<Answer> {
+    const { promise, resolve, reject } = withResolvers<Answer>();
+    const over = new AbortController();
+    const timer = setTimeout(() => reject(new TooLong(`over ${LIMIT / 1000} s`)), LIMIT);
+    const { signal } = over;
+    this.#worker.addEventListener(
+      "message",
+      ({ data }: MessageEvent<Answer>) => ("failed" in data ? reject(new Error(data.failed)) : resolve(data)),
+      { signal },
+    );
+    this.#worker.addEventListener("error", ({ message }) => reject(new Error(message || "its worker did not start")), { signal });
+    this.#signal.addEventListener("abort", () => reject(this.#signal.reason), { signal });
+    if (this.#signal.aborted) reject(this.#signal.reason);
+    else this.#worker.postMessage(message);
+    return promise.finally(() => {
+      clearTimeout(timer);
+      over.abort();
+    });
+  }
+}
+
+function withResolvers<T>(): { promise: Promise<T>; resolve(value: T): void; reject(reason: unknown): void } {
+  let resolve!: (value: T) => void;
+  let reject!: (reason: unknown) => void;
+  const promise = new Promise<T>((fulfil, refuse) => ([resolve, reject] = [fulfil, refuse]));
+  return { promise, resolve, reject };
+}
+
+function median(numbers: readonly number[]): number {
+  const sorted = numbers.filter((number) => !Number.isNaN(number)).sort((a, b) => a - b);
+  return sorted[sorted.length >> 1] ?? NaN;
+}
+
+/** Those that can take part in a task. */
+export function contendersFor(dimensions: number, task: "find" | "follow"): readonly Contender[] {
+  return contenders.filter((one) => one.dimensions.includes(dimensions) && one.tasks.includes(task));
+}

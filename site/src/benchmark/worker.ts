@@ -1,0 +1,41 @@
+// One contender on one scene, in a thread of its own: it can be stopped, and what it leaves behind
+// slows nobody.
+
+import { contenders } from "../../../bench/js/contenders/index.js";
+import { contender as bruteForce } from "../../../bench/js/src/reference.js";
+import { Scenes } from "../../../bench/js/src/scenes.js";
+import { Trial } from "../../../bench/js/src/trial.js";
+import scenesUrl from "../generated/bench-scenes.wasm?url";
+import type { Answer, Start, Time } from "./messages.ts";
+
+// What box-intersect's pool of arrays looks for, written when everybody used browserify.
+Object.assign(globalThis, { global: globalThis });
+
+const clock = { start: () => performance.now(), since: (start: number) => performance.now() - start };
+const answer = (message: Answer): void => postMessage(message);
+
+let trial: Trial | undefined;
+
+async function start({ contender, scene, dimensions, boxes }: Start): Promise<void> {
+  const entry = [...contenders, bruteForce].find(({ name }) => name === contender);
+  if (!entry) throw new Error(`there is no contender '${contender}'`);
+  const [scenes, module] = await Promise.all([
+    fetch(scenesUrl).then(async (response) => Scenes.start(await response.arrayBuffer())),
+    entry.load(),
+  ]);
+  trial = await Trial.start(scenes.open(scene, dimensions, boxes), dimensions, module, clock);
+  const { fingerprint, pairs, longest } = trial.check();
+  if (longest < 1000 && entry !== bruteForce) trial.warmUp();
+  const estimate = longest < 200 && entry !== bruteForce ? (trial.time(1, longest < 20 ? 10 : 1)[0] ?? longest) : longest;
+  answer({ ready: { fingerprint, pairs, estimate } });
+}
+
+addEventListener("message", async ({ data }: MessageEvent<Start | Time>) => {
+  try {
+    if ("contender" in data) await start(data);
+    // Clocks of browsers are coarse: calls are timed together.
+    else answer({ time: trial?.time(1, data.calls)[0] ?? NaN });
+  } catch (error) {
+    answer({ failed: error instanceof Error ? error.message : String(error) });
+  }
+});

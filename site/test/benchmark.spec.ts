@@ -1,0 +1,111 @@
+import { readdirSync, readFileSync } from "node:fs";
+import { expect, type Page, test } from "@playwright/test";
+import { complaints, requestsElsewhere, violations } from "./support/pages.ts";
+
+/** The newest file of the native results, which the page opens with. */
+const folder = new URL("../../bench/results/", import.meta.url);
+const newest = readdirSync(folder).filter((name) => name.endsWith(".json")).sort((a, b) => b.slice(-15).localeCompare(a.slice(-15)))[0];
+const kept = newest ? JSON.parse(readFileSync(new URL(newest, folder), "utf8")) : undefined;
+
+test.describe("the recorded results", () => {
+  test.skip(!kept, "nothing was kept");
+
+  test.beforeEach(async ({ page }) => {
+    await page.goto("/benchmark.html");
+    await expect(page.locator("#plot-time svg").first()).toBeVisible();
+  });
+
+  test("are shown for the scene chosen: plots and the numbers of the file", async ({ page }) => {
+    await expect(page.locator("#recorded-machine")).toContainText(kept.machine.cpu);
+    await expect(page.locator("#recorded-machine")).toContainText(kept.date);
+    const scene = kept.cases.find(({ boxes }: { boxes: number }) => boxes > 100);
+    await page.getByLabel("Scene").first().selectOption(`${scene.scene} ${scene.dimensions}D`);
+    await page.getByText("The numbers of this scene").click();
+    const rows = page.locator("#recorded-table tbody tr");
+    for (const { name, outcome } of scene.results) {
+      const row = rows.filter({ has: page.getByRole("rowheader", { name, exact: true }) });
+      const expected = outcome.Timed ? /\d (ns|µs|ms|s)\b/ : outcome.Untimed.why;
+      await expect(row.locator("td").first()).toContainText(expected);
+    }
+    const before = await page.locator("#plot-time > svg").getAttribute("aria-label");
+    await page.getByLabel("Scene").first().selectOption({ index: 1 });
+    await expect(page.locator("#plot-time > svg")).not.toHaveAttribute("aria-label", before ?? "");
+    await expect(page.locator("#plot-ratio > svg")).toHaveAttribute("aria-label", /fastest peer takes at least [\d.]+ times/);
+  });
+
+  test("are offered as the file that was kept", async ({ page, request }) => {
+    const address = await page.getByRole("link", { name: /JSON/ }).getAttribute("href");
+    expect(await (await request.get(`/${address}`)).json()).toEqual(kept);
+  });
+});
+
+/** Chooses few boxes and these peers only. */
+async function choose(page: Page, peers: readonly string[], sizes = ["1000"]): Promise<void> {
+  await page.goto("/benchmark.html");
+  await expect(page.getByRole("button", { name: "Run" })).toBeEnabled();
+  for (const box of await page.locator("#here input[name=size]").all()) await box.setChecked(sizes.includes(await box.inputValue()));
+  for (const box of await page.locator("#here input[name=peer]").all()) await box.setChecked(peers.includes(await box.inputValue()));
+}
+
+const row = (page: Page, name: string) =>
+  page.locator("#here-table tbody tr").filter({ has: page.getByRole("rowheader", { name, exact: true }) });
+
+test.describe("run it here", () => {
+  test("every light peer is checked and timed, in its worker, without a request to anybody else", async ({ page, baseURL }) => {
+    const heard = complaints(page);
+    const elsewhere = requestsElsewhere(page, baseURL ?? "");
+    for (const [scene, dimensions] of [["mixed", "2"], ["drift", "3"]] as const) {
+      await page.goto("/benchmark.html");
+      await expect(page.getByRole("button", { name: "Run" })).toBeEnabled();
+      await page.locator("#here-scene").selectOption(scene);
+      await page.locator("#here-dimensions").selectOption(dimensions);
+      await page.getByLabel("10,000", { exact: true }).uncheck();
+      const peers = await page.locator("#here input[name=peer]:checked").evaluateAll((all) => all.map((box) => (box as HTMLInputElement).value));
+      expect(peers.length).toBeGreaterThan(3);
+      await page.getByRole("button", { name: "Run" }).click();
+      await expect(page.locator("#here-status")).toContainText("Done.", { timeout: 90_000 });
+      for (const name of ["sweep-and-prune", ...peers]) await expect(row(page, name).locator("td")).toHaveText(/\d (µs|ms)/);
+      await expect(page.locator("#here-status")).toContainText(/ours .* times as long/);
+      await expect(page.locator("#plot-here > svg")).toBeVisible();
+    }
+    expect(await violations(page)).toEqual([]);
+    expect(heard).toEqual([]);
+    expect(elsewhere).toEqual([]);
+  });
+
+  test("who finds other pairs is not timed", async ({ page, context }) => {
+    await context.route(/\/flatbush-[^/]*\.js/, (route) =>
+      route.fulfill({
+        contentType: "text/javascript",
+        body: "export const create = async () => ({ find: () => new Uint32Array([0, 1]) });",
+      }),
+    );
+    await choose(page, ["flatbush", "rbush"]);
+    await page.getByRole("button", { name: "Run" }).click();
+    await expect(page.locator("#here-status")).toContainText("Done.", { timeout: 60_000 });
+    await expect(row(page, "flatbush").locator("td")).toHaveText("other pairs, 1 of them");
+    await expect(row(page, "rbush").locator("td")).toHaveText(/\d (µs|ms)/);
+  });
+
+  test("is started and cancelled by keyboard, and can be started again", async ({ page }) => {
+    await choose(page, ["plain sweep", "box-intersect", "flatbush", "rbush", "planck"], ["1000", "10000", "100000"]);
+    await page.getByRole("button", { name: "Run" }).focus();
+    await page.keyboard.press("Enter");
+    await expect(page.locator("#here-status")).toContainText("Measuring");
+    await expect(page.getByRole("button", { name: "Cancel" })).toBeFocused();
+    await page.keyboard.press("Enter");
+    await expect(page.locator("#here-status")).toHaveText("Cancelled.");
+    await expect(page.getByRole("button", { name: "Run" })).toBeFocused();
+    expect(page.workers()).toEqual([]);
+
+    await choose(page, []);
+    await page.getByRole("button", { name: "Run" }).click();
+    await expect(page.locator("#here-status")).toContainText("Done.", { timeout: 60_000 });
+  });
+
+  test("says so if nothing is chosen", async ({ page }) => {
+    await choose(page, [], []);
+    await page.getByRole("button", { name: "Run" }).click();
+    await expect(page.locator("#here-status")).toContainText("at least one number of boxes");
+  });
+});
