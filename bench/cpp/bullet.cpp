@@ -24,12 +24,28 @@ std::uint32_t as_id(const void *pointer) {
     return static_cast<std::uint32_t>(reinterpret_cast<std::size_t>(pointer));
 }
 
+btBroadphaseProxy *create_proxy(btBroadphaseInterface &broadphase, const Boxes &boxes,
+                                std::size_t id) {
+    return broadphase.createProxy(min_corner(boxes, id), max_corner(boxes, id),
+                                  BOX_SHAPE_PROXYTYPE, as_pointer(id),
+                                  btBroadphaseProxy::DefaultFilter, btBroadphaseProxy::AllFilter,
+                                  nullptr);
+}
+
 void fill(btBroadphaseInterface &broadphase, const Boxes &boxes) {
-    for (std::size_t id = 0; id < boxes.count; ++id) {
-        broadphase.createProxy(min_corner(boxes, id), max_corner(boxes, id), BOX_SHAPE_PROXYTYPE,
-                               as_pointer(id), btBroadphaseProxy::DefaultFilter,
-                               btBroadphaseProxy::AllFilter, nullptr);
+    for (std::size_t id = 0; id < boxes.count; ++id) create_proxy(broadphase, boxes, id);
+}
+
+// An incremental sweep in a world of these bounds.
+std::unique_ptr<btBroadphaseInterface> make_sweep(const btVector3 &low, const btVector3 &high,
+                                                  std::size_t count) {
+    const unsigned most = static_cast<unsigned>(count) + 1;
+    // 16 bits are the default, and enough for 16,384 boxes.
+    if (most < 16384) {
+        return std::make_unique<btAxisSweep3>(low, high, static_cast<unsigned short>(most),
+                                              nullptr, true);
     }
+    return std::make_unique<bt32BitAxisSweep3>(low, high, most, nullptr, true);
 }
 
 void collect(btBroadphaseInterface &broadphase, const Boxes &boxes, Pairs &pairs) {
@@ -77,16 +93,61 @@ extern "C" void bench_bullet_sweep(const Boxes *boxes, Pairs *pairs) {
         low.setMin(min_corner(*boxes, id));
         high.setMax(max_corner(*boxes, id));
     }
-    const unsigned most = static_cast<unsigned>(boxes->count) + 1;
-    std::unique_ptr<btBroadphaseInterface> broadphase;
-    // 16 bits are the default, and enough for 16,384 boxes.
-    if (most < 16384) {
-        broadphase = std::make_unique<btAxisSweep3>(low, high, static_cast<unsigned short>(most),
-                                                    nullptr, true);
-    } else {
-        broadphase = std::make_unique<bt32BitAxisSweep3>(low, high, most, nullptr, true);
-    }
+    const auto broadphase = make_sweep(low, high, boxes->count);
     fill(*broadphase, *boxes);
     broadphase->calculateOverlappingPairs(nullptr);
     collect(*broadphase, *boxes, *pairs);
+}
+
+// A broad phase that is kept from frame to frame.
+struct BulletWorld {
+    std::unique_ptr<btBroadphaseInterface> broadphase;
+    std::vector<btBroadphaseProxy *> proxies;
+};
+
+extern "C" BulletWorld *bench_bullet_world_new(const Boxes *boxes, bool sweep) {
+    btVector3 low(0, 0, 0), high(0, 0, 0), width(0, 0, 0);
+    for (std::size_t id = 0; id < boxes->count; ++id) {
+        low.setMin(min_corner(*boxes, id));
+        high.setMax(max_corner(*boxes, id));
+        width += max_corner(*boxes, id) - min_corner(*boxes, id);
+    }
+    width /= static_cast<btScalar>(std::max<std::size_t>(boxes->count, 1));
+    auto world = std::make_unique<BulletWorld>();
+    if (sweep) {
+        // Boxes that move stay within these bounds.
+        world->broadphase = make_sweep(low - width, high + width, boxes->count);
+    } else {
+        gDbvtMargin = 0.05f * width.x();
+        auto tree = std::make_unique<btDbvtBroadphase>();
+        // Overlaps are looked for once at the end and not for each box as it comes.
+        tree->m_deferedcollide = true;
+        world->broadphase = std::move(tree);
+    }
+    for (std::size_t id = 0; id < boxes->count; ++id) {
+        world->proxies.push_back(create_proxy(*world->broadphase, *boxes, id));
+    }
+    world->broadphase->calculateOverlappingPairs(nullptr);
+    return world.release();
+}
+
+extern "C" void bench_bullet_world_delete(BulletWorld *world) { delete world; }
+
+extern "C" void bench_bullet_world_step(BulletWorld *world, const Boxes *boxes,
+                                        const std::uint32_t *moved, std::size_t count) {
+    for (std::size_t at = 0; at < count; ++at) {
+        const std::uint32_t id = moved[at];
+        world->broadphase->setAabb(world->proxies[id], min_corner(*boxes, id),
+                                   max_corner(*boxes, id), nullptr);
+    }
+    world->broadphase->calculateOverlappingPairs(nullptr);
+}
+
+extern "C" void bench_bullet_world_pairs(const BulletWorld *world, Pairs *pairs) {
+    const btBroadphasePairArray &found =
+        world->broadphase->getOverlappingPairCache()->getOverlappingPairArray();
+    for (int at = 0; at < found.size(); ++at) {
+        pairs->push_back({as_id(found[at].m_pProxy0->m_clientObject),
+                          as_id(found[at].m_pProxy1->m_clientObject)});
+    }
 }

@@ -117,6 +117,21 @@ pub fn waited(process: impl Display) -> Duration {
     Duration::from_nanos(waited.unwrap_or(0))
 }
 
+/// A time shorter than this is taken as it is: it is seldom interrupted, and to ask whether it was
+/// would take as long.
+const WAIT_COUNTS: Duration = Duration::from_micros(100);
+
+/// How long something takes, without what this thread waited for a processor.
+pub fn clock<R>(work: impl FnOnce() -> R) -> (R, Duration) {
+    let (waiting, start) = (waited("self"), Instant::now());
+    let result = work();
+    let mut elapsed = start.elapsed();
+    if elapsed > WAIT_COUNTS {
+        elapsed = elapsed.saturating_sub(waited("self").saturating_sub(waiting));
+    }
+    (result, elapsed)
+}
+
 /// The memory that the process has in use, in bytes; `None` off Linux.
 pub fn memory() -> Option<u64> {
     kilobytes("/proc/self/status", "VmRSS:")

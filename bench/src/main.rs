@@ -3,15 +3,17 @@
 //! `measure` runs every contender on every scene, checks its pairs before it times it, and keeps
 //! the results as JSON; `report` makes the table and the plots from all that were kept.
 //!
-//! The parts, in the order of the data: `scene` makes the boxes, `peers` find the pairs, `worker`
-//! runs one peer in a process of its own, `remote` talks to it, `measure` compares them, `record`
-//! is what is kept, `report` what is shown.
+//! The parts, in the order of the data: `scene` makes the boxes, `peers` find the pairs and
+//! `worlds` follow them, `worker` runs one peer in a process of its own, `remote` talks to it,
+//! `contest` compares them, `measure` says what is compared, `record` is what is kept, `report`
+//! what is shown.
 
 use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
+mod contest;
 mod fingerprint;
 mod machine;
 mod measure;
@@ -21,6 +23,7 @@ mod remote;
 mod report;
 mod scene;
 mod worker;
+mod worlds;
 
 #[derive(Parser)]
 #[command(version, about)]
@@ -51,8 +54,15 @@ fn main() -> Result<()> {
         Command::Measure(options) => measure::run(&options),
         Command::Report { results } => report::write(&results),
         Command::Peers => {
-            for peer in peers::all() {
-                println!("{} ({}): {}", peer.name, peer.version(), peer.how);
+            let finders = peers::all().into_iter().map(|peer| peer.entrant());
+            let followers = worlds::all().into_iter().map(|peer| peer.entrant());
+            for (kind, entrants) in [("pairs", finders.collect()), ("worlds", followers.collect())]
+            {
+                let entrants: Vec<peers::Entrant> = entrants;
+                println!("{kind}:");
+                for it in entrants {
+                    println!("  {} ({}): {}", it.name, it.version, it.how);
+                }
             }
             Ok(())
         }

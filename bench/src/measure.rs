@@ -1,6 +1,4 @@
-//! Checks and times the contenders: each case is one set of boxes, each round of a case runs every
-//! contender once, so that what slows the machine slows them all, and ratios are taken within a
-//! round.
+//! What is measured: the plan of a run, part by part, and where its results are kept.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
@@ -9,35 +7,47 @@ use std::time::Duration;
 use anyhow::{Result, ensure};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use sweep_and_prune_scenes::Motion;
 
-use crate::fingerprint::Fingerprint;
-use crate::peers::{self, OURS, Peer};
-use crate::record::{Case, Entry, Outcome, Record, Times, median};
-use crate::remote::{self, Remote};
+use crate::contest::{Contest, Kind};
+use crate::peers::{self, Entrant, OURS};
+use crate::record::{Case, Outcome, Record, put};
 use crate::report::time;
-use crate::worker::{Reply, Request};
-use crate::{machine, scene};
+use crate::{machine, scene, worlds};
 
-/// Up to so many boxes brute force is the reference; beyond, two contenders that agree.
-const ORACLE_LIMIT: usize = 10_000;
-/// Short runs are repeated until a round of a contender takes about so long.
-const ROUND: Duration = Duration::from_millis(20);
-/// Fewer boxes than this are found in batches of calls, of about so many boxes together.
-const BATCHED: usize = 1000;
-/// No contender takes part in more rounds once it has taken so long, but for the first three.
-const PATIENCE: Duration = Duration::from_secs(8);
-/// Sets of boxes with more pairs than about this are left out.
-const MOST_PAIRS: f64 = 5e7;
+/// The numbers of boxes of the small inputs.
+const SMALL: [usize; 8] = [0, 1, 2, 5, 10, 20, 50, 100];
 
-/// What to measure.
+/// Who is asked beside ours where the question is how flat ours is, and not who is faster.
+const WITNESSES: [&str; 4] = ["plain sweep", "packed_spatial_index", "parry", "PhysX ABP"];
+
+/// What to measure: everything, unless parts are named.
 #[derive(Args)]
 pub struct Options {
-    /// Few boxes and few rounds: a minute instead of an hour.
+    /// Finding all pairs on six scenes, every peer.
+    #[arg(long)]
+    pairs: bool,
+    /// Finding all pairs on all other scenes, a few peers: is ours ever slow?
+    #[arg(long)]
+    flat: bool,
+    /// Finding all pairs of at most 100 boxes, beside brute force.
+    #[arg(long)]
+    small: bool,
+    /// Following a world from frame to frame.
+    #[arg(long)]
+    worlds: bool,
+    /// How close the stages of finding all pairs come to what the machine can do.
+    #[arg(long)]
+    roofline: bool,
+    /// Few boxes and few rounds: minutes instead of half an hour.
     #[arg(long)]
     quick: bool,
+    /// Leave out the cases that the file of results has, to go on where a run was stopped.
+    #[arg(long)]
+    resume: bool,
     /// Names of scenes (all for every one) or of motions, or files of raw boxes (rows of 2 × D
-    /// little-endian f32) that end in .f32, with their whole path.
-    #[arg(long, value_delimiter = ',', default_values = scene::DEFAULT)]
+    /// little-endian f32) that end in .f32, with their whole path; for worlds, of motions.
+    #[arg(long, value_delimiter = ',')]
     scenes: Vec<String>,
     /// Numbers of boxes.
     #[arg(long, value_delimiter = ',')]
@@ -52,7 +62,7 @@ pub struct Options {
     #[arg(long)]
     rounds: Option<usize>,
     /// Seconds after which a contender is stopped and recorded as too slow.
-    #[arg(long, default_value_t = 5.0)]
+    #[arg(long, default_value_t = 2.0)]
     limit: f64,
     /// The file of results; those of other boxes in it are kept. By default it is named for the
     /// processor and the day, in the folder of results.
@@ -60,27 +70,103 @@ pub struct Options {
     output: Option<PathBuf>,
 }
 
+/// One case that is to be measured.
+struct Planned {
+    kind: Kind,
+    scene: String,
+    dimensions: usize,
+    boxes: usize,
+    /// Whoever's name begins with one of these takes part, and ours; everyone if there are none.
+    peers: Vec<String>,
+}
+
 impl Options {
-    fn sizes(&self) -> Vec<usize> {
-        let default: &[usize] =
-            if self.quick { &[1_000, 10_000] } else { &[1_000, 10_000, 100_000, 1_000_000] };
-        let mut sizes = if self.sizes.is_empty() { default.to_vec() } else { self.sizes.clone() };
-        sizes.sort_unstable();
-        sizes
+    /// The cases, in the order in which they are measured.
+    fn plan(&self) -> Result<Vec<Planned>> {
+        let all = !(self.pairs || self.flat || self.small || self.worlds || self.roofline);
+        let mut plan = Vec::new();
+        if all || self.pairs {
+            let scenes = self.scenes(|| scene::DEFAULT.map(str::to_owned).to_vec());
+            let sizes = self.sizes(&[1_000, 10_000, 100_000, 1_000_000]);
+            self.add(&mut plan, Kind::Pairs, &scenes, &sizes, &self.peers)?;
+        }
+        if all || self.worlds {
+            let motions = self.scenes(|| Motion::ALL.map(|it| it.name().to_owned()).to_vec());
+            let sizes = self.sizes(&[1_000, 10_000, 100_000]);
+            self.add(&mut plan, Kind::Worlds, &motions, &sizes, &self.peers)?;
+            if self.sizes.is_empty() && !self.quick {
+                // Whether the time a body stays flat.
+                self.add(&mut plan, Kind::Worlds, &motions, &[1_000_000], &[OURS.to_owned()])?;
+            }
+        }
+        if all || self.flat {
+            let scenes = self.scenes(scene::others);
+            let sizes = self.sizes(&[10_000, 100_000, 1_000_000]);
+            let peers = WITNESSES.map(str::to_owned);
+            let peers = if self.peers.is_empty() { &peers[..] } else { &self.peers };
+            self.add(&mut plan, Kind::Pairs, &scenes, &sizes, peers)?;
+        }
+        if all || self.small {
+            let scenes = self.scenes(|| scene::DEFAULT.map(str::to_owned).to_vec());
+            let sizes = if self.sizes.is_empty() { &SMALL[..] } else { &self.sizes };
+            self.add(&mut plan, Kind::Pairs, &scenes, sizes, &["brute force".to_owned()])?;
+        }
+        // Small ones first: who is slow there need not be tried with many.
+        plan.sort_by_key(|planned| planned.boxes);
+        Ok(plan)
     }
 
-    fn rounds(&self) -> usize {
-        self.rounds.unwrap_or(if self.quick { 3 } else { 9 }).max(1)
+    fn add(
+        &self,
+        plan: &mut Vec<Planned>,
+        kind: Kind,
+        scenes: &[String],
+        sizes: &[usize],
+        peers: &[String],
+    ) -> Result<()> {
+        for scene in scenes {
+            for &dimensions in &self.dimensions {
+                if scene::exists(scene, dimensions)? {
+                    plan.extend(sizes.iter().map(|&boxes| Planned {
+                        kind,
+                        scene: scene.clone(),
+                        dimensions,
+                        boxes,
+                        peers: peers.to_vec(),
+                    }));
+                }
+            }
+        }
+        Ok(())
     }
 
-    fn limit(&self) -> Duration {
-        Duration::from_secs_f64(self.limit)
+    fn scenes(&self, default: impl FnOnce() -> Vec<String>) -> Vec<String> {
+        if self.scenes.is_empty() { default() } else { scene::named(&self.scenes) }
     }
 
-    fn wants(&self, peer: &Peer, dimensions: usize) -> bool {
-        let named = self.peers.iter().any(|name| peer.name.starts_with(name.as_str()));
-        let exists = if dimensions == 2 { peer.two.is_some() } else { peer.three.is_some() };
-        exists && (self.peers.is_empty() || named || peer.name == OURS)
+    fn sizes(&self, default: &[usize]) -> Vec<usize> {
+        let most = if self.quick { 10_000 } else { usize::MAX };
+        let default = default.iter().copied().filter(|&boxes| boxes <= most);
+        if self.sizes.is_empty() { default.collect() } else { self.sizes.clone() }
+    }
+
+    /// Many boxes are measured less often: their times vary less.
+    fn rounds(&self, boxes: usize) -> usize {
+        let default = match boxes {
+            _ if self.quick => 3,
+            0..=10_000 => 9,
+            10_001..=100_000 => 7,
+            _ => 5,
+        };
+        self.rounds.unwrap_or(default).max(1)
+    }
+}
+
+impl Planned {
+    fn wants(&self, entrant: &Entrant) -> bool {
+        let named = self.peers.iter().any(|name| entrant.name.starts_with(name.as_str()));
+        entrant.dimensions.contains(&self.dimensions)
+            && (self.peers.is_empty() || named || entrant.name == OURS)
     }
 }
 
@@ -90,19 +176,17 @@ pub fn run(options: &Options) -> Result<()> {
         options.dimensions.iter().all(|dimensions| [2, 3].contains(dimensions)),
         "only two and three dimensions are measured"
     );
-    let peers = peers::all();
-    let mut plan = Vec::new();
-    for name in &scene::named(&options.scenes) {
-        for &dimensions in &options.dimensions {
-            if scene::exists(name, dimensions)? {
-                let sizes = options.sizes().into_iter();
-                plan.extend(sizes.map(|boxes| (name.clone(), dimensions, boxes)));
-            }
-        }
-    }
-
+    let finders: Vec<_> = peers::all().iter().map(peers::Peer::entrant).collect();
+    let followers: Vec<_> = worlds::all().iter().map(peers::Peer::entrant).collect();
+    let mut plan = options.plan()?;
     let machine = machine::describe();
-    let (mut record, path) = open(options, &peers, machine)?;
+    let (mut record, path) = open(options, finders.iter().chain(&followers), machine)?;
+    if options.resume {
+        plan.retain(|planned| {
+            let key = (planned.scene.as_str(), planned.dimensions, planned.boxes);
+            !kept(&mut record, planned.kind).iter().any(|case| case.key() == key)
+        });
+    }
     println!(
         "{}, {} cores, copies {:.1} GB/s, load {}",
         record.machine.cpu,
@@ -110,20 +194,31 @@ pub fn run(options: &Options) -> Result<()> {
         record.machine.copy_bytes_per_second / 1e9,
         record.machine.load.map_or("unknown".into(), |load| load.to_string()),
     );
-    let bar = ProgressBar::new((plan.len() * (options.rounds() + 1)) as u64);
+    let steps = plan.iter().map(|planned| 1 + options.rounds(planned.boxes) as u64).sum();
+    let bar = ProgressBar::new(steps);
     bar.set_style(ProgressStyle::with_template("{elapsed} {wide_bar} {pos}/{len} {msg:60!}")?);
     let mut slow = HashMap::new();
-    for (name, dimensions, boxes) in plan {
-        let case = Setting { options, scene: &name, dimensions, boxes, bar: &bar };
-        let contenders = peers.iter().filter(|peer| options.wants(peer, dimensions)).collect();
-        match case.measure(contenders, &mut slow)? {
+    for planned in plan {
+        let Planned { kind, ref scene, dimensions, boxes, .. } = planned;
+        let contest = Contest {
+            kind,
+            scene,
+            dimensions,
+            boxes,
+            rounds: options.rounds(boxes),
+            limit: Duration::from_secs_f64(options.limit),
+            bar: &bar,
+        };
+        let entrants = if kind == Kind::Worlds { &followers } else { &finders };
+        let entrants = entrants.iter().filter(|entrant| planned.wants(entrant)).collect();
+        match contest.run(entrants, &mut slow)? {
             Ok(case) => {
                 bar.suspend(|| println!("{}", summary(&case)));
-                record.put(case);
+                put(kept(&mut record, kind), case);
                 record.write(&path)?;
             }
             Err(why) => {
-                bar.suspend(|| println!("{name} {dimensions}D {boxes}: left out, {why}"));
+                bar.suspend(|| println!("{scene} {dimensions}D {boxes}: left out, {why}"));
             }
         }
     }
@@ -132,10 +227,18 @@ pub fn run(options: &Options) -> Result<()> {
     Ok(())
 }
 
+/// The cases of a kind.
+fn kept(record: &mut Record, kind: Kind) -> &mut Vec<Case> {
+    match kind {
+        Kind::Pairs => &mut record.cases,
+        Kind::Worlds => &mut record.worlds,
+    }
+}
+
 /// The record of this machine and day, with what is in it so far.
-fn open(
+fn open<'a>(
     options: &Options,
-    peers: &[Peer],
+    entrants: impl Iterator<Item = &'a Entrant> + Clone,
     machine: crate::record::Machine,
 ) -> Result<(Record, PathBuf)> {
     let date = chrono::Utc::now().format("%Y-%m-%d").to_string();
@@ -156,13 +259,16 @@ fn open(
         versions: BTreeMap::new(),
         how: BTreeMap::new(),
         cases: Vec::new(),
+        worlds: Vec::new(),
+        roofline: None,
     };
     if path.exists() {
         let kept = Record::read(&path)?;
-        (record.versions, record.how, record.cases) = (kept.versions, kept.how, kept.cases);
+        let (date, machine, rustc) = (record.date, record.machine, record.rustc);
+        record = Record { date, machine, rustc, ..kept };
     }
-    record.versions.extend(peers.iter().map(|peer| (peer.name.into(), peer.version())));
-    record.how.extend(peers.iter().map(|peer| (peer.name.into(), peer.how.into())));
+    record.versions.extend(entrants.clone().map(|it| (it.name.into(), it.version.clone())));
+    record.how.extend(entrants.map(|it| (it.name.into(), it.how.into())));
     Ok((record, path))
 }
 
@@ -185,200 +291,4 @@ fn summary(case: &Case) -> String {
         }
     }
     line
-}
-
-/// One set of boxes that is to be measured.
-struct Setting<'a> {
-    options: &'a Options,
-    scene: &'a str,
-    dimensions: usize,
-    boxes: usize,
-    bar: &'a ProgressBar,
-}
-
-/// How long a contender took for a number of boxes of a scene; without end if it was stopped.
-type Slow = HashMap<(String, usize, &'static str), (usize, Duration)>;
-
-/// A contender whose worker runs.
-struct Running<'a> {
-    peer: &'a Peer,
-    worker: Remote,
-    first: Duration,
-    fingerprint: Fingerprint,
-    peak_bytes: Option<u64>,
-    rounds: Vec<(usize, f64)>,
-    spent: Duration,
-}
-
-impl Setting<'_> {
-    /// Checks and times the contenders, or says why these boxes are left out.
-    fn measure(&self, contenders: Vec<&Peer>, slow: &mut Slow) -> Result<Result<Case, String>> {
-        self.bar.set_message(format!("{} {}D {}", self.scene, self.dimensions, self.boxes));
-        let expected = match self.dimensions {
-            2 => scene::estimated_pairs::<2>(self.scene, self.boxes)?,
-            _ => scene::estimated_pairs::<3>(self.scene, self.boxes)?,
-        };
-        if expected > MOST_PAIRS {
-            self.bar.inc(1 + self.options.rounds() as u64);
-            return Ok(Err(format!("about {expected:.0e} pairs")));
-        }
-
-        let mut running = Vec::new();
-        let mut untimed = Vec::new();
-        for peer in contenders {
-            match self.check(peer, slow)? {
-                Ok(contender) => running.push(contender),
-                Err(why) => untimed.push((peer, why)),
-            }
-        }
-        self.bar.inc(1);
-
-        let Some((reference, fingerprint)) = self.reference(&running)? else {
-            self.bar.inc(self.options.rounds() as u64);
-            return Ok(Err("no two contenders agree".into()));
-        };
-        running.retain(|contender| {
-            let right = contender.fingerprint == fingerprint;
-            if !right {
-                let found = contender.fingerprint.pairs;
-                untimed.push((contender.peer, format!("other pairs, {found} of them")));
-            }
-            right
-        });
-        for round in 0..self.options.rounds() {
-            self.round(round, &mut running, &mut untimed)?;
-            self.bar.inc(1);
-        }
-
-        let ours: HashMap<usize, f64> = running
-            .iter()
-            .find(|contender| contender.peer.name == OURS)
-            .map(|contender| contender.rounds.iter().copied().collect())
-            .unwrap_or_default();
-        let timed = running.into_iter().map(|contender| Entry {
-            name: contender.peer.name.into(),
-            rival: contender.peer.rival,
-            outcome: Outcome::Timed(contender.times(&ours)),
-        });
-        let untimed = untimed.into_iter().map(|(peer, why)| Entry {
-            name: peer.name.into(),
-            rival: peer.rival,
-            outcome: Outcome::Untimed { why },
-        });
-        Ok(Ok(Case {
-            scene: self.scene.into(),
-            dimensions: self.dimensions,
-            boxes: self.boxes,
-            pairs: fingerprint.pairs / scene::frames_checked(self.scene) as u64,
-            reference,
-            revision: machine::revision(),
-            results: timed.chain(untimed).collect(),
-        }))
-    }
-
-    /// Starts a contender's worker and has it find the pairs once, or says why it cannot be timed.
-    fn check<'a>(&self, peer: &'a Peer, slow: &mut Slow) -> Result<Result<Running<'a>, String>> {
-        let limit = self.options.limit();
-        let too_slow = format!("over {} s", self.options.limit);
-        let key = (self.scene.to_owned(), self.dimensions, peer.name);
-        if let Some(&(boxes, took)) = slow.get(&key) {
-            // Nothing here takes less than proportionally longer for more boxes.
-            if took.saturating_mul((self.boxes / boxes.max(1)) as u32) > limit {
-                return Ok(Err(format!("{too_slow}, as its time for {boxes} boxes shows")));
-            }
-        }
-        let mut worker = Remote::start(peer.name, self.scene, self.dimensions, self.boxes)?;
-        let (fingerprint, nanoseconds, peak_bytes) = match worker.ask(&Request::Check, limit)? {
-            remote::Outcome::Reply(Reply::Checked { fingerprint, nanoseconds, peak_bytes }) => {
-                (fingerprint, nanoseconds, peak_bytes)
-            }
-            remote::Outcome::Late => {
-                slow.insert(key, (self.boxes, Duration::MAX));
-                return Ok(Err(too_slow));
-            }
-            other => return Ok(Err(failure(other))),
-        };
-        let first = Duration::from_nanos(nanoseconds);
-        slow.insert(key, (self.boxes, first));
-        let (rounds, spent) = (Vec::new(), Duration::ZERO);
-        Ok(Ok(Running { peer, worker, first, fingerprint, peak_bytes, rounds, spent }))
-    }
-
-    /// The right pairs, and in words how we know; nothing if no two contenders agree.
-    fn reference(&self, running: &[Running]) -> Result<Option<(String, Fingerprint)>> {
-        if self.boxes <= ORACLE_LIMIT {
-            let right = match self.dimensions {
-                2 => scene::oracle::<2>(self.scene, self.boxes)?,
-                _ => scene::oracle::<3>(self.scene, self.boxes)?,
-            };
-            return Ok(Some(("brute force".into(), right)));
-        }
-        // All of ours count as one witness.
-        let witness = |one: &&Running| one.peer.rival || one.peer.name == OURS;
-        let witnesses: Vec<_> = running.iter().filter(witness).rev().collect();
-        Ok(witnesses.iter().enumerate().find_map(|(at, one)| {
-            let other = witnesses[at + 1..].iter().find(|it| it.fingerprint == one.fingerprint)?;
-            Some((format!("{} and {} agree", other.peer.name, one.peer.name), one.fingerprint))
-        }))
-    }
-
-    /// Runs every contender once, each round beginning with another.
-    fn round<'a>(
-        &self,
-        round: usize,
-        running: &mut Vec<Running<'a>>,
-        untimed: &mut Vec<(&'a Peer, String)>,
-    ) -> Result<()> {
-        let count = running.len();
-        let mut lost = Vec::new();
-        for at in (0..count).map(|at| (at + round) % count) {
-            let contender = &mut running[at];
-            if round >= 3 && contender.spent > PATIENCE {
-                continue;
-            }
-            let batch = (BATCHED / self.boxes.max(1)).clamp(1, 256);
-            let repeats = ROUND.as_nanos() / (contender.first.as_nanos().max(1) * batch as u128);
-            let request = Request::Time { repeats: repeats.clamp(1, 200) as usize, batch };
-            // The limit is for what takes too long once; here it only guards against hanging.
-            match contender.worker.ask(&request, 10 * self.options.limit() + 20 * ROUND)? {
-                remote::Outcome::Reply(Reply::Timed { nanoseconds }) => {
-                    let all = nanoseconds.iter().sum::<f64>() * batch as f64;
-                    contender.spent += Duration::from_nanos(all as u64);
-                    contender.rounds.push((round, median(&nanoseconds)));
-                }
-                other => lost.push((at, failure(other))),
-            }
-        }
-        lost.sort_unstable();
-        for (at, why) in lost.into_iter().rev() {
-            untimed.push((running.remove(at).peer, why));
-        }
-        Ok(())
-    }
-}
-
-/// What went wrong, of an outcome that is not what was asked for.
-fn failure(outcome: remote::Outcome) -> String {
-    match outcome {
-        remote::Outcome::Reply(Reply::Failed { message }) => message,
-        remote::Outcome::Reply(_) => "an answer to another question".into(),
-        remote::Outcome::Late => "no answer any more".into(),
-        remote::Outcome::Ended(how) => how,
-    }
-}
-
-impl Running<'_> {
-    /// The times over the rounds, against ours in the same rounds.
-    fn times(&self, ours: &HashMap<usize, f64>) -> Times {
-        let rounds: Vec<_> = self.rounds.iter().map(|&(_, time)| time).collect();
-        let ratios: Vec<_> =
-            self.rounds.iter().filter_map(|(round, time)| Some(time / ours.get(round)?)).collect();
-        Times {
-            median_ns: median(&rounds),
-            min_ns: rounds.iter().copied().fold(f64::INFINITY, f64::min),
-            rounds_ns: rounds,
-            ratio: (!ratios.is_empty()).then(|| median(&ratios)),
-            peak_bytes: self.peak_bytes,
-        }
-    }
 }

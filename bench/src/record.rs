@@ -19,8 +19,50 @@ pub struct Record {
     pub versions: BTreeMap<String, String>,
     /// The contenders and how each was called.
     pub how: BTreeMap<String, String>,
-    /// The cases, by scene, dimensions and number of boxes.
+    /// Finding all pairs, by scene, dimensions and number of boxes.
     pub cases: Vec<Case>,
+    /// Following a world, by motion, dimensions and number of boxes: the times are those of a
+    /// frame.
+    #[serde(default)]
+    pub worlds: Vec<Case>,
+    /// How close finding all pairs comes to what the machine can do.
+    #[serde(default)]
+    pub roofline: Option<Roofline>,
+}
+
+/// What the machine can do, and how much of it each stage of finding all pairs reaches.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Roofline {
+    /// Bytes read plus bytes written a second when one thread copies a large buffer.
+    pub copy_bytes_per_second: f64,
+    /// By number of dimensions, the boxes that the kernel tests a second when all is in the
+    /// nearest cache and none overlap.
+    pub kernel_tests_per_second: BTreeMap<String, f64>,
+    /// The stages, in their order.
+    pub stages: Vec<Stage>,
+}
+
+/// A stage of finding all pairs.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Stage {
+    /// The scene's name.
+    pub scene: String,
+    /// 2 or 3.
+    pub dimensions: usize,
+    /// The number of boxes.
+    pub boxes: usize,
+    /// The stage's name.
+    pub stage: String,
+    /// Its time.
+    pub ns: f64,
+    /// What it has to read and write.
+    pub bytes: f64,
+    /// What it has to test.
+    pub tests: f64,
+    /// The time of these bytes and tests at the rates above: the longer of the two.
+    pub limit_ns: f64,
+    /// `limit_ns` over `ns`.
+    pub share: f64,
 }
 
 /// The machine, as far as the times depend on it.
@@ -97,8 +139,12 @@ pub struct Times {
     pub rounds_ns: Vec<f64>,
     /// The median over the rounds of this contender's time over ours in the same round.
     pub ratio: Option<f64>,
-    /// The most memory in use during the first call beyond the boxes.
+    /// The most memory in use during the first call, of a world in the first frames, beyond the
+    /// boxes.
     pub peak_bytes: Option<u64>,
+    /// Of a world that tells of pairs that are none, how long it takes to test them all once more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub exact_ns: Option<f64>,
 }
 
 impl Entry {
@@ -126,7 +172,8 @@ impl Case {
         ranking
     }
 
-    fn key(&self) -> (&str, usize, usize) {
+    /// What no two cases of a kind have in common.
+    pub fn key(&self) -> (&str, usize, usize) {
         (&self.scene, self.dimensions, self.boxes)
     }
 }
@@ -138,18 +185,20 @@ impl Record {
         serde_json::from_slice(&text).with_context(|| format!("parsing {}", path.display()))
     }
 
-    /// Writes the file anew.
+    /// Writes the file anew, whole or not at all.
     pub fn write(&self, path: &Path) -> Result<()> {
         let text = serde_json::to_string_pretty(self)? + "\n";
-        std::fs::write(path, text).with_context(|| format!("writing {}", path.display()))
+        let part = path.with_extension("part");
+        std::fs::write(&part, text).with_context(|| format!("writing {}", part.display()))?;
+        std::fs::rename(&part, path).with_context(|| format!("writing {}", path.display()))
     }
+}
 
-    /// Adds a case, or replaces the one of the same boxes.
-    pub fn put(&mut self, case: Case) {
-        match self.cases.iter_mut().find(|kept| kept.key() == case.key()) {
-            Some(kept) => *kept = case,
-            None => self.cases.push(case),
-        }
+/// Adds a case, or replaces the one of the same boxes.
+pub fn put(cases: &mut Vec<Case>, case: Case) {
+    match cases.iter_mut().find(|kept| kept.key() == case.key()) {
+        Some(kept) => *kept = case,
+        None => cases.push(case),
     }
 }
 

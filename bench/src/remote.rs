@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Result, bail};
 
+use crate::contest::Kind;
 use crate::machine;
 use crate::worker::{MARK, Reply, Request};
 
@@ -35,10 +36,17 @@ pub enum Outcome {
 
 impl Remote {
     /// Starts a worker and waits until it has its boxes.
-    pub fn start(peer: &str, scene: &str, dimensions: usize, boxes: usize) -> Result<Self> {
+    pub fn start(
+        kind: Kind,
+        peer: &str,
+        scene: &str,
+        dimensions: usize,
+        boxes: usize,
+    ) -> Result<Self> {
         let mut child = Command::new(std::env::current_exe()?)
             .args(["worker", "--peer", peer, "--scene", scene])
             .args(["--dimensions", &dimensions.to_string(), "--boxes", &boxes.to_string()])
+            .args((kind == Kind::Worlds).then_some("--world"))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::inherit())

@@ -13,7 +13,7 @@ use crate::fingerprint::Fingerprint;
 pub const DEFAULT: [&str; 6] = ["uniform", "clustered", "mixed", "slab", "tower", "box-pruning"];
 
 /// The seed of every scene, so that two runs measure the same boxes.
-const SEED: u64 = 1;
+pub const SEED: u64 = 1;
 
 /// How many frames of boxes in motion are checked.
 const FRAMES_CHECKED: usize = 4;
@@ -45,6 +45,12 @@ pub fn named(names: &[String]) -> Vec<String> {
         }
     }
     named
+}
+
+/// Every scene that is not among [`DEFAULT`].
+pub fn others() -> Vec<String> {
+    let all = Scene::ALL.iter().map(|scene| scene.name());
+    all.filter(|name| !DEFAULT.contains(name)).map(str::to_owned).collect()
 }
 
 /// Whether a scene's name is a path: a file that ends in `.f32` holds rows of 2 × D little-endian

@@ -38,8 +38,13 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
+/// Measures finding all pairs.
 fn measure(file: &Path, arguments: &[&str]) -> (String, Value) {
-    let shared = ["measure", "--rounds", "2", "--output", file.to_str().unwrap()];
+    measure_part("--pairs", file, arguments)
+}
+
+fn measure_part(part: &str, file: &Path, arguments: &[&str]) -> (String, Value) {
+    let shared = ["measure", part, "--rounds", "2", "--output", file.to_str().unwrap()];
     let said = bench(&[&shared, arguments].concat());
     (said, serde_json::from_slice(&fs::read(file).unwrap()).unwrap())
 }
@@ -138,6 +143,46 @@ fn boxes_in_motion_are_checked_frame_by_frame_and_small_inputs_against_brute_for
     bench(&["report", "--results", folder.to_str().unwrap()]);
     let report = fs::read_to_string(folder.with_file_name("RESULTS.md")).unwrap();
     assert!(report.contains("### Small inputs"), "{report}");
+}
+
+#[test]
+fn worlds_are_checked_event_by_event_and_reported() {
+    let folder = folder("worlds");
+    let file = folder.join("here.json");
+    let (_, record) = measure_part("--worlds", &file, &["--sizes", "300"]);
+    let worlds = record["worlds"].as_array().unwrap();
+    // Four motions in two dimensions and in three.
+    assert_eq!((worlds.len(), cases(&record).len()), (8, 0));
+    for world in worlds {
+        assert_eq!(world["reference"], "brute force");
+        for name in ["ours", "ours, from scratch", "parry, from scratch", "rapier"] {
+            let results = world["results"].as_array().unwrap();
+            let entry = results.iter().find(|entry| entry["name"] == name).unwrap();
+            let times = &entry["outcome"]["Timed"];
+            assert!(times["median_ns"].as_f64().is_some_and(|ns| ns > 0.0), "{entry} in {world}");
+            // Only rapier's boxes are larger than those it is given.
+            assert_eq!(times["exact_ns"].is_number(), name == "rapier", "{entry} in {world}");
+        }
+    }
+    bench(&["report", "--results", folder.to_str().unwrap()]);
+    let report = fs::read_to_string(folder.with_file_name("RESULTS.md")).unwrap();
+    assert!(report.contains("## Worlds") && report.contains("#### mostly-still 3D"), "{report}");
+    let plot = fs::read_to_string(folder.join("here/world-fast-2d.svg")).unwrap();
+    assert!(plot.contains("rapier"));
+}
+
+#[test]
+fn a_run_that_was_stopped_goes_on_where_it_was() {
+    let folder = folder("resumed");
+    let file = folder.join("here.json");
+    let few = ["--scenes", "uniform", "--dimensions", "2"];
+    let (_, before) = measure_part("--small", &file, &few);
+    assert_eq!(cases(&before).len(), 8);
+    let all = [&few[..], &["--resume", "--sizes", "5,6"]].concat();
+    let (said, after) = measure_part("--small", &file, &all);
+    assert!(said.contains("uniform 2D 6:") && !said.contains("uniform 2D 5:"), "{said}");
+    assert_eq!(cases(&after).len(), 9);
+    assert_eq!(cases(&before)[..], cases(&after)[..8]);
 }
 
 #[test]

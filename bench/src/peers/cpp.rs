@@ -10,10 +10,17 @@ use super::{Contender, Origin, Peer};
 
 /// `Boxes` in `cpp/peers.h`.
 #[repr(C)]
-struct Boxes {
+pub struct Boxes {
     rows: *const f32,
     count: usize,
     dimensions: usize,
+}
+
+impl<const D: usize> From<&[Aabb<D>]> for Boxes {
+    fn from(boxes: &[Aabb<D>]) -> Self {
+        // A box is a row of 2 * D floats in memory, as `Aabb` promises.
+        Self { rows: boxes.as_ptr().cast(), count: boxes.len(), dimensions: D }
+    }
 }
 
 /// A peer: appends the pairs of the boxes to a C++ vector.
@@ -27,41 +34,56 @@ unsafe extern "C" {
     fn bench_pairs_data(pairs: *const c_void) -> *const u32;
 }
 
-/// A peer and the C++ vector of its pairs.
+/// A C++ vector of pairs.
+pub struct Pairs(*mut c_void);
+
+impl Default for Pairs {
+    fn default() -> Self {
+        // SAFETY: it takes nothing; the vector is deleted in `drop`.
+        Self(unsafe { bench_pairs_new() })
+    }
+}
+
+impl Drop for Pairs {
+    fn drop(&mut self) {
+        // SAFETY: made by `bench_pairs_new` and deleted only here.
+        unsafe { bench_pairs_delete(self.0) }
+    }
+}
+
+impl Pairs {
+    /// Empties the vector, has `append` append to it, and shows what it holds then.
+    pub fn fill(&mut self, append: impl FnOnce(*mut c_void)) -> &[[u32; 2]] {
+        // SAFETY: the vector is ours alone; its elements are two u32 each and stay in place until
+        // the next call, which needs `self` exclusively.
+        unsafe {
+            bench_pairs_clear(self.0);
+            append(self.0);
+            match bench_pairs_count(self.0) {
+                0 => &[],
+                count => std::slice::from_raw_parts(bench_pairs_data(self.0).cast(), count),
+            }
+        }
+    }
+}
+
+/// A peer and its pairs.
 struct Cpp {
     find: Find,
-    pairs: *mut c_void,
+    pairs: Pairs,
 }
 
 impl Cpp {
     fn boxed(find: Find) -> Box<Self> {
-        // SAFETY: it takes nothing; the vector is deleted in `drop`.
-        Box::new(Self { find, pairs: unsafe { bench_pairs_new() } })
-    }
-}
-
-impl Drop for Cpp {
-    fn drop(&mut self) {
-        // SAFETY: made by `bench_pairs_new` and deleted only here.
-        unsafe { bench_pairs_delete(self.pairs) }
+        Box::new(Self { find, pairs: Pairs::default() })
     }
 }
 
 impl<const D: usize> Contender<D> for Cpp {
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]> {
-        // A box is a row of 2 * D floats in memory, as `Aabb` promises.
-        let boxes = Boxes { rows: boxes.as_ptr().cast(), count: boxes.len(), dimensions: D };
-        // SAFETY: the boxes are valid for the calls; the vector is ours alone; its elements are
-        // two u32 each and stay in place until the next call, which needs `self` exclusively.
-        unsafe {
-            bench_pairs_clear(self.pairs);
-            (self.find)(&boxes, self.pairs);
-            let count = bench_pairs_count(self.pairs);
-            if count == 0 {
-                return Ok(&[]);
-            }
-            Ok(std::slice::from_raw_parts(bench_pairs_data(self.pairs).cast(), count))
-        }
+        let boxes = Boxes::from(boxes);
+        // SAFETY: the boxes are valid for the call, and the vector is one of pairs.
+        Ok(self.pairs.fill(|pairs| unsafe { (self.find)(&boxes, pairs) }))
     }
 }
 

@@ -4,13 +4,13 @@
 use anyhow::Result;
 use sweep_and_prune::Aabb;
 
-mod ours;
+pub mod ours;
 mod plain;
 
 #[cfg(feature = "light")]
 mod broccoli;
 #[cfg(feature = "cpp")]
-mod cpp;
+pub mod cpp;
 #[cfg(feature = "light")]
 mod geo_index;
 #[cfg(feature = "light")]
@@ -18,9 +18,9 @@ mod obvhs;
 #[cfg(feature = "light")]
 mod packed_spatial_index;
 #[cfg(feature = "light")]
-mod parry;
+pub mod parry;
 #[cfg(feature = "physx")]
-mod physx;
+pub mod physx;
 #[cfg(feature = "light")]
 mod rstar;
 
@@ -45,11 +45,12 @@ pub trait Contender<const D: usize> {
     }
 }
 
-type Maker<const D: usize> = fn() -> Box<dyn Contender<D>>;
+/// Makes a contender.
+pub type Maker<const D: usize> = fn() -> Box<dyn Contender<D>>;
 
-/// A contender as the harness knows it.
+/// A contender as the harness knows it, by what makes it for two dimensions and for three.
 #[derive(Clone, Copy)]
-pub struct Peer {
+pub struct Peer<Two = Maker<2>, Three = Maker<3>> {
     /// How tables, plots and the command line call it.
     pub name: &'static str,
     /// Where it comes from, for the version.
@@ -59,9 +60,9 @@ pub struct Peer {
     /// Whether it competes with ours, or is ours in another setting.
     pub rival: bool,
     /// Makes it for two dimensions.
-    pub two: Option<Maker<2>>,
+    pub two: Option<Two>,
     /// Makes it for three dimensions.
-    pub three: Option<Maker<3>>,
+    pub three: Option<Three>,
 }
 
 /// Where a contender comes from.
@@ -96,9 +97,36 @@ pub fn all() -> Vec<Peer> {
     peers
 }
 
-impl Peer {
+/// What is known of a contender without making it.
+#[derive(Clone)]
+pub struct Entrant {
+    /// As [`Peer::name`].
+    pub name: &'static str,
+    /// As [`Peer::how`].
+    pub how: &'static str,
+    /// As [`Peer::rival`].
+    pub rival: bool,
     /// The version that was compiled in, or a word on where it comes from.
-    pub fn version(&self) -> String {
+    pub version: String,
+    /// The numbers of dimensions in which it exists.
+    pub dimensions: Vec<usize>,
+}
+
+impl<Two, Three> Peer<Two, Three> {
+    /// What is known of it without making it.
+    pub fn entrant(&self) -> Entrant {
+        let exists = [(2, self.two.is_some()), (3, self.three.is_some())];
+        Entrant {
+            name: self.name,
+            how: self.how,
+            rival: self.rival,
+            version: self.version(),
+            dimensions: exists.iter().filter(|(_, it)| *it).map(|&(count, _)| count).collect(),
+        }
+    }
+
+    /// The version that was compiled in, or a word on where it comes from.
+    fn version(&self) -> String {
         match self.origin {
             Origin::Here => "this repository".into(),
             Origin::Crate(name) => crate_version(name).unwrap_or("unknown").into(),
@@ -125,6 +153,6 @@ fn debian_version(package: &str) -> Option<String> {
 
 /// A corner in three dimensions for peers that know no others: the missing coordinates are 0.
 #[allow(dead_code, reason = "not every set of features has such a peer")]
-fn lift<const D: usize>(corner: [f32; D]) -> [f32; 3] {
+pub fn lift<const D: usize>(corner: [f32; D]) -> [f32; 3] {
     std::array::from_fn(|axis| corner.get(axis).copied().unwrap_or(0.0))
 }

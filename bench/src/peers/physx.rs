@@ -46,35 +46,51 @@ struct PhysX {
 
 impl PhysX {
     fn new(kind: PxBroadPhaseType) -> Self {
-        static FOUNDATION: Once = Once::new();
-        // SAFETY: called once in the process, before anything else of PhysX.
-        FOUNDATION.call_once(|| unsafe {
-            physx_create_foundation();
-        });
         let (bounds, created, groups) = (Vec::new(), Vec::new(), Vec::new());
         Self { kind, bounds, created, groups, distances: Vec::new(), pairs: Vec::new() }
     }
+}
 
-    /// The bounds of all boxes, in the four by four regions.
-    fn regions(&self) -> [PxBounds3; (REGIONS * REGIONS) as usize] {
-        let mut world = self.bounds[0];
-        for bounds in &self.bounds {
-            world.minimum = per_axis(f32::min, world.minimum, bounds.minimum);
-            world.maximum = per_axis(f32::max, world.maximum, bounds.maximum);
-        }
-        let mut regions = [world; (REGIONS * REGIONS) as usize];
-        const Z_IS_UP: u32 = 2;
-        // SAFETY: it writes REGIONS² bounds, for which there is room.
-        unsafe {
-            PxBroadPhaseExt_createRegionsFromWorldBounds(
-                regions.as_mut_ptr(),
-                &world,
-                REGIONS,
-                Z_IS_UP,
-            );
-        }
-        regions
+/// A broad phase, to be released by whoever asks for it.
+pub fn broad_phase(kind: PxBroadPhaseType) -> Result<*mut PxBroadPhase> {
+    static FOUNDATION: Once = Once::new();
+    // SAFETY: called once in the process, before anything else of PhysX.
+    FOUNDATION.call_once(|| unsafe {
+        physx_create_foundation();
+    });
+    // SAFETY: the foundation is there; the description is valid, and used up in the call.
+    let broad_phase = unsafe { phys_PxCreateBroadPhase(&PxBroadPhaseDesc_new(kind)) };
+    ensure!(!broad_phase.is_null(), "PhysX makes no broad phase");
+    Ok(broad_phase)
+}
+
+/// The bounds of all boxes, `margin` larger on every side, in the four by four regions.
+pub fn regions(boxes: &[PxBounds3], margin: f32) -> [PxBounds3; (REGIONS * REGIONS) as usize] {
+    let mut world = boxes[0];
+    for bounds in boxes {
+        world.minimum = per_axis(f32::min, world.minimum, bounds.minimum);
+        world.maximum = per_axis(f32::max, world.maximum, bounds.maximum);
     }
+    let around = PxVec3 { x: margin, y: margin, z: margin };
+    world.minimum = per_axis(|at, margin| at - margin, world.minimum, around);
+    world.maximum = per_axis(|at, margin| at + margin, world.maximum, around);
+    let mut regions = [world; (REGIONS * REGIONS) as usize];
+    const Z_IS_UP: u32 = 2;
+    // SAFETY: it writes REGIONS² bounds, for which there is room.
+    unsafe {
+        PxBroadPhaseExt_createRegionsFromWorldBounds(
+            regions.as_mut_ptr(),
+            &world,
+            REGIONS,
+            Z_IS_UP,
+        );
+    }
+    regions
+}
+
+/// A box as PhysX has it.
+pub fn bounds<const D: usize>(aabb: &Aabb<D>) -> PxBounds3 {
+    PxBounds3 { minimum: corner(aabb.min), maximum: corner(aabb.max) }
 }
 
 fn per_axis(choose: fn(f32, f32) -> f32, a: PxVec3, b: PxVec3) -> PxVec3 {
@@ -95,12 +111,7 @@ impl<const D: usize> Contender<D> for PhysX {
         let count = boxes.len() as u32;
         self.bounds.clear();
         // PhysX may read past the last box.
-        self.bounds.extend(
-            boxes
-                .iter()
-                .chain(boxes.last())
-                .map(|aabb| PxBounds3 { minimum: corner(aabb.min), maximum: corner(aabb.max) }),
-        );
+        self.bounds.extend(boxes.iter().chain(boxes.last()).map(bounds));
         self.created.clear();
         self.created.extend(0..count);
         self.groups.clear();
@@ -113,14 +124,13 @@ impl<const D: usize> Contender<D> for PhysX {
         // SAFETY: the broad phase lives from its creation to its release below; the arrays hold as
         // many elements as it is told, and outlive it; the pairs are copied before the release.
         unsafe {
-            let broad_phase = phys_PxCreateBroadPhase(&PxBroadPhaseDesc_new(self.kind));
-            ensure!(!broad_phase.is_null(), "PhysX makes no broad phase");
-            let regions = PxBroadPhase_getRegions_mut(broad_phase);
-            if !regions.is_null() {
-                for bounds in self.regions() {
+            let broad_phase = broad_phase(self.kind)?;
+            let wanted = PxBroadPhase_getRegions_mut(broad_phase);
+            if !wanted.is_null() {
+                for bounds in regions(&self.bounds, 0.0) {
                     let region = PxBroadPhaseRegion { mBounds: bounds, mUserData: ptr::null_mut() };
                     let (bounds, distances) = (self.bounds.as_ptr(), self.distances.as_ptr());
-                    PxBroadPhaseRegions_addRegion_mut(regions, &region, false, bounds, distances);
+                    PxBroadPhaseRegions_addRegion_mut(wanted, &region, false, bounds, distances);
                 }
             }
             let update = PxBroadPhaseUpdateData_new(

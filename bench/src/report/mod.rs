@@ -8,8 +8,10 @@ use anyhow::{Context, Result};
 use crate::record::Record;
 
 mod format;
+mod own;
 mod plot;
 mod table;
+mod worlds;
 
 pub use format::time;
 

@@ -6,76 +6,194 @@ use std::path::Path;
 use anyhow::{Result, anyhow};
 use plotters::prelude::*;
 
-use super::table::{GOALS, advantage, names, scenes};
+use super::own::{SMALL, each};
+use super::table::{GOALS, advantage, is_open, names, scenes};
 use crate::peers::OURS;
-use crate::record::{Case, Record};
+use crate::record::{Case, Record, Times};
 
-const SIZE: (u32, u32) = (900, 560);
+const SIZE: (u32, u32) = (920, 560);
+/// The width of the legend.
+const LEGEND: u32 = 220;
+
+/// One plot.
+struct Plot {
+    file: String,
+    title: String,
+    y_label: &'static str,
+    series: Vec<Series>,
+}
 
 /// A line of a plot, its points in ascending x.
 struct Series {
     name: String,
     points: Vec<(f64, f64)>,
-    style: ShapeStyle,
+    look: Look,
+}
+
+/// How a line is drawn.
+#[derive(Clone, Copy)]
+enum Look {
+    /// The one to look for.
+    Main,
+    /// In the colour of this number, and dashed where the colours are used up.
+    Line(usize),
+    /// Without a name.
+    Faint,
 }
 
 /// Writes the plots into the folder and returns their file names.
 pub fn write(record: &Record, folder: &Path) -> Result<Vec<String>> {
-    let mut written = Vec::new();
-    let mut advantages = Vec::new();
+    let large: Vec<_> = record.cases.iter().filter(|case| case.boxes > SMALL).cloned().collect();
+    let (open, others): (Vec<_>, Vec<_>) = large.into_iter().partition(is_open);
+    let mut plots = vec![
+        Plot {
+            file: "advantage.svg".into(),
+            title: "How many times as long as ours the fastest rival takes".into(),
+            y_label: "fastest rival / ours",
+            series: advantages(&open),
+        },
+        Plot {
+            file: "flat.svg".into(),
+            title: "Ours on every scene: time for each box and each pair".into(),
+            y_label: "nanoseconds",
+            series: flatness(&[&open[..], &others].concat()),
+        },
+    ];
     // Over all cases, so that a contender has the same colour in every plot.
-    let contenders = names(&record.cases.iter().collect::<Vec<_>>());
-    for (scene, dimensions) in scenes(record) {
-        let mut cases: Vec<_> = record
-            .cases
-            .iter()
-            .filter(|case| case.scene == scene && case.dimensions == dimensions)
-            .collect();
-        cases.sort_by_key(|case| case.boxes);
-        let point = |case: &&Case| Some((case.boxes as f64, advantage(case)?));
-        advantages.push(Series {
-            name: format!("{scene} {dimensions}D"),
-            points: cases.iter().filter_map(point).collect(),
-            style: colour(advantages.len()).stroke_width(2),
-        });
-        let file = format!("{}-{dimensions}d.svg", scene.replace(['/', '.'], "-"));
-        let title = format!("{scene} {dimensions}D: time to find all pairs");
-        draw(&folder.join(&file), &title, "milliseconds", times(&cases, &contenders))?;
-        written.push(file);
+    let finders = names(&open.iter().collect::<Vec<_>>());
+    plots.extend(of_scenes(&open, &finders, "", "time to find all pairs"));
+    plots.extend(memory(&open, &finders, "uniform", "find all pairs"));
+    let followers = names(&record.worlds.iter().collect::<Vec<_>>());
+    plots.extend(of_scenes(&record.worlds, &followers, "world-", "time of a frame"));
+    plots.extend(memory(&record.worlds, &followers, "drift", "follow a world"));
+    plots.retain(|plot| plot.series.iter().any(|series| !series.points.is_empty()));
+    for plot in &plots {
+        draw(&folder.join(&plot.file), plot)?;
     }
-    advantages.push(Series {
-        name: "goal of the mean".into(),
-        points: GOALS.map(|(boxes, goal)| (boxes as f64, goal)).to_vec(),
-        style: BLACK.stroke_width(4),
-    });
-    let title = "How many times ours the fastest rival takes";
-    draw(&folder.join("advantage.svg"), title, "fastest rival / ours", advantages)?;
-    written.insert(0, "advantage.svg".into());
-    Ok(written)
+    Ok(plots.into_iter().map(|plot| plot.file).collect())
 }
 
-fn times(cases: &[&Case], contenders: &[String]) -> Vec<Series> {
+/// The fastest rival over ours, of every scene.
+fn advantages(cases: &[Case]) -> Vec<Series> {
+    let mut series = Vec::new();
+    for (scene, dimensions) in scenes(cases) {
+        let point = |case: &&Case| Some((case.boxes as f64, advantage(case)?));
+        series.push(Series {
+            name: format!("{scene} {dimensions}D"),
+            points: of(cases, &scene, dimensions).iter().filter_map(point).collect(),
+            look: Look::Line(series.len()),
+        });
+    }
+    series.push(Series {
+        name: "goal of the mean".into(),
+        points: GOALS.map(|(boxes, goal)| (boxes as f64, goal)).to_vec(),
+        look: Look::Main,
+    });
+    series
+}
+
+/// Ours on every scene: uniform, and the scenes that it is slowest on, stand out.
+fn flatness(cases: &[Case]) -> Vec<Series> {
+    let mut series: Vec<Series> = scenes(cases)
+        .into_iter()
+        .map(|(scene, dimensions)| {
+            let point = |case: &&Case| Some((case.boxes as f64, each(case)?));
+            Series {
+                name: format!("{scene} {dimensions}D"),
+                points: of(cases, &scene, dimensions).iter().filter_map(point).collect(),
+                look: if scene == "uniform" { Look::Main } else { Look::Faint },
+            }
+        })
+        .collect();
+    let slowest = |series: &Series| series.points.iter().map(|it| it.1).fold(0.0, f64::max);
+    series.sort_by(|a, b| slowest(b).total_cmp(&slowest(a)));
+    let faint = series.iter_mut().filter(|series| matches!(series.look, Look::Faint));
+    for (at, series) in faint.take(8).enumerate() {
+        series.look = Look::Line(at);
+    }
+    series.retain(|series| !series.points.is_empty());
+    series
+}
+
+/// A plot a scene: each contender's time against the number of boxes.
+fn of_scenes(cases: &[Case], contenders: &[String], prefix: &str, what: &str) -> Vec<Plot> {
+    let plot = |(scene, dimensions): (String, usize)| {
+        let file = format!("{prefix}{}-{dimensions}d.svg", scene.replace(['/', '.'], "-"));
+        let milliseconds = |times: &Times| Some(times.median_ns / 1e6);
+        Plot {
+            file,
+            title: format!("{scene} {dimensions}D: {what}"),
+            y_label: "milliseconds",
+            series: lines(&of(cases, &scene, dimensions), contenders, milliseconds),
+        }
+    };
+    scenes(cases).into_iter().map(plot).collect()
+}
+
+/// Each contender's memory a box against the number of boxes, in two dimensions and in three.
+fn memory(cases: &[Case], contenders: &[String], scene: &str, what: &str) -> Vec<Plot> {
+    let plot = |dimensions: usize| {
+        let of = of(cases, scene, dimensions);
+        let mut series = lines(&of, contenders, |times| Some(times.peak_bytes? as f64));
+        for (boxes, bytes) in series.iter_mut().flat_map(|series| &mut series.points) {
+            *bytes /= *boxes;
+        }
+        // What is less than a page cannot be measured.
+        series.iter_mut().for_each(|series| series.points.retain(|it| it.0 * it.1 > 65536.0));
+        Plot {
+            file: format!("memory-{scene}-{dimensions}d.svg"),
+            title: format!("{scene} {dimensions}D: most memory in use to {what}, beyond the boxes"),
+            y_label: "bytes a box",
+            series,
+        }
+    };
+    [2, 3].map(plot).into()
+}
+
+/// The cases of a scene, few boxes first.
+fn of<'a>(cases: &'a [Case], scene: &str, dimensions: usize) -> Vec<&'a Case> {
+    let wanted = |case: &&Case| case.scene == scene && case.dimensions == dimensions;
+    let mut cases: Vec<_> = cases.iter().filter(wanted).collect();
+    cases.sort_by_key(|case| case.boxes);
+    cases
+}
+
+/// A line a contender.
+fn lines(
+    cases: &[&Case],
+    contenders: &[String],
+    value: impl Fn(&Times) -> Option<f64>,
+) -> Vec<Series> {
     let series = |(at, name): (usize, &String)| {
-        let point = |case: &&Case| Some((case.boxes as f64, case.times(name)?.median_ns / 1e6));
-        let style = if name == OURS { BLACK.stroke_width(4) } else { colour(at).stroke_width(2) };
-        Series { points: cases.iter().filter_map(point).collect(), style, name: name.clone() }
+        let point = |case: &&Case| Some((case.boxes as f64, value(case.times(name)?)?));
+        Series {
+            name: name.clone(),
+            points: cases.iter().filter_map(point).collect(),
+            look: if name == OURS { Look::Main } else { Look::Line(at) },
+        }
     };
     contenders.iter().enumerate().map(series).collect()
 }
 
-/// A log-log plot with the legend outside on the right.
-fn draw(path: &Path, title: &str, y_label: &str, mut series: Vec<Series>) -> Result<()> {
-    series.retain(|series| !series.points.is_empty());
+/// A log-log plot with the legend outside on the right, in the order in which the lines end.
+fn draw(path: &Path, plot: &Plot) -> Result<()> {
+    let mut series: Vec<_> =
+        plot.series.iter().filter(|series| !series.points.is_empty()).collect();
+    series.sort_by(|a, b| {
+        let end = |series: &Series| series.points.last().copied().unwrap_or_default();
+        let (a, b) = (end(a), end(b));
+        b.0.total_cmp(&a.0).then(b.1.total_cmp(&a.1))
+    });
     let points = || series.iter().flat_map(|series| &series.points);
     let x = range(points().map(|point| point.0));
     let y = range(points().map(|point| point.1));
     let root = SVGBackend::new(path, SIZE).into_drawing_area();
     let failed = |error| anyhow!("drawing {}: {error}", path.display());
 
-    root.fill(&WHITE).map_err(|error| anyhow!("drawing {}: {error}", path.display()))?;
-    let (plot, legend) = root.split_horizontally(SIZE.0 - 210);
-    let mut chart = ChartBuilder::on(&plot)
-        .caption(title, ("sans-serif", 20))
+    root.fill(&WHITE).map_err(failed)?;
+    let (area, legend) = root.split_horizontally(SIZE.0 - LEGEND);
+    let mut chart = ChartBuilder::on(&area)
+        .caption(&plot.title, ("sans-serif", 18))
         .margin(12)
         .x_label_area_size(46)
         .y_label_area_size(70)
@@ -84,22 +202,46 @@ fn draw(path: &Path, title: &str, y_label: &str, mut series: Vec<Series>) -> Res
     chart
         .configure_mesh()
         .x_desc("boxes")
-        .y_desc(y_label)
+        .y_desc(plot.y_label)
         .x_label_formatter(&label)
         .y_label_formatter(&label)
         .light_line_style(WHITE)
+        .bold_line_style(RGBColor(225, 225, 225))
         .label_style(("sans-serif", 13))
         .draw()
         .map_err(failed)?;
-    for (at, one) in series.iter().enumerate() {
-        let line = LineSeries::new(one.points.iter().copied(), one.style);
-        chart.draw_series(line).map_err(failed)?;
-        let dots = one.points.iter().map(|&point| Circle::new(point, 3, one.style.filled()));
-        chart.draw_series(dots).map_err(failed)?;
-        let y = 50 + 20 * at as i32;
-        legend.draw(&PathElement::new([(4, y), (28, y)], one.style)).map_err(failed)?;
-        let text = Text::new(one.name.clone(), (34, y - 7), ("sans-serif", 14).into_font());
+    let mut row = 50;
+    // What stands out is drawn last, over the others.
+    let order = |look: Look| match look {
+        Look::Faint => 0,
+        Look::Line(_) => 1,
+        Look::Main => 2,
+    };
+    for layer in 0..3 {
+        for one in series.iter().filter(|one| order(one.look) == layer) {
+            let style = style(one.look);
+            let ends = one.points.iter().map(|&at| Circle::new(at, 3, style.filled()));
+            chart.draw_series(ends).map_err(failed)?;
+            let points = one.points.iter().copied();
+            if is_dashed(one.look) {
+                let line = DashedLineSeries::new(points, 6, 5, style);
+                chart.draw_series(line).map_err(failed)?;
+            } else {
+                chart.draw_series(LineSeries::new(points, style)).map_err(failed)?;
+            }
+        }
+    }
+    for one in series.iter().filter(|one| order(one.look) > 0) {
+        let style = style(one.look);
+        let line: &[(i32, i32)] =
+            if is_dashed(one.look) { &[(4, 10), (15, 21), (26, 32)] } else { &[(4, 32)] };
+        for &(from, to) in line {
+            let dash = PathElement::new([(from, row), (to, row)], style);
+            legend.draw(&dash).map_err(failed)?;
+        }
+        let text = Text::new(one.name.clone(), (38, row - 7), ("sans-serif", 14).into_font());
         legend.draw(&text).map_err(failed)?;
+        row += 20;
     }
     root.present().map_err(failed)
 }
@@ -123,27 +265,29 @@ fn label(number: &f64) -> String {
     }
 }
 
-/// Colours that stay apart, for so many lines as there are contenders.
-fn colour(at: usize) -> RGBColor {
-    const COLOURS: [RGBColor; 18] = [
-        RGBColor(31, 119, 180),
-        RGBColor(130, 130, 130),
-        RGBColor(44, 160, 44),
-        RGBColor(190, 190, 190),
-        RGBColor(255, 127, 14),
-        RGBColor(214, 39, 40),
-        RGBColor(148, 103, 189),
-        RGBColor(140, 86, 75),
-        RGBColor(227, 119, 194),
-        RGBColor(188, 189, 34),
-        RGBColor(23, 190, 207),
-        RGBColor(0, 70, 140),
-        RGBColor(110, 180, 110),
-        RGBColor(255, 187, 120),
-        RGBColor(140, 20, 60),
-        RGBColor(80, 80, 0),
-        RGBColor(0, 110, 110),
-        RGBColor(120, 60, 200),
-    ];
-    COLOURS[at % COLOURS.len()]
+/// Colours that stay apart, also for most who see few of them.
+const COLOURS: [RGBColor; 11] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(150, 150, 150),
+    RGBColor(86, 180, 233),
+    RGBColor(170, 40, 40),
+    RGBColor(230, 159, 0),
+    RGBColor(110, 75, 170),
+    RGBColor(120, 150, 30),
+    RGBColor(130, 85, 50),
+];
+
+fn style(look: Look) -> ShapeStyle {
+    match look {
+        Look::Main => BLACK.stroke_width(4),
+        Look::Line(at) => COLOURS[at % COLOURS.len()].stroke_width(2),
+        Look::Faint => RGBColor(215, 215, 215).stroke_width(1),
+    }
+}
+
+fn is_dashed(look: Look) -> bool {
+    matches!(look, Look::Line(at) if at / COLOURS.len() % 2 == 1)
 }

@@ -4,16 +4,19 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use super::format::{count, rounded, significant, time};
-use crate::peers::{OURS, OURS_ON_TWO};
+use super::own::SMALL;
+use super::{own, worlds};
+use crate::peers::OURS;
 use crate::record::{Case, Entry, Outcome, Record, Times};
+use crate::scene;
 
 /// What stands above the results of all machines.
 pub const INTRODUCTION: &str = "\
-# Finding all pairs: results
+# Results
 
 Made by `bench/report` from the files in `bench/results`; `bench/run` measures anew.
 
-Every time is from raw boxes to pairs stored in memory, everything included, on one thread unless \
+Of finding all pairs every time is from raw boxes to pairs stored in memory, everything included, on one thread unless \
 the name says otherwise. A contender is timed only if its pairs are exactly the right ones. Each \
 round runs every contender in turn; a time is the median over the rounds, and a ratio the median \
 over the rounds of a contender's time over ours in the same round, so that what slowed the machine \
@@ -29,25 +32,20 @@ pub const GOALS: [(usize, f64); 3] = [(10_000, 2.0), (100_000, 3.0), (1_000_000,
 const CLASSIC: [(usize, f64, f64); 2] =
     [(10_000, 2_413.0, 1_000.0), (100_000, 182_715.0, 50_000.0)];
 
-/// From so many boxes on, threads and the memory's speed are looked at.
-const MANY: usize = 100_000;
-
 /// The results of one machine.
 pub fn section(record: &Record, plots: &[String]) -> String {
     let mut text = heading(record);
     text += &classic(record);
     text += &fastest(record);
     text += &means(record);
-    text += &threads(record);
-    text += &small(record);
-    text += &flat(record);
-    text += &limits(record);
+    text += &own::section(record);
     text += "\n### Plots\n\n";
     for plot in plots {
         let name = plot.rsplit('/').next().unwrap_or(plot).trim_end_matches(".svg");
         text += &format!("![{name}]({plot})\n");
     }
     text += &everything(record);
+    text += &worlds::section(record);
     text += &contenders(record);
     text
 }
@@ -119,13 +117,30 @@ fn classic(record: &Record) -> String {
     )
 }
 
+/// Whether every peer is measured on the scene, or only a few.
+pub fn is_open(case: &Case) -> bool {
+    !scene::others().contains(&case.scene)
+}
+
 fn fastest(record: &Record) -> String {
+    let mut text = String::from("\n### Ours against the fastest\n\n");
+    text += &ranking(record, is_open);
+    let others = |case: &Case| !is_open(case);
+    if record.cases.iter().any(others) {
+        text += "\n### The other scenes: ours against a few\n\n\
+                 Plain sweep, packed_spatial_index, parry and PhysX ABP, where ours might be slow.\n\n";
+        text += &ranking(record, others);
+    }
+    text
+}
+
+fn ranking(record: &Record, wanted: impl Fn(&Case) -> bool) -> String {
     let mut text = String::from(
-        "\n### Ours against the fastest\n\n\
-         | scene | boxes | pairs | ours | fastest rival | ratio | next | ratio |\n\
+        "| scene | boxes | pairs | ours | fastest rival | ratio | next | ratio |\n\
          |---|--:|--:|--:|---|--:|---|--:|\n",
     );
-    for case in sorted(record).into_iter().filter(|case| case.boxes > SMALL) {
+    let cases = sorted(&record.cases).into_iter();
+    for case in cases.filter(|case| case.boxes > SMALL && wanted(case)) {
         let Some(ours) = case.times(OURS) else { continue };
         let ranking = case.ranking();
         let rival = |at: usize| match ranking.get(at) {
@@ -153,8 +168,9 @@ fn fastest(record: &Record) -> String {
 
 fn means(record: &Record) -> String {
     let mut text = String::new();
-    for boxes in sizes(record).into_iter().filter(|&boxes| boxes > SMALL) {
-        let cases = record.cases.iter().filter(|case| case.boxes == boxes);
+    let open = || record.cases.iter().filter(|case| case.boxes > SMALL && is_open(case));
+    for boxes in open().map(|case| case.boxes).collect::<BTreeSet<_>>() {
+        let cases = open().filter(|case| case.boxes == boxes);
         let ratios: Vec<_> = cases.filter_map(advantage).collect();
         if ratios.is_empty() {
             continue;
@@ -178,143 +194,18 @@ fn means(record: &Record) -> String {
     )
 }
 
-/// Inputs of at most so many boxes are compared with brute force.
-const SMALL: usize = 100;
-
-fn small(record: &Record) -> String {
-    let mut rows = String::new();
-    for boxes in sizes(record).into_iter().filter(|&boxes| boxes <= SMALL) {
-        let cases = record.cases.iter().filter(|case| case.boxes == boxes);
-        let mut slowdowns: Vec<_> = cases
-            .filter_map(|case| {
-                let slowdown = 1.0 / case.times("brute force")?.ratio?;
-                Some((slowdown, format!("{} {}D", case.scene, case.dimensions)))
-            })
-            .collect();
-        slowdowns.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        let Some((worst, scene)) = slowdowns.last() else { continue };
-        let middle = slowdowns[slowdowns.len() / 2].0;
-        let _ = writeln!(
-            rows,
-            "| {boxes} | {} | {} | {scene} |",
-            significant(middle),
-            significant(*worst)
-        );
-    }
-    if rows.is_empty() {
-        return rows;
-    }
-    format!(
-        "\n### Small inputs: ours over brute force\n\nGoal: at most 1.33.\n\n\
-         | boxes | median scene | worst scene | which |\n|--:|--:|--:|---|\n{rows}"
-    )
-}
-
-fn threads(record: &Record) -> String {
-    let mut rows = String::new();
-    for case in sorted(record).into_iter().filter(|case| case.boxes >= MANY) {
-        let (Some(one), Some(two)) = (case.times(OURS), case.times(OURS_ON_TWO)) else { continue };
-        let Some(share) = two.ratio else { continue };
-        let _ = writeln!(
-            rows,
-            "| {} {}D | {} | {} | {} | {} |",
-            case.scene,
-            case.dimensions,
-            count(case.boxes as u64),
-            time(one.median_ns),
-            time(two.median_ns),
-            significant(1.0 / share)
-        );
-    }
-    if rows.is_empty() {
-        return rows;
-    }
-    format!(
-        "\n### Two threads: ours\n\nGoal: at least 1.7 times as fast as one.\n\n\
-         | scene | boxes | one thread | two threads | gain |\n|---|--:|--:|--:|--:|\n{rows}"
-    )
-}
-
-fn flat(record: &Record) -> String {
-    let each = |case: &Case| {
-        let ours = case.times(OURS)?;
-        Some(ours.median_ns / (case.boxes as f64 + case.pairs as f64))
-    };
-    let sizes: Vec<_> = sizes(record).into_iter().filter(|&boxes| boxes > SMALL).collect();
-    let mut text = String::from(
-        "\n### Flat: ours, nanoseconds for each box and each pair\n\n\
-         Goals: at 100,000 boxes at most 4 times those of uniform on any scene; from 10,000 to \
-         1,000,000 at most 2 times as many on any scene.\n\n| scene |",
-    );
-    for boxes in &sizes {
-        let _ = write!(text, " {} |", count(*boxes as u64));
-    }
-    text += " over uniform at 100,000 | 1,000,000 over 10,000 |\n|---|";
-    text += &"--:|".repeat(sizes.len() + 2);
-    text += "\n";
-    for (scene, dimensions) in scenes(record) {
-        let at = |boxes| find(record, &scene, dimensions, boxes).and_then(each);
-        let _ = write!(text, "| {scene} {dimensions}D |");
-        for &boxes in &sizes {
-            let _ = write!(text, " {} |", at(boxes).map_or("-".into(), |ns| format!("{ns:.1}")));
-        }
-        let uniform = find(record, "uniform", dimensions, 100_000).and_then(each);
-        let over =
-            at(100_000).zip(uniform).map_or("-".into(), |(ns, uniform)| significant(ns / uniform));
-        let growth = at(1_000_000).zip(at(10_000));
-        let growth = growth.map_or("-".into(), |(large, small)| significant(large / small));
-        let _ = writeln!(text, " {over} | {growth} |");
-    }
-    text
-}
-
-fn limits(record: &Record) -> String {
-    let mut rows = String::new();
-    for case in sorted(record).into_iter().filter(|case| case.boxes >= MANY) {
-        let Some(ours) = case.times(OURS) else { continue };
-        let bytes = least_bytes(case);
-        let least_ns = bytes / record.machine.copy_bytes_per_second * 1e9;
-        let _ = writeln!(
-            rows,
-            "| {} {}D | {} | {:.1} MB | {} | {} | {:.0} % | {} |",
-            case.scene,
-            case.dimensions,
-            count(case.boxes as u64),
-            bytes / 1e6,
-            time(least_ns),
-            time(ours.median_ns),
-            100.0 * least_ns / ours.median_ns,
-            ours.peak_bytes
-                .map_or("-".into(), |peak| format!("{:.0}", peak as f64 / case.boxes as f64)),
-        );
-    }
-    if rows.is_empty() {
-        return rows;
-    }
-    format!(
-        "\n### Close to the machine\n\n\
-         What no method can avoid: to read every box once and to write every pair once, at the \
-         rate at which one thread copies. The last column is the most memory in use beyond the \
-         boxes, in bytes a box.\n\n\
-         | scene | boxes | least traffic | its time | ours | share | memory |\n\
-         |---|--:|--:|--:|--:|--:|--:|\n{rows}"
-    )
-}
-
-/// Every box read once, every pair written once.
-fn least_bytes(case: &Case) -> f64 {
-    (case.boxes * 2 * case.dimensions * size_of::<f32>()) as f64
-        + case.pairs as f64 * size_of::<[u32; 2]>() as f64
-}
-
 fn everything(record: &Record) -> String {
     let mut text =
         String::from("\n### Every contender\n\nMedian time, and in brackets the ratio to ours.\n");
-    for (scene, dimensions) in scenes(record) {
-        let cases: Vec<_> = sorted(record)
+    for (scene, dimensions) in scenes(&record.cases) {
+        let cases: Vec<_> = sorted(&record.cases)
             .into_iter()
             .filter(|case| case.scene == scene && case.dimensions == dimensions)
+            .filter(|case| case.boxes > SMALL)
             .collect();
+        if cases.is_empty() {
+            continue;
+        }
         let _ = write!(text, "\n#### {scene} {dimensions}D\n\n| boxes |");
         for case in &cases {
             let _ = write!(text, " {} |", count(case.boxes as u64));
@@ -369,9 +260,9 @@ pub fn advantage(case: &Case) -> Option<f64> {
 }
 
 /// The cases by scene in order of first appearance, then dimensions, then boxes.
-fn sorted(record: &Record) -> Vec<&Case> {
-    let mut cases: Vec<_> = record.cases.iter().collect();
-    let order = scenes(record);
+pub fn sorted(cases: &[Case]) -> Vec<&Case> {
+    let order = scenes(cases);
+    let mut cases: Vec<_> = cases.iter().collect();
     cases.sort_by_key(|case| {
         let scene = (case.scene.clone(), case.dimensions);
         (order.iter().position(|one| *one == scene), case.boxes)
@@ -379,20 +270,19 @@ fn sorted(record: &Record) -> Vec<&Case> {
     cases
 }
 
-/// The scenes and dimensions in order of first appearance.
-pub fn scenes(record: &Record) -> Vec<(String, usize)> {
-    let mut scenes = Vec::new();
-    for case in &record.cases {
-        let scene = (case.scene.clone(), case.dimensions);
-        if !scenes.contains(&scene) {
-            scenes.push(scene);
+/// The scenes and dimensions, the scenes in order of first appearance.
+pub fn scenes(cases: &[Case]) -> Vec<(String, usize)> {
+    let mut scenes: Vec<&str> = Vec::new();
+    for case in cases {
+        if !scenes.contains(&case.scene.as_str()) {
+            scenes.push(&case.scene);
         }
     }
-    scenes
-}
-
-fn sizes(record: &Record) -> BTreeSet<usize> {
-    record.cases.iter().map(|case| case.boxes).collect()
+    let both = scenes.iter().flat_map(|&scene| [2, 3].map(|dimensions| (scene, dimensions)));
+    let exists = |(scene, dimensions): &(&str, usize)| {
+        cases.iter().any(|case| case.scene == *scene && case.dimensions == *dimensions)
+    };
+    both.filter(exists).map(|(scene, dimensions)| (scene.to_owned(), dimensions)).collect()
 }
 
 /// The contenders of some cases, in order of first appearance.
@@ -406,7 +296,13 @@ pub fn names(cases: &[&Case]) -> Vec<String> {
     names
 }
 
-fn find<'a>(record: &'a Record, scene: &str, dimensions: usize, boxes: usize) -> Option<&'a Case> {
+/// The case of these boxes.
+pub fn find<'a>(
+    record: &'a Record,
+    scene: &str,
+    dimensions: usize,
+    boxes: usize,
+) -> Option<&'a Case> {
     let wanted =
         |case: &&Case| case.scene == scene && case.dimensions == dimensions && case.boxes == boxes;
     record.cases.iter().find(wanted)

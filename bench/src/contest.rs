@@ -1,0 +1,311 @@
+//! One contest: the contenders on one set of boxes, or on one motion. Each is checked first; then
+//! each round runs every contender once, so that what slows the machine slows them all, and ratios
+//! are taken within a round.
+
+use std::collections::HashMap;
+use std::time::Duration;
+
+use anyhow::Result;
+use indicatif::ProgressBar;
+
+use crate::fingerprint::Fingerprint;
+use crate::peers::{Entrant, OURS};
+use crate::record::{Case, Entry, Outcome, Times, median};
+use crate::remote::{self, Remote};
+use crate::worker::{Reply, Request};
+use crate::worlds::FROM_SCRATCH;
+use crate::{machine, scene, worlds};
+
+/// Up to so many boxes brute force is the reference; beyond, two contenders that agree.
+const ORACLE_LIMIT: usize = 10_000;
+/// Fewer boxes than this are found in batches of calls, of about so many boxes together.
+const BATCHED: usize = 1000;
+/// No contender takes part in more rounds once it has taken so long, but for the first three.
+const PATIENCE: Duration = Duration::from_secs(8);
+/// Sets of boxes with more pairs than about this are left out.
+const MOST_PAIRS: f64 = 5e7;
+/// How many times the limit a world may take to be checked, over many frames.
+const WORLD_CHECK: u32 = 4;
+
+/// What the contenders do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// They find all pairs of a set of boxes.
+    Pairs,
+    /// They follow a world from frame to frame.
+    Worlds,
+}
+
+impl Kind {
+    /// Short runs are repeated until a round of a contender takes about so long.
+    fn round(self) -> Duration {
+        match self {
+            Self::Pairs => Duration::from_millis(20),
+            Self::Worlds => Duration::from_millis(60),
+        }
+    }
+
+    /// The least and the most repeats of a round.
+    fn repeats(self) -> (u128, u128) {
+        match self {
+            Self::Pairs => (1, 200),
+            Self::Worlds => (4, 400),
+        }
+    }
+
+    /// A round's time from that of its repeats. Worlds may do now and then what pays for many
+    /// frames, so all frames count.
+    fn sum_up(self, nanoseconds: &[f64]) -> f64 {
+        match self {
+            Self::Pairs => median(nanoseconds),
+            Self::Worlds => nanoseconds.iter().sum::<f64>() / nanoseconds.len() as f64,
+        }
+    }
+}
+
+/// One set of boxes that is to be measured.
+pub struct Contest<'a> {
+    /// What the contenders do.
+    pub kind: Kind,
+    /// The scene's name, or the motion's.
+    pub scene: &'a str,
+    /// 2 or 3.
+    pub dimensions: usize,
+    /// The number of boxes.
+    pub boxes: usize,
+    /// Rounds in which each contender is timed.
+    pub rounds: usize,
+    /// After so long a contender is stopped.
+    pub limit: Duration,
+    /// Tells how far it is: one step for the check and one for each round.
+    pub bar: &'a ProgressBar,
+}
+
+/// How long a contender took for a number of boxes of a scene; without end if it was stopped.
+pub type Slow = HashMap<(Kind, String, usize, &'static str), (usize, Duration)>;
+
+/// A contender whose worker runs.
+struct Running<'a> {
+    entrant: &'a Entrant,
+    worker: Remote,
+    first: Duration,
+    fingerprint: Fingerprint,
+    peak_bytes: Option<u64>,
+    exact_ns: Option<u64>,
+    rounds: Vec<(usize, f64)>,
+    spent: Duration,
+}
+
+impl Contest<'_> {
+    /// Checks and times the contenders, or says why these boxes are left out.
+    pub fn run(&self, contenders: Vec<&Entrant>, slow: &mut Slow) -> Result<Result<Case, String>> {
+        self.bar.set_message(format!("{} {}D {}", self.scene, self.dimensions, self.boxes));
+        let expected = match self.dimensions {
+            2 => scene::estimated_pairs::<2>(self.scene, self.boxes)?,
+            _ => scene::estimated_pairs::<3>(self.scene, self.boxes)?,
+        };
+        if expected > MOST_PAIRS {
+            self.bar.inc(1 + self.rounds as u64);
+            return Ok(Err(format!("about {expected:.0e} pairs")));
+        }
+
+        let mut running = Vec::new();
+        let mut untimed = Vec::new();
+        for entrant in contenders {
+            match self.check(entrant, slow)? {
+                Ok(contender) => running.push(contender),
+                Err(why) => untimed.push((entrant, why)),
+            }
+        }
+        self.bar.inc(1);
+
+        let Some((reference, fingerprint)) = self.reference(&running)? else {
+            self.bar.inc(self.rounds as u64);
+            return Ok(Err("no two contenders agree".into()));
+        };
+        running.retain(|contender| {
+            let right = contender.fingerprint == fingerprint;
+            if !right {
+                let found = contender.fingerprint.pairs;
+                untimed.push((contender.entrant, format!("other pairs, {found} of them")));
+            }
+            right
+        });
+        for round in 0..self.rounds {
+            self.round(round, &mut running, &mut untimed)?;
+            self.bar.inc(1);
+        }
+
+        let ours: HashMap<usize, f64> = running
+            .iter()
+            .find(|contender| contender.entrant.name == OURS)
+            .map(|contender| contender.rounds.iter().copied().collect())
+            .unwrap_or_default();
+        let timed = running.into_iter().map(|contender| Entry {
+            name: contender.entrant.name.into(),
+            rival: contender.entrant.rival,
+            outcome: Outcome::Timed(contender.times(&ours)),
+        });
+        let untimed = untimed.into_iter().map(|(entrant, why)| Entry {
+            name: entrant.name.into(),
+            rival: entrant.rival,
+            outcome: Outcome::Untimed { why },
+        });
+        Ok(Ok(Case {
+            scene: self.scene.into(),
+            dimensions: self.dimensions,
+            boxes: self.boxes,
+            pairs: fingerprint.pairs / self.frames_checked(),
+            reference,
+            revision: machine::revision(),
+            results: timed.chain(untimed).collect(),
+        }))
+    }
+
+    /// Starts a contender's worker and has it find the pairs once, or says why it cannot be timed.
+    fn check<'a>(
+        &self,
+        entrant: &'a Entrant,
+        slow: &mut Slow,
+    ) -> Result<Result<Running<'a>, String>> {
+        let too_slow = format!("over {} s", self.limit.as_secs_f64());
+        let key = (self.kind, self.scene.to_owned(), self.dimensions, entrant.name);
+        if let Some(&(boxes, took)) = slow.get(&key) {
+            // Nothing here takes less than proportionally longer for more boxes.
+            if took.saturating_mul((self.boxes / boxes.max(1)) as u32) > self.limit {
+                return Ok(Err(format!("{too_slow}, as its time for {boxes} boxes shows")));
+            }
+        }
+        let mut worker =
+            Remote::start(self.kind, entrant.name, self.scene, self.dimensions, self.boxes)?;
+        let limit = match self.kind {
+            Kind::Pairs => self.limit,
+            Kind::Worlds => WORLD_CHECK * self.limit,
+        };
+        match worker.ask(&Request::Check, limit)? {
+            remote::Outcome::Reply(Reply::Checked {
+                fingerprint,
+                nanoseconds,
+                peak_bytes,
+                exact_ns,
+            }) => {
+                let first = Duration::from_nanos(nanoseconds);
+                slow.insert(key, (self.boxes, first));
+                Ok(Ok(Running {
+                    entrant,
+                    worker,
+                    first,
+                    fingerprint,
+                    peak_bytes,
+                    exact_ns,
+                    rounds: Vec::new(),
+                    spent: Duration::ZERO,
+                }))
+            }
+            remote::Outcome::Late => {
+                slow.insert(key, (self.boxes, Duration::MAX));
+                Ok(Err(match self.kind {
+                    Kind::Pairs => too_slow,
+                    Kind::Worlds => format!("over {} s for the first frames", limit.as_secs_f64()),
+                }))
+            }
+            other => Ok(Err(failure(other))),
+        }
+    }
+
+    /// Of how many frames the pairs are checked.
+    fn frames_checked(&self) -> u64 {
+        match self.kind {
+            Kind::Pairs => scene::frames_checked(self.scene) as u64,
+            Kind::Worlds => worlds::FRAMES_CHECKED as u64,
+        }
+    }
+
+    /// The right pairs, and in words how we know; nothing if no two contenders agree.
+    fn reference(&self, running: &[Running]) -> Result<Option<(String, Fingerprint)>> {
+        if self.boxes <= ORACLE_LIMIT {
+            let right = match (self.kind, self.dimensions) {
+                (Kind::Pairs, 2) => scene::oracle::<2>(self.scene, self.boxes)?,
+                (Kind::Pairs, _) => scene::oracle::<3>(self.scene, self.boxes)?,
+                (Kind::Worlds, 2) => worlds::oracle::<2>(self.scene, self.boxes)?,
+                (Kind::Worlds, _) => worlds::oracle::<3>(self.scene, self.boxes)?,
+            };
+            return Ok(Some(("brute force".into(), right)));
+        }
+        // All of ours that find pairs count as one witness.
+        let witness =
+            |one: &&Running| one.entrant.rival || [OURS, FROM_SCRATCH].contains(&one.entrant.name);
+        let witnesses: Vec<_> = running.iter().filter(witness).rev().collect();
+        Ok(witnesses.iter().enumerate().find_map(|(at, one)| {
+            let other = witnesses[at + 1..].iter().find(|it| it.fingerprint == one.fingerprint)?;
+            Some((
+                format!("{} and {} agree", other.entrant.name, one.entrant.name),
+                one.fingerprint,
+            ))
+        }))
+    }
+
+    /// Runs every contender once, each round beginning with another.
+    fn round<'a>(
+        &self,
+        round: usize,
+        running: &mut Vec<Running<'a>>,
+        untimed: &mut Vec<(&'a Entrant, String)>,
+    ) -> Result<()> {
+        let count = running.len();
+        let mut lost = Vec::new();
+        for at in (0..count).map(|at| (at + round) % count) {
+            let contender = &mut running[at];
+            if round >= 3 && contender.spent > PATIENCE {
+                continue;
+            }
+            let batch = (BATCHED / self.boxes.max(1)).clamp(1, 256);
+            let round_time = self.kind.round();
+            let (least, most) = self.kind.repeats();
+            let once = contender.first.as_nanos().max(1) * batch as u128;
+            let repeats = (round_time.as_nanos() / once).clamp(least, most);
+            let request = Request::Time { repeats: repeats as usize, batch };
+            // The limit is for what takes too long once; here it only guards against hanging.
+            match contender.worker.ask(&request, 10 * self.limit + 20 * round_time)? {
+                remote::Outcome::Reply(Reply::Timed { nanoseconds }) => {
+                    let all = nanoseconds.iter().sum::<f64>() * batch as f64;
+                    contender.spent += Duration::from_nanos(all as u64);
+                    contender.rounds.push((round, self.kind.sum_up(&nanoseconds)));
+                }
+                other => lost.push((at, failure(other))),
+            }
+        }
+        lost.sort_unstable();
+        for (at, why) in lost.into_iter().rev() {
+            untimed.push((running.remove(at).entrant, why));
+        }
+        Ok(())
+    }
+}
+
+/// What went wrong, of an outcome that is not what was asked for.
+fn failure(outcome: remote::Outcome) -> String {
+    match outcome {
+        remote::Outcome::Reply(Reply::Failed { message }) => message,
+        remote::Outcome::Reply(_) => "an answer to another question".into(),
+        remote::Outcome::Late => "no answer any more".into(),
+        remote::Outcome::Ended(how) => how,
+    }
+}
+
+impl Running<'_> {
+    /// The times over the rounds, against ours in the same rounds.
+    fn times(&self, ours: &HashMap<usize, f64>) -> Times {
+        let rounds: Vec<_> = self.rounds.iter().map(|&(_, time)| time).collect();
+        let ratios: Vec<_> =
+            self.rounds.iter().filter_map(|(round, time)| Some(time / ours.get(round)?)).collect();
+        Times {
+            median_ns: median(&rounds),
+            min_ns: rounds.iter().copied().fold(f64::INFINITY, f64::min),
+            rounds_ns: rounds,
+            ratio: (!ratios.is_empty()).then(|| median(&ratios)),
+            peak_bytes: self.peak_bytes,
+            exact_ns: self.exact_ns.map(|ns| ns as f64),
+        }
+    }
+}

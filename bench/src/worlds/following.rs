@@ -1,0 +1,232 @@
+//! One world that follows a motion: checked, and timed frame by frame.
+
+use std::collections::HashSet;
+use std::hint::black_box;
+use std::mem::replace;
+use std::time::Duration;
+
+use anyhow::{Context, Result, ensure};
+use sweep_and_prune::Aabb;
+use sweep_and_prune_scenes::{Motion, Moving};
+
+use super::{Found, Maker, World};
+use crate::fingerprint::Fingerprint;
+use crate::machine;
+use crate::scene::SEED;
+use crate::worker::{Job, Reply};
+
+/// Every so many frames the pairs are compared with the right ones.
+const EVERY: usize = 5;
+
+/// So many frames are followed before a world is timed, so that it is in its stride.
+const CHECKED: usize = 3 * EVERY + 1;
+
+/// Of so many frames the pairs are compared.
+pub const FRAMES_CHECKED: usize = CHECKED.div_ceil(EVERY);
+
+/// So many frames tell how much memory a world needs.
+const WEIGHED: usize = 3;
+
+/// A motion, and which boxes it moved last.
+struct Frames<const D: usize> {
+    moving: Moving<D, f32>,
+    last: Vec<Aabb<D>>,
+    moved: Vec<u32>,
+}
+
+impl<const D: usize> Frames<D> {
+    fn new(motion: &str, n: usize) -> Result<Self> {
+        let found = Motion::from_name(motion);
+        let found = found.with_context(|| format!("there is no motion '{motion}'"))?;
+        let moving = found.start(n, SEED).context("motion needs 1 to 3 dimensions")?;
+        Ok(Self { moving, last: Vec::new(), moved: Vec::new() })
+    }
+
+    fn boxes(&self) -> &[Aabb<D>] {
+        self.moving.boxes()
+    }
+
+    fn advance(&mut self) {
+        self.last.clear();
+        self.last.extend_from_slice(self.moving.boxes());
+        self.moving.advance();
+        self.moved.clear();
+        let frames = self.last.iter().zip(self.moving.boxes()).zip(0..);
+        self.moved.extend(frames.filter(|((a, b), _)| a != b).map(|(_, index)| index));
+    }
+}
+
+/// A world and what it follows.
+pub struct Following<const D: usize> {
+    make: Maker<D>,
+    world: Box<dyn World<D>>,
+    frames: Frames<D>,
+}
+
+impl<const D: usize> Following<D> {
+    /// A world that has not begun, and the first frame of a motion of `n` boxes.
+    pub fn new(make: Maker<D>, motion: &str, n: usize) -> Result<Self> {
+        Ok(Self { make, world: make(), frames: Frames::new(motion, n)? })
+    }
+
+    /// The most memory that another such world needs at its start and in the first frames, beyond
+    /// the boxes; `None` where the system does not tell.
+    fn weigh(&mut self) -> Result<Option<u64>> {
+        machine::reset_peak_memory();
+        let before = machine::memory();
+        let mut world = replace(&mut self.world, (self.make)());
+        world.start(self.frames.boxes())?;
+        for _ in 0..WEIGHED {
+            self.frames.advance();
+            world.step(self.frames.boxes(), &self.frames.moved)?;
+        }
+        Ok(machine::peak_memory().zip(before).map(|(peak, start)| peak - start.min(peak)))
+    }
+}
+
+impl<const D: usize> Job for Following<D> {
+    fn check(&mut self) -> Result<Reply> {
+        let peak_bytes = self.weigh()?;
+        let Self { world, frames, .. } = self;
+        let mut live = Live::default();
+        live.take(world.start(frames.boxes())?)?;
+        let (mut fingerprint, mut longest) = (Fingerprint::default(), Duration::ZERO);
+        let mut exact = Vec::new();
+        for frame in 0..CHECKED {
+            if frame > 0 {
+                frames.advance();
+                let (boxes, moved) = (frames.boxes(), &frames.moved);
+                let (found, took) = machine::clock(|| world.step(boxes, moved));
+                longest = longest.max(took);
+                live.take(found?)?;
+            }
+            if frame % EVERY == 0 {
+                let (pairs, took) = live.exact(&mut **world, frames.boxes());
+                fingerprint = fingerprint + Fingerprint::of(&pairs);
+                exact.extend(took.map(|took| took.as_nanos() as u64));
+            }
+        }
+        exact.sort_unstable();
+        let exact_ns = exact.get(exact.len() / 2).copied();
+        let nanoseconds = longest.as_nanos() as u64;
+        Ok(Reply::Checked { fingerprint, nanoseconds, peak_bytes, exact_ns })
+    }
+
+    fn time(&mut self, repeats: usize, _batch: usize) -> Result<Reply> {
+        let Self { world, frames, .. } = self;
+        let mut nanoseconds = Vec::with_capacity(repeats);
+        for _ in 0..repeats {
+            frames.advance();
+            let (boxes, moved) = (frames.boxes(), &frames.moved);
+            let (found, took) = machine::clock(|| world.step(black_box(boxes), black_box(moved)));
+            black_box(found?);
+            nanoseconds.push(took.as_nanos() as f64);
+        }
+        Ok(Reply::Timed { nanoseconds })
+    }
+}
+
+/// The pairs that a world has told of.
+#[derive(Default)]
+struct Live {
+    pairs: HashSet<[u32; 2]>,
+    kept: bool,
+}
+
+impl Live {
+    /// Follows what was found; an error if a pair began that had begun, or ended that had not.
+    fn take(&mut self, found: Found<'_>) -> Result<()> {
+        let ordered = |&[a, b]: &[u32; 2]| [a.min(b), a.max(b)];
+        match found {
+            Found::Events { begun, ended } => {
+                for pair in ended.iter().map(ordered) {
+                    ensure!(self.pairs.remove(&pair), "the pair {pair:?} ended and was none");
+                }
+                for pair in begun.iter().map(ordered) {
+                    ensure!(self.pairs.insert(pair), "the pair {pair:?} began twice");
+                }
+            }
+            Found::Pairs(pairs) => {
+                self.pairs.clear();
+                self.pairs.extend(pairs.iter().map(ordered));
+                ensure!(self.pairs.len() == pairs.len(), "a pair was given twice");
+            }
+            Found::Kept => self.kept = true,
+        }
+        Ok(())
+    }
+
+    /// The pairs of the boxes themselves; and, if there were others, how long it took to tell.
+    fn exact<const D: usize>(
+        &self,
+        world: &mut dyn World<D>,
+        boxes: &[Aabb<D>],
+    ) -> (Vec<[u32; 2]>, Option<Duration>) {
+        let all: Vec<_> =
+            if self.kept { world.kept().to_vec() } else { self.pairs.iter().copied().collect() };
+        let mut exact = Vec::with_capacity(all.len());
+        let overlap = |&[a, b]: &[u32; 2]| boxes[a as usize].overlaps(&boxes[b as usize]);
+        let test = || exact.extend(all.iter().copied().filter(overlap));
+        let ((), took) = machine::clock(test);
+        let is_larger = exact.len() < all.len();
+        (exact, is_larger.then_some(took))
+    }
+}
+
+/// The right pairs of all frames that are checked, by brute force.
+pub fn oracle<const D: usize>(motion: &str, n: usize) -> Result<Fingerprint> {
+    let mut frames = Frames::<D>::new(motion, n)?;
+    (0..WEIGHED).for_each(|_| frames.advance());
+    let mut sum = Fingerprint::default();
+    for frame in 0..CHECKED {
+        if frame > 0 {
+            frames.advance();
+        }
+        if frame % EVERY == 0 {
+            sum = sum + Fingerprint::of(&sweep_and_prune::algorithms::pairwise(frames.boxes())?);
+        }
+    }
+    Ok(sum)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_world_tells_has_to_make_sense() {
+        let mut live = Live::default();
+        let mut tell = |begun: &[[u32; 2]], ended: &[[u32; 2]]| {
+            live.take(Found::Events { begun, ended }).is_ok()
+        };
+        assert!(tell(&[[0, 1], [3, 2]], &[]));
+        assert!(tell(&[[1, 2]], &[[1, 0]]));
+        assert!(!tell(&[[2, 1]], &[]), "it began before");
+        assert!(!tell(&[], &[[0, 1]]), "it ended before");
+        assert!(live.take(Found::Pairs(&[[0, 1], [1, 0]])).is_err(), "the same twice");
+    }
+
+    #[test]
+    fn pairs_of_larger_boxes_are_tested_once_more() -> Result<()> {
+        struct Larger([[u32; 2]; 2]);
+        impl World<1> for Larger {
+            fn start<'a>(&'a mut self, _: &'a [Aabb<1>]) -> Result<Found<'a>> {
+                Ok(Found::Kept)
+            }
+            fn step<'a>(&'a mut self, _: &'a [Aabb<1>], _: &[u32]) -> Result<Found<'a>> {
+                Ok(Found::Kept)
+            }
+            fn kept(&mut self) -> &[[u32; 2]] {
+                &self.0
+            }
+        }
+        let boxes = [[0.0, 2.0], [1.0, 3.0], [4.0, 5.0]].map(|[a, b]| Aabb::new([a], [b]));
+        let mut world = Larger([[0, 1], [1, 2]]);
+        let mut live = Live::default();
+        live.take(world.start(&boxes)?)?;
+        let (pairs, took) = live.exact(&mut world, &boxes);
+        assert_eq!(pairs, [[0, 1]]);
+        assert!(took.is_some());
+        Ok(())
+    }
+}
