@@ -7,7 +7,7 @@
 import { type InitOptions, start, type Started } from "./init.js";
 import { algorithmsCore } from "./runner.js";
 
-export type { Boxes, Dimensions } from "./boxes.js";
+export type { Boxes, BoxObject, Corner, Dimensions } from "./boxes.js";
 export { InvalidBoxError, NotInitializedError, OutOfMemoryError, SweepAndPruneError } from "./errors.js";
 export type { InitOptions, Started } from "./init.js";
 export { Player, type PlayerState } from "./player.js";

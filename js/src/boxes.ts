@@ -1,3 +1,5 @@
+import { unguard } from "./views.js";
+
 /** 1, 2 or 3. */
 export type Dimensions = 1 | 2 | 3;
 
@@ -6,10 +8,32 @@ export type Dimensions = 1 | 2 | 3;
  * `minX, minY, maxX, maxY` in 2D.
  *
  * Coordinates are compared exactly as given: `Float32Array` in single, `Float64Array` in double
- * precision. A plain array of numbers is the slower door: each number is checked and copied to a
- * `Float64Array` at each call.
+ * precision. Plain arrays, of numbers or of {@link BoxObject | boxes}, are the slower door: each
+ * number is looked up, checked and copied to a `Float64Array` at each call.
  */
-export type Boxes = Float32Array | Float64Array | readonly number[];
+export type Boxes = Float32Array | Float64Array | readonly number[] | readonly BoxObject[];
+
+/**
+ * A box as other libraries have it: `{ minX, minY, maxX, maxY }` as rbush, with `minZ` and `maxZ` in
+ * space; `{ min, max }` as the `Box2` and `Box3` of three.js and the bounds of matter;
+ * `{ lowerBound, upperBound }` as cannon and planck; a row of numbers as box-intersect. What else
+ * the object holds is not looked at.
+ */
+export type BoxObject =
+  | { readonly minX: number; readonly minY?: number; readonly minZ?: number; readonly maxX: number; readonly maxY?: number; readonly maxZ?: number }
+  | { readonly min: Corner; readonly max: Corner }
+  | { readonly lowerBound: Corner; readonly upperBound: Corner }
+  | readonly number[];
+
+/** A corner of a box: as many coordinates as there are dimensions. */
+export interface Corner {
+  /** The first coordinate. */
+  readonly x: number;
+  /** The second, in the plane and in space. */
+  readonly y?: number;
+  /** The third, in space. */
+  readonly z?: number;
+}
 
 /** @internal The dimensions, checked. */
 export function checkDimensions(dimensions: unknown): Dimensions {
@@ -17,8 +41,19 @@ export function checkDimensions(dimensions: unknown): Dimensions {
   throw new RangeError(`dimensions must be 1, 2 or 3, not ${String(dimensions)}`);
 }
 
+/** @internal How many dimensions boxes have that are objects, by the first of them. */
+export function dimensionsOf(boxes: unknown): Dimensions | undefined {
+  const first: unknown = Array.isArray(boxes) ? boxes[0] : undefined;
+  if (Array.isArray(first)) return checkDimensions(first.length / 2);
+  if (typeof first !== "object" || first === null) return undefined;
+  const form = formOf(first);
+  const has = (axis: number): boolean => form !== undefined && read(first, form, 0, axis) !== undefined;
+  return has(2) ? 3 : has(1) ? 2 : has(0) ? 1 : undefined;
+}
+
 /** @internal The boxes as a typed array of whole rows. Their coordinates are not looked at. */
 export function checkBoxes(boxes: unknown, dimensions: Dimensions, name = "boxes"): Float32Array | Float64Array {
+  if (Array.isArray(boxes) && typeof boxes[0] === "object") return fromObjects(boxes, dimensions, name);
   const rows = checkNumbers(boxes, name);
   const width = 2 * dimensions;
   if (rows.length % width !== 0) {
@@ -32,9 +67,9 @@ export function checkBoxes(boxes: unknown, dimensions: Dimensions, name = "boxes
 
 /** @internal Numbers as a typed array. */
 export function checkNumbers(values: unknown, name: string): Float32Array | Float64Array {
-  const numbers = Array.isArray(values) ? fromNumbers(values, name) : values;
+  const numbers = Array.isArray(values) ? fromNumbers(values, name) : unguard(values);
   if (!isFloatArray(numbers)) {
-    throw new TypeError(`${name} must be a Float32Array, a Float64Array or an array of numbers, not ${describe(values)}`);
+    throw new TypeError(`${name} must be a Float32Array, a Float64Array or a plain array, not ${describe(values)}`);
   }
   if (numbers.length === 0) refuseDetached(numbers, name);
   return numbers;
@@ -68,6 +103,57 @@ function fromNumbers(numbers: readonly unknown[], name: string): Float64Array {
     const value = numbers[at];
     if (typeof value !== "number") throw new TypeError(`${name}[${at}] must be a number, not ${describe(value)}`);
     rows[at] = value;
+  }
+  return rows;
+}
+
+/** The names of a box's two corners and, unless it is a row of numbers, of their coordinates. */
+type Form = readonly [readonly [string, string], nested: boolean];
+
+const forms: readonly Form[] = [
+  [["min", "max"], true],
+  [["lowerBound", "upperBound"], true],
+  [["min", "max"], false],
+];
+
+function formOf(box: object): Form | undefined {
+  return forms.find(([[least], nested]) => (nested ? least : "minX") in box);
+}
+
+/** A coordinate of the corner 0 or 1 of a box; anything if it is none. */
+function read(box: object, [corners, nested]: Form, corner: 0 | 1, axis: number): unknown {
+  const name = corners[corner];
+  const [from, key] = nested
+    ? [(box as Record<string, unknown>)[name], "xyz"[axis]!]
+    : [box, name + "XYZ"[axis]!];
+  return (from as Record<string, unknown> | null | undefined)?.[key];
+}
+
+function fromObjects(boxes: readonly unknown[], dimensions: Dimensions, name: string): Float64Array {
+  const rows = new Float64Array(2 * dimensions * boxes.length);
+  let at = 0;
+  for (let index = 0; index < boxes.length; index++) {
+    const box = boxes[index];
+    const isRow = Array.isArray(box);
+    const form = typeof box === "object" && box !== null && !isRow ? formOf(box) : undefined;
+    if (!isRow && form === undefined) {
+      throw new TypeError(
+        `${name}[${index}] must be { minX, .. }, { min, max }, { lowerBound, upperBound } or a row of numbers, not ${describe(box)}`,
+      );
+    }
+    if (isRow && box.length !== 2 * dimensions) {
+      throw new RangeError(`${name}[${index}] must hold ${2 * dimensions} numbers, not ${box.length}`);
+    }
+    for (const corner of [0, 1] as const) {
+      for (let axis = 0; axis < dimensions; axis++, at++) {
+        const value: unknown = form ? read(box as object, form, corner, axis) : (box as unknown[])[corner * dimensions + axis];
+        if (typeof value !== "number") {
+          const which = `${corner ? "greatest" : "least"} ${"xyz"[axis]}`;
+          throw new TypeError(`the ${which} of ${name}[${index}] must be a number, not ${describe(value)}`);
+        }
+        rows[at] = value;
+      }
+    }
   }
   return rows;
 }

@@ -1,4 +1,4 @@
-export type { Boxes, Dimensions } from "./boxes.js";
+export type { Boxes, BoxObject, Corner, Dimensions } from "./boxes.js";
 export {
   BroadPhase,
   type BroadPhaseOptions,

@@ -27,6 +27,11 @@ const enum Code {
 /** Takes pairs, as words of memory; whether it wants more. */
 export type Each = (at: number, count: number) => boolean;
 
+/** Refuses what memory cannot hold; the core would see its size modulo 2^32. */
+export function checkFits(bytes: number): void {
+  if (!(bytes < 2 ** 32)) throw new OutOfMemoryError();
+}
+
 /** A compiled core at work, and what its calls need around them. */
 export class Engine<E extends Exports> {
   /** Set while a call of {@link stream} is under way. */

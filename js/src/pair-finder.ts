@@ -1,12 +1,12 @@
 /// <reference lib="esnext.disposable" preserve="true" />
-import { type Boxes, checkBoxes, checkDimensions, type Dimensions, writeRows } from "./boxes.js";
-import { Core, type Each, type Engine, type Exports } from "./engine.js";
+import { type BoxObject, type Boxes, checkBoxes, checkDimensions, type Dimensions, dimensionsOf, writeRows } from "./boxes.js";
+import { checkFits, Core, type Each, type Engine, type Exports } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
 import { guard, view } from "./views.js";
 
 /** How to find pairs. */
 export interface FindPairsOptions {
-  /** How many dimensions the boxes have. */
+  /** How many dimensions the boxes have. Boxes that are objects say it themselves: they need no options. */
   dimensions: Dimensions;
 }
 
@@ -58,8 +58,10 @@ export const finderCore: Core<FinderExports> = new Core();
  * findPairs(boxes, { dimensions: 2 }); // Uint32Array [0, 2]
  * ```
  */
-export function findPairs(boxes: Boxes, options: FindPairsOptions): Uint32Array<ArrayBuffer> {
-  return once(options, (finder) => copy(finder.find(boxes)));
+export function findPairs(boxes: readonly BoxObject[], options?: FindPairsOptions): Uint32Array<ArrayBuffer>;
+export function findPairs(boxes: Boxes, options: FindPairsOptions): Uint32Array<ArrayBuffer>;
+export function findPairs(boxes: Boxes, options?: FindPairsOptions): Uint32Array<ArrayBuffer> {
+  return once([boxes], options, (finder) => copy(finder.find(boxes)));
 }
 
 /**
@@ -75,8 +77,14 @@ export function findPairs(boxes: Boxes, options: FindPairsOptions): Uint32Array<
  * findPairsBetween(bullets, targets, { dimensions: 2 }); // Uint32Array [1, 0]
  * ```
  */
-export function findPairsBetween(a: Boxes, b: Boxes, options: FindPairsOptions): Uint32Array<ArrayBuffer> {
-  return once(options, (finder) => copy(finder.findBetween(a, b)));
+export function findPairsBetween(
+  a: readonly BoxObject[],
+  b: readonly BoxObject[],
+  options?: FindPairsOptions,
+): Uint32Array<ArrayBuffer>;
+export function findPairsBetween(a: Boxes, b: Boxes, options: FindPairsOptions): Uint32Array<ArrayBuffer>;
+export function findPairsBetween(a: Boxes, b: Boxes, options?: FindPairsOptions): Uint32Array<ArrayBuffer> {
+  return once([a, b], options, (finder) => copy(finder.findBetween(a, b)));
 }
 
 /**
@@ -84,8 +92,10 @@ export function findPairsBetween(a: Boxes, b: Boxes, options: FindPairsOptions):
  *
  * @throws As {@link findPairs}.
  */
-export function countPairs(boxes: Boxes, options: FindPairsOptions): number {
-  return once(options, (finder) => finder.count(boxes));
+export function countPairs(boxes: readonly BoxObject[], options?: FindPairsOptions): number;
+export function countPairs(boxes: Boxes, options: FindPairsOptions): number;
+export function countPairs(boxes: Boxes, options?: FindPairsOptions): number {
+  return once([boxes], options, (finder) => finder.count(boxes));
 }
 
 /**
@@ -96,11 +106,14 @@ export function countPairs(boxes: Boxes, options: FindPairsOptions): number {
  * @throws As {@link findPairs}, before the first call of `each`; and what `each` throws.
  */
 export function forEachPair(boxes: Boxes, options: FindPairsOptions, each: EachPair): boolean {
-  return once(options, (finder) => finder.forEach(boxes, each));
+  return once([boxes], options, (finder) => finder.forEach(boxes, each));
 }
 
-function once<R>(options: FindPairsOptions, use: (finder: PairFinder) => R): R {
-  const finder = new PairFinder(options);
+/** Without options the boxes themselves say how many dimensions they have; of no boxes it does not matter. */
+function once<R>(sets: readonly Boxes[], options: FindPairsOptions | undefined, use: (finder: PairFinder) => R): R {
+  const areNone = sets.every((boxes) => Array.isArray(boxes) && boxes.length === 0);
+  const dimensions = options ? options.dimensions : areNone ? 1 : sets.map(dimensionsOf).find(Boolean);
+  const finder = new PairFinder({ dimensions: dimensions! });
   try {
     return use(finder);
   } finally {
@@ -236,10 +249,11 @@ export class PairFinder {
 
   #search(use: Use, a: Boxes, b: Boxes | typeof alone, each: Each | undefined): void {
     const owned = this.#owned;
-    if (owned.isFreed) throw new TypeError("this PairFinder was freed");
-    if (owned.isBusy) throw new TypeError("this PairFinder is at work: its callback needs another one");
+    // First: objects are read, and a getter may do anything.
     const first = checkBoxes(a, this.dimensions, b === alone ? "boxes" : "a");
     const second = b === alone ? undefined : checkBoxes(b, this.dimensions, "b");
+    if (owned.isFreed) throw new TypeError("this PairFinder was freed");
+    if (owned.isBusy) throw new TypeError("this PairFinder is at work: its callback needs another one");
     const isDouble = (first.BYTES_PER_ELEMENT | (second?.BYTES_PER_ELEMENT ?? 0)) >= 8;
     // There is no core for doubles in the plane, nor for a line: see js/wasm/src/finder.rs.
     const stored = isDouble ? 3 : (Math.max(2, this.dimensions) as Dimensions);
@@ -265,10 +279,11 @@ export class PairFinder {
   #write(finder: number, set: 0 | 1, rows: Rows, isDouble: boolean, stored: Dimensions): number {
     const { exports } = this.#owned.engine;
     const count = rows.length / (2 * this.dimensions);
+    const length = 2 * stored * count;
+    checkFits(length * (isDouble ? 8 : 4));
     const at = exports.finder_rows(finder, set, count) >>> 0;
     if (at === 0) throw new OutOfMemoryError();
     const { buffer } = exports.memory;
-    const length = 2 * stored * count;
     const into = isDouble
       ? view(Float64Array, this.#rows[set], buffer, at, length)
       : view(Float32Array, this.#rows[set], buffer, at, length);

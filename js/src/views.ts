@@ -22,6 +22,17 @@ interface Clock {
   readonly calls: number;
 }
 
+/** The views that stand behind what {@link guard} returned. */
+const guarded = new WeakMap<object, Typed>();
+
+/** A view that {@link guard} gave out, for a call that takes it; other values as they are. */
+export function unguard(value: unknown): unknown {
+  const view = typeof value === "object" && value !== null ? guarded.get(value) : undefined;
+  if (view === undefined) return value;
+  (value as Typed).length; // throws if it is stale
+  return view;
+}
+
 /**
  * The view itself; in development mode something like it, which throws when it is used after it
  * has become stale.
@@ -34,7 +45,7 @@ export function guard<T extends Typed>(clock: Clock, view: T): T {
       throw new TypeError("this view is stale: views are valid until the next call of sweep-and-prune; copy it first");
     }
   };
-  return new Proxy(view, {
+  const proxy = new Proxy(view, {
     get(target, key) {
       check();
       const value: unknown = Reflect.get(target, key, target);
@@ -45,4 +56,6 @@ export function guard<T extends Typed>(clock: Clock, view: T): T {
       return Reflect.set(target, key, value, target);
     },
   });
+  guarded.set(proxy, view);
+  return proxy;
 }

@@ -1,6 +1,6 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 import { type Boxes, checkBoxes, checkDimensions, checkNumbers, type Dimensions, writeRows } from "./boxes.js";
-import type { Engine } from "./engine.js";
+import { checkFits, type Engine } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
 import { defaultFilter, everything, type Filter, filterWords } from "./filter.js";
 import { guard, view } from "./views.js";
@@ -145,6 +145,7 @@ export class BroadPhase {
   }
 
   #restore(bytes: Uint8Array): void {
+    checkFits(bytes.length);
     this.#call((exports, world) => {
       const at = exports.world_bytes(world, bytes.length) >>> 0;
       if (at === 0) throw new OutOfMemoryError();
@@ -214,9 +215,11 @@ export class BroadPhase {
     if (names.length * 2 * this.dimensions !== rows.length) {
       throw new RangeError(`${names.length} ids do not go with ${rows.length / (2 * this.dimensions)} boxes`);
     }
+    // Views of memory are left empty when it grows, which writing the others may let it.
+    const kept = this.#keep(names, this.#ids);
     this.#writeRows(rows);
-    this.#writeIds(names);
-    this.#call((exports, world) => exports.world_set_many(world, names.length));
+    this.#writeIds(kept);
+    this.#call((exports, world) => exports.world_set_many(world, kept.length));
   }
 
   /**
@@ -281,8 +284,9 @@ export class BroadPhase {
    */
   removeMany(ids: Numbers): void {
     const names = checkNumbers(ids, "ids");
+    const count = names.length;
     this.#writeIds(names);
-    this.#call((exports, world) => exports.world_remove_many(world, names.length));
+    this.#call((exports, world) => exports.world_remove_many(world, count));
   }
 
   /**
@@ -552,10 +556,11 @@ export class BroadPhase {
   /** The rows of memory for `count` boxes. */
   #rowsFor(count: number): Float32Array | Float64Array {
     const exports = this.#exports();
+    const length = 2 * this.#stored * count;
+    checkFits(length * (this.precision === "double" ? 8 : 4));
     const at = exports.world_rows(this.#owned.world, count) >>> 0;
     if (at === 0) throw new OutOfMemoryError();
     const { buffer } = exports.memory;
-    const length = 2 * this.#stored * count;
     return (this.#rows =
       this.precision === "double"
         ? view(Float64Array, this.#rows, buffer, at, length)
@@ -566,21 +571,30 @@ export class BroadPhase {
   #writeRows(boxes: Boxes): number {
     const rows = checkBoxes(boxes, this.dimensions);
     const count = rows.length / (2 * this.dimensions);
+    const kept = this.#keep(rows, this.#rows);
     const into = this.#rowsFor(count);
-    if (!isSame(rows, into)) writeRows(rows, this.dimensions, into, this.#stored);
+    if (!isSame(kept, into)) writeRows(kept, this.dimensions, into, this.#stored);
     return count;
   }
 
   #idsFor(count: number): Float64Array {
     const exports = this.#exports();
+    checkFits(count * 8);
     const at = exports.world_ids_in(this.#owned.world, count) >>> 0;
     if (at === 0) throw new OutOfMemoryError();
     return (this.#ids = view(Float64Array, this.#ids, exports.memory.buffer, at, count));
   }
 
   #writeIds(ids: Numbers): void {
-    const into = this.#idsFor(ids.length);
-    if (!isSame(ids, into)) into.set(ids);
+    const kept = this.#keep(ids, this.#ids);
+    const into = this.#idsFor(kept.length);
+    if (!isSame(kept, into)) into.set(kept);
+  }
+
+  /** The numbers, copied if they lie in memory that may grow, unless just where they will be read. */
+  #keep<T extends Numbers>(numbers: T, written: Float32Array | Float64Array | undefined): T {
+    const isOutside = !ArrayBuffer.isView(numbers) || numbers.buffer !== this.#exports().memory.buffer;
+    return isOutside || (written && isSame(numbers, written)) ? numbers : (numbers.slice() as unknown as T);
   }
 }
 
