@@ -9,16 +9,16 @@ export class Detection {
   /** The boxes it ran over: rows of least and greatest corner. */
   readonly boxes: Float64Array;
   readonly step: Step;
-  /** Its events, the first the beginning of the step. */
-  readonly events: readonly TraceEvent[];
+  /** How many events it has. */
+  readonly length: number;
+  #events: TraceEvent[] | undefined;
+  #swapped: ReadonlySet<number> | undefined;
   /** Whether the trace was too long to be recorded in full: it then cannot be gone through. */
   readonly isTruncated: boolean;
   readonly #player: Player;
   /** Events of the trace before the first of this step. */
   readonly #before: number;
 
-  /** The edges that the sort has moved. */
-  readonly swapped: ReadonlySet<number>;
   /** The pairs that it should have found and did not. Known where methods miss any. */
   readonly missed: readonly (readonly [number, number])[];
   #last: { position: number; state: PlayerState } | undefined;
@@ -30,9 +30,18 @@ export class Detection {
     this.step = runner.step(boxes);
     this.isTruncated = runner.isTruncated;
     this.#player = new Player(runner);
-    this.events = [...events(this.#player.words)].slice(this.#before);
+    this.length = countEvents(this.#player.words) - this.#before;
     this.missed = oracle?.missed(boxes, this.step.pairs) ?? [];
-    this.swapped = new Set(this.events.flatMap(({ kind, a, b }) => (kind === "swap" ? [Number(a), Number(b)] : [])));
+  }
+
+  /** Its events, the first the beginning of the step; read when they are first asked for. */
+  get events(): readonly TraceEvent[] {
+    return (this.#events ??= [...events(this.#player.words)].slice(this.#before));
+  }
+
+  /** The edges that the sort has moved. */
+  get swapped(): ReadonlySet<number> {
+    return (this.#swapped ??= new Set(this.events.flatMap(({ kind, a, b }) => (kind === "swap" ? [Number(a), Number(b)] : []))));
   }
 
   /** What is to be drawn when so many of its events have been played. */
@@ -47,6 +56,12 @@ export class Detection {
   free(): void {
     this.#player.free();
   }
+}
+
+function countEvents(words: Uint32Array): number {
+  let count = 0;
+  for (let at = 0; at < words.length; at += words[at]! >>> 8) count++;
+  return count;
 }
 
 /** Brute force, to tell what a method that is wrong has missed. */
@@ -100,7 +115,7 @@ export function stopsOf(detection: Detection, kinds: ReadonlySet<TraceEvent["kin
   if (!detection.isTruncated && kinds.size > 0) {
     detection.events.forEach(({ kind }, index) => kinds.has(kind) && stops.push(index + 1));
   }
-  const end = detection.events.length;
+  const end = detection.length;
   if (stops.at(-1) !== end) stops.push(end);
   return stops;
 }

@@ -70,8 +70,8 @@ function drawOne(context: CanvasRenderingContext2D, edges: number[], scene: Arra
     if (compared.includes(edge)) context.fillStyle = comparison;
     context.fillRect(x + 1, y, cell - 2, height);
     const isLit = swapped.includes(edge) || compared.includes(edge);
-    context.lineWidth = isAtLine || chosen.includes(ball) ? 3 : 1;
-    context.strokeStyle = isAtLine ? theme.sweep : chosen.includes(ball) ? theme.chosen : theme.line;
+    context.lineWidth = isAtLine || isLit || chosen.includes(ball) ? 3 : 1;
+    context.strokeStyle = isAtLine ? theme.sweep : isLit ? theme.ink : chosen.includes(ball) ? theme.chosen : theme.line;
     context.strokeRect(x + 1, y, cell - 2, height);
     context.fillStyle = isLit ? theme.stage : isRainbow && !isWithin ? "#1c2126" : theme.ink;
     const name = labels[ball] || String(ball);

@@ -1,7 +1,7 @@
 import { type CSSResult, html, LitElement, nothing, type TemplateResult } from "lit";
 import type { TraceEvent } from "../trace.js";
 import type { DemoEvent, DemoEventMap, DemoState, Row } from "./api.js";
-import { canvasContext } from "./canvas.js";
+import { Canvases } from "./canvas.js";
 import { clock } from "./clock.js";
 import { shownKinds } from "./detection.js";
 import { drawScene } from "./draw.js";
@@ -56,7 +56,7 @@ export class SapDemoElement extends LitElement {
   #grab: Grab | undefined;
   #theme: Theme | undefined;
   readonly #probe: ThemeProbe;
-  #resized: ResizeObserver | undefined;
+  readonly #canvases = new Canvases(() => this.#paint());
   #countersAt = -Infinity;
   #spokenAt = -Infinity;
   #speech: ReturnType<typeof setTimeout> | undefined;
@@ -75,7 +75,7 @@ export class SapDemoElement extends LitElement {
 
   play(): void {
     if (!this.#timeline || this.#isPlaying) return;
-    if (this.#options!.isStatic && this.#timeline.isDetected) this.#timeline.seek(0);
+    if (this.#options!.isStatic && this.#timeline.isDetected) this.#timeline.rewind();
     this.#isPlaying = true;
     this.#playback!.restart();
     this.#changed();
@@ -92,7 +92,7 @@ export class SapDemoElement extends LitElement {
     const timeline = this.#timeline;
     if (!timeline) return;
     this.#isPlaying = false;
-    if (timeline.isDetected && this.#options!.isStatic) timeline.seek(0);
+    if (timeline.isDetected && this.#options!.isStatic) timeline.rewind();
     else if (timeline.isDetected) this.#nextDetection();
     if (!timeline.isDetected) this.#tell(timeline.nextStop());
     this.#guesses.outcome = "";
@@ -166,8 +166,6 @@ export class SapDemoElement extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     clock.add(this, { frame: (ms) => this.#frame(ms) });
-    this.#resized = new ResizeObserver(() => this.#paint());
-    if (this.hasUpdated) this.#watchSize();
     motionQuery.addEventListener("change", this.#onMotionChange);
     loadDemos().then(
       () => this.isConnected && !this.#timeline && this.#begin(),
@@ -178,7 +176,7 @@ export class SapDemoElement extends LitElement {
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     clock.remove(this);
-    this.#resized?.disconnect();
+    this.#canvases.close();
     motionQuery.removeEventListener("change", this.#onMotionChange);
     clearTimeout(this.#speech);
     // One that is only moved within the page goes on where it was.
@@ -387,9 +385,9 @@ export class SapDemoElement extends LitElement {
   #choose(ball: number | undefined): void {
     this.#cursor = ball;
     if (this.#options!.explains) {
-      if (ball === undefined) this.#chosen = [];
-      else if (this.#chosen.includes(ball)) this.#chosen = this.#chosen.filter((other) => other !== ball);
-      else this.#chosen = [...this.#chosen.slice(this.#chosen.length === 2 ? 2 : 0), ball];
+      const [first, second] = this.#chosen;
+      if (ball === undefined || (ball === first && second === undefined)) this.#chosen = [];
+      else this.#chosen = first === undefined || second !== undefined ? [ball] : [first, ball];
       if (this.#chosen.length === 2) this.pause();
     }
     this.#changed();
@@ -494,28 +492,23 @@ export class SapDemoElement extends LitElement {
     const { state, event, detection, positions, radii } = timeline;
     const chosen = this.#cursor === undefined ? this.#chosen : [...new Set([...this.#chosen, this.#cursor])];
     const common = { state, event, chosen, options };
-    const picture = canvasContext(this.renderRoot.querySelector(".picture canvas"), WIDTH);
+    const picture = this.#canvases.open(this.renderRoot.querySelector(".picture canvas"), WIDTH);
     if (picture) {
       const labels = options.labels === undefined && !options.explains && !options.predicts ? [] : this.#names;
       const lineAt = options.decorations.sweep && this.#playback!.lineAt(this.#isPlaying);
       const { axis } = detection.step;
       const missed = timeline.isDetected ? detection.missed : [];
-      drawScene(picture, { ...common, positions, radii, labels, lineAt, axis, missed, gap: this.#explanation?.gap }, this.#theme);
+      drawScene(picture.context, { ...common, positions, radii, labels, lineAt, axis, missed, gap: this.#explanation?.gap }, this.#theme);
     }
-    const array = options.decorations.array && canvasContext(this.renderRoot.querySelector("canvas.array"));
+    const array = options.decorations.array && this.#canvases.open(this.renderRoot.querySelector("canvas.array"));
     if (array) {
-      const moved = timeline.isDetected ? detection.swapped : new Set<number>();
-      drawArray(array, array.canvas.clientWidth, { ...common, labels: this.#names, moved }, this.#theme);
+      const moved = timeline.isDetected && options.decorations.array?.isSortShown ? detection.swapped : nothingMoved;
+      drawArray(array.context, array.width, { ...common, labels: this.#names, moved }, this.#theme);
     }
-  }
-
-  #watchSize(): void {
-    this.#resized?.observe(this.renderRoot.querySelector(".picture")!);
   }
 
   override firstUpdated(): void {
     this.renderRoot.append(this.#probe.element);
-    this.#watchSize();
     this.#grab = new Grab(this.renderRoot.querySelector(".picture")!, {
       balls: () => this.#timeline,
       isDraggable: () => this.#options?.isDraggable === true,
@@ -589,6 +582,7 @@ export class SapDemoElement extends LitElement {
   #isSharing = false;
 }
 
+const nothingMoved: ReadonlySet<number> = new Set();
 const motionQuery: MediaQueryList = matchMedia("(prefers-reduced-motion: reduce)");
 
 function kindsOf({ decorations, detecting }: Options): Set<TraceEvent["kind"]> {

@@ -17,8 +17,14 @@ export const styles: CSSResult = css`
     box-sizing: border-box;
   }
   .heading {
-    margin: 0 0 0.4rem;
+    margin: 0 0 6px;
+    height: 1.375rem;
+    overflow: hidden;
+    font: inherit;
     font-weight: 600;
+    line-height: 1.375rem;
+    white-space: nowrap;
+    text-overflow: ellipsis;
   }
   .picture {
     position: relative;
@@ -63,9 +69,10 @@ export const styles: CSSResult = css`
   }
   .said {
     margin: 6px 0 0;
-    height: 2.8em;
+    height: 2.5rem;
     overflow: hidden;
     font-size: 0.875rem;
+    line-height: 1.25rem;
     color: var(--_muted);
     font-variant-numeric: tabular-nums;
   }
@@ -86,7 +93,7 @@ export const styles: CSSResult = css`
     grid-template-columns: repeat(5, 1fr);
     gap: 4px;
     margin: 6px 0 0;
-    height: 2.6rem;
+    height: 2.625rem;
   }
   .counters div {
     display: flex;
@@ -117,10 +124,10 @@ export const styles: CSSResult = css`
   .controls button,
   .controls select,
   .guess button {
-    flex: none;
+    flex: 0 1 36px;
     height: 36px;
-    min-width: 36px;
-    padding: 0 6px;
+    min-width: 28px;
+    padding: 0;
     border: 1px solid var(--_line);
     border-radius: 6px;
     background: transparent;
@@ -145,23 +152,25 @@ export const styles: CSSResult = css`
   }
   .controls input {
     flex: 1;
-    min-width: 40px;
+    min-width: 32px;
     height: 36px;
-    margin: 0 4px;
+    margin: 0 2px;
     accent-color: var(--_ink);
   }
   .controls select {
-    min-width: 60px;
+    flex: none;
+    width: 58px;
     padding: 0 2px;
   }
   .guess {
     margin-top: 6px;
-    height: 5.2rem;
+    height: calc(2.5rem + 42px);
   }
   .guess p {
-    margin: 0 0 4px;
-    height: 2.8em;
+    margin: 0 0 6px;
+    height: 2.5rem;
     overflow: hidden;
+    line-height: 1.25rem;
   }
   .guess div {
     display: flex;
@@ -169,6 +178,7 @@ export const styles: CSSResult = css`
     gap: 6px;
   }
   .guess button {
+    flex: none;
     min-width: 6rem;
   }
   .score {

@@ -78,6 +78,7 @@ export class Timeline {
 
   /** The event at work: the one at which the detection has been stopped. */
   get event(): TraceEvent | undefined {
+    if (this.#kinds.size === 0) return undefined;
     const event = this.detection.events[this.position - 1];
     return event && this.#kinds.has(event.kind) ? event : undefined;
   }
@@ -143,11 +144,14 @@ export class Timeline {
     return this.detection.events.slice(from, this.position);
   }
 
-  /** To the end of this detection; the events that were played. */
-  finish(): readonly TraceEvent[] {
-    const from = this.position;
+  /** To the end of this detection, at once. */
+  finish(): void {
     this.#stop = this.#stops.length - 1;
-    return this.detection.events.slice(from);
+  }
+
+  /** Back to before the first event of this detection. */
+  rewind(): void {
+    this.#stop = -1;
   }
 
   /** Moves on by a tick, in the past or beyond it. Whether it was beyond, so that it is new. */
@@ -166,7 +170,7 @@ export class Timeline {
 
   /** The stop before this one, in this detection or one before; whether there was one. */
   back(): boolean {
-    if (this.#ticks[this.#at]!.before && this.#stop > (this.#at === 0 ? -1 : 0)) {
+    if (this.#ticks[this.#at]!.before && (this.#stop > 0 || (this.#stop === 0 && this.#at === 0))) {
       this.#stop--;
       return true;
     }
