@@ -7,7 +7,7 @@ export interface Contender {
   readonly tasks: readonly Task[];
   readonly rival: boolean;
   readonly how: string;
-  load(): Promise<ContenderModule>;
+  readonly module: string;
 }
 
 export interface ContenderModule {

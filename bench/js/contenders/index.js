@@ -1,4 +1,4 @@
-// Who is measured, how, and where the module is that does it. Each module exports
+// Who is measured, how, and the name of the module that does it. Each module exports
 //
 //     create({ dimensions, isMoving, rows }) -> { find(rows), slotOf? }
 //
@@ -17,7 +17,7 @@
  * @property {readonly ("find" | "follow")[]} tasks
  * @property {boolean} rival whether it competes with ours
  * @property {string} how what is called
- * @property {() => Promise<any>} load
+ * @property {string} module the file that does it, here; `load.js` loads it
  */
 
 /** The name that the others are compared with. */
@@ -38,7 +38,7 @@ export const contenders = [
     tasks: BOTH,
     rival: false,
     how: "`PairFinder.find` on all boxes",
-    load: () => import("./ours.js"),
+    module: "ours",
   },
   {
     name: WORLD,
@@ -47,7 +47,7 @@ export const contenders = [
     tasks: ["follow"],
     rival: false,
     how: "`BroadPhase.setMany` with all boxes, `update`",
-    load: () => import("./ours-broad-phase.js"),
+    module: "ours-broad-phase",
   },
   {
     name: PLAIN,
@@ -56,7 +56,7 @@ export const contenders = [
     tasks: BOTH,
     rival: true,
     how: "70 lines: sorted and swept along the axis of most variance, in typed arrays",
-    load: () => import("./plain-sweep.js"),
+    module: "plain-sweep",
   },
   {
     name: "box-intersect",
@@ -65,7 +65,7 @@ export const contenders = [
     tasks: BOTH,
     rival: true,
     how: "`boxIntersect(boxes, visit)`, its arrays of boxes kept",
-    load: () => import("./box-intersect.js"),
+    module: "box-intersect",
   },
   {
     name: "flatbush",
@@ -74,7 +74,7 @@ export const contenders = [
     tasks: BOTH,
     rival: true,
     how: "index of `Float32Array` built anew, `search` for each box, pairs taken in its callback",
-    load: () => import("./flatbush.js"),
+    module: "flatbush",
   },
   {
     name: "rbush",
@@ -83,7 +83,7 @@ export const contenders = [
     tasks: BOTH,
     rival: true,
     how: "`load` of all boxes, `search` for each, its items kept",
-    load: () => import("./rbush.js"),
+    module: "rbush",
   },
   {
     name: "rbush-3d",
@@ -92,7 +92,7 @@ export const contenders = [
     tasks: BOTH,
     rival: true,
     how: "`load` of all boxes, `search` for each, its items kept",
-    load: () => import("./rbush-3d.js"),
+    module: "rbush-3d",
   },
   {
     name: "detect-collisions",
@@ -101,7 +101,7 @@ export const contenders = [
     tasks: BOTH,
     rival: true,
     how: "`createBox` each, or `setPosition` of those that moved, and its tree's `search`",
-    load: () => import("./detect-collisions.js"),
+    module: "detect-collisions",
   },
   {
     name: "cannon-es",
@@ -110,7 +110,7 @@ export const contenders = [
     tasks: BOTH,
     rival: true,
     how: "`SAPBroadphase.collisionPairs`, axis detected, boxes written to its bodies",
-    load: () => import("./cannon-es.js"),
+    module: "cannon-es",
   },
   {
     name: "matter-js",
@@ -119,7 +119,7 @@ export const contenders = [
     tasks: BOTH,
     rival: true,
     how: "`Detector.collisions` without the exact test, boxes written to its bodies",
-    load: () => import("./matter-js.js"),
+    module: "matter-js",
   },
   {
     name: "p2-es",
@@ -128,7 +128,7 @@ export const contenders = [
     tasks: BOTH,
     rival: true,
     how: "`SAPBroadphase.getCollisionPairs`, best axis, boxes written to its bodies",
-    load: () => import("./p2-es.js"),
+    module: "p2-es",
   },
   {
     name: "planck",
@@ -137,7 +137,7 @@ export const contenders = [
     tasks: BOTH,
     rival: true,
     how: "`BroadPhase`: proxies created and its tree queried, or moved and `updatePairs`",
-    load: () => import("./planck.js"),
+    module: "planck",
   },
   {
     name: "rapier 2D",
@@ -146,7 +146,7 @@ export const contenders = [
     tasks: BOTH,
     rival: true,
     how: "a world of sensors, `step`, collision events",
-    load: () => import("./rapier2d.js"),
+    module: "rapier2d",
   },
   {
     name: "rapier 2D, SIMD",
@@ -155,7 +155,7 @@ export const contenders = [
     tasks: BOTH,
     rival: true,
     how: "as rapier 2D",
-    load: () => import("./rapier2d-simd.js"),
+    module: "rapier2d-simd",
   },
   {
     name: "rapier 3D",
@@ -164,7 +164,7 @@ export const contenders = [
     tasks: BOTH,
     rival: true,
     how: "a world of sensors, `step`, collision events",
-    load: () => import("./rapier3d.js"),
+    module: "rapier3d",
   },
   {
     name: "rapier 3D, SIMD",
@@ -173,7 +173,7 @@ export const contenders = [
     tasks: BOTH,
     rival: true,
     how: "as rapier 3D",
-    load: () => import("./rapier3d-simd.js"),
+    module: "rapier3d-simd",
   },
   {
     name: "jolt-physics",
@@ -182,6 +182,6 @@ export const contenders = [
     tasks: BOTH,
     rival: true,
     how: "bodies added in bulk or moved, `BroadPhaseQuery.CollideAABox` for each",
-    load: () => import("./jolt-physics.js"),
+    module: "jolt-physics",
   },
 ];

@@ -1,10 +1,9 @@
 // The benchmark: see `bench/js/run --help`.
-import { spawnSync } from "node:child_process";
-import { existsSync, readFileSync } from "node:fs";
-import { join, resolve } from "node:path";
-import { fileURLToPath } from "node:url";
+import { readFileSync } from "node:fs";
+import { resolve } from "node:path";
 import { parseArgs } from "node:util";
 import { contenders, OURS, WORLD } from "../contenders/index.js";
+import { buildNative, buildWasm } from "./build.js";
 import { describe } from "./machine.js";
 import { Measurement } from "./measure.js";
 import { open, put, timesOf, versionOf, write } from "./record.js";
@@ -143,29 +142,4 @@ function bar(/** @type {number} */ part, /** @type {number} */ seconds, /** @typ
   const filled = Math.round(part * width);
   const left = part > 0.02 ? `, ${Math.round((seconds * (1 - part)) / part)} s left` : "";
   process.stdout.write(`\r\x1b[2K[${"#".repeat(filled)}${".".repeat(width - filled)}] ${Math.round(100 * part)}%${left} ${label}`);
-}
-
-/** The scenes as WebAssembly; `SCENES_WASM` names a file that is there already. */
-function buildWasm() {
-  if (process.env.SCENES_WASM) return resolve(process.env.SCENES_WASM);
-  const { target } = cargo("--lib", "--profile", "wasm", "--target", "wasm32-unknown-unknown");
-  return join(target, "wasm32-unknown-unknown/wasm/sweep_and_prune_js_bench.wasm");
-}
-
-/** The native program, or nothing where there is no compiler for this machine. */
-function buildNative() {
-  const { status, target } = cargo("--bin", "native", "--release");
-  const program = join(target, "release/native");
-  return status === 0 && existsSync(program) ? program : undefined;
-}
-
-/** Builds a part of the crate in ../scenes. */
-function cargo(/** @type {string[]} */ ...args) {
-  const root = fileURLToPath(new URL("../../..", import.meta.url));
-  const target = resolve(root, process.env.CARGO_TARGET_DIR ?? "target");
-  const { status } = spawnSync("cargo", ["build", "--quiet", "--package", "sweep-and-prune-js-bench", ...args], {
-    cwd: root,
-    stdio: ["ignore", "inherit", "inherit"],
-  });
-  return { status, target };
 }

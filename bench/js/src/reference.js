@@ -11,5 +11,5 @@ export const contender = {
   tasks: ["find", "follow"],
   rival: false,
   how: "all pairs tested",
-  load: () => import("../contenders/brute-force.js"),
+  module: "brute-force",
 };

@@ -7,6 +7,7 @@
 import { readFileSync, writeFileSync } from "node:fs";
 import { createInterface } from "node:readline";
 import { contenders } from "../contenders/index.js";
+import { load } from "../contenders/load.js";
 import { contender as bruteForce } from "./reference.js";
 import { Scenes } from "./scenes.js";
 import { Trial } from "./trial.js";
@@ -63,7 +64,7 @@ const scenes = await Scenes.start(readFileSync(process.env.SCENES_WASM ?? ""));
 const scene = scenes.open(sceneName ?? "", Number(dimensions), Number(boxes));
 const entry = [...contenders, bruteForce].find((one) => one.name === name);
 if (!entry) throw new Error(`there is no contender '${name}'`);
-const module = await entry.load();
+const module = await load(entry);
 resetPeak();
 const before = memory("VmRSS");
 const trial = await Trial.start(scene, Number(dimensions), module, clock);

@@ -2,6 +2,7 @@
 // slows nobody.
 
 import { contenders } from "../../../bench/js/contenders/index.js";
+import { load } from "../../../bench/js/contenders/load.js";
 import { contender as bruteForce } from "../../../bench/js/src/reference.js";
 import { Scenes } from "../../../bench/js/src/scenes.js";
 import { Trial } from "../../../bench/js/src/trial.js";
@@ -21,7 +22,7 @@ async function start({ contender, scene, dimensions, boxes }: Start): Promise<vo
   if (!entry) throw new Error(`there is no contender '${contender}'`);
   const [scenes, module] = await Promise.all([
     fetch(scenesUrl).then(async (response) => Scenes.start(await response.arrayBuffer())),
-    entry.load(),
+    load(entry),
   ]);
   trial = await Trial.start(scenes.open(scene, dimensions, boxes), dimensions, module, clock);
   const { fingerprint, pairs, longest } = trial.check();

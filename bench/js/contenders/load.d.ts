@@ -1,0 +1,3 @@
+import type { Contender, ContenderModule } from "./index.js";
+
+export function load(contender: Contender): Promise<ContenderModule>;
