@@ -104,9 +104,12 @@ export interface StepReport {
   contacts: number;
   /** Milliseconds of the broad phase in all substeps: balls in, pairs out. */
   broadPhaseMs: number;
-  /** Milliseconds of all narrow phases: exact test, impulses, projection. */
+  /** Milliseconds of all narrow phases: which balls of the pairs touch. */
   narrowPhaseMs: number;
-  /** Milliseconds of the step, without the counting. */
+  /**
+   * Milliseconds of the step, without the counting. What is neither broad nor narrow phase went into
+   * motion, impulses and projection.
+   */
   totalMs: number;
 }
 
