@@ -18,6 +18,9 @@ pub enum Error {
         /// How many were passed.
         count: usize,
     },
+    /// There is not enough memory for the pairs, or for the work on them. The finder keeps none of
+    /// the pairs and can be used again; it may be enough to count pairs or to stream them.
+    OutOfMemory,
     /// An axis that the boxes do not have.
     InvalidAxis {
         /// The axis asked for.
@@ -87,6 +90,7 @@ impl fmt::Display for Error {
             Error::TooManyBoxes { count } => {
                 write!(f, "{count} boxes are more than the limit of {}", Error::BOX_LIMIT)
             }
+            Error::OutOfMemory => write!(f, "not enough memory for the pairs of these boxes"),
             Error::InvalidAxis { axis, dimensions } => {
                 write!(f, "axis {axis} does not exist in {dimensions} dimensions")
             }

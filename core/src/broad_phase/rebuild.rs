@@ -1,12 +1,14 @@
 //! The update when many bodies left their fat boxes: find all candidates anew.
 
+use alloc::alloc::{Layout, handle_alloc_error};
+
 use super::BroadPhase;
 use super::filter::Filter;
 use super::options::hull;
 use super::proxy::flag;
 use super::update::{overlap, push_wanted};
 use super::updater::{Scratch, Updater};
-use crate::Scalar;
+use crate::{Error, Scalar};
 
 impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Reports what begins and ends, given who changed, escaped and left. Says whether seats
@@ -115,16 +117,16 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         let pairs = &mut candidates.pairs;
         // Boxes were checked when they came and fat boxes are no worse: the finder takes them.
         if is_whole {
-            pairs.extend_from_slice(finder.find(fat).unwrap_or_default());
+            pairs.extend_from_slice(found(finder.find(fat)));
         } else {
             boxes.clear();
             boxes.extend(seats.iter().map(|&seat| fat[seat as usize]));
             let (moving, fixed) = boxes.split_at(movers);
             let (mover, other) = seats.split_at(movers);
-            let found = finder.find(moving).unwrap_or_default();
-            pairs.extend(found.iter().map(|pair| pair.map(|index| mover[index as usize])));
-            let found = finder.find_between(moving, fixed).unwrap_or_default();
-            pairs.extend(found.iter().map(|&[a, b]| {
+            let moving_pairs = found(finder.find(moving));
+            pairs.extend(moving_pairs.iter().map(|pair| pair.map(|index| mover[index as usize])));
+            let fixed_pairs = found(finder.find_between(moving, fixed));
+            pairs.extend(fixed_pairs.iter().map(|&[a, b]| {
                 let (a, b) = (mover[a as usize], other[b as usize]);
                 [a.min(b), a.max(b)]
             }));
@@ -171,4 +173,11 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         candidates.live = candidates.pairs.iter().map(|&[a, b]| self.was_live(a, b)).collect();
         self.updater.candidates = candidates;
     }
+}
+
+/// What the finder found. Its boxes are valid, so it can have failed only where memory ended; a
+/// world that lacks pairs would be wrong, so then the program ends, as when any collection of its
+/// own fails to grow.
+fn found(result: Result<&[[u32; 2]], Error>) -> &[[u32; 2]] {
+    result.unwrap_or_else(|_| handle_alloc_error(Layout::new::<[u32; 2]>()))
 }

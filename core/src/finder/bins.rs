@@ -1,9 +1,11 @@
 //! Stage 1: bins. Space is cut into columns (and long ones into slabs), and each box is copied to
 //! every bin that it touches: count, prefix sum, scatter.
 
+use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
 use core::ops::Range;
 
+use super::memory::{grow, grow_to};
 use crate::{Aabb, Scalar};
 
 /// A box on its way: where it came from, and how its pairs are reported once.
@@ -222,7 +224,7 @@ impl<const D: usize, T: Scalar> Bins<D, T> {
     /// Lists the copies that these boxes of the source become, and returns how many.
     ///
     /// # Errors
-    /// [`Refusal`], of more than `limit` copies as soon as there are.
+    /// A [`Refusal`]; of more than `limit` copies as soon as there are.
     pub fn list<S: Source<D, T>>(
         &mut self,
         source: S,
@@ -238,7 +240,8 @@ impl<const D: usize, T: Scalar> Bins<D, T> {
         let mut len = 0;
         for i in boxes {
             if len + 4 > self.copies.len() {
-                self.copies.resize(2 * self.copies.len() + 1024, Copied::default());
+                let room = 2 * self.copies.len() + 1024;
+                grow_to(&mut self.copies, room, Copied::default())?;
             }
             let aabb = source.aabb(i);
             valid &= (0..D).fold(true, |valid, axis| valid & (aabb.min[axis] <= aabb.max[axis]));
@@ -293,7 +296,7 @@ impl<const D: usize, T: Scalar> Bins<D, T> {
                 }
                 let end = len + more[2] as usize + 1;
                 if end > self.copies.len() {
-                    self.copies.resize(2 * end, Copied::default());
+                    grow_to(&mut self.copies, 2 * end, Copied::default())?;
                 }
                 let first = bin + (i * y.count + j) * z.count;
                 for (k, to) in (0..).zip(&mut self.copies[len..end]) {
@@ -306,20 +309,24 @@ impl<const D: usize, T: Scalar> Bins<D, T> {
     }
 
     /// Copies the boxes to their bins as listed. There must be less than 2^32 copies.
-    pub fn scatter<S: Source<D, T>>(&mut self, source: S) {
-        self.ends.clear();
-        self.ends.resize(self.bins, 0);
+    ///
+    /// # Errors
+    /// [`Refusal::Memory`].
+    pub fn scatter<S: Source<D, T>>(&mut self, source: S) -> Result<(), Refusal> {
+        grow(&mut self.ends, self.bins, 0)?;
+        self.ends[..self.bins].fill(0);
         for copy in &self.copies[..self.len] {
             self.ends[copy.bin()] += 1;
         }
         // From counts to where each bin begins; the copying moves that to where it ends.
         let mut total = 0;
-        for end in &mut self.ends {
+        for end in &mut self.ends[..self.bins] {
             total += core::mem::replace(end, total);
         }
         if self.records.len() < self.len {
             let aabb = Aabb::new([T::ZERO; D], [T::ZERO; D]);
-            self.records.resize(self.len + self.len / 16, Record { aabb, id: 0, marks: 0 });
+            let room = self.len + self.len / 16;
+            grow_to(&mut self.records, room, Record { aabb, id: 0, marks: 0 })?;
         }
         for copy in &self.copies[..self.len] {
             let record = source.record(copy.of as usize);
@@ -327,6 +334,7 @@ impl<const D: usize, T: Scalar> Bins<D, T> {
             self.records[*end as usize] = Record { marks: record.marks | copy.marks(), ..record };
             *end += 1;
         }
+        Ok(())
     }
 
     /// How many records there are.
@@ -341,11 +349,19 @@ impl<const D: usize, T: Scalar> Bins<D, T> {
     }
 }
 
-/// Why bins were not filled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Why bins were not filled, the gravest reason first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Refusal {
     /// A box is inverted or NaN.
     Invalid,
+    /// There is not enough memory.
+    Memory,
     /// There would be more copies than allowed.
     TooMany,
+}
+
+impl From<TryReserveError> for Refusal {
+    fn from(_: TryReserveError) -> Self {
+        Refusal::Memory
+    }
 }

@@ -4,11 +4,13 @@
 //! insertion sort finishes. Where many edges fall into one interval (clusters, equal edges), the
 //! standard library's sort does that interval, so the whole is O(n log n) on any input.
 
+use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::bins::Source;
 use super::kernel::Column;
+use super::memory::grow;
 use crate::{Aabb, Scalar};
 
 /// Up to this many keys insertion sort has no need of intervals.
@@ -45,13 +47,14 @@ impl<T: Scalar> Sorter<T> {
         source: S,
         axis: usize,
         column: &mut Column<T>,
-    ) {
+    ) -> Result<(), TryReserveError> {
         let len = source.len();
-        column.reset(len, D - 1);
-        self.sort(source, axis);
+        column.reset(len, D - 1)?;
+        self.sort(source, axis)?;
         for (at, &key) in self.sorted[..len].iter().enumerate() {
             put(column, at, source, T::place(key) as usize, axis);
         }
+        Ok(())
     }
 
     /// Fills `column` with some of the boxes as they stand, all axes beside the sweep axis, on
@@ -60,8 +63,8 @@ impl<T: Scalar> Sorter<T> {
         source: S,
         boxes: Range<usize>,
         column: &mut Column<T>,
-    ) {
-        column.reset(boxes.len(), D);
+    ) -> Result<(), TryReserveError> {
+        column.reset(boxes.len(), D)?;
         column.left[..boxes.len()].fill(T::ZERO);
         column.right[..boxes.len()].fill(T::ZERO);
         for (at, i) in boxes.enumerate() {
@@ -73,24 +76,31 @@ impl<T: Scalar> Sorter<T> {
             column.id[at] = source.id(i);
             column.marks[at] = source.marks(i);
         }
+        Ok(())
     }
 
     /// Leaves the sorted keys of the boxes in `sorted`.
     #[inline(never)]
-    fn sort<const D: usize, S: Source<D, T>>(&mut self, source: S, axis: usize) {
+    fn sort<const D: usize, S: Source<D, T>>(
+        &mut self,
+        source: S,
+        axis: usize,
+    ) -> Result<(), TryReserveError> {
         let len = source.len();
-        grow(&mut self.keys, len);
-        grow(&mut self.sorted, len);
+        grow(&mut self.sorted, len, T::Key::default())?;
         if len <= FEW {
             for (i, key) in self.sorted[..len].iter_mut().enumerate() {
                 *key = edge(source, i, axis).key(i as u32);
             }
-            return insertion(&mut self.sorted[..len]);
+            insertion(&mut self.sorted[..len]);
+            return Ok(());
         }
         // The least and the greatest by their keys: comparing whole numbers takes less time.
         let (mut least, mut greatest) =
             (edge(source, 0, axis).key(0), edge(source, 0, axis).key(0));
-        grow(&mut self.lefts, len);
+        grow(&mut self.keys, len, T::Key::default())?;
+        grow(&mut self.lefts, len, T::ZERO)?;
+        grow(&mut self.intervals, len, 0)?;
         for (i, (key, left)) in self.keys.iter_mut().zip(&mut self.lefts[..len]).enumerate() {
             *left = edge(source, i, axis);
             *key = left.key(i as u32);
@@ -104,28 +114,28 @@ impl<T: Scalar> Sorter<T> {
         let last = T::from_f64((count - 1) as f64);
         let (origin, scale) = (T::from_f64(low), T::from_f64((count - 1) as f64 / (high - low)));
 
-        grow(&mut self.intervals, len);
         for (interval, left) in self.intervals.iter_mut().zip(&self.lefts[..len]) {
             *interval = (*left * unit).cell(origin, scale, last);
         }
-        self.ends.clear();
-        self.ends.resize(count, 0);
+        grow(&mut self.ends, count, 0)?;
+        let ends = &mut self.ends[..count];
+        ends.fill(0);
         for &interval in &self.intervals[..len] {
-            self.ends[interval as usize] += 1;
+            ends[interval as usize] += 1;
         }
         let (mut total, mut most) = (0, 0);
-        for end in &mut self.ends {
+        for end in &mut *ends {
             most = most.max(*end);
             total += core::mem::replace(end, total);
         }
         for (&key, &interval) in self.keys[..len].iter().zip(&self.intervals[..len]) {
-            let end = &mut self.ends[interval as usize];
+            let end = &mut ends[interval as usize];
             self.sorted[*end as usize] = key;
             *end += 1;
         }
         if most > CROWD {
             let mut begin = 0;
-            for &end in &self.ends {
+            for &end in &*ends {
                 if end - begin > CROWD {
                     self.sorted[begin as usize..end as usize].sort_unstable();
                 }
@@ -133,6 +143,7 @@ impl<T: Scalar> Sorter<T> {
             }
         }
         insertion(&mut self.sorted[..len]);
+        Ok(())
     }
 }
 
@@ -141,14 +152,8 @@ fn edge<const D: usize, T: Scalar, S: Source<D, T>>(source: S, i: usize, axis: u
     source.aabb(i).min[axis]
 }
 
-fn grow<V: Copy + Default>(array: &mut Vec<V>, size: usize) {
-    if array.len() < size {
-        array.resize(size + size / 8, V::default());
-    }
-}
-
-#[inline(never)]
 /// Insertion sort: linear where each key is near its place.
+#[inline(never)]
 fn insertion<K: Copy + Ord>(keys: &mut [K]) {
     for i in 1..keys.len() {
         let key = keys[i];

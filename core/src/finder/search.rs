@@ -1,6 +1,7 @@
 //! The stages put together, for one set (pairs within it) or two (pairs between them): plan, put
 //! into bins, order each, sweep it. A bin that turns out crowded is planned anew.
 
+use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
 use core::mem::take;
 use core::ops::ControlFlow;
@@ -93,6 +94,14 @@ pub(super) enum Stop {
     Invalid,
     /// The sink or the watch had enough.
     Enough,
+    /// There is not enough memory.
+    Memory,
+}
+
+impl From<TryReserveError> for Stop {
+    fn from(_: TryReserveError) -> Self {
+        Stop::Memory
+    }
 }
 
 impl<const D: usize, T: Scalar> Search<D, T> {
@@ -140,12 +149,13 @@ impl<const D: usize, T: Scalar> Search<D, T> {
             return very_few(sets, task.arrange, sink);
         }
         for start in (0..first.len()).step_by(CHUNK) {
-            Sorter::unordered(first, start..first.len().min(start + CHUNK), &mut self.columns[0]);
+            Sorter::unordered(first, start..first.len().min(start + CHUNK), &mut self.columns[0])?;
             if sets.len() == 1 {
                 return self.sweep(1, D, task, sink);
             }
             for start in (0..last.len()).step_by(CHUNK) {
-                Sorter::unordered(last, start..last.len().min(start + CHUNK), &mut self.columns[1]);
+                let boxes = start..last.len().min(start + CHUNK);
+                Sorter::unordered(last, boxes, &mut self.columns[1])?;
                 self.sweep(2, D, task, sink)?;
             }
         }
@@ -191,8 +201,7 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         let mut bins = self.bins.pop().unwrap_or([Bins::new(), Bins::new()]);
         let filled = sets.iter().zip(&mut bins).try_for_each(|(&set, bins)| {
             bins.list(set, 0..set.len(), grid, limit(set.len()))?;
-            bins.scatter(set);
-            Ok(())
+            bins.scatter(set)
         });
         let result = match filled {
             Ok(()) => (0..grid.len())
@@ -213,8 +222,10 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
-        if refusal == Refusal::Invalid {
-            return Err(Stop::Invalid);
+        match refusal {
+            Refusal::Invalid => return Err(Stop::Invalid),
+            Refusal::Memory => return Err(Stop::Memory),
+            Refusal::TooMany => (),
         }
         for (axis, width) in grid.widths().filter(|_| task.depth < DEPTH) {
             for (set, source) in sets.iter().enumerate() {
@@ -248,7 +259,9 @@ impl<const D: usize, T: Scalar> Search<D, T> {
             let mut gathered = take(&mut self.gathered);
             for (set, records) in gathered[..sets].iter_mut().enumerate() {
                 records.clear();
-                pieces.iter().for_each(|piece| records.extend_from_slice(piece[set].bin(bin)));
+                let parts = pieces.iter().map(|piece| piece[set].bin(bin));
+                records.try_reserve(parts.clone().map(<[_]>::len).sum())?;
+                parts.for_each(|part| records.extend_from_slice(part));
             }
             let records = [&gathered[0][..], &gathered[1][..]];
             let result = self.ordered(&records[..sets], grid.sweep, crowd, task, sink);
@@ -285,7 +298,7 @@ impl<const D: usize, T: Scalar> Search<D, T> {
             }
         }
         for (&set, column) in sets.iter().zip(&mut self.columns) {
-            self.sorter.order(set, axis, column);
+            self.sorter.order(set, axis, column)?;
         }
         if boxes >= SMALL && task.depth < DEPTH {
             let columns = &self.columns[..sets.len()];
@@ -319,11 +332,14 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         for i in 0..sets[set].len() {
             let record = sets[set].record(i);
             valid &= record.aabb.is_valid();
-            parts[usize::from(extent(&record.aabb, axis) > size)].push(record);
+            let part = &mut parts[usize::from(extent(&record.aabb, axis) > size)];
+            part.try_reserve(1)?;
+            part.push(record);
         }
         let [small, large, other] = &mut parts;
         if sets.len() == 2 {
             // The other set is copied as it is: all parts are then of one type.
+            other.try_reserve(sets[1 - set].len())?;
             for i in 0..sets[1 - set].len() {
                 let record = sets[1 - set].record(i);
                 valid &= record.aabb.is_valid();
@@ -359,10 +375,7 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         // Known to the compiler where there is no choice, so that the others are left out.
         let kernel = if cfg!(feature = "std") { self.kernel } else { Kernel::best() };
         let sweep = Sweep { kernel, others, arrange, watch };
-        match sweep.run(&self.columns[..sets], sink) {
-            ControlFlow::Continue(()) => Ok(()),
-            ControlFlow::Break(()) => Err(Stop::Enough),
-        }
+        sweep.run(&self.columns[..sets], sink)
     }
 }
 
@@ -386,14 +399,14 @@ pub(super) fn very_few<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
     sink: &mut O,
 ) -> Result<(), Stop> {
     let [first, last] = [sets[0], sets[sets.len() - 1]];
-    let mut room = sink.room();
+    let mut room = sink.room()?;
     let mut count = 0;
     for i in 0..first.len() {
         for j in if sets.len() == 1 { i + 1 } else { 0 }..last.len() {
             if first.aabb(i).overlaps(last.aabb(j)) && first.marks(i) & last.marks(j) == 0 {
                 if count == room.len() {
-                    sink.take(count).is_continue().then_some(()).ok_or(Stop::Enough)?;
-                    (room, count) = (sink.room(), 0);
+                    sink.take(count)?;
+                    (room, count) = (sink.room()?, 0);
                 }
                 let (a, b) = (first.id(i), last.id(j));
                 let swap = arrange == Arrange::Ascending && b < a;
@@ -402,7 +415,7 @@ pub(super) fn very_few<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
             }
         }
     }
-    if sink.take(count).is_break() { Err(Stop::Enough) } else { Ok(()) }
+    sink.take(count)
 }
 
 /// The most records that so many boxes may become.

@@ -4,6 +4,8 @@ use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
 use super::kernel::PAD;
+use super::memory::grow_to;
+use super::search::Stop;
 
 /// Pairs that are stored between two looks at the watch, at most.
 const STRETCH: usize = 1 << 16;
@@ -18,18 +20,27 @@ pub(super) trait Sink {
     type Fork: Sink + Send;
 
     /// Room for at least [`PAD`] pairs.
-    fn room(&mut self) -> &mut [[u32; 2]];
+    ///
+    /// # Errors
+    /// [`Stop::Memory`].
+    fn room(&mut self) -> Result<&mut [[u32; 2]], Stop>;
 
-    /// Takes the first `count` pairs of the room. Break ends the search.
-    fn take(&mut self, count: usize) -> ControlFlow<()>;
+    /// Takes the first `count` pairs of the room.
+    ///
+    /// # Errors
+    /// [`Stop::Enough`], to end the search.
+    fn take(&mut self, count: usize) -> Result<(), Stop>;
 
     /// An empty sink for another thread; none if the pairs must come in order, one by one.
     #[cfg(feature = "parallel")]
     fn fork(&mut self) -> Option<Self::Fork>;
 
     /// Takes the pairs of forks, in this order, after its own.
+    ///
+    /// # Errors
+    /// [`Stop::Memory`].
     #[cfg(feature = "parallel")]
-    fn join(&mut self, forks: Vec<Self::Fork>);
+    fn join(&mut self, forks: Vec<Self::Fork>) -> Result<(), Stop>;
 }
 
 /// Stores pairs. The buffer is longer than what it holds, and only grows.
@@ -62,18 +73,19 @@ impl Sink for Store {
     type Fork = Store;
 
     #[inline]
-    fn room(&mut self) -> &mut [[u32; 2]] {
+    fn room(&mut self) -> Result<&mut [[u32; 2]], Stop> {
         if self.buffer.len() - self.len < PAD {
-            self.buffer.resize(2 * self.buffer.len() + 4 * PAD, [0; 2]);
+            let room = 2 * self.buffer.len() + 4 * PAD;
+            grow_to(&mut self.buffer, room, [0; 2])?;
         }
         let end = self.buffer.len().min(self.len + STRETCH);
-        &mut self.buffer[self.len..end]
+        Ok(&mut self.buffer[self.len..end])
     }
 
     #[inline]
-    fn take(&mut self, count: usize) -> ControlFlow<()> {
+    fn take(&mut self, count: usize) -> Result<(), Stop> {
         self.len += count;
-        ControlFlow::Continue(())
+        Ok(())
     }
 
     #[cfg(feature = "parallel")]
@@ -82,10 +94,10 @@ impl Sink for Store {
     }
 
     #[cfg(feature = "parallel")]
-    fn join(&mut self, forks: Vec<Store>) {
+    fn join(&mut self, forks: Vec<Store>) -> Result<(), Stop> {
         let len = self.len + forks.iter().map(|fork| fork.len).sum::<usize>();
         if self.buffer.len() < len {
-            self.buffer.resize(len, [0; 2]);
+            grow_to(&mut self.buffer, len, [0; 2])?;
         }
         let mut rest = &mut self.buffer[self.len..len];
         let mut copies = Vec::with_capacity(forks.len());
@@ -97,6 +109,7 @@ impl Sink for Store {
         super::threads::copy(copies);
         self.len = len;
         self.spare.extend(forks.into_iter().map(|fork| Store { len: 0, ..fork }));
+        Ok(())
     }
 }
 
@@ -113,11 +126,11 @@ pub(super) struct Buffer(Vec<[u32; 2]>);
 
 impl Buffer {
     #[inline]
-    fn room(&mut self) -> &mut [[u32; 2]] {
+    fn room(&mut self) -> Result<&mut [[u32; 2]], Stop> {
         if self.0.is_empty() {
-            self.0.resize(BUFFER, [0; 2]);
+            grow_to(&mut self.0, BUFFER, [0; 2])?;
         }
-        &mut self.0
+        Ok(&mut self.0)
     }
 }
 
@@ -126,14 +139,14 @@ impl Sink for Count {
     type Fork = Count;
 
     #[inline]
-    fn room(&mut self) -> &mut [[u32; 2]] {
+    fn room(&mut self) -> Result<&mut [[u32; 2]], Stop> {
         self.buffer.room()
     }
 
     #[inline]
-    fn take(&mut self, count: usize) -> ControlFlow<()> {
+    fn take(&mut self, count: usize) -> Result<(), Stop> {
         self.count += count as u64;
-        ControlFlow::Continue(())
+        Ok(())
     }
 
     #[cfg(feature = "parallel")]
@@ -142,8 +155,9 @@ impl Sink for Count {
     }
 
     #[cfg(feature = "parallel")]
-    fn join(&mut self, forks: Vec<Count>) {
+    fn join(&mut self, forks: Vec<Count>) -> Result<(), Stop> {
         self.count += forks.iter().map(|fork| fork.count).sum::<u64>();
+        Ok(())
     }
 }
 
@@ -159,13 +173,16 @@ impl<F: FnMut([u32; 2]) -> ControlFlow<()>> Sink for Stream<'_, F> {
     type Fork = Count;
 
     #[inline]
-    fn room(&mut self) -> &mut [[u32; 2]] {
+    fn room(&mut self) -> Result<&mut [[u32; 2]], Stop> {
         self.buffer.room()
     }
 
     #[inline]
-    fn take(&mut self, count: usize) -> ControlFlow<()> {
-        self.buffer.0[..count].iter().try_for_each(|&pair| (self.each)(pair))
+    fn take(&mut self, count: usize) -> Result<(), Stop> {
+        match self.buffer.0[..count].iter().try_for_each(|&pair| (self.each)(pair)) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(Stop::Enough),
+        }
     }
 
     #[cfg(feature = "parallel")]
@@ -174,5 +191,7 @@ impl<F: FnMut([u32; 2]) -> ControlFlow<()>> Sink for Stream<'_, F> {
     }
 
     #[cfg(feature = "parallel")]
-    fn join(&mut self, _: Vec<Count>) {}
+    fn join(&mut self, _: Vec<Count>) -> Result<(), Stop> {
+        Ok(())
+    }
 }

@@ -1,8 +1,7 @@
 //! Stage 3: the sweep. The kernels do the work; here their output is handed on as it fills up.
 
-use core::ops::ControlFlow;
-
 use super::kernel::{Arrange, Column, Cursor, Kernel};
+use super::search::Stop;
 use super::sink::Sink;
 use super::watch::Watch;
 use crate::Scalar;
@@ -19,10 +18,10 @@ pub(super) struct Sweep<'a> {
 
 impl Sweep<'_> {
     /// Sends the pairs within the one column, or between the two, to the sink.
-    pub fn run<T: Scalar, O: Sink>(self, columns: &[Column<T>], sink: &mut O) -> ControlFlow<()> {
+    pub fn run<T: Scalar, O: Sink>(self, columns: &[Column<T>], sink: &mut O) -> Result<(), Stop> {
         let mut cursor = Cursor::default();
         loop {
-            let room = sink.room();
+            let room = sink.room()?;
             let count = if let [first, second] = columns {
                 self.kernel.between([first, second], self.others, self.arrange, &mut cursor, room)
             } else {
@@ -30,9 +29,11 @@ impl Sweep<'_> {
             };
             sink.take(count)?;
             if cursor.done {
-                return ControlFlow::Continue(());
+                return Ok(());
             }
-            self.watch.map_or(ControlFlow::Continue(()), Watch::look)?;
+            if self.watch.is_some_and(|watch| watch.look().is_break()) {
+                return Err(Stop::Enough);
+            }
         }
     }
 }

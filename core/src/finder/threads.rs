@@ -4,8 +4,8 @@
 
 use alloc::vec::Vec;
 use core::ops::Range;
-use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::Mutex;
+use core::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, OnceLock};
 
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
@@ -59,7 +59,7 @@ pub(super) fn cut<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
         let groups = group(&pieces, sets.len(), grid.len(), threads * GROUPS);
         let mut forks = alloc::vec![Mutex::new(first)];
         forks.extend(groups[1..].iter().filter_map(|_| sink.fork()).map(Mutex::new));
-        let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
+        let (next, failed) = (AtomicUsize::new(0), OnceLock::new());
         let borrowed: Vec<&[Bins<D, T>; 2]> = pieces.iter().collect();
         let work = |worker: &mut Search<D, T>| {
             worker.kernel = search.kernel;
@@ -68,20 +68,22 @@ pub(super) fn cut<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
                 let (Some(group), Some(fork)) = (groups.get(at), forks.get(at)) else { return };
                 let Ok(mut fork) = fork.lock() else { return };
                 for bin in group.clone() {
-                    let result = worker.bin(&borrowed, sets.len(), bin, grid, task, &mut *fork);
-                    if result.is_err() || failed.load(Ordering::Relaxed) {
-                        failed.store(true, Ordering::Relaxed);
+                    if let Err(stop) =
+                        worker.bin(&borrowed, sets.len(), bin, grid, task, &mut *fork)
+                    {
+                        failed.get_or_init(|| stop);
+                    }
+                    if failed.get().is_some() {
                         return;
                     }
                 }
             }
         };
         on_threads(&mut workers, |_, worker| work(worker));
-        if failed.into_inner() {
-            return Err(Stop::Enough);
+        if let Some(stop) = failed.into_inner() {
+            return Err(stop);
         }
-        sink.join(forks.into_iter().filter_map(|fork| fork.into_inner().ok()).collect());
-        Ok(())
+        sink.join(forks.into_iter().filter_map(|fork| fork.into_inner().ok()).collect())
     });
     search.team.workers = workers;
     search.team.pieces = pieces;
@@ -129,7 +131,7 @@ fn fill<const D: usize, T: Scalar, S: Source<D, T>>(
             let of = sets[set].len();
             let stretch = of * thread / threads..of * (thread + 1) / threads;
             let count = bins.list(sets[set], stretch, grid, limit(of))?;
-            bins.scatter(sets[set]);
+            bins.scatter(sets[set])?;
             Ok(count)
         };
         let [first, second] = &mut **bins;
@@ -141,10 +143,8 @@ fn fill<const D: usize, T: Scalar, S: Source<D, T>>(
     for (_, listed) in own {
         match listed {
             Ok(counts) => (0..2).for_each(|set| totals[set] += counts[set]),
-            Err(of) => {
-                refusal =
-                    Some(if refusal == Some(Refusal::Invalid) { Refusal::Invalid } else { of })
-            }
+            // The least: an invalid box before all else.
+            Err(of) => refusal = Some(refusal.map_or(of, |other: Refusal| other.min(of))),
         }
     }
     let many = sets.iter().zip(totals).any(|(set, total)| total > limit(set.len()));

@@ -1,7 +1,9 @@
 //! A run of boxes in sweep order, as a structure of arrays: what the kernels read.
 
+use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
 
+use super::super::memory::grow;
 use super::Coordinate;
 
 /// How many entries stand behind the last box, so that a vector may be loaded at any position up
@@ -49,18 +51,22 @@ impl<T: Coordinate> Column<T> {
 
     /// Sets the length, with room for the padding, and puts the sentinels behind the last box.
     /// What stands before them is for the caller to write. The arrays only ever grow.
-    pub fn reset(&mut self, len: usize, others: usize) {
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn reset(&mut self, len: usize, others: usize) -> Result<(), TryReserveError> {
         let size = len + PAD;
-        grow(&mut self.left, size, T::ZERO);
-        grow(&mut self.right, size, T::ZERO);
+        grow(&mut self.left, size, T::ZERO)?;
+        grow(&mut self.right, size, T::ZERO)?;
         for axis in 0..others {
-            grow(&mut self.min[axis], size, T::ZERO);
-            grow(&mut self.max[axis], size, T::ZERO);
+            grow(&mut self.min[axis], size, T::ZERO)?;
+            grow(&mut self.max[axis], size, T::ZERO)?;
         }
-        grow(&mut self.id, size, 0);
-        grow(&mut self.marks, size, 0);
+        grow(&mut self.id, size, 0)?;
+        grow(&mut self.marks, size, 0)?;
         self.left[len..size].fill(T::NAN);
         self.len = len;
+        Ok(())
     }
 
     /// Whether every array that a sweep over `others` axes reads is long enough, and the
@@ -73,12 +79,5 @@ impl<T: Coordinate> Column<T> {
             && self.marks.len() >= size
             && (0..others).all(|k| self.min[k].len() >= size && self.max[k].len() >= size)
             && self.left[self.len..size].iter().all(|left| left.partial_cmp(left).is_none())
-    }
-}
-
-fn grow<V: Copy>(array: &mut Vec<V>, size: usize, value: V) {
-    if array.len() < size {
-        // Some slack, so that columns of nearly one size do not grow it again and again.
-        array.resize(size + size / 8, value);
     }
 }

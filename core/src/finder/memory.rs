@@ -1,0 +1,35 @@
+//! Arrays that grow, or tell that they cannot.
+
+use alloc::collections::TryReserveError;
+use alloc::vec::Vec;
+
+/// Makes an array at least so long. Some slack is added, so that arrays of nearly one size do not
+/// grow again and again; it never shrinks.
+///
+/// # Errors
+/// If there is not enough memory; then the array is as it was.
+pub(super) fn grow<V: Copy>(
+    array: &mut Vec<V>,
+    size: usize,
+    value: V,
+) -> Result<(), TryReserveError> {
+    if array.len() < size {
+        grow_to(array, size + size / 8, value)?;
+    }
+    Ok(())
+}
+
+/// Makes an array just so long.
+///
+/// # Errors
+/// As [`grow`].
+#[cold]
+pub(super) fn grow_to<V: Copy>(
+    array: &mut Vec<V>,
+    size: usize,
+    value: V,
+) -> Result<(), TryReserveError> {
+    array.try_reserve_exact(size - array.len())?;
+    array.resize(size, value);
+    Ok(())
+}
