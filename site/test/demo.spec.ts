@@ -1,7 +1,7 @@
 // `<sap-demo>`, one at a time on embed.html, as a visitor handles it.
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
-import { expect, type Locator, type Page, test } from "@playwright/test";
+import { chromium, expect, type Locator, type Page, test } from "@playwright/test";
 import type { AxeResults } from "axe-core";
 import type { DemoEvent, DemoState, SapDemo } from "sweep-and-prune/demo";
 
@@ -480,8 +480,10 @@ test("axe finds nothing", async ({ page }) => {
   }
 });
 
-test("at most 8 ms of script a frame with six demos on the screen", async ({ page }) => {
-  await page.setViewportSize({ width: 1300, height: 1700 });
+test("at most 8 ms of script a frame with six demos on the screen", async ({ baseURL, launchOptions }) => {
+  // Without the emulated graphics card that the spheres need: it takes a second for six canvases.
+  const browser = await chromium.launch({ executablePath: launchOptions.executablePath!, args: ["--no-sandbox"] });
+  const page = await browser.newPage({ baseURL: baseURL!, viewport: { width: 1300, height: 1700 } });
   const demo = await open(page, { strategy: "pairwise", balls: "20", "skip-interval": "4", decorations: "checks:#4c8:30" });
   const mean = await demo.evaluate(async (first: SapDemo) => {
     const main = document.querySelector("main")!;
@@ -513,6 +515,8 @@ test("at most 8 ms of script a frame with six demos on the screen", async ({ pag
     times.sort((a, b) => a - b);
     return { median: times[times.length >> 1]!, frames: times.length, ticks: [first, ...more].map(({ state }) => state.tick) };
   });
-  expect(mean.frames).toBeGreaterThan(3);
+  await browser.close();
+  console.log(`script a frame: median ${mean.median.toFixed(2)} ms in ${mean.frames} frames`);
+  expect(mean.frames).toBeGreaterThan(20);
   expect(mean.median).toBeLessThan(8);
 });

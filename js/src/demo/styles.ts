@@ -7,6 +7,10 @@ export const styles: CSSResult = css`
     display: block;
     position: relative;
     max-width: var(--sap-width, 600px);
+  }
+  /* Not of the host: what a page puts into it looks as the page says. */
+  [part],
+  .heading {
     color: var(--_ink);
     font: 0.9375rem/1.4 var(--sap-font, system-ui, sans-serif);
   }
@@ -20,7 +24,6 @@ export const styles: CSSResult = css`
     margin: 0 0 6px;
     height: 1.375rem;
     overflow: hidden;
-    font: inherit;
     font-weight: 600;
     line-height: 1.375rem;
     white-space: nowrap;
