@@ -248,7 +248,8 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
             return;
         }
         let left = (leaves * (count / 2)).div_ceil(count);
-        let middle = seats.len() * left / leaves;
+        // The product of two counts, which 32 bits do not hold.
+        let middle = (seats.len() as u64 * left as u64 / leaves as u64) as usize;
         let axis = widest_axis(seats, boxes);
         let centre = |seat: &u32| boxes[*seat as usize].centre(axis);
         seats.select_nth_unstable_by(middle, |a, b| centre(a).total_cmp(&centre(b)).then(a.cmp(b)));
