@@ -21,6 +21,8 @@ const folder = process.env["SITE_TEST_DIST"];
 export default defineConfig({
   testDir: "test",
   outputDir: "test-results",
+  // One reference for every machine: what is compared has no fonts in it.
+  snapshotPathTemplate: "{testDir}/{testFileName}-snapshots/{arg}{ext}",
   timeout: 120_000,
   expect: { timeout: 30_000 },
   workers: 1,

@@ -1,4 +1,4 @@
-// Two entries for each box: where it begins and where it ends.
+// Two entries for each box: its begin and its end.
 export function endpointsOf(boxes, first = "left", last = "right") {
   return boxes.flatMap((box) => [
     { box, side: first, begins: true, at: box[first] },
@@ -6,14 +6,14 @@ export function endpointsOf(boxes, first = "left", last = "right") {
   ]);
 }
 
-// The boxes have moved: read the coordinates anew, keep the order.
+// The boxes have moved: read anew, keep the order.
 export function refresh(endpoints) {
   for (const endpoint of endpoints) {
     endpoint.at = endpoint.box[endpoint.side];
   }
 }
 
-// Which of two endpoints comes first. Never both, never neither.
+// Which of two endpoints comes first.
 export function precedes(p, q) {
   if (p.at !== q.at) return p.at < q.at;
   if (p.begins !== q.begins) return p.begins;

@@ -1,10 +1,12 @@
 // Flawed: see what it misses.
 export function oneToN(endpoints, box, onOverlapX) {
-  const from = endpoints.findIndex((e) => e.box === box && e.begins);
-  const to = endpoints.findIndex((e) => e.box === box && !e.begins);
+  const mine = (e) => e.box === box;
+  const from = endpoints.findIndex(mine);
+  const to = endpoints.findLastIndex(mine);
 
   const met = new Set();
-  for (const { box: other } of endpoints.slice(from + 1, to)) { // @enter
+  for (let i = from + 1; i < to; i++) {
+    const other = endpoints[i].box; // @enter
     if (!met.has(other)) onOverlapX(box, other); // @test
     met.add(other);
   }

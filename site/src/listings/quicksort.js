@@ -1,6 +1,10 @@
 import { precedes } from "./endpoints.js";
 
-export function quicksort(endpoints, low = 0, high = endpoints.length - 1) {
+export function quicksort(
+  endpoints,
+  low = 0,
+  high = endpoints.length - 1,
+) {
   if (low >= high) return;
   const pivot = endpoints[(low + high) >> 1];
   let i = low;
@@ -10,9 +14,9 @@ export function quicksort(endpoints, low = 0, high = endpoints.length - 1) {
     while (precedes(endpoints[i], pivot)) i++; // @compare
     while (precedes(pivot, endpoints[j])) j--;
     if (i > j) break;
-    [endpoints[i], endpoints[j]] = [endpoints[j], endpoints[i]]; // @swap
-    i++;
-    j--;
+    const swapped = endpoints[i];
+    endpoints[i++] = endpoints[j]; // @swap
+    endpoints[j--] = swapped; // @swap
   }
   quicksort(endpoints, low, j);
   quicksort(endpoints, i, high);

@@ -22,7 +22,7 @@ class Flags {
 
 export function begin(boxes) {
   const flags = new Flags();
-  const arrays = axes.map(([first, last]) => endpointsOf(boxes, first, last));
+  const arrays = axes.map((ends) => endpointsOf(boxes, ...ends));
   for (const endpoints of arrays) {
     quicksort(endpoints);
     sweep(endpoints, (a, b) => flags.change(a, b, +1));
@@ -35,11 +35,14 @@ export function update({ arrays, flags }) {
     refresh(endpoints);
     for (let i = 1; i < endpoints.length; i++) {
       for (let j = i - 1; j >= 0; j--) {
-        const [west, east] = [endpoints[j], endpoints[j + 1]];
+        const west = endpoints[j];
+        const east = endpoints[j + 1];
         if (!precedes(east, west)) break; // @compare
-        [endpoints[j], endpoints[j + 1]] = [east, west]; // @swap
+        endpoints[j] = east; // @swap
+        endpoints[j + 1] = west; // @swap
         if (west.begins === east.begins) continue;
-        flags.change(west.box, east.box, east.begins ? +1 : -1);
+        const by = east.begins ? +1 : -1;
+        flags.change(west.box, east.box, by);
       }
     }
   }

@@ -3,7 +3,7 @@ import { key } from "./key.js";
 import { quicksort } from "./quicksort.js";
 import { sweep } from "./sweep.js";
 
-// Once, before the first frame: which overlaps are there already?
+// Once: which overlaps are there already?
 export function begin(boxes) {
   const endpoints = endpointsOf(boxes);
   const overlapping = new Map();
@@ -12,21 +12,28 @@ export function begin(boxes) {
   return { endpoints, overlapping };
 }
 
-// Every frame: an insertion sort that looks at what it swaps.
+// Every frame: a sort that looks at what it swaps.
 export function update({ endpoints, overlapping }) {
   refresh(endpoints);
 
   for (let i = 1; i < endpoints.length; i++) {
     for (let j = i - 1; j >= 0; j--) {
-      const [west, east] = [endpoints[j], endpoints[j + 1]];
+      const west = endpoints[j];
+      const east = endpoints[j + 1];
       if (!precedes(east, west)) break; // @compare
-      [endpoints[j], endpoints[j + 1]] = [east, west]; // @swap
+      endpoints[j] = east; // @swap
+      endpoints[j + 1] = west; // @swap
 
-      if (west.begins === east.begins) continue; // (( or )): nothing
-      const pair = key(west.box, east.box);
-      if (east.begins) overlapping.set(pair, [west.box, east.box]); // )( became ()
-      else overlapping.delete(pair); // () became )(
+      const [a, b] = [west.box, east.box];
+      if (west.begins === east.begins) {
+        continue; // (( or )): nothing changes
+      } else if (east.begins) {
+        overlapping.set(key(a, b), [a, b]); // )( became ()
+      } else {
+        overlapping.delete(key(a, b)); // () became )(
+      }
     }
   }
-  return [...overlapping.values()]; // overlaps on x: now test y @test
+  // They overlap on x. Now test y.
+  return [...overlapping.values()]; // @test
 }

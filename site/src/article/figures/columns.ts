@@ -53,12 +53,12 @@ export function columns(): string {
   return svg(
     "columns",
     second + SIDE + 1,
-    SIDE + 52,
+    SIDE + 58,
     `${boxes.length} boxes, swept as one: ${whole.length} tests. The same, cut into ${COLUMNS} strips: ${copies} copies, ${inParts.length} tests. Both find ${pairs.length} pairs.`,
     frame(0.5) + frame(second) + bodies(0) + bodies(second) + cuts.join("") +
-      text(SIDE / 2, SIDE + 22, "one sweep") + text(SIDE / 2, SIDE + 42, `${whole.length} tests for ${pairs.length} pairs`, "label strong") +
+      text(SIDE / 2, SIDE + 22, "one sweep") + text(SIDE / 2, SIDE + 47, `${whole.length} tests for ${pairs.length} pairs`, "label strong") +
       text(second + SIDE / 2, SIDE + 22, `${COLUMNS} strips, ${copies} copies of ${boxes.length} boxes`) +
-      text(second + SIDE / 2, SIDE + 42, `${inParts.length} tests for the same ${reported.length} pairs`, "label strong"),
+      text(second + SIDE / 2, SIDE + 47, `${inParts.length} tests for the same ${reported.length} pairs`, "label strong"),
   );
 }
 
@@ -79,7 +79,7 @@ export function lanes(): string {
     ["all of them", (b) => overlaps(a, b)],
   ];
   const cell = 46;
-  const left = 150;
+  const left = 175;
   const drawn = rows.map(([name, holds], row) => {
     const y = 40 + 38 * row + (row === 3 ? 10 : 0);
     const cells = ahead.map((b, at) => {

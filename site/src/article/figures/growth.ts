@@ -56,11 +56,11 @@ export function measured(): string {
       below = Math.max(endY, below + 36);
       return line(endX + 3, endY, left + width + 12, below, "leader") +
         text(left + width + 18, below + 1, name, `label curve-name-${at}`, "start") +
-        text(left + width + 18, below + 17, `grows as n^${slope.toFixed(2)}`, "label small", "start");
+        text(left + width + 18, below + 17, `grows as n<tspan dy="-5" font-size="11">${slope.toFixed(2)}</tspan>`, "label small", "start");
     });
   return svg(
     "measured",
-    620,
+    660,
     340,
     `Operations a step against the number of boxes in a square world that moves a little, on logarithmic scales. ${curves.map(({ name, slope }) => `${name} grows as n to the power ${slope.toFixed(2)}`).join("; ")}.`,
     grid.join("") + curves.map(({ drawn }) => drawn).join("") + labels.join("") + text(left + width / 2, top + height + 38, "boxes", "label small"),
