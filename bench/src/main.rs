@@ -5,7 +5,7 @@
 //!
 //! The parts, in the order of the data: `scene` makes the boxes, `peers` find the pairs and
 //! `worlds` follow them, `worker` runs one peer in a process of its own, `remote` talks to it,
-//! `contest` compares them, `measure` says what is compared, `record` is what is kept, `report`
+//! `contest` compares them, `roofline` compares ours with the machine, `measure` says what is compared, `record` is what is kept, `report`
 //! what is shown.
 
 use std::path::PathBuf;
@@ -21,6 +21,7 @@ mod peers;
 mod record;
 mod remote;
 mod report;
+mod roofline;
 mod scene;
 mod worker;
 mod worlds;

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use anyhow::{Result, ensure};
 use clap::Args;
@@ -10,16 +10,13 @@ use indicatif::{ProgressBar, ProgressStyle};
 use sweep_and_prune_scenes::Motion;
 
 use crate::contest::{Contest, Kind};
-use crate::peers::{self, Entrant, OURS};
+use crate::peers::{self, Entrant, OURS, OURS_ON_TWO, WITNESSES};
 use crate::record::{Case, Outcome, Record, put};
 use crate::report::time;
-use crate::{machine, scene, worlds};
+use crate::{machine, roofline, scene, worlds};
 
 /// The numbers of boxes of the small inputs.
 const SMALL: [usize; 8] = [0, 1, 2, 5, 10, 20, 50, 100];
-
-/// Who is asked beside ours where the question is how flat ours is, and not who is faster.
-const WITNESSES: [&str; 4] = ["plain sweep", "packed_spatial_index", "parry", "PhysX ABP"];
 
 /// What to measure: everything, unless parts are named.
 #[derive(Args)]
@@ -64,6 +61,9 @@ pub struct Options {
     /// Seconds after which a contender is stopped and recorded as too slow.
     #[arg(long, default_value_t = 2.0)]
     limit: f64,
+    /// After so many minutes no case is begun; `--resume` goes on from there.
+    #[arg(long)]
+    minutes: Option<f64>,
     /// The file of results; those of other boxes in it are kept. By default it is named for the
     /// processor and the day, in the folder of results.
     #[arg(long)]
@@ -78,62 +78,73 @@ struct Planned {
     boxes: usize,
     /// Whoever's name begins with one of these takes part, and ours; everyone if there are none.
     peers: Vec<String>,
+    rounds: usize,
 }
 
 impl Options {
-    /// The cases, in the order in which they are measured.
+    /// Whether no part is named, which asks for all.
+    fn everything(&self) -> bool {
+        !(self.pairs || self.flat || self.small || self.worlds || self.roofline)
+    }
+
+    /// The cases, in the order in which they are measured: few boxes first, since who is slow
+    /// there need not be tried with many.
     fn plan(&self) -> Result<Vec<Planned>> {
-        let all = !(self.pairs || self.flat || self.small || self.worlds || self.roofline);
+        let all = self.everything();
+        let six = || scene::DEFAULT.map(str::to_owned).to_vec();
         let mut plan = Vec::new();
         if all || self.pairs {
-            let scenes = self.scenes(|| scene::DEFAULT.map(str::to_owned).to_vec());
-            let sizes = self.sizes(&[1_000, 10_000, 100_000, 1_000_000]);
-            self.add(&mut plan, Kind::Pairs, &scenes, &sizes, &self.peers)?;
+            for boxes in self.sizes(&[1_000, 10_000, 100_000, 1_000_000]) {
+                let rounds = if boxes <= 10_000 { 9 } else { 5 };
+                self.add(&mut plan, Kind::Pairs, &self.scenes(six), boxes, &[], rounds)?;
+            }
         }
         if all || self.worlds {
             let motions = self.scenes(|| Motion::ALL.map(|it| it.name().to_owned()).to_vec());
-            let sizes = self.sizes(&[1_000, 10_000, 100_000]);
-            self.add(&mut plan, Kind::Worlds, &motions, &sizes, &self.peers)?;
-            if self.sizes.is_empty() && !self.quick {
-                // Whether the time a body stays flat.
-                self.add(&mut plan, Kind::Worlds, &motions, &[1_000_000], &[OURS.to_owned()])?;
+            for boxes in self.sizes(&[1_000, 10_000, 100_000, 1_000_000]) {
+                // Of a million, whether the time a body stays flat.
+                let peers: &[&str] = if boxes > 100_000 { &[OURS] } else { &[] };
+                self.add(&mut plan, Kind::Worlds, &motions, boxes, peers, 5)?;
             }
         }
         if all || self.flat {
-            let scenes = self.scenes(scene::others);
-            let sizes = self.sizes(&[10_000, 100_000, 1_000_000]);
-            let peers = WITNESSES.map(str::to_owned);
-            let peers = if self.peers.is_empty() { &peers[..] } else { &self.peers };
-            self.add(&mut plan, Kind::Pairs, &scenes, &sizes, peers)?;
+            for boxes in self.sizes(&[10_000, 100_000, 1_000_000]) {
+                // Of a million, one that is seldom slow is enough to agree with.
+                let witnesses = if boxes > 100_000 { &WITNESSES[..1] } else { &WITNESSES };
+                let peers = [&[OURS_ON_TWO], witnesses].concat();
+                self.add(&mut plan, Kind::Pairs, &self.scenes(scene::others), boxes, &peers, 3)?;
+            }
         }
         if all || self.small {
-            let scenes = self.scenes(|| scene::DEFAULT.map(str::to_owned).to_vec());
-            let sizes = if self.sizes.is_empty() { &SMALL[..] } else { &self.sizes };
-            self.add(&mut plan, Kind::Pairs, &scenes, sizes, &["brute force".to_owned()])?;
+            for boxes in if self.sizes.is_empty() { SMALL.to_vec() } else { self.sizes.clone() } {
+                self.add(&mut plan, Kind::Pairs, &self.scenes(six), boxes, &["brute force"], 9)?;
+            }
         }
-        // Small ones first: who is slow there need not be tried with many.
         plan.sort_by_key(|planned| planned.boxes);
         Ok(plan)
     }
 
+    /// Adds a case for each scene in each number of dimensions.
     fn add(
         &self,
         plan: &mut Vec<Planned>,
         kind: Kind,
         scenes: &[String],
-        sizes: &[usize],
-        peers: &[String],
+        boxes: usize,
+        peers: &[&str],
+        rounds: usize,
     ) -> Result<()> {
+        let rounds = self.rounds.unwrap_or(if self.quick { 3 } else { rounds }).max(1);
+        let peers = if self.peers.is_empty() {
+            peers.iter().map(|&name| name.to_owned()).collect()
+        } else {
+            self.peers.clone()
+        };
         for scene in scenes {
             for &dimensions in &self.dimensions {
                 if scene::exists(scene, dimensions)? {
-                    plan.extend(sizes.iter().map(|&boxes| Planned {
-                        kind,
-                        scene: scene.clone(),
-                        dimensions,
-                        boxes,
-                        peers: peers.to_vec(),
-                    }));
+                    let (scene, peers) = (scene.clone(), peers.clone());
+                    plan.push(Planned { kind, scene, dimensions, boxes, peers, rounds });
                 }
             }
         }
@@ -148,17 +159,6 @@ impl Options {
         let most = if self.quick { 10_000 } else { usize::MAX };
         let default = default.iter().copied().filter(|&boxes| boxes <= most);
         if self.sizes.is_empty() { default.collect() } else { self.sizes.clone() }
-    }
-
-    /// Many boxes are measured less often: their times vary less.
-    fn rounds(&self, boxes: usize) -> usize {
-        let default = match boxes {
-            _ if self.quick => 3,
-            0..=10_000 => 9,
-            10_001..=100_000 => 7,
-            _ => 5,
-        };
-        self.rounds.unwrap_or(default).max(1)
     }
 }
 
@@ -194,18 +194,28 @@ pub fn run(options: &Options) -> Result<()> {
         record.machine.copy_bytes_per_second / 1e9,
         record.machine.load.map_or("unknown".into(), |load| load.to_string()),
     );
-    let steps = plan.iter().map(|planned| 1 + options.rounds(planned.boxes) as u64).sum();
+    if options.everything() || options.roofline {
+        let copy_rate = record.machine.copy_bytes_per_second;
+        record.roofline = Some(roofline::measure(copy_rate, options.quick)?);
+        record.write(&path)?;
+    }
+    let steps = plan.iter().map(|planned| 1 + planned.rounds as u64).sum();
     let bar = ProgressBar::new(steps);
     bar.set_style(ProgressStyle::with_template("{elapsed} {wide_bar} {pos}/{len} {msg:60!}")?);
     let mut slow = HashMap::new();
+    let begun = Instant::now();
     for planned in plan {
+        if options.minutes.is_some_and(|most| begun.elapsed().as_secs_f64() > 60.0 * most) {
+            bar.suspend(|| println!("The time is up: --resume goes on from here"));
+            break;
+        }
         let Planned { kind, ref scene, dimensions, boxes, .. } = planned;
         let contest = Contest {
             kind,
             scene,
             dimensions,
             boxes,
-            rounds: options.rounds(boxes),
+            rounds: planned.rounds,
             limit: Duration::from_secs_f64(options.limit),
             bar: &bar,
         };

@@ -30,6 +30,10 @@ pub const OURS: &str = "ours";
 /// The name of ours on two threads.
 pub const OURS_ON_TWO: &str = "ours, 2 threads";
 
+/// Who is asked beside ours where the question is how flat ours is, and not who is faster.
+/// The first is seldom slow.
+pub const WITNESSES: [&str; 3] = ["packed_spatial_index", "parry", "plain sweep"];
+
 /// Finds all pairs, from raw boxes to pairs stored in memory.
 ///
 /// A contender may keep buffers and workspaces between calls, but no knowledge of the boxes:

@@ -224,7 +224,9 @@ fn roofline(roofline: &Roofline) -> String {
             "One thread copies {:.1} GB/s, and the kernel tests at most {} thousand million boxes \
              a second when all it needs is in the nearest cache. The limit of a stage is the time \
              of the bytes that it has to read and write, or of the tests that it has to make, \
-             whichever is longer.",
+             whichever is longer, if each box is copied to one column, moved once by the sort and \
+             once by the sweep, and only the pairs are tested: what is missing to the whole are \
+             further copies, the sort itself, candidates that are no pairs, and waiting.",
             roofline.copy_bytes_per_second / 1e9,
             peaks.join(" and "),
         ),

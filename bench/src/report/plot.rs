@@ -197,7 +197,10 @@ fn draw(path: &Path, plot: &Plot) -> Result<()> {
         .margin(12)
         .x_label_area_size(46)
         .y_label_area_size(70)
-        .build_cartesian_2d((x.0..x.1).log_scale(), (y.0..y.1).log_scale())
+        .build_cartesian_2d(
+            (x.0..x.1).log_scale().with_key_points(ticks(x)),
+            (y.0..y.1).log_scale().with_key_points(ticks(y)),
+        )
         .map_err(failed)?;
     chart
         .configure_mesh()
@@ -254,15 +257,30 @@ fn range(numbers: impl Iterator<Item = f64>) -> (f64, f64) {
     if least > most { (1.0, 10.0) } else { (least / 1.3, most * 1.3) }
 }
 
-/// Numbers with one digit other than zero, and of those only 1, 2 and 5: the others are crowded.
+/// Where an axis has a number: at powers of ten, and between them where these are few.
+fn ticks((from, to): (f64, f64)) -> Vec<f64> {
+    let steps: &[f64] = match f64::log10(to / from) {
+        ..1.5 => &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0],
+        1.5..2.6 => &[1.0, 2.0, 5.0],
+        _ => &[1.0],
+    };
+    let decades = from.log10().floor() as i32..=to.log10().floor() as i32;
+    let all = decades.flat_map(|decade| steps.iter().map(move |step| step * 10f64.powi(decade)));
+    all.filter(|at| (from..=to).contains(at)).collect()
+}
+
 fn label(number: &f64) -> String {
-    let digits = format!("{number:e}");
-    match digits.split('e').next() {
-        Some("1" | "2" | "5") if *number >= 1e6 => format!("{}M", number / 1e6),
-        Some("1" | "2" | "5") if *number >= 1e3 => format!("{}k", number / 1e3),
-        Some("1" | "2" | "5") => format!("{number}"),
-        _ => String::new(),
-    }
+    let (number, unit) = match *number {
+        number if number >= 1e6 => (number / 1e6, "M"),
+        number if number >= 1e3 => (number / 1e3, "k"),
+        number => (number, ""),
+    };
+    // Three digits are enough, and hide what a power of ten is off.
+    let digits = (2 - number.log10().floor() as i32).max(0) as usize;
+    let text = format!("{number:.digits$}");
+    let text =
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    format!("{text}{unit}")
 }
 
 /// Colours that stay apart, also for most who see few of them.

@@ -1,0 +1,115 @@
+//! How close finding all pairs comes to what the machine can do: what it must read, write and test,
+//! at the rates that the machine reaches when it does nothing else.
+//!
+//! The stages are told apart from outside, by runs that end earlier: a run that is stopped at the
+//! first sign of progress has made the plan and filled the bins; one that counts has ordered and
+//! swept as well; one that stores the pairs has done it all.
+
+use std::collections::BTreeMap;
+use std::hint::black_box;
+use std::ops::ControlFlow;
+
+use anyhow::{Context, Result};
+use sweep_and_prune::{Aabb, PairFinder};
+use sweep_and_prune_scenes::{Random, Scene};
+
+use crate::machine;
+use crate::record::{Roofline, Stage, median};
+use crate::scene::SEED;
+
+/// The scene and its sizes.
+const SCENE: Scene = Scene::Uniform;
+const SIZES: [usize; 3] = [10_000, 100_000, 1_000_000];
+
+/// What the finder moves for a box beside its coordinates: its index and a word of marks.
+const TAGS: usize = 8;
+
+/// Measures everything, in half a minute at most.
+pub fn measure(copy_bytes_per_second: f64, quick: bool) -> Result<Roofline> {
+    let rates = [(2, test_rate::<2>()?), (3, test_rate::<3>()?)];
+    let mut stages = Vec::new();
+    for boxes in SIZES.into_iter().filter(|&boxes| !quick || boxes <= 10_000) {
+        stages.extend(of::<2>(boxes, copy_bytes_per_second, rates[0].1)?);
+        stages.extend(of::<3>(boxes, copy_bytes_per_second, rates[1].1)?);
+    }
+    let kernel_tests_per_second: BTreeMap<_, _> =
+        rates.into_iter().map(|(dimensions, rate)| (dimensions.to_string(), rate)).collect();
+    Ok(Roofline { copy_bytes_per_second, kernel_tests_per_second, stages })
+}
+
+/// Boxes tested a second at the best: a few boxes, each against each, of which none overlap. So
+/// few are neither binned nor sorted, and all of them fit in the nearest cache.
+fn test_rate<const D: usize>() -> Result<f64> {
+    const CALLS: usize = 200;
+    let mut finder = PairFinder::<D>::new();
+    let mut best = 0.0f64;
+    for boxes in [64, 96, 128].repeat(20) {
+        let corner = |at: usize| [2.0 * at as f32; D];
+        let apart = |at: usize| Aabb::new(corner(at), corner(at).map(|at| at + 1.0));
+        let apart: Vec<_> = (0..boxes).map(apart).collect();
+        let (result, took) = machine::clock(|| {
+            (0..CALLS).try_for_each(|_| finder.count(black_box(&apart)).map(|_| ()))
+        });
+        result?;
+        let tests = CALLS * boxes * (boxes - 1) / 2;
+        best = best.max(tests as f64 / took.as_secs_f64());
+    }
+    Ok(best)
+}
+
+/// The stages on so many boxes.
+fn of<const D: usize>(n: usize, copy_rate: f64, test_rate: f64) -> Result<Vec<Stage>> {
+    let boxes = SCENE.boxes::<D, f32>(n, SEED).context("in two and three dimensions")?;
+    let mut shuffled = boxes.clone();
+    Random::new(SEED).shuffle(&mut shuffled);
+    let mut finder = PairFinder::<D>::new();
+    let found = finder.find(&boxes)?;
+    let (pairs, output) = (found.len(), size_of_val(found) as f64);
+
+    let rounds = (2_000_000 / n).clamp(7, 51);
+    let mut rounds_ns = [(); 3].map(|()| Vec::with_capacity(rounds));
+    for _ in 0..rounds {
+        for (until, rounds_ns) in rounds_ns.iter_mut().enumerate() {
+            // Nothing that it may have learnt from the last call helps.
+            finder.find(&shuffled)?;
+            let (result, took) = machine::clock(|| run(&mut finder, black_box(&boxes), until));
+            result?;
+            rounds_ns.push(took.as_nanos() as f64);
+        }
+    }
+    let [binned, counted, stored] = rounds_ns.map(|rounds_ns| median(&rounds_ns));
+
+    let read = (n * size_of::<Aabb<D>>()) as f64;
+    let record = (n * (size_of::<Aabb<D>>() + TAGS)) as f64;
+    let stage = |stage: &str, ns: f64, bytes: f64, tests: usize| {
+        let ns = ns.max(1.0);
+        let limit_ns = (bytes / copy_rate).max(tests as f64 / test_rate) * 1e9;
+        Stage {
+            scene: SCENE.name().into(),
+            dimensions: D,
+            boxes: n,
+            stage: stage.into(),
+            ns,
+            bytes,
+            tests: tests as f64,
+            limit_ns,
+            share: limit_ns / ns,
+        }
+    };
+    Ok(vec![
+        stage("plan and bins", binned, read + record, 0),
+        stage("order and sweep", counted - binned, 3.0 * record, pairs),
+        stage("output", stored - counted, output, 0),
+        stage("all", stored, read + 4.0 * record + output, pairs),
+    ])
+}
+
+/// One call that ends after the bins, after the sweep, or when the pairs are stored.
+fn run<const D: usize>(finder: &mut PairFinder<D>, boxes: &[Aabb<D>], until: usize) -> Result<()> {
+    match until {
+        0 => black_box(finder.find_watched(boxes, &|_| ControlFlow::Break(()))?.map(<[_]>::len)),
+        1 => black_box(Some(finder.count(boxes)? as usize)),
+        _ => black_box(Some(finder.find(boxes)?.len())),
+    };
+    Ok(())
+}
