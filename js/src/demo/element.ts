@@ -531,6 +531,7 @@ export class SapDemoElement extends LitElement {
     const hasCounters = options?.hasCounters ?? !this.hasAttribute("no-counters");
     return html`
       <slot name="heading">${options?.heading ? html`<p class="heading">${options.heading}</p>` : nothing}</slot>
+      <div class="frame">
       <div class="picture" part="picture" role="application" tabindex="0" aria-label=${this.#label} aria-describedby="keys" @keydown=${this.#onKey}>
         <canvas></canvas>
         ${this.#wrong ? html`<p class="wrong" role="alert">${this.#wrong}</p>` : nothing}
@@ -542,6 +543,7 @@ export class SapDemoElement extends LitElement {
       <p class="live hidden" role="status" aria-live="polite"></p>
       ${hasCounters ? counters({ tests, "axis overlaps": axisOverlaps, pairs, comparisons, swaps }) : nothing}
       ${hasControls ? this.#controls() : nothing}
+      </div>
       <slot name="caption"></slot>
     `;
   }

@@ -67,8 +67,8 @@ export class Playback {
 
   /** Where the sweep line is, if it is anywhere; between two stops while it plays. */
   lineAt(isPlaying: boolean): number | undefined {
-    const { state, event, position } = this.#timeline;
-    if (position === 0 || this.#timeline.isDetected || !state.line) return undefined;
+    const { state, event } = this.#timeline;
+    if (this.#timeline.isDetected || !state.line) return undefined;
     const { from, to, ms } = this.#line();
     const isMoving = isPlaying && ms > 0 && isOfLine(event);
     return from + (to - from) * (isMoving ? Math.min(1, this.#spent / ms) : 0);

@@ -224,4 +224,28 @@ export const styles: CSSResult = css`
     font: inherit;
     cursor: pointer;
   }
+  .frame {
+    container-type: inline-size;
+  }
+  @container (max-width: 22rem) {
+    .counters {
+      grid-template-columns: repeat(5, auto);
+      justify-content: space-between;
+    }
+    .counters dt {
+      font-size: 0.5625rem;
+    }
+    .controls {
+      gap: 2px;
+    }
+    .controls select {
+      width: 52px;
+      font-size: 0.8125rem;
+    }
+  }
+  @container (max-width: 17rem) {
+    .controls .secondary {
+      display: none;
+    }
+  }
 `;

@@ -40,12 +40,13 @@ export function controls(demo: Controls): TemplateResult {
     <select aria-label="Speed" ?disabled=${!isReady} @change=${(event: Event) => demo.setSpeed(Number((event.target as HTMLSelectElement).value))}>
       ${[...new Set([...speeds, demo.speed])].sort((a, b) => a - b).map((speed) => html`<option value=${speed} ?selected=${speed === demo.speed}>${speed}×</option>`)}
     </select>
-    ${button("Reset", icons.reset, isReady, () => demo.reset())} ${button("Share or embed", icons.share, isReady, () => demo.share())}
+    ${button("Reset", icons.reset, isReady, () => demo.reset())}
+    ${button("Share or embed", icons.share, isReady, () => demo.share(), "secondary")}
   </div>`;
 }
 
-function button(label: string, icon: TemplateResult, enabled: boolean, click: () => void): TemplateResult {
-  return html`<button type="button" aria-label=${label} title=${label} ?disabled=${!enabled} @click=${click}>${icon}</button>`;
+function button(label: string, icon: TemplateResult, enabled: boolean, click: () => void, kind = ""): TemplateResult {
+  return html`<button type="button" class=${kind} aria-label=${label} title=${label} ?disabled=${!enabled} @click=${click}>${icon}</button>`;
 }
 
 /** Numbers with their names; the names are short enough for a phone. */

@@ -71,9 +71,9 @@ export class Timeline {
     return this.#detection!;
   }
 
-  /** How many events of the detection have been played. */
+  /** How many events of the detection have been played; the first is that it begins. */
   get position(): number {
-    return this.#stop < 0 ? 0 : this.#stops[this.#stop]!;
+    return this.#stop < 0 ? 1 : this.#stops[this.#stop]!;
   }
 
   /** The event at work: the one at which the detection has been stopped. */
