@@ -1,7 +1,7 @@
 // The packed package, installed as users install it, in the tools that they use, with no
 // configuration; what comes out runs in Chromium.
 import assert from "node:assert/strict";
-import { execFileSync, spawnSync } from "node:child_process";
+import { execFileSync } from "node:child_process";
 import { once } from "node:events";
 import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
@@ -12,10 +12,11 @@ import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { nodeResolve } from "@rollup/plugin-node-resolve";
 import * as esbuild from "esbuild";
-import { chromium } from "playwright-core";
 import { rollup } from "rollup";
 import * as vite from "vite";
 import webpack from "webpack";
+import { resultOf, startBrowser } from "./support/browser.js";
+import { installInto } from "./support/packed.js";
 
 const here = fileURLToPath(new URL("..", import.meta.url));
 /** A project with nothing in it but the package. */
@@ -26,18 +27,10 @@ const installed = join(project, "node_modules/sweep-and-prune");
 let browser;
 
 before(async () => {
-  const packed = execFileSync("npm", ["pack", "--ignore-scripts", "--silent", "--pack-destination", project], {
-    cwd: here,
-    encoding: "utf8",
-  });
-  mkdirSync(installed, { recursive: true });
-  execFileSync("tar", ["-xzf", join(project, packed.trim()), "-C", installed, "--strip-components=1"]);
+  installInto(project);
   cpSync(join(here, "test/support/consumer"), project, { recursive: true });
   writeFileSync(join(project, "package.json"), '{ "private": true, "type": "module" }');
-  browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--no-sandbox", "--disable-background-networking", "--disable-component-update"],
-  });
+  browser = await startBrowser();
 });
 
 after(async () => {
@@ -47,28 +40,6 @@ after(async () => {
 
 const expected = { simd: true, pairs: [0, 2], begun: 2, swept: [0, 1], inWorker: 45 };
 const expectedInline = { simd: true, pairs: [0, 2], begun: 2 };
-
-/**
- * What a page leaves in `result`.
- *
- * @param {string} address
- */
-async function resultOf(address) {
-  const page = await browser.newPage();
-  /** @type {string[]} */
-  const errors = [];
-  page.on("pageerror", (error) => errors.push(String(error)));
-  page.on("requestfailed", (request) => errors.push(`cannot load ${request.url()}`));
-  try {
-    await page.goto(address);
-    await page.waitForFunction("globalThis.result !== undefined", undefined, { timeout: 60_000 });
-    return await page.evaluate("globalThis.result");
-  } catch (error) {
-    throw new Error(`${errors.join("\n")}\n${error}`);
-  } finally {
-    await page.close();
-  }
-}
 
 const types = { ".html": "text/html", ".js": "text/javascript", ".wasm": "application/wasm" };
 
@@ -91,7 +62,7 @@ async function resultOfFolder(folder) {
   await once(server, "listening");
   const { port } = /** @type {import("node:net").AddressInfo} */ (server.address());
   try {
-    return await resultOf(`http://127.0.0.1:${port}/`);
+    return await resultOf(browser, `http://127.0.0.1:${port}/`);
   } finally {
     server.close();
   }
@@ -142,7 +113,7 @@ test("Vite, in development", async () => {
     await server.listen();
     const address = server.resolvedUrls?.local[0];
     assert.ok(address);
-    assert.deepEqual(await resultOf(address), expected);
+    assert.deepEqual(await resultOf(browser, address), expected);
   } finally {
     await server.close();
   }
@@ -203,21 +174,6 @@ test("Node, and importing it on a server does nothing", () => {
     console.log(countPairs([0, 1, 1, 2], { dimensions: 1 }));`;
   assert.equal(run(use), "1");
 });
-
-for (const [runtime, ...args] of [["deno", "run", "--allow-read", "--node-modules-dir=manual"], ["bun"]]) {
-  const isThere = spawnSync(runtime ?? "", ["--version"]).status === 0;
-  test(`${runtime}`, { skip: !isThere && "not installed" }, () => {
-    writeFileSync(
-      join(project, "use.js"),
-      `import { countPairs, init } from "sweep-and-prune";
-      import { BroadPhase, init as initWorlds } from "sweep-and-prune/broad-phase";
-      await Promise.all([init(), initWorlds()]);
-      console.log(countPairs([0, 1, 1, 2], { dimensions: 1 }), new BroadPhase({ dimensions: 2 }).size);`,
-    );
-    const printed = execFileSync(runtime ?? "", [...args, "use.js"], { cwd: project, encoding: "utf8" });
-    assert.equal(printed.trim(), "1 0");
-  });
-}
 
 test("TypeScript, as bundlers and as Node resolve", () => {
   const typescript = join(createRequire(import.meta.url).resolve("typescript/package.json"), "..", "bin/tsc");

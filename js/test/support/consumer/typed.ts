@@ -13,7 +13,8 @@ const player = new Player(runner);
 // @ts-expect-error there are no four dimensions
 findPairs([], { dimensions: 4 });
 const three: Uint32Array = findPairs([{ min: { x: 0, y: 0, z: 0 }, max: { x: 1, y: 1, z: 1 } }]);
-const rbush: Uint32Array = findPairs([{ minX: 0, minY: 0, maxX: 1, maxY: 1, name: "a" }]);
+const items = [{ minX: 0, minY: 0, maxX: 1, maxY: 1, name: "a" }];
+const rbush: Uint32Array = findPairs(items);
 // @ts-expect-error numbers do not say how many dimensions they have
 findPairs([0, 1]);
 console.log(started, three, rbush, pairs, id, begun, player, InvalidBoxError);

@@ -1,0 +1,33 @@
+// Headless Chromium, and what a page leaves in `globalThis.result`.
+import { chromium } from "playwright-core";
+
+/** Starts Chromium. */
+export function startBrowser() {
+  return chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: ["--no-sandbox", "--disable-background-networking", "--disable-component-update"],
+  });
+}
+
+/**
+ * What a page leaves in `result`.
+ *
+ * @param {import("playwright-core").Browser} browser
+ * @param {string} address
+ */
+export async function resultOf(browser, address) {
+  const page = await browser.newPage();
+  /** @type {string[]} */
+  const errors = [];
+  page.on("pageerror", (error) => errors.push(String(error)));
+  page.on("requestfailed", (request) => errors.push(`cannot load ${request.url()}`));
+  try {
+    await page.goto(address);
+    await page.waitForFunction("globalThis.result !== undefined", undefined, { timeout: 60_000 });
+    return await page.evaluate("globalThis.result");
+  } catch (error) {
+    throw new Error(`${errors.join("\n")}\n${error}`);
+  } finally {
+    await page.close();
+  }
+}
