@@ -1,19 +1,24 @@
 import { SimulationClient } from "../simulation/client.ts";
-import { AXIS_NAMES, type Begun, type Choices, type Frame, type Method } from "../simulation/messages.ts";
+import { AXIS_NAMES, type Begun, type Choices, type Frame, type Laws, type Method } from "../simulation/messages.ts";
+import { drawStages } from "../plot/stage-plot.ts";
 import { onThemeChange, readTheme } from "../view/theme.ts";
 import type { View } from "../view/view.ts";
 import { onAwake, whenNear } from "./awake.ts";
 import { COUNTERS, formatCount, type Shown } from "./counters.ts";
+import { bindSlider } from "./slider.ts";
 import { LARGEST_SEED, RANGES, readSettings, type Settings, setupOf, writeSettings } from "./settings.ts";
 
-const FRAME_MS = 1000 / 60;
 /** Numbers that change more often than this cannot be read. */
 const COUNTER_MS = 120;
-/** A slider that is being dragged begins a new world at most this often. */
-const DRAG_MS = 100;
 const NOT_COUNTED = "not counted: this algorithm does not do it or does not tell";
 /** The time of drawing is the mean of this many pictures. */
 const WINDOW = 30;
+/** The plot of the stages shows so many of its moments, one each time the counters change. */
+const MOMENTS = 80;
+/** The stages of a picture in their order: the names of their custom properties too. */
+const STAGES = ["broad-phase", "narrow-phase", "solving", "drawing"] as const;
+
+type NumberKey = "bodies" | "size" | "spread" | keyof Laws;
 
 /**
  * `<ball-lab dimensions="2 or 3" bodies="200" most="10000">`: bodies that fall, the algorithm that
@@ -35,6 +40,8 @@ export class BallLab extends HTMLElement {
   #drawn = false;
   #countersAt = -Infinity;
   #drawingTimes: number[] = [];
+  /** Milliseconds by stage, at the last moments. */
+  #stages: number[][] = [];
   #left = new AbortController();
 
   connectedCallback(): void {
@@ -100,14 +107,19 @@ export class BallLab extends HTMLElement {
       size: 100,
       spread: Number(this.getAttribute("spread") ?? 1),
       seed: 1,
+      gravity: 9.81,
+      substeps: this.#dimensions === 2 ? 8 : 4,
     };
     this.#settings = readSettings(this.id, this.#defaults, this.#mostBodies);
     this.#bindChoice("algorithm", choices.algorithms);
     this.#bindChoice("sort", choices.sorts);
     this.#bindChoice("axis", [...choices.axes, ...AXIS_NAMES.slice(0, this.#dimensions)]);
-    this.#bindSlider("bodies", RANGES.bodies.filter((n) => n <= this.#mostBodies), formatCount);
-    this.#bindSlider("size", RANGES.size, (size) => `${size}%`);
-    this.#bindSlider("spread", RANGES.spread, (spread) => `${spread} : 1`);
+    this.#bindSize("bodies", RANGES.bodies.filter((n) => n <= this.#mostBodies), formatCount);
+    this.#bindSize("size", RANGES.size, (size) => `${size}%`);
+    this.#bindSize("spread", RANGES.spread, (spread) => `${spread} : 1`);
+    const setLaws = (): void => this.#client?.setLaws(this.#laws());
+    this.#bindSlider("gravity", RANGES.gravity, (gravity) => `${gravity} m/s²`, setLaws);
+    this.#bindSlider("substeps", RANGES.substeps, String, setLaws);
     this.#bindSeed();
     this.#bindButtons();
     for (const control of this.querySelectorAll<HTMLInputElement>(":disabled")) control.disabled = false;
@@ -128,27 +140,23 @@ export class BallLab extends HTMLElement {
     });
   }
 
-  #bindSlider(key: "bodies" | "size" | "spread", values: readonly number[], format: (value: number) => string): void {
-    const slider = this.#part<HTMLInputElement>(key);
-    const output = this.#part(`${key}-value`);
-    const show = (): void => {
-      const text = format(this.#settings[key]);
-      output.textContent = text;
-      slider.setAttribute("aria-valuetext", text);
-    };
-    slider.max = String(values.length - 1);
-    slider.value = String(nearest(values, this.#settings[key]));
-    show();
-    let waiting: ReturnType<typeof setTimeout> | undefined;
-    slider.addEventListener("input", () => {
-      this.#settings = { ...this.#settings, [key]: values[slider.valueAsNumber] };
-      show();
-      waiting ??= setTimeout(() => {
-        waiting = undefined;
-        this.#begin();
-      }, DRAG_MS);
+  /** A slider that begins a new world. */
+  #bindSize(key: "bodies" | "size" | "spread", values: readonly number[], format: (value: number) => string): void {
+    this.#bindSlider(key, values, format, () => this.#begin());
+  }
+
+  #bindSlider(key: NumberKey, values: readonly number[], format: (value: number) => string, changed: () => void): void {
+    bindSlider({
+      slider: this.#part<HTMLInputElement>(key),
+      output: this.#part(`${key}-value`),
+      values,
+      value: this.#settings[key],
+      format,
+      changed: (value) => {
+        this.#change({ [key]: value });
+        changed();
+      },
     });
-    slider.addEventListener("change", () => this.#change({}));
   }
 
   #bindSeed(): void {
@@ -184,8 +192,14 @@ export class BallLab extends HTMLElement {
   }
 
   #begin(): void {
-    this.#client?.begin(setupOf(this.#settings, this.#dimensions), this.#settings);
+    this.#client?.begin(setupOf(this.#settings, this.#dimensions), this.#laws(), this.#settings);
+    this.#stages = [];
     this.#describe();
+  }
+
+  #laws(): Laws {
+    const { gravity, substeps } = this.#settings;
+    return { gravity, substeps };
   }
 
   #updateRunning(): void {
@@ -261,7 +275,7 @@ export class BallLab extends HTMLElement {
 
   #showCounters({ step, pace, hash, measurement }: Frame): void {
     this.dataset["step"] = String(step);
-    this.dataset["hash"] = hash;
+    if (hash) this.dataset["hash"] = hash;
     const often = this.#wanted && pace > 0 ? `, ${pace.toFixed(pace < 10 ? 1 : 0)} a second` : "";
     this.#part("moment").textContent = `Step ${formatCount(step)}${often}`;
     const drawing = this.#drawingTimes.reduce((sum, time) => sum + time, 0) / this.#drawingTimes.length;
@@ -271,19 +285,22 @@ export class BallLab extends HTMLElement {
       if (cell.textContent !== (text ?? "–")) cell.textContent = text ?? "–";
       cell.title = text !== null ? "" : measurement.pairs === null ? "no step yet" : NOT_COUNTED;
     }
-    this.#showBudget({ ...measurement, drawing });
+    this.#showStages({ ...measurement, drawing });
   }
 
-  /** The stages as shares of a frame, or of all the frames that they take. */
-  #showBudget({ passes, broadPhase, narrowPhase, drawing }: Shown): void {
-    const stages = { "broad-phase": broadPhase ?? 0, "narrow-phase": narrowPhase ?? 0, drawing };
-    const frames = (stages["broad-phase"] + stages["narrow-phase"] + drawing) / FRAME_MS;
-    for (const [stage, time] of Object.entries(stages)) {
-      const share = time / FRAME_MS / Math.max(frames, 1);
-      this.#find(`[data-stage="${stage}"]`).style.width = `${100 * share}%`;
-    }
-    this.#part("budget").textContent = frames <= 1 ? "of one frame, 16.7 ms" : `${frames.toFixed(1)} frames of 16.7 ms`;
-    this.#part("time-title").textContent = `Time of one step${passes === null ? "" : `, ${passes} passes`}`;
+  /** The stages upon each other, moment by moment. */
+  #showStages({ broadPhase, narrowPhase, solving, drawing }: Shown): void {
+    if (broadPhase !== null) this.#stages.push([broadPhase, narrowPhase ?? 0, solving ?? 0, drawing]);
+    if (this.#stages.length > MOMENTS) this.#stages.shift();
+    const style = getComputedStyle(this);
+    const colour = (name: string): string => style.getPropertyValue(`--${name}`).trim();
+    drawStages(this.#part<HTMLCanvasElement>("stages"), {
+      moments: this.#stages,
+      room: MOMENTS,
+      colours: STAGES.map((stage) => getComputedStyle(this.#find(`[data-counter="${stage}"] dt`), "::before").backgroundColor),
+      ink: colour("ink"),
+      muted: colour("muted"),
+    });
   }
 
   /** Tells in words what is going on: seldom enough to be read out. */
@@ -328,9 +345,4 @@ export class BallLab extends HTMLElement {
     if (!found) throw new Error(`<ball-lab> has no ${selector}`);
     return found;
   }
-}
-
-/** The position of the value nearest to `target`. */
-function nearest(values: readonly number[], target: number): number {
-  return values.reduce((best, value, i) => (Math.abs(value - target) < Math.abs((values[best] ?? 0) - target) ? i : best), 0);
 }

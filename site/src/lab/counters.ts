@@ -33,7 +33,7 @@ export const COUNTERS: readonly Counter[] = [
   {
     key: "tests",
     label: "Tests",
-    meaning: "pairs of boxes handed to the box test in one pass of the broad phase",
+    meaning: "pairs of boxes handed to the box test by the broad phase",
     group: "work",
     read: (m) => count(m.tests),
   },
@@ -75,16 +75,23 @@ export const COUNTERS: readonly Counter[] = [
   {
     key: "broad-phase",
     label: "Broad phase",
-    meaning: "finding the pairs whose boxes overlap, in all passes of a step; mean of the last steps",
+    meaning: "from the bodies to the pairs whose boxes overlap; mean of the last steps",
     group: "time",
     read: (m) => time(m.broadPhase),
   },
   {
     key: "narrow-phase",
     label: "Narrow phase",
-    meaning: "testing those pairs as round bodies and bouncing them, in all passes of a step; mean of the last steps",
+    meaning: "testing those pairs as round bodies, in all substeps; mean of the last steps",
     group: "time",
     read: (m) => time(m.narrowPhase),
+  },
+  {
+    key: "solving",
+    label: "Solving",
+    meaning: "moving the bodies, bouncing and parting those that touch, in all substeps; mean of the last steps",
+    group: "time",
+    read: (m) => time(m.solving),
   },
   {
     key: "drawing",

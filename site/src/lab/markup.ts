@@ -53,12 +53,9 @@ function labMarkup({ id, dimensions, bodies }: LabOptions): string {
           ${choice(id, "axis", "Sweep axis")}
         </div>
         <div class="lab-counters">
-          ${counterList("work", "Work of one pass", bodies)}
+          ${counterList("work", "Work of one step", bodies)}
           ${counterList("time", "Time of one step", bodies)}
-          <div class="budget" aria-hidden="true">
-            <div class="budget-track"><i data-stage="broad-phase"></i><i data-stage="narrow-phase"></i><i data-stage="drawing"></i></div>
-            <p data-part="budget">of one frame, 16.7 ms</p>
-          </div>
+          <canvas class="lab-stages" data-part="stages" role="img" aria-label="The time of the last pictures, stage upon stage; the numbers are beside it"></canvas>
         </div>
       </div>
 
@@ -70,6 +67,8 @@ function labMarkup({ id, dimensions, bodies }: LabOptions): string {
           <label for="${id}-seed">Seed</label>
           <input id="${id}-seed" data-part="seed" type="number" inputmode="numeric" min="0" max="4294967295" step="1" value="1" autocomplete="off" disabled />
         </div>
+        ${slider(id, "gravity", "Gravity", "9.81 m/s²")}
+        ${slider(id, "substeps", "Substeps", dimensions === 2 ? "8" : "4")}
         ${dimensions === 2 ? linesSwitch() : ""}
       </div>
     </div>`;

@@ -1,7 +1,7 @@
-import type { Method, Setup } from "../simulation/messages.ts";
+import type { Laws, Method, Setup } from "../simulation/messages.ts";
 
 /** All that a visitor can choose in a laboratory, and all that its address keeps. */
-export interface Settings extends Method {
+export interface Settings extends Method, Laws {
   readonly bodies: number;
   /** Per cent of the radius at which the bodies fill a fixed share of the box. */
   readonly size: number;
@@ -12,9 +12,11 @@ export interface Settings extends Method {
 
 /** The numbers that the sliders offer. */
 export const RANGES = {
-  bodies: [1, 2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100, 150, 200, 300, 500, 700, 1000, 1500, 2000, 3000, 5000, 7000, 10000, 15000, 20000, 30000],
+  bodies: [1, 2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100, 150, 200, 300, 500, 700, 1000, 1500, 2000, 3000, 5000, 7000, 10000, 15000, 20000, 30000, 50000, 70000, 100000],
   size: [40, 50, 60, 70, 80, 90, 100, 110, 120, 130, 140],
   spread: [1, 1.5, 2, 3, 4, 5, 6, 8, 10, 15, 20],
+  gravity: [-9.81, 0, 1.62, 3.7, 9.81, 20, 50],
+  substeps: [1, 2, 3, 4, 6, 8, 12, 16],
 } as const;
 
 export const LARGEST_SEED = 2 ** 32 - 1;
@@ -33,7 +35,7 @@ export function setupOf({ bodies, size, spread, seed }: Settings, dimensions: 2 
 export function readSettings(prefix: string, defaults: Settings, mostBodies: number): Settings {
   const query = new URLSearchParams(location.search);
   const text = (key: keyof Method): string => query.get(`${prefix}.${key}`) ?? defaults[key];
-  const number = (key: "bodies" | "size" | "spread" | "seed", least: number, most: number): number => {
+  const number = (key: "bodies" | "size" | "spread" | "seed" | keyof Laws, least: number, most: number): number => {
     const given = Number.parseFloat(query.get(`${prefix}.${key}`) ?? "");
     return given >= least && given <= most ? given : defaults[key];
   };
@@ -45,6 +47,8 @@ export function readSettings(prefix: string, defaults: Settings, mostBodies: num
     size: number("size", 10, 200),
     spread: number("spread", 1, 20),
     seed: Math.round(number("seed", 0, LARGEST_SEED)),
+    gravity: number("gravity", -100, 100),
+    substeps: Math.round(number("substeps", 1, 32)),
   };
 }
 

@@ -1,4 +1,4 @@
-import type { Begun, Choices, Frame, FromSimulation, Method, Setup, ToSimulation } from "./messages.ts";
+import type { Begun, Choices, Frame, FromSimulation, Laws, Method, Setup, ToSimulation } from "./messages.ts";
 
 /** What a simulation tells the page. */
 export interface Listener {
@@ -24,9 +24,14 @@ export class SimulationClient {
   }
 
   /** Drops the world there is, if any, and begins another. */
-  begin(setup: Setup, method: Method): void {
+  begin(setup: Setup, laws: Laws, method: Method): void {
     this.#shown = undefined;
-    this.#send({ type: "begin", run: ++this.#run, setup, method });
+    this.#send({ type: "begin", run: ++this.#run, setup, laws, method });
+  }
+
+  /** Goes on with the same world under other laws. */
+  setLaws(laws: Laws): void {
+    this.#send({ type: "laws", laws });
   }
 
   /** Goes on with the same world by another algorithm. */

@@ -29,28 +29,38 @@ export interface Setup {
   readonly seed: number;
 }
 
+/** The laws, which can change while a world goes on. */
+export interface Laws {
+  /** Downwards, in units/s². */
+  readonly gravity: number;
+  /** Equal parts of a step. */
+  readonly substeps: number;
+}
+
 /**
  * The counters of one step. `null` is not counted: the algorithm does not do this, or does not
  * tell; all but `bodies` are `null` before it has taken a step.
  */
 export interface Measurement {
   readonly bodies: number;
-  /** How often the broad phase ran in the step. */
-  readonly passes: number | null;
-  /** Counts of the last of these passes. */
+  /** Counts of the broad phase at the beginning of the step. */
   readonly tests: number | null;
   readonly axisOverlaps: number | null;
   readonly pairs: number | null;
   readonly comparisons: number | null;
   readonly swaps: number | null;
-  /** Milliseconds of all passes of a step, the mean of the last steps. */
+  /** Milliseconds of a step, the mean of the last steps: from bodies to pairs, */
   readonly broadPhase: number | null;
+  /** from pairs to those that touch, */
   readonly narrowPhase: number | null;
+  /** and moving and parting them. */
+  readonly solving: number | null;
 }
 
 export type ToSimulation =
-  | { readonly type: "begin"; readonly run: number; readonly setup: Setup; readonly method: Method }
+  | { readonly type: "begin"; readonly run: number; readonly setup: Setup; readonly laws: Laws; readonly method: Method }
   | { readonly type: "method"; readonly method: Method }
+  | { readonly type: "laws"; readonly laws: Laws }
   | { readonly type: "pace"; readonly running: boolean }
   | { readonly type: "step" }
   /** Whether frames carry the pairs. */
@@ -77,7 +87,7 @@ export interface Frame {
   readonly running: boolean;
   /** Steps a second, of late; 0 while that is not known. */
   readonly pace: number;
-  /** 16 hexadecimal digits of all positions and velocities. */
+  /** 16 hexadecimal digits of all positions and velocities; empty while steps follow by themselves. */
   readonly hash: string;
   readonly positions: Float32Array;
   readonly pairs: Uint32Array;

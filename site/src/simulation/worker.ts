@@ -4,7 +4,7 @@
 import { type BroadPhaseOptions, Simulation, type StepReport } from "../../../simulation/wasm/simulation.js";
 import scalarWasm from "../generated/simulation.wasm?url";
 import simdWasm from "../generated/simulation.simd.wasm?url";
-import { AXIS_NAMES, type FromSimulation, type Measurement, type Method, type Setup, type ToSimulation } from "./messages.ts";
+import { AXIS_NAMES, type FromSimulation, type Laws, type Measurement, type Method, type Setup, type ToSimulation } from "./messages.ts";
 import { hasSimd } from "./simd.ts";
 
 const STEP_MS = 1000 / 60;
@@ -34,7 +34,7 @@ let timer: ReturnType<typeof setTimeout> | undefined;
 const send = (message: FromSimulation, transfer: Transferable[] = []): void =>
   self.postMessage(message, { transfer });
 
-function begin(run: number, setup: Setup, method: Method): void {
+function begin(run: number, setup: Setup, { gravity, substeps }: Laws, method: Method): void {
   world?.simulation.free();
   const { dimensions, bodies, radius, spread, seed } = setup;
   const simulation = new Simulation({
@@ -44,6 +44,8 @@ function begin(run: number, setup: Setup, method: Method): void {
     size: radius,
     spread,
     seed,
+    gravity,
+    substeps,
     broadPhase: broadPhaseOf(method),
   });
   const buffers = Array.from({ length: BUFFERS }, () => new Float32Array(simulation.positions.length));
@@ -82,7 +84,7 @@ function show(world: World): void {
       step: simulation.steps,
       running,
       pace: paceOf(world.taken),
-      hash: simulation.hash(),
+      hash: running ? "" : simulation.hash(),
       positions,
       pairs,
       measurement: measure(world),
@@ -109,7 +111,6 @@ function measure({ simulation, reports }: World): Measurement {
     latest ? reports.reduce((sum, report) => sum + time(report), 0) / reports.length : null;
   return {
     bodies: simulation.bodies,
-    passes: latest?.broadPhases ?? null,
     tests: latest?.tests ?? null,
     axisOverlaps: latest?.axisOverlaps ?? null,
     pairs: latest?.pairs ?? null,
@@ -117,6 +118,7 @@ function measure({ simulation, reports }: World): Measurement {
     swaps: latest?.swaps ?? null,
     broadPhase: mean((report) => report.broadPhaseMs),
     narrowPhase: mean((report) => report.narrowPhaseMs),
+    solving: mean((report) => report.totalMs - report.broadPhaseMs - report.narrowPhaseMs),
   };
 }
 
@@ -147,7 +149,7 @@ function setRunning(on: boolean): void {
 function receive(message: ToSimulation): void {
   switch (message.type) {
     case "begin":
-      begin(message.run, message.setup, message.method);
+      begin(message.run, message.setup, message.laws, message.method);
       break;
     case "method":
       if (world) {
@@ -155,6 +157,9 @@ function receive(message: ToSimulation): void {
         world.reports.splice(0);
         showAgain(world);
       }
+      break;
+    case "laws":
+      if (world) Object.assign(world.simulation, message.laws);
       break;
     case "pace":
       setRunning(message.running);
