@@ -215,7 +215,7 @@ test("keys alone: step, back, play, pause, and a ball moved", async ({ page }) =
   expect((await stateOf(moving)).tick).toBe(tick);
 });
 
-test("a ball is dragged by a mouse, and by a finger that does not scroll", async ({ page }) => {
+test("a ball is dragged by a mouse, and goes no further than the wall", async ({ page }) => {
   const demo = await open(page, { balls: "[[150,250,50],[300,150,55]]", static: "", draggable: "", decorations: "checks" });
   const told = await demo.evaluateHandle((element: SapDemo) => {
     const balls: number[] = [];
@@ -235,6 +235,30 @@ test("a ball is dragged by a mouse, and by a finger that does not scroll", async
   expect(await told.evaluate((balls) => [...new Set(balls)])).toEqual([0]);
   await demo.evaluate((element: SapDemo) => element.seek(0));
   expect((await demo.evaluate((element: SapDemo) => element.balls[0]!))[0], "a drag can be undone").toBe(150);
+});
+
+test("a finger drags a ball without scrolling, and scrolls where there is none", async ({ browser, baseURL }) => {
+  const context = await browser.newContext({ baseURL: baseURL!, hasTouch: true, viewport: { width: 390, height: 700 } });
+  const page = await context.newPage();
+  const demo = await open(page, { balls: "[[300,200,60]]", static: "", draggable: "" });
+  await page.evaluate(() => (document.body.style.minHeight = "3000px"));
+  const box = (await demo.locator(".picture").boundingBox())!;
+  const client = await context.newCDPSession(page);
+  const swipe = async (x: number, y: number, dy: number): Promise<void> => {
+    const at = (y: number): { touchPoints: { x: number; y: number }[] } => ({ touchPoints: [{ x, y }] });
+    await client.send("Input.dispatchTouchEvent", { type: "touchStart", ...at(y) });
+    for (let share = 1; share <= 10; share++) {
+      await client.send("Input.dispatchTouchEvent", { type: "touchMove", ...at(y + (dy * share) / 10) });
+      await page.waitForTimeout(20);
+    }
+    await client.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+  };
+  await swipe(box.x + box.width / 2, box.y + box.height / 2, -60);
+  expect((await demo.evaluate((element: SapDemo) => element.balls[0]!))[1]).toBeCloseTo(200 - (60 * 600) / box.width, 0);
+  expect(await page.evaluate(() => scrollY)).toBe(0);
+  await swipe(box.x + 20, box.y + box.height - 10, -150);
+  await expect.poll(() => page.evaluate(() => scrollY)).toBeGreaterThan(50);
+  await context.close();
 });
 
 test("bad attributes are said in its place, once, and can be mended", async ({ page }) => {

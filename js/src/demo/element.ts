@@ -215,9 +215,7 @@ export class SapDemoElement extends LitElement {
     if (!options) return;
     let timeline: Timeline;
     try {
-      timeline = new Timeline(options, kindsOf(options));
-      const start = readStart(this.getAttribute("start"));
-      for (let tick = 0; tick < start; tick++) timeline.nextTick();
+      timeline = Timeline.at(options, kindsOf(options), readStart(this.getAttribute("start")));
     } catch (error) {
       return this.#refuse(messageOf(error));
     }

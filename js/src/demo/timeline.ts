@@ -17,8 +17,10 @@ interface Tick {
   stops: number;
 }
 
-/** So many ticks can be gone back: a quarter of a minute, or this many detections if those are rarer. */
+/** So many ticks can be gone back, a quarter of a minute; of many balls fewer, for the memory's sake. */
 const MOST_TICKS = 900;
+const MOST_BALL_TICKS = 90_000;
+/** If detections are rarer, so many of those. */
 const LEAST_DETECTIONS = 4;
 
 /**
@@ -48,10 +50,25 @@ export class Timeline {
     this.#options = options;
     this.#kinds = kinds;
     this.#world = world;
-    this.#most = Math.max(MOST_TICKS, LEAST_DETECTIONS * (options.skip + 1));
+    const most = Math.min(MOST_TICKS, MOST_BALL_TICKS / Math.max(1, world.radii.length));
+    this.#most = Math.max(most, LEAST_DETECTIONS * (options.skip + 1));
     this.#oracle = oracleFor(options.detecting);
     this.#runner = newRunner(options.detecting);
     this.#record(tick, true);
+  }
+
+  /**
+   * As the world is after so many ticks. Only the last of its detections are run: of all of them a
+   * swap-driven method remembers no more than that.
+   */
+  static at(options: Options, kinds: ReadonlySet<TraceEvent["kind"]>, ticks: number): Timeline {
+    const interval = options.skip + 1;
+    const first = Math.max(0, Math.ceil(ticks / interval) - 1) * interval;
+    const world = new World(options.world);
+    for (let tick = 1; tick <= first; tick++) world.tick(tick % interval === 0);
+    const timeline = new Timeline(options, kinds, world, first);
+    while (timeline.tick < ticks) timeline.nextTick();
+    return timeline;
   }
 
   get tick(): number {
