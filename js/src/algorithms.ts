@@ -7,10 +7,10 @@
 import { type InitOptions, start, type Started } from "./init.js";
 import { algorithmsCore } from "./runner.js";
 
-export type { Boxes, BoxObject, Corner, Dimensions } from "./boxes.js";
+export type { BoundsBox, Boxes, BoxObject, Corner, Dimensions, EdgesBox, MinMaxBox } from "./boxes.js";
 export { InvalidBoxError, NotInitializedError, OutOfMemoryError, SweepAndPruneError } from "./errors.js";
 export type { InitOptions, Started } from "./init.js";
-export { Player, type PlayerState } from "./player.js";
+export { type AxisOverlap, type Line, type Place, Player, type PlayerState } from "./player.js";
 export { axes, type Counts, methods, Runner, type RunnerOptions, sorts, type Step, wrongMethods } from "./runner.js";
 export { events, type TraceEvent } from "./trace.js";
 

@@ -1,4 +1,4 @@
-export type { Boxes, BoxObject, Corner, Dimensions } from "./boxes.js";
+export type { BoundsBox, Boxes, BoxObject, Corner, Dimensions, EdgesBox, MinMaxBox } from "./boxes.js";
 export { InvalidBoxError, NotInitializedError, OutOfMemoryError, SweepAndPruneError } from "./errors.js";
 export type { InitOptions, Started } from "./init.js";
 export {

@@ -19,11 +19,39 @@ export type Boxes = Float32Array | Float64Array | readonly number[] | readonly B
  * `{ lowerBound, upperBound }` as cannon and planck; a row of numbers as box-intersect. What else
  * the object holds is not looked at.
  */
-export type BoxObject =
-  | { readonly minX: number; readonly minY?: number; readonly minZ?: number; readonly maxX: number; readonly maxY?: number; readonly maxZ?: number }
-  | { readonly min: Corner; readonly max: Corner }
-  | { readonly lowerBound: Corner; readonly upperBound: Corner }
-  | readonly number[];
+export type BoxObject = EdgesBox | MinMaxBox | BoundsBox | readonly number[];
+
+/** A box by its edges, as rbush has it. */
+export interface EdgesBox {
+  /** The least x. */
+  readonly minX: number;
+  /** The least y, in the plane and in space. */
+  readonly minY?: number;
+  /** The least z, in space. */
+  readonly minZ?: number;
+  /** The greatest x. */
+  readonly maxX: number;
+  /** The greatest y. */
+  readonly maxY?: number;
+  /** The greatest z. */
+  readonly maxZ?: number;
+}
+
+/** A box by its corners, as three.js and matter have it. */
+export interface MinMaxBox {
+  /** The least corner. */
+  readonly min: Corner;
+  /** The greatest corner. */
+  readonly max: Corner;
+}
+
+/** A box by its corners, as cannon and planck have it. */
+export interface BoundsBox {
+  /** The least corner. */
+  readonly lowerBound: Corner;
+  /** The greatest corner. */
+  readonly upperBound: Corner;
+}
 
 /** A corner of a box: as many coordinates as there are dimensions. */
 export interface Corner {

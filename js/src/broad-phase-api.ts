@@ -1,10 +1,12 @@
-export type { Boxes, BoxObject, Corner, Dimensions } from "./boxes.js";
+export type { BoundsBox, Boxes, BoxObject, Corner, Dimensions, EdgesBox, MinMaxBox } from "./boxes.js";
 export {
   BroadPhase,
   type BroadPhaseOptions,
+  type Buffers,
   type Changes,
   type Hit,
   type Neighbour,
+  type Numbers,
   type ProxyId,
   slotOf,
 } from "./world.js";

@@ -3,11 +3,13 @@
  * that depends on the data or on the machine is one of these. After an error nothing has changed.
  */
 export class SweepAndPruneError extends Error {
+  /** The name of this class. */
   override name = "SweepAndPruneError";
 }
 
 /** A box is not `min <= max` on some axis: it is inverted, or holds a NaN. */
 export class InvalidBoxError extends SweepAndPruneError {
+  /** The name of this class. */
   override name = "InvalidBoxError";
 
   constructor(
@@ -22,6 +24,7 @@ export class InvalidBoxError extends SweepAndPruneError {
 
 /** A call came before the promise of `init()` was fulfilled. */
 export class NotInitializedError extends SweepAndPruneError {
+  /** The name of this class. */
   override name = "NotInitializedError";
 
   constructor() {
@@ -31,6 +34,7 @@ export class NotInitializedError extends SweepAndPruneError {
 
 /** The boxes or their pairs do not fit in the memory of WebAssembly, 4 GiB at most. */
 export class OutOfMemoryError extends SweepAndPruneError {
+  /** The name of this class. */
   override name = "OutOfMemoryError";
 
   constructor() {
@@ -40,6 +44,7 @@ export class OutOfMemoryError extends SweepAndPruneError {
 
 /** A proxy id is of a body that was removed, or was never given out by this world. */
 export class StaleProxyError extends SweepAndPruneError {
+  /** The name of this class. */
   override name = "StaleProxyError";
 
   constructor(
@@ -52,6 +57,7 @@ export class StaleProxyError extends SweepAndPruneError {
 
 /** Bytes that are no snapshot of such a world. */
 export class SnapshotError extends SweepAndPruneError {
+  /** The name of this class. */
   override name = "SnapshotError";
 
   /** @internal */

@@ -3,6 +3,32 @@ import type { Engine } from "./engine.js";
 import { eventAt, lengthBefore, type TraceEvent } from "./trace.js";
 import { type AlgorithmsExports, type Counts, forgotten, type Owned, readCounts, release, type Runner } from "./runner.js";
 
+/** A place in an array: the edge there, and its coordinate. */
+export interface Place {
+  /** The edge: `2 * box`, and one more if it is a right end. */
+  edge: number;
+  /** Its coordinate. */
+  at: number;
+}
+
+/** Where the sweep line stands. */
+export interface Line {
+  /** The position in the current array. */
+  position: number;
+  /** The edge there. */
+  edge: number;
+}
+
+/** Two boxes that overlap on an axis. */
+export interface AxisOverlap {
+  /** The axis. */
+  axis: number;
+  /** The smaller index. */
+  a: number;
+  /** The greater. */
+  b: number;
+}
+
 /** What is to be drawn at one moment of a trace. An edge is `2 * box`, and one more if it is a right end. */
 export interface PlayerState {
   /** The axis along which the current step sweeps, or sweeps first. */
@@ -10,13 +36,13 @@ export interface PlayerState {
   /** The axis whose array is being sorted or swept. */
   arrayAxis: number;
   /** The endpoints on each axis, as far as they are sorted by now. */
-  arrays: { edge: number; at: number }[][];
+  arrays: Place[][];
   /** The position in the current array, and the edge there, that the sweep line reached last. */
-  line: { position: number; edge: number } | undefined;
+  line: Line | undefined;
   /** The boxes that the sweep line touches. */
   active: number[];
   /** The pairs that overlap on a swept axis. */
-  axisOverlaps: { axis: number; a: number; b: number }[];
+  axisOverlaps: AxisOverlap[];
   /** The pairs found in this step: `a0, b0, a1, b1, ...`. */
   overlaps: number[];
   /** The pairs that have begun and not ended: `a0, b0, a1, b1, ...`. */

@@ -46,6 +46,14 @@ export interface Changes {
   ended: Float64Array;
 }
 
+/** Arrays to write to; see {@link BroadPhase.buffers}. */
+export interface Buffers {
+  /** Room for ids. */
+  ids: Float64Array;
+  /** Room for as many boxes. */
+  boxes: Float32Array | Float64Array;
+}
+
 /** A body that a ray or a moving box hits. */
 export interface Hit {
   /** The body. */
@@ -62,7 +70,8 @@ export interface Neighbour {
   distance: number;
 }
 
-type Numbers = readonly number[] | Float32Array | Float64Array;
+/** Ids, or the coordinates of a point, a direction or a box. */
+export type Numbers = readonly number[] | Float32Array | Float64Array;
 
 /**
  * A world of boxes that tells which overlaps began and which ended.
@@ -227,7 +236,7 @@ export class BroadPhase {
    * views of memory, valid until the next call. Where the boxes are stored in another form
    * (lines; doubles in the plane) they are ordinary arrays.
    */
-  buffers(count: number): { ids: Float64Array; boxes: Float32Array | Float64Array } {
+  buffers(count: number): Buffers {
     if (!(Number.isInteger(count) && count >= 0)) throw new RangeError(`count must be a whole number, not ${count}`);
     const width = 2 * this.dimensions;
     if (this.#stored !== this.dimensions) {
