@@ -7,6 +7,9 @@ use std::time::{Duration, Instant};
 
 use crate::record::Machine;
 
+/// Far more than the caches hold.
+const MANY_BYTES: usize = 128 << 20;
+
 /// Measures what has to be measured (a quarter of a second) and asks the system for the rest.
 pub fn describe() -> Machine {
     Machine {
@@ -16,7 +19,7 @@ pub fn describe() -> Machine {
         memory_bytes: kilobytes("/proc/meminfo", "MemTotal:"),
         system: system(),
         tsc_mhz: tsc_mhz(),
-        copy_bytes_per_second: copy_bandwidth(),
+        copy_bytes_per_second: copy_bandwidth(2 * MANY_BYTES),
         load: load(),
     }
 }
@@ -84,19 +87,16 @@ fn tsc_mhz() -> Option<f64> {
     None
 }
 
-/// Bytes read plus bytes written a second by one thread that copies a buffer far larger than the
-/// caches: the best of several copies.
-fn copy_bandwidth() -> f64 {
-    const BYTES: usize = 128 << 20;
-    let from = vec![1u8; BYTES];
-    let mut to = vec![2u8; BYTES];
-    let copy = || {
-        let start = Instant::now();
-        black_box(&mut to).copy_from_slice(black_box(&from));
-        start.elapsed()
-    };
-    let best = std::iter::repeat_with(copy).take(6).min().unwrap_or(Duration::MAX);
-    2.0 * BYTES as f64 / best.as_secs_f64()
+/// Bytes read plus bytes written a second by one thread that copies half of so many bytes: the best
+/// of several copies. Few bytes stay in the caches.
+pub fn copy_bandwidth(bytes: usize) -> f64 {
+    let half = (bytes / 2).max(1);
+    let from = vec![1u8; half];
+    let mut to = vec![2u8; half];
+    let copy = || clock(|| black_box(&mut to).copy_from_slice(black_box(&from))).1;
+    let copies = (MANY_BYTES / half).clamp(6, 200);
+    let best = std::iter::repeat_with(copy).take(copies).min().unwrap_or(Duration::MAX);
+    2.0 * half as f64 / best.as_secs_f64()
 }
 
 /// The commit that is checked out, marked if files differ from it; `None` outside of Git.

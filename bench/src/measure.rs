@@ -59,7 +59,7 @@ pub struct Options {
     #[arg(long)]
     rounds: Option<usize>,
     /// Seconds after which a contender is stopped and recorded as too slow.
-    #[arg(long, default_value_t = 2.0)]
+    #[arg(long, default_value_t = 1.5)]
     limit: f64,
     /// After so many minutes no case is begun; `--resume` goes on from there.
     #[arg(long)]
@@ -95,7 +95,11 @@ impl Options {
         let mut plan = Vec::new();
         if all || self.pairs {
             for boxes in self.sizes(&[1_000, 10_000, 100_000, 1_000_000]) {
-                let rounds = if boxes <= 10_000 { 9 } else { 5 };
+                let rounds = match boxes {
+                    0..=10_000 => 9,
+                    10_001..=100_000 => 5,
+                    _ => 3,
+                };
                 self.add(&mut plan, Kind::Pairs, &self.scenes(six), boxes, &[], rounds)?;
             }
         }
@@ -111,13 +115,15 @@ impl Options {
             for boxes in self.sizes(&[10_000, 100_000, 1_000_000]) {
                 // Of a million, one that is seldom slow is enough to agree with.
                 let witnesses = if boxes > 100_000 { &WITNESSES[..1] } else { &WITNESSES };
+                let rounds = if boxes > 100_000 { 2 } else { 3 };
                 let peers = [&[OURS_ON_TWO], witnesses].concat();
-                self.add(&mut plan, Kind::Pairs, &self.scenes(scene::others), boxes, &peers, 3)?;
+                let scenes = self.scenes(scene::others);
+                self.add(&mut plan, Kind::Pairs, &scenes, boxes, &peers, rounds)?;
             }
         }
         if all || self.small {
             for boxes in if self.sizes.is_empty() { SMALL.to_vec() } else { self.sizes.clone() } {
-                self.add(&mut plan, Kind::Pairs, &self.scenes(six), boxes, &["brute force"], 9)?;
+                self.add(&mut plan, Kind::Pairs, &self.scenes(six), boxes, &["brute force"], 5)?;
             }
         }
         plan.sort_by_key(|planned| planned.boxes);

@@ -59,9 +59,10 @@ pub struct Stage {
     pub bytes: f64,
     /// What it has to test.
     pub tests: f64,
-    /// The time of these bytes and tests at the rates above: the longer of the two.
+    /// The time of these bytes at the rate at which as many are copied, or of these tests at the
+    /// rate above: the longer of the two.
     pub limit_ns: f64,
-    /// `limit_ns` over `ns`.
+    /// `limit_ns` over `ns`, at most 1.
     pub share: f64,
 }
 

@@ -221,14 +221,16 @@ fn roofline(roofline: &Roofline) -> String {
     table(
         "Close to the machine: stage by stage",
         &format!(
-            "One thread copies {:.1} GB/s, and the kernel tests at most {} thousand million boxes \
-             a second when all it needs is in the nearest cache. The limit of a stage is the time \
-             of the bytes that it has to read and write, or of the tests that it has to make, \
-             whichever is longer, if each box is copied to one column, moved once by the sort and \
-             once by the sweep, and only the pairs are tested: what is missing to the whole are \
-             further copies, the sort itself, candidates that are no pairs, and waiting.",
-            roofline.copy_bytes_per_second / 1e9,
+            "The kernel tests at most {} thousand million boxes a second, when all it needs is in \
+             the nearest cache. The limit of a stage is the longer of two times: that of the bytes \
+             that it has to read and write, at the rate at which one thread copies as many \
+             ({:.1} GB/s if they are far more than the caches hold), and that of its tests. It has \
+             to read each box and write it to one column, to read it there and test each pair \
+             once, and to write the pairs. What is missing to the whole are further copies, the \
+             sort, which stays in the caches, candidates that are no pairs, and waiting. Where the \
+             output is said to reach 100 %, the writes are hidden behind the sweep.",
             peaks.join(" and "),
+            roofline.copy_bytes_per_second / 1e9,
         ),
         "| scene | boxes | stage | time | bytes | tests | limit | share |",
         &rows,
