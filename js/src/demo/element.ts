@@ -341,7 +341,7 @@ export class SapDemoElement extends LitElement {
     if (this.#explanation) return this.#explanation.text;
     const { event, detection, tick } = timeline;
     if (event) return describeEvent(event, { boxes: detection.boxes, names: this.#names });
-    return summary(timeline.isDetected, tick, timeline.radii.length, detection, this.#names);
+    return summary(timeline.isDetected, this.#options!.isStatic ? undefined : tick, timeline.radii.length, detection, this.#names);
   }
 
   /** Lets the live region say where we are, soon and not too often. */

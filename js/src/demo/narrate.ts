@@ -25,14 +25,15 @@ export function separation({ boxes, names }: Known, axis: number, left: number, 
 }
 
 /** A detection in words, when none of its events is at work. */
-export function summary(isDetected: boolean, tick: number, balls: number, detection: Detection, names: readonly string[]): string {
-  if (!isDetected) return `Tick ${tick}. Nothing has been tested yet.`;
+export function summary(isDetected: boolean, tick: number | undefined, balls: number, detection: Detection, names: readonly string[]): string {
+  const when = tick === undefined ? "" : `Tick ${tick}: `;
+  if (!isDetected) return `${when}nothing has been tested yet.`;
   const all = (balls * (balls - 1)) / 2;
   const { counts, pairs } = detection.step;
   const found = pairs.length / 2;
   const tested = `${counts.tests} of ${all} pairs tested, ${found} ${found === 1 ? "overlaps" : "overlap"}`;
   const missed = detection.missed.map(([a, b]) => `${names[a]} and ${names[b]}`);
-  return `Tick ${tick}: ${tested}.${missed.length > 0 ? ` Missed: ${missed.join(", ")}.` : ""}`;
+  return `${when}${tested}.${missed.length > 0 ? ` Missed: ${missed.join(", ")}.` : ""}`;
 }
 
 /** One event in words. */
