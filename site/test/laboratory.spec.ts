@@ -6,13 +6,13 @@ const IDS = ["discs", "spheres"] as const;
 test.describe("running", () => {
   for (const id of IDS) {
     test(`${id}: counters move, pause holds them, the world goes on afterwards`, async ({ page }) => {
-      await page.goto(`/falling.html?${id}.algorithm=sorted+pairwise`);
+      await page.goto(`/falling.html?${id}.algorithm=sorted+pairwise&${id}.bodies=2000`);
       const lab = await new Lab(page, id).open();
       const seen = new Set<string>();
       await expect
         .poll(async () => seen.add(await lab.counter("tests")).size, { message: "tests change" })
         .toBeGreaterThan(3);
-      for (const key of ["tests", "axis-overlaps", "pairs", "comparisons", "broad-phase", "narrow-phase", "drawing"]) {
+      for (const key of ["tests", "axis-overlaps", "pairs", "comparisons", "broad-phase", "narrow-phase", "solving", "drawing"]) {
         await expect.poll(() => lab.value(key), { message: key }).toBeGreaterThan(0);
       }
 
@@ -27,7 +27,7 @@ test.describe("running", () => {
   }
 
   test("sleeps while it is off the screen", async ({ page }) => {
-    await page.goto("/falling.html");
+    await page.goto("/falling.html?discs.bodies=200");
     const lab = await new Lab(page, "discs").open();
     await expect.poll(() => lab.stepNumber()).toBeGreaterThan(5);
     await page.locator("footer").scrollIntoViewIfNeeded();
@@ -169,11 +169,35 @@ test.describe("paused", () => {
     expect(await lab.counter("brute-force")).toBe("10");
   });
 
+  test("gravity and substeps change the motion, and the address keeps them", async ({ page }) => {
+    await page.goto("/falling.html?spheres.bodies=200");
+    const lab = await new Lab(page, "spheres").open();
+    const after = async (steps: number): Promise<string> => {
+      await lab.reset();
+      await lab.step(steps);
+      return lab.hash();
+    };
+    const usual = await after(3);
+    await lab.root.getByRole("slider", { name: "Gravity" }).fill("0");
+    await expect.poll(() => new URL(page.url()).searchParams.get("spheres.gravity")).toBe("-9.81");
+    const upwards = await after(3);
+    await lab.root.getByRole("slider", { name: "Substeps" }).fill("0");
+    await expect.poll(() => new URL(page.url()).searchParams.get("spheres.substeps")).toBe("1");
+    const coarse = await after(3);
+    expect(new Set([usual, upwards, coarse]).size).toBe(3);
+    await page.reload();
+    await lab.open();
+    expect(await after(3)).toBe(coarse);
+    await page.goto("/falling.html?spheres.bodies=200");
+    await lab.open();
+    expect(await after(3)).toBe(usual);
+  });
+
   test("an address that makes no sense is ignored", async ({ page }) => {
-    await page.goto("/falling.html?discs.bodies=-3&discs.seed=abc&discs.size=NaN&discs.spread=1e9&discs.algorithm=magic&discs.axis=");
+    await page.goto("/falling.html?discs.bodies=-3&discs.seed=abc&discs.size=NaN&discs.spread=1e9&discs.algorithm=magic&discs.axis=&discs.gravity=1e9&discs.substeps=0");
     const lab = await new Lab(page, "discs").open();
     await lab.step(2);
-    expect(await lab.counter("brute-force")).toBe("19,900");
+    expect(await lab.counter("brute-force")).toBe("12,497,500");
     await expect(lab.root.getByLabel("Seed")).toHaveValue("1");
   });
 
@@ -191,7 +215,7 @@ test.describe("paused", () => {
 
     const spheres = await new Lab(page, "spheres").open();
     await spheres.root.getByRole("application").focus();
-    const canvas = spheres.root.locator("canvas");
+    const canvas = spheres.root.locator('[data-part="canvas"]');
     const before = await canvas.screenshot();
     await page.keyboard.press("ArrowRight");
     await page.keyboard.press("ArrowRight");
@@ -199,7 +223,7 @@ test.describe("paused", () => {
   });
 
   test("one body and the most there are", async ({ page }) => {
-    for (const [id, bodies] of [["discs", 1], ["discs", 10_000], ["spheres", 1], ["spheres", 30_000]] as const) {
+    for (const [id, bodies] of [["discs", 1], ["discs", 20_000], ["spheres", 1], ["spheres", 100_000]] as const) {
       await page.goto(`/falling.html?${id}.bodies=${bodies}&${id}.spread=20&${id}.size=150`);
       const lab = await new Lab(page, id).open();
       await lab.step(2);

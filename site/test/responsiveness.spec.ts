@@ -37,18 +37,57 @@ test("brute force at 10,000 spheres leaves the page responsive, and shows what i
   expect(answered.after).toBeLessThan(50);
 });
 
-test("10,000 spheres: the broad phase takes less than a frame", async ({ page }) => {
+test("10,000 spheres: the broad phase of a frame", async ({ page }) => {
   await page.goto("/falling.html");
   const lab = await new Lab(page, "spheres").open();
   const [library = ""] = await lab.algorithms();
-  const times = new Map<string, number>();
-  for (const algorithm of ["sorted pairwise", library]) {
-    await lab.algorithm.selectOption(algorithm);
-    const step = await lab.stepNumber();
-    await expect.poll(() => lab.stepNumber(), { timeout: 60_000 }).toBeGreaterThan(step + 60);
-    times.set(algorithm, await lab.value("broad-phase"));
-    console.log(`${algorithm}: broad phase ${times.get(algorithm)} ms, narrow phase ${await lab.value("narrow-phase")} ms, drawing ${await lab.value("drawing")} ms a step`);
+  await expect(lab.algorithm).toHaveValue(library);
+  const times: number[] = [];
+  for (let step = 30; step <= 150; step += 30) {
+    await expect.poll(() => lab.stepNumber(), { timeout: 60_000 }).toBeGreaterThanOrEqual(step);
+    times.push(await lab.value("broad-phase"));
   }
-  // Generous: the machine of a test may be slow and busy. A frame is 16.7 ms.
-  expect(Math.min(...times.values())).toBeLessThan(50);
+  console.log(`${library}: broad phase of a frame while they fall and pile up ${times.join(", ")} ms, narrow phase ${await lab.value("narrow-phase")}, solving ${await lab.value("solving")}, drawing ${await lab.value("drawing")} ms`);
+  // The aim is 2 ms. The machine of a test may be busy with other things: the best of five means.
+  expect(Math.min(...times)).toBeLessThan(4);
 });
+
+test("100,000 spheres by the library: the page answers", async ({ page }) => {
+  await page.goto("/falling.html?spheres.bodies=100000");
+  const lab = await new Lab(page, "spheres").open();
+  await expect.poll(() => lab.stepNumber(), { timeout: 60_000 }).toBeGreaterThan(1);
+  expect(await lab.value("pairs")).toBeGreaterThan(10_000);
+  const answered = await lab.play.evaluate((button: HTMLElement) => {
+    const clicked = performance.now();
+    button.click();
+    return performance.now() - clicked;
+  });
+  console.log(`100,000 spheres: broad phase ${await lab.value("broad-phase")} ms, narrow phase ${await lab.value("narrow-phase")}, solving ${await lab.value("solving")}, drawing ${await lab.value("drawing")} ms`);
+  expect(answered).toBeLessThan(50);
+});
+
+for (const path of ["/falling.html", "/race.html", "/playground.html", "/playground.html?boxes=5000&motion=fast"]) {
+  test(`${path}: at most 8 ms of script a frame`, async ({ page }) => {
+    await page.goto(path);
+    await expect(page.locator("[data-step]").first()).toHaveAttribute("data-step", /^[1-9]/);
+    const session = await page.context().newCDPSession(page);
+    await session.send("Performance.enable");
+    const script = async (): Promise<number> => {
+      const { metrics } = await session.send("Performance.getMetrics");
+      return 1000 * (metrics.find(({ name }) => name === "ScriptDuration")?.value ?? Number.NaN);
+    };
+    const before = await script();
+    const frames = await page.evaluate(async () => {
+      const end = performance.now() + 3000;
+      let frames = 0;
+      while (performance.now() < end) {
+        await new Promise(requestAnimationFrame);
+        frames++;
+      }
+      return frames;
+    });
+    const each = ((await script()) - before) / frames;
+    console.log(`${path}: ${each.toFixed(2)} ms of script a frame, ${frames} frames in 3 s`);
+    expect(each).toBeLessThan(8);
+  });
+}

@@ -1,0 +1,146 @@
+//! The race is fair only if all see the same boxes and find the same pairs.
+
+use sweep_and_prune::Aabb;
+use sweep_and_prune::algorithms::{Axis, Counts, Method, Runner, RunnerOptions, Sort};
+use sweep_and_prune_scenes::Scene;
+use sweep_and_prune_site_wasm::contender::{Choice, Contender, forecast};
+use sweep_and_prune_site_wasm::motion::{LAWS, Moving, resize};
+
+const SCENES: [Scene; 5] =
+    [Scene::Uniform, Scene::Clustered, Scene::Mixed, Scene::Grid, Scene::Needles];
+
+fn algorithm(method: Method, sort: Sort) -> Choice {
+    let axis = Axis::LargestVariance;
+    Choice::Algorithm(RunnerOptions { method, sort, axis, persistent: true })
+}
+
+fn everyone() -> Vec<Choice> {
+    let methods = Method::ALL.into_iter().enumerate();
+    let algorithms = methods.map(|(i, method)| algorithm(method, Sort::ALL[i % Sort::ALL.len()]));
+    [Choice::Finder, Choice::World].into_iter().chain(algorithms).collect()
+}
+
+fn race<const D: usize>(scene: Scene, law: usize) {
+    let boxes = scene.boxes::<D, f32>(150, 7).unwrap();
+    let mut world = Moving::new(boxes, &LAWS[law], 7);
+    let mut contenders: Vec<Contender<D>> =
+        everyone().into_iter().map(|choice| Contender::new(choice).unwrap()).collect();
+    for step in 0..12 {
+        let brute = brute_force(world.boxes());
+        let mut fingerprints = Vec::new();
+        for (who, contender) in contenders.iter_mut().enumerate() {
+            let report = contender.run(world.boxes(), true, || 0.0).unwrap();
+            let mut pairs = contender.pairs().to_vec();
+            pairs.sort_unstable();
+            assert_eq!(pairs, brute, "{scene:?}, law {law}, step {step}, contender {who}");
+            assert_eq!(report.pairs, brute.len());
+            fingerprints.push(report.fingerprint);
+        }
+        assert!(fingerprints.iter().all(|&one| one == fingerprints[0]), "in whatever order");
+        world.advance();
+    }
+}
+
+fn brute_force<const D: usize>(boxes: &[Aabb<D>]) -> Vec<[u32; 2]> {
+    let n = boxes.len() as u32;
+    let all = (0..n).flat_map(|a| (a + 1..n).map(move |b| [a, b]));
+    all.filter(|&[a, b]| boxes[a as usize].overlaps(&boxes[b as usize])).collect()
+}
+
+#[test]
+fn every_contender_finds_the_pairs_in_every_motion() {
+    for scene in SCENES {
+        for law in 0..LAWS.len() {
+            race::<2>(scene, law);
+            race::<3>(scene, law);
+        }
+    }
+}
+
+#[test]
+fn other_pairs_have_another_fingerprint() {
+    let boxes = Scene::Uniform.boxes::<2, f32>(100, 1).unwrap();
+    let print = |boxes: &[Aabb<2>]| {
+        let mut finder = Contender::new(Choice::Finder).unwrap();
+        let report = finder.run(boxes, false, || 0.0).unwrap();
+        (report.pairs, report.fingerprint)
+    };
+    let mut swapped = boxes.clone();
+    swapped.swap(0, 50);
+    assert_eq!(print(&boxes).0, print(&swapped).0, "as many");
+    assert_ne!(print(&boxes).1, print(&swapped).1, "of others");
+}
+
+#[test]
+fn a_world_begins_with_the_bits_of_its_scene() {
+    for scene in SCENES {
+        let boxes = scene.boxes::<3, f32>(300, 5).unwrap();
+        let mut same = boxes.clone();
+        resize(&mut same, 1.0, 1.0, 5);
+        for law in &LAWS {
+            assert_eq!(Moving::new(same.clone(), law, 5).boxes(), boxes);
+        }
+    }
+}
+
+#[test]
+fn size_and_spread_are_what_they_say() {
+    let boxes = Scene::Uniform.boxes::<2, f32>(2_000, 5).unwrap();
+    let width = |aabb: &Aabb<2>| aabb.max[0] - aabb.min[0];
+    let mut larger = boxes.clone();
+    resize(&mut larger, 3.0, 16.0, 5);
+    let factors: Vec<f32> = boxes.iter().zip(&larger).map(|(a, b)| width(b) / width(a)).collect();
+    let least = factors.iter().copied().fold(f32::INFINITY, f32::min);
+    let most = factors.iter().copied().fold(0.0, f32::max);
+    assert!((0.74..0.77).contains(&least) && (11.8..12.1).contains(&most), "{least} {most}");
+}
+
+#[test]
+fn boxes_stay_valid_and_where_they_were_for_a_long_time() {
+    for law in &LAWS {
+        let boxes = Scene::Clustered.boxes::<2, f32>(200, 3).unwrap();
+        let mut world = Moving::new(boxes.clone(), law, 3);
+        (0..1_000).for_each(|_| world.advance());
+        let moved = world.boxes().iter().zip(&boxes).filter(|(a, b)| a != b).count();
+        match law.name {
+            "still" => assert_eq!(moved, 0),
+            "mostly still" => assert!((5..50).contains(&moved), "{moved}"),
+            _ => assert_eq!(moved, 200, "{}", law.name),
+        }
+        for aabb in world.boxes() {
+            assert!(aabb.invalid_axis().is_none());
+            assert!(aabb.min.iter().all(|&at| (-2.0..3.0).contains(&at)), "{aabb:?}");
+        }
+    }
+}
+
+#[test]
+fn the_forecast_is_what_the_first_run_does() {
+    for scene in SCENES {
+        let boxes = scene.boxes::<2, f32>(400, 2).unwrap();
+        for method in Method::ALL {
+            let choice = algorithm(method, Sort::Standard);
+            let report = Contender::new(choice).unwrap().run(&boxes, true, || 0.0).unwrap();
+            let counts = report.counts.unwrap();
+            let cast = forecast(choice, &boxes).unwrap();
+            let tested = if counts.tests > 0 { counts.tests } else { counts.axis_overlaps };
+            assert_eq!(cast.tests, tested as f64, "{scene:?}, {method:?}");
+        }
+    }
+}
+
+/// Brute force is not watched at work, because it is known what it does.
+#[test]
+fn brute_force_is_counted_as_if_it_were_watched() {
+    for scene in SCENES {
+        let boxes = scene.boxes::<3, f32>(150, 2).unwrap();
+        let choice = algorithm(Method::Pairwise, Sort::Standard);
+        let Choice::Algorithm(options) = choice else { unreachable!() };
+        let mut watched = Counts::default();
+        Runner::new(options).step(&boxes, &mut watched).unwrap();
+        let told = Contender::new(choice).unwrap().run(&boxes, true, || 0.0).unwrap().counts;
+        let Counts { tests, axis_overlaps, comparisons, swaps, .. } = told.unwrap();
+        assert_eq!((tests, axis_overlaps), (watched.tests, watched.axis_overlaps), "{scene:?}");
+        assert_eq!((comparisons, swaps), (watched.comparisons, watched.swaps));
+    }
+}
