@@ -1,0 +1,28 @@
+// An editor: what a dragged frame selects, what lies under the pointer, and which edges to snap to.
+import { BroadPhase, init } from "sweep-and-prune/broad-phase";
+
+await init();
+
+const shapes = ["title", "photo", "caption", "footer"];
+const world = new BroadPhase({ dimensions: 2, precision: "double" });
+const ids = world.insertMany([
+  [40, 20, 360, 60], // minX, minY, maxX, maxY
+  [40, 80, 240, 280],
+  [260, 80, 360, 280],
+  [40, 300, 360, 330],
+]).slice();
+const shapeOf = new Map([...ids].map((id, i) => [id, shapes[i]]));
+const names = (found) => [...found].map((id) => shapeOf.get(id)).join(", ");
+
+console.log(names(world.overlapping([200, 70, 300, 290]))); // photo, caption
+console.log(names(world.containing([100, 310]))); // footer
+
+// Snapping: the shapes within 8 of the dragged one, and the nearest edge among their left and right edges.
+const [, , caption] = ids;
+const dragged = [245, 90, 345, 290];
+world.set(caption, ...dragged);
+const near = [...world.overlapping([dragged[0] - 8, dragged[1] - 8, dragged[2] + 8, dragged[3] + 8])];
+const edges = near.filter((id) => id !== caption).flatMap((id) => [world.box(id)[0], world.box(id)[2]]);
+const nearest = edges.sort((a, b) => Math.abs(a - dragged[0]) - Math.abs(b - dragged[0]))[0];
+console.log(names(near), nearest); // photo, caption 240
+world.free();

@@ -1,0 +1,33 @@
+// A game in Pixi: which sprites met in this frame, and which parted. In a browser.
+import { Graphics } from "pixi.js";
+import { BroadPhase, init } from "sweep-and-prune/broad-phase";
+
+await init();
+
+const hero = new Graphics().rect(0, 0, 20, 20).fill("tomato");
+const coins = [60, 120, 180].map((x) => {
+  const coin = new Graphics().circle(0, 0, 8).fill("gold");
+  coin.position.set(x, 10);
+  return coin;
+});
+const sprites = [hero, ...coins];
+
+const world = new BroadPhase({ dimensions: 2 });
+const ids = world.insertMany(sprites.map((sprite) => sprite.getBounds())).slice();
+const spriteOf = new Map([...ids].map((id, i) => [id, sprites[i]]));
+world.setFilter(ids[0], { category: 1, mask: 2 });
+for (const id of ids.subarray(1)) world.setFilter(id, { category: 2, mask: 1 }); // coins do not meet coins
+
+let collected = 0;
+for (let frame = 0; frame < 100; frame++) {
+  hero.x += 2; // in a game, app.ticker.add(() => ..)
+  const { minX, minY, maxX, maxY } = hero.getBounds();
+  world.set(ids[0], minX, minY, maxX, maxY);
+  const { begun } = world.update();
+  for (const coin of [...begun].filter((id) => id !== ids[0])) {
+    spriteOf.get(coin).visible = false;
+    world.remove(coin);
+    collected++;
+  }
+}
+console.log(`${collected} coins, ${world.size} left in the world`); // 3 coins, 1 left in the world

@@ -1,0 +1,85 @@
+// The examples of docs/, with the libraries that they name: each prints what it says, and each page
+// shows the file that ran.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { existsSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { createServer } from "node:http";
+import { once } from "node:events";
+import { join } from "node:path";
+import { before, test } from "node:test";
+import { fileURLToPath } from "node:url";
+import * as esbuild from "esbuild";
+import { startBrowser } from "./support/browser.js";
+
+const folder = fileURLToPath(new URL("../examples", import.meta.url));
+const pages = fileURLToPath(new URL("../docs", import.meta.url));
+const examples = readdirSync(folder).filter((name) => name.endsWith(".js"));
+/** Those that need a browser. */
+const inBrowser = ["pixi-game.js"];
+
+before(() => {
+  const lock = readFileSync(join(folder, "package-lock.json"), "utf8");
+  const marker = join(folder, "node_modules/.installed");
+  if (existsSync(marker) && readFileSync(marker, "utf8") === lock) return;
+  execFileSync("npm", ["ci", "--no-audit", "--no-fund", "--loglevel=error"], { cwd: folder, stdio: "inherit" });
+  writeFileSync(marker, lock);
+});
+
+/** What an example says that it prints.
+ *
+ * @param {string} code
+ */
+function promised(code) {
+  return [...code.matchAll(/console\.log\(.*\);\s*\/\/ (.*)/g)].map(([, said]) => said);
+}
+
+for (const name of examples.filter((name) => !inBrowser.includes(name))) {
+  test(`${name} prints what it says`, () => {
+    const expected = promised(readFileSync(join(folder, name), "utf8"));
+    assert.ok(expected.length > 0);
+    const printed = execFileSync(process.execPath, [name], { cwd: folder, encoding: "utf8" });
+    assert.deepEqual(printed.trim().split("\n"), expected);
+  });
+}
+
+for (const name of inBrowser) {
+  test(`${name} prints what it says, in Chromium`, async () => {
+    const expected = promised(readFileSync(join(folder, name), "utf8"));
+    assert.ok(expected.length > 0);
+    // esbuild does not copy the files that a module names: the inline entry carries them.
+    const alias = { "sweep-and-prune/broad-phase": "sweep-and-prune/broad-phase/inline" };
+    const { outputFiles } = await esbuild.build({
+      entryPoints: [join(folder, name)], bundle: true, format: "esm", write: false, alias, logLevel: "error",
+    });
+    const server = createServer((request, response) => {
+      const isPage = request.url === "/";
+      response.writeHead(200, { "content-type": isPage ? "text/html" : "text/javascript" });
+      response.end(isPage ? '<!doctype html><script type="module" src="/app.js"></script>' : outputFiles[0]?.contents);
+    }).listen(0, "127.0.0.1");
+    await once(server, "listening");
+    const { port } = /** @type {import("node:net").AddressInfo} */ (server.address());
+    const browser = await startBrowser();
+    try {
+      const page = await browser.newPage();
+      /** @type {string[]} */
+      const printed = [];
+      page.on("console", (message) => printed.push(message.text()));
+      page.on("pageerror", (error) => printed.push(String(error)));
+      const done = page.waitForEvent("console", { predicate: () => printed.length >= expected.length, timeout: 30_000 });
+      await page.goto(`http://127.0.0.1:${port}/`);
+      await done;
+      assert.deepEqual(printed.filter((line) => !line.includes("favicon") && !line.includes("404")), expected);
+    } finally {
+      await browser.close();
+      server.close();
+    }
+  });
+}
+
+test("each page shows examples as they are, and each example has a page", () => {
+  const shown = readdirSync(pages).filter((name) => name.endsWith(".md")).flatMap((name) =>
+    [...readFileSync(join(pages, name), "utf8").matchAll(/^```js\n(.*?)^```/gms)].map(([, code]) => code),
+  );
+  const files = examples.map((name) => readFileSync(join(folder, name), "utf8"));
+  assert.deepEqual(shown.sort(), files.sort());
+});
