@@ -83,3 +83,8 @@ test("each page shows examples as they are, and each example has a page", () => 
   const files = examples.map((name) => readFileSync(join(folder, name), "utf8"));
   assert.deepEqual(shown.sort(), files.sort());
 });
+
+test("the picture is what its script draws", () => {
+  const drawn = execFileSync(process.execPath, [join(pages, "picture.mjs")], { cwd: pages, encoding: "utf8" });
+  assert.equal(drawn, readFileSync(join(pages, "picture.svg"), "utf8"));
+});
