@@ -4,7 +4,7 @@
 //   npm run api -w site && npm run build -w site
 
 import { spawnSync } from "node:child_process";
-import { cpSync, existsSync, readFileSync, rmSync } from "node:fs";
+import { cpSync, rmSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 
@@ -27,10 +27,5 @@ function take(from, name) {
 run("cargo", ["doc", "--quiet", "--no-deps", "--package", "sweep-and-prune", "--target-dir", target]);
 take(join(target, "doc"), "rust");
 
-const { scripts } = JSON.parse(readFileSync(join(root, "js/package.json"), "utf8"));
-if (scripts.docs) {
-  run("npm", ["run", "--silent", "docs", "--workspace", "js"]);
-  if (existsSync(join(root, "js/docs"))) take(join(root, "js/docs"), "js");
-} else {
-  console.log("the JavaScript package has no script named docs: left out");
-}
+run("npm", ["run", "--silent", "docs", "--workspace", "js"]);
+take(join(root, "js/dist-docs"), "js");
