@@ -32,6 +32,8 @@ export const NATIVE_WORLD = "native, BroadPhase";
 export class Measurement {
   /** How long contenders took at how many boxes of a scene: what more boxes will take at least. */
   #slow = new Map();
+  /** What was found in the case under way, by those that are too slow to be timed too. */
+  #witnesses = /** @type {{ who: Who, fingerprint: string, pairs: number }[]} */ ([]);
 
   /**
    * @param {{ rounds: number, limit: number, wasm: string, native: string | undefined }} options
@@ -56,6 +58,7 @@ export class Measurement {
     let running = [];
     /** @type {Entry[]} */
     const results = [];
+    this.#witnesses = [];
     const drop = (/** @type {Who} */ { name, rival }, /** @type {string} */ why) =>
       results.push({ name, rival, outcome: { Untimed: { why } } });
 
@@ -71,7 +74,7 @@ export class Measurement {
         }
         this.progress((0.5 * (at + 2)) / (contenders.length + 2));
       }
-      const reference = right ?? agreement(running);
+      const reference = right ?? agreement(this.#witnesses);
       if (!reference) return "no two contenders agree";
       for (const one of running) {
         if (one.fingerprint !== reference.fingerprint) {
@@ -138,7 +141,9 @@ export class Measurement {
     const remote = this.#start(who.name, setting);
     try {
       await remote.ask("", 10_000 + 4 * limit);
-      const { fingerprint, pairs, peak_bytes } = await remote.ask("check", 4 * limit);
+      const { fingerprint, pairs, peak_bytes, longest } = await remote.ask("check", 4 * limit);
+      this.#witnesses.push({ who, fingerprint, pairs });
+      if (longest > 2 * limit) throw new NoAnswer(`over ${limit / 1000} s`);
       await remote.ask("warm-up", 10_000 + limit);
       const estimate = median((await remote.ask("time 3 1", 10_000 + 3 * limit)).ms);
       this.#slow.set(key, { boxes: Number(boxes), took: estimate });
@@ -211,11 +216,11 @@ export class Measurement {
 /**
  * The pairs that ours and a rival agree on, or two rivals.
  *
- * @param {Running[]} running
+ * @param {readonly { who: Who, fingerprint: string, pairs: number }[]} witnesses
  */
-function agreement(running) {
-  for (const one of running) {
-    const other = running.find((it) => it !== one && it.who.package !== one.who.package && it.fingerprint === one.fingerprint);
+function agreement(witnesses) {
+  for (const one of witnesses) {
+    const other = witnesses.find((it) => it !== one && it.who.package !== one.who.package && it.fingerprint === one.fingerprint);
     if (other) return { fingerprint: one.fingerprint, pairs: one.pairs, how: `${one.who.name} and ${other.who.name} agree` };
   }
   return undefined;
