@@ -270,8 +270,14 @@ export class SapDemoElement extends LitElement {
 
   #frame(ms: number): boolean {
     if (!this.#timeline) return false;
-    if (this.#isPlaying) this.#isPlaying = this.#playback!.advance(ms * (this.#speed ?? this.#options!.speed), this.#listener);
-    this.#paint();
+    try {
+      if (this.#isPlaying) this.#isPlaying = this.#playback!.advance(ms * (this.#speed ?? this.#options!.speed), this.#listener);
+      this.#paint();
+    } catch (error) {
+      // Out of memory, at most. The other demos of the page go on.
+      this.#refuse(messageOf(error));
+      return false;
+    }
     const now = performance.now();
     if (!this.#isPlaying || now - this.#countersAt >= COUNTERS_MS) this.#update(now);
     return this.#isPlaying;
