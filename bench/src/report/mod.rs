@@ -25,6 +25,7 @@ pub fn write(results: &Path) -> Result<()> {
         let stem = path.file_stem().context("a file without a name")?.to_string_lossy();
         let folder = results.join(&*stem);
         std::fs::create_dir_all(&folder)?;
+        remove_plots(&folder)?;
         let plots = plot::write(record, &folder)?;
         let links = plots.iter().map(|plot| format!("results/{stem}/{plot}")).collect::<Vec<_>>();
         text += &table::section(record, &links);
@@ -32,6 +33,17 @@ pub fn write(results: &Path) -> Result<()> {
     let report = results.parent().unwrap_or(results).join("RESULTS.md");
     std::fs::write(&report, text).with_context(|| format!("writing {}", report.display()))?;
     println!("Written: {} and the plots in {}", report.display(), results.display());
+    Ok(())
+}
+
+/// Removes the plots of earlier reports.
+fn remove_plots(folder: &Path) -> Result<()> {
+    for file in std::fs::read_dir(folder)? {
+        let path = file?.path();
+        if path.extension().is_some_and(|extension| extension == "svg") {
+            std::fs::remove_file(path)?;
+        }
+    }
     Ok(())
 }
 

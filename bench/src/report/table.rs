@@ -200,7 +200,7 @@ fn everything(record: &Record) -> String {
         let cases: Vec<_> = sorted(&record.cases)
             .into_iter()
             .filter(|case| case.scene == scene && case.dimensions == dimensions)
-            .filter(|case| case.boxes > SMALL)
+            .filter(|case| case.boxes > SMALL && is_open(case))
             .collect();
         if cases.is_empty() {
             continue;
