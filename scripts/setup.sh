@@ -111,12 +111,22 @@ setup_node() {
     fi
     node_is_recent || fail "Node.js 20.19 or later is needed, but 'node' here is $(node --version)."
   fi
-  if [ ! -f node_modules/.package-lock.json ] || [ package-lock.json -nt node_modules/.package-lock.json ]; then
-    say "Installing Node packages ..."
-    npm ci --silent --no-fund --no-audit >&2 || fail "Node's packages could not be installed: is the network reachable?"
-    touch node_modules/.package-lock.json
+  node_packages "$root" "Node packages"
+}
+
+# node_packages FOLDER WHAT: what a folder's package-lock.json names, if it is not there.
+node_packages() {
+  local folder=$1 what=$2 installed=$1/node_modules/.package-lock.json
+  if [ ! -f "$installed" ] || [ "$folder/package-lock.json" -nt "$installed" ]; then
+    say "Installing $what ..."
+    npm ci --silent --no-fund --no-audit --prefix "$folder" >&2 ||
+      fail "$what could not be installed: is the network reachable?"
+    touch "$installed"
   fi
 }
+
+# The libraries that the JavaScript package is measured beside.
+setup_peers() { node_packages "$root/bench/js" "the JavaScript peers"; }
 
 setup_chromium() {
   local name
