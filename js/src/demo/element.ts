@@ -59,6 +59,7 @@ export class SapDemoElement extends LitElement {
   readonly #canvases = new Canvases(() => this.#paint());
   #countersAt = -Infinity;
   #spokenAt = -Infinity;
+  #shared: { url: string; code: string } | undefined;
   #speech: ReturnType<typeof setTimeout> | undefined;
   #setReady: () => void = () => undefined;
   readonly ready: Promise<void> = new Promise((resolve) => (this.#setReady = resolve));
@@ -577,15 +578,15 @@ export class SapDemoElement extends LitElement {
       },
       reset: () => this.reset(),
       share: () => {
-        this.#isSharing = true;
+        // As it is now: what is shown to be copied does not change meanwhile.
+        this.#shared = { url: this.share(), code: this.embedCode() };
         this.requestUpdate();
         void this.updateComplete.then(() => this.renderRoot.querySelector<HTMLElement>(".share")?.togglePopover());
       },
     });
-    return html`${bar} ${this.#isSharing ? sharing(this.share(), this.embedCode()) : nothing}`;
+    return html`${bar} ${this.#shared ? sharing(this.#shared.url, this.#shared.code) : nothing}`;
   }
 
-  #isSharing = false;
 }
 
 const nothingMoved: ReadonlySet<number> = new Set();
