@@ -186,7 +186,7 @@ pub fn run(options: &Options) -> Result<()> {
     let followers: Vec<_> = worlds::all().iter().map(peers::Peer::entrant).collect();
     let mut plan = options.plan()?;
     let machine = machine::describe();
-    let (mut record, path) = open(options, finders.iter().chain(&followers), machine)?;
+    let (mut record, path) = open(options, &finders, &followers, machine)?;
     if options.resume {
         plan.retain(|planned| {
             let key = (planned.scene.as_str(), planned.dimensions, planned.boxes);
@@ -252,9 +252,10 @@ fn kept(record: &mut Record, kind: Kind) -> &mut Vec<Case> {
 }
 
 /// The record of this machine and day, with what is in it so far.
-fn open<'a>(
+fn open(
     options: &Options,
-    entrants: impl Iterator<Item = &'a Entrant> + Clone,
+    finders: &[Entrant],
+    followers: &[Entrant],
     machine: crate::record::Machine,
 ) -> Result<(Record, PathBuf)> {
     let date = chrono::Utc::now().format("%Y-%m-%d").to_string();
@@ -283,8 +284,13 @@ fn open<'a>(
         let (date, machine, rustc) = (record.date, record.machine, record.rustc);
         record = Record { date, machine, rustc, ..kept };
     }
-    record.versions.extend(entrants.clone().map(|it| (it.name.into(), it.version.clone())));
-    record.how.extend(entrants.map(|it| (it.name.into(), it.how.into())));
+    // Some are both, and called in another way.
+    let finders = finders.iter().map(|it| (it.name.to_owned(), it));
+    let followers = followers.iter().map(|it| (format!("{}, world", it.name), it));
+    for (name, entrant) in finders.chain(followers) {
+        record.versions.insert(name.clone(), entrant.version.clone());
+        record.how.insert(name, entrant.how.into());
+    }
     Ok((record, path))
 }
 
