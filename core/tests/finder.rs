@@ -242,6 +242,26 @@ fn random_boxes<const D: usize, T: Scalar>() {
 }
 in_all_dimensions!(every_road_finds_the_pairs_of_random_boxes, random_boxes);
 
+/// Frames of boxes that move little, teleport, grow and shrink in number.
+fn the_past_does_not_matter<const D: usize, T: Scalar>() {
+    let mut finders = finders::<D, T>();
+    let mut random = Random::new(3);
+    for n in [MANY, MANY, 3, 600, MANY, 20, MANY / 3, 0, MANY] {
+        let mut boxes: Boxes<D, T> = some(n, half_size::<D>(n.max(1)));
+        for _ in 0..2 {
+            let fresh = find_pairs(&boxes).unwrap();
+            for (name, finder) in &mut finders {
+                assert!(finder.find(&boxes).unwrap() == fresh, "{name}, {D}D, {n} boxes");
+            }
+            for aabb in &mut boxes {
+                let by = T::from_f64(if random.below(9) == 0 { random.unit() } else { 0.001 });
+                *aabb = Aabb::new(aabb.min.map(|at| at + by), aabb.max.map(|at| at + by));
+            }
+        }
+    }
+}
+in_all_dimensions!(a_finder_finds_what_a_new_one_finds, the_past_does_not_matter);
+
 /// Boxes as they come, most of them bad.
 fn refuses_bad_boxes<const D: usize, T: Scalar>() {
     let bad = |a: T, b: T| Aabb::new([a; D], [b; D]);

@@ -56,6 +56,15 @@
 //! the last box of a column stand NaN edges, which are `<=` nothing: unlike infinite sentinels they
 //! stop the sweep of an infinite box too.
 //!
+//! # Why nothing is learnt from the last call
+//! A column is ordered in linear time, and that takes a fifth of the whole, so even an order for
+//! nothing would gain no more than a quarter. To take the boxes in the order of the last call makes
+//! their places in memory random instead of those of their records, and costs twice the time from
+//! 100,000 boxes on, even where most are at rest; to finish nearly sorted columns by insertion costs
+//! more still, because the copies from neighbouring columns come in runs of their own. A plan kept
+//! would make the order of the pairs depend on what was found before. Who has boxes that move
+//! little keeps them in a [`BroadPhase`](crate::BroadPhase), which touches only what has moved.
+//!
 //! # Memory
 //! A record is a box, its index and a word: 32 bytes for a 3D `f32` box. With 1.2 to 1.6 copies of
 //! each, the list of them (8 bytes a copy), and one bin laid out at a time, a finder holds less than
