@@ -88,9 +88,11 @@ fn a_stream_needs_no_memory_for_pairs() {
 fn with_little_memory() {
     let many = vec![Aabb::new([0.0f32; 3], [1.0; 3]); 50_000];
     let few = scene::<3, f32>(Scene::Uniform, 5000, 1);
-    let mut finders = vec![PairFinder::new()];
-    #[cfg(feature = "parallel")]
-    finders.push(PairFinder::new().threads(2));
+    let finders = [
+        PairFinder::new(),
+        #[cfg(feature = "parallel")]
+        PairFinder::new().threads(2),
+    ];
     for mut finder in finders {
         let found = finder.find(&few).unwrap().to_vec();
         assert_eq!(finder.find(&many), Err(Error::OutOfMemory)); // ten gigabytes of pairs

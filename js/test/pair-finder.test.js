@@ -25,6 +25,17 @@ test("a large input, then small ones, then large again", () => {
   finder.free();
 });
 
+test("65,536 boxes, whose square has 33 bits, are found as any others are", () => {
+  for (const count of [2 ** 16 - 1, 2 ** 16, 2 ** 17]) {
+    // From right to left, each touching the next: a sweep tells the last box's pair first, brute
+    // force the first box's.
+    const rows = Float64Array.from({ length: 2 * count }, (_, i) => (i & 1) - (i >> 1));
+    const pairs = findPairs(rows, { dimensions: 1 });
+    assert.equal(pairs.length, 2 * (count - 1));
+    assert.deepEqual([...pairs.subarray(0, 2)], [count - 2, count - 1]);
+  }
+});
+
 test("single and double precision take turns", () => {
   const finder = new PairFinder({ dimensions: 3 });
   const double = boxesSpread(random(3), 500, 3);
@@ -37,6 +48,7 @@ test("single and double precision take turns", () => {
 
 test("finders do not share their results", () => {
   const [a, b] = [new PairFinder({ dimensions: 1 }), new PairFinder({ dimensions: 1 })];
+  for (const finder of [a, b]) finder.find([0, 1, 1, 2]); // takes what memory it needs
   const pairs = a.find([0, 1, 1, 2]);
   b.find([0, 1, 2, 3, 0, 3]);
   assert.deepEqual([...pairs], [0, 1]);

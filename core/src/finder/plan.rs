@@ -105,13 +105,13 @@ pub(super) fn plan<const D: usize, T: Scalar, S: Source<D, T>>(
 /// Boxes drawn evenly from a set, one at a random place of each stretch. The randomness is the
 /// same on every run.
 fn sampled<const D: usize, T: Scalar, S: Source<D, T>>(source: S) -> impl Iterator<Item = usize> {
-    let count = source.len();
-    let len = (count / 32).clamp(24, SAMPLE).min(count);
+    let count = source.len() as u64; // `usize` has 32 bits in WebAssembly
+    let len = (count / 32).clamp(24, SAMPLE as u64).min(count);
     let mut random = 0x9E37_79B9_7F4A_7C15u64;
     (0..len).map(move |i| {
         random = random.wrapping_mul(0x5851_F42D_4C95_7F2D).wrapping_add(1);
         let (from, to) = (i * count / len, (i + 1) * count / len);
-        from + ((random >> 33) as usize) % (to - from)
+        (from + (random >> 33) % (to - from)) as usize
     })
 }
 

@@ -30,7 +30,7 @@ const DEPTH: u32 = 12;
 /// A bin with fewer boxes is never planned anew,
 const SMALL: usize = 512;
 /// nor is one with fewer candidates a box.
-const CROWDED: usize = 96;
+const CROWDED: u64 = 96;
 
 /// One with more, or with so many times what the mean bin holds, is planned anew before it is
 /// ordered: that many were not expected.
@@ -303,9 +303,9 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         if boxes >= SMALL && task.depth < DEPTH {
             let columns = &self.columns[..sets.len()];
             // A few probes tell that all is well; more, before anything is done about it.
-            if candidates(columns, 32) > CROWDED * boxes {
+            if candidates(columns, 32) > CROWDED * boxes as u64 {
                 let candidates = candidates(columns, 512);
-                if candidates > CROWDED * boxes {
+                if candidates > CROWDED * boxes as u64 {
                     let planned = plan(sets, true);
                     if planned.cost < 0.6 * CANDIDATE * candidates as f64 {
                         return self.follow(planned.plan, sets, again, sink);
@@ -388,7 +388,8 @@ pub(super) fn is_direct<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[S]) 
 /// Whether boxes are so few that nothing else is worth while.
 #[inline]
 pub(super) fn is_tiny<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[S]) -> bool {
-    sets[0].len() * sets[sets.len() - 1].len() <= VERY_FEW * VERY_FEW
+    // Of 65,536 boxes and itself the product is 0 where `usize` has 32 bits.
+    sets[0].len().saturating_mul(sets[sets.len() - 1].len()) <= VERY_FEW * VERY_FEW
 }
 
 /// The pairs of very few boxes, box by box.

@@ -39,18 +39,19 @@ impl Sweep<'_> {
 }
 
 /// About how many candidates a sweep would test, from `probes` of its boxes.
-pub(super) fn candidates<T: Scalar>(columns: &[Column<T>], probes: usize) -> usize {
+pub(super) fn candidates<T: Scalar>(columns: &[Column<T>], probes: u64) -> u64 {
     let last = &columns[columns.len() - 1];
     let one_way = |column: &Column<T>, against: &Column<T>| {
         let left = &against.left[..against.len()];
-        let ahead: usize = (0..probes)
+        let len = column.len() as u64; // `usize` has 32 bits in WebAssembly
+        let ahead: u64 = (0..probes)
             .map(|probe| {
-                let i = (2 * probe + 1) * column.len() / (2 * probes);
-                left.partition_point(|&left| left <= column.right[i])
-                    - left.partition_point(|&left| left < column.left[i])
+                let i = ((2 * probe + 1) * len / (2 * probes)) as usize;
+                let end = left.partition_point(|&left| left <= column.right[i]);
+                (end - left.partition_point(|&left| left < column.left[i])) as u64
             })
             .sum();
-        (ahead as u64 * column.len() as u64 / probes as u64) as usize
+        ahead * len / probes
     };
     match columns {
         [first, _] => one_way(first, last) + one_way(last, first),
