@@ -153,12 +153,8 @@ test.describe("paused", () => {
     await lab.root.getByLabel("Seed").fill("7");
     await lab.root.getByLabel("Seed").press("Enter");
     await expect(lab.root.locator('[data-part="bodies-value"]')).toHaveText("5");
-    const query = new URL(page.url()).searchParams;
-    expect(Object.fromEntries(query)).toEqual({
-      "discs.algorithm": "global pairwise",
-      "discs.bodies": "5",
-      "discs.seed": "7",
-    });
+    const query = (): Record<string, string> => Object.fromEntries(new URL(page.url()).searchParams);
+    await expect.poll(query).toEqual({ "discs.algorithm": "global pairwise", "discs.bodies": "5", "discs.seed": "7" });
     await expect.poll(() => lab.counter("brute-force")).toBe("10");
 
     await page.reload();
