@@ -59,8 +59,13 @@ function slimOutcome(outcome: Outcome): Outcome {
   return { Timed: { median_ns: Math.round(median_ns), ratio: ratio && Number(ratio.toPrecision(4)), peak_bytes } };
 }
 
+/** The most scenes of a run: the plot that has a row for each is as high from the start. */
+const rows = (): number =>
+  Math.max(0, ...runs().flatMap(({ cases, worlds }) => [cases, worlds].map((of) => new Set(of.map(({ scene, dimensions }) => `${scene} ${dimensions}`)).size)));
+
 export const benchmark: Plugin = {
   name: "benchmark",
+  transformIndexHtml: (page) => page.replace('id="plot-ratio"', `id="plot-ratio" style="--rows: ${rows()}"`),
   resolveId: (id) => (id === MODULE ? `\0${MODULE}` : undefined),
   load: (id) => (id === `\0${MODULE}` ? `export default ${JSON.stringify(runs())}` : undefined),
   generateBundle() {

@@ -67,12 +67,13 @@ export function drawLeads(place: HTMLElement, leads: readonly Lead[]): void {
   const colour = (boxes: number): string => `var(--line-${((sizes.indexOf(boxes) + 3) % COLOURS) + 1})`;
   const title = ({ scene, boxes, ratio, peer }: Lead): string =>
     `${scene}, ${count(boxes)} boxes\n${peer} takes ${significant(ratio)} times as long`;
+  const scenes = [...new Set(leads.map(({ scene }) => scene))];
   const plot = Plot.plot({
     ...frame(place),
-    height: place.clientHeight - 40,
+    height: 20 * scenes.length + 80,
     marginLeft: 118,
     x: { type: "log", label: "times as long as ours →", grid: true, tickFormat: (value: number) => (/^[125]/.test(String(value)) || value < 1 ? String(value) : "") },
-    y: { type: "point", label: null, domain: [...new Set(leads.map(({ scene }) => scene))], grid: true },
+    y: { type: "point", label: null, domain: scenes, grid: true },
     marks: [
       Plot.ruleX([1], { stroke: "var(--ink)" }),
       ...sizes.map((size) =>
