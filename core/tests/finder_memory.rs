@@ -39,7 +39,9 @@ fn peak<const D: usize, T: Scalar>(kind: Scene, n: usize) -> Option<u64> {
     Some(counted.bytes_max / n as u64)
 }
 
+/// Of coincident boxes there are nearly two billion pairs to count.
 #[test]
+#[cfg_attr(debug_assertions, ignore = "slow where nothing is optimized")]
 fn the_peak_is_as_documented() {
     for &kind in Scene::ALL {
         for n in [3_000, 60_000] {
