@@ -152,11 +152,13 @@ function run(command, args, env) {
   if (status !== 0) process.exit(status ?? 1);
 }
 
-/** Removes what an earlier build left and this one did not write. */
+/** Removes the files that an earlier build left and this one did not write. (Of a folder whose files
+ * are written over, the time does not change.) */
 function removeStale() {
-  for (const name of readdirSync(dist)) {
+  for (const name of readdirSync(dist, { recursive: true })) {
     const path = join(dist, name);
-    if (statSync(path).mtimeMs < started - 1000) rmSync(path, { recursive: true });
+    const entry = statSync(path);
+    if (entry.isFile() && entry.mtimeMs < started - 1000) rmSync(path);
   }
 }
 
