@@ -71,6 +71,8 @@ test("a contender that finds other pairs is told of loudly", async ({ page }) =>
   const race = await new Race(page).open("?boxes=100");
   await expect(race.root.getByRole("alert")).toHaveText(/In step 3 contender 3 found other pairs/);
   await expect(race.root.locator('[data-part="verdict"]')).toHaveText("They do not agree.");
+  // Hundreds of steps a second go by: it must stand still to be seen at its beginning.
+  await race.root.getByRole("button", { name: "Pause" }).click();
   await race.root.getByRole("button", { name: "Reset" }).click();
   await expect.poll(async () => Number(await race.root.getAttribute("data-step"))).toBeLessThan(3);
 });
