@@ -49,20 +49,24 @@ export async function scrolledThrough(page: Page): Promise<void> {
   });
 }
 
-/** How far things moved by themselves, in the units of layout shift, while the page loaded and was read. */
-export async function shifts(page: Page, path: string): Promise<number> {
+/** How far things moved by themselves, in the units of layout shift, while the page loaded and was read; and what. */
+export async function shifts(page: Page, path: string): Promise<{ sum: number; what: string }> {
   await page.goto("about:blank");
   await page.goto(path);
   await page.evaluate(() => {
-    Object.assign(window, { shifted: 0 });
+    const seen = { sum: 0, what: "" };
+    Object.assign(window, { shifts: seen });
+    type Shift = PerformanceEntry & { value: number; sources: { node: Node | null }[] };
     new PerformanceObserver((list) => {
-      for (const entry of list.getEntries()) {
-        (window as unknown as { shifted: number }).shifted += (entry as PerformanceEntry & { value: number }).value;
+      for (const { value, sources } of list.getEntries() as Shift[]) {
+        const moved = sources.map(({ node }) => `${node?.nodeName} “${node?.textContent?.trim().slice(0, 40)}”`);
+        seen.sum += value;
+        seen.what += `\n${value.toFixed(4)} at ${Math.round(scrollY)} px: ${moved.join(", ")}`;
       }
     }).observe({ type: "layout-shift", buffered: true });
   });
   await scrolledThrough(page);
-  return page.evaluate(() => (window as unknown as { shifted: number }).shifted);
+  return page.evaluate(() => (window as unknown as { shifts: { sum: number; what: string } }).shifts);
 }
 
 const axeSource = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
