@@ -309,5 +309,5 @@ macro_rules! coordinate {
     };
 }
 
-coordinate!(f32, single, __m128, __m256, __m512, float32x4_t, F32x4);
-coordinate!(f64, double, __m128d, __m256d, __m512d, float64x2_t, F64x2);
+coordinate!(f32, single, __m128, __m256, __m512, float32x4_t, F32x8);
+coordinate!(f64, double, __m128d, __m256d, __m512d, float64x2_t, F64x4);

@@ -70,7 +70,7 @@ pub(super) struct Reporter {
 
 impl Reporter {
     #[inline(always)]
-    fn pair(&self, other: u32) -> [u32; 2] {
+    pub fn pair(&self, other: u32) -> [u32; 2] {
         if self.swap_always | (self.swap_if_smaller & (other < self.id)) {
             [other, self.id]
         } else {
