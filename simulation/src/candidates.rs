@@ -1,21 +1,16 @@
 //! The pairs that may touch within a step: found once, and kept up while it lasts.
 
-use std::array::from_fn;
-
 use sweep_and_prune::algorithms::Counts;
 use sweep_and_prune::{Aabb, Error};
 
 use crate::bodies::Bodies;
 use crate::broad_phase::Engine;
+use crate::enclosures::{Ahead, Enclosures};
 use crate::grid::Grid;
-use crate::vector::{dot, greater, lesser};
+use crate::vector::{greater, hull};
 
-/// What a box leaves around the way that its ball is expected to take, as a share of the way...
-const MARGIN_OF_WAY: f32 = 0.25;
-/// ...and of the radius.
-const MARGIN_OF_RADIUS: f32 = 0.05;
-/// The pairs of all balls are found anew if more than one in so many have left their boxes.
-const MOST_LEFT: usize = 8;
+/// The pairs of all balls are found anew if more than one in so many are leaving their boxes.
+const MOST_LEAVING: usize = 8;
 
 /// A box for each ball that holds it to the end of the step, as far as can be foreseen, and the
 /// pairs of boxes that overlap.
@@ -23,153 +18,193 @@ const MOST_LEFT: usize = 8;
 /// The broad phase runs once a step, over boxes that are large enough for all its substeps
 /// (Müller et al. 2020, "Detailed rigid body simulation with extended position based dynamics",
 /// §3.5). It is not left at that: in each substep every ball that is about to leave its box, because
-/// a bounce sent it elsewhere, gets a new one, and is tested against all that are near. So no contact
-/// is missed, and the motion is to the bit that of a broad phase in every substep.
+/// a bounce sent it elsewhere, gets a larger one, and is tested against all that are near. So no
+/// contact is missed, and the motion is to the bit that of a broad phase in every substep.
 #[derive(Debug, Default)]
 pub struct Candidates<const D: usize> {
-    /// By ball.
-    pub boxes: Vec<Aabb<D>>,
+    enclosures: Enclosures<D>,
     /// In the order in which they were found.
     pub pairs: Vec<[u32; 2]>,
-    /// The balls that left their boxes before this substep, ascending.
-    left: Vec<u32>,
-    /// By ball, whether it is among them.
-    has_left: Vec<bool>,
-    /// Whether all balls are to be looked at.
+    /// The balls that are about to leave their boxes, ascending.
+    leaving: Vec<u32>,
+    /// Whether the boxes are new, and their pairs not yet found.
     is_stale: bool,
-}
-
-/// Where balls are about to go.
-#[derive(Clone, Copy, Debug)]
-pub struct Ahead<const D: usize> {
-    /// What gravity adds to the velocities before they carry the balls on.
-    pub kick: [f32; D],
-    pub gravity: [f32; D],
-    /// How long the substep is.
-    pub time: f32,
-    /// How many substeps the step has left, this one included.
-    pub substeps: u32,
+    near: Neighbourhood<D>,
 }
 
 impl<const D: usize> Candidates<D> {
-    /// Makes the boxes of a step that begins.
-    pub fn enclose(&mut self, bodies: &Bodies<D>, ahead: &Ahead<D>) {
-        self.boxes.clear();
-        self.boxes.extend((0..bodies.len()).map(|ball| large_box(bodies, ball, ahead)));
-        self.is_stale = true;
+    /// By ball.
+    pub fn boxes(&self) -> &[Aabb<D>] {
+        &self.enclosures.boxes
     }
 
-    /// Makes new boxes for the balls that would leave theirs in this substep.
+    /// Makes the boxes of a step that begins.
+    pub fn enclose(&mut self, bodies: &Bodies<D>, ahead: &Ahead<D>) {
+        self.enclosures.enclose_all(bodies, ahead);
+        self.is_stale = true;
+        self.near.is_stale = true;
+    }
+
+    /// Makes larger boxes for the balls that would leave theirs in this substep, and finds the
+    /// pairs that this adds.
+    ///
+    /// A box only grows, so its pairs stay: a pair is new if it overlaps the box and did not
+    /// overlap the box that it was. Where many balls leave, all boxes are made anew.
     pub fn follow(&mut self, bodies: &Bodies<D>, ahead: &Ahead<D>) {
-        self.left.clear();
-        for (ball, large) in self.boxes.iter().enumerate() {
-            if !contains(large, &swept_box(bodies, ball, ahead)) {
-                self.left.push(ball as u32);
-            }
-        }
-        if self.left.len() > self.boxes.len() / MOST_LEFT {
+        self.enclosures.list_leaving(bodies, ahead, &mut self.leaving);
+        if self.leaving.len() > bodies.len() / MOST_LEAVING {
             self.enclose(bodies, ahead);
             return;
         }
-        for &ball in &self.left {
-            self.boxes[ball as usize] = large_box(bodies, ball as usize, ahead);
+        for &ball in &self.leaving {
+            self.near.bring_up(&self.enclosures);
+            let before = self.enclosures.enclose_too(ball, bodies, ahead);
+            let boxes = &self.enclosures.boxes;
+            let own = &boxes[ball as usize];
+            self.near.grown(ball, own);
+            self.near.visit(own, |other| {
+                let aabb = &boxes[other as usize];
+                if overlap(own, aabb) && !overlap(&before, aabb) && other != ball {
+                    self.pairs.push([ball.min(other), ball.max(other)]);
+                }
+            });
         }
     }
 
     /// What the engine would do next, counted, if it is its turn; the library's finder counts nothing.
     pub fn count(&self, engine: &Engine<D>) -> Result<Option<Counts>, Error> {
-        engine.count(&self.boxes)
+        engine.count(self.boxes())
     }
 
-    /// Brings the pairs up to the boxes: by the engine, if the boxes are all new, which is then
-    /// returned as true; or of the balls alone that left theirs, by a grid.
+    /// Has the engine find the pairs if the boxes are all new, and says whether they were.
     pub fn find(&mut self, engine: &mut Engine<D>) -> Result<bool, Error> {
-        if std::mem::take(&mut self.is_stale) {
+        let is_stale = std::mem::take(&mut self.is_stale);
+        if is_stale {
             self.pairs.clear();
-            self.pairs.extend_from_slice(engine.find(&self.boxes)?);
-            return Ok(true);
+            self.pairs.extend_from_slice(engine.find(&self.enclosures.boxes)?);
         }
-        if self.left.is_empty() {
-            return Ok(false);
+        Ok(is_stale)
+    }
+}
+
+/// Which boxes may be near another: a grid of the places where they began to grow.
+#[derive(Debug, Default)]
+struct Neighbourhood<const D: usize> {
+    grid: Grid<D>,
+    /// By ball, the middle of its box when it was put into the grid.
+    places: Vec<[f32; D]>,
+    /// No box reaches further than this from its place, on any axis.
+    reach: f32,
+    /// Whether the boxes have been made anew since.
+    is_stale: bool,
+}
+
+impl<const D: usize> Neighbourhood<D> {
+    /// Puts all boxes into the grid, if that has not been done in this step. O(boxes).
+    fn bring_up(&mut self, enclosures: &Enclosures<D>) {
+        if !std::mem::take(&mut self.is_stale) {
+            return;
         }
-        self.has_left.clear();
-        self.has_left.resize(self.boxes.len(), false);
-        self.left.iter().for_each(|&ball| self.has_left[ball as usize] = true);
-        let Self { boxes, pairs, left, has_left, .. } = self;
-        pairs.retain(|pair| !pair.iter().any(|&ball| has_left[ball as usize]));
-        let grid = grid_of(boxes);
-        for &ball in &*left {
-            let own = &boxes[ball as usize];
-            grid.any_near(centre(own), |other| {
-                // Of two that left, the first one finds the pair.
-                if own.overlaps(&boxes[other as usize])
-                    && other != ball
-                    && (other > ball || !has_left[other as usize])
-                {
-                    pairs.push([ball.min(other), ball.max(other)]);
+        self.places.clear();
+        self.places.extend(enclosures.middles());
+        self.reach = 0.5 * enclosures.widest;
+        self.grid.reset(&hull(&self.places), self.places.len(), self.reach);
+        self.places.iter().for_each(|&place| self.grid.insert(place));
+    }
+
+    /// Takes notice that a box has become this large.
+    fn grown(&mut self, ball: u32, aabb: &Aabb<D>) {
+        for (axis, place) in self.places[ball as usize].into_iter().enumerate() {
+            let sides = greater(place - aabb.min[axis], aabb.max[axis] - place);
+            self.reach = greater(sides, self.reach);
+        }
+    }
+
+    /// All balls whose boxes overlap this one, and others.
+    fn visit(&self, aabb: &Aabb<D>, mut visit: impl FnMut(u32)) {
+        // A hair more, for places and reaches are rounded.
+        let reach = 1.01 * self.reach;
+        let region = Aabb::new(aabb.min.map(|min| min - reach), aabb.max.map(|max| max + reach));
+        self.grid.any_within(&region, |ball| {
+            visit(ball);
+            false
+        });
+    }
+}
+
+/// As [`Aabb::overlaps`], without a branch that would be guessed wrong.
+fn overlap<const D: usize>(a: &Aabb<D>, b: &Aabb<D>) -> bool {
+    (0..D).fold(true, |all, axis| all & (a.min[axis] <= b.max[axis]) & (b.min[axis] <= a.max[axis]))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::array::from_fn;
+
+    use super::*;
+    use crate::broad_phase::BroadPhase;
+    use crate::scenes::{self, Population};
+    use crate::setup::Setup;
+    use sweep_and_prune_scenes::Random;
+
+    /// Balls that are sent elsewhere in each substep, as by bounces: some of them, or all.
+    fn assert_complete<const D: usize>(setup: &Setup<D>, share: f64, speed: f32) {
+        let mut engine = Engine::new(BroadPhase::Library).unwrap();
+        let mut candidates = Candidates::default();
+        let mut bodies = Bodies::new(&setup.balls);
+        let mut random = Random::new(3);
+        let mut followed = 0;
+        for substep in 0..24 {
+            let ahead = Ahead {
+                kick: setup.gravity.map(|g| g * 0.002),
+                gravity: setup.gravity,
+                time: 0.004,
+                substeps: 8 - substep % 8,
+            };
+            if substep % 8 == 0 {
+                candidates.enclose(&bodies, &ahead);
+            } else {
+                candidates.follow(&bodies, &ahead);
+            }
+            followed += u32::from(!candidates.find(&mut engine).unwrap());
+
+            let mut expected = sweep_and_prune::find_pairs(candidates.boxes()).unwrap();
+            let mut pairs = candidates.pairs.clone();
+            expected.sort_unstable();
+            pairs.sort_unstable();
+            assert_eq!(pairs, expected, "substep {substep}");
+
+            for (ball, large) in candidates.boxes().iter().enumerate() {
+                let (radius, at) = (bodies.radii[ball], bodies.positions[ball]);
+                for axis in 0..D {
+                    let speed = bodies.velocities[ball][axis] + ahead.kick[axis];
+                    for at in [at[axis], at[axis] + speed * ahead.time] {
+                        assert!(large.min[axis] <= at - radius, "ball {ball}, substep {substep}");
+                        assert!(large.max[axis] >= at + radius, "ball {ball}, substep {substep}");
+                    }
                 }
-                false
-            });
+            }
+            bodies.kick(ahead.kick);
+            bodies.drift(ahead.time, &setup.bounds);
+            for velocity in &mut bodies.velocities {
+                if random.unit() < share {
+                    *velocity = from_fn(|_| (random.unit() as f32 * 2.0 - 1.0) * speed);
+                }
+            }
         }
-        Ok(false)
+        assert!(followed > 0 || share > 0.2, "the engine was to rest now and then");
     }
-}
 
-/// The boxes by their centres. O(boxes).
-fn grid_of<const D: usize>(boxes: &[Aabb<D>]) -> Grid<D> {
-    let mut hull = boxes[0];
-    let mut widest = 0.0;
-    for aabb in boxes {
-        for axis in 0..D {
-            hull.min[axis] = lesser(aabb.min[axis], hull.min[axis]);
-            hull.max[axis] = greater(aabb.max[axis], hull.max[axis]);
-            widest = greater(aabb.max[axis] - aabb.min[axis], widest);
+    #[test]
+    fn pairs_are_those_of_the_boxes_and_the_boxes_hold_the_balls() {
+        for (spread, seed) in [(1.0, 1), (20.0, 2)] {
+            let population = Population { bodies: 400, size: 0.3, spread, seed };
+            let flat = scenes::falling::<2>(population).unwrap();
+            let solid = scenes::falling::<3>(population).unwrap();
+            for (share, speed) in [(0.0, 0.0), (0.01, 8.0), (0.08, 40.0), (0.5, 8.0)] {
+                assert_complete(&flat, share, speed);
+                assert_complete(&solid, share, speed);
+            }
         }
     }
-    // A hair more than half, for centres are rounded.
-    let mut grid = Grid::new(hull, boxes.len() as u32, 0.501 * widest);
-    boxes.iter().for_each(|aabb| grid.insert(centre(aabb)));
-    grid
-}
-
-fn centre<const D: usize>(aabb: &Aabb<D>) -> [f32; D] {
-    from_fn(|axis| 0.5 * (aabb.min[axis] + aabb.max[axis]))
-}
-
-/// The box that a ball sweeps out within the substep.
-#[inline]
-fn swept_box<const D: usize>(bodies: &Bodies<D>, ball: usize, ahead: &Ahead<D>) -> Aabb<D> {
-    let (position, velocity) = (bodies.positions[ball], bodies.velocities[ball]);
-    let radius = bodies.radii[ball];
-    let next: [f32; D] =
-        from_fn(|axis| position[axis] + (velocity[axis] + ahead.kick[axis]) * ahead.time);
-    Aabb::new(
-        from_fn(|axis| lesser(position[axis], next[axis]) - radius),
-        from_fn(|axis| greater(position[axis], next[axis]) + radius),
-    )
-}
-
-/// The box of all that a ball sweeps through to the end of the step if nothing stops it, and a
-/// margin around it. At least as large as that of the substep.
-#[inline]
-fn large_box<const D: usize>(bodies: &Bodies<D>, ball: usize, ahead: &Ahead<D>) -> Aabb<D> {
-    let (position, velocity) = (bodies.positions[ball], bodies.velocities[ball]);
-    let radius = bodies.radii[ball];
-    let time = ahead.time * ahead.substeps as f32;
-    let way: [f32; D] = from_fn(|axis| (velocity[axis] + ahead.kick[axis]) * time);
-    let fall = ahead.gravity.map(|g| g * time * time);
-    let margin = MARGIN_OF_WAY * dot(way, way).sqrt() + MARGIN_OF_RADIUS * radius;
-    let mut large = swept_box(bodies, ball, ahead);
-    for axis in 0..D {
-        let (near, far) = (position[axis] + way[axis], position[axis] + way[axis] + fall[axis]);
-        large.min[axis] = lesser(large.min[axis], lesser(near, far) - radius) - margin;
-        large.max[axis] = greater(large.max[axis], greater(near, far) + radius) + margin;
-    }
-    large
-}
-
-/// Whether a box holds another.
-#[inline]
-fn contains<const D: usize>(outer: &Aabb<D>, inner: &Aabb<D>) -> bool {
-    (0..D).all(|axis| outer.min[axis] <= inner.min[axis] && inner.max[axis] <= outer.max[axis])
 }

@@ -79,6 +79,7 @@ mod bodies;
 mod broad_phase;
 mod candidates;
 mod contacts;
+mod enclosures;
 mod grid;
 mod order;
 mod scatter;

@@ -41,12 +41,13 @@ impl<const D: usize> Scatter<D> {
             (0..self.bodies).map(|_| 1.0 / between(&mut random, least, greatest)).collect();
         radii.sort_unstable_by(|a, b| b.total_cmp(a));
 
-        let mut grid = Grid::new(self.region, self.bodies, self.radii[1]);
+        let mut grid = Grid::default();
+        grid.reset(&self.region, self.bodies as usize, 2.0 * self.radii[1]);
         let mut balls: Vec<Ball<D>> = Vec::with_capacity(radii.len());
         for radius in radii {
             let centre = (0..Self::TRIES)
                 .map(|_| self.draw_place(radius, &mut random))
-                .find(|&centre| !is_taken(&grid, &balls, centre, radius))
+                .find(|&centre| !self.is_taken(&grid, &balls, centre, radius))
                 .ok_or(SetupError::NoRoom { placed: balls.len() })?;
             let velocity = self.speed.map(|speed| between(&mut random, -speed, speed));
             grid.insert(centre);
@@ -61,24 +62,22 @@ impl<const D: usize> Scatter<D> {
             between(random, min + radius, max - radius)
         })
     }
+
+    /// Whether a ball there would touch one of the others.
+    fn is_taken(&self, grid: &Grid<D>, balls: &[Ball<D>], centre: [f32; D], radius: f32) -> bool {
+        // A hair more than the farthest centre of a ball that touches, for sums are rounded.
+        let farthest = 1.01 * (radius + self.radii[1]);
+        let near = Aabb::new(centre.map(|at| at - farthest), centre.map(|at| at + farthest));
+        grid.any_within(&near, |other| {
+            let ball = &balls[other as usize];
+            let apart = difference(ball.centre, centre);
+            let reach = ball.radius + radius;
+            dot(apart, apart) <= reach * reach
+        })
+    }
 }
 
 /// Uniform from `low` to `high`.
 fn between(random: &mut Random, low: f32, high: f32) -> f32 {
     low + random.unit() as f32 * (high - low)
-}
-
-/// Whether a ball there would touch one of the others.
-fn is_taken<const D: usize>(
-    grid: &Grid<D>,
-    balls: &[Ball<D>],
-    centre: [f32; D],
-    radius: f32,
-) -> bool {
-    grid.any_near(centre, |other| {
-        let ball = &balls[other as usize];
-        let apart = difference(ball.centre, centre);
-        let reach = ball.radius + radius;
-        dot(apart, apart) <= reach * reach
-    })
 }

@@ -5,8 +5,9 @@ use sweep_and_prune::{Aabb, Error};
 
 use crate::bodies::{Bodies, inside_walls};
 use crate::broad_phase::{BroadPhase, Engine};
-use crate::candidates::{Ahead, Candidates};
+use crate::candidates::Candidates;
 use crate::contacts::{Contacts, Surroundings};
+use crate::enclosures::Ahead;
 use crate::setup::{Setup, SetupError};
 use crate::solver;
 use crate::vector::dot;
@@ -387,7 +388,7 @@ impl<const D: usize> Simulation<D> {
 
     /// The boxes that were to hold the balls during the last step; none before the first.
     pub fn boxes(&self) -> &[Aabb<D>] {
-        &self.candidates.boxes
+        self.candidates.boxes()
     }
 
     /// The pairs of [`boxes`](Self::boxes) that overlap, in the order in which they were found.

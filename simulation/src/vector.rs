@@ -3,6 +3,12 @@
 
 use std::array::from_fn;
 
+use sweep_and_prune::Aabb;
+
+/// Coordinates that are worked on together, of whole vectors in 1, 2 and 3 dimensions: without a
+/// branch, and without regard to where a vector begins, so that compilers use vector instructions.
+pub const BLOCK: usize = 48;
+
 #[inline]
 pub fn difference<const D: usize>(a: [f32; D], b: [f32; D]) -> [f32; D] {
     from_fn(|axis| a[axis] - b[axis])
@@ -35,4 +41,26 @@ pub fn greater(a: f32, b: f32) -> f32 {
 #[inline]
 pub fn lesser(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
+}
+
+/// The coordinates over and over again.
+#[inline]
+pub fn repeated<const D: usize>(vector: [f32; D]) -> [f32; BLOCK] {
+    from_fn(|i| vector[i % D])
+}
+
+/// The smallest box of all points; of none, it is inverted.
+pub fn hull<const D: usize>(points: &[[f32; D]]) -> Aabb<D> {
+    let (mut min, mut max) = ([f32::INFINITY; BLOCK], [f32::NEG_INFINITY; BLOCK]);
+    for block in points.as_flattened().chunks(BLOCK) {
+        for (i, &at) in block.iter().enumerate() {
+            min[i] = lesser(at, min[i]);
+            max[i] = greater(at, max[i]);
+        }
+    }
+    let on = |axis| (axis..BLOCK).step_by(D);
+    Aabb::new(
+        from_fn(|axis| on(axis).fold(f32::INFINITY, |least, i| lesser(min[i], least))),
+        from_fn(|axis| on(axis).fold(f32::NEG_INFINITY, |most, i| greater(max[i], most))),
+    )
 }

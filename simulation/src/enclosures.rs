@@ -1,0 +1,152 @@
+//! Boxes that hold the balls through a whole step, as far as can be foreseen.
+
+use std::array::from_fn;
+use std::ops::Range;
+
+use sweep_and_prune::Aabb;
+
+use crate::bodies::Bodies;
+use crate::vector::{BLOCK, dot, greater, lesser, repeated};
+
+/// What a box leaves around the way that its ball is expected to take, as a share of the way...
+/// (Wider boxes make more pairs, narrower ones are left by more balls.)
+const MARGIN_OF_WAY: f32 = 0.4;
+/// ...and of the radius.
+const MARGIN_OF_RADIUS: f32 = 0.05;
+/// How near to the side of its box a ball may come, as a share of the radius. More than rounding
+/// takes, so that a ball inside is inside by any arithmetic.
+const CLEARANCE: f32 = 0.01;
+
+/// Where balls are about to go.
+#[derive(Clone, Copy, Debug)]
+pub struct Ahead<const D: usize> {
+    /// What gravity adds to the velocities before they carry the balls on.
+    pub kick: [f32; D],
+    pub gravity: [f32; D],
+    /// How long the substep is.
+    pub time: f32,
+    /// How many substeps the step has left, this one included.
+    pub substeps: u32,
+}
+
+/// A box for each ball.
+#[derive(Debug, Default)]
+pub struct Enclosures<const D: usize> {
+    pub boxes: Vec<Aabb<D>>,
+    /// Between which places the centre has to stay for the ball to be inside its box.
+    lowest: Vec<[f32; D]>,
+    highest: Vec<[f32; D]>,
+    /// At least the greatest side of any box.
+    pub widest: f32,
+}
+
+impl<const D: usize> Enclosures<D> {
+    /// Makes the boxes anew: each of all that a ball sweeps through to the end of the step if
+    /// nothing stops it, and a margin around it.
+    pub fn enclose_all(&mut self, bodies: &Bodies<D>, ahead: &Ahead<D>) {
+        self.boxes.resize(bodies.len(), Aabb::new([0.0; D], [0.0; D]));
+        self.lowest.resize(bodies.len(), [0.0; D]);
+        self.highest.resize(bodies.len(), [0.0; D]);
+        let mut widest = [0.0; BLOCK];
+        for first in (0..bodies.len()).step_by(BLOCK / D) {
+            let balls = first..bodies.len().min(first + BLOCK / D);
+            let (min, max) = extents(balls.clone(), bodies, ahead);
+            for i in 0..BLOCK {
+                widest[i] = greater(max[i] - min[i], widest[i]);
+            }
+            let (min, max) = (min.as_chunks().0, max.as_chunks().0);
+            for (ball, (&min, &max)) in balls.zip(min.iter().zip(max)) {
+                self.set(ball, Aabb::new(min, max), bodies.radii[ball]);
+            }
+        }
+        self.widest = widest.into_iter().fold(0.0, greater);
+    }
+
+    /// Makes the box of one ball larger, so that it holds the rest of the step too. The box that
+    /// it was.
+    pub fn enclose_too(&mut self, ball: u32, bodies: &Bodies<D>, ahead: &Ahead<D>) -> Aabb<D> {
+        let ball = ball as usize;
+        let before = self.boxes[ball];
+        let (min, max) = extents(ball..ball + 1, bodies, ahead);
+        let union = Aabb::new(
+            from_fn(|axis| lesser(before.min[axis], min[axis])),
+            from_fn(|axis| greater(before.max[axis], max[axis])),
+        );
+        self.set(ball, union, bodies.radii[ball]);
+        before
+    }
+
+    #[inline]
+    fn set(&mut self, ball: usize, large: Aabb<D>, radius: f32) {
+        let inset = radius + CLEARANCE * radius;
+        self.lowest[ball] = large.min.map(|min| min + inset);
+        self.highest[ball] = large.max.map(|max| max - inset);
+        self.boxes[ball] = large;
+    }
+
+    /// The middles of the boxes.
+    pub fn middles(&self) -> impl Iterator<Item = [f32; D]> {
+        let ends = self.lowest.iter().zip(&self.highest);
+        ends.map(|(low, high)| from_fn(|axis| 0.5 * (low[axis] + high[axis])))
+    }
+
+    /// Lists the balls that are not inside their boxes, or will not be before the substep ends,
+    /// ascending.
+    pub fn list_leaving(&self, bodies: &Bodies<D>, ahead: &Ahead<D>, leaving: &mut Vec<u32>) {
+        leaving.clear();
+        let kicks = repeated(ahead.kick);
+        let leaves = |coordinates: Range<usize>| {
+            let at = &bodies.positions.as_flattened()[coordinates.clone()];
+            let speeds = &bodies.velocities.as_flattened()[coordinates.clone()];
+            let lowest = &self.lowest.as_flattened()[coordinates.clone()];
+            let highest = &self.highest.as_flattened()[coordinates];
+            let mut leaves = 0;
+            for i in 0..at.len().min(BLOCK) {
+                let next = at[i] + (speeds[i] + kicks[i]) * ahead.time;
+                leaves |= u32::from(lesser(at[i], next) < lowest[i]);
+                leaves |= u32::from(greater(at[i], next) > highest[i]);
+            }
+            leaves != 0
+        };
+        for first in (0..bodies.len()).step_by(BLOCK / D) {
+            let end = bodies.len().min(first + BLOCK / D);
+            if leaves(first * D..end * D) {
+                let leaving_of_block = (first..end).filter(|ball| leaves(ball * D..(ball + 1) * D));
+                leaving.extend(leaving_of_block.map(|ball| ball as u32));
+            }
+        }
+    }
+}
+
+/// The lower and the upper corners of the boxes of at most a block of balls, coordinate by
+/// coordinate.
+fn extents<const D: usize>(
+    balls: Range<usize>,
+    bodies: &Bodies<D>,
+    ahead: &Ahead<D>,
+) -> ([f32; BLOCK], [f32; BLOCK]) {
+    let time = ahead.time * ahead.substeps as f32;
+    let mut reaches = [0.0; BLOCK];
+    let (reach_of, _) = reaches.as_chunks_mut();
+    let properties = bodies.velocities[balls.clone()].iter().zip(&bodies.radii[balls.clone()]);
+    for (reach, (velocity, &radius)) in reach_of.iter_mut().zip(properties) {
+        let way: [f32; D] = from_fn(|axis| (velocity[axis] + ahead.kick[axis]) * time);
+        *reach = [MARGIN_OF_WAY * dot(way, way).sqrt() + MARGIN_OF_RADIUS * radius + radius; D];
+    }
+
+    let coordinates = balls.start * D..balls.end * D;
+    let at = &bodies.positions.as_flattened()[coordinates.clone()];
+    let speeds = &bodies.velocities.as_flattened()[coordinates];
+    let kicks = repeated(ahead.kick);
+    let falls = repeated(ahead.gravity.map(|g| g * time * time));
+    let (mut min, mut max) = ([0.0; BLOCK], [0.0; BLOCK]);
+    for i in 0..at.len().min(BLOCK) {
+        let speed = speeds[i] + kicks[i];
+        // The substep is part of the way; it is here for the sake of rounding.
+        let (next, end) = (at[i] + speed * ahead.time, at[i] + speed * time);
+        let fallen = end + falls[i];
+        min[i] = lesser(lesser(at[i], next), lesser(end, fallen)) - reaches[i];
+        max[i] = greater(greater(at[i], next), greater(end, fallen)) + reaches[i];
+    }
+    (min, max)
+}
