@@ -1,4 +1,4 @@
-import { defineConfig, type Plugin } from "vite";
+import { defineConfig, type Plugin, type Rolldown } from "vite";
 import { api } from "./src/api/build.ts";
 import { article } from "./src/article/build.ts";
 import { benchmark, peers } from "./src/benchmark/build.ts";
@@ -19,14 +19,22 @@ const complexity: Plugin = {
   transformIndexHtml: { order: "pre", handler: insertComplexity },
 };
 
+/** What bundling the benchmark's peers warns of is theirs to mend. */
+const quiet: Rolldown.InputOptions = {
+  checks: { pluginTimings: false },
+  onLog(level, log, report) {
+    if (level !== "warn" || !`${log.id} ${log.message}`.includes("bench/js/node_modules")) report(level, log);
+  },
+};
+
 export default defineConfig({
   base: "./",
   appType: "mpa",
   plugins: [shell, article, api, labs, complexity, benchmark, offline],
-  worker: { format: "es", plugins: () => [peers()] },
+  worker: { format: "es", plugins: () => [peers()], rolldownOptions: quiet },
   build: {
     target: "es2022",
     chunkSizeWarningLimit: 800,
-    rolldownOptions: { input: pages() },
+    rolldownOptions: { ...quiet, input: pages() },
   },
 });

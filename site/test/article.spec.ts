@@ -78,11 +78,24 @@ test.describe("does what its caption says", () => {
     }
   });
 
-  test("d12, d13: two axes leave only pairs whose boxes overlap", async ({ page }) => {
+  test("d12, d13: two axes leave only pairs whose boxes overlap, and check flags instead of boxes", async ({ page }) => {
     for (const id of ["d12", "d13c"]) {
       const demo = await new Demo(page, id).open();
       await demo.pause();
-      await demo.finish();
+      await demo.reset();
+      // At first each overlap on either axis is found; after that only what changes is looked at.
+      const { flagChecks: atFirst, axisOverlaps } = await demo.finish();
+      expect(atFirst).toBe(axisOverlaps);
+      expect(atFirst).toBeGreaterThan(0);
+      await expect(demo.root.locator("[data-counter=flag-checks]")).not.toBeEmpty();
+      await expect(demo.root.locator("[data-counter=tests]")).toHaveCount(0);
+      let before = axisOverlaps;
+      for (let detections = 0; detections < 20; detections++) {
+        const now = await demo.finish();
+        expect(now.flagChecks).toBeGreaterThanOrEqual(Math.abs(now.axisOverlaps - before));
+        expect(now.flagChecks).toBeLessThan(15);
+        before = now.axisOverlaps;
+      }
       const { tests, pairs, balls } = await demo.finish();
       let expected = 0;
       for (const [at, [x = 0, y = 0, r = 0]] of balls.entries()) {

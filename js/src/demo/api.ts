@@ -9,6 +9,8 @@ export interface DemoState {
   events: number;
   /** Pairs of boxes handed to the box test, so far in this detection. */
   tests: number;
+  /** Looks at the flags of a pair, where those take the place of tests: one for each overlap on an axis that is found, begins or ends. */
+  flagChecks: number;
   /** Pairs that overlap on a swept axis, as far as is known. */
   axisOverlaps: number;
   /** Pairs found to overlap. */

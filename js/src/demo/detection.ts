@@ -44,6 +44,16 @@ export class Detection {
     return (this.#swapped ??= new Set(this.events.flatMap(({ kind, a, b }) => (kind === "swap" ? [Number(a), Number(b)] : []))));
   }
 
+  /**
+   * How often the flags of a pair had been looked at when so many of the events had been played:
+   * once for each overlap that was found on an axis, or began there or ended.
+   */
+  flagChecksAt(position: number): number {
+    let count = 0;
+    for (const { kind } of this.events.slice(0, position)) count += Number(kind === "axis overlap" || kind === "axis apart");
+    return count;
+  }
+
   /** What is to be drawn when so many of its events have been played. */
   stateAt(position: number): PlayerState {
     if (this.#last?.position !== position) {
@@ -100,10 +110,15 @@ export function newRunner(detecting: Detecting): Runner {
   return new Runner({ dimensions: 2, ...detecting, persistent: true, traceWords: 1 << 22 });
 }
 
+/** Whether flags of pairs take the place of box tests. */
+export function hasFlags({ method }: Detecting): boolean {
+  return method.endsWith("on every axis");
+}
+
 /** Which kinds of events are worth a stop. */
-export function shownKinds({ checks, sweep, array }: Decorations, hasTests: boolean): Set<TraceEvent["kind"]> {
+export function shownKinds({ checks, sweep, array }: Decorations, detecting: Detecting): Set<TraceEvent["kind"]> {
   const kinds = new Set<TraceEvent["kind"]>();
-  if (checks) kinds.add(hasTests ? "test" : "overlap").add("prune");
+  if (checks) kinds.add(hasFlags(detecting) ? "overlap" : "test").add("prune");
   if (sweep) kinds.add("enter").add("leave");
   if (array?.isSortShown) kinds.add("compare").add("swap");
   return kinds;

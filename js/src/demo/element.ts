@@ -3,31 +3,30 @@ import type { TraceEvent } from "../trace.js";
 import type { DemoEvent, DemoEventMap, DemoState, Row } from "./api.js";
 import { Canvases } from "./canvas.js";
 import { clock } from "./clock.js";
-import { shownKinds } from "./detection.js";
-import { drawScene } from "./draw.js";
-import { arrayHeight, drawArray } from "./draw-array.js";
+import { hasFlags, shownKinds } from "./detection.js";
 import { explain, type Explanation } from "./explain.js";
 import { Grab } from "./grab.js";
+import { type Keyboard, keysOf, press } from "./keys.js";
 import { loadDemos } from "./load.js";
 import { namesOf } from "./names.js";
 import { describeEvent, summary } from "./narrate.js";
-import { attributes, booleans, isWorldKept, OptionError, type Options, readOptions, readStart, WIDTH } from "./options.js";
+import { attributes, isWorldKept, OptionError, type Options, readOptions, readStart } from "./options.js";
+import { heightOfArray, paint } from "./paint.js";
 import { Playback } from "./playback.js";
-import { type Question, questionOf } from "./predict.js";
+import { Guesses, type Question, questionAt } from "./predict.js";
+import { addProperties } from "./properties.js";
+import { Selection } from "./selection.js";
 import { iframeOf, shareUrl } from "./share.js";
+import { Speech } from "./speech.js";
 import { styles } from "./styles.js";
 import { controls, counters, guessing, sharing } from "./templates.js";
 import { type Theme, ThemeProbe } from "./theme.js";
 import { Timeline } from "./timeline.js";
+import { toldAs, toldOfSort } from "./told.js";
 import { rowsOf } from "./world.js";
 
 /** Numbers that change more often cannot be read. */
 const COUNTERS_MS = 100;
-/** The live region speaks no more often. */
-const SPEECH_MS = 700;
-/** How far an arrow key moves a ball, and with shift. */
-const ARROW = 5;
-const FAR_ARROW = 25;
 
 /** The class of `<sap-demo>`: api.ts says what others may count on. */
 export class SapDemoElement extends LitElement {
@@ -48,19 +47,16 @@ export class SapDemoElement extends LitElement {
   #hasChanged = false;
   #wasDragged = false;
   #names: string[] = [];
-  /** The balls chosen for an explanation, and the one that keys act on. */
-  #chosen: number[] = [];
-  #cursor: number | undefined;
+  readonly #selection = new Selection();
   #explanation: Explanation | undefined;
-  #guesses = { outcome: "", right: 0, made: 0 };
+  #guesses = new Guesses();
   #grab: Grab | undefined;
   #theme: Theme | undefined;
   readonly #probe: ThemeProbe;
   readonly #canvases = new Canvases(() => this.#paint());
   #countersAt = -Infinity;
-  #spokenAt = -Infinity;
   #shared: { url: string; code: string } | undefined;
-  #speech: ReturnType<typeof setTimeout> | undefined;
+  readonly #speech = new Speech(() => this.renderRoot.querySelector(".live"), () => this.#sentence);
   #setReady: () => void = () => undefined;
   readonly ready: Promise<void> = new Promise((resolve) => (this.#setReady = resolve));
 
@@ -86,7 +82,7 @@ export class SapDemoElement extends LitElement {
     if (!this.#isPlaying) return;
     this.#isPlaying = false;
     this.#changed();
-    this.#speak();
+    this.#speech.soon();
   }
 
   step(): void {
@@ -98,7 +94,7 @@ export class SapDemoElement extends LitElement {
     if (!timeline.isDetected) this.#tell(timeline.nextStop());
     this.#guesses.outcome = "";
     this.#changed();
-    this.#speak();
+    this.#speech.soon();
   }
 
   back(): void {
@@ -117,7 +113,7 @@ export class SapDemoElement extends LitElement {
 
   reset(): void {
     this.#begin();
-    this.#speak();
+    this.#speech.soon();
   }
 
   share(): string {
@@ -159,7 +155,7 @@ export class SapDemoElement extends LitElement {
   }
 
   get chosen(): number[] {
-    return [...this.#chosen];
+    return [...this.#selection.chosen];
   }
 
   // Its life
@@ -179,7 +175,7 @@ export class SapDemoElement extends LitElement {
     clock.remove(this);
     this.#canvases.close();
     motionQuery.removeEventListener("change", this.#onMotionChange);
-    clearTimeout(this.#speech);
+    this.#speech.stop();
     // One that is only moved within the page goes on where it was.
     setTimeout(() => {
       if (this.isConnected) return;
@@ -206,7 +202,7 @@ export class SapDemoElement extends LitElement {
     if (!options) return;
     if (!this.#timeline || !before || !isWorldKept(before, options)) return this.#begin();
     const { tick } = this.#timeline;
-    this.#open(options, new Timeline(options, kindsOf(options), this.#timeline.release(), tick));
+    this.#open(options, new Timeline(options, shownKinds(options.decorations, options.detecting), this.#timeline.release(), tick));
     if (!this.#isPlaying) this.#timeline.finish();
     this.#changed();
   }
@@ -216,16 +212,15 @@ export class SapDemoElement extends LitElement {
     if (!options) return;
     let timeline: Timeline;
     try {
-      timeline = Timeline.at(options, kindsOf(options), readStart(this.getAttribute("start")));
+      timeline = Timeline.at(options, shownKinds(options.decorations, options.detecting), readStart(this.getAttribute("start")));
     } catch (error) {
       return this.#refuse(messageOf(error));
     }
     this.#timeline?.free();
     this.#open(options, timeline);
     this.#wasDragged = false;
-    this.#chosen = [];
-    this.#cursor = undefined;
-    this.#guesses = { outcome: "", right: 0, made: 0 };
+    this.#selection.clear();
+    this.#guesses = new Guesses();
     const isStill = this.hasAttribute("paused") || options.isStatic || options.predicts || motionQuery.matches;
     if (options.isStatic && !options.predicts) timeline.finish();
     this.#isPlaying = !isStill;
@@ -326,10 +321,8 @@ export class SapDemoElement extends LitElement {
   #tellEvent(event: TraceEvent | undefined, index: number): void {
     const detail = event && toldAs(event, index);
     if (!event || !detail) return;
-    if (detail.kind === "compare" || detail.kind === "swap") {
-      const [i, j] = detail.kind === "swap" ? [event["i"], event["j"]] : [event["a"], event["b"]];
-      this.#emit("sap-sort", { kind: detail.kind, i: Number(i), j: Number(j) });
-    }
+    const ofSort = toldOfSort(event);
+    if (ofSort) this.#emit("sap-sort", ofSort);
     this.#emit("sap-event", detail);
   }
 
@@ -339,7 +332,7 @@ export class SapDemoElement extends LitElement {
     this.#tellEvent(event, position - 1);
     this.#guesses.outcome = "";
     this.#changed();
-    this.#speak();
+    this.#speech.soon();
   }
 
   get #sentence(): string {
@@ -348,18 +341,7 @@ export class SapDemoElement extends LitElement {
     if (this.#explanation) return this.#explanation.text;
     const { event, detection, tick } = timeline;
     if (event) return describeEvent(event, { boxes: detection.boxes, names: this.#names });
-    return summary(timeline.isDetected, this.#options!.isStatic ? undefined : tick, timeline.radii.length, detection, this.#names);
-  }
-
-  /** Lets the live region say where we are, soon and not too often. */
-  #speak(): void {
-    clearTimeout(this.#speech);
-    const wait = Math.max(100, this.#spokenAt + SPEECH_MS - performance.now());
-    this.#speech = setTimeout(() => {
-      this.#spokenAt = performance.now();
-      const region = this.renderRoot.querySelector(".live");
-      if (region) region.textContent = this.#sentence;
-    }, wait);
+    return summary(timeline.isDetected, this.#options!.isStatic ? undefined : tick, timeline.radii.length, detection, this.#names, this.#flagChecks);
   }
 
   // Hands
@@ -388,93 +370,55 @@ export class SapDemoElement extends LitElement {
   }
 
   #choose(ball: number | undefined): void {
-    this.#cursor = ball;
+    const selection = this.#selection;
+    selection.cursor = ball;
     if (this.#options!.explains) {
-      const [first, second] = this.#chosen;
-      if (ball === undefined || (ball === first && second === undefined)) this.#chosen = [];
-      else this.#chosen = first === undefined || second !== undefined ? [ball] : [first, ball];
-      if (this.#chosen.length === 2) this.pause();
+      selection.take(ball);
+      if (selection.pair) this.pause();
     }
     this.#changed();
-    if (this.#chosen.length === 2) this.#speak();
+    if (selection.pair) this.#speech.soon();
   }
 
   #explainChosen(): Explanation | undefined {
-    const [a, b] = this.#chosen;
-    if (!this.#timeline || a === undefined || b === undefined) return undefined;
-    return explain(this.#timeline.detection, this.#names, a, b);
+    const { pair } = this.#selection;
+    return this.#timeline && pair && explain(this.#timeline.detection, this.#names, ...pair);
   }
 
-  readonly #onKey = (event: KeyboardEvent): void => {
-    const timeline = this.#timeline;
-    if (!timeline || event.altKey || event.ctrlKey || event.metaKey) return;
-    const actions: Record<string, () => void> = {
-      " ": () => (this.#isPlaying ? this.pause() : this.step()),
-      "[": () => this.back(),
-      ",": () => this.back(),
-      "]": () => this.step(),
-      ".": () => this.step(),
-      b: () => this.#moveCursor(1),
-      B: () => this.#moveCursor(-1),
-      Enter: () => this.#cursor !== undefined && this.#choose(this.#cursor),
-      Escape: () => this.#choose(undefined),
-      ArrowLeft: () => this.#pushBall(-1, 0, event.shiftKey),
-      ArrowRight: () => this.#pushBall(1, 0, event.shiftKey),
-      ArrowUp: () => this.#pushBall(0, -1, event.shiftKey),
-      ArrowDown: () => this.#pushBall(0, 1, event.shiftKey),
-      1: () => this.#guess(0),
-      2: () => this.#guess(1),
-    };
-    const isArrow = event.key.startsWith("Arrow");
-    if (isArrow && !this.#options!.isDraggable) return;
-    const action = actions[event.key];
-    if (!action) return;
-    event.preventDefault();
-    action();
+  readonly #keyboard: Keyboard = {
+    stepOrPause: () => (this.#isPlaying ? this.pause() : this.step()),
+    step: () => this.step(),
+    back: () => this.back(),
+    moveCursor: (by) => {
+      const balls = this.#timeline!.radii.length;
+      if (balls === 0) return;
+      this.#selection.moveCursor(by, balls);
+      this.#changed();
+      this.#speech.now(`Ball ${this.#names[this.#selection.cursor!]}`);
+    },
+    take: () => this.#selection.cursor !== undefined && this.#choose(this.#selection.cursor),
+    takeNone: () => this.#choose(undefined),
+    push: (dx, dy) => {
+      const { positions, radii } = this.#timeline!;
+      const ball = (this.#selection.cursor ??= 0);
+      if (ball >= radii.length) return;
+      this.pause();
+      this.#moveBall(ball, positions[2 * ball]! + dx, positions[2 * ball + 1]! + dy);
+      this.#speech.soon();
+    },
+    guess: (choice) => this.#guess(choice),
   };
-
-  /** Which ball the keys act on: the next one, or the one before. */
-  #moveCursor(by: number): void {
-    const count = this.#timeline!.radii.length;
-    if (count === 0) return;
-    this.#cursor = this.#cursor === undefined ? (by > 0 ? 0 : count - 1) : (this.#cursor + by + count) % count;
-    this.#changed();
-    const region = this.renderRoot.querySelector(".live");
-    if (region) region.textContent = `Ball ${this.#names[this.#cursor]}`;
-  }
-
-  #pushBall(dx: number, dy: number, isFar: boolean): void {
-    this.#cursor ??= 0;
-    const { positions, radii } = this.#timeline!;
-    if (this.#cursor >= radii.length) return;
-    this.pause();
-    const by = isFar ? FAR_ARROW : ARROW;
-    this.#moveBall(this.#cursor, positions[2 * this.#cursor]! + dx * by, positions[2 * this.#cursor + 1]! + dy * by);
-    this.#speak();
-  }
-
-  // Guessing
 
   get #question(): Question | undefined {
     const timeline = this.#timeline;
-    if (!timeline || !this.#options?.predicts || this.#isPlaying) return undefined;
-    const { nextPosition, detection } = timeline;
-    const next = nextPosition === undefined ? undefined : detection.events[nextPosition - 1];
-    if (!next) return undefined;
-    const prunes = detection.events.some(({ kind }) => kind === "prune");
-    return questionOf(next, detection.events[nextPosition!], prunes, this.#names);
+    return timeline && this.#options?.predicts && !this.#isPlaying ? questionAt(timeline, this.#names) : undefined;
   }
 
   #guess(choice: 0 | 1): void {
     const question = this.#question;
     if (!question) return;
-    const isRight = choice === question.answer;
     this.step();
-    this.#guesses = {
-      outcome: isRight ? "Right." : `No: ${question.choices[question.answer]}.`,
-      right: this.#guesses.right + Number(isRight),
-      made: this.#guesses.made + 1,
-    };
+    this.#guesses.count(question, choice);
   }
 
   // Showing
@@ -483,7 +427,13 @@ export class SapDemoElement extends LitElement {
     const state = this.#timeline?.state;
     const { tests = 0, pairs = 0, comparisons = 0, swaps = 0 } = state?.counts ?? {};
     // Those that there are: also where the algorithm keeps them and tells only of changes.
-    return { tests, axisOverlaps: state?.axisOverlaps.length ?? 0, pairs, comparisons, swaps };
+    return { tests, flagChecks: this.#flagChecks ?? 0, axisOverlaps: state?.axisOverlaps.length ?? 0, pairs, comparisons, swaps };
+  }
+
+  /** Undefined where there are tests. */
+  get #flagChecks(): number | undefined {
+    if (!this.#timeline || !hasFlags(this.#options!.detecting)) return undefined;
+    return this.#timeline.detection.flagChecksAt(this.#timeline.position);
   }
 
   get #label(): string {
@@ -494,22 +444,15 @@ export class SapDemoElement extends LitElement {
     const [timeline, options] = [this.#timeline, this.#options];
     if (!timeline || !options || !this.hasUpdated) return;
     this.#theme ??= this.#probe.read();
-    const { state, event, detection, positions, radii } = timeline;
-    const chosen = this.#cursor === undefined ? this.#chosen : [...new Set([...this.#chosen, this.#cursor])];
-    const common = { state, event, chosen, options };
-    const picture = this.#canvases.open(this.renderRoot.querySelector(".picture canvas"), WIDTH);
-    if (picture) {
-      const labels = options.labels === undefined && !options.explains && !options.predicts ? [] : this.#names;
-      const lineAt = options.decorations.sweep && this.#playback!.lineAt(this.#isPlaying);
-      const { axis } = detection.step;
-      const missed = timeline.isDetected ? detection.missed : [];
-      drawScene(picture.context, { ...common, positions, radii, labels, lineAt, axis, missed, gap: this.#explanation?.gap }, this.#theme);
-    }
-    const array = options.decorations.array && this.#canvases.open(this.renderRoot.querySelector("canvas.array"));
-    if (array) {
-      const moved = timeline.isDetected && options.decorations.array?.isSortShown ? detection.swapped : nothingMoved;
-      drawArray(array.context, array.width, { ...common, labels: this.#names, moved }, this.#theme);
-    }
+    paint(this.renderRoot, this.#canvases, {
+      timeline,
+      options,
+      names: this.#names,
+      marked: this.#selection.marked,
+      explanation: this.#explanation,
+      lineAt: this.#playback!.lineAt(this.#isPlaying),
+      theme: this.#theme,
+    });
   }
 
   override firstUpdated(): void {
@@ -531,22 +474,21 @@ export class SapDemoElement extends LitElement {
 
   override render(): TemplateResult {
     const options = this.#options;
-    const { tests, axisOverlaps, pairs, comparisons, swaps } = this.#counts;
     const hasControls = options?.hasControls ?? !this.hasAttribute("no-controls");
     const hasCounters = options?.hasCounters ?? !this.hasAttribute("no-counters");
     return html`
       <slot name="heading">${options?.heading ? html`<p class="heading">${options.heading}</p>` : nothing}</slot>
       <div class="frame">
-      <div class="picture" part="picture" role="application" tabindex="0" aria-label=${this.#label} aria-describedby="keys" @keydown=${this.#onKey}>
+      <div class="picture" part="picture" role="application" tabindex="0" aria-label=${this.#label} aria-describedby="keys" @keydown=${(event: KeyboardEvent) => this.#timeline && press(event, this.#options!, this.#keyboard)}>
         <canvas></canvas>
         ${this.#wrong ? html`<p class="wrong" role="alert">${this.#wrong}</p>` : nothing}
       </div>
       <p id="keys" class="hidden">${keysOf(options)}</p>
       ${options?.decorations.array ? this.#array() : nothing}
       ${hasControls ? html`<p class="said" part="said" aria-hidden="true" ?data-explains=${this.#explanation !== undefined}>${this.#sentence}</p>` : nothing}
-      ${options?.predicts ? guessing({ ...this.#guesses, question: this.#question, guess: (choice) => this.#guess(choice) }) : nothing}
+      ${options?.predicts ? guessing({ guesses: this.#guesses, question: this.#question, guess: (choice) => this.#guess(choice) }) : nothing}
       <p class="live hidden" role="status" aria-live="polite"></p>
-      ${hasCounters ? counters({ tests, "axis overlaps": axisOverlaps, pairs, comparisons, swaps }) : nothing}
+      ${hasCounters ? counters(this.#counts, options !== undefined && hasFlags(options.detecting)) : nothing}
       ${hasControls ? this.#controls() : nothing}
       </div>
       <slot name="caption"></slot>
@@ -554,8 +496,7 @@ export class SapDemoElement extends LitElement {
   }
 
   #array(): TemplateResult {
-    const axes = this.#options!.detecting.method.endsWith("every axis") ? 2 : 1;
-    const height = arrayHeight(2 * this.#timeline!.radii.length, axes);
+    const height = heightOfArray(this.#options!, this.#timeline!.radii.length);
     return html`<canvas class="array" part="array" role="img" aria-label="The array of endpoints, in order" style="height:${height}px"></canvas>`;
   }
 
@@ -586,62 +527,12 @@ export class SapDemoElement extends LitElement {
     });
     return html`${bar} ${this.#shared ? sharing(this.#shared.url, this.#shared.code) : nothing}`;
   }
-
 }
 
-const nothingMoved: ReadonlySet<number> = new Set();
 const motionQuery: MediaQueryList = matchMedia("(prefers-reduced-motion: reduce)");
-
-function kindsOf({ decorations, detecting }: Options): Set<TraceEvent["kind"]> {
-  return shownKinds(decorations, !detecting.method.endsWith("on every axis"));
-}
 
 function messageOf(error: unknown): string {
   return error instanceof OptionError ? error.message : `This demo cannot begin. ${String(error)}`;
 }
 
-/** Which kind of event a listener is told a trace event as. */
-const told: Partial<Record<TraceEvent["kind"], DemoEvent["kind"]>> = {
-  compare: "compare",
-  swap: "swap",
-  test: "test",
-  enter: "enter",
-  leave: "leave",
-  overlap: "overlap",
-  prune: "skip",
-};
-
-function toldAs(event: TraceEvent, index: number): DemoEvent | undefined {
-  const kind = told[event.kind];
-  if (!kind) return undefined;
-  const a = Number(event["a"] ?? event["left"] ?? event["id"]);
-  const b = Number(event["b"] ?? event["right"] ?? event["id"]);
-  const isOfEdges = kind === "compare" || kind === "swap";
-  return { kind, a: isOfEdges ? a >> 1 : a, b: isOfEdges ? b >> 1 : b, index };
-}
-
-function keysOf(options: Options | undefined): string {
-  const keys = ["Space steps, or pauses.", "Comma and full stop step back and forward."];
-  if (options?.isDraggable || options?.explains) keys.push("B chooses the next ball.");
-  if (options?.isDraggable) keys.push("Arrow keys move it.");
-  if (options?.explains) keys.push("Enter takes it for an explanation of a pair.");
-  if (options?.predicts) keys.push("1 and 2 guess.");
-  return keys.join(" ");
-}
-
-/** Every attribute is a property as well, but for those that would hide one that elements have. */
-for (const name of attributes) {
-  const property = name.replace(/-(\w)/g, (_, letter: string) => letter.toUpperCase());
-  if (property in SapDemoElement.prototype) continue;
-  Object.defineProperty(SapDemoElement.prototype, property, {
-    configurable: true,
-    get(this: HTMLElement) {
-      const value = this.getAttribute(name);
-      return booleans.has(name) ? value !== null : value;
-    },
-    set(this: HTMLElement, value: unknown) {
-      if (value === null || value === undefined || value === false) this.removeAttribute(name);
-      else this.setAttribute(name, value === true ? "" : typeof value === "object" ? JSON.stringify(value) : String(value));
-    },
-  });
-}
+addProperties(SapDemoElement.prototype);

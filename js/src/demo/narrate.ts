@@ -24,14 +24,15 @@ export function separation({ boxes, names }: Known, axis: number, left: number, 
   return `${names[left]}’s ${high} ${a} < ${names[right]}’s ${low} ${b}`;
 }
 
-/** A detection in words, when none of its events is at work. */
-export function summary(isDetected: boolean, tick: number | undefined, balls: number, detection: Detection, names: readonly string[]): string {
+/** A detection in words, when none of its events is at work. `flagChecks` where flags take the place of tests. */
+export function summary(isDetected: boolean, tick: number | undefined, balls: number, detection: Detection, names: readonly string[], flagChecks?: number): string {
   const when = tick === undefined ? "" : `Tick ${tick}: `;
   if (!isDetected) return `${when}nothing has been tested yet.`;
   const all = (balls * (balls - 1)) / 2;
   const { counts, pairs } = detection.step;
   const found = pairs.length / 2;
-  const tested = `${counts.tests} of ${all} pairs tested, ${found} ${found === 1 ? "overlaps" : "overlap"}`;
+  const work = flagChecks === undefined ? `${counts.tests} of ${all} pairs tested` : `${flagChecks} ${flagChecks === 1 ? "check" : "checks"} of flags, no test of ${all} pairs`;
+  const tested = `${work}, ${found} ${found === 1 ? "overlaps" : "overlap"}`;
   const missed = detection.missed.map(([a, b]) => `${names[a]} and ${names[b]}`);
   return `${when}${tested}.${missed.length > 0 ? ` Missed: ${missed.join(", ")}.` : ""}`;
 }

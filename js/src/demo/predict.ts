@@ -1,4 +1,5 @@
 import type { TraceEvent } from "../trace.js";
+import type { Timeline } from "./timeline.js";
 
 /** What a visitor is asked before an event is shown. */
 export interface Question {
@@ -8,13 +9,36 @@ export interface Question {
   readonly answer: 0 | 1;
 }
 
+/** How the guesses so far turned out. */
+export class Guesses {
+  /** Of the last one, in words; empty once that is past. */
+  outcome = "";
+  right = 0;
+  made = 0;
+
+  count(question: Question, choice: 0 | 1): void {
+    const isRight = choice === question.answer;
+    this.outcome = isRight ? "Right." : `No: ${question.choices[question.answer]}.`;
+    this.right += Number(isRight);
+    this.made++;
+  }
+}
+
+/** The question about what comes next in a detection, if there is a good one. */
+export function questionAt({ nextPosition, detection }: Timeline, names: readonly string[]): Question | undefined {
+  const next = nextPosition === undefined ? undefined : detection.events[nextPosition - 1];
+  if (!next) return undefined;
+  const prunes = detection.events.some(({ kind }) => kind === "prune");
+  return questionOf(next, detection.events[nextPosition!], prunes, names);
+}
+
 const NONE = 2 ** 32 - 1;
 
 /**
  * The question about the event that comes next, if there is a good one. `after` is the event that
  * follows it in the trace; `prunes` says whether the algorithm ends scans early.
  */
-export function questionOf(next: TraceEvent, after: TraceEvent | undefined, prunes: boolean, names: readonly string[]): Question | undefined {
+function questionOf(next: TraceEvent, after: TraceEvent | undefined, prunes: boolean, names: readonly string[]): Question | undefined {
   const word = (name: string): number => Number(next[name]);
   const name = (ball: number): string => names[ball] ?? String(ball);
   const edge = (at: number): string => (at % 2 === 0 ? `(${name(at >> 1)}` : `${name(at >> 1)})`);

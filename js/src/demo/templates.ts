@@ -1,5 +1,6 @@
 import { html, nothing, svg, type TemplateResult } from "lit";
-import type { Question } from "./predict.js";
+import type { DemoState } from "./api.js";
+import type { Guesses, Question } from "./predict.js";
 
 /** What the controls under the picture show and do. */
 export interface Controls {
@@ -49,10 +50,12 @@ function button(label: string, icon: TemplateResult, enabled: boolean, click: ()
   return html`<button type="button" class=${kind} aria-label=${label} title=${label} ?disabled=${!enabled} @click=${click}>${icon}</button>`;
 }
 
-/** Numbers with their names; the names are short enough for a phone. */
-export function counters(values: Readonly<Record<string, number>>): TemplateResult {
+/** Numbers with their names, which are short enough for a phone: the tests, or the checks of flags that take their place. */
+export function counters(counts: Omit<DemoState, "tick" | "events" | "hash">, hasFlags: boolean): TemplateResult {
+  const { tests, flagChecks, axisOverlaps, pairs, comparisons, swaps } = counts;
+  const first = hasFlags ? { "flag checks": flagChecks } : { tests };
   return html`<dl class="counters" part="counters">
-    ${Object.entries(values).map(
+    ${Object.entries({ ...first, "axis overlaps": axisOverlaps, pairs, comparisons, swaps }).map(
       ([name, value]) => html`<div><dt>${name}</dt><dd data-counter=${name.replace(" ", "-")}>${value.toLocaleString("en")}</dd></div>`,
     )}
   </dl>`;
@@ -61,13 +64,12 @@ export function counters(values: Readonly<Record<string, number>>): TemplateResu
 /** The guess that is asked for, and how the guesses so far turned out. */
 export interface Guessing {
   readonly question: Question | undefined;
-  readonly outcome: string;
-  readonly right: number;
-  readonly made: number;
+  readonly guesses: Guesses;
   guess(choice: 0 | 1): void;
 }
 
-export function guessing({ question, outcome, right, made, guess }: Guessing): TemplateResult {
+export function guessing({ question, guesses, guess }: Guessing): TemplateResult {
+  const { outcome, right, made } = guesses;
   return html`<div class="guess" part="guess" role="group" aria-label="What happens next?">
     <p>${outcome} ${question?.text ?? "Nothing to guess here: step on."}</p>
     <div>

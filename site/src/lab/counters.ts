@@ -33,7 +33,7 @@ export const COUNTERS: readonly Counter[] = [
   {
     key: "tests",
     label: "Tests",
-    meaning: "pairs of boxes handed to the box test by the broad phase",
+    meaning: "pairs of boxes handed to the box test by the broad phase; 0 where every axis is swept, for there flags of the pairs on the axes take its place",
     group: "work",
     read: (m) => count(m.tests),
   },
@@ -47,7 +47,7 @@ export const COUNTERS: readonly Counter[] = [
   {
     key: "axis-overlaps",
     label: "Overlaps on the axis",
-    meaning: "pairs whose intervals overlap on the axis that is swept",
+    meaning: "pairs whose intervals overlap on the axis that is swept, or on each of those that are",
     group: "work",
     read: (m) => count(m.axisOverlaps),
   },

@@ -7,8 +7,8 @@ import { choice, slider } from "../lab/parts.ts";
 export const COUNTERS = [
   { key: "ms", label: "Time", meaning: "from boxes to the list of all pairs; mean of the middle half of the last 60 steps" },
   { key: "pairs", label: "Pairs", meaning: "pairs whose boxes overlap on every axis" },
-  { key: "tests", label: "Tests", meaning: "pairs of boxes handed to the box test" },
-  { key: "axisOverlaps", label: "Overlaps on the axis", meaning: "pairs whose intervals overlap on the axis that is swept" },
+  { key: "tests", label: "Tests", meaning: "pairs of boxes handed to the box test; 0 where every axis is swept, for there flags of the pairs on the axes take its place" },
+  { key: "axisOverlaps", label: "Overlaps on the axis", meaning: "pairs whose intervals overlap on the axis that is swept, or on each of those that are" },
   { key: "comparisons", label: "Comparisons of the sort", meaning: "how often the sort compared two edges" },
   { key: "swaps", label: "Swaps of the sort", meaning: "how often the sort exchanged two edges" },
 ] as const;

@@ -10,7 +10,8 @@ export const LANES = 4;
 /** The counters of a lane. */
 export const LANE_COUNTERS = [
   { key: "ms", label: "Time", meaning: "from boxes to the list of all pairs; mean of the middle half of the last 60 steps" },
-  { key: "tests", label: "Tests", meaning: "pairs of boxes handed to the box test in this step" },
+  { key: "tests", label: "Tests", meaning: "pairs of boxes handed to the box test in this step; 0 where every axis is swept, for there flags of the pairs on the axes take its place" },
+  { key: "axis-overlaps", label: "On the axes", meaning: "pairs whose intervals overlap on the axis that is swept, or on each of those that are" },
   { key: "comparisons", label: "Comparisons", meaning: "how often the sort compared two edges in this step" },
   { key: "swaps", label: "Swaps", meaning: "how often the sort exchanged two edges in this step" },
   { key: "pairs", label: "Pairs", meaning: "pairs whose boxes overlap on every axis" },

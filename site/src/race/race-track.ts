@@ -330,6 +330,7 @@ export class RaceTrack extends HTMLElement {
     const texts: Record<(typeof LANE_COUNTERS)[number]["key"], string | null> = {
       ms: ms === null ? null : `${ms.toFixed(ms < 100 ? 2 : 0)} ms`,
       tests: counted(report?.tests),
+      "axis-overlaps": counted(report?.axisOverlaps),
       comparisons: counted(report?.comparisons),
       swaps: counted(report?.swaps),
       pairs: counted(report?.pairs),

@@ -15,7 +15,7 @@ if (select) {
 // The pages are kept for when there is no network. Not where a demo stands in someone else's page.
 if (import.meta.env.PROD && select && "serviceWorker" in navigator) {
   addEventListener("load", () => {
-    navigator.serviceWorker.register(new URL("../service-worker.js", import.meta.url)).catch(() => {
+    navigator.serviceWorker.register(new URL(/* @vite-ignore */ "../service-worker.js", import.meta.url)).catch(() => {
       // Forbidden here, or no secure connection: then the pages need the network.
     });
   });

@@ -5,6 +5,7 @@ export interface State {
   tick: number;
   events: number;
   tests: number;
+  flagChecks: number;
   axisOverlaps: number;
   pairs: number;
   comparisons: number;
@@ -41,6 +42,13 @@ export class Demo {
     return this.root.evaluate((demo) => (demo as unknown as Element).pause());
   }
 
+  reset(): Promise<void> {
+    return this.root.evaluate((demo) => {
+      (demo as unknown as Element).reset();
+      (demo as unknown as Element).pause();
+    });
+  }
+
   play(): Promise<void> {
     return this.root.evaluate((demo) => (demo as unknown as Element).play());
   }
@@ -65,7 +73,7 @@ export class Demo {
       let last = { ...demo.state, balls: demo.balls };
       for (let steps = 0; steps < 2000; steps++) {
         demo.step();
-        if (demo.state.events < last.events) return last;
+        if (demo.state.tick !== last.tick || demo.state.events < last.events) return last;
         last = { ...demo.state, balls: demo.balls };
       }
       return last;

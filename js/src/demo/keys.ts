@@ -1,0 +1,58 @@
+import type { Options } from "./options.js";
+
+/** How far an arrow key moves a ball, and with shift. */
+const ARROW = 5;
+const FAR_ARROW = 25;
+
+/** What keys do. */
+export interface Keyboard {
+  stepOrPause(): void;
+  step(): void;
+  back(): void;
+  /** To the next ball, or to the one before. */
+  moveCursor(by: 1 | -1): void;
+  /** Takes the ball at the cursor for an explanation. */
+  take(): void;
+  takeNone(): void;
+  /** Moves the ball at the cursor by hand. */
+  push(dx: number, dy: number): void;
+  guess(choice: 0 | 1): void;
+}
+
+/** Does what a key is for, if it is for anything. */
+export function press(event: KeyboardEvent, { isDraggable }: Options, keyboard: Keyboard): void {
+  if (event.altKey || event.ctrlKey || event.metaKey) return;
+  if (event.key.startsWith("Arrow") && !isDraggable) return;
+  const by = event.shiftKey ? FAR_ARROW : ARROW;
+  const actions: Record<string, () => void> = {
+    " ": () => keyboard.stepOrPause(),
+    "[": () => keyboard.back(),
+    ",": () => keyboard.back(),
+    "]": () => keyboard.step(),
+    ".": () => keyboard.step(),
+    b: () => keyboard.moveCursor(1),
+    B: () => keyboard.moveCursor(-1),
+    Enter: () => keyboard.take(),
+    Escape: () => keyboard.takeNone(),
+    ArrowLeft: () => keyboard.push(-by, 0),
+    ArrowRight: () => keyboard.push(by, 0),
+    ArrowUp: () => keyboard.push(0, -by),
+    ArrowDown: () => keyboard.push(0, by),
+    1: () => keyboard.guess(0),
+    2: () => keyboard.guess(1),
+  };
+  const action = actions[event.key];
+  if (!action) return;
+  event.preventDefault();
+  action();
+}
+
+/** The keys in words, for those who do not see the buttons. */
+export function keysOf(options: Options | undefined): string {
+  const keys = ["Space steps, or pauses.", "Comma and full stop step back and forward."];
+  if (options?.isDraggable || options?.explains) keys.push("B chooses the next ball.");
+  if (options?.isDraggable) keys.push("Arrow keys move it.");
+  if (options?.explains) keys.push("Enter takes it for an explanation of a pair.");
+  if (options?.predicts) keys.push("1 and 2 guess.");
+  return keys.join(" ");
+}

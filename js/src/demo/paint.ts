@@ -1,0 +1,48 @@
+import type { Canvases } from "./canvas.js";
+import { hasFlags } from "./detection.js";
+import { drawScene } from "./draw.js";
+import { arrayHeight, drawArray } from "./draw-array.js";
+import type { Explanation } from "./explain.js";
+import { type Options, WIDTH } from "./options.js";
+import type { Theme } from "./theme.js";
+import type { Timeline } from "./timeline.js";
+
+/** What is to be painted. */
+export interface Painting {
+  readonly timeline: Timeline;
+  readonly options: Options;
+  readonly names: readonly string[];
+  /** The balls to be marked. */
+  readonly marked: readonly number[];
+  readonly explanation: Explanation | undefined;
+  /** Where the sweep line is, if it is anywhere. */
+  readonly lineAt: number | undefined;
+  readonly theme: Theme;
+}
+
+const nothingMoved: ReadonlySet<number> = new Set();
+
+/** Paints the balls, and the array where there is a canvas for it. */
+export function paint(root: ParentNode, canvases: Canvases, painting: Painting): void {
+  const { timeline, options, names, explanation, theme } = painting;
+  const { state, event, detection, positions, radii } = timeline;
+  const common = { state, event, chosen: painting.marked, options };
+  const picture = canvases.open(root.querySelector(".picture canvas"), WIDTH);
+  if (picture) {
+    const labels = options.labels === undefined && !options.explains && !options.predicts ? [] : names;
+    const lineAt = options.decorations.sweep && painting.lineAt;
+    const { axis } = detection.step;
+    const missed = timeline.isDetected ? detection.missed : [];
+    drawScene(picture.context, { ...common, positions, radii, labels, lineAt, axis, missed, gap: explanation?.gap }, theme);
+  }
+  const array = options.decorations.array && canvases.open(root.querySelector("canvas.array"));
+  if (array) {
+    const moved = timeline.isDetected && options.decorations.array?.isSortShown ? detection.swapped : nothingMoved;
+    drawArray(array.context, array.width, { ...common, labels: names, moved }, theme);
+  }
+}
+
+/** How high the canvas of the array has to be, in CSS pixels. */
+export function heightOfArray({ detecting }: Options, balls: number): number {
+  return arrayHeight(2 * balls, hasFlags(detecting) ? 2 : 1);
+}
