@@ -43,6 +43,7 @@ const entries = [
   { name: "broad-phase", budget: 8_000 },
   { name: "broad-phase-inline" },
   { name: "algorithms", budget: 7_000 },
+  { name: "algorithms-inline" },
   // With Lit, which it draws its controls by.
   { name: "demo", budget: 40_000 },
 ];

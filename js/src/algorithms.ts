@@ -7,12 +7,7 @@
 import { type InitOptions, start, type Started } from "./init.js";
 import { algorithmsCore } from "./runner.js";
 
-export type { BoundsBox, Boxes, BoxObject, Corner, Dimensions, EdgesBox, MinMaxBox } from "./boxes.js";
-export { InvalidBoxError, NotInitializedError, OutOfMemoryError, SweepAndPruneError } from "./errors.js";
-export type { InitOptions, Started } from "./init.js";
-export { type AxisOverlap, type Line, type Place, Player, type PlayerState } from "./player.js";
-export { axes, type Counts, methods, Runner, type RunnerOptions, sorts, type Step, wrongMethods } from "./runner.js";
-export { events, type TraceEvent } from "./trace.js";
+export * from "./algorithms-api.js";
 
 /** Loads and starts the compiled algorithms; otherwise as that of `sweep-and-prune`. */
 export function init(options: InitOptions = {}): Promise<Started> {

@@ -1,6 +1,6 @@
 export type { BoundsBox, Boxes, BoxObject, Corner, Dimensions, EdgesBox, MinMaxBox } from "./boxes.js";
 export { InvalidBoxError, NotInitializedError, OutOfMemoryError, SweepAndPruneError } from "./errors.js";
-export type { InitOptions, Started } from "./init.js";
+export type { InitOptions, Started, Wasm } from "./init.js";
 export {
   countPairs,
   type EachPair,

@@ -19,4 +19,4 @@ export {
   SweepAndPruneError,
 } from "./errors.js";
 export type { Filter } from "./filter.js";
-export type { InitOptions, Started } from "./init.js";
+export type { InitOptions, Started, Wasm } from "./init.js";

@@ -9,8 +9,8 @@
  * findPairs(boxes, { dimensions: 2 }); // Uint32Array [0, 2]
  * ```
  *
- * This entry loads the compiled core from a file beside it; `sweep-and-prune/inline` carries it
- * inside.
+ * In pages this entry loads the compiled core from a file beside it; `sweep-and-prune/inline`
+ * carries it inside, and is what this entry stands for in Node, Deno and Bun.
  *
  * @module
  */

@@ -1,5 +1,8 @@
 import type { Core, Exports } from "./engine.js";
 
+/** A compiled core: its address, its bytes, its answer from a server, or the module. */
+export type Wasm = string | URL | BufferSource | Response | WebAssembly.Module;
+
 /** How to start. */
 export interface InitOptions {
   /**
@@ -8,10 +11,11 @@ export interface InitOptions {
    */
   simd?: boolean;
   /**
-   * Where the compiled core is, if it is not beside this module: its address, its bytes, or the
-   * module compiled already. It must be the build that `simd` names.
+   * Where the compiled core is, if it is not beside this module: its address, its bytes, what
+   * `fetch` gave, or the module compiled already; or a promise of one of these. It must be the build
+   * that `simd` names.
    */
-  wasm?: string | URL | BufferSource | WebAssembly.Module;
+  wasm?: Wasm | PromiseLike<Wasm>;
   /**
    * Whether views that are used after their time throw a `TypeError`, at a price in speed: they
    * are then proxies of typed arrays. For development; off by default.
@@ -27,8 +31,8 @@ export interface Started {
 
 /** Where the two builds are to be had, unless the caller says otherwise. */
 export interface Sources {
-  simd(): NonNullable<InitOptions["wasm"]>;
-  scalar(): NonNullable<InitOptions["wasm"]>;
+  simd(): Wasm;
+  scalar(): Wasm;
 }
 
 /** Starts cores: each once, whichever entry asks first. */
@@ -49,20 +53,43 @@ export function start<E extends Exports>(core: Core<E>, sources: Sources, option
 
 async function load<E extends Exports>(core: Core<E>, sources: Sources, options: InitOptions): Promise<Started> {
   const simd = options.simd ?? hasSimd();
-  await core.start(await compile(options.wasm ?? (simd ? sources.simd() : sources.scalar())), options.development === true);
+  const module = options.wasm === undefined ? await beside(simd ? sources.simd() : sources.scalar()) : await compile(await options.wasm);
+  await core.start(module, options.development === true);
   return { simd };
 }
 
-async function compile(wasm: NonNullable<InitOptions["wasm"]>): Promise<WebAssembly.Module> {
+/** The core that the package brings; if it cannot be had, what to do about it. */
+async function beside(wasm: Wasm): Promise<WebAssembly.Module> {
+  try {
+    return await compile(wasm);
+  } catch (error) {
+    if (!isAddress(wasm)) throw error;
+    throw new Error(
+      `sweep-and-prune cannot start: ${error instanceof Error ? error.message : String(error)}. If your bundler ` +
+        `does not copy ${String(wasm)}, import the entry that ends in /inline, or pass \`init({ wasm })\``,
+      { cause: error },
+    );
+  }
+}
+
+async function compile(wasm: Wasm): Promise<WebAssembly.Module> {
   if (wasm instanceof WebAssembly.Module) return wasm;
-  if (typeof wasm !== "string" && !("href" in wasm)) return WebAssembly.compile(wasm);
+  if (typeof Response !== "undefined" && wasm instanceof Response) return compileResponse(wasm);
+  if (!isAddress(wasm)) return WebAssembly.compile(wasm as BufferSource); // which refuses what is none
   const address = String(wasm);
   if (address.startsWith("file:")) {
     const fs = nodeFiles();
     if (fs) return WebAssembly.compile(await fs.readFile(new URL(address)));
   }
-  const response = await fetch(address);
-  if (!response.ok) throw new Error(`cannot load ${address}: ${response.status} ${response.statusText}`);
+  return compileResponse(await fetch(address));
+}
+
+function isAddress(wasm: unknown): wasm is string | URL {
+  return typeof wasm === "string" || (typeof wasm === "object" && wasm !== null && "href" in wasm);
+}
+
+async function compileResponse(response: Response): Promise<WebAssembly.Module> {
+  if (!response.ok) throw new Error(`${response.url} answers ${response.status} ${response.statusText}`);
   // Compiling while it streams needs the right content type, which not every server sends.
   return response.headers.get("content-type")?.startsWith("application/wasm")
     ? WebAssembly.compileStreaming(response)

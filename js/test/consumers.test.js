@@ -54,7 +54,10 @@ async function resultOfFolder(folder) {
     try {
       const bytes = readFileSync(join(folder, path === "/" ? "index.html" : path));
       const type = /** @type {Record<string, string>} */ (types)[extname(path) || ".html"];
-      response.writeHead(200, { "content-type": type ?? "application/octet-stream" }).end(bytes);
+      // As strict a policy as WebAssembly can live with.
+      const policy = "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'";
+      const headers = { "content-type": type ?? "application/octet-stream", "content-security-policy": policy };
+      response.writeHead(200, headers).end(bytes);
     } catch {
       response.writeHead(404).end();
     }
@@ -155,19 +158,54 @@ test("Rollup, the inline entries", async () => {
   assert.deepEqual(await resultOfFolder(folder), expectedInline);
 });
 
+test("esbuild, the entry whose file it does not copy: the error says what to do", async () => {
+  const folder = join(project, "esbuild-default");
+  writePage(folder, "./default.js");
+  await esbuild.build({ absWorkingDir: project, entryPoints: { default: "app.js" }, bundle: true, format: "esm", outdir: folder });
+  assert.match(await resultOfFolder(folder), /sweep-and-prune cannot start: .* answers 404 .*\/inline/);
+});
+
+test("esbuild and Rollup for Node: no file is needed beside the bundle", async () => {
+  const code = `
+    import { countPairs, init } from "sweep-and-prune";
+    import { BroadPhase, init as initWorlds } from "sweep-and-prune/broad-phase";
+    import { init as initAlgorithms, Runner } from "sweep-and-prune/algorithms";
+    await Promise.all([init(), initWorlds(), initAlgorithms()]);
+    const runner = new Runner({ dimensions: 1, method: "endpoint sweep" });
+    console.log(countPairs([0, 1, 1, 2], { dimensions: 1 }), new BroadPhase({ dimensions: 2 }).size, runner.step([0, 1, 1, 2]).pairs.join());`;
+  writeFileSync(join(project, "on-a-server.js"), code);
+  const by = {
+    esbuild: (/** @type {string} */ file) =>
+      esbuild.build({ absWorkingDir: project, entryPoints: ["on-a-server.js"], bundle: true, platform: "node", format: "esm", outfile: file }),
+    rollup: async (/** @type {string} */ file) => {
+      const plugins = [nodeResolve({ exportConditions: ["node"] })];
+      const bundle = await rollup({ input: join(project, "on-a-server.js"), plugins });
+      await bundle.write({ file, format: "es" });
+      await bundle.close();
+    },
+  };
+  for (const [name, build] of Object.entries(by)) {
+    const file = join(project, "server", `${name}.mjs`);
+    await build(file);
+    assert.equal(execFileSync(process.execPath, [file], { encoding: "utf8" }).trim(), "1 0 0,1", name);
+  }
+});
+
 test("Node, and importing it on a server does nothing", () => {
   const code = `
     const before = Object.keys(globalThis).length;
     globalThis.fetch = globalThis.WebAssembly.instantiate = () => { throw new Error("touched") };
     const instantiate = WebAssembly.compile;
     WebAssembly.compile = () => { throw new Error("touched") };
-    const entries = ["", "/inline", "/broad-phase", "/broad-phase/inline", "/algorithms"];
+    const entries = ["", "/inline", "/broad-phase", "/broad-phase/inline", "/algorithms", "/algorithms/inline"];
+    const files = ["index", "broad-phase", "algorithms"]; // of the entries that are others in Node
     const loaded = [];
     for (const entry of entries) loaded.push(typeof (await import("sweep-and-prune" + entry)).init);
-    console.log(loaded.join(), Object.keys(globalThis).length === before);`;
+    for (const file of files) loaded.push(typeof (await import("./node_modules/sweep-and-prune/dist/" + file + ".js")).init);
+    console.log(loaded.every((type) => type === "function"), Object.keys(globalThis).length === before);`;
   const run = (/** @type {string} */ code) =>
     execFileSync(process.execPath, ["--input-type=module", "--eval", code], { cwd: project, encoding: "utf8" }).trim();
-  assert.equal(run(code), "function,function,function,function,function true");
+  assert.equal(run(code), "true true");
   const use = `
     import { countPairs, init } from "sweep-and-prune";
     await init();

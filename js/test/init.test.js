@@ -31,10 +31,13 @@ test("the vector build is chosen where the engine takes it", async () => {
 /** @type {[string, string, object, boolean][]} */
 const ways = [
   ["the scalar build", "sweep-and-prune", { simd: false }, false],
+  ["from the file beside the module", new URL("../dist/index.js", import.meta.url).href, {}, true],
+  ["from the other file beside the module", new URL("../dist/index.js", import.meta.url).href, { simd: false }, false],
   ["inline", "sweep-and-prune/inline", {}, true],
   ["inline, the scalar build", "sweep-and-prune/inline", { simd: false }, false],
   ["from an address", "sweep-and-prune", { simd: false, wasm: wasm.href }, false],
   ["from bytes", "sweep-and-prune", { wasm: readFileSync(simdWasm) }, true],
+  ["from an ArrayBuffer", "sweep-and-prune", { wasm: new Uint8Array(readFileSync(simdWasm)).buffer }, true],
   ["from a module", "sweep-and-prune", { wasm: new WebAssembly.Module(readFileSync(simdWasm)) }, true],
 ];
 for (const [name, entry, options, simd] of ways) {

@@ -1,5 +1,5 @@
 // A server component that finds pairs while it renders.
-import { countPairs, init } from "sweep-and-prune/inline";
+import { countPairs, init } from "sweep-and-prune";
 import Client from "./client";
 
 export const dynamic = "force-dynamic";
