@@ -1,4 +1,4 @@
-import { expect, test } from "@playwright/test";
+import { chromium, expect, test } from "@playwright/test";
 import { Lab } from "./lab.ts";
 
 // Drawing ten thousand spheres in software takes the graphics process hundreds of milliseconds,
@@ -67,17 +67,25 @@ test("100,000 spheres by the library: the page answers", async ({ page }) => {
   expect(answered).toBeLessThan(50);
 });
 
-for (const path of ["/falling.html", "/race.html", "/playground.html", "/playground.html?boxes=5000&motion=fast"]) {
-  test(`${path}: script a frame`, async ({ page }) => {
+// Where nothing is drawn in 3D, Chromium draws on the processor: the emulated graphics card that the
+// spheres need takes a second for what a real one does at once, and there would be no frames to count.
+for (const path of ["/#d6a", "/#d13a", "/#swaps", "/falling.html", "/race.html", "/playground.html", "/playground.html?boxes=5000&motion=fast"]) {
+  test(`${path}: script a frame`, async ({ baseURL, launchOptions }) => {
+    const browser = await chromium.launch({ executablePath: launchOptions.executablePath!, args: ["--no-sandbox"] });
+    const page = await browser.newPage({ baseURL: baseURL!, viewport: { width: 1280, height: 900 } });
     await page.goto(path);
-    await expect(page.locator("[data-step]").first()).toHaveAttribute("data-step", /^[1-9]/);
+    const isRunning = (): boolean => {
+      const demos = [...document.querySelectorAll<HTMLElement & { state: { tick: number } }>("sap-demo")];
+      return document.querySelector("[data-step]:not([data-step='0'])") !== null || demos.some((demo) => demo.state?.tick > 10);
+    };
+    await page.waitForFunction(isRunning);
     const session = await page.context().newCDPSession(page);
     await session.send("Performance.enable");
     const script = async (): Promise<number> => {
       const { metrics } = await session.send("Performance.getMetrics");
       return 1000 * (metrics.find(({ name }) => name === "ScriptDuration")?.value ?? Number.NaN);
     };
-    const windows: number[] = [];
+    const windows: { ms: number; frames: number }[] = [];
     for (let second = 0; second < 4; second++) {
       const before = await script();
       const frames = await page.evaluate(async () => {
@@ -89,12 +97,13 @@ for (const path of ["/falling.html", "/race.html", "/playground.html", "/playgro
         }
         return frames;
       });
-      windows.push(((await script()) - before) / frames);
+      windows.push({ ms: ((await script()) - before) / frames, frames });
     }
-    // The aim is 8 ms. The clock goes on while other programs have the processor: the best of four
-    // seconds, and what fails is a whole frame.
-    const each = Math.min(...windows);
-    console.log(`${path}: ${windows.map((ms) => ms.toFixed(2)).join(", ")} ms of script a frame`);
+    await browser.close();
+    // The aim is 8 ms, and 60 frames. The clock goes on while other programs have the processor: the
+    // best of four seconds, and what fails is a whole frame.
+    const each = Math.min(...windows.map(({ ms }) => ms));
+    console.log(`${path}: ${windows.map(({ ms }) => ms.toFixed(2)).join(", ")} ms of script a frame, ${windows.map(({ frames }) => frames).join(", ")} frames a second`);
     expect(each).toBeLessThan(16);
   });
 }
