@@ -15,7 +15,7 @@ const folder = fileURLToPath(new URL("../examples", import.meta.url));
 const pages = fileURLToPath(new URL("../docs", import.meta.url));
 const examples = readdirSync(folder).filter((name) => name.endsWith(".js"));
 /** Those that need a browser. */
-const inBrowser = ["pixi-game.js"];
+const inBrowser = ["phaser-game.js", "pixi-game.js"];
 
 before(() => {
   const lock = readFileSync(join(folder, "package-lock.json"), "utf8");

@@ -1,0 +1,50 @@
+// A game in Phaser: which bullets hit which rocks. In a browser.
+import * as Phaser from "phaser";
+import { BroadPhase, init } from "sweep-and-prune/broad-phase";
+
+await init();
+
+class Shooter extends Phaser.Scene {
+  world = new BroadPhase({ dimensions: 2 });
+  objectOf = new Map();
+  hits = 0;
+
+  create() {
+    for (let i = 0; i < 5; i++) this.track(this.add.rectangle(300, 40 * i, 30, 30), { category: 1, mask: 2 });
+    this.bullets = [0, 1, 2].map((i) => this.track(this.add.rectangle(0, 40 * i, 4, 4), { category: 2, mask: 1 }));
+  }
+
+  /** From now on the object has a body in the world of boxes, of its id. */
+  track(object, filter) {
+    const [id] = this.world.insertMany([edges(object)], filter);
+    this.objectOf.set(id, object);
+    return id;
+  }
+
+  update() {
+    for (const id of this.bullets.filter((id) => this.world.has(id))) {
+      const bullet = this.objectOf.get(id);
+      const before = edges(bullet);
+      bullet.x += 50; // faster than it is large: its whole way counts
+      this.world.setSwept(id, before, edges(bullet));
+    }
+    const begun = this.world.update().begun.slice(); // a copy: the calls below end the view
+    this.hits += begun.length / 2;
+    for (const id of begun) {
+      this.objectOf.get(id).destroy();
+      this.world.remove(id);
+    }
+    if (this.hits === this.bullets.length) {
+      console.log(`${this.hits} hits, ${this.world.size} rocks left`); // 3 hits, 2 rocks left
+      this.game.destroy(true);
+    }
+  }
+}
+
+/** The bounds of a game object as a row of numbers. */
+function edges(object) {
+  const { left, top, right, bottom } = object.getBounds();
+  return [left, top, right, bottom];
+}
+
+new Phaser.Game({ type: Phaser.HEADLESS, width: 400, height: 200, scene: Shooter, banner: false });
