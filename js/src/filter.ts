@@ -28,6 +28,7 @@ export const everything: Filter = { category: 2 ** 32 - 1, mask: 2 ** 32 - 1, gr
 
 /** A filter, checked, as the core takes it. What is left out is that of `others`. */
 export function filterWords(filter: Partial<Filter>, others: Filter): FilterWords {
+  if (typeof filter !== "object" || filter === null) throw new TypeError(`a filter must be an object, not ${String(filter)}`);
   const { category = others.category, mask = others.mask, group = others.group, isStatic = others.isStatic } = filter;
   // Bits may be written as signed numbers too: ~2 is all but the second.
   for (const [name, bits] of [["category", category], ["mask", mask], ["group", group]] as const) {

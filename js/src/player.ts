@@ -1,7 +1,7 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 import type { Engine } from "./engine.js";
 import { eventAt, lengthBefore, type TraceEvent } from "./trace.js";
-import { type AlgorithmsExports, type Counts, forgotten, type Owned, readCounts, release, type Runner } from "./runner.js";
+import { type AlgorithmsExports, type Counts, forgotten, type Owned, readCounts, release, Runner } from "./runner.js";
 
 /** A place in an array: the edge there, and its coordinate. */
 export interface Place {
@@ -60,8 +60,13 @@ export class Player {
   /** Where in the words the next event begins. */
   #at = 0;
 
-  /** A player at the beginning of the trace of a runner. */
+  /**
+   * A player at the beginning of the trace of a runner.
+   *
+   * @throws `TypeError` if the runner was freed, or is none.
+   */
   constructor(runner: Runner) {
+    if (!(runner instanceof Runner)) throw new TypeError("a Player needs a Runner");
     this.words = runner.trace();
     const { engine, player } = runner.newPlayer();
     this.#owned = { engine, free: () => engine.exports.player_free(player), handle: player };

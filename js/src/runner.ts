@@ -1,6 +1,6 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 import { type Boxes, checkBoxes, checkDimensions, type Dimensions } from "./boxes.js";
-import { Core, type Engine, type Exports } from "./engine.js";
+import { checkFits, Core, type Engine, type Exports } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
 
 /** What js/wasm/src/algorithms.rs exports. */
@@ -169,6 +169,7 @@ export class Runner {
     const { exports } = engine;
     const rows = checkBoxes(boxes, this.dimensions);
     const count = rows.length / (2 * this.dimensions);
+    checkFits(8 * rows.length);
     const at = exports.runner_rows(runner, count) >>> 0;
     if (at === 0) throw new OutOfMemoryError();
     new Float64Array(exports.memory.buffer, at, rows.length).set(rows);

@@ -41,9 +41,22 @@ export interface TraceEvent {
  * | overlap, begin, end | a, b: a pair |
  *
  * An edge is `2 * box` for the left end and one more for the right one.
+ *
+ * @throws While it is iterated, `TypeError` if `words` is no `Uint32Array`, `RangeError` where it
+ *   holds what is no event.
  */
 export function* events(words: Uint32Array): Generator<TraceEvent, void, undefined> {
-  for (let at = 0; at < words.length; at += words[at]! >>> 8) yield eventAt(words, at);
+  if (!(ArrayBuffer.isView(words) && words[Symbol.toStringTag] === "Uint32Array")) {
+    throw new TypeError("a trace must be a Uint32Array");
+  }
+  for (let at = 0, length; at < words.length; at += length) {
+    length = words[at]! >>> 8;
+    const names = kinds[(words[at]! & 255) - 1];
+    if (names === undefined || length < names.length || at + length > words.length) {
+      throw new RangeError(`word ${at} begins no event: this is not a trace`);
+    }
+    yield eventAt(words, at);
+  }
 }
 
 /** The event whose record begins at a word. */

@@ -237,6 +237,7 @@ export class BroadPhase {
    * (lines; doubles in the plane) they are ordinary arrays.
    */
   buffers(count: number): Buffers {
+    this.#exports(); // throws if it was freed
     if (!(Number.isInteger(count) && count >= 0)) throw new RangeError(`count must be a whole number, not ${count}`);
     const width = 2 * this.dimensions;
     if (this.#stored !== this.dimensions) {

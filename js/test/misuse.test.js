@@ -1,0 +1,152 @@
+// Every public call of every entry, with odd values in the place of each argument in turn: what it
+// throws is a named error or a TypeError or RangeError of ours, and a call that throws changes nothing.
+import assert from "node:assert/strict";
+import { before, test } from "node:test";
+import { countPairs, findPairs, findPairsBetween, forEachPair, init, PairFinder } from "sweep-and-prune";
+import { events, init as initAlgorithms, Player, Runner } from "sweep-and-prune/algorithms";
+import { BroadPhase, init as initWorlds, slotOf } from "sweep-and-prune/broad-phase";
+
+before(() => Promise.all([init(), initWorlds(), initAlgorithms()]));
+
+const detached = new Float32Array(8);
+structuredClone(detached.buffer, { transfer: [detached.buffer] });
+
+const odd = [
+  ...[undefined, null, true, "", "x", 5n, Symbol("s"), () => false, Object.create(null), new Date()],
+  ...[NaN, -1, -0, 0, 1, 1.5, 2 ** 32, 2 ** 53, 1e308, Infinity, -Infinity],
+  ...[[], [1], [NaN, 1, 2, 3], [3, 3, 1, 1], [1n, 2n], ["1"], new Array(3), [null], [{}], [[1, 2, 3, 4]], [{ min: {}, max: {} }]],
+  ...[{}, { length: 4, 0: 1 }, { dimensions: 2 }, { category: "x" }, { group: 1.5 }, { minX: 0, minY: 0, maxX: 1, maxY: 1 }],
+  ...[new Float32Array(0), new Float32Array(3), new Float32Array(4), new Float32Array([NaN, 0, 0, 0]), new Float64Array(5), detached],
+  ...[new Int32Array(4), new Uint8Array(0), new Uint8Array(100), new Uint32Array(9), new ArrayBuffer(8), new DataView(new ArrayBuffer(8))],
+  ...[new Float32Array(new SharedArrayBuffer(16)), new Float32Array(new ArrayBuffer(64), 16, 4), new Proxy([1, 2, 3, 4], {}), new Proxy(new Float32Array(4), {})],
+];
+
+const named = /^(InvalidBox|StaleProxy|NotInitialized|OutOfMemory|Snapshot)Error$/;
+
+/**
+ * @param {string} call
+ * @param {any} error
+ */
+function checkError(call, error) {
+  const isNamed = named.test(error?.name);
+  const isMisuse = error instanceof TypeError || error instanceof RangeError;
+  assert.ok(isNamed || isMisuse, `${call} throws ${error?.name}: ${error?.message}`);
+  // What the engine says where nobody has checked.
+  assert.doesNotMatch(error.message, /Cannot read|not a function|unreachable|internal error|call stack/, call);
+}
+
+/**
+ * Makes a call with odd values in the place of each argument, and with none.
+ *
+ * @param {string} name
+ * @param {(...args: any[]) => unknown} call
+ * @param {unknown[]} good
+ */
+function misuse(name, call, good) {
+  const all = good.flatMap((_, at) => odd.map((value) => good.with(at, value)));
+  for (const args of [...all, []]) {
+    try {
+      call(...args);
+    } catch (error) {
+      checkError(name, error);
+    }
+  }
+}
+
+const rows = new Float32Array([0, 0, 2, 2, 5, 5, 6, 6, 2, 1, 3, 4]);
+const options = /** @type {const} */ ({ dimensions: 2 });
+
+test("finding pairs", () => {
+  misuse("findPairs", findPairs, [rows, options]);
+  misuse("findPairsBetween", findPairsBetween, [rows, rows, options]);
+  misuse("countPairs", countPairs, [rows, options]);
+  misuse("forEachPair", forEachPair, [rows, options, () => true]);
+  misuse("new PairFinder", (options) => new PairFinder(options).free(), [options]);
+  const finder = /** @type {any} */ (new PairFinder(options));
+  const calls = { find: [rows], findBetween: [rows, rows], count: [rows], countBetween: [rows, rows], forEach: [rows, () => {}], forEachBetween: [rows, rows, () => {}] };
+  for (const [name, good] of Object.entries(calls)) {
+    misuse(name, (...args) => finder[name](...args), good);
+    assert.deepEqual([...finder.find(rows)], [0, 2], `after ${name}`);
+  }
+  finder.free();
+  for (const [name, good] of Object.entries(calls)) assert.throws(() => finder[name](...good), /^TypeError: this PairFinder was freed/);
+});
+
+for (const dimensions of /** @type {const} */ ([1, 2, 3])) {
+  for (const precision of /** @type {const} */ (["single", "double"])) {
+    test(`a world in ${precision} precision, ${dimensions}D`, () => {
+      const box = new Array(2 * dimensions).fill(0);
+      const point = new Array(dimensions).fill(0);
+      const way = point.with(0, 1);
+      /** A world of three bodies, and each of its calls with arguments that it takes. */
+      const start = () => {
+        const world = /** @type {any} */ (new BroadPhase({ dimensions, precision }));
+        const [a, b, c] = world.insertMany(new Float64Array(6 * dimensions));
+        world.update();
+        const calls = {
+          ...{ insert: box, insertMany: [[...box, ...box], {}], set: [a, ...box], setMany: [[a, b], [...box, ...box]], setSwept: [a, box, box] },
+          ...{ remove: [c], removeMany: [[c]], setFilter: [a, {}], filter: [a], has: [a], box: [a], pairsOf: [a], buffers: [2] },
+          ...{ update: [], pairs: [], ids: [], snapshot: [], hash: [], overlapping: [box, {}], containing: [point, {}] },
+          ...{ within: [point, 1, {}], nearest: [point, 1, {}], rayCast: [point, way, 5, {}], rayCastAll: [point, way, 5, {}] },
+          ...{ boxCast: [box, way, 5, {}], boxCastAll: [box, way, 5, {}] },
+        };
+        return { world, calls: /** @type {Record<string, unknown[]>} */ (calls) };
+      };
+      for (const name of Object.keys(start().calls)) {
+        const width = start().calls[name]?.length ?? 0;
+        for (let at = 0; at < width; at++) {
+          for (const value of odd) {
+            const { world, calls } = start();
+            const before = world.hash();
+            try {
+              world[name](...(calls[name] ?? []).with(at, value));
+            } catch (error) {
+              checkError(name, error);
+              // One that ran out of memory is freed.
+              if (/** @type {any} */ (error).name !== "OutOfMemoryError") assert.equal(world.hash(), before, `${name} threw, and changed the world`);
+            }
+            world.free();
+          }
+        }
+        const { world, calls } = start();
+        world.free();
+        assert.throws(() => world[name](...(calls[name] ?? [])), /^TypeError: this BroadPhase was freed/, name);
+      }
+    });
+  }
+}
+
+test("making a world, and a snapshot with any byte changed or its end cut off", () => {
+  misuse("new BroadPhase", (options) => new BroadPhase(options).free(), [options]);
+  for (const key of ["precision", "report", "margin", "prediction"]) {
+    misuse(key, (value) => new BroadPhase({ dimensions: 2, [key]: value }).free(), [0]);
+  }
+  misuse("slotOf", slotOf, [0]);
+  const world = new BroadPhase(options);
+  world.insertMany(rows);
+  world.update();
+  const snapshot = world.snapshot();
+  misuse("fromSnapshot", (bytes, options) => BroadPhase.fromSnapshot(bytes, options).free(), [snapshot, options]);
+  for (let at = 0; at < snapshot.length; at++) {
+    const changed = snapshot.with(at, /** @type {number} */ (snapshot[at]) ^ 1);
+    for (const bytes of [changed, snapshot.slice(0, at)]) {
+      assert.throws(() => BroadPhase.fromSnapshot(bytes, options), /^(SnapshotError|RangeError)/, String(at));
+    }
+  }
+});
+
+test("the algorithms", () => {
+  const good = { ...options, method: "endpoint sweep", sort: "Timsort", axis: 0, persistent: true, focus: 0, traceWords: 10_000 };
+  for (const key of Object.keys(good)) misuse(key, (value) => new Runner(/** @type {any} */ ({ ...good, [key]: value })).free(), [0]);
+  const runner = /** @type {any} */ (new Runner(/** @type {any} */ (good)));
+  runner.step(rows);
+  misuse("events", (words) => [...events(words)], [runner.trace()]);
+  misuse("new Player", (runner) => new Player(runner).free(), [runner]);
+  const player = /** @type {any} */ (new Player(runner));
+  for (const name of ["seek", "forward", "backward", "state"]) misuse(name, (...args) => player[name](...args), [0]);
+  misuse("step", (boxes) => runner.step(boxes), [rows]);
+  assert.deepEqual([...runner.step(rows).pairs], [0, 2]);
+  for (const one of [player, runner]) one.free();
+  for (const name of ["step", "trace", "clearTrace", "trimTrace"]) assert.throws(() => runner[name](rows), /^TypeError: this Runner was freed/);
+  for (const name of ["seek", "state"]) assert.throws(() => player[name](0), /^TypeError: this Player was freed/);
+});
