@@ -1,0 +1,103 @@
+// What holds for every demo of the explanation, as it stands there: the given balls, in their place.
+import { expect, type Locator, test } from "@playwright/test";
+import type { SapDemo } from "sweep-and-prune/demo";
+import { complaints } from "./support/pages.ts";
+
+/** All that a demo shows at a moment. */
+const momentOf = (demo: Locator): Promise<unknown> =>
+  demo.evaluate((element: SapDemo) => [element.state, element.event, element.balls, element.pairs]);
+
+const keys = async (demo: Locator, key: string, times: number): Promise<unknown[]> => {
+  const moments: unknown[] = [];
+  for (let time = 0; time < times; time++) {
+    await demo.page().keyboard.press(key);
+    moments.push(await momentOf(demo));
+  }
+  return moments;
+};
+
+test("every demo: keys alone step it, back and forward again is the same, neither size nor theme disturbs it", async ({ page }) => {
+  test.slow();
+  const heard = complaints(page);
+  await page.emulateMedia({ colorScheme: "light" });
+  await page.goto("/");
+  const demos = page.locator("sap-demo");
+  const count = await demos.count();
+  expect(count).toBeGreaterThan(30);
+  let moving = 0;
+  for (let at = 0; at < count; at++) {
+    const demo = demos.nth(at);
+    const name = await demo.evaluate((element) => `${element.closest("figure")?.id} ${element.getAttribute("aria-label")}`);
+    await test.step(name, async () => {
+      await demo.scrollIntoViewIfNeeded();
+      await demo.evaluate((element: SapDemo) => element.ready);
+      await demo.evaluate((element: SapDemo) => (element.pause(), element.reset(), element.pause()));
+      const picture = demo.locator(".picture");
+      await picture.focus();
+      await expect(picture).toBeFocused();
+
+      const isStatic = await demo.evaluate((element) => element.hasAttribute("static"));
+      if (isStatic) {
+        // What stands still is moved by hand: the ball at the cursor, and the algorithm runs again.
+        expect(await demo.evaluate((element) => element.hasAttribute("draggable")), name).toBe(true);
+        const before = await momentOf(demo);
+        await page.keyboard.press("ArrowRight");
+        const pushed = await momentOf(demo);
+        expect(pushed, name).not.toEqual(before);
+        await page.keyboard.press("ArrowLeft");
+        expect(await demo.evaluate((element: SapDemo) => element.balls), name).toEqual((before as unknown[])[2]);
+      } else {
+        moving++;
+        const forward = await keys(demo, ".", 12);
+        expect(new Set(forward.map((moment) => JSON.stringify(moment))).size, name).toBeGreaterThan(8);
+        const back = await keys(demo, ",", 11);
+        expect(back.reverse(), name).toEqual(forward.slice(0, -1));
+        expect(await keys(demo, ".", 11), name).toEqual(forward.slice(1));
+      }
+      await expect(demo.locator('[role="status"]'), name).not.toBeEmpty();
+
+      const before = await momentOf(demo);
+      const canvas = demo.locator(".picture canvas");
+      const isFitted = (): Promise<boolean> =>
+        canvas.evaluate((canvas: HTMLCanvasElement) => Math.abs(canvas.width - canvas.clientWidth * devicePixelRatio) <= 1 && canvas.width > 0);
+      // The sum of all that is painted, some pictures later.
+      const looks = (): Promise<number> =>
+        canvas.evaluate(async (canvas: HTMLCanvasElement) => {
+          for (let frame = 0; frame < 3; frame++) await new Promise(requestAnimationFrame);
+          const { width, height } = canvas;
+          const copy = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true })!;
+          copy.drawImage(canvas, 0, 0);
+          return copy.getImageData(0, 0, width, height).data.reduce((sum, value) => sum + value, 0);
+        });
+      for (const width of [390, 1280]) {
+        await page.setViewportSize({ width, height: 900 });
+        await demo.scrollIntoViewIfNeeded();
+        await expect.poll(isFitted, { message: `${name} at ${width} pixels` }).toBe(true);
+      }
+      const light = await looks();
+      await page.emulateMedia({ colorScheme: "dark" });
+      const change = async (): Promise<number> => Math.abs((await looks()) / light - 1);
+      await expect.poll(change, { message: `${name} is dark` }).toBeGreaterThan(0.003);
+      await page.emulateMedia({ colorScheme: "light" });
+      await expect.poll(change, { message: `${name} is light again` }).toBeLessThan(0.001);
+      expect(await momentOf(demo), `${name} after another size and theme`).toEqual(before);
+      await demo.evaluate((element: SapDemo) => element.pause());
+    });
+  }
+  expect(moving).toBeGreaterThan(15);
+  expect(heard).toEqual([]);
+});
+
+test("every demo of the explanation plays", async ({ page }) => {
+  test.slow();
+  await page.goto("/");
+  for (const demo of await page.locator("sap-demo:not([static])").all()) {
+    await demo.scrollIntoViewIfNeeded();
+    await demo.evaluate((element: SapDemo) => element.ready);
+    await demo.evaluate((element: SapDemo) => element.play());
+    const { tick, events } = await demo.evaluate((element: SapDemo) => element.state);
+    const goesOn = (): Promise<boolean> =>
+      demo.evaluate((element: SapDemo, before) => element.state.tick !== before.tick || element.state.events !== before.events, { tick, events });
+    await expect.poll(goesOn, { message: (await demo.getAttribute("aria-label")) ?? "" }).toBe(true);
+  }
+});
