@@ -4,16 +4,10 @@
  *
  * @module
  */
-import type { SapDemo as Demo } from "./demo/api.js";
-import { SapDemoElement } from "./demo/element.js";
+import { SapDemo } from "./demo/api.js";
 import { readShared as read } from "./demo/share.js";
 
-export type { DemoDrag, DemoEvent, DemoEventMap, DemoSort, DemoState, Row } from "./demo/api.js";
-
-/** `<sap-demo>`. */
-export type SapDemo = Demo;
-/** The class of `<sap-demo>`. */
-export const SapDemo: { new (): Demo; prototype: Demo } = SapDemoElement as unknown as { new (): Demo; prototype: Demo };
+export { type DemoDrag, type DemoEvent, type DemoEventMap, type DemoSort, type DemoState, type Row, SapDemo } from "./demo/api.js";
 
 /** The attributes that an address from `share()` holds after its `#`, as pairs of name and value. */
 export function readShared(hash: string): [name: string, value: string][] {
@@ -24,6 +18,6 @@ if (!customElements.get("sap-demo")) customElements.define("sap-demo", SapDemo);
 
 declare global {
   interface HTMLElementTagNameMap {
-    "sap-demo": Demo;
+    "sap-demo": SapDemo;
   }
 }

@@ -1,3 +1,5 @@
+import { SapDemoElement } from "./element.js";
+
 /** A ball as it is given: its centre and radius; its velocity, in units a second, if it has one. */
 export type Row = readonly [x: number, y: number, radius: number, vx?: number, vy?: number];
 
@@ -27,8 +29,9 @@ export interface DemoState {
 export interface DemoEvent {
   /** What was done: a comparison or a swap of the sort, a pair tested, skipped or found, a ball entered or left by the line. */
   kind: "compare" | "swap" | "test" | "enter" | "leave" | "overlap" | "skip";
-  /** The balls; of `enter` and `leave` both are the one. */
+  /** The first ball. */
   a: number;
+  /** The second; of `enter` and `leave` the same. */
   b: number;
   /** Which event of the detection, from 0. */
   index: number;
@@ -36,23 +39,33 @@ export interface DemoEvent {
 
 /** A comparison or a swap of the sort: the positions in the array; of a comparison, the edges. */
 export interface DemoSort {
+  /** What was done. */
   kind: "compare" | "swap";
+  /** The first position, or edge. */
   i: number;
+  /** The second. */
   j: number;
 }
 
 /** A ball that was moved by hand, and where it is now. */
 export interface DemoDrag {
+  /** Which ball. */
   ball: number;
+  /** The x of its centre now. */
   x: number;
+  /** The y of its centre now. */
   y: number;
 }
 
 /** What the element tells, each event bubbling out of it. */
 export interface DemoEventMap {
+  /** It has begun, or has been simulated on: what it shows now. */
   simulate: CustomEvent<DemoState>;
+  /** An event was played. */
   "sap-event": CustomEvent<DemoEvent>;
+  /** A comparison or a swap of the sort was played. */
   "sap-sort": CustomEvent<DemoSort>;
+  /** A ball was moved by hand. */
   "sap-drag": CustomEvent<DemoDrag>;
 }
 
@@ -82,6 +95,7 @@ export interface SapDemo extends HTMLElement {
   readonly event: DemoEvent | undefined;
   /** The balls where they are, rows of x, y, radius. To set it is to set the attribute. */
   get balls(): Row[];
+  /** As the attribute: how many, or which. */
   set balls(value: number | readonly Row[]);
   /** The pairs found so far in this detection. */
   readonly pairs: [number, number][];
@@ -90,10 +104,20 @@ export interface SapDemo extends HTMLElement {
   /** Resolves when it is loaded and shown; also if it cannot be, which it then says itself. */
   readonly ready: Promise<void>;
 
+  /** Listens to one of the {@link DemoEventMap | element's own events}. */
   addEventListener<K extends keyof DemoEventMap>(
     type: K,
     listener: (this: SapDemo, event: DemoEventMap[K]) => unknown,
     options?: boolean | AddEventListenerOptions,
   ): void;
+  /** Listens to any other event. */
   addEventListener(type: string, listener: EventListenerOrEventListenerObject, options?: boolean | AddEventListenerOptions): void;
 }
+
+/** The class of `<sap-demo>`. */
+export const SapDemo: {
+  /** A new element, in no document yet. */
+  new (): SapDemo;
+  /** What all of them inherit. */
+  prototype: SapDemo;
+} = SapDemoElement as unknown as { new (): SapDemo; prototype: SapDemo };
