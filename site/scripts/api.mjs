@@ -1,10 +1,9 @@
 // Documentation of the library in each language, made by that language's own tool, into public/api,
-// from where the site's build takes it. Not part of the quick build:
-//
-//   npm run api -w site && npm run build -w site
+// from where the site's build takes it. Quick when nothing has changed. Where a tool fails it says
+// why, and the pages are built without a link to what is not there.
 
 import { spawnSync } from "node:child_process";
-import { cpSync, rmSync } from "node:fs";
+import { cpSync, existsSync, readdirSync, rmSync, statSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 
@@ -13,19 +12,32 @@ const output = join(root, "site/public/api");
 // A folder of its own: the usual one may hold the documentation of every crate there is.
 const target = join(resolve(root, process.env.CARGO_TARGET_DIR ?? "target"), "api");
 
-function run(command, args, options = {}) {
-  const { status } = spawnSync(command, args, { cwd: root, stdio: "inherit", ...options });
-  if (status !== 0) process.exit(status ?? 1); // it has said why
+const cargo = ["doc", "--quiet", "--no-deps", "--package", "sweep-and-prune", "--target-dir", target];
+const languages = [
+  { name: "rust", sources: ["core"], tool: ["cargo", cargo], made: join(target, "doc"), first: "sweep_and_prune/index.html" },
+  {
+    name: "js",
+    sources: ["js/src", "js/README.md", "js/docs/api"],
+    tool: ["npm", ["run", "--silent", "docs", "--workspace", "js"]],
+    made: join(root, "js/dist-docs"),
+    first: "index.html",
+  },
+];
+
+/** When the newest file below a path was written. */
+function newest(path) {
+  const stat = statSync(path);
+  if (!stat.isDirectory()) return stat.mtimeMs;
+  const inside = readdirSync(path).filter((name) => name !== "node_modules");
+  return Math.max(0, ...inside.map((name) => newest(join(path, name))));
 }
 
-function take(from, name) {
-  rmSync(join(output, name), { recursive: true, force: true });
-  cpSync(from, join(output, name), { recursive: true });
-  console.log(`public/api/${name}`);
+for (const { name, sources, tool, made, first } of languages) {
+  const folder = join(output, name);
+  const written = existsSync(join(folder, first)) ? statSync(join(folder, first)).mtimeMs : 0;
+  if (Math.max(...sources.map((path) => newest(join(root, path)))) < written) continue;
+  const { status, error } = spawnSync(...tool, { cwd: root, stdio: "inherit" });
+  rmSync(folder, { recursive: true, force: true });
+  if (status === 0) cpSync(made, folder, { recursive: true });
+  else console.error(`The documentation for ${name} is left out: ${error?.message ?? `${tool[0]} failed`}.`);
 }
-
-run("cargo", ["doc", "--quiet", "--no-deps", "--package", "sweep-and-prune", "--target-dir", target]);
-take(join(target, "doc"), "rust");
-
-run("npm", ["run", "--silent", "docs", "--workspace", "js"]);
-take(join(root, "js/dist-docs"), "js");

@@ -88,6 +88,15 @@ test("every link of every page leads somewhere", async ({ page, request }) => {
   expect(broken).toEqual([]);
 });
 
+test("the documentation of each language that there is can be reached, and is of this library", async ({ page }) => {
+  await page.goto("/api.html");
+  for (const [name, said] of [["Documentation of the crate", "find_pairs"], ["Documentation of the package", "findPairs"]] as const) {
+    const [tab] = await Promise.all([page.waitForEvent("load"), page.getByRole("link", { name }).first().click()]);
+    await expect(tab.locator("body")).toContainText(said);
+    await page.goto("/api.html");
+  }
+});
+
 test.describe("light and dark", () => {
   const paper = `getComputedStyle(document.body).backgroundColor`;
 

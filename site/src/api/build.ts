@@ -42,6 +42,9 @@ sap.find_pairs(boxes)  # array([[0, 2]], dtype=uint32)`,
   },
 } as const;
 
+/** What is not there yet is not promised. */
+const NOT_YET = `<p class="not-yet">In the making: there is no package to install yet, and this is how it is meant to be.</p>`;
+
 /** Where each tool begins its documentation, below public/. */
 const DOCUMENTATION = {
   rust: "api/rust/sweep_and_prune/index.html",
@@ -62,7 +65,8 @@ export const api: Plugin = {
         .replace(/<api-link name="(rust|js|python)">(.*?)<\/api-link>/g, (_, name: keyof typeof DOCUMENTATION, text: string) => {
           const path = DOCUMENTATION[name];
           const exists = existsSync(new URL(`../../public/${path}`, import.meta.url));
-          return exists ? `<p><a href="./${path}">${text}</a></p>` : "";
+          if (exists) return `<p><a href="./${path}">${text}</a></p>`;
+          return name === "python" && !existsSync(new URL("../../../python/pyproject.toml", import.meta.url)) ? NOT_YET : "";
         }),
   },
 };
