@@ -12,7 +12,7 @@ use sweep_and_prune::algorithms::pairwise;
 use sweep_and_prune::{
     Aabb, Error, Kernel, PairFinder, Scalar, count_pairs, find_pairs, find_pairs_between, validate,
 };
-use sweep_and_prune_scenes::Random;
+use sweep_and_prune_scenes::{Motion, Random};
 
 type Boxes<const D: usize, T> = Vec<Aabb<D, T>>;
 
@@ -261,6 +261,54 @@ fn the_past_does_not_matter<const D: usize, T: Scalar>() {
     }
 }
 in_all_dimensions!(a_finder_finds_what_a_new_one_finds, the_past_does_not_matter);
+
+/// Another coordinate for that of a box.
+type Change<'a, T> = &'a dyn Fn(usize, T) -> T;
+
+/// Frames of boxes that move little and now and then teleport, change in number, or are another
+/// scene: a finder that was used before finds what a new one finds, in the same order.
+fn the_last_order_does_not_matter<const D: usize, T: Scalar>() {
+    let frames = if cfg!(debug_assertions) { 20 } else { 40 };
+    // With many equal edges; with half of the boxes in a corner, too many for the bin there.
+    let coarse = |_: usize, at: T| T::from_f64((at.to_f64() * 64.0).round() / 64.0);
+    let corner =
+        |i: usize, at: T| if i.is_multiple_of(2) { at } else { T::from_f64(at.to_f64() * 0.01) };
+    let as_it_is = |_: usize, at: T| at;
+    let change: [(Motion, usize, Change<'_, T>); 5] = [
+        (Motion::Drift, 900, &as_it_is),
+        (Motion::MostlyStill, 3000, &as_it_is),
+        (Motion::Teleport, 2000, &as_it_is),
+        (Motion::MostlyStill, 2000, &coarse),
+        (Motion::MostlyStill, 8000, &corner),
+    ];
+    for (motion, n, change) in change {
+        let mut moving = motion.start::<D, T>(n, 1).unwrap();
+        let mut used = finders::<D, T>();
+        for frame in 0..frames {
+            let changed = |(i, it): (usize, &Aabb<D, T>)| {
+                Aabb::new(it.min.map(|at| change(i, at)), it.max.map(|at| change(i, at)))
+            };
+            let mut boxes: Boxes<D, T> = moving.boxes().iter().enumerate().map(changed).collect();
+            moving.advance();
+            match frame % 17 {
+                7 => boxes.push(boxes[0]),
+                11 => boxes.reverse(),
+                13 => boxes[n / 2].min[0] = T::INFINITY,
+                14 => boxes.iter_mut().step_by(9).for_each(|it| *it = around([0.5; D], [0.01; D])),
+                _ => {}
+            }
+            let fresh = find_pairs(&boxes);
+            for (name, finder) in &mut used {
+                let found = finder.find(&boxes);
+                assert!(
+                    found == fresh.as_deref().map_err(|&e| e),
+                    "{motion:?} {D}D {frame} {name}"
+                );
+            }
+        }
+    }
+}
+in_all_dimensions!(a_used_finder_finds_what_a_new_one_finds, the_last_order_does_not_matter);
 
 /// Boxes as they come, most of them bad.
 fn refuses_bad_boxes<const D: usize, T: Scalar>() {

@@ -3,7 +3,6 @@
 
 use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
-use core::ops::Range;
 
 use super::memory::{grow, grow_to};
 use crate::{Aabb, Scalar};
@@ -83,7 +82,7 @@ impl<const D: usize, T: Scalar> Source<D, T> for &[Record<D, T>] {
 }
 
 /// Equal cells on one axis; the outermost reach to infinity.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cells<T> {
     axis: usize,
     /// What coordinates are multiplied by first: see [`Number::unit`](super::numbers::Number::unit).
@@ -127,7 +126,7 @@ impl<T: Scalar> Cells<T> {
 
 /// How space is cut: into columns on the axes that are not swept, and if those are long, on the
 /// sweep axis into slabs, for the sake of the caches and of threads.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Grid<T> {
     pub sweep: usize,
     /// The axes in turn, the first varying slowest: at first those that do not exist, of one cell,
@@ -136,6 +135,21 @@ pub(super) struct Grid<T> {
 }
 
 impl<T: Scalar> Grid<T> {
+    /// Between which bins a box lies: that of its lower corner and that of its upper.
+    #[inline(always)]
+    pub fn span<const D: usize>(&self, aabb: &Aabb<D, T>) -> [u32; 2] {
+        let [x, y, z] = &self.cells;
+        // All four in one go: on axes that are not cut, or do not exist, they are 0.
+        let ends = [y, x].map(|cells| [aabb.min[cells.axis], aabb.max[cells.axis]]);
+        let cells: [u32; 4] = core::array::from_fn(|k| {
+            let cells = [y, x][k / 2];
+            (ends[k / 2][k % 2] * cells.unit).cell(cells.origin, cells.scale, cells.last)
+        });
+        let along = if z.count > 1 { z.of(aabb) } else { (0, 0) };
+        let bin = |x: u32, y: u32, z: u32| (x * self.cells[1].count + y) * self.cells[2].count + z;
+        [bin(cells[2], cells[0], along.0), bin(cells[3], cells[1], along.1)]
+    }
+
     /// A grid with these cells on each axis.
     pub fn new<const D: usize>(sweep: usize, cells: [Cells<T>; D]) -> Self {
         let mut grid = Self { sweep, cells: [cells[sweep]; 3] };
@@ -182,11 +196,11 @@ impl<T: Scalar> Grid<T> {
 
 /// One copy of a box to a bin.
 #[derive(Clone, Copy, Debug, Default)]
-struct Copied {
+pub(super) struct Copied {
     /// The bin, and above it the marks that the copy adds.
     bin: u32,
     /// The box's position in the source.
-    of: u32,
+    pub of: u32,
 }
 
 /// Bits of [`Copied::bin`] that are the bin.
@@ -199,7 +213,7 @@ impl Copied {
     }
 
     #[inline(always)]
-    fn marks(self) -> u32 {
+    pub fn marks(self) -> u32 {
         self.bin >> BIN_BITS
     }
 }
@@ -211,6 +225,8 @@ pub(super) struct Bins<const D: usize, T> {
     /// Box by box, what goes where; the rest of the array is scratch.
     copies: Vec<Copied>,
     len: usize,
+    /// Boxes that were listed, and bins that they are listed for.
+    boxes: usize,
     bins: usize,
     /// Where each bin ends.
     ends: Vec<u32>,
@@ -218,7 +234,14 @@ pub(super) struct Bins<const D: usize, T> {
 
 impl<const D: usize, T: Scalar> Bins<D, T> {
     pub const fn new() -> Self {
-        Self { records: Vec::new(), copies: Vec::new(), len: 0, bins: 0, ends: Vec::new() }
+        Self {
+            records: Vec::new(),
+            copies: Vec::new(),
+            len: 0,
+            boxes: 0,
+            bins: 0,
+            ends: Vec::new(),
+        }
     }
 
     /// Lists the copies that these boxes of the source become, and returns how many.
@@ -228,7 +251,7 @@ impl<const D: usize, T: Scalar> Bins<D, T> {
     pub fn list<S: Source<D, T>>(
         &mut self,
         source: S,
-        boxes: Range<usize>,
+        boxes: impl Iterator<Item = usize>,
         grid: &Grid<T>,
         limit: u64,
     ) -> Result<u64, Refusal> {
@@ -238,7 +261,9 @@ impl<const D: usize, T: Scalar> Bins<D, T> {
         let [above_mark, beside_mark, _] = grid.marks();
         let mut valid = true;
         let mut len = 0;
+        self.boxes = 0;
         for i in boxes {
+            self.boxes += 1;
             if len + 4 > self.copies.len() {
                 let room = 2 * self.copies.len() + 1024;
                 grow_to(&mut self.copies, room, Copied::default())?;
@@ -308,6 +333,37 @@ impl<const D: usize, T: Scalar> Bins<D, T> {
         Ok(len)
     }
 
+    /// Puts the copies that were listed into the order of the bins, then of the boxes, instead of
+    /// their records, and notes where those of each bin begin, and at last where they end.
+    ///
+    /// # Errors
+    /// [`Refusal::Memory`].
+    pub fn by_bin(
+        &self,
+        copies: &mut Vec<Copied>,
+        starts: &mut Vec<u32>,
+    ) -> Result<(), TryReserveError> {
+        grow(copies, self.len, Copied::default())?;
+        grow(starts, self.bins + 2, 0)?;
+        // Shifted by two, and then by one, so that the copying moves each start to where it belongs.
+        let starts = &mut starts[..self.bins + 2];
+        starts.fill(0);
+        for copy in &self.copies[..self.len] {
+            starts[copy.bin() + 2] += 1;
+        }
+        let mut total = 0;
+        for start in &mut starts[2..] {
+            total += *start;
+            *start = total;
+        }
+        for &copy in &self.copies[..self.len] {
+            let start = &mut starts[copy.bin() + 1];
+            copies[*start as usize] = copy;
+            *start += 1;
+        }
+        Ok(())
+    }
+
     /// Copies the boxes to their bins as listed. There must be less than 2^32 copies.
     ///
     /// # Errors
@@ -335,6 +391,11 @@ impl<const D: usize, T: Scalar> Bins<D, T> {
             *end += 1;
         }
         Ok(())
+    }
+
+    /// How many boxes were listed.
+    pub fn boxes(&self) -> usize {
+        self.boxes
     }
 
     /// How many records there are.

@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 use core::mem::take;
 use core::ops::ControlFlow;
 
+use super::again::Last;
 use super::bins::{Bins, Grid, Record, Refusal, Source};
 use super::kernel::{Arrange, Column, Kernel};
 use super::order::Sorter;
@@ -32,10 +33,10 @@ const SMALL: usize = 512;
 /// nor is one with fewer candidates a box.
 const CROWDED: u64 = 96;
 
-/// One with more, or with so many times what the mean bin holds, is planned anew before it is
+/// One with more, or with so many times its share of the boxes, is planned anew before it is
 /// ordered: that many were not expected.
 const LARGE: usize = 16384;
-const UNEXPECTED: usize = 8;
+const UNEXPECTED: usize = 10;
 /// Fewer take less time to order than to plan.
 const WORTH_A_PLAN: usize = 2048;
 
@@ -48,12 +49,13 @@ const WIDE: f64 = 8.0;
 #[derive(Debug)]
 pub(super) struct Search<const D: usize, T: Scalar> {
     pub kernel: Kernel,
-    sorter: Sorter<T>,
-    columns: [Column<T>; 2],
+    pub last: Last<T>,
+    pub sorter: Sorter<T>,
+    pub columns: [Column<T>; 2],
     /// The records of one bin, where several threads have filled it.
-    gathered: [Vec<Record<D, T>>; 2],
+    pub gathered: [Vec<Record<D, T>>; 2],
     /// Spare bins and parts: as many as plans were ever nested.
-    bins: Vec<[Bins<D, T>; 2]>,
+    pub bins: Vec<[Bins<D, T>; 2]>,
     parts: Vec<[Vec<Record<D, T>>; 3]>,
     #[cfg(feature = "parallel")]
     pub team: super::threads::Team<D, T>,
@@ -79,7 +81,7 @@ impl<'a> Task<'a> {
         Self { depth: self.depth + 1, share: self.share * share, ..self }
     }
 
-    fn done(self, share: f64) -> Result<(), Stop> {
+    pub fn done(self, share: f64) -> Result<(), Stop> {
         match self.watch.map(|watch| watch.add(self.share * share)) {
             Some(ControlFlow::Break(())) => Err(Stop::Enough),
             _ => Ok(()),
@@ -109,6 +111,7 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         const { assert!(1 <= D && D <= 3, "boxes have one, two or three dimensions") };
         Self {
             kernel,
+            last: Last::new(),
             sorter: Sorter::new(),
             columns: [Column::new(), Column::new()],
             gathered: [Vec::new(), Vec::new()],
@@ -117,6 +120,33 @@ impl<const D: usize, T: Scalar> Search<D, T> {
             #[cfg(feature = "parallel")]
             team: super::threads::Team::default(),
         }
+    }
+
+    /// As [`run`](Self::run), of the caller's sets: one set is found from the order of the last
+    /// call, if that pays.
+    pub fn begin<O: Sink>(
+        &mut self,
+        sets: &[&[Aabb<D, T>]],
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<(), Stop> {
+        if let &[boxes] = sets
+            && !is_direct(sets)
+        {
+            let planned = plan(sets, true);
+            #[cfg(feature = "parallel")]
+            let alone = !self.team.pays(boxes.len());
+            #[cfg(not(feature = "parallel"))]
+            let alone = true;
+            if let Plan::Cut(grid) = planned.plan
+                && alone
+                && let Some(result) = self.again(boxes, &grid, task, sink)
+            {
+                return result;
+            }
+            return self.follow(planned.plan, sets, task, sink);
+        }
+        self.run(sets, task, sink)
     }
 
     /// Sends all pairs within one set, or between two, to the sink. Sets that are
@@ -250,8 +280,8 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
-        let total: usize = pieces.iter().flat_map(|piece| &piece[..sets]).map(Bins::len).sum();
-        let crowd = (UNEXPECTED * (total / grid.len())).clamp(WORTH_A_PLAN, LARGE);
+        let boxes = pieces.iter().flat_map(|piece| &piece[..sets]).map(Bins::boxes).sum();
+        let crowd = crowd(boxes, grid);
         if let [piece] = pieces {
             let records = [piece[0].bin(bin), if sets == 2 { piece[1].bin(bin) } else { &[] }];
             self.ordered(&records[..sets], grid.sweep, crowd, task, sink)?;
@@ -278,7 +308,7 @@ impl<const D: usize, T: Scalar> Search<D, T> {
 
     /// The pairs of boxes that are taken together: orders and sweeps them, or plans them anew if
     /// there are more than `crowd`, or more candidates than a better plan would leave.
-    fn ordered<S: Source<D, T>, O: Sink>(
+    pub fn ordered<S: Source<D, T>, O: Sink>(
         &mut self,
         sets: &[S],
         axis: usize,
@@ -300,20 +330,24 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         for (&set, column) in sets.iter().zip(&mut self.columns) {
             self.sorter.order(set, axis, column)?;
         }
-        if boxes >= SMALL && task.depth < DEPTH {
-            let columns = &self.columns[..sets.len()];
-            // A few probes tell that all is well; more, before anything is done about it.
-            if candidates(columns, 32) > CROWDED * boxes as u64 {
-                let candidates = candidates(columns, 512);
-                if candidates > CROWDED * boxes as u64 {
-                    let planned = plan(sets, true);
-                    if planned.cost < 0.6 * CANDIDATE * candidates as f64 {
-                        return self.follow(planned.plan, sets, again, sink);
-                    }
+        if task.depth < DEPTH && self.is_crowded(sets.len()) {
+            let candidates = candidates(&self.columns[..sets.len()], 512);
+            if candidates > CROWDED * boxes as u64 {
+                let planned = plan(sets, true);
+                if planned.cost < 0.6 * CANDIDATE * candidates as f64 {
+                    return self.follow(planned.plan, sets, again, sink);
                 }
             }
         }
         self.sweep(sets.len(), D - 1, task, sink)
+    }
+
+    /// Whether the columns that stand ordered may have too many candidates: a few probes tell that
+    /// all is well; more are due before anything is done about it.
+    pub fn is_crowded(&self, sets: usize) -> bool {
+        let columns = &self.columns[..sets];
+        let boxes = columns.iter().map(Column::len).sum::<usize>();
+        boxes >= SMALL && candidates(columns, 32) > CROWDED * boxes as u64
     }
 
     /// Parts the boxes of a set by their size on an axis and takes the parts by themselves.
@@ -364,7 +398,7 @@ impl<const D: usize, T: Scalar> Search<D, T> {
     }
 
     /// Sweeps the columns that stand ordered.
-    fn sweep<O: Sink>(
+    pub fn sweep<O: Sink>(
         &self,
         sets: usize,
         others: usize,
@@ -417,6 +451,15 @@ pub(super) fn very_few<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
         }
     }
     sink.take(count)
+}
+
+/// A bin that holds more than this of so many boxes is planned anew. Where there is but one, it
+/// was planned.
+pub(super) fn crowd<T: Scalar>(boxes: usize, grid: &Grid<T>) -> usize {
+    match grid.len() {
+        1 => usize::MAX,
+        bins => (UNEXPECTED * (boxes / bins)).clamp(WORTH_A_PLAN, LARGE),
+    }
 }
 
 /// The most records that so many boxes may become.

@@ -36,6 +36,13 @@ impl<const D: usize, T: Scalar> Default for Team<D, T> {
     }
 }
 
+impl<const D: usize, T: Scalar> Team<D, T> {
+    /// Whether several threads pay for so many boxes.
+    pub fn pays(&self, boxes: usize) -> bool {
+        self.threads > 1 && boxes >= WORTH
+    }
+}
+
 /// As the serial search, on threads; none if that does not pay.
 pub(super) fn cut<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
     search: &mut Search<D, T>,
@@ -45,8 +52,7 @@ pub(super) fn cut<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
     sink: &mut O,
 ) -> Option<Result<Result<(), Stop>, Refusal>> {
     let threads = search.team.threads;
-    let boxes: usize = sets.iter().map(|set| set.len()).sum();
-    if threads < 2 || boxes < WORTH {
+    if !search.team.pays(sets.iter().map(|set| set.len()).sum()) {
         return None;
     }
     let first = sink.fork()?;
