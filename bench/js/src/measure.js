@@ -15,7 +15,11 @@ const TURN = 20;
 /** Shorter calls are timed together until they take so long. */
 const BATCH = 1;
 /** No contender takes part in more rounds once it has taken so long, but for the first three. */
-const PATIENCE = 4000;
+const PATIENCE = 1000;
+/** Whose call takes so long is warm when its pairs have been checked. */
+const LONG = 200;
+/** Who was so many times as slow as the fastest peer is not asked with ten times as many boxes. */
+const BEHIND = 4;
 
 /** The names of ours compiled for this machine. */
 export const NATIVE = "native";
@@ -32,6 +36,8 @@ export const NATIVE_WORLD = "native, BroadPhase";
 export class Measurement {
   /** How long contenders took at how many boxes of a scene: what more boxes will take at least. */
   #slow = new Map();
+  /** The fastest peer so far on a scene: its name, at how many boxes, and how long it took. */
+  #fastest = new Map();
   /** What was found in the case under way, by those that are too slow to be timed too. */
   #witnesses = /** @type {{ who: Who, fingerprint: string, pairs: number }[]} */ ([]);
 
@@ -43,6 +49,25 @@ export class Measurement {
   constructor(options, progress) {
     this.options = options;
     this.progress = progress;
+  }
+
+  /**
+   * Takes from an earlier result how long contenders take: who is too slow is not asked again.
+   *
+   * @param {Case} earlier
+   * @param {readonly Who[]} contenders
+   */
+  learn({ scene, dimensions, boxes, results }, contenders) {
+    for (const { name, outcome } of results) {
+      const who = contenders.find((one) => one.name === name);
+      if (!who || !("Timed" in outcome)) continue;
+      const took = outcome.Timed.median_ns / 1e6;
+      this.#slow.set(`${scene} ${dimensions} ${name}`, { boxes, took });
+      const fastest = this.#fastest.get(`${scene} ${dimensions}`);
+      if (isPeer({ who }) && !(fastest?.boxes === boxes && fastest.took < took)) {
+        this.#fastest.set(`${scene} ${dimensions}`, { name, boxes, took });
+      }
+    }
   }
 
   /**
@@ -85,6 +110,9 @@ export class Measurement {
       running = running.filter((one) => one.fingerprint === reference.fingerprint);
       running.push(...(await this.#natives(scene, setting)));
       await this.#rounds(running, drop);
+
+      const [fastest] = running.filter(isPeer).sort((one, other) => one.estimate - other.estimate);
+      if (fastest) this.#fastest.set(`${scene.name} ${dimensions}`, { name: fastest.who.name, boxes, took: fastest.estimate });
 
       const base = (name) => running.find((one) => one.who.name === name)?.rounds;
       const ours = (scene.task === "follow" ? base(WORLD) : undefined) ?? base(OURS) ?? [];
@@ -138,14 +166,20 @@ export class Measurement {
     if (known && (known.took * Number(boxes)) / known.boxes > limit) {
       return `over ${limit / 1000} s, as its time for ${known.boxes.toLocaleString("en")} boxes shows`;
     }
+    const fastest = this.#fastest.get(`${scene} ${dimensions}`);
+    if (known && isPeer({ who }) && fastest?.boxes === known.boxes && 10 * known.boxes <= Number(boxes)) {
+      const behind = known.took / fastest.took;
+      if (behind > BEHIND) return `${behind.toFixed(1)} times as slow as ${fastest.name} with ${known.boxes.toLocaleString("en")} boxes`;
+    }
     const remote = this.#start(who.name, setting);
     try {
       await remote.ask("", 10_000 + 4 * limit);
       const { fingerprint, pairs, peak_bytes, longest } = await remote.ask("check", 4 * limit);
       this.#witnesses.push({ who, fingerprint, pairs });
       if (longest > 2 * limit) throw new NoAnswer(`over ${limit / 1000} s`);
-      await remote.ask("warm-up", 10_000 + limit);
-      const estimate = median((await remote.ask("time 3 1", 10_000 + 3 * limit)).ms);
+      if (longest < LONG) await remote.ask("warm-up", 10_000 + limit);
+      const repeats = longest < LONG ? 3 : 1;
+      const estimate = median((await remote.ask(`time ${repeats} 1`, 10_000 + repeats * limit)).ms);
       this.#slow.set(key, { boxes: Number(boxes), took: estimate });
       if (estimate > limit) throw new NoAnswer(`over ${limit / 1000} s`);
       return { who, remote, fingerprint, pairs, peak_bytes, estimate, rounds: [], spent: 0 };
@@ -211,6 +245,11 @@ export class Measurement {
       this.progress(0.5 + (0.5 * (round + 1)) / rounds);
     }
   }
+}
+
+/** Whether it is another library: neither ours nor the plain sweep. */
+function isPeer(/** @type {{ who: Who }} */ { who }) {
+  return who.rival && who.package !== "";
 }
 
 /**
