@@ -63,7 +63,8 @@
 //! (Plans snap to round coordinates, so that they seldom change where boxes move little; they come
 //! of the boxes alone, and so does the order of the pairs, whatever was kept.) Boxes at rest take
 //! 0.7 to 0.8 of the time; with one in ten in motion 0.75 to 0.85; where all drift by a twentieth of
-//! their width 0.8 to 1. Where one in 16 changed bins, or one in three is out of order, that does
+//! their width 0.8 to 1. (Builds without `std`, as for browsers, go without: it is half as much code
+//! again.) Where one in 16 changed bins, or one in three is out of order, that does
 //! not pay, and the next 8 to 128 calls are as those of a new finder.
 //!
 //! There is no more to gain, because little is spent on order: a box is put into a bin by a write
@@ -113,7 +114,7 @@ use crate::{Aabb, Error, Scalar, validate};
 use kernel::Arrange;
 pub use kernel::Kernel;
 pub use numbers::Number;
-use search::{Search, Stop, Task, is_direct, is_tiny, very_few};
+use search::{Search, Stop, Task, few, is_direct, is_tiny, very_few};
 use sink::{Buffer, Count, Sink, Store, Stream};
 use watch::Watch;
 
@@ -126,6 +127,10 @@ use watch::Watch;
 /// [`Error::InvalidBox`] with the index of the first box that is inverted or NaN,
 /// [`Error::TooManyBoxes`], or [`Error::OutOfMemory`].
 pub fn find_pairs<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>]) -> Result<Vec<[u32; 2]>, Error> {
+    let mut store = Store::default();
+    if few(boxes, &mut store) {
+        return Ok(store.into_pairs());
+    }
     let mut finder = PairFinder::new();
     finder.find(boxes)?;
     Ok(finder.store.into_pairs())
@@ -229,8 +234,12 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
     ///
     /// # Errors
     /// As [`find_pairs`].
+    #[inline]
     pub fn find(&mut self, boxes: &[Aabb<D, T>]) -> Result<&[[u32; 2]], Error> {
-        self.find_of(&[boxes], None)?;
+        // A call for a handful of boxes takes little longer than their tests.
+        if !few(boxes, &mut self.store) {
+            self.find_of(&[boxes], None)?;
+        }
         Ok(self.store.pairs())
     }
 
@@ -327,7 +336,6 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
         self.for_each_of(&[a, b], each)
     }
 
-    #[inline]
     fn find_of(
         &mut self,
         sets: &[&[Aabb<D, T>]],
@@ -382,7 +390,6 @@ fn run<const D: usize, T: Scalar, O: Sink>(
     sink: &mut O,
 ) -> Result<bool, Error> {
     let arrange = if sets.len() == 1 { Arrange::Ascending } else { Arrange::BySet };
-    // A call for a handful of boxes takes little longer than their tests.
     if is_tiny(sets) && sets.iter().all(|set| set.iter().all(Aabb::is_valid)) {
         return ended(very_few(sets, arrange, sink));
     }

@@ -11,7 +11,7 @@ use super::bins::{Bins, Grid, Record, Refusal, Source};
 use super::kernel::{Arrange, Column, Kernel};
 use super::order::Sorter;
 use super::plan::{CANDIDATE, Plan, plan};
-use super::sink::Sink;
+use super::sink::{Sink, Store};
 use super::sweep::{Sweep, candidates};
 use super::watch::Watch;
 use crate::{Aabb, Scalar};
@@ -20,8 +20,10 @@ use crate::{Aabb, Scalar};
 const FEW: usize = 128;
 /// and with two sets also if one of them has no more than this.
 const FEW_AGAINST_MANY: usize = 32;
-/// Up to this many it is not even worth while to lay them out for the vectors.
-const VERY_FEW: usize = 20;
+/// Up to this many it is not even worth while to lay them out for the vectors,
+const VERY_FEW: usize = 40;
+/// and with two sets up to so many tests.
+const FEW_TESTS: usize = 400;
 /// Boxes laid out at a time where many are tested against a few.
 const CHUNK: usize = 4096;
 
@@ -130,7 +132,10 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
-        if let &[boxes] = sets
+        // Without `std`, which is how it is built for browsers, size counts more: this is half as
+        // much code again.
+        if cfg!(feature = "std")
+            && let &[boxes] = sets
             && !is_direct(sets)
         {
             let planned = plan(sets, true);
@@ -423,7 +428,29 @@ pub(super) fn is_direct<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[S]) 
 #[inline]
 pub(super) fn is_tiny<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[S]) -> bool {
     // Of 65,536 boxes and itself the product is 0 where `usize` has 32 bits.
-    sets[0].len().saturating_mul(sets[sets.len() - 1].len()) <= VERY_FEW * VERY_FEW
+    sets[0].len().saturating_mul(sets[sets.len() - 1].len()) <= FEW_TESTS
+}
+
+/// Stores the pairs of very few boxes. False, with nothing stored, if they are more, or invalid,
+/// or there is not enough memory.
+#[inline]
+pub(super) fn few<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>], store: &mut Store) -> bool {
+    boxes.len() <= VERY_FEW
+        && store.put(boxes.len() * boxes.len().saturating_sub(1) / 2, |pairs| {
+            let (mut valid, mut count) = (true, 0);
+            for (i, a) in boxes.iter().enumerate() {
+                valid &= a.is_valid();
+                for (j, b) in (i + 1..).zip(&boxes[i + 1..]) {
+                    if a.overlaps(b)
+                        && let Some(pair) = pairs.get_mut(count)
+                    {
+                        *pair = [i as u32, j as u32];
+                        count += 1;
+                    }
+                }
+            }
+            valid.then_some(count)
+        })
 }
 
 /// The pairs of very few boxes, box by box.

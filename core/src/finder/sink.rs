@@ -58,6 +58,22 @@ impl Store {
         self.len = 0;
     }
 
+    /// Has at most so many pairs written, by a function that tells how many they are. False, with
+    /// nothing stored, if it tells of none to store, or there is not enough memory.
+    #[inline]
+    pub fn put(
+        &mut self,
+        most: usize,
+        write: impl FnOnce(&mut [[u32; 2]]) -> Option<usize>,
+    ) -> bool {
+        if self.buffer.len() < most && grow_to(&mut self.buffer, most, [0; 2]).is_err() {
+            return false;
+        }
+        let count = write(&mut self.buffer);
+        self.len = count.unwrap_or(0);
+        count.is_some()
+    }
+
     pub fn pairs(&self) -> &[[u32; 2]] {
         &self.buffer[..self.len]
     }
