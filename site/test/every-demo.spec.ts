@@ -17,7 +17,7 @@ const keys = async (demo: Locator, key: string, times: number): Promise<unknown[
 };
 
 test("every demo: keys alone step it, back and forward again is the same, neither size nor theme disturbs it", async ({ page }) => {
-  test.slow();
+  test.setTimeout(900_000); // three dozen demos, each for several seconds, on a machine that may be busy
   const heard = complaints(page);
   await page.emulateMedia({ colorScheme: "light" });
   await page.goto("/");

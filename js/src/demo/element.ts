@@ -3,27 +3,23 @@ import type { TraceEvent } from "../trace.js";
 import type { DemoEvent, DemoEventMap, DemoState, Row } from "./api.js";
 import { Canvases } from "./canvas.js";
 import { clock } from "./clock.js";
-import { hasFlags, shownKinds } from "./detection.js";
-import { explain, type Explanation } from "./explain.js";
+import { hasFlags } from "./detection.js";
+import type { Explanation } from "./explain.js";
 import { Grab } from "./grab.js";
 import { type Keyboard, keysOf, press } from "./keys.js";
 import { loadDemos } from "./load.js";
-import { namesOf } from "./names.js";
-import { describeEvent, summary } from "./narrate.js";
-import { attributes, isWorldKept, OptionError, type Options, readOptions, readStart } from "./options.js";
+import { attributes, OptionError, type Options, readOptions, readStart } from "./options.js";
 import { heightOfArray, paint } from "./paint.js";
-import { Playback } from "./playback.js";
-import { Guesses, type Question, questionAt } from "./predict.js";
+import { Guesses, type Question } from "./predict.js";
 import { addProperties } from "./properties.js";
+import { NOTHING_COUNTED, Run } from "./run.js";
 import { Selection } from "./selection.js";
 import { iframeOf, shareUrl } from "./share.js";
 import { Speech } from "./speech.js";
 import { styles } from "./styles.js";
 import { controls, counters, guessing, sharing } from "./templates.js";
 import { type Theme, ThemeProbe } from "./theme.js";
-import { Timeline } from "./timeline.js";
 import { toldAs, toldOfSort } from "./told.js";
-import { rowsOf } from "./world.js";
 
 /** Numbers that change more often cannot be read. */
 const COUNTERS_MS = 100;
@@ -37,16 +33,13 @@ export class SapDemoElement extends LitElement {
     return [...super.observedAttributes, ...attributes];
   }
 
-  #options: Options | undefined;
-  #timeline: Timeline | undefined;
-  #playback: Playback | undefined;
+  #run: Run | undefined;
   /** What keeps it from beginning, to be said in its place. */
   #wrong = "";
   #isPlaying = false;
   #speed: number | undefined;
   #hasChanged = false;
   #wasDragged = false;
-  #names: string[] = [];
   readonly #selection = new Selection();
   #explanation: Explanation | undefined;
   #guesses = new Guesses();
@@ -71,10 +64,11 @@ export class SapDemoElement extends LitElement {
   // What others call
 
   play(): void {
-    if (!this.#timeline || this.#isPlaying) return;
-    if (this.#options!.isStatic && this.#timeline.isDetected) this.#timeline.rewind();
+    const run = this.#run;
+    if (!run || this.#isPlaying) return;
+    if (run.options.isStatic && run.timeline.isDetected) run.timeline.rewind();
     this.#isPlaying = true;
-    this.#playback!.restart();
+    run.playback.restart();
     this.#changed();
   }
 
@@ -86,11 +80,12 @@ export class SapDemoElement extends LitElement {
   }
 
   step(): void {
-    const timeline = this.#timeline;
-    if (!timeline) return;
+    const run = this.#run;
+    if (!run) return;
+    const { timeline, options } = run;
     this.#isPlaying = false;
-    if (timeline.isDetected && this.#options!.isStatic) timeline.rewind();
-    else if (timeline.isDetected) this.#nextDetection();
+    if (timeline.isDetected && options.isStatic) timeline.rewind();
+    else if (timeline.isDetected) run.nextDetection(this.#listener);
     if (!timeline.isDetected) this.#tell(timeline.nextStop());
     this.#guesses.outcome = "";
     this.#changed();
@@ -98,17 +93,17 @@ export class SapDemoElement extends LitElement {
   }
 
   back(): void {
-    if (!this.#timeline) return;
+    if (!this.#run) return;
     this.#isPlaying = false;
-    this.#timeline.back();
-    this.#arrived();
+    this.#run.timeline.back();
+    this.#arrived(this.#run);
   }
 
   seek(k: number): void {
-    if (!this.#timeline || Number.isNaN(k)) return;
+    if (!this.#run || Number.isNaN(k)) return;
     this.#isPlaying = false;
-    this.#timeline.seek(k);
-    this.#arrived();
+    this.#run.timeline.seek(k);
+    this.#arrived(this.#run);
   }
 
   reset(): void {
@@ -117,8 +112,9 @@ export class SapDemoElement extends LitElement {
   }
 
   share(): string {
-    const start = this.#wasDragged ? 0 : (this.#timeline?.tick ?? 0);
-    const balls = this.#wasDragged ? JSON.stringify(this.#rows()) : this.getAttribute("balls");
+    const hasMoved = this.#wasDragged && this.#run !== undefined;
+    const start = hasMoved ? 0 : (this.#run?.timeline.tick ?? 0);
+    const balls = hasMoved ? JSON.stringify(this.#run!.rows()) : this.getAttribute("balls");
     const page = new URL(this.getAttribute("embed-url") ?? "embed.html", document.baseURI);
     return shareUrl(page, (name) => this.getAttribute(name), { balls, start });
   }
@@ -132,17 +128,15 @@ export class SapDemoElement extends LitElement {
   }
 
   get state(): DemoState {
-    const { tick = 0, position = 0 } = this.#timeline ?? {};
-    return { tick, events: position, ...this.#counts, hash: this.#timeline?.hash() ?? "" };
+    return this.#run?.state ?? { tick: 0, events: 0, ...NOTHING_COUNTED, hash: "" };
   }
 
   get event(): DemoEvent | undefined {
-    const { event, position = 0 } = this.#timeline ?? {};
-    return event && toldAs(event, position - 1);
+    return this.#run?.event;
   }
 
   get balls(): Row[] {
-    return this.#timeline ? rowsOf(this.#timeline.positions, this.#timeline.radii) : [];
+    return this.#run?.balls ?? [];
   }
 
   set balls(value: number | readonly Row[]) {
@@ -150,8 +144,7 @@ export class SapDemoElement extends LitElement {
   }
 
   get pairs(): [number, number][] {
-    const { overlaps = [] } = this.#timeline?.state ?? {};
-    return Array.from({ length: overlaps.length / 2 }, (_, i) => [overlaps[2 * i]!, overlaps[2 * i + 1]!]);
+    return this.#run?.pairs ?? [];
   }
 
   get chosen(): number[] {
@@ -165,7 +158,7 @@ export class SapDemoElement extends LitElement {
     clock.add(this, { frame: (ms) => this.#frame(ms) });
     motionQuery.addEventListener("change", this.#onMotionChange);
     loadDemos().then(
-      () => this.isConnected && !this.#timeline && this.#begin(),
+      () => this.isConnected && !this.#run && this.#begin(),
       (error: unknown) => this.#refuse(`This demo could not be loaded. ${error instanceof Error ? error.message : String(error)}`),
     );
   }
@@ -179,15 +172,15 @@ export class SapDemoElement extends LitElement {
     // One that is only moved within the page goes on where it was.
     setTimeout(() => {
       if (this.isConnected) return;
-      this.#timeline?.free();
-      this.#timeline = undefined;
+      this.#run?.free();
+      this.#run = undefined;
     });
   }
 
   override attributeChangedCallback(name: string, old: string | null, value: string | null): void {
     super.attributeChangedCallback(name, old, value);
     if (old === value || !(attributes as readonly string[]).includes(name)) return;
-    if (!this.#timeline && this.#wrong === "") return;
+    if (!this.#run && this.#wrong === "") return;
     if (name === "paused") return value === null ? this.play() : this.pause();
     // Several that change at once are read at once.
     if (!this.#hasChanged) queueMicrotask(() => this.#understand());
@@ -197,44 +190,40 @@ export class SapDemoElement extends LitElement {
   /** Reads the attributes anew, and goes on in the same world if they leave it as it was. */
   #understand(): void {
     this.#hasChanged = false;
-    const before = this.#options;
     const options = this.#readOptions();
     if (!options) return;
-    if (!this.#timeline || !before || !isWorldKept(before, options)) return this.#begin();
-    const { tick } = this.#timeline;
-    this.#open(options, new Timeline(options, shownKinds(options.decorations, options.detecting), this.#timeline.release(), tick));
-    if (!this.#isPlaying) this.#timeline.finish();
+    const run = this.#run?.goOn(options);
+    if (!run) return this.#begin();
+    this.#open(run);
+    if (!this.#isPlaying) run.timeline.finish();
     this.#changed();
   }
 
   #begin(): void {
     const options = this.#readOptions();
     if (!options) return;
-    let timeline: Timeline;
+    let run: Run;
     try {
-      timeline = Timeline.at(options, shownKinds(options.decorations, options.detecting), readStart(this.getAttribute("start")));
+      run = Run.begin(options, readStart(this.getAttribute("start")));
     } catch (error) {
       return this.#refuse(messageOf(error));
     }
-    this.#timeline?.free();
-    this.#open(options, timeline);
+    this.#run?.free();
+    this.#open(run);
     this.#wasDragged = false;
     this.#selection.clear();
     this.#guesses = new Guesses();
     const isStill = this.hasAttribute("paused") || options.isStatic || options.predicts || motionQuery.matches;
-    if (options.isStatic && !options.predicts) timeline.finish();
+    if (options.isStatic && !options.predicts) run.timeline.finish();
     this.#isPlaying = !isStill;
     this.#changed();
     this.#emit("simulate", this.state);
     void this.updateComplete.then(this.#setReady);
   }
 
-  #open(options: Options, timeline: Timeline): void {
+  #open(run: Run): void {
     this.#wrong = "";
-    this.#options = options;
-    this.#timeline = timeline;
-    this.#playback = new Playback(timeline, options);
-    this.#names = namesOf(options.labels, timeline.radii.length);
+    this.#run = run;
     this.#speed = undefined;
   }
 
@@ -249,9 +238,8 @@ export class SapDemoElement extends LitElement {
 
   /** Says what is wrong in the picture: an exception would tell nobody. */
   #refuse(message: string): void {
-    this.#timeline?.free();
-    this.#timeline = undefined;
-    this.#options = undefined;
+    this.#run?.free();
+    this.#run = undefined;
     this.#isPlaying = false;
     this.#wrong = message;
     this.requestUpdate();
@@ -265,9 +253,10 @@ export class SapDemoElement extends LitElement {
   // Time
 
   #frame(ms: number): boolean {
-    if (!this.#timeline) return false;
+    const run = this.#run;
+    if (!run) return false;
     try {
-      if (this.#isPlaying) this.#isPlaying = this.#playback!.advance(ms * (this.#speed ?? this.#options!.speed), this.#listener);
+      if (this.#isPlaying) this.#isPlaying = run.playback.advance(ms * (this.#speed ?? run.options.speed), this.#listener);
       this.#paint();
     } catch (error) {
       // Out of memory, at most. The other demos of the page go on.
@@ -290,11 +279,6 @@ export class SapDemoElement extends LitElement {
     },
   };
 
-  #nextDetection(): void {
-    do this.#playback!.tick(this.#listener);
-    while (!this.#timeline!.hasDetection);
-  }
-
   /** Something is to be shown anew. */
   #changed(): void {
     if (this.#isPlaying) clock.wake(this);
@@ -303,7 +287,8 @@ export class SapDemoElement extends LitElement {
 
   #update(now: number): void {
     this.#countersAt = now;
-    this.#explanation = this.#explainChosen();
+    const { pair } = this.#selection;
+    this.#explanation = pair && this.#run?.explain(pair);
     this.requestUpdate();
   }
 
@@ -314,7 +299,7 @@ export class SapDemoElement extends LitElement {
   }
 
   #tell(events: readonly TraceEvent[]): void {
-    const first = this.#timeline!.position - events.length;
+    const first = this.#run!.timeline.position - events.length;
     events.forEach((event, index) => this.#tellEvent(event, first + index));
   }
 
@@ -327,8 +312,8 @@ export class SapDemoElement extends LitElement {
   }
 
   /** After a jump: what is at work here, and in words. */
-  #arrived(): void {
-    const { event, position } = this.#timeline!;
+  #arrived({ timeline }: Run): void {
+    const { event, position } = timeline;
     this.#tellEvent(event, position - 1);
     this.#guesses.outcome = "";
     this.#changed();
@@ -336,43 +321,32 @@ export class SapDemoElement extends LitElement {
   }
 
   get #sentence(): string {
-    const timeline = this.#timeline;
-    if (!timeline) return "";
-    if (this.#explanation) return this.#explanation.text;
-    const { event, detection, tick } = timeline;
-    if (event) return describeEvent(event, { boxes: detection.boxes, names: this.#names });
-    return summary(timeline.isDetected, this.#options!.isStatic ? undefined : tick, timeline.radii.length, detection, this.#names, this.#flagChecks);
+    return this.#explanation?.text ?? this.#run?.sentence ?? "";
   }
 
   // Hands
 
-  #rows(): number[][] {
-    const velocities = this.#timeline!.velocities();
-    const rounded = (value: number): number => Math.round(value * 100) / 100;
-    return this.balls.map((row, ball) => [...row.map(Number), velocities[2 * ball]!, velocities[2 * ball + 1]!].map(rounded));
-  }
-
   #place(ball: number, x: number, y: number, vx: number, vy: number): void {
-    this.#timeline!.placeBall(ball, x, y, vx, vy);
+    this.#run!.timeline.placeBall(ball, x, y, vx, vy);
     this.#wasDragged = true;
   }
 
   /** A ball is moved by hand. Where the world stands still, the algorithm runs again at once. */
   #moveBall(ball: number, x: number, y: number): void {
-    const timeline = this.#timeline!;
+    const run = this.#run!;
     if (!this.#isPlaying) {
       this.#place(ball, x, y, 0, 0);
-      timeline.detectAgain();
+      run.timeline.detectAgain();
       this.#emit("simulate", this.state);
     }
-    this.#emit("sap-drag", { ball, x: timeline.positions[2 * ball]!, y: timeline.positions[2 * ball + 1]! });
+    this.#emit("sap-drag", { ball, ...run.placeOf(ball) });
     this.#changed();
   }
 
   #choose(ball: number | undefined): void {
     const selection = this.#selection;
     selection.cursor = ball;
-    if (this.#options!.explains) {
+    if (this.#run!.options.explains) {
       selection.take(ball);
       if (selection.pair) this.pause();
     }
@@ -380,38 +354,33 @@ export class SapDemoElement extends LitElement {
     if (selection.pair) this.#speech.soon();
   }
 
-  #explainChosen(): Explanation | undefined {
-    const { pair } = this.#selection;
-    return this.#timeline && pair && explain(this.#timeline.detection, this.#names, ...pair);
-  }
-
   readonly #keyboard: Keyboard = {
     stepOrPause: () => (this.#isPlaying ? this.pause() : this.step()),
     step: () => this.step(),
     back: () => this.back(),
     moveCursor: (by) => {
-      const balls = this.#timeline!.radii.length;
+      const balls = this.#run!.timeline.radii.length;
       if (balls === 0) return;
       this.#selection.moveCursor(by, balls);
       this.#changed();
-      this.#speech.now(`Ball ${this.#names[this.#selection.cursor!]}`);
+      this.#speech.now(`Ball ${this.#run!.names[this.#selection.cursor!]}`);
     },
     take: () => this.#selection.cursor !== undefined && this.#choose(this.#selection.cursor),
     takeNone: () => this.#choose(undefined),
     push: (dx, dy) => {
-      const { positions, radii } = this.#timeline!;
+      const run = this.#run!;
       const ball = (this.#selection.cursor ??= 0);
-      if (ball >= radii.length) return;
+      if (ball >= run.timeline.radii.length) return;
       this.pause();
-      this.#moveBall(ball, positions[2 * ball]! + dx, positions[2 * ball + 1]! + dy);
+      const { x, y } = run.placeOf(ball);
+      this.#moveBall(ball, x + dx, y + dy);
       this.#speech.soon();
     },
     guess: (choice) => this.#guess(choice),
   };
 
   get #question(): Question | undefined {
-    const timeline = this.#timeline;
-    return timeline && this.#options?.predicts && !this.#isPlaying ? questionAt(timeline, this.#names) : undefined;
+    return this.#isPlaying ? undefined : this.#run?.question;
   }
 
   #guess(choice: 0 | 1): void {
@@ -423,34 +392,21 @@ export class SapDemoElement extends LitElement {
 
   // Showing
 
-  get #counts(): Omit<DemoState, "tick" | "events" | "hash"> {
-    const state = this.#timeline?.state;
-    const { tests = 0, pairs = 0, comparisons = 0, swaps = 0 } = state?.counts ?? {};
-    // Those that there are: also where the algorithm keeps them and tells only of changes.
-    return { tests, flagChecks: this.#flagChecks ?? 0, axisOverlaps: state?.axisOverlaps.length ?? 0, pairs, comparisons, swaps };
-  }
-
-  /** Undefined where there are tests. */
-  get #flagChecks(): number | undefined {
-    if (!this.#timeline || !hasFlags(this.#options!.detecting)) return undefined;
-    return this.#timeline.detection.flagChecksAt(this.#timeline.position);
-  }
-
   get #label(): string {
-    return this.getAttribute("aria-label") ?? (this.#options?.heading || "Balls, and an algorithm that finds which of them overlap");
+    return this.getAttribute("aria-label") ?? (this.#run?.options.heading || "Balls, and an algorithm that finds which of them overlap");
   }
 
   #paint(): void {
-    const [timeline, options] = [this.#timeline, this.#options];
-    if (!timeline || !options || !this.hasUpdated) return;
+    const run = this.#run;
+    if (!run || !this.hasUpdated) return;
     this.#theme ??= this.#probe.read();
     paint(this.renderRoot, this.#canvases, {
-      timeline,
-      options,
-      names: this.#names,
+      timeline: run.timeline,
+      options: run.options,
+      names: run.names,
       marked: this.#selection.marked,
       explanation: this.#explanation,
-      lineAt: this.#playback!.lineAt(this.#isPlaying),
+      lineAt: run.playback.lineAt(this.#isPlaying),
       theme: this.#theme,
     });
   }
@@ -458,13 +414,15 @@ export class SapDemoElement extends LitElement {
   override firstUpdated(): void {
     this.renderRoot.append(this.#probe.element);
     this.#grab = new Grab(this.renderRoot.querySelector(".picture")!, {
-      balls: () => this.#timeline,
-      isDraggable: () => this.#options?.isDraggable === true,
+      balls: () => this.#run?.timeline,
+      isDraggable: () => this.#run?.options.isDraggable === true,
       move: (ball, x, y) => this.#moveBall(ball, x, y),
       release: (ball, vx, vy) => {
-        if (this.#isPlaying) this.#place(ball, this.#timeline!.positions[2 * ball]!, this.#timeline!.positions[2 * ball + 1]!, vx, vy);
+        if (!this.#isPlaying) return;
+        const { x, y } = this.#run!.placeOf(ball);
+        this.#place(ball, x, y, vx, vy);
       },
-      choose: (ball) => this.#options && this.#choose(ball),
+      choose: (ball) => this.#run && this.#choose(ball),
     });
   }
 
@@ -473,42 +431,38 @@ export class SapDemoElement extends LitElement {
   }
 
   override render(): TemplateResult {
-    const options = this.#options;
+    const run = this.#run;
+    const options = run?.options;
     const hasControls = options?.hasControls ?? !this.hasAttribute("no-controls");
     const hasCounters = options?.hasCounters ?? !this.hasAttribute("no-counters");
     return html`
       <slot name="heading">${options?.heading ? html`<p class="heading">${options.heading}</p>` : nothing}</slot>
       <div class="frame">
-      <div class="picture" part="picture" role="application" tabindex="0" aria-label=${this.#label} aria-describedby="keys" @keydown=${(event: KeyboardEvent) => this.#timeline && press(event, this.#options!, this.#keyboard)}>
+      <div class="picture" part="picture" role="application" tabindex="0" aria-label=${this.#label} aria-describedby="keys" @keydown=${(event: KeyboardEvent) => options && press(event, options, this.#keyboard)}>
         <canvas></canvas>
         ${this.#wrong ? html`<p class="wrong" role="alert">${this.#wrong}</p>` : nothing}
       </div>
       <p id="keys" class="hidden">${keysOf(options)}</p>
-      ${options?.decorations.array ? this.#array() : nothing}
+      ${run && options?.decorations.array ? array(run) : nothing}
       ${hasControls ? html`<p class="said" part="said" aria-hidden="true" ?data-explains=${this.#explanation !== undefined}>${this.#sentence}</p>` : nothing}
       ${options?.predicts ? guessing({ guesses: this.#guesses, question: this.#question, guess: (choice) => this.#guess(choice) }) : nothing}
       <p class="live hidden" role="status" aria-live="polite"></p>
-      ${hasCounters ? counters(this.#counts, options !== undefined && hasFlags(options.detecting)) : nothing}
+      ${hasCounters ? counters(run?.counts ?? NOTHING_COUNTED, options !== undefined && hasFlags(options.detecting)) : nothing}
       ${hasControls ? this.#controls() : nothing}
       </div>
       <slot name="caption"></slot>
     `;
   }
 
-  #array(): TemplateResult {
-    const height = heightOfArray(this.#options!, this.#timeline!.radii.length);
-    return html`<canvas class="array" part="array" role="img" aria-label="The array of endpoints, in order" style="height:${height}px"></canvas>`;
-  }
-
   #controls(): TemplateResult {
-    const timeline = this.#timeline;
+    const { timeline, options } = this.#run ?? {};
     const bar = controls({
       isReady: timeline !== undefined,
       isPlaying: this.#isPlaying,
-      canPlay: !(this.#options?.isStatic && timeline?.isStopless),
+      canPlay: !(options?.isStatic && timeline?.isStopless),
       canGoBack: timeline?.hasPast === true,
       progress: timeline?.progress ?? { at: 0, of: 0 },
-      speed: this.#speed ?? this.#options?.speed ?? 1,
+      speed: this.#speed ?? options?.speed ?? 1,
       playOrPause: () => (this.#isPlaying ? this.pause() : this.play()),
       back: () => this.back(),
       step: () => this.step(),
@@ -530,6 +484,11 @@ export class SapDemoElement extends LitElement {
 }
 
 const motionQuery: MediaQueryList = matchMedia("(prefers-reduced-motion: reduce)");
+
+function array({ options, timeline }: Run): TemplateResult {
+  const height = heightOfArray(options, timeline.radii.length);
+  return html`<canvas class="array" part="array" role="img" aria-label="The array of endpoints, in order" style="height:${height}px"></canvas>`;
+}
 
 function messageOf(error: unknown): string {
   return error instanceof OptionError ? error.message : `This demo cannot begin. ${String(error)}`;

@@ -1,6 +1,6 @@
 import { html, nothing, svg, type TemplateResult } from "lit";
-import type { DemoState } from "./api.js";
 import type { Guesses, Question } from "./predict.js";
+import type { Counts } from "./run.js";
 
 /** What the controls under the picture show and do. */
 export interface Controls {
@@ -51,7 +51,7 @@ function button(label: string, icon: TemplateResult, enabled: boolean, click: ()
 }
 
 /** Numbers with their names, which are short enough for a phone: the tests, or the checks of flags that take their place. */
-export function counters(counts: Omit<DemoState, "tick" | "events" | "hash">, hasFlags: boolean): TemplateResult {
+export function counters(counts: Counts, hasFlags: boolean): TemplateResult {
   const { tests, flagChecks, axisOverlaps, pairs, comparisons, swaps } = counts;
   const first = hasFlags ? { "flag checks": flagChecks } : { tests };
   return html`<dl class="counters" part="counters">

@@ -1,0 +1,118 @@
+import type { DemoEvent, DemoState, Row } from "./api.js";
+import { hasFlags, shownKinds } from "./detection.js";
+import { explain, type Explanation } from "./explain.js";
+import { namesOf } from "./names.js";
+import { describeEvent, summary } from "./narrate.js";
+import { isWorldKept, type Options } from "./options.js";
+import { type Listener, Playback } from "./playback.js";
+import { type Question, questionAt } from "./predict.js";
+import { Timeline } from "./timeline.js";
+import { toldAs } from "./told.js";
+import { rowsOf } from "./world.js";
+
+/** What a demo counts. */
+export type Counts = Omit<DemoState, "tick" | "events" | "hash">;
+
+export const NOTHING_COUNTED: Counts = { tests: 0, flagChecks: 0, axisOverlaps: 0, pairs: 0, comparisons: 0, swaps: 0 };
+
+/** A world and its detections, as the attributes ask for them, and what can be said of where it stands. */
+export class Run {
+  readonly options: Options;
+  readonly timeline: Timeline;
+  readonly playback: Playback;
+  /** What the balls are called. */
+  readonly names: readonly string[];
+
+  private constructor(options: Options, timeline: Timeline) {
+    this.options = options;
+    this.timeline = timeline;
+    this.playback = new Playback(timeline, options);
+    this.names = namesOf(options.labels, timeline.radii.length);
+  }
+
+  /** A world of its own, after so many ticks. */
+  static begin(options: Options, ticks: number): Run {
+    return new Run(options, Timeline.at(options, shownKinds(options.decorations, options.detecting), ticks));
+  }
+
+  /** Goes on in the same world under other options, if they leave it as it was. This run is then over. */
+  goOn(options: Options): Run | undefined {
+    if (!isWorldKept(this.options, options)) return undefined;
+    const { tick } = this.timeline;
+    const kinds = shownKinds(options.decorations, options.detecting);
+    return new Run(options, new Timeline(options, kinds, this.timeline.release(), tick));
+  }
+
+  free(): void {
+    this.timeline.free();
+  }
+
+  /** Plays on to the next tick that has a detection. */
+  nextDetection(listener: Listener): void {
+    do this.playback.tick(listener);
+    while (!this.timeline.hasDetection);
+  }
+
+  get state(): DemoState {
+    const { tick, position } = this.timeline;
+    return { tick, events: position, ...this.counts, hash: this.timeline.hash() };
+  }
+
+  get counts(): Counts {
+    const { axisOverlaps, counts } = this.timeline.state;
+    const { tests, pairs, comparisons, swaps } = counts;
+    // The overlaps are those that there are: also where the algorithm keeps them and tells only of changes.
+    return { tests, flagChecks: this.#flagChecks ?? 0, axisOverlaps: axisOverlaps.length, pairs, comparisons, swaps };
+  }
+
+  /** Undefined where there are tests. */
+  get #flagChecks(): number | undefined {
+    const { detection, position } = this.timeline;
+    return hasFlags(this.options.detecting) ? detection.flagChecksAt(position) : undefined;
+  }
+
+  get event(): DemoEvent | undefined {
+    const { event, position } = this.timeline;
+    return event && toldAs(event, position - 1);
+  }
+
+  get pairs(): [number, number][] {
+    const { overlaps } = this.timeline.state;
+    return Array.from({ length: overlaps.length / 2 }, (_, i) => [overlaps[2 * i]!, overlaps[2 * i + 1]!]);
+  }
+
+  /** The balls where they are, without their velocities. */
+  get balls(): Row[] {
+    return rowsOf(this.timeline.positions, this.timeline.radii);
+  }
+
+  /** The balls with their velocities, rounded: to begin with elsewhere. */
+  rows(): number[][] {
+    const velocities = this.timeline.velocities();
+    const rounded = (value: number): number => Math.round(value * 100) / 100;
+    return this.balls.map((row, ball) => [...row.map(Number), velocities[2 * ball]!, velocities[2 * ball + 1]!].map(rounded));
+  }
+
+  /** Where a ball is. */
+  placeOf(ball: number): { x: number; y: number } {
+    const { positions } = this.timeline;
+    return { x: positions[2 * ball]!, y: positions[2 * ball + 1]! };
+  }
+
+  explain(pair: readonly [number, number]): Explanation {
+    return explain(this.timeline.detection, this.names, ...pair);
+  }
+
+  /** What a visitor is to guess before the next step, if that is asked for. */
+  get question(): Question | undefined {
+    return this.options.predicts ? questionAt(this.timeline, this.names) : undefined;
+  }
+
+  /** Where it stands, in words. */
+  get sentence(): string {
+    const { event, detection, tick, isDetected, radii } = this.timeline;
+    if (event) return describeEvent(event, { boxes: detection.boxes, names: this.names });
+    const when = this.options.isStatic ? undefined : tick;
+    return summary(isDetected, when, radii.length, detection, this.names, this.#flagChecks);
+  }
+}
