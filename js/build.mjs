@@ -21,9 +21,9 @@ const target = process.env.CARGO_TARGET_DIR ?? join(root, "target");
  * itself rather than with the one that uses it, which are above all the finder's innermost loops.
  */
 const small = { all: "s", core: "s", flags: [] };
-/** The finder for size, 40 KB instead of 54 for 3 % of its speed; its loops for speed take no more. */
-const smallWithFastLoops = { all: "s", core: 3, flags: [] };
-/** A world: 136 KB instead of 118 and up to a third less time; with all that can be inlined 153, no faster. */
+/** The finder for size, 39 KB instead of 54 for 3 % of its speed; its loops for speed take no more. */
+const smallWithFastLoops = { all: "s", core: 3, flags: ["-Cllvm-args=-inline-threshold=10"] };
+/** A world: 141 KB instead of 122 and up to a third less time; with all that can be inlined 157, no faster. */
 const fast = { all: 3, core: 3, flags: ["-Cllvm-args=-inline-threshold=25"] };
 
 /**
@@ -32,7 +32,7 @@ const fast = { all: 3, core: 3, flags: ["-Cllvm-args=-inline-threshold=25"] };
  */
 const cores = [
   { name: "sweep-and-prune", feature: "finder", budget: 40 * 1024, levels: smallWithFastLoops },
-  { name: "broad-phase", feature: "broad-phase", budget: 140_000, levels: fast },
+  { name: "broad-phase", feature: "broad-phase", budget: 145_000, levels: fast },
   { name: "algorithms", feature: "algorithms", budget: 60_000, levels: small },
 ];
 
@@ -80,7 +80,7 @@ function buildSimulation() {
   const crate = "sweep-and-prune-simulation-wasm";
   const bytes = compile(crate, ["--package", crate], { directory: "wasm-demo", flags: [], levels: small });
   checkCore({ name: "simulation" }, { suffix: ".wasm", simd: false }, bytes);
-  report("simulation.wasm", [bytes], 110_000);
+  report("simulation.wasm", [bytes], 125_000);
   writeFileSync(join(dist, "simulation.wasm"), bytes);
 }
 

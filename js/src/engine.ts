@@ -47,7 +47,7 @@ export class Engine<E extends Exports> {
     readonly isDevelopment: boolean,
   ) {}
 
-  static async start<E extends Exports>(module: WebAssembly.Module, isDevelopment: boolean): Promise<Engine<E>> {
+  static async start<E extends Exports>(module: WebAssembly.Module, known: string, isDevelopment: boolean): Promise<Engine<E>> {
     let engine: Engine<E>;
     const imports = {
       fail: (isOutOfMemory: number) => engine.#fail(isOutOfMemory !== 0),
@@ -55,6 +55,7 @@ export class Engine<E extends Exports> {
     };
     // Not `new WebAssembly.Instance`, which some browsers refuse on the main thread.
     const instance = await WebAssembly.instantiate(module, { sweep_and_prune: imports });
+    if (!(known in instance.exports)) throw new TypeError("`wasm` is the compiled core of another entry, or of something else");
     engine = new Engine(instance.exports as unknown as E, isDevelopment);
     engine.#stackTop = engine.exports.__stack_pointer.value;
     engine.#statusAt = (engine.exports.status() >>> 0) / 4;
@@ -136,6 +137,9 @@ export class Engine<E extends Exports> {
 export class Core<E extends Exports> {
   #engine: Engine<E> | undefined;
 
+  /** `known` is the name of an export that only this core has. */
+  constructor(readonly known: string & keyof E) {}
+
   /** The engine, once {@link start} is done. */
   engine(): Engine<E> {
     if (this.#engine === undefined) throw new NotInitializedError();
@@ -143,6 +147,6 @@ export class Core<E extends Exports> {
   }
 
   async start(module: WebAssembly.Module, isDevelopment: boolean): Promise<void> {
-    this.#engine = await Engine.start<E>(module, isDevelopment);
+    this.#engine = await Engine.start<E>(module, this.known, isDevelopment);
   }
 }

@@ -89,7 +89,7 @@ function isAddress(wasm: unknown): wasm is string | URL {
 }
 
 async function compileResponse(response: Response): Promise<WebAssembly.Module> {
-  if (!response.ok) throw new Error(`${response.url} answers ${response.status} ${response.statusText}`);
+  if (!response.ok) throw new Error(`${response.url || "the server"} answers ${response.status} ${response.statusText}`);
   // Compiling while it streams needs the right content type, which not every server sends.
   return response.headers.get("content-type")?.startsWith("application/wasm")
     ? WebAssembly.compileStreaming(response)

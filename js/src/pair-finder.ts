@@ -35,7 +35,7 @@ const noSet = -1;
 const alone = Symbol("no second set");
 
 /** The core that finds pairs. */
-export const finderCore: Core<FinderExports> = new Core();
+export const finderCore: Core<FinderExports> = new Core("finder_new");
 
 /**
  * All pairs of boxes that overlap: `a0, b0, a1, b1, ...`, indices of boxes, each pair once and

@@ -43,4 +43,4 @@ export const enum Query {
 }
 
 /** The core of living worlds. */
-export const worldCore: Core<WorldExports> = new Core();
+export const worldCore: Core<WorldExports> = new Core("world_new");
