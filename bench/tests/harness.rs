@@ -10,9 +10,11 @@ use serde_json::Value;
 /// Scenes of ties as well as easy ones, so that a contender that takes touching boxes for apart
 /// is found out.
 const SCENES: [&str; 6] = ["uniform", "grid", "points", "mixed", "tower", "box-pruning"];
-const EVERYWHERE: [&str; 9] = [
+const EVERYWHERE: [&str; 11] = [
     "ours",
     "ours, 2 threads",
+    "ours, two at once",
+    "ours, again",
     "ours, fresh",
     "plain sweep",
     "brute force",

@@ -30,6 +30,12 @@ pub const OURS: &str = "ours";
 /// The name of ours on two threads.
 pub const OURS_ON_TWO: &str = "ours, 2 threads";
 
+/// The name of ours called with the boxes of the last call.
+pub const OURS_AGAIN: &str = "ours, again";
+
+/// The name of two of ours at once.
+pub const OURS_TWICE: &str = "ours, two at once";
+
 /// Who is asked beside ours where the question is how flat ours is, and not who is faster.
 /// The first is seldom slow.
 pub const WITNESSES: [&str; 3] = ["packed_spatial_index", "parry", "plain sweep"];
@@ -83,8 +89,8 @@ pub enum Origin {
 
 /// All contenders that were compiled in, ours first.
 pub fn all() -> Vec<Peer> {
-    let mut peers =
-        vec![ours::PEER, ours::TWO_THREADS, ours::FRESH, plain::SWEEP, plain::BRUTE_FORCE];
+    let mut peers = vec![ours::PEER, ours::TWO_THREADS, ours::TWICE, ours::AGAIN, ours::FRESH];
+    peers.extend([plain::SWEEP, plain::BRUTE_FORCE]);
     #[cfg(feature = "light")]
     peers.extend([
         broccoli::PEER,

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use sweep_and_prune::{Aabb, PairFinder};
 
-use super::{Contender, OURS, OURS_ON_TWO, Origin, Peer};
+use super::{Contender, OURS, OURS_AGAIN, OURS_ON_TWO, OURS_TWICE, Origin, Peer};
 
 /// A finder that keeps its buffers.
 pub const PEER: Peer = Peer {
@@ -25,6 +25,27 @@ pub const TWO_THREADS: Peer = Peer {
     three: Some(|| Box::new(Warm(PairFinder::<3>::new().threads(2)))),
 };
 
+/// The same, called with the boxes of the last call once more.
+pub const AGAIN: Peer = Peer {
+    name: OURS_AGAIN,
+    origin: Origin::Here,
+    how: "`PairFinder::find` with the boxes of the last call, all at rest",
+    rival: false,
+    two: Some(|| Box::new(Again(PairFinder::<2>::new()))),
+    three: Some(|| Box::new(Again(PairFinder::<3>::new()))),
+};
+
+/// Two finders of one thread each at work at once, each on all boxes: what the machine makes of
+/// two threads that have nothing to do with each other.
+pub const TWICE: Peer = Peer {
+    name: OURS_TWICE,
+    origin: Origin::Here,
+    how: "two finders on two threads, each `PairFinder::find` of all boxes",
+    rival: false,
+    two: Some(|| Box::new(Twice([PairFinder::<2>::new(), PairFinder::new()]))),
+    three: Some(|| Box::new(Twice([PairFinder::<3>::new(), PairFinder::new()]))),
+};
+
 /// A new finder for each call.
 pub const FRESH: Peer = Peer {
     name: "ours, fresh",
@@ -44,6 +65,33 @@ impl<const D: usize> Contender<D> for Warm<D> {
 
     fn forget(&mut self, shuffled: &[Aabb<D>]) -> Result<()> {
         self.0.find(shuffled)?;
+        Ok(())
+    }
+}
+
+struct Again<const D: usize>(PairFinder<D>);
+
+impl<const D: usize> Contender<D> for Again<D> {
+    fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]> {
+        Ok(self.0.find(boxes)?)
+    }
+}
+
+struct Twice<const D: usize>([PairFinder<D>; 2]);
+
+impl<const D: usize> Contender<D> for Twice<D> {
+    fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]> {
+        let [first, second] = &mut self.0;
+        std::thread::scope(|scope| {
+            scope.spawn(|| second.find(boxes).map(<[_]>::len));
+            Ok(first.find(boxes)?)
+        })
+    }
+
+    fn forget(&mut self, shuffled: &[Aabb<D>]) -> Result<()> {
+        for finder in &mut self.0 {
+            finder.find(shuffled)?;
+        }
         Ok(())
     }
 }

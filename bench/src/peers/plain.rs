@@ -1,7 +1,7 @@
 //! What a good developer writes in an hour, and what anybody writes in five minutes.
 
 use anyhow::Result;
-use sweep_and_prune::Aabb;
+use sweep_and_prune::{Aabb, validate};
 
 use super::{Contender, Origin, Peer};
 
@@ -19,7 +19,7 @@ pub const SWEEP: Peer = Peer {
 pub const BRUTE_FORCE: Peer = Peer {
     name: "brute force",
     origin: Origin::Here,
-    how: "two loops",
+    how: "two loops, once all boxes are found valid",
     rival: true,
     two: Some(|| Box::new(BruteForce::default())),
     three: Some(|| Box::new(BruteForce::default())),
@@ -68,6 +68,7 @@ struct BruteForce {
 
 impl<const D: usize> Contender<D> for BruteForce {
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]> {
+        validate(boxes)?;
         self.pairs.clear();
         for (a, first) in boxes.iter().enumerate() {
             for (b, second) in boxes.iter().enumerate().skip(a + 1) {
