@@ -87,8 +87,8 @@ impl Options {
         !(self.pairs || self.flat || self.small || self.worlds || self.roofline)
     }
 
-    /// The cases, in the order in which they are measured: few boxes first, since who is slow
-    /// there need not be tried with many.
+    /// The cases, in the order in which they are measured: part by part, the most asked for first,
+    /// and in each few boxes first, since who is slow there need not be tried with many.
     fn plan(&self) -> Result<Vec<Planned>> {
         let all = self.everything();
         let six = || scene::DEFAULT.map(str::to_owned).to_vec();
@@ -101,6 +101,11 @@ impl Options {
                     _ => 3,
                 };
                 self.add(&mut plan, Kind::Pairs, &self.scenes(six), boxes, &[], rounds)?;
+            }
+        }
+        if all || self.small {
+            for boxes in if self.sizes.is_empty() { SMALL.to_vec() } else { self.sizes.clone() } {
+                self.add(&mut plan, Kind::Pairs, &self.scenes(six), boxes, &["brute force"], 5)?;
             }
         }
         if all || self.worlds {
@@ -121,12 +126,6 @@ impl Options {
                 self.add(&mut plan, Kind::Pairs, &scenes, boxes, &peers, rounds)?;
             }
         }
-        if all || self.small {
-            for boxes in if self.sizes.is_empty() { SMALL.to_vec() } else { self.sizes.clone() } {
-                self.add(&mut plan, Kind::Pairs, &self.scenes(six), boxes, &["brute force"], 5)?;
-            }
-        }
-        plan.sort_by_key(|planned| planned.boxes);
         Ok(plan)
     }
 
