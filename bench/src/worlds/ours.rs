@@ -10,7 +10,7 @@ use crate::peers::{OURS, Origin, Peer};
 pub const PEER: WorldPeer = Peer {
     name: OURS,
     origin: Origin::Here,
-    how: "`BroadPhase` with its default options: `set` for each box that moved, then `update`",
+    how: "`BroadPhase` with its default options: `set_many` of the boxes that moved, then `update`",
     rival: false,
     two: Some(|| Box::new(Ours::<2>::default())),
     three: Some(|| Box::new(Ours::<3>::default())),
@@ -20,6 +20,8 @@ pub const PEER: WorldPeer = Peer {
 struct Ours<const D: usize> {
     world: BroadPhase<D>,
     ids: Vec<ProxyId>,
+    moved_ids: Vec<ProxyId>,
+    moved_boxes: Vec<Aabb<D>>,
     begun: Vec<[u32; 2]>,
     ended: Vec<[u32; 2]>,
 }
@@ -43,8 +45,14 @@ impl<const D: usize> World<D> for Ours<D> {
     }
 
     fn step<'a>(&'a mut self, boxes: &'a [Aabb<D>], moved: &[u32]) -> Result<Found<'a>> {
-        for &index in moved {
-            self.world.set(self.ids[index as usize], boxes[index as usize])?;
+        if moved.len() == boxes.len() {
+            self.world.set_many(&self.ids, boxes)?;
+        } else {
+            self.moved_ids.clear();
+            self.moved_ids.extend(moved.iter().map(|&index| self.ids[index as usize]));
+            self.moved_boxes.clear();
+            self.moved_boxes.extend(moved.iter().map(|&index| boxes[index as usize]));
+            self.world.set_many(&self.moved_ids, &self.moved_boxes)?;
         }
         Ok(self.update())
     }

@@ -56,6 +56,11 @@ impl Candidates {
         }
     }
 
+    /// Whether the pairs are linked to their bodies.
+    pub fn is_linked(&self) -> bool {
+        self.is_linked
+    }
+
     /// Links the pairs to their bodies, of which there are `seats`, if they are not yet.
     pub fn link(&mut self, seats: usize) {
         if self.is_linked {
@@ -63,10 +68,7 @@ impl Candidates {
             return;
         }
         self.is_linked = true;
-        // Room for what moving bodies add and take away, so that it need not be found later.
-        self.pairs.reserve(self.pairs.len() / 4);
-        let room = self.pairs.capacity();
-        self.live.reserve(room - self.live.len());
+        let room = self.make_room();
         self.links.clear();
         self.links.reserve(room);
         self.free.reserve(room / 4);
@@ -77,6 +79,18 @@ impl Candidates {
             self.links.push(links);
             self.hang(index);
         }
+    }
+
+    /// Makes room for what moving bodies add, so that it need not be found later. Returns for how
+    /// many pairs there is room.
+    pub fn make_room(&mut self) -> usize {
+        let count = self.pairs.len();
+        if self.pairs.capacity() - count < count / 4 {
+            self.pairs.reserve(count);
+        }
+        let room = self.pairs.capacity();
+        self.live.reserve(room - self.live.len());
+        room
     }
 
     /// Adds a pair of linked bodies.

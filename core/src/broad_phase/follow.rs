@@ -4,8 +4,10 @@
 use super::BroadPhase;
 use super::options::{contains, hull};
 use super::proxy::flag;
+use super::seating::JUMP_WEAR;
 use super::update::{overlap, push_wanted};
 use super::updater::{Scratch, TreeState, Updater};
+use super::warm::warm;
 use crate::Scalar;
 
 /// To go from one candidate of a body to the next takes as long as to test so many in a row.
@@ -19,27 +21,19 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Reports what begins and ends, given who changed, escaped and left.
     pub(super) fn follow(&mut self) {
         let is_few = self.changed.len() * MANY < self.updater.candidates.pairs.len();
-        let escaped = core::mem::take(&mut self.updater.scratch.escaped);
-        if is_few || !escaped.is_empty() || !self.leaving.is_empty() {
-            self.updater.candidates.link(self.slots.len());
-        }
-        self.drop_leaving();
-        if !escaped.is_empty() {
-            self.updater.tree_uses += escaped.len();
+        if !self.updater.scratch.escaped.is_empty() {
+            self.updater.tree_uses += self.updater.scratch.escaped.len();
             self.ready_tree();
         }
-        let Updater { tree, fat, previous, prediction, .. } = &mut self.updater;
-        for &seat in &escaped {
-            let at = seat as usize;
-            let is_new = self.slots.has(seat, flag::NEW);
-            let before = if is_new { &self.boxes[at] } else { &previous[at] };
-            fat[at] = prediction.alone(before, &self.boxes[at], &self.options);
-            tree.set(seat, &fat[at]);
+        if !is_few && self.can_stretch() {
+            self.stretch_escaped();
+        } else {
+            if is_few || !self.updater.scratch.escaped.is_empty() || !self.leaving.is_empty() {
+                self.updater.candidates.link(self.slots.len());
+            }
+            self.drop_leaving();
+            self.replace_escaped();
         }
-        for &seat in &escaped {
-            self.rematch(seat);
-        }
-        self.updater.scratch.escaped = escaped;
         if is_few {
             for index in 0..self.changed.len() {
                 self.test_candidates_of(self.changed[index]);
@@ -47,6 +41,69 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         } else {
             self.test_all_candidates();
         }
+    }
+
+    /// Whether candidates need only be added, which takes no links: all that are known stay, and who
+    /// left his fat box did not go far.
+    fn can_stretch(&self) -> bool {
+        let Updater { candidates, scratch, prediction, previous, .. } = &self.updater;
+        !candidates.is_linked()
+            && self.leaving.is_empty()
+            && scratch.escaped.iter().all(|&seat| {
+                let at = seat as usize;
+                !self.slots.has(seat, flag::NEW | flag::REFILTERED)
+                    && !prediction.is_jump(&previous[at], &self.boxes[at])
+            })
+    }
+
+    /// Makes the fat boxes of the bodies that left theirs larger, and adds the candidates that they
+    /// so get. A pair is a candidate if its fat boxes overlap: so it is new if they did not before.
+    fn stretch_escaped(&mut self) {
+        let Updater { candidates, tree, fat, previous, prediction, scratch, begun, .. } =
+            &mut self.updater;
+        candidates.make_room();
+        for &seat in &scratch.escaped {
+            let at = seat as usize;
+            let before = fat[at];
+            let ahead = prediction.alone(&previous[at], &self.boxes[at], &self.options);
+            fat[at] = hull(&before, &ahead);
+            tree.set(seat, &fat[at]);
+            tree.overlapping(&fat[at], &mut |other| {
+                let (first, second) = (at.min(other as usize), at.max(other as usize));
+                let is_new = first != second
+                    && !overlap(&before, &fat[other as usize])
+                    && (!self.any_filter || self.filters[first].allows(&self.filters[second]));
+                if is_new {
+                    let is_live = overlap(&self.boxes[first], &self.boxes[second]);
+                    let pair = [first as u32, second as u32];
+                    candidates.pairs.push(pair);
+                    candidates.live.push(is_live);
+                    if is_live {
+                        begun.push(pair);
+                    }
+                }
+            });
+        }
+    }
+
+    /// Gives the bodies that left their fat boxes new ones, and finds their candidates.
+    fn replace_escaped(&mut self) {
+        let escaped = core::mem::take(&mut self.updater.scratch.escaped);
+        let Updater { tree, fat, previous, prediction, wear, .. } = &mut self.updater;
+        for &seat in &escaped {
+            let at = seat as usize;
+            let is_new = self.slots.has(seat, flag::NEW);
+            let before = if is_new { &self.boxes[at] } else { &previous[at] };
+            if prediction.is_jump(before, &self.boxes[at]) {
+                *wear = wear.saturating_add(JUMP_WEAR);
+            }
+            fat[at] = prediction.alone(before, &self.boxes[at], &self.options);
+            tree.set(seat, &fat[at]);
+        }
+        for &seat in &escaped {
+            self.rematch(seat);
+        }
+        self.updater.scratch.escaped = escaped;
     }
 
     /// Ends the pairs of bodies that were removed.
@@ -126,6 +183,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         let (pairs, live) = (&candidates.pairs, &mut candidates.live);
         let changed = &mut scratch.pairs;
         changed.clear();
+        warm(&self.boxes);
         push_wanted(changed, pairs, |index, [a, b]| {
             let is_live = overlap(&self.boxes[a as usize], &self.boxes[b as usize]);
             ([a, b], core::mem::replace(&mut live[index], is_live) != is_live)

@@ -18,6 +18,7 @@ mod sort;
 mod tree;
 mod update;
 mod updater;
+mod warm;
 
 use alloc::vec::Vec;
 
@@ -222,6 +223,9 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         for (index, (&id, aabb)) in ids.iter().zip(boxes).enumerate() {
             self.slots.check(id, index)?;
             check_box(aabb, index)?;
+        }
+        if ids.len() * 16 > self.boxes.len() {
+            warm::warm(&self.boxes);
         }
         for (id, aabb) in ids.iter().zip(boxes) {
             let seat = self.slots.seats[id.slot() as usize];

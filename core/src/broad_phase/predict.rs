@@ -22,6 +22,8 @@ const REACH_ALONE: f64 = 1.2;
 const JUMP: f64 = 2.0;
 /// The updates a fat box is to last at most.
 const LONGEST: f64 = 32.0;
+/// What one that is made after a jump has on every side, in box sizes.
+const LANDED: f64 = 0.4;
 /// What it has on every side for inexact motion, in displacements.
 const SLACK: f64 = 0.125;
 /// Of so many bodies the motion is looked at.
@@ -102,7 +104,7 @@ impl Prediction {
         let steps = if way > 0.0 { (REACH_ALONE * size / way).min(LONGEST) } else { 0.0 };
         if steps < 1.0 {
             // A jump: where to from here is unknown.
-            let margin = options.margin + T::from_f64(SLACK * size);
+            let margin = options.margin + T::from_f64(LANDED * size);
             return fatten(before, now, T::default(), &Options { margin, ..*options });
         }
         fatten(before, now, T::from_f64(steps), options)

@@ -8,6 +8,7 @@ use super::options::hull;
 use super::proxy::flag;
 use super::update::{overlap, push_wanted};
 use super::updater::{Scratch, Updater};
+use super::warm::warm;
 use crate::{Error, Scalar};
 
 impl<const D: usize, T: Scalar> BroadPhase<D, T> {
@@ -43,6 +44,8 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             self.updater.candidates.pairs.retain(is_allowed);
         }
 
+        warm(&self.boxes);
+        warm(&self.updater.previous);
         let mut begun = core::mem::take(&mut self.updater.begun);
         let Updater { candidates, previous, .. } = &mut self.updater;
         let (pairs, live) = (&candidates.pairs, &mut candidates.live);

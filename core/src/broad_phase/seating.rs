@@ -13,6 +13,8 @@ use crate::Scalar;
 const FEW: usize = 64;
 /// How often each body may get a new fat box before seats are dealt anew.
 const WEAR: usize = 16;
+/// What a body wears that jumped away from those whose seats are next to its own.
+pub(super) const JUMP_WEAR: usize = 10 * WEAR;
 
 impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Notes that the finder just found the candidates of so many bodies that got new fat boxes,

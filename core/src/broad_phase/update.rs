@@ -18,6 +18,7 @@ use super::options::contains;
 use super::proxy::{ProxyId, flag};
 use super::sort::PairSorter;
 use super::updater::{TreeState, Updater};
+use super::warm::warm;
 use crate::{Aabb, Scalar};
 
 /// To follow a body that left its fat box costs as much as to find the candidates of so many
@@ -62,21 +63,34 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     fn find_escaped(&mut self) {
         let Updater { fat, scratch, .. } = &mut self.updater;
         scratch.escaped.clear();
-        if self.changed.len() * SOME > self.slots.len() {
+        let slots = &mut self.slots;
+        let boxes = &self.boxes;
+        let settled = !(flag::CHANGED | flag::KNOWN);
+        // Whether a body that changed needs a new fat box.
+        let escapes = |flags: u8, at: usize| {
+            (flags & (flag::NEW | flag::REFILTERED) != 0) | !contains(&fat[at], &boxes[at])
+        };
+        if self.changed.len() * SOME > slots.len() {
             // In the order of the seats, which is faster than that of the calls.
             self.changed.clear();
-            push_wanted(&mut self.changed, &self.slots.flags, |seat, flags| {
-                (seat as u32, flags & flag::CHANGED != 0)
+            push_wanted(&mut self.changed, &slots.flags, |seat, flags| {
+                (seat as u32, flags & (flag::CHANGED | flag::LIVE) == flag::CHANGED | flag::LIVE)
             });
+            warm(boxes);
+            warm(fat);
+            push_wanted(&mut scratch.escaped, &self.changed, |_, seat| {
+                let at = seat as usize;
+                (seat, escapes(slots.flags[at], at))
+            });
+            slots.flags.iter_mut().for_each(|flags| *flags &= settled);
+            return;
         }
-        let (flags, boxes) = (&mut self.slots.flags, &self.boxes);
         self.changed.retain(|&seat| {
             let at = seat as usize;
-            let was = flags[at];
-            flags[at] &= !(flag::CHANGED | flag::KNOWN);
-            let is_first = was & (flag::CHANGED | flag::LIVE) == flag::CHANGED | flag::LIVE;
-            let is_irregular = was & (flag::NEW | flag::REFILTERED) != 0;
-            if is_first && (is_irregular || !contains(&fat[at], &boxes[at])) {
+            let flags = slots.flags[at];
+            slots.flags[at] &= settled;
+            let is_first = flags & (flag::CHANGED | flag::LIVE) == flag::CHANGED | flag::LIVE;
+            if is_first && escapes(flags, at) {
                 scratch.escaped.push(seat);
             }
             is_first
@@ -86,9 +100,16 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Makes the world of now the world of the last update.
     fn end_update(&mut self) {
         let Updater { previous, tree_state, any_refiltered, .. } = &mut self.updater;
-        for &seat in &self.changed {
-            previous[seat as usize] = self.boxes[seat as usize];
-            self.slots.lower(seat, flag::NEW | flag::REFILTERED);
+        if self.changed.len() * SOME > self.slots.len() {
+            // The others' are the same, or mean nothing.
+            previous.copy_from_slice(&self.boxes);
+            let known = !(flag::NEW | flag::REFILTERED);
+            self.slots.flags.iter_mut().for_each(|flags| *flags &= known);
+        } else {
+            for &seat in &self.changed {
+                previous[seat as usize] = self.boxes[seat as usize];
+                self.slots.lower(seat, flag::NEW | flag::REFILTERED);
+            }
         }
         self.changed.clear();
         *any_refiltered = false;

@@ -113,7 +113,8 @@ impl<const D: usize, T: Scalar> Clone for Updater<D, T> {
 impl<const D: usize, T: Scalar> Scratch<D, T> {
     fn new() -> Self {
         Self {
-            finder: PairFinder::new(),
+            // It is asked where most bodies got new boxes.
+            finder: PairFinder::forgetful(),
             sorter: PairSorter::default(),
             boxes: Vec::new(),
             seats: Vec::new(),

@@ -21,7 +21,7 @@ use crate::{Aabb, Scalar};
 
 /// With fewer boxes it does not pay, nor with more: the boxes are read in the order of their bins,
 /// which is no order in memory, and beyond the second cache that takes longer than to sort them.
-const WORTH: RangeInclusive<usize> = 512..=1 << 15;
+const WORTH: RangeInclusive<usize> = 512..=1 << 14;
 /// Nor if more than one box in so many changed bins,
 const CHANGED: usize = 16;
 /// or one record in so many was in a crowded bin, which is planned anew,
@@ -43,6 +43,8 @@ pub(super) struct Last<T> {
     plan: Option<(Grid<T>, usize)>,
     /// Whether the order below is that of the last call.
     kept: bool,
+    /// Whether no order is ever kept.
+    never: bool,
     /// Calls to let pass, and how many they were when it did not pay the last time.
     pause: u32,
     paused: u32,
@@ -65,6 +67,7 @@ impl<T: Scalar> Last<T> {
         Self {
             plan: None,
             kept: false,
+            never: false,
             pause: 0,
             paused: 0,
             spans: Vec::new(),
@@ -77,9 +80,17 @@ impl<T: Scalar> Last<T> {
         }
     }
 
+    /// Nothing, ever.
+    pub fn never() -> Self {
+        Self { never: true, ..Self::new() }
+    }
+
     /// Whether the last order, or if there is none, to make one for the next call, is worth an
     /// attempt: not where all is new, nor in a pause.
     fn is_worth_while(&mut self, boxes: usize, grid: &Grid<T>) -> bool {
+        if self.never {
+            return false;
+        }
         let plan = Some((*grid, boxes));
         let same = self.plan == plan;
         // The plan changes now and then while boxes move little.

@@ -381,7 +381,8 @@ impl<const D: usize, T: Scalar> Bins<D, T> {
         }
         if self.records.len() < self.len {
             let aabb = Aabb::new([T::ZERO; D], [T::ZERO; D]);
-            let room = self.len + self.len / 16;
+            // Plans for boxes that move differ by that much.
+            let room = self.len + self.len / 4;
             grow_to(&mut self.records, room, Record { aabb, id: 0, marks: 0 })?;
         }
         for copy in &self.copies[..self.len] {

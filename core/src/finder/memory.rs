@@ -4,7 +4,8 @@ use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
 
 /// Makes an array at least so long. Some slack is added, so that arrays of nearly one size do not
-/// grow again and again; it never shrinks.
+/// grow again and again: twice as much where they are small, as the bins are whose numbers differ
+/// most from call to call. It never shrinks.
 ///
 /// # Errors
 /// If there is not enough memory; then the array is as it was.
@@ -14,7 +15,7 @@ pub(super) fn grow<V: Copy>(
     value: V,
 ) -> Result<(), TryReserveError> {
     if array.len() < size {
-        grow_to(array, size + size / 8, value)?;
+        grow_to(array, size + (size / 8).max(2 * size.min(2048)), value)?;
     }
     Ok(())
 }

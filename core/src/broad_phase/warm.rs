@@ -1,0 +1,18 @@
+//! What is read in order comes from memory ten times as fast as what is read here and there: 0.9
+//! against 8 to 11 ns a line for tables of 10 MB (one core of a virtual AMD EPYC of 2024, which has
+//! some 4 MB of its third cache to itself). So a table that fits there is read through before it is
+//! read here and there: worth while where more than one line in so many is looked at.
+
+use core::hint::black_box;
+
+/// The bytes that come from memory at once.
+const LINE: usize = 64;
+
+/// Reads a table from front to back, so that it is near when its items are looked at out of order.
+#[inline]
+pub(super) fn warm<V: Copy>(table: &[V]) {
+    let stride = (LINE / size_of::<V>().max(1)).max(1);
+    for item in table.iter().step_by(stride) {
+        black_box(*item);
+    }
+}
