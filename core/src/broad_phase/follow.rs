@@ -68,7 +68,8 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             let ahead = prediction.alone(&previous[at], &self.boxes[at], &self.options);
             fat[at] = hull(&before, &ahead);
             tree.set(seat, &fat[at]);
-            tree.overlapping(&fat[at], &mut |other| {
+            tree.overlapping(&fat[at], &mut scratch.found);
+            for &other in &scratch.found {
                 let (first, second) = (at.min(other as usize), at.max(other as usize));
                 let is_new = first != second
                     && !overlap(&before, &fat[other as usize])
@@ -82,7 +83,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
                         begun.push(pair);
                     }
                 }
-            });
+            }
         }
     }
 
@@ -129,12 +130,8 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             !self.any_filter || self.filters[seat as usize].allows(&self.filters[other as usize])
         };
         let (found, is_old) = (&mut scratch.found, &mut scratch.is_old);
-        found.clear();
-        tree.overlapping(&fat[seat as usize], &mut |other| {
-            if other != seat && is_allowed(other) {
-                found.push(other);
-            }
-        });
+        tree.overlapping(&fat[seat as usize], found);
+        found.retain(|&other| other != seat && is_allowed(other));
         found.sort_unstable();
         is_old.clear();
         is_old.resize(found.len(), false);

@@ -91,7 +91,9 @@ impl Prediction {
         })
     }
 
-    /// The fat box of a body that moves by itself.
+    /// The fat box of a body that moves by itself. (Not inlined: there are two callers, and few
+    /// calls.)
+    #[inline(never)]
     pub fn alone<const D: usize, T: Scalar>(
         &self,
         before: &Aabb<D, T>,

@@ -475,22 +475,23 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         contains(&above.aabb(above.lane_of(index)), aabb)
     }
 
-    /// Shows all bodies whose box overlaps `area`.
-    pub fn overlapping(&self, area: &Aabb<D, T>, visit: &mut impl FnMut(u32)) {
+    /// Lists all bodies whose box overlaps `area`.
+    pub fn overlapping(&self, area: &Aabb<D, T>, found: &mut Vec<u32>) {
+        found.clear();
         if self.root != NONE {
-            self.overlapping_in(self.root, area, visit);
+            self.overlapping_in(self.root, area, found);
         }
     }
 
-    fn overlapping_in(&self, index: u32, area: &Aabb<D, T>, visit: &mut impl FnMut(u32)) {
+    fn overlapping_in(&self, index: u32, area: &Aabb<D, T>, found: &mut Vec<u32>) {
         let node = &self.nodes[index as usize];
         let mut bits = node.overlapping(area);
         while bits != 0 {
             let item = node.items[bits.trailing_zeros() as usize];
             if node.is_leaf {
-                visit(item);
+                found.push(item);
             } else {
-                self.overlapping_in(item, area, visit);
+                self.overlapping_in(item, area, found);
             }
             bits &= bits - 1;
         }
