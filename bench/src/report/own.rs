@@ -83,7 +83,7 @@ fn again(record: &Record) -> String {
     table(
         "Called again: ours",
         "With the boxes of the last call, all at rest, against the same boxes in another order. From \
-         512 to 32,768 boxes the finder starts from the last order.",
+         512 to 16,384 boxes the finder starts from the last order.",
         "| scene | boxes | other boxes before | called again | gain |",
         &rows,
     )

@@ -28,9 +28,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         if !is_few && self.can_stretch() {
             self.stretch_escaped();
         } else {
-            if is_few || !self.updater.scratch.escaped.is_empty() || !self.leaving.is_empty() {
-                self.updater.candidates.link(self.slots.len());
-            }
+            self.updater.candidates.link(self.slots.len());
             self.drop_leaving();
             self.replace_escaped();
         }

@@ -224,7 +224,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             self.slots.check(id, index)?;
             check_box(aabb, index)?;
         }
-        if ids.len() * 16 > self.boxes.len() {
+        if ids.len() * update::SOME > self.boxes.len() {
             warm::warm(&self.boxes);
         }
         for (id, aabb) in ids.iter().zip(boxes) {

@@ -91,9 +91,7 @@ impl Prediction {
         })
     }
 
-    /// The fat box of a body that moves by itself. (Not inlined: there are two callers, and few
-    /// calls.)
-    #[inline(never)]
+    /// The fat box of a body that moves by itself.
     pub fn alone<const D: usize, T: Scalar>(
         &self,
         before: &Aabb<D, T>,

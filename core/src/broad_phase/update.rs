@@ -26,7 +26,7 @@ use crate::{Aabb, Scalar};
 const REBUILD: usize = 6;
 
 /// To look at a body out of order takes as long as to pass over so many in order.
-const SOME: usize = 16;
+pub(super) const SOME: usize = 16;
 
 impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Reports the pairs that began and ended since the last update.
