@@ -1,5 +1,6 @@
 import { readdirSync, readFileSync } from "node:fs";
 import { expect, type Page, test } from "@playwright/test";
+import { looksOf } from "../src/benchmark/looks.ts";
 import { complaints, requestsElsewhere, violations } from "./support/pages.ts";
 
 /** The newest file of the native results, which the page opens with. */
@@ -31,6 +32,40 @@ test.describe("the recorded results", () => {
     await page.getByLabel("Scene").first().selectOption({ index: 1 });
     await expect(page.locator("#plot-time > svg")).not.toHaveAttribute("aria-label", before ?? "");
     await expect(page.locator("#plot-ratio > svg")).toHaveAttribute("aria-label", /fastest peer takes at least [\d.]+ times/);
+  });
+
+  test("show every contender by name, of ours what a user would call, and the others when ticked", async ({ page }) => {
+    const shown = page.locator("#plot-time > svg");
+    const text = async (): Promise<string[]> => (await shown.locator("text").allTextContents()).map((name) => name.replace(/, to \d+[KM]$/, ""));
+    expect(await text()).toEqual(expect.arrayContaining(["ours", "ours, 2 threads", "plain sweep", "parry"]));
+    for (const aside of ["ours, again", "ours, fresh", "ours, two at once"]) expect(await text()).not.toContain(aside);
+
+    await page.getByText("Contenders: who is shown").click();
+    await page.getByLabel("ours, again").check();
+    await expect.poll(text).toContain("ours, again");
+    await page.getByLabel("parry", { exact: true }).uncheck();
+    await expect.poll(text).not.toContain("parry");
+    await expect(page.locator("#recorded-contenders")).toContainText(kept.how["ours, again"].replaceAll("`", ""));
+    expect(await violations(page)).toEqual([]);
+
+    // Where there is no room beside the lines, their names stand beneath.
+    await page.setViewportSize({ width: 390, height: 844 });
+    await expect(page.locator("#plot-time .key li").filter({ hasText: /^ours, again$/ })).toBeVisible();
+  });
+
+  test("names do not cover each other, and no two lines look the same", async ({ page }) => {
+    for (const scene of await page.locator("#recorded-scene option").evaluateAll((all) => all.map((option) => (option as HTMLOptionElement).value))) {
+      await page.getByLabel("Scene").first().selectOption(scene);
+      await expect(page.locator("#plot-time > svg")).toBeVisible();
+      const names = await page.locator("#plot-time > svg g[text-anchor=start] text").evaluateAll((all) => all.map((name) => name.getBoundingClientRect()).map(({ top, bottom }) => ({ top, bottom })));
+      expect(names.length, scene).toBeGreaterThan(3);
+      names.sort((a, b) => a.top - b.top);
+      names.slice(1).forEach(({ top }, at) => expect(top, scene).toBeGreaterThanOrEqual((names[at]?.bottom ?? 0) - 2));
+    }
+    const entries: { name: string; rival: boolean }[] = kept.cases.flatMap(({ results }: { results: { name: string; rival: boolean }[] }) => results);
+    const look = looksOf(entries);
+    const names = [...new Set(entries.map(({ name }) => name))];
+    expect(new Set(names.map((name) => JSON.stringify(look(name)))).size).toBe(names.length);
   });
 
   test("are offered as the file that was kept", async ({ page, request }) => {

@@ -4,6 +4,7 @@ import { Scenes } from "../../../bench/js/src/scenes.js";
 import type { Listed } from "../../../bench/js/src/scenes.js";
 import { OURS, WORLD } from "../../../bench/js/contenders/index.js";
 import scenesUrl from "../generated/bench-scenes.wasm?url";
+import { looksOf } from "./looks.ts";
 import type { Point } from "./plots.ts";
 import { element, fill, select, table } from "./recorded.ts";
 import { type Case, duration, fastestOurs, fastestPeer, significant, timesOf } from "./results.ts";
@@ -139,7 +140,7 @@ export class BenchmarkHere {
     );
     if (points.length === 0) return;
     const { drawLines } = await import("./plots.ts");
-    drawLines(element("plot-here"), points, { unit: "time" });
+    drawLines(element("plot-here"), points, looksOf(points), { unit: "time" });
   }
 }
 

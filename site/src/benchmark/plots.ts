@@ -1,7 +1,8 @@
 // The plots. Colours are the page's own, by name, so that light and dark need no new drawing.
 
 import * as Plot from "@observablehq/plot";
-import { bytes, count, duration, PLAIN, significant } from "./results.ts";
+import { COLOURS, type Look, type Looks } from "./looks.ts";
+import { bytes, count, duration, significant } from "./results.ts";
 
 /** A contender's number at a number of boxes. */
 export interface Point {
@@ -11,47 +12,109 @@ export interface Point {
   readonly value: number;
 }
 
-const COLOURS = 8;
+/** Room for a line's name, and for the leader that leads to it. */
+const NAME_WIDTH = 6.4;
+const LEADER = 22;
+/** Plots that are narrower have the names beneath. */
+const ROOM_BESIDE = 560;
+/** From one name to the next. */
+const NAME_HEIGHT = 15;
 
-/** Which line is whose: ours first and thick, those of ours in other settings dashed. */
-function lookOf(points: readonly Point[]): (name: string) => { colour: string; dash: string; width: number } {
-  const peers = [...new Set(points.filter(({ rival, name }) => rival && !PLAIN.test(name)).map(({ name }) => name))];
-  const own = new Set(points.filter(({ rival }) => !rival).map(({ name }) => name));
-  const [first] = own;
-  return (name) => {
-    if (own.has(name)) return { colour: "var(--line-ours)", dash: name === first ? "" : "6 4", width: name === first ? 3 : 2 };
-    if (PLAIN.test(name)) return { colour: "var(--ink)", dash: "2 4", width: 1.75 };
-    const at = peers.indexOf(name);
-    return { colour: `var(--line-${(at % COLOURS) + 1})`, dash: at < COLOURS ? "" : "8 3", width: 1.75 };
-  };
-}
-
-/** Lines over the number of boxes, both logarithmic, into `place`. */
-export function drawLines(place: HTMLElement, points: readonly Point[], options: { unit: "time" | "memory" }): void {
-  const look = lookOf(points);
+/** Lines over the number of boxes, both logarithmic, into `place`, each with its name at its end or, where there is no room, beneath. */
+export function drawLines(place: HTMLElement, points: readonly Point[], looks: Looks, options: { unit: "time" | "memory" }): void {
   const format = options.unit === "time" ? duration : bytes;
   const names = [...new Set(points.map(({ name }) => name))];
-  const title = (point: Point): string => `${point.name}\n${count(point.boxes)} boxes: ${format(point.value)}`;
+  const sizes = [...new Set(points.map(({ boxes }) => boxes))];
   const of = (name: string): Point[] => points.filter((point) => point.name === name);
+  const title = (point: Point): string => `${point.name}\n${count(point.boxes)} boxes: ${format(point.value)}`;
+
+  const base = frame(place);
+  const most = Math.max(...sizes);
+  const ends = names.map((name) => of(name).reduce((a, b) => (b.boxes > a.boxes ? b : a)));
+  // Who was not asked with the most boxes has no place of its own at the right: the corner below is free.
+  const text = ({ name, boxes }: Point): string => (boxes < most ? `${name}, to ${shortCount(boxes)}` : name);
+  const isBeside = base.width >= ROOM_BESIDE;
+  const marginRight = isBeside ? LEADER + 16 + NAME_WIDTH * Math.max(...ends.map((end) => text(end).length)) : base.marginRight;
+  const height = 480;
+  const [top, right, bottom] = [base.marginTop, base.width - marginRight, height - base.marginBottom];
+  const x = logarithmic(sizes, [base.marginLeft, right]);
+  const y = logarithmic(points.map(({ value }) => value), [bottom, top]);
+  const early = ends.filter(({ boxes }) => boxes < most).sort((a, b) => b.value - a.value);
+  const places = [
+    ...apart(ends.filter(({ boxes }) => boxes === most), y.at, [top, bottom - NAME_HEIGHT * (early.length + 1)]),
+    ...early.map((point, index) => ({ point, at: bottom - NAME_HEIGHT * (early.length - 1 - index) })),
+  ];
+  const labels = (isBeside ? places : []).map(({ point, at }) => ({ ...point, text: text(point), labelX: x.of(right + LEADER), labelY: y.of(at) }));
+
+  const dots = (name: string, data: readonly object[], channels: { x: string; y: string; dx?: number }): Plot.Dot => {
+    const { colour, width, symbol, isFull } = looks(name);
+    const fill = isFull ? { fill: colour } : { fill: "var(--paper)", stroke: colour, strokeWidth: 1.5 };
+    return Plot.dot(data, { ...channels, symbol, r: width > 3 ? 5 : 3.75, ...fill });
+  };
   const plot = Plot.plot({
-    ...frame(place),
-    x: { type: "log", label: "boxes", ticks: [...new Set(points.map(({ boxes }) => boxes))], tickFormat: shortCount, grid: false },
-    y: { type: "log", label: null, tickFormat: (value: number) => (isPowerOfTen(value) ? format(value) : ""), grid: true },
+    ...base,
+    height,
+    marginRight,
+    x: { type: "log", label: "boxes", labelAnchor: "center", domain: x.domain, ticks: sizes, tickFormat: shortCount, grid: false },
+    y: { type: "log", label: null, domain: y.domain, ticks: ticks(y.domain), tickFormat: format, grid: true },
     marks: [
-      ...names.map((name) =>
-        Plot.line(of(name), {
-          x: "boxes",
-          y: "value",
-          stroke: look(name).colour,
-          strokeWidth: look(name).width,
-          strokeDasharray: look(name).dash,
-        }),
-      ),
-      ...names.map((name) => Plot.dot(of(name), { x: "boxes", y: "value", fill: look(name).colour, r: look(name).width + 1 })),
+      ...labels
+        .filter(({ boxes }) => boxes === most)
+        .map((label) => Plot.link([label], { x1: "boxes", y1: "value", x2: "labelX", y2: "labelY", stroke: looks(label.name).colour, strokeDasharray: "1 3" })),
+      ...names.map((name) => {
+        const { colour, width, dash } = looks(name);
+        return Plot.line(of(name), { x: "boxes", y: "value", stroke: colour, strokeWidth: width, strokeDasharray: dash });
+      }),
+      ...names.map((name) => dots(name, of(name), { x: "boxes", y: "value" })),
+      ...labels.map((label) => dots(label.name, [label], { x: "labelX", y: "labelY", dx: 6 })),
+      Plot.text(labels, { x: "labelX", y: "labelY", text: "text", textAnchor: "start", dx: 14, fill: "var(--ink)" }),
       Plot.tip(points, Plot.pointer({ x: "boxes", y: "value", title })),
     ],
   });
-  show(place, plot, summary(points, format), key(names, look));
+  const beneath = isBeside ? [] : [key(places.map(({ point }) => ({ name: text(point), swatch: swatch(looks(point.name)) })))];
+  show(place, plot, summary(points, format), beneath);
+}
+
+/** A short line as the plots draw it. */
+export function swatch({ colour, dash, width, symbol, isFull }: Look): SVGSVGElement {
+  const fill = isFull ? { fill: colour } : { fill: "var(--paper)", stroke: colour, strokeWidth: 1.5 };
+  const plot = Plot.plot({
+    width: width > 0 ? 36 : 14,
+    height: 14,
+    margin: 0,
+    axis: null,
+    x: { domain: [0, 2] },
+    y: { domain: [0, 2] },
+    marks: [
+      Plot.line(width > 0 ? [[0, 1], [2, 1]] : [], { stroke: colour, strokeWidth: width, strokeDasharray: dash }),
+      Plot.dot([[1, 1]], { symbol, r: width > 3 ? 5 : 3.75, ...fill }),
+    ],
+  }) as SVGSVGElement;
+  plot.setAttribute("aria-hidden", "true");
+  plot.querySelector("style")?.remove(); // it would be part of the name of what it stands in
+  return plot;
+}
+
+/** A logarithmic scale, as Plot makes it: what is where, and where is what. A lone value is in the middle. */
+function logarithmic(values: readonly number[], [from, to]: readonly [number, number]): { domain: [number, number]; at(value: number): number; of(pixel: number): number } {
+  const [low, high] = [Math.min(...values), Math.max(...values)];
+  const domain: [number, number] = low < high ? [low, high] : [low / 2, low * 2];
+  const decades = Math.log(domain[1] / domain[0]);
+  return {
+    domain,
+    at: (value) => from + (Math.log(value / domain[0]) / decades) * (to - from),
+    of: (pixel) => domain[0] * Math.exp(((pixel - from) / (to - from)) * decades),
+  };
+}
+
+/** Where the names stand: at the height of their points, but a line apart and within the plot. */
+function apart(points: readonly Point[], heightOf: (value: number) => number, [top, bottom]: readonly [number, number]): { point: Point; at: number }[] {
+  const names = points.map((point) => ({ point, at: heightOf(point.value) })).sort((a, b) => a.at - b.at);
+  let free = top - NAME_HEIGHT;
+  for (const name of names) free = name.at = Math.max(name.at, free + NAME_HEIGHT);
+  free = bottom + NAME_HEIGHT;
+  for (const name of [...names].reverse()) free = name.at = Math.min(name.at, free - NAME_HEIGHT);
+  return names;
 }
 
 /** A dot for each scene and number of boxes: how many times as long as ours the fastest peer takes. */
@@ -64,35 +127,46 @@ export interface Lead {
 
 export function drawLeads(place: HTMLElement, leads: readonly Lead[]): void {
   const sizes = [...new Set(leads.map(({ boxes }) => boxes))].sort((a, b) => a - b);
-  const colour = (boxes: number): string => `var(--line-${((sizes.indexOf(boxes) + 3) % COLOURS) + 1})`;
+  const look = (boxes: number): Look => {
+    const at = sizes.indexOf(boxes);
+    return { colour: `var(--line-${((at + 3) % COLOURS) + 1})`, dash: "", width: 0, symbol: SIZES[at % SIZES.length] ?? "circle", isFull: true };
+  };
   const title = ({ scene, boxes, ratio, peer }: Lead): string =>
     `${scene}, ${count(boxes)} boxes\n${peer} takes ${significant(ratio)} times as long`;
   const scenes = [...new Set(leads.map(({ scene }) => scene))];
+  const ratios = leads.map(({ ratio }) => ratio);
+  const domain: [number, number] = [Math.min(1, ...ratios), Math.max(...ratios)];
+  const axis = { ticks: ticks(domain, [1, 2, 5]), tickFormat: String, label: "times as long as ours →" };
   const plot = Plot.plot({
     ...frame(place),
-    height: 20 * scenes.length + 80,
+    height: 20 * scenes.length + 100,
+    marginTop: 42,
     marginLeft: 118,
-    x: { type: "log", label: "times as long as ours →", grid: true, tickFormat: (value: number) => (/^[125]/.test(String(value)) || value < 1 ? String(value) : "") },
+    x: { type: "log", domain },
     y: { type: "point", label: null, domain: scenes, grid: true },
     marks: [
+      Plot.gridX(axis),
+      Plot.axisX({ ...axis, anchor: "top" }),
+      Plot.axisX({ ...axis, anchor: "bottom" }),
       Plot.ruleX([1], { stroke: "var(--ink)" }),
-      ...sizes.map((size) =>
-        Plot.dot(
+      ...sizes.map((size) => {
+        const { colour, symbol } = look(size);
+        return Plot.dot(
           leads.filter(({ boxes }) => boxes === size),
-          { x: "ratio", y: "scene", fill: colour(size), stroke: "var(--paper)", r: 5.5 },
-        ),
-      ),
+          { x: "ratio", y: "scene", fill: colour, stroke: "var(--paper)", symbol, r: 5.5 },
+        );
+      }),
       Plot.tip(leads, Plot.pointer({ x: "ratio", y: "scene", title })),
     ],
   });
   const least = leads.reduce((a, b) => (b.ratio < a.ratio ? b : a));
   const text = `The fastest peer takes at least ${significant(least.ratio)} times as long as ours: ${title(least).replace("\n", ", ")}.`;
-  const legend = key(sizes.map((size) => `${count(size)} boxes`), (name) => {
-    const at = sizes.findIndex((size) => name === `${count(size)} boxes`);
-    return { colour: colour(sizes[at] ?? 0), dash: "", width: 2 };
-  });
-  show(place, plot, text, legend);
+  show(place, plot, text, []);
+  place.prepend(key(sizes.map((size) => ({ name: `${count(size)} boxes`, swatch: swatch(look(size)) }))));
 }
+
+/** The symbols of numbers of boxes, from the least on. */
+const SIZES = ["triangle", "circle", "square", "diamond"] as const;
 
 /** What a plot shows nothing of. */
 export function drawNothing(place: HTMLElement, why: string): void {
@@ -102,34 +176,40 @@ export function drawNothing(place: HTMLElement, why: string): void {
   place.replaceChildren(note);
 }
 
-function frame(place: HTMLElement): Plot.PlotOptions {
+interface Frame {
+  readonly width: number;
+  readonly marginTop: number;
+  readonly marginLeft: number;
+  readonly marginRight: number;
+  readonly marginBottom: number;
+  readonly style: Readonly<Record<string, string>>;
+}
+
+function frame(place: HTMLElement): Frame {
   return {
     width: Math.max(place.clientWidth, 280),
-    height: 360,
-    marginLeft: 62,
+    marginTop: 20,
+    marginLeft: 54,
     marginRight: 24,
     marginBottom: 42,
     style: { background: "transparent", fontSize: "12px", fontFamily: "inherit" },
   };
 }
 
-function show(place: HTMLElement, plot: SVGElement | HTMLElement, text: string, legend: HTMLElement): void {
+function show(place: HTMLElement, plot: Element, text: string, beneath: readonly Element[]): void {
   // One picture with one description: the names of its parts are nothing to be read out.
   for (const part of plot.querySelectorAll("g[aria-label]")) part.removeAttribute("aria-label");
   plot.setAttribute("role", "img");
   plot.setAttribute("aria-label", text);
-  place.replaceChildren(legend, plot);
+  place.replaceChildren(plot, ...beneath);
 }
 
-function key(names: readonly string[], look: (name: string) => { colour: string; dash: string }): HTMLElement {
+function key(entries: readonly { name: string; swatch: Element }[]): HTMLElement {
   const all = document.createElement("ul");
   all.className = "key";
-  for (const name of names) {
+  for (const { name, swatch } of entries) {
     const item = document.createElement("li");
-    const { colour, dash } = look(name);
-    item.style.setProperty("--colour", colour);
-    if (dash) item.style.setProperty("--dash", dash.startsWith("2") ? "dotted" : "dashed");
-    item.textContent = name;
+    item.append(swatch, name);
     all.append(item);
   }
   return all;
@@ -142,7 +222,13 @@ function summary(points: readonly Point[], format: (value: number) => string): s
   return `At ${count(most)} boxes: ${there.map(({ name, value }) => `${name} ${format(value)}`).join(", ")}.`;
 }
 
-const isPowerOfTen = (value: number): boolean => Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-9;
+/** Powers of ten within a domain, times these; if that are not two, times 1, 2 and 5. */
+function ticks([low, high]: readonly [number, number], factors: readonly number[] = [1]): number[] {
+  const first = Math.floor(Math.log10(low));
+  const powers = Array.from({ length: Math.ceil(Math.log10(high)) - first + 1 }, (_, index) => 10 ** (first + index));
+  const within = powers.flatMap((power) => factors.map((factor) => factor * power)).filter((value) => value >= low && value <= high);
+  return within.length > 1 || factors.length > 1 ? within : ticks([low, high], [1, 2, 5]);
+}
 
 const compact = new Intl.NumberFormat("en", { notation: "compact" });
 const shortCount = (value: number): string => compact.format(value);

@@ -1,7 +1,9 @@
 // The recorded runs: which to look at, and their plots, table and file.
 
 import runs from "virtual:benchmark-results";
-import { bytes, type Case, count, duration, fastestOurs, fastestPeer, type Run, significant, timesOf } from "./results.ts";
+import { Contenders } from "./contenders.ts";
+import { looksOf } from "./looks.ts";
+import { bytes, type Case, count, duration, type Entry, fastestOurs, fastestPeer, type Run, significant, timesOf } from "./results.ts";
 import type { Lead, Point } from "./plots.ts";
 
 type Task = "cases" | "worlds";
@@ -16,6 +18,7 @@ export class RecordedRuns {
   readonly #run = select("recorded-run");
   readonly #task = select("recorded-task");
   readonly #scene = select("recorded-scene");
+  readonly #contenders = new Contenders(element("recorded-contenders"), () => void this.#showScene());
 
   constructor() {
     const machine = element("recorded-machine");
@@ -67,8 +70,20 @@ export class RecordedRuns {
   #showTask(): void {
     const scenes = new Set(this.#cases.map(({ scene, dimensions }) => `${scene} ${dimensions}D`));
     fill(this.#scene, [...scenes].map((scene) => [scene, scene]));
+    void this.#showContenders();
     void this.#showScene();
     void this.#showLeads();
+  }
+
+  /** Who took part in any of the scenes. */
+  get #entries(): Entry[] {
+    return this.#cases.flatMap(({ results }) => results);
+  }
+
+  async #showContenders(): Promise<void> {
+    const { swatch } = await import("./plots.ts");
+    const entries = this.#entries;
+    this.#contenders.list(entries, this.#chosen, this.#task.value === "worlds", looksOf(entries), swatch);
   }
 
   async #showScene(): Promise<void> {
@@ -79,13 +94,14 @@ export class RecordedRuns {
       cases.flatMap(({ boxes, results }) =>
         results.flatMap((entry) => {
           const number = timesOf(entry)?.[value];
-          return number ? [{ name: entry.name, rival: entry.rival, boxes, value: number }] : [];
+          return number && this.#contenders.isShown(entry.name) ? [{ name: entry.name, rival: entry.rival, boxes, value: number }] : [];
         }),
       );
     const { drawLines, drawNothing } = await import("./plots.ts");
+    const looks = looksOf(this.#entries);
     const draw = (place: string, of: Point[], unit: "time" | "memory"): void => {
-      if (of.length > 0) drawLines(element(place), of, { unit });
-      else drawNothing(element(place), "This was not measured.");
+      if (of.length > 0) drawLines(element(place), of, looks, { unit });
+      else drawNothing(element(place), "Nothing of this was measured, or nobody is ticked.");
     };
     draw("plot-time", points("median_ns"), "time");
     draw("plot-memory", points("peak_bytes"), "memory");
