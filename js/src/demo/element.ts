@@ -1,25 +1,23 @@
-import { type CSSResult, html, LitElement, nothing, type TemplateResult } from "lit";
+import { type CSSResult, LitElement, type TemplateResult } from "lit";
 import type { TraceEvent } from "../trace.js";
-import type { DemoEvent, DemoEventMap, DemoState, Row } from "./api.js";
+import type { DemoEvent, DemoState, Row } from "./api.js";
 import { Canvases } from "./canvas.js";
 import { clock } from "./clock.js";
-import { hasFlags } from "./detection.js";
 import type { Explanation } from "./explain.js";
-import { Grab } from "./grab.js";
-import { type Keyboard, keysOf, press } from "./keys.js";
+import { Hands } from "./hands.js";
+import { press } from "./keys.js";
 import { loadDemos } from "./load.js";
-import { attributes, OptionError, type Options, readOptions, readStart } from "./options.js";
-import { heightOfArray, paint } from "./paint.js";
+import { attributes, messageOf, type Options, readOptions, readStart } from "./options.js";
+import { paint } from "./paint.js";
 import { Guesses, type Question } from "./predict.js";
 import { addProperties } from "./properties.js";
 import { NOTHING_COUNTED, Run } from "./run.js";
-import { Selection } from "./selection.js";
 import { iframeOf, shareUrl } from "./share.js";
 import { Speech } from "./speech.js";
 import { styles } from "./styles.js";
-import { controls, counters, guessing, sharing } from "./templates.js";
 import { type Theme, ThemeProbe } from "./theme.js";
-import { toldAs, toldOfSort } from "./told.js";
+import { emit, tell } from "./told.js";
+import { type Acts, inside } from "./view.js";
 
 /** Numbers that change more often cannot be read. */
 const COUNTERS_MS = 100;
@@ -39,17 +37,25 @@ export class SapDemoElement extends LitElement {
   #isPlaying = false;
   #speed: number | undefined;
   #hasChanged = false;
-  #wasDragged = false;
-  readonly #selection = new Selection();
   #explanation: Explanation | undefined;
   #guesses = new Guesses();
-  #grab: Grab | undefined;
   #theme: Theme | undefined;
   readonly #probe: ThemeProbe;
   readonly #canvases = new Canvases(() => this.#paint());
   #countersAt = -Infinity;
   #shared: { url: string; code: string } | undefined;
   readonly #speech = new Speech(() => this.renderRoot.querySelector(".live"), () => this.#sentence);
+  readonly #hands: Hands = new Hands(this, {
+    run: () => this.#run,
+    guess: (choice) => this.#guess(choice),
+    moved: (drag, isDetected) => {
+      if (isDetected) emit(this, "simulate", this.state);
+      emit(this, "sap-drag", drag);
+      this.#changed();
+    },
+    chose: () => this.#changed(),
+    say: (text) => (text === undefined ? this.#speech.soon() : this.#speech.now(text)),
+  });
   #setReady: () => void = () => undefined;
   readonly ready: Promise<void> = new Promise((resolve) => (this.#setReady = resolve));
 
@@ -112,7 +118,7 @@ export class SapDemoElement extends LitElement {
   }
 
   share(): string {
-    const hasMoved = this.#wasDragged && this.#run !== undefined;
+    const hasMoved = this.#hands.hasMoved && this.#run !== undefined;
     const start = hasMoved ? 0 : (this.#run?.timeline.tick ?? 0);
     const balls = hasMoved ? JSON.stringify(this.#run!.rows()) : this.getAttribute("balls");
     const page = new URL(this.getAttribute("embed-url") ?? "embed.html", document.baseURI);
@@ -148,7 +154,7 @@ export class SapDemoElement extends LitElement {
   }
 
   get chosen(): number[] {
-    return [...this.#selection.chosen];
+    return [...this.#hands.selection.chosen];
   }
 
   // Its life
@@ -210,14 +216,13 @@ export class SapDemoElement extends LitElement {
     }
     this.#run?.free();
     this.#open(run);
-    this.#wasDragged = false;
-    this.#selection.clear();
+    this.#hands.letGo();
     this.#guesses = new Guesses();
     const isStill = this.hasAttribute("paused") || options.isStatic || options.predicts || motionQuery.matches;
     if (options.isStatic && !options.predicts) run.timeline.finish();
     this.#isPlaying = !isStill;
     this.#changed();
-    this.#emit("simulate", this.state);
+    emit(this, "simulate", this.state);
     void this.updateComplete.then(this.#setReady);
   }
 
@@ -270,13 +275,8 @@ export class SapDemoElement extends LitElement {
 
   readonly #listener = {
     stopped: (events: readonly TraceEvent[]): void => this.#tell(events),
-    ticking: (): void => {
-      const { held, target } = this.#grab ?? {};
-      if (held !== undefined && target) this.#place(held, target.x, target.y, 0, 0);
-    },
-    ticked: (): void => {
-      this.#emit("simulate", this.state);
-    },
+    ticking: (): void => this.#hands.hold(),
+    ticked: (): void => emit(this, "simulate", this.state),
   };
 
   /** Something is to be shown anew. */
@@ -287,34 +287,22 @@ export class SapDemoElement extends LitElement {
 
   #update(now: number): void {
     this.#countersAt = now;
-    const { pair } = this.#selection;
+    const { pair } = this.#hands.selection;
     this.#explanation = pair && this.#run?.explain(pair);
     this.requestUpdate();
   }
 
   // Telling
 
-  #emit<K extends keyof DemoEventMap>(type: K, detail: DemoEventMap[K]["detail"]): void {
-    this.dispatchEvent(new CustomEvent(type, { detail, bubbles: true, composed: true }));
-  }
-
   #tell(events: readonly TraceEvent[]): void {
     const first = this.#run!.timeline.position - events.length;
-    events.forEach((event, index) => this.#tellEvent(event, first + index));
-  }
-
-  #tellEvent(event: TraceEvent | undefined, index: number): void {
-    const detail = event && toldAs(event, index);
-    if (!event || !detail) return;
-    const ofSort = toldOfSort(event);
-    if (ofSort) this.#emit("sap-sort", ofSort);
-    this.#emit("sap-event", detail);
+    events.forEach((event, index) => tell(this, event, first + index));
   }
 
   /** After a jump: what is at work here, and in words. */
   #arrived({ timeline }: Run): void {
     const { event, position } = timeline;
-    this.#tellEvent(event, position - 1);
+    if (event) tell(this, event, position - 1);
     this.#guesses.outcome = "";
     this.#changed();
     this.#speech.soon();
@@ -324,60 +312,7 @@ export class SapDemoElement extends LitElement {
     return this.#explanation?.text ?? this.#run?.sentence ?? "";
   }
 
-  // Hands
-
-  #place(ball: number, x: number, y: number, vx: number, vy: number): void {
-    this.#run!.timeline.placeBall(ball, x, y, vx, vy);
-    this.#wasDragged = true;
-  }
-
-  /** A ball is moved by hand. Where the world stands still, the algorithm runs again at once. */
-  #moveBall(ball: number, x: number, y: number): void {
-    const run = this.#run!;
-    if (!this.#isPlaying) {
-      this.#place(ball, x, y, 0, 0);
-      run.timeline.detectAgain();
-      this.#emit("simulate", this.state);
-    }
-    this.#emit("sap-drag", { ball, ...run.placeOf(ball) });
-    this.#changed();
-  }
-
-  #choose(ball: number | undefined): void {
-    const selection = this.#selection;
-    selection.cursor = ball;
-    if (this.#run!.options.explains) {
-      selection.take(ball);
-      if (selection.pair) this.pause();
-    }
-    this.#changed();
-    if (selection.pair) this.#speech.soon();
-  }
-
-  readonly #keyboard: Keyboard = {
-    stepOrPause: () => (this.#isPlaying ? this.pause() : this.step()),
-    step: () => this.step(),
-    back: () => this.back(),
-    moveCursor: (by) => {
-      const balls = this.#run!.timeline.radii.length;
-      if (balls === 0) return;
-      this.#selection.moveCursor(by, balls);
-      this.#changed();
-      this.#speech.now(`Ball ${this.#run!.names[this.#selection.cursor!]}`);
-    },
-    take: () => this.#selection.cursor !== undefined && this.#choose(this.#selection.cursor),
-    takeNone: () => this.#choose(undefined),
-    push: (dx, dy) => {
-      const run = this.#run!;
-      const ball = (this.#selection.cursor ??= 0);
-      if (ball >= run.timeline.radii.length) return;
-      this.pause();
-      const { x, y } = run.placeOf(ball);
-      this.#moveBall(ball, x + dx, y + dy);
-      this.#speech.soon();
-    },
-    guess: (choice) => this.#guess(choice),
-  };
+  // Guessing
 
   get #question(): Question | undefined {
     return this.#isPlaying ? undefined : this.#run?.question;
@@ -404,7 +339,7 @@ export class SapDemoElement extends LitElement {
       timeline: run.timeline,
       options: run.options,
       names: run.names,
-      marked: this.#selection.marked,
+      marked: this.#hands.selection.marked,
       explanation: this.#explanation,
       lineAt: run.playback.lineAt(this.#isPlaying),
       theme: this.#theme,
@@ -413,17 +348,7 @@ export class SapDemoElement extends LitElement {
 
   override firstUpdated(): void {
     this.renderRoot.append(this.#probe.element);
-    this.#grab = new Grab(this.renderRoot.querySelector(".picture")!, {
-      balls: () => this.#run?.timeline,
-      isDraggable: () => this.#run?.options.isDraggable === true,
-      move: (ball, x, y) => this.#moveBall(ball, x, y),
-      release: (ball, vx, vy) => {
-        if (!this.#isPlaying) return;
-        const { x, y } = this.#run!.placeOf(ball);
-        this.#place(ball, x, y, vx, vy);
-      },
-      choose: (ball) => this.#run && this.#choose(ball),
-    });
+    this.#hands.reachInto(this.renderRoot.querySelector(".picture")!);
   }
 
   override updated(): void {
@@ -432,66 +357,41 @@ export class SapDemoElement extends LitElement {
 
   override render(): TemplateResult {
     const run = this.#run;
-    const options = run?.options;
-    const hasControls = options?.hasControls ?? !this.hasAttribute("no-controls");
-    const hasCounters = options?.hasCounters ?? !this.hasAttribute("no-counters");
-    return html`
-      <slot name="heading">${options?.heading ? html`<p class="heading">${options.heading}</p>` : nothing}</slot>
-      <div class="frame">
-      <div class="picture" part="picture" role="application" tabindex="0" aria-label=${this.#label} aria-describedby="keys" @keydown=${(event: KeyboardEvent) => options && press(event, options, this.#keyboard)}>
-        <canvas></canvas>
-        ${this.#wrong ? html`<p class="wrong" role="alert">${this.#wrong}</p>` : nothing}
-      </div>
-      <p id="keys" class="hidden">${keysOf(options)}</p>
-      ${run && options?.decorations.array ? array(run) : nothing}
-      ${hasControls ? html`<p class="said" part="said" aria-hidden="true" ?data-explains=${this.#explanation !== undefined}>${this.#sentence}</p>` : nothing}
-      ${options?.predicts ? guessing({ guesses: this.#guesses, question: this.#question, guess: (choice) => this.#guess(choice) }) : nothing}
-      <p class="live hidden" role="status" aria-live="polite"></p>
-      ${hasCounters ? counters(run?.counts ?? NOTHING_COUNTED, options !== undefined && hasFlags(options.detecting)) : nothing}
-      ${hasControls ? this.#controls() : nothing}
-      </div>
-      <slot name="caption"></slot>
-    `;
+    return inside(
+      {
+        run,
+        wrong: this.#wrong,
+        label: this.#label,
+        hasControls: run?.options.hasControls ?? !this.hasAttribute("no-controls"),
+        hasCounters: run?.options.hasCounters ?? !this.hasAttribute("no-counters"),
+        sentence: this.#sentence,
+        explains: this.#explanation !== undefined,
+        speed: this.#speed ?? run?.options.speed ?? 1,
+        guesses: this.#guesses,
+        question: this.#question,
+        shared: this.#shared,
+      },
+      this,
+      this.#acts,
+    );
   }
 
-  #controls(): TemplateResult {
-    const { timeline, options } = this.#run ?? {};
-    const bar = controls({
-      isReady: timeline !== undefined,
-      isPlaying: this.#isPlaying,
-      canPlay: !(options?.isStatic && timeline?.isStopless),
-      canGoBack: timeline?.hasPast === true,
-      progress: timeline?.progress ?? { at: 0, of: 0 },
-      speed: this.#speed ?? options?.speed ?? 1,
-      playOrPause: () => (this.#isPlaying ? this.pause() : this.play()),
-      back: () => this.back(),
-      step: () => this.step(),
-      seek: (place) => this.seek(place),
-      setSpeed: (speed) => {
-        this.#speed = speed;
-        this.#changed();
-      },
-      reset: () => this.reset(),
-      share: () => {
-        // As it is now: what is shown to be copied does not change meanwhile.
-        this.#shared = { url: this.share(), code: this.embedCode() };
-        this.requestUpdate();
-        void this.updateComplete.then(() => this.renderRoot.querySelector<HTMLElement>(".share")?.togglePopover());
-      },
-    });
-    return html`${bar} ${this.#shared ? sharing(this.#shared.url, this.#shared.code) : nothing}`;
-  }
+  readonly #acts: Acts = {
+    press: (event) => this.#run && press(event, this.#run.options, this.#hands.keyboard),
+    guess: (choice) => this.#guess(choice),
+    setSpeed: (speed) => {
+      this.#speed = speed;
+      this.#changed();
+    },
+    openSharing: () => {
+      // As it is now: what is shown to be copied does not change meanwhile.
+      this.#shared = { url: this.share(), code: this.embedCode() };
+      this.requestUpdate();
+      void this.updateComplete.then(() => this.renderRoot.querySelector<HTMLElement>(".share")?.togglePopover());
+    },
+  };
 }
 
 const motionQuery: MediaQueryList = matchMedia("(prefers-reduced-motion: reduce)");
-
-function array({ options, timeline }: Run): TemplateResult {
-  const height = heightOfArray(options, timeline.radii.length);
-  return html`<canvas class="array" part="array" role="img" aria-label="The array of endpoints, in order" style="height:${height}px"></canvas>`;
-}
-
-function messageOf(error: unknown): string {
-  return error instanceof OptionError ? error.message : `This demo cannot begin. ${String(error)}`;
-}
 
 addProperties(SapDemoElement.prototype);

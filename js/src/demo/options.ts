@@ -11,6 +11,11 @@ export class OptionError extends Error {
   override readonly name = "OptionError";
 }
 
+/** Why a demo cannot begin. */
+export function messageOf(error: unknown): string {
+  return error instanceof OptionError ? error.message : `This demo cannot begin. ${String(error)}`;
+}
+
 /** How the world moves from one tick to the next. */
 export type Motion = "bounce" | "drift" | "teleport" | "rest";
 

@@ -1,5 +1,5 @@
 import type { TraceEvent } from "../trace.js";
-import type { DemoEvent, DemoSort } from "./api.js";
+import type { DemoEvent, DemoEventMap, DemoSort } from "./api.js";
 
 /** Which kind of event a listener is told a trace event as. */
 const kinds: Partial<Record<TraceEvent["kind"], DemoEvent["kind"]>> = {
@@ -23,8 +23,22 @@ export function toldAs(event: TraceEvent, index: number): DemoEvent | undefined 
 }
 
 /** What it is as an event of the sort, if it is one. */
-export function toldOfSort({ kind, i, j, a, b }: TraceEvent): DemoSort | undefined {
+function toldOfSort({ kind, i, j, a, b }: TraceEvent): DemoSort | undefined {
   if (kind === "swap") return { kind, i: Number(i), j: Number(j) };
   if (kind === "compare") return { kind, i: Number(a), j: Number(b) };
   return undefined;
+}
+
+/** Tells those who listen to a demo. */
+export function emit<K extends keyof DemoEventMap>(demo: Element, type: K, detail: DemoEventMap[K]["detail"]): void {
+  demo.dispatchEvent(new CustomEvent(type, { detail, bubbles: true, composed: true }));
+}
+
+/** Tells of an event, the so-manyeth of its detection, if it is one to be told. */
+export function tell(demo: Element, event: TraceEvent, index: number): void {
+  const detail = toldAs(event, index);
+  if (!detail) return;
+  const ofSort = toldOfSort(event);
+  if (ofSort) emit(demo, "sap-sort", ofSort);
+  emit(demo, "sap-event", detail);
 }

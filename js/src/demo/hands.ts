@@ -1,0 +1,110 @@
+import type { DemoDrag, SapDemo } from "./api.js";
+import { Grab } from "./grab.js";
+import type { Keyboard } from "./keys.js";
+import type { Run } from "./run.js";
+import { Selection } from "./selection.js";
+
+/** What hands find and do, beside what anybody may call. */
+export interface Handled {
+  run(): Run | undefined;
+  guess(choice: 0 | 1): void;
+  /** A ball is where a hand put it, and a still world has been looked at anew. */
+  moved(drag: DemoDrag, isDetected: boolean): void;
+  /** A choice is to be shown. */
+  chose(): void;
+  /** Says this at once, or soon what there is to say. */
+  say(text?: string): void;
+}
+
+/** The hands of a visitor, by pointer and by keys: which balls they choose, and where they put them. */
+export class Hands {
+  readonly selection: Selection = new Selection();
+  /** Whether a ball was ever put elsewhere. */
+  hasMoved = false;
+  readonly #demo: SapDemo;
+  readonly #handled: Handled;
+  #grab: Grab | undefined;
+
+  constructor(demo: SapDemo, handled: Handled) {
+    this.#demo = demo;
+    this.#handled = handled;
+  }
+
+  /** Lets pointers take hold of the balls in a picture. */
+  reachInto(picture: HTMLElement): void {
+    this.#grab = new Grab(picture, {
+      balls: () => this.#handled.run()?.timeline,
+      isDraggable: () => this.#handled.run()?.options.isDraggable === true,
+      move: (ball, x, y) => this.#move(ball, x, y),
+      release: (ball, vx, vy) => {
+        if (!this.#demo.isPlaying) return;
+        const { x, y } = this.#handled.run()!.placeOf(ball);
+        this.#place(ball, x, y, vx, vy);
+      },
+      choose: (ball) => this.#handled.run() && this.#choose(ball),
+    });
+  }
+
+  /** Another world: nothing in it is chosen or moved. */
+  letGo(): void {
+    this.selection.clear();
+    this.hasMoved = false;
+  }
+
+  /** Keeps the ball that is held where the hand is, in a world that goes on. */
+  hold(): void {
+    const { held, target } = this.#grab ?? {};
+    if (held !== undefined && target) this.#place(held, target.x, target.y, 0, 0);
+  }
+
+  readonly keyboard: Keyboard = {
+    stepOrPause: () => (this.#demo.isPlaying ? this.#demo.pause() : this.#demo.step()),
+    step: () => this.#demo.step(),
+    back: () => this.#demo.back(),
+    moveCursor: (by) => {
+      const { names, timeline } = this.#handled.run()!;
+      if (timeline.radii.length === 0) return;
+      this.selection.moveCursor(by, timeline.radii.length);
+      this.#handled.chose();
+      this.#handled.say(`Ball ${names[this.selection.cursor!]}`);
+    },
+    take: () => this.selection.cursor !== undefined && this.#choose(this.selection.cursor),
+    takeNone: () => this.#choose(undefined),
+    push: (dx, dy) => {
+      const run = this.#handled.run()!;
+      const ball = (this.selection.cursor ??= 0);
+      if (ball >= run.timeline.radii.length) return;
+      this.#demo.pause();
+      const { x, y } = run.placeOf(ball);
+      this.#move(ball, x + dx, y + dy);
+      this.#handled.say();
+    },
+    guess: (choice) => this.#handled.guess(choice),
+  };
+
+  #place(ball: number, x: number, y: number, vx: number, vy: number): void {
+    this.#handled.run()!.timeline.placeBall(ball, x, y, vx, vy);
+    this.hasMoved = true;
+  }
+
+  /** Where the world stands still, the algorithm runs again at once. */
+  #move(ball: number, x: number, y: number): void {
+    const run = this.#handled.run()!;
+    const isStill = !this.#demo.isPlaying;
+    if (isStill) {
+      this.#place(ball, x, y, 0, 0);
+      run.timeline.detectAgain();
+    }
+    this.#handled.moved({ ball, ...run.placeOf(ball) }, isStill);
+  }
+
+  #choose(ball: number | undefined): void {
+    this.selection.cursor = ball;
+    if (this.#handled.run()!.options.explains) {
+      this.selection.take(ball);
+      if (this.selection.pair) this.#demo.pause();
+    }
+    this.#handled.chose();
+    if (this.selection.pair) this.#handled.say();
+  }
+}

@@ -1,0 +1,82 @@
+import { html, nothing, type TemplateResult } from "lit";
+import type { SapDemo } from "./api.js";
+import { hasFlags } from "./detection.js";
+import { keysOf } from "./keys.js";
+import { heightOfArray } from "./paint.js";
+import type { Guesses, Question } from "./predict.js";
+import { NOTHING_COUNTED, type Run } from "./run.js";
+import { controls, counters, guessing, sharing } from "./templates.js";
+
+/** What a demo shows, beside the picture itself. */
+export interface View {
+  /** Until it has begun there is none. */
+  readonly run: Run | undefined;
+  /** What keeps it from beginning, in words. */
+  readonly wrong: string;
+  readonly label: string;
+  readonly hasControls: boolean;
+  readonly hasCounters: boolean;
+  readonly sentence: string;
+  /** Whether the sentence explains a pair. */
+  readonly explains: boolean;
+  readonly speed: number;
+  readonly guesses: Guesses;
+  readonly question: Question | undefined;
+  /** What there is to copy, once it was asked for. */
+  readonly shared: { readonly url: string; readonly code: string } | undefined;
+}
+
+/** What is done where a visitor presses, beside what anybody may call. */
+export interface Acts {
+  press(event: KeyboardEvent): void;
+  guess(choice: 0 | 1): void;
+  setSpeed(speed: number): void;
+  openSharing(): void;
+}
+
+/** The inside of the element. */
+export function inside(view: View, demo: SapDemo, acts: Acts): TemplateResult {
+  const { run, hasControls } = view;
+  const options = run?.options;
+  return html`
+    <slot name="heading">${options?.heading ? html`<p class="heading">${options.heading}</p>` : nothing}</slot>
+    <div class="frame">
+    <div class="picture" part="picture" role="application" tabindex="0" aria-label=${view.label} aria-describedby="keys" @keydown=${acts.press}>
+      <canvas></canvas>
+      ${view.wrong ? html`<p class="wrong" role="alert">${view.wrong}</p>` : nothing}
+    </div>
+    <p id="keys" class="hidden">${keysOf(options)}</p>
+    ${run && options?.decorations.array ? array(run) : nothing}
+    ${hasControls ? html`<p class="said" part="said" aria-hidden="true" ?data-explains=${view.explains}>${view.sentence}</p>` : nothing}
+    ${options?.predicts ? guessing({ ...view, guess: acts.guess }) : nothing}
+    <p class="live hidden" role="status" aria-live="polite"></p>
+    ${view.hasCounters ? counters(run?.counts ?? NOTHING_COUNTED, options !== undefined && hasFlags(options.detecting)) : nothing}
+    ${hasControls ? html`${bar(view, demo, acts)} ${view.shared ? sharing(view.shared.url, view.shared.code) : nothing}` : nothing}
+    </div>
+    <slot name="caption"></slot>
+  `;
+}
+
+function bar({ run, speed }: View, demo: SapDemo, acts: Acts): TemplateResult {
+  const { timeline, options } = run ?? {};
+  return controls({
+    isReady: timeline !== undefined,
+    isPlaying: demo.isPlaying,
+    canPlay: !(options?.isStatic && timeline?.isStopless),
+    canGoBack: timeline?.hasPast === true,
+    progress: timeline?.progress ?? { at: 0, of: 0 },
+    speed,
+    playOrPause: () => (demo.isPlaying ? demo.pause() : demo.play()),
+    back: () => demo.back(),
+    step: () => demo.step(),
+    seek: (place) => demo.seek(place),
+    setSpeed: acts.setSpeed,
+    reset: () => demo.reset(),
+    share: acts.openSharing,
+  });
+}
+
+function array({ options, timeline }: Run): TemplateResult {
+  const height = heightOfArray(options, timeline.radii.length);
+  return html`<canvas class="array" part="array" role="img" aria-label="The array of endpoints, in order" style="height:${height}px"></canvas>`;
+}
