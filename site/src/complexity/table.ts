@@ -16,7 +16,7 @@ export function insertComplexity(page: string): string {
 
 function table(): string {
   return `
-    <div class="table-scroll" tabindex="0" role="region" aria-label="The complexity table">
+    <div class="table-scroll formulas" tabindex="0" role="region" aria-label="The complexity table">
       <table>
         <thead>
           <tr><th scope="col">Algorithm</th>${CASES.map((name) => `<th scope="col">${capital(name)}</th>`).join("")}<th scope="col">Space</th></tr>
