@@ -6,7 +6,7 @@ import { complaints, requestsElsewhere, violations } from "./support/pages.ts";
 
 /** Within the repository, where Node finds the package by its name. */
 const written = fileURLToPath(new URL("../test-results/snippets/", import.meta.url));
-const rustSnippet = new URL("./snippets/playground.rs", import.meta.url);
+const snippets = new URL("./snippets/", import.meta.url);
 
 class Playground {
   readonly root: Locator;
@@ -77,14 +77,17 @@ test.describe("paused", () => {
     });
   }
 
-  // That this file compiles and finds what it says is tested in site/wasm/tests/snippet.rs.
-  test("Rust is the file that is compiled and run elsewhere", async ({ page }) => {
-    const playground = await new Playground(page).open("?boxes=50&scene=mixed&motion=still&size=2&format=rs");
-    const snippet = await playground.download("rs");
-    if (process.env["UPDATE_SNIPPETS"]) writeFileSync(rustSnippet, snippet);
-    expect(snippet).toBe(readFileSync(rustSnippet, "utf8"));
-    expect(snippet).toContain(`pairs.len()); // ${await playground.value("pairs")}\n`);
-  });
+  // That these files run and find what they say is tested in site/wasm/tests/snippet.rs and python/tests.
+  for (const [language, format, printed] of [["Rust", "rs", "pairs.len()); //"], ["Python", "py", "print(len(pairs))  #"]] as const) {
+    test(`${language} is the file that is run elsewhere`, async ({ page }) => {
+      const playground = await new Playground(page).open(`?boxes=50&scene=mixed&motion=still&size=2&format=${format}`);
+      const snippet = await playground.download(format);
+      const file = new URL(`playground.${format}`, snippets);
+      if (process.env["UPDATE_SNIPPETS"]) writeFileSync(file, snippet);
+      expect(snippet).toBe(readFileSync(file, "utf8"));
+      expect(snippet).toContain(`${printed} ${await playground.value("pairs")}\n`);
+    });
+  }
 
   test("JSON says everything, to the last bit", async ({ page }) => {
     const playground = await new Playground(page).open("?boxes=200&scene=tiny&seed=9");
@@ -126,7 +129,7 @@ test.describe("paused", () => {
     const grid = await playground.value("pairs");
     await page.reload();
     await expect.poll(() => playground.value("pairs")).toBe(grid);
-    await playground.open("?boxes=1e9&size=-1&spread=x&scene=nowhere&dimensions=7&motion=&algorithm=magic&format=py");
+    await playground.open("?boxes=1e9&size=-1&spread=x&scene=nowhere&dimensions=7&motion=&algorithm=magic&format=cobol");
     expect(await playground.value("pairs")).toBe(pairs);
   });
 

@@ -15,7 +15,7 @@ export interface Snapshot {
   readonly address: string;
 }
 
-export type Format = "js" | "rs" | "json";
+export type Format = "js" | "rs" | "py" | "json";
 
 interface Language {
   readonly type: string;
@@ -75,6 +75,25 @@ static BOXES: [([f32; ${snapshot.world.dimensions}], [f32; ${snapshot.world.dime
     comma: "",
     tail: () => "\n];\n",
   },
+  py: {
+    type: "text/x-python",
+    head: (snapshot) => `# ${what(snapshot)}
+# pip install sweep-and-prune
+import numpy as np
+import sweep_and_prune as sap
+
+# A box is a row: its least corner, then its greatest.
+boxes = np.array([
+`,
+    row: (corners) => `    [${corners.join(", ")}],`,
+    comma: "",
+    tail: ({ pairs }) => `
+], dtype=np.float32)
+
+pairs = sap.find_pairs(boxes)  # a row for each pair, the smaller index first
+print(len(pairs))  # ${pairs}
+`,
+  },
   json: {
     type: "application/json",
     head: ({ world, method, step, pairs, address }) => {
@@ -109,7 +128,7 @@ export function preview(snapshot: Snapshot, format: Format): string {
   const language = LANGUAGES[format];
   const shown = Math.min(snapshot.world.boxes, 3);
   const rows = Array.from({ length: shown }, (_, box) => row(snapshot, language, box));
-  if (shown < snapshot.world.boxes) rows.push(`${format === "rs" || format === "json" ? "    " : "  "}... ${formatCount(snapshot.world.boxes - shown)} more`);
+  if (shown < snapshot.world.boxes) rows.push(`${format === "js" ? "  " : "    "}... ${formatCount(snapshot.world.boxes - shown)} more`);
   return language.head(snapshot) + rows.join(`${language.comma}\n`) + language.tail(snapshot);
 }
 

@@ -67,7 +67,7 @@ function markup(): string {
         pairs. The address of this page brings the same world back.
       </p>
       <div class="export-choice">
-        ${choice("playground", "format", "As", [["js", "JavaScript"], ["rs", "Rust"], ["json", "JSON"]])}
+        ${choice("playground", "format", "As", [["js", "JavaScript"], ["rs", "Rust"], ["py", "Python"], ["json", "JSON"]])}
         <button type="button" data-part="copy" disabled>Copy</button>
         <button type="button" data-part="download" disabled>Download</button>
         <button type="button" data-part="share" disabled>Copy the address</button>

@@ -69,13 +69,19 @@ export function drawLines(canvas: HTMLCanvasElement, width: number, height: numb
       if (value === null || (logarithmic && value <= 0)) pen = false;
       else if (pen) context.lineTo(x(place), y(value));
       else {
-        // A lone value is a dot.
-        context.moveTo(x(place) - 0.75, y(value));
-        context.lineTo(x(place), y(value));
+        context.moveTo(x(place), y(value));
         pen = true;
       }
     });
     context.stroke();
+    // The newest value: all that there is at first.
+    const last = values.length - 1;
+    const newest = values[last];
+    if (newest == null || (logarithmic && newest <= 0)) continue;
+    context.fillStyle = colour;
+    context.beginPath();
+    context.arc(x(last), y(newest), 3, 0, 2 * Math.PI);
+    context.fill();
   }
 }
 

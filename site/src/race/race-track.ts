@@ -9,6 +9,7 @@ import { onThemeChange } from "../shell/theme.ts";
 import { LANE_COUNTERS, LANES } from "./markup.ts";
 import type { FromRace, Lane, RaceFrame, ToRace } from "./messages.ts";
 import { MEASURES, type Measure, RaceRecord, SHOWN } from "./record.ts";
+import { countersOf, verdict } from "./told.ts";
 
 /** The numbers of boxes that the slider offers. */
 const BOXES = [10, 20, 50, 100, 200, 500, 1_000, 2_000, 5_000, 10_000, 20_000];
@@ -312,33 +313,16 @@ export class RaceTrack extends HTMLElement {
     if (!frame) return;
     this.dataset["step"] = String(frame.step);
     this.#part("moment").textContent = `Step ${formatCount(frame.step)}`;
-    this.#part("verdict").textContent = this.#verdict(frame);
-  }
-
-  #verdict({ lanes }: RaceFrame): string {
-    const { compared, disagreed } = this.#record;
-    const reports = lanes.flatMap((lane) => ("report" in lane ? [lane.report] : []));
-    const [first] = reports;
-    if (disagreed) return "They do not agree.";
-    if (!first || compared === 0) return "Nobody to compare with.";
-    return `All ${reports.length} found the same ${formatCount(first.pairs)} pairs, as in each of the ${formatCount(compared)} steps so far.`;
+    this.#part("verdict").textContent = verdict(frame, this.#record);
   }
 
   #showLane(lane: number, place: number, result: Lane | undefined): void {
-    const report = result && "report" in result ? result.report : undefined;
     const ms = place < 0 ? null : this.#record.level(place, MEASURES[0]);
-    const texts: Record<(typeof LANE_COUNTERS)[number]["key"], string | null> = {
-      ms: ms === null ? null : `${ms.toFixed(ms < 100 ? 2 : 0)} ms`,
-      tests: counted(report?.tests),
-      "axis-overlaps": counted(report?.axisOverlaps),
-      comparisons: counted(report?.comparisons),
-      swaps: counted(report?.swaps),
-      pairs: counted(report?.pairs),
-    };
+    const texts = countersOf(result, ms);
     for (const { key } of LANE_COUNTERS) {
       const cell = this.#find(`[data-lane="${lane}"] [data-counter="${key}"] dd`);
       cell.textContent = texts[key] ?? "–";
-      cell.title = texts[key] === null && report ? NOT_COUNTED : "";
+      cell.title = texts[key] === null && result && "report" in result ? NOT_COUNTED : "";
     }
     this.#lanePart(lane, "out").textContent = result && "out" in result ? result.out : "";
     // A choice that would change nothing is not offered.
@@ -410,5 +394,3 @@ export class RaceTrack extends HTMLElement {
     return found;
   }
 }
-
-const counted = (count: number | null | undefined): string | null => (count === null || count === undefined ? null : formatCount(count));

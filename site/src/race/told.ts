@@ -1,0 +1,31 @@
+// What a frame of the race comes to, in words and numbers.
+
+import { formatCount } from "../lab/counters.ts";
+import type { LANE_COUNTERS } from "./markup.ts";
+import type { Lane, RaceFrame } from "./messages.ts";
+import type { RaceRecord } from "./record.ts";
+
+/** Whether all found the same, so far. */
+export function verdict({ lanes }: RaceFrame, { compared, disagreed }: RaceRecord): string {
+  const reports = lanes.flatMap((lane) => ("report" in lane ? [lane.report] : []));
+  const [first] = reports;
+  if (disagreed) return "They do not agree.";
+  if (!first || compared === 0) return "Nobody to compare with.";
+  const before = compared > 1 ? `, as in each of the ${formatCount(compared)} steps so far` : "";
+  return `All ${reports.length} found the same ${formatCount(first.pairs)} pairs${before}.`;
+}
+
+/** What stands beside the names of a contender's counters; nothing for what it does not count. */
+export function countersOf(lane: Lane | undefined, ms: number | null): Record<(typeof LANE_COUNTERS)[number]["key"], string | null> {
+  const report = lane && "report" in lane ? lane.report : undefined;
+  return {
+    ms: ms === null ? null : `${ms.toFixed(ms < 100 ? 2 : 0)} ms`,
+    tests: counted(report?.tests),
+    "axis-overlaps": counted(report?.axisOverlaps),
+    comparisons: counted(report?.comparisons),
+    swaps: counted(report?.swaps),
+    pairs: counted(report?.pairs),
+  };
+}
+
+const counted = (count: number | null | undefined): string | null => (count === null || count === undefined ? null : formatCount(count));
