@@ -141,3 +141,24 @@ setup_chromium() {
   CHROMIUM=$(command -v chromium) || fail "Chromium was installed but cannot be found: set CHROMIUM to its path."
   export CHROMIUM
 }
+
+# A Python with what python/requirements.txt names, of our own: nothing is installed outside.
+setup_python() {
+  local folder=$root/.tools/python wanted=$root/python/requirements.txt installed
+  installed=$folder/requirements.txt
+  if ! "$folder/bin/python" -c '' 2>/dev/null; then
+    python3 -c 'import ensurepip, venv' 2>/dev/null ||
+      install_packages python3 "python3-venv|python3|python|python3|python"
+    python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' ||
+      fail "Python 3.11 or later is needed for the tests of the Python package, but 'python3' here is $(python3 --version)."
+    rm -rf "$folder"
+    python3 -m venv "$folder" || fail "An environment for Python could not be made in .tools/python."
+  fi
+  if ! cmp -s "$wanted" "$installed"; then
+    say "Installing what python/requirements.txt names into .tools/python ..."
+    quietly "$folder/bin/pip" install --quiet --disable-pip-version-check --requirement "$wanted" ||
+      fail "The Python packages could not be installed: is the network reachable?"
+    cp "$wanted" "$installed"
+  fi
+  export PATH="$folder/bin:$PATH"
+}

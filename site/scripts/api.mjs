@@ -13,6 +13,9 @@ const output = join(root, "site/public/api");
 const target = join(resolve(root, process.env.CARGO_TARGET_DIR ?? "target"), "api");
 
 const cargo = ["doc", "--quiet", "--no-deps", "--package", "sweep-and-prune", "--target-dir", target];
+// The environment that ./run and ./test set up.
+const python = join(root, ".tools/python/bin/python");
+const pythonPages = join(target, "python");
 const languages = [
   { name: "rust", sources: ["core"], tool: ["cargo", cargo], made: join(target, "doc"), first: "sweep_and_prune/index.html" },
   {
@@ -22,13 +25,20 @@ const languages = [
     made: join(root, "js/dist-docs"),
     first: "index.html",
   },
+  {
+    name: "python",
+    sources: ["python/sweep_and_prune", "python/docs.py"],
+    tool: [python, [join(root, "python/docs.py"), pythonPages]],
+    made: pythonPages,
+    first: "sweep_and_prune.html",
+  },
 ];
 
 /** When the newest file below a path was written. */
 function newest(path) {
   const stat = statSync(path);
   if (!stat.isDirectory()) return stat.mtimeMs;
-  const inside = readdirSync(path).filter((name) => name !== "node_modules");
+  const inside = readdirSync(path).filter((name) => !/^(node_modules|__pycache__|_native\..*(so|pyd))$/.test(name));
   return Math.max(0, ...inside.map((name) => newest(join(path, name))));
 }
 

@@ -90,8 +90,9 @@ test("every link of every page leads somewhere", async ({ page, request }) => {
 
 test("the documentation of each language that there is can be reached, and is of this library", async ({ page }) => {
   await page.goto("/api.html");
-  for (const [name, said] of [["Documentation of the crate", "find_pairs"], ["Documentation of the package", "findPairs"]] as const) {
-    const [tab] = await Promise.all([page.waitForEvent("load"), page.getByRole("link", { name }).first().click()]);
+  for (const [language, said] of [["rust", "find_pairs"], ["javascript", "findPairs"], ["python", "find_pairs_between"]] as const) {
+    const link = page.locator(`section[aria-labelledby=${language}]`).getByRole("link", { name: "Documentation of the" });
+    const [tab] = await Promise.all([page.waitForEvent("load"), link.click()]);
     await expect(tab.locator("body")).toContainText(said);
     await page.goto("/api.html");
   }

@@ -42,14 +42,11 @@ sap.find_pairs(boxes)  # array([[0, 2]], dtype=uint32)`,
   },
 } as const;
 
-/** What is not there yet is not promised. */
-const NOT_YET = `<p class="not-yet">In the making: there is no package to install yet, and this is how it is meant to be.</p>`;
-
 /** Where each tool begins its documentation, below public/. */
 const DOCUMENTATION = {
   rust: "api/rust/sweep_and_prune/index.html",
   js: "api/js/index.html",
-  python: "api/python/index.html",
+  python: "api/python/sweep_and_prune.html",
 } as const;
 
 export const api: Plugin = {
@@ -65,8 +62,7 @@ export const api: Plugin = {
         .replace(/<api-link name="(rust|js|python)">(.*?)<\/api-link>/g, (_, name: keyof typeof DOCUMENTATION, text: string) => {
           const path = DOCUMENTATION[name];
           const exists = existsSync(new URL(`../../public/${path}`, import.meta.url));
-          if (exists) return `<p><a href="./${path}">${text}</a></p>`;
-          return name === "python" && !existsSync(new URL("../../../python/pyproject.toml", import.meta.url)) ? NOT_YET : "";
+          return exists ? `<p><a href="./${path}">${text}</a></p>` : "";
         }),
   },
 };

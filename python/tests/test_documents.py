@@ -1,0 +1,147 @@
+"""The documents tell the truth: what the README and the examples print, that everything public is described and has
+an example that runs, and that the types are what they say."""
+
+from __future__ import annotations
+
+import doctest
+import importlib
+import inspect
+import pkgutil
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import tomllib
+
+import sweep_and_prune as sap
+
+PYTHON = Path(__file__).parents[1]
+README = (PYTHON / "README.md").read_text()
+BLOCKS = re.findall(r"```python\n(.*?)```", README + (PYTHON.parent / "README.md").read_text(), re.DOTALL)
+EXAMPLES = {
+    "spatial_join.py": ["20000 parcels, 2000 photographs: ", "parcels on a photograph", "owner "],
+    "particles.py": ["step 0: ", "step 99: "],
+    "game_loop.py": ["frame 2: hero meets coin 0", "hero meets monster 1", "3 coins; behind the hero: monster 0"],
+}
+
+
+def run(*arguments: str | Path) -> str:
+    done = subprocess.run([sys.executable, *arguments], capture_output=True, text=True, cwd=PYTHON)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("block", BLOCKS)
+def test_the_readme_prints_what_it_says(block: str) -> None:
+    said = re.findall(r"^\s*print\(.*\)\s+# (.*)$", block, re.MULTILINE)
+    assert said, "nothing in it could be checked"
+    assert run("-c", block).splitlines() == said
+
+
+def test_the_readme_has_examples() -> None:
+    assert len(BLOCKS) == 3
+
+
+def test_every_path_in_the_readme_exists() -> None:
+    named = set(re.findall(r"`(examples/[\w./]+)`", README))
+    assert named == {f"examples/{name}" for name in EXAMPLES}
+
+
+@pytest.mark.parametrize("name", sorted(path.name for path in (PYTHON / "examples").glob("*.py")))
+def test_examples_run(name: str) -> None:
+    printed = run(PYTHON / "examples" / name)
+    for said in EXAMPLES[name]:
+        assert said in printed
+    assert len((PYTHON / "examples" / name).read_text().splitlines()) <= 45
+
+
+def public() -> dict[str, Any]:
+    """Everything public by name, methods and properties among it."""
+    found: dict[str, Any] = {}
+    for name in sap.__all__:
+        item = getattr(sap, name)
+        found[name] = item
+        if inspect.isclass(item):
+            for key, member in vars(item).items():
+                if not key.startswith("_") and (callable(member) or isinstance(member, (property, classmethod))):
+                    found[f"{name}.{key}"] = member.__func__ if isinstance(member, classmethod) else member
+    return found
+
+
+@pytest.mark.parametrize("name", public())
+def test_everything_public_is_described_with_its_arguments(name: str) -> None:
+    item = public()[name]
+    assert item.__doc__ and item.__doc__.strip()
+    if inspect.isfunction(item):
+        parameters = [key for key in inspect.signature(item).parameters if key not in ("self", "cls")]
+        missing = [key for key in parameters if f"{key}:" not in item.__doc__]
+        assert not missing or name == "Filter.allows"
+
+
+def test_every_call_has_an_example_that_runs() -> None:
+    finder = doctest.DocTestFinder()
+    examples = 0
+    for info in pkgutil.iter_modules(sap.__path__):
+        module = importlib.import_module(f"sweep_and_prune.{info.name}")
+        for test in finder.find(module):
+            result = doctest.DocTestRunner().run(test)
+            assert result.failed == 0, test.name
+            examples += result.attempted
+    assert examples > 100
+    exempt = {"Filter.allows", "Lists.each", "Lists.queries", "BroadPhase.ids"}
+    short = {"Changes", "Hit", "Hits", "Neighbours"}
+    without = [
+        name
+        for name, item in public().items()
+        if ">>>" not in item.__doc__ and not isinstance(item, property) and name not in exempt | short
+    ]
+    assert without == []
+
+
+def test_the_version_is_that_of_the_project() -> None:
+    workspace = tomllib.loads((PYTHON.parent / "Cargo.toml").read_text())["workspace"]["package"]
+    crate = tomllib.loads((PYTHON / "Cargo.toml").read_text())["package"]
+    assert sap.__version__ == workspace["version"] == crate["version"]
+    assert crate["license"] == workspace["license"]
+
+
+def test_types_are_strict_and_so_are_those_of_the_compiled_part() -> None:
+    run("-m", "mypy")
+    run("-m", "mypy.stubtest", "sweep_and_prune._native")
+
+
+def test_the_types_of_results_are_known_to_a_checker(tmp_path: Path) -> None:
+    program = tmp_path / "typed.py"
+    program.write_text(
+        """
+import numpy as np
+import sweep_and_prune as sap
+world = sap.BroadPhase(2)
+reveal_type(sap.find_pairs([[0, 1]]))
+reveal_type(world.insert([0, 0, 1, 1]))
+reveal_type(world.update().begun)
+reveal_type(world.ray_cast([0, 0], [1, 0]))
+world.remove(world.ids()[0])
+world.insert([0, 0, 1, 1], filter=5)
+"""
+    )
+    done = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", program], capture_output=True, text=True, cwd=tmp_path
+    )
+    notes = re.findall(r'Revealed type is "(.*)"', done.stdout)
+    assert "uint32" in notes[0] or "unsignedinteger[numpy._typing._nbit_base._32Bit]" in notes[0], notes
+    assert notes[1] in ("int", "builtins.int")
+    assert "uint64" in notes[2] or "64Bit" in notes[2]
+    assert "Hit" in notes[3] and "None" in notes[3]
+    assert "arg-type" in done.stdout and done.stdout.count("error") == 2
+
+
+@pytest.mark.parametrize(
+    "path", sorted((PYTHON.parent / "site/test/snippets").glob("*.py")), ids=lambda path: path.name
+)
+def test_what_the_playground_writes_runs_and_finds_what_it_says(path: Path) -> None:
+    said = re.findall(r"^print\(.*\)\s+# (.*)$", path.read_text(), re.MULTILINE)
+    assert said and run(path).splitlines() == said

@@ -1,0 +1,158 @@
+"""Threads of Python beside a search, signals in the midst of one, processes forked from one."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+import time
+from typing import Any
+
+import numpy as np
+import pytest
+from oracle import FLOATS, random_boxes
+
+import sweep_and_prune as sap
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_others_go_on_while_a_search_runs(threads: int) -> None:
+    boxes = random_boxes(300_000, 3, np.float32)
+    finder = sap.PairFinder(3, np.float32, threads=threads)
+    longest, last = 0.0, time.monotonic()
+    searches = threading.Thread(target=lambda: [finder.count(boxes) for _ in range(5)])
+    searches.start()
+    gaps = []
+    while searches.is_alive():
+        time.sleep(0.001)
+        now = time.monotonic()
+        gaps.append(now - last)
+        longest, last = max(longest, now - last), now
+    searches.join()
+    began = time.monotonic()
+    finder.count(boxes)
+    one = time.monotonic() - began
+    # With the lock held, each gap would take as long as a search.
+    assert np.median(gaps) < one / 2 and len(gaps) > 5
+
+
+def test_one_call_at_a_time() -> None:
+    boxes = random_boxes(300_000, 3, np.float32)
+    finder, world = sap.PairFinder(3, np.float32), sap.BroadPhase(3, np.float32)
+    refusals: list[str] = []
+
+    def insist(call: Any) -> None:
+        for _ in range(8):
+            try:
+                call()
+            except RuntimeError as error:
+                refusals.append(str(error))
+
+    for name, call in (("PairFinder", lambda: finder.count(boxes)), ("BroadPhase", lambda: world.insert_many(boxes))):
+        refusals.clear()
+        threads = [threading.Thread(target=insist, args=(call,)) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        assert refusals and all(f"this {name} is at work" in refusal for refusal in refusals)
+    # And afterwards as if nothing had been.
+    assert finder.count(boxes) == sap.count_pairs(boxes)
+    assert len(world) % len(boxes) == 0 and len(world) > 0
+
+
+@pytest.mark.parametrize("dtype", FLOATS)
+@pytest.mark.parametrize("threads", [1, 2])
+def test_who_writes_meanwhile_gets_some_pairs_or_an_error_and_no_crash(dtype: Any, threads: int) -> None:
+    boxes = random_boxes(5000, 3, dtype)
+    others = [boxes.copy(), boxes * 1000, boxes * 0, np.full_like(boxes, np.nan), boxes[::-1].copy()]
+    stop = threading.Event()
+
+    def write() -> None:
+        while not stop.is_set():
+            for other in others:
+                np.copyto(boxes, other)
+
+    writer = threading.Thread(target=write)
+    writer.start()
+    finder = sap.PairFinder(3, dtype, threads=threads)
+    seen: set[int] = set()
+    end = time.monotonic() + 2
+    try:
+        while time.monotonic() < end:
+            try:
+                found = finder.find(boxes) if len(seen) % 2 else finder.find_between(boxes, boxes[:1000])
+                assert found.size == 0 or found.max() < len(boxes)
+                seen.add(len(found))
+            except (sap.InvalidBoxError, MemoryError, RuntimeError) as error:
+                seen.add(-hash(type(error)))
+    finally:
+        stop.set()
+        writer.join()
+    assert len(seen) > 2
+    np.copyto(boxes, others[0])
+    assert np.array_equal(finder.find(boxes), sap.find_pairs(boxes))
+
+
+class Enough(Exception):
+    pass
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there are no such timers here")
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_signal_ends_a_long_search(threads: int) -> None:
+    # 200 million pairs: seconds to store, if nobody ends it.
+    boxes = np.zeros((20_000, 6), np.float32)
+    boxes[:, 3:] = np.random.default_rng(1).random((20_000, 3)) + 1
+    finder = sap.PairFinder(3, np.float32, threads=threads)
+
+    def handler(number: int, frame: Any) -> None:
+        raise Enough
+
+    before = signal.signal(signal.SIGALRM, handler)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.05)
+        with pytest.raises(Enough):
+            finder.find(boxes)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert finder.count(boxes[:100]) == 4950
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there are no such timers here")
+def test_a_signal_ends_a_stream() -> None:
+    def handler(number: int, frame: Any) -> None:
+        raise Enough
+
+    chunks: list[int] = []
+    before = signal.signal(signal.SIGALRM, handler)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.05)
+        with pytest.raises(Enough):
+            sap.for_each_chunk(np.zeros((100_000, 2)), lambda chunk: chunks.append(1))
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert len(chunks) < 5_000_000_000 // 65_536
+
+
+def count_in_child(results: Any, boxes: Any) -> None:
+    results.put(sap.count_pairs(boxes, threads=2))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="processes are not forked there")
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
+def test_a_forked_process_has_threads_of_its_own() -> None:
+    boxes = random_boxes(20_000, 3, np.float32)
+    wanted = sap.count_pairs(boxes, threads=2)
+    fork = multiprocessing.get_context("fork")
+    results = fork.Queue()
+    child = fork.Process(target=count_in_child, args=(results, boxes))
+    child.start()
+    assert results.get(timeout=60) == wanted
+    child.join(timeout=60)
+    assert child.exitcode == 0 and child.pid != os.getpid()
+    assert sap.count_pairs(boxes, threads=2) == wanted
