@@ -13,7 +13,7 @@ use alloc::vec::Vec;
 use core::mem::{replace, swap, take};
 use core::ops::RangeInclusive;
 
-use super::bins::{Bins, Copied, Grid, Record};
+use super::bins::{Bins, Copied, Grid, Record, Source};
 use super::memory::grow;
 use super::search::{Search, Stop, Task, crowd, limit};
 use super::sink::Sink;
@@ -193,11 +193,20 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         }
         // What was and what is new together: hardly more than there will be.
         let kept = last.starts[grid.len()] as u64;
+        let mut gathered = take(&mut self.gathered);
+        let changed = &last.changed[..len.div_ceil(64)];
+        let count = changed.iter().map(|word| word.count_ones() as usize).sum();
+        gathered[0].clear();
+        gathered[0].try_reserve(count).ok()?;
+        let changed = ones(changed).take_while(|&i| i < len);
+        gathered[0].extend(changed.map(|i| boxes.record(i)));
         let mut bins = self.bins.pop().unwrap_or([Bins::new(), Bins::new()]);
-        let changed = ones(&last.changed[..len.div_ceil(64)]).take_while(|&i| i < len);
-        let new = bins[0].list(boxes, changed, grid, limit(len).saturating_sub(kept));
-        let sorted = bins[0].by_bin(&mut last.new, &mut last.new_starts);
+        let records = &gathered[0][..];
+        let limit = limit(len).saturating_sub(kept);
+        let new = bins[0].list(records, 0..records.len(), grid, limit);
+        let sorted = bins[0].by_bin(records, &mut last.new, &mut last.new_starts);
         self.bins.push(bins);
+        self.gathered = gathered;
         sorted.ok()?;
         grow(&mut last.next, (kept + new.ok()?) as usize, 0).ok()
     }

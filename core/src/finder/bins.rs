@@ -3,7 +3,9 @@
 
 use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
+use core::ops::Range;
 
+use super::kernel::prefetch;
 use super::memory::{grow, grow_to};
 use crate::{Aabb, Scalar};
 
@@ -27,6 +29,11 @@ pub(super) trait Source<const D: usize, T>: Copy + Sync {
     fn aabb(&self, i: usize) -> &Aabb<D, T>;
     fn id(&self, i: usize) -> u32;
     fn marks(&self, i: usize) -> u32;
+
+    /// Some of the boxes, one after the other.
+    fn aabbs(&self, boxes: Range<usize>) -> impl Iterator<Item = &Aabb<D, T>> + Clone
+    where
+        T: 'static;
 
     #[inline(always)]
     fn record(&self, i: usize) -> Record<D, T>
@@ -57,6 +64,11 @@ impl<const D: usize, T: Scalar> Source<D, T> for &[Aabb<D, T>] {
     fn marks(&self, _: usize) -> u32 {
         0
     }
+
+    #[inline(always)]
+    fn aabbs(&self, boxes: Range<usize>) -> impl Iterator<Item = &Aabb<D, T>> + Clone {
+        self[boxes].iter()
+    }
 }
 
 impl<const D: usize, T: Scalar> Source<D, T> for &[Record<D, T>] {
@@ -78,6 +90,11 @@ impl<const D: usize, T: Scalar> Source<D, T> for &[Record<D, T>] {
     #[inline(always)]
     fn marks(&self, i: usize) -> u32 {
         self[i].marks
+    }
+
+    #[inline(always)]
+    fn aabbs(&self, boxes: Range<usize>) -> impl Iterator<Item = &Aabb<D, T>> + Clone {
+        self[boxes].iter().map(|record| &record.aabb)
     }
 }
 
@@ -113,14 +130,10 @@ impl<T: Scalar> Cells<T> {
         }
     }
 
-    /// The cells that a box touches, from and to. A NaN counts as the first.
+    /// The cell of a coordinate. A NaN counts as the first.
     #[inline(always)]
-    fn of<const D: usize>(&self, aabb: &Aabb<D, T>) -> (u32, u32) {
-        if self.count == 1 {
-            return (0, 0);
-        }
-        let cell = |at: T| (at * self.unit).cell(self.origin, self.scale, self.last);
-        (cell(aabb.min[self.axis]), cell(aabb.max[self.axis]))
+    fn of(&self, at: T) -> u32 {
+        (at * self.unit).cell(self.origin, self.scale, self.last)
     }
 }
 
@@ -141,13 +154,16 @@ impl<T: Scalar> Grid<T> {
         let [x, y, z] = &self.cells;
         // All four in one go: on axes that are not cut, or do not exist, they are 0.
         let ends = [y, x].map(|cells| [aabb.min[cells.axis], aabb.max[cells.axis]]);
-        let cells: [u32; 4] = core::array::from_fn(|k| {
-            let cells = [y, x][k / 2];
-            (ends[k / 2][k % 2] * cells.unit).cell(cells.origin, cells.scale, cells.last)
-        });
-        let along = if z.count > 1 { z.of(aabb) } else { (0, 0) };
-        let bin = |x: u32, y: u32, z: u32| (x * self.cells[1].count + y) * self.cells[2].count + z;
-        [bin(cells[2], cells[0], along.0), bin(cells[3], cells[1], along.1)]
+        let cells: [u32; 4] = core::array::from_fn(|k| [y, x][k / 2].of(ends[k / 2][k % 2]));
+        let along = [aabb.min[z.axis], aabb.max[z.axis]];
+        let along = if z.count > 1 { along.map(|at| z.of(at)) } else { [0; 2] };
+        [self.bin([cells[2], cells[0], along[0]]), self.bin([cells[3], cells[1], along[1]])]
+    }
+
+    /// The bin of a cell.
+    #[inline(always)]
+    fn bin(&self, [x, y, z]: [u32; 3]) -> u32 {
+        (x * self.cells[1].count + y) * self.cells[2].count + z
     }
 
     /// A grid with these cells on each axis.
@@ -160,8 +176,8 @@ impl<T: Scalar> Grid<T> {
     }
 
     /// One cell.
-    pub fn uncut(sweep: usize) -> Self {
-        Self { sweep, cells: [Cells::one(0), Cells::one(0), Cells::one(sweep)] }
+    pub fn uncut<const D: usize>(sweep: usize) -> Self {
+        Self::new::<D>(sweep, core::array::from_fn(Cells::one))
     }
 
     /// The axes that are cut, and how wide their cells are.
@@ -179,18 +195,44 @@ impl<T: Scalar> Grid<T> {
     fn marks(&self) -> [u32; 3] {
         self.cells.map(|cells| 1 << BIN_BITS << cells.axis)
     }
+}
 
-    /// The bin of a box's lower corner, and how many more cells the box touches on each axis.
+/// Boxes that are placed at a time: cell by cell the same is done to each, so that the compiler
+/// makes vectors of them.
+const BLOCK: usize = 64;
+
+/// For each axis of a grid and each box of a block, the first cell that it touches, and how many
+/// more. On an axis that is not cut they stay 0.
+struct Places {
+    first: [[u32; BLOCK]; 3],
+    more: [[u32; BLOCK]; 3],
+}
+
+impl Places {
+    /// Places up to [`BLOCK`] boxes. False if one is inverted or NaN.
     #[inline(always)]
-    fn place<const D: usize>(&self, aabb: &Aabb<D, T>) -> (u32, [u32; 3]) {
-        let [x, y, z] = &self.cells;
-        // Which of the axes exist is known to the compiler.
-        let (x0, x1) = if D > 2 { x.of(aabb) } else { (0, 0) };
-        let (y0, y1) = if D > 1 { y.of(aabb) } else { (0, 0) };
-        let (z0, z1) = z.of(aabb);
-        // An inverted box would touch less than none; it will be refused.
-        let more = [x1.saturating_sub(x0), y1.saturating_sub(y0), z1.saturating_sub(z0)];
-        ((x0 * y.count + y0) * z.count + z0, more)
+    fn fill<'a, const D: usize, T: Scalar>(
+        &mut self,
+        boxes: impl Iterator<Item = &'a Aabb<D, T>> + Clone,
+        grid: &Grid<T>,
+    ) -> bool {
+        let mut valid = true;
+        for ((first, more), cells) in
+            self.first.iter_mut().zip(&mut self.more).zip(&grid.cells).skip(3 - D)
+        {
+            let edges = boxes.clone().map(|aabb| (aabb.min[cells.axis], aabb.max[cells.axis]));
+            if cells.count == 1 {
+                valid &= edges.fold(true, |valid, (min, max)| valid & (min <= max));
+                continue;
+            }
+            for ((first, more), (min, max)) in first.iter_mut().zip(more).zip(edges) {
+                valid &= min <= max;
+                *first = cells.of(min);
+                // An inverted box would touch less than none; it will be refused.
+                *more = cells.of(max).saturating_sub(*first);
+            }
+        }
+        valid
     }
 }
 
@@ -202,6 +244,11 @@ pub(super) struct Copied {
     /// The box's position in the source.
     pub of: u32,
 }
+
+/// Bytes of records that the second cache may hold,
+const LARGE: usize = 1 << 20;
+/// and how far ahead they are asked for, if they are more.
+const LINES: usize = 128;
 
 /// Bits of [`Copied::bin`] that are the bin.
 const BIN_BITS: u32 = 29;
@@ -251,44 +298,48 @@ impl<const D: usize, T: Scalar> Bins<D, T> {
     pub fn list<S: Source<D, T>>(
         &mut self,
         source: S,
-        boxes: impl Iterator<Item = usize>,
+        boxes: Range<usize>,
         grid: &Grid<T>,
         limit: u64,
     ) -> Result<u64, Refusal> {
-        self.bins = grid.len();
-        let beside = grid.cells[2].count;
-        let above = grid.cells[1].count * beside;
+        (self.bins, self.boxes) = (grid.len(), boxes.len());
+        let [_, y, z] = &grid.cells;
+        let (above, beside) = (y.count * z.count, z.count);
         let [above_mark, beside_mark, _] = grid.marks();
+        let mut places = Places { first: [[0; BLOCK]; 3], more: [[0; BLOCK]; 3] };
         let mut valid = true;
         let mut len = 0;
-        self.boxes = 0;
-        for i in boxes {
-            self.boxes += 1;
-            if len + 4 > self.copies.len() {
-                let room = 2 * self.copies.len() + 1024;
-                grow_to(&mut self.copies, room, Copied::default())?;
-            }
-            let aabb = source.aabb(i);
-            valid &= (0..D).fold(true, |valid, axis| valid & (aabb.min[axis] <= aabb.max[axis]));
-            let (bin, more) = grid.place(aabb);
-            let of = i as u32;
-            if more[0] <= 1 && more[1] <= 1 && more[2] == 0 {
-                // Nearly always. How many copies there are cannot be foretold, and a branch would
-                // cost more than writing all four; those that are none are overwritten by the next.
-                let to = &mut self.copies[len..len + 4];
-                let row = 1 + more[1] as usize;
-                to[0] = Copied { bin, of };
-                if D > 1 {
-                    to[1] = Copied { bin: bin + beside + beside_mark, of };
+        for start in boxes.clone().step_by(BLOCK) {
+            let block = start..boxes.end.min(start + BLOCK);
+            valid &= places.fill(source.aabbs(block.clone()), grid);
+            for (at, of) in block.enumerate() {
+                if len + 4 > self.copies.len() {
+                    let room = 2 * self.copies.len() + 1024;
+                    grow_to(&mut self.copies, room, Copied::default())?;
                 }
-                if D > 2 {
-                    to[row] = Copied { bin: bin + above + above_mark, of };
-                    to[row + 1] =
-                        Copied { bin: bin + above + beside + above_mark + beside_mark, of };
+                let first = places.first.each_ref().map(|first| first[at]);
+                let more = places.more.each_ref().map(|more| more[at]);
+                let bin = grid.bin(first);
+                let of = of as u32;
+                if more[0] <= 1 && more[1] <= 1 && more[2] == 0 {
+                    // Nearly always. How many copies there are cannot be foretold, and a branch
+                    // would cost more than writing all four; those that are none are overwritten
+                    // by the next.
+                    let to = &mut self.copies[len..len + 4];
+                    let row = 1 + more[1] as usize;
+                    to[0] = Copied { bin, of };
+                    if D > 1 {
+                        to[1] = Copied { bin: bin + beside + beside_mark, of };
+                    }
+                    if D > 2 {
+                        let marks = above_mark + beside_mark;
+                        to[row] = Copied { bin: bin + above + above_mark, of };
+                        to[row + 1] = Copied { bin: bin + above + beside + marks, of };
+                    }
+                    len += row << more[0];
+                } else {
+                    len = self.list_many(len, of, bin, more, grid, limit)?;
                 }
-                len += row << more[0];
-            } else {
-                len = self.list_many(len, of, bin, more, grid, limit)?;
             }
         }
         self.len = len;
@@ -311,7 +362,6 @@ impl<const D: usize, T: Scalar> Bins<D, T> {
         grid: &Grid<T>,
         limit: u64,
     ) -> Result<usize, Refusal> {
-        let [_, y, z] = &grid.cells;
         let marks = grid.marks();
         let mark = |axis: usize, at: u32| if at > 0 { marks[axis] } else { 0 };
         for i in 0..=more[0] {
@@ -323,7 +373,7 @@ impl<const D: usize, T: Scalar> Bins<D, T> {
                 if end > self.copies.len() {
                     grow_to(&mut self.copies, 2 * end, Copied::default())?;
                 }
-                let first = bin + (i * y.count + j) * z.count;
+                let first = bin + grid.bin([i, j, 0]);
                 for (k, to) in (0..).zip(&mut self.copies[len..end]) {
                     *to = Copied { bin: first + k + mark(0, i) + mark(1, j) + mark(2, k), of };
                 }
@@ -334,12 +384,13 @@ impl<const D: usize, T: Scalar> Bins<D, T> {
     }
 
     /// Puts the copies that were listed into the order of the bins, then of the boxes, instead of
-    /// their records, and notes where those of each bin begin, and at last where they end.
+    /// their records, with the boxes' own indices, and notes where those of each bin begin, and at last where they end.
     ///
     /// # Errors
     /// [`Refusal::Memory`].
-    pub fn by_bin(
+    pub fn by_bin<S: Source<D, T>>(
         &self,
+        source: S,
         copies: &mut Vec<Copied>,
         starts: &mut Vec<u32>,
     ) -> Result<(), TryReserveError> {
@@ -358,7 +409,7 @@ impl<const D: usize, T: Scalar> Bins<D, T> {
         }
         for &copy in &self.copies[..self.len] {
             let start = &mut starts[copy.bin() + 1];
-            copies[*start as usize] = copy;
+            copies[*start as usize] = Copied { of: source.id(copy.of as usize), ..copy };
             *start += 1;
         }
         Ok(())
@@ -385,9 +436,14 @@ impl<const D: usize, T: Scalar> Bins<D, T> {
             let room = self.len + self.len / 4;
             grow_to(&mut self.records, room, Record { aabb, id: 0, marks: 0 })?;
         }
+        // Records of bins that the caches do not hold take their time to come, but are known early.
+        let are_many = self.len > LARGE / size_of::<Record<D, T>>();
         for copy in &self.copies[..self.len] {
             let record = source.record(copy.of as usize);
             let end = &mut self.ends[copy.bin()];
+            if are_many {
+                prefetch(&self.records, *end as usize + LINES / size_of::<Record<D, T>>());
+            }
             self.records[*end as usize] = Record { marks: record.marks | copy.marks(), ..record };
             *end += 1;
         }

@@ -3,6 +3,8 @@
 use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
 
+use super::kernel::enlarge_pages;
+
 /// Makes an array at least so long. Some slack is added, so that arrays of nearly one size do not
 /// grow again and again: twice as much where they are small, as the bins are whose numbers differ
 /// most from call to call. It never shrinks.
@@ -31,6 +33,7 @@ pub(super) fn grow_to<V: Copy>(
     value: V,
 ) -> Result<(), TryReserveError> {
     array.try_reserve_exact(size - array.len())?;
+    enlarge_pages(array);
     array.resize(size, value);
     Ok(())
 }

@@ -271,7 +271,7 @@ impl<const D: usize, T: Scalar> Search<D, T> {
                 }
             }
         }
-        self.cut(sets, &Grid::uncut(grid.sweep), task, sink)
+        self.cut(sets, &Grid::uncut::<D>(grid.sweep), task, sink)
     }
 
     /// The pairs of one bin, filled in one piece or several: orders and sweeps it, or plans it

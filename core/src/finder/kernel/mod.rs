@@ -8,6 +8,7 @@
 mod column;
 #[cfg(target_arch = "aarch64")]
 mod neon;
+mod pages;
 mod scalar;
 mod scan;
 mod vector;
@@ -17,6 +18,7 @@ mod wasm;
 mod x86;
 
 pub use column::{Column, PAD};
+pub use pages::{enlarge_pages, prefetch};
 pub use scan::Cursor;
 pub use vector::Arrange;
 
