@@ -103,19 +103,29 @@ class Enough(Exception):
 @pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there are no such timers here")
 @pytest.mark.parametrize("threads", [1, 2])
 def test_a_signal_ends_a_long_search(threads: int) -> None:
-    # 200 million pairs: seconds to store, if nobody ends it.
-    boxes = np.zeros((20_000, 6), np.float32)
-    boxes[:, 3:] = np.random.default_rng(1).random((20_000, 3)) + 1
+    boxes = np.zeros((8_000, 6), np.float32)  # 32 million pairs
+    boxes[:, 3:] = np.random.default_rng(1).random((8_000, 3)) + 1
     finder = sap.PairFinder(3, np.float32, threads=threads)
+    finder.find(boxes[:4500])
+    began = time.process_time()
+    assert len(finder.find(boxes)) == 8_000 * 7_999 // 2
+    whole = time.process_time() - began
 
     def handler(number: int, frame: Any) -> None:
         raise Enough
 
     before = signal.signal(signal.SIGALRM, handler)
+    began = time.process_time()
     try:
-        signal.setitimer(signal.ITIMER_REAL, 0.05)
+        signal.setitimer(signal.ITIMER_REAL, 0.01)
+        with pytest.raises(Enough):
+            sap.find_pairs(boxes, threads=threads)
+        assert time.process_time() - began < 0.7 * whole
+        began = time.process_time()
+        signal.setitimer(signal.ITIMER_REAL, 0.01)
         with pytest.raises(Enough):
             finder.find(boxes)
+        assert time.process_time() - began < 0.7 * whole
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)

@@ -82,7 +82,10 @@ class Worlds(RuleBasedStateMachine):
     @rule(data=st.data())
     def set_swept(self, data: st.DataObject) -> None:
         id, start, end = self.draw_id(data), self.draw_box(data), self.draw_box(data)
-        self.world.set_swept_many([id], [start], [end])
+        if data.draw(st.booleans()):
+            self.world.set_swept(id, start, end)
+        else:
+            self.world.set_swept_many([id], [start], [end])
         half = self.world.dimensions
         self.boxes[id] = np.concatenate([np.minimum(start, end)[:half], np.maximum(start, end)[half:]])
         self.ends[id] = end
