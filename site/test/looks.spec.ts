@@ -1,0 +1,77 @@
+import { readFileSync } from "node:fs";
+import { expect, type Page, test } from "@playwright/test";
+import type { SapDemo } from "sweep-and-prune/demo";
+
+// How the pages lie on a phone, a tablet and a desktop, in light and in dark: each part of each page
+// beside the picture of it that was looked at and kept. What moves or is measured is left blank.
+// Words are set in a font of blocks, so that they take the same room on every machine. Pictures are
+// kept at half size: --update-snapshots makes them anew.
+
+const BLOCKS = readFileSync(new URL("./support/blocks.ttf", import.meta.url)).toString("base64");
+
+const STYLE = `
+  @font-face { font-family: Blocks; src: url(data:font/ttf;base64,${BLOCKS}); }
+  :root, sap-demo { --serif: Blocks; --sans: Blocks; --mono: Blocks; --sap-font: Blocks; }
+  /* Widths as the font has them, not rounded to pixels as the machine would; and where lines are broken for beauty, browsers differ. */
+  * { text-rendering: geometricPrecision !important; text-wrap: wrap !important; }
+  /* Moving pictures, and what was measured now or will be measured anew. */
+  canvas, sap-demo::part(picture), sap-demo::part(array), .plot > *, #recorded-machine, [data-counter="ms"] dd, [data-counter="drawing"] dd, .trial-result { visibility: hidden !important; }
+  .benchmark .plot { height: 300px !important; min-height: 0 !important; overflow: hidden; }
+  #recorded-choice select { color: transparent !important; }
+`;
+
+/** What each page is cut into, and what says that it has come to rest. */
+const PAGES: Readonly<Record<string, { parts: string; rest(page: Page): Promise<unknown> }>> = {
+  index: {
+    parts: "main > header, .contents, .sections > section",
+    rest: async (page) => {
+      await page.locator("sap-demo").evaluateAll((all) => Promise.all(all.map((demo) => (demo as SapDemo).ready)));
+      await labsAwake(page);
+    },
+  },
+  falling: { parts: "main > *", rest: labsAwake },
+  race: { parts: "main > *", rest: (page) => expect(page.locator("race-track")).toHaveAttribute("data-step", "0") },
+  playground: { parts: "main > *", rest: (page) => expect(page.locator("box-playground")).toHaveAttribute("data-step", "0") },
+  benchmark: {
+    parts: "main > *",
+    rest: async (page) => {
+      await expect(page.locator("#here-run")).toBeEnabled();
+      await expect(page.locator("#plot-ratio svg").first()).toBeAttached();
+    },
+  },
+  api: { parts: "main > *", rest: async () => {} },
+  embed: { parts: "main", rest: (page) => page.locator("sap-demo").evaluate((demo) => (demo as SapDemo).ready) },
+};
+
+/** The laboratories of falling balls begin when they are seen. */
+async function labsAwake(page: Page): Promise<void> {
+  for (const lab of await page.locator("ball-lab").all()) {
+    await lab.scrollIntoViewIfNeeded();
+    await expect(lab.getByRole("button", { name: "Step" })).toBeEnabled();
+  }
+}
+
+const WIDTHS = { phone: 390, tablet: 768, desktop: 1280 };
+
+test.use({ deviceScaleFactor: 0.5, contextOptions: { reducedMotion: "reduce" } });
+
+for (const [name, { parts, rest }] of Object.entries(PAGES)) {
+  for (const [device, width] of Object.entries(WIDTHS)) {
+    test(`${name} on a ${device} looks as it did`, async ({ page }) => {
+      await page.setViewportSize({ width, height: 1000 });
+      await page.goto(`/${name}.html`);
+      await page.addStyleTag({ content: STYLE });
+      await page.evaluate(() => document.fonts.load("16px Blocks"));
+      await rest(page);
+      const all = await page.locator(parts).all();
+      expect(all.length).toBeGreaterThan(0);
+      for (const colorScheme of ["light", "dark"] as const) {
+        await page.emulateMedia({ colorScheme, reducedMotion: "reduce" });
+        for (const [at, part] of all.entries()) {
+          const picture = await part.screenshot({ scale: "device", animations: "disabled" });
+          expect.soft(picture).toMatchSnapshot(`${name}-${at}-${device}-${colorScheme}.png`, { threshold: 0.1, maxDiffPixels: 100 });
+        }
+      }
+    });
+  }
+}
