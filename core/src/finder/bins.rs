@@ -221,7 +221,8 @@ impl Places {
             self.first.iter_mut().zip(&mut self.more).zip(&grid.cells).skip(3 - D)
         {
             let edges = boxes.clone().map(|aabb| (aabb.min[cells.axis], aabb.max[cells.axis]));
-            if cells.count == 1 {
+            // For browsers size counts more: then the cells are 0 by the arithmetic below.
+            if cells.count == 1 && cfg!(feature = "std") {
                 valid &= edges.fold(true, |valid, (min, max)| valid & (min <= max));
                 continue;
             }
