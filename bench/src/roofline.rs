@@ -2,8 +2,9 @@
 //! at the rates that the machine reaches when it does nothing else.
 //!
 //! The stages are told apart from outside, by runs that end earlier: a run that is stopped at the
-//! first sign of progress has made the plan and filled the bins; one that counts has ordered and
-//! swept as well; one that stores the pairs has done it all.
+//! first sign of progress has made the plan and filled the bins, and ordered and swept but the first
+//! of them; one that only orders has not swept; one that counts has; one that stores the pairs has
+//! done it all.
 
 use std::collections::BTreeMap;
 use std::hint::black_box;
@@ -67,7 +68,7 @@ fn of<const D: usize>(n: usize, test_rate: f64) -> Result<Vec<Stage>> {
     let (pairs, output) = (found.len(), size_of_val(found) as f64);
 
     let rounds = (2_000_000 / n).clamp(7, 51);
-    let mut rounds_ns = [(); 3].map(|()| Vec::with_capacity(rounds));
+    let mut rounds_ns = [(); 4].map(|()| Vec::with_capacity(rounds));
     for _ in 0..rounds {
         for (until, rounds_ns) in rounds_ns.iter_mut().enumerate() {
             // Nothing that it may have learnt from the last call helps.
@@ -81,8 +82,9 @@ fn of<const D: usize>(n: usize, test_rate: f64) -> Result<Vec<Stage>> {
     let less = |a: usize, b: usize| -> Vec<f64> {
         rounds_ns[a].iter().zip(&rounds_ns[b]).map(|(a, b)| a - b).collect()
     };
-    let [swept, output_only] = [less(1, 0), less(2, 1)].map(|it| median(&it).max(0.0));
-    let [binned, _, stored] = [0, 1, 2].map(|at: usize| median(&rounds_ns[at]));
+    let differences = [less(1, 0), less(2, 1), less(3, 2)];
+    let [ordered, swept, output_only] = differences.map(|it| median(&it).max(0.0));
+    let [binned, stored] = [0, 3].map(|at: usize| median(&rounds_ns[at]));
 
     let read = size_of_val(&boxes[..]) as f64;
     let records = (n * (size_of::<Aabb<D>>() + TAGS)) as f64;
@@ -103,17 +105,20 @@ fn of<const D: usize>(n: usize, test_rate: f64) -> Result<Vec<Stage>> {
     };
     Ok(vec![
         stage("plan and bins", binned, read + records, 0),
-        stage("order and sweep", swept, records, pairs),
+        // What is ordered stays in the caches until it is swept.
+        stage("order", ordered, records, 0),
+        stage("sweep", swept, 0.0, pairs),
         stage("output", output_only, output, 0),
         stage("all", stored, read + 2.0 * records + output, pairs),
     ])
 }
 
-/// One call that ends after the bins, after the sweep, or when the pairs are stored.
+/// One call that ends after the bins, the order, the sweep, or when the pairs are stored.
 fn run<const D: usize>(finder: &mut PairFinder<D>, boxes: &[Aabb<D>], until: usize) -> Result<()> {
     match until {
         0 => black_box(finder.find_watched(boxes, &|_| ControlFlow::Break(()))?.map(<[_]>::len)),
-        1 => black_box(Some(finder.count(boxes)? as usize)),
+        1 => finder.order(black_box(boxes)).map(|()| None)?,
+        2 => black_box(Some(finder.count(boxes)? as usize)),
         _ => black_box(Some(finder.find(boxes)?.len())),
     };
     Ok(())

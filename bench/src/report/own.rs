@@ -255,9 +255,10 @@ fn roofline(roofline: &Roofline) -> String {
              the nearest cache. The limit of a stage is the longer of two times: that of the bytes \
              that it has to read and write, at the rate at which one thread copies as many \
              ({:.1} GB/s if they are far more than the caches hold), and that of its tests. It has \
-             to read each box and write it to one column, to read it there and test each pair \
+             to read each box and write it to one column, to read it there, to test each pair \
              once, and to write the pairs. What is missing to the whole are further copies, the \
-             sort, which stays in the caches, candidates that are no pairs, and waiting. Where the \
+             sort and the ordered columns, which stay in the caches, candidates that are no pairs, \
+             and waiting. Where the \
              output is said to reach 100 %, the writes are hidden behind the sweep.",
             peaks.join(" and "),
             roofline.copy_bytes_per_second / 1e9,

@@ -344,6 +344,17 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
         self.for_each_of(&[a, b], each)
     }
 
+    /// All that [`count`](Self::count) does of more than a few hundred boxes but the sweep, for
+    /// benchmarks that tell the stages apart.
+    ///
+    /// # Errors
+    /// As [`find_pairs`].
+    #[cfg(feature = "std")]
+    #[doc(hidden)]
+    pub fn order(&mut self, boxes: &[Aabb<D, T>]) -> Result<(), Error> {
+        run(&mut self.search, &[boxes], None, &mut sink::Unswept).map(|_| ())
+    }
+
     fn find_of(
         &mut self,
         sets: &[&[Aabb<D, T>]],

@@ -410,6 +410,9 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
+        if !O::SWEEPS {
+            return Ok(());
+        }
         let Task { arrange, watch, .. } = task;
         // Known to the compiler where there is no choice, so that the others are left out.
         let kernel = if cfg!(feature = "std") { self.kernel } else { Kernel::best() };

@@ -15,6 +15,9 @@ const BUFFER: usize = 4096;
 
 /// Takes pairs a buffer at a time.
 pub(super) trait Sink {
+    /// Whether it is for pairs at all: else columns are ordered and not swept.
+    const SWEEPS: bool = true;
+
     /// What takes a stretch of the pairs on another thread.
     #[cfg(feature = "parallel")]
     type Fork: Sink + Send;
@@ -134,6 +137,37 @@ impl Sink for Store {
 pub(super) struct Count {
     buffer: Buffer,
     pub count: u64,
+}
+
+/// Takes no pairs, so that the time of a search without its sweep can be told.
+#[cfg(feature = "std")]
+#[derive(Debug)]
+pub(super) struct Unswept;
+
+#[cfg(feature = "std")]
+impl Sink for Unswept {
+    const SWEEPS: bool = false;
+
+    #[cfg(feature = "parallel")]
+    type Fork = Unswept;
+
+    fn room(&mut self) -> Result<&mut [[u32; 2]], Stop> {
+        Ok(&mut [])
+    }
+
+    fn take(&mut self, _: usize) -> Result<(), Stop> {
+        Ok(())
+    }
+
+    #[cfg(feature = "parallel")]
+    fn fork(&mut self) -> Option<Unswept> {
+        Some(Unswept)
+    }
+
+    #[cfg(feature = "parallel")]
+    fn join(&mut self, _: Vec<Unswept>) -> Result<(), Stop> {
+        Ok(())
+    }
 }
 
 /// Room for a few pairs at a time.
