@@ -160,5 +160,5 @@ setup_python() {
       fail "The Python packages could not be installed: is the network reachable?"
     cp "$wanted" "$installed"
   fi
-  export PATH="$folder/bin:$PATH"
+  export VIRTUAL_ENV=$folder PATH="$folder/bin:$PATH"
 }
