@@ -7,6 +7,7 @@ use crate::bodies::Bodies;
 use crate::broad_phase::Engine;
 use crate::enclosures::{Ahead, Enclosures};
 use crate::grid::Grid;
+use crate::order::PairOrder;
 use crate::vector::{greater, hull};
 
 /// The pairs of all balls are found anew if more than one in so many are leaving their boxes.
@@ -23,8 +24,11 @@ const MOST_LEAVING: usize = 8;
 #[derive(Debug, Default)]
 pub struct Candidates<const D: usize> {
     enclosures: Enclosures<D>,
-    /// In the order in which they were found.
+    /// Sorted by their indices, once [`Self::sort`] was called.
     pub pairs: Vec<[u32; 2]>,
+    /// How many of them are sorted: the others were found since.
+    sorted: usize,
+    order: PairOrder,
     /// The balls that are about to leave their boxes, ascending.
     leaving: Vec<u32>,
     /// Whether the boxes are new, and their pairs not yet found.
@@ -82,8 +86,16 @@ impl<const D: usize> Candidates<D> {
         if is_stale {
             self.pairs.clear();
             self.pairs.extend_from_slice(engine.find(&self.enclosures.boxes)?);
+            self.sorted = 0;
         }
         Ok(is_stale)
+    }
+
+    /// Sorts the pairs. They last for several substeps, so that costs less than to sort, in each,
+    /// those whose balls touch.
+    pub fn sort(&mut self) {
+        self.order.sort(&mut self.pairs, self.sorted, self.enclosures.boxes.len());
+        self.sorted = self.pairs.len();
     }
 }
 

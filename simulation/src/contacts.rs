@@ -3,7 +3,7 @@
 use sweep_and_prune::Aabb;
 
 use crate::bodies::Bodies;
-use crate::order::{LevelOrder, PairOrder};
+use crate::order::LevelOrder;
 use crate::vector::{difference, dot};
 
 /// Two balls that touch, or will before the substep ends.
@@ -45,10 +45,10 @@ pub struct Contacts<const D: usize> {
     pub walls: Vec<WallContact>,
     /// Where in `balls` each contact is, the contacts sorted by their indices.
     places: Vec<u32>,
-    balls_before: Vec<Contact<D>>,
+    /// The pairs of the substep before and their impulses, sorted by their indices.
+    before: Vec<([u32; 2], f32)>,
     walls_before: Vec<WallContact>,
-    places_before: Vec<u32>,
-    pair_order: PairOrder,
+    touching: Vec<[u32; 2]>,
     level_order: LevelOrder,
 }
 
@@ -68,26 +68,27 @@ pub struct Surroundings<const D: usize> {
 const WALL_MARGIN: f32 = 0.01;
 
 impl<const D: usize> Contacts<D> {
-    /// Finds the contacts among `pairs`, in any order, and at the walls.
+    /// Finds the contacts among `pairs`, which are sorted by their indices, and at the walls.
     pub fn find(&mut self, pairs: &[[u32; 2]], bodies: &Bodies<D>, around: &Surroundings<D>) {
-        std::mem::swap(&mut self.balls, &mut self.balls_before);
+        let balls = self.places.iter().map(|&place| &self.balls[place as usize]);
+        self.before.clear();
+        self.before.extend(balls.map(|contact| (contact.pair, contact.impulse)));
         std::mem::swap(&mut self.walls, &mut self.walls_before);
-        std::mem::swap(&mut self.places, &mut self.places_before);
-        let touching = pairs.iter().copied().filter(|&pair| touch(pair, bodies, around.time));
-        let sorted = self.pair_order.sort(touching, bodies.len());
+        self.touching.clear();
+        self.touching.extend(pairs.iter().filter(|&&pair| touch(pair, bodies, around.time)));
 
         let height = |[a, b]: [u32; 2]| {
             let (a, b) = (bodies.positions[a as usize], bodies.positions[b as usize]);
             -dot(around.gravity, a) - dot(around.gravity, b)
         };
-        self.level_order.sort(sorted.iter().map(|&pair| height(pair)), &mut self.places);
+        let heights = self.touching.iter().map(|&pair| height(pair));
+        self.level_order.sort(heights, &mut self.places);
 
-        let mut before =
-            self.places_before.iter().map(|&place| self.balls_before[place as usize]).peekable();
-        self.balls.resize(sorted.len(), Contact::NONE);
-        for (&pair, &place) in sorted.iter().zip(&self.places) {
-            while before.next_if(|old| old.pair < pair).is_some() {}
-            let impulse = before.next_if(|old| old.pair == pair).map_or(0.0, |old| old.impulse);
+        let mut before = self.before.iter().peekable();
+        self.balls.resize(self.touching.len(), Contact::NONE);
+        for (&pair, &place) in self.touching.iter().zip(&self.places) {
+            while before.next_if(|(old, _)| *old < pair).is_some() {}
+            let impulse = before.next_if(|(old, _)| *old == pair).map_or(0.0, |&(_, old)| old);
             self.balls[place as usize] = contact(pair, impulse, bodies, around.time);
         }
 
@@ -179,6 +180,14 @@ fn find_walls<const D: usize>(bodies: &Bodies<D>, bounds: &Aabb<D>, walls: &mut 
     walls.clear();
     for (body, (position, &radius)) in (0..).zip(bodies.positions.iter().zip(&bodies.radii)) {
         let reach = radius + radius * WALL_MARGIN;
+        // Most are at none: that is one branch a ball, and guessed right.
+        let is_near = (0..D).fold(false, |near, axis| {
+            let at = position[axis];
+            near | (at - bounds.min[axis] <= reach) | (bounds.max[axis] - at <= reach)
+        });
+        if !is_near {
+            continue;
+        }
         for (axis, &at) in position.iter().enumerate() {
             let mut touch = |inward| {
                 walls.push(WallContact { body, axis: axis as u32, inward, push: 0.0 });

@@ -3,43 +3,61 @@
 
 use crate::vector::{greater, lesser};
 
-/// Sorts pairs by (a, b): counted into one bucket an `a`, each bucket then sorted by `b`.
+/// Sorts pairs by (a, b): counted into one bucket an `a`, each bucket then sorted by `b`; the few
+/// that come later are merged.
 #[derive(Clone, Debug, Default)]
 pub struct PairOrder {
-    unsorted: Vec<[u32; 2]>,
-    sorted: Vec<[u32; 2]>,
+    moved: Vec<[u32; 2]>,
     ends: Vec<u32>,
 }
 
 impl PairOrder {
-    /// The pairs of indices below `n`, sorted. O(n + pairs) for few pairs a body.
-    pub fn sort(&mut self, pairs: impl Iterator<Item = [u32; 2]>, n: usize) -> &[[u32; 2]] {
-        self.unsorted.clear();
-        self.unsorted.extend(pairs);
-        if self.unsorted.is_sorted() {
-            return &self.unsorted;
-        }
+    /// Sorts pairs of indices below `n`, of which the first `sorted` are so already.
+    /// O(n + pairs) for few pairs a body; where some are sorted, O(pairs + k log k) for k others.
+    pub fn sort(&mut self, pairs: &mut Vec<[u32; 2]>, sorted: usize, n: usize) {
+        if sorted > 0 { self.merge(pairs, sorted) } else { self.count(pairs, n) }
+    }
+
+    fn count(&mut self, pairs: &mut Vec<[u32; 2]>, n: usize) {
         self.ends.clear();
         self.ends.resize(n + 1, 0);
-        for &[a, _] in &self.unsorted {
+        for &[a, _] in &*pairs {
             self.ends[a as usize + 1] += 1;
         }
         for a in 0..n {
             self.ends[a + 1] += self.ends[a];
         }
-        self.sorted.resize(self.unsorted.len(), [0; 2]);
+        self.moved.resize(pairs.len(), [0; 2]);
         // While scattering, `ends[a]` is where the next of bucket `a` goes, and so ends as its end.
-        for &pair in &self.unsorted {
+        for &pair in &*pairs {
             let place = &mut self.ends[pair[0] as usize];
-            self.sorted[*place as usize] = pair;
+            self.moved[*place as usize] = pair;
             *place += 1;
         }
         let mut start = 0;
         for &end in &self.ends[..n] {
-            self.sorted[start..end as usize].sort_unstable();
+            self.moved[start..end as usize].sort_unstable();
             start = end as usize;
         }
-        &self.sorted
+        std::mem::swap(pairs, &mut self.moved);
+    }
+
+    /// From the back to the front, until all that are new have found their places.
+    fn merge(&mut self, pairs: &mut [[u32; 2]], mut sorted: usize) {
+        self.moved.clear();
+        self.moved.extend_from_slice(&pairs[sorted..]);
+        self.moved.sort_unstable();
+        let mut to = pairs.len();
+        while let Some(&greatest) = self.moved.last() {
+            to -= 1;
+            if sorted > 0 && pairs[sorted - 1] > greatest {
+                sorted -= 1;
+                pairs[to] = pairs[sorted];
+            } else {
+                pairs[to] = greatest;
+                self.moved.pop();
+            }
+        }
     }
 }
 
@@ -77,6 +95,31 @@ impl LevelOrder {
             let next = &mut self.levels[*place as usize];
             *place = *next;
             *next += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sweep_and_prune_scenes::Random;
+
+    #[test]
+    fn pairs_are_sorted_at_once_and_as_they_come() {
+        let mut random = Random::new(1);
+        let mut order = PairOrder::default();
+        let mut pairs = Vec::new();
+        let mut sorted = 0;
+        // None, many, a few more time and again; among them the least and the greatest.
+        for count in [0, 300, 1, 0, 7, 2, 40] {
+            let mut draw = || random.below(60) as u32;
+            pairs.extend((0..count).map(|_| [draw(), draw()]));
+            pairs.extend([[59, 59], [0, 0]].iter().take(count));
+            let mut expected = pairs.clone();
+            expected.sort_unstable();
+            order.sort(&mut pairs, sorted, 60);
+            assert_eq!(pairs, expected, "{count} more");
+            sorted = pairs.len();
         }
     }
 }

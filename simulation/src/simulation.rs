@@ -210,6 +210,7 @@ impl<const D: usize> Simulation<D> {
 
         let around =
             Surroundings { bounds: self.bounds, gravity: self.gravity, time: self.substep_time() };
+        self.candidates.sort();
         self.contacts.find(&self.candidates.pairs, &self.bodies, &around);
         report.contacts = self.contacts.balls.len();
         if !self.collisions {
@@ -391,7 +392,7 @@ impl<const D: usize> Simulation<D> {
         self.candidates.boxes()
     }
 
-    /// The pairs of [`boxes`](Self::boxes) that overlap, in the order in which they were found.
+    /// The pairs of [`boxes`](Self::boxes) that overlap, sorted by their indices.
     pub fn pairs(&self) -> &[[u32; 2]] {
         &self.candidates.pairs
     }
