@@ -3,12 +3,23 @@
 
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import ModuleType
 from typing import ForwardRef
 
 import pdoc
 import pdoc.doc
 import pdoc.render
+from pygments.formatters import HtmlFormatter  # type: ignore[import-untyped]
+
+DARK = """
+:root { --pdoc-background: #191817; color-scheme: dark; }
+.pdoc {
+  --text: #e6e3dd; --muted: #a09a90; --link: #8ab4f8; --link-hover: #aecbfa; --code: #252422; --active: #5a4a00;
+  --accent: #2b2a28; --accent2: #55524d; --nav-hover: rgba(255, 255, 255, 0.08);
+  --name: #79c0ff; --def: #7ee787; --annotation: #7ee787;
+}
+"""
 
 
 class AsWritten:
@@ -34,5 +45,12 @@ if not list(package.glob("_native*.so")) + list(package.glob("_native*.pyd")):
     sys.modules[stand_in.__name__] = stand_in
 
 pdoc.doc.safe_eval_type = as_written  # type: ignore[assignment, attr-defined]
-pdoc.render.configure(docformat="google", search=False, show_source=False, footer_text="sweep-and-prune for Python")
-pdoc.pdoc("sweep_and_prune", output_directory=Path(sys.argv[1]))
+with TemporaryDirectory() as template:
+    highlighting = HtmlFormatter(style="github-dark").get_style_defs(".pdoc-code")
+    css = f"@media (prefers-color-scheme: dark) {{ {DARK} {highlighting} }}"
+    (Path(template) / "custom.css").write_text(css, encoding="utf-8")
+    footer = "sweep-and-prune for Python"
+    pdoc.render.configure(
+        docformat="google", search=False, show_source=False, footer_text=footer, template_directory=Path(template)
+    )
+    pdoc.pdoc("sweep_and_prune", output_directory=Path(sys.argv[1]))
