@@ -43,7 +43,8 @@ impl<'py, T: Coordinate> Rows<'py, T> {
         let numbers = self.numbers()?;
         let (at, count) = (numbers.as_ptr().cast(), numbers.len() / (2 * D));
         // SAFETY: a box is `repr(C)`, two arrays of `D` scalars: aligned as they are, without
-        // padding, and every pattern of their bits is a value. There are `2 * D` of them for each.
+        // padding, and every pattern of their bits is a value. There are `2 * D` of them for each,
+        // and they stay where they are as long as `self` refers to the array.
         #[allow(unsafe_code)]
         let boxes = unsafe { std::slice::from_raw_parts(at, count) };
         Ok(boxes)

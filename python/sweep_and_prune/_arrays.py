@@ -57,7 +57,7 @@ def real(value: object, name: str) -> float:
 def numbers(values: ArrayLike, name: str, dtype: np.dtype[Any] | None = None) -> Floats:
     """An array of coordinates of any shape: of `dtype`, or else of its own precision."""
     array = np.asarray(values)
-    if array.dtype.kind not in "iuf" and not (array.size == 0 and array.dtype != object):
+    if array.dtype.kind not in "iuf":
         raise TypeError(f"{name} must be numbers, not of dtype {array.dtype}")
     if dtype is None:
         is_single = array.dtype.kind == "f" and array.dtype.itemsize == 4
@@ -72,7 +72,7 @@ def box_rows(boxes: ArrayLike, name: str, dtype: np.dtype[Any] | None = None, di
     """Boxes as rows, of so many dimensions unless that is 0."""
     array = np.asarray(boxes)
     if array.ndim == 1 and array.size == 0:
-        array = np.empty((0, 2 * (dimensions or 1)), np.float64 if array.dtype == object else array.dtype)
+        array = array.reshape(0, 2 * (dimensions or 1))
     is_wide = array.ndim == 2 and (_WIDTHS.get(array.shape[1]) in ((dimensions,) if dimensions else (1, 2, 3)))
     if not is_wide:
         wanted = f"(n, {2 * dimensions})" if dimensions else "(n, 2), (n, 4) or (n, 6)"
@@ -110,7 +110,7 @@ def rows(values: ArrayLike, name: str, dtype: np.dtype[Any], width: int) -> Floa
     """Points or directions as rows."""
     array = np.asarray(values)
     if array.ndim == 1 and array.size == 0:
-        array = np.empty((0, width))
+        array = array.reshape(0, width)
     if array.ndim != 2 or array.shape[1] != width:
         raise ValueError(f"{name} must be of shape (n, {width}), not {array.shape}")
     return numbers(array, name, dtype)

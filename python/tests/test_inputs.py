@@ -117,6 +117,8 @@ WRONG: list[Any] = [
     np.zeros((2, 8)),
     np.zeros((0, 3)),
     np.zeros((2, 0)),
+    np.zeros((0, 4), complex),
+    np.zeros(0, object),
     lambda: None,
     sap,
 ]
