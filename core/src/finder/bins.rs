@@ -384,6 +384,18 @@ impl<const D: usize, T: Scalar> Bins<D, T> {
         Ok(len)
     }
 
+    /// Drops the copies that were listed for bins in which another set, already scattered, has none:
+    /// there are no pairs.
+    pub fn keep_shared(&mut self, other: &Self) {
+        let mut len = 0;
+        for index in 0..self.len {
+            let copy = self.copies[index];
+            self.copies[len] = copy;
+            len += usize::from(!other.bin(copy.bin()).is_empty());
+        }
+        self.len = len;
+    }
+
     /// Puts the copies that were listed into the order of the bins, then of the boxes, instead of
     /// their records, with the boxes' own indices, and notes where those of each bin begin, and at last where they end.
     ///

@@ -45,6 +45,10 @@
 //! **Long columns** (a tower has only one) are cut along the sweep axis too, into slabs that fit the
 //! caches and that threads can share.
 //!
+//! **A few against very many**: of the larger set only those are copied to a column that meet one of
+//! the smaller there, and the model knows that: 100 boxes against 100,000 get so many columns that
+//! most are empty, and take a third of the time that all pairs of the 100,000 do.
+//!
 //! **Coincident and nested boxes** are pairs, all of them; nothing is tested in vain.
 //!
 //! # Why it is the same everywhere
@@ -84,7 +88,9 @@
 //! the boxes take, and to 34 times for needles that cross each other in the plane. A finder
 //! called again on up to 16,384 boxes takes 40 bytes a box more. All of it is
 //! kept for the next call: a steady state allocates nothing. Streaming and counting take the same,
-//! and nothing for the pairs, whose buffer doubles when it is full. Where the system refuses memory
+//! and nothing for the pairs, whose buffer doubles when it is full. On Linux arrays of megabytes ask
+//! for pages of 2 MiB, whole ones only: a million boxes are found in 0.92 to 0.95 of the time, and in
+//! the first call in two thirds. Where the system refuses memory
 //! the call ends with [`Error::OutOfMemory`] and the buffer of pairs is given back.
 //!
 //! # Sources

@@ -10,6 +10,10 @@ use crate::{Aabb, Scalar};
 
 /// Nanoseconds to place, sort and lay out one record, and to begin its scan.
 const RECORD: f64 = 24.0;
+/// Of these, to place it: all that it takes if the other set has none in its column.
+const PLACE: f64 = 6.0;
+/// Columns for each of few boxes against many, at least.
+const SPARSE: f64 = 4.0;
 /// Nanoseconds for one candidate: between what 16 lanes take and what 4 do.
 pub(super) const CANDIDATE: f64 = 0.25;
 /// Nanoseconds to begin and end a column.
@@ -258,23 +262,24 @@ impl<const D: usize> Field<D> {
     fn cut(&self, shapes: &[Shape<D>]) -> (Cut<D>, f64) {
         let mut best = (Cut { sweep: 0, columns: [1.0; D] }, f64::INFINITY);
         for sweep in 0..D {
-            let mut cut = Cut { sweep, columns: [1.0; D] };
-            let mut cost = self.cost(shapes, &cut);
-            while cut.columns.iter().product::<f64>() < MOST_COLUMNS {
-                let mut next = (cut, cost);
-                for axis in (0..D).filter(|&axis| axis != sweep && self.extent(axis) > 0.0) {
-                    let mut finer = cut;
-                    finer.columns[axis] = whole(cut.columns[axis] * 1.25) + 1.0;
-                    let finer_cost = self.cost(shapes, &finer);
-                    let most = if next.1 < cost { ALIKE * next.1 } else { cost };
-                    if finer_cost < most {
-                        next = (finer, finer_cost);
+            let (mut cut, mut cost) = self.refined(shapes, Cut { sweep, columns: [1.0; D] });
+            if let [first, second] = shapes {
+                // Of few boxes against many most columns hold none, once there are many more
+                // columns than boxes; until then more columns do not pay.
+                let fewer = first.count.min(second.count);
+                let mut most = Cut { sweep, columns: [1.0; D] };
+                while most.columns.iter().product::<f64>() < SPARSE * fewer {
+                    for axis in (0..D).filter(|&axis| axis != sweep && self.extent(axis) > 0.0) {
+                        most.columns[axis] *= 2.0;
+                    }
+                    if most.columns == [1.0; D] {
+                        break;
                     }
                 }
-                if next.1 >= cost {
-                    break;
+                let (sparse, sparse_cost) = self.refined(shapes, most);
+                if sparse_cost < ALIKE * cost {
+                    (cut, cost) = (sparse, sparse_cost);
                 }
-                (cut, cost) = next;
             }
             // By so much that the axis does not change from call to call where all are alike.
             if cost < ALIKE * best.1 {
@@ -290,6 +295,28 @@ impl<const D: usize> Field<D> {
             cut.columns[cut.sweep] = slabs;
         }
         best
+    }
+
+    /// A cut made finer step by step, as long as that pays, and its cost.
+    fn refined(&self, shapes: &[Shape<D>], mut cut: Cut<D>) -> (Cut<D>, f64) {
+        let mut cost = self.cost(shapes, &cut);
+        while cut.columns.iter().product::<f64>() < MOST_COLUMNS {
+            let mut next = (cut, cost);
+            for axis in (0..D).filter(|&axis| axis != cut.sweep && self.extent(axis) > 0.0) {
+                let mut finer = cut;
+                finer.columns[axis] = whole(cut.columns[axis] * 1.25) + 1.0;
+                let finer_cost = self.cost(shapes, &finer);
+                let most = if next.1 < cost { ALIKE * next.1 } else { cost };
+                if finer_cost < most {
+                    next = (finer, finer_cost);
+                }
+            }
+            if next.1 >= cost {
+                break;
+            }
+            (cut, cost) = next;
+        }
+        (cut, cost)
     }
 
     /// The chance that two boxes begin in the same of so many columns.
@@ -315,16 +342,26 @@ impl<const D: usize> Field<D> {
             let count = shape.records(self, cut);
             records += count;
             candidates *= count;
+            if shapes.len() == 1 {
+                candidates *= count;
+            }
             chance += if self.spread[cut.sweep] > 0.0 {
                 (shape.mean[cut.sweep] / self.spread[cut.sweep]).min(1.0)
             } else {
                 1.0
             };
         }
-        if let [shape] = shapes {
-            candidates *= shape.records(self, cut);
-        }
         let pairs = candidates * chance.min(1.0);
+        if let [first, second] = shapes {
+            let counts = [first, second].map(|shape| shape.records(self, cut));
+            // The share of the columns that have any of each set: as many as records, at most.
+            let [with_first, with_second] = counts.map(|count| (count / columns).min(1.0));
+            let shared = counts[0] * with_second + counts[1] * with_first;
+            return records * PLACE
+                + shared * (RECORD - PLACE)
+                + pairs * CANDIDATE
+                + columns * with_first * with_second * COLUMN;
+        }
         records * RECORD + pairs * CANDIDATE + columns * COLUMN
     }
 }

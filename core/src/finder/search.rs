@@ -234,10 +234,7 @@ impl<const D: usize, T: Scalar> Search<D, T> {
             return result.unwrap_or_else(|refusal| self.refused(refusal, sets, grid, task, sink));
         }
         let mut bins = self.bins.pop().unwrap_or([Bins::new(), Bins::new()]);
-        let filled = sets.iter().zip(&mut bins).try_for_each(|(&set, bins)| {
-            bins.list(set, 0..set.len(), grid, limit(set.len()))?;
-            bins.scatter(set)
-        });
+        let filled = fill(sets, &mut bins, grid);
         let result = match filled {
             Ok(()) => (0..grid.len())
                 .try_for_each(|bin| self.bin(&[&bins], sets.len(), bin, grid, task, sink)),
@@ -419,6 +416,31 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         let sweep = Sweep { kernel, others, arrange, watch };
         sweep.run(&self.columns[..sets], sink)
     }
+}
+
+/// Puts the boxes of one set or two into bins. Of the larger of two only those are put there that
+/// meet the smaller in a bin.
+fn fill<const D: usize, T: Scalar, S: Source<D, T>>(
+    sets: &[S],
+    bins: &mut [Bins<D, T>; 2],
+    grid: &Grid<T>,
+) -> Result<(), Refusal> {
+    let list = |bins: &mut Bins<D, T>, set: S| bins.list(set, 0..set.len(), grid, limit(set.len()));
+    let [first_bins, second_bins] = bins;
+    let &[first, second] = sets else {
+        list(first_bins, sets[0])?;
+        return first_bins.scatter(sets[0]);
+    };
+    let (small_bins, small, large_bins, large) = if first.len() <= second.len() {
+        (first_bins, first, second_bins, second)
+    } else {
+        (second_bins, second, first_bins, first)
+    };
+    list(small_bins, small)?;
+    small_bins.scatter(small)?;
+    list(large_bins, large)?;
+    large_bins.keep_shared(small_bins);
+    large_bins.scatter(large)
 }
 
 /// Whether each box is simply tested against each.
