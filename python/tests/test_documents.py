@@ -145,3 +145,13 @@ world.insert([0, 0, 1, 1], filter=5)
 def test_what_the_playground_writes_runs_and_finds_what_it_says(path: Path) -> None:
     said = re.findall(r"^print\(.*\)\s+# (.*)$", path.read_text(), re.MULTILINE)
     assert said and run(path).splitlines() == said
+
+
+def test_the_reference_names_everything_and_loads_nothing_from_elsewhere(tmp_path: Path) -> None:
+    run("docs.py", tmp_path)
+    page = (tmp_path / "sweep_and_prune.html").read_text()
+    assert [name for name in public() if f'id="{name}"' not in page] == []
+    loaded = re.findall(r"""(?:src=|<link[^>]*href=|url\(|@import )["']?([^"')>\s]+)""", page)
+    assert [address for address in loaded if not address.startswith(("data:", "#", "./"))] == []
+    assert re.search(r"prefers-color-scheme: ?dark", page)
+    assert "boxes: ArrayLike" in re.sub(r"<[^>]*>", "", page).replace("\xa0", " ")
