@@ -1,0 +1,145 @@
+// `<sap-demo>` in the hands of a visitor: keys, a mouse, a finger, questions, guesses, what is shared.
+import { expect, test } from "@playwright/test";
+import type { SapDemo } from "sweep-and-prune/demo";
+import { complainOfNothing, counter, open, pairwise, stateOf } from "./support/embedded.ts";
+
+complainOfNothing();
+
+test("keys alone: step, back, play, pause, and a ball moved", async ({ page }) => {
+  const demo = await open(page, { balls: "[[150,250,50],[300,150,55],[450,275,60]]", static: "", draggable: "", labels: "A,B,C", decorations: "checks" });
+  await page.keyboard.press("Tab");
+  await expect(demo.locator(".picture")).toBeFocused();
+  const before = await demo.evaluate((element: SapDemo) => element.balls[1]![0]);
+  await page.keyboard.press("b");
+  await page.keyboard.press("b");
+  for (let count = 0; count < 4; count++) await page.keyboard.press("Shift+ArrowLeft");
+  expect(await demo.evaluate((element: SapDemo) => element.balls[1]![0])).toBe(before - 100);
+  expect(await counter(demo, "tests")).toBe("1");
+  await page.keyboard.press(",");
+  await expect.poll(() => demo.evaluate((element: SapDemo) => element.event?.kind)).toBeDefined();
+  await expect(demo.locator('[role="status"]')).not.toBeEmpty();
+
+  const moving = await open(page, pairwise);
+  await page.keyboard.press("Tab");
+  for (let count = 0; count < 3; count++) await page.keyboard.press("Space");
+  expect((await stateOf(moving)).tests).toBe(3);
+  await page.keyboard.press("[");
+  expect((await stateOf(moving)).tests).toBe(2);
+  await page.keyboard.press("]");
+  expect((await stateOf(moving)).tests).toBe(3);
+  await expect(moving.locator('[role="status"]')).toContainText("Test");
+  for (const name of ["Play", "Step back", "Step", "Moment", "Speed", "Reset", "Share or embed"]) {
+    await page.keyboard.press("Tab");
+    await expect(moving.getByLabel(name, { exact: true })).toBeFocused();
+  }
+  await moving.getByRole("button", { name: "Play" }).press("Enter");
+  await expect.poll(async () => (await stateOf(moving)).tick).toBeGreaterThan(5);
+  await moving.getByRole("button", { name: "Pause" }).press("Enter");
+  const { tick } = await stateOf(moving);
+  await page.waitForTimeout(300);
+  expect((await stateOf(moving)).tick).toBe(tick);
+});
+
+test("a ball is dragged by a mouse, and goes no further than the wall", async ({ page }) => {
+  const demo = await open(page, { balls: "[[150,250,50],[300,150,55]]", static: "", draggable: "", decorations: "checks" });
+  const told = await demo.evaluateHandle((element: SapDemo) => {
+    const balls: number[] = [];
+    element.addEventListener("sap-drag", ({ detail }) => balls.push(detail.ball));
+    return balls;
+  });
+  const box = (await demo.locator(".picture").boundingBox())!;
+  const scale = box.width / 600;
+  await page.mouse.move(box.x + 150 * scale, box.y + 250 * scale);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 250 * scale, box.y + 160 * scale, { steps: 5 });
+  await page.mouse.move(-50, box.y + 160 * scale, { steps: 5 });
+  await page.mouse.up();
+  const [x, y] = await demo.evaluate((element: SapDemo) => element.balls[0]!);
+  expect(x, "held outside the picture, stopped by the wall").toBe(50);
+  expect(y).toBeCloseTo(160, 0);
+  expect(await told.evaluate((balls) => [...new Set(balls)])).toEqual([0]);
+  await demo.evaluate((element: SapDemo) => element.seek(0));
+  expect((await demo.evaluate((element: SapDemo) => element.balls[0]!))[0], "a drag can be undone").toBe(150);
+});
+
+test("a finger drags a ball without scrolling, and scrolls where there is none", async ({ browser, baseURL }) => {
+  const context = await browser.newContext({ baseURL: baseURL!, hasTouch: true, viewport: { width: 390, height: 700 } });
+  const page = await context.newPage();
+  const demo = await open(page, { balls: "[[300,200,60]]", static: "", draggable: "" });
+  await page.evaluate(() => (document.body.style.minHeight = "3000px"));
+  const box = (await demo.locator(".picture").boundingBox())!;
+  const client = await context.newCDPSession(page);
+  const swipe = async (x: number, y: number, dy: number): Promise<void> => {
+    const at = (y: number): { touchPoints: { x: number; y: number }[] } => ({ touchPoints: [{ x, y }] });
+    await client.send("Input.dispatchTouchEvent", { type: "touchStart", ...at(y) });
+    for (let share = 1; share <= 10; share++) {
+      await client.send("Input.dispatchTouchEvent", { type: "touchMove", ...at(y + (dy * share) / 10) });
+      await page.waitForTimeout(20);
+    }
+    await client.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+  };
+  await swipe(box.x + box.width / 2, box.y + box.height / 2, -60);
+  expect((await demo.evaluate((element: SapDemo) => element.balls[0]!))[1]).toBeCloseTo(200 - (60 * 600) / box.width, 0);
+  expect(await page.evaluate(() => scrollY)).toBe(0);
+  await swipe(box.x + 20, box.y + box.height - 10, -150);
+  await expect.poll(() => page.evaluate(() => scrollY)).toBeGreaterThan(50);
+  await context.close();
+});
+
+test("why a pair was tested or skipped, with the numbers", async ({ page }) => {
+  const demo = await open(page, { balls: "[[100,200,50],[300,200,50],[500,200,50],[320,120,60]]", static: "", explain: "", labels: "A,B,C,D" });
+  const said = demo.locator('[part="said"]');
+  const picture = (await demo.locator(".picture").boundingBox())!;
+  const scale = picture.width / 600;
+  const click = (x: number, y: number): Promise<void> => page.mouse.click(picture.x + x * scale, picture.y + y * scale);
+  await click(100, 200);
+  await click(300, 210);
+  await expect(said).toHaveText("A and B were skipped: A’s right 150 < B’s left 250, and the scan from A stopped here.");
+  await click(100, 200);
+  await click(500, 200);
+  await expect(said).toHaveText("A and C were skipped: the scan from A had stopped at B, A’s right 150 < B’s left 250, and C begins later still, at 450.");
+  await click(300, 210);
+  await click(320, 90);
+  await expect(said).toContainText("were tested, and their boxes overlap: on x D’s left 260 ≤ B’s right 350, on y B’s top 150 ≤ D’s bottom 180.");
+  await expect(demo.locator('[role="status"]')).toContainText("were tested");
+  // By keys: Tab, then B until the ball is reached, and Enter.
+  await page.keyboard.press("Escape");
+  for (const key of ["b", "Enter", "b", "b", "Enter"]) await page.keyboard.press(key);
+  await expect(said).toContainText("A and C were skipped");
+});
+
+test("a guess is asked for before each event, and counted", async ({ page }) => {
+  const demo = await open(page, { ...pairwise, predict: "" });
+  const group = demo.getByRole("group", { name: "What happens next?" });
+  await expect(group).toContainText("are tested next");
+  let right = 0;
+  for (let made = 1; made <= 10; made++) {
+    await group.getByRole("button", { name: "are apart" }).click();
+    expect((await stateOf(demo)).tests).toBe(made);
+    if (!(await group.textContent())!.includes("No:")) right++;
+    await expect(group).toContainText(`${right} of ${made} right`);
+  }
+  expect(right).toBe(10 - (await demo.evaluate((element: SapDemo) => element.pairs.length)));
+});
+
+test("what is shared opens as it was", async ({ page }) => {
+  const demo = await open(page, { strategy: "swap", balls: "7", seed: "42", decorations: "checks:#4c8", paused: "" });
+  await demo.evaluate((element: SapDemo) => {
+    while (element.state.tick < 20) element.step();
+  });
+  const { hash, tick } = await stateOf(demo);
+  const [url, code] = await demo.evaluate((element: SapDemo) => [element.share(), element.embedCode()]);
+  expect(code!.split("\n").length).toBeLessThanOrEqual(5);
+  expect(code).toContain("<iframe");
+  await page.goto("about:blank");
+  await page.goto(url!);
+  await demo.evaluate((element: SapDemo) => (element.pause(), element.ready));
+  await expect.poll(async () => (await stateOf(demo)).tick).toBeGreaterThanOrEqual(tick);
+  await demo.evaluate((element: SapDemo) => element.seek(0));
+  await demo.evaluate((element: SapDemo) => {
+    while (element.state.tick < 20) element.step();
+  });
+  expect(await stateOf(demo)).toMatchObject({ tick, hash });
+  await demo.getByRole("button", { name: "Share or embed" }).click();
+  await expect(demo.getByLabel("Link to this demo")).toHaveValue(/embed\.html#/);
+});
