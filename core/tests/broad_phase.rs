@@ -446,6 +446,71 @@ fn any_crowd_is_followed_through_any_motion() {
 }
 
 #[test]
+fn who_fell_asleep_wakes_with_all_his_pairs() {
+    let mut random = Random::new(11);
+    let mut world = BroadPhase::<2, f64>::new();
+    let mut model = Model::new(Options::default());
+    let mut ids = vec![];
+    let draw = |random: &mut Random| {
+        let at: [f64; 2] = random.point();
+        Aabb::new(at, at.map(|at| at + 0.06))
+    };
+    let still = Filter::STATIC;
+    let odd = Filter { category: 2, mask: 1, ..Filter::default() };
+    let filters = [Filter::default(), Filter::default(), Filter::default(), still, odd];
+    for _ in 0..400 {
+        let (aabb, filter) = (draw(&mut random), filters[random.below(filters.len())]);
+        let id = world.insert_with(aabb, filter).unwrap();
+        model.insert(id, aabb, filter);
+        ids.push(id);
+    }
+    for step in 0..700 {
+        let mut shove = |which: usize, most: f64, random: &mut Random| {
+            let mut aabb = model.bodies[&ids[which]].aabb;
+            for axis in 0..2 {
+                let way = most * (random.unit() - 0.5);
+                aabb.min[axis] += way;
+                aabb.max[axis] += way;
+            }
+            world.set(ids[which], aabb).unwrap();
+            model.set(ids[which], aabb);
+        };
+        // The same few move all the time; now and then another, or for a while nobody, or everybody.
+        let movers = if step % 230 == 229 { ids.len() } else { 20 };
+        if step / 20 % 10 != 9 {
+            (0..movers).for_each(|which| shove(which, 0.01, &mut random));
+        }
+        let any = random.below(ids.len());
+        match random.below(10) {
+            0 => shove(any, 0.01, &mut random),
+            1 => shove(any, 2.0, &mut random),
+            2 => {
+                let filter = filters[random.below(filters.len())];
+                world.set_filter(ids[any], filter).unwrap();
+                model.set_filter(ids[any], filter);
+            }
+            3 => {
+                world.remove(ids[any]).unwrap();
+                model.remove(ids[any]);
+                let aabb = draw(&mut random);
+                ids[any] = world.insert(aabb).unwrap();
+                model.insert(ids[any], aabb, Filter::default());
+            }
+            4 if step % 50 == 0 => world = BroadPhase::from_snapshot(&world.snapshot()).unwrap(),
+            _ => {}
+        }
+        assert_eq!(world.pairs_of(ids[any]).unwrap(), model.pairs_of(ids[any]), "{step}");
+        let changes = world.update();
+        let (begun, ended) = model.update();
+        assert!(changes.begun().eq(begun), "{step}");
+        assert!(changes.ended().eq(ended), "{step}");
+        assert_eq!(world.pairs(), model.pairs(), "{step}");
+        let any = ids[random.below(ids.len())];
+        assert_eq!(world.pairs_of(any).unwrap(), model.pairs_of(any), "{step}");
+    }
+}
+
+#[test]
 fn sizes_may_differ_by_a_million_and_more() {
     let mut world = BroadPhase::<3>::new();
     let mut random = Random::new(5);

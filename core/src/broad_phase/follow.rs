@@ -1,184 +1,162 @@
-//! The update when few bodies left their fat boxes: look at those, and at the candidates of those
-//! that moved.
+//! The update when few bodies left their fat boxes: test the candidates, and look those few up in the
+//! tree.
+//!
+//! Where most bodies move, the fat box of one that left it is stretched: its candidates stay, and
+//! some more come. Where few do it gets a new one, and all its candidates are dropped and found anew:
+//! it costs a pass through the list, but else the fat boxes would grow for ever.
+
+use core::hint::black_box;
 
 use super::BroadPhase;
 use super::options::{contains, hull};
 use super::proxy::flag;
 use super::seating::JUMP_WEAR;
-use super::update::{overlap, push_wanted};
-use super::updater::{Scratch, TreeState, Updater};
+use super::tree::{BATCH, TOGETHER};
+use super::update::{REBUILD, overlap, push_wanted};
+use super::updater::{Marks, SOME, Scratch, TreeState, Updater};
 use super::warm::warm;
 use crate::Scalar;
 
-/// To go from one candidate of a body to the next takes as long as to test so many in a row.
-const MANY: usize = 20;
-
 /// A search of a tree with leaves twice too large costs so many times more than it should what
 /// building the tree costs for a body.
-const WORSE: usize = 4;
+const WORSE: usize = 1;
+
+/// To find the candidates of a body among others takes as long as to test so many in a row.
+const MANY: usize = 12;
 
 impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Reports what begins and ends, given who changed, escaped and left.
+    #[inline(never)]
     pub(super) fn follow(&mut self) {
-        let is_few = self.changed.len() * MANY < self.updater.candidates.pairs.len();
-        if !self.updater.scratch.escaped.is_empty() {
-            self.updater.tree_uses += self.updater.scratch.escaped.len();
+        let escaped = core::mem::take(&mut self.updater.scratch.escaped);
+        let is_sleeper = |seat: &&u32| self.slots.has(**seat, flag::ASLEEP);
+        let sleepers = escaped.iter().chain(&self.leaving).filter(is_sleeper).count();
+        if !escaped.is_empty() || sleepers > 0 {
+            self.updater.tree_uses += escaped.len();
             self.ready_tree();
         }
-        if !is_few && self.can_stretch() {
-            self.stretch_escaped();
-        } else {
-            self.updater.candidates.link(self.slots.len());
-            self.drop_leaving();
-            self.replace_escaped();
+        let stretches = sleepers == 0 && self.can_stretch(&escaped);
+        let marks = &mut self.updater.scratch.marks;
+        marks.resize(self.slots.len());
+        escaped.iter().chain(&self.leaving).for_each(|&seat| marks.set(seat));
+        if sleepers > 0 {
+            self.wake(&escaped, sleepers);
         }
-        if is_few {
-            for index in 0..self.changed.len() {
-                self.test_candidates_of(self.changed[index]);
-            }
-        } else {
-            self.test_all_candidates();
+        if self.changed.len() + self.leaving.len() > 0 {
+            self.test_candidates(!stretches);
         }
-    }
-
-    /// Whether candidates need only be added, which takes no links: all that are known stay, and who
-    /// left his fat box did not go far.
-    fn can_stretch(&self) -> bool {
-        let Updater { candidates, scratch, prediction, previous, .. } = &self.updater;
-        !candidates.is_linked()
-            && self.leaving.is_empty()
-            && scratch.escaped.iter().all(|&seat| {
-                let at = seat as usize;
-                !self.slots.has(seat, flag::NEW | flag::REFILTERED)
-                    && !prediction.is_jump(&previous[at], &self.boxes[at])
-            })
-    }
-
-    /// Makes the fat boxes of the bodies that left theirs larger, and adds the candidates that they
-    /// so get. A pair is a candidate if its fat boxes overlap: so it is new if they did not before.
-    fn stretch_escaped(&mut self) {
-        let Updater { candidates, tree, fat, previous, prediction, scratch, begun, .. } =
-            &mut self.updater;
-        candidates.make_room();
-        for &seat in &scratch.escaped {
-            let at = seat as usize;
-            let before = fat[at];
-            let ahead = prediction.alone(&previous[at], &self.boxes[at], &self.options);
-            fat[at] = hull(&before, &ahead);
-            tree.set(seat, &fat[at]);
-            tree.overlapping(&fat[at], &mut scratch.found);
-            for &other in &scratch.found {
-                let (first, second) = (at.min(other as usize), at.max(other as usize));
-                let is_new = first != second
-                    && !overlap(&before, &fat[other as usize])
-                    && (!self.any_filter || self.filters[first].allows(&self.filters[second]));
-                if is_new {
-                    let is_live = overlap(&self.boxes[first], &self.boxes[second]);
-                    let pair = [first as u32, second as u32];
-                    candidates.pairs.push(pair);
-                    candidates.live.push(is_live);
-                    if is_live {
-                        begun.push(pair);
-                    }
-                }
-            }
-        }
-    }
-
-    /// Gives the bodies that left their fat boxes new ones, and finds their candidates.
-    fn replace_escaped(&mut self) {
-        let escaped = core::mem::take(&mut self.updater.scratch.escaped);
-        let Updater { tree, fat, previous, prediction, wear, .. } = &mut self.updater;
-        for &seat in &escaped {
-            let at = seat as usize;
-            let is_new = self.slots.has(seat, flag::NEW);
-            let before = if is_new { &self.boxes[at] } else { &previous[at] };
-            if prediction.is_jump(before, &self.boxes[at]) {
-                *wear = wear.saturating_add(JUMP_WEAR);
-            }
-            fat[at] = prediction.alone(before, &self.boxes[at], &self.options);
-            tree.set(seat, &fat[at]);
-        }
-        for &seat in &escaped {
-            self.rematch(seat);
-        }
+        self.move_in_tree(&escaped, stretches);
+        self.add_candidates(stretches);
+        let marks = &mut self.updater.scratch.marks;
+        escaped.iter().chain(&self.leaving).for_each(|&seat| marks.clear(seat));
         self.updater.scratch.escaped = escaped;
     }
 
-    /// Ends the pairs of bodies that were removed.
-    fn drop_leaving(&mut self) {
-        let Updater { candidates, tree, ended, .. } = &mut self.updater;
-        for &seat in &self.leaving {
-            tree.remove(seat);
-            let mut next = candidates.first(seat);
-            while let Some(index) = next {
-                next = candidates.step(index, seat).1;
-                if candidates.live[index as usize] {
-                    ended.push(candidates.pairs[index as usize]);
-                }
-                candidates.remove(index);
-            }
+    /// Wakes the bodies that are marked, of which so many were asleep, and ends what ends between
+    /// one of these and another that was asleep: such pairs are in no list.
+    #[inline(never)]
+    fn wake(&mut self, escaped: &[u32], count: usize) {
+        let mut ended = core::mem::take(&mut self.updater.ended);
+        let Updater { previous, scratch, .. } = &mut self.updater;
+        let queries = &mut scratch.queries;
+        let sleepers = escaped.iter().chain(&self.leaving).copied();
+        let sleepers = sleepers.filter(|&seat| self.slots.has(seat, flag::ASLEEP));
+        queries.clear();
+        queries.extend(sleepers.map(|seat| (seat, previous[seat as usize])));
+        for start in (0..count).step_by(BATCH) {
+            let Updater { tree, scratch, .. } = &mut self.updater;
+            let Scratch { queries, leaves, pairs: found, .. } = scratch;
+            let batch = &queries[start..count.min(start + BATCH)];
+            tree.overlapping_many(batch, leaves, found);
+            let scratch = &self.updater.scratch;
+            let pairs = scratch
+                .pairs
+                .iter()
+                .map(|&[query, other]| [scratch.queries[start + query as usize].0, other]);
+            ended.extend(pairs.filter(|&[seat, other]| {
+                self.slots.has(other, flag::ASLEEP)
+                    && (seat < other || seat != other && !scratch.marks.has(other))
+                    && self.was_live(seat, other)
+                    && !self.is_live(seat, other)
+            }));
         }
+        for &seat in escaped.iter().chain(&self.leaving) {
+            self.slots.lower(seat, flag::ASLEEP);
+        }
+        self.updater.sleep.count -= count;
+        self.updater.sleep.woke += count;
+        self.updater.ended = ended;
     }
 
-    /// Gives a body with a new fat box its candidates: some of those it had, and new ones.
-    fn rematch(&mut self, seat: u32) {
-        let Updater { candidates, tree, fat, scratch, begun, ended, .. } = &mut self.updater;
-        let is_allowed = |other: u32| {
-            !self.any_filter || self.filters[seat as usize].allows(&self.filters[other as usize])
-        };
-        let (found, is_old) = (&mut scratch.found, &mut scratch.is_old);
-        tree.overlapping(&fat[seat as usize], found);
-        found.retain(|&other| other != seat && is_allowed(other));
-        found.sort_unstable();
-        is_old.clear();
-        is_old.resize(found.len(), false);
-        let mut next = candidates.first(seat);
-        while let Some(index) = next {
-            let (other, later) = candidates.step(index, seat);
-            next = later;
-            if let Ok(place) = found.binary_search(&other) {
-                is_old[place] = true;
-            } else {
-                if candidates.live[index as usize] {
-                    ended.push(candidates.pairs[index as usize]);
-                }
-                candidates.remove(index);
-            }
-        }
-        for (&other, _) in found.iter().zip(is_old).filter(|(_, is_old)| !**is_old) {
-            let is_live = overlap(&self.boxes[seat as usize], &self.boxes[other as usize]);
-            if is_live {
-                begun.push([seat, other]);
-            }
-            candidates.add(seat, other, is_live);
-        }
+    /// Whether two bodies are there, overlap, and may pair.
+    fn is_live(&self, a: u32, b: u32) -> bool {
+        let (first, second) = (a as usize, b as usize);
+        self.slots.has(a, flag::LIVE)
+            && self.slots.has(b, flag::LIVE)
+            && overlap(&self.boxes[first], &self.boxes[second])
+            && (!self.any_filter || self.filters[first].allows(&self.filters[second]))
     }
 
-    /// Tests the candidates of one body.
-    fn test_candidates_of(&mut self, seat: u32) {
-        let Updater { candidates, begun, ended, .. } = &mut self.updater;
-        let aabb = &self.boxes[seat as usize];
-        let mut next = candidates.first(seat);
-        while let Some(index) = next {
-            let (other, later) = candidates.step(index, seat);
-            next = later;
-            let is_live = overlap(aabb, &self.boxes[other as usize]);
-            let at = index as usize;
-            if is_live != candidates.live[at] {
+    /// Lists the places of the candidates of the bodies that escaped or left, if `drops`, and tests
+    /// the other candidates of those that changed.
+    #[inline(never)]
+    fn test_candidates(&mut self, drops: bool) {
+        let Updater { candidates, scratch, begun, ended, .. } = &mut self.updater;
+        let Scratch { marks, moved, places, dropped, .. } = scratch;
+        dropped.clear();
+        dropped.reserve(candidates.pairs.capacity() / 4);
+        places.reserve(candidates.pairs.capacity() / 4);
+        let is_in = |set: &Marks, [a, b]: [u32; 2]| set.has(a) | set.has(b);
+        if self.changed.len() * MANY > candidates.pairs.len() {
+            if drops {
+                push_wanted(dropped, &candidates.pairs, |at, pair| (at, is_in(marks, pair)));
+                self.drop_candidates();
+            }
+            self.test_all_candidates();
+            return;
+        }
+        let seats = || self.changed.iter().chain(&self.leaving);
+        moved.resize(self.slots.len());
+        seats().for_each(|&seat| moved.set(seat));
+        places.clear();
+        push_wanted(places, &candidates.pairs, |at, pair| (at, is_in(moved, pair)));
+        seats().for_each(|&seat| moved.clear(seat));
+        for &at in &*places {
+            let [a, b] = candidates.pairs[at];
+            if drops && is_in(marks, [a, b]) {
+                dropped.push(at);
+                continue;
+            }
+            let is_live = overlap(&self.boxes[a as usize], &self.boxes[b as usize]);
+            if candidates.live[at] != is_live {
                 candidates.live[at] = is_live;
-                if is_live { &mut *begun } else { &mut *ended }.push(candidates.pairs[at]);
+                if is_live { &mut *begun } else { &mut *ended }.push([a, b]);
             }
         }
+        self.drop_candidates();
+    }
+
+    /// Takes the candidates at the places that were listed out of the list, and ends what ends.
+    fn drop_candidates(&mut self) {
+        let mut ended = core::mem::take(&mut self.updater.ended);
+        let Updater { candidates, scratch, .. } = &self.updater;
+        let live = scratch.dropped.iter().filter(|&&at| candidates.live[at]);
+        let pairs = live.map(|&at| candidates.pairs[at]);
+        ended.extend(pairs.filter(|&[a, b]| !self.is_live(a, b)));
+        self.updater.ended = ended;
+        let Updater { candidates, scratch, .. } = &mut self.updater;
+        candidates.remove(&scratch.dropped);
     }
 
     /// Tests all candidates.
     fn test_all_candidates(&mut self) {
+        if self.updater.candidates.pairs.len() * SOME > self.boxes.len() {
+            warm(&self.boxes);
+        }
         let Updater { candidates, scratch, begun, ended, .. } = &mut self.updater;
         let (pairs, live) = (&candidates.pairs, &mut candidates.live);
         let changed = &mut scratch.pairs;
         changed.clear();
-        warm(&self.boxes);
         push_wanted(changed, pairs, |index, [a, b]| {
             let is_live = overlap(&self.boxes[a as usize], &self.boxes[b as usize]);
             ([a, b], core::mem::replace(&mut live[index], is_live) != is_live)
@@ -190,8 +168,100 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         }
     }
 
+    /// Whether candidates need only be added, since all that are known stay: if those who left their
+    /// fat boxes did not go far, these may become larger. Where few move they would be large for ever.
+    fn can_stretch(&self, escaped: &[u32]) -> bool {
+        let Updater { prediction, previous, .. } = &self.updater;
+        let is_odd = flag::NEW | flag::REFILTERED;
+        self.changed.len() * 2 > self.len()
+            && self.leaving.is_empty()
+            && escaped.iter().all(|&seat| {
+                let at = seat as usize;
+                !self.slots.has(seat, is_odd) && !prediction.is_jump(&previous[at], &self.boxes[at])
+            })
+    }
+
+    /// Tells the tree of those who left the world, and of the new fat boxes of those who left theirs,
+    /// which are to be looked up.
+    #[inline(never)]
+    fn move_in_tree(&mut self, escaped: &[u32], stretches: bool) {
+        let Updater { tree, fat, previous, prediction, wear, scratch, .. } = &mut self.updater;
+        for &seat in &self.leaving {
+            tree.remove(seat);
+        }
+        scratch.queries.clear();
+        scratch.queries.reserve(self.slots.live / REBUILD + 1);
+        for (index, &seat) in escaped.iter().enumerate() {
+            if index % TOGETHER == 0 {
+                escaped[index..].iter().take(TOGETHER).for_each(|&seat| tree.call_leaf_of(seat));
+            }
+            let at = seat as usize;
+            let is_new = self.slots.has(seat, flag::NEW);
+            let before = if is_new { &self.boxes[at] } else { &previous[at] };
+            if prediction.is_jump(before, &self.boxes[at]) {
+                *wear = wear.saturating_add(JUMP_WEAR);
+            }
+            let ahead = prediction.alone(seat, before, &self.boxes[at], &self.options);
+            let aabb = if stretches { hull(&fat[at], &ahead) } else { ahead };
+            scratch.queries.push((seat, aabb));
+            tree.set(seat, &aabb);
+        }
+    }
+
+    /// Gives the bodies that are to be looked up their new fat boxes, and adds their candidates: if
+    /// these boxes stretch the old ones, those whose fat boxes did not overlap before.
+    fn add_candidates(&mut self, stretches: bool) {
+        self.updater.candidates.make_room();
+        for start in (0..self.updater.scratch.queries.len()).step_by(BATCH) {
+            let Updater { tree, scratch, .. } = &mut self.updater;
+            let Scratch { queries, leaves, pairs: found, .. } = scratch;
+            let stop = queries.len().min(start + BATCH);
+            tree.overlapping_many(&queries[start..stop], leaves, found);
+            self.add_found(start, stretches);
+        }
+        let Updater { fat, scratch, .. } = &mut self.updater;
+        for (seat, aabb) in &scratch.queries {
+            fat[*seat as usize] = *aabb;
+        }
+    }
+
+    /// Adds what was found for the bodies that were looked up, from one on.
+    #[inline(never)]
+    fn add_found(&mut self, start: usize, stretches: bool) {
+        let mut begun = core::mem::take(&mut self.updater.begun);
+        let mut candidates = core::mem::take(&mut self.updater.candidates);
+        let Updater { fat, scratch, .. } = &self.updater;
+        for found in scratch.pairs.chunks(TOGETHER) {
+            for &[_, other] in found {
+                black_box(fat[other as usize].min[0]);
+                black_box(self.boxes[other as usize].min[0]);
+            }
+            for &[query, other] in found {
+                let (seat, aabb) = &scratch.queries[start + query as usize];
+                let (first, second) = (*seat as usize, other as usize);
+                // The tree knows the new fat box of one who is marked; of others it may know larger.
+                let is_marked = scratch.marks.has(other);
+                let is_near = if is_marked { *seat < other } else { overlap(aabb, &fat[second]) };
+                let is_candidate = is_near
+                    && !(stretches && overlap(&fat[first], &fat[second]))
+                    && (!self.any_filter || self.filters[first].allows(&self.filters[second]));
+                if is_candidate {
+                    let pair = [other.min(*seat), other.max(*seat)];
+                    let is_live = overlap(&self.boxes[first], &self.boxes[second]);
+                    candidates.add(pair, is_live);
+                    if is_live && !self.was_live(*seat, other) {
+                        begun.push(pair);
+                    }
+                }
+            }
+        }
+        self.updater.candidates = candidates;
+        self.updater.begun = begun;
+    }
+
     /// Has the tree hold the fat boxes of all bodies that are not new.
-    fn ready_tree(&mut self) {
+    #[inline(never)]
+    pub(super) fn ready_tree(&mut self) {
         let Updater { tree, tree_state, tree_uses, fat, scratch, .. } = &mut self.updater;
         match *tree_state {
             TreeState::Fresh { .. } => return,
@@ -201,7 +271,8 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             _ => {
                 *tree_uses = 0;
                 let is_known = |seat: &u32| {
-                    self.slots.has(*seat, flag::LIVE) && !self.slots.has(*seat, flag::NEW)
+                    self.slots.has(*seat, flag::LIVE | flag::LEAVING)
+                        && !self.slots.has(*seat, flag::NEW)
                 };
                 scratch.seats.clear();
                 scratch.seats.extend((0..self.slots.len() as u32).filter(is_known));
@@ -234,6 +305,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     }
 
     /// Notes that all fat boxes are new.
+    #[inline(never)]
     pub(super) fn age_tree(&mut self) {
         let Updater { tree, tree_state, scratch, fat, previous, prediction, .. } =
             &mut self.updater;

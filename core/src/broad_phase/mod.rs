@@ -13,6 +13,7 @@ mod rebuild;
 mod seating;
 #[cfg(feature = "serde")]
 mod serde;
+mod sleep;
 mod snapshot;
 mod sort;
 mod tree;
@@ -118,6 +119,16 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         }
     }
 
+    /// The same world, which finds candidates on so many threads of rayon's current pool where most
+    /// bodies move at once; one if 0 is given. Nothing but the time depends on it. Clones keep it,
+    /// snapshots do not.
+    #[cfg(feature = "parallel")]
+    #[must_use]
+    pub fn threads(mut self, threads: usize) -> Self {
+        self.updater.set_threads(threads);
+        self
+    }
+
     /// The options it was made with.
     pub fn options(&self) -> Options<T> {
         self.options
@@ -220,17 +231,22 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         if ids.len() != boxes.len() {
             return Err(Error::LengthMismatch { ids: ids.len(), boxes: boxes.len() });
         }
-        for (index, (&id, aabb)) in ids.iter().zip(boxes).enumerate() {
-            self.slots.check(id, index)?;
-            check_box(aabb, index)?;
+        let calls = ids.iter().zip(boxes);
+        let is_sound = |(&id, aabb): (&ProxyId, &_)| self.slots.is_living(id) & is_valid(aabb);
+        if !calls.clone().map(is_sound).fold(true, |all, each| all & each) {
+            for (index, (&id, aabb)) in calls.clone().enumerate() {
+                self.slots.check(id, index)?;
+                check_box(aabb, index)?;
+            }
         }
-        if ids.len() * update::SOME > self.boxes.len() {
-            warm::warm(&self.boxes);
+        if !self.swept.is_empty() {
+            for id in ids {
+                self.slots.lower(self.slots.seats[id.slot() as usize], flag::SWEPT);
+            }
         }
-        for (id, aabb) in ids.iter().zip(boxes) {
-            let seat = self.slots.seats[id.slot() as usize];
-            self.slots.lower(seat, flag::SWEPT);
-            self.place(seat, aabb);
+        self.updater.warm_for(ids.len(), &self.boxes);
+        for (id, aabb) in calls {
+            self.place(self.slots.seats[id.slot() as usize], aabb);
         }
         Ok(())
     }
@@ -332,6 +348,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             self.updater.add_seat(boxed);
         }
         self.slots.raise(seat, flag::NEW);
+        self.updater.any_new = true;
         self.touch(seat);
         self.slots.id(seat)
     }
@@ -342,8 +359,9 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         let at = seat as usize;
         match self.options.report {
             Report::Exact => {
-                if self.boxes[at] != *aabb {
-                    self.boxes[at] = *aabb;
+                let place = &mut self.boxes[at];
+                if differ(place, aabb) {
+                    *place = *aabb;
                     self.touch(seat);
                 }
             }
@@ -419,6 +437,19 @@ fn check_box<const D: usize, T: Scalar>(aabb: &Aabb<D, T>, index: usize) -> Resu
         None => Ok(()),
         Some(axis) => Err(Error::InvalidBox { index, axis }),
     }
+}
+
+/// Whether a box is valid, without a branch.
+#[inline]
+fn is_valid<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> bool {
+    (0..D).fold(true, |all, axis| all & (aabb.min[axis] <= aabb.max[axis]))
+}
+
+/// Whether two boxes differ, without a branch.
+#[inline]
+fn differ<const D: usize, T: Scalar>(a: &Aabb<D, T>, b: &Aabb<D, T>) -> bool {
+    let sides = |any, axis| any | (a.min[axis] != b.min[axis]) | (a.max[axis] != b.max[axis]);
+    (0..D).fold(false, sides)
 }
 
 /// Writes to a table by seat, which grows by one where the seat is new.

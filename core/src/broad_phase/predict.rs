@@ -21,7 +21,7 @@ const REACH_ALONE: f64 = 1.2;
 /// What moves further is taken for a jump, which says nothing of the next step.
 const JUMP: f64 = 2.0;
 /// The updates a fat box is to last at most.
-const LONGEST: f64 = 32.0;
+const LONGEST: f64 = 40.0;
 /// What one that is made after a jump has on every side, in box sizes.
 const LANDED: f64 = 0.4;
 /// What it has on every side for inexact motion, in displacements.
@@ -91,9 +91,11 @@ impl Prediction {
         })
     }
 
-    /// The fat box of a body that moves by itself.
+    /// The fat box of a body that moves by itself, the one in this seat: others get boxes that last
+    /// longer or less long, lest they leave them all at once.
     pub fn alone<const D: usize, T: Scalar>(
         &self,
+        seat: u32,
         before: &Aabb<D, T>,
         now: &Aabb<D, T>,
         options: &Options<T>,
@@ -101,7 +103,8 @@ impl Prediction {
         let side = longest_side(now);
         let size = if side < f64::INFINITY { side.max(self.size) } else { self.size };
         let way = displacement(before, now);
-        let steps = if way > 0.0 { (REACH_ALONE * size / way).min(LONGEST) } else { 0.0 };
+        let longest = LONGEST * (1.0 - f64::from(seat % 16) / 32.0);
+        let steps = if way > 0.0 { (REACH_ALONE * size / way).min(longest) } else { 0.0 };
         if steps < 1.0 {
             // A jump: where to from here is unknown.
             let margin = options.margin + T::from_f64(LANDED * size);
@@ -172,7 +175,7 @@ mod tests {
                 }
                 let mut prediction = Prediction::default();
                 prediction.look([(&before, &now)].into_iter());
-                assert!(contains(&prediction.alone(&before, &now, &options), &now));
+                assert!(contains(&prediction.alone(7, &before, &now, &options), &now));
                 assert!(contains(&prediction.together(&before, &now, &options), &now));
             }
         }

@@ -49,22 +49,26 @@ impl ProxyId {
 /// What is true of a slot, as bits.
 pub(super) mod flag {
     /// A body lives here.
-    pub const LIVE: u8 = 1;
+    pub const LIVE: u16 = 1;
     /// Its body was removed since the last update, which has yet to report its ended pairs.
-    pub const LEAVING: u8 = 2;
+    pub const LEAVING: u16 = 2;
     /// Its box or filter changed since the last update, or it is new: it stands in the list of
     /// the changed.
-    pub const CHANGED: u8 = 4;
+    pub const CHANGED: u16 = 4;
     /// The last update did not know its body.
-    pub const NEW: u8 = 8;
+    pub const NEW: u16 = 8;
     /// The last update knew its body with another filter.
-    pub const REFILTERED: u8 = 64;
+    pub const REFILTERED: u16 = 64;
     /// The tree knows its box since it changed.
-    pub const KNOWN: u8 = 128;
+    pub const KNOWN: u16 = 128;
     /// Its box is swept until the next update.
-    pub const SWEPT: u8 = 16;
+    pub const SWEPT: u16 = 16;
     /// A mark of the update at work; never set between two calls.
-    pub const MARKED: u8 = 32;
+    pub const MARKED: u16 = 32;
+    /// Its body rests, and no update need look at it until it changes.
+    pub const ASLEEP: u16 = 256;
+    /// Its body changed since bodies last went to sleep.
+    pub const RECENT: u16 = CHANGED << 7;
 }
 
 /// Who is where. A *slot* is what an id names; a *seat* is where what is known of its body stands
@@ -74,12 +78,14 @@ pub(super) mod flag {
 pub(super) struct Slots {
     /// By slot, how many bodies have had it.
     pub generations: Vec<u32>,
+    /// By slot, the generation of the body that lives, or 0.
+    living: Vec<u32>,
     /// By slot, its seat.
     pub seats: Vec<u32>,
     /// By seat, its slot.
     pub slots: Vec<u32>,
     /// By seat.
-    pub flags: Vec<u8>,
+    pub flags: Vec<u16>,
     /// The least free slot is given out first, so which it is follows from which are free.
     free: BinaryHeap<Reverse<u32>>,
     pub live: usize,
@@ -93,17 +99,17 @@ impl Slots {
     }
 
     #[inline]
-    pub fn has(&self, seat: u32, flags: u8) -> bool {
+    pub fn has(&self, seat: u32, flags: u16) -> bool {
         self.flags[seat as usize] & flags != 0
     }
 
     #[inline]
-    pub fn raise(&mut self, seat: u32, flags: u8) {
+    pub fn raise(&mut self, seat: u32, flags: u16) {
         self.flags[seat as usize] |= flags;
     }
 
     #[inline]
-    pub fn lower(&mut self, seat: u32, flags: u8) {
+    pub fn lower(&mut self, seat: u32, flags: u16) {
         self.flags[seat as usize] &= !flags;
     }
 
@@ -122,11 +128,13 @@ impl Slots {
     /// The seat of a living body.
     #[inline]
     pub fn find(&self, id: ProxyId) -> Option<u32> {
-        let slot = id.slot as usize;
-        if *self.generations.get(slot)? != id.generation {
-            return None;
-        }
-        Some(self.seats[slot]).filter(|&seat| self.has(seat, flag::LIVE))
+        self.is_living(id).then(|| self.seats[id.slot as usize])
+    }
+
+    /// Whether an id names a living body.
+    #[inline]
+    pub fn is_living(&self, id: ProxyId) -> bool {
+        self.living.get(id.slot as usize) == Some(&id.generation) && id.generation != 0
     }
 
     /// The seat of the body of the id at `index` of what was passed.
@@ -150,15 +158,24 @@ impl Slots {
         } else {
             self.add(1)
         };
-        self.live += 1;
-        self.flags[seat as usize] = flag::LIVE;
+        self.flags[seat as usize] = 0;
+        self.enliven(seat);
         seat
+    }
+
+    /// Begins a body's life.
+    pub fn enliven(&mut self, seat: u32) {
+        let slot = self.slots[seat as usize] as usize;
+        self.live += 1;
+        self.living[slot] = self.generations[slot];
+        self.raise(seat, flag::LIVE);
     }
 
     /// Adds a slot that is not in use, with the last seat.
     pub fn add(&mut self, generation: u32) -> u32 {
         let slot = self.len() as u32;
         self.generations.push(generation);
+        self.living.push(0);
         self.seats.push(slot);
         self.slots.push(slot);
         self.flags.push(0);
@@ -168,6 +185,7 @@ impl Slots {
     /// Ends a body's life; its slot stays taken until [`release`](Self::release).
     pub fn retire(&mut self, seat: u32) {
         self.live -= 1;
+        self.living[self.slots[seat as usize] as usize] = 0;
         self.lower(seat, flag::LIVE | flag::SWEPT);
         self.raise(seat, flag::LEAVING);
     }

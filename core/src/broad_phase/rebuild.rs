@@ -11,13 +11,18 @@ use super::updater::{Scratch, Updater};
 use super::warm::warm;
 use crate::{Error, Scalar};
 
+/// Where fewer than one body in so many moves, each is taken by itself.
+const FEW: usize = 4;
+
 impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Reports what begins and ends, given who changed, escaped and left. Says whether seats
     /// should be dealt anew.
+    #[inline(never)]
     pub(super) fn rebuild(&mut self) -> bool {
         let has_same_bodies = self.leaving.is_empty() && !self.updater.any_refiltered;
-        let is_new = |seat: &u32| self.slots.has(*seat, flag::NEW);
-        let new = self.updater.scratch.escaped.iter().filter(|seat| is_new(seat)).count();
+        let is_new = |seat: &&u32| self.slots.has(**seat, flag::NEW);
+        let Updater { any_new, scratch, .. } = &self.updater;
+        let new = if *any_new { scratch.escaped.iter().filter(is_new).count() } else { 0 };
 
         let Updater { candidates, ended, .. } = &mut self.updater;
         let (flags, boxes, filters) = (&self.slots.flags, &self.boxes, &self.filters);
@@ -25,10 +30,12 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             let is_apart = !overlap(&boxes[a as usize], &boxes[b as usize]);
             ([a, b], candidates.live[index] & is_apart)
         });
+        let asleep = candidates.asleep_pairs(&self.slots);
+        ended.extend(asleep.filter(|&[a, b]| !overlap(&boxes[a as usize], &boxes[b as usize])));
         if !has_same_bodies {
             // The boxes alone do not say what ends.
             ended.clear();
-            ended.extend(candidates.live_pairs().filter(|pair| {
+            ended.extend(candidates.live_pairs(&self.slots).filter(|pair| {
                 let [a, b] = pair.map(|seat| seat as usize);
                 flags[a] & flags[b] & flag::LIVE == 0
                     || !filters[a].allows(&filters[b])
@@ -36,6 +43,10 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             }));
         }
 
+        if self.updater.sleep.wake_all() {
+            self.slots.flags.iter_mut().for_each(|flags| *flags &= !flag::ASLEEP);
+        }
+        self.updater.front = self.slots.len();
         let are_fat = self.fatten_all();
         self.find_candidates(|flags| flags & flag::LIVE != 0);
         if self.any_filter {
@@ -65,7 +76,10 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             // Nor what began.
             begun.clear();
             begun.extend(
-                self.updater.candidates.live_pairs().filter(|&[a, b]| !self.was_live(a, b)),
+                self.updater
+                    .candidates
+                    .live_pairs(&self.slots)
+                    .filter(|&[a, b]| !self.was_live(a, b)),
             );
         }
         self.updater.begun = begun;
@@ -75,6 +89,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
 
     /// Gives all bodies new fat boxes; the fat box of a body that rests is its own. Says whether
     /// any is larger.
+    #[inline(never)]
     fn fatten_all(&mut self) -> bool {
         let Updater { fat, previous, prediction, .. } = &mut self.updater;
         prediction.look(self.changed.iter().map(|&seat| {
@@ -84,12 +99,19 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             (&before[at], &self.boxes[at])
         }));
         fat.copy_from_slice(&self.boxes);
-        let are_fat = prediction.reaches() || self.options.margin > T::default();
+        // Where few bodies move they should not all leave their fat boxes at once.
+        let are_few = self.changed.len() * FEW < self.slots.live;
+        let are_fat = are_few || prediction.reaches() || self.options.margin > T::default();
         if are_fat {
             for &seat in &self.changed {
                 let at = seat as usize;
+                let (before, now) = (&previous[at], &self.boxes[at]);
                 if !self.slots.has(seat, flag::NEW) {
-                    fat[at] = prediction.together(&previous[at], &self.boxes[at], &self.options);
+                    fat[at] = if are_few {
+                        prediction.alone(seat, before, now, &self.options)
+                    } else {
+                        prediction.together(before, now, &self.options)
+                    };
                 }
             }
         }
@@ -98,7 +120,8 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
 
     /// Replaces the candidates by the pairs of fat boxes of the seats with such flags. Those of two
     /// bodies that are and were static are not even looked for.
-    fn find_candidates(&mut self, takes_part: impl Fn(u8) -> bool) {
+    #[inline(never)]
+    fn find_candidates(&mut self, takes_part: impl Fn(u16) -> bool) {
         let mut seats = core::mem::take(&mut self.updater.scratch.seats);
         let flags = &self.slots.flags;
         let is_whole = !self.any_filter && flags.iter().all(|&flags| takes_part(flags));
@@ -138,7 +161,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     }
 
     /// Whether a pair was live at the last update.
-    fn was_live(&self, a: u32, b: u32) -> bool {
+    pub(super) fn was_live(&self, a: u32, b: u32) -> bool {
         let previous = &self.updater.previous;
         !self.slots.has(a, flag::NEW)
             && !self.slots.has(b, flag::NEW)

@@ -6,6 +6,7 @@
 use alloc::vec::Vec;
 
 use super::BroadPhase;
+use super::proxy::flag;
 use super::updater::{Scratch, Updater};
 use crate::Scalar;
 
@@ -30,20 +31,30 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         is_worn
     }
 
-    /// Deals seats in the order of the candidates; who has none comes last. To be called at the end
-    /// of an update in which the finder found the candidates. O(n + pairs) time.
+    /// Deals seats in the order of the candidates, first to those who are awake; who has none comes
+    /// last. To be called at the end of an update. O(n + pairs) time.
+    #[inline(never)]
     pub(super) fn deal_seats(&mut self) {
-        let Updater { scratch, candidates, tree, previous, fat, .. } = &mut self.updater;
+        let Updater { scratch, candidates, tree, previous, fat, front, .. } = &mut self.updater;
         let Scratch { boxes: spare, seats: order, found: renamed, .. } = scratch;
         order.clear();
         renamed.clear();
         renamed.resize(self.slots.len(), u32::MAX);
         let everyone = 0..self.slots.len() as u32;
-        for old in candidates.pairs.iter().flatten().copied().chain(everyone) {
-            let new = &mut renamed[old as usize];
-            if *new == u32::MAX {
-                *new = order.len() as u32;
-                order.push(old);
+        let is_up = |&seat: &u32| {
+            self.slots.flags[seat as usize] & (flag::LIVE | flag::ASLEEP) == flag::LIVE
+        };
+        for up in [true, false] {
+            let paired = candidates.pairs.iter().flatten().copied();
+            for old in paired.chain(everyone.clone()).filter(|seat| is_up(seat) == up) {
+                let new = &mut renamed[old as usize];
+                if *new == u32::MAX {
+                    *new = order.len() as u32;
+                    order.push(old);
+                }
+            }
+            if up {
+                *front = order.len();
             }
         }
         for table in [&mut self.boxes, &mut self.shapes, previous, fat] {

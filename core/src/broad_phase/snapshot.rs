@@ -133,8 +133,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         let (mut shape, mut boxed) = (nothing, nothing);
         let seat = self.slots.add(generation);
         if is_live {
-            self.slots.live += 1;
-            self.slots.raise(seat, flag::LIVE);
+            self.slots.enliven(seat);
             shape = reader.aabb()?;
             boxed = if self.options.report == Report::Fat { reader.aabb()? } else { shape };
             if !contains(&boxed, &shape) {
@@ -161,6 +160,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         self.updater.add_seat(old_box);
         if has(holds::NEW) {
             self.slots.raise(seat, flag::NEW);
+            self.updater.any_new = true;
         }
         if has(holds::OLD_FILTER) {
             let old = reader.filter()?;

@@ -1,14 +1,17 @@
 //! The update: from boxes that changed to the pairs that began and ended.
 //!
 //! Every body has a fat box around its box, and the pairs of fat boxes are kept as candidates. As
-//! long as bodies stay within their fat boxes only candidates can begin or end, and an update
-//! tests those of the bodies that moved. A body that leaves its fat box gets a new one, which
-//! reaches ahead in the direction of its motion, and a tree tells what that overlaps (`follow`).
-//! When so many leave that it is cheaper, the finder finds all candidates anew (`rebuild`).
+//! long as bodies stay within their fat boxes only candidates can begin or end, and an update goes
+//! through the list of them; those of bodies that rest are not in it (`sleep`). A body that leaves
+//! its fat box gets a new one, which reaches ahead in the direction of its motion, and a tree tells
+//! what that overlaps (`follow`). When so many leave that it is cheaper, the finder finds all
+//! candidates anew (`rebuild`).
 //!
 //! Neither the fat boxes nor the choice of the way show in what is reported. A pair is live if
 //! the last update knew both bodies, their boxes then overlapped and their filters then allowed
 //! it: that is a fact about boxes and filters, whatever else is kept.
+//!
+//! The steps of an update are compiled apart from each other: in one they are larger and no faster.
 
 use alloc::vec::Vec;
 
@@ -17,16 +20,16 @@ use super::changes::Changes;
 use super::options::contains;
 use super::proxy::{ProxyId, flag};
 use super::sort::PairSorter;
-use super::updater::{TreeState, Updater};
+use super::updater::{TreeState, Updater, in_order};
 use super::warm::warm;
 use crate::{Aabb, Scalar};
 
 /// To follow a body that left its fat box costs as much as to find the candidates of so many
 /// bodies anew.
-const REBUILD: usize = 6;
+pub(super) const REBUILD: usize = 24;
 
-/// To look at a body out of order takes as long as to pass over so many in order.
-pub(super) const SOME: usize = 16;
+/// If one in so many bodies changed, all are gone through to find them in the order of the seats.
+const MOST: usize = 4;
 
 impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Reports the pairs that began and ended since the last update.
@@ -50,7 +53,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             self.slots.name_pairs(pairs);
             scratch.sorter.sort(pairs, slots);
         }
-        self.end_update();
+        is_worn |= self.end_update();
         if is_worn {
             self.deal_seats();
         }
@@ -60,71 +63,91 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
 
     /// Lists the bodies that need a new fat box: those that left theirs, are new, or may pair with
     /// others than before. Leaves each changed body that lives in the list of the changed, once.
+    #[inline(never)]
     fn find_escaped(&mut self) {
-        let Updater { fat, scratch, .. } = &mut self.updater;
+        let Updater { fat, scratch, front, .. } = &mut self.updater;
         scratch.escaped.clear();
         let slots = &mut self.slots;
         let boxes = &self.boxes;
         let settled = !(flag::CHANGED | flag::KNOWN);
-        // Whether a body that changed needs a new fat box.
-        let escapes = |flags: u8, at: usize| {
-            (flags & (flag::NEW | flag::REFILTERED) != 0) | !contains(&fat[at], &boxes[at])
-        };
-        if self.changed.len() * SOME > slots.len() {
+        // Who changed and is one of these needs a new fat box in any case.
+        let odd = flag::NEW | flag::REFILTERED | flag::ASLEEP;
+        if self.changed.len() * MOST > slots.len() {
             // In the order of the seats, which is faster than that of the calls.
+            const CHUNK: usize = 256;
+            let is_changed = flag::CHANGED | flag::LIVE;
+            let escaped = &mut scratch.escaped;
             self.changed.clear();
-            push_wanted(&mut self.changed, &slots.flags, |seat, flags| {
-                (seat as u32, flags & (flag::CHANGED | flag::LIVE) == flag::CHANGED | flag::LIVE)
-            });
-            warm(boxes);
-            warm(fat);
-            push_wanted(&mut scratch.escaped, &self.changed, |_, seat| {
-                let at = seat as usize;
-                (seat, escapes(slots.flags[at], at))
-            });
-            slots.flags.iter_mut().for_each(|flags| *flags &= settled);
+            for (index, chunk) in slots.flags.chunks_mut(CHUNK).enumerate() {
+                let start = index * CHUNK;
+                let (mut changes, mut escapes) = (self.changed.len(), escaped.len());
+                self.changed.resize(changes + chunk.len(), 0);
+                escaped.resize(escapes + chunk.len(), 0);
+                let sides = boxes[start..].iter().zip(&fat[start..]);
+                for (at, (flags, (aabb, fat))) in chunk.iter_mut().zip(sides).enumerate() {
+                    let seat = (start + at) as u32;
+                    let changed = *flags & is_changed == is_changed;
+                    let escaped_now = (*flags & odd != 0) | !contains(fat, aabb);
+                    self.changed[changes] = seat;
+                    changes += usize::from(changed);
+                    escaped[escapes] = seat;
+                    escapes += usize::from(changed & escaped_now);
+                    *flags = *flags & settled | (*flags & flag::CHANGED) << 7;
+                }
+                self.changed.truncate(changes);
+                escaped.truncate(escapes);
+            }
             return;
         }
+        let read = in_order(self.changed.len(), *front, slots.len());
+        warm(&boxes[..read]);
+        warm(&fat[..read]);
         self.changed.retain(|&seat| {
             let at = seat as usize;
             let flags = slots.flags[at];
-            slots.flags[at] &= settled;
+            slots.flags[at] = flags & settled | flag::RECENT;
             let is_first = flags & (flag::CHANGED | flag::LIVE) == flag::CHANGED | flag::LIVE;
-            if is_first && escapes(flags, at) {
+            if is_first && (flags & odd != 0 || !contains(&fat[at], &boxes[at])) {
                 scratch.escaped.push(seat);
             }
             is_first
         });
     }
 
-    /// Makes the world of now the world of the last update.
-    fn end_update(&mut self) {
-        let Updater { previous, tree_state, any_refiltered, .. } = &mut self.updater;
-        if self.changed.len() * SOME > self.slots.len() {
-            // The others' are the same, or mean nothing.
-            previous.copy_from_slice(&self.boxes);
-            let known = !(flag::NEW | flag::REFILTERED);
-            self.slots.flags.iter_mut().for_each(|flags| *flags &= known);
-        } else {
-            for &seat in &self.changed {
+    /// Makes the world of now the world of the last update. Says whether seats should be dealt anew.
+    #[inline(never)]
+    fn end_update(&mut self) -> bool {
+        let Updater { previous, tree_state, any_refiltered, any_new, front, .. } =
+            &mut self.updater;
+        // The others' are the same, or mean nothing.
+        let read = in_order(self.changed.len(), *front, self.slots.len());
+        previous[..read].copy_from_slice(&self.boxes[..read]);
+        if read < previous.len() {
+            for &seat in self.changed.iter().filter(|&&seat| seat as usize >= read) {
                 previous[seat as usize] = self.boxes[seat as usize];
+            }
+        }
+        if core::mem::take(any_refiltered) | core::mem::take(any_new) {
+            for &seat in &self.changed {
                 self.slots.lower(seat, flag::NEW | flag::REFILTERED);
             }
         }
+        let moved = self.changed.len();
         self.changed.clear();
-        *any_refiltered = false;
         if let TreeState::Fresh { known } = tree_state {
             *known = 0;
         }
+        let is_apart = self.settle_down(moved);
         for seat in self.leaving.drain(..) {
             self.slots.release(seat);
         }
         self.settle();
+        is_apart
     }
 
     /// The pairs that overlapped at the last update, sorted. O(pairs) time.
     pub fn pairs(&self) -> Vec<[ProxyId; 2]> {
-        let mut pairs: Vec<_> = self.updater.candidates.live_pairs().collect();
+        let mut pairs: Vec<_> = self.updater.candidates.live_pairs(&self.slots).collect();
         self.slots.name_pairs(&mut pairs);
         PairSorter::default().sort(&mut pairs, self.slots.len());
         pairs.into_iter().map(|pair| pair.map(|slot| self.slots.id_of_slot(slot))).collect()
@@ -132,25 +155,23 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
 
     /// The bodies that overlapped this one at the last update, sorted.
     ///
-    /// Time in proportion to their number and that of near misses; after an update in which most
-    /// bodies left their neighbourhood, once O(pairs).
+    /// O(log n) time and that of its neighbours; after an update in which most bodies left their
+    /// neighbourhood, once O(n log n).
     ///
     /// # Errors
     /// [`Error::StaleProxy`](crate::Error::StaleProxy).
     pub fn pairs_of(&mut self, id: ProxyId) -> Result<Vec<ProxyId>, crate::Error> {
         let seat = self.slots.check(id, 0)?;
-        let candidates = &mut self.updater.candidates;
-        candidates.link(self.slots.len());
         let mut others = Vec::new();
-        let mut next = candidates.first(seat);
-        while let Some(index) = next {
-            let (other, later) = candidates.step(index, seat);
-            if candidates.live[index as usize] {
-                others.push(self.slots.id(other));
-            }
-            next = later;
+        if !self.slots.has(seat, flag::NEW) {
+            self.ready_tree();
+            let Updater { tree, previous, .. } = &self.updater;
+            let (mut leaves, mut found) = (Vec::new(), Vec::new());
+            tree.overlapping_many(&[(seat, previous[seat as usize])], &mut leaves, &mut found);
+            found.retain(|&[_, other]| other != seat && self.was_live(seat, other));
+            others.extend(found.into_iter().map(|[_, other]| self.slots.id(other)));
+            others.sort_unstable();
         }
-        others.sort_unstable();
         Ok(others)
     }
 }

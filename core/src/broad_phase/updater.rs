@@ -5,8 +5,10 @@ use alloc::vec::Vec;
 use super::candidates::Candidates;
 use super::filter::Filter;
 use super::predict::Prediction;
+use super::sleep::Sleep;
 use super::sort::PairSorter;
 use super::tree::Tree;
+use super::warm::warm;
 use crate::finder::PairFinder;
 use crate::{Aabb, Scalar};
 
@@ -23,13 +25,20 @@ pub(super) struct Updater<const D: usize, T: Scalar> {
     /// By seat, the fat box. Means nothing for bodies of `flag::NEW`.
     pub fat: Vec<Aabb<D, T>>,
     pub candidates: Candidates,
+    pub sleep: Sleep,
     pub tree: Tree<D, T>,
     pub tree_state: TreeState,
     /// How often the tree was searched since it was built, roughly.
     pub tree_uses: usize,
     pub prediction: Prediction,
+    /// Those who move of late have seats below this, but for some.
+    pub front: usize,
+    /// Whether there is a body of `flag::NEW`.
+    pub any_new: bool,
     /// How much the order of the seats has suffered from motion.
     pub wear: usize,
+    /// How many the finder works on.
+    threads: usize,
     pub scratch: Scratch<D, T>,
     pub begun: Vec<[u32; 2]>,
     pub ended: Vec<[u32; 2]>,
@@ -46,6 +55,48 @@ pub(super) enum TreeState {
     Unbuilt,
 }
 
+/// To look at a body out of order takes as long as to pass over so many in order.
+pub(super) const SOME: usize = 16;
+
+/// How much of a table by seat is better passed over in order than looked at here and there, if it
+/// is `count` items that matter: all of it, the front, or nothing.
+pub(super) fn in_order(count: usize, front: usize, all: usize) -> usize {
+    let worth = count.saturating_mul(SOME);
+    if front > all / 2 && worth > all {
+        all
+    } else if worth > front {
+        front
+    } else {
+        0
+    }
+}
+
+/// A set of seats, of a bit each.
+#[derive(Debug, Default)]
+pub(super) struct Marks(Vec<u64>);
+
+impl Marks {
+    /// Makes room for so many seats.
+    pub fn resize(&mut self, seats: usize) {
+        self.0.resize(seats.div_ceil(64), 0);
+    }
+
+    #[inline]
+    pub fn set(&mut self, seat: u32) {
+        self.0[seat as usize / 64] |= 1 << (seat % 64);
+    }
+
+    #[inline]
+    pub fn clear(&mut self, seat: u32) {
+        self.0[seat as usize / 64] &= !(1 << (seat % 64));
+    }
+
+    #[inline]
+    pub fn has(&self, seat: u32) -> bool {
+        self.0[seat as usize / 64] >> (seat % 64) & 1 != 0
+    }
+}
+
 /// Buffers, kept so that they need not be allocated again.
 #[derive(Debug)]
 pub(super) struct Scratch<const D: usize, T: Scalar> {
@@ -58,10 +109,15 @@ pub(super) struct Scratch<const D: usize, T: Scalar> {
     pub escaped: Vec<u32>,
     pub found: Vec<u32>,
     pub pairs: Vec<[u32; 2]>,
-    pub is_old: Vec<bool>,
+    pub marks: Marks,
+    pub moved: Marks,
+    pub places: Vec<usize>,
+    pub dropped: Vec<usize>,
+    pub queries: Vec<(u32, Aabb<D, T>)>,
+    pub leaves: Vec<[u32; 2]>,
     pub names: Vec<u32>,
     pub filters: Vec<Filter>,
-    pub flags: Vec<u8>,
+    pub flags: Vec<u16>,
 }
 
 impl<const D: usize, T: Scalar> Updater<D, T> {
@@ -72,21 +128,37 @@ impl<const D: usize, T: Scalar> Updater<D, T> {
             any_refiltered: false,
             fat: Vec::new(),
             candidates: Candidates::default(),
+            sleep: Sleep::default(),
             tree: Tree::new(),
             tree_state: TreeState::Unbuilt,
             tree_uses: 0,
             prediction: Prediction::default(),
+            front: 0,
+            any_new: false,
             wear: 0,
-            scratch: Scratch::new(),
+            threads: 1,
+            scratch: Scratch::new(1),
             begun: Vec::new(),
             ended: Vec::new(),
         }
     }
 
+    #[cfg(feature = "parallel")]
+    pub fn set_threads(&mut self, threads: usize) {
+        self.threads = threads;
+        self.scratch = Scratch::new(threads);
+    }
+
     /// Makes room for a new seat.
     pub fn add_seat(&mut self, aabb: Aabb<D, T>) {
+        self.front += usize::from(self.front == self.fat.len());
         self.previous.push(aabb);
         self.fat.push(aabb);
+    }
+
+    /// Reads the part of a table by seat through of which `count` items will be looked at.
+    pub fn warm_for<V: Copy>(&self, count: usize, table: &[V]) {
+        warm(&table[..in_order(count, self.front, table.len())]);
     }
 }
 
@@ -98,12 +170,16 @@ impl<const D: usize, T: Scalar> Clone for Updater<D, T> {
             any_refiltered: self.any_refiltered,
             fat: self.fat.clone(),
             candidates: self.candidates.clone(),
+            sleep: self.sleep.clone(),
             tree: self.tree.clone(),
             tree_state: self.tree_state,
             tree_uses: self.tree_uses,
             prediction: self.prediction.clone(),
+            front: self.front,
+            any_new: self.any_new,
             wear: self.wear,
-            scratch: Scratch::new(),
+            threads: self.threads,
+            scratch: Scratch::new(self.threads),
             begun: Vec::new(),
             ended: Vec::new(),
         }
@@ -111,17 +187,26 @@ impl<const D: usize, T: Scalar> Clone for Updater<D, T> {
 }
 
 impl<const D: usize, T: Scalar> Scratch<D, T> {
-    fn new() -> Self {
+    #[cfg_attr(not(feature = "parallel"), expect(unused_variables))]
+    fn new(threads: usize) -> Self {
+        // It is asked where most bodies got new boxes.
+        let finder = PairFinder::forgetful();
+        #[cfg(feature = "parallel")]
+        let finder = finder.threads(threads);
         Self {
-            // It is asked where most bodies got new boxes.
-            finder: PairFinder::forgetful(),
+            finder,
             sorter: PairSorter::default(),
             boxes: Vec::new(),
             seats: Vec::new(),
             escaped: Vec::new(),
             found: Vec::new(),
             pairs: Vec::new(),
-            is_old: Vec::new(),
+            marks: Marks::default(),
+            moved: Marks::default(),
+            places: Vec::new(),
+            dropped: Vec::new(),
+            queries: Vec::new(),
+            leaves: Vec::new(),
             names: Vec::new(),
             filters: Vec::new(),
             flags: Vec::new(),

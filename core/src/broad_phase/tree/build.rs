@@ -1,0 +1,152 @@
+//! Builds a tree from the top, and fits it to boxes that moved.
+
+use super::node::{FAN, FILL, Node, finite, size};
+use super::{NONE, Tree};
+use crate::{Aabb, Scalar};
+
+impl<const D: usize, T: Scalar> Tree<D, T> {
+    /// Builds the tree anew of these seats, which it puts into another order. O(n log n) time.
+    pub fn build(&mut self, seats: &mut [u32], boxes: &[Aabb<D, T>]) {
+        self.clear();
+        self.leaves.resize(boxes.len(), NONE);
+        self.count = seats.len();
+        let mut keys = core::mem::take(&mut self.keys);
+        keys.clear();
+        keys.extend(seats.iter().map(|&seat| [size_class(&boxes[seat as usize]), seat]));
+        keys.sort_unstable();
+        seats.iter_mut().zip(&keys).for_each(|(seat, &[_, sorted])| *seat = sorted);
+        let mut roots = Node::new(false);
+        let mut start = 0;
+        while let Some(&[class, _]) = keys.get(start) {
+            // Where there are more classes than a node has room for, the last holds the others.
+            let is_last = roots.count == FAN - 1;
+            let end = start + keys[start..].partition_point(|key| is_last || key[0] == class);
+            let leaves = (end - start).div_ceil(FILL);
+            let (root, bounds) = self.build_node(&mut seats[start..end], boxes, leaves);
+            roots.push(root, &bounds);
+            start = end;
+        }
+        self.keys = keys;
+        self.root = match roots.count {
+            0 => NONE,
+            1 => roots.items[0],
+            _ => self.add_inner(roots),
+        };
+        self.built = (self.leaf_size(), self.count);
+        // Room for what moving bodies add and take away, so that it need not be found later.
+        self.nodes.reserve(self.nodes.len() / 2);
+        self.free.reserve(self.nodes.len() / 2);
+    }
+
+    /// A node over seats that go into `leaves` leaves, and its bounds.
+    fn build_node(
+        &mut self,
+        seats: &mut [u32],
+        boxes: &[Aabb<D, T>],
+        leaves: usize,
+    ) -> (u32, Aabb<D, T>) {
+        if leaves <= 1 {
+            let mut leaf = Node::new(true);
+            for &seat in seats.iter() {
+                leaf.push(seat, &boxes[seat as usize]);
+                self.leaves[seat as usize] = self.nodes.len() as u32;
+            }
+            self.nodes.push(leaf);
+            return ((self.nodes.len() - 1) as u32, leaf.bounds());
+        }
+        // As few children as hold the leaves when they are full to the bottom.
+        let mut room = 1;
+        while room * FAN < leaves {
+            room *= FAN;
+        }
+        let mut inner = Node::new(false);
+        inner.has_leaves = room == 1;
+        self.build_children(seats, boxes, leaves, room, &mut inner);
+        (self.add_inner(inner), inner.bounds())
+    }
+
+    /// Cuts seats in two until what is left goes into a child of `room` leaves.
+    fn build_children(
+        &mut self,
+        seats: &mut [u32],
+        boxes: &[Aabb<D, T>],
+        leaves: usize,
+        room: usize,
+        inner: &mut Node<D, T>,
+    ) {
+        let count = leaves.div_ceil(room);
+        if count <= 1 {
+            let (child, bounds) = self.build_node(seats, boxes, leaves);
+            inner.push(child, &bounds);
+            return;
+        }
+        let left = (leaves * (count / 2)).div_ceil(count);
+        // The product of two counts, which 32 bits do not hold.
+        let middle = (seats.len() as u64 * left as u64 / leaves as u64) as usize;
+        let axis = widest_axis(seats, boxes);
+        let centre = |seat: &u32| boxes[*seat as usize].centre(axis);
+        seats.select_nth_unstable_by(middle, |a, b| centre(a).total_cmp(&centre(b)).then(a.cmp(b)));
+        let (low, high) = seats.split_at_mut(middle);
+        self.build_children(low, boxes, left, room, inner);
+        self.build_children(high, boxes, leaves - left, room, inner);
+    }
+
+    /// Takes over new boxes of all bodies. Returns how many times as large as when built the
+    /// leaves are in the mean. O(n) time.
+    pub fn refit(&mut self, boxes: &[Aabb<D, T>]) -> f64 {
+        if self.root != NONE {
+            self.refit_node(self.root, boxes);
+        }
+        let (size, count) = self.built;
+        let (size, now) = (size / count as f64, self.leaf_size() / self.count as f64);
+        if now > size { now / size } else { 1.0 }
+    }
+
+    fn refit_node(&mut self, index: u32, boxes: &[Aabb<D, T>]) -> Aabb<D, T> {
+        for lane in 0..self.nodes[index as usize].count {
+            let node = &self.nodes[index as usize];
+            let item = node.items[lane];
+            let aabb =
+                if node.is_leaf { boxes[item as usize] } else { self.refit_node(item, boxes) };
+            self.nodes[index as usize].set_aabb(lane, &aabb);
+        }
+        self.nodes[index as usize].bounds()
+    }
+
+    /// The sum of the sizes of the leaves.
+    fn leaf_size(&self) -> f64 {
+        let leaves = self.nodes.iter().filter(|node| node.is_leaf && node.count > 0);
+        leaves.map(|leaf| size(&leaf.bounds())).sum()
+    }
+}
+
+/// Sizes that differ by less than a factor of 8 on the longest axis are of one class, or of two
+/// neighbouring ones.
+fn size_class<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> u32 {
+    let longest =
+        (0..D).map(|axis| finite(aabb.max[axis]) - finite(aabb.min[axis])).fold(0.0, f64::max);
+    // The exponent, in threes; larger first, so that the many small classes are the ones to share.
+    let exponent = (longest.to_bits() >> 52) as u32;
+    2047 / 3 - exponent / 3
+}
+
+/// The axis on which the centres spread most for the size of the boxes.
+fn widest_axis<const D: usize, T: Scalar>(seats: &[u32], boxes: &[Aabb<D, T>]) -> usize {
+    let mut best = (0, -1.0, 0.0);
+    for axis in 0..D {
+        let (mut low, mut high, mut width) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
+        for &seat in seats {
+            let aabb = &boxes[seat as usize];
+            let centre = aabb.centre(axis);
+            low = low.min(centre);
+            high = high.max(centre);
+            width += finite(aabb.max[axis]) - finite(aabb.min[axis]);
+        }
+        let spread = high - low;
+        let ratio = if spread > 0.0 { spread / width } else { 0.0 };
+        if ratio > best.1 || ratio == best.1 && spread > best.2 {
+            best = (axis, ratio, spread);
+        }
+    }
+    best.0
+}
