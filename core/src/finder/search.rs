@@ -236,6 +236,8 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         let mut bins = self.bins.pop().unwrap_or([Bins::new(), Bins::new()]);
         let filled = fill(sets, &mut bins, grid);
         let result = match filled {
+            // The two sets share no bin: there are no pairs, nor shares of the work to tell.
+            Ok(()) if bins[..sets.len()].iter().any(|bins| bins.len() == 0) => task.done(1.0),
             Ok(()) => (0..grid.len())
                 .try_for_each(|bin| self.bin(&[&bins], sets.len(), bin, grid, task, sink)),
             Err(refusal) => self.refused(refusal, sets, grid, task, sink),
