@@ -102,10 +102,20 @@ impl<const D: usize> Bodies<D> {
 
     /// Per unit of mass, above the walls that gravity points to.
     pub fn potential_energy(&self, gravity: [f32; D], bounds: &Aabb<D>) -> f64 {
+        self.potential_energy_at(|ball| self.positions[ball], gravity, bounds)
+    }
+
+    /// What it would be with the balls at these places.
+    pub fn potential_energy_at(
+        &self,
+        place: impl Fn(usize) -> [f32; D],
+        gravity: [f32; D],
+        bounds: &Aabb<D>,
+    ) -> f64 {
         let ground: [f32; D] =
             from_fn(|axis| if gravity[axis] > 0.0 { bounds.max[axis] } else { bounds.min[axis] });
         self.mean_by_mass(|index| {
-            let position = self.positions[index];
+            let position = place(index);
             let heights = (0..D).map(|axis| f64::from(ground[axis]) - f64::from(position[axis]));
             heights.zip(gravity).map(|(height, g)| f64::from(g) * height).sum()
         })

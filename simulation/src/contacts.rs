@@ -4,15 +4,18 @@ use sweep_and_prune::Aabb;
 
 use crate::bodies::Bodies;
 use crate::order::LevelOrder;
-use crate::vector::{difference, dot};
+use crate::rows::Rows;
+use crate::vector::{Row, dot};
 
 /// Two balls that touch, or will before the substep ends.
-#[derive(Clone, Copy, Debug)]
-pub struct Contact<const D: usize> {
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Contact {
+    /// The unit vector from the first ball towards the second, and last 0.
+    pub normal: Row,
     /// The balls, smaller index first.
     pub pair: [u32; 2],
-    /// The unit vector from the first towards the second.
-    pub normal: [f32; D],
+    /// 1/m₀ and 1/m₁.
+    pub inverse_masses: [f32; 2],
     /// How fast they may approach without overlapping at the end of the substep.
     pub slack: f32,
     /// The mass that the impulse moves: 1 / (1/m₀ + 1/m₁).
@@ -38,17 +41,19 @@ pub struct WallContact {
 /// The contacts of a substep, with the impulses that those that last had in the substep before.
 /// Their order depends on the balls alone, not on the order in which a broad phase found them.
 #[derive(Clone, Debug, Default)]
-pub struct Contacts<const D: usize> {
+pub struct Contacts {
     /// From the top down, as gravity sees it; those on one level by their indices.
-    pub balls: Vec<Contact<D>>,
+    pub balls: Vec<Contact>,
     /// By index and axis.
     pub walls: Vec<WallContact>,
     /// Where in `balls` each contact is, the contacts sorted by their indices.
     places: Vec<u32>,
     /// The pairs of the substep before and their impulses, sorted by their indices.
-    before: Vec<([u32; 2], f32)>,
+    before: Vec<(u64, f32)>,
     walls_before: Vec<WallContact>,
     touching: Vec<[u32; 2]>,
+    /// By ball.
+    depths: Vec<f32>,
     level_order: LevelOrder,
 }
 
@@ -67,29 +72,43 @@ pub struct Surroundings<const D: usize> {
 /// although its position is rounded.
 const WALL_MARGIN: f32 = 0.01;
 
-impl<const D: usize> Contacts<D> {
-    /// Finds the contacts among `pairs`, which are sorted by their indices, and at the walls.
-    pub fn find(&mut self, pairs: &[[u32; 2]], bodies: &Bodies<D>, around: &Surroundings<D>) {
+impl Contacts {
+    /// Finds the contacts among `pairs`, which are sorted by their indices, and at the walls. The
+    /// rows are those of the balls as they are.
+    pub fn find<const D: usize>(
+        &mut self,
+        pairs: &[[u32; 2]],
+        bodies: &Bodies<D>,
+        rows: &Rows,
+        around: &Surroundings<D>,
+    ) {
         let balls = self.places.iter().map(|&place| &self.balls[place as usize]);
         self.before.clear();
-        self.before.extend(balls.map(|contact| (contact.pair, contact.impulse)));
+        self.before.extend(balls.map(|contact| (key(contact.pair), contact.impulse)));
         std::mem::swap(&mut self.walls, &mut self.walls_before);
-        self.touching.clear();
-        self.touching.extend(pairs.iter().filter(|&&pair| touch(pair, bodies, around.time)));
 
-        let height = |[a, b]: [u32; 2]| {
-            let (a, b) = (bodies.positions[a as usize], bodies.positions[b as usize]);
-            -dot(around.gravity, a) - dot(around.gravity, b)
-        };
-        let heights = self.touching.iter().map(|&pair| height(pair));
-        self.level_order.sort(heights, &mut self.places);
+        // Each is written, and counts if it touches: that about every other does would be guessed
+        // wrong as often.
+        self.touching.resize(pairs.len(), [0; 2]);
+        let mut count = 0;
+        for &pair in pairs {
+            self.touching[count] = pair;
+            count += usize::from(touch::<D>(pair, rows, around.time));
+        }
+        self.touching.truncate(count);
+
+        self.depths.clear();
+        self.depths.extend(bodies.positions.iter().map(|&at| dot(around.gravity, at)));
+        let height = |&[a, b]: &[u32; 2]| -self.depths[a as usize] - self.depths[b as usize];
+        self.level_order.sort(self.touching.iter().map(height), &mut self.places);
 
         let mut before = self.before.iter().peekable();
-        self.balls.resize(self.touching.len(), Contact::NONE);
+        self.balls.resize(self.touching.len(), Contact::default());
         for (&pair, &place) in self.touching.iter().zip(&self.places) {
-            while before.next_if(|(old, _)| *old < pair).is_some() {}
-            let impulse = before.next_if(|(old, _)| *old == pair).map_or(0.0, |&(_, old)| old);
-            self.balls[place as usize] = contact(pair, impulse, bodies, around.time);
+            let key = key(pair);
+            while before.next_if(|(old, _)| *old < key).is_some() {}
+            let impulse = before.next_if(|(old, _)| *old == key).map_or(0.0, |&(_, old)| old);
+            self.balls[place as usize] = contact(pair, impulse, bodies, rows, around.time);
         }
 
         find_walls(bodies, &around.bounds, &mut self.walls);
@@ -110,69 +129,65 @@ impl<const D: usize> Contacts<D> {
     }
 }
 
-impl<const D: usize> Contact<D> {
-    /// To fill an array with.
-    const NONE: Self = Self { pair: [0; 2], normal: [0.0; D], slack: 0.0, mass: 0.0, impulse: 0.0 };
+/// One number for a pair, in the order of its indices.
+#[inline]
+fn key([a, b]: [u32; 2]) -> u64 {
+    u64::from(a) << 32 | u64::from(b)
 }
 
 /// The exact test: whether two balls touch now, or will before `time` has passed if nothing
-/// changes their velocities. Closed, as the boxes are.
+/// changes their velocities. Closed, as the boxes are. Without a branch.
 #[inline]
-fn touch<const D: usize>([a, b]: [u32; 2], bodies: &Bodies<D>, time: f32) -> bool {
-    let (a, b) = (a as usize, b as usize);
-    let reach = bodies.radii[a] + bodies.radii[b];
-    let apart = difference(bodies.positions[b], bodies.positions[a]);
-    let gap = dot(apart, apart) - reach * reach;
-    if gap <= 0.0 {
-        return true;
-    }
+fn touch<const D: usize>(pair: [u32; 2], rows: &Rows, time: f32) -> bool {
+    let [a, b] = pair.map(|id| id as usize);
+    let [at_a, at_b] = [&rows.places[a], &rows.places[b]];
+    let reach = at_a.0[3] + at_b.0[3];
+    let apart = at_b.minus(at_a);
+    let gap = apart.dot::<D>(&apart) - reach * reach;
     // The square of the distance is a parabola in time; its least value decides.
-    let velocity = difference(bodies.velocities[b], bodies.velocities[a]);
-    let slope = dot(apart, velocity);
-    let curvature = dot(velocity, velocity);
-    if slope >= 0.0 {
-        false
-    } else if -slope >= curvature * time {
-        gap + (slope * 2.0 + curvature * time) * time <= 0.0
-    } else {
-        gap * curvature <= slope * slope
-    }
+    let velocity = rows.velocities[b].minus(&rows.velocities[a]);
+    let slope = apart.dot::<D>(&velocity);
+    let curvature = velocity.dot::<D>(&velocity);
+    let is_least_at_end = -slope >= curvature * time;
+    let touches_at_end = gap + (slope * 2.0 + curvature * time) * time <= 0.0;
+    let touches_before = gap * curvature <= slope * slope;
+    let will = (is_least_at_end & touches_at_end) | (!is_least_at_end & touches_before);
+    (gap <= 0.0) | ((slope < 0.0) & will)
 }
 
 fn contact<const D: usize>(
     pair: [u32; 2],
     impulse: f32,
     bodies: &Bodies<D>,
+    rows: &Rows,
     time: f32,
-) -> Contact<D> {
+) -> Contact {
     let [a, b] = pair.map(|id| id as usize);
-    let (normal, distance) = normal_and_distance(pair, bodies);
-    let gap = distance - bodies.radii[a] - bodies.radii[b];
+    let (normal, distance) = normal_and_distance::<D>(pair, &rows.places);
+    let gap = distance - rows.places[a].0[3] - rows.places[b].0[3];
     let slack = if gap > 0.0 { gap / time } else { 0.0 };
-    let mass = 1.0 / (bodies.inverse_masses[a] + bodies.inverse_masses[b]);
-    Contact { pair, normal, slack, mass, impulse }
+    let inverse_masses = [bodies.inverse_masses[a], bodies.inverse_masses[b]];
+    let mass = 1.0 / (inverse_masses[0] + inverse_masses[1]);
+    Contact { normal, pair, inverse_masses, slack, mass, impulse }
 }
 
-/// The unit vector from the first centre to the second, and how far apart they are.
+/// The unit vector from the first centre to the second, last 0, and how far apart they are.
 ///
 /// Coincident centres have no direction between them; they get an axis by their indices, so that
 /// many in one place do not all leave along one line.
 #[inline]
-pub fn normal_and_distance<const D: usize>(
-    [a, b]: [u32; 2],
-    bodies: &Bodies<D>,
-) -> ([f32; D], f32) {
-    let apart = difference(bodies.positions[b as usize], bodies.positions[a as usize]);
-    let square = dot(apart, apart);
+pub fn normal_and_distance<const D: usize>([a, b]: [u32; 2], places: &[Row]) -> (Row, f32) {
+    let apart = Row::new(places[b as usize].minus(&places[a as usize]).vector::<D>(), 0.0);
+    let square = apart.dot::<D>(&apart);
     // Below this the square is subnormal, or was rounded to nothing.
     if square < 1e-30 {
         let mut normal = [0.0; D];
         let direction = a.wrapping_add(b) as usize % (2 * D);
         normal[direction / 2] = if direction.is_multiple_of(2) { 1.0 } else { -1.0 };
-        return (normal, 0.0);
+        return (Row::new(normal, 0.0), 0.0);
     }
     let distance = square.sqrt();
-    (apart.map(|x| x / distance), distance)
+    (Row(apart.0.map(|x| x / distance)), distance)
 }
 
 /// Balls at walls, in the order of their indices and then of the axes.

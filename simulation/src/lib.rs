@@ -82,6 +82,7 @@ mod contacts;
 mod enclosures;
 mod grid;
 mod order;
+mod rows;
 mod scatter;
 pub mod scenes;
 mod setup;

@@ -3,43 +3,35 @@
 
 use crate::vector::{greater, lesser};
 
-/// Sorts pairs by (a, b): counted into one bucket an `a`, each bucket then sorted by `b`; the few
-/// that come later are merged.
+/// Sorts pairs by (a, b): counted into one bucket a `b`, then, keeping that order, into one an `a`;
+/// the few that come later are merged.
 #[derive(Clone, Debug, Default)]
 pub struct PairOrder {
     moved: Vec<[u32; 2]>,
-    ends: Vec<u32>,
+    ends: [Vec<u32>; 2],
 }
 
 impl PairOrder {
     /// Sorts pairs of indices below `n`, of which the first `sorted` are so already.
-    /// O(n + pairs) for few pairs a body; where some are sorted, O(pairs + k log k) for k others.
-    pub fn sort(&mut self, pairs: &mut Vec<[u32; 2]>, sorted: usize, n: usize) {
+    /// O(n + pairs); where some are sorted, O(pairs + k log k) for k others.
+    pub fn sort(&mut self, pairs: &mut [[u32; 2]], sorted: usize, n: usize) {
         if sorted > 0 { self.merge(pairs, sorted) } else { self.count(pairs, n) }
     }
 
-    fn count(&mut self, pairs: &mut Vec<[u32; 2]>, n: usize) {
-        self.ends.clear();
-        self.ends.resize(n + 1, 0);
-        for &[a, _] in &*pairs {
-            self.ends[a as usize + 1] += 1;
+    fn count(&mut self, pairs: &mut [[u32; 2]], n: usize) {
+        for ends in &mut self.ends {
+            ends.clear();
+            ends.resize(n + 1, 0);
         }
-        for a in 0..n {
-            self.ends[a + 1] += self.ends[a];
+        for pair in &*pairs {
+            for (ends, &index) in self.ends.iter_mut().zip(pair) {
+                ends[index as usize + 1] += 1;
+            }
         }
         self.moved.resize(pairs.len(), [0; 2]);
-        // While scattering, `ends[a]` is where the next of bucket `a` goes, and so ends as its end.
-        for &pair in &*pairs {
-            let place = &mut self.ends[pair[0] as usize];
-            self.moved[*place as usize] = pair;
-            *place += 1;
-        }
-        let mut start = 0;
-        for &end in &self.ends[..n] {
-            self.moved[start..end as usize].sort_unstable();
-            start = end as usize;
-        }
-        std::mem::swap(pairs, &mut self.moved);
+        let Self { moved, ends: [firsts, seconds] } = self;
+        scatter(pairs, seconds, moved, |[_, b]| b);
+        scatter(moved, firsts, pairs, |[a, _]| a);
     }
 
     /// From the back to the front, until all that are new have found their places.
@@ -58,6 +50,25 @@ impl PairOrder {
                 self.moved.pop();
             }
         }
+    }
+}
+
+/// Moves pairs into the order of their keys, those of equal keys in the order in which they are.
+/// There are `ends[k + 1]` of key `k`.
+fn scatter(
+    pairs: &[[u32; 2]],
+    ends: &mut [u32],
+    to: &mut [[u32; 2]],
+    key: impl Fn([u32; 2]) -> u32,
+) {
+    for k in 1..ends.len() {
+        ends[k] += ends[k - 1];
+    }
+    // `ends[k]` is where the next of key `k` goes, and so ends as their end.
+    for &pair in pairs {
+        let place = &mut ends[key(pair) as usize];
+        to[*place as usize] = pair;
+        *place += 1;
     }
 }
 

@@ -8,6 +8,7 @@ use crate::broad_phase::{BroadPhase, Engine};
 use crate::candidates::Candidates;
 use crate::contacts::{Contacts, Surroundings};
 use crate::enclosures::Ahead;
+use crate::rows::Rows;
 use crate::setup::{Setup, SetupError};
 use crate::solver;
 use crate::vector::dot;
@@ -66,11 +67,11 @@ pub struct Simulation<const D: usize> {
     /// The least that the energy has been under these laws.
     least_energy: f64,
     engine: Engine<D>,
-    contacts: Contacts<D>,
+    contacts: Contacts,
     candidates: Candidates<D>,
     // Buffers.
-    velocities_before: Vec<[f32; D]>,
-    positions_before: Vec<[f32; D]>,
+    rows: Rows,
+    bounced: Vec<u8>,
 }
 
 /// A simulation at one moment, to go back to: all that its motion depends on but the laws.
@@ -78,7 +79,7 @@ pub struct Simulation<const D: usize> {
 #[derive(Clone, Debug)]
 pub struct Moment<const D: usize> {
     bodies: Bodies<D>,
-    contacts: Contacts<D>,
+    contacts: Contacts,
     steps: u64,
     least_energy: f64,
 }
@@ -104,8 +105,8 @@ impl<const D: usize> Simulation<D> {
             engine: Engine::new(BroadPhase::Library).expect("the library's finder takes any axis"),
             contacts: Contacts::default(),
             candidates: Candidates::default(),
-            velocities_before: Vec::new(),
-            positions_before: Vec::new(),
+            rows: Rows::default(),
+            bounced: Vec::new(),
         };
         simulation.bodies.kick(simulation.half_kick());
         Ok(simulation)
@@ -211,7 +212,8 @@ impl<const D: usize> Simulation<D> {
         let around =
             Surroundings { bounds: self.bounds, gravity: self.gravity, time: self.substep_time() };
         self.candidates.sort();
-        self.contacts.find(&self.candidates.pairs, &self.bodies, &around);
+        self.rows.load(&self.bodies);
+        self.contacts.find(&self.candidates.pairs, &self.bodies, &self.rows, &around);
         report.contacts = self.contacts.balls.len();
         if !self.collisions {
             self.contacts.part_balls();
@@ -231,14 +233,18 @@ impl<const D: usize> Simulation<D> {
     /// balls on. How far the energy is then below its least is what moving
     /// overlapping balls apart may add.
     fn resolve(&mut self, around: &Surroundings<D>) {
-        let threshold = self.bounce_threshold();
-        solver::bounce(&self.contacts, &mut self.bodies, self.restitution, threshold);
-        self.bodies.kick(self.half_kick());
-        solver::rest(&mut self.contacts, &mut self.bodies, &mut self.velocities_before);
+        let (threshold, half_kick) = (self.bounce_threshold(), self.half_kick());
+        let Self { contacts, bodies, rows, bounced, .. } = self;
+        let velocities = &mut rows.velocities[..];
+        solver::bounce::<D>(contacts, velocities, self.restitution, threshold, bounced);
+        rows.kick(half_kick);
+        rows.store_velocities(bodies);
+        solver::rest(contacts, bodies, &mut rows.velocities);
+        rows.store_velocities(bodies);
         self.take_surplus();
         let allowance = self.least_energy - self.energy().total();
-        let Self { contacts, bodies, positions_before, .. } = self;
-        solver::project(contacts, bodies, around, allowance, positions_before);
+        let Self { contacts, bodies, rows, .. } = self;
+        solver::project(contacts, bodies, rows, around, allowance);
     }
 
     /// Slows everything down by a hair where the energy has grown: contacts turn while balls slide

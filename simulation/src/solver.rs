@@ -2,10 +2,11 @@
 
 use crate::bodies::{Bodies, inside_walls};
 use crate::contacts::{Contact, Contacts, Surroundings, WallContact, normal_and_distance};
-use crate::vector::{add_scaled, difference, dot, lesser};
+use crate::rows::Rows;
+use crate::vector::{Row, add_scaled, difference, dot, greater, lesser};
 
 /// How often a bounce is passed on within one substep, from ball to ball.
-const BOUNCE_PASSES: usize = 4;
+const BOUNCE_PASSES: u8 = 4;
 /// Sweeps of the resting solver: up and down twice.
 const REST_SWEEPS: usize = 4;
 /// Sweeps of the projection: up and down twice.
@@ -20,26 +21,38 @@ const SLOP: f32 = 0.01;
 ///
 /// Each impulse by itself keeps momentum and, with restitution at most 1, adds no energy; so
 /// neither does any number of them, one after another.
+///
+/// Two balls whose velocities have not changed since they were looked at would not bounce this time
+/// either. So they are not looked at: `last` is kept by ball, the pass in which it last changed.
 pub fn bounce<const D: usize>(
-    contacts: &Contacts<D>,
-    bodies: &mut Bodies<D>,
+    contacts: &Contacts,
+    velocities: &mut [Row],
     restitution: f32,
     threshold: f32,
+    last: &mut Vec<u8>,
 ) {
-    for _ in 0..BOUNCE_PASSES {
+    last.clear();
+    last.resize(velocities.len(), 0);
+    for pass in 1..=BOUNCE_PASSES {
         let mut quiet = true;
         for contact in &contacts.balls {
-            let speed = speed_of_parting(contact, bodies);
+            let [a, b] = contact.pair.map(|id| id as usize);
+            if pass > 1 && last[a].max(last[b]) < pass - 1 {
+                continue;
+            }
+            let speed = speed_of_parting::<D>(contact, velocities);
             if speed < -threshold && speed < -contact.slack {
                 let impulse = -(1.0 + restitution) * speed * contact.mass;
-                push_apart(contact, impulse, bodies);
+                push_apart(contact, impulse, velocities);
+                (last[a], last[b]) = (pass, pass);
                 quiet = false;
             }
         }
         for wall in &contacts.walls {
-            let speed = speed_from_wall(wall, bodies);
+            let speed = speed_from_wall(wall, velocities);
             if *speed * wall.inward < -threshold {
                 *speed *= -restitution;
+                last[wall.body as usize] = pass;
                 quiet = false;
             }
         }
@@ -54,39 +67,37 @@ pub fn bounce<const D: usize>(
 ///
 /// It starts from the impulses of the substep before, as far as they bring that minimum nearer.
 /// Each correction brings it nearer still; so none of this ever adds energy, converged or not.
-pub fn rest<const D: usize>(
-    contacts: &mut Contacts<D>,
-    bodies: &mut Bodies<D>,
-    velocities_before: &mut Vec<[f32; D]>,
-) {
-    velocities_before.clone_from(&bodies.velocities);
+///
+/// `velocities` are those of the balls, and become those after it.
+pub fn rest<const D: usize>(contacts: &mut Contacts, bodies: &Bodies<D>, velocities: &mut [Row]) {
     for contact in &contacts.balls {
-        push_apart(contact, contact.impulse, bodies);
+        push_apart(contact, contact.impulse, velocities);
     }
     for wall in &contacts.walls {
-        *speed_from_wall(wall, bodies) += wall.inward * wall.push;
+        *speed_from_wall(wall, velocities) += wall.inward * wall.push;
     }
     let slack: f64 = contacts
         .balls
         .iter()
         .map(|contact| f64::from(contact.impulse) * f64::from(contact.slack))
         .sum();
-    let share = share_of_least_energy(bodies, velocities_before, slack);
+    let share = share_of_least_energy(bodies, velocities, slack);
     if share < 1.0 {
-        for (velocity, before) in bodies.velocities.iter_mut().zip(velocities_before) {
-            let change = difference(*velocity, *before);
-            *velocity = *before;
-            add_scaled(velocity, change, share);
+        for (row, &before) in velocities.iter_mut().zip(&bodies.velocities) {
+            let change = difference(row.vector(), before);
+            let mut velocity = before;
+            add_scaled(&mut velocity, change, share);
+            *row = Row::new(velocity, 0.0);
         }
         contacts.balls.iter_mut().for_each(|contact| contact.impulse *= share);
         contacts.walls.iter_mut().for_each(|wall| wall.push *= share);
     }
 
     for sweep in 0..REST_SWEEPS {
-        let hold = |contact: &mut Contact<D>| hold_apart(contact, bodies);
+        let hold = |contact: &mut Contact| hold_apart::<D>(contact, velocities);
         up_and_down(sweep, contacts.balls.iter_mut(), hold);
         for wall in &mut contacts.walls {
-            let speed = speed_from_wall(wall, bodies);
+            let speed = speed_from_wall(wall, velocities);
             let push = at_least_zero(wall.push - *speed * wall.inward);
             *speed += wall.inward * (push - wall.push);
             wall.push = push;
@@ -96,10 +107,10 @@ pub fn rest<const D: usize>(
 
 /// Corrects the impulse of one contact: as much as it takes, as little as it can be.
 #[inline]
-fn hold_apart<const D: usize>(contact: &mut Contact<D>, bodies: &mut Bodies<D>) {
-    let speed = speed_of_parting(contact, bodies) + contact.slack;
+fn hold_apart<const D: usize>(contact: &mut Contact, velocities: &mut [Row]) {
+    let speed = speed_of_parting::<D>(contact, velocities) + contact.slack;
     let impulse = at_least_zero(contact.impulse - speed * contact.mass);
-    push_apart(contact, impulse - contact.impulse, bodies);
+    push_apart(contact, impulse - contact.impulse, velocities);
     contact.impulse = impulse;
 }
 
@@ -114,17 +125,13 @@ fn up_and_down<C>(
     if sweep.is_multiple_of(2) { contacts.rev().for_each(visit) } else { contacts.for_each(visit) }
 }
 
-/// Between the velocities `before` (0) and now (1), where what the resting solver minimizes is
-/// least: it is a parabola on the way. `slack` is what the slack of the contacts adds to its slope.
-fn share_of_least_energy<const D: usize>(
-    bodies: &Bodies<D>,
-    before: &[[f32; D]],
-    slack: f64,
-) -> f32 {
+/// Between the velocities of the balls (0) and `after` (1), where what the resting solver minimizes
+/// is least: it is a parabola on the way. `slack` is what the slack of the contacts adds to its slope.
+fn share_of_least_energy<const D: usize>(bodies: &Bodies<D>, after: &[Row], slack: f64) -> f32 {
     let (mut slope, mut curvature) = (slack, 0.0);
-    for ((velocity, before), &mass) in bodies.velocities.iter().zip(before).zip(&bodies.masses) {
-        let change = difference(*velocity, *before);
-        slope += f64::from(dot(*before, change) * mass);
+    for ((row, &before), &mass) in after.iter().zip(&bodies.velocities).zip(&bodies.masses) {
+        let change = difference(row.vector(), before);
+        slope += f64::from(dot(before, change) * mass);
         curvature += f64::from(dot(change, change) * mass);
     }
     if slope < 0.0 { lesser((-slope / curvature) as f32, 1.0) } else { 0.0 }
@@ -135,75 +142,95 @@ fn share_of_least_energy<const D: usize>(
 /// The centre of mass of two balls stays where it is, so in uniform gravity moving them apart
 /// costs no energy; but moving a heap off the floor lifts it. What that adds must not exceed
 /// `allowance`, per unit of mass: else the balls are moved only that part of the way.
+///
+/// `rows` are of the balls where they are, and become where they would be with no such limit.
 pub fn project<const D: usize>(
-    contacts: &Contacts<D>,
+    contacts: &Contacts,
     bodies: &mut Bodies<D>,
+    rows: &mut Rows,
     around: &Surroundings<D>,
     allowance: f64,
-    positions_before: &mut Vec<[f32; D]>,
 ) {
-    positions_before.clone_from(&bodies.positions);
-    let potential_before = bodies.potential_energy(around.gravity, &around.bounds);
+    let places = &mut rows.places[..];
+    // Their last coordinate, the radius, stays.
+    let lowest = Row::new(around.bounds.min, f32::NEG_INFINITY);
+    let highest = Row::new(around.bounds.max, f32::INFINITY);
     for sweep in 0..PROJECT_SWEEPS {
-        let part = |contact: &Contact<D>| move_apart(contact, bodies);
+        let mut quiet = true;
+        let part = |contact: &Contact| quiet &= !move_apart::<D>(contact, places);
         up_and_down(sweep, contacts.balls.iter(), part);
-        for (position, &radius) in bodies.positions.iter_mut().zip(&bodies.radii) {
-            for (axis, at) in position.iter_mut().enumerate() {
-                *at = inside_walls(*at, radius, &around.bounds, axis);
+        if quiet {
+            // All are inside the walls already.
+            if sweep == 0 {
+                return;
+            }
+            break;
+        }
+        for Row(place) in &mut *places {
+            let radius = place[3];
+            for (axis, at) in place.iter_mut().enumerate() {
+                let below_top = lesser(*at, highest.0[axis] - radius);
+                *at = greater(below_top, lowest.0[axis] + radius);
             }
         }
     }
-    let lift = bodies.potential_energy(around.gravity, &around.bounds) - potential_before;
+    let potential_before = bodies.potential_energy(around.gravity, &around.bounds);
+    let potential =
+        bodies.potential_energy_at(|ball| places[ball].vector(), around.gravity, &around.bounds);
+    let lift = potential - potential_before;
     if lift > 0.0 && lift > allowance {
         // The potential energy is linear in the positions, and the inside of a box is convex.
         let share = if allowance > 0.0 { (allowance / lift) as f32 } else { 0.0 };
-        for ((position, before), &radius) in
-            bodies.positions.iter_mut().zip(positions_before).zip(&bodies.radii)
+        for ((position, after), &radius) in
+            bodies.positions.iter_mut().zip(places).zip(&bodies.radii)
         {
-            for axis in 0..D {
-                let at = before[axis] + (position[axis] - before[axis]) * share;
-                position[axis] = inside_walls(at, radius, &around.bounds, axis);
+            for (axis, at) in position.iter_mut().enumerate() {
+                let part_of_way = *at + (after.0[axis] - *at) * share;
+                *at = inside_walls(part_of_way, radius, &around.bounds, axis);
             }
+        }
+    } else {
+        for (position, after) in bodies.positions.iter_mut().zip(places) {
+            *position = after.vector();
         }
     }
 }
 
-/// Takes away part of the overlap of two balls.
+/// Takes away part of the overlap of two balls. False if they do not overlap.
 #[inline]
-fn move_apart<const D: usize>(contact: &Contact<D>, bodies: &mut Bodies<D>) {
+fn move_apart<const D: usize>(contact: &Contact, places: &mut [Row]) -> bool {
     let [a, b] = contact.pair.map(|id| id as usize);
-    let (radius_a, radius_b) = (bodies.radii[a], bodies.radii[b]);
+    let (radius_a, radius_b) = (places[a].0[3], places[b].0[3]);
     let reach = radius_a + radius_b - SLOP * lesser(radius_a, radius_b);
-    let apart = difference(bodies.positions[b], bodies.positions[a]);
-    if dot(apart, apart) < reach * reach {
-        let (normal, distance) = normal_and_distance(contact.pair, bodies);
+    let apart = places[b].minus(&places[a]);
+    let overlap = apart.dot::<D>(&apart) < reach * reach;
+    if overlap {
+        let (normal, distance) = normal_and_distance::<D>(contact.pair, places);
         let share = at_least_zero(reach - distance) * PROJECT_SHARE * contact.mass;
-        add_scaled(&mut bodies.positions[a], normal, -share * bodies.inverse_masses[a]);
-        add_scaled(&mut bodies.positions[b], normal, share * bodies.inverse_masses[b]);
+        places[a].add_scaled(&normal, -share * contact.inverse_masses[0]);
+        places[b].add_scaled(&normal, share * contact.inverse_masses[1]);
     }
+    overlap
 }
 
 /// How fast two balls part; negative if they approach.
 #[inline]
-fn speed_of_parting<const D: usize>(contact: &Contact<D>, bodies: &Bodies<D>) -> f32 {
-    let [a, b] = contact.pair.map(|id| bodies.velocities[id as usize]);
-    dot(difference(b, a), contact.normal)
+fn speed_of_parting<const D: usize>(contact: &Contact, velocities: &[Row]) -> f32 {
+    let [a, b] = contact.pair.map(|id| &velocities[id as usize]);
+    b.minus(a).dot::<D>(&contact.normal)
 }
 
 #[inline]
-fn push_apart<const D: usize>(contact: &Contact<D>, impulse: f32, bodies: &mut Bodies<D>) {
+fn push_apart(contact: &Contact, impulse: f32, velocities: &mut [Row]) {
     let [a, b] = contact.pair.map(|id| id as usize);
-    add_scaled(&mut bodies.velocities[a], contact.normal, -impulse * bodies.inverse_masses[a]);
-    add_scaled(&mut bodies.velocities[b], contact.normal, impulse * bodies.inverse_masses[b]);
+    velocities[a].add_scaled(&contact.normal, -impulse * contact.inverse_masses[0]);
+    velocities[b].add_scaled(&contact.normal, impulse * contact.inverse_masses[1]);
 }
 
 /// The velocity across the wall; along `inward` it parts from the wall.
 #[inline]
-fn speed_from_wall<'a, const D: usize>(
-    wall: &WallContact,
-    bodies: &'a mut Bodies<D>,
-) -> &'a mut f32 {
-    &mut bodies.velocities[wall.body as usize][wall.axis as usize]
+fn speed_from_wall<'a>(wall: &WallContact, velocities: &'a mut [Row]) -> &'a mut f32 {
+    &mut velocities[wall.body as usize].0[wall.axis as usize]
 }
 
 #[inline]

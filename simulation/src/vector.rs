@@ -30,6 +30,45 @@ pub fn add_scaled<const D: usize>(a: &mut [f32; D], b: [f32; D], scale: f32) {
     }
 }
 
+/// A vector of up to three dimensions in one of four coordinates, which is what a processor's vector
+/// instructions take at once. What its last coordinates are is said where it is used.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(16))]
+pub struct Row(pub [f32; 4]);
+
+impl Row {
+    /// The vector, and `rest` in all further coordinates.
+    #[inline]
+    pub fn new<const D: usize>(vector: [f32; D], rest: f32) -> Self {
+        Self(from_fn(|axis| if axis < D { vector[axis] } else { rest }))
+    }
+
+    /// The vector again.
+    #[inline]
+    pub fn vector<const D: usize>(&self) -> [f32; D] {
+        from_fn(|axis| self.0[axis])
+    }
+
+    /// As [`difference`], and of the further coordinates too.
+    #[inline]
+    pub fn minus(&self, other: &Self) -> Self {
+        Self(difference(self.0, other.0))
+    }
+
+    /// As [`dot`], of the first `D` coordinates.
+    #[inline]
+    pub fn dot<const D: usize>(&self, other: &Self) -> f32 {
+        let products: [f32; 4] = from_fn(|axis| self.0[axis] * other.0[axis]);
+        products[1..D].iter().fold(products[0], |sum, product| sum + product)
+    }
+
+    /// As [`add_scaled`], to the further coordinates too.
+    #[inline]
+    pub fn add_scaled(&mut self, other: &Self, scale: f32) {
+        add_scaled(&mut self.0, other.0, scale);
+    }
+}
+
 /// The greater; the second if they are equal. `f32::max` may return either zero of `-0.0` and
 /// `0.0`, and different platforms do.
 #[inline]
