@@ -13,7 +13,9 @@ use alloc::vec::Vec;
 use core::mem::{replace, swap, take};
 use core::ops::RangeInclusive;
 
-use super::bins::{Bins, Copied, Grid, Record, Source};
+use super::bins::{Record, Source};
+use super::grid::Grid;
+use super::kernel::Copied;
 use super::memory::grow;
 use super::search::{Search, Stop, Task, crowd, limit};
 use super::sink::Sink;
@@ -196,16 +198,14 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         let mut gathered = take(&mut self.gathered);
         let changed = &last.changed[..len.div_ceil(64)];
         let count = changed.iter().map(|word| word.count_ones() as usize).sum();
-        gathered[0].clear();
-        gathered[0].try_reserve(count).ok()?;
+        gathered.clear();
+        gathered.try_reserve(count).ok()?;
         let changed = ones(changed).take_while(|&i| i < len);
-        gathered[0].extend(changed.map(|i| boxes.record(i)));
-        let mut bins = self.bins.pop().unwrap_or([Bins::new(), Bins::new()]);
-        let records = &gathered[0][..];
+        gathered.extend(changed.map(|i| boxes.record(i)));
+        let records = &gathered[..];
         let limit = limit(len).saturating_sub(kept);
-        let new = bins[0].list(records, 0..records.len(), grid, limit);
-        let sorted = bins[0].by_bin(records, &mut last.new, &mut last.new_starts);
-        self.bins.push(bins);
+        let new = self.list.fill(records, 0..records.len(), grid, limit);
+        let sorted = self.list.by_bin(records, &mut last.new, &mut last.new_starts);
         self.gathered = gathered;
         sorted.ok()?;
         grow(&mut last.next, (kept + new.ok()?) as usize, 0).ok()
@@ -231,8 +231,8 @@ impl<const D: usize, T: Scalar> Search<D, T> {
 
             let mut gathered = take(&mut self.gathered);
             let room = end - begin + new.len();
-            grow(&mut gathered[0], room, Record { aabb: boxes[0], id: 0, marks: 0 })?;
-            let records = &mut gathered[0][..room];
+            grow(&mut gathered, room, Record { aabb: boxes[0], id: 0, marks: 0 })?;
+            let records = &mut gathered[..room];
             let record = |id: u32, marks| Record { aabb: boxes[id as usize], id, marks };
             let mut kept = 0;
             for &entry in &last.order[begin..end] {

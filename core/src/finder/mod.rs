@@ -101,7 +101,9 @@
 
 mod again;
 mod bins;
+mod grid;
 mod kernel;
+mod list;
 mod memory;
 mod numbers;
 mod order;

@@ -5,7 +5,8 @@
 //! takes the sweep axis and the numbers of columns for which the model is least. Its constants
 //! are the same for every kernel, since the order of the pairs follows from the plan.
 
-use super::bins::{Cells, Grid, Source};
+use super::bins::Source;
+use super::grid::{Cells, Grid};
 use crate::{Aabb, Scalar};
 
 /// Nanoseconds to place, sort and lay out one record, and to begin its scan.

@@ -3,12 +3,13 @@
 
 use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
-use core::mem::take;
 use core::ops::ControlFlow;
 
 use super::again::Last;
-use super::bins::{Bins, Grid, Record, Refusal, Source};
+use super::bins::{Bins, Record, Refusal, Source};
+use super::grid::Grid;
 use super::kernel::{Arrange, Column, Kernel};
+use super::list::List;
 use super::order::Sorter;
 use super::plan::{CANDIDATE, Plan, plan};
 use super::sink::{Sink, Store};
@@ -54,8 +55,10 @@ pub(super) struct Search<const D: usize, T: Scalar> {
     pub last: Last<T>,
     pub sorter: Sorter<T>,
     pub columns: [Column<T>; 2],
-    /// The records of one bin, where several threads have filled it.
-    pub gathered: [Vec<Record<D, T>>; 2],
+    /// Which boxes go to which bins.
+    pub list: List,
+    /// The records of one bin, where they are not copied to bins.
+    pub gathered: Vec<Record<D, T>>,
     /// Spare bins and parts: as many as plans were ever nested.
     pub bins: Vec<[Bins<D, T>; 2]>,
     parts: Vec<[Vec<Record<D, T>>; 3]>,
@@ -116,7 +119,8 @@ impl<const D: usize, T: Scalar> Search<D, T> {
             last: Last::new(),
             sorter: Sorter::new(),
             columns: [Column::new(), Column::new()],
-            gathered: [Vec::new(), Vec::new()],
+            list: List::new(),
+            gathered: Vec::new(),
             bins: Vec::new(),
             parts: Vec::new(),
             #[cfg(feature = "parallel")]
@@ -138,11 +142,11 @@ impl<const D: usize, T: Scalar> Search<D, T> {
             && let &[boxes] = sets
             && !is_direct(sets)
         {
-            let planned = plan(sets, true);
             #[cfg(feature = "parallel")]
-            let alone = !self.team.pays(boxes.len());
+            let (alone, planned) =
+                (!self.team.pays(boxes.len()), self.team.plan(boxes.len(), || plan(sets, true)));
             #[cfg(not(feature = "parallel"))]
-            let alone = true;
+            let (alone, planned) = (true, plan(sets, true));
             if let Plan::Cut(grid) = planned.plan
                 && alone
                 && let Some(result) = self.again(boxes, &grid, task, sink)
@@ -234,12 +238,20 @@ impl<const D: usize, T: Scalar> Search<D, T> {
             return result.unwrap_or_else(|refusal| self.refused(refusal, sets, grid, task, sink));
         }
         let mut bins = self.bins.pop().unwrap_or([Bins::new(), Bins::new()]);
-        let filled = fill(sets, &mut bins, grid);
+        let filled = fill(sets, &mut bins, |set, bins, other| {
+            self.list.fill(set, 0..set.len(), grid, limit(set.len()))?;
+            if let Some(other) = other {
+                self.list.keep_shared(other);
+            }
+            Ok(bins.fill(set, &self.list)?)
+        });
         let result = match filled {
             // The two sets share no bin: there are no pairs, nor shares of the work to tell.
             Ok(()) if bins[..sets.len()].iter().any(|bins| bins.len() == 0) => task.done(1.0),
-            Ok(()) => (0..grid.len())
-                .try_for_each(|bin| self.bin(&[&bins], sets.len(), bin, grid, task, sink)),
+            Ok(()) => {
+                let bins = Filled::new(&bins, sets, grid);
+                (0..grid.len()).try_for_each(|bin| self.bin(&bins, bin, task, sink))
+            }
             Err(refusal) => self.refused(refusal, sets, grid, task, sink),
         };
         self.bins.push(bins);
@@ -273,39 +285,19 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         self.cut(sets, &Grid::uncut::<D>(grid.sweep), task, sink)
     }
 
-    /// The pairs of one bin, filled in one piece or several: orders and sweeps it, or plans it
-    /// anew if it is crowded.
+    /// The pairs of one bin: orders and sweeps it, or plans it anew if it is crowded.
     pub fn bin<O: Sink>(
         &mut self,
-        pieces: &[&[Bins<D, T>; 2]],
-        sets: usize,
+        filled: &Filled<'_, D, T>,
         bin: usize,
-        grid: &Grid<T>,
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
-        let boxes = pieces.iter().flat_map(|piece| &piece[..sets]).map(Bins::boxes).sum();
-        let crowd = crowd(boxes, grid);
-        if let [piece] = pieces {
-            let records = [piece[0].bin(bin), if sets == 2 { piece[1].bin(bin) } else { &[] }];
-            self.ordered(&records[..sets], grid.sweep, crowd, task, sink)?;
-        } else {
-            let mut gathered = take(&mut self.gathered);
-            for (set, records) in gathered[..sets].iter_mut().enumerate() {
-                records.clear();
-                let parts = pieces.iter().map(|piece| piece[set].bin(bin));
-                records.try_reserve(parts.clone().map(<[_]>::len).sum())?;
-                parts.for_each(|part| records.extend_from_slice(part));
-            }
-            let records = [&gathered[0][..], &gathered[1][..]];
-            let result = self.ordered(&records[..sets], grid.sweep, crowd, task, sink);
-            self.gathered = gathered;
-            result?;
-        }
+        let [first, last] = filled.bins;
+        let records = [first.bin(bin), if filled.sets == 2 { last.bin(bin) } else { &[] }];
+        self.ordered(&records[..filled.sets], filled.grid.sweep, filled.crowd, task, sink)?;
         if task.watch.is_some() {
-            let of =
-                |piece: &&[Bins<D, T>; 2]| piece[0].bin(bin).len() as f64 / piece[0].len() as f64;
-            task.done(pieces.iter().map(of).sum::<f64>() / pieces.len() as f64)?;
+            task.done(records[0].len() as f64 / first.len() as f64)?;
         }
         Ok(())
     }
@@ -420,29 +412,40 @@ impl<const D: usize, T: Scalar> Search<D, T> {
     }
 }
 
-/// Puts the boxes of one set or two into bins. Of the larger of two only those are put there that
-/// meet the smaller in a bin.
-fn fill<const D: usize, T: Scalar, S: Source<D, T>>(
+/// The bins of a grid, filled with the boxes of one set or two.
+pub(super) struct Filled<'a, const D: usize, T> {
+    pub bins: &'a [Bins<D, T>; 2],
+    pub sets: usize,
+    pub grid: &'a Grid<T>,
+    /// With how many records a bin is planned anew.
+    crowd: usize,
+}
+
+impl<'a, const D: usize, T: Scalar> Filled<'a, D, T> {
+    pub fn new<S: Source<D, T>>(bins: &'a [Bins<D, T>; 2], sets: &[S], grid: &'a Grid<T>) -> Self {
+        let crowd = crowd(sets.iter().map(|set| set.len()).sum(), grid);
+        Self { bins, sets: sets.len(), grid, crowd }
+    }
+}
+
+/// Has the boxes of one set or two put into bins: of the larger of two only those that meet the
+/// smaller in a bin.
+pub(super) fn fill<const D: usize, T: Scalar, S: Source<D, T>>(
     sets: &[S],
     bins: &mut [Bins<D, T>; 2],
-    grid: &Grid<T>,
+    mut put: impl FnMut(S, &mut Bins<D, T>, Option<&Bins<D, T>>) -> Result<(), Refusal>,
 ) -> Result<(), Refusal> {
-    let list = |bins: &mut Bins<D, T>, set: S| bins.list(set, 0..set.len(), grid, limit(set.len()));
-    let [first_bins, second_bins] = bins;
-    let &[first, second] = sets else {
-        list(first_bins, sets[0])?;
-        return first_bins.scatter(sets[0]);
+    let [first_bins, last_bins] = bins;
+    let &[first, last] = sets else {
+        return put(sets[0], first_bins, None);
     };
-    let (small_bins, small, large_bins, large) = if first.len() <= second.len() {
-        (first_bins, first, second_bins, second)
+    if first.len() <= last.len() {
+        put(first, first_bins, None)?;
+        put(last, last_bins, Some(first_bins))
     } else {
-        (second_bins, second, first_bins, first)
-    };
-    list(small_bins, small)?;
-    small_bins.scatter(small)?;
-    list(large_bins, large)?;
-    large_bins.keep_shared(small_bins);
-    large_bins.scatter(large)
+        put(last, last_bins, None)?;
+        put(first, first_bins, Some(last_bins))
+    }
 }
 
 /// Whether each box is simply tested against each.

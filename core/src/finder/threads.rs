@@ -1,16 +1,23 @@
-//! Threads: each puts a stretch of the boxes into bins, then each takes the next group of bins
-//! until none is left. The pairs of the groups are strung together in the order of the bins, which
-//! is the order of one thread.
+//! Threads: each lists a stretch of the boxes and copies it to the bins. Then each takes the next
+//! group of bins until none is left, the calling thread from the first on, the others from the last.
+//! The pairs of the groups are strung together in the order of the bins, which is the order of one
+//! thread.
 
+use alloc::sync::Arc;
 use alloc::vec::Vec;
+use core::hint::spin_loop;
+use core::iter::{once, repeat_with};
+use core::mem::take;
 use core::ops::Range;
-use core::sync::atomic::{AtomicUsize, Ordering};
+use core::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, OnceLock};
 
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
-use super::bins::{Bins, Grid, Refusal, Source};
-use super::search::{Search, Stop, Task, limit};
+use super::bins::{Bins, Refusal, Source, copied};
+use super::grid::Grid;
+use super::list::List;
+use super::search::{Filled, Search, Stop, Task, fill, limit};
 use super::sink::Sink;
 use crate::Scalar;
 
@@ -24,15 +31,14 @@ const GROUPS: usize = 16;
 /// The other threads' buffers.
 #[derive(Debug)]
 pub(super) struct Team<const D: usize, T: Scalar> {
-    /// How many threads.
+    /// How many threads, with the calling one.
     pub threads: usize,
-    workers: Vec<Search<D, T>>,
-    pieces: Vec<[Bins<D, T>; 2]>,
+    others: Vec<Search<D, T>>,
 }
 
 impl<const D: usize, T: Scalar> Default for Team<D, T> {
     fn default() -> Self {
-        Self { threads: 1, workers: Vec::new(), pieces: Vec::new() }
+        Self { threads: 1, others: Vec::new() }
     }
 }
 
@@ -40,6 +46,25 @@ impl<const D: usize, T: Scalar> Team<D, T> {
     /// Whether several threads pay for so many boxes.
     pub fn pays(&self, boxes: usize) -> bool {
         self.threads > 1 && boxes >= WORTH
+    }
+
+    /// Makes a plan for so many boxes while the other threads wake up: it takes about as long, and
+    /// else they would begin late.
+    pub fn plan<P>(&self, boxes: usize, plan: impl FnOnce() -> P) -> P {
+        if !self.pays(boxes) {
+            return plan();
+        }
+        let planned = Arc::new(AtomicBool::new(false));
+        for planned in repeat_with(|| Arc::clone(&planned)).take(self.threads - 1) {
+            rayon::spawn(move || {
+                while !planned.load(Ordering::Relaxed) {
+                    spin_loop();
+                }
+            });
+        }
+        let plan = plan();
+        planned.store(true, Ordering::Relaxed);
+        plan
     }
 }
 
@@ -51,64 +76,137 @@ pub(super) fn cut<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
     task: Task<'_>,
     sink: &mut O,
 ) -> Option<Result<Result<(), Stop>, Refusal>> {
-    let threads = search.team.threads;
     if !search.team.pays(sets.iter().map(|set| set.len()).sum()) {
         return None;
     }
-    let first = sink.fork()?;
-    let mut workers = core::mem::take(&mut search.team.workers);
-    let mut pieces = core::mem::take(&mut search.team.pieces);
-    workers.resize_with(threads, || Search::new(search.kernel));
-    pieces.resize_with(threads, || [Bins::new(), Bins::new()]);
-
-    let result = fill(sets, grid, &mut pieces).map(|()| {
-        let groups = group(&pieces, sets.len(), grid.len(), threads * GROUPS);
-        let mut forks = alloc::vec![Mutex::new(first)];
-        forks.extend(groups[1..].iter().filter_map(|_| sink.fork()).map(Mutex::new));
-        let (next, failed) = (AtomicUsize::new(0), OnceLock::new());
-        let borrowed: Vec<&[Bins<D, T>; 2]> = pieces.iter().collect();
-        let work = |worker: &mut Search<D, T>| {
-            worker.kernel = search.kernel;
-            loop {
-                let at = next.fetch_add(1, Ordering::Relaxed);
-                let (Some(group), Some(fork)) = (groups.get(at), forks.get(at)) else { return };
-                let Ok(mut fork) = fork.lock() else { return };
-                for bin in group.clone() {
-                    if let Err(stop) =
-                        worker.bin(&borrowed, sets.len(), bin, grid, task, &mut *fork)
-                    {
-                        failed.get_or_init(|| stop);
-                    }
-                    if failed.get().is_some() {
-                        return;
-                    }
-                }
-            }
-        };
-        on_threads(&mut workers, |_, worker| work(worker));
-        if let Some(stop) = failed.into_inner() {
-            return Err(stop);
-        }
-        sink.join(forks.into_iter().filter_map(|fork| fork.into_inner().ok()).collect())
+    let fork = sink.fork()?;
+    let mut others = take(&mut search.team.others);
+    others.resize_with(search.team.threads - 1, || Search::new(search.kernel));
+    let mut bins = search.bins.pop().unwrap_or([Bins::new(), Bins::new()]);
+    let result = fill(sets, &mut bins, |set, bins, other| {
+        let others = others.iter_mut().map(|search| &mut search.list);
+        put(set, &mut once(&mut search.list).chain(others).collect::<Vec<_>>(), grid, bins, other)
     });
-    search.team.workers = workers;
-    search.team.pieces = pieces;
+    let result = result
+        .map(|()| sweep(search, &mut others, &Filled::new(&bins, sets, grid), task, sink, fork));
+    search.bins.push(bins);
+    search.team.others = others;
     Some(result)
 }
 
-/// Has each of some threads work on its own; the calling one is the first.
-fn on_threads<W: Send>(own: &mut [W], work: impl Fn(usize, &mut W) + Sync) {
+/// Has each thread work on one of some things; the calling one takes the first.
+fn on_threads<W: Send>(mut things: impl Iterator<Item = W>, work: impl Fn(W) + Sync) {
     rayon::in_place_scope(|scope| {
         let work = &work;
-        let mut own = own.iter_mut().enumerate();
-        let first = own.next();
-        for (thread, own) in own {
-            scope.spawn(move |_| work(thread, own));
+        let first = things.next();
+        things.for_each(|thing| scope.spawn(move |_| work(thing)));
+        first.map(work);
+    });
+}
+
+/// Puts the boxes of a set into bins, one stretch a thread: only into those that the other set, if
+/// there is one, has boxes in.
+fn put<const D: usize, T: Scalar, S: Source<D, T>>(
+    set: S,
+    lists: &mut [&mut List],
+    grid: &Grid<T>,
+    bins: &mut Bins<D, T>,
+    other: Option<&Bins<D, T>>,
+) -> Result<(), Refusal> {
+    let (threads, boxes, limit) = (lists.len(), set.len(), limit(set.len()));
+    bins.stretches.resize_with(threads - 1, Vec::new);
+    let all_ends = bins.stretches.iter_mut().chain(once(&mut bins.ends));
+    let mut counted: Vec<_> = lists.iter().map(|_| None).collect();
+    let steps = lists.iter_mut().zip(all_ends).zip(&mut counted).enumerate();
+    on_threads(steps, |(thread, ((list, ends), counted))| {
+        let stretch = boxes * thread / threads..boxes * (thread + 1) / threads;
+        *counted = Some(list.fill(set, stretch, grid, limit).and_then(|len| {
+            if let Some(other) = other {
+                list.keep_shared(other);
+            }
+            Ok((len, list.count(ends)?))
+        }));
+    });
+    // The gravest: an invalid box before all else.
+    let refusals = counted.iter().flatten().filter_map(|counted| counted.as_ref().err());
+    if let Some(&refusal) = refusals.min() {
+        return Err(refusal);
+    }
+    let (lens, mut counted): (Vec<u64>, Vec<_>) = counted.into_iter().flatten().flatten().unzip();
+    if lens.into_iter().sum::<u64>() > limit {
+        return Err(Refusal::TooMany);
+    }
+    on_threads(bins.records.shares(&mut counted)?, |share| share.put(|copy| copied(set, copy)));
+    Ok(())
+}
+
+/// Has each thread find the pairs of groups of bins. The first groups' go straight to the sink, those
+/// of the others to forks of it, of which one is given.
+fn sweep<const D: usize, T: Scalar, O: Sink>(
+    search: &mut Search<D, T>,
+    others: &mut [Search<D, T>],
+    filled: &Filled<'_, D, T>,
+    task: Task<'_>,
+    sink: &mut O,
+    fork: O::Fork,
+) -> Result<(), Stop> {
+    let groups = group(filled, (1 + others.len()) * GROUPS);
+    let more = groups[1..].iter().filter_map(|_| sink.fork());
+    let mut forks: Vec<_> = once(fork).chain(more).collect();
+    // So that each group has the buffer that it had in the last call.
+    forks.reverse();
+    let left = Mutex::new(groups.iter().zip(&mut forks));
+    let (first, last) = (|| left.lock().ok()?.next(), || left.lock().ok()?.next_back());
+    let failed = OnceLock::new();
+    rayon::in_place_scope(|scope| {
+        let (failed, last) = (&failed, &last);
+        for other in others {
+            other.kernel = search.kernel;
+            scope.spawn(move |_| {
+                while let (None, Some((group, fork))) = (failed.get(), last()) {
+                    if let Err(stop) = other.group(filled, group, task, fork) {
+                        failed.get_or_init(|| stop);
+                    }
+                }
+            });
         }
-        if let Some((thread, own)) = first {
-            work(thread, own);
+        while let (None, Some((group, _))) = (failed.get(), first()) {
+            if let Err(stop) = search.group(filled, group, task, sink) {
+                failed.get_or_init(|| stop);
+            }
         }
     });
+    failed.into_inner().map_or_else(|| sink.join(forks), Err)
+}
+
+impl<const D: usize, T: Scalar> Search<D, T> {
+    /// The pairs of a group of bins.
+    fn group<O: Sink>(
+        &mut self,
+        filled: &Filled<'_, D, T>,
+        group: &Range<usize>,
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<(), Stop> {
+        group.clone().try_for_each(|bin| self.bin(filled, bin, task, sink))
+    }
+}
+
+/// Stretches of bins with about as many records each.
+fn group<const D: usize, T: Scalar>(filled: &Filled<'_, D, T>, groups: usize) -> Vec<Range<usize>> {
+    let sets = &filled.bins[..filled.sets];
+    let share = sets.iter().map(Bins::len).sum::<usize>() / groups + 1;
+    let bins = filled.grid.len();
+    let mut stretches = Vec::with_capacity(groups + 1);
+    let (mut start, mut records) = (0, 0);
+    for bin in 0..bins {
+        records += sets.iter().map(|set| set.bin(bin).len()).sum::<usize>();
+        if records >= share || bin + 1 == bins {
+            stretches.push(start..bin + 1);
+            (start, records) = (bin + 1, 0);
+        }
+    }
+    stretches
 }
 
 /// Where pairs go, and those pairs.
@@ -122,58 +220,4 @@ pub(super) fn copy(stretches: Vec<Stretch<'_>>) {
     } else {
         stretches.into_par_iter().for_each(|(to, from)| to.copy_from_slice(from));
     }
-}
-
-/// Each thread puts its stretch of the boxes into bins of its own.
-fn fill<const D: usize, T: Scalar, S: Source<D, T>>(
-    sets: &[S],
-    grid: &Grid<T>,
-    pieces: &mut [[Bins<D, T>; 2]],
-) -> Result<(), Refusal> {
-    let threads = pieces.len();
-    let mut own: Vec<_> = pieces.iter_mut().map(|bins| (bins, Ok([0; 2]))).collect();
-    on_threads(&mut own, |thread, (bins, listed)| {
-        let list = |set: usize, bins: &mut Bins<D, T>| {
-            let of = sets[set].len();
-            let stretch = of * thread / threads..of * (thread + 1) / threads;
-            let count = bins.list(sets[set], stretch, grid, limit(of))?;
-            bins.scatter(sets[set])?;
-            Ok(count)
-        };
-        let [first, second] = &mut **bins;
-        *listed = list(0, first)
-            .and_then(|count| Ok([count, if sets.len() == 2 { list(1, second)? } else { 0 }]));
-    });
-    let mut totals = [0; 2];
-    let mut refusal = None;
-    for (_, listed) in own {
-        match listed {
-            Ok(counts) => (0..2).for_each(|set| totals[set] += counts[set]),
-            // The least: an invalid box before all else.
-            Err(of) => refusal = Some(refusal.map_or(of, |other: Refusal| other.min(of))),
-        }
-    }
-    let many = sets.iter().zip(totals).any(|(set, total)| total > limit(set.len()));
-    refusal.or(many.then_some(Refusal::TooMany)).map_or(Ok(()), Err)
-}
-
-/// Stretches of bins with about as many records each.
-fn group<const D: usize, T: Scalar>(
-    pieces: &[[Bins<D, T>; 2]],
-    sets: usize,
-    bins: usize,
-    groups: usize,
-) -> Vec<Range<usize>> {
-    let filled = || pieces.iter().flat_map(|piece| &piece[..sets]);
-    let share = filled().map(Bins::len).sum::<usize>() / groups + 1;
-    let mut stretches = Vec::with_capacity(groups + 1);
-    let (mut start, mut records) = (0, 0);
-    for bin in 0..bins {
-        records += filled().map(|piece| piece.bin(bin).len()).sum::<usize>();
-        if records >= share || bin + 1 == bins {
-            stretches.push(start..bin + 1);
-            (start, records) = (bin + 1, 0);
-        }
-    }
-    stretches
 }

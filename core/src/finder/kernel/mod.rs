@@ -11,6 +11,7 @@ mod neon;
 mod pages;
 mod scalar;
 mod scan;
+mod scatter;
 mod vector;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 mod wasm;
@@ -18,8 +19,10 @@ mod wasm;
 mod x86;
 
 pub use column::{Column, PAD};
-pub use pages::{enlarge_pages, prefetch};
+pub use pages::enlarge_pages;
+use pages::prefetch;
 pub use scan::Cursor;
+pub use scatter::{Copied, Counted, Share, place};
 pub use vector::Arrange;
 
 /// The instructions that the innermost loop is made of.

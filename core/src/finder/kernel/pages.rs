@@ -42,16 +42,15 @@ pub fn enlarge_pages<V>(array: &mut Vec<V>) {
 )))]
 pub fn enlarge_pages<V>(_: &mut Vec<V>) {}
 
-/// Asks the processor for the lines of an array about a position, in or beyond it, that will be
-/// written soon.
+/// Asks the processor for the line of an address, which may be any, that will be written soon.
 #[inline(always)]
-pub fn prefetch<V>(array: &[V], at: usize) {
+pub fn prefetch<V>(address: *const V) {
     #[cfg(target_arch = "x86_64")]
     {
         use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         // SAFETY: a hint, of any address, does nothing else; SSE is part of every x86-64.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(array.as_ptr().wrapping_add(at).cast()) };
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(address.cast()) };
     }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = (array, at);
+    let _ = address;
 }
