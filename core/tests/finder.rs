@@ -358,26 +358,72 @@ fn a_stream_ends_when_it_is_told() {
     }
 }
 
+/// What a finder tells a watch that lets it go on, and that what it returned is what it returns if
+/// it is not watched.
+fn told<const D: usize, R: PartialEq>(
+    finder: &mut PairFinder<D, f64>,
+    unwatched: impl Fn(&mut PairFinder<D, f64>) -> R,
+    watched: impl Fn(&mut PairFinder<D, f64>, &(dyn Fn(f64) -> ControlFlow<()> + Sync)) -> Option<R>,
+) -> Vec<f64> {
+    let half = |share| if share > 0.5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    assert!(watched(finder, &half).is_none());
+    let shares = std::sync::Mutex::new(Vec::new());
+    let found = watched(finder, &|share| {
+        shares.lock().unwrap().push(share);
+        ControlFlow::Continue(())
+    });
+    assert!(found.is_some_and(|found| found == unwatched(finder)));
+    let mut shares = shares.into_inner().unwrap();
+    shares.sort_by(f64::total_cmp);
+    assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)), "{shares:?}");
+    shares
+}
+
 #[test]
 fn a_watch_hears_of_progress_and_ends_the_search() {
     use std::sync::Mutex;
     let boxes: Boxes<3, f64> = some(60_000, half_size::<3>(60_000));
-    for (name, mut finder) in finders() {
+    let (a, b) = boxes.split_at(20_000);
+    for (name, finder) in &mut finders() {
+        let to_vec = |found: Option<&[[u32; 2]]>| found.map(<[_]>::to_vec);
+        let all_told = [
+            told(
+                finder,
+                |finder| finder.find(&boxes).unwrap().to_vec(),
+                |finder, watch| to_vec(finder.find_watched(&boxes, watch).unwrap()),
+            ),
+            told(
+                finder,
+                |finder| finder.find_between(a, b).unwrap().to_vec(),
+                |finder, watch| to_vec(finder.find_between_watched(a, b, watch).unwrap()),
+            ),
+            told(
+                finder,
+                |finder| finder.count(&boxes).unwrap(),
+                |finder, watch| finder.count_watched(&boxes, watch).unwrap(),
+            ),
+            told(
+                finder,
+                |finder| finder.count_between(b, a).unwrap(),
+                |finder, watch| finder.count_between_watched(b, a, watch).unwrap(),
+            ),
+        ];
+        for shares in all_told {
+            assert!(shares.len() > 10, "{name}: {shares:?}");
+            assert!(*shares.last().unwrap() > 0.95, "{name}: {shares:?}");
+        }
+        // They share no bin, and that is all there is to tell.
+        let apart = boxes
+            .iter()
+            .map(|aabb| Aabb::new(aabb.min.map(|x| x + 9.0), aabb.max.map(|x| x + 9.0)));
+        let apart: Boxes<3, f64> = apart.collect();
         let shares = Mutex::new(Vec::new());
-        let found = finder.find_watched(&boxes, &|share| {
+        let count = finder.count_between_watched(&boxes, &apart, &|share| {
             shares.lock().unwrap().push(share);
             ControlFlow::Continue(())
         });
-        assert!(found.unwrap().is_some());
-        let mut shares = shares.into_inner().unwrap();
-        shares.sort_by(f64::total_cmp);
-        assert!(shares.len() > 10, "{name}: {shares:?}");
-        assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)), "{name}: {shares:?}");
-        assert!(*shares.last().unwrap() > 0.95, "{name}: {shares:?}");
-
-        let half =
-            |share| if share > 0.5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-        assert_eq!(finder.find_watched(&boxes, &half), Ok(None), "{name}");
+        assert_eq!(count, Ok(Some(0)), "{name}");
+        assert_eq!(shares.into_inner().unwrap(), [1.0], "{name}");
     }
     // One bin full of pairs: the watch is asked while they are found.
     let heap = vec![Aabb::new([0.0f32], [1.0]); 20_000];

@@ -274,7 +274,7 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
 
     /// As [`find`](Self::find), and tells `watch` now and then which share of the work is done,
     /// from 0 to 1, on whichever thread does it. The watch may end the search: then there are no
-    /// pairs to return.
+    /// pairs to return. Searches that take no time to speak of are not watched.
     ///
     /// # Errors
     /// As [`find_pairs`].
@@ -298,12 +298,38 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
         Ok(complete.then(|| self.store.pairs()))
     }
 
+    /// As [`find_between`](Self::find_between), watched as [`find_watched`](Self::find_watched) is.
+    ///
+    /// # Errors
+    /// As [`find_pairs_between`].
+    pub fn find_between_watched(
+        &mut self,
+        a: &[Aabb<D, T>],
+        b: &[Aabb<D, T>],
+        watch: &(dyn Fn(f64) -> ControlFlow<()> + Sync),
+    ) -> Result<Option<&[[u32; 2]]>, Error> {
+        let complete = self.find_of(&[a, b], Some(&Watch::new(watch)))?;
+        Ok(complete.then(|| self.store.pairs()))
+    }
+
     /// How many pairs [`find`](Self::find) would find. Stores none of them.
     ///
     /// # Errors
     /// As [`find_pairs`].
     pub fn count(&mut self, boxes: &[Aabb<D, T>]) -> Result<u64, Error> {
-        self.count_of(&[boxes])
+        self.count_of(&[boxes], None).map(|count| count.unwrap_or(0))
+    }
+
+    /// As [`count`](Self::count), watched as [`find_watched`](Self::find_watched) is.
+    ///
+    /// # Errors
+    /// As [`find_pairs`].
+    pub fn count_watched(
+        &mut self,
+        boxes: &[Aabb<D, T>],
+        watch: &(dyn Fn(f64) -> ControlFlow<()> + Sync),
+    ) -> Result<Option<u64>, Error> {
+        self.count_of(&[boxes], Some(&Watch::new(watch)))
     }
 
     /// How many pairs [`find_between`](Self::find_between) would find. Stores none of them.
@@ -311,7 +337,21 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
     /// # Errors
     /// As [`find_pairs_between`].
     pub fn count_between(&mut self, a: &[Aabb<D, T>], b: &[Aabb<D, T>]) -> Result<u64, Error> {
-        self.count_of(&[a, b])
+        self.count_of(&[a, b], None).map(|count| count.unwrap_or(0))
+    }
+
+    /// As [`count_between`](Self::count_between), watched as [`find_watched`](Self::find_watched)
+    /// is.
+    ///
+    /// # Errors
+    /// As [`find_pairs_between`].
+    pub fn count_between_watched(
+        &mut self,
+        a: &[Aabb<D, T>],
+        b: &[Aabb<D, T>],
+        watch: &(dyn Fn(f64) -> ControlFlow<()> + Sync),
+    ) -> Result<Option<u64>, Error> {
+        self.count_of(&[a, b], Some(&Watch::new(watch)))
     }
 
     /// Calls `each` with every pair, in the order of [`find`](Self::find), until it breaks. Stores
@@ -377,10 +417,15 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
         complete
     }
 
-    fn count_of(&mut self, sets: &[&[Aabb<D, T>]]) -> Result<u64, Error> {
+    /// None if the watch ended it.
+    fn count_of(
+        &mut self,
+        sets: &[&[Aabb<D, T>]],
+        watch: Option<&Watch<'_>>,
+    ) -> Result<Option<u64>, Error> {
         self.count.count = 0;
-        run(&mut self.search, sets, None, &mut self.count)?;
-        Ok(self.count.count)
+        let complete = run(&mut self.search, sets, watch, &mut self.count)?;
+        Ok(complete.then_some(self.count.count))
     }
 
     fn for_each_of<B>(

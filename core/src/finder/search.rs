@@ -246,12 +246,10 @@ impl<const D: usize, T: Scalar> Search<D, T> {
             Ok(bins.fill(set, &self.list)?)
         });
         let result = match filled {
-            // The two sets share no bin: there are no pairs, nor shares of the work to tell.
-            Ok(()) if bins[..sets.len()].iter().any(|bins| bins.len() == 0) => task.done(1.0),
-            Ok(()) => {
-                let bins = Filled::new(&bins, sets, grid);
-                (0..grid.len()).try_for_each(|bin| self.bin(&bins, bin, task, sink))
-            }
+            Ok(()) => match Filled::new(&bins, sets, grid) {
+                Some(bins) => (0..grid.len()).try_for_each(|bin| self.bin(&bins, bin, task, sink)),
+                None => task.done(1.0),
+            },
             Err(refusal) => self.refused(refusal, sets, grid, task, sink),
         };
         self.bins.push(bins);
@@ -422,9 +420,15 @@ pub(super) struct Filled<'a, const D: usize, T> {
 }
 
 impl<'a, const D: usize, T: Scalar> Filled<'a, D, T> {
-    pub fn new<S: Source<D, T>>(bins: &'a [Bins<D, T>; 2], sets: &[S], grid: &'a Grid<T>) -> Self {
+    /// None if a set has no records, as when the two share no bin: then there are no pairs.
+    pub fn new<S: Source<D, T>>(
+        bins: &'a [Bins<D, T>; 2],
+        sets: &[S],
+        grid: &'a Grid<T>,
+    ) -> Option<Self> {
         let crowd = crowd(sets.iter().map(|set| set.len()).sum(), grid);
-        Self { bins, sets: sets.len(), grid, crowd }
+        let all_have = bins[..sets.len()].iter().all(|bins| bins.len() > 0);
+        all_have.then_some(Self { bins, sets: sets.len(), grid, crowd })
     }
 }
 

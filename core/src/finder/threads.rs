@@ -87,8 +87,10 @@ pub(super) fn cut<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
         let others = others.iter_mut().map(|search| &mut search.list);
         put(set, &mut once(&mut search.list).chain(others).collect::<Vec<_>>(), grid, bins, other)
     });
-    let result = result
-        .map(|()| sweep(search, &mut others, &Filled::new(&bins, sets, grid), task, sink, fork));
+    let result = result.map(|()| match Filled::new(&bins, sets, grid) {
+        Some(bins) => sweep(search, &mut others, &bins, task, sink, fork),
+        None => task.done(1.0),
+    });
     search.bins.push(bins);
     search.team.others = others;
     Some(result)
