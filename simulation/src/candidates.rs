@@ -1,5 +1,7 @@
 //! The pairs that may touch within a step: found once, and kept up while it lasts.
 
+use std::array::from_fn;
+
 use sweep_and_prune::algorithms::Counts;
 use sweep_and_prune::{Aabb, Error};
 
@@ -100,15 +102,34 @@ impl<const D: usize> Candidates<D> {
 }
 
 /// Which boxes may be near another: a grid of the places where they began to grow.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Neighbourhood<const D: usize> {
     grid: Grid<D>,
     /// By ball, the middle of its box when it was put into the grid.
     places: Vec<[f32; D]>,
-    /// No box reaches further than this from its place, on any axis.
-    reach: f32,
+    /// By ball, its cell.
+    cells: Vec<u32>,
+    /// The balls, cell by cell, and where those of each cell begin, and the last end.
+    balls: Vec<u32>,
+    starts: Vec<u32>,
+    /// By axis, no box reaches further than this from its place.
+    reach: [f32; D],
     /// Whether the boxes have been made anew since.
     is_stale: bool,
+}
+
+impl<const D: usize> Default for Neighbourhood<D> {
+    fn default() -> Self {
+        Self {
+            grid: Grid::default(),
+            places: Vec::new(),
+            cells: Vec::new(),
+            balls: Vec::new(),
+            starts: Vec::new(),
+            reach: [0.0; D],
+            is_stale: false,
+        }
+    }
 }
 
 impl<const D: usize> Neighbourhood<D> {
@@ -119,26 +140,48 @@ impl<const D: usize> Neighbourhood<D> {
         }
         self.places.clear();
         self.places.extend(enclosures.middles());
-        self.reach = 0.5 * enclosures.widest;
-        self.grid.reset(&hull(&self.places), self.places.len(), self.reach);
-        self.places.iter().for_each(|&place| self.grid.insert(place));
+        self.reach = enclosures.widest.map(|side| 0.5 * side);
+        self.grid = Grid::new(&hull(&self.places), self.places.len(), self.reach);
+
+        self.cells.clear();
+        self.cells.extend(self.places.iter().map(|&place| self.grid.cell(place) as u32));
+        self.starts.clear();
+        self.starts.resize(self.grid.len() + 1, 0);
+        for &cell in &self.cells {
+            self.starts[cell as usize] += 1;
+        }
+        let mut total = 0;
+        for start in &mut self.starts {
+            total += *start;
+            *start = total;
+        }
+        // Each cell is filled from its end, so that its end becomes its beginning.
+        self.balls.resize(self.cells.len(), 0);
+        for (ball, &cell) in (0..).zip(&self.cells) {
+            let place = &mut self.starts[cell as usize];
+            *place -= 1;
+            self.balls[*place as usize] = ball;
+        }
     }
 
     /// Takes notice that a box has become this large.
     fn grown(&mut self, ball: u32, aabb: &Aabb<D>) {
         for (axis, place) in self.places[ball as usize].into_iter().enumerate() {
             let sides = greater(place - aabb.min[axis], aabb.max[axis] - place);
-            self.reach = greater(sides, self.reach);
+            self.reach[axis] = greater(sides, self.reach[axis]);
         }
     }
 
     /// All balls whose boxes overlap this one, and others.
     fn visit(&self, aabb: &Aabb<D>, mut visit: impl FnMut(u32)) {
         // A hair more, for places and reaches are rounded.
-        let reach = 1.01 * self.reach;
-        let region = Aabb::new(aabb.min.map(|min| min - reach), aabb.max.map(|max| max + reach));
-        self.grid.any_within(&region, |ball| {
-            visit(ball);
+        let region = Aabb::new(
+            from_fn(|axis| aabb.min[axis] - 1.01 * self.reach[axis]),
+            from_fn(|axis| aabb.max[axis] + 1.01 * self.reach[axis]),
+        );
+        self.grid.any_row(&region, |cells| {
+            let [begin, end] = [cells.start, cells.end].map(|cell| self.starts[cell] as usize);
+            self.balls[begin..end].iter().for_each(|&ball| visit(ball));
             false
         });
     }
@@ -151,8 +194,6 @@ fn overlap<const D: usize>(a: &Aabb<D>, b: &Aabb<D>) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use std::array::from_fn;
-
     use super::*;
     use crate::broad_phase::BroadPhase;
     use crate::scenes::{self, Population};

@@ -17,6 +17,9 @@ const MARGIN_OF_RADIUS: f32 = 0.05;
 /// takes, so that a ball inside is inside by any arithmetic.
 const CLEARANCE: f32 = 0.01;
 
+/// As many coordinates as a ball has at most.
+const ONE: usize = 3;
+
 /// Where balls are about to go.
 #[derive(Clone, Copy, Debug)]
 pub struct Ahead<const D: usize> {
@@ -30,14 +33,21 @@ pub struct Ahead<const D: usize> {
 }
 
 /// A box for each ball.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Enclosures<const D: usize> {
     pub boxes: Vec<Aabb<D>>,
     /// Between which places the centre has to stay for the ball to be inside its box.
     lowest: Vec<[f32; D]>,
     highest: Vec<[f32; D]>,
-    /// At least the greatest side of any box.
-    pub widest: f32,
+    /// By axis, at least the greatest side of any box.
+    pub widest: [f32; D],
+}
+
+impl<const D: usize> Default for Enclosures<D> {
+    fn default() -> Self {
+        let (boxes, lowest, highest) = (Vec::new(), Vec::new(), Vec::new());
+        Self { boxes, lowest, highest, widest: [0.0; D] }
+    }
 }
 
 impl<const D: usize> Enclosures<D> {
@@ -50,7 +60,7 @@ impl<const D: usize> Enclosures<D> {
         let mut widest = [0.0; BLOCK];
         for first in (0..bodies.len()).step_by(BLOCK / D) {
             let balls = first..bodies.len().min(first + BLOCK / D);
-            let (min, max) = extents(balls.clone(), bodies, ahead);
+            let (min, max) = extents::<D, BLOCK>(balls.clone(), bodies, ahead);
             for i in 0..BLOCK {
                 widest[i] = greater(max[i] - min[i], widest[i]);
             }
@@ -59,7 +69,10 @@ impl<const D: usize> Enclosures<D> {
                 self.set(ball, Aabb::new(min, max), bodies.radii[ball]);
             }
         }
-        self.widest = widest.into_iter().fold(0.0, greater);
+        self.widest = [0.0; D];
+        for of_ball in widest.as_chunks::<D>().0 {
+            self.widest = from_fn(|axis| greater(of_ball[axis], self.widest[axis]));
+        }
     }
 
     /// Makes the box of one ball larger, so that it holds the rest of the step too. The box that
@@ -67,7 +80,7 @@ impl<const D: usize> Enclosures<D> {
     pub fn enclose_too(&mut self, ball: u32, bodies: &Bodies<D>, ahead: &Ahead<D>) -> Aabb<D> {
         let ball = ball as usize;
         let before = self.boxes[ball];
-        let (min, max) = extents(ball..ball + 1, bodies, ahead);
+        let (min, max) = extents::<D, ONE>(ball..ball + 1, bodies, ahead);
         let union = Aabb::new(
             from_fn(|axis| lesser(before.min[axis], min[axis])),
             from_fn(|axis| greater(before.max[axis], max[axis])),
@@ -94,7 +107,7 @@ impl<const D: usize> Enclosures<D> {
     /// ascending.
     pub fn list_leaving(&self, bodies: &Bodies<D>, ahead: &Ahead<D>, leaving: &mut Vec<u32>) {
         leaving.clear();
-        let kicks = repeated(ahead.kick);
+        let kicks: [f32; BLOCK] = repeated(ahead.kick);
         let leaves = |coordinates: Range<usize>| {
             let at = &bodies.positions.as_flattened()[coordinates.clone()];
             let speeds = &bodies.velocities.as_flattened()[coordinates.clone()];
@@ -118,15 +131,15 @@ impl<const D: usize> Enclosures<D> {
     }
 }
 
-/// The lower and the upper corners of the boxes of at most a block of balls, coordinate by
-/// coordinate.
-fn extents<const D: usize>(
+/// The lower and the upper corners of the boxes of balls that have at most `N` coordinates,
+/// coordinate by coordinate.
+fn extents<const D: usize, const N: usize>(
     balls: Range<usize>,
     bodies: &Bodies<D>,
     ahead: &Ahead<D>,
-) -> ([f32; BLOCK], [f32; BLOCK]) {
+) -> ([f32; N], [f32; N]) {
     let time = ahead.time * ahead.substeps as f32;
-    let mut reaches = [0.0; BLOCK];
+    let mut reaches = [0.0; N];
     let (reach_of, _) = reaches.as_chunks_mut();
     let properties = bodies.velocities[balls.clone()].iter().zip(&bodies.radii[balls.clone()]);
     for (reach, (velocity, &radius)) in reach_of.iter_mut().zip(properties) {
@@ -137,10 +150,10 @@ fn extents<const D: usize>(
     let coordinates = balls.start * D..balls.end * D;
     let at = &bodies.positions.as_flattened()[coordinates.clone()];
     let speeds = &bodies.velocities.as_flattened()[coordinates];
-    let kicks = repeated(ahead.kick);
-    let falls = repeated(ahead.gravity.map(|g| g * time * time));
-    let (mut min, mut max) = ([0.0; BLOCK], [0.0; BLOCK]);
-    for i in 0..at.len().min(BLOCK) {
+    let kicks: [f32; N] = repeated(ahead.kick);
+    let falls: [f32; N] = repeated(ahead.gravity.map(|g| g * time * time));
+    let (mut min, mut max) = ([0.0; N], [0.0; N]);
+    for i in 0..at.len().min(N) {
         let speed = speeds[i] + kicks[i];
         // The substep is part of the way; it is here for the sake of rounding.
         let (next, end) = (at[i] + speed * ahead.time, at[i] + speed * time);

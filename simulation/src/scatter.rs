@@ -41,16 +41,17 @@ impl<const D: usize> Scatter<D> {
             (0..self.bodies).map(|_| 1.0 / between(&mut random, least, greatest)).collect();
         radii.sort_unstable_by(|a, b| b.total_cmp(a));
 
-        let mut grid = Grid::default();
-        grid.reset(&self.region, self.bodies as usize, 2.0 * self.radii[1]);
+        let widths = [2.0 * self.radii[1]; D];
+        let grid = Grid::new(&self.region, self.bodies as usize, widths);
+        let mut chains = Chains { heads: vec![NONE; grid.len()], links: Vec::new() };
         let mut balls: Vec<Ball<D>> = Vec::with_capacity(radii.len());
         for radius in radii {
             let centre = (0..Self::TRIES)
                 .map(|_| self.draw_place(radius, &mut random))
-                .find(|&centre| !self.is_taken(&grid, &balls, centre, radius))
+                .find(|&centre| !self.is_taken(&grid, &chains, &balls, centre, radius))
                 .ok_or(SetupError::NoRoom { placed: balls.len() })?;
             let velocity = self.speed.map(|speed| between(&mut random, -speed, speed));
-            grid.insert(centre);
+            chains.insert(grid.cell(centre));
             balls.push(Ball { centre, radius, velocity });
         }
         Ok(balls)
@@ -64,16 +65,46 @@ impl<const D: usize> Scatter<D> {
     }
 
     /// Whether a ball there would touch one of the others.
-    fn is_taken(&self, grid: &Grid<D>, balls: &[Ball<D>], centre: [f32; D], radius: f32) -> bool {
+    fn is_taken(
+        &self,
+        grid: &Grid<D>,
+        chains: &Chains,
+        balls: &[Ball<D>],
+        centre: [f32; D],
+        radius: f32,
+    ) -> bool {
         // A hair more than the farthest centre of a ball that touches, for sums are rounded.
         let farthest = 1.01 * (radius + self.radii[1]);
         let near = Aabb::new(centre.map(|at| at - farthest), centre.map(|at| at + farthest));
-        grid.any_within(&near, |other| {
+        let touches = |other: u32| {
             let ball = &balls[other as usize];
             let apart = difference(ball.centre, centre);
             let reach = ball.radius + radius;
             dot(apart, apart) <= reach * reach
-        })
+        };
+        grid.any_row(&near, |mut cells| cells.any(|cell| chains.of(cell).any(touches)))
+    }
+}
+
+/// The balls of each cell, in no order that matters.
+struct Chains {
+    /// The last ball put into each cell, and before each ball the one put there earlier.
+    heads: Vec<u32>,
+    links: Vec<u32>,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl Chains {
+    /// Puts in the next ball, whose index is the number of those before it.
+    fn insert(&mut self, cell: usize) {
+        let ball = self.links.len() as u32;
+        self.links.push(std::mem::replace(&mut self.heads[cell], ball));
+    }
+
+    fn of(&self, cell: usize) -> impl Iterator<Item = u32> {
+        let ball = |index: u32| (index != NONE).then_some(index);
+        std::iter::successors(ball(self.heads[cell]), move |&last| ball(self.links[last as usize]))
     }
 }
 

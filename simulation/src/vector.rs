@@ -84,7 +84,7 @@ pub fn lesser(a: f32, b: f32) -> f32 {
 
 /// The coordinates over and over again.
 #[inline]
-pub fn repeated<const D: usize>(vector: [f32; D]) -> [f32; BLOCK] {
+pub fn repeated<const D: usize, const N: usize>(vector: [f32; D]) -> [f32; N] {
     from_fn(|i| vector[i % D])
 }
 
