@@ -51,7 +51,7 @@ impl<const D: usize, T: Coordinate> Find for Typed<D, T> {
         let finder = &mut self.finder;
         let found = run(py, count(first, second), threads, move |watch| match second {
             None => finder.find_watched(first, watch),
-            Some(second) => finder.find_between(first, second).map(Some),
+            Some(second) => finder.find_between_watched(first, second, watch),
         });
         match found {
             Ok(Ok(found)) => pairs(py, found.unwrap_or(&[]).iter().copied()),
@@ -69,12 +69,13 @@ impl<const D: usize, T: Coordinate> Find for Typed<D, T> {
         let (first, second) =
             (first.boxes::<D>()?, second.as_ref().map(Rows::boxes::<D>).transpose()?);
         let finder = &mut self.finder;
-        let counted = run(py, count(first, second), threads, move |_| match second {
-            None => finder.count(first),
-            Some(second) => finder.count_between(first, second),
+        let counted = run(py, count(first, second), threads, move |watch| match second {
+            None => finder.count_watched(first, watch),
+            Some(second) => finder.count_between_watched(first, second, watch),
         });
         match counted {
-            Ok(counted) => counted.map_err(|error| fault(py, error, first, second)),
+            Ok(Ok(counted)) => Ok(counted.unwrap_or(0)),
+            Ok(Err(error)) => Err(fault(py, error, first, second)),
             Err(error) => {
                 self.finder = Self::fresh(threads);
                 Err(error)
