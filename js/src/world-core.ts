@@ -1,6 +1,6 @@
 import { Core, type Exports } from "./engine.js";
 
-/** What js/wasm/src/broad_phase.rs exports. */
+/** What js/wasm/src/broad_phase/mod.rs exports. */
 export interface WorldExports extends Exports {
   world_new(dimensions: number, double: number, margin: number, prediction: number, fat: number): number;
   world_free(world: number): void;
@@ -32,7 +32,7 @@ export interface WorldExports extends Exports {
 /** Category, mask, group, static. */
 export type FilterWords = [number, number, number, number];
 
-/** What is asked; js/wasm/src/broad_phase.rs has the same list. */
+/** What is asked; js/wasm/src/broad_phase/mod.rs has the same list. */
 export const enum Query {
   Overlapping = 0,
   Containing = 1,

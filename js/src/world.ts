@@ -1,10 +1,10 @@
 /// <reference lib="esnext.disposable" preserve="true" />
-import { type Boxes, checkBoxes, checkDimensions, checkNumbers, type Dimensions, writeRows } from "./boxes.js";
-import { checkFits, type Engine } from "./engine.js";
+import { type Boxes, checkBoxes, checkDimensions, checkNumbers, type Dimensions } from "./boxes.js";
+import { checkFits } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
 import { defaultFilter, everything, type Filter, filterWords } from "./filter.js";
-import { guard, view } from "./views.js";
-import { Query, worldCore, type WorldExports } from "./world-core.js";
+import { Query } from "./world-core.js";
+import { WorldMemory } from "./world-memory.js";
 
 /**
  * The name of a body: a whole number below 2^53. The lower 26 bits are its slot (see
@@ -92,15 +92,7 @@ export class BroadPhase {
   readonly dimensions: Dimensions;
   /** The precision of the coordinates. */
   readonly precision: "single" | "double";
-  readonly #owned: Owned;
-  readonly #stored: Dimensions;
-  readonly #numbersAt: number;
-  #numbers: Float64Array | undefined;
-  #rows: Float32Array | Float64Array | undefined;
-  #ids: Float64Array | undefined;
-  #out: Float64Array | undefined;
-  #begun: Float64Array | undefined;
-  #ended: Float64Array | undefined;
+  readonly #memory: WorldMemory;
   readonly #changes: Changes = { begun: new Float64Array(0), ended: new Float64Array(0) };
 
   /**
@@ -120,16 +112,7 @@ export class BroadPhase {
       throw new RangeError(`report must be "exact" or "fat", not ${String(report)}`);
     }
     this.precision = precision;
-    const isDouble = precision === "double";
-    // There is no core for doubles in the plane, nor for a line: see js/wasm/src/broad_phase.rs.
-    this.#stored = isDouble ? 3 : (Math.max(2, this.dimensions) as Dimensions);
-    const engine = worldCore.engine();
-    const { world_new, world_numbers } = engine.exports;
-    const world = world_new(this.#stored, Number(isDouble), margin, prediction, Number(report === "fat"));
-    if (world === 0) throw new RangeError("margin and prediction must be finite and not negative");
-    this.#owned = { engine, world };
-    this.#numbersAt = world_numbers(world) >>> 0;
-    forgotten?.register(this, this.#owned, this.#owned);
+    this.#memory = new WorldMemory({ dimensions: this.dimensions, precision, report, margin, prediction });
   }
 
   /**
@@ -155,7 +138,7 @@ export class BroadPhase {
 
   #restore(bytes: Uint8Array): void {
     checkFits(bytes.length);
-    this.#call((exports, world) => {
+    this.#memory.call((exports, world) => {
       const at = exports.world_bytes(world, bytes.length) >>> 0;
       if (at === 0) throw new OutOfMemoryError();
       new Uint8Array(exports.memory.buffer, at, bytes.length).set(bytes);
@@ -165,17 +148,17 @@ export class BroadPhase {
 
   /** How many bodies there are. */
   get size(): number {
-    return this.#exports().world_len(this.#owned.world) >>> 0;
+    return this.#memory.ask((exports, world) => exports.world_len(world)) >>> 0;
   }
 
   /** The ids of all bodies, sorted by slot. */
   ids(): Float64Array {
-    return this.#answer((exports, world) => exports.world_ids(world));
+    return this.#memory.answer((exports, world) => exports.world_ids(world));
   }
 
   /** Whether an id names a body that was inserted here and not removed. */
   has(id: ProxyId): boolean {
-    return this.#exports().world_has(this.#owned.world, id) !== 0;
+    return this.#memory.ask((exports, world) => exports.world_has(world, id)) !== 0;
   }
 
   /**
@@ -185,9 +168,9 @@ export class BroadPhase {
    * @throws {@link InvalidBoxError} if the box is inverted or NaN, as a coordinate left out is.
    */
   insert(a: number, b: number, c?: number, d?: number, e?: number, f?: number): ProxyId {
-    this.#writeBox(0, a, b, c, d, e, f);
-    this.#call((exports, world) => exports.world_insert(world));
-    return this.#numbersNow()[0]!;
+    this.#memory.writeBox(0, a, b, c, d, e, f);
+    this.#memory.call((exports, world) => exports.world_insert(world));
+    return this.#memory.numbers()[0]!;
   }
 
   /**
@@ -197,8 +180,8 @@ export class BroadPhase {
    */
   insertMany(boxes: Boxes, filter: Partial<Filter> = defaultFilter): Float64Array {
     const words = filterWords(filter, defaultFilter);
-    const count = this.#writeRows(boxes);
-    return this.#answer((exports, world) => exports.world_insert_many(world, count, ...words));
+    const count = this.#memory.writeRows(boxes);
+    return this.#memory.answer((exports, world) => exports.world_insert_many(world, count, ...words));
   }
 
   /**
@@ -207,8 +190,8 @@ export class BroadPhase {
    * @throws {@link StaleProxyError}, {@link InvalidBoxError}.
    */
   set(id: ProxyId, a: number, b: number, c?: number, d?: number, e?: number, f?: number): void {
-    this.#writeBox(0, a, b, c, d, e, f);
-    this.#call((exports, world) => exports.world_set(world, id));
+    this.#memory.writeBox(0, a, b, c, d, e, f);
+    this.#memory.call((exports, world) => exports.world_set(world, id));
   }
 
   /**
@@ -225,10 +208,10 @@ export class BroadPhase {
       throw new RangeError(`${names.length} ids do not go with ${rows.length / (2 * this.dimensions)} boxes`);
     }
     // Views of memory are left empty when it grows, which writing the others may let it.
-    const kept = this.#keep(names, this.#ids);
-    this.#writeRows(rows);
-    this.#writeIds(kept);
-    this.#call((exports, world) => exports.world_set_many(world, kept.length));
+    const kept = this.#memory.keepIds(names);
+    this.#memory.writeRows(rows);
+    this.#memory.writeIds(kept);
+    this.#memory.call((exports, world) => exports.world_set_many(world, kept.length));
   }
 
   /**
@@ -237,16 +220,16 @@ export class BroadPhase {
    * (lines; doubles in the plane) they are ordinary arrays.
    */
   buffers(count: number): Buffers {
-    this.#exports(); // throws if it was freed
+    this.#memory.exports(); // throws if it was freed
     if (!(Number.isInteger(count) && count >= 0)) throw new RangeError(`count must be a whole number, not ${count}`);
     const width = 2 * this.dimensions;
-    if (this.#stored !== this.dimensions) {
+    if (this.#memory.stored !== this.dimensions) {
       const boxes = this.precision === "double" ? new Float64Array(width * count) : new Float32Array(width * count);
       return { ids: new Float64Array(count), boxes };
     }
-    this.#rowsFor(count);
-    const ids = this.#idsFor(count);
-    return { ids, boxes: this.#rowsFor(count) };
+    this.#memory.rowsFor(count);
+    const ids = this.#memory.idsFor(count);
+    return { ids, boxes: this.#memory.rowsFor(count) };
   }
 
   /**
@@ -257,9 +240,9 @@ export class BroadPhase {
    * @throws {@link StaleProxyError}; {@link InvalidBoxError} with index 0 for `from`, 1 for `to`.
    */
   setSwept(id: ProxyId, from: Numbers, to: Numbers): void {
-    this.#writeNumbers(0, from, 2, "from");
-    this.#writeNumbers(2 * this.#stored, to, 2, "to");
-    this.#call((exports, world) => exports.world_set_swept(world, id));
+    this.#memory.writeNumbers(0, from, 2, "from");
+    this.#memory.writeNumbers(2 * this.#memory.stored, to, 2, "to");
+    this.#memory.call((exports, world) => exports.world_set_swept(world, id));
   }
 
   /**
@@ -268,8 +251,8 @@ export class BroadPhase {
    * @throws {@link StaleProxyError}.
    */
   box(id: ProxyId): number[] {
-    this.#call((exports, world) => exports.world_box(world, id));
-    const [numbers, stored] = [this.#numbersNow(), this.#stored];
+    this.#memory.call((exports, world) => exports.world_box(world, id));
+    const [numbers, stored] = [this.#memory.numbers(), this.#memory.stored];
     return [
       ...numbers.subarray(0, this.dimensions),
       ...numbers.subarray(stored, stored + this.dimensions),
@@ -282,8 +265,8 @@ export class BroadPhase {
    * @throws {@link StaleProxyError}.
    */
   remove(id: ProxyId): void {
-    this.#writeIds([id]);
-    this.#call((exports, world) => exports.world_remove_many(world, 1));
+    this.#memory.writeIds([id]);
+    this.#memory.call((exports, world) => exports.world_remove_many(world, 1));
   }
 
   /**
@@ -295,8 +278,8 @@ export class BroadPhase {
   removeMany(ids: Numbers): void {
     const names = checkNumbers(ids, "ids");
     const count = names.length;
-    this.#writeIds(names);
-    this.#call((exports, world) => exports.world_remove_many(world, count));
+    this.#memory.writeIds(names);
+    this.#memory.call((exports, world) => exports.world_remove_many(world, count));
   }
 
   /**
@@ -305,8 +288,8 @@ export class BroadPhase {
    * @throws {@link StaleProxyError}.
    */
   filter(id: ProxyId): Filter {
-    this.#call((exports, world) => exports.world_filter(world, id));
-    const [category = 0, mask = 0, group = 0, isStatic = 0] = this.#numbersNow();
+    this.#memory.call((exports, world) => exports.world_filter(world, id));
+    const [category = 0, mask = 0, group = 0, isStatic = 0] = this.#memory.numbers();
     return { category, mask, group, isStatic: isStatic !== 0 };
   }
 
@@ -318,7 +301,7 @@ export class BroadPhase {
    */
   setFilter(id: ProxyId, filter: Partial<Filter>): void {
     const words = filterWords(filter, defaultFilter);
-    this.#call((exports, world) => exports.world_set_filter(world, id, ...words));
+    this.#memory.call((exports, world) => exports.world_set_filter(world, id, ...words));
   }
 
   /**
@@ -327,20 +310,14 @@ export class BroadPhase {
    * each time, with views that are valid until the next call.
    */
   update(): Changes {
-    this.#call((exports, world) => exports.world_update(world));
-    const { engine } = this.#owned;
-    const { buffer } = engine.exports.memory;
-    const [at, total, begun] = [engine.detail(0), engine.detail(1), this.#numbersNow()[0]!];
-    this.#begun = view(Float64Array, this.#begun, buffer, at, begun);
-    this.#ended = view(Float64Array, this.#ended, buffer, at + 8 * begun, total - begun);
-    this.#changes.begun = guard(engine, this.#begun);
-    this.#changes.ended = guard(engine, this.#ended);
+    this.#memory.call((exports, world) => exports.world_update(world));
+    this.#memory.changes(this.#changes);
     return this.#changes;
   }
 
   /** The pairs that overlapped at the last update: `a0, b0, a1, b1, ...`, sorted. */
   pairs(): Float64Array {
-    return this.#answer((exports, world) => exports.world_pairs(world));
+    return this.#memory.answer((exports, world) => exports.world_pairs(world));
   }
 
   /**
@@ -349,7 +326,7 @@ export class BroadPhase {
    * @throws {@link StaleProxyError}.
    */
   pairsOf(id: ProxyId): Float64Array {
-    return this.#answer((exports, world) => exports.world_pairs_of(world, id));
+    return this.#memory.answer((exports, world) => exports.world_pairs_of(world, id));
   }
 
   /**
@@ -360,7 +337,7 @@ export class BroadPhase {
    * @throws {@link InvalidBoxError}.
    */
   overlapping(box: Numbers, filter?: Partial<Filter>): Float64Array {
-    this.#writeNumbers(0, box, 2, "box");
+    this.#memory.writeNumbers(0, box, 2, "box");
     return this.#ask(Query.Overlapping, 0, filter);
   }
 
@@ -370,7 +347,7 @@ export class BroadPhase {
    * @throws `RangeError` for a NaN.
    */
   containing(point: Numbers, filter?: Partial<Filter>): Float64Array {
-    this.#writeNumbers(0, point, 1, "point");
+    this.#memory.writeNumbers(0, point, 1, "point");
     return this.#ask(Query.Containing, 0, filter);
   }
 
@@ -380,8 +357,8 @@ export class BroadPhase {
    * @throws `RangeError` if the centre is not finite, or the radius negative or NaN.
    */
   within(centre: Numbers, radius: number, filter?: Partial<Filter>): Float64Array {
-    this.#writeNumbers(0, centre, 1, "centre");
-    this.#numbersNow()[this.#stored] = radius;
+    this.#memory.writeNumbers(0, centre, 1, "centre");
+    this.#memory.numbers()[this.#memory.stored] = radius;
     return this.#ask(Query.Within, 0, filter);
   }
 
@@ -433,7 +410,7 @@ export class BroadPhase {
    */
   nearest(point: Numbers, k: number = 1, filter?: Partial<Filter>): Neighbour[] {
     if (!(Number.isInteger(k) && k >= 0 && k < 2 ** 32)) throw new RangeError(`k must be a whole number, not ${k}`);
-    this.#writeNumbers(0, point, 1, "point");
+    this.#memory.writeNumbers(0, point, 1, "point");
     const found = this.#ask(Query.Nearest, k, filter);
     return Array.from({ length: found.length / 2 }, (_, i) => ({
       id: found[2 * i]!,
@@ -446,22 +423,19 @@ export class BroadPhase {
    * equal bytes.
    */
   snapshot(): Uint8Array<ArrayBuffer> {
-    const { engine } = this.#owned;
-    this.#call((exports, world) => exports.world_snapshot(world));
-    return new Uint8Array(engine.exports.memory.buffer, engine.detail(0), engine.detail(1)).slice();
+    this.#memory.call((exports, world) => exports.world_snapshot(world));
+    return this.#memory.bytes();
   }
 
   /** A 64-bit hash of the whole state, equal for equal states on every machine. */
   hash(): bigint {
-    const { engine } = this.#owned;
-    this.#call((exports, world) => exports.world_hash(world));
-    return (BigInt(engine.detail(1)) << 32n) | BigInt(engine.detail(0));
+    this.#memory.call((exports, world) => exports.world_hash(world));
+    return this.#memory.bits();
   }
 
   /** Gives the memory back. The world cannot be used any more; to free it twice is no error. */
   free(): void {
-    forgotten?.unregister(this.#owned);
-    release(this.#owned);
+    this.#memory.free();
   }
 
   /** As {@link BroadPhase.free}, for `using`. */
@@ -469,165 +443,28 @@ export class BroadPhase {
     this.free();
   }
 
-  #exports(): WorldExports {
-    if (this.#owned.world === 0) throw new TypeError("this BroadPhase was freed");
-    return this.#owned.engine.exports;
-  }
-
-  /** Makes a call and throws what its code stands for. */
-  #call(call: (exports: WorldExports, world: number) => number): void {
-    const owned = this.#owned;
-    const exports = this.#exports();
-    owned.engine.calls++;
-    try {
-      owned.engine.check(call(exports, owned.world));
-    } catch (error) {
-      // It stopped half-way: there is no world left to go on with.
-      if (error instanceof OutOfMemoryError) this.free();
-      throw error;
-    }
-  }
-
-  /** Makes a call and returns the numbers that it tells of. */
-  #answer(call: (exports: WorldExports, world: number) => number): Float64Array {
-    this.#call(call);
-    const { engine } = this.#owned;
-    const { buffer } = engine.exports.memory;
-    this.#out = view(Float64Array, this.#out, buffer, engine.detail(0), engine.detail(1));
-    return guard(engine, this.#out);
-  }
-
   #ask(query: Query, k: number, filter: Partial<Filter> | undefined): Float64Array {
     const words = filterWords(filter ?? everything, defaultFilter);
-    return this.#answer((exports, world) => exports.world_query(world, query, k, ...words));
-  }
-
-  /** The numbers that go in and out, where they are now. */
-  #numbersNow(): Float64Array {
-    const { buffer } = this.#exports().memory;
-    return (this.#numbers = view(Float64Array, this.#numbers, buffer, this.#numbersAt, 16));
-  }
-
-  /** Writes a box from separate numbers; a missing one becomes NaN, which no box may hold. */
-  #writeBox(at: number, a: number, b: number, c = NaN, d = NaN, e = NaN, f = NaN): void {
-    const [numbers, stored] = [this.#numbersNow(), this.#stored];
-    switch (this.dimensions) {
-      case 1:
-        this.#writeAxes(numbers, at, a, 0, 0);
-        this.#writeAxes(numbers, at + stored, b, 0, 0);
-        break;
-      case 2:
-        this.#writeAxes(numbers, at, a, b, 0);
-        this.#writeAxes(numbers, at + stored, c, d, 0);
-        break;
-      case 3:
-        this.#writeAxes(numbers, at, a, b, c);
-        this.#writeAxes(numbers, at + stored, d, e, f);
-    }
-  }
-
-  #writeAxes(numbers: Float64Array, at: number, x: number, y: number, z: number): void {
-    numbers[at] = x;
-    numbers[at + 1] = y;
-    if (this.#stored === 3) numbers[at + 2] = z;
-  }
-
-  /** Writes one or two corners; numbers on axes that the world does not have are 0. */
-  #writeNumbers(at: number, values: Numbers, corners: number, name: string): void {
-    const { dimensions } = this;
-    const given = checkNumbers(values, name);
-    if (given.length !== corners * dimensions) {
-      throw new RangeError(`${name} must be ${corners * dimensions} numbers, not ${given.length}`);
-    }
-    const numbers = this.#numbersNow();
-    for (let corner = 0; corner < corners; corner++) {
-      for (let axis = 0; axis < this.#stored; axis++) {
-        numbers[at + corner * this.#stored + axis] = axis < dimensions ? given[corner * dimensions + axis]! : 0;
-      }
-    }
+    return this.#memory.answer((exports, world) => exports.world_query(world, query, k, ...words));
   }
 
   #writeRay(origin: Numbers, direction: Numbers, limit: number): void {
-    this.#writeNumbers(0, origin, 1, "origin");
-    this.#writeNumbers(this.#stored, origin, 1, "origin");
+    this.#memory.writeNumbers(0, origin, 1, "origin");
+    this.#memory.writeNumbers(this.#memory.stored, origin, 1, "origin");
     this.#writeWay(direction, limit);
   }
 
   #writeCast(box: Numbers, direction: Numbers, limit: number): void {
-    this.#writeNumbers(0, box, 2, "box");
+    this.#memory.writeNumbers(0, box, 2, "box");
     this.#writeWay(direction, limit);
   }
 
   #writeWay(direction: Numbers, limit: number): void {
-    this.#writeNumbers(2 * this.#stored, direction, 1, "direction");
-    this.#numbersNow()[3 * this.#stored] = limit;
+    this.#memory.writeNumbers(2 * this.#memory.stored, direction, 1, "direction");
+    this.#memory.numbers()[3 * this.#memory.stored] = limit;
   }
-
-  /** The rows of memory for `count` boxes. */
-  #rowsFor(count: number): Float32Array | Float64Array {
-    const exports = this.#exports();
-    const length = 2 * this.#stored * count;
-    checkFits(length * (this.precision === "double" ? 8 : 4));
-    const at = exports.world_rows(this.#owned.world, count) >>> 0;
-    if (at === 0) throw new OutOfMemoryError();
-    const { buffer } = exports.memory;
-    return (this.#rows =
-      this.precision === "double"
-        ? view(Float64Array, this.#rows, buffer, at, length)
-        : view(Float32Array, this.#rows, buffer, at, length));
-  }
-
-  /** Writes boxes to the rows, unless they are there, and returns how many they are. */
-  #writeRows(boxes: Boxes): number {
-    const rows = checkBoxes(boxes, this.dimensions);
-    const count = rows.length / (2 * this.dimensions);
-    const kept = this.#keep(rows, this.#rows);
-    const into = this.#rowsFor(count);
-    if (!isSame(kept, into)) writeRows(kept, this.dimensions, into, this.#stored);
-    return count;
-  }
-
-  #idsFor(count: number): Float64Array {
-    const exports = this.#exports();
-    checkFits(count * 8);
-    const at = exports.world_ids_in(this.#owned.world, count) >>> 0;
-    if (at === 0) throw new OutOfMemoryError();
-    return (this.#ids = view(Float64Array, this.#ids, exports.memory.buffer, at, count));
-  }
-
-  #writeIds(ids: Numbers): void {
-    const kept = this.#keep(ids, this.#ids);
-    const into = this.#idsFor(kept.length);
-    if (!isSame(kept, into)) into.set(kept);
-  }
-
-  /** The numbers, copied if they lie in memory that may grow, unless just where they will be read. */
-  #keep<T extends Numbers>(numbers: T, written: Float32Array | Float64Array | undefined): T {
-    const isOutside = !ArrayBuffer.isView(numbers) || numbers.buffer !== this.#exports().memory.buffer;
-    return isOutside || (written && isSame(numbers, written)) ? numbers : (numbers.slice() as unknown as T);
-  }
-}
-
-/** Whether an array lies where another does. */
-function isSame(a: Numbers, b: Float32Array | Float64Array): boolean {
-  return ArrayBuffer.isView(a) && a.buffer === b.buffer && a.byteOffset === b.byteOffset;
 }
 
 function hits(found: Float64Array): Hit[] {
   return Array.from({ length: found.length / 2 }, (_, i) => ({ id: found[2 * i]!, at: found[2 * i + 1]! }));
 }
-
-/** What a world holds on the other side: a handle, or 0 once it is freed. */
-interface Owned {
-  readonly engine: Engine<WorldExports>;
-  world: number;
-}
-
-function release(owned: Owned): void {
-  if (owned.world !== 0) owned.engine.exports.world_free(owned.world);
-  owned.world = 0;
-}
-
-/** Frees the worlds that nobody freed and nobody can reach. */
-const forgotten =
-  typeof FinalizationRegistry === "undefined" ? undefined : new FinalizationRegistry<Owned>(release);
