@@ -33,6 +33,10 @@ use crate::{Aabb, Error, Scalar};
 use options::{contains, displacement, hull};
 use proxy::{Slots, flag};
 use updater::Updater;
+use warm::{call, make_room};
+
+/// The boxes of so many bodies that are set are called from memory before they are written.
+const AHEAD: usize = 32;
 
 /// A world of boxes that tells which overlaps began and which ended.
 ///
@@ -227,14 +231,13 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// # Errors
     /// [`Error::LengthMismatch`]; [`Error::StaleProxy`] or [`Error::InvalidBox`] with the index
     /// of the first that is bad. Then no box has changed.
+    #[inline(never)]
     pub fn set_many(&mut self, ids: &[ProxyId], boxes: &[Aabb<D, T>]) -> Result<(), Error> {
         if ids.len() != boxes.len() {
             return Err(Error::LengthMismatch { ids: ids.len(), boxes: boxes.len() });
         }
-        let calls = ids.iter().zip(boxes);
-        let is_sound = |(&id, aabb): (&ProxyId, &_)| self.slots.is_living(id) & is_valid(aabb);
-        if !calls.clone().map(is_sound).fold(true, |all, each| all & each) {
-            for (index, (&id, aabb)) in calls.clone().enumerate() {
+        if !self.slots.are_living(ids) | !are_valid(boxes) {
+            for (index, (&id, aabb)) in ids.iter().zip(boxes).enumerate() {
                 self.slots.check(id, index)?;
                 check_box(aabb, index)?;
             }
@@ -245,8 +248,17 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             }
         }
         self.updater.warm_for(ids.len(), &self.boxes);
-        for (id, aabb) in calls {
-            self.place(self.slots.seats[id.slot() as usize], aabb);
+        self.changed.reserve(ids.len());
+        for (ids, boxes) in ids.chunks(AHEAD).zip(boxes.chunks(AHEAD)) {
+            // Seats are dealt by place, ids are not: what is looked at is all over the tables.
+            for id in ids {
+                let seat = self.slots.seats[id.slot() as usize] as usize;
+                call(&self.boxes, seat);
+                call(&self.slots.flags, seat);
+            }
+            for (id, aabb) in ids.iter().zip(boxes) {
+                self.place(self.slots.seats[id.slot() as usize], aabb);
+            }
         }
         Ok(())
     }
@@ -354,7 +366,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     }
 
     /// Puts a body's box, which is valid, where it is told.
-    #[inline]
+    #[inline(always)]
     fn place(&mut self, seat: u32, aabb: &Aabb<D, T>) {
         let at = seat as usize;
         match self.options.report {
@@ -439,23 +451,30 @@ fn check_box<const D: usize, T: Scalar>(aabb: &Aabb<D, T>, index: usize) -> Resu
     }
 }
 
-/// Whether a box is valid, without a branch.
-#[inline]
-fn is_valid<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> bool {
-    (0..D).fold(true, |all, axis| all & (aabb.min[axis] <= aabb.max[axis]))
+/// Whether boxes are all valid, without a branch for each.
+fn are_valid<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>]) -> bool {
+    let is_valid =
+        |aabb: &Aabb<D, T>| (0..D).fold(true, |all, axis| all & (aabb.min[axis] <= aabb.max[axis]));
+    boxes.iter().fold(true, |all, aabb| all & is_valid(aabb))
 }
 
-/// Whether two boxes differ, without a branch.
+/// Whether the bits of two boxes differ, without a branch.
 #[inline]
 fn differ<const D: usize, T: Scalar>(a: &Aabb<D, T>, b: &Aabb<D, T>) -> bool {
-    let sides = |any, axis| any | (a.min[axis] != b.min[axis]) | (a.max[axis] != b.max[axis]);
-    (0..D).fold(false, sides)
+    let differing = |a: T, b: T| a.to_raw() ^ b.to_raw();
+    let sides = |bits, axis| {
+        bits | differing(a.min[axis], b.min[axis]) | differing(a.max[axis], b.max[axis])
+    };
+    (0..D).fold(0, sides) != 0
 }
 
 /// Writes to a table by seat, which grows by one where the seat is new.
 fn put<V>(table: &mut Vec<V>, seat: u32, value: V) {
     match table.get_mut(seat as usize) {
         Some(place) => *place = value,
-        None => table.push(value),
+        None => {
+            make_room(table, 1);
+            table.push(value);
+        }
     }
 }

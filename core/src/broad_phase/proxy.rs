@@ -134,7 +134,14 @@ impl Slots {
     /// Whether an id names a living body.
     #[inline]
     pub fn is_living(&self, id: ProxyId) -> bool {
-        self.living.get(id.slot as usize) == Some(&id.generation) && id.generation != 0
+        self.living
+            .get(id.slot as usize)
+            .is_some_and(|&living| (living == id.generation) & (living != 0))
+    }
+
+    /// Whether all ids name living bodies, without a branch for each.
+    pub fn are_living(&self, ids: &[ProxyId]) -> bool {
+        ids.iter().fold(true, |all, &id| all & self.is_living(id))
     }
 
     /// The seat of the body of the id at `index` of what was passed.

@@ -8,7 +8,7 @@ use super::options::hull;
 use super::proxy::flag;
 use super::update::{overlap, push_wanted};
 use super::updater::{Scratch, Updater};
-use super::warm::warm;
+use super::warm::{make_room, warm};
 use crate::{Error, Scalar};
 
 /// Where fewer than one body in so many moves, each is taken by itself.
@@ -143,7 +143,9 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         let pairs = &mut candidates.pairs;
         // Boxes were checked when they came and fat boxes are no worse: the finder takes them.
         if is_whole {
-            pairs.extend_from_slice(found(finder.find(fat)));
+            let found = found(finder.find(fat));
+            make_room(pairs, found.len());
+            pairs.extend_from_slice(found);
         } else {
             boxes.clear();
             boxes.extend(seats.iter().map(|&seat| fat[seat as usize]));

@@ -8,6 +8,7 @@ use alloc::vec::Vec;
 use super::BroadPhase;
 use super::proxy::flag;
 use super::updater::{Scratch, Updater};
+use super::warm::make_room;
 use crate::Scalar;
 
 /// Fewer bodies are near each other in memory whatever their order.
@@ -75,6 +76,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
 fn reorder<V: Copy>(table: &mut Vec<V>, order: &[u32], spare: &mut Vec<V>) {
     if !table.is_empty() {
         spare.clear();
+        make_room(spare, order.len());
         spare.extend(order.iter().map(|&old| table[old as usize]));
         core::mem::swap(table, spare);
     }

@@ -8,7 +8,7 @@ use super::predict::Prediction;
 use super::sleep::Sleep;
 use super::sort::PairSorter;
 use super::tree::Tree;
-use super::warm::warm;
+use super::warm::{make_room, warm};
 use crate::finder::PairFinder;
 use crate::{Aabb, Scalar};
 
@@ -152,8 +152,10 @@ impl<const D: usize, T: Scalar> Updater<D, T> {
     /// Makes room for a new seat.
     pub fn add_seat(&mut self, aabb: Aabb<D, T>) {
         self.front += usize::from(self.front == self.fat.len());
-        self.previous.push(aabb);
-        self.fat.push(aabb);
+        for table in [&mut self.previous, &mut self.fat] {
+            make_room(table, 1);
+            table.push(aabb);
+        }
     }
 
     /// Reads the part of a table by seat through of which `count` items will be looked at.

@@ -3,7 +3,10 @@
 //! some 4 MB of its third cache to itself). So a table that fits there is read through before it is
 //! read here and there: worth while where more than one line in so many is looked at.
 
+use alloc::vec::Vec;
 use core::hint::black_box;
+
+use crate::finder::{enlarge_pages, prefetch};
 
 /// The bytes that come from memory at once.
 const LINE: usize = 64;
@@ -14,5 +17,20 @@ pub(super) fn warm<V: Copy>(table: &[V]) {
     let stride = (LINE / size_of::<V>().max(1)).max(1);
     for item in table.iter().step_by(stride) {
         black_box(*item);
+    }
+}
+
+/// Calls the line of an item from memory, and does not wait for it.
+#[inline(always)]
+pub(super) fn call<V>(table: &[V], at: usize) {
+    prefetch(table.as_ptr().wrapping_add(at));
+}
+
+/// Makes room for so many more items, behind large pages where there are many: what is looked at here
+/// and there in many small ones costs a walk of the page tables each time.
+pub(super) fn make_room<V>(table: &mut Vec<V>, more: usize) {
+    if table.capacity() - table.len() < more {
+        table.reserve(more);
+        enlarge_pages(table);
     }
 }

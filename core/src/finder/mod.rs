@@ -122,6 +122,7 @@ use crate::aabb::check_count;
 use crate::{Aabb, Error, Scalar, validate};
 use kernel::Arrange;
 pub use kernel::Kernel;
+pub(crate) use kernel::{enlarge_pages, prefetch};
 pub use numbers::Number;
 use search::{Search, Stop, Task, few, is_direct, is_tiny, very_few};
 use sink::{Buffer, Count, Sink, Store, Stream};

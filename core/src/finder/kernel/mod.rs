@@ -19,8 +19,7 @@ mod wasm;
 mod x86;
 
 pub use column::{Column, PAD};
-pub use pages::enlarge_pages;
-use pages::prefetch;
+pub use pages::{enlarge_pages, prefetch};
 pub use scan::Cursor;
 pub use scatter::{Copied, Counted, Share, place};
 pub use vector::Arrange;
