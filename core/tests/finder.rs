@@ -262,33 +262,42 @@ fn the_past_does_not_matter<const D: usize, T: Scalar>() {
 }
 in_all_dimensions!(a_finder_finds_what_a_new_one_finds, the_past_does_not_matter);
 
-/// Another coordinate for that of a box.
-type Change<'a, T> = &'a dyn Fn(usize, T) -> T;
+/// Another box in the place of one.
+type Change<'a, const D: usize, T> = &'a dyn Fn(usize, Aabb<D, T>) -> Aabb<D, T>;
 
 /// Frames of boxes that move little and now and then teleport, change in number, or are another
 /// scene: a finder that was used before finds what a new one finds, in the same order.
 fn the_last_order_does_not_matter<const D: usize, T: Scalar>() {
     let frames = if cfg!(debug_assertions) { 20 } else { 40 };
-    // With many equal edges; with half of the boxes in a corner, too many for the bin there.
-    let coarse = |_: usize, at: T| T::from_f64((at.to_f64() * 64.0).round() / 64.0);
-    let corner =
-        |i: usize, at: T| if i.is_multiple_of(2) { at } else { T::from_f64(at.to_f64() * 0.01) };
-    let as_it_is = |_: usize, at: T| at;
-    let change: [(Motion, usize, Change<'_, T>); 5] = [
+    let each = |it: Aabb<D, T>, change: &dyn Fn(f64) -> f64| {
+        let changed = |at: T| T::from_f64(change(at.to_f64()));
+        Aabb::new(it.min.map(changed), it.max.map(changed))
+    };
+    // With many equal edges; with half of the boxes in a corner, too many for the bin there; with a
+    // bundle of needles along each axis, which are swept across, and not along as the rest is.
+    let coarse = |_: usize, it| each(it, &|at| (at * 64.0).round() / 64.0);
+    let corner = |i: usize, it| if i.is_multiple_of(2) { it } else { each(it, &|at| at * 0.01) };
+    let bundles = |i: usize, it: Aabb<D, T>| {
+        let at = it.min.map(|at| 0.3 + 0.1 * (i % D) as f64 + 5e-4 * at.to_f64());
+        let half = (it.max[0].to_f64() - it.min[0].to_f64()) / 2.0;
+        let halves = core::array::from_fn(|axis| if i % D == axis { half } else { 1e-7 });
+        if i < 1200 * D { around(at, halves) } else { it }
+    };
+    let as_it_is = |_: usize, it| it;
+    let change: [(Motion, usize, Change<'_, D, T>); 6] = [
         (Motion::Drift, 900, &as_it_is),
         (Motion::MostlyStill, 3000, &as_it_is),
         (Motion::Teleport, 2000, &as_it_is),
         (Motion::MostlyStill, 2000, &coarse),
         (Motion::MostlyStill, 8000, &corner),
+        (Motion::MostlyStill, 16_000, &bundles),
     ];
     for (motion, n, change) in change {
         let mut moving = motion.start::<D, T>(n, 1).unwrap();
         let mut used = finders::<D, T>();
-        for frame in 0..frames {
-            let changed = |(i, it): (usize, &Aabb<D, T>)| {
-                Aabb::new(it.min.map(|at| change(i, at)), it.max.map(|at| change(i, at)))
-            };
-            let mut boxes: Boxes<D, T> = moving.boxes().iter().enumerate().map(changed).collect();
+        for frame in 0..frames.min(160_000 / n) {
+            let all = moving.boxes().iter().enumerate();
+            let mut boxes: Boxes<D, T> = all.map(|(i, it)| change(i, *it)).collect();
             moving.advance();
             match frame % 17 {
                 7 => boxes.push(boxes[0]),

@@ -60,6 +60,13 @@
 //! the last box of a column stand NaN edges, which are `<=` nothing: unlike infinite sentinels they
 //! stop the sweep of an infinite box too.
 //!
+//! # Threads
+//! Each lists which bins a stretch of the boxes goes to and counts them; the counts of all give each
+//! its places in every bin, so that all copy their boxes into the same array, in the order in which
+//! one thread would. Then each takes the next group of bins, the calling thread from the first on,
+//! whose pairs it stores where they belong, the others from the last; their pairs are put behind
+//! when all is done. Threads sleep between calls, and wake up while the plan is made.
+//!
 //! # What is learnt from the last call
 //! [`again`] keeps in which bins each box was and in what order each bin was swept, for 512 to
 //! 16,384 boxes in more than one bin. If the next call has as many boxes and the same plan, only
