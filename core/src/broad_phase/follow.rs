@@ -14,12 +14,15 @@ use super::seating::JUMP_WEAR;
 use super::tree::{BATCH, TOGETHER};
 use super::update::{REBUILD, overlap, push_wanted};
 use super::updater::{Marks, SOME, Scratch, TreeState, Updater};
-use super::warm::warm;
+use super::warm::{call, is_far, warm};
 use crate::Scalar;
 
 /// A search of a tree with leaves twice too large costs so many times more than it should what
 /// building the tree costs for a body.
 const WORSE: usize = 1;
+
+/// What the candidate so many places further on needs is called from memory.
+const AHEAD: usize = 24;
 
 /// To find the candidates of a body among others takes as long as to test so many in a row.
 const MANY: usize = 12;
@@ -155,12 +158,23 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         }
         let Updater { candidates, scratch, begun, ended, .. } = &mut self.updater;
         let (pairs, live) = (&candidates.pairs, &mut candidates.live);
-        let changed = &mut scratch.pairs;
-        changed.clear();
-        push_wanted(changed, pairs, |index, [a, b]| {
+        let mut test = |index, [a, b]: [u32; 2]| {
             let is_live = overlap(&self.boxes[a as usize], &self.boxes[b as usize]);
             ([a, b], core::mem::replace(&mut live[index], is_live) != is_live)
-        });
+        };
+        let changed = &mut scratch.pairs;
+        changed.clear();
+        if is_far(&self.boxes) {
+            push_wanted(changed, pairs, |index, pair| {
+                // The first seats of neighbours in the list are near each other.
+                if let Some(&[_, later]) = pairs.get(index + AHEAD) {
+                    call(&self.boxes, later as usize);
+                }
+                test(index, pair)
+            });
+        } else {
+            push_wanted(changed, pairs, test);
+        }
         for pair in changed.iter() {
             let [a, b] = pair.map(|seat| seat as usize);
             let is_live = overlap(&self.boxes[a], &self.boxes[b]);

@@ -139,11 +139,6 @@ impl Slots {
             .is_some_and(|&living| (living == id.generation) & (living != 0))
     }
 
-    /// Whether all ids name living bodies, without a branch for each.
-    pub fn are_living(&self, ids: &[ProxyId]) -> bool {
-        ids.iter().fold(true, |all, &id| all & self.is_living(id))
-    }
-
     /// The seat of the body of the id at `index` of what was passed.
     #[inline]
     pub fn check(&self, id: ProxyId, index: usize) -> Result<u32, Error> {

@@ -6,10 +6,14 @@
 use alloc::vec::Vec;
 
 use super::BroadPhase;
+use super::loners::NONE;
 use super::proxy::flag;
 use super::updater::{Scratch, Updater};
 use super::warm::make_room;
 use crate::Scalar;
+
+/// The new seat of one who has a candidate, until it is dealt.
+const PAIRED: u32 = NONE - 1;
 
 /// Fewer bodies are near each other in memory whatever their order.
 const FEW: usize = 64;
@@ -33,30 +37,41 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     }
 
     /// Deals seats in the order of the candidates, first to those who are awake; who has none comes
-    /// last. To be called at the end of an update. O(n + pairs) time.
+    /// after somebody near. To be called at the end of an update. O(n + pairs) time.
     #[inline(never)]
     pub(super) fn deal_seats(&mut self) {
         let Updater { scratch, candidates, tree, previous, fat, front, .. } = &mut self.updater;
-        let Scratch { boxes: spare, seats: order, found: renamed, .. } = scratch;
+        let Scratch { boxes: spare, seats: order, found: renamed, loners, .. } = scratch;
         order.clear();
         renamed.clear();
-        renamed.resize(self.slots.len(), u32::MAX);
+        renamed.resize(self.slots.len(), NONE);
         let everyone = 0..self.slots.len() as u32;
-        let is_up = |&seat: &u32| {
-            self.slots.flags[seat as usize] & (flag::LIVE | flag::ASLEEP) == flag::LIVE
+        let (flags, boxes) = (&self.slots.flags, &self.boxes);
+        let is_up = |seat: u32| flags[seat as usize] & (flag::LIVE | flag::ASLEEP) == flag::LIVE;
+        let paired = || candidates.pairs.iter().flatten().copied();
+        paired().for_each(|seat| renamed[seat as usize] = PAIRED);
+        let lonely = everyone.clone().filter(|&seat| renamed[seat as usize] == NONE);
+        *front = everyone.clone().filter(|&seat| is_up(seat)).count();
+        let centre = |seat: u32, axis| boxes[seat as usize].centre(axis);
+        order.extend(lonely.filter(|&seat| is_up(seat)));
+        loners.gather(order, self.slots.len(), D, &centre);
+        order.clear();
+        let mut deal = |old: u32| {
+            let new = &mut renamed[old as usize];
+            let is_first = *new >= PAIRED;
+            if is_first {
+                *new = order.len() as u32;
+                order.push(old);
+            }
+            is_first
         };
-        for up in [true, false] {
-            let paired = candidates.pairs.iter().flatten().copied();
-            for old in paired.chain(everyone.clone()).filter(|seat| is_up(seat) == up) {
-                let new = &mut renamed[old as usize];
-                if *new == u32::MAX {
-                    *new = order.len() as u32;
-                    order.push(old);
-                }
+        for old in paired().filter(|&seat| is_up(seat)) {
+            if deal(old) {
+                loners.take_near(old, &centre).for_each(|seat| _ = deal(seat));
             }
-            if up {
-                *front = order.len();
-            }
+        }
+        for old in everyone.clone().filter(|&seat| is_up(seat)).chain(paired()).chain(everyone) {
+            deal(old);
         }
         for table in [&mut self.boxes, &mut self.shapes, previous, fat] {
             reorder(table, order, spare);

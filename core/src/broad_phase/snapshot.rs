@@ -16,10 +16,11 @@
 
 use alloc::vec::Vec;
 
+use super::edit::check_box;
 use super::hash::hash;
 use super::options::{Options, Report, contains};
 use super::proxy::flag;
-use super::{BroadPhase, Filter, check_box};
+use super::{BroadPhase, Filter};
 use crate::{Aabb, Error, Scalar, SnapshotFault};
 
 const MAGIC: [u8; 4] = *b"SaPw";

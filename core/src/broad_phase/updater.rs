@@ -4,11 +4,12 @@ use alloc::vec::Vec;
 
 use super::candidates::Candidates;
 use super::filter::Filter;
+use super::loners::Loners;
 use super::predict::Prediction;
 use super::sleep::Sleep;
 use super::sort::PairSorter;
 use super::tree::Tree;
-use super::warm::{make_room, warm};
+use super::warm::warm;
 use crate::finder::PairFinder;
 use crate::{Aabb, Scalar};
 
@@ -116,6 +117,7 @@ pub(super) struct Scratch<const D: usize, T: Scalar> {
     pub queries: Vec<(u32, Aabb<D, T>)>,
     pub leaves: Vec<[u32; 2]>,
     pub names: Vec<u32>,
+    pub loners: Loners,
     pub filters: Vec<Filter>,
     pub flags: Vec<u16>,
 }
@@ -152,10 +154,8 @@ impl<const D: usize, T: Scalar> Updater<D, T> {
     /// Makes room for a new seat.
     pub fn add_seat(&mut self, aabb: Aabb<D, T>) {
         self.front += usize::from(self.front == self.fat.len());
-        for table in [&mut self.previous, &mut self.fat] {
-            make_room(table, 1);
-            table.push(aabb);
-        }
+        self.previous.push(aabb);
+        self.fat.push(aabb);
     }
 
     /// Reads the part of a table by seat through of which `count` items will be looked at.
@@ -210,6 +210,7 @@ impl<const D: usize, T: Scalar> Scratch<D, T> {
             queries: Vec::new(),
             leaves: Vec::new(),
             names: Vec::new(),
+            loners: Loners::default(),
             filters: Vec::new(),
             flags: Vec::new(),
         }

@@ -10,6 +10,11 @@ use crate::finder::{enlarge_pages, prefetch};
 
 /// The bytes that come from memory at once.
 const LINE: usize = 64;
+/// A table of so many bytes is near after it was read through.
+const FITS: usize = 4 << 20;
+
+/// Whether [`call`] does anything.
+pub(super) const CAN_CALL: bool = cfg!(target_arch = "x86_64");
 
 /// Reads a table from front to back, so that it is near when its items are looked at out of order.
 #[inline]
@@ -20,6 +25,12 @@ pub(super) fn warm<V: Copy>(table: &[V]) {
     }
 }
 
+/// Whether to call what is needed a little later: not where a table that was read through is still
+/// near, nor where the processor cannot be told.
+pub(super) fn is_far<V>(table: &[V]) -> bool {
+    CAN_CALL && size_of_val(table) > FITS
+}
+
 /// Calls the line of an item from memory, and does not wait for it.
 #[inline(always)]
 pub(super) fn call<V>(table: &[V], at: usize) {
@@ -28,6 +39,7 @@ pub(super) fn call<V>(table: &[V], at: usize) {
 
 /// Makes room for so many more items, behind large pages where there are many: what is looked at here
 /// and there in many small ones costs a walk of the page tables each time.
+#[inline(never)]
 pub(super) fn make_room<V>(table: &mut Vec<V>, more: usize) {
     if table.capacity() - table.len() < more {
         table.reserve(more);

@@ -1,6 +1,5 @@
 //! Builds a tree from the top, and fits it to boxes that moved.
 
-use super::super::warm::make_room;
 use super::node::{FAN, FILL, Node, finite, size};
 use super::{NONE, Tree};
 use crate::{Aabb, Scalar};
@@ -11,7 +10,6 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         self.clear();
         self.leaves.resize(boxes.len(), NONE);
         self.count = seats.len();
-        make_room(&mut self.nodes, seats.len() / 6);
         let mut keys = core::mem::take(&mut self.keys);
         keys.clear();
         keys.extend(seats.iter().map(|&seat| [size_class(&boxes[seat as usize]), seat]));

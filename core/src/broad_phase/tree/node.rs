@@ -154,7 +154,7 @@ const BITS: [u32; FAN] = {
 
 impl<const D: usize, T: Scalar> Aabb<D, T> {
     /// The centre on an axis, doubled and kept finite: to sort by.
-    pub(super) fn centre(&self, axis: usize) -> f64 {
+    pub(in crate::broad_phase) fn centre(&self, axis: usize) -> f64 {
         finite(self.min[axis]) + finite(self.max[axis])
     }
 }

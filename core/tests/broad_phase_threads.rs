@@ -1,0 +1,57 @@
+//! The living world on several threads: the same events, pairs and state as on one.
+
+#![cfg(feature = "parallel")]
+
+use sweep_and_prune::{BroadPhase, Filter, PairFinder, ProxyId};
+use sweep_and_prune_scenes::Motion;
+
+/// Bodies for whom the finder is asked again and again, and who are many enough to be shared out.
+const BODIES: usize = 12_000;
+
+/// One in so many bodies is static, so that two sets are searched too.
+const STATIC: usize = 8;
+
+#[test]
+fn any_number_of_threads_tells_the_same() {
+    for motion in Motion::ALL {
+        follow::<2>(motion);
+        follow::<3>(motion);
+    }
+}
+
+fn follow<const D: usize>(motion: Motion) {
+    for some_are_static in [false, true] {
+        let mut moving = motion.start::<D, f32>(BODIES, 5).unwrap();
+        let fixed = BODIES / STATIC;
+        let mut worlds = [1, 2, 4, 0].map(|threads| BroadPhase::<D>::new().threads(threads));
+        let mut ids: Vec<ProxyId> = vec![];
+        for world in &mut worlds {
+            let filter = if some_are_static { Filter::STATIC } else { Filter::default() };
+            ids = world.insert_many(&moving.boxes()[..fixed], filter).unwrap();
+            ids.extend(world.insert_many(&moving.boxes()[fixed..], Filter::default()).unwrap());
+        }
+        for step in 0..12 {
+            let [first, others @ ..] = &mut worlds;
+            let expected = first.update();
+            let expected = [expected.begun(), expected.ended()].map(Vec::from_iter);
+            assert!(motion == Motion::MostlyStill || !expected[0].is_empty());
+            for world in others.iter_mut() {
+                let changes = world.update();
+                let told = [changes.begun(), changes.ended()].map(Vec::from_iter);
+                assert_eq!(told, expected, "{motion:?} {D} {step}");
+                assert_eq!(world.pairs(), first.pairs());
+                assert_eq!(world.state_hash(), first.state_hash());
+            }
+            if !some_are_static {
+                let count = PairFinder::new().count(moving.boxes()).unwrap();
+                assert_eq!(first.pairs().len() as u64, count);
+            }
+            // Who has many threads keeps them when it is copied.
+            worlds[2] = worlds[2].clone();
+            moving.advance();
+            for world in &mut worlds {
+                world.set_many(&ids, moving.boxes()).unwrap();
+            }
+        }
+    }
+}
