@@ -411,6 +411,8 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
         run(&mut self.search, &[boxes], None, &mut sink::Unswept).map(|_| ())
     }
 
+    /// Not inline, so that `find` has little to save and restore for a handful of boxes.
+    #[inline(never)]
     fn find_of(
         &mut self,
         sets: &[&[Aabb<D, T>]],

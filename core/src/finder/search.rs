@@ -469,22 +469,31 @@ pub(super) fn is_tiny<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[S]) ->
 /// or there is not enough memory.
 #[inline]
 pub(super) fn few<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>], store: &mut Store) -> bool {
-    boxes.len() <= VERY_FEW
-        && store.put(boxes.len() * boxes.len().saturating_sub(1) / 2, |pairs| {
-            let (mut valid, mut count) = (true, 0);
-            for (i, a) in boxes.iter().enumerate() {
-                valid &= a.is_valid();
-                for (j, b) in (i + 1..).zip(&boxes[i + 1..]) {
-                    if a.overlaps(b)
-                        && let Some(pair) = pairs.get_mut(count)
-                    {
-                        *pair = [i as u32, j as u32];
-                        count += 1;
-                    }
+    if boxes.len() > VERY_FEW || !boxes.iter().all(Aabb::is_valid) {
+        return false;
+    }
+    store.clear();
+    boxes.len() < 2 || store_few(boxes, store)
+}
+
+/// See [`few`]. Not inline, so that there is little to save and restore for none or one.
+#[inline(never)]
+fn store_few<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>], store: &mut Store) -> bool {
+    store.put(boxes.len() * (boxes.len() - 1) / 2, |pairs| {
+        let (mut count, mut i, mut boxes) = (0, 0, boxes);
+        while let [a, behind @ ..] = boxes {
+            for (j, b) in (i + 1..).zip(behind) {
+                if a.overlaps(b)
+                    && let Some(pair) = pairs.get_mut(count)
+                {
+                    *pair = [i, j];
+                    count += 1;
                 }
             }
-            valid.then_some(count)
-        })
+            (i, boxes) = (i + 1, behind);
+        }
+        count
+    })
 }
 
 /// The pairs of very few boxes, box by box.

@@ -57,26 +57,23 @@ pub(super) struct Store {
 }
 
 impl Store {
+    #[inline]
     pub fn clear(&mut self) {
         self.len = 0;
     }
 
     /// Has at most so many pairs written, by a function that tells how many they are. False, with
-    /// nothing stored, if it tells of none to store, or there is not enough memory.
+    /// nothing stored, if there is not enough memory.
     #[inline]
-    pub fn put(
-        &mut self,
-        most: usize,
-        write: impl FnOnce(&mut [[u32; 2]]) -> Option<usize>,
-    ) -> bool {
+    pub fn put(&mut self, most: usize, write: impl FnOnce(&mut [[u32; 2]]) -> usize) -> bool {
         if self.buffer.len() < most && grow_to(&mut self.buffer, most, [0; 2]).is_err() {
             return false;
         }
-        let count = write(&mut self.buffer);
-        self.len = count.unwrap_or(0);
-        count.is_some()
+        self.len = write(&mut self.buffer);
+        true
     }
 
+    #[inline]
     pub fn pairs(&self) -> &[[u32; 2]] {
         &self.buffer[..self.len]
     }
