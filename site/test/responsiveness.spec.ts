@@ -42,10 +42,12 @@ test("10,000 spheres: the broad phase of a frame", async ({ page }) => {
   const lab = await new Lab(page, "spheres").open();
   const [library = ""] = await lab.algorithms();
   await expect(lab.algorithm).toHaveValue(library);
+  // Each value is the mean of half a second.
   const times: number[] = [];
-  for (let step = 30; step <= 150; step += 30) {
-    await expect.poll(() => lab.stepNumber(), { timeout: 60_000 }).toBeGreaterThanOrEqual(step);
-    times.push(await lab.value("broad-phase"));
+  while ((await lab.stepNumber()) < 200) {
+    const time = await lab.value("broad-phase");
+    if (time > 0 && time !== times.at(-1)) times.push(time);
+    await page.waitForTimeout(100);
   }
   console.log(`${library}: broad phase of a frame while they fall and pile up ${times.join(", ")} ms, narrow phase ${await lab.value("narrow-phase")}, solving ${await lab.value("solving")}, drawing ${await lab.value("drawing")} ms`);
   // The aim is 2 ms, and what is printed tells. What fails is a whole frame: a test's machine may be
