@@ -9,8 +9,9 @@ use core::hint::spin_loop;
 use core::iter::{once, repeat_with};
 use core::mem::take;
 use core::ops::Range;
-use core::sync::atomic::{AtomicBool, Ordering};
+use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock};
+use std::thread::yield_now;
 
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
@@ -25,6 +26,10 @@ use crate::Scalar;
 const WORTH: usize = 4096;
 /// With fewer pairs threads do not pay to copy them.
 const MANY_PAIRS: usize = 1 << 18;
+/// How often the calling thread looks whether the others are done, and then how often more between
+/// which it lets others run, before it goes to sleep: some hundred microseconds.
+const SPINS: u32 = 10_000;
+const YIELDS: u32 = 200;
 /// Groups of bins for each thread: some are harder than others.
 const GROUPS: usize = 16;
 
@@ -96,14 +101,52 @@ pub(super) fn cut<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
     Some(result)
 }
 
-/// Has each thread work on one of some things; the calling one takes the first.
-fn on_threads<W: Send>(mut things: impl Iterator<Item = W>, work: impl Fn(W) + Sync) {
+/// Does its own work on the calling thread, and each of the others' on another.
+///
+/// The calling thread waits awake for the others, who are seldom far behind: to sleep and be woken
+/// would take as long as they do. But not for ever; they may not even have begun, where the pool
+/// has other things to do.
+fn on_threads<W: Send>(
+    own: impl FnOnce(),
+    others: impl Iterator<Item = W>,
+    work: impl Fn(W) + Sync,
+) {
+    let busy = AtomicUsize::new(0);
     rayon::in_place_scope(|scope| {
         let work = &work;
-        let first = things.next();
-        things.for_each(|thing| scope.spawn(move |_| work(thing)));
-        first.map(work);
+        for other in others {
+            busy.fetch_add(1, Ordering::Relaxed);
+            let busy = Busy(&busy);
+            scope.spawn(move |_| {
+                let _busy = busy;
+                work(other);
+            });
+        }
+        own();
+        let mut patience = 0..SPINS + YIELDS;
+        while busy.load(Ordering::Acquire) > 0
+            && let Some(turn) = patience.next()
+        {
+            if turn < SPINS { spin_loop() } else { yield_now() }
+        }
+        // The scope learns of it a moment later.
+        (0..50).for_each(|_| spin_loop());
     });
+}
+
+/// Works on each of some things on a thread of its own; the calling one takes the first.
+fn each_on_a_thread<W: Send>(mut things: impl Iterator<Item = W>, work: impl Fn(W) + Sync) {
+    let first = things.next();
+    on_threads(|| first.into_iter().for_each(&work), things, &work);
+}
+
+/// One that is at work until it is dropped.
+struct Busy<'a>(&'a AtomicUsize);
+
+impl Drop for Busy<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Release);
+    }
 }
 
 /// Puts the boxes of a set into bins, one stretch a thread: only into those that the other set, if
@@ -120,7 +163,7 @@ fn put<const D: usize, T: Scalar, S: Source<D, T>>(
     let all_ends = bins.stretches.iter_mut().chain(once(&mut bins.ends));
     let mut counted: Vec<_> = lists.iter().map(|_| None).collect();
     let steps = lists.iter_mut().zip(all_ends).zip(&mut counted).enumerate();
-    on_threads(steps, |(thread, ((list, ends), counted))| {
+    each_on_a_thread(steps, |(thread, ((list, ends), counted))| {
         let stretch = boxes * thread / threads..boxes * (thread + 1) / threads;
         *counted = Some(list.fill(set, stretch, grid, limit).and_then(|len| {
             if let Some(other) = other {
@@ -138,7 +181,8 @@ fn put<const D: usize, T: Scalar, S: Source<D, T>>(
     if lens.into_iter().sum::<u64>() > limit {
         return Err(Refusal::TooMany);
     }
-    on_threads(bins.records.shares(&mut counted)?, |share| share.put(|copy| copied(set, copy)));
+    let shares = bins.records.shares(&mut counted)?;
+    each_on_a_thread(shares, |share| share.put(|copy| copied(set, copy)));
     Ok(())
 }
 
@@ -159,21 +203,18 @@ fn sweep<const D: usize, T: Scalar, O: Sink>(
     forks.reverse();
     let left = Mutex::new(groups.iter().zip(&mut forks));
     let (first, last) = (|| left.lock().ok()?.next(), || left.lock().ok()?.next_back());
-    let failed = OnceLock::new();
-    rayon::in_place_scope(|scope| {
-        let (failed, last) = (&failed, &last);
-        for other in others {
-            other.kernel = search.kernel;
-            scope.spawn(move |_| {
-                while let (None, Some((group, fork))) = (failed.get(), last()) {
-                    if let Err(stop) = other.group(filled, group, task, fork) {
-                        failed.get_or_init(|| stop);
-                    }
-                }
-            });
-        }
+    let (failed, kernel) = (OnceLock::new(), search.kernel);
+    let own = || {
         while let (None, Some((group, _))) = (failed.get(), first()) {
             if let Err(stop) = search.group(filled, group, task, sink) {
+                failed.get_or_init(|| stop);
+            }
+        }
+    };
+    on_threads(own, others.iter_mut(), |other| {
+        other.kernel = kernel;
+        while let (None, Some((group, fork))) = (failed.get(), last()) {
+            if let Err(stop) = other.group(filled, group, task, fork) {
                 failed.get_or_init(|| stop);
             }
         }
