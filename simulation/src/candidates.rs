@@ -68,11 +68,17 @@ impl<const D: usize> Candidates<D> {
             let boxes = &self.enclosures.boxes;
             let own = &boxes[ball as usize];
             self.near.grown(ball, own);
-            self.near.visit(own, |other| {
-                let aabb = &boxes[other as usize];
-                if overlap(own, aabb) && !overlap(&before, aabb) && other != ball {
-                    self.pairs.push([ball.min(other), ball.max(other)]);
+            self.near.visit(own, |others| {
+                // Written in any case: a branch would be guessed wrong.
+                let mut len = self.pairs.len();
+                self.pairs.resize(len + others.len(), [0; 2]);
+                for &other in others {
+                    let aabb = &boxes[other as usize];
+                    self.pairs[len] = [ball.min(other), ball.max(other)];
+                    let is_new = overlap(own, aabb) & !overlap(&before, aabb) & (other != ball);
+                    len += usize::from(is_new);
                 }
+                self.pairs.truncate(len);
             });
         }
     }
@@ -141,7 +147,9 @@ impl<const D: usize> Neighbourhood<D> {
         self.places.clear();
         self.places.extend(enclosures.middles());
         self.reach = enclosures.widest.map(|side| 0.5 * side);
-        self.grid = Grid::new(&hull(&self.places), self.places.len(), self.reach);
+        // Twice as wide as boxes reach: fewer rows take less time than fewer balls save.
+        let widths = self.reach.map(|reach| 2.0 * reach);
+        self.grid = Grid::new(&hull(&self.places), self.places.len(), widths);
 
         self.cells.clear();
         self.cells.extend(self.places.iter().map(|&place| self.grid.cell(place) as u32));
@@ -172,8 +180,8 @@ impl<const D: usize> Neighbourhood<D> {
         }
     }
 
-    /// All balls whose boxes overlap this one, and others.
-    fn visit(&self, aabb: &Aabb<D>, mut visit: impl FnMut(u32)) {
+    /// All balls whose boxes overlap this one, and others, some at a time.
+    fn visit(&self, aabb: &Aabb<D>, mut visit: impl FnMut(&[u32])) {
         // A hair more, for places and reaches are rounded.
         let region = Aabb::new(
             from_fn(|axis| aabb.min[axis] - 1.01 * self.reach[axis]),
@@ -181,7 +189,7 @@ impl<const D: usize> Neighbourhood<D> {
         );
         self.grid.any_row(&region, |cells| {
             let [begin, end] = [cells.start, cells.end].map(|cell| self.starts[cell] as usize);
-            self.balls[begin..end].iter().for_each(|&ball| visit(ball));
+            visit(&self.balls[begin..end]);
             false
         });
     }

@@ -123,10 +123,12 @@ fn on_threads<W: Send>(
             });
         }
         own();
-        let mut patience = 0..SPINS + YIELDS;
-        while busy.load(Ordering::Acquire) > 0
-            && let Some(turn) = patience.next()
-        {
+        // A thread of the pool itself waits by doing what there is to do.
+        let patience = if rayon::current_thread_index().is_some() { 0 } else { SPINS + YIELDS };
+        for turn in 0..patience {
+            if busy.load(Ordering::Acquire) == 0 {
+                break;
+            }
             if turn < SPINS { spin_loop() } else { yield_now() }
         }
         // The scope learns of it a moment later.
