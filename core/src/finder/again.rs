@@ -10,7 +10,7 @@
 
 use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
-use core::mem::{replace, swap, take};
+use core::mem::{replace, swap};
 use core::ops::RangeInclusive;
 
 use super::bins::{Record, Source};
@@ -40,7 +40,7 @@ const ID_BITS: u32 = 29;
 
 /// What is kept from call to call.
 #[derive(Debug)]
-pub(super) struct Last<T> {
+pub(super) struct Last<const D: usize, T> {
     /// The plan of the last call, and how many boxes there were.
     plan: Option<(Grid<T>, usize)>,
     /// Whether the order below is that of the last call.
@@ -62,9 +62,11 @@ pub(super) struct Last<T> {
     changed: Vec<u64>,
     new: Vec<Copied>,
     new_starts: Vec<u32>,
+    /// The records of those boxes, and then of one bin after the other.
+    gathered: Vec<Record<D, T>>,
 }
 
-impl<T: Scalar> Last<T> {
+impl<const D: usize, T: Scalar> Last<D, T> {
     pub const fn new() -> Self {
         Self {
             plan: None,
@@ -79,6 +81,7 @@ impl<T: Scalar> Last<T> {
             changed: Vec::new(),
             new: Vec::new(),
             new_starts: Vec::new(),
+            gathered: Vec::new(),
         }
     }
 
@@ -112,11 +115,7 @@ impl<T: Scalar> Last<T> {
 
     /// Finds the boxes that changed bins, all of them if nothing is known of the last call. False
     /// if they are too many, or any box is invalid.
-    fn compare<const D: usize>(
-        &mut self,
-        boxes: &[Aabb<D, T>],
-        grid: &Grid<T>,
-    ) -> Result<bool, TryReserveError> {
+    fn compare(&mut self, boxes: &[Aabb<D, T>], grid: &Grid<T>) -> Result<bool, TryReserveError> {
         grow(&mut self.spans, boxes.len(), [0; 2])?;
         grow(&mut self.changed, boxes.len().div_ceil(64), 0)?;
         let (all, most) = if self.kept { (0, boxes.len() / CHANGED) } else { (!0, boxes.len()) };
@@ -181,7 +180,7 @@ impl<const D: usize, T: Scalar> Search<D, T> {
     /// there is not enough memory.
     fn move_boxes(
         &mut self,
-        last: &mut Last<T>,
+        last: &mut Last<D, T>,
         boxes: &[Aabb<D, T>],
         grid: &Grid<T>,
     ) -> Option<()> {
@@ -195,26 +194,23 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         }
         // What was and what is new together: hardly more than there will be.
         let kept = last.starts[grid.len()] as u64;
-        let mut gathered = take(&mut self.gathered);
         let changed = &last.changed[..len.div_ceil(64)];
         let count = changed.iter().map(|word| word.count_ones() as usize).sum();
-        gathered.clear();
-        gathered.try_reserve(count).ok()?;
+        last.gathered.clear();
+        last.gathered.try_reserve(count).ok()?;
         let changed = ones(changed).take_while(|&i| i < len);
-        gathered.extend(changed.map(|i| boxes.record(i)));
-        let records = &gathered[..];
+        last.gathered.extend(changed.map(|i| boxes.record(i)));
+        let records = &last.gathered[..];
         let limit = limit(len).saturating_sub(kept);
         let new = self.list.fill(records, 0..records.len(), grid, limit);
-        let sorted = self.list.by_bin(records, &mut last.new, &mut last.new_starts);
-        self.gathered = gathered;
-        sorted.ok()?;
+        self.list.by_bin(records, &mut last.new, &mut last.new_starts).ok()?;
         grow(&mut last.next, (kept + new.ok()?) as usize, 0).ok()
     }
 
     /// The pairs of all bins, each put in order from its last.
     fn bins_again<O: Sink>(
         &mut self,
-        last: &mut Last<T>,
+        last: &mut Last<D, T>,
         boxes: &[Aabb<D, T>],
         grid: &Grid<T>,
         task: Task<'_>,
@@ -229,10 +225,9 @@ impl<const D: usize, T: Scalar> Search<D, T> {
             let new = last.new_starts[bin] as usize..last.new_starts[bin + 1] as usize;
             let new = &last.new[new];
 
-            let mut gathered = take(&mut self.gathered);
             let room = end - begin + new.len();
-            grow(&mut gathered, room, Record { aabb: boxes[0], id: 0, marks: 0 })?;
-            let records = &mut gathered[..room];
+            grow(&mut last.gathered, room, Record { aabb: boxes[0], id: 0, marks: 0 })?;
+            let records = &mut last.gathered[..room];
             let record = |id: u32, marks| Record { aabb: boxes[id as usize], id, marks };
             let mut kept = 0;
             for &entry in &last.order[begin..end] {
@@ -255,16 +250,14 @@ impl<const D: usize, T: Scalar> Search<D, T> {
             len += count;
             last.starts[bin + 1] = len as u32;
 
-            let result = if count > crowd || self.is_crowded(1) {
+            if count > crowd || self.is_crowded(1) {
                 crowded += count;
                 // As it would be found by itself.
                 records.sort_unstable_by_key(|record| record.id);
-                self.ordered(&[&*records], grid.sweep, crowd, task, sink)
+                self.ordered(&[&*records], grid.sweep, crowd, task, sink)?;
             } else {
-                self.sweep(1, D - 1, task, sink)
-            };
-            self.gathered = gathered;
-            result?;
+                self.sweep(1, D - 1, task, sink)?;
+            }
             task.done(1.0 / grid.len() as f64)?;
         }
         swap(&mut last.order, &mut last.next);

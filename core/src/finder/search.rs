@@ -52,13 +52,11 @@ const WIDE: f64 = 8.0;
 #[derive(Debug)]
 pub(super) struct Search<const D: usize, T: Scalar> {
     pub kernel: Kernel,
-    pub last: Last<T>,
+    pub last: Last<D, T>,
     pub sorter: Sorter<T>,
     pub columns: [Column<T>; 2],
     /// Which boxes go to which bins.
     pub list: List,
-    /// The records of one bin, where they are not copied to bins.
-    pub gathered: Vec<Record<D, T>>,
     /// Spare bins and parts: as many as plans were ever nested.
     pub bins: Vec<[Bins<D, T>; 2]>,
     parts: Vec<[Vec<Record<D, T>>; 3]>,
@@ -120,7 +118,6 @@ impl<const D: usize, T: Scalar> Search<D, T> {
             sorter: Sorter::new(),
             columns: [Column::new(), Column::new()],
             list: List::new(),
-            gathered: Vec::new(),
             bins: Vec::new(),
             parts: Vec::new(),
             #[cfg(feature = "parallel")]
