@@ -127,16 +127,23 @@ def test_a_signal_ends_a_long_search(threads: int) -> None:
         raise Enough
 
     before = signal.signal(signal.SIGALRM, handler)
+    def cost(call: Callable[[], Any]) -> float:
+        began = time.process_time()
+        assert call() is not None
+        return time.process_time() - began
+
+    def cost_until_the_signal(call: Callable[[], Any]) -> float:
+        began = time.process_time()
+        signal.setitimer(signal.ITIMER_REAL, 0.005)
+        with pytest.raises(Enough):
+            call()
+        return time.process_time() - began
+
     try:
         for number, call in enumerate(calls):
-            began = time.process_time()
-            assert call() is not None
-            whole = time.process_time() - began
-            began = time.process_time()
-            signal.setitimer(signal.ITIMER_REAL, 0.01)
-            with pytest.raises(Enough):
-                call()
-            assert time.process_time() - began < 0.7 * whole, number
+            whole = min(cost(call), cost(call))
+            # A busy machine may keep one search from seeing its signal in time; not ten.
+            assert any(cost_until_the_signal(call) < 0.7 * whole for _ in range(10)), number
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
