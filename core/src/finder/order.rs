@@ -151,25 +151,30 @@ impl<T: Scalar> Sorter<T> {
             insertion(&mut self.sorted[..len], usize::MAX);
             return Ok(());
         }
-        // The least and the greatest by their keys: comparing whole numbers takes less time.
-        let (mut least, mut greatest) =
-            (edge(source, 0, axis).key(0), edge(source, 0, axis).key(0));
         grow(&mut self.keys, len, T::Key::default())?;
         grow(&mut self.lefts, len, T::ZERO)?;
-        grow(&mut self.intervals, len, 0)?;
+        // The least and the greatest by their keys: comparing whole numbers takes less time.
+        let mut least = edge(source, 0, axis).key(0);
+        let mut greatest = least;
         for (i, (key, left)) in self.keys.iter_mut().zip(&mut self.lefts[..len]).enumerate() {
             *left = edge(source, i, axis);
             *key = left.key(i as u32);
             least = least.min(*key);
             greatest = greatest.max(*key);
         }
-        let ends = [least, greatest].map(|key| edge(source, T::place(key) as usize, axis).to_f64());
+        self.spread(len, [least, greatest])
+    }
+
+    /// Leaves `keys`, of `lefts`, sorted in `sorted`; given are the least and the greatest of them.
+    fn spread(&mut self, len: usize, ends: [T::Key; 2]) -> Result<(), TryReserveError> {
+        let ends = ends.map(|key| self.lefts[T::place(key) as usize].to_f64());
         let unit = T::unit(ends[0].abs().max(ends[1].abs()));
         let [low, high] = ends.map(|end| (end * unit.to_f64()).clamp(-T::LIMIT, T::LIMIT));
         let count = len.next_power_of_two().min(1 << 16);
         let last = T::from_f64((count - 1) as f64);
         let (origin, scale) = (T::from_f64(low), T::from_f64((count - 1) as f64 / (high - low)));
 
+        grow(&mut self.intervals, len, 0)?;
         for (interval, left) in self.intervals.iter_mut().zip(&self.lefts[..len]) {
             *interval = (*left * unit).cell(origin, scale, last);
         }

@@ -74,39 +74,12 @@ pub(super) fn plan<const D: usize, T: Scalar, S: Source<D, T>>(
         &[&first]
     };
     let field = Field::new(samples);
-    let mut shapes =
-        [Shape::new(samples[0], &field), Shape::new(samples[samples.len() - 1], &field)];
-    let (cut, cost) = field.cut(&shapes[..samples.len()]);
-    let boxes: f64 = shapes[..samples.len()].iter().map(|shape| shape.count).sum();
-    let mut best = Planned { plan: Plan::Cut(cut.grid(&field, unit)), cost };
-    if may_part && cost > 3.0 * RECORD * boxes {
-        for set in 0..samples.len() {
-            let whole = shapes[set];
-            for axis in 0..D {
-                for size in samples[set].quantiles(&field, axis) {
-                    let [small, large] = Shape::parted(samples[set], &field, axis, size);
-                    if small.count == 0.0 || large.count == 0.0 {
-                        continue;
-                    }
-                    let cost = if samples.len() == 1 {
-                        field.cut(&[small]).1 + field.cut(&[large]).1 + field.cut(&[small, large]).1
-                    } else {
-                        shapes[set] = small;
-                        let with_small = field.cut(&shapes).1;
-                        shapes[set] = large;
-                        let with_large = field.cut(&shapes).1;
-                        shapes[set] = whole;
-                        with_small + with_large
-                    };
-                    if cost < 0.8 * best.cost {
-                        let size = size / unit.to_f64();
-                        best = Planned { plan: Plan::Part { set, axis, size }, cost };
-                    }
-                }
-            }
-        }
-    }
-    best
+    let (way, cost) = field.cheapest(samples, may_part);
+    let plan = match way {
+        Way::Cut(cut) => Plan::Cut(cut.grid(&field, unit)),
+        Way::Part { set, axis, size } => Plan::Part { set, axis, size: size / unit.to_f64() },
+    };
+    Planned { plan, cost }
 }
 
 /// Boxes drawn evenly from a set, one at a random place of each stretch. The randomness is the
@@ -158,12 +131,15 @@ impl<const D: usize> Sample<D> {
             }
             sample.len += 1;
         }
-        let len = sample.len;
-        for axis in 0..D {
-            sample.sorted[axis] = sample.min[axis];
-            sort(&mut sample.sorted[axis][..len]);
-        }
+        sample.sort();
         sample
+    }
+
+    fn sort(&mut self) {
+        for (sorted, min) in self.sorted.iter_mut().zip(&self.min) {
+            *sorted = *min;
+            sort(&mut sorted[..self.len]);
+        }
     }
 
     /// A box's size on an axis, as far as it lies in the field.
@@ -257,6 +233,43 @@ impl<const D: usize> Field<D> {
 
     fn extent(&self, axis: usize) -> f64 {
         self.high[axis] - self.low[axis]
+    }
+
+    /// The cheapest way to go about the boxes, and its cost.
+    fn cheapest(&self, samples: &[&Sample<D>], may_part: bool) -> (Way<D>, f64) {
+        let mut shapes =
+            [Shape::new(samples[0], self), Shape::new(samples[samples.len() - 1], self)];
+        let (cut, cost) = self.cut(&shapes[..samples.len()]);
+        let mut best = (Way::Cut(cut), cost);
+        let boxes: f64 = shapes[..samples.len()].iter().map(|shape| shape.count).sum();
+        if !may_part || cost <= 3.0 * RECORD * boxes {
+            return best;
+        }
+        for set in 0..samples.len() {
+            let whole = shapes[set];
+            for axis in 0..D {
+                for size in samples[set].quantiles(self, axis) {
+                    let [small, large] = Shape::parted(samples[set], self, axis, size);
+                    if small.count == 0.0 || large.count == 0.0 {
+                        continue;
+                    }
+                    let cost = if samples.len() == 1 {
+                        self.cut(&[small]).1 + self.cut(&[large]).1 + self.cut(&[small, large]).1
+                    } else {
+                        shapes[set] = small;
+                        let with_small = self.cut(&shapes).1;
+                        shapes[set] = large;
+                        let with_large = self.cut(&shapes).1;
+                        shapes[set] = whole;
+                        with_small + with_large
+                    };
+                    if cost < 0.8 * best.1 {
+                        best = (Way::Part { set, axis, size }, cost);
+                    }
+                }
+            }
+        }
+        best
     }
 
     /// The cheapest way to cut, and its cost.
@@ -493,6 +506,13 @@ impl<const D: usize> Shape<D> {
         }
         records
     }
+}
+
+/// A [`Plan`] in the units of the field.
+#[derive(Clone, Copy)]
+enum Way<const D: usize> {
+    Cut(Cut<D>),
+    Part { set: usize, axis: usize, size: f64 },
 }
 
 /// A sweep axis; columns on the others, slabs on it.
