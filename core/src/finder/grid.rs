@@ -1,44 +1,35 @@
 //! How space is cut: columns and slabs, and between which of them a box lies.
 
 use super::kernel::Copied;
+use super::numbers::{BLOCK, Ruler};
 use crate::{Aabb, Scalar};
 
 /// Equal cells on one axis; the outermost reach to infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cells<T> {
     axis: usize,
-    /// What coordinates are multiplied by first: see [`Number::unit`](super::numbers::Number::unit).
-    unit: T,
-    origin: T,
-    scale: T,
-    last: T,
+    ruler: Ruler<T>,
     count: u32,
 }
 
 impl<T: Scalar> Cells<T> {
     /// One cell, all of the axis.
     pub fn one(axis: usize) -> Self {
-        Cells { axis, unit: T::ZERO, origin: T::ZERO, scale: T::ZERO, last: T::ZERO, count: 1 }
+        let zero = T::ZERO;
+        Cells { axis, ruler: Ruler { unit: zero, origin: zero, scale: zero, last: zero }, count: 1 }
     }
 
     /// `count` cells, less than 2^22, over `low ..= high`, which are coordinates times the unit.
     pub fn new(axis: usize, unit: T, low: f64, high: f64, count: u32) -> Self {
         let scale = f64::from(count) / (high - low);
-        Cells {
-            axis,
+        let ruler = Ruler {
             unit,
-            // `cell` rounds to the nearest, so the first begins half a cell below its middle.
+            // The first cell begins half a cell below its middle.
             origin: T::from_f64(low + 0.5 / scale),
             scale: T::from_f64(scale),
             last: T::from_f64(f64::from(count - 1)),
-            count,
-        }
-    }
-
-    /// The cell of a coordinate. A NaN counts as the first.
-    #[inline(always)]
-    fn of(&self, at: T) -> u32 {
-        (at * self.unit).cell(self.origin, self.scale, self.last)
+        };
+        Cells { axis, ruler, count }
     }
 }
 
@@ -59,9 +50,10 @@ impl<T: Scalar> Grid<T> {
         let [x, y, z] = &self.cells;
         // All four in one go: on axes that are not cut, or do not exist, they are 0.
         let ends = [y, x].map(|cells| [aabb.min[cells.axis], aabb.max[cells.axis]]);
-        let cells: [u32; 4] = core::array::from_fn(|k| [y, x][k / 2].of(ends[k / 2][k % 2]));
+        let cells: [u32; 4] =
+            core::array::from_fn(|k| ends[k / 2][k % 2].cell(&[y, x][k / 2].ruler));
         let along = [aabb.min[z.axis], aabb.max[z.axis]];
-        let along = if z.count > 1 { along.map(|at| z.of(at)) } else { [0; 2] };
+        let along = if z.count > 1 { along.map(|at| at.cell(&z.ruler)) } else { [0; 2] };
         [self.bin([cells[2], cells[0], along[0]]), self.bin([cells[3], cells[1], along[1]])]
     }
 
@@ -88,7 +80,7 @@ impl<T: Scalar> Grid<T> {
     /// The axes that are cut, and how wide their cells are.
     pub fn widths(&self) -> impl Iterator<Item = (usize, f64)> {
         let cut = self.cells.into_iter().filter(|cells| cells.count > 1);
-        cut.map(|cells| (cells.axis, 1.0 / cells.scale.to_f64() / cells.unit.to_f64()))
+        cut.map(|cells| (cells.axis, 1.0 / cells.ruler.scale.to_f64() / cells.ruler.unit.to_f64()))
     }
 
     /// How many bins there are.
@@ -108,45 +100,43 @@ impl<T: Scalar> Grid<T> {
     }
 }
 
-/// Boxes that are placed at a time: cell by cell the same is done to each, so that the compiler
-/// makes vectors of them.
-pub(super) const BLOCK: usize = 64;
-
-/// For each axis of a grid and each box of a block, the first cell that it touches, and how many
-/// more. On an axis that is not cut they stay 0.
-pub(super) struct Places {
-    pub first: [[u32; BLOCK]; 3],
+/// A block of boxes in the grid: for each box the bin of its lower corner, and how many more cells
+/// it touches on each axis; none on one that is not cut.
+pub(super) struct Places<T> {
+    pub bin: [u32; BLOCK],
     pub more: [[u32; BLOCK]; 3],
+    /// The edges of the boxes on one axis.
+    low: [T; BLOCK],
+    high: [T; BLOCK],
 }
 
-impl Places {
+impl<T: Scalar> Places<T> {
     pub const fn new() -> Self {
-        Self { first: [[0; BLOCK]; 3], more: [[0; BLOCK]; 3] }
+        let edges = [T::ZERO; BLOCK];
+        Self { bin: [0; BLOCK], more: [[0; BLOCK]; 3], low: edges, high: edges }
     }
 
-    /// Places up to [`BLOCK`] boxes. False if one is inverted or NaN.
+    /// Places up to [`BLOCK`] boxes. False if one is inverted or NaN, now or before.
     #[inline(always)]
-    pub fn fill<'a, const D: usize, T: Scalar>(
+    pub fn fill<'a, const D: usize>(
         &mut self,
         boxes: impl Iterator<Item = &'a Aabb<D, T>> + Clone,
         grid: &Grid<T>,
     ) -> bool {
         let mut valid = true;
-        for ((first, more), cells) in
-            self.first.iter_mut().zip(&mut self.more).zip(&grid.cells).skip(3 - D)
-        {
-            let edges = boxes.clone().map(|aabb| (aabb.min[cells.axis], aabb.max[cells.axis]));
-            // For browsers size counts more: then the cells are 0 by the arithmetic below.
-            if cells.count == 1 && cfg!(feature = "std") {
+        self.bin.fill(0);
+        let steps = grid.steps();
+        for (k, Cells { axis, ruler, count }) in grid.cells.iter().enumerate().skip(3 - D) {
+            let edges = boxes.clone().map(|aabb| (aabb.min[*axis], aabb.max[*axis]));
+            if *count == 1 {
                 valid &= edges.fold(true, |valid, (min, max)| valid & (min <= max));
                 continue;
             }
-            for ((first, more), (min, max)) in first.iter_mut().zip(more).zip(edges) {
-                valid &= min <= max;
-                *first = cells.of(min);
-                // An inverted box would touch less than none; it will be refused.
-                *more = cells.of(max).saturating_sub(*first);
+            for ((low, high), edges) in self.low.iter_mut().zip(&mut self.high).zip(edges) {
+                (*low, *high) = edges;
             }
+            let edges = [&self.low, &self.high];
+            valid &= T::spans(edges, ruler, steps[k], &mut self.bin, &mut self.more[k]);
         }
         valid
     }

@@ -5,9 +5,10 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::bins::{Bins, Refusal, Source};
-use super::grid::{BLOCK, Grid, Places};
+use super::grid::{Grid, Places};
 use super::kernel::{Copied, Counted};
 use super::memory::{grow, grow_to};
+use super::numbers::BLOCK;
 use crate::Scalar;
 
 /// The copies that boxes become.
@@ -43,17 +44,15 @@ impl List {
         let mut valid = true;
         let mut len = 0;
         for start in boxes.clone().step_by(BLOCK) {
-            let block = start..boxes.end.min(start + BLOCK);
-            valid &= places.fill(source.aabbs(block.clone()), grid);
-            for (at, of) in block.enumerate() {
+            let block = BLOCK.min(boxes.end - start);
+            valid &= places.fill(source.aabbs(start..start + block), grid);
+            for at in 0..block {
                 if len + 4 > self.copies.len() {
                     let room = 2 * self.copies.len() + 1024;
                     grow_to(&mut self.copies, room, Copied::default())?;
                 }
-                let first = places.first.each_ref().map(|first| first[at]);
-                let more = places.more.each_ref().map(|more| more[at]);
-                let bin = grid.bin(first);
-                let of = of as u32;
+                let (of, bin) = ((start + at) as u32, places.bin[at]);
+                let more = [places.more[0][at], places.more[1][at], places.more[2][at]];
                 if more[0] <= 1 && more[1] <= 1 && more[2] == 0 {
                     // Nearly always. How many copies there are cannot be foretold, and a branch
                     // would cost more than writing all four; those that are none are overwritten

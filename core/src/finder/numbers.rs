@@ -25,13 +25,40 @@ pub trait Number: Coordinate {
     /// The place in a key.
     fn place(key: Self::Key) -> u32;
 
-    /// `(self - origin) * scale`, rounded to a whole number and held in `0 ..= last`. What rounds
-    /// how does not matter, but it is monotone: a greater coordinate never has a lesser cell. It
-    /// takes infinities, overflow, and a NaN between (`0 * inf`), which counts as 0.
-    ///
-    /// `last` is a whole number below 2^22.
-    fn cell(self, origin: Self, scale: Self, last: Self) -> u32;
+    /// `(self * unit - origin) * scale`, rounded to a whole number and held in `0 ..= last`. What
+    /// rounds how does not matter, but it is monotone: a greater coordinate never has a lesser cell.
+    /// It takes infinities, overflow, and a NaN (as of `0 * inf`), which counts as 0.
+    fn cell(self, ruler: &Ruler<Self>) -> u32;
+
+    /// The cell of each coordinate.
+    fn cells(at: &[Self], ruler: &Ruler<Self>, cells: &mut [u32]);
+
+    /// Adds `step` times the first cell of each interval to a bin, and tells how many more cells it
+    /// touches. False if an interval is inverted or NaN; it touches no more.
+    fn spans(
+        intervals: [&[Self; BLOCK]; 2],
+        ruler: &Ruler<Self>,
+        step: u32,
+        bin: &mut [u32; BLOCK],
+        more: &mut [u32; BLOCK],
+    ) -> bool;
 }
+
+/// Equal cells on an axis, numbered from 0; the outermost reach to infinity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ruler<T> {
+    /// What coordinates are multiplied by first: see [`Number::unit`].
+    pub unit: T,
+    /// The middle of the first cell, in that unit.
+    pub origin: T,
+    /// Cells a unit.
+    pub scale: T,
+    /// The last cell, a whole number below 2^22.
+    pub last: T,
+}
+
+/// Intervals that are placed at a time.
+pub const BLOCK: usize = 64;
 
 macro_rules! number {
     ($scalar:ident, $bits:ident, $signed:ident, $key:ident, $limit:literal, $tiny:literal, $up:literal) => {
@@ -63,14 +90,39 @@ macro_rules! number {
             }
 
             #[inline(always)]
-            fn cell(self, origin: Self, scale: Self, last: Self) -> u32 {
+            fn cell(self, ruler: &Ruler<Self>) -> u32 {
                 // Added to this number, a small one is rounded to a whole and stands in the low bits.
                 const ANCHOR: $scalar = (1u64 << ($scalar::MANTISSA_DIGITS - 1)) as $scalar;
-                let place = (self - origin) * scale;
+                let place = (self * ruler.unit - ruler.origin) * ruler.scale;
                 // Not `clamp`: the first comparison also turns a NaN into 0.
                 let place = if place > 0.0 { place } else { 0.0 };
-                let place = if place < last { place } else { last };
+                let place = if place < ruler.last { place } else { ruler.last };
                 ((place + ANCHOR).to_bits() ^ ANCHOR.to_bits()) as u32
+            }
+
+            // Of no other type, so that they are compiled with this crate and not with its users,
+            // who may go for size: builds for browsers do.
+            fn cells(at: &[Self], ruler: &Ruler<Self>, cells: &mut [u32]) {
+                for (cell, at) in cells.iter_mut().zip(at) {
+                    *cell = at.cell(ruler);
+                }
+            }
+
+            fn spans(
+                [low, high]: [&[Self; BLOCK]; 2],
+                ruler: &Ruler<Self>,
+                step: u32,
+                bin: &mut [u32; BLOCK],
+                more: &mut [u32; BLOCK],
+            ) -> bool {
+                let mut valid = true;
+                for i in 0..BLOCK {
+                    valid &= low[i] <= high[i];
+                    let first = low[i].cell(ruler);
+                    bin[i] += first * step;
+                    more[i] = high[i].cell(ruler).saturating_sub(first);
+                }
+                valid
             }
         }
     };
@@ -112,10 +164,12 @@ mod tests {
         ];
         for origin in [-1e300, -1.0, 0.0, 1e-320, 1e300] {
             for scale in [0.0, 1e-300, 1.0, 1e300, f64::INFINITY] {
-                let cells = ascending.map(|x| x.cell(origin, scale, 100.0));
+                let ruler = Ruler { unit: 1.0, origin, scale, last: 100.0 };
+                let cells = ascending.map(|x| x.cell(&ruler));
                 assert!(cells.is_sorted() && cells[10] <= 100, "{origin} {scale} {cells:?}");
             }
         }
-        assert_eq!([0.4f32, 0.6, 4.6, 9.0].map(|x| x.cell(0.0, 1.0, 7.0)), [0, 1, 5, 7]);
+        let ruler = Ruler { unit: 1.0, origin: 0.0, scale: 1.0, last: 7.0 };
+        assert_eq!([0.4f32, 0.6, 4.6, 9.0].map(|x| x.cell(&ruler)), [0, 1, 5, 7]);
     }
 }

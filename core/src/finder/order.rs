@@ -11,6 +11,7 @@ use core::ops::Range;
 use super::bins::{Record, Source};
 use super::kernel::Column;
 use super::memory::grow;
+use super::numbers::Ruler;
 use crate::{Aabb, Scalar};
 
 /// Up to this many keys insertion sort has no need of intervals.
@@ -171,13 +172,11 @@ impl<T: Scalar> Sorter<T> {
         let unit = T::unit(ends[0].abs().max(ends[1].abs()));
         let [low, high] = ends.map(|end| (end * unit.to_f64()).clamp(-T::LIMIT, T::LIMIT));
         let count = len.next_power_of_two().min(1 << 16);
-        let last = T::from_f64((count - 1) as f64);
-        let (origin, scale) = (T::from_f64(low), T::from_f64((count - 1) as f64 / (high - low)));
-
+        let last = (count - 1) as f64;
+        let [origin, scale, last] = [low, last / (high - low), last].map(T::from_f64);
         grow(&mut self.intervals, len, 0)?;
-        for (interval, left) in self.intervals.iter_mut().zip(&self.lefts[..len]) {
-            *interval = (*left * unit).cell(origin, scale, last);
-        }
+        let ruler = Ruler { unit, origin, scale, last };
+        T::cells(&self.lefts[..len], &ruler, &mut self.intervals[..len]);
         grow(&mut self.ends, count, 0)?;
         let ends = &mut self.ends[..count];
         ends.fill(0);
