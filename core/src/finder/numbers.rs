@@ -30,18 +30,24 @@ pub trait Number: Coordinate {
     /// It takes infinities, overflow, and a NaN (as of `0 * inf`), which counts as 0.
     fn cell(self, ruler: &Ruler<Self>) -> u32;
 
-    /// The cell of each coordinate.
-    fn cells(at: &[Self], ruler: &Ruler<Self>, cells: &mut [u32]);
-
     /// Adds `step` times the first cell of each interval to a bin, and tells how many more cells it
     /// touches. False if an interval is inverted or NaN; it touches no more.
     fn spans(
-        intervals: [&[Self; BLOCK]; 2],
+        [low, high]: [&[Self; BLOCK]; 2],
         ruler: &Ruler<Self>,
         step: u32,
         bin: &mut [u32; BLOCK],
         more: &mut [u32; BLOCK],
-    ) -> bool;
+    ) -> bool {
+        let mut valid = true;
+        for i in 0..BLOCK {
+            valid &= low[i] <= high[i];
+            let first = low[i].cell(ruler);
+            bin[i] += first * step;
+            more[i] = high[i].cell(ruler).saturating_sub(first);
+        }
+        valid
+    }
 }
 
 /// Equal cells on an axis, numbered from 0; the outermost reach to infinity.
@@ -61,7 +67,7 @@ pub struct Ruler<T> {
 pub const BLOCK: usize = 64;
 
 macro_rules! number {
-    ($scalar:ident, $bits:ident, $signed:ident, $key:ident, $limit:literal, $tiny:literal, $up:literal) => {
+    ($scalar:ident, $bits:ident, $signed:ident, $key:ident, $limit:literal, $tiny:literal, $up:literal $(, $spans:ident)?) => {
         impl Number for $scalar {
             type Key = $key;
             const LIMIT: f64 = $limit;
@@ -100,35 +106,23 @@ macro_rules! number {
                 ((place + ANCHOR).to_bits() ^ ANCHOR.to_bits()) as u32
             }
 
-            // Of no other type, so that they are compiled with this crate and not with its users,
-            // who may go for size: builds for browsers do.
-            fn cells(at: &[Self], ruler: &Ruler<Self>, cells: &mut [u32]) {
-                for (cell, at) in cells.iter_mut().zip(at) {
-                    *cell = at.cell(ruler);
+            $(
+                #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+                fn spans(
+                    intervals: [&[Self; BLOCK]; 2],
+                    ruler: &Ruler<Self>,
+                    step: u32,
+                    bin: &mut [u32; BLOCK],
+                    more: &mut [u32; BLOCK],
+                ) -> bool {
+                    super::kernel::$spans(intervals, ruler, step, bin, more)
                 }
-            }
-
-            fn spans(
-                [low, high]: [&[Self; BLOCK]; 2],
-                ruler: &Ruler<Self>,
-                step: u32,
-                bin: &mut [u32; BLOCK],
-                more: &mut [u32; BLOCK],
-            ) -> bool {
-                let mut valid = true;
-                for i in 0..BLOCK {
-                    valid &= low[i] <= high[i];
-                    let first = low[i].cell(ruler);
-                    bin[i] += first * step;
-                    more[i] = high[i].cell(ruler).saturating_sub(first);
-                }
-                valid
-            }
+            )?
         }
     };
 }
 
-number!(f32, u32, i32, u64, 1e37, 1e-20, 64);
+number!(f32, u32, i32, u64, 1e37, 1e-20, 64, spans_by_four);
 number!(f64, u64, i64, u128, 1e300, 1e-280, 120);
 
 #[cfg(test)]

@@ -176,7 +176,9 @@ impl<T: Scalar> Sorter<T> {
         let [origin, scale, last] = [low, last / (high - low), last].map(T::from_f64);
         grow(&mut self.intervals, len, 0)?;
         let ruler = Ruler { unit, origin, scale, last };
-        T::cells(&self.lefts[..len], &ruler, &mut self.intervals[..len]);
+        for (interval, left) in self.intervals.iter_mut().zip(&self.lefts[..len]) {
+            *interval = left.cell(&ruler);
+        }
         grow(&mut self.ends, count, 0)?;
         let ends = &mut self.ends[..count];
         ends.fill(0);

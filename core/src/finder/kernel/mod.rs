@@ -23,6 +23,8 @@ pub use pages::{enlarge_pages, prefetch};
 pub use scan::Cursor;
 pub use scatter::{Copied, Counted, Share, place};
 pub use vector::Arrange;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+pub use wasm::spans_by_four;
 
 /// The instructions that the innermost loop is made of.
 ///
