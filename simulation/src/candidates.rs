@@ -7,6 +7,7 @@ use sweep_and_prune::{Aabb, Error};
 
 use crate::bodies::Bodies;
 use crate::broad_phase::Engine;
+use crate::contacts::Contacts;
 use crate::enclosures::{Ahead, Enclosures};
 use crate::grid::Grid;
 use crate::order::PairOrder;
@@ -44,9 +45,9 @@ impl<const D: usize> Candidates<D> {
         &self.enclosures.boxes
     }
 
-    /// Makes the boxes of a step that begins.
-    pub fn enclose(&mut self, bodies: &Bodies<D>, ahead: &Ahead<D>) {
-        self.enclosures.enclose_all(bodies, ahead);
+    /// Makes the boxes of a step that begins. `contacts` are those of the substep before.
+    pub fn enclose(&mut self, bodies: &Bodies<D>, contacts: &Contacts, ahead: &Ahead<D>) {
+        self.enclosures.enclose_all(bodies, contacts, ahead);
         self.is_stale = true;
         self.near.is_stale = true;
     }
@@ -56,10 +57,10 @@ impl<const D: usize> Candidates<D> {
     ///
     /// A box only grows, so its pairs stay: a pair is new if it overlaps the box and did not
     /// overlap the box that it was. Where many balls leave, all boxes are made anew.
-    pub fn follow(&mut self, bodies: &Bodies<D>, ahead: &Ahead<D>) {
+    pub fn follow(&mut self, bodies: &Bodies<D>, contacts: &Contacts, ahead: &Ahead<D>) {
         self.enclosures.list_leaving(bodies, ahead, &mut self.leaving);
         if self.leaving.len() > bodies.len() / MOST_LEAVING {
-            self.enclose(bodies, ahead);
+            self.enclose(bodies, contacts, ahead);
             return;
         }
         for &ball in &self.leaving {
@@ -68,18 +69,11 @@ impl<const D: usize> Candidates<D> {
             let boxes = &self.enclosures.boxes;
             let own = &boxes[ball as usize];
             self.near.grown(ball, own);
-            self.near.visit(own, |others| {
-                // Written in any case: a branch would be guessed wrong.
-                let mut len = self.pairs.len();
-                self.pairs.resize(len + others.len(), [0; 2]);
-                for &other in others {
-                    let aabb = &boxes[other as usize];
-                    self.pairs[len] = [ball.min(other), ball.max(other)];
-                    let is_new = overlap(own, aabb) & !overlap(&before, aabb) & (other != ball);
-                    len += usize::from(is_new);
+            for &other in self.near.overlapping(own, boxes) {
+                if !overlap(&before, &boxes[other as usize]) && other != ball {
+                    self.pairs.push([ball.min(other), ball.max(other)]);
                 }
-                self.pairs.truncate(len);
-            });
+            }
         }
     }
 
@@ -118,6 +112,8 @@ struct Neighbourhood<const D: usize> {
     /// The balls, cell by cell, and where those of each cell begin, and the last end.
     balls: Vec<u32>,
     starts: Vec<u32>,
+    /// Room for what a search finds: all balls, and one that does not count.
+    found: Vec<u32>,
     /// By axis, no box reaches further than this from its place.
     reach: [f32; D],
     /// Whether the boxes have been made anew since.
@@ -132,6 +128,7 @@ impl<const D: usize> Default for Neighbourhood<D> {
             cells: Vec::new(),
             balls: Vec::new(),
             starts: Vec::new(),
+            found: Vec::new(),
             reach: [0.0; D],
             is_stale: false,
         }
@@ -163,6 +160,7 @@ impl<const D: usize> Neighbourhood<D> {
             total += *start;
             *start = total;
         }
+        self.found.resize(self.cells.len() + 1, 0);
         // Each cell is filled from its end, so that its end becomes its beginning.
         self.balls.resize(self.cells.len(), 0);
         for (ball, &cell) in (0..).zip(&self.cells) {
@@ -180,18 +178,24 @@ impl<const D: usize> Neighbourhood<D> {
         }
     }
 
-    /// All balls whose boxes overlap this one, and others, some at a time.
-    fn visit(&self, aabb: &Aabb<D>, mut visit: impl FnMut(&[u32])) {
+    /// The balls whose boxes overlap this one.
+    fn overlapping(&mut self, aabb: &Aabb<D>, boxes: &[Aabb<D>]) -> &[u32] {
         // A hair more, for places and reaches are rounded.
         let region = Aabb::new(
             from_fn(|axis| aabb.min[axis] - 1.01 * self.reach[axis]),
             from_fn(|axis| aabb.max[axis] + 1.01 * self.reach[axis]),
         );
+        let mut count = 0;
         self.grid.any_row(&region, |cells| {
             let [begin, end] = [cells.start, cells.end].map(|cell| self.starts[cell] as usize);
-            visit(&self.balls[begin..end]);
+            // Each is written, and counts if it overlaps: a branch would be guessed wrong.
+            for &ball in &self.balls[begin..end] {
+                self.found[count] = ball;
+                count += usize::from(overlap(aabb, &boxes[ball as usize]));
+            }
             false
         });
+        &self.found[..count]
     }
 }
 
@@ -204,6 +208,8 @@ fn overlap<const D: usize>(a: &Aabb<D>, b: &Aabb<D>) -> bool {
 mod tests {
     use super::*;
     use crate::broad_phase::BroadPhase;
+    use crate::contacts::Surroundings;
+    use crate::rows::Rows;
     use crate::scenes::{self, Population};
     use crate::setup::Setup;
     use sweep_and_prune_scenes::Random;
@@ -213,8 +219,10 @@ mod tests {
         let mut engine = Engine::new(BroadPhase::Library).unwrap();
         let mut candidates = Candidates::default();
         let mut bodies = Bodies::new(&setup.balls);
+        let (mut contacts, mut rows) = (Contacts::default(), Rows::default());
         let mut random = Random::new(3);
-        let mut followed = 0;
+        let around = Surroundings { bounds: setup.bounds, gravity: setup.gravity, time: 0.004 };
+        let (mut followed, mut touched) = (0, 0);
         for substep in 0..24 {
             let ahead = Ahead {
                 kick: setup.gravity.map(|g| g * 0.002),
@@ -223,17 +231,19 @@ mod tests {
                 substeps: 8 - substep % 8,
             };
             if substep % 8 == 0 {
-                candidates.enclose(&bodies, &ahead);
+                candidates.enclose(&bodies, &contacts, &ahead);
             } else {
-                candidates.follow(&bodies, &ahead);
+                candidates.follow(&bodies, &contacts, &ahead);
             }
             followed += u32::from(!candidates.find(&mut engine).unwrap());
 
             let mut expected = sweep_and_prune::find_pairs(candidates.boxes()).unwrap();
-            let mut pairs = candidates.pairs.clone();
             expected.sort_unstable();
-            pairs.sort_unstable();
-            assert_eq!(pairs, expected, "substep {substep}");
+            candidates.sort();
+            assert_eq!(candidates.pairs, expected, "substep {substep}");
+            rows.load(&bodies);
+            contacts.find(&candidates.pairs, &bodies, &rows, &around);
+            touched += contacts.touching().len();
 
             for (ball, large) in candidates.boxes().iter().enumerate() {
                 let (radius, at) = (bodies.radii[ball], bodies.positions[ball]);
@@ -253,6 +263,7 @@ mod tests {
                 }
             }
         }
+        assert!(touched > 0 || share == 0.0, "some were to touch");
         assert!(followed > 0 || share > 0.2, "the engine was to rest now and then");
     }
 

@@ -51,6 +51,7 @@ pub struct Contacts {
     /// The pairs of the substep before and their impulses, sorted by their indices.
     before: Vec<(u64, f32)>,
     walls_before: Vec<WallContact>,
+    /// The balls of the contacts, sorted.
     touching: Vec<[u32; 2]>,
     /// By ball.
     depths: Vec<f32>,
@@ -122,8 +123,14 @@ impl Contacts {
         }
     }
 
+    /// The balls that touch each other.
+    pub fn touching(&self) -> &[[u32; 2]] {
+        &self.touching
+    }
+
     /// Forgets the contacts of balls with each other.
     pub fn part_balls(&mut self) {
+        self.touching.clear();
         self.balls.clear();
         self.places.clear();
     }

@@ -6,12 +6,16 @@ use std::ops::Range;
 use sweep_and_prune::Aabb;
 
 use crate::bodies::Bodies;
+use crate::contacts::Contacts;
 use crate::vector::{BLOCK, dot, greater, lesser, repeated};
 
-/// What a box leaves around the way that its ball is expected to take, as a share of the way...
+/// What a box leaves around the way that its ball is expected to take, as a share of the way: where
+/// the ball touched no other of late, so that most likely it flies on...
 /// (Wider boxes make more pairs, narrower ones are left by more balls.)
-const MARGIN_OF_WAY: f32 = 0.4;
-/// ...and of the radius.
+const MARGIN_IN_FLIGHT: f32 = 0.15;
+/// ...where it did, and may be sent anywhere...
+const MARGIN_IN_TOUCH: f32 = 0.7;
+/// ...and in either case as a share of the radius.
 const MARGIN_OF_RADIUS: f32 = 0.05;
 /// How near to the side of its box a ball may come, as a share of the radius. More than rounding
 /// takes, so that a ball inside is inside by any arithmetic.
@@ -41,26 +45,34 @@ pub struct Enclosures<const D: usize> {
     highest: Vec<[f32; D]>,
     /// By axis, at least the greatest side of any box.
     pub widest: [f32; D],
+    /// Which balls touched another when the boxes were made.
+    in_touch: Vec<bool>,
 }
 
 impl<const D: usize> Default for Enclosures<D> {
     fn default() -> Self {
         let (boxes, lowest, highest) = (Vec::new(), Vec::new(), Vec::new());
-        Self { boxes, lowest, highest, widest: [0.0; D] }
+        Self { boxes, lowest, highest, widest: [0.0; D], in_touch: Vec::new() }
     }
 }
 
 impl<const D: usize> Enclosures<D> {
     /// Makes the boxes anew: each of all that a ball sweeps through to the end of the step if
-    /// nothing stops it, and a margin around it.
-    pub fn enclose_all(&mut self, bodies: &Bodies<D>, ahead: &Ahead<D>) {
+    /// nothing stops it, and a margin around it. `contacts` are those of the substep before.
+    pub fn enclose_all(&mut self, bodies: &Bodies<D>, contacts: &Contacts, ahead: &Ahead<D>) {
+        self.in_touch.clear();
+        self.in_touch.resize(bodies.len(), false);
+        for ball in contacts.touching().as_flattened() {
+            self.in_touch[*ball as usize] = true;
+        }
         self.boxes.resize(bodies.len(), Aabb::new([0.0; D], [0.0; D]));
         self.lowest.resize(bodies.len(), [0.0; D]);
         self.highest.resize(bodies.len(), [0.0; D]);
         let mut widest = [0.0; BLOCK];
         for first in (0..bodies.len()).step_by(BLOCK / D) {
             let balls = first..bodies.len().min(first + BLOCK / D);
-            let (min, max) = extents::<D, BLOCK>(balls.clone(), bodies, ahead);
+            let (min, max) =
+                extents::<D, BLOCK>(balls.clone(), bodies, &self.in_touch[balls.clone()], ahead);
             for i in 0..BLOCK {
                 widest[i] = greater(max[i] - min[i], widest[i]);
             }
@@ -75,12 +87,12 @@ impl<const D: usize> Enclosures<D> {
         }
     }
 
-    /// Makes the box of one ball larger, so that it holds the rest of the step too. The box that
-    /// it was.
+    /// Makes the box of one ball, which something has sent elsewhere, larger, so that it holds the
+    /// rest of the step too. The box that it was.
     pub fn enclose_too(&mut self, ball: u32, bodies: &Bodies<D>, ahead: &Ahead<D>) -> Aabb<D> {
         let ball = ball as usize;
         let before = self.boxes[ball];
-        let (min, max) = extents::<D, ONE>(ball..ball + 1, bodies, ahead);
+        let (min, max) = extents::<D, ONE>(ball..ball + 1, bodies, &[true], ahead);
         let union = Aabb::new(
             from_fn(|axis| lesser(before.min[axis], min[axis])),
             from_fn(|axis| greater(before.max[axis], max[axis])),
@@ -132,19 +144,23 @@ impl<const D: usize> Enclosures<D> {
 }
 
 /// The lower and the upper corners of the boxes of balls that have at most `N` coordinates,
-/// coordinate by coordinate.
+/// coordinate by coordinate. `in_touch` is by ball of these.
 fn extents<const D: usize, const N: usize>(
     balls: Range<usize>,
     bodies: &Bodies<D>,
+    in_touch: &[bool],
     ahead: &Ahead<D>,
 ) -> ([f32; N], [f32; N]) {
     let time = ahead.time * ahead.substeps as f32;
     let mut reaches = [0.0; N];
     let (reach_of, _) = reaches.as_chunks_mut();
     let properties = bodies.velocities[balls.clone()].iter().zip(&bodies.radii[balls.clone()]);
-    for (reach, (velocity, &radius)) in reach_of.iter_mut().zip(properties) {
+    for ((reach, (velocity, &radius)), &in_touch) in
+        reach_of.iter_mut().zip(properties).zip(in_touch)
+    {
+        let margin = if in_touch { MARGIN_IN_TOUCH } else { MARGIN_IN_FLIGHT };
         let way: [f32; D] = from_fn(|axis| (velocity[axis] + ahead.kick[axis]) * time);
-        *reach = [MARGIN_OF_WAY * dot(way, way).sqrt() + MARGIN_OF_RADIUS * radius + radius; D];
+        *reach = [margin * dot(way, way).sqrt() + MARGIN_OF_RADIUS * radius + radius; D];
     }
 
     let coordinates = balls.start * D..balls.end * D;

@@ -194,9 +194,9 @@ impl<const D: usize> Simulation<D> {
             substeps: self.substeps - substep,
         };
         if substep == 0 {
-            self.candidates.enclose(&self.bodies, &ahead);
+            self.candidates.enclose(&self.bodies, &self.contacts, &ahead);
         } else {
-            self.candidates.follow(&self.bodies, &ahead);
+            self.candidates.follow(&self.bodies, &self.contacts, &ahead);
         }
         let enclosed = now();
 

@@ -15,7 +15,7 @@ const GENERATION_MASK: u32 = (1 << 27) - 1;
 
 /// The id as a whole number below 2^53.
 pub(super) fn to_number(id: ProxyId) -> f64 {
-    (u64::from(id.generation() & GENERATION_MASK) << SLOT_BITS | u64::from(id.slot())) as f64
+    f64::from(id.generation() & GENERATION_MASK) * (1 << SLOT_BITS) as f64 + f64::from(id.slot())
 }
 
 /// What JavaScript holds a pointer to.
@@ -45,25 +45,15 @@ impl Handle {
 
     /// The id that `number` stands for, if it can be one.
     pub fn id(&self, number: f64, index: usize) -> Result<ProxyId, Error> {
-        let bits = number as u64;
-        let slot = bits & ((1 << SLOT_BITS) - 1);
-        match self.generations.get(slot as usize) {
-            Some(&generation)
-                if bits as f64 == number
-                    && bits >> SLOT_BITS == u64::from(generation & GENERATION_MASK) =>
-            {
-                Ok(ProxyId::from_bits(u64::from(generation) << 32 | slot))
-            }
-            _ => Err(Error::StaleProxy { index }),
-        }
+        id_of(&self.generations, number).ok_or(Error::StaleProxy { index })
     }
 
     /// The first `count` ids that were written, as ids.
     pub fn read_ids(&mut self, count: usize) -> Result<(), Error> {
-        self.ids.clear();
-        for index in 0..count.min(self.ids_in.len()) {
-            let id = self.id(self.ids_in[index], index)?;
-            self.ids.push(id);
+        let numbers = &self.ids_in[..count.min(self.ids_in.len())];
+        self.ids.resize(numbers.len(), ProxyId::from_bits(0));
+        for (index, (id, &number)) in self.ids.iter_mut().zip(numbers).enumerate() {
+            *id = id_of(&self.generations, number).ok_or(Error::StaleProxy { index })?;
         }
         Ok(())
     }
@@ -80,6 +70,14 @@ impl Handle {
             Err(error) => tell_error(error),
         }
     }
+}
+
+fn id_of(generations: &[u32], number: f64) -> Option<ProxyId> {
+    // Of a number that is none, some slot: to compare numbers afterwards is enough.
+    let slot = number as i64 as u32 & ((1 << SLOT_BITS) - 1);
+    let generation = *generations.get(slot as usize)?;
+    let id = ProxyId::from_bits(u64::from(generation) << 32 | u64::from(slot));
+    (to_number(id) == number).then_some(id)
 }
 
 /// Remembers the generation of an id, by its slot.
