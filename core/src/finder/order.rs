@@ -1,7 +1,7 @@
 //! Stage 2: the boxes of a column in the order of their left edges, as a structure of arrays.
 //!
-//! A counting pass spreads the edges over about as many equal intervals as there are edges, and
-//! insertion sort finishes. Where many edges fall into one interval (clusters, equal edges), the
+//! A counting pass spreads the edges over about as many equal intervals as there are edges, one
+//! pass exchanges neighbours, and insertion sort finishes. Where many edges fall into one interval (clusters, equal edges), the
 //! standard library's sort does that interval, so the whole is O(n log n) on any input.
 
 use alloc::collections::TryReserveError;
@@ -204,8 +204,23 @@ impl<T: Scalar> Sorter<T> {
                 begin = end;
             }
         }
+        exchange(&mut self.sorted[..len]);
         insertion(&mut self.sorted[..len], usize::MAX);
         Ok(())
+    }
+}
+
+/// One pass of exchanges between neighbours, without a branch, which could not be foretold: most
+/// keys that are not in their place are one beside it.
+fn exchange<K: Copy + Ord>(keys: &mut [K]) {
+    if let [first, ..] = *keys {
+        let mut most = first;
+        for i in 1..keys.len() {
+            let key = keys[i];
+            keys[i - 1] = most.min(key);
+            most = most.max(key);
+        }
+        keys[keys.len() - 1] = most;
     }
 }
 

@@ -25,6 +25,11 @@ interface World {
   unseen: boolean;
 }
 
+/** A world to warm up by: large enough for all of the code, and small enough not to be waited for. */
+const WARM_UP = { bodies: 2000, steps: 4 };
+/** The dimensions that have been warmed up. */
+const warm = new Set<number>();
+
 let world: World | undefined;
 let running = false;
 let listPairs = false;
@@ -37,6 +42,7 @@ const send = (message: FromSimulation, transfer: Transferable[] = []): void =>
 function begin(run: number, setup: Setup, { gravity, substeps }: Laws, method: Method): void {
   world?.simulation.free();
   const { dimensions, bodies, radius, spread, seed } = setup;
+  warmUp(dimensions);
   const simulation = new Simulation({
     scene: "falling",
     dimensions,
@@ -52,6 +58,16 @@ function begin(run: number, setup: Setup, { gravity, substeps }: Laws, method: M
   world = { run, simulation, buffers, reports: [], taken: [], unseen: true };
   send({ type: "begun", run, ...simulation.bounds, radii: simulation.radii.slice() });
   show(world);
+}
+
+/** A browser compiles a function when it is first called, and again when it was called often: so that the
+ * times of the first steps are not those of the compiler, a few steps are taken that nobody sees. */
+function warmUp(dimensions: 2 | 3): void {
+  if (warm.has(dimensions)) return;
+  warm.add(dimensions);
+  const simulation = new Simulation({ scene: "falling", dimensions, bodies: WARM_UP.bodies });
+  for (let step = 0; step < WARM_UP.steps; step++) simulation.step();
+  simulation.free();
 }
 
 /** An axis is a rule by its name, or one of the axes by its number. */
