@@ -1,8 +1,9 @@
 //! Stage 2: the boxes of a column in the order of their left edges, as a structure of arrays.
 //!
 //! A counting pass spreads the edges over about as many equal intervals as there are edges, one
-//! pass exchanges neighbours, and insertion sort finishes. Where many edges fall into one interval (clusters, equal edges), the
-//! standard library's sort does that interval, so the whole is O(n log n) on any input.
+//! pass exchanges neighbours, and insertion sort finishes. Where many edges fall into one interval
+//! (clusters, equal edges), the standard library's sort does that interval, so the whole is
+//! O(n log n) on any input.
 
 use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
