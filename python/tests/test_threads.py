@@ -127,6 +127,7 @@ def test_a_signal_ends_a_long_search(threads: int) -> None:
         raise Enough
 
     before = signal.signal(signal.SIGALRM, handler)
+
     def cost(call: Callable[[], Any]) -> float:
         began = time.process_time()
         assert call() is not None
