@@ -13,6 +13,7 @@ use super::bins::{Record, Source};
 use super::kernel::Column;
 use super::memory::grow;
 use super::numbers::Ruler;
+use super::plan::greater;
 use crate::{Aabb, Scalar};
 
 /// Up to this many keys insertion sort has no need of intervals.
@@ -170,7 +171,7 @@ impl<T: Scalar> Sorter<T> {
     /// Leaves `keys`, of `lefts`, sorted in `sorted`; given are the least and the greatest of them.
     fn spread(&mut self, len: usize, ends: [T::Key; 2]) -> Result<(), TryReserveError> {
         let ends = ends.map(|key| self.lefts[T::place(key) as usize].to_f64());
-        let unit = T::unit(ends[0].abs().max(ends[1].abs()));
+        let unit = T::unit(greater(ends[0].abs(), ends[1].abs()));
         let [low, high] = ends.map(|end| (end * unit.to_f64()).clamp(-T::LIMIT, T::LIMIT));
         let count = len.next_power_of_two().min(1 << 16);
         let last = (count - 1) as f64;

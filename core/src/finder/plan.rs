@@ -63,8 +63,8 @@ pub(super) fn plan<const D: usize, T: Scalar, S: Source<D, T>>(
     sets: &[S],
     may_part: bool,
 ) -> Planned<T> {
-    let magnitude = |set: &S| sampled(*set).map(|i| magnitude(set.aabb(i))).fold(0.0, f64::max);
-    let unit = T::unit(sets.iter().map(magnitude).fold(0.0, f64::max));
+    let magnitude = |set: &S| greatest(sampled(*set).map(|i| magnitude(set.aabb(i))));
+    let unit = T::unit(greatest(sets.iter().map(magnitude)));
     let first = Sample::<D>::take(sets[0], unit);
     let second;
     let samples: &[&Sample<D>] = if let Some(&source) = sets.get(1) {
@@ -98,7 +98,7 @@ fn sampled<const D: usize, T: Scalar, S: Source<D, T>>(source: S) -> impl Iterat
 /// The greatest coordinate by its magnitude, infinities left out.
 fn magnitude<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> f64 {
     let magnitudes = aabb.min.iter().chain(&aabb.max).map(|at| at.to_f64().abs());
-    magnitudes.filter(|at| at.is_finite()).fold(0.0, f64::max)
+    greatest(magnitudes.filter(|at| at.is_finite()))
 }
 
 /// The boxes that were drawn.
@@ -210,8 +210,8 @@ impl<const D: usize> Field<D> {
                 let tail = sample.len / 20;
                 let (least, most) = (sorted[tail], sorted[sample.len - 1 - tail]);
                 let margin = 0.125 * (most - least);
-                low = low.min((least - margin).max(sorted[0]));
-                high = high.max((most + margin).min(sorted[sample.len - 1]));
+                low = lesser(greater(least - margin, sorted[0]), low);
+                high = greater(lesser(most + margin, sorted[sample.len - 1]), high);
             }
             let (low, high) = snapped(low, high);
             (field.low[axis], field.high[axis]) = (low, high);
@@ -221,14 +221,14 @@ impl<const D: usize> Field<D> {
             let level = (0..levels).rev().find(|&level| field.together[axis][level] > SURE);
             let level = level.unwrap_or(0);
             let cells = (1u32 << level) as f64;
-            field.spread[axis] = (extent / cells / field.together[axis][level]).min(extent);
+            field.spread[axis] = lesser(extent / cells / field.together[axis][level], extent);
         }
         field
     }
 
     fn clip(&self, axis: usize, coordinate: f64) -> f64 {
         // Not `clamp`: unchecked boxes come this far, and a NaN must not panic.
-        coordinate.max(self.low[axis]).min(self.high[axis])
+        lesser(greater(coordinate, self.low[axis]), self.high[axis])
     }
 
     fn extent(&self, axis: usize) -> f64 {
@@ -237,8 +237,7 @@ impl<const D: usize> Field<D> {
 
     /// The cheapest way to go about the boxes, and its cost.
     fn cheapest(&self, samples: &[&Sample<D>], may_part: bool) -> (Way<D>, f64) {
-        let mut shapes =
-            [Shape::new(samples[0], self), Shape::new(samples[samples.len() - 1], self)];
+        let shapes = [Shape::new(samples[0], self), Shape::new(samples[samples.len() - 1], self)];
         let (cut, cost) = self.cut(&shapes[..samples.len()]);
         let mut best = (Way::Cut(cut), cost);
         let boxes: f64 = shapes[..samples.len()].iter().map(|shape| shape.count).sum();
@@ -246,30 +245,39 @@ impl<const D: usize> Field<D> {
             return best;
         }
         for set in 0..samples.len() {
-            let whole = shapes[set];
             for axis in 0..D {
                 for size in samples[set].quantiles(self, axis) {
                     let [small, large] = Shape::parted(samples[set], self, axis, size);
                     if small.count == 0.0 || large.count == 0.0 {
                         continue;
                     }
+                    let most = 0.8 * best.1;
                     let cost = if samples.len() == 1 {
-                        self.cut(&[small]).1 + self.cut(&[large]).1 + self.cut(&[small, large]).1
+                        self.cost_below(most, &[&[small], &[large], &[small, large]])
                     } else {
-                        shapes[set] = small;
-                        let with_small = self.cut(&shapes).1;
-                        shapes[set] = large;
-                        let with_large = self.cut(&shapes).1;
-                        shapes[set] = whole;
-                        with_small + with_large
+                        let [mut with_small, mut with_large] = [shapes; 2];
+                        (with_small[set], with_large[set]) = (small, large);
+                        self.cost_below(most, &[&with_small, &with_large])
                     };
-                    if cost < 0.8 * best.1 {
+                    if cost < most {
                         best = (Way::Part { set, axis, size }, cost);
                     }
                 }
             }
         }
         best
+    }
+
+    /// What it costs to go about all of these, or something not below `most`.
+    fn cost_below(&self, most: f64, parts: &[&[Shape<D>]]) -> f64 {
+        let mut cost = 0.0;
+        for part in parts {
+            cost += self.cut(part).1;
+            if cost >= most {
+                break;
+            }
+        }
+        cost
     }
 
     /// The cheapest way to cut, and its cost.
@@ -280,7 +288,7 @@ impl<const D: usize> Field<D> {
             if let [first, second] = shapes {
                 // Of few boxes against many most columns hold none, once there are many more
                 // columns than boxes; until then more columns do not pay.
-                let fewer = first.count.min(second.count);
+                let fewer = lesser(first.count, second.count);
                 let mut most = Cut { sweep, columns: [1.0; D] };
                 while most.columns.iter().product::<f64>() < SPARSE * fewer {
                     for axis in (0..D).filter(|&axis| axis != sweep && self.extent(axis) > 0.0) {
@@ -304,7 +312,7 @@ impl<const D: usize> Field<D> {
         let records: f64 = shapes.iter().map(|shape| shape.records(self, cut)).sum();
         let slabs = whole(records / cut.columns.iter().product::<f64>() / SLAB);
         // Only if few boxes reach from slab to slab.
-        let largest = shapes.iter().map(|shape| shape.mean[cut.sweep]).fold(0.0, f64::max);
+        let largest = greatest(shapes.iter().map(|shape| shape.mean[cut.sweep]));
         if slabs > 1.0 && largest * slabs < 0.25 * self.extent(cut.sweep) {
             cut.columns[cut.sweep] = slabs;
         }
@@ -339,7 +347,7 @@ impl<const D: usize> Field<D> {
         let level = ((columns as u32).ilog2() as usize).min(self.levels - 1);
         let beyond = columns / f64::from(1u32 << level);
         let finer = self.together[axis][(level + 1).min(self.levels - 1)];
-        (self.together[axis][level] / beyond).max(finer)
+        greater(self.together[axis][level] / beyond, finer)
     }
 
     fn cost(&self, shapes: &[Shape<D>], cut: &Cut<D>) -> f64 {
@@ -360,16 +368,16 @@ impl<const D: usize> Field<D> {
                 candidates *= count;
             }
             chance += if self.spread[cut.sweep] > 0.0 {
-                (shape.mean[cut.sweep] / self.spread[cut.sweep]).min(1.0)
+                lesser(shape.mean[cut.sweep] / self.spread[cut.sweep], 1.0)
             } else {
                 1.0
             };
         }
-        let pairs = candidates * chance.min(1.0);
+        let pairs = candidates * lesser(chance, 1.0);
         if let [first, second] = shapes {
             let counts = [first, second].map(|shape| shape.records(self, cut));
             // The share of the columns that have any of each set: as many as records, at most.
-            let [with_first, with_second] = counts.map(|count| (count / columns).min(1.0));
+            let [with_first, with_second] = counts.map(|count| lesser(count / columns, 1.0));
             let shared = counts[0] * with_second + counts[1] * with_first;
             return records * PLACE
                 + shared * (RECORD - PLACE)
@@ -392,7 +400,7 @@ fn snapped(low: f64, high: f64) -> (f64, f64) {
     }
     let low = floor(low / step + 0.125);
     let high = -floor(0.125 - high / step);
-    (low * step, high.max(low + 1.0) * step)
+    (low * step, greater(high, low + 1.0) * step)
 }
 
 /// The greatest whole number up to a value; `f64::floor` is not in `core`.
@@ -408,6 +416,21 @@ fn floor(value: f64) -> f64 {
 /// The whole part; `f64::floor` is not in `core`.
 fn whole(value: f64) -> f64 {
     value as u32 as f64
+}
+
+/// The lesser; the limit if the value is no number. (`f64::min` is a call in WebAssembly.)
+fn lesser(value: f64, limit: f64) -> f64 {
+    if value < limit { value } else { limit }
+}
+
+/// The greater; the limit if the value is no number.
+pub(super) fn greater(value: f64, limit: f64) -> f64 {
+    if value > limit { value } else { limit }
+}
+
+/// The greatest; at least 0.
+fn greatest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |most, value| greater(value, most))
 }
 
 /// The chance that two boxes begin in the same of 1, 2, 4 .. equal cells, from the finest up.
@@ -526,7 +549,7 @@ impl<const D: usize> Cut<D> {
     fn grid<T: Scalar>(&self, field: &Field<D>, unit: T) -> Grid<T> {
         let cells = core::array::from_fn(|axis| {
             if self.columns[axis] > 1.0 {
-                let count = self.columns[axis].min(MOST);
+                let count = lesser(self.columns[axis], MOST);
                 Cells::new(axis, unit, field.low[axis], field.high[axis], count as u32)
             } else {
                 Cells::one(axis)
