@@ -17,8 +17,9 @@ pub(super) struct Avx2<V>(V);
 pub(super) struct Avx512<V>(V);
 
 macro_rules! masks_in_vectors {
-    ($name:ident, $vector:ty, $scalar:ty, $lanes:literal, $splat:ident, $load:ident, $le:expr, $and:ident, $bits:ident) => {
-        // SAFETY: one load of exactly LANES coordinates; `report` is the trait's own.
+    ($name:ident, $vector:ty, $scalar:ty, $lanes:literal, $splat:ident, $load:ident, $le:expr, $and:ident, $bits:ident $(, $ids:ident)?) => {
+        // SAFETY: one load of exactly LANES coordinates; `report` is the trait's own, or reads LANES
+        // ids and marks and writes LANES pairs.
         unsafe impl Vector<$scalar> for $name<$vector> {
             const LANES: usize = $lanes;
             type Mask = $vector;
@@ -52,6 +53,21 @@ macro_rules! masks_in_vectors {
                 // SAFETY: the caller has the instructions.
                 unsafe { $bits(mask) as u32 }
             }
+
+            $(
+                #[inline(always)]
+                unsafe fn report(
+                    hits: $vector,
+                    probe: &Reporter,
+                    ids: *const u32,
+                    marks: *const u32,
+                    out: *mut [u32; 2],
+                ) -> usize {
+                    // SAFETY: the caller has the instructions, LANES ids and marks, and room for
+                    // LANES pairs.
+                    unsafe { pack(Self::bits(hits), $ids(ids), $ids(marks), probe, out, $lanes) }
+                }
+            )?
         }
     };
 }
@@ -87,7 +103,8 @@ masks_in_vectors!(
     _mm256_loadu_ps,
     _mm256_cmp_ps::<_CMP_LE_OQ>,
     _mm256_and_ps,
-    _mm256_movemask_ps
+    _mm256_movemask_ps,
+    eight_numbers
 );
 masks_in_vectors!(
     Avx2,
@@ -98,8 +115,86 @@ masks_in_vectors!(
     _mm256_loadu_pd,
     _mm256_cmp_pd::<_CMP_LE_OQ>,
     _mm256_and_pd,
-    _mm256_movemask_pd
+    _mm256_movemask_pd,
+    four_numbers
 );
+
+/// # Safety
+/// AVX2; eight numbers at `from`.
+#[inline(always)]
+unsafe fn eight_numbers(from: *const u32) -> __m256i {
+    // SAFETY: the caller's promise.
+    unsafe { _mm256_loadu_si256(from.cast()) }
+}
+
+/// # Safety
+/// AVX2; four numbers at `from`. The upper half is undefined.
+#[inline(always)]
+unsafe fn four_numbers(from: *const u32) -> __m256i {
+    // SAFETY: the caller's promise.
+    unsafe { _mm256_castsi128_si256(_mm_loadu_si128(from.cast())) }
+}
+
+/// The pairs of the lanes in `hits`, packed to the front without a branch: what AVX2 has no
+/// instruction for is looked up.
+///
+/// # Safety
+/// AVX2; room for `lanes` (4 or 8) pairs at `out`; no hit beyond `lanes`.
+#[inline(always)]
+unsafe fn pack(
+    hits: u32,
+    ids: __m256i,
+    marks: __m256i,
+    probe: &Reporter,
+    out: *mut [u32; 2],
+    lanes: usize,
+) -> usize {
+    // SAFETY: the caller's promise; four pairs are one vector.
+    unsafe {
+        let own = _mm256_set1_epi32(probe.id as i32);
+        let shared = _mm256_and_si256(marks, _mm256_set1_epi32(probe.marks as i32));
+        let unmarked = _mm256_cmpeq_epi32(shared, _mm256_setzero_si256());
+        let reported = hits & _mm256_movemask_ps(_mm256_castsi256_ps(unmarked)) as u32;
+        let (first, second) = if probe.swap_always {
+            (ids, own)
+        } else if probe.swap_if_smaller {
+            (_mm256_min_epu32(ids, own), _mm256_max_epu32(ids, own))
+        } else {
+            (own, ids)
+        };
+        let front = FRONT[reported as usize].as_ptr();
+        let front = _mm256_cvtepu8_epi32(_mm_loadl_epi64(front.cast()));
+        let first = _mm256_permutevar8x32_epi32(first, front);
+        let second = _mm256_permutevar8x32_epi32(second, front);
+        // Of each half of both.
+        let low = _mm256_unpacklo_epi32(first, second);
+        let high = _mm256_unpackhi_epi32(first, second);
+        _mm256_storeu_si256(out.cast(), _mm256_permute2x128_si256::<0x20>(low, high));
+        if lanes == 8 {
+            let rest = _mm256_permute2x128_si256::<0x31>(low, high);
+            _mm256_storeu_si256(out.add(4).cast(), rest);
+        }
+        reported.count_ones() as usize
+    }
+}
+
+/// Which lanes are in a mask, from the front.
+static FRONT: [[u8; 8]; 256] = {
+    let mut table = [[0; 8]; 256];
+    let mut mask = 0;
+    while mask < table.len() {
+        let (mut lane, mut at) = (0, 0);
+        while lane < 8 {
+            if mask >> lane & 1 == 1 {
+                table[mask][at] = lane as u8;
+                at += 1;
+            }
+            lane += 1;
+        }
+        mask += 1;
+    }
+    table
+};
 
 macro_rules! masks_in_registers {
     ($vector:ty, $scalar:ty, $lanes:literal, $mask:ty, $splat:ident, $load:ident, $le:ident, $and_le:ident, $ids:expr) => {
