@@ -8,6 +8,8 @@
 use alloc::vec::Vec;
 
 use super::proxy::{Slots, flag};
+use super::sort::PairSorter;
+use super::update::IS_WHOLE;
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Candidates {
@@ -18,9 +20,34 @@ pub(super) struct Candidates {
     pub live: Vec<bool>,
     /// The live pairs of bodies that are both asleep, and some of which one woke or left.
     pub asleep: Vec<[u32; 2]>,
+    /// Where all pairs are found anew (`anew`), the live ones, sorted: then the lists are empty, nobody
+    /// is asleep, and seats are slots.
+    pub sorted: Vec<[u32; 2]>,
+    /// Whether it is so.
+    pub are_sorted: bool,
 }
 
 impl Candidates {
+    /// Lists the live pairs, as slots, sorted, and forgets all others.
+    pub fn sort(&mut self, slots: &Slots, sorter: &mut PairSorter) {
+        if !self.are_sorted {
+            let mut sorted = core::mem::take(&mut self.sorted);
+            sorted.extend(self.live_pairs(slots));
+            slots.name_pairs(&mut sorted);
+            sorter.sort(&mut sorted, slots.len());
+            self.clear();
+            (self.sorted, self.are_sorted) = (sorted, true);
+        }
+    }
+
+    /// Makes those that are [sorted](Self::sort) the candidates again.
+    pub fn unsort(&mut self) {
+        if core::mem::take(&mut self.are_sorted) {
+            self.pairs.append(&mut self.sorted);
+            self.live.resize(self.pairs.len(), true);
+        }
+    }
+
     /// Forgets all pairs.
     pub fn clear(&mut self) {
         self.pairs.clear();
@@ -31,7 +58,9 @@ impl Candidates {
     /// The live pairs, in no particular order.
     pub fn live_pairs<'a>(&'a self, slots: &'a Slots) -> impl Iterator<Item = [u32; 2]> + 'a {
         let awake = self.pairs.iter().zip(&self.live).filter(|(_, is_live)| **is_live);
-        awake.map(|(&pair, _)| pair).chain(self.asleep_pairs(slots))
+        let awake = awake.map(|(&pair, _)| pair).chain(self.asleep_pairs(slots));
+        let sorted = if IS_WHOLE { &*self.sorted } else { &[] };
+        awake.chain(sorted.iter().copied())
     }
 
     /// The live pairs of bodies that are both asleep.

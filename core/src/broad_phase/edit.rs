@@ -7,6 +7,7 @@ use super::BroadPhase;
 use super::filter::Filter;
 use super::options::{Report, contains, displacement, hull};
 use super::proxy::{ProxyId, flag};
+use super::update::{IS_WHOLE, MOST};
 use super::updater::Updater;
 use super::warm::{CAN_CALL, call};
 use crate::{Aabb, Error, Scalar};
@@ -80,6 +81,11 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
                 self.slots.lower(self.slots.seats[id.slot() as usize], flag::SWEPT);
             }
         }
+        let are_many = ids.len() * MOST > self.slots.len();
+        if IS_WHOLE && are_many && self.options.report == Report::Exact {
+            self.place_unlisted(ids, boxes);
+            return Ok(());
+        }
         self.updater.warm_for(ids.len(), &self.boxes);
         self.changed.reserve(ids.len());
         for (ids, boxes) in ids.chunks(AHEAD).zip(boxes.chunks(AHEAD)) {
@@ -94,6 +100,29 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             }
         }
         Ok(())
+    }
+
+    /// Puts boxes, which are valid, where they are told: the update will see which differ from those of
+    /// the last.
+    #[inline(never)]
+    fn place_unlisted(&mut self, ids: &[ProxyId], boxes: &[Aabb<D, T>]) {
+        self.unlisted = true;
+        for (id, aabb) in ids.iter().zip(boxes) {
+            self.boxes[self.slots.seats[id.slot() as usize] as usize] = *aabb;
+        }
+    }
+
+    /// Lists the bodies whose boxes were set many at a time and are not listed yet, and some that are.
+    pub(super) fn list_changed(&mut self) {
+        if IS_WHOLE && core::mem::take(&mut self.unlisted) {
+            for seat in 0..self.slots.len() {
+                if self.slots.flags[seat] & flag::LIVE != 0
+                    && differ(&self.boxes[seat], &self.updater.previous[seat])
+                {
+                    self.touch(seat as u32);
+                }
+            }
+        }
     }
 
     /// Moves a fast body all the way from one box to another: until the next update its box is
@@ -279,14 +308,14 @@ fn is_valid<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> bool {
     (0..D).fold(true, |all, axis| all & (aabb.min[axis] <= aabb.max[axis]))
 }
 
-/// Whether the bits of two boxes differ, without a branch.
+/// Whether the bits of two boxes differ: without a branch, and in the order of the bits in memory, so
+/// that compilers compare several at once.
 #[inline]
-fn differ<const D: usize, T: Scalar>(a: &Aabb<D, T>, b: &Aabb<D, T>) -> bool {
-    let differing = |a: T, b: T| a.to_raw() ^ b.to_raw();
-    let sides = |bits, axis| {
-        bits | differing(a.min[axis], b.min[axis]) | differing(a.max[axis], b.max[axis])
+pub(super) fn differ<const D: usize, T: Scalar>(a: &Aabb<D, T>, b: &Aabb<D, T>) -> bool {
+    let corners = |a: &[T; D], b: &[T; D]| {
+        (0..D).fold(0, |bits, axis| bits | (a[axis].to_raw() ^ b[axis].to_raw()))
     };
-    (0..D).fold(0, sides) != 0
+    corners(&a.min, &b.min) | corners(&a.max, &b.max) != 0
 }
 
 /// Writes to a table by seat, which grows by one where the seat is new.

@@ -10,7 +10,7 @@ use core::hint::black_box;
 use super::BroadPhase;
 use super::options::{contains, hull};
 use super::proxy::flag;
-use super::seating::JUMP_WEAR;
+use super::seating::{Deal, JUMP_WEAR};
 use super::tree::{BATCH, TOGETHER};
 use super::update::{REBUILD, overlap, push_wanted};
 use super::updater::{Marks, SOME, Scratch, TreeState, Updater};
@@ -28,9 +28,11 @@ const AHEAD: usize = 24;
 const MANY: usize = 12;
 
 impl<const D: usize, T: Scalar> BroadPhase<D, T> {
-    /// Reports what begins and ends, given who changed, escaped and left.
+    /// Reports what begins and ends, given who changed, escaped and left. Says how seats should be
+    /// dealt.
     #[inline(never)]
-    pub(super) fn follow(&mut self) {
+    pub(super) fn follow(&mut self) -> Deal {
+        let changed = self.changed.len() + self.leaving.len();
         let escaped = core::mem::take(&mut self.updater.scratch.escaped);
         let is_sleeper = |seat: &&u32| self.slots.has(**seat, flag::ASLEEP);
         let sleepers = escaped.iter().chain(&self.leaving).filter(is_sleeper).count();
@@ -45,14 +47,17 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         if sleepers > 0 {
             self.wake(&escaped, sleepers);
         }
-        if self.changed.len() + self.leaving.len() > 0 {
-            self.test_candidates(!stretches);
-        }
-        self.move_in_tree(&escaped, stretches);
+        let tests = if changed > 0 { self.test_candidates(!stretches) } else { 0 };
+        let jumped = self.move_in_tree(&escaped, stretches);
         self.add_candidates(stretches);
         let marks = &mut self.updater.scratch.marks;
         escaped.iter().chain(&self.leaving).for_each(|&seat| marks.clear(seat));
+        let (bodies, escapes) = (self.len(), escaped.len());
         self.updater.scratch.escaped = escaped;
+        match self.updater.effort.note_follow(bodies, changed, tests, escapes, jumped) {
+            true => Deal::BySlot,
+            false => Deal::No,
+        }
     }
 
     /// Wakes the bodies that are marked, of which so many were asleep, and ends what ends between
@@ -101,9 +106,9 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     }
 
     /// Lists the places of the candidates of the bodies that escaped or left, if `drops`, and tests
-    /// the other candidates of those that changed.
+    /// the other candidates of those that changed. Returns how many tests that were.
     #[inline(never)]
-    fn test_candidates(&mut self, drops: bool) {
+    fn test_candidates(&mut self, drops: bool) -> usize {
         let Updater { candidates, scratch, begun, ended, .. } = &mut self.updater;
         let Scratch { marks, moved, places, dropped, .. } = scratch;
         dropped.clear();
@@ -116,7 +121,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
                 self.drop_candidates();
             }
             self.test_all_candidates();
-            return;
+            return self.updater.candidates.pairs.len();
         }
         let seats = || self.changed.iter().chain(&self.leaving);
         moved.resize(self.slots.len());
@@ -136,7 +141,9 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
                 if is_live { &mut *begun } else { &mut *ended }.push([a, b]);
             }
         }
+        let tests = places.len();
         self.drop_candidates();
+        tests
     }
 
     /// Takes the candidates at the places that were listed out of the list, and ends what ends.
@@ -196,9 +203,10 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     }
 
     /// Tells the tree of those who left the world, and of the new fat boxes of those who left theirs,
-    /// which are to be looked up.
+    /// which are to be looked up. Returns how many jumped.
     #[inline(never)]
-    fn move_in_tree(&mut self, escaped: &[u32], stretches: bool) {
+    fn move_in_tree(&mut self, escaped: &[u32], stretches: bool) -> usize {
+        let mut jumped = 0;
         let Updater { tree, fat, previous, prediction, wear, scratch, .. } = &mut self.updater;
         for &seat in &self.leaving {
             tree.remove(seat);
@@ -214,12 +222,14 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             let before = if is_new { &self.boxes[at] } else { &previous[at] };
             if prediction.is_jump(before, &self.boxes[at]) {
                 *wear = wear.saturating_add(JUMP_WEAR);
+                jumped += 1;
             }
             let ahead = prediction.alone(seat, before, &self.boxes[at], &self.options);
             let aabb = if stretches { hull(&fat[at], &ahead) } else { ahead };
             scratch.queries.push((seat, aabb));
             tree.set(seat, &aabb);
         }
+        jumped
     }
 
     /// Gives the bodies that are to be looked up their new fat boxes, and adds their candidates: if
@@ -276,6 +286,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Has the tree hold the fat boxes of all bodies that are not new.
     #[inline(never)]
     pub(super) fn ready_tree(&mut self) {
+        self.updater.refresh_fat();
         let Updater { tree, tree_state, tree_uses, fat, scratch, .. } = &mut self.updater;
         match *tree_state {
             TreeState::Fresh { .. } => return,
@@ -298,6 +309,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
 
     /// Has the tree hold every body with a box around its own, for queries.
     pub(super) fn refresh_tree(&mut self) {
+        self.list_changed();
         // Who asks once may ask often.
         self.updater.tree_uses += self.len() / 4;
         self.ready_tree();

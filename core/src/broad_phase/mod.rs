@@ -1,8 +1,10 @@
 //! The living world: bodies that are inserted, moved and removed, and what begins and ends.
 
+mod anew;
 mod candidates;
 mod changes;
 mod edit;
+mod effort;
 mod filter;
 mod follow;
 mod hash;
@@ -79,6 +81,8 @@ pub struct BroadPhase<const D: usize, T: Scalar = f32> {
     any_filter: bool,
     /// The seats of [`flag::CHANGED`], at least once each, and those of bodies that left since.
     changed: Vec<u32>,
+    /// Whether other bodies' boxes may differ from those of the last update too.
+    unlisted: bool,
     /// The seats of [`flag::LEAVING`].
     leaving: Vec<u32>,
     /// By seat, where the bodies of [`flag::SWEPT`] are after the next update; as long as the
@@ -113,6 +117,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             filters: Vec::new(),
             any_filter: false,
             changed: Vec::new(),
+            unlisted: false,
             leaving: Vec::new(),
             rests: Vec::new(),
             swept: Vec::new(),

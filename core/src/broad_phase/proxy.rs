@@ -86,6 +86,8 @@ pub(super) struct Slots {
     pub slots: Vec<u32>,
     /// By seat.
     pub flags: Vec<u16>,
+    /// Whether seats were dealt: else all are those of the slots of the same number.
+    pub are_dealt: bool,
     /// The least free slot is given out first, so which it is follows from which are free.
     free: BinaryHeap<Reverse<u32>>,
     pub live: usize,

@@ -6,6 +6,7 @@ use super::BroadPhase;
 use super::filter::Filter;
 use super::options::hull;
 use super::proxy::flag;
+use super::seating::Deal;
 use super::update::{overlap, push_wanted};
 use super::updater::{Scratch, Updater};
 use super::warm::{make_room, warm};
@@ -15,10 +16,10 @@ use crate::{Error, Scalar};
 const FEW: usize = 4;
 
 impl<const D: usize, T: Scalar> BroadPhase<D, T> {
-    /// Reports what begins and ends, given who changed, escaped and left. Says whether seats
-    /// should be dealt anew.
+    /// Reports what begins and ends, given who changed, escaped and left. Says how seats should be
+    /// dealt.
     #[inline(never)]
-    pub(super) fn rebuild(&mut self) -> bool {
+    pub(super) fn rebuild(&mut self) -> Deal {
         let has_same_bodies = self.leaving.is_empty() && !self.updater.any_refiltered;
         let is_new = |seat: &&u32| self.slots.has(**seat, flag::NEW);
         let Updater { any_new, scratch, .. } = &self.updater;
@@ -43,17 +44,10 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             }));
         }
 
-        if self.updater.sleep.wake_all() {
-            self.slots.flags.iter_mut().for_each(|flags| *flags &= !flag::ASLEEP);
-        }
-        self.updater.front = self.slots.len();
+        self.wake_all();
         let are_fat = self.fatten_all();
-        self.find_candidates(|flags| flags & flag::LIVE != 0);
-        if self.any_filter {
-            let filters = &self.filters;
-            let is_allowed = |[a, b]: &[u32; 2]| filters[*a as usize].allows(&filters[*b as usize]);
-            self.updater.candidates.pairs.retain(is_allowed);
-        }
+        self.find_candidates(false, is_live);
+        self.drop_forbidden();
 
         warm(&self.boxes);
         warm(&self.updater.previous);
@@ -84,7 +78,32 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         }
         self.updater.begun = begun;
         self.age_tree();
-        self.wear_seating(self.updater.scratch.escaped.len(), new)
+        let (bodies, moved) = (self.len(), self.updater.scratch.escaped.len());
+        let is_worn = self.wear_seating(moved, new);
+        if self.updater.effort.note_rebuild(bodies, are_fat || (moved - new) * 2 < bodies) {
+            Deal::BySlot
+        } else if is_worn {
+            Deal::ByPlace
+        } else {
+            Deal::No
+        }
+    }
+
+    /// Ends all sleep.
+    pub(super) fn wake_all(&mut self) {
+        if self.updater.sleep.wake_all() {
+            self.slots.flags.iter_mut().for_each(|flags| *flags &= !flag::ASLEEP);
+        }
+        self.updater.front = self.slots.len();
+    }
+
+    /// Drops the candidates whose filters do not allow them.
+    pub(super) fn drop_forbidden(&mut self) {
+        if self.any_filter {
+            let filters = &self.filters;
+            let is_allowed = |[a, b]: &[u32; 2]| filters[*a as usize].allows(&filters[*b as usize]);
+            self.updater.candidates.pairs.retain(is_allowed);
+        }
     }
 
     /// Gives all bodies new fat boxes; the fat box of a body that rests is its own. Says whether
@@ -118,10 +137,10 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         are_fat
     }
 
-    /// Replaces the candidates by the pairs of fat boxes of the seats with such flags. Those of two
-    /// bodies that are and were static are not even looked for.
+    /// Replaces the candidates by the pairs of fat boxes, or of the boxes themselves if `exact`, of the
+    /// seats with such flags. Those of two bodies that are and were static are not even looked for.
     #[inline(never)]
-    fn find_candidates(&mut self, takes_part: impl Fn(u16) -> bool) {
+    pub(super) fn find_candidates(&mut self, exact: bool, takes_part: impl Fn(u16) -> bool) {
         let mut seats = core::mem::take(&mut self.updater.scratch.seats);
         let flags = &self.slots.flags;
         let is_whole = !self.any_filter && flags.iter().all(|&flags| takes_part(flags));
@@ -139,16 +158,17 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         }
         let Updater { fat, candidates, scratch, .. } = &mut self.updater;
         let Scratch { finder, boxes, .. } = scratch;
+        let table = if exact { &self.boxes } else { &*fat };
         candidates.clear();
         let pairs = &mut candidates.pairs;
         // Boxes were checked when they came and fat boxes are no worse: the finder takes them.
         if is_whole {
-            let found = found(finder.find(fat));
+            let found = found(finder.find(table));
             make_room(pairs, found.len());
             pairs.extend_from_slice(found);
         } else {
             boxes.clear();
-            boxes.extend(seats.iter().map(|&seat| fat[seat as usize]));
+            boxes.extend(seats.iter().map(|&seat| table[seat as usize]));
             let (moving, fixed) = boxes.split_at(movers);
             let (mover, other) = seats.split_at(movers);
             let moving_pairs = found(finder.find(moving));
@@ -190,7 +210,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
                 fat[seat] = hull(&previous[seat], &self.boxes[seat]);
             }
         }
-        self.find_candidates(|flags| {
+        self.find_candidates(false, |flags| {
             flags & (flag::LIVE | flag::LEAVING) != 0 && flags & flag::NEW == 0
         });
         let mut candidates = core::mem::take(&mut self.updater.candidates);
@@ -203,9 +223,14 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     }
 }
 
+/// Whether a body is there.
+pub(super) fn is_live(flags: u16) -> bool {
+    flags & flag::LIVE != 0
+}
+
 /// What the finder found. Its boxes are valid, so it can have failed only where memory ended; a
 /// world that lacks pairs would be wrong, so then the program ends, as when any collection of its
 /// own fails to grow.
-fn found(result: Result<&[[u32; 2]], Error>) -> &[[u32; 2]] {
+pub(super) fn found(result: Result<&[[u32; 2]], Error>) -> &[[u32; 2]] {
     result.unwrap_or_else(|_| handle_alloc_error(Layout::new::<[u32; 2]>()))
 }

@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use super::BroadPhase;
 use super::loners::NONE;
 use super::proxy::flag;
-use super::updater::{Scratch, Updater};
+use super::updater::{Scratch, TreeState, Updater};
 use super::warm::make_room;
 use crate::Scalar;
 
@@ -21,6 +21,16 @@ const FEW: usize = 64;
 const WEAR: usize = 16;
 /// What a body wears that jumped away from those whose seats are next to its own.
 pub(super) const JUMP_WEAR: usize = 10 * WEAR;
+
+/// Whether and how seats are dealt at the end of an update.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Deal {
+    No,
+    /// Near in space is near in memory.
+    ByPlace,
+    /// Each slot gets the seat of its number.
+    BySlot,
+}
 
 impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Notes that the finder just found the candidates of so many bodies that got new fat boxes,
@@ -40,8 +50,8 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// after somebody near. To be called at the end of an update. O(n + pairs) time.
     #[inline(never)]
     pub(super) fn deal_seats(&mut self) {
-        let Updater { scratch, candidates, tree, previous, fat, front, .. } = &mut self.updater;
-        let Scratch { boxes: spare, seats: order, found: renamed, loners, .. } = scratch;
+        let Updater { scratch, candidates, front, .. } = &mut self.updater;
+        let Scratch { seats: order, found: renamed, loners, .. } = scratch;
         order.clear();
         renamed.clear();
         renamed.resize(self.slots.len(), NONE);
@@ -73,6 +83,29 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         for old in everyone.clone().filter(|&seat| is_up(seat)).chain(paired()).chain(everyone) {
             deal(old);
         }
+        self.take_seats();
+    }
+
+    /// Deals each slot the seat of its number. To be called at the end of an update. O(n + pairs) time.
+    #[inline(never)]
+    pub(super) fn deal_seats_by_slot(&mut self) {
+        // Those who are near in space will be all over the tables.
+        self.updater.wear = usize::MAX;
+        self.updater.tree_state = TreeState::Unbuilt;
+        if self.slots.are_dealt {
+            let Scratch { seats: order, found: renamed, .. } = &mut self.updater.scratch;
+            order.clone_from(&self.slots.seats);
+            renamed.clone_from(&self.slots.slots);
+            self.take_seats();
+            self.slots.are_dealt = false;
+        }
+    }
+
+    /// Moves bodies to their new seats, given who was in the seat of each and which is whose.
+    fn take_seats(&mut self) {
+        let Updater { scratch, candidates, tree, previous, fat, .. } = &mut self.updater;
+        let Scratch { boxes: spare, seats: order, found: renamed, .. } = scratch;
+        self.slots.are_dealt = true;
         for table in [&mut self.boxes, &mut self.shapes, previous, fat] {
             reorder(table, order, spare);
         }

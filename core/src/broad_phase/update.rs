@@ -17,8 +17,10 @@ use alloc::vec::Vec;
 
 use super::BroadPhase;
 use super::changes::Changes;
+use super::edit::differ;
 use super::options::contains;
 use super::proxy::{ProxyId, flag};
+use super::seating::Deal;
 use super::sort::PairSorter;
 use super::updater::{TreeState, Updater, in_order};
 use super::warm::warm;
@@ -29,7 +31,18 @@ use crate::{Aabb, Scalar};
 pub(super) const REBUILD: usize = 24;
 
 /// If one in so many bodies changed, all are gone through to find them in the order of the seats.
-const MOST: usize = 4;
+pub(super) const MOST: usize = 4;
+/// Without `std`, which is how it is built for browsers, size counts more: there boxes are always listed
+/// as they are set, and fat boxes are never done without.
+pub(super) const IS_WHOLE: bool = cfg!(feature = "std");
+
+/// So many at a time.
+const CHUNK: usize = 64;
+
+/// Who changed and is one of these needs a new fat box in any case.
+const ODD: u16 = flag::NEW | flag::REFILTERED | flag::ASLEEP;
+/// The flags that an update leaves as they are.
+const SETTLED: u16 = !(flag::CHANGED | flag::KNOWN);
 
 impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Reports the pairs that began and ended since the last update.
@@ -39,63 +52,74 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     pub fn update(&mut self) -> Changes<'_> {
         self.updater.begun.clear();
         self.updater.ended.clear();
+        let listed = self.changed.len() + self.leaving.len();
+        let changed = if self.unlisted { listed.max(self.len()) } else { listed };
+        let mut deal = if changed > 0 { self.find_changes(changed) } else { Deal::No };
+        if self.end_update() && deal == Deal::No {
+            deal = Deal::ByPlace;
+        }
+        match deal {
+            Deal::No => {}
+            Deal::ByPlace => self.deal_seats(),
+            Deal::BySlot if IS_WHOLE => self.deal_seats_by_slot(),
+            Deal::BySlot => {}
+        }
+        let Updater { begun, ended, .. } = &self.updater;
+        Changes { slots: &self.slots, begun, ended }
+    }
+
+    /// Lists what begins and ends, given that about so many bodies changed or left. Says how seats
+    /// should be dealt.
+    fn find_changes(&mut self, changed: usize) -> Deal {
+        if self.updater.effort.is_without(changed, self.len()) {
+            self.find_anew();
+            return Deal::No;
+        }
+        if IS_WHOLE {
+            self.updater.refresh_fat();
+            self.updater.candidates.unsort();
+        }
         self.find_escaped();
         let moves = self.updater.scratch.escaped.len() + self.leaving.len();
-        let mut is_worn = false;
-        if moves * REBUILD > self.len() {
-            is_worn = self.rebuild();
-        } else {
-            self.follow();
-        }
+        let deal = if moves * REBUILD > self.len() { self.rebuild() } else { self.follow() };
         let slots = self.slots.len();
         let Updater { scratch, begun, ended, .. } = &mut self.updater;
         for pairs in [begun, ended] {
             self.slots.name_pairs(pairs);
             scratch.sorter.sort(pairs, slots);
         }
-        is_worn |= self.end_update();
-        if is_worn {
-            self.deal_seats();
-        }
-        let Updater { begun, ended, .. } = &self.updater;
-        Changes { slots: &self.slots, begun, ended }
+        deal
     }
 
     /// Lists the bodies that need a new fat box: those that left theirs, are new, or may pair with
     /// others than before. Leaves each changed body that lives in the list of the changed, once.
     #[inline(never)]
     fn find_escaped(&mut self) {
-        let Updater { fat, scratch, front, .. } = &mut self.updater;
+        let Updater { fat, previous, scratch, front, .. } = &mut self.updater;
         scratch.escaped.clear();
         let slots = &mut self.slots;
         let boxes = &self.boxes;
-        let settled = !(flag::CHANGED | flag::KNOWN);
-        // Who changed and is one of these needs a new fat box in any case.
-        let odd = flag::NEW | flag::REFILTERED | flag::ASLEEP;
-        if self.changed.len() * MOST > slots.len() {
+        if core::mem::take(&mut self.unlisted) || self.changed.len() * MOST > slots.len() {
             // In the order of the seats, which is faster than that of the calls.
-            const CHUNK: usize = 256;
-            let is_changed = flag::CHANGED | flag::LIVE;
-            let escaped = &mut scratch.escaped;
             self.changed.clear();
-            for (index, chunk) in slots.flags.chunks_mut(CHUNK).enumerate() {
-                let start = index * CHUNK;
-                let (mut changes, mut escapes) = (self.changed.len(), escaped.len());
-                self.changed.resize(changes + chunk.len(), 0);
-                escaped.resize(escapes + chunk.len(), 0);
-                let sides = boxes[start..].iter().zip(&fat[start..]);
-                for (at, (flags, (aabb, fat))) in chunk.iter_mut().zip(sides).enumerate() {
-                    let seat = (start + at) as u32;
-                    let changed = *flags & is_changed == is_changed;
-                    let escaped_now = (*flags & odd != 0) | !contains(fat, aabb);
-                    self.changed[changes] = seat;
-                    changes += usize::from(changed);
-                    escaped[escapes] = seat;
-                    escapes += usize::from(changed & escaped_now);
-                    *flags = *flags & settled | (*flags & flag::CHANGED) << 7;
+            for start in (0..slots.len()).step_by(CHUNK) {
+                let seats = start..slots.len().min(start + CHUNK);
+                let (flags, boxes) = (&mut slots.flags[seats.clone()], &boxes[seats.clone()]);
+                let (mut changed, mut escaped) = ([0; CHUNK], [0; CHUNK]);
+                if IS_WHOLE {
+                    for (changed, (aabb, before)) in
+                        changed.iter_mut().zip(boxes.iter().zip(&previous[seats.clone()]))
+                    {
+                        *changed = u16::from(differ(aabb, before));
+                    }
                 }
-                self.changed.truncate(changes);
-                escaped.truncate(escapes);
+                for (escaped, (aabb, fat)) in
+                    escaped.iter_mut().zip(boxes.iter().zip(&fat[seats.clone()]))
+                {
+                    *escaped = u16::from(!contains(fat, aabb));
+                }
+                let lists = [&mut self.changed, &mut scratch.escaped];
+                list_chunk(start, flags, &mut changed, &mut escaped, lists);
             }
             return;
         }
@@ -105,9 +129,9 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         self.changed.retain(|&seat| {
             let at = seat as usize;
             let flags = slots.flags[at];
-            slots.flags[at] = flags & settled | flag::RECENT;
+            slots.flags[at] = flags & SETTLED | flag::RECENT;
             let is_first = flags & (flag::CHANGED | flag::LIVE) == flag::CHANGED | flag::LIVE;
-            if is_first && (flags & odd != 0 || !contains(&fat[at], &boxes[at])) {
+            if is_first && (flags & ODD != 0 || !contains(&fat[at], &boxes[at])) {
                 scratch.escaped.push(seat);
             }
             is_first
@@ -120,7 +144,10 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         let Updater { previous, tree_state, any_refiltered, any_new, front, .. } =
             &mut self.updater;
         // The others' are the same, or mean nothing.
-        let read = in_order(self.changed.len(), *front, self.slots.len());
+        let mut read = in_order(self.changed.len(), *front, self.slots.len());
+        if core::mem::take(&mut self.unlisted) {
+            read = previous.len();
+        }
         previous[..read].copy_from_slice(&self.boxes[..read]);
         if read < previous.len() {
             for &seat in self.changed.iter().filter(|&&seat| seat as usize >= read) {
@@ -137,7 +164,8 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         if let TreeState::Fresh { known } = tree_state {
             *known = 0;
         }
-        let is_apart = self.settle_down(moved);
+        // Where all pairs are found anew nobody sleeps.
+        let is_apart = !(IS_WHOLE && self.updater.candidates.are_sorted) && self.settle_down(moved);
         for seat in self.leaving.drain(..) {
             self.slots.release(seat);
         }
@@ -173,6 +201,38 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             others.sort_unstable();
         }
         Ok(others)
+    }
+}
+
+/// Lists whose boxes changed of a chunk of seats, given whose boxes differ from those of the last update,
+/// and whose of these are not within their fat boxes.
+#[inline(never)]
+fn list_chunk(
+    start: usize,
+    flags: &mut [u16],
+    changed: &mut [u16; CHUNK],
+    escaped: &mut [u16; CHUNK],
+    lists: [&mut Vec<u32>; 2],
+) {
+    let (mut changes, mut escapes) = (0, 0);
+    for (flags, (changed, escaped)) in flags.iter_mut().zip(changed.iter_mut().zip(&mut *escaped)) {
+        let is = |flag| u16::from(*flags & flag != 0);
+        let any = *changed | is(flag::CHANGED);
+        *changed = any & is(flag::LIVE);
+        *escaped = *changed & (*escaped | is(ODD));
+        *flags = *flags & SETTLED | (any * flag::RECENT);
+        changes += *changed;
+        escapes += *escaped;
+    }
+    let start = start as u32;
+    let [all_changed, all_escaped] = lists;
+    for (list, count, is_in) in [(all_changed, changes, changed), (all_escaped, escapes, escaped)] {
+        if IS_WHOLE && usize::from(count) == flags.len() {
+            list.extend(start..start + u32::from(count));
+        } else if count > 0 {
+            let seats = (start..).zip(&is_in[..flags.len()]);
+            list.extend(seats.filter(|(_, is_in)| **is_in != 0).map(|(seat, _)| seat));
+        }
     }
 }
 

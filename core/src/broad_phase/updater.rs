@@ -3,12 +3,14 @@
 use alloc::vec::Vec;
 
 use super::candidates::Candidates;
+use super::effort::Effort;
 use super::filter::Filter;
 use super::loners::Loners;
 use super::predict::Prediction;
 use super::sleep::Sleep;
 use super::sort::PairSorter;
 use super::tree::Tree;
+use super::update::IS_WHOLE;
 use super::warm::warm;
 use crate::finder::PairFinder;
 use crate::{Aabb, Scalar};
@@ -25,6 +27,8 @@ pub(super) struct Updater<const D: usize, T: Scalar> {
     pub any_refiltered: bool,
     /// By seat, the fat box. Means nothing for bodies of `flag::NEW`.
     pub fat: Vec<Aabb<D, T>>,
+    /// Whether the fat boxes should be those of the last update, and are not.
+    pub are_fat_old: bool,
     pub candidates: Candidates,
     pub sleep: Sleep,
     pub tree: Tree<D, T>,
@@ -32,6 +36,7 @@ pub(super) struct Updater<const D: usize, T: Scalar> {
     /// How often the tree was searched since it was built, roughly.
     pub tree_uses: usize,
     pub prediction: Prediction,
+    pub effort: Effort,
     /// Those who move of late have seats below this, but for some.
     pub front: usize,
     /// Whether there is a body of `flag::NEW`.
@@ -110,6 +115,8 @@ pub(super) struct Scratch<const D: usize, T: Scalar> {
     pub escaped: Vec<u32>,
     pub found: Vec<u32>,
     pub pairs: Vec<[u32; 2]>,
+    /// The live pairs of the last update, sorted.
+    pub before: Vec<[u32; 2]>,
     pub marks: Marks,
     pub moved: Marks,
     pub places: Vec<usize>,
@@ -129,12 +136,14 @@ impl<const D: usize, T: Scalar> Updater<D, T> {
             old_filters: Vec::new(),
             any_refiltered: false,
             fat: Vec::new(),
+            are_fat_old: false,
             candidates: Candidates::default(),
             sleep: Sleep::default(),
             tree: Tree::new(),
             tree_state: TreeState::Unbuilt,
             tree_uses: 0,
             prediction: Prediction::default(),
+            effort: Effort::default(),
             front: 0,
             any_new: false,
             wear: 0,
@@ -158,6 +167,13 @@ impl<const D: usize, T: Scalar> Updater<D, T> {
         self.fat.push(aabb);
     }
 
+    /// Writes the fat boxes, if they are not.
+    pub fn refresh_fat(&mut self) {
+        if IS_WHOLE && core::mem::take(&mut self.are_fat_old) {
+            self.fat.copy_from_slice(&self.previous);
+        }
+    }
+
     /// Reads the part of a table by seat through of which `count` items will be looked at.
     pub fn warm_for<V: Copy>(&self, count: usize, table: &[V]) {
         warm(&table[..in_order(count, self.front, table.len())]);
@@ -171,12 +187,14 @@ impl<const D: usize, T: Scalar> Clone for Updater<D, T> {
             old_filters: self.old_filters.clone(),
             any_refiltered: self.any_refiltered,
             fat: self.fat.clone(),
+            are_fat_old: self.are_fat_old,
             candidates: self.candidates.clone(),
             sleep: self.sleep.clone(),
             tree: self.tree.clone(),
             tree_state: self.tree_state,
             tree_uses: self.tree_uses,
             prediction: self.prediction.clone(),
+            effort: self.effort.clone(),
             front: self.front,
             any_new: self.any_new,
             wear: self.wear,
@@ -203,6 +221,7 @@ impl<const D: usize, T: Scalar> Scratch<D, T> {
             escaped: Vec::new(),
             found: Vec::new(),
             pairs: Vec::new(),
+            before: Vec::new(),
             marks: Marks::default(),
             moved: Marks::default(),
             places: Vec::new(),
