@@ -5,7 +5,8 @@
 //! through the list of them; those of bodies that rest are not in it (`sleep`). A body that leaves
 //! its fat box gets a new one, which reaches ahead in the direction of its motion, and a tree tells
 //! what that overlaps (`follow`). When so many leave that it is cheaper, the finder finds all
-//! candidates anew (`rebuild`).
+//! candidates anew (`rebuild`). Where that is so again and again, fat boxes do not pay (`effort`), and
+//! for some updates the pairs of the boxes themselves are found and compared (`anew`).
 //!
 //! Neither the fat boxes nor the choice of the way show in what is reported. A pair is live if
 //! the last update knew both bodies, their boxes then overlapped and their filters then allowed
