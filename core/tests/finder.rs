@@ -319,6 +319,60 @@ fn the_last_order_does_not_matter<const D: usize, T: Scalar>() {
 }
 in_all_dimensions!(a_used_finder_finds_what_a_new_one_finds, the_last_order_does_not_matter);
 
+/// What several threads share out in ways of their own: bins that hold most of the boxes, sweeps with
+/// no bins, pairs that fill many parts. Again and again by the same finders, whose buffers then are
+/// there, and of two sets.
+#[cfg(feature = "parallel")]
+fn threads_share_everything<const D: usize, T: Scalar>() {
+    let crossing = |n: usize| -> Boxes<D, T> {
+        let mut random = Random::new(9);
+        let long = |i: usize| core::array::from_fn(|k| if i % D == k { 1.0 } else { 1e-3 });
+        (0..n).map(|i| around(random.point(), long(i))).collect()
+    };
+    // All but a few in a corner, and of these all but a few in a corner of it.
+    let corners = |n: usize| -> Boxes<D, T> {
+        let scale = |i: usize| match i % 9 {
+            0 => 1.0,
+            1 => 1e-3,
+            _ => 1e-6,
+        };
+        let all = some::<D, T>(n, half_size::<D>(n)).into_iter().enumerate();
+        all.map(|(i, it)| {
+            let scaled = |at: T| T::from_f64(at.to_f64() * scale(i));
+            Aabb::new(it.min.map(scaled), it.max.map(scaled))
+        })
+        .collect()
+    };
+    let scenes = [
+        ("crossing", crossing(5000)),
+        ("corners", corners(30_000)),
+        ("coincident", vec![around([0.5; D], [0.5; D]); 4200]),
+        ("large", some(5000, 0.1)),
+    ];
+    let mut used = [2, 3].map(|threads| PairFinder::<D, T>::new().threads(threads));
+    for frame in 0..3 {
+        for (name, boxes) in &scenes {
+            let boxes = &boxes[frame..];
+            let few = &scenes[0].1[..2000 + frame];
+            let fresh = find_pairs(boxes).unwrap();
+            let between = find_pairs_between(boxes, few).unwrap();
+            for finder in &mut used {
+                assert!(finder.find(boxes).unwrap() == fresh, "{name} {D}D {frame}");
+                assert_eq!(finder.count(boxes), Ok(fresh.len() as u64), "{name} {D}D {frame}");
+                let found = finder.find_between(boxes, few).unwrap();
+                assert!(found == between, "{name} {D}D {frame}, between");
+            }
+        }
+    }
+}
+
+#[cfg(feature = "parallel")]
+#[test]
+fn threads_share_everything_and_find_what_one_finds() {
+    threads_share_everything::<2, f32>();
+    threads_share_everything::<3, f64>();
+}
+
 /// Boxes as they come, most of them bad.
 fn refuses_bad_boxes<const D: usize, T: Scalar>() {
     let bad = |a: T, b: T| Aabb::new([a; D], [b; D]);

@@ -108,6 +108,8 @@
 
 mod again;
 mod bins;
+#[cfg(feature = "parallel")]
+mod gather;
 mod grid;
 mod kernel;
 mod list;
@@ -247,6 +249,9 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
 
     /// The same finder at work on so many threads of rayon's current pool, one if 0 is given.
     /// [`for_each`](Self::for_each), and sets too small to profit, stay with one.
+    ///
+    /// Pairs wait for those before them: in the first call that takes as much memory again as they
+    /// do, in later calls most find their places made. Each call allocates a few short lists.
     #[cfg(feature = "parallel")]
     #[must_use]
     pub fn threads(mut self, threads: usize) -> Self {

@@ -330,6 +330,13 @@ impl<const D: usize, T: Scalar> Search<D, T> {
                 }
             }
         }
+        #[cfg(feature = "parallel")]
+        if self.team.pays(boxes) {
+            let (sweep, columns) = (self.sweeper(D - 1, task), &self.columns[..sets.len()]);
+            if let Some(result) = super::threads::sweep(sweep, columns, self.team.threads, sink) {
+                return result;
+            }
+        }
         self.sweep(sets.len(), D - 1, task, sink)
     }
 
@@ -399,11 +406,14 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         if !O::SWEEPS {
             return Ok(());
         }
+        self.sweeper(others, task).run(&self.columns[..sets], sink)
+    }
+
+    fn sweeper<'a>(&self, others: usize, task: Task<'a>) -> Sweep<'a> {
         let Task { arrange, watch, .. } = task;
         // Known to the compiler where there is no choice, so that the others are left out.
         let kernel = if cfg!(feature = "std") { self.kernel } else { Kernel::best() };
-        let sweep = Sweep { kernel, others, arrange, watch };
-        sweep.run(&self.columns[..sets], sink)
+        Sweep { kernel, others, arrange, watch }
     }
 }
 
@@ -413,7 +423,7 @@ pub(super) struct Filled<'a, const D: usize, T> {
     pub sets: usize,
     pub grid: &'a Grid<T>,
     /// With how many records a bin is planned anew.
-    crowd: usize,
+    pub crowd: usize,
 }
 
 impl<'a, const D: usize, T: Scalar> Filled<'a, D, T> {

@@ -1,14 +1,22 @@
 //! Where pairs go: a growing buffer, a counter, or the caller's own function.
 
 use alloc::vec::Vec;
+#[cfg(feature = "parallel")]
+use core::mem::take;
 use core::ops::ControlFlow;
 
+#[cfg(feature = "parallel")]
+use super::gather::Gathered;
 use super::kernel::PAD;
 use super::memory::grow_to;
 use super::search::Stop;
 
 /// Pairs that are stored between two looks at the watch, at most.
 const STRETCH: usize = 1 << 16;
+
+/// A part that has room for so many pairs does not grow: what it has fits a cache.
+#[cfg(feature = "parallel")]
+const PART: usize = 1 << 14;
 
 /// Pairs in a buffer that is handed on when it is full.
 const BUFFER: usize = 4096;
@@ -18,9 +26,9 @@ pub(super) trait Sink {
     /// Whether it is for pairs at all: else columns are ordered and not swept.
     const SWEEPS: bool = true;
 
-    /// What takes a stretch of the pairs on another thread.
+    /// What takes a part of the pairs on another thread.
     #[cfg(feature = "parallel")]
-    type Fork: Sink + Send;
+    type Part: Part;
 
     /// Room for at least [`PAD`] pairs.
     ///
@@ -34,16 +42,45 @@ pub(super) trait Sink {
     /// [`Stop::Enough`], to end the search.
     fn take(&mut self, count: usize) -> Result<(), Stop>;
 
-    /// An empty sink for another thread; none if the pairs must come in order, one by one.
+    /// Whether it takes parts: not if the pairs must come in order, one by one.
     #[cfg(feature = "parallel")]
-    fn fork(&mut self) -> Option<Self::Fork>;
+    const TAKES_PARTS: bool = true;
 
-    /// Takes the pairs of forks, in this order, after its own.
+    /// Empty parts that were kept.
+    #[cfg(feature = "parallel")]
+    fn parts(&mut self) -> Vec<Self::Part> {
+        Vec::new()
+    }
+
+    /// Room that there is behind its pairs.
+    #[cfg(feature = "parallel")]
+    fn free(&mut self) -> &mut [[u32; 2]] {
+        &mut []
+    }
+
+    /// Takes the pairs that were written to that room, and then those of the parts that wait.
     ///
     /// # Errors
     /// [`Stop::Memory`].
     #[cfg(feature = "parallel")]
-    fn join(&mut self, forks: Vec<Self::Fork>) -> Result<(), Stop>;
+    fn join(&mut self, found: Gathered<Self::Part>) -> Result<(), Stop>;
+}
+
+/// What takes pairs on another thread.
+#[cfg(feature = "parallel")]
+pub(super) trait Part: Sink + Default + Send {
+    /// The pairs that it has stored.
+    fn held(&self) -> &[[u32; 2]] {
+        &[]
+    }
+
+    /// Stores them no more. (What counts them goes on.)
+    fn forget(&mut self) {}
+
+    /// Whether it has stored so many that it had better be copied to its place.
+    fn is_full(&self) -> bool {
+        false
+    }
 }
 
 /// Stores pairs. The buffer is longer than what it holds, and only grows.
@@ -51,7 +88,7 @@ pub(super) trait Sink {
 pub(super) struct Store {
     buffer: Vec<[u32; 2]>,
     len: usize,
-    /// Forks of earlier calls, kept for their buffers.
+    /// Parts of earlier calls, kept for their buffers.
     #[cfg(feature = "parallel")]
     spare: Vec<Store>,
 }
@@ -86,7 +123,7 @@ impl Store {
 
 impl Sink for Store {
     #[cfg(feature = "parallel")]
-    type Fork = Store;
+    type Part = Store;
 
     #[inline]
     fn room(&mut self) -> Result<&mut [[u32; 2]], Stop> {
@@ -105,27 +142,54 @@ impl Sink for Store {
     }
 
     #[cfg(feature = "parallel")]
-    fn fork(&mut self) -> Option<Store> {
-        Some(self.spare.pop().unwrap_or_default())
+    fn parts(&mut self) -> Vec<Store> {
+        take(&mut self.spare)
     }
 
     #[cfg(feature = "parallel")]
-    fn join(&mut self, forks: Vec<Store>) -> Result<(), Stop> {
-        let len = self.len + forks.iter().map(|fork| fork.len).sum::<usize>();
+    fn free(&mut self) -> &mut [[u32; 2]] {
+        &mut self.buffer[self.len..]
+    }
+
+    #[cfg(feature = "parallel")]
+    fn join(&mut self, found: Gathered<Store>) -> Result<(), Stop> {
+        let Gathered { written, mut waiting, mut spare, unused } = found;
+        self.len += written;
+        let len = self.len + waiting.iter().map(|part| part.len).sum::<usize>();
         if self.buffer.len() < len {
             grow_to(&mut self.buffer, len, [0; 2])?;
         }
         let mut rest = &mut self.buffer[self.len..len];
-        let mut copies = Vec::with_capacity(forks.len());
-        for fork in &forks {
-            let (to, behind) = rest.split_at_mut(fork.len);
-            copies.push((to, fork.pairs()));
+        let mut copies = Vec::new();
+        copies.try_reserve_exact(waiting.len())?;
+        for part in &waiting {
+            let (to, behind) = rest.split_at_mut(part.len);
+            copies.push((to, part.pairs()));
             rest = behind;
         }
         super::threads::copy(copies);
         self.len = len;
-        self.spare.extend(forks.into_iter().map(|fork| Store { len: 0, ..fork }));
+        waiting.iter_mut().for_each(Store::clear);
+        // The first search, which has no room, needs a part for every pair; later ones need few.
+        spare.drain(..unused.div_ceil(2));
+        spare.append(&mut waiting);
+        self.spare = spare;
         Ok(())
+    }
+}
+
+#[cfg(feature = "parallel")]
+impl Part for Store {
+    fn held(&self) -> &[[u32; 2]] {
+        self.pairs()
+    }
+
+    fn forget(&mut self) {
+        self.clear();
+    }
+
+    fn is_full(&self) -> bool {
+        self.buffer.len() >= PART && self.buffer.len() - self.len < PAD
     }
 }
 
@@ -136,17 +200,23 @@ pub(super) struct Count {
     pub count: u64,
 }
 
+#[cfg(feature = "parallel")]
+impl Part for Count {}
+
 /// Takes no pairs, so that the time of a search without its sweep can be told.
 #[cfg(feature = "std")]
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Unswept;
+
+#[cfg(all(feature = "std", feature = "parallel"))]
+impl Part for Unswept {}
 
 #[cfg(feature = "std")]
 impl Sink for Unswept {
     const SWEEPS: bool = false;
 
     #[cfg(feature = "parallel")]
-    type Fork = Unswept;
+    type Part = Unswept;
 
     fn room(&mut self) -> Result<&mut [[u32; 2]], Stop> {
         Ok(&mut [])
@@ -157,12 +227,7 @@ impl Sink for Unswept {
     }
 
     #[cfg(feature = "parallel")]
-    fn fork(&mut self) -> Option<Unswept> {
-        Some(Unswept)
-    }
-
-    #[cfg(feature = "parallel")]
-    fn join(&mut self, _: Vec<Unswept>) -> Result<(), Stop> {
+    fn join(&mut self, _: Gathered<Unswept>) -> Result<(), Stop> {
         Ok(())
     }
 }
@@ -183,7 +248,7 @@ impl Buffer {
 
 impl Sink for Count {
     #[cfg(feature = "parallel")]
-    type Fork = Count;
+    type Part = Count;
 
     #[inline]
     fn room(&mut self) -> Result<&mut [[u32; 2]], Stop> {
@@ -197,13 +262,8 @@ impl Sink for Count {
     }
 
     #[cfg(feature = "parallel")]
-    fn fork(&mut self) -> Option<Count> {
-        Some(Count::default())
-    }
-
-    #[cfg(feature = "parallel")]
-    fn join(&mut self, forks: Vec<Count>) -> Result<(), Stop> {
-        self.count += forks.iter().map(|fork| fork.count).sum::<u64>();
+    fn join(&mut self, found: Gathered<Count>) -> Result<(), Stop> {
+        self.count += found.waiting.iter().chain(&found.spare).map(|part| part.count).sum::<u64>();
         Ok(())
     }
 }
@@ -217,7 +277,7 @@ pub(super) struct Stream<'a, F> {
 
 impl<F: FnMut([u32; 2]) -> ControlFlow<()>> Sink for Stream<'_, F> {
     #[cfg(feature = "parallel")]
-    type Fork = Count;
+    type Part = Count;
 
     #[inline]
     fn room(&mut self) -> Result<&mut [[u32; 2]], Stop> {
@@ -233,12 +293,10 @@ impl<F: FnMut([u32; 2]) -> ControlFlow<()>> Sink for Stream<'_, F> {
     }
 
     #[cfg(feature = "parallel")]
-    fn fork(&mut self) -> Option<Count> {
-        None
-    }
+    const TAKES_PARTS: bool = false;
 
     #[cfg(feature = "parallel")]
-    fn join(&mut self, _: Vec<Count>) -> Result<(), Stop> {
+    fn join(&mut self, _: Gathered<Count>) -> Result<(), Stop> {
         Ok(())
     }
 }

@@ -19,7 +19,16 @@ pub(super) struct Sweep<'a> {
 impl Sweep<'_> {
     /// Sends the pairs within the one column, or between the two, to the sink.
     pub fn run<T: Scalar, O: Sink>(self, columns: &[Column<T>], sink: &mut O) -> Result<(), Stop> {
-        let mut cursor = Cursor::default();
+        self.stretch(columns, Cursor::default(), sink)
+    }
+
+    /// Sends those of a stretch of the boxes with all ahead of them, from a cursor to its end.
+    pub fn stretch<T: Scalar, O: Sink>(
+        self,
+        columns: &[Column<T>],
+        mut cursor: Cursor,
+        sink: &mut O,
+    ) -> Result<(), Stop> {
         loop {
             let room = sink.room()?;
             let count = if let [first, second] = columns {

@@ -1,25 +1,26 @@
 //! Threads: each lists a stretch of the boxes and copies it to the bins. Then each takes the next
-//! group of bins until none is left, the calling thread from the first on, the others from the last.
-//! The pairs of the groups are strung together in the order of the bins, which is the order of one
-//! thread.
+//! group of bins until none is left; or, where there are no bins, the next stretch of the sweep. Their
+//! pairs are [gathered](super::gather) in the order of one thread.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::hint::spin_loop;
 use core::iter::{once, repeat_with};
-use core::mem::take;
+use core::mem::{swap, take};
 use core::ops::Range;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, OnceLock};
 use std::thread::yield_now;
 
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 use super::bins::{Bins, Refusal, Source, copied};
+use super::gather::{Gather, Piece};
 use super::grid::Grid;
+use super::kernel::{Column, Cursor};
 use super::list::List;
 use super::search::{Filled, Search, Stop, Task, fill, limit};
 use super::sink::Sink;
+use super::sweep::{Sweep, candidates};
 use crate::Scalar;
 
 /// With fewer boxes threads do not pay.
@@ -32,6 +33,10 @@ const SPINS: u32 = 10_000;
 const YIELDS: u32 = 200;
 /// Groups of bins for each thread: some are harder than others.
 const GROUPS: usize = 16;
+/// With fewer candidates threads do not pay to sweep what is in no bins,
+const MANY_TESTS: u64 = 1 << 20;
+/// and then each takes so many boxes at a time, so that their pairs stay in its cache.
+const STRETCH: usize = 256;
 
 /// The other threads' buffers.
 #[derive(Debug)]
@@ -81,10 +86,9 @@ pub(super) fn cut<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
     task: Task<'_>,
     sink: &mut O,
 ) -> Option<Result<Result<(), Stop>, Refusal>> {
-    if !search.team.pays(sets.iter().map(|set| set.len()).sum()) {
+    if !O::TAKES_PARTS || !search.team.pays(sets.iter().map(|set| set.len()).sum()) {
         return None;
     }
-    let fork = sink.fork()?;
     let mut others = take(&mut search.team.others);
     others.resize_with(search.team.threads - 1, || Search::new(search.kernel));
     let mut bins = search.bins.pop().unwrap_or([Bins::new(), Bins::new()]);
@@ -93,7 +97,7 @@ pub(super) fn cut<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
         put(set, &mut once(&mut search.list).chain(others).collect::<Vec<_>>(), grid, bins, other)
     });
     let result = result.map(|()| match Filled::new(&bins, sets, grid) {
-        Some(bins) => sweep(search, &mut others, &bins, task, sink, fork),
+        Some(bins) => sweep_bins(search, &mut others, &bins, task, sink),
         None => task.done(1.0),
     });
     search.bins.push(bins);
@@ -188,67 +192,91 @@ fn put<const D: usize, T: Scalar, S: Source<D, T>>(
     Ok(())
 }
 
-/// Has each thread find the pairs of groups of bins. The first groups' go straight to the sink, those
-/// of the others to forks of it, of which one is given.
-fn sweep<const D: usize, T: Scalar, O: Sink>(
+/// Has each thread find the pairs of groups of bins. A bin that holds more than half of a thread's
+/// share, and will be planned anew, is found by all threads together.
+fn sweep_bins<const D: usize, T: Scalar, O: Sink>(
     search: &mut Search<D, T>,
-    others: &mut [Search<D, T>],
+    others: &mut Vec<Search<D, T>>,
     filled: &Filled<'_, D, T>,
     task: Task<'_>,
     sink: &mut O,
-    fork: O::Fork,
 ) -> Result<(), Stop> {
-    let groups = group(filled, (1 + others.len()) * GROUPS);
-    let more = groups[1..].iter().filter_map(|_| sink.fork());
-    let mut forks: Vec<_> = once(fork).chain(more).collect();
-    // So that each group has the buffer that it had in the last call.
-    forks.reverse();
-    let left = Mutex::new(groups.iter().zip(&mut forks));
-    let (first, last) = (|| left.lock().ok()?.next(), || left.lock().ok()?.next_back());
-    let (failed, kernel) = (OnceLock::new(), search.kernel);
-    let own = || {
-        while let (None, Some((group, _))) = (failed.get(), first()) {
-            if let Err(stop) = search.group(filled, group, task, sink) {
-                failed.get_or_init(|| stop);
-            }
-        }
+    let threads = 1 + others.len();
+    let groups = group(filled, threads * GROUPS);
+    let records = groups.iter().map(|group| group.records).sum::<usize>();
+    let huge = filled.crowd.max(records / (2 * threads));
+    let is_huge = |&group: &usize| groups[group].bins.len() == 1 && groups[group].records > huge;
+    let (huge, mut rest): (Vec<_>, Vec<_>) = (0..groups.len()).partition(is_huge);
+    // The large ones first, so that none is left for the end.
+    rest.sort_by_key(|&group| groups[group].records < 2 * (records / groups.len()));
+
+    let gather = Gather::new(sink, groups.len());
+    let find = |search: &mut Search<D, T>, group: usize, pairs: &mut Piece<'_, '_, O::Part>| {
+        groups[group].bins.clone().try_for_each(|bin| search.bin(filled, bin, task, pairs))
     };
-    on_threads(own, others.iter_mut(), |other| {
-        other.kernel = kernel;
-        while let (None, Some((group, fork))) = (failed.get(), last()) {
-            if let Err(stop) = other.group(filled, group, task, fork) {
-                failed.get_or_init(|| stop);
-            }
-        }
-    });
-    failed.into_inner().map_or_else(|| sink.join(forks), Err)
+    swap(&mut search.team.others, others);
+    huge.into_iter().for_each(|group| gather.find(group, |pairs| find(search, group, pairs)));
+    swap(&mut search.team.others, others);
+
+    let kernel = search.kernel;
+    let find_all = |search: &mut Search<D, T>| {
+        gather.find_all(&rest, |group, pairs| find(search, group, pairs));
+    };
+    // What is planned anew now is nobody else's.
+    search.team.threads = 1;
+    on_threads(
+        || find_all(search),
+        others.iter_mut(),
+        |other| {
+            other.kernel = kernel;
+            find_all(other);
+        },
+    );
+    search.team.threads = threads;
+    let found = gather.end()?;
+    sink.join(found)
 }
 
-impl<const D: usize, T: Scalar> Search<D, T> {
-    /// The pairs of a group of bins.
-    fn group<O: Sink>(
-        &mut self,
-        filled: &Filled<'_, D, T>,
-        group: &Range<usize>,
-        task: Task<'_>,
-        sink: &mut O,
-    ) -> Result<(), Stop> {
-        group.clone().try_for_each(|bin| self.bin(filled, bin, task, sink))
+/// As [`Sweep::run`], on so many threads, at least two; none if that does not pay.
+pub(super) fn sweep<T: Scalar, O: Sink>(
+    sweep: Sweep<'_>,
+    columns: &[Column<T>],
+    threads: usize,
+    sink: &mut O,
+) -> Option<Result<(), Stop>> {
+    if !O::TAKES_PARTS || !O::SWEEPS || candidates(columns, 32) < MANY_TESTS {
+        return None;
     }
+    let stretches = Cursor::stretches(columns, STRETCH);
+    let pieces: Vec<_> = (0..stretches.len()).collect();
+    let gather = Gather::new(sink, stretches.len());
+    let find_all = || {
+        gather
+            .find_all(&pieces, |stretch, pairs| sweep.stretch(columns, stretches[stretch], pairs));
+    };
+    on_threads(find_all, 1..threads, |_| find_all());
+    Some(gather.end().and_then(|found| sink.join(found)))
 }
 
-/// Stretches of bins with about as many records each.
-fn group<const D: usize, T: Scalar>(filled: &Filled<'_, D, T>, groups: usize) -> Vec<Range<usize>> {
+/// A stretch of bins, and how many records they have.
+struct Group {
+    bins: Range<usize>,
+    records: usize,
+}
+
+/// Stretches of bins with about as many records each; a bin that has so many is by itself.
+fn group<const D: usize, T: Scalar>(filled: &Filled<'_, D, T>, groups: usize) -> Vec<Group> {
     let sets = &filled.bins[..filled.sets];
     let share = sets.iter().map(Bins::len).sum::<usize>() / groups + 1;
-    let bins = filled.grid.len();
-    let mut stretches = Vec::with_capacity(groups + 1);
-    let (mut start, mut records) = (0, 0);
-    for bin in 0..bins {
-        records += sets.iter().map(|set| set.bin(bin).len()).sum::<usize>();
-        if records >= share || bin + 1 == bins {
-            stretches.push(start..bin + 1);
-            (start, records) = (bin + 1, 0);
+    let mut stretches: Vec<Group> = Vec::with_capacity(groups + 1);
+    for bin in 0..filled.grid.len() {
+        let records = sets.iter().map(|set| set.bin(bin).len()).sum::<usize>();
+        match stretches.last_mut() {
+            Some(group) if group.records.max(records) < share => {
+                group.bins.end = bin + 1;
+                group.records += records;
+            }
+            _ => stretches.push(Group { bins: bin..bin + 1, records }),
         }
     }
     stretches

@@ -9,19 +9,78 @@
 //!
 //! The order of the pairs (by probe, then by position) does not depend on the number of lanes.
 
+#[cfg(feature = "parallel")]
+use alloc::vec::Vec;
+
 use super::Coordinate;
 use super::column::Column;
 use super::vector::{Arrange, Reporter, Vector};
 
 /// Where a sweep stands when its output is full: it is called again to go on.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Cursor {
     /// The next probe of the first column, and of the second where there are two.
     pub first: usize,
     pub second: usize,
     /// How far ahead of the probe the scan has come.
     pub ahead: usize,
+    /// Before which probe the sweep ends, of those of all columns in sweep order.
+    #[cfg(feature = "parallel")]
+    end: usize,
     pub done: bool,
+}
+
+impl Default for Cursor {
+    /// Of the whole sweep.
+    fn default() -> Self {
+        Self {
+            first: 0,
+            second: 0,
+            ahead: 0,
+            #[cfg(feature = "parallel")]
+            end: usize::MAX,
+            done: false,
+        }
+    }
+}
+
+impl Cursor {
+    /// Whether the next probe is beyond those of its stretch.
+    #[inline(always)]
+    fn is_at_end(&self) -> bool {
+        #[cfg(feature = "parallel")]
+        return self.first + self.second >= self.end;
+        #[cfg(not(feature = "parallel"))]
+        false
+    }
+
+    /// The sweep of columns that stand ordered in stretches of so many probes, one behind the other.
+    #[cfg(feature = "parallel")]
+    pub fn stretches<T: Coordinate>(columns: &[Column<T>], probes: usize) -> Vec<Self> {
+        let boxes = columns.iter().map(Column::len).sum();
+        let stretch = |begin| {
+            let first = columns.get(1).map_or(begin, |second| part(&columns[0], second, begin));
+            let end = begin + probes;
+            Self { first, second: begin - first, end, ..Self::default() }
+        };
+        (0..boxes).step_by(probes).map(stretch).collect()
+    }
+}
+
+/// How many of the first so many probes are boxes of the first column. Binary search (Odeh et al.
+/// 2012, "Merge Path").
+#[cfg(feature = "parallel")]
+fn part<T: Coordinate>(first: &Column<T>, second: &Column<T>, probes: usize) -> usize {
+    let (mut low, mut high) = (probes.saturating_sub(second.len()), probes.min(first.len()));
+    while low < high {
+        let middle = (low + high) / 2;
+        if first.left[middle] <= second.left[probes - 1 - middle] {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    low
 }
 
 /// Pairs of one column. Writes to `out` and returns how many; `cursor.done` tells whether that
@@ -38,7 +97,7 @@ pub(super) unsafe fn within<T: Coordinate, V: Vector<T>, const K: usize>(
     let len = column.len();
     let room = out.len() - V::LANES;
     let mut written = 0;
-    while cursor.first < len {
+    while cursor.first < len && !cursor.is_at_end() {
         let i = cursor.first;
         // SAFETY: i < len, and the scan begins at i + 1 + ahead, which the last vector of the
         // sentinels ends.
@@ -74,7 +133,7 @@ pub(super) unsafe fn between<T: Coordinate, V: Vector<T>, const K: usize>(
     let room = out.len() - V::LANES;
     let mut written = 0;
     // Where one column has ended, nothing of it is ahead of the rest of the other.
-    while cursor.first < a.len() && cursor.second < b.len() {
+    while cursor.first < a.len() && cursor.second < b.len() && !cursor.is_at_end() {
         let Cursor { first: i, second: j, .. } = *cursor;
         // SAFETY: i and j are positions of boxes; a scan begins at a box or at the sentinels.
         let finished = unsafe {
