@@ -42,6 +42,25 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         }
     }
 
+    /// Whether to go on so, given that it is time to try fat boxes again and how bodies move.
+    #[inline(never)]
+    pub(super) fn goes_on_anew(&mut self) -> bool {
+        if !self.updater.candidates.are_sorted || self.options.margin > T::default() {
+            return false;
+        }
+        self.list_changed();
+        self.look_at_motion();
+        let bodies = self.len();
+        let Updater { candidates, effort, prediction, previous, .. } = &mut self.updater;
+        let jumps = |&&seat: &&u32| {
+            let at = seat as usize;
+            !self.slots.has(seat, flag::NEW) && prediction.is_jump(&previous[at], &self.boxes[at])
+        };
+        let jumped = self.changed.iter().filter(jumps).count();
+        let pairs = candidates.sorted.len();
+        effort.goes_on(bodies, self.changed.len(), pairs, jumped, prediction.steps())
+    }
+
     /// Notes who changed, as far as it matters: to a tree that is in use.
     fn note_changed(&mut self) {
         self.updater.scratch.escaped.clear();

@@ -9,7 +9,6 @@ use alloc::vec::Vec;
 
 use super::proxy::{Slots, flag};
 use super::sort::PairSorter;
-use super::update::IS_WHOLE;
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Candidates {
@@ -59,8 +58,7 @@ impl Candidates {
     pub fn live_pairs<'a>(&'a self, slots: &'a Slots) -> impl Iterator<Item = [u32; 2]> + 'a {
         let awake = self.pairs.iter().zip(&self.live).filter(|(_, is_live)| **is_live);
         let awake = awake.map(|(&pair, _)| pair).chain(self.asleep_pairs(slots));
-        let sorted = if IS_WHOLE { &*self.sorted } else { &[] };
-        awake.chain(sorted.iter().copied())
+        awake.chain(self.sorted.iter().copied())
     }
 
     /// The live pairs of bodies that are both asleep.

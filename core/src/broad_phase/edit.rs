@@ -7,7 +7,7 @@ use super::BroadPhase;
 use super::filter::Filter;
 use super::options::{Report, contains, displacement, hull};
 use super::proxy::{ProxyId, flag};
-use super::update::{IS_WHOLE, MOST};
+use super::update::MOST;
 use super::updater::Updater;
 use super::warm::{CAN_CALL, call};
 use crate::{Aabb, Error, Scalar};
@@ -82,7 +82,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             }
         }
         let are_many = ids.len() * MOST > self.slots.len();
-        if IS_WHOLE && are_many && self.options.report == Report::Exact {
+        if are_many && self.options.report == Report::Exact {
             self.place_unlisted(ids, boxes);
             return Ok(());
         }
@@ -114,7 +114,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
 
     /// Lists the bodies whose boxes were set many at a time and are not listed yet, and some that are.
     pub(super) fn list_changed(&mut self) {
-        if IS_WHOLE && core::mem::take(&mut self.unlisted) {
+        if core::mem::take(&mut self.unlisted) {
             for seat in 0..self.slots.len() {
                 if self.slots.flags[seat] & flag::LIVE != 0
                     && differ(&self.boxes[seat], &self.updater.previous[seat])

@@ -50,6 +50,11 @@ impl Prediction {
         }
     }
 
+    /// The updates that boxes made together last.
+    pub fn steps(&self) -> f64 {
+        self.steps
+    }
+
     /// Whether boxes made together are larger than the bodies' own.
     pub fn reaches(&self) -> bool {
         self.steps >= 2.0

@@ -80,7 +80,8 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         self.age_tree();
         let (bodies, moved) = (self.len(), self.updater.scratch.escaped.len());
         let is_worn = self.wear_seating(moved, new);
-        if self.updater.effort.note_rebuild(bodies, are_fat || (moved - new) * 2 < bodies) {
+        let are_new = (moved - new) * 2 < bodies;
+        if self.updater.effort.note_rebuild(bodies, are_fat, are_new) {
             Deal::BySlot
         } else if is_worn {
             Deal::ByPlace
@@ -106,17 +107,23 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         }
     }
 
-    /// Gives all bodies new fat boxes; the fat box of a body that rests is its own. Says whether
-    /// any is larger.
-    #[inline(never)]
-    fn fatten_all(&mut self) -> bool {
-        let Updater { fat, previous, prediction, .. } = &mut self.updater;
+    /// Looks at how those move that changed.
+    pub(super) fn look_at_motion(&mut self) {
+        let Updater { previous, prediction, .. } = &mut self.updater;
         prediction.look(self.changed.iter().map(|&seat| {
             let at = seat as usize;
             // Of a body that is new this is no motion.
             let before = if self.slots.has(seat, flag::NEW) { &self.boxes } else { &*previous };
             (&before[at], &self.boxes[at])
         }));
+    }
+
+    /// Gives all bodies new fat boxes; the fat box of a body that rests is its own. Says whether
+    /// any is larger.
+    #[inline(never)]
+    fn fatten_all(&mut self) -> bool {
+        self.look_at_motion();
+        let Updater { fat, previous, prediction, .. } = &mut self.updater;
         fat.copy_from_slice(&self.boxes);
         // Where few bodies move they should not all leave their fat boxes at once.
         let are_few = self.changed.len() * FEW < self.slots.live;

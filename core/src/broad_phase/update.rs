@@ -33,9 +33,6 @@ pub(super) const REBUILD: usize = 24;
 
 /// If one in so many bodies changed, all are gone through to find them in the order of the seats.
 pub(super) const MOST: usize = 4;
-/// Without `std`, which is how it is built for browsers, size counts more: there boxes are always listed
-/// as they are set, and fat boxes are never done without.
-pub(super) const IS_WHOLE: bool = cfg!(feature = "std");
 
 /// So many at a time.
 const CHUNK: usize = 64;
@@ -62,8 +59,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         match deal {
             Deal::No => {}
             Deal::ByPlace => self.deal_seats(),
-            Deal::BySlot if IS_WHOLE => self.deal_seats_by_slot(),
-            Deal::BySlot => {}
+            Deal::BySlot => self.deal_seats_by_slot(),
         }
         let Updater { begun, ended, .. } = &self.updater;
         Changes { slots: &self.slots, begun, ended }
@@ -72,14 +68,12 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Lists what begins and ends, given that about so many bodies changed or left. Says how seats
     /// should be dealt.
     fn find_changes(&mut self, changed: usize) -> Deal {
-        if self.updater.effort.is_without(changed, self.len()) {
+        if self.updater.effort.is_without(changed, self.len()) || self.goes_on_anew() {
             self.find_anew();
             return Deal::No;
         }
-        if IS_WHOLE {
-            self.updater.refresh_fat();
-            self.updater.candidates.unsort();
-        }
+        self.updater.refresh_fat();
+        self.updater.candidates.unsort();
         self.find_escaped();
         let moves = self.updater.scratch.escaped.len() + self.leaving.len();
         let deal = if moves * REBUILD > self.len() { self.rebuild() } else { self.follow() };
@@ -107,12 +101,10 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
                 let seats = start..slots.len().min(start + CHUNK);
                 let (flags, boxes) = (&mut slots.flags[seats.clone()], &boxes[seats.clone()]);
                 let (mut changed, mut escaped) = ([0; CHUNK], [0; CHUNK]);
-                if IS_WHOLE {
-                    for (changed, (aabb, before)) in
-                        changed.iter_mut().zip(boxes.iter().zip(&previous[seats.clone()]))
-                    {
-                        *changed = u16::from(differ(aabb, before));
-                    }
+                for (changed, (aabb, before)) in
+                    changed.iter_mut().zip(boxes.iter().zip(&previous[seats.clone()]))
+                {
+                    *changed = u16::from(differ(aabb, before));
                 }
                 for (escaped, (aabb, fat)) in
                     escaped.iter_mut().zip(boxes.iter().zip(&fat[seats.clone()]))
@@ -166,7 +158,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             *known = 0;
         }
         // Where all pairs are found anew nobody sleeps.
-        let is_apart = !(IS_WHOLE && self.updater.candidates.are_sorted) && self.settle_down(moved);
+        let is_apart = !self.updater.candidates.are_sorted && self.settle_down(moved);
         for seat in self.leaving.drain(..) {
             self.slots.release(seat);
         }
@@ -228,7 +220,7 @@ fn list_chunk(
     let start = start as u32;
     let [all_changed, all_escaped] = lists;
     for (list, count, is_in) in [(all_changed, changes, changed), (all_escaped, escapes, escaped)] {
-        if IS_WHOLE && usize::from(count) == flags.len() {
+        if usize::from(count) == flags.len() {
             list.extend(start..start + u32::from(count));
         } else if count > 0 {
             let seats = (start..).zip(&is_in[..flags.len()]);

@@ -10,7 +10,6 @@ use super::predict::Prediction;
 use super::sleep::Sleep;
 use super::sort::PairSorter;
 use super::tree::Tree;
-use super::update::IS_WHOLE;
 use super::warm::warm;
 use crate::finder::PairFinder;
 use crate::{Aabb, Scalar};
@@ -169,7 +168,7 @@ impl<const D: usize, T: Scalar> Updater<D, T> {
 
     /// Writes the fat boxes, if they are not.
     pub fn refresh_fat(&mut self) {
-        if IS_WHOLE && core::mem::take(&mut self.are_fat_old) {
+        if core::mem::take(&mut self.are_fat_old) {
             self.fat.copy_from_slice(&self.previous);
         }
     }
