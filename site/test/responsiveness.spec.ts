@@ -37,28 +37,36 @@ test("brute force at 10,000 spheres leaves the page responsive, and shows what i
   expect(answered.after).toBeLessThan(50);
 });
 
-test("10,000 spheres: the broad phase of a frame", async ({ page }) => {
-  await page.goto("/falling.html");
-  const lab = await new Lab(page, "spheres").open();
-  const [library = ""] = await lab.algorithms();
-  await expect(lab.algorithm).toHaveValue(library);
-  // From a beginning that is seen: while a page prepares to draw it may miss seconds.
-  await expect.poll(() => lab.stepNumber()).toBeGreaterThan(1);
-  await lab.pause();
-  await lab.reset();
-  await lab.play.click();
-  // Each value is the mean of half a second.
-  const times: number[] = [];
-  while ((await lab.stepNumber()) < 200) {
-    const time = await lab.value("broad-phase");
-    if (time > 0 && time !== times.at(-1)) times.push(time);
-    await page.waitForTimeout(100);
-  }
-  console.log(`${library}: broad phase of a frame while they fall and pile up ${times.join(", ")} ms, narrow phase ${await lab.value("narrow-phase")}, solving ${await lab.value("solving")}, drawing ${await lab.value("drawing")} ms`);
-  // The aim is 2 ms, and what is printed tells. What fails is a whole frame: a test's machine may be
-  // busy with other things.
-  expect(Math.min(...times)).toBeLessThan(16);
-});
+// The time of a step is read off a clock, which goes on while the step waits for a processor. Without
+// WebGL nothing is drawn, and the spheres fall all the same: what is left is the time of the script.
+// With it the emulated graphics card wants every processor that there is.
+for (const { name, args } of [{ name: "nothing drawn", args: ["--disable-3d-apis"] }, { name: "drawn in software", args: [] }]) {
+  test(`10,000 spheres, ${name}: the broad phase of a frame`, async ({ baseURL, launchOptions }) => {
+    const browser = await chromium.launch({ ...launchOptions, args: [...(launchOptions.args ?? []), ...args] });
+    const page = await browser.newPage({ baseURL: baseURL!, viewport: { width: 1280, height: 900 } });
+    await page.goto("/falling.html");
+    const lab = await new Lab(page, "spheres").open();
+    const [library = ""] = await lab.algorithms();
+    await expect(lab.algorithm).toHaveValue(library);
+    // From a beginning that is seen: while a page prepares to draw it may miss seconds.
+    await expect.poll(() => lab.stepNumber()).toBeGreaterThan(1);
+    await lab.pause();
+    await lab.reset();
+    await lab.play.click();
+    // Each value is the mean of half a second, which the first steps are not yet.
+    const times: number[] = [];
+    for (let step = 0; step < 200; step = await lab.stepNumber()) {
+      const time = await lab.value("broad-phase");
+      if (step >= 30 && time !== times.at(-1)) times.push(time);
+      await page.waitForTimeout(100);
+    }
+    console.log(`${library}, ${name}: broad phase of a frame while they fall and pile up ${times.join(", ")} ms, narrow phase ${await lab.value("narrow-phase")}, solving ${await lab.value("solving")}, drawing ${await lab.value("drawing")} ms`);
+    await browser.close();
+    // The aim is 2 ms, and what is printed tells. What fails is a whole frame: a test's machine may be
+    // busy with other things.
+    expect(Math.min(...times)).toBeLessThan(16);
+  });
+}
 
 test("100,000 spheres by the library: the page answers", async ({ page }) => {
   await page.goto("/falling.html?spheres.bodies=100000");

@@ -89,7 +89,11 @@ export class BallLab extends HTMLElement {
       return new DiscView(canvas, readTheme());
     }
     const { SphereView } = await import("../view/sphere-view.ts");
-    return new SphereView(canvas, this.#part("orbit"), readTheme(), () => this.#requestDraw());
+    try {
+      return new SphereView(canvas, this.#part("orbit"), readTheme(), () => this.#requestDraw());
+    } catch (cause) {
+      throw new Error("this browser offers no WebGL, which draws the spheres. They fall all the same, and the numbers are theirs.", { cause });
+    }
   }
 
   // Controls
