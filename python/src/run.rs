@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
 
@@ -70,7 +70,7 @@ fn on_pool<R: Send>(
             match wait.recv_timeout(PATIENCE) {
                 Ok(result) => return result,
                 Err(RecvTimeoutError::Timeout) => {
-                    if interrupts.look().is_break() {
+                    if interrupts.ask().is_break() {
                         stop.store(true, Ordering::Relaxed);
                     }
                 }
@@ -112,14 +112,28 @@ impl Interrupts {
         Self(Mutex::new((Instant::now(), None)))
     }
 
-    /// Has Python call the handlers of signals that came, if it is time for that.
+    /// Asks, if it is time for that.
     fn look(&self) -> ControlFlow<()> {
-        let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if state.0.elapsed() > PATIENCE && state.1.is_none() {
+        let state = self.lock();
+        if state.0.elapsed() <= PATIENCE && state.1.is_none() {
+            return ControlFlow::Continue(());
+        }
+        drop(state);
+        self.ask()
+    }
+
+    /// Has Python call the handlers of signals that came.
+    fn ask(&self) -> ControlFlow<()> {
+        let mut state = self.lock();
+        if state.1.is_none() {
             state.1 = Python::attach(|py| py.check_signals()).err();
             state.0 = Instant::now();
         }
         if state.1.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, (Instant, Option<PyErr>)> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn raised(self) -> PyResult<()> {
