@@ -8,6 +8,7 @@
 mod column;
 #[cfg(target_arch = "aarch64")]
 mod neon;
+mod output;
 mod pages;
 mod scalar;
 mod scan;

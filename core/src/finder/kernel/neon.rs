@@ -8,7 +8,7 @@ use super::vector::Vector;
 #[derive(Clone, Copy)]
 pub(super) struct Neon<V>(V);
 
-// SAFETY: one load of exactly four coordinates; `report` is the trait's own.
+// SAFETY: one load of exactly four coordinates.
 unsafe impl Vector<f32> for Neon<float32x4_t> {
     const LANES: usize = 4;
     type Mask = uint32x4_t;
@@ -44,7 +44,7 @@ unsafe impl Vector<f32> for Neon<float32x4_t> {
     }
 }
 
-// SAFETY: one load of exactly two coordinates; `report` is the trait's own.
+// SAFETY: one load of exactly two coordinates.
 unsafe impl Vector<f64> for Neon<float64x2_t> {
     const LANES: usize = 2;
     type Mask = uint64x2_t;

@@ -1,12 +1,12 @@
 //! The definition: one box at a time. Every other kernel gives the same pairs in the same order.
 
-use super::vector::Vector;
+use super::vector::{Reporter, Vector};
 
 /// A vector of one.
 #[derive(Clone, Copy)]
 pub(super) struct One<T>(T);
 
-// SAFETY: reads one coordinate, and no instructions beyond the baseline.
+// SAFETY: reads one coordinate, id and marks, writes one pair; no instructions beyond the baseline.
 unsafe impl<T: Copy + PartialOrd> Vector<T> for One<T> {
     const LANES: usize = 1;
     type Mask = bool;
@@ -35,5 +35,25 @@ unsafe impl<T: Copy + PartialOrd> Vector<T> for One<T> {
     #[inline(always)]
     unsafe fn bits(mask: bool) -> u32 {
         u32::from(mask)
+    }
+
+    const PACKS: bool = true;
+
+    #[inline(always)]
+    unsafe fn pack(
+        hit: bool,
+        probe: &Reporter,
+        id: *const u32,
+        marks: *const u32,
+        out: *mut [u32; 2],
+    ) -> usize {
+        if !hit {
+            return 0;
+        }
+        // SAFETY: the caller has an id and marks, and room for a pair.
+        unsafe {
+            *out = probe.pair(*id);
+            usize::from(*marks & probe.marks == 0)
+        }
     }
 }

@@ -14,6 +14,7 @@ use alloc::vec::Vec;
 
 use super::Coordinate;
 use super::column::Column;
+use super::output::{Notes, Output};
 use super::vector::{Arrange, Reporter, Vector};
 
 /// Where a sweep stands when its output is full: it is called again to go on.
@@ -83,8 +84,9 @@ fn part<T: Coordinate>(first: &Column<T>, second: &Column<T>, probes: usize) -> 
     low
 }
 
-/// Pairs of one column. Writes to `out` and returns how many; `cursor.done` tells whether that
-/// was all. The scan of a box stops where `out` has no room for a full vector.
+/// Pairs of one column, with `K` axes tested beside the sweep axis. Writes to `out` and returns how
+/// many; `cursor.done` tells whether that was all. The scan of a box stops where `out` has no room
+/// for a full vector.
 ///
 /// # Safety
 /// The instructions of `V` are present; `column.is_ready(K)`; `out.len() >= V::LANES`.
@@ -94,27 +96,27 @@ pub(super) unsafe fn within<T: Coordinate, V: Vector<T>, const K: usize>(
     cursor: &mut Cursor,
     out: &mut [[u32; 2]],
 ) -> usize {
-    let len = column.len();
-    let room = out.len() - V::LANES;
-    let mut written = 0;
-    while cursor.first < len && !cursor.is_at_end() {
-        let i = cursor.first;
-        // SAFETY: i < len, and the scan begins at i + 1 + ahead, which the last vector of the
-        // sentinels ends.
-        let finished = unsafe {
-            let probe = Probe::<V, K>::new(column, i, true, false);
-            probe.scan(column, i + 1, &mut cursor.ahead, out, &mut written, room)
-        };
-        if finished {
-            cursor.first = i + 1;
-            cursor.ahead = 0;
+    let (mut output, mut notes) = (Output::<V>::new(out), Notes::new());
+    loop {
+        while cursor.first < column.len() && !cursor.is_at_end() && !output.is_full() {
+            let i = cursor.first;
+            // SAFETY: i < len, and the scan begins at i + 1 + ahead, which the last vector of the
+            // sentinels ends.
+            let finished = unsafe {
+                let probe = Probe::<V, K>::new(column, i, true, false);
+                probe.scan(column, i + 1, &mut cursor.ahead, &mut output, &mut notes)
+            };
+            if finished {
+                cursor.first = i + 1;
+                cursor.ahead = 0;
+            }
         }
-        if written > room {
-            return written;
+        cursor.done = !output.is_full();
+        // SAFETY: the column is that which is swept.
+        if !unsafe { output.make_room([column; 2], true, &mut notes) } || cursor.done {
+            return output.written();
         }
     }
-    cursor.done = true;
-    written
 }
 
 /// Pairs of one box of each column. The probe is whichever comes first in sweep order, the first
@@ -130,34 +132,39 @@ pub(super) unsafe fn between<T: Coordinate, V: Vector<T>, const K: usize>(
     out: &mut [[u32; 2]],
 ) -> usize {
     let ascending = arrange == Arrange::Ascending;
-    let room = out.len() - V::LANES;
-    let mut written = 0;
-    // Where one column has ended, nothing of it is ahead of the rest of the other.
-    while cursor.first < a.len() && cursor.second < b.len() && !cursor.is_at_end() {
-        let Cursor { first: i, second: j, .. } = *cursor;
-        // SAFETY: i and j are positions of boxes; a scan begins at a box or at the sentinels.
-        let finished = unsafe {
-            if *a.left.get_unchecked(i) <= *b.left.get_unchecked(j) {
-                let probe = Probe::<V, K>::new(a, i, ascending, false);
-                let finished = probe.scan(b, j, &mut cursor.ahead, out, &mut written, room);
-                cursor.first += usize::from(finished);
-                finished
-            } else {
-                let probe = Probe::<V, K>::new(b, j, ascending, !ascending);
-                let finished = probe.scan(a, i, &mut cursor.ahead, out, &mut written, room);
-                cursor.second += usize::from(finished);
-                finished
+    let (mut output, mut notes) = (Output::<V>::new(out), Notes::new());
+    loop {
+        // Where one column has ended, nothing of it is ahead of the rest of the other.
+        while cursor.first < a.len()
+            && cursor.second < b.len()
+            && !cursor.is_at_end()
+            && !output.is_full()
+        {
+            let Cursor { first: i, second: j, .. } = *cursor;
+            // SAFETY: i and j are positions of boxes; a scan begins at a box or at the sentinels.
+            let finished = unsafe {
+                if *a.left.get_unchecked(i) <= *b.left.get_unchecked(j) {
+                    let probe = Probe::<V, K>::new(a, i, ascending, false);
+                    let finished = probe.scan(b, j, &mut cursor.ahead, &mut output, &mut notes);
+                    cursor.first += usize::from(finished);
+                    finished
+                } else {
+                    let probe = Probe::<V, K>::new(b, j, ascending, true);
+                    let finished = probe.scan(a, i, &mut cursor.ahead, &mut output, &mut notes);
+                    cursor.second += usize::from(finished);
+                    finished
+                }
+            };
+            if finished {
+                cursor.ahead = 0;
             }
-        };
-        if finished {
-            cursor.ahead = 0;
         }
-        if written > room {
-            return written;
+        cursor.done = !output.is_full();
+        // SAFETY: the columns are those which are swept.
+        if !unsafe { output.make_room([a, b], ascending, &mut notes) } || cursor.done {
+            return output.written();
         }
     }
-    cursor.done = true;
-    written
 }
 
 /// One box, spread over vectors.
@@ -175,8 +182,8 @@ impl<V: Copy, const K: usize> Probe<V, K> {
     unsafe fn new<T: Coordinate>(
         column: &Column<T>,
         i: usize,
-        swap_if_smaller: bool,
-        swap_always: bool,
+        ascending: bool,
+        in_first: bool,
     ) -> Self
     where
         V: Vector<T>,
@@ -190,27 +197,26 @@ impl<V: Copy, const K: usize> Probe<V, K> {
                 reporter: Reporter {
                     id: *column.id.get_unchecked(i),
                     marks: *column.marks.get_unchecked(i),
-                    swap_if_smaller,
-                    swap_always,
+                    ascending,
+                    in_first,
                 },
             }
         }
     }
 
-    /// Tests the boxes from `start + ahead` on. Returns false if it stopped because `written`
-    /// passed `room`; then `ahead` tells where to go on.
+    /// Tests the boxes from `start + ahead` on. Returns false if it stopped because the output was
+    /// full; then `ahead` tells where to go on.
     ///
     /// # Safety
-    /// `start + ahead <= column.len()`, and the column is ready for `K`.
+    /// `start + ahead <= column.len()`, and the column is ready for `K`; the output is not full.
     #[inline(always)]
     unsafe fn scan<T: Coordinate>(
         &self,
         column: &Column<T>,
         start: usize,
         ahead: &mut usize,
-        out: &mut [[u32; 2]],
-        written: &mut usize,
-        room: usize,
+        output: &mut Output<'_, V>,
+        notes: &mut Notes,
     ) -> bool
     where
         V: Vector<T>,
@@ -219,7 +225,7 @@ impl<V: Copy, const K: usize> Probe<V, K> {
         let mut j = start + *ahead;
         loop {
             // SAFETY: j <= len, so LANES <= PAD entries from j are inside every array: a vector
-            // that reaches the sentinels ends the scan. `written <= room`, so LANES pairs fit.
+            // that reaches the sentinels ends the scan.
             let more = unsafe {
                 let begun = V::le(V::load(column.left.as_ptr().add(j)), self.right);
                 let mut hits = begun;
@@ -227,17 +233,14 @@ impl<V: Copy, const K: usize> Probe<V, K> {
                     hits = V::and_le(hits, V::load(column.min[k].as_ptr().add(j)), self.max[k]);
                     hits = V::and_le(hits, self.min[k], V::load(column.max[k].as_ptr().add(j)));
                 }
-                let ids = column.id.as_ptr().add(j);
-                let marks = column.marks.as_ptr().add(j);
-                *written +=
-                    V::report(hits, &self.reporter, ids, marks, out.as_mut_ptr().add(*written));
+                output.take(hits, &self.reporter, column, j, notes);
                 V::bits(begun) == all
             };
             if !more {
                 return true;
             }
             j += V::LANES;
-            if *written > room {
+            if output.is_full() {
                 *ahead = j - start;
                 return false;
             }

@@ -4,7 +4,7 @@
 ///
 /// # Safety
 /// An implementation must read exactly `LANES` coordinates in `load`, `LANES` ids and marks in
-/// `report`, and write no more than `LANES` pairs there. Each function may be called only where
+/// `pack`, and write no more than `LANES` pairs there. Each function may be called only where
 /// the instructions of the implementation are present.
 pub(super) unsafe trait Vector<T: Copy>: Copy {
     /// Coordinates in one vector, at most [`PAD`](super::column::PAD).
@@ -23,29 +23,20 @@ pub(super) unsafe trait Vector<T: Copy>: Copy {
     /// One bit a lane, the first lane lowest.
     unsafe fn bits(mask: Self::Mask) -> u32;
 
+    /// Whether it can [`pack`](Self::pack).
+    const PACKS: bool = false;
+
     /// Writes the pairs of the lanes in `hits` whose marks share no bit with the probe's, in lane
     /// order. Returns how many. Up to `LANES` pairs may be overwritten at `out`.
     #[inline(always)]
-    unsafe fn report(
-        hits: Self::Mask,
-        probe: &Reporter,
-        ids: *const u32,
-        marks: *const u32,
-        out: *mut [u32; 2],
+    unsafe fn pack(
+        _hits: Self::Mask,
+        _probe: &Reporter,
+        _ids: *const u32,
+        _marks: *const u32,
+        _out: *mut [u32; 2],
     ) -> usize {
-        // SAFETY: the caller's promise, and only set bits below LANES are looked at.
-        unsafe {
-            let mut bits = Self::bits(hits);
-            let mut count = 0;
-            while bits != 0 {
-                let lane = bits.trailing_zeros() as usize;
-                bits &= bits - 1;
-                // Written whether it counts or not: cheaper than a branch that cannot be foretold.
-                *out.add(count) = probe.pair(*ids.add(lane));
-                count += usize::from(*marks.add(lane) & probe.marks == 0);
-            }
-            count
-        }
+        unreachable!("it does not pack")
     }
 }
 
@@ -63,18 +54,16 @@ pub enum Arrange {
 pub(super) struct Reporter {
     pub id: u32,
     pub marks: u32,
-    /// Exchange the two ids where the other is smaller; in any case.
-    pub swap_if_smaller: bool,
-    pub swap_always: bool,
+    /// Whether the smaller id comes first, or else that of the first column.
+    pub ascending: bool,
+    /// Whether the other boxes are those of the first of two columns.
+    pub in_first: bool,
 }
 
 impl Reporter {
     #[inline(always)]
     pub fn pair(&self, other: u32) -> [u32; 2] {
-        if self.swap_always | (self.swap_if_smaller & (other < self.id)) {
-            [other, self.id]
-        } else {
-            [self.id, other]
-        }
+        let swaps = (self.ascending & (other < self.id)) | (!self.ascending & self.in_first);
+        if swaps { [other, self.id] } else { [self.id, other] }
     }
 }

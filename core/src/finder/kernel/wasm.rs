@@ -16,7 +16,7 @@ pub(super) struct F64x4([v128; 2]);
 
 macro_rules! vector {
     ($name:ident, $scalar:ty, $lanes:literal, $splat:ident, $le:ident, $bits:ident) => {
-        // SAFETY: loads of exactly LANES coordinates; `report` reads ids and marks of lanes below
+        // SAFETY: loads of exactly LANES coordinates; `pack` reads ids and marks of lanes below
         // LANES, and writes a pair for each hit and, where there is none, one.
         unsafe impl Vector<$scalar> for $name {
             const LANES: usize = $lanes;
@@ -49,8 +49,12 @@ macro_rules! vector {
                 $bits(mask[0], mask[1])
             }
 
+            /// To note hits would take less time where a box overlaps many others, and no more
+            /// elsewhere, but too many bytes.
+            const PACKS: bool = true;
+
             #[inline(always)]
-            unsafe fn report(
+            unsafe fn pack(
                 hits: [v128; 2],
                 probe: &Reporter,
                 ids: *const u32,

@@ -18,7 +18,7 @@ pub(super) struct Avx512<V>(V);
 
 macro_rules! masks_in_vectors {
     ($name:ident, $vector:ty, $scalar:ty, $lanes:literal, $splat:ident, $load:ident, $le:expr, $and:ident, $bits:ident $(, $ids:ident)?) => {
-        // SAFETY: one load of exactly LANES coordinates; `report` is the trait's own, or reads LANES
+        // SAFETY: one load of exactly LANES coordinates; `pack`, where it is, reads LANES
         // ids and marks and writes LANES pairs.
         unsafe impl Vector<$scalar> for $name<$vector> {
             const LANES: usize = $lanes;
@@ -55,8 +55,10 @@ macro_rules! masks_in_vectors {
             }
 
             $(
+                const PACKS: bool = true;
+
                 #[inline(always)]
-                unsafe fn report(
+                unsafe fn pack(
                     hits: $vector,
                     probe: &Reporter,
                     ids: *const u32,
@@ -155,10 +157,10 @@ unsafe fn pack(
         let shared = _mm256_and_si256(marks, _mm256_set1_epi32(probe.marks as i32));
         let unmarked = _mm256_cmpeq_epi32(shared, _mm256_setzero_si256());
         let reported = hits & _mm256_movemask_ps(_mm256_castsi256_ps(unmarked)) as u32;
-        let (first, second) = if probe.swap_always {
-            (ids, own)
-        } else if probe.swap_if_smaller {
+        let (first, second) = if probe.ascending {
             (_mm256_min_epu32(ids, own), _mm256_max_epu32(ids, own))
+        } else if probe.in_first {
+            (ids, own)
         } else {
             (own, ids)
         };
@@ -198,7 +200,7 @@ static FRONT: [[u8; 8]; 256] = {
 
 macro_rules! masks_in_registers {
     ($vector:ty, $scalar:ty, $lanes:literal, $mask:ty, $splat:ident, $load:ident, $le:ident, $and_le:ident, $ids:expr) => {
-        // SAFETY: one load of exactly LANES coordinates; `report` reads LANES ids and marks and
+        // SAFETY: one load of exactly LANES coordinates; `pack` reads LANES ids and marks and
         // writes LANES pairs.
         unsafe impl Vector<$scalar> for Avx512<$vector> {
             const LANES: usize = $lanes;
@@ -233,8 +235,10 @@ macro_rules! masks_in_registers {
                 u32::from(mask)
             }
 
+            const PACKS: bool = true;
+
             #[inline(always)]
-            unsafe fn report(
+            unsafe fn pack(
                 hits: $mask,
                 probe: &Reporter,
                 ids: *const u32,
@@ -306,9 +310,11 @@ unsafe fn compress(
         let own = _mm512_set1_epi32(probe.id as i32);
         let reported =
             _mm512_mask_testn_epi32_mask(hits, marks, _mm512_set1_epi32(probe.marks as i32));
-        let smaller =
-            _mm512_cmplt_epu32_mask(ids, own) & (probe.swap_if_smaller as u16).wrapping_neg();
-        let swapped = smaller | (probe.swap_always as u16).wrapping_neg();
+        let swapped = if probe.ascending {
+            _mm512_cmplt_epu32_mask(ids, own)
+        } else {
+            (probe.in_first as u16).wrapping_neg()
+        };
         let first =
             _mm512_maskz_compress_epi32(reported, _mm512_mask_blend_epi32(swapped, own, ids));
         let second =
