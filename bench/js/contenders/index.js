@@ -46,7 +46,7 @@ export const contenders = [
     dimensions: [2, 3],
     tasks: ["follow"],
     rival: false,
-    how: "`BroadPhase.setMany` with the boxes that moved, written to its `buffers`, `update`",
+    how: "`BroadPhase.setMany` with all boxes, `update`",
     module: "ours-broad-phase",
   },
   {
