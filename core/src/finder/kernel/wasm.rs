@@ -4,7 +4,7 @@
 use core::arch::wasm32::*;
 
 use super::super::numbers::{BLOCK, Ruler};
-use super::vector::{Reporter, Vector};
+use super::vector::Vector;
 
 /// Eight `f32`.
 #[derive(Clone, Copy)]
@@ -16,8 +16,7 @@ pub(super) struct F64x4([v128; 2]);
 
 macro_rules! vector {
     ($name:ident, $scalar:ty, $lanes:literal, $splat:ident, $le:ident, $bits:ident) => {
-        // SAFETY: loads of exactly LANES coordinates; `pack` reads ids and marks of lanes below
-        // LANES, and writes a pair for each hit and, where there is none, one.
+        // SAFETY: loads of exactly LANES coordinates.
         unsafe impl Vector<$scalar> for $name {
             const LANES: usize = $lanes;
             type Mask = [v128; 2];
@@ -47,42 +46,6 @@ macro_rules! vector {
             #[inline(always)]
             unsafe fn bits(mask: [v128; 2]) -> u32 {
                 $bits(mask[0], mask[1])
-            }
-
-            /// To note hits would take less time where a box overlaps many others, and no more
-            /// elsewhere, but too many bytes.
-            const PACKS: bool = true;
-
-            #[inline(always)]
-            unsafe fn pack(
-                hits: [v128; 2],
-                probe: &Reporter,
-                ids: *const u32,
-                marks: *const u32,
-                out: *mut [u32; 2],
-            ) -> usize {
-                // SAFETY: the caller has LANES ids and marks, and room for LANES pairs.
-                unsafe {
-                    let mut bits = Self::bits(hits);
-                    let pair_of = |bits: u32| {
-                        // Without a bit it is lane 0.
-                        let lane = bits.trailing_zeros() as usize & (Self::LANES - 1);
-                        (probe.pair(*ids.add(lane)), *marks.add(lane) & probe.marks == 0)
-                    };
-                    // The first hit without asking whether there is one, which cannot be foretold:
-                    // that saves a fifth of the whole search.
-                    let (pair, counts) = pair_of(bits);
-                    *out = pair;
-                    let mut count = usize::from(counts & (bits != 0));
-                    bits &= bits.wrapping_sub(1);
-                    while bits != 0 {
-                        let (pair, counts) = pair_of(bits);
-                        *out.add(count) = pair;
-                        count += usize::from(counts);
-                        bits &= bits - 1;
-                    }
-                    count
-                }
             }
         }
     };
