@@ -319,6 +319,33 @@ fn the_last_order_does_not_matter<const D: usize, T: Scalar>() {
 }
 in_all_dimensions!(a_used_finder_finds_what_a_new_one_finds, the_last_order_does_not_matter);
 
+/// Pairs some at a time: the same in the same order, never none, and no more after a break.
+#[test]
+fn pairs_come_some_at_a_time() {
+    for n in [0, 1, 2, 30, 200, 3000] {
+        let (a, b) = (some::<2, f32>(n, 0.1), some::<2, f32>(n / 2, 0.1));
+        let mut finder = PairFinder::new();
+        let mut taken = Vec::new();
+        let mut take = |pairs: &[[u32; 2]]| {
+            assert!((1..=4096).contains(&pairs.len()));
+            taken.extend_from_slice(pairs);
+            ControlFlow::<()>::Continue(())
+        };
+        finder.for_each_slice(&a, &mut take).unwrap();
+        finder.for_each_slice_between(&a, &b, &mut take).unwrap();
+        let expected = [find_pairs(&a).unwrap(), find_pairs_between(&a, &b).unwrap()].concat();
+        assert_eq!(taken, expected, "{n}");
+
+        let mut calls = 0;
+        let end = finder.for_each_slice(&a, |pairs| {
+            calls += 1;
+            ControlFlow::Break(pairs[0])
+        });
+        let first = find_pairs(&a).unwrap().first().copied();
+        assert_eq!((end.unwrap().break_value(), calls), (first, usize::from(first.is_some())));
+    }
+}
+
 /// What several threads share out in ways of their own: bins that hold most of the boxes, sweeps with
 /// no bins, pairs that fill many parts. Again and again by the same finders, whose buffers then are
 /// there, and of two sets.

@@ -268,14 +268,14 @@ impl Sink for Count {
     }
 }
 
-/// Hands pairs to a function, in order, and stores only a buffer of them.
+/// Hands pairs to a function, some at a time and in order, and stores only a buffer of them.
 #[derive(Debug)]
 pub(super) struct Stream<'a, F> {
     pub buffer: &'a mut Buffer,
     pub each: F,
 }
 
-impl<F: FnMut([u32; 2]) -> ControlFlow<()>> Sink for Stream<'_, F> {
+impl<F: FnMut(&[[u32; 2]]) -> ControlFlow<()>> Sink for Stream<'_, F> {
     #[cfg(feature = "parallel")]
     type Part = Count;
 
@@ -286,10 +286,10 @@ impl<F: FnMut([u32; 2]) -> ControlFlow<()>> Sink for Stream<'_, F> {
 
     #[inline]
     fn take(&mut self, count: usize) -> Result<(), Stop> {
-        match self.buffer.0[..count].iter().try_for_each(|&pair| (self.each)(pair)) {
-            ControlFlow::Continue(()) => Ok(()),
-            ControlFlow::Break(()) => Err(Stop::Enough),
+        if count > 0 && (self.each)(&self.buffer.0[..count]).is_break() {
+            return Err(Stop::Enough);
         }
+        Ok(())
     }
 
     #[cfg(feature = "parallel")]

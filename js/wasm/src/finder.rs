@@ -23,59 +23,38 @@ enum Use {
 /// Stands for the count of the second set where there is only one.
 const NO_SET: usize = usize::MAX;
 
-/// Pairs that are counted or handed on together.
-const BUFFER: usize = 4096;
+/// So many pairs, and up to as many more, are handed on together.
+const MANY: usize = 4096;
 
-/// Takes pairs one by one. It is the same for every use, so that the search, which is compiled
-/// for what takes its pairs, is compiled once; what differs is what happens when the buffer is
-/// full.
+/// Takes pairs. It is the same for every use, so that the search, which is compiled for what takes
+/// its pairs, is compiled once.
 struct Taker {
-    buffer: Vec<[u32; 2]>,
     purpose: Use,
-    /// How full the buffer gets.
-    limit: usize,
-    /// The pairs that went through the buffer before those that are in it.
-    before: u64,
+    buffer: Vec<[u32; 2]>,
+    count: u64,
 }
 
 impl Taker {
     #[inline]
-    fn take(&mut self, pair: [u32; 2]) -> ControlFlow<()> {
-        if self.buffer.len() == self.limit {
-            self.make_room()?;
+    fn take(&mut self, pairs: &[[u32; 2]]) -> ControlFlow<()> {
+        self.count += pairs.len() as u64;
+        if self.purpose != Use::Count {
+            self.buffer.extend_from_slice(pairs);
         }
-        self.buffer.push(pair);
-        Continue(())
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn make_room(&mut self) -> ControlFlow<()> {
-        if self.purpose != Use::Store {
+        if self.purpose == Use::Stream && self.buffer.len() >= MANY {
             return self.flush();
         }
-        self.buffer.reserve(BUFFER);
-        self.limit = self.buffer.capacity();
         Continue(())
     }
 
     fn start(&mut self, purpose: Use) {
+        (self.purpose, self.count) = (purpose, 0);
         self.buffer.clear();
-        if purpose != Use::Store {
-            self.buffer.reserve(BUFFER);
-        }
-        self.purpose = purpose;
-        self.limit = if purpose == Use::Store { self.buffer.capacity() } else { BUFFER };
-        self.before = 0;
     }
 
-    /// Hands on what is in the buffer, or only counts it.
+    /// Hands on what is in the buffer.
     fn flush(&mut self) -> ControlFlow<()> {
-        let goes_on = match self.purpose {
-            Use::Store | Use::Count => true,
-            Use::Stream => hand_on(&self.buffer),
-        };
-        self.before += self.buffer.len() as u64;
+        let goes_on = hand_on(&self.buffer);
         self.buffer.clear();
         if goes_on { Continue(()) } else { Break(()) }
     }
@@ -125,12 +104,12 @@ impl<const D: usize, T: Scalar> Find for Rows<D, T> {
         let [a, b] = &self.sets;
         let a = &a[..counts[0].min(a.len())];
         // One closure for both: the search is compiled for its type.
-        let each = |pair| taker.take(pair);
+        let each = |pairs: &[[u32; 2]]| taker.take(pairs);
         if counts[1] == NO_SET {
-            let _ = self.finder.for_each(a, each)?;
+            let _ = self.finder.for_each_slice(a, each)?;
         } else {
             let b = &b[..counts[1].min(b.len())];
-            let _ = self.finder.for_each_between(a, b, each)?;
+            let _ = self.finder.for_each_slice_between(a, b, each)?;
         }
         Ok(())
     }
@@ -151,7 +130,7 @@ extern "C" fn finder_new(dimensions: u32, is_double: bool) -> Option<Box<Finder>
         (3, true) => Rows::<3, f64>::boxed(),
         _ => return None,
     };
-    let taker = Taker { buffer: Vec::new(), purpose: Use::Store, limit: 0, before: 0 };
+    let taker = Taker { purpose: Use::Store, buffer: Vec::new(), count: 0 };
     Some(Box::new(Finder { find, taker }))
 }
 
@@ -180,10 +159,7 @@ extern "C" fn finder_find(finder: Option<&mut Finder>, a: usize, b: usize, purpo
     }
     match taker.purpose {
         Use::Store => tell(Code::Ok, [taker.buffer.as_ptr().addr(), taker.buffer.len()]),
-        Use::Count => {
-            let count = taker.before + taker.buffer.len() as u64;
-            tell(Code::Ok, [count as usize, (count >> 32) as usize])
-        }
+        Use::Count => tell(Code::Ok, [taker.count as usize, (taker.count >> 32) as usize]),
         Use::Stream => {
             // Empty if the callback broke off.
             if !taker.buffer.is_empty() {

@@ -3,6 +3,7 @@
 //! foretold, and a loop over them that ends with each vector is guessed wrong as often as not; one
 //! over all that were noted is not.
 
+use core::hint::black_box;
 use core::marker::PhantomData;
 use core::mem::MaybeUninit;
 
@@ -101,15 +102,15 @@ impl<'a, V> Output<'a, V> {
         if V::PACKS { !self.has_room() } else { self.noted >= self.most }
     }
 
-    /// Writes what is noted. False if there is no room for more. The columns are those that were
-    /// swept, the same one twice if it was one.
+    /// Writes what is noted. False if there is no room for more. The columns are the one or two that
+    /// are swept; of one the smaller id comes first in any case.
     ///
     /// # Safety
     /// All was taken from these columns.
     #[inline(always)]
-    pub unsafe fn make_room<T: Copy>(
+    pub unsafe fn make_room<T: Copy, const N: usize>(
         &mut self,
-        columns: [&Column<T>; 2],
+        columns: [&Column<T>; N],
         ascending: bool,
         notes: &mut Notes,
     ) -> bool
@@ -149,39 +150,47 @@ impl<'a, V> Output<'a, V> {
 /// So many notes were made, at most [`MOST`]. The lanes of all bits are positions in their columns,
 /// and there is room at `out` for as many pairs as there are bits.
 #[inline(never)]
-unsafe fn write<T>(
+unsafe fn write<T, const N: usize>(
     notes: &mut Notes,
     noted: usize,
-    columns: [&Column<T>; 2],
+    columns: [&Column<T>; N],
     ascending: bool,
     out: *mut [u32; 2],
 ) -> usize {
     let none = Note { at: 0, bits: 0, id: 0, marks: 0 };
     notes.0[noted].write(none);
     notes.0[noted + 1].write(none);
-    let notes = notes.0.as_ptr().cast::<Note>();
+    let mut note = notes.0.as_ptr().cast::<Note>();
     // SAFETY: the caller's promise: notes are read up to those two. `count` is less than the number
     // of bits so far.
     unsafe {
-        let (mut count, mut at) = (0, 0);
-        let (mut bits, mut next) = ((*notes).bits, (*notes.add(1)).bits);
-        while at < noted {
-            let note = &*notes.add(at);
-            let in_first = note.marks & IN_FIRST != 0;
+        let end = note.add(noted);
+        let mut count = 0;
+        let mut bits = (*note).bits;
+        // Or else compilers load it where it is used, and make that a branch.
+        let mut next = black_box((*note.add(1)).bits);
+        while note < end {
+            let Note { at, id, marks, .. } = *note;
+            let in_first = N == 1 || marks & IN_FIRST != 0;
             let column = columns[usize::from(!in_first)];
-            let place = note.at as usize + bits.trailing_zeros() as usize;
+            let place = at as usize + bits.trailing_zeros() as usize;
             let other = *column.id.as_ptr().add(place);
-            let swaps = if ascending { other < note.id } else { in_first };
-            // Exchanged without a branch, and written whether it counts or not: neither can be
-            // foretold; nor can when the next note is due.
-            let change = (other ^ note.id) & u32::from(swaps).wrapping_neg();
-            *out.add(count) = [note.id ^ change, other ^ change];
-            count += usize::from(*column.marks.as_ptr().add(place) & note.marks == 0);
+            // Written whether it counts or not, and all without a branch: what is smaller, what counts,
+            // and when the next note is due cannot be foretold.
+            let low = if N == 1 || ascending {
+                id.min(other)
+            } else if in_first {
+                other
+            } else {
+                id
+            };
+            *out.add(count) = [low, id ^ other ^ low];
+            count += usize::from(*column.marks.as_ptr().add(place) & marks == 0);
             bits &= bits - 1;
             let is_last = bits == 0;
             bits = if is_last { next } else { bits };
-            at += usize::from(is_last);
-            next = (*notes.add(at + 1)).bits;
+            note = note.add(usize::from(is_last));
+            next = (*note.add(1)).bits;
         }
         count
     }

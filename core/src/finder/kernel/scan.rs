@@ -103,7 +103,7 @@ pub(super) unsafe fn within<T: Coordinate, V: Vector<T>, const K: usize>(
             // SAFETY: i < len, and the scan begins at i + 1 + ahead, which the last vector of the
             // sentinels ends.
             let finished = unsafe {
-                let probe = Probe::<V, K>::new(column, i, true, false);
+                let probe = Probe::<T, V, K>::new(column, i, true, false);
                 probe.scan(column, i + 1, &mut cursor.ahead, &mut output, &mut notes)
             };
             if finished {
@@ -113,7 +113,7 @@ pub(super) unsafe fn within<T: Coordinate, V: Vector<T>, const K: usize>(
         }
         cursor.done = !output.is_full();
         // SAFETY: the column is that which is swept.
-        if !unsafe { output.make_room([column; 2], true, &mut notes) } || cursor.done {
+        if !unsafe { output.make_room([column], true, &mut notes) } || cursor.done {
             return output.written();
         }
     }
@@ -144,12 +144,12 @@ pub(super) unsafe fn between<T: Coordinate, V: Vector<T>, const K: usize>(
             // SAFETY: i and j are positions of boxes; a scan begins at a box or at the sentinels.
             let finished = unsafe {
                 if *a.left.get_unchecked(i) <= *b.left.get_unchecked(j) {
-                    let probe = Probe::<V, K>::new(a, i, ascending, false);
+                    let probe = Probe::<T, V, K>::new(a, i, ascending, false);
                     let finished = probe.scan(b, j, &mut cursor.ahead, &mut output, &mut notes);
                     cursor.first += usize::from(finished);
                     finished
                 } else {
-                    let probe = Probe::<V, K>::new(b, j, ascending, true);
+                    let probe = Probe::<T, V, K>::new(b, j, ascending, true);
                     let finished = probe.scan(a, i, &mut cursor.ahead, &mut output, &mut notes);
                     cursor.second += usize::from(finished);
                     finished
@@ -168,29 +168,23 @@ pub(super) unsafe fn between<T: Coordinate, V: Vector<T>, const K: usize>(
 }
 
 /// One box, spread over vectors.
-struct Probe<V, const K: usize> {
+struct Probe<T, V, const K: usize> {
+    last: T,
     right: V,
     min: [V; K],
     max: [V; K],
     reporter: Reporter,
 }
 
-impl<V: Copy, const K: usize> Probe<V, K> {
+impl<T: Coordinate, V: Vector<T>, const K: usize> Probe<T, V, K> {
     /// # Safety
     /// `i` is the position of a box in a column that is ready for `K`.
     #[inline(always)]
-    unsafe fn new<T: Coordinate>(
-        column: &Column<T>,
-        i: usize,
-        ascending: bool,
-        in_first: bool,
-    ) -> Self
-    where
-        V: Vector<T>,
-    {
+    unsafe fn new(column: &Column<T>, i: usize, ascending: bool, in_first: bool) -> Self {
         // SAFETY: i is inside every array.
         unsafe {
             Self {
+                last: *column.right.get_unchecked(i),
                 right: V::splat(*column.right.get_unchecked(i)),
                 min: core::array::from_fn(|k| V::splat(*column.min[k].get_unchecked(i))),
                 max: core::array::from_fn(|k| V::splat(*column.max[k].get_unchecked(i))),
@@ -210,18 +204,14 @@ impl<V: Copy, const K: usize> Probe<V, K> {
     /// # Safety
     /// `start + ahead <= column.len()`, and the column is ready for `K`; the output is not full.
     #[inline(always)]
-    unsafe fn scan<T: Coordinate>(
+    unsafe fn scan(
         &self,
         column: &Column<T>,
         start: usize,
         ahead: &mut usize,
         output: &mut Output<'_, V>,
         notes: &mut Notes,
-    ) -> bool
-    where
-        V: Vector<T>,
-    {
-        let all = u32::MAX >> (32 - V::LANES);
+    ) -> bool {
         let mut j = start + *ahead;
         loop {
             // SAFETY: j <= len, so LANES <= PAD entries from j are inside every array: a vector
@@ -234,7 +224,8 @@ impl<V: Copy, const K: usize> Probe<V, K> {
                     hits = V::and_le(hits, self.min[k], V::load(column.max[k].as_ptr().add(j)));
                 }
                 output.take(hits, &self.reporter, column, j, notes);
-                V::bits(begun) == all
+                // They ascend: if the last of these has begun, all have.
+                *column.left.get_unchecked(j + V::LANES - 1) <= self.last
             };
             if !more {
                 return true;
