@@ -11,7 +11,7 @@ use super::column::Column;
 use super::vector::{Reporter, Vector};
 
 /// So many vectors with hits are noted before their pairs are written.
-const MOST: usize = 64;
+const MOST: usize = 256;
 
 /// The hits of a box in one vector.
 #[derive(Clone, Copy)]
