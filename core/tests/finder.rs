@@ -331,8 +331,8 @@ fn pairs_come_some_at_a_time() {
             taken.extend_from_slice(pairs);
             ControlFlow::<()>::Continue(())
         };
-        finder.for_each_slice(&a, &mut take).unwrap();
-        finder.for_each_slice_between(&a, &b, &mut take).unwrap();
+        assert!(finder.for_each_slice(&a, &mut take).unwrap().is_continue());
+        assert!(finder.for_each_slice_between(&a, &b, &mut take).unwrap().is_continue());
         let expected = [find_pairs(&a).unwrap(), find_pairs_between(&a, &b).unwrap()].concat();
         assert_eq!(taken, expected, "{n}");
 
