@@ -62,10 +62,11 @@ impl<'a, V> Output<'a, V> {
         Self { pairs, written: 0, noted: 0, most, vector: PhantomData }
     }
 
-    /// Takes the hits in the vector at a position of a column, unless it [is full](Self::is_full).
+    /// Takes the hits in the vector at a position of a column.
     ///
     /// # Safety
-    /// The instructions of `V` are present, and so are its lanes in the column.
+    /// The instructions of `V` are present, and so are its lanes in the column; it is not
+    /// [full](Self::is_full).
     #[inline(always)]
     pub unsafe fn take<T: Copy>(
         &mut self,
@@ -77,7 +78,7 @@ impl<'a, V> Output<'a, V> {
     ) where
         V: Vector<T>,
     {
-        // SAFETY: the caller's promise; it is not full.
+        // SAFETY: the caller's promise.
         unsafe {
             if V::PACKS {
                 let (ids, marks) = (column.id.as_ptr().add(at), column.marks.as_ptr().add(at));
