@@ -7,7 +7,6 @@
 use super::BroadPhase;
 use super::proxy::flag;
 use super::rebuild::{found, is_live};
-use super::sort::differences;
 use super::updater::{Scratch, TreeState, Updater};
 use crate::Scalar;
 
@@ -33,7 +32,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         let found = if is_whole { found(finder.find(&self.boxes)) } else { &candidates.pairs };
         sorter.sort_into(found, &mut candidates.sorted, slots);
         candidates.clear();
-        differences(&before, &candidates.sorted, ended, begun);
+        sorter.differences(&before, &candidates.sorted, ended, begun);
         scratch.before = before;
         self.updater.are_fat_old = true;
         if self.updater.tree_state != TreeState::Unbuilt {
