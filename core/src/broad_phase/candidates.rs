@@ -83,11 +83,16 @@ impl Candidates {
         self.live.reserve(self.pairs.capacity() - self.live.len());
     }
 
-    /// Adds a pair.
+    /// Puts a pair into a place that is free, or else to the end.
     #[inline]
-    pub fn add(&mut self, pair: [u32; 2], is_live: bool) {
-        self.pairs.push(pair);
-        self.live.push(is_live);
+    pub fn put(&mut self, place: Option<&usize>, pair: [u32; 2], is_live: bool) {
+        if let Some(&at) = place {
+            self.pairs[at] = pair;
+            self.live[at] = is_live;
+        } else {
+            self.pairs.push(pair);
+            self.live.push(is_live);
+        }
     }
 
     /// Removes the pairs at these places, which ascend. The others keep their order, which is that of

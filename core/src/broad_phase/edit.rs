@@ -107,8 +107,15 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     #[inline(never)]
     fn place_unlisted(&mut self, ids: &[ProxyId], boxes: &[Aabb<D, T>]) {
         self.unlisted = true;
-        for (id, aabb) in ids.iter().zip(boxes) {
-            self.boxes[self.slots.seats[id.slot() as usize] as usize] = *aabb;
+        for (ids, boxes) in ids.chunks(AHEAD).zip(boxes.chunks(AHEAD)) {
+            if self.slots.are_dealt {
+                for id in ids.iter().filter(|_| CAN_CALL) {
+                    call(&self.boxes, self.slots.seats[id.slot() as usize] as usize);
+                }
+            }
+            for (id, aabb) in ids.iter().zip(boxes) {
+                self.boxes[self.slots.seats[id.slot() as usize] as usize] = *aabb;
+            }
         }
     }
 
@@ -256,6 +263,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         let Updater { old_filters, any_refiltered, .. } = &mut self.updater;
         self.slots.raise(seat, flag::REFILTERED);
         *any_refiltered = true;
+        self.any_filter |= filter != Filter::default();
         if old_filters.len() <= seat as usize {
             old_filters.resize(self.slots.len(), filter);
         }

@@ -6,6 +6,7 @@
 //! it costs a pass through the list, but else the fat boxes would grow for ever.
 
 use core::hint::black_box;
+use core::slice::Iter;
 
 use super::BroadPhase;
 use super::options::{contains, hull};
@@ -19,10 +20,13 @@ use crate::Scalar;
 
 /// A search of a tree with leaves twice too large costs so many times more than it should what
 /// building the tree costs for a body.
-const WORSE: usize = 1;
+const WORSE: usize = 3;
 
 /// What the candidate so many places further on needs is called from memory.
 const AHEAD: usize = 24;
+
+/// Of so many candidates is noted at a time what is to be done with them.
+const CHUNK: usize = 64;
 
 /// To find the candidates of a body among others takes as long as to test so many in a row.
 const MANY: usize = 12;
@@ -111,16 +115,15 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     fn test_candidates(&mut self, drops: bool) -> usize {
         let Updater { candidates, scratch, begun, ended, .. } = &mut self.updater;
         let Scratch { marks, moved, places, dropped, .. } = scratch;
-        dropped.clear();
         dropped.reserve(candidates.pairs.capacity() / 4);
         places.reserve(candidates.pairs.capacity() / 4);
         let is_in = |set: &Marks, [a, b]: [u32; 2]| set.has(a) | set.has(b);
         if self.changed.len() * MANY > candidates.pairs.len() {
-            if drops {
-                push_wanted(dropped, &candidates.pairs, |at, pair| (at, is_in(marks, pair)));
-                self.drop_candidates();
+            match drops {
+                true => self.test_all_candidates::<true>(),
+                false => self.test_all_candidates::<false>(),
             }
-            self.test_all_candidates();
+            self.end_dropped();
             return self.updater.candidates.pairs.len();
         }
         let seats = || self.changed.iter().chain(&self.leaving);
@@ -142,50 +145,59 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             }
         }
         let tests = places.len();
-        self.drop_candidates();
+        self.end_dropped();
         tests
     }
 
-    /// Takes the candidates at the places that were listed out of the list, and ends what ends.
-    fn drop_candidates(&mut self) {
+    /// Ends what ends of the candidates that are dropped. Their places will be those of others.
+    fn end_dropped(&mut self) {
         let mut ended = core::mem::take(&mut self.updater.ended);
-        let Updater { candidates, scratch, .. } = &self.updater;
-        let live = scratch.dropped.iter().filter(|&&at| candidates.live[at]);
-        let pairs = live.map(|&at| candidates.pairs[at]);
-        ended.extend(pairs.filter(|&[a, b]| !self.is_live(a, b)));
+        let dropped = core::mem::take(&mut self.updater.scratch.dropped);
+        for &at in &dropped {
+            let pair @ [a, b] = self.updater.candidates.pairs[at];
+            if self.updater.candidates.live[at] && !self.is_live(a, b) {
+                ended.push(pair);
+            }
+        }
+        self.updater.scratch.dropped = dropped;
         self.updater.ended = ended;
-        let Updater { candidates, scratch, .. } = &mut self.updater;
-        candidates.remove(&scratch.dropped);
     }
 
-    /// Tests all candidates.
-    fn test_all_candidates(&mut self) {
+    /// Tests all candidates, but for those of the bodies that are marked, which it lists if `DROPS`.
+    fn test_all_candidates<const DROPS: bool>(&mut self) {
         if self.updater.candidates.pairs.len() * SOME > self.boxes.len() {
             warm(&self.boxes);
         }
+        let is_far = is_far(&self.boxes);
         let Updater { candidates, scratch, begun, ended, .. } = &mut self.updater;
-        let (pairs, live) = (&candidates.pairs, &mut candidates.live);
-        let mut test = |index, [a, b]: [u32; 2]| {
-            let is_live = overlap(&self.boxes[a as usize], &self.boxes[b as usize]);
-            ([a, b], core::mem::replace(&mut live[index], is_live) != is_live)
-        };
-        let changed = &mut scratch.pairs;
+        let Scratch { marks, places: changed, dropped, .. } = scratch;
         changed.clear();
-        if is_far(&self.boxes) {
-            push_wanted(changed, pairs, |index, pair| {
-                // The first seats of neighbours in the list are near each other.
-                if let Some(&[_, later]) = pairs.get(index + AHEAD) {
+        // Without a branch: it is hard to guess what begins, ends or is dropped.
+        let (mut changes, mut drops) = ([0; CHUNK], [0; CHUNK]);
+        let chunks = candidates.pairs.chunks(CHUNK).zip(candidates.live.chunks_mut(CHUNK));
+        for (start, (pairs, live)) in (0..).step_by(CHUNK).zip(chunks) {
+            let (mut change, mut drop) = (0, 0);
+            for (index, (&[a, b], was_live)) in pairs.iter().zip(live).enumerate() {
+                if is_far && let Some(&[_, later]) = candidates.pairs.get(start + index + AHEAD) {
+                    // The first seats of neighbours in the list are near each other.
                     call(&self.boxes, later as usize);
                 }
-                test(index, pair)
-            });
-        } else {
-            push_wanted(changed, pairs, test);
+                let is_live = overlap(&self.boxes[a as usize], &self.boxes[b as usize]);
+                let is_dropped = DROPS && marks.has(a) | marks.has(b);
+                changes[change] = start + index;
+                change += usize::from((is_live != *was_live) & !is_dropped);
+                if DROPS {
+                    drops[drop] = start + index;
+                    drop += usize::from(is_dropped);
+                }
+                *was_live = if is_dropped { *was_live } else { is_live };
+            }
+            changed.extend_from_slice(&changes[..change]);
+            dropped.extend_from_slice(&drops[..drop]);
         }
-        for pair in changed.iter() {
-            let [a, b] = pair.map(|seat| seat as usize);
-            let is_live = overlap(&self.boxes[a], &self.boxes[b]);
-            if is_live { &mut *begun } else { &mut *ended }.push(*pair);
+        for &at in changed.iter() {
+            let list = if candidates.live[at] { &mut *begun } else { &mut *ended };
+            list.push(candidates.pairs[at]);
         }
     }
 
@@ -236,29 +248,37 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// these boxes stretch the old ones, those whose fat boxes did not overlap before.
     fn add_candidates(&mut self, stretches: bool) {
         self.updater.candidates.make_room();
+        let mut dropped = core::mem::take(&mut self.updater.scratch.dropped);
+        let mut places = dropped.iter();
         for start in (0..self.updater.scratch.queries.len()).step_by(BATCH) {
             let Updater { tree, scratch, .. } = &mut self.updater;
             let Scratch { queries, leaves, pairs: found, .. } = scratch;
             let stop = queries.len().min(start + BATCH);
             tree.overlapping_many(&queries[start..stop], leaves, found);
-            self.add_found(start, stretches);
+            self.add_found(start, stretches, &mut places);
         }
-        let Updater { fat, scratch, .. } = &mut self.updater;
+        let Updater { fat, scratch, candidates, .. } = &mut self.updater;
+        candidates.remove(places.as_slice());
+        dropped.clear();
+        scratch.dropped = dropped;
         for (seat, aabb) in &scratch.queries {
             fat[*seat as usize] = *aabb;
         }
     }
 
-    /// Adds what was found for the bodies that were looked up, from one on.
+    /// Adds what was found for the bodies that were looked up, from one on, in the places of those that were
+    /// dropped as long as there are any.
     #[inline(never)]
-    fn add_found(&mut self, start: usize, stretches: bool) {
+    fn add_found(&mut self, start: usize, stretches: bool, places: &mut Iter<usize>) {
         let mut begun = core::mem::take(&mut self.updater.begun);
         let mut candidates = core::mem::take(&mut self.updater.candidates);
         let Updater { fat, scratch, .. } = &self.updater;
         for found in scratch.pairs.chunks(TOGETHER) {
             for &[_, other] in found {
                 black_box(fat[other as usize].min[0]);
-                black_box(self.boxes[other as usize].min[0]);
+                if !self.slots.has(other, flag::ASLEEP) {
+                    black_box(self.boxes[other as usize].min[0]);
+                }
             }
             for &[query, other] in found {
                 let (seat, aabb) = &scratch.queries[start + query as usize];
@@ -271,8 +291,11 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
                     && (!self.any_filter || self.filters[first].allows(&self.filters[second]));
                 if is_candidate {
                     let pair = [other.min(*seat), other.max(*seat)];
-                    let is_live = overlap(&self.boxes[first], &self.boxes[second]);
-                    candidates.add(pair, is_live);
+                    // Who sleeps has one box in all tables.
+                    let sleeps = self.slots.has(other, flag::ASLEEP);
+                    let now = if sleeps { &fat[second] } else { &self.boxes[second] };
+                    let is_live = overlap(&self.boxes[first], now);
+                    candidates.put(places.next(), pair, is_live);
                     if is_live && !self.was_live(*seat, other) {
                         begun.push(pair);
                     }
@@ -287,7 +310,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     #[inline(never)]
     pub(super) fn ready_tree(&mut self) {
         self.updater.refresh_fat();
-        let Updater { tree, tree_state, tree_uses, fat, scratch, .. } = &mut self.updater;
+        let Updater { tree, tree_state, tree_uses, fat, .. } = &mut self.updater;
         match *tree_state {
             TreeState::Fresh { .. } => return,
             // A tree whose leaves have become large costs time whenever it is searched.
@@ -299,9 +322,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
                     self.slots.has(*seat, flag::LIVE | flag::LEAVING)
                         && !self.slots.has(*seat, flag::NEW)
                 };
-                scratch.seats.clear();
-                scratch.seats.extend((0..self.slots.len() as u32).filter(is_known));
-                tree.build(&mut scratch.seats, fat);
+                tree.build((0..self.slots.len() as u32).filter(is_known), fat);
             }
         }
         *tree_state = TreeState::Fresh { known: 0 };

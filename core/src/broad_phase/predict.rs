@@ -21,7 +21,7 @@ const REACH_ALONE: f64 = 1.2;
 /// What moves further is taken for a jump, which says nothing of the next step.
 const JUMP: f64 = 2.0;
 /// The updates a fat box is to last at most.
-const LONGEST: f64 = 40.0;
+const LONGEST: f64 = 80.0;
 /// What one that is made after a jump has on every side, in box sizes.
 const LANDED: f64 = 0.4;
 /// What it has on every side for inexact motion, in displacements.

@@ -191,11 +191,16 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
 
     /// Whether a pair was live at the last update.
     pub(super) fn was_live(&self, a: u32, b: u32) -> bool {
-        let previous = &self.updater.previous;
+        let Updater { previous, fat, .. } = &self.updater;
+        // Who sleeps has one box in all tables, and in this one it was looked at.
+        let known = |seat: u32| {
+            let table = if self.slots.has(seat, flag::ASLEEP) { fat } else { previous };
+            &table[seat as usize]
+        };
         !self.slots.has(a, flag::NEW)
             && !self.slots.has(b, flag::NEW)
-            && overlap(&previous[a as usize], &previous[b as usize])
-            && self.old_filter(a).allows(self.old_filter(b))
+            && overlap(known(a), known(b))
+            && (!self.any_filter || self.old_filter(a).allows(self.old_filter(b)))
     }
 
     /// The filter of a body at the last update.

@@ -11,7 +11,7 @@ use crate::finder::{enlarge_pages, prefetch};
 /// The bytes that come from memory at once.
 const LINE: usize = 64;
 /// A table of so many bytes is near after it was read through.
-const FITS: usize = 4 << 20;
+const FITS: usize = 1 << 20;
 
 /// Whether [`call`] does anything.
 pub(super) const CAN_CALL: bool = cfg!(target_arch = "x86_64");

@@ -4,29 +4,44 @@ use super::node::{FAN, FILL, Node, finite, size};
 use super::{NONE, Tree};
 use crate::{Aabb, Scalar};
 
+/// Of so many bodies is looked at how they spread.
+const SAMPLE: usize = 64;
+
+/// A body that is to be put into a leaf. What is asked of it again and again is at hand.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry<const D: usize> {
+    centre: [f64; D],
+    class: u32,
+    seat: u32,
+}
+
 impl<const D: usize, T: Scalar> Tree<D, T> {
-    /// Builds the tree anew of these seats, which it puts into another order. O(n log n) time.
-    pub fn build(&mut self, seats: &mut [u32], boxes: &[Aabb<D, T>]) {
+    /// Builds the tree anew of these seats. O(n log n) time.
+    pub fn build(&mut self, seats: impl Iterator<Item = u32>, boxes: &[Aabb<D, T>]) {
         self.clear();
         self.leaves.resize(boxes.len(), NONE);
-        self.count = seats.len();
-        let mut keys = core::mem::take(&mut self.keys);
-        keys.clear();
-        keys.extend(seats.iter().map(|&seat| [size_class(&boxes[seat as usize]), seat]));
-        keys.sort_unstable();
-        seats.iter_mut().zip(&keys).for_each(|(seat, &[_, sorted])| *seat = sorted);
+        let mut entries = core::mem::take(&mut self.entries);
+        entries.clear();
+        entries.extend(seats.map(|seat| {
+            let aabb = &boxes[seat as usize];
+            let centre = core::array::from_fn(|axis| aabb.centre(axis));
+            Entry { centre, class: size_class(aabb), seat }
+        }));
+        self.count = entries.len();
+        entries.sort_unstable_by_key(|entry| (entry.class, entry.seat));
         let mut roots = Node::new(false);
         let mut start = 0;
-        while let Some(&[class, _]) = keys.get(start) {
+        while let Some(&Entry { class, .. }) = entries.get(start) {
             // Where there are more classes than a node has room for, the last holds the others.
             let is_last = roots.count == FAN - 1;
-            let end = start + keys[start..].partition_point(|key| is_last || key[0] == class);
+            let end =
+                start + entries[start..].partition_point(|entry| is_last || entry.class == class);
             let leaves = (end - start).div_ceil(FILL);
-            let (root, bounds) = self.build_node(&mut seats[start..end], boxes, leaves);
+            let (root, bounds) = self.build_node(&mut entries[start..end], boxes, leaves);
             roots.push(root, &bounds);
             start = end;
         }
-        self.keys = keys;
+        self.entries = entries;
         self.root = match roots.count {
             0 => NONE,
             1 => roots.items[0],
@@ -38,16 +53,16 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         self.free.reserve(self.nodes.len() / 2);
     }
 
-    /// A node over seats that go into `leaves` leaves, and its bounds.
+    /// A node over bodies that go into `leaves` leaves, and its bounds.
     fn build_node(
         &mut self,
-        seats: &mut [u32],
+        entries: &mut [Entry<D>],
         boxes: &[Aabb<D, T>],
         leaves: usize,
     ) -> (u32, Aabb<D, T>) {
         if leaves <= 1 {
             let mut leaf = Node::new(true);
-            for &seat in seats.iter() {
+            for &Entry { seat, .. } in entries.iter() {
                 leaf.push(seat, &boxes[seat as usize]);
                 self.leaves[seat as usize] = self.nodes.len() as u32;
             }
@@ -61,14 +76,14 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         }
         let mut inner = Node::new(false);
         inner.has_leaves = room == 1;
-        self.build_children(seats, boxes, leaves, room, &mut inner);
+        self.build_children(entries, boxes, leaves, room, &mut inner);
         (self.add_inner(inner), inner.bounds())
     }
 
-    /// Cuts seats in two until what is left goes into a child of `room` leaves.
+    /// Cuts bodies in two until what is left goes into a child of `room` leaves.
     fn build_children(
         &mut self,
-        seats: &mut [u32],
+        entries: &mut [Entry<D>],
         boxes: &[Aabb<D, T>],
         leaves: usize,
         room: usize,
@@ -76,17 +91,18 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
     ) {
         let count = leaves.div_ceil(room);
         if count <= 1 {
-            let (child, bounds) = self.build_node(seats, boxes, leaves);
+            let (child, bounds) = self.build_node(entries, boxes, leaves);
             inner.push(child, &bounds);
             return;
         }
         let left = (leaves * (count / 2)).div_ceil(count);
         // The product of two counts, which 32 bits do not hold.
-        let middle = (seats.len() as u64 * left as u64 / leaves as u64) as usize;
-        let axis = widest_axis(seats, boxes);
-        let centre = |seat: &u32| boxes[*seat as usize].centre(axis);
-        seats.select_nth_unstable_by(middle, |a, b| centre(a).total_cmp(&centre(b)).then(a.cmp(b)));
-        let (low, high) = seats.split_at_mut(middle);
+        let middle = (entries.len() as u64 * left as u64 / leaves as u64) as usize;
+        let axis = widest_axis(entries, boxes);
+        entries.select_nth_unstable_by(middle, |a, b| {
+            a.centre[axis].total_cmp(&b.centre[axis]).then(a.seat.cmp(&b.seat))
+        });
+        let (low, high) = entries.split_at_mut(middle);
         self.build_children(low, boxes, left, room, inner);
         self.build_children(high, boxes, leaves - left, room, inner);
     }
@@ -130,16 +146,15 @@ fn size_class<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> u32 {
     2047 / 3 - exponent / 3
 }
 
-/// The axis on which the centres spread most for the size of the boxes.
-fn widest_axis<const D: usize, T: Scalar>(seats: &[u32], boxes: &[Aabb<D, T>]) -> usize {
+/// The axis on which the centres spread most for the size of the boxes, by a sample.
+fn widest_axis<const D: usize, T: Scalar>(entries: &[Entry<D>], boxes: &[Aabb<D, T>]) -> usize {
     let mut best = (0, -1.0, 0.0);
     for axis in 0..D {
         let (mut low, mut high, mut width) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
-        for &seat in seats {
-            let aabb = &boxes[seat as usize];
-            let centre = aabb.centre(axis);
-            low = low.min(centre);
-            high = high.max(centre);
+        for entry in entries.iter().step_by(entries.len().div_ceil(SAMPLE)) {
+            let aabb = &boxes[entry.seat as usize];
+            low = low.min(entry.centre[axis]);
+            high = high.max(entry.centre[axis]);
             width += finite(aabb.max[axis]) - finite(aabb.min[axis]);
         }
         let spread = high - low;

@@ -13,6 +13,7 @@ use alloc::vec::Vec;
 
 use super::options::{contains, hull};
 use crate::{Aabb, Scalar};
+use build::Entry;
 use node::{FAN, LEAST, Node, split};
 pub(super) use search::{BATCH, Search, TOGETHER};
 
@@ -28,7 +29,7 @@ pub(super) struct Tree<const D: usize, T> {
     leaves: Vec<u32>,
     count: usize,
     /// A buffer for building.
-    keys: Vec<[u32; 2]>,
+    entries: Vec<Entry<D>>,
     /// The size of the leaves as built, and the number of bodies then.
     built: (f64, usize),
 }
@@ -41,7 +42,7 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
             root: NONE,
             leaves: Vec::new(),
             count: 0,
-            keys: Vec::new(),
+            entries: Vec::new(),
             built: (0.0, 0),
         }
     }

@@ -16,6 +16,7 @@ pub(super) const LEAST: usize = 3;
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Node<const D: usize, T> {
+    /// By axis and lane; where there is no box, what no other overlaps.
     pub min: [[T; FAN]; D],
     pub max: [[T; FAN]; D],
     /// Seats in a leaf, else nodes.
@@ -29,10 +30,9 @@ pub(super) struct Node<const D: usize, T> {
 
 impl<const D: usize, T: Scalar> Node<D, T> {
     pub fn new(is_leaf: bool) -> Self {
-        let nothing = [[T::default(); FAN]; D];
         Self {
-            min: nothing,
-            max: nothing,
+            min: [[T::INFINITY; FAN]; D],
+            max: [[T::NEG_INFINITY; FAN]; D],
             items: [NONE; FAN],
             count: 0,
             parent: NONE,
@@ -68,11 +68,16 @@ impl<const D: usize, T: Scalar> Node<D, T> {
         let last = self.aabb(self.count);
         self.set_aabb(lane, &last);
         self.items[lane] = self.items[self.count];
+        let nothing = Aabb::new([T::INFINITY; D], [T::NEG_INFINITY; D]);
+        self.set_aabb(self.count, &nothing);
     }
 
+    /// Where an item is that is there.
     #[inline]
     pub fn lane_of(&self, item: u32) -> usize {
-        (0..self.count).find(|&lane| self.items[lane] == item).unwrap_or(0)
+        let is_at = |lane: usize| u32::from(self.items[lane] == item).wrapping_neg();
+        let bits = (0..FAN).fold(0, |bits, lane| bits | is_at(lane) & BITS[lane]);
+        (bits & ((1 << self.count) - 1)).trailing_zeros() as usize % FAN
     }
 
     /// Has it come from memory, and does not wait for it.
@@ -89,18 +94,10 @@ impl<const D: usize, T: Scalar> Node<D, T> {
     /// The smallest box that holds all.
     #[inline]
     pub fn bounds(&self) -> Aabb<D, T> {
-        let mut bounds = self.aabb(0);
-        for axis in 0..D {
-            let (mut least, mut most) = (bounds.min[axis], bounds.max[axis]);
-            for &min in &self.min[axis][..self.count] {
-                least = if min < least { min } else { least };
-            }
-            for &max in &self.max[axis][..self.count] {
-                most = if max > most { max } else { most };
-            }
-            (bounds.min[axis], bounds.max[axis]) = (least, most);
-        }
-        bounds
+        Aabb::new(
+            core::array::from_fn(|axis| best(self.min[axis], |a, b| if b < a { b } else { a })),
+            core::array::from_fn(|axis| best(self.max[axis], |a, b| if b > a { b } else { a })),
+        )
     }
 
     /// The box that has to grow least to take in another; of several the smallest.
@@ -139,6 +136,19 @@ impl<const D: usize, T: Scalar> Node<D, T> {
         let bits = (0..FAN).fold(0, |bits, lane| bits | apart[lane] & BITS[lane]);
         !bits & ((1 << self.count) - 1)
     }
+}
+
+/// The best of all lanes, by halves, so that compilers compare several at once.
+#[inline]
+fn best<T: Copy>(mut lanes: [T; FAN], better: impl Fn(T, T) -> T) -> T {
+    let mut half = FAN;
+    while half > 1 {
+        half /= 2;
+        for lane in 0..half {
+            lanes[lane] = better(lanes[lane], lanes[lane + half]);
+        }
+    }
+    lanes[0]
 }
 
 /// By lane, its bit.
