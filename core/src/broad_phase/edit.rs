@@ -9,7 +9,7 @@ use super::options::{Report, contains, displacement, hull};
 use super::proxy::{ProxyId, flag};
 use super::update::MOST;
 use super::updater::Updater;
-use super::warm::{CAN_CALL, call};
+use super::warm::{CAN_CALL, call, is_far};
 use crate::{Aabb, Error, Scalar};
 
 /// The boxes of so many bodies that are set are called from memory before they are written.
@@ -107,15 +107,13 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     #[inline(never)]
     fn place_unlisted(&mut self, ids: &[ProxyId], boxes: &[Aabb<D, T>]) {
         self.unlisted = true;
-        for (ids, boxes) in ids.chunks(AHEAD).zip(boxes.chunks(AHEAD)) {
-            if self.slots.are_dealt {
-                for id in ids.iter().filter(|_| CAN_CALL) {
-                    call(&self.boxes, self.slots.seats[id.slot() as usize] as usize);
-                }
+        let is_far = self.slots.are_dealt && is_far(&self.boxes);
+        let seat = |id: &ProxyId| self.slots.seats[id.slot() as usize] as usize;
+        for (index, (id, aabb)) in ids.iter().zip(boxes).enumerate() {
+            if is_far && let Some(later) = ids.get(index + AHEAD) {
+                call(&self.boxes, seat(later));
             }
-            for (id, aabb) in ids.iter().zip(boxes) {
-                self.boxes[self.slots.seats[id.slot() as usize] as usize] = *aabb;
-            }
+            self.boxes[seat(id)] = *aabb;
         }
     }
 

@@ -92,7 +92,7 @@ impl<const D: usize, T: Scalar> Node<D, T> {
     }
 
     /// The smallest box that holds all.
-    #[inline]
+    #[inline(never)]
     pub fn bounds(&self) -> Aabb<D, T> {
         Aabb::new(
             core::array::from_fn(|axis| best(self.min[axis], |a, b| if b < a { b } else { a })),
