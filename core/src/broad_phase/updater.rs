@@ -76,29 +76,29 @@ pub(super) fn in_order(count: usize, front: usize, all: usize) -> usize {
     }
 }
 
-/// A set of seats, of a bit each.
+/// A set of seats.
 #[derive(Debug, Default)]
-pub(super) struct Marks(Vec<u64>);
+pub(super) struct Marks(Vec<bool>);
 
 impl Marks {
     /// Makes room for so many seats.
     pub fn resize(&mut self, seats: usize) {
-        self.0.resize(seats.div_ceil(64), 0);
+        self.0.resize(seats, false);
     }
 
     #[inline]
     pub fn set(&mut self, seat: u32) {
-        self.0[seat as usize / 64] |= 1 << (seat % 64);
+        self.0[seat as usize] = true;
     }
 
     #[inline]
     pub fn clear(&mut self, seat: u32) {
-        self.0[seat as usize / 64] &= !(1 << (seat % 64));
+        self.0[seat as usize] = false;
     }
 
     #[inline]
     pub fn has(&self, seat: u32) -> bool {
-        self.0[seat as usize / 64] >> (seat % 64) & 1 != 0
+        self.0[seat as usize]
     }
 }
 
