@@ -25,9 +25,6 @@ const WORSE: usize = 3;
 /// What the candidate so many places further on needs is called from memory.
 const AHEAD: usize = 24;
 
-/// Of so many candidates is noted at a time what is to be done with them.
-const CHUNK: usize = 64;
-
 /// To find the candidates of a body among others takes as long as to test so many in a row.
 const MANY: usize = 12;
 
@@ -170,34 +167,27 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         }
         let is_far = is_far(&self.boxes);
         let Updater { candidates, scratch, begun, ended, .. } = &mut self.updater;
-        let Scratch { marks, places: changed, dropped, .. } = scratch;
-        changed.clear();
+        let Scratch { marks, places, dropped, .. } = scratch;
+        let is_dropped = |[a, b]: [u32; 2]| DROPS && marks.has(a) | marks.has(b);
+        places.clear();
         // Without a branch: it is hard to guess what begins, ends or is dropped.
-        let (mut changes, mut drops) = ([0; CHUNK], [0; CHUNK]);
-        let chunks = candidates.pairs.chunks(CHUNK).zip(candidates.live.chunks_mut(CHUNK));
-        for (start, (pairs, live)) in (0..).step_by(CHUNK).zip(chunks) {
-            let (mut change, mut drop) = (0, 0);
-            for (index, (&[a, b], was_live)) in pairs.iter().zip(live).enumerate() {
-                if is_far && let Some(&[_, later]) = candidates.pairs.get(start + index + AHEAD) {
-                    // The first seats of neighbours in the list are near each other.
-                    call(&self.boxes, later as usize);
-                }
-                let is_live = overlap(&self.boxes[a as usize], &self.boxes[b as usize]);
-                let is_dropped = DROPS && marks.has(a) | marks.has(b);
-                changes[change] = start + index;
-                change += usize::from((is_live != *was_live) & !is_dropped);
-                if DROPS {
-                    drops[drop] = start + index;
-                    drop += usize::from(is_dropped);
-                }
-                *was_live = if is_dropped { *was_live } else { is_live };
+        push_wanted(places, &candidates.pairs, |at, pair @ [a, b]| {
+            if is_far && let Some(&[_, later]) = candidates.pairs.get(at + AHEAD) {
+                // The first seats of neighbours in the list are near each other.
+                call(&self.boxes, later as usize);
             }
-            changed.extend_from_slice(&changes[..change]);
-            dropped.extend_from_slice(&drops[..drop]);
-        }
-        for &at in changed.iter() {
-            let list = if candidates.live[at] { &mut *begun } else { &mut *ended };
-            list.push(candidates.pairs[at]);
+            let is_live = overlap(&self.boxes[a as usize], &self.boxes[b as usize]);
+            (at, (is_live != candidates.live[at]) | is_dropped(pair))
+        });
+        for &at in &*places {
+            let pair = candidates.pairs[at];
+            if is_dropped(pair) {
+                dropped.push(at);
+            } else {
+                let is_live = !candidates.live[at];
+                candidates.live[at] = is_live;
+                if is_live { &mut *begun } else { &mut *ended }.push(pair);
+            }
         }
     }
 
