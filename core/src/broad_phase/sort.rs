@@ -36,7 +36,7 @@ impl PairSorter {
         if from.len() < FEW || u32::try_from(from.len()).is_err() {
             sorted.clear();
             sorted.extend_from_slice(from);
-            sorted.sort_unstable();
+            sorted.sort_unstable_by_key(|&pair| key(pair));
             return;
         }
         let bits = usize::BITS - bound.saturating_sub(1).leading_zeros();
