@@ -83,7 +83,7 @@ impl PairSorter {
         }
         let (ended_low, ended_high) = self.buffer.split_at_mut(middle);
         let (begun_low, begun_high) = self.unsorted.split_at_mut(cut);
-        let stretch = |before, now, ended, begun| Stretch {
+        let compare = |before, now, ended, begun| Comparison {
             before,
             now,
             ended,
@@ -91,8 +91,8 @@ impl PairSorter {
             counts: [0; 2],
             at: [0; 2],
         };
-        let mut low = stretch(&before[..middle], &now[..cut], ended_low, begun_low);
-        let mut high = stretch(&before[middle..], &now[cut..], ended_high, begun_high);
+        let mut low = compare(&before[..middle], &now[..cut], ended_low, begun_low);
+        let mut high = compare(&before[middle..], &now[cut..], ended_high, begun_high);
         while low.step() & high.step() {}
         low.finish(ended, begun);
         high.finish(ended, begun);
@@ -127,18 +127,21 @@ fn key(pair: [u32; 2]) -> u64 {
     u64::from(pair[0]) << 32 | u64::from(pair[1])
 }
 
-/// Two sorted lists that are gone through together.
-struct Stretch<'a> {
+/// Two sorted lists that are compared, and how far.
+struct Comparison<'a> {
     before: &'a [[u32; 2]],
     now: &'a [[u32; 2]],
-    /// What the first has alone, and what the second: so many.
+    /// What the first has alone.
     ended: &'a mut [[u32; 2]],
+    /// What the second has alone.
     begun: &'a mut [[u32; 2]],
+    /// How many of these there are.
     counts: [usize; 2],
+    /// What comes next in each list.
     at: [usize; 2],
 }
 
-impl Stretch<'_> {
+impl Comparison<'_> {
     /// Goes one pair further in the list whose next is less, or in both; says whether it could. Without
     /// a branch that depends on what they hold.
     #[inline(always)]

@@ -10,7 +10,7 @@ use crate::finder::{enlarge_pages, prefetch};
 
 /// The bytes that come from memory at once.
 const LINE: usize = 64;
-/// A table of so many bytes is near after it was read through.
+/// Of a table of more bytes than the second cache holds only some is that near after it was read through.
 const FITS: usize = 1 << 20;
 
 /// Whether [`call`] does anything.
@@ -25,8 +25,8 @@ pub(super) fn warm<V: Copy>(table: &[V]) {
     }
 }
 
-/// Whether to call what is needed a little later: not where a table that was read through is still
-/// near, nor where the processor cannot be told.
+/// Whether to call what is needed a little later: not where all of a table that was read through is
+/// still near, nor where the processor cannot be told.
 pub(super) fn is_far<V>(table: &[V]) -> bool {
     CAN_CALL && size_of_val(table) > FITS
 }

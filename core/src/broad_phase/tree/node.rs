@@ -16,7 +16,7 @@ pub(super) const LEAST: usize = 3;
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Node<const D: usize, T> {
-    /// By axis and lane; where there is no box, what no other overlaps.
+    /// By axis and lane; a lane without a box has what changes no bounds.
     pub min: [[T; FAN]; D],
     pub max: [[T; FAN]; D],
     /// Seats in a leaf, else nodes.
