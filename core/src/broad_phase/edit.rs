@@ -9,7 +9,7 @@ use super::options::{Report, contains, displacement, hull};
 use super::proxy::{ProxyId, flag};
 use super::update::MOST;
 use super::updater::Updater;
-use super::warm::{CAN_CALL, call, is_far};
+use super::warm::{call, is_far};
 use crate::{Aabb, Error, Scalar};
 
 /// The boxes of so many bodies that are set are called from memory before they are written.
@@ -88,16 +88,15 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         }
         self.updater.warm_for(ids.len(), &self.boxes);
         self.changed.reserve(ids.len());
-        for (ids, boxes) in ids.chunks(AHEAD).zip(boxes.chunks(AHEAD)) {
+        let is_far = is_far(&self.boxes);
+        for (index, (id, aabb)) in ids.iter().zip(boxes).enumerate() {
             // Seats are dealt by place, ids are not: what is looked at is all over the tables.
-            for id in ids.iter().filter(|_| CAN_CALL) {
-                let seat = self.slots.seats[id.slot() as usize] as usize;
+            if is_far && let Some(later) = ids.get(index + AHEAD) {
+                let seat = self.slots.seats[later.slot() as usize] as usize;
                 call(&self.boxes, seat);
                 call(&self.slots.flags, seat);
             }
-            for (id, aabb) in ids.iter().zip(boxes) {
-                self.place(self.slots.seats[id.slot() as usize], aabb);
-            }
+            self.place(self.slots.seats[id.slot() as usize], aabb);
         }
         Ok(())
     }

@@ -14,7 +14,7 @@ use super::proxy::flag;
 use super::seating::{Deal, JUMP_WEAR};
 use super::tree::{BATCH, TOGETHER};
 use super::update::{REBUILD, overlap, push_wanted};
-use super::updater::{Marks, SOME, Scratch, TreeState, Updater};
+use super::updater::{SOME, Scratch, TreeState, Updater};
 use super::warm::{call, is_far, warm};
 use crate::Scalar;
 
@@ -110,28 +110,17 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// the other candidates of those that changed. Returns how many tests that were.
     #[inline(never)]
     fn test_candidates(&mut self, drops: bool) -> usize {
+        let tests = match (self.changed.len() * MANY > self.updater.candidates.pairs.len(), drops) {
+            (true, true) => self.list_flips::<true>(),
+            (true, false) => self.list_flips::<false>(),
+            (false, _) => self.list_moved(),
+        };
         let Updater { candidates, scratch, begun, ended, .. } = &mut self.updater;
-        let Scratch { marks, moved, places, dropped, .. } = scratch;
+        let Scratch { marks, places, dropped, .. } = scratch;
         dropped.reserve(candidates.pairs.capacity() / 4);
-        places.reserve(candidates.pairs.capacity() / 4);
-        let is_in = |set: &Marks, [a, b]: [u32; 2]| set.has(a) | set.has(b);
-        if self.changed.len() * MANY > candidates.pairs.len() {
-            match drops {
-                true => self.test_all_candidates::<true>(),
-                false => self.test_all_candidates::<false>(),
-            }
-            self.end_dropped();
-            return self.updater.candidates.pairs.len();
-        }
-        let seats = || self.changed.iter().chain(&self.leaving);
-        moved.resize(self.slots.len());
-        seats().for_each(|&seat| moved.set(seat));
-        places.clear();
-        push_wanted(places, &candidates.pairs, |at, pair| (at, is_in(moved, pair)));
-        seats().for_each(|&seat| moved.clear(seat));
         for &at in &*places {
             let [a, b] = candidates.pairs[at];
-            if drops && is_in(marks, [a, b]) {
+            if drops && marks.has(a) | marks.has(b) {
                 dropped.push(at);
                 continue;
             }
@@ -141,9 +130,46 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
                 if is_live { &mut *begun } else { &mut *ended }.push([a, b]);
             }
         }
-        let tests = places.len();
         self.end_dropped();
         tests
+    }
+
+    /// Lists the places of the candidates of those that changed or left, to be tested. Returns how many.
+    fn list_moved(&mut self) -> usize {
+        let Updater { candidates, scratch, .. } = &mut self.updater;
+        let Scratch { moved, places, .. } = scratch;
+        let seats = || self.changed.iter().chain(&self.leaving);
+        moved.resize(self.slots.len());
+        seats().for_each(|&seat| moved.set(seat));
+        places.clear();
+        places.reserve(candidates.pairs.capacity() / 4);
+        push_wanted(places, &candidates.pairs, |at, [a, b]| (at, moved.has(a) | moved.has(b)));
+        seats().for_each(|&seat| moved.clear(seat));
+        places.len()
+    }
+
+    /// Tests all candidates, and lists the places of those that begin or end and, if `DROPS`, of those of the
+    /// bodies that are marked. Returns how many tests that were.
+    fn list_flips<const DROPS: bool>(&mut self) -> usize {
+        if self.updater.candidates.pairs.len() * SOME > self.boxes.len() {
+            warm(&self.boxes);
+        }
+        let is_far = is_far(&self.boxes);
+        let Updater { candidates, scratch, .. } = &mut self.updater;
+        let Scratch { marks, places, .. } = scratch;
+        places.clear();
+        places.reserve(candidates.pairs.capacity() / 4);
+        // Without a branch: it is hard to guess what begins, ends or is dropped.
+        push_wanted(places, &candidates.pairs, |at, [a, b]| {
+            if is_far && let Some(&[_, later]) = candidates.pairs.get(at + AHEAD) {
+                // The first seats of neighbours in the list are near each other.
+                call(&self.boxes, later as usize);
+            }
+            let is_live = overlap(&self.boxes[a as usize], &self.boxes[b as usize]);
+            let is_dropped = DROPS && marks.has(a) | marks.has(b);
+            (at, (is_live != candidates.live[at]) | is_dropped)
+        });
+        candidates.pairs.len()
     }
 
     /// Ends what ends of the candidates that are dropped. Their places will be those of others.
@@ -158,37 +184,6 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         }
         self.updater.scratch.dropped = dropped;
         self.updater.ended = ended;
-    }
-
-    /// Tests all candidates, but for those of the bodies that are marked, which it lists if `DROPS`.
-    fn test_all_candidates<const DROPS: bool>(&mut self) {
-        if self.updater.candidates.pairs.len() * SOME > self.boxes.len() {
-            warm(&self.boxes);
-        }
-        let is_far = is_far(&self.boxes);
-        let Updater { candidates, scratch, begun, ended, .. } = &mut self.updater;
-        let Scratch { marks, places, dropped, .. } = scratch;
-        let is_dropped = |[a, b]: [u32; 2]| DROPS && marks.has(a) | marks.has(b);
-        places.clear();
-        // Without a branch: it is hard to guess what begins, ends or is dropped.
-        push_wanted(places, &candidates.pairs, |at, pair @ [a, b]| {
-            if is_far && let Some(&[_, later]) = candidates.pairs.get(at + AHEAD) {
-                // The first seats of neighbours in the list are near each other.
-                call(&self.boxes, later as usize);
-            }
-            let is_live = overlap(&self.boxes[a as usize], &self.boxes[b as usize]);
-            (at, (is_live != candidates.live[at]) | is_dropped(pair))
-        });
-        for &at in &*places {
-            let pair = candidates.pairs[at];
-            if is_dropped(pair) {
-                dropped.push(at);
-            } else {
-                let is_live = !candidates.live[at];
-                candidates.live[at] = is_live;
-                if is_live { &mut *begun } else { &mut *ended }.push(pair);
-            }
-        }
     }
 
     /// Whether candidates need only be added, since all that are known stay: if those who left their
@@ -281,10 +276,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
                     && (!self.any_filter || self.filters[first].allows(&self.filters[second]));
                 if is_candidate {
                     let pair = [other.min(*seat), other.max(*seat)];
-                    // Who sleeps has one box in all tables.
-                    let sleeps = self.slots.has(other, flag::ASLEEP);
-                    let now = if sleeps { &fat[second] } else { &self.boxes[second] };
-                    let is_live = overlap(&self.boxes[first], now);
+                    let is_live = overlap(&self.boxes[first], self.at_hand(other, &self.boxes));
                     candidates.put(places.next(), pair, is_live);
                     if is_live && !self.was_live(*seat, other) {
                         begun.push(pair);

@@ -10,7 +10,7 @@ use super::seating::Deal;
 use super::update::{overlap, push_wanted};
 use super::updater::{Scratch, Updater};
 use super::warm::{make_room, warm};
-use crate::{Error, Scalar};
+use crate::{Aabb, Error, Scalar};
 
 /// Where fewer than one body in so many moves, each is taken by itself.
 const FEW: usize = 4;
@@ -191,16 +191,20 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
 
     /// Whether a pair was live at the last update.
     pub(super) fn was_live(&self, a: u32, b: u32) -> bool {
-        let Updater { previous, fat, .. } = &self.updater;
-        // Who sleeps has one box in all tables, and in this one it was looked at.
-        let known = |seat: u32| {
-            let table = if self.slots.has(seat, flag::ASLEEP) { fat } else { previous };
-            &table[seat as usize]
-        };
+        let previous = &self.updater.previous;
         !self.slots.has(a, flag::NEW)
             && !self.slots.has(b, flag::NEW)
-            && overlap(known(a), known(b))
+            && overlap(self.at_hand(a, previous), self.at_hand(b, previous))
             && (!self.any_filter || self.old_filter(a).allows(self.old_filter(b)))
+    }
+
+    /// The box of a body in a table by seat. Who sleeps has one in all tables, and where bodies are looked up
+    /// the fat one was just looked at.
+    #[inline]
+    pub(super) fn at_hand<'a>(&'a self, seat: u32, table: &'a [Aabb<D, T>]) -> &'a Aabb<D, T> {
+        let sleeps = self.slots.has(seat, flag::ASLEEP);
+        let table = if sleeps { &self.updater.fat } else { table };
+        &table[seat as usize]
     }
 
     /// The filter of a body at the last update.

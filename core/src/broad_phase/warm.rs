@@ -13,9 +13,6 @@ const LINE: usize = 64;
 /// Of a table of more bytes than the second cache holds only some is that near after it was read through.
 const FITS: usize = 1 << 20;
 
-/// Whether [`call`] does anything.
-pub(super) const CAN_CALL: bool = cfg!(target_arch = "x86_64");
-
 /// Reads a table from front to back, so that it is near when its items are looked at out of order.
 #[inline]
 pub(super) fn warm<V: Copy>(table: &[V]) {
@@ -28,7 +25,7 @@ pub(super) fn warm<V: Copy>(table: &[V]) {
 /// Whether to call what is needed a little later: not where all of a table that was read through is
 /// still near, nor where the processor cannot be told.
 pub(super) fn is_far<V>(table: &[V]) -> bool {
-    CAN_CALL && size_of_val(table) > FITS
+    cfg!(target_arch = "x86_64") && size_of_val(table) > FITS
 }
 
 /// Calls the line of an item from memory, and does not wait for it.
