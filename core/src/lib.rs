@@ -22,21 +22,20 @@ extern crate alloc;
 #[cfg(feature = "std")]
 extern crate std;
 
-mod aabb;
 pub mod algorithms;
-mod broad_phase;
 mod error;
-mod finder;
-mod scalar;
+mod geometry;
+mod memory;
+mod pairs;
+mod world;
 
-pub use aabb::{Aabb, validate};
-pub use broad_phase::{
+pub use error::{Error, SnapshotFault};
+pub use geometry::{Aabb, Scalar, validate};
+pub use pairs::{Kernel, PairFinder, count_pairs, find_pairs, find_pairs_between};
+pub use world::{
     BroadPhase, Cast, Changes, Filter, Hit, Lists, Neighbour, Options, Pairs, ProxyId, Queries,
     Report,
 };
-pub use error::{Error, SnapshotFault};
-pub use finder::{Kernel, PairFinder, count_pairs, find_pairs, find_pairs_between};
-pub use scalar::Scalar;
 
 /// The examples of the README, run as doc tests.
 #[cfg(doctest)]

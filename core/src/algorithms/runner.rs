@@ -13,7 +13,7 @@ use super::sorted_pairwise::sorted_pairwise;
 use super::sorts::Sort;
 use super::swap_sweep::SwapSweep;
 use super::touching::Touching;
-use crate::aabb::check_count;
+use crate::geometry::check_count;
 use crate::{Aabb, Error, Scalar};
 
 /// Which algorithm.

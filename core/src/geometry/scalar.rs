@@ -1,0 +1,115 @@
+//! The two coordinate types, `f32` and `f64`.
+
+use core::cmp::Ordering;
+use core::fmt::Debug;
+use core::ops::{Add, Mul, Sub};
+
+use crate::pairs::Number;
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
+
+/// A coordinate: `f32` or `f64`, and nothing else (the trait is sealed).
+///
+/// Coordinates are compared exactly as given: no rounding, no epsilon. Behind the door, where
+/// NaN has been refused, `<` and `<=` order them totally, with `-0.0` equal to `0.0`.
+pub trait Scalar:
+    sealed::Sealed
+    + Number
+    + Copy
+    + Debug
+    + Default
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Send
+    + Sync
+    + 'static
+{
+    /// The size in memory, 4 or 8.
+    const BYTES: usize;
+    /// Positive infinity.
+    const INFINITY: Self;
+    /// Negative infinity.
+    const NEG_INFINITY: Self;
+
+    /// The coordinate as `f64`, which holds every `f32` exactly.
+    fn to_f64(self) -> f64;
+
+    /// The coordinate nearest to an `f64`, ties to even; beyond the range of `f32` an infinity.
+    fn from_f64(at: f64) -> Self;
+
+    /// The IEEE 754 bits, in the low [`BYTES`](Self::BYTES) bytes.
+    fn to_raw(self) -> u64;
+
+    /// The coordinate of these bits; those above [`BYTES`](Self::BYTES) bytes are ignored.
+    fn from_raw(bits: u64) -> Self;
+
+    /// The order of two coordinates that are not NaN; a NaN would count as equal to everything.
+    #[inline]
+    fn order(self, other: Self) -> Ordering {
+        if self < other {
+            Ordering::Less
+        } else if other < self {
+            Ordering::Greater
+        } else {
+            Ordering::Equal
+        }
+    }
+}
+
+impl Scalar for f32 {
+    const BYTES: usize = 4;
+    const INFINITY: Self = f32::INFINITY;
+    const NEG_INFINITY: Self = f32::NEG_INFINITY;
+
+    #[inline]
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+
+    #[inline]
+    fn from_f64(at: f64) -> Self {
+        at as f32
+    }
+
+    #[inline]
+    fn to_raw(self) -> u64 {
+        u64::from(self.to_bits())
+    }
+
+    #[inline]
+    fn from_raw(bits: u64) -> Self {
+        f32::from_bits(bits as u32)
+    }
+}
+
+impl Scalar for f64 {
+    const BYTES: usize = 8;
+    const INFINITY: Self = f64::INFINITY;
+    const NEG_INFINITY: Self = f64::NEG_INFINITY;
+
+    #[inline]
+    fn to_f64(self) -> f64 {
+        self
+    }
+
+    #[inline]
+    fn from_f64(at: f64) -> Self {
+        at
+    }
+
+    #[inline]
+    fn to_raw(self) -> u64 {
+        self.to_bits()
+    }
+
+    #[inline]
+    fn from_raw(bits: u64) -> Self {
+        f64::from_bits(bits)
+    }
+}

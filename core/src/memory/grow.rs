@@ -1,0 +1,41 @@
+//! Arrays that grow, or tell that they cannot.
+
+use alloc::collections::TryReserveError;
+use alloc::vec::Vec;
+
+use super::pages::enlarge_pages;
+
+/// Makes an array at least so long. Some slack is added, so that arrays of nearly one size do not
+/// grow again and again: twice as much where they are small, as the bins are whose numbers differ
+/// most from call to call. It never shrinks.
+///
+/// # Errors
+/// If there is not enough memory; then the array is as it was.
+pub fn grow<V: Copy>(array: &mut Vec<V>, size: usize, value: V) -> Result<(), TryReserveError> {
+    if array.len() < size {
+        grow_to(array, size + (size / 8).max(2 * size.min(2048)), value)?;
+    }
+    Ok(())
+}
+
+/// Makes an array just so long.
+///
+/// # Errors
+/// As [`grow`].
+#[cold]
+pub fn grow_to<V: Copy>(array: &mut Vec<V>, size: usize, value: V) -> Result<(), TryReserveError> {
+    array.try_reserve_exact(size - array.len())?;
+    enlarge_pages(array);
+    array.resize(size, value);
+    Ok(())
+}
+
+/// Reserves capacity for `more` items, on large pages where they are many: random access to many
+/// small pages costs a walk of the page tables each time.
+#[inline(never)]
+pub fn reserve<V>(table: &mut Vec<V>, more: usize) {
+    if table.capacity() - table.len() < more {
+        table.reserve(more);
+        enlarge_pages(table);
+    }
+}

@@ -1,0 +1,188 @@
+//! How far ahead a fat box reaches.
+
+use super::options::Options;
+use crate::{Aabb, Scalar};
+
+/// Chooses fat boxes from what is seen of the motion.
+///
+/// A fat box that reaches further lasts longer and has more candidates. Bodies that all move get
+/// boxes that last equally long, so that they are done with at once, by the finder.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Prediction {
+    /// The mean longest side of the boxes that moved when last seen together.
+    size: f64,
+    /// The updates that boxes made together last.
+    steps: f64,
+}
+
+/// How far a fat box reaches in box sizes: made together with others in the mean, alone.
+const REACH: f64 = 0.6;
+const REACH_ALONE: f64 = 1.2;
+/// What moves further is taken for a jump, which says nothing of the next step.
+const JUMP: f64 = 2.0;
+/// The updates a fat box is to last at most.
+const LONGEST: f64 = 80.0;
+/// What one that is made after a jump has on every side, in box sizes.
+const LANDED: f64 = 0.4;
+/// What it has on every side for inexact motion, in displacements.
+const SLACK: f64 = 0.125;
+/// Of so many bodies the motion is looked at.
+const SAMPLE: usize = 512;
+
+impl Prediction {
+    /// Looks at bodies that move: where they were at the last update and where they are.
+    pub fn look<'a, const D: usize, T: Scalar>(
+        &mut self,
+        moves: impl ExactSizeIterator<Item = (&'a Aabb<D, T>, &'a Aabb<D, T>)>,
+    ) {
+        let stride = moves.len().div_ceil(SAMPLE).max(1);
+        let (mut size, mut way, mut count) = (0.0, 0.0, 0.0);
+        for (before, now) in moves.step_by(stride) {
+            let (moved, side) = (displacement(before, now), longest_side(now));
+            if moved > 0.0 && moved < JUMP * side && side < f64::INFINITY {
+                (size, way, count) = (size + side, way + moved, count + 1.0);
+            }
+        }
+        self.steps = 0.0;
+        if count > 0.0 {
+            self.size = size / count;
+            self.steps = (REACH * size / way).min(LONGEST);
+        }
+    }
+
+    /// The updates that boxes made together last.
+    pub fn steps(&self) -> f64 {
+        self.steps
+    }
+
+    /// Whether boxes made together are larger than the bodies' own.
+    pub fn reaches(&self) -> bool {
+        self.steps >= 2.0
+    }
+
+    /// The fat box of a body that moves with most others.
+    #[inline]
+    pub fn together<const D: usize, T: Scalar>(
+        &self,
+        before: &Aabb<D, T>,
+        now: &Aabb<D, T>,
+        options: &Options<T>,
+    ) -> Aabb<D, T> {
+        let is_jump = self.is_beyond(before, now, JUMP * self.size / self.steps);
+        let steps = if is_jump { T::default() } else { T::from_f64(self.steps) };
+        fatten(before, now, steps, options)
+    }
+
+    /// Whether a body went so far that where it was says little of where it is.
+    pub fn is_jump<const D: usize, T: Scalar>(
+        &self,
+        before: &Aabb<D, T>,
+        now: &Aabb<D, T>,
+    ) -> bool {
+        self.is_beyond(before, now, JUMP * self.size)
+    }
+
+    #[inline]
+    fn is_beyond<const D: usize, T: Scalar>(
+        &self,
+        before: &Aabb<D, T>,
+        now: &Aabb<D, T>,
+        limit: f64,
+    ) -> bool {
+        let limit = T::from_f64(limit);
+        (0..D).fold(false, |beyond, axis| {
+            let way = now.min[axis] - before.min[axis];
+            beyond | !(way < limit && T::default() - way < limit)
+        })
+    }
+
+    /// The fat box of a body that moves by itself, the one in this seat: others get boxes that last
+    /// longer or less long, lest they leave them all at once.
+    pub fn alone<const D: usize, T: Scalar>(
+        &self,
+        seat: u32,
+        before: &Aabb<D, T>,
+        now: &Aabb<D, T>,
+        options: &Options<T>,
+    ) -> Aabb<D, T> {
+        let side = longest_side(now);
+        let size = if side < f64::INFINITY { side.max(self.size) } else { self.size };
+        let way = displacement(before, now);
+        let longest = LONGEST * (1.0 - f64::from(seat % 16) / 32.0);
+        let steps = if way > 0.0 { (REACH_ALONE * size / way).min(longest) } else { 0.0 };
+        if steps < 1.0 {
+            // A jump: where to from here is unknown.
+            let margin = options.margin + T::from_f64(LANDED * size);
+            return fatten(before, now, T::default(), &Options { margin, ..*options });
+        }
+        fatten(before, now, T::from_f64(steps), options)
+    }
+}
+
+/// A box that holds the next `steps` boxes if each side goes on as it did, and some slack. Holds
+/// `now`, whatever the rounding, and has no NaN where `now` has none.
+#[inline]
+fn fatten<const D: usize, T: Scalar>(
+    before: &Aabb<D, T>,
+    now: &Aabb<D, T>,
+    steps: T,
+    options: &Options<T>,
+) -> Aabb<D, T> {
+    let zero = T::default();
+    let size = |way: T| if way < zero { zero - way } else { way };
+    let tenth = if steps > zero { T::from_f64(SLACK) } else { zero };
+    let mut fat = *now;
+    for axis in 0..D {
+        // Infinite where a side comes from or goes to infinity, NaN where it stays there.
+        let down = now.min[axis] - before.min[axis];
+        let up = now.max[axis] - before.max[axis];
+        let slack = (size(down) + size(up)) * tenth;
+        let slack = slack + options.margin;
+        let slack = if slack < T::INFINITY { slack } else { options.margin };
+        let (down, up) = (down * steps, up * steps);
+        let down = if down < zero { down } else { zero };
+        let up = if up > zero { up } else { zero };
+        fat.min[axis] = now.min[axis] - slack + down;
+        fat.max[axis] = now.max[axis] + slack + up;
+    }
+    fat
+}
+
+/// The greatest displacement of a side of a box on an axis.
+fn displacement<const D: usize, T: Scalar>(before: &Aabb<D, T>, now: &Aabb<D, T>) -> f64 {
+    let sides = before.min.iter().chain(&before.max).zip(now.min.iter().chain(&now.max));
+    sides.map(|(&from, &to)| (to.to_f64() - from.to_f64()).abs()).fold(0.0, f64::max)
+}
+
+fn longest_side<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> f64 {
+    let sides = aabb.min.iter().zip(&aabb.max);
+    sides.map(|(min, max)| max.to_f64() - min.to_f64()).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::options::contains;
+
+    #[test]
+    fn fat_boxes_hold_their_bodies_whatever_comes_from_or_goes_to_infinity() {
+        let ends = [f32::NEG_INFINITY, f32::MIN, -1.0, 0.0, 1e-30, f32::MAX, f32::INFINITY];
+        let intervals = || {
+            let pairs = ends.iter().flat_map(|&a| ends.iter().map(move |&b| (a, b)));
+            pairs.filter(|(a, b)| a <= b).map(|(a, b)| Aabb::new([a], [b]))
+        };
+        let options = Options { margin: 0.5, ..Options::default() };
+        for before in intervals() {
+            for now in intervals() {
+                for steps in [0.0, 1.0, 8.0, f32::MAX] {
+                    let fat = fatten(&before, &now, steps, &options);
+                    assert!(contains(&fat, &now), "{before:?} {now:?} {steps} {fat:?}");
+                }
+                let mut prediction = Prediction::default();
+                prediction.look([(&before, &now)].into_iter());
+                assert!(contains(&prediction.alone(7, &before, &now, &options), &now));
+                assert!(contains(&prediction.together(&before, &now, &options), &now));
+            }
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! What a ray or a moving box hits.
+
+use alloc::vec::Vec;
+use core::cmp::Ordering;
+use core::ops::ControlFlow;
+
+use super::{Queries, check_each};
+use crate::world::ProxyId;
+use crate::world::tree::Search;
+use crate::{Aabb, Error, Scalar};
+
+/// A box or a point on its way: from where, in which direction, how far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cast<const D: usize, T = f32> {
+    /// The box at its start; for a ray a point.
+    pub from: Aabb<D, T>,
+    /// The way it goes for each unit of [`limit`](Self::limit), of any length. Finite.
+    pub direction: [T; D],
+    /// How many directions far: not negative, may be infinite.
+    pub limit: T,
+}
+
+impl<const D: usize, T: Scalar> Cast<D, T> {
+    /// A ray.
+    pub const fn ray(origin: [T; D], direction: [T; D], limit: T) -> Self {
+        Self { from: Aabb::new(origin, origin), direction, limit }
+    }
+
+    /// A moving box.
+    pub const fn aabb(from: Aabb<D, T>, direction: [T; D], limit: T) -> Self {
+        Self { from, direction, limit }
+    }
+
+    fn is_valid(&self) -> bool {
+        let finite = |at: &T| *at > T::NEG_INFINITY && *at < T::INFINITY;
+        self.from.is_valid()
+            && self.from.min.iter().chain(&self.from.max).chain(&self.direction).all(finite)
+            && self.limit >= T::default()
+    }
+
+    /// When it first touches a box, in directions, if it does by `limit`.
+    fn touches(&self, other: &Aabb<D, T>, limit: f64) -> Option<f64> {
+        let (mut first, mut last) = (0.0f64, limit);
+        for axis in 0..D {
+            let speed = self.direction[axis].to_f64();
+            let before = other.min[axis].to_f64() - self.from.max[axis].to_f64();
+            let behind = other.max[axis].to_f64() - self.from.min[axis].to_f64();
+            if speed == 0.0 {
+                if before > 0.0 || behind < 0.0 {
+                    return None;
+                }
+                continue;
+            }
+            let (enter, leave) = if speed > 0.0 { (before, behind) } else { (behind, before) };
+            first = first.max(enter / speed);
+            last = last.min(leave / speed);
+        }
+        (first <= last).then_some(first)
+    }
+}
+
+/// A body that a cast hits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// The body.
+    pub id: ProxyId,
+    /// How many directions from the start; 0 if they overlap there.
+    pub at: f64,
+}
+
+impl<const D: usize, T: Scalar> Queries<'_, D, T> {
+    /// The body that a ray or a moving box hits first; of several at once the least id.
+    ///
+    /// # Errors
+    /// [`Error::InvalidQuery`] if its box or direction is not finite, its box is inverted, or its
+    /// limit is negative or NaN.
+    #[doc(alias("ray_cast", "box_cast"))]
+    pub fn cast(&self, cast: &Cast<D, T>) -> Result<Option<Hit>, Error> {
+        Ok(self.cast_many(core::slice::from_ref(cast))?[0])
+    }
+
+    /// [`cast`](Self::cast) for each of many.
+    ///
+    /// # Errors
+    /// [`Error::InvalidQuery`] with the index of the first bad one.
+    pub fn cast_many(&self, casts: &[Cast<D, T>]) -> Result<Vec<Option<Hit>>, Error> {
+        check_each(casts, Cast::is_valid)?;
+        let first_hit = |cast: &Cast<D, T>| {
+            let mut best = None;
+            self.run_cast(cast, |hit| {
+                let is_better = |best: Hit| hit.at.total_cmp(&best.at).then(hit.id.cmp(&best.id));
+                if best.is_none_or(|best| is_better(best) == Ordering::Less) {
+                    best = Some(hit);
+                }
+                ControlFlow::Continue(hit.at)
+            });
+            best
+        };
+        Ok(casts.iter().map(first_hit).collect())
+    }
+
+    /// Everything that a ray or a moving box hits, sorted by where and then by id.
+    ///
+    /// # Errors
+    /// As [`cast`](Self::cast).
+    pub fn cast_all(&self, cast: &Cast<D, T>) -> Result<Vec<Hit>, Error> {
+        let mut hits = Vec::new();
+        self.cast_with(cast, |hit| {
+            hits.push(hit);
+            ControlFlow::Continue(f64::INFINITY)
+        })?;
+        hits.sort_unstable_by(|a, b| a.at.total_cmp(&b.at).then(a.id.cmp(&b.id)));
+        Ok(hits)
+    }
+
+    /// Shows what a ray or a moving box hits to `visit`, nearer parts of the world roughly first.
+    /// It may break off, or shorten the cast by continuing with a lower limit, in directions.
+    ///
+    /// # Errors
+    /// As [`cast`](Self::cast).
+    pub fn cast_with(
+        &self,
+        cast: &Cast<D, T>,
+        visit: impl FnMut(Hit) -> ControlFlow<(), f64>,
+    ) -> Result<(), Error> {
+        check_each(core::slice::from_ref(cast), Cast::is_valid)?;
+        self.run_cast(cast, visit);
+        Ok(())
+    }
+
+    fn run_cast(&self, cast: &Cast<D, T>, visit: impl FnMut(Hit) -> ControlFlow<(), f64>) {
+        let limit = cast.limit.to_f64();
+        // Whoever broke off knows it.
+        let _ = self.world.updater.tree.search(&mut Casting { queries: self, cast, limit, visit });
+    }
+}
+
+/// What a cast hits up to a limit that the visitor lowers.
+struct Casting<'q, const D: usize, T: Scalar, V> {
+    queries: &'q Queries<'q, D, T>,
+    cast: &'q Cast<D, T>,
+    limit: f64,
+    visit: V,
+}
+
+impl<const D: usize, T, V> Search<D, T> for Casting<'_, D, T, V>
+where
+    T: Scalar,
+    V: FnMut(Hit) -> ControlFlow<(), f64>,
+{
+    #[inline]
+    fn bound(&self, bounds: &Aabb<D, T>) -> Option<f64> {
+        self.cast.touches(bounds, self.limit)
+    }
+
+    fn visit(&mut self, seat: u32) -> ControlFlow<()> {
+        if let Some(at) = self.cast.touches(self.queries.world.shape(seat), self.limit)
+            && self.queries.sees(seat)
+        {
+            let limit = (self.visit)(Hit { id: self.queries.world.slots.id(seat), at });
+            self.limit = self.limit.min(match limit {
+                ControlFlow::Continue(limit) => limit,
+                ControlFlow::Break(()) => return ControlFlow::Break(()),
+            });
+        }
+        ControlFlow::Continue(())
+    }
+}
