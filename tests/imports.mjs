@@ -1,0 +1,43 @@
+// Prints the import cycles of the sources, and with `--all` what each file imports. tests/imports.test.mjs
+// says what counts as an import.
+import { dirname, join, relative } from "node:path";
+import { fileURLToPath } from "node:url";
+
+import { cyclicGroups, shortestCycle } from "./support/cycles.mjs";
+import { crateRoot, rustImports } from "./support/rust-imports.mjs";
+import { typescriptImports } from "./support/typescript-imports.mjs";
+
+export const root = dirname(dirname(fileURLToPath(import.meta.url)));
+
+/** The folders that must be without cycles. */
+export const FOLDERS = ["core/src", "js/src", "bench/src"];
+
+/** Which file of a folder imports which: file -> imported file -> names. */
+export const importsOf = (folder) =>
+  folder === "js/src" ? typescriptImports(join(root, folder)) : rustImports(crateRoot(join(root, folder)));
+
+/** A group of files that import each other, for people: one shortest cycle, and who else is in it. */
+export function report(graph, group) {
+  const name = (file) => relative(root, file);
+  const cycle = shortestCycle(graph, group);
+  const steps = cycle.slice(1).map((to, at) => {
+    const names = [...graph.get(cycle[at]).get(to)].sort().join(", ");
+    return `    ${name(cycle[at])} imports ${names} of ${name(to)}`;
+  });
+  const others = group.filter((file) => !cycle.includes(file)).map(name);
+  const rest = others.length > 0 ? `\n  in cycles with these: ${others.join(", ")}` : "";
+  return `  a cycle:\n${steps.join("\n")}${rest}`;
+}
+
+if (process.argv[1] === fileURLToPath(import.meta.url)) {
+  for (const folder of FOLDERS) {
+    const graph = importsOf(folder);
+    console.log(`${folder}: ${graph.size} files`);
+    for (const group of cyclicGroups(graph)) console.log(report(graph, group));
+    if (!process.argv.includes("--all")) continue;
+    for (const [file, imports] of graph) {
+      console.log(`  ${relative(root, file)}`);
+      for (const [to, names] of imports) console.log(`    ${relative(root, to)}: ${[...names].join(", ")}`);
+    }
+  }
+}
