@@ -1,0 +1,252 @@
+//! A broad phase of any dimensions and precision.
+
+use alloc::vec::Vec;
+
+use sweep_and_prune::{BroadPhase, Error, Filter, Options, ProxyId, Scalar, validate};
+
+use crate::queries::{Answer, Query, ask};
+use crate::rows::{Coordinates, Rows, aabb};
+use crate::{Kind, Settings};
+
+/// An id in the form that a binding gives out.
+pub trait Id: Copy {
+    /// The form of an id of the core.
+    fn from_proxy(id: ProxyId) -> Self;
+}
+
+/// The bits of an id, as [`ProxyId::to_bits`].
+impl Id for u64 {
+    fn from_proxy(id: ProxyId) -> Self {
+        id.to_bits()
+    }
+}
+
+/// A broad phase with the rows that it reads. What a method of the same name promises in
+/// [`BroadPhase`] holds here, errors included; after an error nothing has changed.
+#[allow(clippy::missing_errors_doc, clippy::len_without_is_empty)]
+pub trait AnyBroadPhase<I: Id>: Send {
+    /// The type of its boxes.
+    fn kind(&self) -> Kind;
+
+    /// Where to write `count` rows, valid until the next call of this method; `None` if there is
+    /// no memory.
+    fn rows(&mut self, count: usize) -> Option<*mut u8>;
+
+    /// Adds a body from the corners of its box.
+    fn insert(&mut self, corners: &[f64]) -> Result<ProxyId, Error>;
+
+    /// Adds a body for each of the first `count` rows.
+    fn insert_many(&mut self, count: usize, filter: Filter) -> Result<Vec<ProxyId>, Error>;
+
+    /// Gives a body the box of these corners.
+    fn set(&mut self, id: ProxyId, corners: &[f64]) -> Result<(), Error>;
+
+    /// Gives the bodies the boxes of the first rows, which are at least as many.
+    fn set_many(&mut self, ids: &[ProxyId]) -> Result<(), Error>;
+
+    /// Moves a body from the box of these corners to another.
+    fn set_swept(&mut self, id: ProxyId, from: &[f64], to: &[f64]) -> Result<(), Error>;
+
+    /// Changes the filter of a body.
+    fn set_filter(&mut self, id: ProxyId, filter: Filter) -> Result<(), Error>;
+
+    /// The filter of a body.
+    fn filter(&self, id: ProxyId) -> Result<Filter, Error>;
+
+    /// Writes the corners of the box of a body.
+    fn corners(&self, id: ProxyId, corners: &mut [f64]) -> Result<(), Error>;
+
+    /// Whether a body is here.
+    fn contains(&self, id: ProxyId) -> bool;
+
+    /// Removes bodies.
+    fn remove_many(&mut self, ids: &[ProxyId]) -> Result<(), Error>;
+
+    /// How many bodies there are.
+    fn len(&self) -> usize;
+
+    /// Calls `each` with the id of each body.
+    fn for_each_id(&self, each: &mut dyn FnMut(ProxyId));
+
+    /// Updates. Appends the ids of the pairs that began and then those of the pairs that ended, two
+    /// a pair, and returns how many ids the former are.
+    fn update(&mut self, ids: &mut Vec<I>) -> usize;
+
+    /// Appends the ids of the pairs of the last update, two a pair.
+    fn pairs(&mut self, ids: &mut Vec<I>);
+
+    /// Appends the ids of the bodies that overlapped this one at the last update.
+    fn pairs_of(&mut self, id: ProxyId, ids: &mut Vec<I>) -> Result<(), Error>;
+
+    /// Answers queries of one kind, whose numbers follow each other: see [`Query`].
+    fn query(
+        &mut self,
+        query: Query,
+        numbers: &[f64],
+        filter: Filter,
+        answer: &mut Answer<I>,
+    ) -> Result<(), Error>;
+
+    /// The whole state as bytes.
+    fn snapshot(&self) -> Vec<u8>;
+
+    /// Becomes the broad phase of a snapshot of the same type of boxes.
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), Error>;
+
+    /// A hash of the whole state.
+    fn state_hash(&self) -> u64;
+}
+
+/// A broad phase whose boxes are copied from arrays.
+pub trait ArrayBroadPhase<I: Id>: AnyBroadPhase<I> {
+    /// Copies boxes to the first rows, and returns how many there are.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    fn write_rows(&mut self, coordinates: Coordinates<'_>) -> Result<usize, Error>;
+
+    /// Checks the first `count` rows.
+    ///
+    /// # Errors
+    /// [`Error::InvalidBox`].
+    fn validate(&self, count: usize) -> Result<(), Error>;
+
+    /// Removes all bodies: for after a call that panicked, which may have left anything half done.
+    fn reset(&mut self);
+}
+
+/// The implementation for one type of box.
+pub struct TypedBroadPhase<const D: usize, T: Scalar> {
+    world: BroadPhase<D, T>,
+    rows: Rows<D, T>,
+}
+
+impl<const D: usize, T: Scalar> TypedBroadPhase<D, T> {
+    /// An empty broad phase.
+    ///
+    /// # Errors
+    /// [`Error::InvalidMargin`].
+    pub fn new(settings: Settings) -> Result<Self, Error> {
+        let Settings { margin, prediction, report } = settings;
+        let (margin, prediction) = (T::from_f64(margin), T::from_f64(prediction));
+        let world = BroadPhase::with_options(Options { margin, prediction, report })?;
+        Ok(Self { world, rows: Rows::new() })
+    }
+}
+
+impl<const D: usize, T: Scalar, I: Id> AnyBroadPhase<I> for TypedBroadPhase<D, T> {
+    fn kind(&self) -> Kind {
+        Kind { dimensions: D, is_double: size_of::<T>() == size_of::<f64>() }
+    }
+
+    fn rows(&mut self, count: usize) -> Option<*mut u8> {
+        self.rows.reserve(count)
+    }
+
+    fn insert(&mut self, corners: &[f64]) -> Result<ProxyId, Error> {
+        self.world.insert(aabb(corners))
+    }
+
+    fn insert_many(&mut self, count: usize, filter: Filter) -> Result<Vec<ProxyId>, Error> {
+        self.world.insert_many(self.rows.first(count), filter)
+    }
+
+    fn set(&mut self, id: ProxyId, corners: &[f64]) -> Result<(), Error> {
+        self.world.set(id, aabb(corners))
+    }
+
+    fn set_many(&mut self, ids: &[ProxyId]) -> Result<(), Error> {
+        self.world.set_many(ids, self.rows.first(ids.len()))
+    }
+
+    fn set_swept(&mut self, id: ProxyId, from: &[f64], to: &[f64]) -> Result<(), Error> {
+        self.world.set_swept(id, aabb(from), aabb(to))
+    }
+
+    fn set_filter(&mut self, id: ProxyId, filter: Filter) -> Result<(), Error> {
+        self.world.set_filter(id, filter)
+    }
+
+    fn filter(&self, id: ProxyId) -> Result<Filter, Error> {
+        self.world.filter(id)
+    }
+
+    fn corners(&self, id: ProxyId, corners: &mut [f64]) -> Result<(), Error> {
+        let aabb = self.world.aabb(id)?;
+        for (number, at) in corners.iter_mut().zip(aabb.min.into_iter().chain(aabb.max)) {
+            *number = at.to_f64();
+        }
+        Ok(())
+    }
+
+    fn contains(&self, id: ProxyId) -> bool {
+        self.world.contains(id)
+    }
+
+    fn remove_many(&mut self, ids: &[ProxyId]) -> Result<(), Error> {
+        self.world.remove_many(ids)
+    }
+
+    fn len(&self) -> usize {
+        self.world.len()
+    }
+
+    fn for_each_id(&self, each: &mut dyn FnMut(ProxyId)) {
+        self.world.ids().for_each(each);
+    }
+
+    fn update(&mut self, ids: &mut Vec<I>) -> usize {
+        let before = ids.len();
+        let changes = self.world.update();
+        ids.extend(changes.begun().flatten().map(I::from_proxy));
+        let begun = ids.len() - before;
+        ids.extend(changes.ended().flatten().map(I::from_proxy));
+        begun
+    }
+
+    fn pairs(&mut self, ids: &mut Vec<I>) {
+        ids.extend(self.world.pairs().into_iter().flatten().map(I::from_proxy));
+    }
+
+    fn pairs_of(&mut self, id: ProxyId, ids: &mut Vec<I>) -> Result<(), Error> {
+        ids.extend(self.world.pairs_of(id)?.into_iter().map(I::from_proxy));
+        Ok(())
+    }
+
+    fn query(
+        &mut self,
+        query: Query,
+        numbers: &[f64],
+        filter: Filter,
+        answer: &mut Answer<I>,
+    ) -> Result<(), Error> {
+        ask(&mut self.world, query, numbers, filter, answer)
+    }
+
+    fn snapshot(&self) -> Vec<u8> {
+        self.world.snapshot()
+    }
+
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), Error> {
+        self.world = BroadPhase::from_snapshot(bytes)?;
+        Ok(())
+    }
+
+    fn state_hash(&self) -> u64 {
+        self.world.state_hash()
+    }
+}
+
+impl<const D: usize, T: Scalar, I: Id> ArrayBroadPhase<I> for TypedBroadPhase<D, T> {
+    fn write_rows(&mut self, coordinates: Coordinates<'_>) -> Result<usize, Error> {
+        self.rows.write(coordinates)
+    }
+
+    fn validate(&self, count: usize) -> Result<(), Error> {
+        validate(self.rows.first(count))
+    }
+
+    fn reset(&mut self) {
+        self.world = BroadPhase::with_options(self.world.options()).unwrap_or_default();
+    }
+}

@@ -1,0 +1,145 @@
+//! A pair finder of any dimensions and precision.
+
+use core::ops::ControlFlow;
+
+use sweep_and_prune::{Error, PairFinder, Scalar};
+
+use crate::rows::{Coordinates, Rows};
+
+/// A pair finder with the rows that it reads: set 0, or the sets 0 and 1.
+///
+/// `a` and `b` are how many rows of the sets 0 and 1 are searched. Without `b`, the pairs are those
+/// within set 0; with it, those of a box of set 0 and a box of set 1.
+pub trait AnyPairFinder: Send {
+    /// Where to write `count` rows of a set, valid until the next call of this method for the same
+    /// set; `None` for a set other than 0 and 1, or if there is no memory.
+    fn rows(&mut self, set: usize, count: usize) -> Option<*mut u8>;
+
+    /// Calls `each` with chunks of pairs, in their order, until it breaks. Stores no pairs.
+    ///
+    /// # Errors
+    /// [`Error::InvalidBox`], before the first chunk; the boxes of set 1 are counted after those of
+    /// set 0. [`Error::OutOfMemory`].
+    fn for_each_chunk(
+        &mut self,
+        a: usize,
+        b: Option<usize>,
+        each: &mut dyn FnMut(&[[u32; 2]]) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, Error>;
+}
+
+/// What is told of the progress of a search, from 0 to 1, and may cancel it. Other threads call it.
+pub type Progress<'a> = &'a (dyn Fn(f64) -> ControlFlow<()> + Sync);
+
+/// A pair finder whose boxes are copied from arrays. Errors are those of
+/// [`for_each_chunk`](AnyPairFinder::for_each_chunk).
+pub trait ArrayPairFinder: AnyPairFinder {
+    /// Copies boxes to the rows of set 0 or 1, and returns how many there are.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    ///
+    /// # Panics
+    /// For a set other than 0 and 1.
+    fn write_rows(&mut self, set: usize, coordinates: Coordinates<'_>) -> Result<usize, Error>;
+
+    /// All pairs; `None` if the search was cancelled.
+    #[allow(clippy::missing_errors_doc)]
+    fn find(
+        &mut self,
+        a: usize,
+        b: Option<usize>,
+        progress: Progress<'_>,
+    ) -> Result<Option<&[[u32; 2]]>, Error>;
+
+    /// How many pairs there are; `None` if the search was cancelled. Stores no pairs.
+    #[allow(clippy::missing_errors_doc)]
+    fn count(
+        &mut self,
+        a: usize,
+        b: Option<usize>,
+        progress: Progress<'_>,
+    ) -> Result<Option<u64>, Error>;
+
+    /// Drops what a call that panicked left half done. The rows stay.
+    fn reset(&mut self);
+}
+
+/// The implementation for one type of box.
+pub struct TypedPairFinder<const D: usize, T: Scalar> {
+    finder: PairFinder<D, T>,
+    sets: [Rows<D, T>; 2],
+    threads: usize,
+}
+
+impl<const D: usize, T: Scalar> TypedPairFinder<D, T> {
+    /// A finder that uses at most so many threads: without the feature `parallel`, one.
+    pub fn new(threads: usize) -> Self {
+        Self { finder: fresh(threads), sets: [Rows::new(), Rows::new()], threads }
+    }
+}
+
+#[cfg(feature = "parallel")]
+fn fresh<const D: usize, T: Scalar>(threads: usize) -> PairFinder<D, T> {
+    PairFinder::new().threads(threads)
+}
+
+#[cfg(not(feature = "parallel"))]
+fn fresh<const D: usize, T: Scalar>(_: usize) -> PairFinder<D, T> {
+    PairFinder::new()
+}
+
+impl<const D: usize, T: Scalar> AnyPairFinder for TypedPairFinder<D, T> {
+    fn rows(&mut self, set: usize, count: usize) -> Option<*mut u8> {
+        self.sets.get_mut(set)?.reserve(count)
+    }
+
+    fn for_each_chunk(
+        &mut self,
+        a: usize,
+        b: Option<usize>,
+        each: &mut dyn FnMut(&[[u32; 2]]) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, Error> {
+        let first = self.sets[0].first(a);
+        match b {
+            None => self.finder.for_each_slice(first, each),
+            Some(b) => self.finder.for_each_slice_between(first, self.sets[1].first(b), each),
+        }
+    }
+}
+
+impl<const D: usize, T: Scalar> ArrayPairFinder for TypedPairFinder<D, T> {
+    fn write_rows(&mut self, set: usize, coordinates: Coordinates<'_>) -> Result<usize, Error> {
+        self.sets[set].write(coordinates)
+    }
+
+    fn find(
+        &mut self,
+        a: usize,
+        b: Option<usize>,
+        progress: Progress<'_>,
+    ) -> Result<Option<&[[u32; 2]]>, Error> {
+        let first = self.sets[0].first(a);
+        match b {
+            None => self.finder.find_watched(first, progress),
+            Some(b) => self.finder.find_between_watched(first, self.sets[1].first(b), progress),
+        }
+    }
+
+    fn count(
+        &mut self,
+        a: usize,
+        b: Option<usize>,
+        progress: Progress<'_>,
+    ) -> Result<Option<u64>, Error> {
+        let first = self.sets[0].first(a);
+        match b {
+            None => self.finder.count_watched(first, progress),
+            Some(b) => self.finder.count_between_watched(first, self.sets[1].first(b), progress),
+        }
+    }
+
+    fn reset(&mut self) {
+        self.finder = fresh(self.threads);
+    }
+}

@@ -1,0 +1,126 @@
+//! Queries of a broad phase of any dimensions and precision, many at once.
+
+use alloc::vec::Vec;
+
+use sweep_and_prune::{Aabb, BroadPhase, Cast, Error, Filter, ProxyId, Scalar};
+
+use crate::Id;
+use crate::rows::{aabb, point};
+
+/// Which bodies a query finds. The numbers of a query in `D` dimensions are as listed here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Query {
+    /// Those that overlap a box: its min corner, its max corner.
+    Overlapping,
+    /// Those that contain a point.
+    Containing,
+    /// Those near a point: the point, the radius.
+    Within,
+    /// The first one that a moving box hits: its min corner, its max corner, the direction, the
+    /// limit. A ray is a box whose corners are equal. Values: t, where the hit is at
+    /// `start + t * direction`.
+    Cast,
+    /// All that a moving box hits, nearest first. Numbers and values are those of [`Query::Cast`].
+    CastAll,
+    /// The so many nearest to a point, nearest first. Values: squared distances.
+    Nearest(usize),
+}
+
+impl Query {
+    /// How many numbers one query takes.
+    pub const fn width(self, dimensions: usize) -> usize {
+        match self {
+            Query::Overlapping => 2 * dimensions,
+            Query::Containing | Query::Nearest(_) => dimensions,
+            Query::Within => dimensions + 1,
+            Query::Cast | Query::CastAll => 3 * dimensions + 1,
+        }
+    }
+}
+
+/// What queries found, query by query.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Answer<I> {
+    /// The bodies.
+    pub ids: Vec<I>,
+    /// A value for each body, if the query has one.
+    pub values: Vec<f64>,
+    /// Where the bodies of each query end in `ids`; they begin where those of the one before end.
+    pub ends: Vec<usize>,
+}
+
+impl<I: Id> Answer<I> {
+    pub(crate) fn clear(&mut self) {
+        self.ids.clear();
+        self.values.clear();
+        self.ends.clear();
+    }
+
+    fn push(&mut self, id: ProxyId, value: f64) {
+        self.ids.push(I::from_proxy(id));
+        self.values.push(value);
+    }
+
+    fn end(&mut self) {
+        self.ends.push(self.ids.len());
+    }
+}
+
+/// Answers the queries whose numbers follow each other; what is left over is not read.
+pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
+    world: &mut BroadPhase<D, T>,
+    query: Query,
+    numbers: &[f64],
+    filter: Filter,
+    answer: &mut Answer<I>,
+) -> Result<(), Error> {
+    answer.clear();
+    let rows = numbers.chunks_exact(query.width(D));
+    let queries = world.queries().with_filter(filter);
+    let lists = match query {
+        Query::Overlapping => {
+            let boxes: Vec<Aabb<D, T>> = rows.map(aabb).collect();
+            queries.overlapping_many(&boxes)?
+        }
+        Query::Containing => {
+            let points: Vec<[T; D]> = rows.map(point).collect();
+            queries.containing_many(&points)?
+        }
+        Query::Within => {
+            let sphere = |row: &[f64]| (point(row), T::from_f64(row[D]));
+            let spheres: Vec<([T; D], T)> = rows.map(sphere).collect();
+            queries.within_many(&spheres)?
+        }
+        Query::Cast => {
+            let casts: Vec<Cast<D, T>> = rows.map(cast).collect();
+            for hit in queries.cast_many(&casts)? {
+                hit.into_iter().for_each(|hit| answer.push(hit.id, hit.at));
+                answer.end();
+            }
+            return Ok(());
+        }
+        Query::CastAll => {
+            for (index, row) in rows.enumerate() {
+                let hits = queries.cast_all(&cast(row));
+                let hits = hits.map_err(|_| Error::InvalidQuery { index })?;
+                hits.into_iter().for_each(|hit| answer.push(hit.id, hit.at));
+                answer.end();
+            }
+            return Ok(());
+        }
+        Query::Nearest(k) => {
+            let points: Vec<[T; D]> = rows.map(point).collect();
+            let nearest = queries.nearest_many(&points, k)?;
+            nearest.values().iter().for_each(|near| answer.push(near.id, near.distance_squared));
+            answer.ends.extend_from_slice(nearest.ends());
+            return Ok(());
+        }
+    };
+    answer.ids.extend(lists.values().iter().map(|&id| I::from_proxy(id)));
+    answer.ends.extend_from_slice(lists.ends());
+    Ok(())
+}
+
+fn cast<const D: usize, T: Scalar>(row: &[f64]) -> Cast<D, T> {
+    Cast::aabb(aabb(row), point(&row[2 * D..]), T::from_f64(row[3 * D]))
+}
