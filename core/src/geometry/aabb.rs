@@ -5,47 +5,104 @@ use crate::error::Error;
 
 /// An axis-aligned box in `D` dimensions: the closed intervals `min[axis] ..= max[axis]`.
 ///
-/// A box is valid if `min <= max` on each axis. Points and flat boxes are boxes, and infinite
-/// coordinates are allowed (a ground half-space). NaN and inverted boxes are not valid; every
-/// public function that takes boxes refuses them with the index at fault.
+/// A box is valid if `min <= max` on each axis. Points and flat boxes are valid, and infinite
+/// coordinates are allowed (a ground half-space). Boxes that are NaN or inverted are not valid: every
+/// function that takes boxes returns an error that names the box.
 ///
-/// In memory a box is a row of `2 * D` scalars, the minimum corner and then the maximum corner.
+/// In memory a box is `2 * D` scalars: the min corner, then the max corner.
 ///
 /// ```
 /// use sweep_and_prune::Aabb;
 ///
-/// let crate_ = Aabb::new([0.0, 0.0], [1.0, 2.0]);
+/// let player = Aabb::new([0.0, 0.0], [1.0, 2.0]);
 /// let ground = Aabb::new([f32::NEG_INFINITY, f32::NEG_INFINITY], [f32::INFINITY, 0.0]);
-/// assert!(crate_.overlaps(&ground)); // touching boxes overlap
+/// assert!(player.overlaps(&ground)); // touching boxes overlap
 /// ```
+///
+/// Boxes are made from corners, from a center, or from arrays and tuples in the order of their
+/// coordinates in memory:
+///
+/// ```
+/// use sweep_and_prune::Aabb;
+///
+/// let aabb = Aabb::new([0.0, 0.0], [2.0, 4.0]);
+/// assert_eq!(aabb, Aabb::from_center([1.0, 2.0], [1.0, 2.0]));
+/// assert_eq!(aabb, Aabb::from([0.0, 0.0, 2.0, 4.0]));
+/// assert_eq!(aabb, Aabb::from(([0.0, 0.0], [2.0, 4.0])));
+/// let [min, max]: [[f32; 2]; 2] = aabb.into();
+/// ```
+///
+/// With the features `glam` and `mint` a pair of their vectors converts to a box and back. With
+/// `bytemuck` a `&[f32]` can be cast to a `&[Aabb<2>]`, and with `serde` a box is `{ min, max }`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Aabb<const D: usize, T = f32> {
-    /// The least corner.
+    /// The min corner.
     pub min: [T; D],
-    /// The greatest corner.
+    /// The max corner.
     pub max: [T; D],
 }
 
 impl<const D: usize, T: Scalar> Aabb<D, T> {
-    /// A box from its least and its greatest corner. Any values are taken; see
+    /// A box from its min corner and its max corner. Any values are accepted; see
     /// [`is_valid`](Self::is_valid).
     #[inline]
     pub const fn new(min: [T; D], max: [T; D]) -> Self {
         Self { min, max }
     }
 
+    /// A box from its center and its half sizes (not its full sizes) along each axis. Any values
+    /// are accepted; a negative half size gives an inverted box. The corners are rounded to the
+    /// nearest `T`.
+    ///
+    /// ```
+    /// use sweep_and_prune::Aabb;
+    ///
+    /// let sphere = Aabb::from_center([5.0, 0.0, 1.0], [0.5; 3]); // of radius 0.5
+    /// assert_eq!(sphere, Aabb::new([4.5, -0.5, 0.5], [5.5, 0.5, 1.5]));
+    /// ```
+    #[inline]
+    #[must_use]
+    pub fn from_center(center: [T; D], half_extents: [T; D]) -> Self {
+        Self {
+            min: core::array::from_fn(|axis| center[axis] - half_extents[axis]),
+            max: core::array::from_fn(|axis| center[axis] + half_extents[axis]),
+        }
+    }
+
+    /// The point in the middle, rounded to the nearest `T`. NaN on an axis that reaches from
+    /// negative to positive infinity.
+    #[inline]
+    #[must_use]
+    pub fn center(&self) -> [T; D] {
+        core::array::from_fn(|axis| midpoint(self.min[axis], self.max[axis]))
+    }
+
+    /// The full size along each axis: `max - min`. Half of it is
+    /// [`half_extents`](Self::half_extents).
+    #[inline]
+    #[must_use]
+    pub fn extents(&self) -> [T; D] {
+        core::array::from_fn(|axis| self.max[axis] - self.min[axis])
+    }
+
+    /// Half of the size along each axis, as [`from_center`](Self::from_center) expects it.
+    #[inline]
+    #[must_use]
+    pub fn half_extents(&self) -> [T; D] {
+        self.extents().map(|extent| extent * T::from_f64(0.5))
+    }
+
     /// Whether two boxes share a point. Intervals are closed: touching boxes overlap.
     ///
-    /// A separating axis is enough to reject, so the axes are tried in turn and the first that
-    /// separates ends the test.
+    /// One axis that separates the boxes is enough to reject them, so the test ends at the first.
     #[inline]
     pub fn overlaps(&self, other: &Self) -> bool {
         (0..D).all(|axis| self.overlaps_on(axis, other))
     }
 
-    /// [`overlaps`](Self::overlaps) without a branch: every axis is compared. Faster where the result
-    /// cannot be predicted.
+    /// [`overlaps`](Self::overlaps) without a branch: compares every axis. Faster where the processor
+    /// cannot predict the result.
     #[inline]
     pub(crate) fn overlaps_branch_free(&self, other: &Self) -> bool {
         (0..D).fold(true, |all, axis| {
@@ -77,8 +134,8 @@ impl<const D: usize, T: Scalar> Aabb<D, T> {
         union
     }
 
-    /// Whether the intervals of two boxes share a point on one axis. This line is the overlap
-    /// rule of the whole project: closed on both sides.
+    /// Whether the intervals of two boxes share a point on one axis. This is the overlap rule of
+    /// the whole project: intervals are closed on both sides.
     ///
     /// # Panics
     /// If `axis >= D`.
@@ -87,7 +144,7 @@ impl<const D: usize, T: Scalar> Aabb<D, T> {
         self.min[axis] <= other.max[axis] && other.min[axis] <= self.max[axis]
     }
 
-    /// Whether `min <= max` on each axis, which NaN never is.
+    /// Whether `min <= max` on each axis. A box with a NaN is never valid.
     #[inline]
     pub fn is_valid(&self) -> bool {
         self.invalid_axis().is_none()
@@ -100,17 +157,29 @@ impl<const D: usize, T: Scalar> Aabb<D, T> {
     }
 }
 
+/// The middle of an interval. The sum comes first because it is exact for tiny numbers; where it
+/// overflows, the halves are added.
+#[inline]
+fn midpoint<T: Scalar>(min: T, max: T) -> T {
+    let half = T::from_f64(0.5);
+    let sum = min + max;
+    let overflows = !(T::NEG_INFINITY < sum && sum < T::INFINITY);
+    if overflows { min * half + max * half } else { sum * half }
+}
+
 /// `min <= max`, which is false for a NaN on either side.
 #[inline]
 fn is_interval<T: Scalar>(min: T, max: T) -> bool {
     min <= max
 }
 
-/// Checks a set of boxes at the door: each is valid, and their indices fit in a `u32`.
+/// Checks that each box is valid and that the indices of the boxes fit in a `u32`. O(n) time.
+///
+/// The functions that find pairs check their input themselves.
 ///
 /// # Errors
-/// [`Error::TooManyBoxes`], or [`Error::InvalidBox`] with the least index at fault and its first
-/// bad axis. O(n) time.
+/// [`Error::TooManyBoxes`], or [`Error::InvalidBox`] with the smallest index of an invalid box and its
+/// first invalid axis.
 pub fn validate<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>]) -> Result<(), Error> {
     check_count(boxes.len())?;
     for (index, aabb) in boxes.iter().enumerate() {
@@ -121,12 +190,12 @@ pub fn validate<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>]) -> Result<(), E
     Ok(())
 }
 
-/// Checks that so many boxes can be told apart by a `u32`.
+/// Checks that the indices of `count` boxes fit in a `u32`.
 ///
 /// # Errors
 /// [`Error::TooManyBoxes`].
 pub(crate) fn check_count(count: usize) -> Result<(), Error> {
-    // Not `count > BOX_LIMIT`, which is absurd where addresses have 32 bits.
+    // Not `count > BOX_LIMIT`: where addresses have 32 bits, that is never true, and Clippy objects.
     u32::try_from(count).map(|_| ()).map_err(|_| Error::TooManyBoxes { count })
 }
 

@@ -1,7 +1,14 @@
 //! The box, its coordinates, and the rules that hold for boxes: what is valid, what overlaps.
 
 mod aabb;
+mod arrays;
+#[cfg(feature = "bytemuck")]
+mod bytes;
 mod scalar;
+#[cfg(feature = "serde")]
+mod serde;
+#[cfg(any(feature = "glam", feature = "mint"))]
+mod vectors;
 
 pub(crate) use aabb::check_count;
 pub use aabb::{Aabb, validate};

@@ -14,8 +14,8 @@ mod sealed {
 
 /// A coordinate: `f32` or `f64`, and nothing else (the trait is sealed).
 ///
-/// Coordinates are compared exactly as given: no rounding, no epsilon. Behind the door, where
-/// NaN has been refused, `<` and `<=` order them totally, with `-0.0` equal to `0.0`.
+/// Coordinates are compared exactly as given: no rounding, no epsilon. Public functions refuse NaN,
+/// so inside the crate `<` and `<=` order coordinates totally, with `-0.0` equal to `0.0`.
 pub trait Scalar:
     sealed::Sealed
     + Number
@@ -40,16 +40,17 @@ pub trait Scalar:
     /// The coordinate as `f64`, which holds every `f32` exactly.
     fn to_f64(self) -> f64;
 
-    /// The coordinate nearest to an `f64`, ties to even; beyond the range of `f32` an infinity.
-    fn from_f64(at: f64) -> Self;
+    /// The coordinate nearest to an `f64`, ties to even. Values beyond the range of `f32` become
+    /// infinite.
+    fn from_f64(value: f64) -> Self;
 
     /// The IEEE 754 bits, in the low [`BYTES`](Self::BYTES) bytes.
     fn to_raw(self) -> u64;
 
-    /// The coordinate of these bits; those above [`BYTES`](Self::BYTES) bytes are ignored.
+    /// The coordinate with these bits. Bits beyond the low [`BYTES`](Self::BYTES) bytes are ignored.
     fn from_raw(bits: u64) -> Self;
 
-    /// The order of two coordinates that are not NaN; a NaN would count as equal to everything.
+    /// Compares two coordinates that are not NaN. A NaN compares as equal to everything.
     #[inline]
     fn order(self, other: Self) -> Ordering {
         if self < other {
@@ -73,8 +74,8 @@ impl Scalar for f32 {
     }
 
     #[inline]
-    fn from_f64(at: f64) -> Self {
-        at as f32
+    fn from_f64(value: f64) -> Self {
+        value as f32
     }
 
     #[inline]
@@ -99,8 +100,8 @@ impl Scalar for f64 {
     }
 
     #[inline]
-    fn from_f64(at: f64) -> Self {
-        at
+    fn from_f64(value: f64) -> Self {
+        value
     }
 
     #[inline]

@@ -1,0 +1,55 @@
+//! Public types can be sent to and shared with other threads: this file compiles only if they can.
+
+use sweep_and_prune::algorithms::{
+    Axis, Counts, Edge, Endpoint, Event, Method, Player, Runner, RunnerOptions, Sort, Trace,
+};
+use sweep_and_prune::{
+    Aabb, BroadPhase, Cast, Changes, Error, Filter, Hit, Kernel, Lists, Neighbour, Options,
+    PairFinder, Pairs, ProxyId, Queries, Report, SnapshotFault,
+};
+
+fn is_send_and_sync<T: Send + Sync>() {}
+
+#[test]
+fn boxes_errors_and_finders_are_send_and_sync() {
+    is_send_and_sync::<Aabb<1>>();
+    is_send_and_sync::<Aabb<3, f64>>();
+    is_send_and_sync::<Error>();
+    is_send_and_sync::<SnapshotFault>();
+    is_send_and_sync::<Kernel>();
+    is_send_and_sync::<PairFinder<2>>();
+    is_send_and_sync::<PairFinder<3, f64>>();
+}
+
+#[test]
+fn worlds_and_what_they_return_are_send_and_sync() {
+    is_send_and_sync::<BroadPhase<2>>();
+    is_send_and_sync::<BroadPhase<3, f64>>();
+    is_send_and_sync::<Options<f64>>();
+    is_send_and_sync::<ProxyId>();
+    is_send_and_sync::<Filter>();
+    is_send_and_sync::<Changes<'static>>();
+    is_send_and_sync::<Pairs<'static>>();
+    is_send_and_sync::<Queries<'static, 2>>();
+    is_send_and_sync::<Lists<ProxyId>>();
+    is_send_and_sync::<Cast<2>>();
+    is_send_and_sync::<Hit>();
+    is_send_and_sync::<Neighbour>();
+    is_send_and_sync::<Report>();
+}
+
+#[test]
+fn algorithms_and_what_they_report_are_send_and_sync() {
+    is_send_and_sync::<Runner<2>>();
+    is_send_and_sync::<Runner<3, f64>>();
+    is_send_and_sync::<RunnerOptions>();
+    is_send_and_sync::<Method>();
+    is_send_and_sync::<Sort>();
+    is_send_and_sync::<Axis>();
+    is_send_and_sync::<Counts>();
+    is_send_and_sync::<Edge>();
+    is_send_and_sync::<Endpoint<f32>>();
+    is_send_and_sync::<Trace>();
+    is_send_and_sync::<Event<'static>>();
+    is_send_and_sync::<Player>();
+}
