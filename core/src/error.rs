@@ -28,7 +28,8 @@ pub enum Error {
         /// How many there are.
         dimensions: usize,
     },
-    /// An id of a body that was removed, or that another world gave out.
+    /// An id that names no body here: its body was removed, or it never had one. (An id of another
+    /// world is refused only if no body here has the same slot and generation.)
     StaleProxy {
         /// The position of the id in the slice that was passed, 0 for a single one.
         index: usize,
@@ -95,7 +96,10 @@ impl fmt::Display for Error {
                 write!(f, "axis {axis} does not exist in {dimensions} dimensions")
             }
             Error::StaleProxy { index } => {
-                write!(f, "proxy id {index} is stale: its body was removed or is of another world")
+                write!(
+                    f,
+                    "proxy id {index} is stale: its body was removed, or it never had one here"
+                )
             }
             Error::LengthMismatch { ids, boxes } => {
                 write!(f, "{ids} ids do not go with {boxes} boxes")

@@ -34,7 +34,7 @@ pub use geometry::{Aabb, Scalar, validate};
 pub use pairs::{Kernel, PairFinder, count_pairs, find_pairs, find_pairs_between};
 pub use world::{
     BroadPhase, Cast, Changes, Filter, Hit, Lists, Neighbour, Options, Pairs, ProxyId, Queries,
-    Report,
+    Report, SnapshotInfo,
 };
 
 /// The examples of the README, run as doc tests.

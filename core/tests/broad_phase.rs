@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use broad_phase_model::{Model, Pair};
 use sweep_and_prune::{
     Aabb, BroadPhase, Cast, Error, Filter, Hit, Options, PairFinder, ProxyId, Report, Scalar,
-    SnapshotFault,
+    SnapshotFault, SnapshotInfo,
 };
 use sweep_and_prune_scenes::{Random, Scene};
 
@@ -129,7 +129,7 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
         }
         Filter {
             category: 1 << self.random.below(2),
-            mask: self.random.below(4) as u32 | u32::MAX << 2,
+            mask: if self.chance(8) { 0 } else { self.random.below(4) as u32 | u32::MAX << 2 },
             group: self.random.below(5) as i32 - 2,
             is_static: self.chance(3),
         }
@@ -271,7 +271,7 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
     }
 
     fn query(&mut self) {
-        let filter = if self.chance(2) { Filter::ALL } else { self.new_filter() };
+        let filter = if self.chance(2) { None } else { Some(self.new_filter()) };
         let area = self.aabb();
         let point: [T; D] = std::array::from_fn(|_| {
             let at = self.coordinate();
@@ -290,7 +290,8 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
         };
         let cast = Cast { from, direction, limit };
 
-        let queries = self.world.queries().with_filter(filter);
+        let queries = self.world.queries();
+        let queries = filter.map_or(queries, |filter| queries.with_filter(filter));
         let model = &self.model;
         assert_eq!(queries.overlapping(&area).unwrap(), model.overlapping(&area, &filter));
         assert_eq!(queries.containing(point).unwrap(), model.overlapping(&corner, &filter));
@@ -548,6 +549,72 @@ fn a_heap_of_static_bodies_costs_no_pairs() {
     assert_eq!(world.update().begun().len(), heap.len());
     let bytes = world.snapshot();
     assert_eq!(BroadPhase::<2>::from_snapshot(&bytes).unwrap().pairs().len(), heap.len());
+}
+
+#[test]
+fn a_body_in_a_reused_slot_is_found_where_the_removed_body_was() {
+    let mut world = BroadPhase::<2>::new();
+    let [here, there] = [0.0, 5.0].map(|at| Aabb::new([at; 2], [at + 1.0; 2]));
+    let first = world.insert(here).unwrap();
+    world.update();
+    world.remove(first).unwrap();
+    world.update();
+    let second = world.insert(there).unwrap();
+    assert_eq!(world.queries().overlapping(&there).unwrap(), [second]);
+    world.set_many(&[second], &[here]).unwrap();
+    assert_eq!(world.queries().overlapping(&here).unwrap(), [second]);
+    assert_eq!(world.queries().overlapping(&there).unwrap(), []);
+}
+
+#[test]
+fn a_point_at_infinity_pairs_beside_bodies_of_the_largest_size() {
+    let mut world = BroadPhase::<1, f64>::new();
+    let wide = |shift: f64| Aabb::new([-8e307 + shift], [8e307 + shift]);
+    let endless = world.insert(Aabb::new([0.0], [f64::INFINITY])).unwrap();
+    let large: Vec<_> = (0..2).map(|_| world.insert(wide(0.0)).unwrap()).collect();
+    let small: Vec<_> = (0..60)
+        .map(|index| world.insert(Aabb::new([-f64::from(index) - 2.0], [-f64::from(index) - 1.5])))
+        .map(Result::unwrap)
+        .collect();
+    world.update();
+    for step in 1..4 {
+        for &id in &large {
+            world.set(id, wide(1e306 * f64::from(step))).unwrap();
+        }
+        for &id in &small {
+            let Aabb { min: [min], max: [max] } = world.aabb(id).unwrap();
+            world.set(id, Aabb::new([min - 0.01], [max - 0.01])).unwrap();
+        }
+        world.update();
+    }
+    let point = world.insert(Aabb::new([f64::INFINITY], [f64::INFINITY])).unwrap();
+    assert!(world.update().begun().eq([[endless, point]]));
+}
+
+#[test]
+fn queries_without_a_filter_find_bodies_that_pair_with_nothing() {
+    let mut world = BroadPhase::<2>::new();
+    let aabb = Aabb::new([0.0, 0.0], [1.0, 1.0]);
+    let maskless = Filter { mask: 0, ..Filter::default() };
+    let nameless = Filter { category: 0, ..Filter::default() };
+    let ids = [maskless, nameless].map(|filter| world.insert_with(aabb, filter).unwrap());
+    let queries = world.queries();
+    assert_eq!(queries.overlapping(&aabb).unwrap(), ids);
+    assert_eq!(queries.containing([0.5, 0.5]).unwrap(), ids);
+    assert_eq!(queries.nearest([9.0, 9.0], 2).unwrap().len(), 2);
+    let ray = Cast::ray([-1.0, 0.5], [1.0, 0.0], 9.0);
+    assert_eq!(queries.cast_all(&ray).unwrap().len(), 2);
+    assert_eq!(queries.with_filter(Filter::ALL).overlapping(&aabb).unwrap(), []);
+}
+
+#[test]
+fn the_header_of_a_snapshot_says_what_world_it_holds() {
+    let info = SnapshotInfo::read(&BroadPhase::<3, f64>::new().snapshot()).unwrap();
+    assert_eq!((info.dimensions, info.scalar_bytes), (3, 8));
+    let truncated = Error::InvalidSnapshot(SnapshotFault::Truncated);
+    assert_eq!(SnapshotInfo::read(b"SaP"), Err(truncated));
+    let foreign = Error::InvalidSnapshot(SnapshotFault::Foreign);
+    assert_eq!(SnapshotInfo::read(b"neither"), Err(foreign));
 }
 
 #[test]

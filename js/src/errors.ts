@@ -51,7 +51,7 @@ export class StaleProxyError extends SweepAndPruneError {
     /** The position of the id among those that were passed, 0 for a single one. */
     readonly index: number,
   ) {
-    super(`proxy id ${index} is stale: its body was removed, or is of another world`);
+    super(`proxy id ${index} is stale: its body was removed, or it never had one here`);
   }
 }
 

@@ -6,7 +6,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use sweep_and_prune::{
-    Aabb, BroadPhase, Cast, Error, Filter, Hit, Lists, Options, ProxyId, Report, validate,
+    Aabb, BroadPhase, Cast, Error, Filter, Hit, Lists, Options, ProxyId, Queries, Report, SnapshotInfo,
+    validate,
 };
 
 use crate::arrays::{Coordinate, Rows, numbers, pairs, proxies, read_ids, read_numbers};
@@ -16,6 +17,16 @@ use crate::run::run;
 type Array<'py> = Bound<'py, PyAny>;
 /// Category, mask, group, static.
 type Words = (u32, u32, i32, bool);
+
+/// The queries of a world; all categories and all bits in the mask stand for no filter, with which all
+/// bodies are found.
+fn filtered<const D: usize, T: Coordinate>(
+    world: &mut BroadPhase<D, T>,
+    filter: Filter,
+) -> Queries<'_, D, T> {
+    let queries = world.queries();
+    if filter == Filter::ALL { queries } else { queries.with_filter(filter) }
+}
 
 fn filter_of((category, mask, group, is_static): Words) -> Filter {
     Filter { category, mask, group, is_static }
@@ -233,13 +244,13 @@ impl<const D: usize, T: Coordinate> Space for Typed<D, T> {
             Region::Overlapping => {
                 let boxes = rows.boxes::<D>()?.to_vec();
                 self.run(py, count, move |world| {
-                    world.queries().with_filter(filter).overlapping_many(&boxes)
+                    filtered(world, filter).overlapping_many(&boxes)
                 })?
             }
             Region::Containing => {
                 let points = rows.points::<D>()?.to_vec();
                 self.run(py, count, move |world| {
-                    world.queries().with_filter(filter).containing_many(&points)
+                    filtered(world, filter).containing_many(&points)
                 })?
             }
             Region::Within => {
@@ -248,7 +259,7 @@ impl<const D: usize, T: Coordinate> Space for Typed<D, T> {
                 let radii = radii.unwrap_or_default().iter().copied();
                 let spheres: Vec<_> = rows.points::<D>()?.iter().copied().zip(radii).collect();
                 self.run(py, count, move |world| {
-                    world.queries().with_filter(filter).within_many(&spheres)
+                    filtered(world, filter).within_many(&spheres)
                 })?
             }
         };
@@ -273,7 +284,7 @@ impl<const D: usize, T: Coordinate> Space for Typed<D, T> {
         let cast_of = |(from, (&direction, &limit))| Cast { from, direction, limit };
         let casts: Vec<Cast<D, T>> = boxes.into_iter().zip(ways).map(cast_of).collect();
         let hits = self.run(py, self.len() + casts.len(), move |world| {
-            let queries = world.queries().with_filter(filter);
+            let queries = filtered(world, filter);
             match (&casts[..], all) {
                 ([cast], true) => {
                     queries.cast_all(cast).map(|hits| hits.into_iter().map(Some).collect())
@@ -298,7 +309,7 @@ impl<const D: usize, T: Coordinate> Space for Typed<D, T> {
         let py = points.py();
         let points = Rows::<T>::of(points, D)?.points::<D>()?.to_vec();
         let found = self.run(py, self.len() + points.len(), move |world| {
-            world.queries().with_filter(filter).nearest_many(&points, k)
+            filtered(world, filter).nearest_many(&points, k)
         })?;
         let found = found.map_err(|error| raise(py, error, "boxes", &[]))?;
         let ids = numbers(py, found.values().iter().map(|near| near.id.to_bits()))?;
@@ -354,10 +365,8 @@ impl World {
     /// The world of a snapshot, which says of what dimensions and type it is; with these.
     #[staticmethod]
     fn restore(py: Python<'_>, bytes: &[u8]) -> PyResult<(Self, usize, bool)> {
-        let (dimensions, double) = match bytes {
-            [_, _, _, _, _, dimensions @ 1..=3, size, ..] => (usize::from(*dimensions), *size == 8),
-            _ => (1, false), // which says what is wrong with them
-        };
+        let info = SnapshotInfo::read(bytes).map_err(|error| raise(py, error, "boxes", &[]))?;
+        let (dimensions, double) = (info.dimensions, info.scalar_bytes == 8);
         let restored = match (dimensions, double) {
             (1, false) => Typed::<1, f32>::restored,
             (2, false) => Typed::<2, f32>::restored,

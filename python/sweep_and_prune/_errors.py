@@ -72,7 +72,7 @@ class StaleProxyError(SweepAndPruneError, LookupError):
 
     def __str__(self) -> str:
         """Which id."""
-        return f"id {self.id}, at {self.index}, is stale: its body was removed, or is of another world"
+        return f"id {self.id}, at {self.index}, is stale: its body was removed, or it never had one here"
 
 
 class InvalidQueryError(SweepAndPruneError, ValueError):

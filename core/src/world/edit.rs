@@ -120,8 +120,11 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     pub(super) fn list_changed(&mut self) {
         if core::mem::take(&mut self.unlisted) {
             for seat in 0..self.slots.len() {
-                if self.slots.flags[seat] & flag::LIVE != 0
-                    && differ(&self.boxes[seat], &self.updater.previous[seat])
+                let flags = self.slots.flags[seat];
+                // What the last update knew of the slot of a new body was another body's box.
+                if flags & flag::LIVE != 0
+                    && (flags & flag::NEW != 0
+                        || differ(&self.boxes[seat], &self.updater.previous[seat]))
                 {
                     self.touch(seat as u32);
                 }

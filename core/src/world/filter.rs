@@ -37,8 +37,8 @@ impl Filter {
     /// Category 1, all bits in the mask, no group, static.
     pub const STATIC: Self = Self { category: 1, mask: u32::MAX, group: 0, is_static: true };
 
-    /// All categories and all bits in the mask: what a query sees the world with unless told
-    /// otherwise.
+    /// All categories and all bits in the mask, no group, dynamic: it pairs with every body whose
+    /// category and mask are not 0.
     pub const ALL: Self = Self { category: u32::MAX, mask: u32::MAX, group: 0, is_static: false };
 
     /// Whether two bodies with these filters may pair. Symmetric.

@@ -31,6 +31,7 @@ pub use filter::Filter;
 pub use options::{Options, Report};
 pub use proxy::ProxyId;
 pub use queries::{Cast, Hit, Lists, Neighbour, Queries};
+pub use snapshot::SnapshotInfo;
 
 use crate::{Aabb, Error, Scalar};
 use proxy::{Slots, flag};
@@ -155,7 +156,8 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         seats.filter(|&&seat| self.slots.has(seat, flag::LIVE)).map(|&seat| self.slots.id(seat))
     }
 
-    /// Whether an id names a body that was inserted here and not removed.
+    /// Whether an id names a body that is here. Ids of other worlds are not told apart: two worlds
+    /// give out the same ids, so that a restored world takes the ids of the one that was saved.
     pub fn contains(&self, id: ProxyId) -> bool {
         self.slots.find(id).is_some()
     }

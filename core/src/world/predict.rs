@@ -26,6 +26,8 @@ const LONGEST: f64 = 80.0;
 const LANDED: f64 = 0.4;
 /// What it has on every side for inexact motion, in displacements.
 const SLACK: f64 = 0.125;
+/// Larger sides are left out of the mean: their sum would overflow.
+const LARGEST: f64 = f64::MAX / (2 * SAMPLE) as f64;
 /// Of so many bodies the motion is looked at.
 const SAMPLE: usize = 512;
 
@@ -39,7 +41,7 @@ impl Prediction {
         let (mut size, mut way, mut count) = (0.0, 0.0, 0.0);
         for (before, now) in moves.step_by(stride) {
             let (moved, side) = (displacement(before, now), longest_side(now));
-            if moved > 0.0 && moved < JUMP * side && side < f64::INFINITY {
+            if moved > 0.0 && moved < JUMP * side && side < LARGEST {
                 (size, way, count) = (size + side, way + moved, count + 1.0);
             }
         }
@@ -112,7 +114,8 @@ impl Prediction {
         let steps = if way > 0.0 { (REACH_ALONE * size / way).min(longest) } else { 0.0 };
         if steps < 1.0 {
             // A jump: where to from here is unknown.
-            let margin = options.margin + T::from_f64(LANDED * size);
+            let landed = T::from_f64(LANDED * size);
+            let margin = options.margin + if landed < T::INFINITY { landed } else { T::default() };
             return fatten(before, now, T::default(), &Options { margin, ..*options });
         }
         fatten(before, now, T::from_f64(steps), options)
@@ -138,7 +141,13 @@ fn fatten<const D: usize, T: Scalar>(
         let up = now.max[axis] - before.max[axis];
         let slack = (size(down) + size(up)) * tenth;
         let slack = slack + options.margin;
-        let slack = if slack < T::INFINITY { slack } else { options.margin };
+        let slack = if slack < T::INFINITY {
+            slack
+        } else if options.margin < T::INFINITY {
+            options.margin
+        } else {
+            zero
+        };
         let (down, up) = (down * steps, up * steps);
         let down = if down < zero { down } else { zero };
         let up = if up > zero { up } else { zero };

@@ -174,7 +174,29 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     }
 }
 
-fn read<const D: usize, T: Scalar>(bytes: &[u8]) -> Result<BroadPhase<D, T>, SnapshotFault> {
+/// What kind of world a snapshot holds: which [`BroadPhase`] can be restored from it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub struct SnapshotInfo {
+    /// The dimensions of its boxes: 1 to 3 in every snapshot that a world wrote.
+    pub dimensions: usize,
+    /// The size of its coordinates in bytes: 4 for `f32`, 8 for `f64`.
+    pub scalar_bytes: usize,
+}
+
+impl SnapshotInfo {
+    /// Reads the header of a snapshot, and nothing else: the rest may still be damaged.
+    ///
+    /// # Errors
+    /// [`Error::InvalidSnapshot`] if the bytes do not begin as a snapshot does, are of another
+    /// version, or end within the header.
+    pub fn read(bytes: &[u8]) -> Result<Self, Error> {
+        read_header(bytes).map(|(info, ..)| info).map_err(Error::InvalidSnapshot)
+    }
+}
+
+/// The kind of world, the byte that says what is reported, and what follows the header.
+fn read_header(bytes: &[u8]) -> Result<(SnapshotInfo, u8, &[u8]), SnapshotFault> {
     let known = MAGIC.len().min(bytes.len());
     if bytes[..known] != MAGIC[..known] {
         return Err(SnapshotFault::Foreign);
@@ -188,6 +210,11 @@ fn read<const D: usize, T: Scalar>(bytes: &[u8]) -> Result<BroadPhase<D, T>, Sna
         return Err(SnapshotFault::Version { found: version });
     }
     let (dimensions, scalar_bytes) = (usize::from(dimensions), usize::from(scalar_bytes));
+    Ok((SnapshotInfo { dimensions, scalar_bytes }, report, body))
+}
+
+fn read<const D: usize, T: Scalar>(bytes: &[u8]) -> Result<BroadPhase<D, T>, SnapshotFault> {
+    let (SnapshotInfo { dimensions, scalar_bytes }, report, body) = read_header(bytes)?;
     if (dimensions, scalar_bytes) != (D, T::BYTES) {
         return Err(SnapshotFault::OtherWorld { dimensions, scalar_bytes });
     }

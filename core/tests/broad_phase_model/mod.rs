@@ -120,12 +120,18 @@ impl<const D: usize, T: Scalar> Model<D, T> {
         others
     }
 
-    fn seen<'a>(&'a self, filter: &'a Filter) -> impl Iterator<Item = (ProxyId, Aabb<D, T>)> + 'a {
-        let allowed = self.bodies.iter().filter(|(_, body)| filter.allows(&body.filter));
+    fn seen<'a>(
+        &'a self,
+        filter: &'a Option<Filter>,
+    ) -> impl Iterator<Item = (ProxyId, Aabb<D, T>)> + 'a {
+        let allowed = self
+            .bodies
+            .iter()
+            .filter(|(_, body)| filter.is_none_or(|filter| filter.allows(&body.filter)));
         allowed.map(|(&id, body)| (id, body.aabb))
     }
 
-    pub fn overlapping(&self, area: &Aabb<D, T>, filter: &Filter) -> Vec<ProxyId> {
+    pub fn overlapping(&self, area: &Aabb<D, T>, filter: &Option<Filter>) -> Vec<ProxyId> {
         self.seen(filter).filter(|(_, aabb)| aabb.overlaps(area)).map(|(id, _)| id).collect()
     }
 
@@ -137,14 +143,14 @@ impl<const D: usize, T: Scalar> Model<D, T> {
         gaps.fold(0.0, |sum, gap| sum + gap * gap)
     }
 
-    pub fn within(&self, centre: [T; D], radius: T, filter: &Filter) -> Vec<ProxyId> {
+    pub fn within(&self, centre: [T; D], radius: T, filter: &Option<Filter>) -> Vec<ProxyId> {
         let radius = radius.to_f64();
         let is_near =
             |aabb: &Aabb<D, T>| Self::distance_squared(centre, aabb, 1.0) <= radius * radius;
         self.seen(filter).filter(|(_, aabb)| is_near(aabb)).map(|(id, _)| id).collect()
     }
 
-    pub fn nearest(&self, point: [T; D], k: usize, filter: &Filter) -> Vec<(f64, ProxyId)> {
+    pub fn nearest(&self, point: [T; D], k: usize, filter: &Option<Filter>) -> Vec<(f64, ProxyId)> {
         let far = |(id, aabb)| (Self::distance_squared(point, &aabb, 1.0), id);
         let mut all: Vec<_> = self.seen(filter).map(far).collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -153,7 +159,7 @@ impl<const D: usize, T: Scalar> Model<D, T> {
     }
 
     /// When a cast first touches each body, sorted.
-    pub fn hits(&self, cast: &Cast<D, T>, filter: &Filter) -> Vec<(f64, ProxyId)> {
+    pub fn hits(&self, cast: &Cast<D, T>, filter: &Option<Filter>) -> Vec<(f64, ProxyId)> {
         let hit = |(id, aabb): (ProxyId, Aabb<D, T>)| {
             // The times at which the intervals overlap, axis by axis.
             let mut times = (0.0f64, cast.limit.to_f64());

@@ -23,13 +23,13 @@ pub use nearest::Neighbour;
 
 /// The questions that a world answers; see [`BroadPhase::queries`].
 ///
-/// They see the boxes as last given, updated or not, and the filter of each body against the one
-/// that the query stands for: at first [`Filter::ALL`]. Lists are sorted by id, and equally near
+/// They see the boxes as last given, updated or not, and all bodies unless they get a
+/// [filter](Self::with_filter). Lists are sorted by id, and equally near
 /// bodies too, so every answer follows from the state alone.
 #[derive(Clone, Copy, Debug)]
 pub struct Queries<'w, const D: usize, T: Scalar = f32> {
     world: &'w BroadPhase<D, T>,
-    filter: Filter,
+    filter: Option<Filter>,
 }
 
 impl<const D: usize, T: Scalar> BroadPhase<D, T> {
@@ -51,14 +51,14 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// ```
     pub fn queries(&mut self) -> Queries<'_, D, T> {
         self.refresh_tree();
-        Queries { world: self, filter: Filter::ALL }
+        Queries { world: self, filter: None }
     }
 }
 
 impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     /// The same queries by a body of this filter: they find what it may pair with.
     pub fn with_filter(self, filter: Filter) -> Self {
-        Self { filter, ..self }
+        Self { filter: Some(filter), ..self }
     }
 
     /// The bodies whose boxes overlap a box, sorted.
@@ -177,7 +177,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     /// Whether a body is there, which the tree alone does not say, and not filtered out.
     fn sees(&self, seat: u32) -> bool {
         self.world.slots.has(seat, flag::LIVE)
-            && self.filter.allows(&self.world.filters[seat as usize])
+            && self.filter.is_none_or(|filter| filter.allows(&self.world.filters[seat as usize]))
     }
 }
 

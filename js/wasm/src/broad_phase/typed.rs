@@ -159,7 +159,9 @@ impl<const D: usize, T: Scalar> World for Typed<D, T> {
         numbers: &Numbers,
         out: &mut Vec<f64>,
     ) -> Result<(), Error> {
-        let queries = self.world.queries().with_filter(filter);
+        let queries = self.world.queries();
+        // These words stand for a query without a filter, which finds all bodies.
+        let queries = if filter == Filter::ALL { queries } else { queries.with_filter(filter) };
         let point = Self::point(numbers, 0);
         let ids = match query {
             Query::Overlapping => queries.overlapping(&Self::boxed_at(numbers, 0))?,
