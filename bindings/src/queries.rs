@@ -76,7 +76,9 @@ pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
 ) -> Result<(), Error> {
     answer.clear();
     let rows = numbers.chunks_exact(query.width(D));
-    let queries = world.queries().with_filter(filter);
+    let queries = world.queries();
+    // These words stand for a query without a filter, which finds all bodies.
+    let queries = if filter == Filter::ALL { queries } else { queries.with_filter(filter) };
     let lists = match query {
         Query::Overlapping => {
             let boxes: Vec<Aabb<D, T>> = rows.map(aabb).collect();
