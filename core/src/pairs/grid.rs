@@ -44,19 +44,6 @@ pub(super) struct Grid<T> {
 }
 
 impl<T: Scalar> Grid<T> {
-    /// Between which bins a box lies: that of its lower corner and that of its upper.
-    #[inline(always)]
-    pub fn span<const D: usize>(&self, aabb: &Aabb<D, T>) -> [u32; 2] {
-        let [x, y, z] = &self.cells;
-        // All four in one go: on axes that are not cut, or do not exist, they are 0.
-        let ends = [y, x].map(|cells| [aabb.min[cells.axis], aabb.max[cells.axis]]);
-        let cells: [u32; 4] =
-            core::array::from_fn(|k| ends[k / 2][k % 2].cell(&[y, x][k / 2].ruler));
-        let along = [aabb.min[z.axis], aabb.max[z.axis]];
-        let along = if z.count > 1 { along.map(|at| at.cell(&z.ruler)) } else { [0; 2] };
-        [self.bin([cells[2], cells[0], along[0]]), self.bin([cells[3], cells[1], along[1]])]
-    }
-
     /// The bin of a cell.
     #[inline(always)]
     pub fn bin(&self, [x, y, z]: [u32; 3]) -> u32 {

@@ -126,39 +126,6 @@ impl List {
         self.len = len;
     }
 
-    /// Puts the copies that were listed into the order of the bins, then of the boxes, instead of
-    /// their records, with the boxes' own indices, and notes where those of each bin begin, and at last where they end.
-    ///
-    /// # Errors
-    /// [`Refusal::Memory`].
-    pub fn by_bin<const D: usize, T: Scalar, S: Source<D, T>>(
-        &self,
-        source: S,
-        copies: &mut Vec<Copied>,
-        starts: &mut Vec<u32>,
-    ) -> Result<(), TryReserveError> {
-        grow(copies, self.len, Copied::default())?;
-        grow(starts, self.bins + 2, 0)?;
-        // Shifted by two, and then by one, so that the copying moves each start to where it belongs.
-        let starts = &mut starts[..self.bins + 2];
-        starts.fill(0);
-        for copy in &self.copies[..self.len] {
-            starts[copy.bin() + 2] += 1;
-        }
-        let mut total = 0;
-        for start in &mut starts[2..] {
-            total += *start;
-            *start = total;
-        }
-        for mut copy in self.copies[..self.len].iter().copied() {
-            let start = &mut starts[copy.bin() + 1];
-            copy.of = source.id(copy.of as usize);
-            copies[*start as usize] = copy;
-            *start += 1;
-        }
-        Ok(())
-    }
-
     /// Counts the copies of each bin, with these counters.
     ///
     /// # Errors

@@ -65,26 +65,7 @@
 //! its places in every bin, so that all copy their boxes into the same array, in the order in which
 //! one thread would. Then each takes the next group of bins, the calling thread from the first on,
 //! whose pairs it stores where they belong, the others from the last; their pairs are put behind
-//! when all is done. Threads sleep between calls, and wake up while the plan is made.
-//!
-//! # What is learnt from the last call
-//! [`again`] keeps in which bins each box was and in what order each bin was swept, for 512 to
-//! 16,384 boxes in more than one bin. If the next call has as many boxes and the same plan, only
-//! boxes that changed bins are taken from one to another, and insertion sort finishes the order.
-//! (Plans snap to round coordinates, so that they seldom change where boxes move little; they come
-//! of the boxes alone, and so does the order of the pairs, whatever was kept.) With one box in ten
-//! in motion that takes 0.8 to 0.87 of the time of a new finder, at 1,000 and at 10,000 boxes (one
-//! core of an AMD EPYC, 2026-11-21). Where one in 16 changed bins, or one in three is out of order,
-//! it does not pay, and the next 8 to 128 calls are as those of a new finder: where all drift by a
-//! twentieth of their width 0.87 to 1.05, where all fly or some jump 1.02 to 1.14. (Builds without
-//! `std`, as for browsers, go without: it is half as much code again.)
-//!
-//! There is no more to gain, because little is spent on order: a box is put into a bin by a write
-//! to one of a few places, side by side with the last, and a bin is sorted in linear time. Boxes
-//! taken in the order of their bins are read from all over the memory instead, and once they are
-//! more than the second cache holds, that takes longer: 1.2 times at 100,000, twice at a million.
-//! Who has boxes that move little keeps them in a [`BroadPhase`](crate::BroadPhase), which touches
-//! only what has moved.
+//! when all is done.
 //!
 //! # Memory
 //! A record is a box, its index and a word: 32 bytes for a 3D `f32` box. With 1.2 to 1.6 copies of
@@ -92,8 +73,7 @@
 //! four times what the boxes themselves take, beside the pairs and 32 bytes a box. Where plans nest
 //! (giants, half-spaces, scales within scales) each holds its own records: at most 4 copies of its
 //! boxes, and one more where it parts them. On the scenes of the tests that comes to 10 times what
-//! the boxes take, and to 34 times for needles that cross each other in the plane. A finder
-//! called again on up to 16,384 boxes takes 40 bytes a box more. All of it is
+//! the boxes take, and to 34 times for needles that cross each other in the plane. All of it is
 //! kept for the next call: a steady state allocates nothing. Streaming and counting take the same,
 //! and nothing for the pairs, whose buffer doubles when it is full. On Linux arrays of megabytes ask
 //! for pages of 2 MiB, whole ones only: a million boxes are found in 0.92 to 0.95 of the time, and in
@@ -106,7 +86,6 @@
 //! detection in spatial join processing* (a pair is reported where the lower corner of its
 //! intersection lies).
 
-mod again;
 mod bins;
 #[cfg(feature = "parallel")]
 mod gather;
@@ -227,13 +206,6 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
             count: Count::default(),
             buffer: Buffer::default(),
         }
-    }
-
-    /// A finder that forgets what it found, for whoever asks only where all is new.
-    pub(crate) fn forgetful() -> Self {
-        let mut finder = Self::new();
-        finder.search.last = again::Last::never();
-        finder
     }
 
     /// The same finder with a kernel of choice, for tests and comparisons. Without `std` there is
@@ -535,7 +507,7 @@ fn run_many<const D: usize, T: Scalar, O: Sink>(
     if is_direct(sets) {
         check(sets)?;
     }
-    match search.begin(sets, task, sink) {
+    match search.run(sets, task, sink) {
         // Only now is it worth a look which box it is.
         Err(Stop::Invalid) => check(sets).map(|()| false),
         end => ended(end),

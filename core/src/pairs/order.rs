@@ -9,7 +9,7 @@ use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::bins::{Record, Source};
+use super::bins::Source;
 use super::kernel::Column;
 use super::numbers::Ruler;
 use super::plan::greater;
@@ -21,9 +21,6 @@ const FEW: usize = 24;
 
 /// An interval with more keys than this goes to the standard sort.
 const CROWD: u32 = 16;
-
-/// Insertion sort of boxes nearly in order gives up after so many steps a box.
-const MOST_STEPS: usize = 2;
 
 /// The buffers of the sort.
 #[derive(Debug)]
@@ -56,49 +53,6 @@ impl<T: Scalar> Sorter<T> {
     ) -> Result<(), TryReserveError> {
         self.sort(source, axis)?;
         self.lay_out(source, axis, column)
-    }
-
-    /// As [`order`](Self::order), but equal left edges in the order of index: of records of which
-    /// the first, `kept`, are nearly in order. Returns by about how many positions they were out of
-    /// order.
-    pub fn reorder<const D: usize>(
-        &mut self,
-        records: &[Record<D, T>],
-        kept: usize,
-        axis: usize,
-        column: &mut Column<T>,
-    ) -> Result<usize, TryReserveError> {
-        let len = records.len();
-        if kept == 0 {
-            return self.order(records, axis, column).map(|()| 0);
-        }
-        grow(&mut self.sorted, len, T::Key::default())?;
-        grow(&mut self.keys, len, T::Key::default())?;
-        let new = &mut self.keys[..len - kept];
-        for (keys, from) in [(&mut self.sorted[..kept], 0), (&mut *new, kept)] {
-            for (i, (key, record)) in keys.iter_mut().zip(&records[from..]).enumerate() {
-                *key = record.aabb.min[axis].key((from + i) as u32);
-            }
-        }
-        let most = MOST_STEPS * kept;
-        let steps = insertion(&mut self.sorted[..kept], most);
-        if steps > most {
-            self.sorted[..kept].sort_unstable();
-        }
-        new.sort_unstable();
-        merge(&mut self.sorted[..len], new);
-        self.lay_out(records, axis, column)?;
-        let behind = column.left[..len].iter().zip(&column.id);
-        let before_that = column.left[..len].iter().zip(&column.id);
-        let ties = behind.skip(1).zip(before_that);
-        if ties.fold(false, |any, (b, a)| any | (b.0 == a.0) & (b.1 < a.1)) {
-            let id = |key: &T::Key| records[T::place(*key) as usize].id;
-            let left = |key: &T::Key| records[T::place(*key) as usize].aabb.min[axis];
-            let ties = self.sorted[..len].chunk_by_mut(|a, b| left(a) == left(b));
-            ties.for_each(|tie| tie.sort_unstable_by_key(id));
-            self.lay_out(records, axis, column)?;
-        }
-        Ok(steps)
     }
 
     /// Fills `column` with some of the boxes as they stand, all axes beside the sweep axis, on
@@ -151,7 +105,7 @@ impl<T: Scalar> Sorter<T> {
             for (i, key) in self.sorted[..len].iter_mut().enumerate() {
                 *key = edge(source, i, axis).key(i as u32);
             }
-            insertion(&mut self.sorted[..len], usize::MAX);
+            insertion(&mut self.sorted[..len]);
             return Ok(());
         }
         grow(&mut self.keys, len, T::Key::default())?;
@@ -207,7 +161,7 @@ impl<T: Scalar> Sorter<T> {
             }
         }
         exchange(&mut self.sorted[..len]);
-        insertion(&mut self.sorted[..len], usize::MAX);
+        insertion(&mut self.sorted[..len]);
         Ok(())
     }
 }
@@ -231,11 +185,9 @@ fn edge<const D: usize, T: Scalar, S: Source<D, T>>(source: S, i: usize, axis: u
     source.aabb(i).min[axis]
 }
 
-/// Insertion sort: linear where each key is near its place. It ends, with the keys in disorder,
-/// after more steps than `most`; returns how many they were.
+/// Insertion sort: linear where each key is near its place.
 #[inline(never)]
-fn insertion<K: Copy + Ord>(keys: &mut [K], most: usize) -> usize {
-    let mut steps = 0;
+fn insertion<K: Copy + Ord>(keys: &mut [K]) {
     for i in 1..keys.len() {
         let key = keys[i];
         let mut at = i;
@@ -244,22 +196,6 @@ fn insertion<K: Copy + Ord>(keys: &mut [K], most: usize) -> usize {
             at -= 1;
         }
         keys[at] = key;
-        steps += i - at;
-        if steps > most {
-            break;
-        }
-    }
-    steps
-}
-
-/// Merges keys into those at the front of `into`, which has just room for both.
-fn merge<K: Copy + Ord>(into: &mut [K], keys: &[K]) {
-    let (mut old, mut new) = (into.len() - keys.len(), keys.len());
-    while new > 0 {
-        let from_old = old > 0 && keys[new - 1] < into[old - 1];
-        into[old + new - 1] = if from_old { into[old - 1] } else { keys[new - 1] };
-        old -= usize::from(from_old);
-        new -= usize::from(!from_old);
     }
 }
 

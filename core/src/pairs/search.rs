@@ -5,7 +5,6 @@ use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
-use super::again::Last;
 use super::bins::{Bins, Record, Refusal, Source};
 use super::grid::Grid;
 use super::kernel::{Arrange, Column, Kernel};
@@ -52,7 +51,6 @@ const WIDE: f64 = 8.0;
 #[derive(Debug)]
 pub(super) struct Search<const D: usize, T: Scalar> {
     pub kernel: Kernel,
-    pub last: Last<D, T>,
     pub sorter: Sorter<T>,
     pub columns: [Column<T>; 2],
     /// Which boxes go to which bins.
@@ -114,7 +112,6 @@ impl<const D: usize, T: Scalar> Search<D, T> {
         const { assert!(1 <= D && D <= 3, "boxes have one, two or three dimensions") };
         Self {
             kernel,
-            last: Last::new(),
             sorter: Sorter::new(),
             columns: [Column::new(), Column::new()],
             list: List::new(),
@@ -123,36 +120,6 @@ impl<const D: usize, T: Scalar> Search<D, T> {
             #[cfg(feature = "parallel")]
             team: super::threads::Team::default(),
         }
-    }
-
-    /// As [`run`](Self::run), of the caller's sets: one set is found from the order of the last
-    /// call, if that pays.
-    pub fn begin<O: Sink>(
-        &mut self,
-        sets: &[&[Aabb<D, T>]],
-        task: Task<'_>,
-        sink: &mut O,
-    ) -> Result<(), Stop> {
-        // Without `std`, which is how it is built for browsers, size counts more: this is half as
-        // much code again.
-        if cfg!(feature = "std")
-            && let &[boxes] = sets
-            && !is_direct(sets)
-        {
-            #[cfg(feature = "parallel")]
-            let (alone, planned) =
-                (!self.team.pays(boxes.len()), self.team.plan(boxes.len(), || plan(sets, true)));
-            #[cfg(not(feature = "parallel"))]
-            let (alone, planned) = (true, plan(sets, true));
-            if let Plan::Cut(grid) = planned.plan
-                && alone
-                && let Some(result) = self.again(boxes, &grid, task, sink)
-            {
-                return result;
-            }
-            return self.follow(planned.plan, sets, task, sink);
-        }
-        self.run(sets, task, sink)
     }
 
     /// Sends all pairs within one set, or between two, to the sink. Sets that are

@@ -2,13 +2,12 @@
 //! group of bins until none is left; or, where there are no bins, the next stretch of the sweep. Their
 //! pairs are [gathered](super::gather) in the order of one thread.
 
-use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::hint::spin_loop;
-use core::iter::{once, repeat_with};
+use core::iter::once;
 use core::mem::{swap, take};
 use core::ops::Range;
-use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use core::sync::atomic::{AtomicUsize, Ordering};
 use std::thread::yield_now;
 
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -56,25 +55,6 @@ impl<const D: usize, T: Scalar> Team<D, T> {
     /// Whether several threads pay for so many boxes.
     pub fn pays(&self, boxes: usize) -> bool {
         self.threads > 1 && boxes >= WORTH
-    }
-
-    /// Makes a plan for so many boxes while the other threads wake up: it takes about as long, and
-    /// else they would begin late.
-    pub fn plan<P>(&self, boxes: usize, plan: impl FnOnce() -> P) -> P {
-        if !self.pays(boxes) {
-            return plan();
-        }
-        let planned = Arc::new(AtomicBool::new(false));
-        for planned in repeat_with(|| Arc::clone(&planned)).take(self.threads - 1) {
-            rayon::spawn(move || {
-                while !planned.load(Ordering::Relaxed) {
-                    spin_loop();
-                }
-            });
-        }
-        let plan = plan();
-        planned.store(true, Ordering::Relaxed);
-        plan
     }
 }
 

@@ -209,7 +209,7 @@ impl<const D: usize, T: Scalar> Scratch<D, T> {
     #[cfg_attr(not(feature = "parallel"), expect(unused_variables))]
     fn new(threads: usize) -> Self {
         // It is asked where most bodies got new boxes.
-        let finder = PairFinder::forgetful();
+        let finder = PairFinder::new();
         #[cfg(feature = "parallel")]
         let finder = finder.threads(threads);
         Self {
