@@ -1,5 +1,5 @@
-// What the explanation does beside its demos: listings that follow them, the code of the three
-// balls, choices that change a demo, and the contents that say where one is.
+// What the article does besides its demos: listings that follow them, the code for the three
+// balls, choices that change a demo, and contents that mark the section that is being read.
 
 import { followDemos } from "./follow.ts";
 import { TransitivityCode } from "./transitivity.ts";
@@ -52,7 +52,7 @@ function markContents(): void {
         else link.removeAttribute("aria-current");
       }
     },
-    // The upper third of the window is where one reads.
+    // The section in the upper third of the window counts as being read.
     { rootMargin: "-10% 0px -66% 0px" },
   );
   for (const id of links.keys()) observer.observe(document.getElementById(id) as HTMLElement);

@@ -1,9 +1,10 @@
-// Puts the explanation together when the site is built: its sections, contents, reading time,
-// listings and drawings. All of it is in the page as it is sent, so it can be read without scripts.
+// Assembles the article when the site is built: its sections, contents, reading time, listings,
+// legends and drawings. All of it is in the page that is sent, so it can be read without scripts.
 
 import { readFileSync } from "node:fs";
 import type { Plugin } from "vite";
 import { figures } from "./figures/index.ts";
+import { legend } from "./legend.ts";
 import { highlight, listing } from "./listing.ts";
 
 /** The files of sections/, in the order in which they are read. */
@@ -19,8 +20,8 @@ const SECTIONS = [
   "swaps",
   "axis",
   "falling",
-  "beyond",
   "cost",
+  "beyond",
   "practice",
   "reading",
 ] as const;
@@ -39,7 +40,7 @@ function assemble(page: string): string {
   const whole = page
     .replace("<article-sections></article-sections>", () => sections.map(({ html }) => html).join("\n"))
     .replace("<article-contents></article-contents>", () => `<ol>${contents}</ol>`)
-    .replace("<reading-time></reading-time>", () => `${minutes} minutes of reading, and as long as you like of playing`);
+    .replace("<reading-time></reading-time>", () => `${minutes} minutes to read, longer if you play`);
   return expand(whole);
 }
 
@@ -55,7 +56,7 @@ function section(name: string): { name: string; title: string; html: string } {
   return { name, title, html };
 }
 
-/** How the library is called. */
+/** How to call the library. */
 const TRIAL = `import { init, findPairs } from "sweep-and-prune";
 
 await init();
@@ -66,13 +67,14 @@ const boxes = new Float32Array([
 ]);
 findPairs(boxes, { dimensions: 2 }); // 0, 2`;
 
-/** Fills in the listings and the drawings. */
+/** Fills in the listings, legends and drawings. */
 function expand(page: string): string {
   return page
-    .replace("<trial-code></trial-code>", () => highlight(TRIAL, "javascript", "how the library is called"))
+    .replace("<trial-code></trial-code>", () => highlight(TRIAL, "javascript", "how to call the library"))
     .replace(/<code-listing name="([^"]*)"(?: follows="([^"]*)")?><\/code-listing>/g, (_, name: string, follows?: string) =>
       listing(name, follows),
     )
+    .replace(/<color-key shows="([^"]*)"><\/color-key>/g, (_, names: string) => legend(names))
     .replace(/<drawn-figure name="([^"]*)"><\/drawn-figure>/g, (_, name: string) => {
       const draw = figures[name];
       if (!draw) throw new Error(`there is no figure "${name}"`);

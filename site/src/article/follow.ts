@@ -1,5 +1,5 @@
-// Lights the lines of a listing that a demo is at, by the kind of its event. Can be switched off,
-// for all listings at once, and stays so.
+// Highlights the lines of a listing that match the current event of a demo. Readers can switch this
+// off, for all listings at once; the choice is stored.
 
 const KEY = "follow-demos";
 

@@ -1,6 +1,6 @@
-// A listing of the explanation: a module of src/listings as text, its colours set when the site is
-// built. What a line does stands at its end as tags (`// @test`), which are not shown: the page
-// lights the line while a demo does just that.
+// A listing of the article: a module of src/listings as text, highlighted when the site is built.
+// Tags at the end of a line (`// @test`) are not shown. They say what the line does, so that the page
+// can highlight it while a demo does the same; `@added` marks a line that the listing before it lacks.
 
 import { readFileSync } from "node:fs";
 import { createCssVariablesTheme, createHighlighter, type ShikiTransformer } from "shiki";
@@ -20,7 +20,7 @@ export function readListing(name: string): { code: string; kinds: string[] } {
   return { code: lines.map((line) => line.replace(TAGS, "")).join("\n"), kinds };
 }
 
-/** The listing of a module, as html; `follows` is the id of the demo whose events light its lines. */
+/** The listing of a module, as html; `follows` is the id of the demo whose events highlight its lines. */
 export function listing(name: string, follows: string | undefined): string {
   const { code, kinds } = readListing(name);
   const follow = follows
@@ -41,7 +41,10 @@ export function highlight(code: string, lang: Language, label: string, kinds: re
     },
     line(node, number) {
       const kind = kinds[number - 1];
-      if (kind) node.properties["data-kinds"] = kind;
+      if (!kind) return;
+      const events = kind.split(" ").filter((name) => name !== "added");
+      if (events.length > 0) node.properties["data-kinds"] = events.join(" ");
+      if (kind.includes("added")) node.properties["data-added"] = "";
     },
   };
   return highlighter.codeToHtml(code, { lang, theme: "css-variables", transformers: [marks] });

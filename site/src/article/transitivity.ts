@@ -1,16 +1,16 @@
-// The code beside the three balls: what the tests say as they are dragged, and whether the third is
-// needed at all.
+// The code beside the three balls: the results of the tests as the balls are dragged, and whether the
+// third test is needed at all.
 
-/** A ball on the axis. */
+/** The interval of a ball on the axis. */
 interface Interval {
   readonly left: number;
   readonly right: number;
 }
 
-/** The demo's element, as far as it is needed here. */
+/** What this file needs of the demo's element. */
 type Demo = Element & { balls: readonly (readonly number[])[] };
 
-/** What to say of three intervals. */
+/** The results for three intervals. */
 export interface Verdict {
   /** Whether A ends before B begins, and B before C. */
   readonly ab: boolean;
@@ -29,10 +29,10 @@ export function judge(a: Interval, b: Interval, c: Interval): Verdict {
 }
 
 function reason(ab: boolean, bc: boolean): string {
-  if (ab && bc) return "A ends before B begins, and B before C. So A ends before C begins: nothing has to be tested.";
-  if (ab) return "There is a gap between A and B, but none between B and C in this order. Nothing follows for A and C: they must be tested.";
-  if (bc) return "There is a gap between B and C, but none between A and B in this order. Nothing follows for A and C: they must be tested.";
-  return "There is no gap in this order. Nothing follows for A and C, whatever it looks like: they must be tested.";
+  if (ab && bc) return "A ends before B begins, and B ends before C begins. So A ends before C begins: we can skip the third test.";
+  if (ab) return "A ends before B begins, but B does not end before C begins. So we know nothing about A and C: they must be tested.";
+  if (bc) return "B ends before C begins, but A does not end before B begins. So we know nothing about A and C: they must be tested.";
+  return "Neither comparison is true. So we know nothing about A and C: they must be tested.";
 }
 
 export class TransitivityCode extends HTMLElement {
@@ -55,7 +55,7 @@ export class TransitivityCode extends HTMLElement {
 
   #set(part: string, text: string): void {
     const element = this.querySelector(`[data-part=${part}]`);
-    // Unchanged text is left alone: it would be read out again.
+    // A screen reader would read unchanged text again if it were set again.
     if (element && element.textContent !== text) element.textContent = text;
   }
 }

@@ -9,19 +9,44 @@ type Case = "best" | "average" | "worst";
 const CASES: readonly Case[] = ["best", "average", "worst"];
 const PLACE = "<complexity-table></complexity-table>";
 
-/** Puts the table where the page asks for it. */
+/** The rows that are shown at once, in the order of the article. The others are folded away. */
+const SHOWN: readonly (readonly [method: string, sort: string | null])[] = [
+  ["global pairwise", null],
+  ["sorted pairwise", "quicksort"],
+  ["sorted pairwise", "insertion sort"],
+  ["endpoint sweep", "quicksort"],
+  ["endpoint sweep", "insertion sort"],
+  ["swap-driven sweep", null],
+];
+
+/** Puts the tables where the page asks for them. */
 export function insertComplexity(page: string): string {
-  return page.replace(PLACE, table);
+  return page.replace(PLACE, tables);
 }
 
-function table(): string {
+function tables(): string {
+  const shown = SHOWN.map(([method, sort]) => {
+    const found = complexity.variants.find((variant) => variant.method === method && variant.sort === sort);
+    if (!found) throw new Error(`docs/complexity.json has no ${method} with ${sort}`);
+    return found;
+  });
+  const others = complexity.variants.filter((variant) => !shown.includes(variant));
+  return `${table("Cost of six algorithms", shown)}
+    <details class="more">
+      <summary>The other ${others.length}: more sorts, and sweeps on every axis</summary>
+      <p><i>M</i> and <i>S</i> are like <i>m</i> and <i>s</i>, summed over all axes; <i>p</i> counts the pairs that overlap on every axis.</p>
+      ${table("Cost of the other algorithms", others)}
+    </details>`;
+}
+
+function table(label: string, variants: readonly Variant[]): string {
   return `
-    <div class="table-scroll formulas" tabindex="0" role="region" aria-label="The complexity table">
+    <div class="table-scroll formulas" tabindex="0" role="region" aria-label="${label}">
       <table>
         <thead>
           <tr><th scope="col">Algorithm</th>${CASES.map((name) => `<th scope="col">${capital(name)}</th>`).join("")}<th scope="col">Space</th></tr>
         </thead>
-        <tbody>${complexity.variants.map(row).join("")}</tbody>
+        <tbody>${variants.map(row).join("")}</tbody>
       </table>
     </div>`;
 }

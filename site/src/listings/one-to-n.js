@@ -1,4 +1,4 @@
-// Flawed: see what it misses.
+// Flawed! Which overlaps does it miss?
 export function oneToN(endpoints, box, onOverlapX) {
   const mine = (e) => e.box === box;
   const from = endpoints.findIndex(mine);

@@ -1,11 +1,11 @@
 import { overlaps } from "./overlaps.js";
 
-export function pairwise(boxes, onPair) {
+export function globalPairwise(boxes, onPair) {
   for (let i = 0; i < boxes.length; i++) {
+    const a = boxes[i];
     for (let j = i + 1; j < boxes.length; j++) {
-      if (overlaps(boxes[i], boxes[j])) { // @test
-        onPair(boxes[i], boxes[j]); // @overlap
-      }
+      const b = boxes[j];
+      if (overlaps(a, b)) onPair(a, b); // @test @overlap
     }
   }
 }

@@ -1,15 +1,12 @@
 import { overlaps } from "./overlaps.js";
 
 export function sortedPairwise(boxes, onPair) {
-  // A copy: the caller's array stays as it is.
-  const sorted = [...boxes];
-  sorted.sort((a, b) => a.left - b.left); // @compare @swap
-
-  for (let i = 0; i < sorted.length; i++) {
-    const a = sorted[i]; // @enter
-    for (let j = i + 1; j < sorted.length; j++) {
-      const b = sorted[j];
-      if (b.left > a.right) break; // as all after b @skip
+  boxes = boxes.toSorted((a, b) => a.left - b.left); // @added @compare @swap
+  for (let i = 0; i < boxes.length; i++) {
+    const a = boxes[i]; // @enter
+    for (let j = i + 1; j < boxes.length; j++) {
+      const b = boxes[j];
+      if (b.left > a.right) break; // @added @skip
       if (overlaps(a, b)) onPair(a, b); // @test @overlap
     }
   }

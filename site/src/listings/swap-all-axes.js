@@ -5,7 +5,7 @@ import { sweep } from "./sweep.js";
 
 const axes = [["left", "right"], ["top", "bottom"]];
 
-// On how many axes do two boxes overlap? On all of them: a pair.
+// On how many axes do two boxes overlap? If on all, they are a pair.
 class Flags {
   counts = new Map();
   pairs = new Map();
@@ -40,8 +40,8 @@ export function update({ arrays, flags }) {
         if (!precedes(east, west)) break; // @compare
         endpoints[j] = east; // @swap
         endpoints[j + 1] = west; // @swap
-        if (west.begins === east.begins) continue;
-        const by = east.begins ? +1 : -1;
+        if (west.isLeft === east.isLeft) continue;
+        const by = east.isLeft ? +1 : -1;
         flags.change(west.box, east.box, by);
       }
     }

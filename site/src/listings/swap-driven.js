@@ -3,7 +3,7 @@ import { key } from "./key.js";
 import { quicksort } from "./quicksort.js";
 import { sweep } from "./sweep.js";
 
-// Once: which overlaps are there already?
+// Once: one full sweep finds what overlaps already.
 export function begin(boxes) {
   const endpoints = endpointsOf(boxes);
   const overlapping = new Map();
@@ -12,7 +12,7 @@ export function begin(boxes) {
   return { endpoints, overlapping };
 }
 
-// Every frame: a sort that looks at what it swaps.
+// Every frame: insertion sort that looks at what it swaps.
 export function update({ endpoints, overlapping }) {
   refresh(endpoints);
 
@@ -24,16 +24,16 @@ export function update({ endpoints, overlapping }) {
       endpoints[j] = east; // @swap
       endpoints[j + 1] = west; // @swap
 
-      const [a, b] = [west.box, east.box];
-      if (west.begins === east.begins) {
-        continue; // (( or )): nothing changes
-      } else if (east.begins) {
-        overlapping.set(key(a, b), [a, b]); // )( became ()
-      } else {
-        overlapping.delete(key(a, b)); // () became )(
-      }
+      const [a, b] = [west.box, east.box]; // @added
+      if (west.isLeft === east.isLeft) { // @added
+        continue; // (( or )): nothing changes @added
+      } else if (east.isLeft) { // @added
+        overlapping.set(key(a, b), [a, b]); // )( became () @added
+      } else { // @added
+        overlapping.delete(key(a, b)); // () became )( @added
+      } // @added
     }
   }
-  // They overlap on x. Now test y.
+  // These overlap on x. The caller tests them on y.
   return [...overlapping.values()]; // @test
 }

@@ -7,7 +7,7 @@ export function sweepAndPrune(boxes, onPair) {
   quicksort(endpoints); // @compare @swap
 
   sweep(endpoints, (a, b) => { // @enter @leave
-    // They overlap on x. On y?
+    // They overlap on x. Do they on y?
     if (a.top <= b.bottom && a.bottom >= b.top) { // @test
       onPair(a, b); // @overlap
     }

@@ -1,11 +1,11 @@
 export function sweep(endpoints, onOverlapX) {
   const touching = new Set();
 
-  for (const { box, begins } of endpoints) {
-    if (begins) {
-      for (const other of touching) {
-        onOverlapX(other, box); // @test
-      }
+  for (const { box, isLeft } of endpoints) {
+    if (isLeft) {
+      for (const other of touching) { // @added
+        onOverlapX(other, box); // @added @test
+      } // @added
       touching.add(box); // @enter
     } else {
       touching.delete(box); // @leave

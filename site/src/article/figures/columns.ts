@@ -54,10 +54,10 @@ export function columns(): string {
     "columns",
     second + SIDE + 1,
     SIDE + 58,
-    `${boxes.length} boxes, swept as one: ${whole.length} tests. The same, cut into ${COLUMNS} strips: ${copies} copies, ${inParts.length} tests. Both find ${pairs.length} pairs.`,
+    `${boxes.length} boxes in one sweep: ${whole.length} tests. The same boxes cut into ${COLUMNS} columns: ${copies} copies, ${inParts.length} tests. Both find ${pairs.length} pairs.`,
     frame(0.5) + frame(second) + bodies(0) + bodies(second) + cuts.join("") +
       text(SIDE / 2, SIDE + 22, "one sweep") + text(SIDE / 2, SIDE + 47, `${whole.length} tests for ${pairs.length} pairs`, "label strong") +
-      text(second + SIDE / 2, SIDE + 22, `${COLUMNS} strips, ${copies} copies of ${boxes.length} boxes`) +
+      text(second + SIDE / 2, SIDE + 22, `${COLUMNS} columns, ${copies} copies of ${boxes.length} boxes`) +
       text(second + SIDE / 2, SIDE + 47, `${inParts.length} tests for the same ${reported.length} pairs`, "label strong"),
   );
 }

@@ -15,7 +15,7 @@ const BOXES: readonly Box[] = [
 const WIDTH = 560;
 const FLOOR = 190;
 
-function sorted(): { box: Box; begins: boolean; at: number }[] {
+function sorted(): { box: Box; isLeft: boolean; at: number }[] {
   const endpoints = endpointsOf(BOXES);
   quicksort(endpoints);
   return endpoints;
@@ -31,20 +31,20 @@ const bodies = (lit: ReadonlySet<number> = new Set()): string =>
 export function endpointArray(): string {
   const entries = sorted();
   const step = WIDTH / entries.length;
-  const drawn = entries.map(({ box, begins, at }, place) => {
+  const drawn = entries.map(({ box, isLeft, at }, place) => {
     const x = step * (place + 0.5);
     return (
-      line(at, begins ? box.top : box.top, at, FLOOR, "drop") +
+      line(at, box.top, at, FLOOR, "drop") +
       line(at, FLOOR, x, 222, "drop") +
       rect({ left: x - 20, top: 224, right: x + 20, bottom: 256 }, `cell body-${box.id}`) +
-      text(x, 246, begins ? `(${letter(box.id)}` : `${letter(box.id)})`, "mono")
+      text(x, 246, isLeft ? `(${letter(box.id)}` : `${letter(box.id)})`, "mono")
     );
   });
   return svg(
     "endpoint-array",
     WIDTH,
     262,
-    `Five boxes, and under them their ten endpoints in order: ${entries.map(({ box, begins }) => (begins ? `(${letter(box.id)}` : `${letter(box.id)})`)).join(" ")}.`,
+    `Five boxes, and under them their ten endpoints in order: ${entries.map(({ box, isLeft }) => (isLeft ? `(${letter(box.id)}` : `${letter(box.id)})`)).join(" ")}.`,
     drawn.join("") + bodies(),
   );
 }

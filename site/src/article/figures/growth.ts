@@ -1,4 +1,4 @@
-// How work grows with the number of boxes: counted pairs, and the operations measured in docs/.
+// How work grows with the number of boxes: the pairs, and the operations measured in docs/.
 
 import complexity from "../../../../docs/complexity.json" with { type: "json" };
 import { line, path, svg, text } from "./svg.ts";
@@ -27,11 +27,11 @@ export function allPairs(): string {
 const CURVES = [
   { method: "global pairwise", sort: null, world: "square", name: "global pairwise" },
   { method: "sorted pairwise", sort: "insertion sort", world: "square", name: "sorted pairwise, insertion sort" },
-  { method: "swap-driven sweep", sort: null, world: "square", name: "swap-driven, one axis" },
-  { method: "swap-driven sweep on every axis", sort: null, world: "square", name: "swap-driven, every axis" },
+  { method: "swap-driven sweep", sort: null, world: "square", name: "swap-driven sweep, one axis" },
+  { method: "swap-driven sweep on every axis", sort: null, world: "square", name: "swap-driven sweep, every axis" },
 ] as const;
 
-/** Operations a step against the number of boxes, both as powers, in a square world that moves a little. */
+/** Operations per frame against the number of boxes, both as powers, in a square world that moves a little. */
 export function measured(): string {
   const [left, top, width, height] = [64, 16, 300, 280];
   const x = (n: number): number => left + (width * (Math.log2(n) - 8)) / 8;
@@ -62,7 +62,7 @@ export function measured(): string {
     "measured",
     660,
     340,
-    `Operations a step against the number of boxes in a square world that moves a little, on logarithmic scales. ${curves.map(({ name, slope }) => `${name} grows as n to the power ${slope.toFixed(2)}`).join("; ")}.`,
+    `Operations per frame against the number of boxes in a square world that moves a little, on logarithmic scales. ${curves.map(({ name, slope }) => `${name} grows as n to the power ${slope.toFixed(2)}`).join("; ")}.`,
     grid.join("") + curves.map(({ drawn }) => drawn).join("") + labels.join("") + text(left + width / 2, top + height + 38, "boxes", "label small"),
   );
 }

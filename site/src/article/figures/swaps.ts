@@ -3,8 +3,8 @@
 import { letter, line, rect, svg, text } from "./svg.ts";
 
 const CASES = [
-  { before: ")A  (B", after: "(B  )A", one: [10, 60], two: [75, 125], moved: [40, 90], says: "they begin to overlap" },
-  { before: "(A  )B", after: ")B  (A", one: [60, 110], two: [15, 80], moved: [92, 142], says: "they cease to overlap" },
+  { before: ")A  (B", after: "(B  )A", one: [10, 60], two: [75, 125], moved: [40, 90], says: "an overlap begins" },
+  { before: "(A  )B", after: ")B  (A", one: [60, 110], two: [15, 80], moved: [92, 142], says: "an overlap ends" },
   { before: "(A  (B", after: "(B  (A", one: [15, 125], two: [35, 105], moved: [50, 140], says: "nothing changes" },
   { before: ")A  )B", after: ")B  )A", one: [44, 96], two: [35, 105], moved: [62, 114], says: "nothing changes" },
 ] as const;
@@ -51,7 +51,7 @@ export function miniSweep(): string {
     "mini-sweep",
     560,
     190,
-    `The right endpoint of A moves from left to right and passes the left endpoints of ${met.length} boxes; each passing is a swap, and each swap begins an overlap.`,
+    `The right endpoint of A moves from left to right and passes the left endpoints of ${met.length} boxes; each time two endpoints swap, and an overlap begins.`,
     rect({ left: from, top: 20, right: to, bottom: 156 }, "mark") +
       line(40, 36, from, 36, "bar body-0") + line(from, 36, to, 36, "bar body-0 grown") + text(30, 41, "A", "label small", "end") +
       line(to, 16, to, 160, "sweep") + bars.join("") + line(from, 174, to, 174, "arrow") +
