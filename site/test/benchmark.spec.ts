@@ -40,7 +40,7 @@ test.describe("the recorded results", () => {
     expect(await text()).toEqual(expect.arrayContaining(["ours", "ours, 2 threads", "plain sweep", "parry"]));
     for (const aside of ["ours, again", "ours, fresh", "ours, two at once"]) expect(await text()).not.toContain(aside);
 
-    await page.getByText("Contenders: who is shown").click();
+    await page.getByText("Libraries: which ones are shown").click();
     await page.getByLabel("ours, again").check();
     await expect.poll(text).toContain("ours, again");
     await page.getByLabel("parry", { exact: true }).uncheck();
@@ -100,7 +100,7 @@ test.describe("run it here", () => {
       await page.getByRole("button", { name: "Run" }).click();
       await expect(page.locator("#here-status")).toContainText("Done.", { timeout: 90_000 });
       for (const name of ["sweep-and-prune", ...peers]) await expect(row(page, name).locator("td")).toHaveText(/\d (µs|ms)/);
-      await expect(page.locator("#here-status")).toContainText(/ours .* times as long/);
+      await expect(page.locator("#here-status")).toContainText(/alternative, .* times as long/);
       await expect(page.locator("#plot-here > svg")).toBeVisible();
     }
     expect(await violations(page)).toEqual([]);
@@ -118,7 +118,7 @@ test.describe("run it here", () => {
     await choose(page, ["flatbush", "rbush"]);
     await page.getByRole("button", { name: "Run" }).click();
     await expect(page.locator("#here-status")).toContainText("Done.", { timeout: 60_000 });
-    await expect(row(page, "flatbush").locator("td")).toHaveText("other pairs, 1 of them");
+    await expect(row(page, "flatbush").locator("td")).toHaveText("wrong pairs, 1 of them");
     await expect(row(page, "rbush").locator("td")).toHaveText(/\d (µs|ms)/);
   });
 

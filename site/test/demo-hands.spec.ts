@@ -21,13 +21,19 @@ test("keys alone: step, back, play, pause, and a ball moved", async ({ page }) =
 
   const moving = await open(page, pairwise);
   await page.keyboard.press("Tab");
-  for (let count = 0; count < 3; count++) await page.keyboard.press("Space");
+  for (let count = 0; count < 3; count++) await page.keyboard.press(".");
   expect((await stateOf(moving)).tests).toBe(3);
   await page.keyboard.press("[");
   expect((await stateOf(moving)).tests).toBe(2);
   await page.keyboard.press("]");
   expect((await stateOf(moving)).tests).toBe(3);
   await expect(moving.locator('[role="status"]')).toContainText("Test");
+  await page.keyboard.press("Space");
+  await expect.poll(() => moving.evaluate((element: SapDemo) => element.isPlaying), { message: "space plays" }).toBe(true);
+  await page.keyboard.press("Space");
+  await expect.poll(() => moving.evaluate((element: SapDemo) => element.isPlaying), { message: "space pauses" }).toBe(false);
+  await moving.evaluate((element: SapDemo) => element.reset());
+  expect(await moving.evaluate((element: SapDemo) => element.isPlaying), "reset leaves a paused demo paused").toBe(false);
   for (const name of ["Play", "Step back", "Step", "Moment", "Speed", "Reset", "Share or embed"]) {
     await page.keyboard.press("Tab");
     await expect(moving.getByLabel(name, { exact: true })).toBeFocused();

@@ -1,4 +1,4 @@
-// What holds for every demo of the explanation, as it stands there: the given balls, in their place.
+// What holds for every demo of the article, as it stands there: the given balls, in their place.
 import { expect, type Locator, test } from "@playwright/test";
 import type { SapDemo } from "sweep-and-prune/demo";
 import { complaints } from "./support/pages.ts";
@@ -88,7 +88,7 @@ test("every demo: keys alone step it, back and forward again is the same, neithe
   expect(heard).toEqual([]);
 });
 
-test("every demo of the explanation plays", async ({ page }) => {
+test("every demo of the article plays", async ({ page }) => {
   test.slow();
   await page.goto("/");
   for (const demo of await page.locator("sap-demo:not([static])").all()) {

@@ -26,6 +26,6 @@ test("says so where there is no WebGL, and still counts", async ({ page }) => {
   });
   await page.goto("/falling.html");
   const lab = await new Lab(page, "spheres").open();
-  await expect(lab.root.locator('[data-part="message"]')).toContainText("no picture: this browser offers no WebGL");
+  await expect(lab.root.locator('[data-part="message"]')).toContainText("no picture: drawing the spheres needs WebGL");
   await expect.poll(() => lab.value("pairs")).toBeGreaterThan(0);
 });

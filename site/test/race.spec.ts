@@ -20,7 +20,7 @@ class Race {
   }
 
   lane(number: number): Locator {
-    return this.root.getByRole("group", { name: `Contender ${number}` });
+    return this.root.getByRole("group", { name: `Lane ${number}` });
   }
 
   async value(lane: number, key: string): Promise<number> {
@@ -40,7 +40,7 @@ test("runs, compares every step, plots, and complains of nothing", async ({ page
   const elsewhere = requestsElsewhere(page, baseURL ?? "");
   const race = await new Race(page).open();
   await expect.poll(async () => Number(await race.root.getAttribute("data-step"))).toBeGreaterThan(10);
-  await expect(race.root.locator('[data-part="verdict"]')).toContainText(/All 4 found the same [\d,]+ pairs, as in each of the \d+ steps/);
+  await expect(race.root.locator('[data-part="verdict"]')).toContainText(/All 4 found the same [\d,]+ pairs, in this step and in all \d+ so far/);
   await expect(race.root.locator('[data-part="alarm"]')).toBeEmpty();
   const plot = race.root.locator('[data-part="plot"]');
   const before = await plot.screenshot();
@@ -69,8 +69,8 @@ test("a contender that finds other pairs is told of loudly", async ({ page }) =>
     } as typeof listen;
   });
   const race = await new Race(page).open("?boxes=100");
-  await expect(race.root.getByRole("alert")).toHaveText(/In step 3 contender 3 found other pairs/);
-  await expect(race.root.locator('[data-part="verdict"]')).toHaveText("They do not agree.");
+  await expect(race.root.getByRole("alert")).toHaveText(/In step 3, lane 3 found other pairs/);
+  await expect(race.root.locator('[data-part="verdict"]')).toHaveText("The algorithms disagree.");
   // Hundreds of steps a second go by: it must stand still to be seen at its beginning.
   await race.root.getByRole("button", { name: "Pause" }).click();
   await race.root.getByRole("button", { name: "Reset" }).click();
@@ -137,7 +137,7 @@ test.describe("paused", () => {
 
   test("too many pairs, or too much to keep, is refused in words", async ({ page }) => {
     const race = await new Race(page).open("?scene=coincident&boxes=20000");
-    await expect(race.root.locator('[data-part="message"]')).toContainText("199,990,000 pairs; there is room for 2,000,000");
+    await expect(race.root.locator('[data-part="message"]')).toContainText("199,990,000 pairs; the limit is 2,000,000");
     await race.open("?scene=tower&boxes=20000&2.axis=y&3.axis=x&1=find+pairs");
     await expect(race.lane(3).locator('[data-part="out"]')).toContainText("would have to keep 199,");
     await expect(race.root.locator('[data-part="verdict"]')).toContainText("found the same");

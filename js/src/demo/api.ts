@@ -79,7 +79,7 @@ export interface SapDemo extends HTMLElement {
   step(): void;
   /** Goes back to the event before, or to the end of the detection before. */
   back(): void;
-  /** Begins anew, as the attributes say. */
+  /** Starts over, as the attributes say. A demo that was paused stays paused. */
   reset(): void;
   /** Goes to the k-th of the moments that are kept; 0 is the oldest. Beyond the last, to the last. */
   seek(k: number): void;

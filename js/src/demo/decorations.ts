@@ -44,7 +44,7 @@ export function readDecorations(text: string, also: { array: boolean; checks: bo
       edges = { focus: words.includes("focus"), inside: hasArray ? undefined : one, outside: hasArray ? undefined : other };
       if (hasArray) array = { comparison: one, swap: other, isSortShown: true };
     } else {
-      throw new OptionError(`decorations: there is no "${name}", only checks, sweep and edges`);
+      throw new OptionError(`decorations: "${name}" is unknown; use checks, sweep or edges`);
     }
   }
   return { checks, sweep, edges, array };
@@ -59,7 +59,7 @@ function split(text: string, separator: "," | ":"): string[] {
 function colour(text: string | undefined): Colour {
   if (text === undefined || text === "") return undefined;
   if (typeof CSS !== "undefined" && !CSS.supports("color", text)) {
-    throw new OptionError(`decorations: "${text}" is no colour`);
+    throw new OptionError(`decorations: "${text}" is not a CSS color`);
   }
   return text;
 }
@@ -67,6 +67,6 @@ function colour(text: string | undefined): Colour {
 function milliseconds(text: string | undefined): number {
   if (text === undefined || text === "") return CHECK_MS;
   const ms = Number(text.replace(/ms$/, ""));
-  if (!(ms >= 0 && ms <= 60_000)) throw new OptionError(`decorations: "${text}" is no time in milliseconds`);
+  if (!(ms >= 0 && ms <= 60_000)) throw new OptionError(`decorations: "${text}" is not a time; use milliseconds from 0 to 60000`);
   return ms;
 }

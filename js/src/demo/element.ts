@@ -113,7 +113,9 @@ export class SapDemoElement extends LitElement {
   }
 
   reset(): void {
+    const wasPlaying = this.#isPlaying;
     this.#begin();
+    if (!wasPlaying) this.pause();
     this.#speech.soon();
   }
 
@@ -165,7 +167,7 @@ export class SapDemoElement extends LitElement {
     motionQuery.addEventListener("change", this.#onMotionChange);
     loadDemos().then(
       () => this.isConnected && !this.#run && this.#begin(),
-      (error: unknown) => this.#refuse(`This demo could not be loaded. ${error instanceof Error ? error.message : String(error)}`),
+      (error: unknown) => this.#refuse(`This demo could not be loaded: ${error instanceof Error ? error.message : String(error)}`),
     );
   }
 

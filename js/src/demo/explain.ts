@@ -37,7 +37,7 @@ export function explain(detection: Detection, names: readonly string[], a: numbe
   if (apart === undefined) {
     const why = prune
       ? `the scan from ${names[first]} stopped at ${names[Number(prune["right"])]}, ${gapText(Number(prune["axis"]), first, Number(prune["right"]))}, though ${names[last]} reaches back`
-      : `this method never brought the two together`;
+      : `this algorithm never tested them`;
     return { text: `${pair} overlap and were missed: ${bothOverlap(detection.boxes, names, a, b)}, but ${why}.`, gap: undefined };
   }
   if (prune && apart.left === first) {

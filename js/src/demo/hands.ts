@@ -58,7 +58,13 @@ export class Hands {
   }
 
   readonly keyboard: Keyboard = {
-    stepOrPause: () => (this.#demo.isPlaying ? this.#demo.pause() : this.#demo.step()),
+    playOrPause: () => {
+      if (this.#demo.isPlaying) return this.#demo.pause();
+      // Where nothing moves and nothing is stepped through, there is nothing to play.
+      const run = this.#handled.run();
+      if (run && !(run.options.isStatic && run.timeline.isStopless)) this.#demo.play();
+      else this.#demo.step();
+    },
     step: () => this.#demo.step(),
     back: () => this.#demo.back(),
     moveCursor: (by) => {

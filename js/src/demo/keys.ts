@@ -6,7 +6,7 @@ const FAR_ARROW = 25;
 
 /** What keys do. */
 export interface Keyboard {
-  stepOrPause(): void;
+  playOrPause(): void;
   step(): void;
   back(): void;
   /** To the next ball, or to the one before. */
@@ -25,7 +25,7 @@ export function press(event: KeyboardEvent, { isDraggable }: Options, keyboard: 
   if (event.key.startsWith("Arrow") && !isDraggable) return;
   const by = event.shiftKey ? FAR_ARROW : ARROW;
   const actions: Record<string, () => void> = {
-    " ": () => keyboard.stepOrPause(),
+    " ": () => keyboard.playOrPause(),
     "[": () => keyboard.back(),
     ",": () => keyboard.back(),
     "]": () => keyboard.step(),
@@ -49,10 +49,10 @@ export function press(event: KeyboardEvent, { isDraggable }: Options, keyboard: 
 
 /** The keys in words, for those who do not see the buttons. */
 export function keysOf(options: Options | undefined): string {
-  const keys = ["Space steps, or pauses.", "Comma and full stop step back and forward."];
+  const keys = ["Space plays or pauses.", "Comma and full stop step back and forward."];
   if (options?.isDraggable || options?.explains) keys.push("B chooses the next ball.");
   if (options?.isDraggable) keys.push("Arrow keys move it.");
-  if (options?.explains) keys.push("Enter takes it for an explanation of a pair.");
+  if (options?.explains) keys.push("Enter selects it; select two to see why they were tested or skipped.");
   if (options?.predicts) keys.push("1 and 2 guess.");
   return keys.join(" ");
 }

@@ -31,7 +31,7 @@ export function summary(isDetected: boolean, tick: number | undefined, balls: nu
   const all = (balls * (balls - 1)) / 2;
   const { counts, pairs } = detection.step;
   const found = pairs.length / 2;
-  const work = flagChecks === undefined ? `${counts.tests} of ${all} pairs tested` : `${flagChecks} ${flagChecks === 1 ? "check" : "checks"} of flags, no test of ${all} pairs`;
+  const work = flagChecks === undefined ? `${counts.tests} of ${all} pairs tested` : `${flagChecks} ${flagChecks === 1 ? "flag" : "flags"} checked, none of ${all} pairs tested`;
   const tested = `${work}, ${found} ${found === 1 ? "overlaps" : "overlap"}`;
   const missed = detection.missed.map(([a, b]) => `${names[a]} and ${names[b]}`);
   return `${when}${tested}.${missed.length > 0 ? ` Missed: ${missed.join(", ")}.` : ""}`;
@@ -52,9 +52,11 @@ export function describeEvent(event: TraceEvent, known: Known): string {
     }
     case "prune": {
       const [axis, left, right] = [word("axis"), word("left"), word("right")];
-      return `Stop here for ${name(left)}: ${separation(known, axis, left, right)}, and all that follow begin later still.`;
+      return `Stop here for ${name(left)}: ${separation(known, axis, left, right)}, and every ball after it begins later still.`;
     }
     case "compare":
+      // Quicksort also meets its own pivot.
+      if (a === b) return `${edge(a)} is the pivot: it stays where it is.`;
       return `Compare ${edge(a)} with ${edge(b)}.`;
     case "swap":
       if (Math.abs(word("i") - word("j")) !== 1) return `Swap ${edge(a)} and ${edge(b)}.`;
@@ -73,7 +75,7 @@ export function describeEvent(event: TraceEvent, known: Known): string {
 /** What a swap of neighbours means. `a` stood before `b`. */
 function swapCase(a: number, b: number, name: (ball: number) => string): string {
   const pair = `${name(a >> 1)} and ${name(b >> 1)}`;
-  if (a % 2 === 1 && b % 2 === 0) return `)( becomes (), ${pair} begin to overlap here.`;
-  if (a % 2 === 0 && b % 2 === 1) return `() becomes )(, ${pair} cease to overlap here.`;
-  return `${a % 2 === 0 ? "((" : "))"} stays what it is, nothing changes.`;
+  if (a % 2 === 1 && b % 2 === 0) return `)( becomes (), ${pair} begin to overlap on this axis.`;
+  if (a % 2 === 0 && b % 2 === 1) return `() becomes )(, ${pair} cease to overlap on this axis.`;
+  return `${a % 2 === 0 ? "((" : "))"} stays the same: no overlap begins or ends.`;
 }

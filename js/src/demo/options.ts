@@ -13,7 +13,7 @@ export class OptionError extends Error {
 
 /** Why a demo cannot begin. */
 export function messageOf(error: unknown): string {
-  return error instanceof OptionError ? error.message : `This demo cannot begin. ${String(error)}`;
+  return error instanceof OptionError ? error.message : `This demo cannot start: ${String(error)}`;
 }
 
 /** How the world moves from one tick to the next. */
@@ -227,7 +227,7 @@ export function readOptions(attribute: (name: Attribute) => string | null): Opti
   const count = typeof balls === "number" ? balls : balls.length;
   const focus = get("focus") === null ? undefined : number("focus", get("focus")!, 0, MOST_BALLS - 1);
   if (focus !== undefined && focus >= count) {
-    throw new OptionError(`focus="${focus}": there are ${count} balls, the first of which is 0`);
+    throw new OptionError(`focus="${focus}": there are ${count} balls, numbered from 0`);
   }
   return {
     world: {
@@ -276,7 +276,7 @@ export function readStart(text: string | null): number {
 function choose<V>(attribute: Attribute, choices: Readonly<Record<string, V>>, name: string): V {
   const key = name.trim();
   if (!Object.hasOwn(choices, key)) {
-    throw new OptionError(`${attribute}="${name}": there is ${Object.keys(choices).join(", ")}`);
+    throw new OptionError(`${attribute}="${name}" is unknown; use one of ${Object.keys(choices).join(", ")}`);
   }
   return choices[key]!;
 }
@@ -290,7 +290,7 @@ function onAllAxes(method: Strategy["method"]): Strategy["method"] {
 function number(attribute: Attribute, text: string, least: number, most: number, whole = true): number {
   const value = text.trim() === "" ? NaN : Number(text);
   if (!(value >= least && value <= most) || (whole && !Number.isInteger(value))) {
-    throw new OptionError(`${attribute}="${text}": expected a ${whole ? "whole " : ""}number from ${least} to ${most}`);
+    throw new OptionError(`${attribute}="${text}": it must be a ${whole ? "whole " : ""}number from ${least} to ${most}`);
   }
   return value;
 }
@@ -301,20 +301,20 @@ function readBalls(text: string): number | Row[] {
   try {
     rows = JSON.parse(text);
   } catch {
-    throw new OptionError(`balls: the list is no JSON; expected [[x, y, radius], ...]`);
+    throw new OptionError(`balls: this list is not valid JSON; write it like [[x, y, radius], ...]`);
   }
   if (!Array.isArray(rows) || rows.length > MOST_BALLS) {
-    throw new OptionError(`balls: expected a list of at most ${MOST_BALLS}`);
+    throw new OptionError(`balls: the list must have at most ${MOST_BALLS} rows`);
   }
   return rows.map(checkBall);
 }
 
 function checkBall(row: unknown, index: number): Row {
   const isRow = Array.isArray(row) && (row.length === 3 || row.length === 5) && row.every(Number.isFinite);
-  if (!isRow) throw new OptionError(`balls: number ${index} is not [x, y, radius] or [x, y, radius, vx, vy]`);
+  if (!isRow) throw new OptionError(`balls: number ${index} must be [x, y, radius] or [x, y, radius, vx, vy], in numbers`);
   const [x, y, radius] = row as unknown as Row;
   const fits = radius > 0 && x >= radius && x <= WIDTH - radius && y >= radius && y <= HEIGHT - radius;
-  if (!fits) throw new OptionError(`balls: number ${index} is not inside the ${WIDTH} x ${HEIGHT} world`);
+  if (!fits) throw new OptionError(`balls: number ${index} must lie inside the ${WIDTH} x ${HEIGHT} world, with a radius above 0`);
   return row as unknown as Row;
 }
 

@@ -71,7 +71,7 @@ export interface Guessing {
 export function guessing({ question, guesses, guess }: Guessing): TemplateResult {
   const { outcome, right, made } = guesses;
   return html`<div class="guess" part="guess" role="group" aria-label="What happens next?">
-    <p>${outcome} ${question?.text ?? "Nothing to guess here: step on."}</p>
+    <p>${outcome} ${question?.text ?? "Nothing to guess here. Press Step."}</p>
     <div>
       ${question?.choices.map((text, index) => html`<button type="button" @click=${() => guess(index as 0 | 1)}>${text}</button>`)}
       <span class="score">${made === 0 ? nothing : html`${right} of ${made} right`}</span>
@@ -85,7 +85,7 @@ export function sharing(url: string, code: string): TemplateResult {
     html`<label>${label}<textarea readonly rows=${lines} .value=${text} @focus=${select}></textarea></label>
       <button type="button" @click=${(event: Event) => copy(event.target as HTMLElement, text)}>Copy</button>`;
   return html`<div class="share" part="share" popover aria-label="Share or embed">
-    ${row("Link to this demo", url, 2)} ${row("To embed it in a page", code, 5)}
+    ${row("Link to this demo", url, 2)} ${row("Code to embed it in a page", code, 5)}
   </div>`;
 }
 

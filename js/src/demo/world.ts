@@ -91,7 +91,7 @@ function start({ balls, seed, motion, bounces }: WorldOptions): Simulation {
     return new Simulation({ scene: "bouncing", balls: given, ...size, ...laws });
   } catch (error) {
     const isTooMuch = error instanceof SimulationError && error.code === "no-room";
-    throw isTooMuch ? new OptionError(`balls="${String(balls)}": so many do not fit`) : error;
+    throw isTooMuch ? new OptionError(`balls="${String(balls)}": that many do not fit into the world; use fewer`) : error;
   }
 }
 

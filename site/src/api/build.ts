@@ -1,4 +1,4 @@
-// The page of the API: examples in colour, and links to the documentation where it has been made.
+// The API page: highlighted examples, and links to the documentation of each language if it was built.
 
 import { existsSync } from "node:fs";
 import type { Plugin } from "vite";
@@ -42,7 +42,7 @@ sap.find_pairs(boxes)  # array([[0, 2]], dtype=uint32)`,
   },
 } as const;
 
-/** Where each tool begins its documentation, below public/. */
+/** The first page of each language’s documentation, below public/. */
 const DOCUMENTATION = {
   rust: "api/rust/sweep_and_prune/index.html",
   js: "api/js/index.html",

@@ -75,7 +75,7 @@ export class BenchmarkHere {
         box.name = "peer";
         box.value = name;
         box.checked = !HEAVY.test(name);
-        label.append(box, HEAVY.test(name) ? `${name} (megabytes to load)` : name);
+        label.append(box, HEAVY.test(name) ? `${name} (loads megabytes)` : name);
         return label;
       }),
     );
@@ -114,7 +114,7 @@ export class BenchmarkHere {
       this.#status.textContent = `Done. ${verdict(this.#cases.at(-1))}`;
     } catch (error) {
       this.#progress.value = 0;
-      this.#status.textContent = stop.signal.aborted ? "Cancelled." : `That did not work: ${String(error)}`;
+      this.#status.textContent = stop.signal.aborted ? "Cancelled." : `The measurement failed: ${String(error)}`;
     } finally {
       this.#busy(false);
     }
@@ -144,12 +144,12 @@ export class BenchmarkHere {
   }
 }
 
-/** What came of the most boxes, in a sentence. */
+/** The result for the largest number of boxes, in a sentence. */
 function verdict(one: Case | undefined): string {
   const ours = one && fastestOurs(one);
   if (!one || !ours) return "";
   const peer = fastestPeer(one);
   const size = `${one.boxes.toLocaleString("en")} boxes`;
-  if (!peer) return `Ours finds the ${one.pairs.toLocaleString("en")} pairs of ${size} in ${duration(ours)}.`;
-  return `${size}: ours ${duration(ours)}, the fastest peer, ${peer.name}, ${significant(peer.ratio)} times as long.`;
+  if (!peer) return `sweep-and-prune finds the ${one.pairs.toLocaleString("en")} pairs of ${size} in ${duration(ours)}.`;
+  return `${size}: sweep-and-prune takes ${duration(ours)}. The fastest alternative, ${peer.name}, takes ${significant(peer.ratio)} times as long.`;
 }

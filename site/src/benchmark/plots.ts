@@ -136,7 +136,7 @@ export function drawLeads(place: HTMLElement, leads: readonly Lead[]): void {
   const scenes = [...new Set(leads.map(({ scene }) => scene))];
   const ratios = leads.map(({ ratio }) => ratio);
   const domain: [number, number] = [Math.min(1, ...ratios), Math.max(...ratios)];
-  const axis = { ticks: ticks(domain, [1, 2, 5]), tickFormat: String, label: "times as long as ours →" };
+  const axis = { ticks: ticks(domain, [1, 2, 5]), tickFormat: String, label: "× the time of sweep-and-prune →" };
   const plot = Plot.plot({
     ...frame(place),
     height: 20 * scenes.length + 100,
@@ -160,7 +160,7 @@ export function drawLeads(place: HTMLElement, leads: readonly Lead[]): void {
     ],
   });
   const least = leads.reduce((a, b) => (b.ratio < a.ratio ? b : a));
-  const text = `The fastest peer takes at least ${significant(least.ratio)} times as long as ours: ${title(least).replace("\n", ", ")}.`;
+  const text = `The fastest alternative takes at least ${significant(least.ratio)} times as long as sweep-and-prune: ${title(least).replace("\n", ", ")}.`;
   show(place, plot, text, []);
   place.prepend(key(sizes.map((size) => ({ name: `${count(size)} boxes`, swatch: swatch(look(size)) }))));
 }

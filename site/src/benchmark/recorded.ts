@@ -8,8 +8,8 @@ import type { Lead, Point } from "./plots.ts";
 
 type Task = "cases" | "worlds";
 const TASKS: readonly (readonly [Task, string])[] = [
-  ["cases", "finding all pairs"],
-  ["worlds", "following motion"],
+  ["cases", "find all pairs"],
+  ["worlds", "track moving boxes"],
 ];
 /** Below so many boxes one is at the small inputs, for which plots over the number are no help. */
 const SMALL = 100;
@@ -23,7 +23,7 @@ export class RecordedRuns {
   constructor() {
     const machine = element("recorded-machine");
     if (runs.length === 0) {
-      machine.textContent = "No results were kept yet: bench/run and bench/js/run make them. Below you can measure here.";
+      machine.textContent = "There are no recorded results yet; bench/run and bench/js/run create them. You can measure in this browser below.";
       for (const place of ["plot-time", "plot-memory", "plot-ratio"]) element(place).closest("figure")?.remove();
       element("recorded-table").closest("details")?.remove();
       return;
@@ -56,13 +56,13 @@ export class RecordedRuns {
     const { machine, date, tools, address, name } = this.#chosen;
     const loads = [...this.#chosen.cases, ...this.#chosen.worlds].flatMap(({ load }) => load ?? []);
     const load = Math.max(machine.load ?? 0, ...loads);
-    const quiet = load > machine.cores ? `Others were at work on it (load up to ${load.toFixed(1)}): the ratios hold better than the times.` : "";
+    const quiet = load > machine.cores ? `Other programs were running (load up to ${load.toFixed(1)}), so the ratios are more reliable than the times.` : "";
     element("recorded-machine").textContent = `${machine.cpu}, ${machine.cores} cores, ${machine.system}; ${tools}; ${date}. ${quiet}`;
     const link = document.createElement("a");
     link.href = address;
     link.download = "";
     link.textContent = "Download the results as JSON";
-    element("recorded-download").replaceChildren(link, ` (${name}, every round of every contender)`);
+    element("recorded-download").replaceChildren(link, ` (${name}, every round of every library)`);
     fill(this.#task, TASKS.filter(([task]) => this.#chosen[task].length > 0));
     this.#showTask();
   }
@@ -101,7 +101,7 @@ export class RecordedRuns {
     const looks = looksOf(this.#entries);
     const draw = (place: string, of: Point[], unit: "time" | "memory"): void => {
       if (of.length > 0) drawLines(element(place), of, looks, { unit });
-      else drawNothing(element(place), "Nothing of this was measured, or nobody is ticked.");
+      else drawNothing(element(place), "Nothing was measured here, or no library is selected.");
     };
     draw("plot-time", points("median_ns"), "time");
     draw("plot-memory", points("peak_bytes"), "memory");
@@ -114,7 +114,7 @@ export class RecordedRuns {
     });
     const { drawLeads, drawNothing } = await import("./plots.ts");
     if (leads.length > 0) drawLeads(element("plot-ratio"), leads);
-    else drawNothing(element("plot-ratio"), "No peer took part.");
+    else drawNothing(element("plot-ratio"), "No alternative took part.");
   }
 }
 
@@ -122,7 +122,7 @@ export class RecordedRuns {
 export function table(cases: readonly Case[]): HTMLElement[] {
   const names = [...new Set(cases.flatMap(({ results }) => results.map(({ name }) => name)))];
   const head = document.createElement("thead");
-  head.append(row(["Contender", ...cases.map(({ boxes }) => `${count(boxes)} boxes`)].map((text) => cell("th", text, "col"))));
+  head.append(row(["Library", ...cases.map(({ boxes }) => `${count(boxes)} boxes`)].map((text) => cell("th", text, "col"))));
   const body = document.createElement("tbody");
   for (const name of names) {
     const cells = cases.map((one) => {
@@ -140,7 +140,7 @@ export function table(cases: readonly Case[]): HTMLElement[] {
   }
   const caption = document.createElement("caption");
   const pairs = cases.map((one) => `${count(one.pairs)} pairs of ${count(one.boxes)} boxes (checked against: ${one.reference})`);
-  caption.textContent = `Time of a call, how many times ours, memory. ${pairs.join("; ")}.`;
+  caption.textContent = `Time of a call (× the time of sweep-and-prune), peak memory. ${pairs.join("; ")}.`;
   return [caption, head, body];
 }
 

@@ -57,7 +57,7 @@ async function measureOne(
   const check = async (contender: Contender): Promise<Running | undefined> => {
     const known = slow.get(contender.name);
     if (known !== undefined && known * boxes > TOO_SLOW) {
-      drop(contender, "too slow, as fewer boxes showed");
+      drop(contender, "skipped: too slow with fewer boxes");
       return undefined;
     }
     const remote = new Remote(signal);
@@ -87,9 +87,9 @@ async function measureOne(
     const agreed = right ?? running.find((one) => running.some((other) => isWitness(one, other)));
     running = running.filter(({ contender, ready }) => {
       const why = !agreed
-        ? "nobody to agree with"
+        ? "no second library to check it against"
         : ready.fingerprint !== agreed.ready.fingerprint
-          ? `other pairs, ${ready.pairs} of them`
+          ? `wrong pairs, ${ready.pairs} of them`
           : ready.estimate > TOO_SLOW
             ? `over ${TOO_SLOW / 1000} s`
             : undefined;
@@ -111,7 +111,7 @@ async function measureOne(
       const ratios = rounds.map((time, round) => time / (ours?.rounds[round] ?? NaN));
       return { name, rival, outcome: { Timed: { median_ns: median(rounds) * 1e6, ratio: median(ratios), peak_bytes: null } } };
     });
-    const reference = right ? bruteForce.name : agreed ? "two that agree" : "nothing";
+    const reference = right ? bruteForce.name : agreed ? "two libraries that agree" : "nothing";
     return { ...setting, pairs: agreed?.ready.pairs ?? 0, reference, load: null, results: [...timed, ...results] };
   } finally {
     for (const remote of remotes) remote.stop();

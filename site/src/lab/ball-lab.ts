@@ -10,7 +10,7 @@ import { LARGEST_SEED, RANGES, readSettings, type Settings, setupOf, writeSettin
 
 /** Numbers that change more often than this cannot be read. */
 const COUNTER_MS = 120;
-const NOT_COUNTED = "not counted: this algorithm does not do it or does not tell";
+const NOT_COUNTED = "not counted by this algorithm";
 /** The time of drawing is the mean of this many pictures. */
 const WINDOW = 30;
 /** The plot of the stages shows so many of its moments, one each time the counters change. */
@@ -92,7 +92,7 @@ export class BallLab extends HTMLElement {
     try {
       return new SphereView(canvas, this.#part("orbit"), readTheme(), () => this.#requestDraw());
     } catch (cause) {
-      throw new Error("this browser offers no WebGL, which draws the spheres. They fall all the same, and the numbers are theirs.", { cause });
+      throw new Error("drawing the spheres needs WebGL, which this browser does not offer. The simulation runs anyway, and the numbers are correct.", { cause });
     }
   }
 
@@ -315,7 +315,7 @@ export class BallLab extends HTMLElement {
     const by = this.#part<HTMLSelectElement>("sort").disabled ? algorithm : `${algorithm}, ${sort}`;
     const frame = this.#frame?.run === this.#begun?.run ? this.#frame : undefined;
     if (this.#wanted) {
-      this.#say(`${who} by ${by}.`);
+      this.#say(`${who}, ${by}.`);
     } else if (frame?.running) {
       this.#say("Finishing this step.");
     } else if (frame && frame.measurement.pairs !== null) {
@@ -323,7 +323,7 @@ export class BallLab extends HTMLElement {
       const found = `${tests === null ? "" : `${formatCount(tests)} tests found `}${formatCount(pairs)} pairs`;
       this.#say(`Paused after step ${formatCount(frame.step)}: ${found}. State ${frame.hash}.`);
     } else {
-      this.#say(`Paused: ${who} by ${by}.`);
+      this.#say(`Paused: ${who}, ${by}.`);
     }
   }
 

@@ -55,7 +55,7 @@ function labMarkup({ id, dimensions, bodies }: LabOptions): string {
         <div class="lab-counters">
           ${counterList("work", "Work of one step", bodies)}
           ${counterList("time", "Time of one step", bodies)}
-          <canvas class="lab-stages" data-part="stages" role="img" aria-label="The time of the last pictures, stage upon stage; the numbers are beside it"></canvas>
+          <canvas class="lab-stages" data-part="stages" role="img" aria-label="Time per stage over the last pictures, stacked; the numbers are next to it"></canvas>
         </div>
       </div>
 
@@ -78,12 +78,12 @@ const discStage = (): string =>
   `<canvas data-part="canvas" role="img" aria-label="Discs falling into a box"></canvas>`;
 
 const sphereStage = (): string =>
-  `<div class="orbit" data-part="orbit" tabindex="0" role="application" aria-label="Spheres falling into a box. Arrow keys turn the view, plus and minus come closer and move away.">
+  `<div class="orbit" data-part="orbit" tabindex="0" role="application" aria-label="Spheres falling into a box. Arrow keys turn the view, plus and minus zoom.">
           <canvas data-part="canvas"></canvas>
         </div>`;
 
 const linesSwitch = (): string =>
-  `<label class="switch"><input type="checkbox" data-part="lines" autocomplete="off" disabled /> <span>Join the pairs by lines</span></label>`;
+  `<label class="switch"><input type="checkbox" data-part="lines" autocomplete="off" disabled /> <span>Draw a line for each pair</span></label>`;
 
 function counterList(group: "work" | "time", title: string, bodies: number): string {
   const rows = COUNTERS.filter((counter) => counter.group === group).map(

@@ -1,11 +1,11 @@
 import { findPairs, init } from "sweep-and-prune";
 import { bruteForceTests, formatCount } from "../lab/counters.ts";
 
-/** The numbers of boxes that the slider offers; more would keep the thread of the page too long. */
+/** The numbers of boxes that the slider offers; more would block the page for too long. */
 const BOXES = [10, 20, 50, 100, 200, 500, 1_000, 2_000, 5_000, 10_000, 20_000, 50_000, 100_000, 200_000, 500_000, 1_000_000];
-/** Up to so many boxes brute force answers before a visitor wonders what is going on. */
+/** Brute force checks the result up to this many boxes; more would take too long. */
 const CHECKED = 5_000;
-/** The side of a cube at which a box of `n` in the unit cube meets about two others. */
+/** The side of a box at which each of `n` boxes in the unit cube overlaps about two others. */
 const side = (n: number): number => 0.5 * Math.cbrt(4 / n);
 
 /**
@@ -30,7 +30,7 @@ export class LibraryTrial extends HTMLElement {
     slider.addEventListener("input", showCount);
     slider.disabled = button.disabled = false;
     button.addEventListener("click", async () => {
-      result.textContent = await trial(boxes()).catch((error: unknown) => `That did not work: ${String(error)}`);
+      result.textContent = await trial(boxes()).catch((error: unknown) => `The search failed: ${String(error)}`);
     });
   }
 }
@@ -39,22 +39,22 @@ export class LibraryTrial extends HTMLElement {
 async function trial(n: number): Promise<string> {
   await init();
   const boxes = randomBoxes(n);
-  findPairs(boxes, { dimensions: 3 }); // once unmeasured, so that the compiler has seen it
+  findPairs(boxes, { dimensions: 3 }); // once without timing, so that the code is compiled
   const started = performance.now();
   const pairs = findPairs(boxes, { dimensions: 3 });
   const time = performance.now() - started;
   const found = `${formatCount(pairs.length / 2)} pairs among ${formatCount(n)} boxes in ${time.toFixed(1)} ms.`;
 
   const tests = formatCount(bruteForceTests(n));
-  if (n > CHECKED) return `${found} Brute force would make ${tests} tests; it is tried up to ${formatCount(CHECKED)} boxes.`;
+  if (n > CHECKED) return `${found} Brute force would make ${tests} tests; this page runs it only up to ${formatCount(CHECKED)} boxes.`;
   const begun = performance.now();
   const expected = bruteForce(boxes);
   const bruteTime = performance.now() - begun;
-  const agreement = sameSets(pairs, expected) ? "the same pairs" : "DIFFERENT pairs: please tell us";
+  const agreement = sameSets(pairs, expected) ? "the same pairs" : "DIFFERENT pairs, which is a bug: please report it";
   return `${found} Brute force, ${tests} tests in plain JavaScript: ${agreement}, ${bruteTime.toFixed(1)} ms.`;
 }
 
-/** Boxes in the unit cube, a row each: least corner, greatest corner. */
+/** Random boxes in the unit cube, one row per box: min corner, max corner. */
 function randomBoxes(n: number): Float32Array {
   const boxes = new Float32Array(6 * n);
   for (let row = 0; row < boxes.length; row += 6) {

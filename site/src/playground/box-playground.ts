@@ -20,7 +20,7 @@ const RANGES = {
 const LARGEST_SEED = 2 ** 32 - 1;
 /** Numbers that change more often than this cannot be read. */
 const SHOW_MS = 150;
-const NOT_COUNTED = "not counted: this algorithm does not do it or does not tell";
+const NOT_COUNTED = "not counted by this algorithm";
 
 const DEFAULTS = {
   dimensions: "2", scene: "clustered", motion: "drift", boxes: "500", seed: "1", size: "1", spread: "1",
@@ -166,7 +166,7 @@ export class BoxPlayground extends HTMLElement {
     });
     const written = async (): Promise<string> => {
       const snapshot = this.#snapshot();
-      if (!snapshot) throw new Error("there is no world yet");
+      if (!snapshot) throw new Error("there are no boxes yet");
       return write(snapshot, this.#format());
     };
     const told = (text: string, work: () => Promise<void>): void => {

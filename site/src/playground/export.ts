@@ -8,7 +8,7 @@ export interface Snapshot {
   readonly world: WorldOptions;
   readonly method: ContenderOptions;
   readonly step: number;
-  /** Rows of the least corner and the greatest. */
+  /** Rows of min corner and max corner. */
   readonly boxes: Float32Array;
   readonly pairs: number;
   /** Where the world can be seen. */
@@ -36,7 +36,7 @@ const LANGUAGES: Record<Format, Language> = {
 // npm install sweep-and-prune
 import { findPairs, init } from "sweep-and-prune";
 
-// A box is a row: its least corner, then its greatest.
+// Each row is a box: its min corner, then its max corner.
 const boxes = new Float32Array([
 `,
     row: (corners) => `  ${corners.join(", ")},`,
@@ -63,7 +63,7 @@ fn main() -> Result<(), Error> {
     Ok(())
 }
 
-/// The least corner of each box and its greatest.
+/// The min corner and the max corner of each box.
 #[rustfmt::skip]
 #[allow(clippy::excessive_precision, clippy::approx_constant)]
 static BOXES: [([f32; ${snapshot.world.dimensions}], [f32; ${snapshot.world.dimensions}]); ${snapshot.world.boxes}] = [
@@ -82,7 +82,7 @@ static BOXES: [([f32; ${snapshot.world.dimensions}], [f32; ${snapshot.world.dime
 import numpy as np
 import sweep_and_prune as sap
 
-# A box is a row: its least corner, then its greatest.
+# Each row is a box: its min corner, then its max corner.
 boxes = np.array([
 `,
     row: (corners) => `    [${corners.join(", ")}],`,
@@ -90,7 +90,7 @@ boxes = np.array([
     tail: ({ pairs }) => `
 ], dtype=np.float32)
 
-pairs = sap.find_pairs(boxes)  # a row for each pair, the smaller index first
+pairs = sap.find_pairs(boxes)  # one row per pair, smaller index first
 print(len(pairs))  # ${pairs}
 `,
   },

@@ -7,10 +7,10 @@ import { choice, slider } from "../lab/parts.ts";
 export const COUNTERS = [
   { key: "ms", label: "Time", meaning: "from boxes to the list of all pairs; mean of the middle half of the last 60 steps" },
   { key: "pairs", label: "Pairs", meaning: "pairs whose boxes overlap on every axis" },
-  { key: "tests", label: "Tests", meaning: "pairs of boxes handed to the box test; 0 where every axis is swept, for there flags of the pairs on the axes take its place" },
-  { key: "axisOverlaps", label: "Overlaps on the axis", meaning: "pairs whose intervals overlap on the axis that is swept, or on each of those that are" },
-  { key: "comparisons", label: "Comparisons of the sort", meaning: "how often the sort compared two edges" },
-  { key: "swaps", label: "Swaps of the sort", meaning: "how often the sort exchanged two edges" },
+  { key: "tests", label: "Tests", meaning: "pairs of boxes handed to the box test; 0 for a sweep on every axis, which checks flags instead" },
+  { key: "axisOverlaps", label: "Axis overlaps", meaning: "pairs whose intervals overlap on the swept axis; for a sweep on every axis, summed over the axes" },
+  { key: "comparisons", label: "Sort comparisons", meaning: "how often the sort compared two endpoints" },
+  { key: "swaps", label: "Sort swaps", meaning: "how often the sort swapped two endpoints" },
 ] as const;
 
 export function expandPlayground(page: string): string {
@@ -25,7 +25,7 @@ function markup(): string {
   return `
     <div class="lab" role="group" aria-label="Playground">
       <div class="lab-stage">
-        <div class="surface" data-part="surface" tabindex="0" role="application" aria-label="The boxes, those of a pair lit. Arrow keys move the view, plus and minus come closer and move away, zero shows all.">
+        <div class="surface" data-part="surface" tabindex="0" role="application" aria-label="The boxes; those in a pair are highlighted. Arrow keys move the view, plus and minus zoom, zero shows everything.">
           <canvas data-part="picture"></canvas>
         </div>
         <p class="stage-message" data-part="message">Loading</p>
@@ -50,7 +50,7 @@ function markup(): string {
       <div class="lab-world">
         ${choice("playground", "scene", "Scene")}
         ${choice("playground", "motion", "Motion")}
-        ${choice("playground", "dimensions", "Dimensions", [["2", "2D"], ["3", "3D, seen along z"]])}
+        ${choice("playground", "dimensions", "Dimensions", [["2", "2D"], ["3", "3D, viewed along z"]])}
         <div class="field">
           <label for="playground-seed">Seed</label>
           <input id="playground-seed" data-part="seed" type="number" inputmode="numeric" min="0" max="4294967295" step="1" value="1" autocomplete="off" disabled />
@@ -61,10 +61,10 @@ function markup(): string {
       </div>
     </div>
     <section class="export" aria-labelledby="export-heading">
-      <h2 id="export-heading">Take it home</h2>
+      <h2 id="export-heading">Export these boxes</h2>
       <p>
-        The boxes of this very step, every coordinate to the last bit, with the call that finds their
-        pairs. The address of this page brings the same world back.
+        The boxes of the current step, with exact coordinates, and the call that finds their pairs. The
+        address of this page leads back to the same world.
       </p>
       <div class="export-choice">
         ${choice("playground", "format", "As", [["js", "JavaScript"], ["rs", "Rust"], ["py", "Python"], ["json", "JSON"]])}
@@ -73,6 +73,6 @@ function markup(): string {
         <button type="button" data-part="share" disabled>Copy the address</button>
         <p role="status" data-part="exported"></p>
       </div>
-      <pre tabindex="0" aria-label="The beginning and the end of what is copied"><code data-part="preview"> </code></pre>
+      <pre tabindex="0" aria-label="Preview of the export: its beginning and its end"><code data-part="preview"> </code></pre>
     </section>`;
 }

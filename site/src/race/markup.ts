@@ -4,16 +4,16 @@
 import { choice, slider } from "../lab/parts.ts";
 import { MEASURES } from "./record.ts";
 
-/** Places for contenders. */
+/** How many algorithms can run side by side. */
 export const LANES = 4;
 
 /** The counters of a lane. */
 export const LANE_COUNTERS = [
   { key: "ms", label: "Time", meaning: "from boxes to the list of all pairs; mean of the middle half of the last 60 steps" },
-  { key: "tests", label: "Tests", meaning: "pairs of boxes handed to the box test in this step; 0 where every axis is swept, for there flags of the pairs on the axes take its place" },
-  { key: "axis-overlaps", label: "On the axes", meaning: "pairs whose intervals overlap on the axis that is swept, or on each of those that are" },
-  { key: "comparisons", label: "Comparisons", meaning: "how often the sort compared two edges in this step" },
-  { key: "swaps", label: "Swaps", meaning: "how often the sort exchanged two edges in this step" },
+  { key: "tests", label: "Tests", meaning: "pairs of boxes handed to the box test in this step; 0 for a sweep on every axis, which checks flags instead" },
+  { key: "axis-overlaps", label: "Axis overlaps", meaning: "pairs whose intervals overlap on the swept axis; for a sweep on every axis, summed over the axes" },
+  { key: "comparisons", label: "Comparisons", meaning: "how often the sort compared two endpoints in this step" },
+  { key: "swaps", label: "Swaps", meaning: "how often the sort swapped two endpoints in this step" },
   { key: "pairs", label: "Pairs", meaning: "pairs whose boxes overlap on every axis" },
 ] as const;
 
@@ -25,11 +25,11 @@ function markup(): string {
   return `
     <div class="race" role="group" aria-label="Race">
       <div class="race-stage">
-        <canvas data-part="picture" role="img" aria-label="The boxes, those of a pair lit"></canvas>
+        <canvas data-part="picture" role="img" aria-label="The boxes; those in a pair are highlighted"></canvas>
         <p class="stage-message" data-part="message">Loading</p>
       </div>
       <div class="race-plot">
-        <canvas data-part="plot" role="img" aria-label="What each contender needs, step by step; the numbers are below"></canvas>
+        <canvas data-part="plot" role="img" aria-label="The cost of each algorithm, step by step; the numbers are below"></canvas>
         <div class="race-plot-choice">
           ${choice("race", "measure", "Plot", MEASURES.map(({ key, label }) => [key, label]))}
           <label class="switch"><input type="checkbox" data-part="log" autocomplete="off" disabled /> <span>Logarithmic</span></label>
@@ -68,7 +68,7 @@ function laneMarkup(lane: number): string {
   );
   return `
     <fieldset class="lane" data-lane="${lane}">
-      <legend>Contender ${lane}</legend>
+      <legend>Lane ${lane}</legend>
       ${choice(`lane-${lane}`, "algorithm", "Algorithm")}
       ${choice(`lane-${lane}`, "sort", "Sort")}
       ${choice(`lane-${lane}`, "axis", "Sweep axis")}

@@ -18,7 +18,7 @@ const LARGEST_SEED = 2 ** 32 - 1;
 const SHOW_MS = 150;
 /** An empty place. */
 const NOBODY = "nobody";
-const NOT_COUNTED = "not counted: the library’s own two tell nothing but their pairs, and not every algorithm sorts";
+const NOT_COUNTED = "not counted: the library reports only its pairs, and not every algorithm sorts";
 
 /** Who races, and where, unless the address says otherwise. */
 const DEFAULTS = {
@@ -278,8 +278,8 @@ export class RaceTrack extends HTMLElement {
   }
 
   #alarm(step: number, places: readonly number[]): void {
-    const lanes = places.map((place) => `contender ${this.#contenders()[place]?.lane}`).join(" and ");
-    this.#part("alarm").textContent = `In step ${formatCount(step)} ${lanes} found other pairs than the first one. One of them is wrong.`;
+    const lanes = places.map((place) => `lane ${this.#contenders()[place]?.lane}`).join(" and ");
+    this.#part("alarm").textContent = `In step ${formatCount(step)}, ${lanes} found other pairs than the first one. One of them is wrong.`;
   }
 
   #requestShow(): void {
@@ -370,7 +370,7 @@ export class RaceTrack extends HTMLElement {
   #describe(): void {
     const { boxes, scene, motion } = this.#world();
     const out = this.#frame?.lanes.filter((lane) => "out" in lane).length ?? 0;
-    const who = `${this.#contenders().length - out} contenders${out > 0 ? `, ${out} out` : ""}`;
+    const who = `${this.#contenders().length - out} algorithms${out > 0 ? `, ${out} stopped` : ""}`;
     const where = `${formatCount(boxes)} boxes, ${scene}, ${motion}`;
     this.#say(this.#wanted ? `${who}: ${where}.` : `Paused after step ${formatCount(this.#frame?.step ?? 0)}. ${who}: ${where}.`);
   }

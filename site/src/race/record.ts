@@ -5,12 +5,12 @@ import type { Lane, RaceFrame } from "./messages.ts";
 
 /** What can be plotted. */
 export const MEASURES = [
-  { key: "ms", label: "Time", unit: "milliseconds a step", read: (r: Report): number | null => r.ms },
-  { key: "tests", label: "Tests", unit: "tests a step", read: (r: Report): number | null => r.tests },
+  { key: "ms", label: "Time", unit: "milliseconds per step", read: (r: Report): number | null => r.ms },
+  { key: "tests", label: "Tests", unit: "tests per step", read: (r: Report): number | null => r.tests },
   {
     key: "sort",
     label: "Cost of the sort",
-    unit: "comparisons and swaps a step",
+    unit: "comparisons and swaps per step",
     read: (r: Report): number | null => (r.comparisons === null || r.swaps === null ? null : r.comparisons + r.swaps),
   },
 ] as const;

@@ -1,4 +1,4 @@
-// What a frame of the race comes to, in words and numbers.
+// One frame of the race, in words and numbers.
 
 import { formatCount } from "../lab/counters.ts";
 import type { LANE_COUNTERS } from "./markup.ts";
@@ -9,13 +9,13 @@ import type { RaceRecord } from "./record.ts";
 export function verdict({ lanes }: RaceFrame, { compared, disagreed }: RaceRecord): string {
   const reports = lanes.flatMap((lane) => ("report" in lane ? [lane.report] : []));
   const [first] = reports;
-  if (disagreed) return "They do not agree.";
-  if (!first || compared === 0) return "Nobody to compare with.";
-  const before = compared > 1 ? `, as in each of the ${formatCount(compared)} steps so far` : "";
+  if (disagreed) return "The algorithms disagree.";
+  if (!first || compared === 0) return "No other algorithm to compare with.";
+  const before = compared > 1 ? `, in this step and in all ${formatCount(compared)} so far` : "";
   return `All ${reports.length} found the same ${formatCount(first.pairs)} pairs${before}.`;
 }
 
-/** What stands beside the names of a contender's counters; nothing for what it does not count. */
+/** The values of a lane's counters; null for what its algorithm does not count. */
 export function countersOf(lane: Lane | undefined, ms: number | null): Record<(typeof LANE_COUNTERS)[number]["key"], string | null> {
   const report = lane && "report" in lane ? lane.report : undefined;
   return {

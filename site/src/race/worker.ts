@@ -47,7 +47,7 @@ function begin(arena: Arena, run: number, world: WorldOptions, options: readonly
   arena.begin(world);
   const pairs = arena.countPairs();
   if (pairs > MOST_PAIRS) {
-    const reason = `${formatCount(world.boxes)} boxes of this scene make ${formatCount(pairs)} pairs; there is room for ${formatCount(MOST_PAIRS)}. Fewer boxes, smaller ones, or another scene will do.`;
+    const reason = `${formatCount(world.boxes)} boxes of this scene make ${formatCount(pairs)} pairs; the limit is ${formatCount(MOST_PAIRS)}. Choose fewer or smaller boxes, or another scene.`;
     send({ type: "refused", run, reason });
     return;
   }
@@ -64,8 +64,8 @@ function begin(arena: Arena, run: number, world: WorldOptions, options: readonly
 /** Why a contender cannot even begin, if it cannot. */
 function refusal(arena: Arena, options: ContenderOptions): string | undefined {
   const { tests, kept } = arena.forecast(options);
-  if (tests > MOST_TESTS) return `Out: it would have to look at ${formatCount(tests)} pairs a step.`;
-  if (kept > MOST_KEPT) return `Out: it would have to keep ${formatCount(kept)} overlaps in memory.`;
+  if (tests > MOST_TESTS) return `Stopped: it would have to look at ${formatCount(tests)} pairs per step; the limit is ${formatCount(MOST_TESTS)}.`;
+  if (kept > MOST_KEPT) return `Stopped: it would have to keep ${formatCount(kept)} overlaps in memory; the limit is ${formatCount(MOST_KEPT)}.`;
   return undefined;
 }
 
@@ -86,8 +86,8 @@ function compete(arena: Arena, race: Race): void {
     if (contender.late < 2) return;
     contender.out =
       report.ms > BUDGET_MS
-        ? `Out: a step took ${formatCount(report.ms)} ms; ${BUDGET_MS} are allowed.`
-        : `Out: a step and its counting took ${formatCount(inAll)} ms; ${formatCount(BUDGET_IN_ALL_MS)} are allowed.`;
+        ? `Stopped: a step took ${formatCount(report.ms)} ms; the limit is ${BUDGET_MS} ms.`
+        : `Stopped: a step and its counting took ${formatCount(inAll)} ms; the limit is ${formatCount(BUDGET_IN_ALL_MS)} ms.`;
   });
   const lanes = contenders.map((contender): Lane => {
     const report = reports.get(contender);

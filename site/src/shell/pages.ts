@@ -11,7 +11,7 @@ const site = new URL("../../", here);
 
 /** The pages of the navigation, in its order. */
 const NAVIGATION: readonly (readonly [file: string, name: string])[] = [
-  ["index.html", "Explanation"],
+  ["index.html", "Article"],
   ["falling.html", "Falling balls"],
   ["race.html", "Race"],
   ["playground.html", "Playground"],
@@ -76,9 +76,10 @@ function footer(): string {
   return `
     <footer class="site-footer">
       <p>
-        After the article <cite>Sort, sweep, and prune</cite> by Lean and the lesson on sweep and prune
-        in Matthias Müller’s <cite>Ten Minute Physics</cite>. Free under MIT or Apache 2.0, as you like.
-        The pages ask no other host for anything, and once visited they open without a network.
+        Based on the article <cite>Sort, sweep, and prune</cite> by Lean and on the lesson about sweep and
+        prune in Matthias Müller’s <cite>Ten Minute Physics</cite>. Free software under the MIT or Apache 2.0
+        license, whichever you prefer. These pages load nothing from other hosts, and they work offline
+        after your first visit.
       </p>
     </footer>`;
 }

@@ -3,7 +3,7 @@
 import numpy as np
 import sweep_and_prune as sap
 
-# A box is a row: its least corner, then its greatest.
+# Each row is a box: its min corner, then its max corner.
 boxes = np.array([
     [-0.5, -0.021, 1.5, 0.019],
     [0.3953456, 0.3952511, 0.49337283, 0.49327832],
@@ -57,5 +57,5 @@ boxes = np.array([
     [0.5207202, 0.80745196, 0.568505, 0.85523665],
 ], dtype=np.float32)
 
-pairs = sap.find_pairs(boxes)  # a row for each pair, the smaller index first
+pairs = sap.find_pairs(boxes)  # one row per pair, smaller index first
 print(len(pairs))  # 56

@@ -10,7 +10,7 @@ fn main() -> Result<(), Error> {
     Ok(())
 }
 
-/// The least corner of each box and its greatest.
+/// The min corner and the max corner of each box.
 #[rustfmt::skip]
 #[allow(clippy::excessive_precision, clippy::approx_constant)]
 static BOXES: [([f32; 2], [f32; 2]); 50] = [

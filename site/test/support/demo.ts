@@ -15,7 +15,7 @@ export interface State {
 
 type Element = HTMLElement & { state: State; balls: number[][]; isPlaying: boolean; pause(): void; play(): void; step(): void; back(): void; reset(): void };
 
-/** One demo of the explanation, by the id of its figure. */
+/** One demo of the article, by the id of its figure. */
 export class Demo {
   readonly root: Locator;
 
