@@ -167,7 +167,7 @@ test("touching boxes and touching balls overlap", () => {
   assert.ok(!ballsTouch({ x: 0, y: 0, radius: 2 }, { x: 3, y: 4, radius: 2.999 }));
 });
 
-test("the widest axis is the one on which centres are spread most", () => {
+test("the widest axis is the one on which centers are spread most", () => {
   const at = (x, y) => ({ left: x - 1, right: x + 1, top: y - 1, bottom: y + 1 });
   assert.equal(widestAxis([at(0, 0), at(10, 1), at(20, 0)]), "x");
   assert.equal(widestAxis([at(0, 0), at(1, 10), at(0, 20)]), "y");

@@ -31,7 +31,7 @@ test.describe("the recorded results", () => {
     const before = await page.locator("#plot-time > svg").getAttribute("aria-label");
     await page.getByLabel("Scene").first().selectOption({ index: 1 });
     await expect(page.locator("#plot-time > svg")).not.toHaveAttribute("aria-label", before ?? "");
-    await expect(page.locator("#plot-ratio > svg")).toHaveAttribute("aria-label", /fastest peer takes at least [\d.]+ times/);
+    await expect(page.locator("#plot-ratio > svg")).toHaveAttribute("aria-label", /fastest alternative takes at least [\d.]+ times/);
   });
 
   test("show every contender by name, of ours what a user would call, and the others when ticked", async ({ page }) => {

@@ -139,9 +139,9 @@ test("the laboratories go wrong as they should, and say so", async ({ page }) =>
   const hashes = await ties.evaluate((element: SapDemo) => new Set([element.state.hash, (element.step(), element.state.hash)]).size);
   expect(hashes, "nothing moves").toBe(1);
 
-  const centre = await open(page, { lab: "centre-sort" });
-  expect(await centre.evaluate((element: SapDemo) => element.pairs)).toEqual([[1, 2]]);
-  await expect(centre.locator('[part="said"]')).toContainText("Missed: A and C");
+  const center = await open(page, { lab: "centre-sort" });
+  expect(await center.evaluate((element: SapDemo) => element.pairs)).toEqual([[1, 2]]);
+  await expect(center.locator('[part="said"]')).toContainText("Missed: A and C");
 
   const one = await open(page, { lab: "one-to-n" });
   await expect(one.locator('[part="said"]')).toContainText("Missed: A and B");

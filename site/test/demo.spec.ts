@@ -99,21 +99,21 @@ test("with reduced motion it begins still, and can be stepped", async ({ page })
   expect((await stateOf(demo)).tests).toBe(1);
 });
 
-test("colours follow the page, also when it changes", async ({ page }) => {
+test("colors follow the page, also when it changes", async ({ page }) => {
   await page.emulateMedia({ colorScheme: "light" });
   const demo = await open(page, { paused: "", balls: "[[300,200,150]]" });
-  const centre = (): Promise<number> =>
+  const center = (): Promise<number> =>
     demo.locator(".picture canvas").evaluate((canvas: HTMLCanvasElement) => {
       const copy = new OffscreenCanvas(1, 1).getContext("2d", { willReadFrequently: true })!;
       copy.drawImage(canvas, canvas.width / 2, canvas.height / 2, 1, 1, 0, 0, 1, 1);
       const [red = 0, green = 0, blue = 0] = copy.getImageData(0, 0, 1, 1).data;
       return red + green + blue;
     });
-  await expect.poll(centre).toBeGreaterThan(500);
+  await expect.poll(center).toBeGreaterThan(500);
   await page.emulateMedia({ colorScheme: "dark" });
-  await expect.poll(centre).toBeLessThan(300);
+  await expect.poll(center).toBeLessThan(300);
   await demo.evaluate((element: SapDemo) => element.style.setProperty("--sap-ball", "white"));
-  await expect.poll(centre).toBe(765);
+  await expect.poll(center).toBe(765);
 });
 
 test("the picture is as fine as the screen, at any width", async ({ browser }) => {

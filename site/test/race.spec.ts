@@ -89,7 +89,7 @@ test.describe("paused", () => {
     expect(swept).toBeLessThan(19_900);
     expect(await race.value(2, "swaps")).toBeGreaterThan(1_000);
     await race.step();
-    // Nothing has moved: the sort looks once at each neighbour and swaps nothing.
+    // Nothing has moved: the sort looks once at each neighbor and swaps nothing.
     expect(await race.value(2, "comparisons")).toBe(199);
     expect(await race.value(2, "swaps")).toBe(0);
     expect(await race.value(3, "comparisons")).toBe(399);
@@ -124,7 +124,7 @@ test.describe("paused", () => {
     await race.lane(2).getByLabel("Algorithm").selectOption("endpoint sweep");
     await race.lane(2).getByLabel("Sort").selectOption("Timsort");
     await race.lane(2).getByLabel("Sweep axis").selectOption("y");
-    await race.lane(4).getByLabel("Algorithm").selectOption("nobody");
+    await race.lane(4).getByLabel("Algorithm").selectOption("none");
     const kept = { scene: "tower", motion: "teleport", "2": "endpoint sweep", "2.sort": "Timsort", "2.axis": "y", "4": "nobody" };
     expect(Object.fromEntries(new URL(page.url()).searchParams)).toEqual(kept);
     await page.reload();

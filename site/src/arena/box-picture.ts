@@ -1,13 +1,13 @@
-// Boxes on a canvas, those of a pair lit.
+// Boxes on a canvas, those of a pair highlighted.
 
 import { fitted } from "../plot/line-plot.ts";
 
 /** Of more boxes than this no outlines are drawn: they take as long as the boxes, and are not missed. */
 const MOST_OUTLINED = 2_000;
 
-export interface BoxColours {
+export interface BoxColors {
   readonly box: string;
-  readonly lit: string;
+  readonly highlighted: string;
   readonly line: string;
 }
 
@@ -37,7 +37,7 @@ export function windowOf(boxes: Float32Array, dimensions: number, width: number,
 }
 
 /**
- * Draws every box as seen along the axes beyond the second, those of `pairs` lit. Boxes outside the
+ * Draws every box as seen along the axes beyond the second, those of `pairs` highlighted. Boxes outside the
  * window cost nothing but a look.
  */
 export function drawBoxes(
@@ -47,19 +47,19 @@ export function drawBoxes(
   boxes: Float32Array,
   dimensions: number,
   pairs: Uint32Array,
-  colours: BoxColours,
+  colors: BoxColors,
 ): void {
   const { width, height } = size;
   const context = fitted(canvas, width, height);
   context.clearRect(0, 0, width, height);
   const row = 2 * dimensions;
-  const lit = new Uint8Array(boxes.length / row);
-  for (const box of pairs) lit[box] = 1;
-  const outlined = lit.length <= MOST_OUTLINED;
+  const highlighted = new Uint8Array(boxes.length / row);
+  for (const box of pairs) highlighted[box] = 1;
+  const outlined = highlighted.length <= MOST_OUTLINED;
   for (const layer of [0, 1]) {
-    context.fillStyle = layer === 0 ? colours.box : colours.lit;
-    for (let box = 0; box < lit.length; box++) {
-      if (lit[box] !== layer) continue;
+    context.fillStyle = layer === 0 ? colors.box : colors.highlighted;
+    for (let box = 0; box < highlighted.length; box++) {
+      if (highlighted[box] !== layer) continue;
       const at = box * row;
       const left = width / 2 + ((boxes[at] as number) - x) * scale;
       const right = width / 2 + ((boxes[at + dimensions] as number) - x) * scale;
@@ -72,7 +72,7 @@ export function drawBoxes(
       const high = Math.max(Math.min(bottom, height + 4) - t, 1);
       context.fillRect(l, t, wide, high);
       if (outlined && wide > 5 && high > 5) {
-        context.strokeStyle = colours.line;
+        context.strokeStyle = colors.line;
         context.lineWidth = 1;
         context.strokeRect(l + 0.5, t + 0.5, wide - 1, high - 1);
       }

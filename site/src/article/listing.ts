@@ -6,8 +6,8 @@ import { readFileSync } from "node:fs";
 import { createCssVariablesTheme, createHighlighter, type ShikiTransformer } from "shiki";
 
 type Language = "javascript" | "rust" | "python" | "shell";
-const colours = createCssVariablesTheme({ name: "css-variables", variablePrefix: "--code-" });
-const highlighter = await createHighlighter({ langs: ["javascript", "rust", "python", "shell"], themes: [colours] });
+const colors = createCssVariablesTheme({ name: "css-variables", variablePrefix: "--code-" });
+const highlighter = await createHighlighter({ langs: ["javascript", "rust", "python", "shell"], themes: [colors] });
 
 /** Tags at the end of a line, with the slashes before them if nothing else stands behind those. */
 const TAGS = /\s*(?:\/\/)?((?:\s+@[a-z]+)+)\s*$/;
@@ -33,7 +33,7 @@ export function listing(name: string, follows: string | undefined): string {
     </figure>`;
 }
 
-/** Code in colour, each line with what it does. */
+/** Code in color, each line with what it does. */
 export function highlight(code: string, lang: Language, label: string, kinds: readonly string[] = []): string {
   const marks: ShikiTransformer = {
     pre(node) {

@@ -4,7 +4,7 @@ import type { Entry } from "./results.ts";
 import { PLAIN } from "./results.ts";
 
 export interface Look {
-  readonly colour: string;
+  readonly color: string;
   /** As of an SVG stroke; none for a full line. */
   readonly dash: string;
   /** Of the line; 0 where there is none. */
@@ -16,25 +16,25 @@ export interface Look {
 
 export type Looks = (name: string) => Look;
 
-export const COLOURS = 8;
-/** One fewer than colours: who shares a colour has another symbol. */
+export const COLORS = 8;
+/** One fewer than colors: who shares a color has another symbol. */
 const SYMBOLS = ["square", "triangle", "diamond", "star", "cross", "wye", "circle"] as const;
 const DASHES = ["7 4", "2 3", "10 3 2 3", "4 2", "1 5"] as const;
 
-/** Ours are thick and in one colour, each with its dash; peers have colours and symbols. */
+/** Ours are thick and in one color, each with its dash; peers have colors and symbols. */
 export function looksOf(contenders: readonly Pick<Entry, "name" | "rival">[]): Looks {
   const named = (of: (entry: Pick<Entry, "name" | "rival">) => boolean): string[] => [...new Set(contenders.filter(of).map(({ name }) => name))];
   const own = named(({ rival }) => !rival);
   const peers = named(({ name, rival }) => rival && !PLAIN.test(name));
   return (name) => {
     const mine = own.indexOf(name);
-    if (mine === 0) return { colour: "var(--line-ours)", dash: "", width: 3.5, symbol: "circle", isFull: true };
+    if (mine === 0) return { color: "var(--line-ours)", dash: "", width: 3.5, symbol: "circle", isFull: true };
     if (mine > 0) {
       const at = mine - 1;
-      return { colour: "var(--line-ours)", dash: DASHES[at % DASHES.length] ?? "", width: 2.25, symbol: SYMBOLS[at % SYMBOLS.length] ?? "circle", isFull: false };
+      return { color: "var(--line-ours)", dash: DASHES[at % DASHES.length] ?? "", width: 2.25, symbol: SYMBOLS[at % SYMBOLS.length] ?? "circle", isFull: false };
     }
-    if (PLAIN.test(name)) return { colour: "var(--ink)", dash: "2 4", width: 1.75, symbol: "circle", isFull: false };
+    if (PLAIN.test(name)) return { color: "var(--ink)", dash: "2 4", width: 1.75, symbol: "circle", isFull: false };
     const at = peers.indexOf(name);
-    return { colour: `var(--line-${(at % COLOURS) + 1})`, dash: "", width: 1.5, symbol: SYMBOLS[at % SYMBOLS.length] ?? "circle", isFull: true };
+    return { color: `var(--line-${(at % COLORS) + 1})`, dash: "", width: 1.5, symbol: SYMBOLS[at % SYMBOLS.length] ?? "circle", isFull: true };
   };
 }

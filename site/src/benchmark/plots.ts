@@ -1,7 +1,7 @@
-// The plots. Colours are the page's own, by name, so that light and dark need no new drawing.
+// The plots. Colors are the page's own, by name, so that light and dark need no new drawing.
 
 import * as Plot from "@observablehq/plot";
-import { COLOURS, type Look, type Looks } from "./looks.ts";
+import { COLORS, type Look, type Looks } from "./looks.ts";
 import { bytes, count, duration, significant } from "./results.ts";
 
 /** A contender's number at a number of boxes. */
@@ -47,8 +47,8 @@ export function drawLines(place: HTMLElement, points: readonly Point[], looks: L
   const labels = (isBeside ? places : []).map(({ point, at }) => ({ ...point, text: text(point), labelX: x.of(right + LEADER), labelY: y.of(at) }));
 
   const dots = (name: string, data: readonly object[], channels: { x: string; y: string; dx?: number }): Plot.Dot => {
-    const { colour, width, symbol, isFull } = looks(name);
-    const fill = isFull ? { fill: colour } : { fill: "var(--paper)", stroke: colour, strokeWidth: 1.5 };
+    const { color, width, symbol, isFull } = looks(name);
+    const fill = isFull ? { fill: color } : { fill: "var(--paper)", stroke: color, strokeWidth: 1.5 };
     return Plot.dot(data, { ...channels, symbol, r: width > 3 ? 5 : 3.75, ...fill });
   };
   const plot = Plot.plot({
@@ -60,10 +60,10 @@ export function drawLines(place: HTMLElement, points: readonly Point[], looks: L
     marks: [
       ...labels
         .filter(({ boxes }) => boxes === most)
-        .map((label) => Plot.link([label], { x1: "boxes", y1: "value", x2: "labelX", y2: "labelY", stroke: looks(label.name).colour, strokeDasharray: "1 3" })),
+        .map((label) => Plot.link([label], { x1: "boxes", y1: "value", x2: "labelX", y2: "labelY", stroke: looks(label.name).color, strokeDasharray: "1 3" })),
       ...names.map((name) => {
-        const { colour, width, dash } = looks(name);
-        return Plot.line(of(name), { x: "boxes", y: "value", stroke: colour, strokeWidth: width, strokeDasharray: dash });
+        const { color, width, dash } = looks(name);
+        return Plot.line(of(name), { x: "boxes", y: "value", stroke: color, strokeWidth: width, strokeDasharray: dash });
       }),
       ...names.map((name) => dots(name, of(name), { x: "boxes", y: "value" })),
       ...labels.map((label) => dots(label.name, [label], { x: "labelX", y: "labelY", dx: 6 })),
@@ -76,8 +76,8 @@ export function drawLines(place: HTMLElement, points: readonly Point[], looks: L
 }
 
 /** A short line as the plots draw it. */
-export function swatch({ colour, dash, width, symbol, isFull }: Look): SVGSVGElement {
-  const fill = isFull ? { fill: colour } : { fill: "var(--paper)", stroke: colour, strokeWidth: 1.5 };
+export function swatch({ color, dash, width, symbol, isFull }: Look): SVGSVGElement {
+  const fill = isFull ? { fill: color } : { fill: "var(--paper)", stroke: color, strokeWidth: 1.5 };
   const plot = Plot.plot({
     width: width > 0 ? 36 : 14,
     height: 14,
@@ -86,7 +86,7 @@ export function swatch({ colour, dash, width, symbol, isFull }: Look): SVGSVGEle
     x: { domain: [0, 2] },
     y: { domain: [0, 2] },
     marks: [
-      Plot.line(width > 0 ? [[0, 1], [2, 1]] : [], { stroke: colour, strokeWidth: width, strokeDasharray: dash }),
+      Plot.line(width > 0 ? [[0, 1], [2, 1]] : [], { stroke: color, strokeWidth: width, strokeDasharray: dash }),
       Plot.dot([[1, 1]], { symbol, r: width > 3 ? 5 : 3.75, ...fill }),
     ],
   }) as SVGSVGElement;
@@ -129,7 +129,7 @@ export function drawLeads(place: HTMLElement, leads: readonly Lead[]): void {
   const sizes = [...new Set(leads.map(({ boxes }) => boxes))].sort((a, b) => a - b);
   const look = (boxes: number): Look => {
     const at = sizes.indexOf(boxes);
-    return { colour: `var(--line-${((at + 3) % COLOURS) + 1})`, dash: "", width: 0, symbol: SIZES[at % SIZES.length] ?? "circle", isFull: true };
+    return { color: `var(--line-${((at + 3) % COLORS) + 1})`, dash: "", width: 0, symbol: SIZES[at % SIZES.length] ?? "circle", isFull: true };
   };
   const title = ({ scene, boxes, ratio, peer }: Lead): string =>
     `${scene}, ${count(boxes)} boxes\n${peer} takes ${significant(ratio)} times as long`;
@@ -150,10 +150,10 @@ export function drawLeads(place: HTMLElement, leads: readonly Lead[]): void {
       Plot.axisX({ ...axis, anchor: "bottom" }),
       Plot.ruleX([1], { stroke: "var(--ink)" }),
       ...sizes.map((size) => {
-        const { colour, symbol } = look(size);
+        const { color, symbol } = look(size);
         return Plot.dot(
           leads.filter(({ boxes }) => boxes === size),
-          { x: "ratio", y: "scene", fill: colour, stroke: "var(--paper)", symbol, r: 5.5 },
+          { x: "ratio", y: "scene", fill: color, stroke: "var(--paper)", symbol, r: 5.5 },
         );
       }),
       Plot.tip(leads, Plot.pointer({ x: "ratio", y: "scene", title })),
@@ -215,7 +215,7 @@ function key(entries: readonly { name: string; swatch: Element }[]): HTMLElement
   return all;
 }
 
-/** What a plot says to those who do not see it. */
+/** The description of a plot, for readers who do not see it. */
 function summary(points: readonly Point[], format: (value: number) => string): string {
   const most = Math.max(...points.map(({ boxes }) => boxes));
   const there = points.filter(({ boxes }) => boxes === most).sort((a, b) => a.value - b.value);

@@ -297,13 +297,13 @@ export class BallLab extends HTMLElement {
     if (broadPhase !== null) this.#stages.push([broadPhase, narrowPhase ?? 0, solving ?? 0, drawing]);
     if (this.#stages.length > MOMENTS) this.#stages.shift();
     const style = getComputedStyle(this);
-    const colour = (name: string): string => style.getPropertyValue(`--${name}`).trim();
+    const color = (name: string): string => style.getPropertyValue(`--${name}`).trim();
     drawStages(this.#part<HTMLCanvasElement>("stages"), {
       moments: this.#stages,
       room: MOMENTS,
-      colours: STAGES.map((stage) => getComputedStyle(this.#find(`[data-counter="${stage}"] dt`), "::before").backgroundColor),
-      ink: colour("ink"),
-      muted: colour("muted"),
+      colors: STAGES.map((stage) => getComputedStyle(this.#find(`[data-counter="${stage}"] dt`), "::before").backgroundColor),
+      ink: color("ink"),
+      muted: color("muted"),
     });
   }
 

@@ -1,5 +1,5 @@
 import { numberWithin, readAddress, writeAddress } from "../arena/address.ts";
-import { type BoxColours, drawBoxes, type Window2, windowOf } from "../arena/box-picture.ts";
+import { type BoxColors, drawBoxes, type Window2, windowOf } from "../arena/box-picture.ts";
 import type { ContenderOptions, Lists, WorldOptions } from "../arena/door.ts";
 import { onAwake } from "../lab/awake.ts";
 import { formatCount } from "../lab/counters.ts";
@@ -46,7 +46,7 @@ export class BoxPlayground extends HTMLElement {
   #awake = false;
   #shownAt = -Infinity;
   #asked = false;
-  #colours: BoxColours | undefined;
+  #colors: BoxColors | undefined;
   #left = new AbortController();
 
   connectedCallback(): void {
@@ -54,7 +54,7 @@ export class BoxPlayground extends HTMLElement {
     this.#worker.addEventListener("error", ({ message }) => this.#say(message));
     const { signal } = this.#left;
     onThemeChange(() => {
-      this.#colours = undefined;
+      this.#colors = undefined;
       this.#requestShow();
     }, signal);
     new ResizeObserver(() => {
@@ -308,12 +308,12 @@ export class BoxPlayground extends HTMLElement {
     const { clientWidth: width, clientHeight: height } = canvas;
     const { dimensions } = this.#world();
     this.#view ??= windowOf(boxes, dimensions, width, height);
-    if (!this.#colours) {
+    if (!this.#colors) {
       const style = getComputedStyle(this);
-      const colour = (name: string): string => style.getPropertyValue(`--${name}`).trim();
-      this.#colours = { box: colour("ramp-1"), lit: colour("ramp-4"), line: colour("stage") };
+      const color = (name: string): string => style.getPropertyValue(`--${name}`).trim();
+      this.#colors = { box: color("ramp-1"), highlighted: color("ramp-4"), line: color("stage") };
     }
-    drawBoxes(canvas, { width, height }, this.#view, boxes, dimensions, pairs, this.#colours);
+    drawBoxes(canvas, { width, height }, this.#view, boxes, dimensions, pairs, this.#colors);
   }
 
   #showCounters({ step, lanes }: RaceFrame): void {

@@ -2,7 +2,7 @@
 // milliseconds for, and a live picture has not got.
 
 export interface Line {
-  readonly colour: string;
+  readonly color: string;
   /** One value a step; `null` leaves a gap. */
   readonly values: readonly (number | null)[];
 }
@@ -61,8 +61,8 @@ export function drawLines(canvas: HTMLCanvasElement, width: number, height: numb
 
   context.lineJoin = "round";
   context.lineWidth = 2;
-  for (const { colour, values } of lines) {
-    context.strokeStyle = colour;
+  for (const { color, values } of lines) {
+    context.strokeStyle = color;
     context.beginPath();
     let pen = false;
     values.forEach((value, place) => {
@@ -78,7 +78,7 @@ export function drawLines(canvas: HTMLCanvasElement, width: number, height: numb
     const last = values.length - 1;
     const newest = values[last];
     if (newest == null || (logarithmic && newest <= 0)) continue;
-    context.fillStyle = colour;
+    context.fillStyle = color;
     context.beginPath();
     context.arc(x(last), y(newest), 3, 0, 2 * Math.PI);
     context.fill();

@@ -13,13 +13,13 @@ export interface StagesOptions {
   /** How many moments there is room for. */
   readonly room: number;
   /** By stage. */
-  readonly colours: readonly string[];
+  readonly colors: readonly string[];
   readonly ink: string;
   readonly muted: string;
 }
 
 /** Fills the canvas: time upwards, at least a frame high, the newest moment at the right. */
-export function drawStages(canvas: HTMLCanvasElement, { moments, room, colours, ink, muted }: StagesOptions): void {
+export function drawStages(canvas: HTMLCanvasElement, { moments, room, colors, ink, muted }: StagesOptions): void {
   const { clientWidth: width, clientHeight: height } = canvas;
   const context = fitted(canvas, width, height);
   context.clearRect(0, 0, width, height);
@@ -37,7 +37,7 @@ export function drawStages(canvas: HTMLCanvasElement, { moments, room, colours, 
     const left = width - (moments.length - moment) * bar;
     let base = 0;
     stages.forEach((ms, stage) => {
-      context.fillStyle = colours[stage] ?? ink;
+      context.fillStyle = colors[stage] ?? ink;
       context.fillRect(left, y(base + ms), Math.max(bar - 0.5, 0.5), y(base) - y(base + ms));
       base += ms;
     });

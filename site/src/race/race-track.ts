@@ -1,5 +1,5 @@
 import { readAddress, numberWithin, writeAddress } from "../arena/address.ts";
-import { type BoxColours, drawBoxes, type Window2, windowOf } from "../arena/box-picture.ts";
+import { type BoxColors, drawBoxes, type Window2, windowOf } from "../arena/box-picture.ts";
 import type { ContenderOptions, Lists, WorldOptions } from "../arena/door.ts";
 import { onAwake } from "../lab/awake.ts";
 import { formatCount } from "../lab/counters.ts";
@@ -17,7 +17,7 @@ const LARGEST_SEED = 2 ** 32 - 1;
 /** Numbers and lines that change more often than this cannot be read. */
 const SHOW_MS = 150;
 /** An empty place. */
-const NOBODY = "nobody";
+const NONE = "none";
 const NOT_COUNTED = "not counted: the library reports only its pairs, and not every algorithm sorts";
 
 /** Who races, and where, unless the address says otherwise. */
@@ -30,9 +30,9 @@ const DEFAULTS = {
 };
 
 type Key = keyof typeof DEFAULTS;
-interface Colours {
+interface Colors {
   readonly lanes: readonly string[];
-  readonly boxes: BoxColours;
+  readonly boxes: BoxColors;
   readonly ink: string;
   readonly muted: string;
   readonly grid: string;
@@ -55,7 +55,7 @@ export class RaceTrack extends HTMLElement {
   #awake = false;
   #shownAt = -Infinity;
   #asked = false;
-  #colours: Colours | undefined;
+  #colors: Colors | undefined;
   /** What the picture shows: where all boxes were at first. */
   #view: Window2 | undefined;
   #left = new AbortController();
@@ -65,7 +65,7 @@ export class RaceTrack extends HTMLElement {
     this.#worker.addEventListener("error", ({ message }) => this.#say(message));
     const { signal } = this.#left;
     onThemeChange(() => {
-      this.#colours = undefined;
+      this.#colors = undefined;
       this.#requestShow();
     }, signal);
     const resized = new ResizeObserver(() => {
@@ -107,7 +107,7 @@ export class RaceTrack extends HTMLElement {
       this.#change("seed", seed.value);
     });
     for (let lane = 1; lane <= LANES; lane++) {
-      const names = lane > 2 ? [...lists.algorithms, NOBODY] : lists.algorithms;
+      const names = lane > 2 ? [...lists.algorithms, NONE] : lists.algorithms;
       this.#bindLane(lane, "algorithm", names);
       this.#bindLane(lane, "sort", lists.sorts);
       this.#bindLane(lane, "axis", lists.axes);
@@ -213,7 +213,7 @@ export class RaceTrack extends HTMLElement {
       const part = (name: string): string => this.#state[`${place + 1}${name}` as Key];
       return { lane: place + 1, options: { algorithm: part(""), sort: part(".sort"), axis: part(".axis") } };
     });
-    return lanes.filter(({ options }) => options.algorithm !== NOBODY);
+    return lanes.filter(({ options }) => options.algorithm !== NONE);
   }
 
   #begin(): void {
@@ -327,7 +327,7 @@ export class RaceTrack extends HTMLElement {
     this.#lanePart(lane, "out").textContent = result && "out" in result ? result.out : "";
     // A choice that would change nothing is not offered.
     const algorithm = this.#state[String(lane) as Key];
-    const plain = [NOBODY, ...this.#lists.algorithms.slice(0, 3)].includes(algorithm);
+    const plain = [NONE, ...this.#lists.algorithms.slice(0, 3)].includes(algorithm);
     this.#lanePart<HTMLSelectElement>(lane, "sort").disabled = plain;
     this.#lanePart<HTMLSelectElement>(lane, "axis").disabled = plain || algorithm.endsWith("every axis");
   }
@@ -338,17 +338,17 @@ export class RaceTrack extends HTMLElement {
     const canvas = this.#part<HTMLCanvasElement>("picture");
     const { clientWidth: width, clientHeight: height } = canvas;
     const dimensions = this.#world().dimensions;
-    const colours = (this.#colours ??= this.#readColours());
+    const colors = (this.#colors ??= this.#readColors());
     this.#view ??= windowOf(boxes, dimensions, width, height);
-    drawBoxes(canvas, { width, height }, this.#view, boxes, dimensions, pairs, colours.boxes);
+    drawBoxes(canvas, { width, height }, this.#view, boxes, dimensions, pairs, colors.boxes);
   }
 
   #drawPlot(): void {
     const canvas = this.#part<HTMLCanvasElement>("plot");
-    const { lanes, ink, muted, grid } = (this.#colours ??= this.#readColours());
+    const { lanes, ink, muted, grid } = (this.#colors ??= this.#readColors());
     const measure: Measure = MEASURES.find(({ key }) => key === this.#state.plot) ?? MEASURES[0];
     const lines = this.#contenders().map(({ lane }, place) => ({
-      colour: lanes[lane - 1] ?? ink,
+      color: lanes[lane - 1] ?? ink,
       values: this.#record.line(place, measure),
     }));
     drawLines(canvas, canvas.clientWidth, canvas.clientHeight, {
@@ -356,12 +356,12 @@ export class RaceTrack extends HTMLElement {
     });
   }
 
-  #readColours(): Colours {
+  #readColors(): Colors {
     const style = getComputedStyle(this);
-    const colour = (name: string): string => style.getPropertyValue(`--${name}`).trim();
+    const color = (name: string): string => style.getPropertyValue(`--${name}`).trim();
     const lanes = [...this.querySelectorAll("legend")].map((legend) => getComputedStyle(legend).borderTopColor);
-    const boxes = { box: colour("ramp-1"), lit: colour("ramp-4"), line: colour("stage") };
-    return { lanes, boxes, ink: colour("ink"), muted: colour("muted"), grid: colour("line") };
+    const boxes = { box: color("ramp-1"), highlighted: color("ramp-4"), line: color("stage") };
+    return { lanes, boxes, ink: color("ink"), muted: color("muted"), grid: color("line") };
   }
 
   // What is told in words

@@ -5,7 +5,7 @@ import { Arena, type ContenderOptions, type Report, type WorldOptions } from "..
 import { formatCount } from "../lab/counters.ts";
 import type { FromRace, Lane, ToRace } from "./messages.ts";
 
-/** More steps a second nobody can follow. */
+/** More steps per second would be too fast to watch. */
 const STEP_MS = 50;
 /** A world with more pairs than this would fill the memory. */
 const MOST_PAIRS = 2_000_000;

@@ -40,7 +40,7 @@ function frame(page: string, { filename }: IndexHtmlTransformContext): string {
 
 /**
  * Character set, icon, style and theme. The dark palette and the script that decides whether it
- * holds stand in the page itself: the first picture already has the right colours.
+ * holds stand in the page itself: the first picture already has the right colors.
  */
 function head(): string {
   return `

@@ -61,7 +61,7 @@ function begin(run: number, setup: Setup, { gravity, substeps }: Laws, method: M
 }
 
 /** A browser compiles a function when it is first called, and again when it was called often: so that the
- * times of the first steps are not those of the compiler, a few steps are taken that nobody sees. */
+ * times of the first steps are not those of the compiler, a few steps are run first and not shown. */
 function warmUp(dimensions: 2 | 3): void {
   if (warm.has(dimensions)) return;
   warm.add(dimensions);

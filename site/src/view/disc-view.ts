@@ -16,7 +16,7 @@ export class DiscView implements View {
   #radii: Float32Array = new Float32Array(0);
   /** The bodies of each shade. */
   #shades: number[][] = [];
-  #colours: string[] = [];
+  #colors: string[] = [];
 
   constructor(canvas: HTMLCanvasElement, theme: Theme) {
     const context = canvas.getContext("2d");
@@ -37,7 +37,7 @@ export class DiscView implements View {
 
   setTheme(theme: Theme): void {
     this.#theme = theme;
-    this.#colours = Array.from({ length: SHADES }, (_, shade) => mixRamp(theme.ramp, shade / (SHADES - 1)));
+    this.#colors = Array.from({ length: SHADES }, (_, shade) => mixRamp(theme.ramp, shade / (SHADES - 1)));
   }
 
   resize(width: number, height: number): void {
@@ -72,7 +72,7 @@ export class DiscView implements View {
         context.moveTo(x(body) + radius, y(body));
         context.arc(x(body), y(body), radius, 0, 2 * Math.PI);
       }
-      context.fillStyle = this.#colours[shade] ?? this.#theme.edge;
+      context.fillStyle = this.#colors[shade] ?? this.#theme.edge;
       context.fill();
     });
 
@@ -82,7 +82,7 @@ export class DiscView implements View {
       context.moveTo(x(a), y(a));
       context.lineTo(x(b), y(b));
     }
-    // On a seam of the background's colour a line can be seen on discs of any shade.
+    // On a seam of the background's color a line can be seen on discs of any shade.
     context.strokeStyle = this.#theme.stage;
     context.lineWidth = 4.5 * pixelRatio();
     context.stroke();
@@ -92,7 +92,7 @@ export class DiscView implements View {
   }
 }
 
-/** The colour at `t`, from 0 to 1, of a ramp of colours written `#rrggbb`. */
+/** The color at `t`, from 0 to 1, of a ramp of colors written `#rrggbb`. */
 function mixRamp(ramp: readonly string[], t: number): string {
   const at = t * (ramp.length - 1);
   const below = Math.min(Math.floor(at), ramp.length - 2);

@@ -88,7 +88,7 @@ export class SphereView implements View {
   }
 
   setTheme(theme: Theme): void {
-    this.#spheres.material.uniforms["ramp"] = { value: theme.ramp.map((colour) => new Color(colour)) };
+    this.#spheres.material.uniforms["ramp"] = { value: theme.ramp.map((color) => new Color(color)) };
     this.#floor.material.color.set(theme.floor);
     this.#edges.material.color.set(theme.edge);
   }
@@ -102,10 +102,10 @@ export class SphereView implements View {
   }
 
   draw({ positions }: Picture): void {
-    const centres = this.#spheres.geometry.getAttribute("centre") as InstancedBufferAttribute;
-    if (centres.array.length === positions.length) {
-      centres.array.set(positions);
-      centres.needsUpdate = true;
+    const centers = this.#spheres.geometry.getAttribute("center") as InstancedBufferAttribute;
+    if (centers.array.length === positions.length) {
+      centers.array.set(positions);
+      centers.needsUpdate = true;
     }
     this.#renderer.render(this.#scene, this.#camera);
   }
@@ -159,8 +159,8 @@ export class SphereView implements View {
 /** A square for each body, from (-1, -1) to (1, 1). */
 function squares(bodies: number): InstancedBufferGeometry {
   const geometry = new InstancedBufferGeometry().copy(new PlaneGeometry(2, 2) as unknown as InstancedBufferGeometry);
-  const centres = new InstancedBufferAttribute(new Float32Array(3 * bodies), 3).setUsage(DynamicDrawUsage);
-  geometry.setAttribute("centre", centres);
+  const centers = new InstancedBufferAttribute(new Float32Array(3 * bodies), 3).setUsage(DynamicDrawUsage);
+  geometry.setAttribute("center", centers);
   geometry.instanceCount = bodies;
   return geometry;
 }
@@ -171,25 +171,25 @@ function sphereMaterial(): ShaderMaterial {
     // Edges are smoothed by how many samples of a pixel they cover.
     alphaToCoverage: true,
     vertexShader: `
-      attribute vec3 centre;
+      attribute vec3 center;
       attribute float radius;
       attribute float tint;
       uniform vec3 ramp[5];
       varying vec2 corner;
-      varying vec3 colour;
+      varying vec3 bodyColor;
 
       void main() {
         corner = position.xy;
         float at = clamp(tint, 0.0, 0.9999) * 4.0;
         int below = int(at);
-        colour = mix(ramp[below], ramp[below + 1], fract(at));
-        vec4 middle = modelViewMatrix * vec4(centre, 1.0);
+        bodyColor = mix(ramp[below], ramp[below + 1], fract(at));
+        vec4 middle = modelViewMatrix * vec4(center, 1.0);
         gl_Position = projectionMatrix * (middle + vec4(radius * corner, 0.0, 0.0));
       }`,
     fragmentShader: `
       uniform vec3 light;
       varying vec2 corner;
-      varying vec3 colour;
+      varying vec3 bodyColor;
 
       void main() {
         float outward = length(corner);
@@ -199,7 +199,7 @@ function sphereMaterial(): ShaderMaterial {
         float sun = max(dot(normal, (viewMatrix * vec4(light, 0.0)).xyz), 0.0);
         float sky = 0.5 + 0.5 * dot(normal, (viewMatrix * vec4(0.0, 1.0, 0.0, 0.0)).xyz);
         float rim = mix(0.7, 1.0, smoothstep(0.0, 0.5, normal.z));
-        gl_FragColor = vec4(colour * rim * (0.16 + 0.42 * sky + 0.62 * sun), coverage);
+        gl_FragColor = vec4(bodyColor * rim * (0.16 + 0.42 * sky + 0.62 * sun), coverage);
         #include <colorspace_fragment>
       }`,
   });

@@ -1,4 +1,4 @@
-/** The colours of the page as drawings need them, read from the custom properties of the style sheet. */
+/** The colors of the page as drawings need them, read from the custom properties of the style sheet. */
 export interface Theme {
   /** From the floor up. */
   readonly ramp: readonly string[];
@@ -10,13 +10,13 @@ export interface Theme {
 
 export function readTheme(): Theme {
   const style = getComputedStyle(document.documentElement);
-  const colour = (name: string): string => style.getPropertyValue(`--${name}`).trim();
+  const color = (name: string): string => style.getPropertyValue(`--${name}`).trim();
   return {
-    ramp: [0, 1, 2, 3, 4].map((stop) => colour(`ramp-${stop}`)),
-    stage: colour("stage"),
-    floor: colour("floor"),
-    edge: colour("edge"),
-    line: colour("ink"),
+    ramp: [0, 1, 2, 3, 4].map((stop) => color(`ramp-${stop}`)),
+    stage: color("stage"),
+    floor: color("floor"),
+    edge: color("edge"),
+    line: color("ink"),
   };
 }
 

@@ -19,7 +19,7 @@ export function shownHeight({ min, max }: World, radii: Float32Array): number {
   return Math.min(height, Math.max((1.35 * filled) / (packing * floor), 2.5 * largest));
 }
 
-/** What one picture shows. `positions` holds the centres one body after another. */
+/** What one picture shows. `positions` holds the centers one body after another. */
 export interface Picture {
   readonly positions: Float32Array;
   /** Pairs of bodies whose boxes overlap, a0, b0, a1, b1, .. Empty unless asked for. */

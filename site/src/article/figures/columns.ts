@@ -56,9 +56,9 @@ export function columns(): string {
     SIDE + 58,
     `${boxes.length} boxes in one sweep: ${whole.length} tests. The same boxes cut into ${COLUMNS} columns: ${copies} copies, ${inParts.length} tests. Both find ${pairs.length} pairs.`,
     frame(0.5) + frame(second) + bodies(0) + bodies(second) + cuts.join("") +
-      text(SIDE / 2, SIDE + 22, "one sweep") + text(SIDE / 2, SIDE + 47, `${whole.length} tests for ${pairs.length} pairs`, "label strong") +
-      text(second + SIDE / 2, SIDE + 22, `${COLUMNS} columns, ${copies} copies of ${boxes.length} boxes`) +
-      text(second + SIDE / 2, SIDE + 47, `${inParts.length} tests for the same ${reported.length} pairs`, "label strong"),
+      text(SIDE / 2, SIDE + 22, `one sweep, ${boxes.length} boxes`) + text(SIDE / 2, SIDE + 47, `${whole.length} tests, ${pairs.length} pairs`, "label strong") +
+      text(second + SIDE / 2, SIDE + 22, `${COLUMNS} columns, ${copies} copies`) +
+      text(second + SIDE / 2, SIDE + 47, `${inParts.length} tests, same ${reported.length} pairs`, "label strong"),
   );
 }
 

@@ -21,10 +21,10 @@ function sorted(): { box: Box; isLeft: boolean; at: number }[] {
   return endpoints;
 }
 
-const bodies = (lit: ReadonlySet<number> = new Set()): string =>
+const bodies = (highlighted: ReadonlySet<number> = new Set()): string =>
   BOXES.map(
     (box) =>
-      rect(box, `body body-${box.id}${lit.has(box.id) ? " lit" : ""}`) +
+      rect(box, `body body-${box.id}${highlighted.has(box.id) ? " highlighted" : ""}`) +
       text((box.left + box.right) / 2, (box.top + box.bottom) / 2 + 6, letter(box.id), "name"),
   ).join("");
 

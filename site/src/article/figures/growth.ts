@@ -4,6 +4,7 @@ import complexity from "../../../../docs/complexity.json" with { type: "json" };
 import { line, path, svg, text } from "./svg.ts";
 
 const count = new Intl.NumberFormat("en").format;
+const short = new Intl.NumberFormat("en", { notation: "compact" }).format;
 
 /** The pairs of few balls, as lines: 5, 10 and 20. */
 export function allPairs(): string {
@@ -26,9 +27,9 @@ export function allPairs(): string {
 
 const CURVES = [
   { method: "global pairwise", sort: null, world: "square", name: "global pairwise" },
-  { method: "sorted pairwise", sort: "insertion sort", world: "square", name: "sorted pairwise, insertion sort" },
-  { method: "swap-driven sweep", sort: null, world: "square", name: "swap-driven sweep, one axis" },
-  { method: "swap-driven sweep on every axis", sort: null, world: "square", name: "swap-driven sweep, every axis" },
+  { method: "sorted pairwise", sort: "insertion sort", world: "square", name: "sorted pairwise" },
+  { method: "swap-driven sweep", sort: null, world: "square", name: "swap-driven, one axis" },
+  { method: "swap-driven sweep on every axis", sort: null, world: "square", name: "swap-driven, every axis" },
 ] as const;
 
 /** Operations per frame against the number of boxes, both as powers, in a square world that moves a little. */
@@ -38,7 +39,7 @@ export function measured(): string {
   const y = (operations: number): number => top + height - (height * (Math.log10(operations) - 2.5)) / 6;
   const grid = [
     ...[256, 1024, 4096, 16384, 65536].map((n) => line(x(n), top, x(n), top + height, "grid") + text(x(n), top + height + 20, count(n), "label small")),
-    ...[3, 4, 5, 6, 7, 8].map((power) => line(left, y(10 ** power), left + width, y(10 ** power), "grid") + text(left - 8, y(10 ** power) + 4, `10<tspan dy="-6" font-size="10">${power}</tspan>`, "label small", "end")),
+    ...[3, 4, 5, 6, 7, 8].map((power) => line(left, y(10 ** power), left + width, y(10 ** power), "grid") + text(left - 8, y(10 ** power) + 4, short(10 ** power), "label small", "end")),
   ];
   const curves = CURVES.map(({ method, sort, world, name }, at) => {
     const variant = complexity.variants.find((found) => found.method === method && (found.sort ?? null) === sort);
@@ -56,13 +57,13 @@ export function measured(): string {
       below = Math.max(endY, below + 36);
       return line(endX + 3, endY, left + width + 12, below, "leader") +
         text(left + width + 18, below + 1, name, `label curve-name-${at}`, "start") +
-        text(left + width + 18, below + 17, `grows as n<tspan dy="-5" font-size="11">${slope.toFixed(2)}</tspan>`, "label small", "start");
+        text(left + width + 18, below + 17, `grows like n^${slope.toFixed(2)}`, "label small", "start");
     });
   return svg(
     "measured",
     660,
     340,
-    `Operations per frame against the number of boxes in a square world that moves a little, on logarithmic scales. ${curves.map(({ name, slope }) => `${name} grows as n to the power ${slope.toFixed(2)}`).join("; ")}.`,
-    grid.join("") + curves.map(({ drawn }) => drawn).join("") + labels.join("") + text(left + width / 2, top + height + 38, "boxes", "label small"),
+    `Operations per frame against the number of boxes in a square world that moves a little, on logarithmic scales. ${curves.map(({ name, slope }) => `${name} grows like n to the power ${slope.toFixed(2)}`).join("; ")}.`,
+    grid.join("") + curves.map(({ drawn }) => drawn).join("") + labels.join("") + text(left + width / 2, top + height + 38, "number of boxes", "label small") + text(left, 6, "operations", "label small"),
   );
 }

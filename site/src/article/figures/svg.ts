@@ -1,4 +1,4 @@
-// What all figures are drawn with. Colours are classes of article.css, so that a figure is light or
+// What all figures are drawn with. Colors are classes of article.css, so that a figure is light or
 // dark with its page.
 
 export interface Box {
@@ -9,7 +9,7 @@ export interface Box {
   readonly bottom: number;
 }
 
-/** A whole figure: what it shows is said in `description`, for those who do not see it. */
+/** A whole figure. `description` says what it shows, for readers who do not see it. */
 export function svg(name: string, width: number, height: number, description: string, inside: string): string {
   return `<svg class="figure" data-figure="${name}" viewBox="0 0 ${width} ${height}" width="${width}" height="${height}" role="img" aria-label="${description}">${inside}</svg>`;
 }

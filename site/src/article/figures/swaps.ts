@@ -1,4 +1,4 @@
-// What a swap of two neighbours in the endpoint array means.
+// What a swap of two neighbors in the endpoint array means.
 
 import { letter, line, rect, svg, text } from "./svg.ts";
 
@@ -26,7 +26,7 @@ export function swapCases(): string {
     "swap-cases",
     570,
     352,
-    `Four swaps of neighbours. ${CASES.map(({ before, after, says }) => `${before} becomes ${after}: ${says}`).join(". ")}.`,
+    `Four swaps of neighbors. ${CASES.map(({ before, after, says }) => `${before} becomes ${after}: ${says}`).join(". ")}.`,
     rows.join(""),
   );
 }
@@ -43,9 +43,9 @@ export function miniSweep(): string {
   const met = others.filter(({ left }) => left > from && left <= to);
   const bars = others.map(({ left, right }, at) => {
     const y = 70 + 24 * at;
-    const lit = left <= to;
-    return line(left, y, right, y, `bar body-${at + 1}${lit ? "" : " later"}`) + text(right + 10, y + 5, letter(at + 1), "label small", "start") +
-      (lit ? `<circle cx="${left}" cy="${y}" r="6" class="hit"/>` : "");
+    const highlighted = left <= to;
+    return line(left, y, right, y, `bar body-${at + 1}${highlighted ? "" : " later"}`) + text(right + 10, y + 5, letter(at + 1), "label small", "start") +
+      (highlighted ? `<circle cx="${left}" cy="${y}" r="6" class="hit"/>` : "");
   });
   return svg(
     "mini-sweep",
