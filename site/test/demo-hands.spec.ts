@@ -32,8 +32,6 @@ test("keys alone: step, back, play, pause, and a ball moved", async ({ page }) =
   await expect.poll(() => moving.evaluate((element: SapDemo) => element.isPlaying), { message: "space plays" }).toBe(true);
   await page.keyboard.press("Space");
   await expect.poll(() => moving.evaluate((element: SapDemo) => element.isPlaying), { message: "space pauses" }).toBe(false);
-  await moving.evaluate((element: SapDemo) => element.reset());
-  expect(await moving.evaluate((element: SapDemo) => element.isPlaying), "reset leaves a paused demo paused").toBe(false);
   for (const name of ["Play", "Step back", "Step", "Moment", "Speed", "Reset", "Share or embed"]) {
     await page.keyboard.press("Tab");
     await expect(moving.getByLabel(name, { exact: true })).toBeFocused();
@@ -44,6 +42,8 @@ test("keys alone: step, back, play, pause, and a ball moved", async ({ page }) =
   const { tick } = await stateOf(moving);
   await page.waitForTimeout(300);
   expect((await stateOf(moving)).tick).toBe(tick);
+  await moving.evaluate((element: SapDemo) => element.reset());
+  expect(await moving.evaluate((element: SapDemo) => element.isPlaying), "reset leaves a paused demo paused").toBe(false);
 });
 
 test("a ball is dragged by a mouse, and goes no further than the wall", async ({ page }) => {

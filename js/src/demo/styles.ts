@@ -38,6 +38,10 @@ export const styles: CSSResult = css`
     user-select: none;
     -webkit-user-select: none;
   }
+  /* A canvas is not recolored where the visitor forces colors, so neither is what is behind it. */
+  .picture {
+    forced-color-adjust: none;
+  }
   :host([draggable]) .picture {
     cursor: grab;
   }

@@ -71,7 +71,7 @@ export class ThemeProbe {
 
   #probe(name: ColourName): HTMLElement {
     const probe = document.createElement("i");
-    probe.style.cssText = `color: var(--_${name}); transition: color 1ms step-end`;
+    probe.style.cssText = `color: var(--_${name}); forced-color-adjust: none; transition: color 1ms step-end`;
     this.element.append(probe);
     return probe;
   }

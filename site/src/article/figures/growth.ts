@@ -38,7 +38,7 @@ export function measured(): string {
   const x = (n: number): number => left + (width * (Math.log2(n) - 8)) / 8;
   const y = (operations: number): number => top + height - (height * (Math.log10(operations) - 2.5)) / 6;
   const grid = [
-    ...[256, 1024, 4096, 16384, 65536].map((n) => line(x(n), top, x(n), top + height, "grid") + text(x(n), top + height + 20, count(n), "label small")),
+    ...[256, 4096, 65536].map((n) => line(x(n), top, x(n), top + height, "grid") + text(x(n), top + height + 20, count(n), "label small")),
     ...[3, 4, 5, 6, 7, 8].map((power) => line(left, y(10 ** power), left + width, y(10 ** power), "grid") + text(left - 8, y(10 ** power) + 4, short(10 ** power), "label small", "end")),
   ];
   const curves = CURVES.map(({ method, sort, world, name }, at) => {
@@ -54,16 +54,16 @@ export function measured(): string {
   const labels = [...curves.entries()]
     .sort(([, a], [, b]) => a.endY - b.endY)
     .map(([at, { endX, endY, name, slope }]) => {
-      below = Math.max(endY, below + 36);
+      below = Math.max(endY, below + 44);
       return line(endX + 3, endY, left + width + 12, below, "leader") +
         text(left + width + 18, below + 1, name, `label curve-name-${at}`, "start") +
-        text(left + width + 18, below + 17, `grows like n^${slope.toFixed(2)}`, "label small", "start");
+        text(left + width + 18, below + 20, `grows like n^${slope.toFixed(2)}`, "label small", "start");
     });
   return svg(
     "measured",
     660,
     340,
     `Operations per frame against the number of boxes in a square world that moves a little, on logarithmic scales. ${curves.map(({ name, slope }) => `${name} grows like n to the power ${slope.toFixed(2)}`).join("; ")}.`,
-    grid.join("") + curves.map(({ drawn }) => drawn).join("") + labels.join("") + text(left + width / 2, top + height + 38, "number of boxes", "label small") + text(left, 6, "operations", "label small"),
+    grid.join("") + curves.map(({ drawn }) => drawn).join("") + labels.join("") + text(left + width / 2, top + height + 38, "number of boxes", "label small") + text(left + 8, top + 14, "operations", "label small", "start"),
   );
 }
