@@ -1,4 +1,4 @@
-//! Tells the program which compiler built it, and builds the peers in C++ where they are wanted.
+//! Tells the program which compiler built it, and builds the alternatives in C++ where they are wanted.
 
 use std::process::Command;
 
@@ -32,7 +32,7 @@ fn cpp() {
         .into();
     build.includes(found.iter().flat_map(|library| &library.include_paths));
     let sources = ["pairs", "boost", "bullet", "cgal", "fcl", "ode"];
-    build.files(sources.map(|source| format!("cpp/{source}.cpp"))).compile("bench_peers");
+    build.files(sources.map(|source| format!("cpp/{source}.cpp"))).compile("bench_libraries");
     for library in found.iter().flat_map(|library| &library.libs) {
         println!("cargo::rustc-link-lib={library}");
     }

@@ -35,7 +35,6 @@ const KNOWN = {
   "core/src/world": 15,
   "js/src": 2,
   "js/src/demo": 24,
-  "bench/src": 25,
 };
 
 const folderOf = (file) => Object.keys(KNOWN).sort((a, b) => b.length - a.length).find((it) => file.startsWith(`${it}/`));

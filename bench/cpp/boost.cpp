@@ -1,5 +1,5 @@
 // Boost.Geometry: an R-tree, packed from all boxes at once and then asked once for each box.
-#include "peers.h"
+#include "libraries.h"
 
 #include <boost/geometry.hpp>
 #include <boost/geometry/index/rtree.hpp>

@@ -1,6 +1,6 @@
 // Bullet: its tree bare, its tree as the broad phase that it recommends, and its incremental sweep
 // and prune, which has to be told the bounds of the world and compares rounded coordinates.
-#include "peers.h"
+#include "libraries.h"
 
 #include <algorithm>
 #include <memory>

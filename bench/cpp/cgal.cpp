@@ -1,5 +1,5 @@
 // CGAL: a streamed segment tree (Zomorodian and Edelsbrunner), with its default cutoff.
-#include "peers.h"
+#include "libraries.h"
 
 #include <CGAL/Box_intersection_d/Box_with_info_d.h>
 #include <CGAL/box_intersection_d.h>

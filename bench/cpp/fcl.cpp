@@ -1,5 +1,5 @@
 // FCL: its dynamic tree, the broad phase that it recommends in general.
-#include "peers.h"
+#include "libraries.h"
 
 #include <memory>
 

@@ -1,7 +1,7 @@
 // ODE: its sweep and prune and its hash space, filled with box geometries. Coordinates are double,
 // a box is given by its middle and its sides, and one without size is ignored, so every side is made
 // positive and the pairs are tested once more on the boxes.
-#include "peers.h"
+#include "libraries.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,5 +1,5 @@
 // How Rust owns and reads the pairs.
-#include "peers.h"
+#include "libraries.h"
 
 extern "C" Pairs *bench_pairs_new() { return new Pairs; }
 

@@ -1,23 +1,24 @@
 //! Finding all pairs, measured against the other libraries that do it.
 //!
-//! `measure` runs every contender on every scene, checks its pairs before it times it, and keeps
+//! `measure` runs every library on every scene, checks its pairs before it times it, and keeps
 //! the results as JSON; `report` makes the table and the plots from all that were kept.
 //!
-//! The parts, in the order of the data: `scene` makes the boxes, `peers` find the pairs and
-//! `worlds` follow them, `worker` runs one peer in a process of its own, `remote` talks to it,
-//! `contest` compares them, `roofline` compares ours with the machine, `measure` says what is compared, `record` is what is kept, `report`
-//! what is shown.
+//! The parts, in the order of the data: `scene` makes the boxes, `libraries` find their pairs and `worlds` track
+//! them, `worker` runs one library in a process of its own, `remote` talks to it by `protocol`, `comparison`
+//! compares the libraries, `roofline` compares this one with the machine, `measure` says what is compared,
+//! `record` is what is kept, `report` what is shown.
 
 use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
-mod contest;
+mod comparison;
 mod fingerprint;
+mod libraries;
 mod machine;
 mod measure;
-mod peers;
+mod protocol;
 mod record;
 mod remote;
 mod report;
@@ -35,7 +36,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Check and time the contenders, and keep the results.
+    /// Check and time the libraries, and keep the results.
     Measure(measure::Options),
     /// Make the table and the plots from the results kept.
     Report {
@@ -43,9 +44,9 @@ enum Command {
         #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/results"))]
         results: PathBuf,
     },
-    /// List the contenders that were compiled in.
-    Peers,
-    /// Run one contender on one scene, told what to do through standard input.
+    /// List the libraries that were compiled in.
+    Libraries,
+    /// Run one library on one scene, told what to do through standard input.
     #[command(hide = true)]
     Worker(worker::Options),
 }
@@ -54,14 +55,13 @@ fn main() -> Result<()> {
     match Cli::parse().command {
         Command::Measure(options) => measure::run(&options),
         Command::Report { results } => report::write(&results),
-        Command::Peers => {
-            let finders = peers::all().into_iter().map(|peer| peer.entrant());
-            let followers = worlds::all().into_iter().map(|peer| peer.entrant());
-            for (kind, entrants) in [("pairs", finders.collect()), ("worlds", followers.collect())]
-            {
-                let entrants: Vec<peers::Entrant> = entrants;
+        Command::Libraries => {
+            let finders = libraries::all().into_iter().map(|library| library.info());
+            let trackers = worlds::all().into_iter().map(|library| library.info());
+            for (kind, infos) in [("pairs", finders.collect()), ("worlds", trackers.collect())] {
+                let infos: Vec<libraries::LibraryInfo> = infos;
                 println!("{kind}:");
-                for it in entrants {
+                for it in infos {
                     println!("  {} ({}): {}", it.name, it.version, it.how);
                 }
             }

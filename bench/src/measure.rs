@@ -9,8 +9,9 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use sweep_and_prune_scenes::Motion;
 
-use crate::contest::{Contest, Kind};
-use crate::peers::{self, Entrant, OURS, OURS_ON_TWO, WITNESSES};
+use crate::comparison::Comparison;
+use crate::libraries::{self, LibraryInfo, ON_TWO_THREADS, THIS_CRATE, WITNESSES};
+use crate::protocol::Kind;
 use crate::record::{Case, Outcome, Record, put};
 use crate::report::time;
 use crate::{machine, roofline, scene, worlds};
@@ -21,16 +22,16 @@ const SMALL: [usize; 8] = [0, 1, 2, 5, 10, 20, 50, 100];
 /// What to measure: everything, unless parts are named.
 #[derive(Args)]
 pub struct Options {
-    /// Finding all pairs on six scenes, every peer.
+    /// Finding all pairs on six scenes, every library.
     #[arg(long)]
     pairs: bool,
-    /// Finding all pairs on all other scenes, a few peers: is ours ever slow?
+    /// Finding all pairs on all other scenes, against a few libraries: is this one ever slow?
     #[arg(long)]
     flat: bool,
     /// Finding all pairs of at most 100 boxes, beside brute force.
     #[arg(long)]
     small: bool,
-    /// Following a world from frame to frame.
+    /// Tracking pairs from frame to frame.
     #[arg(long)]
     worlds: bool,
     /// How close the stages of finding all pairs come to what the machine can do.
@@ -52,13 +53,13 @@ pub struct Options {
     /// Numbers of dimensions.
     #[arg(long, value_delimiter = ',', default_values_t = [2, 3])]
     dimensions: Vec<usize>,
-    /// Only the contenders whose names begin with one of these, and ours.
+    /// Only the libraries whose names begin with one of these, and this one.
     #[arg(long, value_delimiter = ',')]
-    peers: Vec<String>,
+    libraries: Vec<String>,
     /// Rounds of a case.
     #[arg(long)]
     rounds: Option<usize>,
-    /// Seconds after which a contender is stopped and recorded as too slow.
+    /// Seconds after which a library is stopped and recorded as too slow.
     #[arg(long, default_value_t = 1.5)]
     limit: f64,
     /// After so many minutes no case is begun; `--resume` goes on from there.
@@ -76,8 +77,8 @@ struct Planned {
     scene: String,
     dimensions: usize,
     boxes: usize,
-    /// Whoever's name begins with one of these takes part, and ours; everyone if there are none.
-    peers: Vec<String>,
+    /// Libraries whose names begin with one of these take part, and this one; all if there are none.
+    libraries: Vec<String>,
     rounds: usize,
 }
 
@@ -88,7 +89,7 @@ impl Options {
     }
 
     /// The cases, in the order in which they are measured: part by part, the most asked for first,
-    /// and in each few boxes first, since who is slow there need not be tried with many.
+    /// and in each few boxes first, since a library that is slow there need not be tried with many.
     fn plan(&self) -> Result<Vec<Planned>> {
         let all = self.everything();
         let six = || scene::DEFAULT.map(str::to_owned).to_vec();
@@ -112,8 +113,8 @@ impl Options {
             let motions = self.scenes(|| Motion::ALL.map(|it| it.name().to_owned()).to_vec());
             for boxes in self.sizes(&[1_000, 10_000, 100_000, 1_000_000]) {
                 // Of a million, whether the time a body stays flat.
-                let peers: &[&str] = if boxes > 100_000 { &[OURS] } else { &[] };
-                self.add(&mut plan, Kind::Worlds, &motions, boxes, peers, 5)?;
+                let libraries: &[&str] = if boxes > 100_000 { &[THIS_CRATE] } else { &[] };
+                self.add(&mut plan, Kind::Worlds, &motions, boxes, libraries, 5)?;
             }
         }
         if all || self.flat {
@@ -121,9 +122,9 @@ impl Options {
                 // Of a million, one that is seldom slow is enough to agree with.
                 let witnesses = if boxes > 100_000 { &WITNESSES[..1] } else { &WITNESSES };
                 let rounds = if boxes > 100_000 { 2 } else { 3 };
-                let peers = [&[OURS_ON_TWO], witnesses].concat();
+                let libraries = [&[ON_TWO_THREADS], witnesses].concat();
                 let scenes = self.scenes(scene::others);
-                self.add(&mut plan, Kind::Pairs, &scenes, boxes, &peers, rounds)?;
+                self.add(&mut plan, Kind::Pairs, &scenes, boxes, &libraries, rounds)?;
             }
         }
         Ok(plan)
@@ -136,20 +137,20 @@ impl Options {
         kind: Kind,
         scenes: &[String],
         boxes: usize,
-        peers: &[&str],
+        libraries: &[&str],
         rounds: usize,
     ) -> Result<()> {
         let rounds = self.rounds.unwrap_or(if self.quick { 3 } else { rounds }).max(1);
-        let peers = if self.peers.is_empty() {
-            peers.iter().map(|&name| name.to_owned()).collect()
+        let libraries = if self.libraries.is_empty() {
+            libraries.iter().map(|&name| name.to_owned()).collect()
         } else {
-            self.peers.clone()
+            self.libraries.clone()
         };
         for scene in scenes {
             for &dimensions in &self.dimensions {
                 if scene::exists(scene, dimensions)? {
-                    let (scene, peers) = (scene.clone(), peers.clone());
-                    plan.push(Planned { kind, scene, dimensions, boxes, peers, rounds });
+                    let (scene, libraries) = (scene.clone(), libraries.clone());
+                    plan.push(Planned { kind, scene, dimensions, boxes, libraries, rounds });
                 }
             }
         }
@@ -168,10 +169,10 @@ impl Options {
 }
 
 impl Planned {
-    fn wants(&self, entrant: &Entrant) -> bool {
-        let named = self.peers.iter().any(|name| entrant.name.starts_with(name.as_str()));
-        entrant.dimensions.contains(&self.dimensions)
-            && (self.peers.is_empty() || named || entrant.name == OURS)
+    fn wants(&self, info: &LibraryInfo) -> bool {
+        let named = self.libraries.iter().any(|name| info.name.starts_with(name.as_str()));
+        info.dimensions.contains(&self.dimensions)
+            && (self.libraries.is_empty() || named || info.name == THIS_CRATE)
     }
 }
 
@@ -181,11 +182,11 @@ pub fn run(options: &Options) -> Result<()> {
         options.dimensions.iter().all(|dimensions| [2, 3].contains(dimensions)),
         "only two and three dimensions are measured"
     );
-    let finders: Vec<_> = peers::all().iter().map(peers::Peer::entrant).collect();
-    let followers: Vec<_> = worlds::all().iter().map(peers::Peer::entrant).collect();
+    let finders: Vec<_> = libraries::all().iter().map(libraries::Library::info).collect();
+    let trackers: Vec<_> = worlds::all().iter().map(libraries::Library::info).collect();
     let mut plan = options.plan()?;
     let machine = machine::describe();
-    let (mut record, path) = open(options, &finders, &followers, machine)?;
+    let (mut record, path) = open(options, &finders, &trackers, machine)?;
     if options.resume {
         plan.retain(|planned| {
             let key = (planned.scene.as_str(), planned.dimensions, planned.boxes);
@@ -215,7 +216,7 @@ pub fn run(options: &Options) -> Result<()> {
             break;
         }
         let Planned { kind, ref scene, dimensions, boxes, .. } = planned;
-        let contest = Contest {
+        let comparison = Comparison {
             kind,
             scene,
             dimensions,
@@ -224,9 +225,9 @@ pub fn run(options: &Options) -> Result<()> {
             limit: Duration::from_secs_f64(options.limit),
             bar: &bar,
         };
-        let entrants = if kind == Kind::Worlds { &followers } else { &finders };
-        let entrants = entrants.iter().filter(|entrant| planned.wants(entrant)).collect();
-        match contest.run(entrants, &mut slow)? {
+        let infos = if kind == Kind::Worlds { &trackers } else { &finders };
+        let infos = infos.iter().filter(|info| planned.wants(info)).collect();
+        match comparison.run(infos, &mut slow)? {
             Ok(case) => {
                 bar.suspend(|| println!("{}", summary(&case)));
                 put(kept(&mut record, kind), case);
@@ -253,8 +254,8 @@ fn kept(record: &mut Record, kind: Kind) -> &mut Vec<Case> {
 /// The record of this machine and day, with what is in it so far.
 fn open(
     options: &Options,
-    finders: &[Entrant],
-    followers: &[Entrant],
+    finders: &[LibraryInfo],
+    trackers: &[LibraryInfo],
     machine: crate::record::Machine,
 ) -> Result<(Record, PathBuf)> {
     let date = chrono::Utc::now().format("%Y-%m-%d").to_string();
@@ -285,20 +286,20 @@ fn open(
     }
     // Some are both, and called in another way.
     let finders = finders.iter().map(|it| (it.name.to_owned(), it));
-    let followers = followers.iter().map(|it| (format!("{}, world", it.name), it));
-    for (name, entrant) in finders.chain(followers) {
-        record.versions.insert(name.clone(), entrant.version.clone());
-        record.how.insert(name, entrant.how.into());
+    let trackers = trackers.iter().map(|it| (format!("{}, world", it.name), it));
+    for (name, info) in finders.chain(trackers) {
+        record.versions.insert(name.clone(), info.version.clone());
+        record.how.insert(name, info.how.into());
     }
     Ok((record, path))
 }
 
-/// One line on a case: ours and the fastest rival.
+/// One line on a case: this library and the fastest alternative.
 fn summary(case: &Case) -> String {
     let mut line =
         format!("{} {}D {}: {} pairs", case.scene, case.dimensions, case.boxes, case.pairs);
-    if let Some(ours) = case.times(OURS) {
-        line += &format!(", {OURS} {}", time(ours.median_ns));
+    if let Some(own) = case.times(THIS_CRATE) {
+        line += &format!(", {THIS_CRATE} {}", time(own.median_ns));
     }
     if let Some((name, times)) = case.ranking().first() {
         line += &format!(", {name} {}", time(times.median_ns));

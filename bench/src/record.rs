@@ -6,6 +6,8 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 
+use crate::libraries::THIS_CRATE;
+
 /// One file of results.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Record {
@@ -15,13 +17,13 @@ pub struct Record {
     pub machine: Machine,
     /// The compiler, as `rustc --version` says it.
     pub rustc: String,
-    /// The contenders and their versions.
+    /// The libraries and their versions.
     pub versions: BTreeMap<String, String>,
-    /// The contenders and how each was called.
+    /// The libraries and how each was called.
     pub how: BTreeMap<String, String>,
     /// Finding all pairs, by scene, dimensions and number of boxes.
     pub cases: Vec<Case>,
-    /// Following a world, by motion, dimensions and number of boxes: the times are those of a
+    /// Tracking pairs, by motion, dimensions and number of boxes: the times are those of a
     /// frame.
     #[serde(default)]
     pub worlds: Vec<Case>,
@@ -87,7 +89,7 @@ pub struct Machine {
     pub load: Option<f64>,
 }
 
-/// One set of boxes and what the contenders made of it.
+/// One set of boxes and what the libraries made of it.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Case {
     /// The scene's name.
@@ -98,26 +100,27 @@ pub struct Case {
     pub boxes: usize,
     /// The number of pairs; of boxes in motion the mean over the frames checked.
     pub pairs: u64,
-    /// What every contender's pairs were checked against.
+    /// What every library's pairs were checked against.
     pub reference: String,
     /// The commit of this repository that was measured, where Git tells.
     pub revision: Option<String>,
-    /// What each contender did.
+    /// What each library did.
     pub results: Vec<Entry>,
 }
 
-/// One contender on one set of boxes.
+/// One library on one set of boxes.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Entry {
-    /// The contender's name.
+    /// The library's name.
     pub name: String,
-    /// Whether it competes with ours, or is ours in another setting.
-    pub rival: bool,
+    /// Whether it is another library, or this one in another setting.
+    #[serde(alias = "rival")]
+    pub alternative: bool,
     /// What came of it.
     pub outcome: Outcome,
 }
 
-/// What came of a contender.
+/// What came of a library.
 #[derive(Clone, Serialize, Deserialize)]
 pub enum Outcome {
     /// Its pairs were right, and it was timed.
@@ -129,7 +132,7 @@ pub enum Outcome {
     },
 }
 
-/// The times of a contender, from raw boxes to stored pairs.
+/// The times of a library, from raw boxes to stored pairs.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Times {
     /// The median over the rounds.
@@ -138,12 +141,12 @@ pub struct Times {
     pub min_ns: f64,
     /// Each round's time (the median of its repeats).
     pub rounds_ns: Vec<f64>,
-    /// The median over the rounds of this contender's time over ours in the same round.
+    /// The median over the rounds of this library's time over that of sweep-and-prune in the same round.
     pub ratio: Option<f64>,
     /// The most memory in use during the first call, of a world in the first frames, beyond the
     /// boxes.
     pub peak_bytes: Option<u64>,
-    /// Of a world that tells of pairs that are none, how long it takes to test them all once more.
+    /// Of a world that reports the pairs of larger or rounded boxes, how long it takes to test them for overlap.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub exact_ns: Option<f64>,
 }
@@ -159,16 +162,16 @@ impl Entry {
 }
 
 impl Case {
-    /// The times of a contender.
+    /// The times of a library.
     pub fn times(&self, name: &str) -> Option<&Times> {
         self.results.iter().find(|entry| entry.name == name)?.times()
     }
 
-    /// The rivals that were timed, the fastest first.
+    /// The alternatives that were timed, the fastest first.
     pub fn ranking(&self) -> Vec<(&str, &Times)> {
-        let rivals = self.results.iter().filter(|entry| entry.rival);
+        let alternatives = self.results.iter().filter(|entry| entry.alternative);
         let mut ranking: Vec<_> =
-            rivals.filter_map(|entry| Some((entry.name.as_str(), entry.times()?))).collect();
+            alternatives.filter_map(|entry| Some((entry.name.as_str(), entry.times()?))).collect();
         ranking.sort_by(|(_, a), (_, b)| a.median_ns.total_cmp(&b.median_ns));
         ranking
     }
@@ -183,10 +186,33 @@ impl Record {
     /// Reads a file of results.
     pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read(path).with_context(|| format!("reading {}", path.display()))?;
-        serde_json::from_slice(&text).with_context(|| format!("parsing {}", path.display()))
+        let mut record: Self =
+            serde_json::from_slice(&text).with_context(|| format!("parsing {}", path.display()))?;
+        record.update_wording();
+        Ok(record)
     }
 
-    /// Writes the file anew, whole or not at all.
+    /// Gives this library the name that it has now, and the notes the words: until 2026-11-22 it was recorded
+    /// as "ours".
+    fn update_wording(&mut self) {
+        let renamed = |name: &str| match name.strip_prefix("ours") {
+            Some(rest) if rest.is_empty() || rest.starts_with(',') => format!("{THIS_CRATE}{rest}"),
+            _ => name.to_owned(),
+        };
+        for map in [&mut self.versions, &mut self.how] {
+            let reworded =
+                |text: &str| text.replace(" anew", " from scratch").replace("fat box", "fat AABB");
+            *map = map.iter().map(|(name, text)| (renamed(name), reworded(text))).collect();
+        }
+        for case in self.cases.iter_mut().chain(&mut self.worlds) {
+            case.reference = case.reference.replace("ours", THIS_CRATE);
+            for entry in &mut case.results {
+                entry.name = renamed(&entry.name);
+            }
+        }
+    }
+
+    /// Replaces the file, whole or not at all.
     pub fn write(&self, path: &Path) -> Result<()> {
         let text = serde_json::to_string_pretty(self)? + "\n";
         let part = path.with_extension("part");

@@ -7,9 +7,8 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Result, bail};
 
-use crate::contest::Kind;
 use crate::machine;
-use crate::worker::{MARK, Reply, Request};
+use crate::protocol::{Kind, MARK, Reply, Request};
 
 /// How many times its limit a worker may take where other programs keep it from running.
 const PATIENCE: u32 = 20;
@@ -38,13 +37,13 @@ impl Remote {
     /// Starts a worker and waits until it has its boxes.
     pub fn start(
         kind: Kind,
-        peer: &str,
+        library: &str,
         scene: &str,
         dimensions: usize,
         boxes: usize,
     ) -> Result<Self> {
         let mut child = Command::new(std::env::current_exe()?)
-            .args(["worker", "--peer", peer, "--scene", scene])
+            .args(["worker", "--library", library, "--scene", scene])
             .args(["--dimensions", &dimensions.to_string(), "--boxes", &boxes.to_string()])
             .args((kind == Kind::Worlds).then_some("--world"))
             .stdin(Stdio::piped())
@@ -67,8 +66,8 @@ impl Remote {
         let mut remote = Self { child, requests, replies };
         match remote.receive(START_LIMIT)? {
             Outcome::Reply(_) => Ok(remote),
-            Outcome::Late => bail!("the worker of {peer} does not start"),
-            Outcome::Ended(how) => bail!("the worker of {peer} did not start: {how}"),
+            Outcome::Late => bail!("the worker of {library} does not start"),
+            Outcome::Ended(how) => bail!("the worker of {library} did not start: {how}"),
         }
     }
 

@@ -1,4 +1,4 @@
-//! One contender on one scene, in a process of its own: its memory can be measured, its crash
+//! One library on one scene, in a process of its own: its memory can be measured, its crash
 //! does no harm, and it can be stopped when it takes too long.
 //!
 //! It reads a [`Request`] a line from standard input and answers each with a [`Reply`].
@@ -9,84 +9,29 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use serde::{Deserialize, Serialize};
 use sweep_and_prune::Aabb;
 
 use crate::fingerprint::Fingerprint;
+use crate::libraries::{self, Finder};
 use crate::machine;
-use crate::peers::{self, Contender};
+use crate::protocol::{Job, MARK, Reply, Request};
 use crate::scene::Boxes;
-use crate::worlds::{self, Following};
+use crate::worlds::{self, Tracking};
 
 /// What to run.
 #[derive(Args)]
 pub struct Options {
     #[arg(long)]
-    peer: String,
+    library: String,
     #[arg(long)]
     scene: String,
     #[arg(long)]
     dimensions: usize,
     #[arg(long)]
     boxes: usize,
-    /// The peer is a world and the scene a motion.
+    /// The library is a world and the scene a motion.
     #[arg(long)]
     world: bool,
-}
-
-/// What the harness asks of a worker.
-#[derive(Serialize, Deserialize)]
-pub enum Request {
-    /// Find the pairs once, or follow the world for a while, and tell what they are.
-    Check,
-    /// Find the pairs, or go on to the next frame, so many times and tell how long each took.
-    Time {
-        /// How many times.
-        repeats: usize,
-        /// How many calls to find are timed together, where one alone is too short for the clock.
-        batch: usize,
-    },
-}
-
-/// What a worker answers.
-#[derive(Serialize, Deserialize)]
-pub enum Reply {
-    /// The boxes are there, the contender is made.
-    Ready,
-    /// The answer to [`Request::Check`].
-    Checked {
-        /// The pairs.
-        fingerprint: Fingerprint,
-        /// How long the longest of these first calls took.
-        nanoseconds: u64,
-        /// The most memory in use during the call, less what was in use before; `None` where
-        /// the system does not tell.
-        peak_bytes: Option<u64>,
-        /// Of a world with pairs that are none, how long it takes to tell which those are.
-        exact_ns: Option<u64>,
-    },
-    /// The answer to [`Request::Time`].
-    Timed {
-        /// How long each call took, in the mean of a batch.
-        nanoseconds: Vec<f64>,
-    },
-    /// The contender returned an error.
-    Failed {
-        /// The error.
-        message: String,
-    },
-}
-
-/// Marks the lines of the protocol; a peer may print what it likes on others.
-pub const MARK: &str = "@reply ";
-
-/// What a worker can do.
-pub trait Job {
-    /// The answer to [`Request::Check`].
-    fn check(&mut self) -> Result<Reply>;
-
-    /// The answer to [`Request::Time`].
-    fn time(&mut self, repeats: usize, batch: usize) -> Result<Reply>;
 }
 
 /// Serves requests until standard input ends.
@@ -104,41 +49,41 @@ pub fn run(options: &Options) -> Result<()> {
 }
 
 fn job(options: &Options) -> Result<Box<dyn Job>> {
-    let Options { peer: name, scene, boxes, .. } = options;
-    let unknown = || format!("there is no peer '{name}'");
+    let Options { library: name, scene, boxes, .. } = options;
+    let unknown = || format!("there is no library '{name}'");
     let other = "not in this number of dimensions";
     if options.world {
         let world = worlds::all().into_iter().find(|it| it.name == name).with_context(unknown)?;
         return Ok(match options.dimensions {
-            2 => Box::new(Following::new(world.two.context(other)?, scene, *boxes)?),
-            3 => Box::new(Following::new(world.three.context(other)?, scene, *boxes)?),
+            2 => Box::new(Tracking::new(world.two.context(other)?, scene, *boxes)?),
+            3 => Box::new(Tracking::new(world.three.context(other)?, scene, *boxes)?),
             _ => bail!(other),
         });
     }
-    let peer = peers::all().into_iter().find(|it| it.name == name).with_context(unknown)?;
+    let library = libraries::all().into_iter().find(|it| it.name == name).with_context(unknown)?;
     Ok(match options.dimensions {
-        2 => Box::new(Finding::new(peer.two.context(other)?(), scene, *boxes)?),
-        3 => Box::new(Finding::new(peer.three.context(other)?(), scene, *boxes)?),
+        2 => Box::new(Finding::new(library.two.context(other)?(), scene, *boxes)?),
+        3 => Box::new(Finding::new(library.three.context(other)?(), scene, *boxes)?),
         _ => bail!(other),
     })
 }
 
 fn answer(reply: &Reply) -> Result<()> {
     let mut out = std::io::stdout().lock();
-    // A peer may have left the line unfinished.
+    // A library may have left the line unfinished.
     writeln!(out, "\n{MARK}{}", serde_json::to_string(reply)?)?;
     Ok(out.flush()?)
 }
 
-/// A contender and the boxes whose pairs it finds.
+/// A library and the boxes whose pairs it finds.
 struct Finding<const D: usize> {
-    contender: Box<dyn Contender<D>>,
+    library: Box<dyn Finder<D>>,
     boxes: Boxes<D>,
 }
 
 impl<const D: usize> Finding<D> {
-    fn new(contender: Box<dyn Contender<D>>, scene: &str, n: usize) -> Result<Self> {
-        Ok(Self { contender, boxes: Boxes::new(scene, n)? })
+    fn new(library: Box<dyn Finder<D>>, scene: &str, n: usize) -> Result<Self> {
+        Ok(Self { library, boxes: Boxes::new(scene, n)? })
     }
 }
 
@@ -148,7 +93,7 @@ impl<const D: usize> Job for Finding<D> {
         let before = machine::memory();
         let (mut fingerprint, mut longest) = (Fingerprint::default(), Duration::ZERO);
         self.boxes.frames(|boxes| {
-            let (pairs, took) = machine::clock(|| self.contender.find(boxes));
+            let (pairs, took) = machine::clock(|| self.library.find(boxes));
             longest = longest.max(took);
             fingerprint = fingerprint + Fingerprint::of(pairs?);
             Ok(())
@@ -162,21 +107,21 @@ impl<const D: usize> Job for Finding<D> {
     /// Times calls on boxes in motion frame by frame, and on boxes at rest so that nothing known
     /// from the last call helps.
     fn time(&mut self, repeats: usize, batch: usize) -> Result<Reply> {
-        let contender = &mut *self.contender;
+        let library = &mut *self.library;
         let mut nanoseconds = Vec::with_capacity(repeats);
         for _ in 0..repeats {
             match &mut self.boxes {
                 Boxes::InMotion(moving) => {
                     moving.advance();
-                    nanoseconds.push(mean_time(contender, &[moving.boxes()])?);
+                    nanoseconds.push(mean_time(library, &[moving.boxes()])?);
                 }
                 Boxes::AtRest { boxes, shuffled } if batch == 1 => {
-                    contender.forget(shuffled)?;
-                    nanoseconds.push(mean_time(contender, &[boxes])?);
+                    library.forget(shuffled)?;
+                    nanoseconds.push(mean_time(library, &[boxes])?);
                 }
                 Boxes::AtRest { boxes, shuffled } => {
                     let turns: Vec<&[Aabb<D>]> = [&**boxes, &**shuffled].repeat(batch.div_ceil(2));
-                    nanoseconds.push(mean_time(contender, &turns)?);
+                    nanoseconds.push(mean_time(library, &turns)?);
                 }
             }
         }
@@ -185,13 +130,10 @@ impl<const D: usize> Job for Finding<D> {
 }
 
 /// The mean time of a call, in nanoseconds.
-fn mean_time<const D: usize>(
-    contender: &mut dyn Contender<D>,
-    turns: &[&[Aabb<D>]],
-) -> Result<f64> {
+fn mean_time<const D: usize>(library: &mut dyn Finder<D>, turns: &[&[Aabb<D>]]) -> Result<f64> {
     let (result, took) = machine::clock(|| {
         turns.iter().try_for_each(|boxes| {
-            black_box(contender.find(black_box(boxes))?);
+            black_box(library.find(black_box(boxes))?);
             Ok(())
         })
     });

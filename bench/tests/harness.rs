@@ -1,4 +1,4 @@
-//! The harness itself, on small scenes: every contender finds the right pairs, is timed, and
+//! The harness itself, on small scenes: every library finds the right pairs, is timed, and
 //! appears in the table and the plots.
 
 use std::fs;
@@ -7,15 +7,15 @@ use std::process::Command;
 
 use serde_json::Value;
 
-/// Scenes of ties as well as easy ones, so that a contender that takes touching boxes for apart
+/// Scenes of ties as well as easy ones, so that a library that takes touching boxes for apart
 /// is found out.
 const SCENES: [&str; 6] = ["uniform", "grid", "points", "mixed", "tower", "box-pruning"];
 const EVERYWHERE: [&str; 11] = [
-    "ours",
-    "ours, 2 threads",
-    "ours, two at once",
-    "ours, again",
-    "ours, fresh",
+    "sweep-and-prune",
+    "sweep-and-prune, 2 threads",
+    "sweep-and-prune, two at once",
+    "sweep-and-prune, again",
+    "sweep-and-prune, fresh",
     "plain sweep",
     "brute force",
     "obvhs",
@@ -97,8 +97,9 @@ fn every_contender_is_right_and_timed_and_reported() {
 fn beyond_the_oracle_two_contenders_have_to_agree() {
     let folder = folder("witnesses");
     let arguments = ["--sizes", "11000", "--scenes", "slab", "--dimensions", "2"];
-    let peers = ["--peers", "plain,broccoli"];
-    let (_, record) = measure(&folder.join("here.json"), &[&arguments[..], &peers[..]].concat());
+    let libraries = ["--libraries", "plain,broccoli"];
+    let (_, record) =
+        measure(&folder.join("here.json"), &[&arguments[..], &libraries[..]].concat());
     assert_eq!(cases(&record)[0]["reference"], "plain sweep and broccoli agree");
 }
 
@@ -106,7 +107,7 @@ fn beyond_the_oracle_two_contenders_have_to_agree() {
 fn what_takes_too_long_is_stopped_and_recorded() {
     let folder = folder("slow");
     let arguments = ["--sizes", "100000", "--scenes", "tower", "--dimensions", "2"];
-    let few = ["--peers", "plain,brute,broccoli", "--limit", "1"];
+    let few = ["--libraries", "plain,brute,broccoli", "--limit", "1"];
     let (_, record) = measure(&folder.join("here.json"), &[&arguments[..], &few[..]].concat());
     let results = cases(&record)[0]["results"].as_array().unwrap();
     let slow = results.iter().find(|entry| entry["name"] == "brute force").unwrap();
@@ -119,7 +120,7 @@ fn what_takes_too_long_is_stopped_and_recorded() {
 fn too_many_pairs_are_left_out_and_new_cases_join_the_old() {
     let folder = folder("joined");
     let file = folder.join("here.json");
-    let few = ["--peers", "plain", "--dimensions", "2"];
+    let few = ["--libraries", "plain", "--dimensions", "2"];
     let (_, record) =
         measure(&file, &[&few[..], &["--scenes", "uniform", "--sizes", "100"]].concat());
     assert_eq!(cases(&record).len(), 1);
@@ -136,7 +137,8 @@ fn too_many_pairs_are_left_out_and_new_cases_join_the_old() {
 fn boxes_in_motion_are_checked_frame_by_frame_and_small_inputs_against_brute_force() {
     let folder = folder("motion");
     let file = folder.join("here.json");
-    let scenes = ["--scenes", "teleport,uniform", "--dimensions", "3", "--peers", "plain,brute"];
+    let scenes =
+        ["--scenes", "teleport,uniform", "--dimensions", "3", "--libraries", "plain,brute"];
     let (_, record) = measure(&file, &[&scenes[..], &["--sizes", "0,1,20,300"]].concat());
     assert_eq!(cases(&record).len(), 8);
     for entry in cases(&record).iter().flat_map(|case| case["results"].as_array().unwrap()) {
@@ -157,7 +159,9 @@ fn worlds_are_checked_event_by_event_and_reported() {
     assert_eq!((worlds.len(), cases(&record).len()), (8, 0));
     for world in worlds {
         assert_eq!(world["reference"], "brute force");
-        for name in ["ours", "ours, from scratch", "parry, from scratch", "rapier"] {
+        for name in
+            ["sweep-and-prune", "sweep-and-prune, from scratch", "parry, from scratch", "rapier"]
+        {
             let results = world["results"].as_array().unwrap();
             let entry = results.iter().find(|entry| entry["name"] == name).unwrap();
             let times = &entry["outcome"]["Timed"];

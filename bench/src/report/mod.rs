@@ -7,9 +7,10 @@ use anyhow::{Context, Result};
 
 use crate::record::Record;
 
+mod cases;
 mod format;
-mod own;
 mod plot;
+mod single;
 mod table;
 mod worlds;
 

@@ -1,14 +1,15 @@
 //! The plots, in SVG: a scene's times against the number of boxes, and the advantage over the
-//! fastest rival.
+//! fastest alternative.
 
 use std::path::Path;
 
 use anyhow::{Result, anyhow};
 use plotters::prelude::*;
 
-use super::own::{SMALL, each};
-use super::table::{GOALS, advantage, is_open, names, scenes};
-use crate::peers::OURS;
+use super::cases::{SMALL, advantage, is_open, names, scenes};
+use super::single::each;
+use super::table::GOALS;
+use crate::libraries::THIS_CRATE;
 use crate::record::{Case, Record, Times};
 
 const SIZE: (u32, u32) = (920, 560);
@@ -35,7 +36,7 @@ struct Series {
 enum Look {
     /// The one to look for.
     Main,
-    /// In the colour of this number, and dashed where the colours are used up.
+    /// In the color of this number, and dashed where the colors are used up.
     Line(usize),
     /// Without a name.
     Faint,
@@ -48,24 +49,24 @@ pub fn write(record: &Record, folder: &Path) -> Result<Vec<String>> {
     let mut plots = vec![
         Plot {
             file: "advantage.svg".into(),
-            title: "How many times as long as ours the fastest rival takes".into(),
-            y_label: "fastest rival / ours",
+            title: "How many times slower than sweep-and-prune the fastest alternative is".into(),
+            y_label: "fastest alternative / sweep-and-prune",
             series: advantages(&open),
         },
         Plot {
             file: "flat.svg".into(),
-            title: "Ours on every scene: time for each box and each pair".into(),
+            title: "sweep-and-prune on every scene: time for each box and each pair".into(),
             y_label: "nanoseconds",
             series: flatness(&[&open[..], &others].concat()),
         },
     ];
-    // Over all cases, so that a contender has the same colour in every plot.
+    // Over all cases, so that a library has the same color in every plot.
     let finders = names(&open.iter().collect::<Vec<_>>());
     plots.extend(of_scenes(&open, &finders, "", "time to find all pairs"));
     plots.extend(memory(&open, &finders, "uniform", "find all pairs"));
-    let followers = names(&record.worlds.iter().collect::<Vec<_>>());
-    plots.extend(of_scenes(&record.worlds, &followers, "world-", "time of a frame"));
-    plots.extend(memory(&record.worlds, &followers, "drift", "follow a world"));
+    let trackers = names(&record.worlds.iter().collect::<Vec<_>>());
+    plots.extend(of_scenes(&record.worlds, &trackers, "world-", "time of a frame"));
+    plots.extend(memory(&record.worlds, &trackers, "drift", "track pairs"));
     plots.retain(|plot| plot.series.iter().any(|series| !series.points.is_empty()));
     for plot in &plots {
         draw(&folder.join(&plot.file), plot)?;
@@ -73,7 +74,7 @@ pub fn write(record: &Record, folder: &Path) -> Result<Vec<String>> {
     Ok(plots.into_iter().map(|plot| plot.file).collect())
 }
 
-/// The fastest rival over ours, of every scene.
+/// The fastest alternative over sweep-and-prune, of every scene.
 fn advantages(cases: &[Case]) -> Vec<Series> {
     let mut series = Vec::new();
     for (scene, dimensions) in scenes(cases) {
@@ -92,7 +93,7 @@ fn advantages(cases: &[Case]) -> Vec<Series> {
     series
 }
 
-/// Ours on every scene: uniform, and the scenes that it is slowest on, stand out.
+/// This library on every scene: uniform, and the scenes that it is slowest on, stand out.
 fn flatness(cases: &[Case]) -> Vec<Series> {
     let mut series: Vec<Series> = scenes(cases)
         .into_iter()
@@ -115,8 +116,8 @@ fn flatness(cases: &[Case]) -> Vec<Series> {
     series
 }
 
-/// A plot a scene: each contender's time against the number of boxes.
-fn of_scenes(cases: &[Case], contenders: &[String], prefix: &str, what: &str) -> Vec<Plot> {
+/// A plot a scene: each library's time against the number of boxes.
+fn of_scenes(cases: &[Case], libraries: &[String], prefix: &str, what: &str) -> Vec<Plot> {
     let plot = |(scene, dimensions): (String, usize)| {
         let file = format!("{prefix}{}-{dimensions}d.svg", scene.replace(['/', '.'], "-"));
         let milliseconds = |times: &Times| Some(times.median_ns / 1e6);
@@ -124,17 +125,17 @@ fn of_scenes(cases: &[Case], contenders: &[String], prefix: &str, what: &str) ->
             file,
             title: format!("{scene} {dimensions}D: {what}"),
             y_label: "milliseconds",
-            series: lines(&of(cases, &scene, dimensions), contenders, milliseconds),
+            series: lines(&of(cases, &scene, dimensions), libraries, milliseconds),
         }
     };
     scenes(cases).into_iter().map(plot).collect()
 }
 
-/// Each contender's memory a box against the number of boxes, in two dimensions and in three.
-fn memory(cases: &[Case], contenders: &[String], scene: &str, what: &str) -> Vec<Plot> {
+/// Each library's memory a box against the number of boxes, in two dimensions and in three.
+fn memory(cases: &[Case], libraries: &[String], scene: &str, what: &str) -> Vec<Plot> {
     let plot = |dimensions: usize| {
         let of = of(cases, scene, dimensions);
-        let mut series = lines(&of, contenders, |times| Some(times.peak_bytes? as f64));
+        let mut series = lines(&of, libraries, |times| Some(times.peak_bytes? as f64));
         for (boxes, bytes) in series.iter_mut().flat_map(|series| &mut series.points) {
             *bytes /= *boxes;
         }
@@ -158,10 +159,10 @@ fn of<'a>(cases: &'a [Case], scene: &str, dimensions: usize) -> Vec<&'a Case> {
     cases
 }
 
-/// A line a contender.
+/// A line a library.
 fn lines(
     cases: &[&Case],
-    contenders: &[String],
+    libraries: &[String],
     value: impl Fn(&Times) -> Option<f64>,
 ) -> Vec<Series> {
     let series = |(at, name): (usize, &String)| {
@@ -169,10 +170,10 @@ fn lines(
         Series {
             name: name.clone(),
             points: cases.iter().filter_map(point).collect(),
-            look: if name == OURS { Look::Main } else { Look::Line(at) },
+            look: if name == THIS_CRATE { Look::Main } else { Look::Line(at) },
         }
     };
-    contenders.iter().enumerate().map(series).collect()
+    libraries.iter().enumerate().map(series).collect()
 }
 
 /// A log-log plot with the legend outside on the right, in the order in which the lines end.
@@ -283,8 +284,8 @@ fn label(number: &f64) -> String {
     format!("{text}{unit}")
 }
 
-/// Colours that stay apart, also for most who see few of them.
-const COLOURS: [RGBColor; 11] = [
+/// Colors that most color-blind people can tell apart.
+const COLORS: [RGBColor; 11] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -301,11 +302,11 @@ const COLOURS: [RGBColor; 11] = [
 fn style(look: Look) -> ShapeStyle {
     match look {
         Look::Main => BLACK.stroke_width(4),
-        Look::Line(at) => COLOURS[at % COLOURS.len()].stroke_width(2),
+        Look::Line(at) => COLORS[at % COLORS.len()].stroke_width(2),
         Look::Faint => RGBColor(215, 215, 215).stroke_width(1),
     }
 }
 
 fn is_dashed(look: Look) -> bool {
-    matches!(look, Look::Line(at) if at / COLOURS.len() % 2 == 1)
+    matches!(look, Look::Line(at) if at / COLORS.len() % 2 == 1)
 }

@@ -3,31 +3,31 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
+use super::cases::{SMALL, advantage, find, is_open, names, scenes, sorted};
 use super::format::{count, rounded, significant, time};
-use super::own::SMALL;
-use super::{own, worlds};
-use crate::peers::{OURS, WITNESSES};
+use super::{single, worlds};
+use crate::libraries::THIS_CRATE;
 use crate::record::{Case, Entry, Outcome, Record, Times};
 
 /// What stands above the results of all machines.
 pub const INTRODUCTION: &str = "\
 # Results
 
-Made by `bench/report` from the files in `bench/results`; `bench/run` measures anew.
+Made by `bench/report` from the files in `bench/results`; `bench/run` measures again.
 
-Of finding all pairs every time is from raw boxes to pairs stored in memory, everything included, on one thread unless \
-the name says otherwise. A contender is timed only if its pairs are exactly the right ones. Each \
-round runs every contender in turn; a time is the median over the rounds, and a ratio the median \
-over the rounds of a contender's time over ours in the same round, so that what slowed the machine \
-in a round slowed both. Above 1 means slower than ours. What a contender waited for a processor \
-because other programs had them all is not counted.
+Lower times are better. The time to find all pairs starts with raw boxes and ends with pairs stored in memory. It is \
+the time of one thread unless the name says otherwise. A library is timed only if its pairs are exactly right. Each \
+round runs every library once. A time is the median over the rounds. A ratio is the median over the rounds of a \
+library's time divided by the time of sweep-and-prune in the same round, so that whatever slows the machine in a \
+round slows both: a ratio of 2 means twice as slow as sweep-and-prune. Time that a library spends waiting for a \
+processor that other programs use is not counted.
 ";
 
-/// The goals of the geometric mean of (fastest rival / ours), by number of boxes.
+/// The goals of the geometric mean of (fastest alternative / sweep-and-prune), by number of boxes.
 pub const GOALS: [(usize, f64); 3] = [(10_000, 2.0), (100_000, 3.0), (1_000_000, 5.0)];
 
-/// Terdiman's scene: boxes, units of 1,024 cycles that the published best takes, and that ours may
-/// take at most.
+/// Terdiman's scene: boxes, units of 1,024 cycles that the published best takes, and that sweep-and-prune
+/// may take at most.
 const CLASSIC: [(usize, f64, f64); 2] =
     [(10_000, 2_413.0, 1_000.0), (100_000, 182_715.0, 50_000.0)];
 
@@ -37,7 +37,7 @@ pub fn section(record: &Record, plots: &[String]) -> String {
     text += &classic(record);
     text += &fastest(record);
     text += &means(record);
-    text += &own::section(record);
+    text += &single::section(record);
     text += "\n### Plots\n\n";
     for plot in plots {
         let name = plot.rsplit('/').next().unwrap_or(plot).trim_end_matches(".svg");
@@ -45,7 +45,7 @@ pub fn section(record: &Record, plots: &[String]) -> String {
     }
     text += &everything(record);
     text += &worlds::section(record);
-    text += &contenders(record);
+    text += &libraries(record);
     text
 }
 
@@ -69,8 +69,8 @@ fn heading(record: &Record) -> String {
     );
     if let Some(load) = machine.load.filter(|&load| load > 0.5) {
         text += &format!(
-            " The load was {load} when the run began: others were at work, so trust the ratios \
-             more than the times."
+            " The load was {load} when the run began: other programs were running, so the ratios are \
+             more reliable than the times."
         );
     }
     let revisions: BTreeSet<_> =
@@ -87,18 +87,18 @@ fn classic(record: &Record) -> String {
     let mut rows = String::new();
     for (boxes, published, goal) in CLASSIC {
         let Some(case) = find(record, "box-pruning", 3, boxes) else { continue };
-        let Some(ours) = case.times(OURS) else { continue };
+        let Some(own) = case.times(THIS_CRATE) else { continue };
         let cycles = |times: &Times| times.median_ns * mhz / 1e3 / 1024.0;
-        let rival = case
+        let alternative = case
             .ranking()
             .first()
             .map_or("-".into(), |(name, times)| format!("{} ({name})", rounded(cycles(times))));
         let _ = writeln!(
             rows,
-            "| {} | {} | {} | {} | {rival} | {} |",
+            "| {} | {} | {} | {} | {alternative} | {} |",
             count(boxes as u64),
             count(case.pairs),
-            rounded(cycles(ours)),
+            rounded(cycles(own)),
             rounded(goal),
             rounded(published),
         );
@@ -111,23 +111,18 @@ fn classic(record: &Record) -> String {
          Pierre Terdiman's scene, in his units of 1,024 cycles of the time stamp counter. The \
          published best (his BoxPruning v17, AVX assembly, one thread; at 100,000 with buckets) \
          counts the pairs without storing them, on another machine.\n\n\
-         | boxes | pairs | ours | at most | fastest rival here | published best |\n\
+         | boxes | pairs | sweep-and-prune | at most | fastest alternative here | published best |\n\
          |--:|--:|--:|--:|--:|--:|\n{rows}"
     )
 }
 
-/// Whether more than a few chosen peers were measured.
-pub fn is_open(case: &Case) -> bool {
-    case.results.iter().any(|entry| entry.rival && !WITNESSES.contains(&entry.name.as_str()))
-}
-
 fn fastest(record: &Record) -> String {
-    let mut text = String::from("\n### Ours against the fastest\n\n");
+    let mut text = String::from("\n### Against the fastest alternative\n\n");
     text += &ranking(record, is_open);
     let others = |case: &Case| !is_open(case);
     if record.cases.iter().any(others) {
-        text += "\n### The other scenes: ours against a few\n\n\
-                 Where ours might be slow: beside packed_spatial_index, and up to 100,000 boxes parry and the plain sweep. A scene with more than about 50 million pairs is left out.\n\n";
+        text += "\n### The other scenes: against a few alternatives\n\n\
+                 Scenes on which sweep-and-prune might be slow, against packed_spatial_index and, up to 100,000 boxes, parry and the plain sweep. A scene with more than about 50 million pairs is left out.\n\n";
         text += &ranking(record, others);
     }
     text
@@ -135,14 +130,14 @@ fn fastest(record: &Record) -> String {
 
 fn ranking(record: &Record, wanted: impl Fn(&Case) -> bool) -> String {
     let mut text = String::from(
-        "| scene | boxes | pairs | ours | fastest rival | ratio | next | ratio |\n\
+        "| scene | boxes | pairs | sweep-and-prune | fastest alternative | ratio | next | ratio |\n\
          |---|--:|--:|--:|---|--:|---|--:|\n",
     );
     let cases = sorted(&record.cases).into_iter();
     for case in cases.filter(|case| case.boxes > SMALL && wanted(case)) {
-        let Some(ours) = case.times(OURS) else { continue };
+        let Some(own) = case.times(THIS_CRATE) else { continue };
         let ranking = case.ranking();
-        let rival = |at: usize| match ranking.get(at) {
+        let alternative = |at: usize| match ranking.get(at) {
             Some((name, times)) => format!(
                 "{name} {} | {}",
                 time(times.median_ns),
@@ -157,9 +152,9 @@ fn ranking(record: &Record, wanted: impl Fn(&Case) -> bool) -> String {
             case.dimensions,
             count(case.boxes as u64),
             count(case.pairs),
-            time(ours.median_ns),
-            rival(0),
-            rival(1),
+            time(own.median_ns),
+            alternative(0),
+            alternative(1),
         );
     }
     text
@@ -188,14 +183,15 @@ fn means(record: &Record) -> String {
         );
     }
     format!(
-        "\n### The fastest rival of each scene over ours\n\n\
+        "\n### How many times slower the fastest alternative of each scene is\n\n\
          | boxes | scenes | geometric mean | goal | least |\n|--:|--:|--:|--:|--:|\n{text}"
     )
 }
 
 fn everything(record: &Record) -> String {
-    let mut text =
-        String::from("\n### Every contender\n\nMedian time, and in brackets the ratio to ours.\n");
+    let mut text = String::from(
+        "\n### Every library\n\nMedian time, and in parentheses the ratio to sweep-and-prune.\n",
+    );
     for (scene, dimensions) in scenes(&record.cases) {
         let cases: Vec<_> = sorted(&record.cases)
             .into_iter()
@@ -242,67 +238,13 @@ fn cell(entry: &Entry) -> String {
     }
 }
 
-fn contenders(record: &Record) -> String {
+fn libraries(record: &Record) -> String {
     let mut text = String::from(
-        "\n### The contenders\n\n| name | version | how it is called |\n|---|---|---|\n",
+        "\n### The libraries\n\n| name | version | how it is called |\n|---|---|---|\n",
     );
     for (name, how) in &record.how {
         let version = record.versions.get(name).map_or("unknown", String::as_str);
         let _ = writeln!(text, "| {name} | {version} | {how} |");
     }
     text
-}
-
-/// How many times ours the fastest rival takes.
-pub fn advantage(case: &Case) -> Option<f64> {
-    case.ranking().first()?.1.ratio
-}
-
-/// The cases by scene in order of first appearance, then dimensions, then boxes.
-pub fn sorted(cases: &[Case]) -> Vec<&Case> {
-    let order = scenes(cases);
-    let mut cases: Vec<_> = cases.iter().collect();
-    cases.sort_by_key(|case| {
-        let scene = (case.scene.clone(), case.dimensions);
-        (order.iter().position(|one| *one == scene), case.boxes)
-    });
-    cases
-}
-
-/// The scenes and dimensions, the scenes in order of first appearance.
-pub fn scenes(cases: &[Case]) -> Vec<(String, usize)> {
-    let mut scenes: Vec<&str> = Vec::new();
-    for case in cases {
-        if !scenes.contains(&case.scene.as_str()) {
-            scenes.push(&case.scene);
-        }
-    }
-    let both = scenes.iter().flat_map(|&scene| [2, 3].map(|dimensions| (scene, dimensions)));
-    let exists = |(scene, dimensions): &(&str, usize)| {
-        cases.iter().any(|case| case.scene == *scene && case.dimensions == *dimensions)
-    };
-    both.filter(exists).map(|(scene, dimensions)| (scene.to_owned(), dimensions)).collect()
-}
-
-/// The contenders of some cases, in order of first appearance.
-pub fn names(cases: &[&Case]) -> Vec<String> {
-    let mut names = Vec::new();
-    for entry in cases.iter().flat_map(|case| &case.results) {
-        if !names.contains(&entry.name) {
-            names.push(entry.name.clone());
-        }
-    }
-    names
-}
-
-/// The case of these boxes.
-pub fn find<'a>(
-    record: &'a Record,
-    scene: &str,
-    dimensions: usize,
-    boxes: usize,
-) -> Option<&'a Case> {
-    let wanted =
-        |case: &&Case| case.scene == scene && case.dimensions == dimensions && case.boxes == boxes;
-    record.cases.iter().find(wanted)
 }

@@ -2,14 +2,14 @@
 
 use std::fmt::Write;
 
+use super::cases::{names, scenes, sorted};
 use super::format::{count, significant, time};
-use super::table::{names, scenes, sorted};
-use crate::peers::OURS;
+use crate::libraries::THIS_CRATE;
 use crate::record::{Case, Outcome, Record};
 use crate::worlds::FROM_SCRATCH;
 
-/// By motion: the goal of ours over finding all pairs from scratch, at most, and of the fastest
-/// rival over ours, at least.
+/// By motion: the goals of `BroadPhase` over finding all pairs from scratch, at most, and of the fastest
+/// alternative over `BroadPhase`, at least.
 const GOALS: [(&str, f64, f64); 4] =
     [("mostly-still", 0.2, 3.0), ("drift", 0.5, 2.0), ("fast", 1.3, 2.0), ("teleport", 1.3, 2.0)];
 
@@ -20,13 +20,13 @@ pub fn section(record: &Record) -> String {
     }
     let mut text = String::from(
         "\n## Worlds\n\n\
-         A world keeps its boxes from frame to frame: each frame it is told where those are that \
-         moved, and tells which pairs began and which ended. The time is that of a frame, in the \
-         mean over many, so that what is done now and then for the sake of later frames counts. \
-         The pairs of every fifth of the first frames are checked, and every event in between.\n\n\
-         Most rivals report the pairs of boxes larger than those they were given, or rounded. \
-         Their time is that of their own report; what it takes to tell which of the pairs are \
-         real, which ours does in its time, stands behind the plus sign.\n",
+         A world keeps its boxes from frame to frame: in each frame it receives the boxes that \
+         moved, and reports which pairs began and which ended. The time is the mean over many \
+         frames, so that work done in one frame for the sake of later ones counts. The pairs of \
+         every fifth of the first frames are checked, and every event in between.\n\n\
+         Most alternatives report the pairs of larger or rounded boxes. Their time ends with that \
+         report. The time behind the plus sign is what it takes to test which of those pairs \
+         overlap; the time of sweep-and-prune includes this test.\n",
     );
     text += &against(record);
     text += &flat(record);
@@ -36,24 +36,24 @@ pub fn section(record: &Record) -> String {
 
 fn against(record: &Record) -> String {
     let mut text = String::from(
-        "\n### Ours against from scratch and against the fastest\n\n\
-         Goals: of ours over finding all pairs from scratch, at most 0.2 mostly still, 0.5 in \
-         drift, 1.3 otherwise; of the fastest rival over ours, at least 3 mostly still and 2 \
-         otherwise.\n\n\
-         | motion | boxes | pairs | ours | over scratch | goal | fastest rival | ratio | goal | \
+        "\n### Against finding all pairs from scratch, and against the fastest alternative\n\n\
+         Goals: the time over that of finding all pairs from scratch is at most 0.2 mostly still, 0.5 in \
+         drift and 1.3 otherwise; the fastest alternative takes at least 3 times as long mostly still \
+         and 2 times as long otherwise.\n\n\
+         | motion | boxes | pairs | sweep-and-prune | over scratch | goal | fastest alternative | ratio | goal | \
          next | ratio |\n|---|--:|--:|--:|--:|--:|---|--:|--:|---|--:|\n",
     );
     for case in sorted(&record.worlds) {
-        let Some(ours) = case.times(OURS) else { continue };
+        let Some(own) = case.times(THIS_CRATE) else { continue };
         let scratch = case.times(FROM_SCRATCH).and_then(|times| times.ratio);
         let goal = GOALS.iter().find(|(motion, ..)| *motion == case.scene);
         let ranking = case.ranking();
-        let rival = |at: usize| {
+        let alternative = |at: usize| {
             let (name, times) = ranking.get(at)?;
             let ratio = times.ratio.map_or("-".into(), significant);
             Some((format!("{name} {}", time(times.median_ns)), ratio))
         };
-        let [first, next] = [0, 1].map(|at| rival(at).unwrap_or(("-".into(), "-".into())));
+        let [first, next] = [0, 1].map(|at| alternative(at).unwrap_or(("-".into(), "-".into())));
         let _ = writeln!(
             text,
             "| {} {}D | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
@@ -61,7 +61,7 @@ fn against(record: &Record) -> String {
             case.dimensions,
             count(case.boxes as u64),
             count(case.pairs),
-            time(ours.median_ns),
+            time(own.median_ns),
             scratch.map_or("-".into(), |ratio| significant(1.0 / ratio)),
             goal.map_or("-".into(), |(_, goal, _)| goal.to_string()),
             first.0,
@@ -76,7 +76,7 @@ fn against(record: &Record) -> String {
 
 fn flat(record: &Record) -> String {
     let mut text = String::from(
-        "\n### Flat: ours, nanoseconds a box and frame\n\n\
+        "\n### Scaling: nanoseconds for each box and frame\n\n\
          Goal: at most 2 times as many with 1,000,000 boxes as with 1,000.\n\n\
          | motion | 1,000 | 10,000 | 100,000 | 1,000,000 | most over least |\n\
          |---|--:|--:|--:|--:|--:|\n",
@@ -85,7 +85,7 @@ fn flat(record: &Record) -> String {
         let each = [1_000, 10_000, 100_000, 1_000_000].map(|boxes| {
             let key = (scene.as_str(), dimensions, boxes);
             let case = record.worlds.iter().find(|case| case.key() == key)?;
-            Some(case.times(OURS)?.median_ns / boxes as f64)
+            Some(case.times(THIS_CRATE)?.median_ns / boxes as f64)
         });
         let known = || each.iter().flatten();
         let (least, most) =
@@ -103,13 +103,13 @@ fn flat(record: &Record) -> String {
 fn everything(record: &Record) -> String {
     let mut text = String::from(
         "\n### Every world\n\n\
-         Mean time of a frame; in brackets the ratio to ours; behind the plus sign what it takes \
-         to tell the real pairs from the others.\n",
+         Mean time of a frame; in parentheses the ratio to sweep-and-prune; behind the plus sign the \
+         time to test which of the reported pairs overlap.\n",
     );
     for (scene, dimensions) in scenes(&record.worlds) {
         let of = |case: &&Case| case.scene == scene && case.dimensions == dimensions;
         let cases: Vec<_> = sorted(&record.worlds).into_iter().filter(of).collect();
-        let _ = write!(text, "\n#### {scene} {dimensions}D, followed\n\n| boxes |");
+        let _ = write!(text, "\n#### {scene} {dimensions}D, tracked\n\n| boxes |");
         for case in &cases {
             let _ = write!(text, " {} |", count(case.boxes as u64));
         }

@@ -8,18 +8,18 @@ use boxdd_sys::ffi::*;
 use rustc_hash::FxHashSet;
 use sweep_and_prune::Aabb;
 
-use super::{Found, World, WorldPeer};
-use crate::peers::{Origin, Peer};
+use super::world::{Found, World, WorldLibrary};
+use crate::libraries::{Library, Origin};
 
 /// In two dimensions only.
-pub const PEER: WorldPeer = Peer {
+pub const LIBRARY: WorldLibrary = Library {
     name: "Box2D",
     origin: Origin::Crate("boxdd-sys"),
-    how: "`b2DynamicTree` with fat boxes as `b2BroadPhase` keeps them: `b2DynamicTree_EnlargeProxy` \
+    how: "`b2DynamicTree` with fat AABBs as `b2BroadPhase` keeps them: `b2DynamicTree_EnlargeProxy` \
           for each box that left its own (the margin is 1/8 of half its diagonal), \
           `b2DynamicTree_Query` for each of these, `b2DynamicTree_Rebuild`, and pairs dropped when \
-          their fat boxes part",
-    rival: true,
+          their fat AABBs part",
+    alternative: true,
     two: Some(|| Box::new(Box2d::default())),
     three: None,
 };
@@ -32,7 +32,7 @@ struct Box2d {
     /// By box: its number in the tree.
     proxies: Vec<i32>,
     fat: Vec<b2AABB>,
-    /// The boxes that left their fat boxes in this frame.
+    /// The boxes that left their fat AABBs in this frame.
     left: Vec<u32>,
     /// By box: whether it is one of these.
     has_left: Vec<bool>,
@@ -87,7 +87,7 @@ fn overlap(a: &b2AABB, b: &b2AABB) -> bool {
         && b.lowerBound.y <= a.upperBound.y
 }
 
-/// A query for the pairs of a box that left its fat box.
+/// A query for the pairs of a box that left its fat AABB.
 struct Query<'a> {
     index: u32,
     has_left: &'a [bool],
@@ -97,7 +97,7 @@ struct Query<'a> {
 
 /// Called by Box2D for each box of the tree that overlaps the one asked for.
 unsafe extern "C" fn meet(_proxy: i32, other: u64, context: *mut c_void) -> bool {
-    // SAFETY: the context is the query that `update` passes, which nobody else uses meanwhile.
+    // SAFETY: the context is the query that `update` passes, which nothing else uses meanwhile.
     let query = unsafe { &mut *context.cast::<Query>() };
     let (index, other) = (query.index, other as u32);
     // Of two boxes that left, the larger index asks.

@@ -6,9 +6,9 @@ use std::ffi::c_void;
 use anyhow::Result;
 use sweep_and_prune::Aabb;
 
-use super::{Found, World, WorldPeer};
-use crate::peers::cpp::{Boxes, Pairs};
-use crate::peers::{Origin, Peer};
+use super::world::{Found, World, WorldLibrary};
+use crate::libraries::cpp::{Boxes, Pairs};
+use crate::libraries::{Library, Origin};
 
 unsafe extern "C" {
     fn bench_bullet_world_new(boxes: *const Boxes, sweep: bool) -> *mut c_void;
@@ -23,21 +23,21 @@ unsafe extern "C" {
 }
 
 /// Both.
-pub const PEERS: [WorldPeer; 2] = [
-    Peer {
+pub const LIBRARIES: [WorldLibrary; 2] = [
+    Library {
         name: "Bullet tree",
         origin: Origin::Debian("libbullet-dev"),
         how: "`btDbvtBroadphase`: `setAabb` for each box that moved, `calculateOverlappingPairs`; \
               the margin of its boxes is 0.05 of the mean width, as 0.05 m is of its usual 1 m",
-        rival: true,
+        alternative: true,
         two: Some(|| Box::new(Bullet::new(false))),
         three: Some(|| Box::new(Bullet::new(false))),
     },
-    Peer {
+    Library {
         name: "Bullet sweep",
         origin: Origin::Debian("libbullet-dev"),
         how: "the same with `btAxisSweep3` (32 bits from 16,384 boxes); it rounds coordinates",
-        rival: true,
+        alternative: true,
         two: Some(|| Box::new(Bullet::new(true))),
         three: Some(|| Box::new(Bullet::new(true))),
     },
@@ -78,7 +78,7 @@ impl<const D: usize> World<D> for Bullet {
     }
 
     fn kept(&mut self) -> &[[u32; 2]] {
-        // SAFETY: the world was made in `start`, and the vector is ours alone.
+        // SAFETY: the world was made in `start`, and nothing else has the vector.
         self.pairs.fill(|pairs| unsafe { bench_bullet_world_pairs(self.world, pairs) })
     }
 }

@@ -8,18 +8,18 @@ use anyhow::Result;
 use physx_sys::*;
 use sweep_and_prune::Aabb;
 
-use super::{Found, World, WorldPeer};
-use crate::peers::physx::{bounds, broad_phase, regions};
-use crate::peers::{Origin, Peer};
+use super::world::{Found, World, WorldLibrary};
+use crate::libraries::physx::{bounds, broad_phase, regions};
+use crate::libraries::{Library, Origin};
 
 /// Declares a broad phase of PhysX.
 macro_rules! physx {
     ($name:literal, $kind:ident, $how:literal) => {
-        Peer {
+        Library {
             name: $name,
             origin: Origin::Crate("physx-sys"),
             how: $how,
-            rival: true,
+            alternative: true,
             two: Some(|| Box::new(PhysX::new(PxBroadPhaseType::$kind))),
             three: Some(|| Box::new(PhysX::new(PxBroadPhaseType::$kind))),
         }
@@ -27,7 +27,7 @@ macro_rules! physx {
 }
 
 /// All of them that run on a processor; PABP is ABP on threads.
-pub const PEERS: [WorldPeer; 3] = [
+pub const LIBRARIES: [WorldLibrary; 3] = [
     physx!(
         "PhysX ABP",
         Abp,

@@ -3,16 +3,16 @@
 use anyhow::Result;
 use sweep_and_prune::Aabb;
 
-use super::{Found, World, WorldPeer};
-use crate::peers::{Origin, Peer};
+use super::world::{Found, World, WorldLibrary};
+use crate::libraries::{Library, Origin};
 
 /// The broad phase without the rest of the simulation.
-pub const PEER: WorldPeer = Peer {
+pub const LIBRARY: WorldLibrary = Library {
     name: "rapier",
     origin: Origin::Crate("rapier3d"),
     how: "`BroadPhaseBvh::set_aabb` for each box that moved, `update`, rapier2d or rapier3d; the \
           length unit is the mean width of a box, of which its boxes are 0.04 larger on every side",
-    rival: true,
+    alternative: true,
     two: Some(|| Box::new(two::Rapier::default())),
     three: Some(|| Box::new(three::Rapier::default())),
 };

@@ -1,22 +1,22 @@
-//! Worlds that keep nothing: all pairs are found anew in every frame.
+//! Worlds that keep nothing: all pairs are found from scratch in every frame.
 
 use anyhow::Result;
 use sweep_and_prune::Aabb;
 
-use super::{Found, World, WorldPeer};
-use crate::peers::{self, Contender, Peer};
+use super::world::{Found, World, WorldLibrary};
+use crate::libraries::{self, Finder, Library};
 
-/// The name of our own finder as a world.
-pub const FROM_SCRATCH: &str = "ours, from scratch";
+/// The name of this library's finder, called in every frame.
+pub const FROM_SCRATCH: &str = "sweep-and-prune, from scratch";
 
-/// Makes a world of a contender that finds pairs.
+/// Makes a world of a library that finds pairs.
 macro_rules! from_scratch {
-    ($finder:expr, $name:expr, $how:expr, $rival:expr) => {
-        Peer {
+    ($finder:expr, $name:expr, $how:expr, $alternative:expr) => {
+        Library {
             name: $name,
             origin: $finder.origin,
             how: $how,
-            rival: $rival,
+            alternative: $alternative,
             two: Some(|| Box::new(Scratch(($finder.two.expect("in 2D"))()))),
             three: Some(|| Box::new(Scratch(($finder.three.expect("in 3D"))()))),
         }
@@ -24,23 +24,23 @@ macro_rules! from_scratch {
 }
 
 /// What a world has to be faster than.
-pub const FINDER: WorldPeer = from_scratch!(
-    peers::ours::PEER,
+pub const FINDER: WorldLibrary = from_scratch!(
+    libraries::this_crate::LIBRARY,
     FROM_SCRATCH,
     "`PairFinder::find` in every frame, one finder for all frames",
     false
 );
 
-/// A tree made anew in every frame.
+/// A tree built from scratch in every frame.
 #[cfg(feature = "light")]
-pub const PARRY: WorldPeer = from_scratch!(
-    peers::parry::PEER,
+pub const PARRY: WorldLibrary = from_scratch!(
+    libraries::parry::LIBRARY,
     "parry, from scratch",
     "parry's tree made and traversed in every frame",
     true
 );
 
-struct Scratch<const D: usize>(Box<dyn Contender<D>>);
+struct Scratch<const D: usize>(Box<dyn Finder<D>>);
 
 impl<const D: usize> World<D> for Scratch<D> {
     fn start<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<Found<'a>> {

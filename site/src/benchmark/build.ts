@@ -44,14 +44,24 @@ export function runs(): Run[] {
   return files().map(({ kind, name, address, text }) => {
     const { date, machine, node, rustc, versions = {}, how = {}, cases = [], worlds = [] } = JSON.parse(text) as Recorded;
     const tools = node ?? rustc ?? "";
-    return { kind, name, address, date, machine, tools, versions, how, cases: cases.map(slim), worlds: worlds.map(slim) };
+    return { kind, name, address, date, machine, tools, versions: renamedKeys(versions), how: renamedKeys(how), cases: cases.map(slim), worlds: worlds.map(slim) };
   });
 }
 
 function slim({ scene, dimensions, boxes, pairs, reference, load = null, results }: Case): Case {
-  const kept = results.map(({ name, rival, outcome }) => ({ name, rival, outcome: slimOutcome(outcome) }));
-  return { scene, dimensions, boxes, pairs, reference, load, results: kept };
+  const kept = results.map(({ name, rival, alternative = rival, outcome }) => ({
+    name: renamed(name),
+    rival: alternative,
+    outcome: slimOutcome(outcome),
+  }));
+  return { scene, dimensions, boxes, pairs, reference: reference.replace(/\bours\b/, "sweep-and-prune"), load, results: kept };
 }
+
+/** Until 2026-11-22 this library was recorded as "ours", and the key `alternative` was `rival`. */
+const renamed = (name: string): string => name.replace(/^ours(?=,|$)/, "sweep-and-prune");
+
+const renamedKeys = (of: Readonly<Record<string, string>>): Record<string, string> =>
+  Object.fromEntries(Object.entries(of).map(([name, text]) => [renamed(name), text]));
 
 function slimOutcome(outcome: Outcome): Outcome {
   if (!("Timed" in outcome)) return outcome;

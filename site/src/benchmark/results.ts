@@ -11,6 +11,8 @@ export type Outcome = { readonly Timed: Times } | { readonly Untimed: { readonly
 export interface Entry {
   readonly name: string;
   readonly rival: boolean;
+  /** As `rival` is called in the files from 2026-11-23 on. */
+  readonly alternative?: boolean;
   readonly outcome: Outcome;
 }
 

@@ -3,27 +3,27 @@
 use anyhow::Result;
 use sweep_and_prune::Aabb;
 
-use super::{Contender, Origin, Peer};
+use super::library::{Finder, Library, Origin};
 
 /// The tree traversed against itself.
-pub const PEER: Peer = Peer {
+pub const LIBRARY: Library = Library {
     name: "parry",
     origin: Origin::Crate("parry3d"),
     how: "`Bvh::from_iter` with the default (binned) strategy, `traverse_bvtt_single_tree`, \
           parry2d or parry3d",
-    rival: true,
+    alternative: true,
     two: Some(|| Box::new(two::Parry::default())),
     three: Some(|| Box::new(three::Parry::default())),
 };
 
-/// parry is two crates with one interface, so its contender is one text with two meanings.
+/// parry is two crates with one interface, so its library is one text with two meanings.
 macro_rules! parry {
     ($module:ident, $parry:ident, $dimensions:literal) => {
         mod $module {
             use $parry::bounding_volume::Aabb as Bounds;
             use $parry::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 
-            use super::{Aabb, Contender, Result};
+            use super::{Aabb, Finder, Result};
 
             #[derive(Default)]
             pub struct Parry {
@@ -31,7 +31,7 @@ macro_rules! parry {
                 pairs: Vec<[u32; 2]>,
             }
 
-            impl Contender<$dimensions> for Parry {
+            impl Finder<$dimensions> for Parry {
                 fn find<'a>(
                     &'a mut self,
                     boxes: &'a [Aabb<$dimensions>],

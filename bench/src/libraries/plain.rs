@@ -3,24 +3,24 @@
 use anyhow::Result;
 use sweep_and_prune::{Aabb, validate};
 
-use super::{Contender, Origin, Peer};
+use super::library::{Finder, Library, Origin};
 
 /// One standard sort and one loop.
-pub const SWEEP: Peer = Peer {
+pub const SWEEP: Library = Library {
     name: "plain sweep",
     origin: Origin::Here,
     how: "boxes sorted by their left edge on the axis of largest variance, then one loop",
-    rival: true,
+    alternative: true,
     two: Some(|| Box::new(Sweep::default())),
     three: Some(|| Box::new(Sweep::default())),
 };
 
 /// Every box against every other.
-pub const BRUTE_FORCE: Peer = Peer {
+pub const BRUTE_FORCE: Library = Library {
     name: "brute force",
     origin: Origin::Here,
     how: "two loops, once all boxes are found valid",
-    rival: true,
+    alternative: true,
     two: Some(|| Box::new(BruteForce::default())),
     three: Some(|| Box::new(BruteForce::default())),
 };
@@ -31,7 +31,7 @@ struct Sweep<const D: usize> {
     pairs: Vec<[u32; 2]>,
 }
 
-impl<const D: usize> Contender<D> for Sweep<D> {
+impl<const D: usize> Finder<D> for Sweep<D> {
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]> {
         let axis = axis_of_largest_variance(boxes);
         self.sorted.clear();
@@ -66,7 +66,7 @@ struct BruteForce {
     pairs: Vec<[u32; 2]>,
 }
 
-impl<const D: usize> Contender<D> for BruteForce {
+impl<const D: usize> Finder<D> for BruteForce {
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]> {
         validate(boxes)?;
         self.pairs.clear();

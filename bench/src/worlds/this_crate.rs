@@ -3,21 +3,21 @@
 use anyhow::Result;
 use sweep_and_prune::{Aabb, BroadPhase, Filter, ProxyId};
 
-use super::{Found, World, WorldPeer};
-use crate::peers::{OURS, Origin, Peer};
+use super::world::{Found, World, WorldLibrary};
+use crate::libraries::{Library, Origin, THIS_CRATE};
 
 /// The broad phase with its default options: pairs of the exact boxes.
-pub const PEER: WorldPeer = Peer {
-    name: OURS,
+pub const LIBRARY: WorldLibrary = Library {
+    name: THIS_CRATE,
     origin: Origin::Here,
     how: "`BroadPhase` with its default options: `set_many` of the boxes that moved, then `update`",
-    rival: false,
-    two: Some(|| Box::new(Ours::<2>::default())),
-    three: Some(|| Box::new(Ours::<3>::default())),
+    alternative: false,
+    two: Some(|| Box::new(Tracker::<2>::default())),
+    three: Some(|| Box::new(Tracker::<3>::default())),
 };
 
 #[derive(Default)]
-struct Ours<const D: usize> {
+struct Tracker<const D: usize> {
     world: BroadPhase<D>,
     ids: Vec<ProxyId>,
     moved_ids: Vec<ProxyId>,
@@ -26,7 +26,7 @@ struct Ours<const D: usize> {
     ended: Vec<[u32; 2]>,
 }
 
-impl<const D: usize> Ours<D> {
+impl<const D: usize> Tracker<D> {
     /// The changes, by index: nothing is ever removed, so a slot is an index.
     fn update(&mut self) -> Found<'_> {
         let changes = self.world.update();
@@ -38,7 +38,7 @@ impl<const D: usize> Ours<D> {
     }
 }
 
-impl<const D: usize> World<D> for Ours<D> {
+impl<const D: usize> World<D> for Tracker<D> {
     fn start<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<Found<'a>> {
         self.ids = self.world.insert_many(boxes, Filter::default())?;
         Ok(self.update())

@@ -5,15 +5,15 @@ use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 use sweep_and_prune::Aabb;
 
-use super::{Contender, Origin, Peer};
+use super::library::{Finder, Library, Origin};
 
 /// The tree joined with itself.
-pub const PEER: Peer = Peer {
+pub const LIBRARY: Library = Library {
     name: "rstar",
     origin: Origin::Crate("rstar"),
     how: "`RTree::bulk_load`, `intersection_candidates_with_other_tree` on itself, each pair kept \
           one way round",
-    rival: true,
+    alternative: true,
     two: Some(|| Box::new(Rstar::default())),
     three: Some(|| Box::new(Rstar::default())),
 };
@@ -23,7 +23,7 @@ struct Rstar {
     pairs: Vec<[u32; 2]>,
 }
 
-impl<const D: usize> Contender<D> for Rstar {
+impl<const D: usize> Finder<D> for Rstar {
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]> {
         let leaf = |(aabb, id): (&Aabb<D>, u32)| {
             let envelope = AABB::from_corners(aabb.min, aabb.max);

@@ -9,25 +9,25 @@ use anyhow::{Result, ensure};
 use physx_sys::*;
 use sweep_and_prune::Aabb;
 
-use super::{Contender, Origin, Peer, lift};
+use super::library::{Finder, Library, Origin, lift};
 
 /// The one that it recommends on average.
-pub const AUTOMATIC: Peer = Peer {
+pub const AUTOMATIC: Library = Library {
     name: "PhysX ABP",
     origin: Origin::Crate("physx-sys"),
-    how: "`PxCreateBroadPhase` (ABP) anew, one `update` that creates all objects, on one thread",
-    rival: true,
+    how: "`PxCreateBroadPhase` (ABP) from scratch, one `update` that creates all objects, on one thread",
+    alternative: true,
     two: Some(|| Box::new(PhysX::new(PxBroadPhaseType::Abp))),
     three: Some(|| Box::new(PhysX::new(PxBroadPhaseType::Abp))),
 };
 
 /// The one that may be faster with well-chosen regions.
-pub const MULTIPLE: Peer = Peer {
+pub const MULTIPLE: Library = Library {
     name: "PhysX MBP",
     origin: Origin::Crate("physx-sys"),
-    how: "`PxCreateBroadPhase` (MBP) anew with 4 × 4 regions of the world's bounds, one `update` \
+    how: "`PxCreateBroadPhase` (MBP) from scratch with 4 × 4 regions of the world's bounds, one `update` \
           that creates all objects; it rounds coordinates, so its pairs are tested once more",
-    rival: true,
+    alternative: true,
     two: Some(|| Box::new(PhysX::new(PxBroadPhaseType::Mbp))),
     three: Some(|| Box::new(PhysX::new(PxBroadPhaseType::Mbp))),
 };
@@ -51,7 +51,7 @@ impl PhysX {
     }
 }
 
-/// A broad phase, to be released by whoever asks for it.
+/// A broad phase, which the caller has to release.
 pub fn broad_phase(kind: PxBroadPhaseType) -> Result<*mut PxBroadPhase> {
     static FOUNDATION: Once = Once::new();
     // SAFETY: called once in the process, before anything else of PhysX.
@@ -102,7 +102,7 @@ fn corner<const D: usize>(corner: [f32; D]) -> PxVec3 {
     PxVec3 { x, y, z }
 }
 
-impl<const D: usize> Contender<D> for PhysX {
+impl<const D: usize> Finder<D> for PhysX {
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]> {
         self.pairs.clear();
         if boxes.is_empty() {

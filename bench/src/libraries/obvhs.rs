@@ -6,15 +6,15 @@ use obvhs::bvh2::Bvh2;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use sweep_and_prune::Aabb;
 
-use super::{Contender, Origin, Peer, lift};
+use super::library::{Finder, Library, Origin, lift};
 
 /// The tree asked once for each box.
-pub const PEER: Peer = Peer {
+pub const LIBRARY: Library = Library {
     name: "obvhs",
     origin: Origin::Crate("obvhs"),
     how: "as its physics example: `PlocBuilder::build_with_bvh` with the fastest settings, \
           `aabb_traverse` for each box, here in the order of the tree's leaves",
-    rival: true,
+    alternative: true,
     two: Some(|| Box::new(Obvhs::default())),
     three: Some(|| Box::new(Obvhs::default())),
 };
@@ -27,7 +27,7 @@ struct Obvhs {
     pairs: Vec<[u32; 2]>,
 }
 
-impl<const D: usize> Contender<D> for Obvhs {
+impl<const D: usize> Finder<D> for Obvhs {
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]> {
         let bounds = |aabb: &Aabb<D>| Bounds::new(lift(aabb.min).into(), lift(aabb.max).into());
         self.bounds.clear();

@@ -4,15 +4,15 @@ use anyhow::Result;
 use broccoli::aabb::BBox;
 use sweep_and_prune::Aabb;
 
-use super::{Contender, Origin, Peer};
+use super::library::{Finder, Library, Origin};
 
 /// The tree with its elements stored in it.
-pub const PEER: Peer = Peer {
+pub const LIBRARY: Library = Library {
     name: "broccoli",
     origin: Origin::Crate("broccoli"),
     how: "`Tree::new` over `BBox<f32, u32>` (an index is smaller than the reference of the \
           recommended layout), `find_colliding_pairs`",
-    rival: true,
+    alternative: true,
     two: Some(|| Box::new(Broccoli::default())),
     three: None,
 };
@@ -23,7 +23,7 @@ struct Broccoli {
     pairs: Vec<[u32; 2]>,
 }
 
-impl Contender<2> for Broccoli {
+impl Finder<2> for Broccoli {
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<2>]) -> Result<&'a [[u32; 2]]> {
         self.boxes.clear();
         self.boxes.extend(boxes.iter().zip(0..).map(|(aabb, id)| {

@@ -1,4 +1,4 @@
-// What the peers in C++ get and give. Each peer is one function
+// What the libraries in C++ get and give. Each library is one function
 //     extern "C" void bench_NAME(const Boxes *boxes, Pairs *pairs);
 // that appends to `pairs`, which is empty.
 #pragma once

@@ -1,5 +1,5 @@
-//! One contest: the contenders on one set of boxes, or on one motion. Each is checked first; then
-//! each round runs every contender once, so that what slows the machine slows them all, and ratios
+//! One comparison: the libraries on one set of boxes, or on one motion. Each is checked first; then
+//! each round runs every library once, so that what slows the machine slows them all, and ratios
 //! are taken within a round.
 
 use std::collections::HashMap;
@@ -9,38 +9,30 @@ use anyhow::Result;
 use indicatif::ProgressBar;
 
 use crate::fingerprint::Fingerprint;
-use crate::peers::{Entrant, OURS, OURS_ON_TWO};
+use crate::libraries::{LibraryInfo, ON_TWO_THREADS, THIS_CRATE};
+use crate::protocol::{Kind, Reply, Request};
 use crate::record::{Case, Entry, Outcome, Times, median};
 use crate::remote::{self, Remote};
-use crate::worker::{Reply, Request};
+
 use crate::worlds::FROM_SCRATCH;
 use crate::{machine, scene, worlds};
 
-/// Up to so many boxes brute force is the reference; beyond, two contenders that agree.
+/// Up to so many boxes brute force is the reference; beyond, two libraries that agree.
 const ORACLE_LIMIT: usize = 10_000;
 /// Fewer boxes than this are found in batches of calls, of about so many boxes together.
 const BATCHED: usize = 1000;
-/// No contender takes part in more rounds once it has taken so long, but for the first three.
+/// No library takes part in more rounds once it has taken so long, but for the first three.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// Sets of boxes with more pairs than about this are left out.
 const MOST_PAIRS: f64 = 5e7;
 /// How many times the limit a world may take to be checked, over many frames.
 const WORLD_CHECK: u32 = 3;
-/// What it takes to check a box in a world, of which the contender can do nothing: to keep what began and
+/// What it takes to check a box in a world, of which the library can do nothing: to keep what began and
 /// ended in the first frames, one by one.
 const CHECK_OF_BOX: Duration = Duration::from_micros(10);
 
-/// What the contenders do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Kind {
-    /// They find all pairs of a set of boxes.
-    Pairs,
-    /// They follow a world from frame to frame.
-    Worlds,
-}
-
 impl Kind {
-    /// Short runs are repeated until a round of a contender takes about so long.
+    /// Short runs are repeated until a round of a library takes about so long.
     fn round(self) -> Duration {
         match self {
             Self::Pairs => Duration::from_millis(20),
@@ -67,8 +59,8 @@ impl Kind {
 }
 
 /// One set of boxes that is to be measured.
-pub struct Contest<'a> {
-    /// What the contenders do.
+pub struct Comparison<'a> {
+    /// What the libraries do.
     pub kind: Kind,
     /// The scene's name, or the motion's.
     pub scene: &'a str,
@@ -76,20 +68,20 @@ pub struct Contest<'a> {
     pub dimensions: usize,
     /// The number of boxes.
     pub boxes: usize,
-    /// Rounds in which each contender is timed.
+    /// Rounds in which each library is timed.
     pub rounds: usize,
-    /// After so long a contender is stopped.
+    /// After so long a library is stopped.
     pub limit: Duration,
-    /// Tells how far it is: one step for the check and one for each round.
+    /// Shows the progress: one step for the check and one for each round.
     pub bar: &'a ProgressBar,
 }
 
-/// How long a contender took for a number of boxes of a scene; without end if it was stopped.
+/// How long a library took for a number of boxes of a scene; without end if it was stopped.
 pub type Slow = HashMap<(Kind, String, usize, &'static str), (usize, Duration)>;
 
-/// A contender whose worker runs.
+/// A library whose worker runs.
 struct Running<'a> {
-    entrant: &'a Entrant,
+    info: &'a LibraryInfo,
     worker: Remote,
     first: Duration,
     fingerprint: Fingerprint,
@@ -99,9 +91,13 @@ struct Running<'a> {
     spent: Duration,
 }
 
-impl Contest<'_> {
-    /// Checks and times the contenders, or says why these boxes are left out.
-    pub fn run(&self, contenders: Vec<&Entrant>, slow: &mut Slow) -> Result<Result<Case, String>> {
+impl Comparison<'_> {
+    /// Checks and times the libraries, or says why these boxes are left out.
+    pub fn run(
+        &self,
+        libraries: Vec<&LibraryInfo>,
+        slow: &mut Slow,
+    ) -> Result<Result<Case, String>> {
         self.bar.set_message(format!("{} {}D {}", self.scene, self.dimensions, self.boxes));
         let expected = match self.dimensions {
             2 => scene::estimated_pairs::<2>(self.scene, self.boxes)?,
@@ -114,23 +110,23 @@ impl Contest<'_> {
 
         let mut running = Vec::new();
         let mut untimed = Vec::new();
-        for entrant in contenders {
-            match self.check(entrant, slow)? {
-                Ok(contender) => running.push(contender),
-                Err(why) => untimed.push((entrant, why)),
+        for info in libraries {
+            match self.check(info, slow)? {
+                Ok(library) => running.push(library),
+                Err(why) => untimed.push((info, why)),
             }
         }
         self.bar.inc(1);
 
         let Some((reference, fingerprint)) = self.reference(&running)? else {
             self.bar.inc(self.rounds as u64);
-            return Ok(Err("no two contenders agree".into()));
+            return Ok(Err("no two libraries agree".into()));
         };
-        running.retain(|contender| {
-            let right = contender.fingerprint == fingerprint;
+        running.retain(|library| {
+            let right = library.fingerprint == fingerprint;
             if !right {
-                let found = contender.fingerprint.pairs;
-                untimed.push((contender.entrant, format!("other pairs, {found} of them")));
+                let found = library.fingerprint.pairs;
+                untimed.push((library.info, format!("other pairs, {found} of them")));
             }
             right
         });
@@ -139,19 +135,19 @@ impl Contest<'_> {
             self.bar.inc(1);
         }
 
-        let ours: HashMap<usize, f64> = running
+        let own: HashMap<usize, f64> = running
             .iter()
-            .find(|contender| contender.entrant.name == OURS)
-            .map(|contender| contender.rounds.iter().copied().collect())
+            .find(|library| library.info.name == THIS_CRATE)
+            .map(|library| library.rounds.iter().copied().collect())
             .unwrap_or_default();
-        let timed = running.into_iter().map(|contender| Entry {
-            name: contender.entrant.name.into(),
-            rival: contender.entrant.rival,
-            outcome: Outcome::Timed(contender.times(&ours)),
+        let timed = running.into_iter().map(|library| Entry {
+            name: library.info.name.into(),
+            alternative: library.info.alternative,
+            outcome: Outcome::Timed(library.times(&own)),
         });
-        let untimed = untimed.into_iter().map(|(entrant, why)| Entry {
-            name: entrant.name.into(),
-            rival: entrant.rival,
+        let untimed = untimed.into_iter().map(|(info, why)| Entry {
+            name: info.name.into(),
+            alternative: info.alternative,
             outcome: Outcome::Untimed { why },
         });
         Ok(Ok(Case {
@@ -165,14 +161,14 @@ impl Contest<'_> {
         }))
     }
 
-    /// Starts a contender's worker and has it find the pairs once, or says why it cannot be timed.
+    /// Starts a library's worker and has it find the pairs once, or says why it cannot be timed.
     fn check<'a>(
         &self,
-        entrant: &'a Entrant,
+        info: &'a LibraryInfo,
         slow: &mut Slow,
     ) -> Result<Result<Running<'a>, String>> {
         let too_slow = format!("over {} s", self.limit.as_secs_f64());
-        let key = (self.kind, self.scene.to_owned(), self.dimensions, entrant.name);
+        let key = (self.kind, self.scene.to_owned(), self.dimensions, info.name);
         if let Some(&(boxes, took)) = slow.get(&key) {
             // Nothing here takes less than proportionally longer for more boxes.
             if took.saturating_mul((self.boxes / boxes.max(1)) as u32) > self.limit {
@@ -180,7 +176,7 @@ impl Contest<'_> {
             }
         }
         let mut worker =
-            Remote::start(self.kind, entrant.name, self.scene, self.dimensions, self.boxes)?;
+            Remote::start(self.kind, info.name, self.scene, self.dimensions, self.boxes)?;
         let limit = match self.kind {
             Kind::Pairs => self.limit,
             Kind::Worlds => WORLD_CHECK * self.limit + CHECK_OF_BOX * self.boxes as u32,
@@ -195,7 +191,7 @@ impl Contest<'_> {
                 let first = Duration::from_nanos(nanoseconds);
                 slow.insert(key, (self.boxes, first));
                 Ok(Ok(Running {
-                    entrant,
+                    info,
                     worker,
                     first,
                     fingerprint,
@@ -224,7 +220,7 @@ impl Contest<'_> {
         }
     }
 
-    /// The right pairs, and in words how we know; nothing if no two contenders agree.
+    /// The right pairs, and in words how we know; nothing if no two libraries agree.
     fn reference(&self, running: &[Running]) -> Result<Option<(String, Fingerprint)>> {
         if self.boxes <= ORACLE_LIMIT {
             let right = match (self.kind, self.dimensions) {
@@ -235,61 +231,59 @@ impl Contest<'_> {
             };
             return Ok(Some(("brute force".into(), right)));
         }
-        // All of ours that find pairs count as one witness.
-        let witness =
-            |one: &&Running| one.entrant.rival || [OURS, FROM_SCRATCH].contains(&one.entrant.name);
+        // All settings of this library count as one witness.
+        let witness = |one: &&Running| {
+            one.info.alternative || [THIS_CRATE, FROM_SCRATCH].contains(&one.info.name)
+        };
         let witnesses: Vec<_> = running.iter().filter(witness).rev().collect();
-        if let [ours] = witnesses[..] {
-            let on_two = running.iter().find(|it| it.entrant.name == OURS_ON_TWO);
-            if ours.entrant.name == OURS
-                && on_two.is_some_and(|it| it.fingerprint == ours.fingerprint)
+        if let [own] = witnesses[..] {
+            let on_two = running.iter().find(|it| it.info.name == ON_TWO_THREADS);
+            if own.info.name == THIS_CRATE
+                && on_two.is_some_and(|it| it.fingerprint == own.fingerprint)
             {
-                let how = "nobody else in time; one thread and two agree";
-                return Ok(Some((how.into(), ours.fingerprint)));
+                let how = "no alternative in time; one thread and two agree";
+                return Ok(Some((how.into(), own.fingerprint)));
             }
         }
         Ok(witnesses.iter().enumerate().find_map(|(at, one)| {
             let other = witnesses[at + 1..].iter().find(|it| it.fingerprint == one.fingerprint)?;
-            Some((
-                format!("{} and {} agree", other.entrant.name, one.entrant.name),
-                one.fingerprint,
-            ))
+            Some((format!("{} and {} agree", other.info.name, one.info.name), one.fingerprint))
         }))
     }
 
-    /// Runs every contender once, each round beginning with another.
+    /// Runs every library once, each round beginning with another.
     fn round<'a>(
         &self,
         round: usize,
         running: &mut Vec<Running<'a>>,
-        untimed: &mut Vec<(&'a Entrant, String)>,
+        untimed: &mut Vec<(&'a LibraryInfo, String)>,
     ) -> Result<()> {
         let count = running.len();
         let mut lost = Vec::new();
         for at in (0..count).map(|at| (at + round) % count) {
-            let contender = &mut running[at];
-            if round >= 3 && contender.spent > PATIENCE {
+            let library = &mut running[at];
+            if round >= 3 && library.spent > PATIENCE {
                 continue;
             }
             let batch = (BATCHED / self.boxes.max(1)).clamp(1, 256);
             let round_time = self.kind.round();
             let (least, most) = self.kind.repeats();
-            let once = contender.first.as_nanos().max(1) * batch as u128;
+            let once = library.first.as_nanos().max(1) * batch as u128;
             let repeats = (round_time.as_nanos() / once).clamp(least, most);
             let request = Request::Time { repeats: repeats as usize, batch };
             // The limit is for what takes too long once; here it only guards against hanging.
-            match contender.worker.ask(&request, 10 * self.limit + 20 * round_time)? {
+            match library.worker.ask(&request, 10 * self.limit + 20 * round_time)? {
                 remote::Outcome::Reply(Reply::Timed { nanoseconds }) => {
                     let all = nanoseconds.iter().sum::<f64>() * batch as f64;
-                    contender.spent += Duration::from_nanos(all as u64);
-                    contender.rounds.push((round, self.kind.sum_up(&nanoseconds)));
+                    library.spent += Duration::from_nanos(all as u64);
+                    library.rounds.push((round, self.kind.sum_up(&nanoseconds)));
                 }
                 other => lost.push((at, failure(other))),
             }
         }
         lost.sort_unstable();
         for (at, why) in lost.into_iter().rev() {
-            untimed.push((running.remove(at).entrant, why));
+            untimed.push((running.remove(at).info, why));
         }
         Ok(())
     }
@@ -306,11 +300,11 @@ fn failure(outcome: remote::Outcome) -> String {
 }
 
 impl Running<'_> {
-    /// The times over the rounds, against ours in the same rounds.
-    fn times(&self, ours: &HashMap<usize, f64>) -> Times {
+    /// The times over the rounds, against this library in the same rounds.
+    fn times(&self, own: &HashMap<usize, f64>) -> Times {
         let rounds: Vec<_> = self.rounds.iter().map(|&(_, time)| time).collect();
         let ratios: Vec<_> =
-            self.rounds.iter().filter_map(|(round, time)| Some(time / ours.get(round)?)).collect();
+            self.rounds.iter().filter_map(|(round, time)| Some(time / own.get(round)?)).collect();
         Times {
             median_ns: median(&rounds),
             min_ns: rounds.iter().copied().fold(f64::INFINITY, f64::min),

@@ -1,16 +1,14 @@
-//! The tables of what ours does by itself: threads, small inputs, how flat it is, memory, and how
+//! The tables about sweep-and-prune alone: threads, small inputs, how flat it is, memory, and how
 //! close it comes to what the machine can do.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
+use super::cases::{SMALL, find, names, scenes, sorted};
 use super::format::{count, significant, time};
-use super::table::{find, scenes, sorted};
-use crate::peers::{OURS, OURS_AGAIN, OURS_ON_TWO, OURS_TWICE};
-use crate::record::{Case, Record, Roofline};
 
-/// Inputs of at most so many boxes are compared with brute force alone.
-pub const SMALL: usize = 100;
+use crate::libraries::{ON_TWO_THREADS, SAME_BOXES, THIS_CRATE, TWO_AT_ONCE};
+use crate::record::{Case, Record, Roofline};
 
 /// From so many boxes on, threads and the memory's speed are looked at.
 const MANY: usize = 100_000;
@@ -39,7 +37,9 @@ fn table(heading: &str, text: &str, columns: &str, rows: &str) -> String {
 fn threads(record: &Record) -> String {
     let mut rows = String::new();
     for case in sorted(&record.cases).into_iter().filter(|case| case.boxes >= MANY) {
-        let (Some(one), Some(two)) = (case.times(OURS), case.times(OURS_ON_TWO)) else { continue };
+        let (Some(one), Some(two)) = (case.times(THIS_CRATE), case.times(ON_TWO_THREADS)) else {
+            continue;
+        };
         let Some(share) = two.ratio else { continue };
         let _ = writeln!(
             rows,
@@ -50,16 +50,16 @@ fn threads(record: &Record) -> String {
             time(one.median_ns),
             time(two.median_ns),
             significant(1.0 / share),
-            case.times(OURS_TWICE)
+            case.times(TWO_AT_ONCE)
                 .and_then(|both| both.ratio)
                 .map_or("-".into(), |ratio| significant(2.0 / ratio)),
         );
     }
     table(
-        "Two threads: ours",
-        "Goal: at least 1.7 times as fast as one. The machine's gain is that of two finders at once, \
-         each on a thread of its own and with nothing to do with the other.",
-        "| scene | boxes | one thread | two threads | gain | the machine's |",
+        "Two threads",
+        "Goal: at least 1.7 times as fast as one thread. The last column is what two independent finders \
+         gain, each on a thread of its own: the most that this machine offers.",
+        "| scene | boxes | one thread | two threads | gain | gain of two independent finders |",
         &rows,
     )
 }
@@ -67,7 +67,9 @@ fn threads(record: &Record) -> String {
 fn again(record: &Record) -> String {
     let mut rows = String::new();
     for case in sorted(&record.cases).into_iter().filter(|case| case.boxes > SMALL) {
-        let (Some(one), Some(again)) = (case.times(OURS), case.times(OURS_AGAIN)) else { continue };
+        let (Some(one), Some(again)) = (case.times(THIS_CRATE), case.times(SAME_BOXES)) else {
+            continue;
+        };
         let Some(share) = again.ratio else { continue };
         let _ = writeln!(
             rows,
@@ -81,10 +83,10 @@ fn again(record: &Record) -> String {
         );
     }
     table(
-        "Called again: ours",
+        "The same boxes again",
         "With the boxes of the last call, all at rest, against the same boxes in another order. From \
          512 to 16,384 boxes the finder starts from the last order.",
-        "| scene | boxes | other boxes before | called again | gain |",
+        "| scene | boxes | other boxes before | same boxes before | gain |",
         &rows,
     )
 }
@@ -96,7 +98,7 @@ fn small(record: &Record) -> String {
         let mut slowdowns: Vec<_> = cases
             .filter_map(|case| {
                 let slowdown = 1.0 / case.times("brute force")?.ratio?;
-                Some((slowdown, case.times(OURS)?.median_ns, case))
+                Some((slowdown, case.times(THIS_CRATE)?.median_ns, case))
             })
             .collect();
         slowdowns.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
@@ -113,9 +115,9 @@ fn small(record: &Record) -> String {
         );
     }
     table(
-        "Small inputs: ours over brute force",
+        "Small inputs: sweep-and-prune over brute force",
         "Goal: at most 1.33 times as slow on any scene.",
-        "| boxes | ours, median scene | ratio, median scene | ratio, worst scene | which |",
+        "| boxes | time, median scene | ratio, median scene | ratio, worst scene | which |",
         &rows,
     )
 }
@@ -145,7 +147,7 @@ fn flat(record: &Record) -> String {
         let _ = writeln!(rows, " {over} | {growth} |");
     }
     table(
-        "Flat: ours, nanoseconds for each box and each pair",
+        "Scaling: nanoseconds for each box and each pair",
         "Goals: at 100,000 boxes at most 4 times those of uniform on any scene; from 10,000 to \
          1,000,000 at most 2 times as many on any scene. A scene with more than about 50 million \
          pairs is left out.",
@@ -156,7 +158,7 @@ fn flat(record: &Record) -> String {
 
 /// Nanoseconds for each box and each pair.
 pub fn each(case: &Case) -> Option<f64> {
-    Some(case.times(OURS)?.median_ns / (case.boxes as f64 + case.pairs as f64))
+    Some(case.times(THIS_CRATE)?.median_ns / (case.boxes as f64 + case.pairs as f64))
 }
 
 fn memory(record: &Record) -> String {
@@ -171,7 +173,7 @@ fn memory(record: &Record) -> String {
     let worlds = cases(&record.worlds, "drift", MANY);
     let columns = [&pairs[0], &pairs[1], &worlds[0], &worlds[1]];
     let known: Vec<&Case> = columns.iter().copied().flatten().collect();
-    for name in super::table::names(&known) {
+    for name in names(&known) {
         let cells = columns.map(|case| {
             let peak = case.as_ref().and_then(|case| case.times(&name)?.peak_bytes);
             peak.map_or("-".into(), |peak| significant(peak as f64 / MANY as f64))
@@ -185,7 +187,7 @@ fn memory(record: &Record) -> String {
         "The most in use during the first call, or in a world's first frames, beyond the boxes, in \
          bytes for each of 100,000 boxes: of uniform for the pairs, of drift for the worlds. Pairs \
          are 8 bytes each in all that find pairs, 1.2 a box here.",
-        "| contender | pairs 2D | pairs 3D | world 2D | world 3D |",
+        "| library | pairs 2D | pairs 3D | world 2D | world 3D |",
         &rows,
     )
 }
@@ -193,10 +195,10 @@ fn memory(record: &Record) -> String {
 fn least_traffic(record: &Record) -> String {
     let mut rows = String::new();
     for case in sorted(&record.cases).into_iter().filter(|case| case.boxes >= MANY) {
-        let Some(ours) = case.times(OURS) else { continue };
+        let Some(own) = case.times(THIS_CRATE) else { continue };
         let bytes = least_bytes(case);
         let least_ns = bytes / record.machine.copy_bytes_per_second * 1e9;
-        let peak = ours.peak_bytes.map(|peak| peak as f64 / case.boxes as f64);
+        let peak = own.peak_bytes.map(|peak| peak as f64 / case.boxes as f64);
         let _ = writeln!(
             rows,
             "| {} {}D | {} | {:.1} MB | {} | {} | {:.0} % | {} |",
@@ -205,8 +207,8 @@ fn least_traffic(record: &Record) -> String {
             count(case.boxes as u64),
             bytes / 1e6,
             time(least_ns),
-            time(ours.median_ns),
-            100.0 * least_ns / ours.median_ns,
+            time(own.median_ns),
+            100.0 * least_ns / own.median_ns,
             peak.map_or("-".into(), |peak| format!("{peak:.0}")),
         );
     }
@@ -215,7 +217,7 @@ fn least_traffic(record: &Record) -> String {
         "What no method can avoid: to read every box once and to write every pair once, at the \
          rate at which one thread copies. The last column is the most memory in use beyond the \
          boxes, in bytes a box.",
-        "| scene | boxes | least traffic | its time | ours | share | memory |",
+        "| scene | boxes | least traffic | its time | sweep-and-prune | share | memory |",
         &rows,
     )
 }

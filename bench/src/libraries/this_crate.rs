@@ -3,62 +3,64 @@
 use anyhow::Result;
 use sweep_and_prune::{Aabb, PairFinder};
 
-use super::{Contender, OURS, OURS_AGAIN, OURS_ON_TWO, OURS_TWICE, Origin, Peer};
+use super::library::{
+    Finder, Library, ON_TWO_THREADS, Origin, SAME_BOXES, THIS_CRATE, TWO_AT_ONCE,
+};
 
 /// A finder that keeps its buffers.
-pub const PEER: Peer = Peer {
-    name: OURS,
+pub const LIBRARY: Library = Library {
+    name: THIS_CRATE,
     origin: Origin::Here,
     how: "`PairFinder::find`, one finder for all calls",
-    rival: false,
+    alternative: false,
     two: Some(|| Box::new(Warm(PairFinder::<2>::new()))),
     three: Some(|| Box::new(Warm(PairFinder::<3>::new()))),
 };
 
 /// The same on two threads.
-pub const TWO_THREADS: Peer = Peer {
-    name: OURS_ON_TWO,
+pub const TWO_THREADS: Library = Library {
+    name: ON_TWO_THREADS,
     origin: Origin::Here,
     how: "`PairFinder::find` with `threads(2)`, one finder for all calls",
-    rival: false,
+    alternative: false,
     two: Some(|| Box::new(Warm(PairFinder::<2>::new().threads(2)))),
     three: Some(|| Box::new(Warm(PairFinder::<3>::new().threads(2)))),
 };
 
 /// The same, called with the boxes of the last call once more.
-pub const AGAIN: Peer = Peer {
-    name: OURS_AGAIN,
+pub const AGAIN: Library = Library {
+    name: SAME_BOXES,
     origin: Origin::Here,
     how: "`PairFinder::find` with the boxes of the last call, all at rest",
-    rival: false,
+    alternative: false,
     two: Some(|| Box::new(Again(PairFinder::<2>::new()))),
     three: Some(|| Box::new(Again(PairFinder::<3>::new()))),
 };
 
 /// Two finders of one thread each at work at once, each on all boxes: what the machine makes of
 /// two threads that have nothing to do with each other.
-pub const TWICE: Peer = Peer {
-    name: OURS_TWICE,
+pub const TWICE: Library = Library {
+    name: TWO_AT_ONCE,
     origin: Origin::Here,
     how: "two finders on two threads, each `PairFinder::find` of all boxes",
-    rival: false,
+    alternative: false,
     two: Some(|| Box::new(Twice([PairFinder::<2>::new(), PairFinder::new()]))),
     three: Some(|| Box::new(Twice([PairFinder::<3>::new(), PairFinder::new()]))),
 };
 
 /// A new finder for each call.
-pub const FRESH: Peer = Peer {
-    name: "ours, fresh",
+pub const FRESH: Library = Library {
+    name: "sweep-and-prune, fresh",
     origin: Origin::Here,
     how: "`find_pairs`, which makes and drops a finder in each call",
-    rival: false,
+    alternative: false,
     two: Some(|| Box::new(Fresh(Vec::new()))),
     three: Some(|| Box::new(Fresh(Vec::new()))),
 };
 
 struct Warm<const D: usize>(PairFinder<D>);
 
-impl<const D: usize> Contender<D> for Warm<D> {
+impl<const D: usize> Finder<D> for Warm<D> {
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]> {
         Ok(self.0.find(boxes)?)
     }
@@ -71,7 +73,7 @@ impl<const D: usize> Contender<D> for Warm<D> {
 
 struct Again<const D: usize>(PairFinder<D>);
 
-impl<const D: usize> Contender<D> for Again<D> {
+impl<const D: usize> Finder<D> for Again<D> {
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]> {
         Ok(self.0.find(boxes)?)
     }
@@ -79,7 +81,7 @@ impl<const D: usize> Contender<D> for Again<D> {
 
 struct Twice<const D: usize>([PairFinder<D>; 2]);
 
-impl<const D: usize> Contender<D> for Twice<D> {
+impl<const D: usize> Finder<D> for Twice<D> {
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]> {
         let [first, second] = &mut self.0;
         std::thread::scope(|scope| {
@@ -98,7 +100,7 @@ impl<const D: usize> Contender<D> for Twice<D> {
 
 struct Fresh(Vec<[u32; 2]>);
 
-impl<const D: usize> Contender<D> for Fresh {
+impl<const D: usize> Finder<D> for Fresh {
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]> {
         self.0 = sweep_and_prune::find_pairs(boxes)?;
         Ok(&self.0)

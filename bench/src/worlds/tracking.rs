@@ -1,4 +1,4 @@
-//! One world that follows a motion: checked, and timed frame by frame.
+//! One world that tracks the pairs of a motion: checked, and timed frame by frame.
 
 use std::collections::HashSet;
 use std::hint::black_box;
@@ -9,22 +9,22 @@ use anyhow::{Context, Result, ensure};
 use sweep_and_prune::Aabb;
 use sweep_and_prune_scenes::{Motion, Moving};
 
-use super::{Found, Maker, World};
+use super::world::{Found, Maker, World};
 use crate::fingerprint::Fingerprint;
 use crate::machine;
+use crate::protocol::{Job, Reply};
 use crate::scene::SEED;
-use crate::worker::{Job, Reply};
 
 /// Every so many frames the pairs are compared with the right ones.
 const EVERY: usize = 5;
 
-/// So many frames are followed before a world is timed, so that it is in its stride.
+/// The number of frames before a world is timed, so that it has reached its steady state.
 const CHECKED: usize = 3 * EVERY + 1;
 
 /// Of so many frames the pairs are compared.
 pub const FRAMES_CHECKED: usize = CHECKED.div_ceil(EVERY);
 
-/// So many frames tell how much memory a world needs.
+/// The number of frames over which the memory of a world is measured.
 const WEIGHED: usize = 3;
 
 /// A motion, and which boxes it moved last.
@@ -56,14 +56,14 @@ impl<const D: usize> Frames<D> {
     }
 }
 
-/// A world and what it follows.
-pub struct Following<const D: usize> {
+/// A world and the motion that it tracks.
+pub struct Tracking<const D: usize> {
     make: Maker<D>,
     world: Box<dyn World<D>>,
     frames: Frames<D>,
 }
 
-impl<const D: usize> Following<D> {
+impl<const D: usize> Tracking<D> {
     /// A world that has not begun, and the first frame of a motion of `n` boxes.
     pub fn new(make: Maker<D>, motion: &str, n: usize) -> Result<Self> {
         Ok(Self { make, world: make(), frames: Frames::new(motion, n)? })
@@ -84,7 +84,7 @@ impl<const D: usize> Following<D> {
     }
 }
 
-impl<const D: usize> Job for Following<D> {
+impl<const D: usize> Job for Tracking<D> {
     fn check(&mut self) -> Result<Reply> {
         let peak_bytes = self.weigh()?;
         let Self { world, frames, .. } = self;
@@ -126,7 +126,7 @@ impl<const D: usize> Job for Following<D> {
     }
 }
 
-/// The pairs that a world has told of.
+/// The pairs that a world has reported.
 #[derive(Default)]
 struct Live {
     pairs: HashSet<[u32; 2]>,
@@ -134,7 +134,7 @@ struct Live {
 }
 
 impl Live {
-    /// Follows what was found; an error if a pair began that had begun, or ended that had not.
+    /// Applies what was found; an error if a pair began that had begun, or ended that had not.
     fn take(&mut self, found: Found<'_>) -> Result<()> {
         let ordered = |&[a, b]: &[u32; 2]| [a.min(b), a.max(b)];
         match found {
@@ -156,7 +156,7 @@ impl Live {
         Ok(())
     }
 
-    /// The pairs of the boxes themselves; and, if there were others, how long it took to tell.
+    /// The pairs of the boxes themselves; and, if there were others, how long it took to test them.
     fn exact<const D: usize>(
         &self,
         world: &mut dyn World<D>,
@@ -194,15 +194,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_world_tells_has_to_make_sense() {
+    fn events_that_contradict_each_other_are_refused() {
         let mut live = Live::default();
-        let mut tell = |begun: &[[u32; 2]], ended: &[[u32; 2]]| {
+        let mut report = |begun: &[[u32; 2]], ended: &[[u32; 2]]| {
             live.take(Found::Events { begun, ended }).is_ok()
         };
-        assert!(tell(&[[0, 1], [3, 2]], &[]));
-        assert!(tell(&[[1, 2]], &[[1, 0]]));
-        assert!(!tell(&[[2, 1]], &[]), "it began before");
-        assert!(!tell(&[], &[[0, 1]]), "it ended before");
+        assert!(report(&[[0, 1], [3, 2]], &[]));
+        assert!(report(&[[1, 2]], &[[1, 0]]));
+        assert!(!report(&[[2, 1]], &[]), "it began before");
+        assert!(!report(&[], &[[0, 1]]), "it ended before");
         assert!(live.take(Found::Pairs(&[[0, 1], [1, 0]])).is_err(), "the same twice");
     }
 

@@ -6,14 +6,14 @@ use anyhow::Result;
 use packed_spatial_index::{Box2D, Box3D, Index2DBuilder, Index3DBuilder};
 use sweep_and_prune::Aabb;
 
-use super::{Contender, Origin, Peer};
+use super::library::{Finder, Library, Origin};
 
 /// The tree's own join with itself.
-pub const PEER: Peer = Peer {
+pub const LIBRARY: Library = Library {
     name: "packed_spatial_index",
     origin: Origin::Crate("packed_spatial_index"),
     how: "`Index2DBuilder` or `Index3DBuilder`, `finish`, `pairs_each`, all in f64",
-    rival: true,
+    alternative: true,
     two: Some(|| Box::new(Packed::default())),
     three: Some(|| Box::new(Packed::default())),
 };
@@ -33,7 +33,7 @@ impl Packed {
     }
 }
 
-impl Contender<2> for Packed {
+impl Finder<2> for Packed {
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<2>]) -> Result<&'a [[u32; 2]]> {
         let mut builder = Index2DBuilder::new(boxes.len());
         for aabb in boxes {
@@ -45,7 +45,7 @@ impl Contender<2> for Packed {
     }
 }
 
-impl Contender<3> for Packed {
+impl Finder<3> for Packed {
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<3>]) -> Result<&'a [[u32; 2]]> {
         let mut builder = Index3DBuilder::new(boxes.len());
         for aabb in boxes {

@@ -4,15 +4,15 @@ use anyhow::Result;
 use geo_index::rtree::{RTreeBuilder, RTreeIndex, sort::HilbertSort};
 use sweep_and_prune::Aabb;
 
-use super::{Contender, Origin, Peer};
+use super::library::{Finder, Library, Origin};
 
 /// The tree joined with itself.
-pub const PEER: Peer = Peer {
+pub const LIBRARY: Library = Library {
     name: "geo-index",
     origin: Origin::Crate("geo-index"),
     how: "`RTreeBuilder` with `HilbertSort`, `intersection_candidates_with_other_tree` on itself, \
           each pair kept one way round",
-    rival: true,
+    alternative: true,
     two: Some(|| Box::new(GeoIndex::default())),
     three: None,
 };
@@ -22,7 +22,7 @@ struct GeoIndex {
     pairs: Vec<[u32; 2]>,
 }
 
-impl Contender<2> for GeoIndex {
+impl Finder<2> for GeoIndex {
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<2>]) -> Result<&'a [[u32; 2]]> {
         self.pairs.clear();
         // It has no root to join without a box.

@@ -1,4 +1,4 @@
-//! The peers in C++ that Debian packages, behind the functions of `cpp/`.
+//! The alternatives in C++ that Debian packages, behind the functions of `cpp/`.
 #![allow(unsafe_code)]
 
 use std::ffi::c_void;
@@ -6,9 +6,9 @@ use std::ffi::c_void;
 use anyhow::Result;
 use sweep_and_prune::Aabb;
 
-use super::{Contender, Origin, Peer};
+use super::library::{Finder, Library, Origin};
 
-/// `Boxes` in `cpp/peers.h`.
+/// `Boxes` in `cpp/libraries.h`.
 #[repr(C)]
 pub struct Boxes {
     rows: *const f32,
@@ -23,7 +23,7 @@ impl<const D: usize> From<&[Aabb<D>]> for Boxes {
     }
 }
 
-/// A peer: appends the pairs of the boxes to a C++ vector.
+/// A library: appends the pairs of the boxes to a C++ vector.
 type Find = unsafe extern "C" fn(*const Boxes, *mut c_void);
 
 unsafe extern "C" {
@@ -54,7 +54,7 @@ impl Drop for Pairs {
 impl Pairs {
     /// Empties the vector, has `append` append to it, and shows what it holds then.
     pub fn fill(&mut self, append: impl FnOnce(*mut c_void)) -> &[[u32; 2]] {
-        // SAFETY: the vector is ours alone; its elements are two u32 each and stay in place until
+        // SAFETY: nothing else has the vector; its elements are two u32 each and stay in place until
         // the next call, which needs `self` exclusively.
         unsafe {
             bench_pairs_clear(self.0);
@@ -67,7 +67,7 @@ impl Pairs {
     }
 }
 
-/// A peer and its pairs.
+/// A library and its pairs.
 struct Cpp {
     find: Find,
     pairs: Pairs,
@@ -79,7 +79,7 @@ impl Cpp {
     }
 }
 
-impl<const D: usize> Contender<D> for Cpp {
+impl<const D: usize> Finder<D> for Cpp {
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]> {
         let boxes = Boxes::from(boxes);
         // SAFETY: the boxes are valid for the call, and the vector is one of pairs.
@@ -87,29 +87,29 @@ impl<const D: usize> Contender<D> for Cpp {
     }
 }
 
-/// Declares a peer and the C++ function behind it.
-macro_rules! peers {
+/// Declares a library and the C++ function behind it.
+macro_rules! libraries {
     ($($constant:ident, $function:ident, $name:literal, $package:literal, $how:literal;)*) => {
         unsafe extern "C" {
             $(fn $function(boxes: *const Boxes, pairs: *mut c_void);)*
         }
         $(
             #[doc = $how]
-            const $constant: Peer = Peer {
+            const $constant: Library = Library {
                 name: $name,
                 origin: Origin::Debian($package),
                 how: $how,
-                rival: true,
+                alternative: true,
                 two: Some(|| Cpp::boxed($function)),
                 three: Some(|| Cpp::boxed($function)),
             };
         )*
         /// All of them.
-        pub const PEERS: &[Peer] = &[$($constant),*];
+        pub const LIBRARIES: &[Library] = &[$($constant),*];
     };
 }
 
-peers! {
+libraries! {
     CGAL, bench_cgal, "CGAL", "libcgal-dev",
         "`box_self_intersection_d` over `Box_with_info_d<float>`, closed, default cutoff";
     BOOST, bench_boost, "Boost.Geometry", "libboost-dev",
@@ -119,7 +119,7 @@ peers! {
     BULLET_BROADPHASE, bench_bullet_broadphase, "Bullet broadphase", "libbullet-dev",
         "`btDbvtBroadphase` with its pair cache, collision deferred until all boxes are in";
     BULLET_SWEEP, bench_bullet_sweep, "Bullet sweep", "libbullet-dev",
-        "`btAxisSweep3` (32 bits from 16,384 boxes), made anew; it rounds coordinates, so its pairs are tested once more";
+        "`btAxisSweep3` (32 bits from 16,384 boxes), made from scratch; it rounds coordinates, so its pairs are tested once more";
     ODE_SWEEP, bench_ode_sweep, "ODE sweep", "libode-dev",
         "`dSweepAndPruneSpace`, axis of largest variance first, one `dSpaceCollide`";
     ODE_HASH, bench_ode_hash, "ODE hash", "libode-dev",

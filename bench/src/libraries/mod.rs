@@ -1,0 +1,54 @@
+//! The libraries that find all pairs of a set of boxes: this repository's and the alternatives to it, each in
+//! its own short file, called as its own documentation recommends.
+
+mod plain;
+pub mod this_crate;
+
+#[cfg(feature = "light")]
+mod broccoli;
+#[cfg(feature = "cpp")]
+pub mod cpp;
+#[cfg(feature = "light")]
+mod geo_index;
+mod library;
+#[cfg(feature = "light")]
+mod obvhs;
+#[cfg(feature = "light")]
+mod packed_spatial_index;
+#[cfg(feature = "light")]
+pub mod parry;
+#[cfg(feature = "physx")]
+pub mod physx;
+#[cfg(feature = "light")]
+mod rstar;
+
+pub use library::{
+    Finder, Library, LibraryInfo, ON_TWO_THREADS, Origin, SAME_BOXES, THIS_CRATE, TWO_AT_ONCE,
+    WITNESSES,
+};
+
+/// All libraries that were compiled in, this repository's first.
+pub fn all() -> Vec<Library> {
+    let mut all = vec![
+        this_crate::LIBRARY,
+        this_crate::TWO_THREADS,
+        this_crate::TWICE,
+        this_crate::AGAIN,
+        this_crate::FRESH,
+    ];
+    all.extend([plain::SWEEP, plain::BRUTE_FORCE]);
+    #[cfg(feature = "light")]
+    all.extend([
+        broccoli::LIBRARY,
+        geo_index::LIBRARY,
+        obvhs::LIBRARY,
+        packed_spatial_index::LIBRARY,
+        parry::LIBRARY,
+        rstar::LIBRARY,
+    ]);
+    #[cfg(feature = "cpp")]
+    all.extend_from_slice(cpp::LIBRARIES);
+    #[cfg(feature = "physx")]
+    all.extend([physx::AUTOMATIC, physx::MULTIPLE]);
+    all
+}

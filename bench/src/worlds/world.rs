@@ -1,0 +1,45 @@
+//! What a world is to the harness: how it takes the boxes of a frame, and how it reports their pairs.
+
+use anyhow::Result;
+use sweep_and_prune::Aabb;
+
+use crate::libraries::Library;
+
+/// Tracks the pairs of boxes that move.
+pub trait World<const D: usize> {
+    /// Takes in the boxes of the first frame.
+    fn start<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<Found<'a>>;
+
+    /// Goes on to the next frame, in which the boxes of the indices `moved`, in ascending order,
+    /// are others than in the last. This is what is timed: until it is known which pairs there
+    /// are, or which began and ended.
+    fn step<'a>(&'a mut self, boxes: &'a [Aabb<D>], moved: &[u32]) -> Result<Found<'a>>;
+
+    /// The pairs that there are, of a world that keeps them in a form of its own. Not timed.
+    fn kept(&mut self) -> &[[u32; 2]] {
+        &[]
+    }
+}
+
+/// What a world reports of a frame: pairs of indices, in any order and orientation, of the boxes or
+/// of boxes that it made larger.
+pub enum Found<'a> {
+    /// The pairs that began and those that ended.
+    Events {
+        /// Which were none before.
+        begun: &'a [[u32; 2]],
+        /// Which are none any more.
+        ended: &'a [[u32; 2]],
+    },
+    /// All pairs.
+    Pairs(&'a [[u32; 2]]),
+    /// All pairs, where [`World::kept`] finds them.
+    #[allow(dead_code, reason = "only some features have such a world")]
+    Kept,
+}
+
+/// Makes a world.
+pub type Maker<const D: usize> = fn() -> Box<dyn World<D>>;
+
+/// A world as the harness knows it.
+pub type WorldLibrary = Library<Maker<2>, Maker<3>>;
