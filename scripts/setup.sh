@@ -125,8 +125,8 @@ node_packages() {
   fi
 }
 
-# The libraries that the JavaScript package is measured beside.
-setup_peers() { node_packages "$root/bench/js" "the JavaScript peers"; }
+# The libraries that the JavaScript package is compared with.
+setup_libraries() { node_packages "$root/bench/js" "the alternatives in JavaScript"; }
 
 setup_chromium() {
   local name
