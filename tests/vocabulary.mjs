@@ -92,7 +92,7 @@ export const EXCEPTIONS = [
 ];
 
 const SKIPPED =
-  /^(LICENSE|tests\/(vocabulary|support\/)|\.tools|bench\/(js\/)?results\/)|package-lock\.json$|Cargo\.lock$|\.(png|svg|webp|ico|snap|json5?|wasm|gif)$/;
+  /^((\w+\/)?LICENSE|tests\/(vocabulary|support\/)|\.tools|bench\/(js\/)?results\/)|package-lock\.json$|Cargo\.lock$|\.(png|svg|webp|ico|snap|json5?|wasm|gif)$/;
 const KEPT_JSON = /package\.json$/;
 
 /** The folders whose counts are kept, the longest first where one is in another. */

@@ -104,7 +104,12 @@ pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
         Query::CastAll => {
             for (index, row) in rows.enumerate() {
                 let hits = queries.cast_all(&cast(row));
-                let hits = hits.map_err(|_| Error::InvalidQuery { index })?;
+                let hits = hits.map_err(|error| match error {
+                    Error::InvalidQuery { argument, value, .. } => {
+                        Error::InvalidQuery { index, argument, value }
+                    }
+                    error => error,
+                })?;
                 hits.into_iter().for_each(|hit| answer.push(hit.id, hit.at));
                 answer.end();
             }

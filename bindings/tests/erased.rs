@@ -138,7 +138,10 @@ fn broad_phase_gives_what_the_core_gives<const D: usize, T: Scalar>() {
         erased.query(query, numbers, Filter::ALL, &mut answer).map(|()| answer)
     });
     let stale = [ids[0], ids[310]];
-    assert_eq!(erased.remove_many(&stale), Err(Error::StaleProxy { index: 1 }));
+    assert_eq!(
+        erased.remove_many(&stale),
+        Err(Error::StaleProxy { index: 1, id: stale[1].to_bits() })
+    );
 }
 
 type Ask<'a> = &'a mut dyn FnMut(Query, &[f64]) -> Result<Answer<u64>, Error>;
@@ -206,7 +209,9 @@ fn queries_give_what_the_core_gives<const D: usize, T: Scalar>(
     let width = 3 * D + 1;
     flat[2 * width - 1] = -1.0; // the limit of the second cast
     for query in [Query::Cast, Query::CastAll] {
-        assert_eq!(ask(query, &flat), Err(Error::InvalidQuery { index: 1 }));
+        let value = (-1.0).into();
+        let error = Error::InvalidQuery { index: 1, argument: "limit", value };
+        assert_eq!(ask(query, &flat), Err(error));
     }
 }
 
@@ -234,5 +239,6 @@ fn a_bad_margin_is_refused() {
     let kind = Kind { dimensions: 2, is_double: false };
     let settings = Settings { margin: -1.0, ..Settings::default() };
     let refused = kind.broad_phase::<u64>(settings).unwrap().map(|_| ());
-    assert_eq!(refused, Err(Error::InvalidMargin));
+    let value = (-1.0).into();
+    assert_eq!(refused, Err(Error::InvalidOption { option: "margin", value }));
 }

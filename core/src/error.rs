@@ -2,55 +2,124 @@
 
 use core::fmt;
 
-/// Why an input was refused.
+/// Why a call was refused. Nothing has changed after an error.
+///
+/// Each message names the argument, its value, the limit that the value broke, and what to do:
+///
+/// ```
+/// use sweep_and_prune::{Aabb, find_pairs};
+///
+/// let boxes = [Aabb::new([0.0, 0.0], [1.0, 1.0]), Aabb::new([3.5, 0.0], [2.0, 1.0])];
+/// let error = find_pairs(&boxes).unwrap_err();
+/// assert_eq!(
+///     error.to_string(),
+///     "box 1 is invalid on axis 0: min is 3.5 and max is 2, but min <= max must hold and neither \
+///      may be NaN"
+/// );
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Error {
-    /// A box is not `min <= max` on this axis: it is inverted, or holds a NaN.
+    /// A box is inverted or NaN on an axis: `min <= max` does not hold.
     InvalidBox {
-        /// The position of the box in the slice that was passed.
+        /// The index of the first invalid box in the slice that was passed, 0 for a single box.
         index: usize,
         /// The first axis on which it is invalid.
         axis: usize,
+        /// Its min on that axis.
+        min: Value,
+        /// Its max on that axis.
+        max: Value,
     },
     /// More boxes than a `u32` can index.
     TooManyBoxes {
-        /// How many were passed.
+        /// How many boxes were passed.
         count: usize,
     },
-    /// There is not enough memory for the pairs, or for the work on them. The finder keeps none of
-    /// the pairs and can be used again; it may be enough to count pairs or to stream them.
+    /// The pairs, or the memory for finding them, do not fit. The finder keeps none of the pairs and
+    /// can be used again. Counting or streaming the pairs needs less memory.
     OutOfMemory,
-    /// An axis that the boxes do not have.
+    /// The boxes do not have this axis.
     InvalidAxis {
-        /// The axis asked for.
+        /// The axis that was passed.
         axis: usize,
-        /// How many there are.
+        /// How many axes the boxes have.
         dimensions: usize,
     },
     /// An id that names no body here: its body was removed, or it never had one. (An id of another
     /// world is refused only if no body here has the same slot and generation.)
     StaleProxy {
-        /// The position of the id in the slice that was passed, 0 for a single one.
+        /// The index of the id in the slice that was passed, 0 for a single id.
         index: usize,
+        /// The id, as [`ProxyId::to_bits`](crate::ProxyId::to_bits) gives it.
+        id: u64,
     },
-    /// Two slices that go together differ in length.
+    /// Not one box for each id.
     LengthMismatch {
-        /// How many ids.
+        /// How many ids were passed.
         ids: usize,
-        /// How many boxes.
+        /// How many boxes were passed.
         boxes: usize,
     },
-    /// A margin or a prediction that is negative, infinite or NaN.
-    InvalidMargin,
-    /// A query with a centre, direction, length or radius that is NaN, infinite where it has to be
-    /// finite, or negative where that means nothing.
-    InvalidQuery {
-        /// The position of the query in the slice that was passed, 0 for a single one.
-        index: usize,
+    /// An option of a world is negative, infinite or NaN.
+    InvalidOption {
+        /// The name of the option.
+        option: &'static str,
+        /// Its value.
+        value: Value,
     },
-    /// Bytes that are no snapshot of such a world.
+    /// An argument of a query is NaN, or infinite or negative where it must not be.
+    InvalidQuery {
+        /// The index of the first invalid query in the slice that was passed, 0 for a single query.
+        index: usize,
+        /// The name of the argument: `point`, `center`, `radius`, `from`, `direction` or `limit`.
+        argument: &'static str,
+        /// Its value, or the coordinate of it that is at fault.
+        value: Value,
+    },
+    /// The bytes are not a snapshot that this world can read.
     InvalidSnapshot(SnapshotFault),
+}
+
+/// A number that an error reports: a coordinate, a length or an option, as `f64`.
+///
+/// Unlike numbers, two NaN values are equal, so that errors can be compared.
+#[derive(Clone, Copy)]
+pub struct Value(f64);
+
+impl Value {
+    /// The number.
+    pub const fn get(self) -> f64 {
+        self.0
+    }
+}
+
+impl From<f64> for Value {
+    fn from(value: f64) -> Self {
+        Self(value)
+    }
+}
+
+impl PartialEq for Value {
+    fn eq(&self, other: &Self) -> bool {
+        self.0 == other.0 || (self.0.is_nan() && other.0.is_nan())
+    }
+}
+
+impl Eq for Value {}
+
+impl fmt::Debug for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // The shortest form of the `f32` that it was: 0.1, not 0.10000000149011612.
+        let single = self.0 as f32;
+        if f64::from(single) == self.0 { write!(f, "{single}") } else { write!(f, "{}", self.0) }
+    }
 }
 
 /// What is wrong with the bytes of a snapshot.
@@ -61,14 +130,14 @@ pub enum SnapshotFault {
     Foreign,
     /// They were written by a version that this one cannot read.
     Version {
-        /// The version that they name.
+        /// The version that wrote them.
         found: u8,
     },
     /// They hold a world of other dimensions or of the other coordinate type.
     OtherWorld {
         /// Its dimensions.
         dimensions: usize,
-        /// The size of its coordinates, 4 or 8.
+        /// The size of its coordinates in bytes: 4 for `f32`, 8 for `f64`.
         scalar_bytes: usize,
     },
     /// They end too early.
@@ -85,44 +154,76 @@ impl Error {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Error::InvalidBox { index, axis } => {
-                write!(f, "box {index} is inverted or NaN on axis {axis}: min <= max must hold")
-            }
+            Error::InvalidBox { index, axis, min, max } => write!(
+                f,
+                "box {index} is invalid on axis {axis}: min is {min} and max is {max}, but \
+                 min <= max must hold and neither may be NaN"
+            ),
             Error::TooManyBoxes { count } => {
-                write!(f, "{count} boxes are more than the limit of {}", Error::BOX_LIMIT)
+                let limit = Error::BOX_LIMIT;
+                write!(f, "{count} boxes are too many: one set can hold {limit}, so split it")
             }
-            Error::OutOfMemory => write!(f, "not enough memory for the pairs of these boxes"),
-            Error::InvalidAxis { axis, dimensions } => {
-                write!(f, "axis {axis} does not exist in {dimensions} dimensions")
+            Error::OutOfMemory => write!(
+                f,
+                "out of memory: the pairs of these boxes do not fit; count or stream the pairs, or \
+                 pass fewer boxes"
+            ),
+            Error::InvalidAxis { axis, dimensions } => write!(
+                f,
+                "axis {axis} does not exist: the boxes have {dimensions} dimensions, and the axis \
+                 must be less"
+            ),
+            Error::StaleProxy { index, id } => write!(
+                f,
+                "the id at index {index} ({id}) is stale: its body was removed, or it never had one \
+                 in this world; use the ids of bodies that are in it"
+            ),
+            Error::LengthMismatch { ids, boxes } => {
+                write!(f, "there are {ids} ids but {boxes} boxes: pass one box for each id")
             }
-            Error::StaleProxy { index } => {
+            Error::InvalidOption { option, value } => {
+                write!(f, "the option `{option}` is {value}, but it must be finite and 0 or more")
+            }
+            Error::InvalidQuery { index, argument, value } => {
+                let limit = match value.get() {
+                    number if number.is_nan() => "may not be NaN",
+                    number if number.is_infinite() => "must be finite",
+                    _ if *argument == "from" => "must be a box with min <= max",
+                    _ => "must be 0 or more",
+                };
+                write!(f, "`{argument}` of query {index} is {value}, but it {limit}")
+            }
+            Error::InvalidSnapshot(fault) => fault.fmt(f),
+        }
+    }
+}
+
+impl fmt::Display for SnapshotFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            SnapshotFault::Foreign => write!(f, "these bytes are not a snapshot"),
+            SnapshotFault::Version { found } => write!(
+                f,
+                "the snapshot is of version {found}, which this version of the library cannot read: \
+                 use the version that wrote it"
+            ),
+            SnapshotFault::OtherWorld { dimensions, scalar_bytes } => {
+                let bits = 8 * scalar_bytes;
                 write!(
                     f,
-                    "proxy id {index} is stale: its body was removed, or it never had one here"
+                    "the snapshot holds a world of {dimensions} dimensions and f{bits} coordinates: \
+                     read it as `BroadPhase<{dimensions}, f{bits}>`"
                 )
             }
-            Error::LengthMismatch { ids, boxes } => {
-                write!(f, "{ids} ids do not go with {boxes} boxes")
+            SnapshotFault::Truncated => {
+                write!(f, "the snapshot ends too early: some of its bytes are missing")
             }
-            Error::InvalidMargin => {
-                write!(f, "a margin and a prediction must be finite and not negative")
-            }
-            Error::InvalidQuery { index } => {
-                write!(f, "query {index} has a part that is NaN, infinite or negative")
-            }
-            Error::InvalidSnapshot(fault) => match fault {
-                SnapshotFault::Foreign => write!(f, "these bytes are not a snapshot"),
-                SnapshotFault::Version { found } => {
-                    write!(f, "the snapshot is of version {found}, which cannot be read here")
-                }
-                SnapshotFault::OtherWorld { dimensions, scalar_bytes } => write!(
+            SnapshotFault::Corrupt => {
+                write!(
                     f,
-                    "the snapshot holds a world of {dimensions} dimensions and {scalar_bytes}-byte \
-                     coordinates"
-                ),
-                SnapshotFault::Truncated => write!(f, "the snapshot ends too early"),
-                SnapshotFault::Corrupt => write!(f, "the snapshot is corrupt"),
-            },
+                    "the snapshot is corrupt: its parts or its checksum contradict each other"
+                )
+            }
         }
     }
 }

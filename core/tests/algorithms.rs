@@ -413,7 +413,7 @@ fn what_is_refused_changes_nothing() {
         runner.step(&good, &mut ()).unwrap();
         let mut trace = Trace::new();
         let error = runner.step(&bad, &mut trace).unwrap_err();
-        assert_eq!(error, Error::InvalidBox { index: 7, axis: 1 });
+        assert!(matches!(error, Error::InvalidBox { index: 7, axis: 1, .. }));
         assert!(trace.is_empty());
         // A hole is not looked at, and ends its pairs.
         let step = runner.step_where(&bad, |id| id != 7, &mut ()).unwrap();

@@ -340,45 +340,52 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
         bad.min[axis] = T::from_f64(f64::NAN);
         let mut inverted = good;
         (inverted.min[axis], inverted.max[axis]) = (T::INFINITY, T::NEG_INFINITY);
-        let invalid = |index| Error::InvalidBox { index, axis };
+        let invalid = |index, aabb: Aabb<D, T>| {
+            let [min, max] = [aabb.min, aabb.max].map(|corner| corner[axis].to_f64().into());
+            Error::InvalidBox { index, axis, min, max }
+        };
+        let stale = |index, id: ProxyId| Error::StaleProxy { index, id: id.to_bits() };
         let world = &mut self.world;
-        assert_eq!(world.insert(bad), Err(invalid(0)));
-        assert_eq!(world.insert_many(&[good, inverted], Filter::default()), Err(invalid(1)));
+        assert_eq!(world.insert(bad), Err(invalid(0, bad)));
+        let refused = Err(invalid(1, inverted));
+        assert_eq!(world.insert_many(&[good, inverted], Filter::default()), refused);
         if let Some(&gone) = self.stale.last() {
-            let stale = Err(Error::StaleProxy { index: 0 });
-            assert_eq!(world.set(gone, good), stale);
-            assert_eq!(world.set_swept(gone, good, good), stale);
-            assert_eq!(world.set_filter(gone, Filter::ALL), stale);
-            assert_eq!(world.remove(gone), stale);
-            assert_eq!(world.aabb(gone), Err(Error::StaleProxy { index: 0 }));
+            let refused = Err(stale(0, gone));
+            assert_eq!(world.set(gone, good), refused);
+            assert_eq!(world.set_swept(gone, good, good), refused);
+            assert_eq!(world.set_filter(gone, Filter::ALL), refused);
+            assert_eq!(world.remove(gone), refused);
+            assert_eq!(world.aabb(gone), Err(stale(0, gone)));
             assert!(world.pairs_of(gone).is_err() && !world.contains(gone));
         }
         let alive: Option<ProxyId> = world.ids().last();
         if let Some(id) = alive {
-            assert_eq!(world.set(id, bad), Err(invalid(0)));
-            assert_eq!(world.set_swept(id, good, inverted), Err(invalid(1)));
-            assert_eq!(world.set_many(&[id, id], &[good, bad]), Err(invalid(1)));
+            assert_eq!(world.set(id, bad), Err(invalid(0, bad)));
+            assert_eq!(world.set_swept(id, good, inverted), Err(invalid(1, inverted)));
+            assert_eq!(world.set_many(&[id, id], &[good, bad]), Err(invalid(1, bad)));
             let mismatch = Error::LengthMismatch { ids: 1, boxes: 2 };
             assert_eq!(world.set_many(&[id], &[good, good]), Err(mismatch));
-            assert_eq!(world.remove_many(&[id, id]), Err(Error::StaleProxy { index: 1 }));
+            assert_eq!(world.remove_many(&[id, id]), Err(stale(1, id)));
             let foreign = ProxyId::from_bits(id.to_bits() + (1 << 32));
-            assert_eq!(
-                world.set_many(&[id, foreign], &[good; 2]),
-                Err(Error::StaleProxy { index: 1 })
-            );
-            assert_eq!(world.remove_many(&[id, foreign]), Err(Error::StaleProxy { index: 1 }));
+            assert_eq!(world.set_many(&[id, foreign], &[good; 2]), Err(stale(1, foreign)));
+            assert_eq!(world.remove_many(&[id, foreign]), Err(stale(1, foreign)));
         }
         let nan = [T::from_f64(f64::NAN); D];
         let zero = [T::default(); D];
         let queries = world.queries();
-        let refused = Error::InvalidQuery { index: 0 };
-        assert_eq!(queries.overlapping(&bad), Err(invalid(0)));
-        assert_eq!(queries.containing(nan), Err(refused));
-        assert_eq!(queries.within(zero, T::from_f64(-1.0)), Err(refused));
-        assert_eq!(queries.within([T::INFINITY; D], T::default()), Err(refused));
-        assert_eq!(queries.nearest(nan, 3), Err(refused));
-        assert_eq!(queries.cast(&Cast::ray(zero, nan, T::INFINITY)), Err(refused));
-        assert_eq!(queries.cast(&Cast::ray(zero, zero, T::from_f64(-1.0))), Err(refused));
+        let refused =
+            |argument, value: f64| Error::InvalidQuery { index: 0, argument, value: value.into() };
+        assert_eq!(queries.overlapping(&bad), Err(invalid(0, bad)));
+        assert_eq!(queries.containing(nan), Err(refused("point", f64::NAN)));
+        assert_eq!(queries.within(zero, T::from_f64(-1.0)), Err(refused("radius", -1.0)));
+        let endless = [T::INFINITY; D];
+        let error = Err(refused("center", f64::INFINITY));
+        assert_eq!(queries.within(endless, T::default()), error);
+        assert_eq!(queries.nearest(nan, 3), Err(refused("point", f64::NAN)));
+        let error = Err(refused("direction", f64::NAN));
+        assert_eq!(queries.cast(&Cast::ray(zero, nan, T::INFINITY)), error);
+        let error = Err(refused("limit", -1.0));
+        assert_eq!(queries.cast(&Cast::ray(zero, zero, T::from_f64(-1.0))), error);
         assert_eq!(world.snapshot(), before);
     }
 }
@@ -622,9 +629,10 @@ fn negative_infinite_and_nan_margins_are_refused() {
     for bad in [-1.0, f32::INFINITY, f32::NAN] {
         let margin = Options { margin: bad, ..Options::default() };
         let prediction = Options { prediction: bad, ..Options::default() };
-        for options in [margin, prediction] {
+        for (option, options) in [("margin", margin), ("prediction", prediction)] {
             let world = BroadPhase::<2>::with_options(options);
-            assert_eq!(world.map(|_| ()), Err(Error::InvalidMargin));
+            let value = f64::from(bad).into();
+            assert_eq!(world.map(|_| ()), Err(Error::InvalidOption { option, value }));
         }
     }
 }

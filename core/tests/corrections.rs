@@ -319,7 +319,8 @@ fn correction_10_nan_is_refused_at_the_door() {
                 let mut bad = boxes.clone();
                 bad[index].min[axis] = nan;
                 let error = runner(method, Sort::Insertion).step(&bad, &mut ()).unwrap_err();
-                assert_eq!(error, Error::InvalidBox { index, axis }, "{method:?}");
+                let [min, max] = [nan, bad[index].max[axis]].map(Into::into);
+                assert_eq!(error, Error::InvalidBox { index, axis, min, max }, "{method:?}");
             }
         }
     }

@@ -10,7 +10,8 @@ use common::{coordinate, valid_boxes};
 use proptest::prelude::*;
 use sweep_and_prune::algorithms::pairwise;
 use sweep_and_prune::{
-    Aabb, Error, Kernel, PairFinder, Scalar, count_pairs, find_pairs, find_pairs_between, validate,
+    Aabb, Error, Kernel, PairFinder, Scalar, Value, count_pairs, find_pairs, find_pairs_between,
+    validate,
 };
 use sweep_and_prune_scenes::{Motion, Random};
 
@@ -427,7 +428,8 @@ in_all_dimensions!(bad_boxes_are_refused_by_index, refuses_bad_boxes);
 #[test]
 fn indices_of_the_second_set_go_on_from_the_first() {
     let (good, bad) = (Aabb::new([0.0f32], [1.0]), Aabb::new([1.0f32], [0.0]));
-    let error = Error::InvalidBox { index: 3, axis: 0 };
+    let error =
+        Error::InvalidBox { index: 3, axis: 0, min: Value::from(1.0), max: Value::from(0.0) };
     assert_eq!(find_pairs_between(&[good, good], &[good, bad]), Err(error));
     assert_eq!(find_pairs_between(&[], &[good, good, good, bad]), Err(error));
     assert_eq!(find_pairs_between(&[good; 3], &[bad; 3000]), Err(error));

@@ -153,7 +153,11 @@ fn bad_boxes_are_refused<const D: usize, T: Scalar>() {
     let good = Scene::Reversed.boxes::<D, T>(12, 1).unwrap();
     for index in [0, 5, 11] {
         for axis in 0..D {
-            let error = Error::InvalidBox { index, axis };
+            let error = |bad: &[Aabb<D, T>]| {
+                let Aabb { min, max } = bad[index];
+                let [min, max] = [min, max].map(|corner| corner[axis].to_f64().into());
+                Error::InvalidBox { index, axis, min, max }
+            };
             for (turn, (min, max)) in [
                 (nan, one),
                 (zero, nan),
@@ -167,12 +171,13 @@ fn bad_boxes_are_refused<const D: usize, T: Scalar>() {
             {
                 let mut bad = good.clone();
                 (bad[index].min[axis], bad[index].max[axis]) = (min, max);
-                refuses(turn, &good, &bad, error);
+                refuses(turn, &good, &bad, error(&bad));
             }
             // A different number of boxes, and a later one that is worse.
             let mut bad = [&good[..], &good[..]].concat();
             bad[index].min[axis] = nan;
             bad[index + 12] = Aabb::new([nan; D], [nan; D]);
+            let error = error(&bad);
             refuses(axis, &good, &bad, error);
             assert!(error.to_string().contains(&format!("box {index} ")));
             assert!(error.to_string().contains(&format!("axis {axis}")));
@@ -191,7 +196,11 @@ fn bad_random_boxes_are_refused<const D: usize, T: Scalar>() {
         let valid = |index: usize, axis: usize| wild[index].min[axis] <= wild[index].max[axis];
         let everywhere = (0..wild.len()).flat_map(|index| (0..D).map(move |axis| (index, axis)));
         match everywhere.into_iter().find(|&(index, axis)| !valid(index, axis)) {
-            Some((index, axis)) => refuses(turn, &good, &wild, Error::InvalidBox { index, axis }),
+            Some((index, axis)) => {
+                let Aabb { min, max } = wild[index];
+                let [min, max] = [min, max].map(|corner| corner[axis].to_f64().into());
+                refuses(turn, &good, &wild, Error::InvalidBox { index, axis, min, max });
+            }
             None => finder_agrees("wild", &[wild]),
         }
     });

@@ -8,9 +8,9 @@ use sweep_and_prune::{Error, SnapshotFault};
 /// The exception of an error; `argument` names the boxes at fault, `ids` are those passed.
 pub fn raise(py: Python<'_>, error: Error, argument: &str, ids: &[u64]) -> PyErr {
     match error {
-        Error::InvalidBox { index, axis } => make(py, "InvalidBoxError", (index, axis, argument)),
-        Error::InvalidQuery { index } => make(py, "InvalidQueryError", (index,)),
-        Error::StaleProxy { index } => match ids.get(index) {
+        Error::InvalidBox { index, axis, .. } => make(py, "InvalidBoxError", (index, axis, argument)),
+        Error::InvalidQuery { index, .. } => make(py, "InvalidQueryError", (index,)),
+        Error::StaleProxy { index, .. } => match ids.get(index) {
             Some(&id) => make(py, "StaleProxyError", (id, index)),
             None => PyRuntimeError::new_err(error.to_string()),
         },

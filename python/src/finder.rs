@@ -160,8 +160,8 @@ fn fault<const D: usize, T>(
     b: Option<&[Aabb<D, T>]>,
 ) -> PyErr {
     match error {
-        Error::InvalidBox { index, axis } if index >= a.len() => {
-            raise(py, Error::InvalidBox { index: index - a.len(), axis }, "b", &[])
+        Error::InvalidBox { index, axis, min, max } if index >= a.len() => {
+            raise(py, Error::InvalidBox { index: index - a.len(), axis, min, max }, "b", &[])
         }
         error => raise(py, error, if b.is_some() { "a" } else { "boxes" }, &[]),
     }

@@ -146,7 +146,7 @@ impl<const D: usize, T: Coordinate> Space for Typed<D, T> {
         }
         // First all that could be refused.
         if let Some(index) = self.contains(ids).iter().position(|is_here| !is_here) {
-            return Err(raise(py, Error::StaleProxy { index }, "start", ids));
+            return Err(raise(py, Error::StaleProxy { index, id: ids[index] }, "start", ids));
         }
         validate(&starts).map_err(|error| raise(py, error, "start", ids))?;
         validate(&ends).map_err(|error| raise(py, error, "end", ids))?;
@@ -163,7 +163,7 @@ impl<const D: usize, T: Coordinate> Space for Typed<D, T> {
 
     fn set_filter(&mut self, py: Python<'_>, ids: &[u64], filter: Filter) -> PyResult<()> {
         if let Some(index) = self.contains(ids).iter().position(|is_here| !is_here) {
-            return Err(raise(py, Error::StaleProxy { index }, "boxes", ids));
+            return Err(raise(py, Error::StaleProxy { index, id: ids[index] }, "boxes", ids));
         }
         let names = proxies(ids);
         let done = self.run(py, names.len(), |world| {
@@ -330,7 +330,7 @@ fn bits(pair: [ProxyId; 2]) -> [u64; 2] {
 }
 
 fn stale(py: Python<'_>, index: usize, ids: &[u64]) -> PyErr {
-    raise(py, Error::StaleProxy { index }, "boxes", ids)
+    raise(py, Error::StaleProxy { index, id: ids[index] }, "boxes", ids)
 }
 
 /// A `BroadPhase` of so many dimensions, of doubles or of singles.

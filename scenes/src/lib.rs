@@ -29,3 +29,9 @@ pub use golden::{golden_report, hash, hash_boxes, hash_pairs};
 pub use motion::{Motion, Moving};
 pub use random::Random;
 pub use scene::Scene;
+
+/// The Rust examples of the project's README, run as doc tests. They stand here because the published
+/// crate does not contain that file.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;

@@ -259,9 +259,7 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
         self.next_ids.clear();
         self.next_ids.extend((0..boxes.len() as u32).filter(|&id| present(id)));
         for &id in &self.next_ids {
-            if let Some(axis) = boxes[id as usize].invalid_axis() {
-                return Err(Error::InvalidBox { index: id as usize, axis });
-            }
+            boxes[id as usize].check(id as usize)?;
         }
         let axis = self.options.axis.choose_among(boxes, &self.next_ids)?;
         // Nothing can fail from here on.

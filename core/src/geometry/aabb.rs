@@ -150,6 +150,18 @@ impl<const D: usize, T: Scalar> Aabb<D, T> {
         self.invalid_axis().is_none()
     }
 
+    /// Refuses an invalid box; `index` is its position in what was passed.
+    #[inline]
+    pub(crate) fn check(&self, index: usize) -> Result<(), Error> {
+        match self.invalid_axis() {
+            None => Ok(()),
+            Some(axis) => {
+                let [min, max] = [self.min, self.max].map(|corner| corner[axis].to_f64().into());
+                Err(Error::InvalidBox { index, axis, min, max })
+            }
+        }
+    }
+
     /// The first axis on which the box is inverted or NaN.
     #[inline]
     pub fn invalid_axis(&self) -> Option<usize> {
@@ -182,12 +194,7 @@ fn is_interval<T: Scalar>(min: T, max: T) -> bool {
 /// first invalid axis.
 pub fn validate<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>]) -> Result<(), Error> {
     check_count(boxes.len())?;
-    for (index, aabb) in boxes.iter().enumerate() {
-        if let Some(axis) = aabb.invalid_axis() {
-            return Err(Error::InvalidBox { index, axis });
-        }
-    }
-    Ok(())
+    boxes.iter().enumerate().try_for_each(|(index, aabb)| aabb.check(index))
 }
 
 /// Checks that the indices of `count` boxes fit in a `u32`.
@@ -202,6 +209,7 @@ pub(crate) fn check_count(count: usize) -> Result<(), Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::Value;
 
     #[test]
     fn touching_boxes_overlap_and_negative_zero_is_zero() {
@@ -229,7 +237,11 @@ mod tests {
         let nan = Aabb::new([0.0f32, f32::NAN], [1.0, 1.0]);
         let inverted = Aabb::new([2.0f32, 0.0], [1.0, 1.0]);
         assert_eq!(validate(&[good, good]), Ok(()));
-        assert_eq!(validate(&[good, nan]), Err(Error::InvalidBox { index: 1, axis: 1 }));
-        assert_eq!(validate(&[good, good, inverted]), Err(Error::InvalidBox { index: 2, axis: 0 }));
+        let [zero, one, two, nan_value] = [0.0, 1.0, 2.0, f64::NAN].map(Value::from);
+        let error = Error::InvalidBox { index: 1, axis: 1, min: nan_value, max: one };
+        assert_eq!(validate(&[good, nan]), Err(error));
+        assert_ne!(error, Error::InvalidBox { index: 1, axis: 1, min: zero, max: one });
+        let error = Error::InvalidBox { index: 2, axis: 0, min: two, max: one };
+        assert_eq!(validate(&[good, good, inverted]), Err(error));
     }
 }

@@ -529,7 +529,9 @@ fn check<const D: usize, T: Scalar>(sets: &[&[Aabb<D, T>]]) -> Result<(), Error>
     let mut before = 0;
     for set in sets {
         validate(set).map_err(|error| match error {
-            Error::InvalidBox { index, axis } => Error::InvalidBox { index: before + index, axis },
+            Error::InvalidBox { index, axis, min, max } => {
+                Error::InvalidBox { index: before + index, axis, min, max }
+            }
             error => error,
         })?;
         before += set.len();

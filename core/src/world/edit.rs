@@ -192,7 +192,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
                     for before in &ids[..index] {
                         self.slots.lower(self.slots.seats[before.slot() as usize], flag::MARKED);
                     }
-                    return Err(Error::StaleProxy { index });
+                    return Err(Error::StaleProxy { index, id: id.to_bits() });
                 }
             }
         }
@@ -304,10 +304,7 @@ pub(super) fn check_box<const D: usize, T: Scalar>(
     aabb: &Aabb<D, T>,
     index: usize,
 ) -> Result<(), Error> {
-    match aabb.invalid_axis() {
-        None => Ok(()),
-        Some(axis) => Err(Error::InvalidBox { index, axis }),
-    }
+    aabb.check(index)
 }
 
 /// Whether a box is valid, without a branch.

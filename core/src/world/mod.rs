@@ -102,7 +102,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// An empty world with margins.
     ///
     /// # Errors
-    /// [`Error::InvalidMargin`] if the margin or the prediction is negative, infinite or NaN.
+    /// [`Error::InvalidOption`] if the margin or the prediction is negative, infinite or NaN.
     pub fn with_options(options: Options<T>) -> Result<Self, Error> {
         options.check()?;
         Ok(Self::from_options(options))

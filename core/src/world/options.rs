@@ -32,12 +32,12 @@ pub struct Options<T = f32> {
 
 impl<T: Scalar> Options<T> {
     pub(super) fn check(&self) -> Result<(), Error> {
-        let is_length = |at: T| at >= T::default() && at < T::INFINITY;
-        if is_length(self.margin) && is_length(self.prediction) {
-            Ok(())
-        } else {
-            Err(Error::InvalidMargin)
+        for (option, value) in [("margin", self.margin), ("prediction", self.prediction)] {
+            if !(value >= T::default() && value < T::INFINITY) {
+                return Err(Error::InvalidOption { option, value: value.to_f64().into() });
+            }
         }
+        Ok(())
     }
 
     /// The fat box of a body that came here by `displacement`.

@@ -144,7 +144,7 @@ impl Slots {
     /// The seat of the body of the id at `index` of what was passed.
     #[inline]
     pub fn check(&self, id: ProxyId, index: usize) -> Result<u32, Error> {
-        self.find(id).ok_or(Error::StaleProxy { index })
+        self.find(id).ok_or(Error::StaleProxy { index, id: id.to_bits() })
     }
 
     /// Whether `count` more bodies have room.

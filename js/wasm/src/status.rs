@@ -39,11 +39,11 @@ pub fn tell(code: Code, details: [usize; 2]) -> Code {
 /// The code and details of an error of the core.
 pub fn tell_error(error: Error) -> Code {
     match error {
-        Error::InvalidBox { index, axis } => tell(Code::InvalidBox, [index, axis]),
+        Error::InvalidBox { index, axis, .. } => tell(Code::InvalidBox, [index, axis]),
         Error::TooManyBoxes { .. } | Error::OutOfMemory => tell(Code::OutOfMemory, [0, 0]),
-        Error::StaleProxy { index } => tell(Code::StaleProxy, [index, 0]),
+        Error::StaleProxy { index, .. } => tell(Code::StaleProxy, [index, 0]),
         Error::InvalidAxis { axis, .. } => tell(Code::InvalidArgument, [axis, 0]),
-        Error::InvalidQuery { index } => tell(Code::InvalidArgument, [index, 0]),
+        Error::InvalidQuery { index, .. } => tell(Code::InvalidArgument, [index, 0]),
         Error::InvalidSnapshot(fault) => {
             let fault = match fault {
                 SnapshotFault::Foreign => [0, 0],

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::cmp::Ordering;
 use core::ops::ControlFlow;
 
-use super::{Queries, check_each};
+use super::{Fault, Queries, check_each, fault_in, is_finite, is_length};
 use crate::world::ProxyId;
 use crate::world::tree::Search;
 use crate::{Aabb, Error, Scalar};
@@ -31,11 +31,14 @@ impl<const D: usize, T: Scalar> Cast<D, T> {
         Self { from, direction, limit }
     }
 
-    fn is_valid(&self) -> bool {
-        let finite = |at: &T| *at > T::NEG_INFINITY && *at < T::INFINITY;
-        self.from.is_valid()
-            && self.from.min.iter().chain(&self.from.max).chain(&self.direction).all(finite)
-            && self.limit >= T::default()
+    fn fault(&self) -> Fault {
+        let Self { from, direction, limit } = self;
+        let inverted = from.invalid_axis().map(|axis| ("from", from.min[axis].to_f64()));
+        fault_in("from", &from.min, is_finite)
+            .or(fault_in("from", &from.max, is_finite))
+            .or(inverted)
+            .or(fault_in("direction", direction, is_finite))
+            .or(fault_in("limit", &[*limit], is_length))
     }
 
     /// When it first touches a box, in directions, if it does by `limit`.
@@ -84,7 +87,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     /// # Errors
     /// [`Error::InvalidQuery`] with the index of the first bad one.
     pub fn cast_many(&self, casts: &[Cast<D, T>]) -> Result<Vec<Option<Hit>>, Error> {
-        check_each(casts, Cast::is_valid)?;
+        check_each(casts, Cast::fault)?;
         let first_hit = |cast: &Cast<D, T>| {
             let mut best = None;
             self.run_cast(cast, |hit| {
@@ -123,7 +126,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         cast: &Cast<D, T>,
         visit: impl FnMut(Hit) -> ControlFlow<(), f64>,
     ) -> Result<(), Error> {
-        check_each(core::slice::from_ref(cast), Cast::is_valid)?;
+        check_each(core::slice::from_ref(cast), Cast::fault)?;
         self.run_cast(cast, visit);
         Ok(())
     }

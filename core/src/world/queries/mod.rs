@@ -109,7 +109,8 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     /// # Errors
     /// [`Error::InvalidQuery`] with the index of the first bad one.
     pub fn containing_many(&self, points: &[[T; D]]) -> Result<Lists<ProxyId>, Error> {
-        check_each(points, |&point| Aabb::new(point, point).is_valid())?;
+        let is_number = |at: T| at <= T::INFINITY && at >= T::NEG_INFINITY;
+        check_each(points, |point| fault_in("point", point, is_number))?;
         let bound =
             |&point: &[T; D], bounds: &Aabb<D, T>| bounds.overlaps(&Aabb::new(point, point));
         Ok(self.collect(points, bound))
@@ -128,7 +129,9 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     /// # Errors
     /// [`Error::InvalidQuery`] with the index of the first bad one.
     pub fn within_many(&self, spheres: &[([T; D], T)]) -> Result<Lists<ProxyId>, Error> {
-        check_each(spheres, |(centre, radius)| is_finite(centre) && *radius >= T::default())?;
+        check_each(spheres, |(center, radius)| {
+            fault_in("center", center, is_finite).or(fault_in("radius", &[*radius], is_length))
+        })?;
         let bound = |sphere: &([T; D], T), bounds: &Aabb<D, T>| {
             is_within(&sphere.0, sphere.1.to_f64(), bounds)
         };
@@ -207,15 +210,34 @@ where
     }
 }
 
-fn is_finite<const D: usize, T: Scalar>(point: &[T; D]) -> bool {
-    point.iter().all(|&at| at > T::NEG_INFINITY && at < T::INFINITY)
+fn is_finite<T: Scalar>(value: T) -> bool {
+    value > T::NEG_INFINITY && value < T::INFINITY
 }
 
-fn check_each<Q>(queries: &[Q], is_valid: impl Fn(&Q) -> bool) -> Result<(), Error> {
-    match queries.iter().position(|query| !is_valid(query)) {
-        None => Ok(()),
-        Some(index) => Err(Error::InvalidQuery { index }),
+fn is_length<T: Scalar>(value: T) -> bool {
+    value >= T::default()
+}
+
+/// The name of an argument of a query and its first value that is not valid.
+type Fault = Option<(&'static str, f64)>;
+
+fn fault_in<T: Scalar>(
+    argument: &'static str,
+    values: &[T],
+    is_valid: impl Fn(T) -> bool,
+) -> Fault {
+    let value = values.iter().find(|&&value| !is_valid(value))?;
+    Some((argument, value.to_f64()))
+}
+
+/// Refuses the first query with a fault.
+fn check_each<Q>(queries: &[Q], fault: impl Fn(&Q) -> Fault) -> Result<(), Error> {
+    for (index, query) in queries.iter().enumerate() {
+        if let Some((argument, value)) = fault(query) {
+            return Err(Error::InvalidQuery { index, argument, value: value.into() });
+        }
     }
+    Ok(())
 }
 
 /// From a point to a box on one axis.

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use core::ops::ControlFlow;
 
-use super::{Lists, Queries, check_each, gap, is_finite};
+use super::{Lists, Queries, check_each, fault_in, gap, is_finite};
 use crate::world::ProxyId;
 use crate::world::tree::Search;
 use crate::{Aabb, Error, Scalar};
@@ -34,7 +34,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     /// # Errors
     /// [`Error::InvalidQuery`] with the index of the first bad one.
     pub fn nearest_many(&self, points: &[[T; D]], k: usize) -> Result<Lists<Neighbour>, Error> {
-        check_each(points, is_finite)?;
+        check_each(points, |point| fault_in("point", point, is_finite))?;
         let mut lists = Lists::new();
         let mut search =
             Nearest { queries: self, point: [T::default(); D], k, nearest: BinaryHeap::new() };

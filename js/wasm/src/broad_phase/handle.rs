@@ -45,7 +45,7 @@ impl Handle {
 
     /// The id that `number` stands for, if it can be one.
     pub fn id(&self, number: f64, index: usize) -> Result<ProxyId, Error> {
-        id_of(&self.generations, number).ok_or(Error::StaleProxy { index })
+        id_of(&self.generations, number).ok_or(Error::StaleProxy { index, id: number as u64 })
     }
 
     /// The first `count` ids that were written, as ids.
@@ -53,7 +53,8 @@ impl Handle {
         let numbers = &self.ids_in[..count.min(self.ids_in.len())];
         self.ids.resize(numbers.len(), ProxyId::from_bits(0));
         for (index, (id, &number)) in self.ids.iter_mut().zip(numbers).enumerate() {
-            *id = id_of(&self.generations, number).ok_or(Error::StaleProxy { index })?;
+            *id = id_of(&self.generations, number)
+                .ok_or(Error::StaleProxy { index, id: number as u64 })?;
         }
         Ok(())
     }
