@@ -60,6 +60,7 @@ pub enum Origin {
     /// This repository.
     Here,
     /// A crate of this name.
+    #[allow(dead_code, reason = "only some features have alternatives from crates")]
     Crate(&'static str),
     /// A Debian package of this name.
     #[allow(dead_code, reason = "only some features have libraries from Debian")]

@@ -22,6 +22,7 @@ pub use scratch::FROM_SCRATCH;
 pub use tracking::{FRAMES_CHECKED, Tracking, oracle};
 
 /// All worlds that were compiled in, this repository's first.
+#[allow(unused_mut, reason = "without the features there are no alternatives to add")]
 pub fn all() -> Vec<WorldLibrary> {
     let mut worlds = vec![this_crate::LIBRARY, scratch::FINDER];
     #[cfg(feature = "light")]

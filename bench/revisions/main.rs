@@ -1,0 +1,281 @@
+//! Two revisions of the core in one process, called in turn: see `bench/compare`, which builds this with the older
+//! revision as the crate `old` and the working tree as the crate `new`. Both must have the functions used here.
+
+use std::time::Instant;
+
+use scenes::{Motion, Scene};
+
+const SEED: u64 = 1;
+const SCENES: [&str; 6] = ["uniform", "clustered", "mixed", "slab", "tower", "box-pruning"];
+/// The scene `box-pruning` has too many pairs beyond this number of boxes.
+const MOST_OF_BOX_PRUNING: usize = 100_000;
+/// At least this number of calls is timed, however long they take, and at most the other.
+const CALLS: (usize, usize) = (7, 3000);
+/// The frames of a world before it is timed.
+const WARM_UP: usize = 40;
+
+struct Options {
+    sizes: Vec<usize>,
+    dimensions: Vec<usize>,
+    only: Vec<String>,
+    scenes: Vec<String>,
+    seconds: f64,
+    threads: usize,
+}
+
+impl Options {
+    fn from_arguments() -> Result<Self, String> {
+        let mut options = Self {
+            sizes: vec![1_000, 10_000, 100_000, 1_000_000],
+            dimensions: vec![2, 3],
+            only: vec!["finder".into(), "world".into()],
+            scenes: Vec::new(),
+            seconds: 0.7,
+            threads: 1,
+        };
+        let mut arguments = std::env::args().skip(1);
+        while let Some(name) = arguments.next() {
+            let value = arguments.next().ok_or(format!("{name} needs a value"))?;
+            let wrong = || format!("{name} cannot be '{value}'");
+            let names = || value.split(',').map(str::to_owned).collect::<Vec<_>>();
+            let numbers = || {
+                value
+                    .split(',')
+                    .map(|it| it.parse().map_err(|_| wrong()))
+                    .collect::<Result<Vec<_>, _>>()
+            };
+            match name.as_str() {
+                "--sizes" => options.sizes = numbers()?,
+                "--dimensions" => options.dimensions = numbers()?,
+                "--only" => options.only = names(),
+                "--scenes" => options.scenes = names(),
+                "--seconds" => options.seconds = value.parse().map_err(|_| wrong())?,
+                "--threads" => options.threads = value.parse().map_err(|_| wrong())?,
+                _ => return Err(format!("there is no option {name}")),
+            }
+        }
+        Ok(options)
+    }
+
+    fn wants(&self, scene: &str) -> bool {
+        self.scenes.is_empty() || self.scenes.iter().any(|name| name == scene)
+    }
+
+    fn wants_kind(&self, kind: &str) -> bool {
+        self.only.iter().any(|name| name == kind)
+    }
+}
+
+/// The times of calls in turn, in seconds.
+#[derive(Default)]
+struct Times {
+    old: Vec<f64>,
+    new: Vec<f64>,
+}
+
+impl Times {
+    fn ratio_of_minima(&self) -> f64 {
+        minimum(&self.new) / minimum(&self.old)
+    }
+
+    fn median_of_ratios(&self) -> f64 {
+        median(self.new.iter().zip(&self.old).map(|(new, old)| new / old).collect())
+    }
+
+    /// Calls both, the one that is first alternating with `round`, and keeps their times.
+    fn push<A, B>(
+        &mut self,
+        round: usize,
+        old: impl FnOnce() -> A,
+        new: impl FnOnce() -> B,
+    ) -> (A, B) {
+        let ((old_time, old), (new_time, new)) = if round.is_multiple_of(2) {
+            let old = time(old);
+            (old, time(new))
+        } else {
+            let new = time(new);
+            (time(old), new)
+        };
+        self.old.push(old_time);
+        self.new.push(new_time);
+        (old, new)
+    }
+}
+
+fn minimum(times: &[f64]) -> f64 {
+    times.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+fn median(mut numbers: Vec<f64>) -> f64 {
+    numbers.sort_by(f64::total_cmp);
+    numbers[numbers.len() / 2]
+}
+
+fn time<R>(call: impl FnOnce() -> R) -> (f64, R) {
+    let start = Instant::now();
+    let result = call();
+    (start.elapsed().as_secs_f64(), result)
+}
+
+fn converted<const D: usize>(boxes: &[old::Aabb<D>]) -> Vec<new::Aabb<D>> {
+    boxes.iter().map(|it| new::Aabb::new(it.min, it.max)).collect()
+}
+
+/// Finds all pairs of boxes that rest, or of each frame of a motion.
+fn find<const D: usize>(
+    options: &Options,
+    mut boxes: Vec<old::Aabb<D>>,
+    mut advance: impl FnMut(&mut Vec<old::Aabb<D>>),
+) -> Times {
+    let mut old = old::PairFinder::<D>::new().threads(options.threads);
+    let mut new = new::PairFinder::<D>::new().threads(options.threads);
+    let mut times = Times::default();
+    let start = Instant::now();
+    for round in 0..CALLS.1 {
+        if round >= CALLS.0 && start.elapsed().as_secs_f64() > options.seconds {
+            break;
+        }
+        let same = converted(&boxes);
+        let (by_old, by_new) = times.push(
+            round,
+            || old.find(&boxes).expect("valid boxes"),
+            || new.find(&same).expect("valid boxes"),
+        );
+        assert!(by_old == by_new, "the revisions find other pairs or another order");
+        advance(&mut boxes);
+    }
+    times
+}
+
+/// Tracks the pairs of a motion. Also how long the new world takes compared with the new finder from scratch.
+fn track<const D: usize>(options: &Options, motion: Motion, count: usize) -> (Times, f64) {
+    let mut moving = motion.start::<D, f32>(count, SEED).expect("one to three dimensions");
+    let (mut old, mut new) = (old::BroadPhase::<D>::new(), new::BroadPhase::<D>::new());
+    let mut finder = new::PairFinder::<D>::new();
+    let old_ids = old.insert_many(moving.boxes(), Default::default()).expect("valid boxes");
+    let new_ids =
+        new.insert_many(&converted(moving.boxes()), Default::default()).expect("valid boxes");
+    old.update();
+    new.update();
+    let mut last = moving.boxes().to_vec();
+    let (mut times, mut over_scratch) = (Times::default(), Vec::new());
+    let start = Instant::now();
+    for round in 0..CALLS.1 {
+        if round >= WARM_UP + CALLS.0 && start.elapsed().as_secs_f64() > 2.0 * options.seconds {
+            break;
+        }
+        moving.advance();
+        let moved: Vec<usize> = (0..count).filter(|&at| moving.boxes()[at] != last[at]).collect();
+        let boxes: Vec<_> = moved.iter().map(|&at| moving.boxes()[at]).collect();
+        let same = converted(&boxes);
+        let ids: Vec<_> = moved.iter().map(|&at| old_ids[at]).collect();
+        let same_ids: Vec<_> = moved.iter().map(|&at| new_ids[at]).collect();
+        last.clear();
+        last.extend_from_slice(moving.boxes());
+        let (by_old, by_new) = times.push(
+            round,
+            || {
+                old.set_many(&ids, &boxes).expect("bodies of this world");
+                let changes = old.update();
+                (changes.begun().slots().to_vec(), changes.ended().slots().to_vec())
+            },
+            || {
+                new.set_many(&same_ids, &same).expect("bodies of this world");
+                let changes = new.update();
+                (changes.begun().slots().to_vec(), changes.ended().slots().to_vec())
+            },
+        );
+        assert!(by_old == by_new, "the revisions report other events or another order");
+        if round < WARM_UP {
+            times = Times::default();
+            continue;
+        }
+        let all = converted(moving.boxes());
+        let (scratch, _) = time(|| finder.find(&all).expect("valid boxes").len());
+        over_scratch.push(times.new[times.new.len() - 1] / scratch);
+    }
+    (times, median(over_scratch))
+}
+
+/// One line of the report: its name, and both ratios.
+type Line = (String, f64, f64);
+
+fn report(
+    kind: &str,
+    dimensions: usize,
+    scene: &str,
+    boxes: usize,
+    times: &Times,
+    note: &str,
+) -> Line {
+    let name = format!("{kind} {scene} {dimensions}D {boxes}");
+    let (minima, medians) = (times.ratio_of_minima(), times.median_of_ratios());
+    println!(
+        "{name:36} minima {minima:.3}  medians {medians:.3}  old {:>9.4} ms, {} calls{note}",
+        1e3 * minimum(&times.old),
+        times.old.len(),
+    );
+    (name, minima, medians)
+}
+
+fn compare<const D: usize>(options: &Options, lines: &mut Vec<Line>) {
+    for &boxes in &options.sizes {
+        if options.wants_kind("finder") {
+            for name in SCENES.into_iter().filter(|name| options.wants(name)) {
+                let scene = Scene::from_name(name).expect("a scene");
+                let too_many = name == "box-pruning" && boxes > MOST_OF_BOX_PRUNING;
+                if !scene.dimensions().contains(&D) || too_many {
+                    continue;
+                }
+                let at_rest =
+                    scene.boxes::<D, f32>(boxes, SEED).expect("a scene of these dimensions");
+                lines.push(report("finder", D, name, boxes, &find(options, at_rest, |_| {}), ""));
+            }
+            for motion in [Motion::Drift, Motion::Fast, Motion::MostlyStill]
+                .into_iter()
+                .filter(|it| options.wants(it.name()))
+            {
+                let mut moving =
+                    motion.start::<D, f32>(boxes, SEED).expect("one to three dimensions");
+                let first = moving.boxes().to_vec();
+                let times = find(options, first, |boxes| {
+                    moving.advance();
+                    boxes.copy_from_slice(moving.boxes());
+                });
+                lines.push(report("finder", D, motion.name(), boxes, &times, ""));
+            }
+        }
+        if options.wants_kind("world") {
+            for motion in Motion::ALL.into_iter().filter(|motion| options.wants(motion.name())) {
+                let (times, over_scratch) = track::<D>(options, motion, boxes);
+                let note = format!("; {over_scratch:.2} of the time from scratch");
+                lines.push(report("world", D, motion.name(), boxes, &times, &note));
+            }
+        }
+    }
+}
+
+fn main() {
+    let options = Options::from_arguments().unwrap_or_else(|why| {
+        eprintln!("{why}: see bench/compare --help");
+        std::process::exit(2);
+    });
+    let mut lines = Vec::new();
+    for dimensions in &options.dimensions {
+        match dimensions {
+            2 => compare::<2>(&options, &mut lines),
+            _ => compare::<3>(&options, &mut lines),
+        }
+    }
+    let mean = |of: fn(&Line) -> f64| {
+        (lines.iter().map(|line| of(line).ln()).sum::<f64>() / lines.len() as f64).exp()
+    };
+    println!(
+        "geometric mean: minima {:.3}, medians {:.3}",
+        mean(|line| line.1),
+        mean(|line| line.2)
+    );
+    if let Some((name, _, ratio)) = lines.iter().max_by(|a, b| a.2.total_cmp(&b.2)) {
+        println!("slowest: {name}, median {ratio:.3}");
+    }
+}
