@@ -34,12 +34,31 @@ for (const document of ["ARCHITECTURE.md", "README.md", "CONTRIBUTING.md"]) {
     const missing = paths.filter((path) => !entries.has(path) && !isTracked(path.replace(/^\.\//, "")));
     assert.deepEqual(missing, []);
   });
+}
 
-  test(`every relative link of ${document} leads somewhere`, () => {
-    const links = [...read(document).matchAll(/(?:\]\(|src(?:set)?=")([^)"#]+)/g)].map((match) => match[1].trim());
-    const relative = links.filter((link) => !/^[a-z]+:/.test(link));
-    const broken = relative.filter((link) => !existsSync(join(root, link)));
-    assert.deepEqual(broken, []);
+/** The anchors of a document's headings, as they are made where it is shown. */
+const anchors = (text) =>
+  [...text.matchAll(/^#+ (.*)$/gm)].map(([, heading]) =>
+    heading.replace(/\[([^\]]*)\]\([^)]*\)/g, "$1").toLowerCase().replace(/[^\p{L}\p{N}\s_-]/gu, "").replaceAll(" ", "-"),
+  );
+
+/** The links of a document to files of the repository that lead nowhere. */
+function brokenLinks(document) {
+  const text = withoutBlocks(read(document));
+  const links = [...text.matchAll(/(?:\]\(|(?:src|srcset|href)=")([^)"\s]+)/g)].map((match) => match[1]);
+  return links
+    .filter((link) => !/^[a-z]+:|^\/\//.test(link))
+    .filter((link) => {
+      const [path, anchor] = link.split("#");
+      const target = path ? join(dirname(document), path) : document;
+      if (!existsSync(join(root, target))) return true;
+      return Boolean(anchor) && target.endsWith(".md") && !anchors(read(target)).includes(anchor);
+    });
+}
+
+for (const document of [...tracked].filter((path) => path.endsWith(".md") && existsSync(join(root, path)))) {
+  test(`every link of ${document} to a file of the repository leads there`, () => {
+    assert.deepEqual(brokenLinks(document), []);
   });
 }
 

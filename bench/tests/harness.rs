@@ -60,7 +60,7 @@ fn cases(record: &Value) -> &Vec<Value> {
 }
 
 #[test]
-fn every_contender_is_right_and_timed_and_reported() {
+fn every_library_is_right_and_timed_and_reported() {
     let folder = folder("all");
     let file = folder.join("here.json");
     let (_, record) = measure(&file, &["--sizes", "300", "--scenes", &SCENES.join(",")]);
@@ -97,8 +97,9 @@ fn every_contender_is_right_and_timed_and_reported() {
     }
 }
 
+#[cfg(feature = "light")]
 #[test]
-fn beyond_the_oracle_two_contenders_have_to_agree() {
+fn beyond_the_oracle_two_libraries_have_to_agree() {
     let folder = folder("witnesses");
     let arguments = ["--sizes", "11000", "--scenes", "slab", "--dimensions", "2"];
     let libraries = ["--libraries", "plain,broccoli"];
