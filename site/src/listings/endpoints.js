@@ -1,12 +1,21 @@
-// Two endpoints for each box. On y they are its top and bottom.
-export function endpointsOf(boxes, left = "left", right = "right") {
+const X = ["left", "right"];
+
+// Two endpoints for each box.
+// (On y, the sides are "top" and "bottom".)
+export function endpointsOf(boxes, sides = X) {
+  const [left, right] = sides;
   return boxes.flatMap((box) => [
-    { box, side: left, isLeft: true, at: box[left] },
-    { box, side: right, isLeft: false, at: box[right] },
+    endpoint(box, left, true),
+    endpoint(box, right, false),
   ]);
 }
 
-// The boxes have moved: read the coordinates, keep the order.
+function endpoint(box, side, isLeft) {
+  return { box, side, isLeft, at: box[side] };
+}
+
+// The boxes have moved: read the coordinates,
+// but keep the order.
 export function refresh(endpoints) {
   for (const endpoint of endpoints) {
     endpoint.at = endpoint.box[endpoint.side];

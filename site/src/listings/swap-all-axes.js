@@ -3,9 +3,13 @@ import { key } from "./key.js";
 import { quicksort } from "./quicksort.js";
 import { sweep } from "./sweep.js";
 
-const axes = [["left", "right"], ["top", "bottom"]];
+const axes = [
+  ["left", "right"],
+  ["top", "bottom"],
+];
 
-// On how many axes do two boxes overlap? If on all, they are a pair.
+// On how many axes do two boxes overlap?
+// If on all, they are a pair.
 class Flags {
   counts = new Map();
   pairs = new Map();
@@ -22,7 +26,7 @@ class Flags {
 
 export function begin(boxes) {
   const flags = new Flags();
-  const arrays = axes.map((ends) => endpointsOf(boxes, ...ends));
+  const arrays = axes.map((sides) => endpointsOf(boxes, sides));
   for (const endpoints of arrays) {
     quicksort(endpoints);
     sweep(endpoints, (a, b) => flags.change(a, b, +1));

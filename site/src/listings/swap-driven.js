@@ -3,7 +3,7 @@ import { key } from "./key.js";
 import { quicksort } from "./quicksort.js";
 import { sweep } from "./sweep.js";
 
-// Once: one full sweep finds what overlaps already.
+// Once: one full sweep finds what overlaps.
 export function begin(boxes) {
   const endpoints = endpointsOf(boxes);
   const overlapping = new Map();
@@ -12,7 +12,8 @@ export function begin(boxes) {
   return { endpoints, overlapping };
 }
 
-// Every frame: insertion sort that looks at what it swaps.
+// Every frame: insertion sort that looks at
+// what it swaps.
 export function update({ endpoints, overlapping }) {
   refresh(endpoints);
 
@@ -34,6 +35,6 @@ export function update({ endpoints, overlapping }) {
       } // @added
     }
   }
-  // These overlap on x. The caller tests them on y.
+  // They overlap on x; the caller tests y.
   return [...overlapping.values()]; // @test
 }

@@ -3,12 +3,16 @@ import { key } from "./key.js";
 import { quicksort } from "./quicksort.js";
 import { sweep } from "./sweep.js";
 
+const axes = [
+  ["left", "right"],
+  ["top", "bottom"],
+];
+
 export function sweepAllAxes(boxes, onPair) {
-  const axes = [["left", "right"], ["top", "bottom"]];
   const flags = new Map();
 
-  for (const [first, last] of axes) {
-    const endpoints = endpointsOf(boxes, first, last);
+  for (const sides of axes) {
+    const endpoints = endpointsOf(boxes, sides);
     quicksort(endpoints); // @compare @swap
 
     sweep(endpoints, (a, b) => { // @enter @leave

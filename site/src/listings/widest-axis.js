@@ -1,10 +1,16 @@
 export function widestAxis(boxes) {
-  const spreadX = variance(boxes.map((box) => (box.left + box.right) / 2));
-  const spreadY = variance(boxes.map((box) => (box.top + box.bottom) / 2));
-  return spreadX >= spreadY ? "x" : "y";
+  // Twice the center; the factor does not matter.
+  const x = boxes.map((box) => box.left + box.right);
+  const y = boxes.map((box) => box.top + box.bottom);
+  return variance(x) >= variance(y) ? "x" : "y";
 }
 
 function variance(values) {
-  const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
-  return values.reduce((sum, value) => sum + (value - mean) ** 2, 0) / values.length;
+  const mean = average(values);
+  return average(values.map((v) => (v - mean) ** 2));
+}
+
+function average(values) {
+  const sum = values.reduce((sum, v) => sum + v, 0);
+  return sum / values.length;
 }
