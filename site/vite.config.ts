@@ -3,14 +3,14 @@ import { api } from "./src/api/build.ts";
 import { article } from "./src/article/build.ts";
 import { benchmark, peers } from "./src/benchmark/build.ts";
 import { insertComplexity } from "./src/complexity/table.ts";
-import { expandLabs } from "./src/lab/markup.ts";
+import { expandFallingBalls } from "./src/falling/markup.ts";
 import { offline } from "./src/shell/offline.ts";
 import { pages, shell } from "./src/shell/pages.ts";
 
-/** Writes the inside of each `<ball-lab>` into the page, so that nothing moves when scripts arrive. */
+/** Writes the inside of each `<falling-balls>` into the page, so that nothing moves when scripts arrive. */
 const labs: Plugin = {
   name: "labs",
-  transformIndexHtml: { order: "pre", handler: expandLabs },
+  transformIndexHtml: { order: "pre", handler: expandFallingBalls },
 };
 
 /** Writes the measured complexity table into the page. */

@@ -1,6 +1,6 @@
 import { gzipSync } from "node:zlib";
 import { expect, test } from "@playwright/test";
-import { Lab } from "./lab.ts";
+import { FallingBalls } from "./falling-balls.ts";
 
 test("three.js is not loaded before the spheres are near, and the first page is light", async ({ page }) => {
   let bytes = 0;
@@ -11,7 +11,7 @@ test("three.js is not loaded before the spheres are near, and the first page is 
   });
   await page.setViewportSize({ width: 1280, height: 700 });
   await page.goto("/falling.html");
-  await new Lab(page, "discs").open();
+  await new FallingBalls(page, "discs").open();
   await page.waitForLoadState("networkidle");
   expect(scripts.filter((url) => url.includes("sphere-view"))).toEqual([]);
   expect(bytes, "gzipped, before the spheres").toBeLessThan(300_000);
@@ -25,7 +25,7 @@ test("says so where there is no WebGL, and still counts", async ({ page }) => {
     } as typeof original;
   });
   await page.goto("/falling.html");
-  const lab = await new Lab(page, "spheres").open();
-  await expect(lab.root.locator('[data-part="message"]')).toContainText("no picture: drawing the spheres needs WebGL");
-  await expect.poll(() => lab.value("pairs")).toBeGreaterThan(0);
+  const balls = await new FallingBalls(page, "spheres").open();
+  await expect(balls.root.locator('[data-part="message"]')).toContainText("no picture: drawing the spheres needs WebGL");
+  await expect.poll(() => balls.value("pairs")).toBeGreaterThan(0);
 });

@@ -26,10 +26,10 @@ const PAGES: Readonly<Record<string, { parts: string; rest(page: Page): Promise<
     parts: "main > header, .contents, .sections > section",
     rest: async (page) => {
       await page.locator("sap-demo").evaluateAll((all) => Promise.all(all.map((demo) => (demo as SapDemo).ready)));
-      await labsAwake(page);
+      await ballsAwake(page);
     },
   },
-  falling: { parts: "main > *", rest: labsAwake },
+  falling: { parts: "main > *", rest: ballsAwake },
   race: { parts: "main > *", rest: (page) => expect(page.locator("race-track")).toHaveAttribute("data-step", "0") },
   playground: { parts: "main > *", rest: (page) => expect(page.locator("box-playground")).toHaveAttribute("data-step", "0") },
   benchmark: {
@@ -43,11 +43,11 @@ const PAGES: Readonly<Record<string, { parts: string; rest(page: Page): Promise<
   embed: { parts: "main", rest: (page) => page.locator("sap-demo").evaluate((demo) => (demo as SapDemo).ready) },
 };
 
-/** The laboratories of falling balls begin when they are seen. */
-async function labsAwake(page: Page): Promise<void> {
-  for (const lab of await page.locator("ball-lab").all()) {
-    await lab.scrollIntoViewIfNeeded();
-    await expect(lab.getByRole("button", { name: "Step" })).toBeEnabled();
+/** Simulations of falling balls begin when they are seen. */
+async function ballsAwake(page: Page): Promise<void> {
+  for (const balls of await page.locator("falling-balls").all()) {
+    await balls.scrollIntoViewIfNeeded();
+    await expect(balls.getByRole("button", { name: "Step" })).toBeEnabled();
   }
 }
 

@@ -56,8 +56,8 @@ test("runs, compares every step, plots, and complains of nothing", async ({ page
   expect(elsewhere).toEqual([]);
 });
 
-test("a contender that finds other pairs is told of loudly", async ({ page }) => {
-  // The compiled contenders agree; so one of their reports is changed on its way to the page.
+test("a runner that finds other pairs is told of loudly", async ({ page }) => {
+  // The compiled runners agree; so one of their reports is changed on its way to the page.
   await page.addInitScript(() => {
     const listen = Worker.prototype.addEventListener;
     Worker.prototype.addEventListener = function (this: Worker, kind: string, heard: (event: MessageEvent) => void) {

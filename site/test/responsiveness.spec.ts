@@ -1,14 +1,14 @@
 import { chromium, expect, test } from "@playwright/test";
-import { Lab } from "./lab.ts";
+import { FallingBalls } from "./falling-balls.ts";
 
 // Drawing ten thousand spheres in software takes the graphics process hundreds of milliseconds,
 // so pictures a second say nothing here. What counts is the thread of the page, and the step.
 
 test("brute force at 10,000 spheres leaves the page responsive, and shows what it costs", async ({ page }) => {
   await page.goto("/falling.html?spheres.algorithm=global+pairwise");
-  const lab = await new Lab(page, "spheres").open();
-  await expect.poll(() => lab.stepNumber()).toBeGreaterThan(1);
-  await expect.poll(() => lab.counter("tests")).toBe("49,995,000");
+  const balls = await new FallingBalls(page, "spheres").open();
+  await expect.poll(() => balls.stepNumber()).toBeGreaterThan(1);
+  await expect.poll(() => balls.counter("tests")).toBe("49,995,000");
 
   const gaps = await page.evaluate(async () => {
     const gaps: number[] = [];
@@ -23,12 +23,12 @@ test("brute force at 10,000 spheres leaves the page responsive, and shows what i
     return gaps.sort((a, b) => a - b);
   });
   const at = (share: number): number => gaps[Math.floor(share * (gaps.length - 1))] ?? Infinity;
-  const brute = await lab.value("broad-phase");
+  const brute = await balls.value("broad-phase");
   console.log(`brute force: broad phase ${brute} ms; gaps of the page's thread: median ${at(0.5).toFixed(1)}, 95% ${at(0.95).toFixed(1)}, longest ${at(1).toFixed(1)} ms`);
   expect(at(0.95)).toBeLessThan(100);
   expect(brute).toBeGreaterThan(50);
 
-  const answered = await lab.play.evaluate((button: HTMLElement) => {
+  const answered = await balls.play.evaluate((button: HTMLElement) => {
     const clicked = performance.now();
     button.click();
     return { label: button.textContent, after: performance.now() - clicked };
@@ -45,22 +45,22 @@ for (const { name, args } of [{ name: "nothing drawn", args: ["--disable-3d-apis
     const browser = await chromium.launch({ ...launchOptions, args: [...(launchOptions.args ?? []), ...args] });
     const page = await browser.newPage({ baseURL: baseURL!, viewport: { width: 1280, height: 900 } });
     await page.goto("/falling.html");
-    const lab = await new Lab(page, "spheres").open();
-    const [library = ""] = await lab.algorithms();
-    await expect(lab.algorithm).toHaveValue(library);
+    const balls = await new FallingBalls(page, "spheres").open();
+    const [library = ""] = await balls.algorithms();
+    await expect(balls.algorithm).toHaveValue(library);
     // From a beginning that is seen: while a page prepares to draw it may miss seconds.
-    await expect.poll(() => lab.stepNumber()).toBeGreaterThan(1);
-    await lab.pause();
-    await lab.reset();
-    await lab.play.click();
+    await expect.poll(() => balls.stepNumber()).toBeGreaterThan(1);
+    await balls.pause();
+    await balls.reset();
+    await balls.play.click();
     // Each value is the mean of half a second, which the first steps are not yet.
     const times: number[] = [];
-    for (let step = 0; step < 200; step = await lab.stepNumber()) {
-      const time = await lab.value("broad-phase");
+    for (let step = 0; step < 200; step = await balls.stepNumber()) {
+      const time = await balls.value("broad-phase");
       if (step >= 30 && time !== times.at(-1)) times.push(time);
       await page.waitForTimeout(100);
     }
-    console.log(`${library}, ${name}: broad phase of a frame while they fall and pile up ${times.join(", ")} ms, narrow phase ${await lab.value("narrow-phase")}, solving ${await lab.value("solving")}, drawing ${await lab.value("drawing")} ms`);
+    console.log(`${library}, ${name}: broad phase of a frame while they fall and pile up ${times.join(", ")} ms, narrow phase ${await balls.value("narrow-phase")}, solving ${await balls.value("solving")}, drawing ${await balls.value("drawing")} ms`);
     await browser.close();
     // The aim is 2 ms, and what is printed tells. What fails is a whole frame: a test's machine may be
     // busy with other things.
@@ -70,15 +70,15 @@ for (const { name, args } of [{ name: "nothing drawn", args: ["--disable-3d-apis
 
 test("100,000 spheres by the library: the page answers", async ({ page }) => {
   await page.goto("/falling.html?spheres.bodies=100000");
-  const lab = await new Lab(page, "spheres").open();
-  await expect.poll(() => lab.stepNumber(), { timeout: 60_000 }).toBeGreaterThan(1);
-  expect(await lab.value("pairs")).toBeGreaterThan(10_000);
-  const answered = await lab.play.evaluate((button: HTMLElement) => {
+  const balls = await new FallingBalls(page, "spheres").open();
+  await expect.poll(() => balls.stepNumber(), { timeout: 60_000 }).toBeGreaterThan(1);
+  expect(await balls.value("pairs")).toBeGreaterThan(10_000);
+  const answered = await balls.play.evaluate((button: HTMLElement) => {
     const clicked = performance.now();
     button.click();
     return performance.now() - clicked;
   });
-  console.log(`100,000 spheres: broad phase ${await lab.value("broad-phase")} ms, narrow phase ${await lab.value("narrow-phase")}, solving ${await lab.value("solving")}, drawing ${await lab.value("drawing")} ms`);
+  console.log(`100,000 spheres: broad phase ${await balls.value("broad-phase")} ms, narrow phase ${await balls.value("narrow-phase")}, solving ${await balls.value("solving")}, drawing ${await balls.value("drawing")} ms`);
   expect(answered).toBeLessThan(50);
 });
 

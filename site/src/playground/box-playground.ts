@@ -1,9 +1,9 @@
 import { numberWithin, readAddress, writeAddress } from "../arena/address.ts";
 import { type BoxColors, drawBoxes, type Window2, windowOf } from "../arena/box-picture.ts";
-import type { ContenderOptions, Lists, WorldOptions } from "../arena/door.ts";
-import { onAwake } from "../lab/awake.ts";
-import { formatCount } from "../lab/counters.ts";
-import { bindSlider } from "../lab/slider.ts";
+import type { RunnerOptions, Lists, WorldOptions } from "../arena/arena.ts";
+import { onAwake } from "../falling/awake.ts";
+import { formatCount } from "../falling/counters.ts";
+import { bindSlider } from "../falling/slider.ts";
 import type { FromRace, RaceFrame, ToRace } from "../race/messages.ts";
 import { MEASURES, RaceRecord } from "../race/record.ts";
 import { onThemeChange } from "../shell/theme.ts";
@@ -31,7 +31,7 @@ type Key = keyof typeof DEFAULTS;
 
 /**
  * `<box-playground>`: a world of boxes of the visitor's own, one algorithm at work on it, and the
- * way to take it home. It is a race with one contender: its thread is that of the race.
+ * way to take it home. It is a race with one runner: its thread is that of the race.
  */
 export class BoxPlayground extends HTMLElement {
   readonly #worker = new Worker(new URL("../race/worker.ts", import.meta.url), { type: "module" });
@@ -110,7 +110,7 @@ export class BoxPlayground extends HTMLElement {
     this.#pace();
   }
 
-  #bindChoice(key: "dimensions" | "scene" | "motion" | keyof ContenderOptions, names?: readonly string[], before = (): void => {}): void {
+  #bindChoice(key: "dimensions" | "scene" | "motion" | keyof RunnerOptions, names?: readonly string[], before = (): void => {}): void {
     const select = this.#part<HTMLSelectElement>(key);
     if (names) select.replaceChildren(...names.map((name) => new Option(name)));
     if (select.options.length > 0) this.#choose(key);
@@ -220,7 +220,7 @@ export class BoxPlayground extends HTMLElement {
     };
   }
 
-  #method(): ContenderOptions {
+  #method(): RunnerOptions {
     const { algorithm, sort, axis } = this.#state;
     return { algorithm, sort, axis };
   }
@@ -240,7 +240,7 @@ export class BoxPlayground extends HTMLElement {
     const { scenes, motions } = this.#lists;
     const about = [scenes.find(({ name }) => name === this.#state.scene), motions.find(({ name }) => name === this.#state.motion)];
     this.#part("about").textContent = about.map((item) => item?.description ?? "").join(" ");
-    this.#send({ type: "begin", run: ++this.#run, world: this.#world(), contenders: [this.#method()] });
+    this.#send({ type: "begin", run: ++this.#run, world: this.#world(), runners: [this.#method()] });
     this.#describe();
   }
 

@@ -1,12 +1,12 @@
 // A world as it stands, written down: every coordinate in the fewest digits that give the same bits.
 
-import type { ContenderOptions, WorldOptions } from "../arena/door.ts";
-import { formatCount } from "../lab/counters.ts";
+import type { RunnerOptions, WorldOptions } from "../arena/arena.ts";
+import { formatCount } from "../falling/counters.ts";
 
 /** What is written down. */
 export interface Snapshot {
   readonly world: WorldOptions;
-  readonly method: ContenderOptions;
+  readonly method: RunnerOptions;
   readonly step: number;
   /** Rows of min corner and max corner. */
   readonly boxes: Float32Array;

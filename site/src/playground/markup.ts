@@ -1,7 +1,7 @@
 // The inside of `<box-playground>`, written into the page when it is built. `box-playground.ts`
 // finds the parts by their `data-part`.
 
-import { choice, slider } from "../lab/parts.ts";
+import { choice, slider } from "../falling/parts.ts";
 
 /** The counters. */
 export const COUNTERS = [
@@ -23,14 +23,14 @@ function markup(): string {
       `<div class="counter" data-counter="${key}"><dt title="${meaning}">${label}</dt><dd>–</dd></div>`,
   );
   return `
-    <div class="lab" role="group" aria-label="Playground">
-      <div class="lab-stage">
+    <div class="panel" role="group" aria-label="Playground">
+      <div class="panel-stage">
         <div class="surface" data-part="surface" tabindex="0" role="application" aria-label="The boxes; those in a pair are highlighted. Arrow keys move the view, plus and minus zoom, zero shows everything.">
           <canvas data-part="picture"></canvas>
         </div>
         <p class="stage-message" data-part="message">Loading</p>
       </div>
-      <div class="lab-transport">
+      <div class="panel-transport">
         <button type="button" class="primary" data-part="play" disabled>Pause</button>
         <button type="button" data-part="step" disabled>Step</button>
         <button type="button" data-part="reset" disabled>Reset</button>
@@ -38,8 +38,8 @@ function markup(): string {
         <p class="moment" data-part="moment">Step 0</p>
         <p class="status" role="status" data-part="status"></p>
       </div>
-      <div class="lab-side">
-        <div class="lab-method">
+      <div class="panel-side">
+        <div class="panel-method">
           ${choice("playground", "algorithm", "Algorithm")}
           ${choice("playground", "sort", "Sort")}
           ${choice("playground", "axis", "Sweep axis")}
@@ -47,7 +47,7 @@ function markup(): string {
         <section><h2 class="small">This step</h2><dl>${rows.join("")}</dl></section>
         <p class="about" data-part="about">&nbsp;</p>
       </div>
-      <div class="lab-world">
+      <div class="panel-world">
         ${choice("playground", "scene", "Scene")}
         ${choice("playground", "motion", "Motion")}
         ${choice("playground", "dimensions", "Dimensions", [["2", "2D"], ["3", "3D, viewed along z"]])}

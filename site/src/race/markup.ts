@@ -1,7 +1,7 @@
 // The inside of `<race-track>`, written into the page when it is built: the page has its final shape
 // before any script runs. `race-track.ts` finds the parts by their `data-part`.
 
-import { choice, slider } from "../lab/parts.ts";
+import { choice, slider } from "../falling/parts.ts";
 import { MEASURES } from "./record.ts";
 
 /** How many algorithms can run side by side. */

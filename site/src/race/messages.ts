@@ -1,15 +1,15 @@
 // What the page of the race and its thread say to each other.
 
-import type { ContenderOptions, Lists, Report, WorldOptions } from "../arena/door.ts";
+import type { RunnerOptions, Lists, Report, WorldOptions } from "../arena/arena.ts";
 
 export type ToRace =
-  | { readonly type: "begin"; readonly run: number; readonly world: WorldOptions; readonly contenders: readonly ContenderOptions[] }
+  | { readonly type: "begin"; readonly run: number; readonly world: WorldOptions; readonly runners: readonly RunnerOptions[] }
   | { readonly type: "pace"; readonly running: boolean }
   | { readonly type: "step" }
   /** The page has shown a frame and can take another. */
   | { readonly type: "seen"; readonly run: number };
 
-/** A contender in one step: what it did, or why it is out. */
+/** A runner in one step: what it did, or why it is out. */
 export type Lane = { readonly report: Report } | { readonly out: string };
 
 export interface RaceFrame {
@@ -18,7 +18,7 @@ export interface RaceFrame {
   readonly run: number;
   readonly step: number;
   readonly boxes: Float32Array;
-  /** The pairs of the first contender that is in. */
+  /** The pairs of the first runner that is in. */
   readonly pairs: Uint32Array;
   readonly lanes: readonly Lane[];
 }

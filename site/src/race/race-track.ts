@@ -1,9 +1,9 @@
 import { readAddress, numberWithin, writeAddress } from "../arena/address.ts";
 import { type BoxColors, drawBoxes, type Window2, windowOf } from "../arena/box-picture.ts";
-import type { ContenderOptions, Lists, WorldOptions } from "../arena/door.ts";
-import { onAwake } from "../lab/awake.ts";
-import { formatCount } from "../lab/counters.ts";
-import { bindSlider } from "../lab/slider.ts";
+import type { RunnerOptions, Lists, WorldOptions } from "../arena/arena.ts";
+import { onAwake } from "../falling/awake.ts";
+import { formatCount } from "../falling/counters.ts";
+import { bindSlider } from "../falling/slider.ts";
 import { drawLines } from "../plot/line-plot.ts";
 import { onThemeChange } from "../shell/theme.ts";
 import { LANE_COUNTERS, LANES } from "./markup.ts";
@@ -41,7 +41,7 @@ interface Colors {
 type PartOfLane = "algorithm" | "sort" | "axis";
 
 /**
- * `<race-track>`: up to four contenders on the same boxes, in lockstep, on a thread of their own.
+ * `<race-track>`: up to four runners on the same boxes, in lockstep, on a thread of their own.
  * Its inside is written by `markup.ts`.
  */
 export class RaceTrack extends HTMLElement {
@@ -208,7 +208,7 @@ export class RaceTrack extends HTMLElement {
   }
 
   /** Who races, with the lanes they are in. */
-  #contenders(): { lane: number; options: ContenderOptions }[] {
+  #runners(): { lane: number; options: RunnerOptions }[] {
     const lanes = Array.from({ length: LANES }, (_, place) => {
       const part = (name: string): string => this.#state[`${place + 1}${name}` as Key];
       return { lane: place + 1, options: { algorithm: part(""), sort: part(".sort"), axis: part(".axis") } };
@@ -217,8 +217,8 @@ export class RaceTrack extends HTMLElement {
   }
 
   #begin(): void {
-    const contenders = this.#contenders();
-    this.#record = new RaceRecord(contenders.length);
+    const runners = this.#runners();
+    this.#record = new RaceRecord(runners.length);
     this.#frame = undefined;
     this.#view = undefined;
     this.#part("alarm").textContent = "";
@@ -226,7 +226,7 @@ export class RaceTrack extends HTMLElement {
     const { scenes, motions } = this.#lists;
     const about = [scenes.find(({ name }) => name === this.#state.scene), motions.find(({ name }) => name === this.#state.motion)];
     this.#part("about").textContent = about.map((item) => item?.description ?? "").join(" ");
-    this.#send({ type: "begin", run: ++this.#run, world: this.#world(), contenders: contenders.map(({ options }) => options) });
+    this.#send({ type: "begin", run: ++this.#run, world: this.#world(), runners: runners.map(({ options }) => options) });
     this.#describe();
   }
 
@@ -278,7 +278,7 @@ export class RaceTrack extends HTMLElement {
   }
 
   #alarm(step: number, places: readonly number[]): void {
-    const lanes = places.map((place) => `lane ${this.#contenders()[place]?.lane}`).join(" and ");
+    const lanes = places.map((place) => `lane ${this.#runners()[place]?.lane}`).join(" and ");
     this.#part("alarm").textContent = `In step ${formatCount(step)}, ${lanes} found other pairs than the first one. One of them is wrong.`;
   }
 
@@ -305,9 +305,9 @@ export class RaceTrack extends HTMLElement {
   }
 
   #showNumbers(frame: RaceFrame | undefined): void {
-    const contenders = this.#contenders();
+    const runners = this.#runners();
     for (let lane = 1; lane <= LANES; lane++) {
-      const place = contenders.findIndex((contender) => contender.lane === lane);
+      const place = runners.findIndex((runner) => runner.lane === lane);
       this.#showLane(lane, place, frame?.lanes[place]);
     }
     if (!frame) return;
@@ -347,7 +347,7 @@ export class RaceTrack extends HTMLElement {
     const canvas = this.#part<HTMLCanvasElement>("plot");
     const { lanes, ink, muted, grid } = (this.#colors ??= this.#readColors());
     const measure: Measure = MEASURES.find(({ key }) => key === this.#state.plot) ?? MEASURES[0];
-    const lines = this.#contenders().map(({ lane }, place) => ({
+    const lines = this.#runners().map(({ lane }, place) => ({
       color: lanes[lane - 1] ?? ink,
       values: this.#record.line(place, measure),
     }));
@@ -370,7 +370,7 @@ export class RaceTrack extends HTMLElement {
   #describe(): void {
     const { boxes, scene, motion } = this.#world();
     const out = this.#frame?.lanes.filter((lane) => "out" in lane).length ?? 0;
-    const who = `${this.#contenders().length - out} algorithms${out > 0 ? `, ${out} stopped` : ""}`;
+    const who = `${this.#runners().length - out} algorithms${out > 0 ? `, ${out} stopped` : ""}`;
     const where = `${formatCount(boxes)} boxes, ${scene}, ${motion}`;
     this.#say(this.#wanted ? `${who}: ${where}.` : `Paused after step ${formatCount(this.#frame?.step ?? 0)}. ${who}: ${where}.`);
   }

@@ -1,6 +1,6 @@
 // What has happened in a race so far.
 
-import type { Report } from "../arena/door.ts";
+import type { Report } from "../arena/arena.ts";
 import type { Lane, RaceFrame } from "./messages.ts";
 
 /** What can be plotted. */
@@ -29,7 +29,7 @@ export class RaceRecord {
   /** The step of the first report kept. */
   first = 0;
   readonly lanes: (Report | undefined)[][];
-  /** The step in which contenders first disagreed. */
+  /** The step in which runners first disagreed. */
   disagreed: { readonly step: number; readonly lanes: readonly number[] } | undefined;
   /** In how many steps at least two were compared. */
   compared = 0;
@@ -72,7 +72,7 @@ export function middleMean(all: readonly (number | null | undefined)[]): number 
   return middle.reduce((sum, value) => sum + value, 0) / middle.length;
 }
 
-/** The lanes whose pairs are not those of the first contender that is in. */
+/** The lanes whose pairs are not those of the first runner that is in. */
 export function atOdds(lanes: readonly Lane[]): number[] {
   const first = lanes.find((lane) => "report" in lane);
   if (!first || !("report" in first)) return [];

@@ -1,6 +1,6 @@
 // One frame of the race, in words and numbers.
 
-import { formatCount } from "../lab/counters.ts";
+import { formatCount } from "../falling/counters.ts";
 import type { LANE_COUNTERS } from "./markup.ts";
 import type { Lane, RaceFrame } from "./messages.ts";
 import type { RaceRecord } from "./record.ts";

@@ -1,8 +1,8 @@
-// The thread of the race: one step of the world, then every contender on the same boxes, one after
+// The thread of the race: one step of the world, then every runner on the same boxes, one after
 // another, so that none disturbs the clock of another.
 
-import { Arena, type ContenderOptions, type Report, type WorldOptions } from "../arena/door.ts";
-import { formatCount } from "../lab/counters.ts";
+import { Arena, type RunnerOptions, type Report, type WorldOptions } from "../arena/arena.ts";
+import { formatCount } from "../falling/counters.ts";
 import type { FromRace, Lane, ToRace } from "./messages.ts";
 
 /** More steps per second would be too fast to watch. */
@@ -13,13 +13,13 @@ const MOST_PAIRS = 2_000_000;
 const MOST_TESTS = 3e8;
 /** So many overlaps to keep take about 200 MB. */
 const MOST_KEPT = 5e6;
-/** A contender that takes longer than this twice in a row is out: the others are waiting. */
+/** A runner that takes longer than this twice in a row is out: the others are waiting. */
 const BUDGET_MS = 400;
 /** The same, counting included. */
 const BUDGET_IN_ALL_MS = 2000;
 
-interface Contender {
-  readonly options: ContenderOptions;
+interface Runner {
+  readonly options: RunnerOptions;
   /** Its number in the arena. */
   readonly number: number;
   /** Steps over the budget in a row. */
@@ -29,7 +29,7 @@ interface Contender {
 
 interface Race {
   readonly run: number;
-  readonly contenders: Contender[];
+  readonly runners: Runner[];
   step: number;
   /** Whether the page has not shown the last frame. */
   unseen: boolean;
@@ -42,7 +42,7 @@ let timer: ReturnType<typeof setTimeout> | undefined;
 
 const send = (message: FromRace, transfer: Transferable[] = []): void => self.postMessage(message, { transfer });
 
-function begin(arena: Arena, run: number, world: WorldOptions, options: readonly ContenderOptions[]): void {
+function begin(arena: Arena, run: number, world: WorldOptions, options: readonly RunnerOptions[]): void {
   race = undefined;
   arena.begin(world);
   const pairs = arena.countPairs();
@@ -52,48 +52,48 @@ function begin(arena: Arena, run: number, world: WorldOptions, options: readonly
     return;
   }
   let number = 0;
-  const contenders = options.map((options): Contender => {
+  const runners = options.map((options): Runner => {
     const out = refusal(arena, options);
     if (out === undefined) arena.enter(options);
     return { options, number: out === undefined ? number++ : -1, late: 0, out };
   });
-  race = { run, contenders, step: 0, unseen: false };
+  race = { run, runners, step: 0, unseen: false };
   compete(arena, race);
 }
 
-/** Why a contender cannot even begin, if it cannot. */
-function refusal(arena: Arena, options: ContenderOptions): string | undefined {
+/** Why a runner cannot even begin, if it cannot. */
+function refusal(arena: Arena, options: RunnerOptions): string | undefined {
   const { tests, kept } = arena.forecast(options);
   if (tests > MOST_TESTS) return `Stopped: it would have to look at ${formatCount(tests)} pairs per step; the limit is ${formatCount(MOST_TESTS)}.`;
   if (kept > MOST_KEPT) return `Stopped: it would have to keep ${formatCount(kept)} overlaps in memory; the limit is ${formatCount(MOST_KEPT)}.`;
   return undefined;
 }
 
-/** Lets every contender that is in find the pairs, each step another one first. */
+/** Lets every runner that is in find the pairs, each step another one first. */
 function compete(arena: Arena, race: Race): void {
-  const { contenders, step } = race;
-  const reports = new Map<Contender, Report>();
-  contenders.forEach((_, place) => {
-    const contender = contenders[(place + step) % contenders.length];
-    if (!contender || contender.out !== undefined) return;
+  const { runners, step } = race;
+  const reports = new Map<Runner, Report>();
+  runners.forEach((_, place) => {
+    const runner = runners[(place + step) % runners.length];
+    if (!runner || runner.out !== undefined) return;
     const started = performance.now();
-    const report = arena.run(contender.number, true);
+    const report = arena.run(runner.number, true);
     const inAll = performance.now() - started;
-    reports.set(contender, report);
+    reports.set(runner, report);
     // The first step sorts from scratch and makes room: it does not count.
     const isLate = report.ms > BUDGET_MS || inAll > BUDGET_IN_ALL_MS;
-    contender.late = step > 0 && isLate ? contender.late + 1 : 0;
-    if (contender.late < 2) return;
-    contender.out =
+    runner.late = step > 0 && isLate ? runner.late + 1 : 0;
+    if (runner.late < 2) return;
+    runner.out =
       report.ms > BUDGET_MS
         ? `Stopped: a step took ${formatCount(report.ms)} ms; the limit is ${BUDGET_MS} ms.`
         : `Stopped: a step and its counting took ${formatCount(inAll)} ms; the limit is ${formatCount(BUDGET_IN_ALL_MS)} ms.`;
   });
-  const lanes = contenders.map((contender): Lane => {
-    const report = reports.get(contender);
-    return report ? { report } : { out: contender.out ?? "" };
+  const lanes = runners.map((runner): Lane => {
+    const report = reports.get(runner);
+    return report ? { report } : { out: runner.out ?? "" };
   });
-  const first = contenders.find((contender) => reports.has(contender));
+  const first = runners.find((runner) => reports.has(runner));
   const pairs = first ? arena.pairs(first.number).slice() : new Uint32Array(0);
   const boxes = arena.boxes.slice();
   race.unseen = true;
@@ -123,7 +123,7 @@ function tick(arena: Arena): void {
 function receive(arena: Arena, message: ToRace): void {
   switch (message.type) {
     case "begin":
-      begin(arena, message.run, message.world, message.contenders);
+      begin(arena, message.run, message.world, message.runners);
       break;
     case "pace":
       running = message.running;

@@ -1,5 +1,5 @@
 //! What the race and the playground run on: the scenes in motion, and who looks for their pairs.
-//! A door of plain `extern "C"` functions over linear memory, called by `src/arena/door.ts`.
+//! A door of plain `extern "C"` functions over linear memory, called by `src/arena/arena.ts`.
 //!
 //! # Layout
 //! Numbers pass through one area of 16 `f64` at [`arena_area`]:

@@ -1,5 +1,5 @@
-// The inside of a `<ball-lab>`, written into the page when it is built: the page has its final
-// shape before any script runs. `ball-lab.ts` finds the parts by their `data-part`.
+// The inside of a `<falling-balls>`, written into the page when it is built: the page has its final
+// shape before any script runs. `falling-balls.ts` finds the parts by their `data-part`.
 
 import { expandPlayground } from "../playground/markup.ts";
 import { expandRace } from "../race/markup.ts";
@@ -13,12 +13,12 @@ interface LabOptions {
   readonly bodies: number;
 }
 
-/** Fills every empty `<ball-lab …></ball-lab>` of a page, and the race and the playground. */
-export function expandLabs(page: string): string {
-  return expandPlayground(expandRace(page)).replace(/<ball-lab([^>]*)><\/ball-lab>/g, (_, attributes: string) => {
+/** Fills every empty `<falling-balls …></falling-balls>` of a page, and the race and the playground. */
+export function expandFallingBalls(page: string): string {
+  return expandPlayground(expandRace(page)).replace(/<falling-balls([^>]*)><\/falling-balls>/g, (_, attributes: string) => {
     const attribute = (name: string): string => {
       const value = new RegExp(`\\b${name}="([^"]*)"`).exec(attributes)?.[1];
-      if (value === undefined) throw new Error(`<ball-lab${attributes}> has no ${name}`);
+      if (value === undefined) throw new Error(`<falling-balls${attributes}> has no ${name}`);
       return value;
     };
     const options: LabOptions = {
@@ -26,19 +26,19 @@ export function expandLabs(page: string): string {
       dimensions: attribute("dimensions") === "2" ? 2 : 3,
       bodies: Number(attribute("bodies")),
     };
-    return `<ball-lab${attributes}>${labMarkup(options)}</ball-lab>`;
+    return `<falling-balls${attributes}>${inside(options)}</falling-balls>`;
   });
 }
 
-function labMarkup({ id, dimensions, bodies }: LabOptions): string {
+function inside({ id, dimensions, bodies }: LabOptions): string {
   return `
-    <div class="lab" role="group" aria-labelledby="${id}-heading">
-      <div class="lab-stage">
+    <div class="panel" role="group" aria-labelledby="${id}-heading">
+      <div class="panel-stage">
         ${dimensions === 2 ? discStage() : sphereStage()}
         <p class="stage-message" data-part="message">Loading</p>
       </div>
 
-      <div class="lab-transport">
+      <div class="panel-transport">
         <button type="button" class="primary" data-part="play" disabled>Pause</button>
         <button type="button" data-part="step" disabled>Step</button>
         <button type="button" data-part="reset" disabled>Reset</button>
@@ -46,20 +46,20 @@ function labMarkup({ id, dimensions, bodies }: LabOptions): string {
         <p class="status" role="status" data-part="status"></p>
       </div>
 
-      <div class="lab-side">
-        <div class="lab-method">
+      <div class="panel-side">
+        <div class="panel-method">
           ${choice(id, "algorithm", "Algorithm")}
           ${choice(id, "sort", "Sort")}
           ${choice(id, "axis", "Sweep axis")}
         </div>
-        <div class="lab-counters">
+        <div class="panel-counters">
           ${counterList("work", "Work of one step", bodies)}
           ${counterList("time", "Time of one step", bodies)}
-          <canvas class="lab-stages" data-part="stages" role="img" aria-label="Time per stage over the last pictures, stacked; the numbers are next to it"></canvas>
+          <canvas class="panel-stages" data-part="stages" role="img" aria-label="Time per stage over the last pictures, stacked; the numbers are next to it"></canvas>
         </div>
       </div>
 
-      <div class="lab-world">
+      <div class="panel-world">
         ${slider(id, "bodies", dimensions === 2 ? "Discs" : "Spheres", formatCount(bodies))}
         ${slider(id, "size", "Size", "100%")}
         ${slider(id, "spread", "Largest : smallest", "1 : 1")}

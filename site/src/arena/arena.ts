@@ -1,5 +1,5 @@
-// The compiled arena of site/wasm: scenes in motion, and who looks for their pairs. Its layout
-// stands in site/wasm/src/lib.rs. One arena a thread.
+// The compiled arena of site/wasm: scenes in motion, and runners that find their pairs. Its layout
+// is described in site/wasm/src/lib.rs. Each thread has one arena.
 
 import scalarWasm from "../generated/arena.wasm?url";
 import simdWasm from "../generated/arena.simd.wasm?url";
@@ -21,8 +21,8 @@ export interface WorldOptions {
   readonly spread: number;
 }
 
-/** Who looks for the pairs, by names that `Lists` has. */
-export interface ContenderOptions {
+/** How a runner finds the pairs, by names that `Lists` has. */
+export interface RunnerOptions {
   readonly algorithm: string;
   readonly sort: string;
   /** A rule, or one of `AXIS_NAMES`. */
@@ -72,7 +72,7 @@ export class Arena {
   readonly #memory: WebAssembly.Memory;
   #dimensions = 2;
   #boxes = 0;
-  /** By contender, how many pairs its last run found. */
+  /** By runner, how many pairs its last run found. */
   #found: number[] = [];
 
   private constructor(instance: WebAssembly.Instance) {
@@ -102,7 +102,7 @@ export class Arena {
     return new Arena((await WebAssembly.instantiate(await response.arrayBuffer(), { env })).instance);
   }
 
-  /** Makes a world at its first step, and forgets the one before and its contenders. */
+  /** Makes a world at its first step, and forgets the one before and its runners. */
   begin(options: WorldOptions): void {
     const { lists } = this;
     const place = (list: readonly Named[], name: string): number => list.findIndex((item) => item.name === name);
@@ -118,7 +118,7 @@ export class Arena {
     this.#attempt("arena_advance");
   }
 
-  /** Rows of the least corner and the greatest: a view of the arena's memory, until the next call. */
+  /** Rows of min corner and max corner: a view of the arena's memory, until the next call. */
   get boxes(): Float32Array {
     return new Float32Array(this.#memory.buffer, this.#call("arena_boxes"), 2 * this.#dimensions * this.#boxes);
   }
@@ -128,24 +128,24 @@ export class Arena {
     return this.#exports["arena_count_pairs"]?.() ?? -1;
   }
 
-  /** Adds a contender. They are numbered from 0. */
-  enter(options: ContenderOptions): void {
-    this.#attempt("arena_enter", ...this.#places(options), 1);
+  /** Adds a runner. They are numbered from 0. */
+  enter(options: RunnerOptions): void {
+    this.#attempt("arena_enter", ...this.#indices(options), 1);
   }
 
-  forecast(options: ContenderOptions): Forecast {
-    this.#attempt("arena_forecast", ...this.#places(options));
+  forecast(options: RunnerOptions): Forecast {
+    this.#attempt("arena_forecast", ...this.#indices(options));
     const [tests = 0, kept = 0] = this.#area();
     return { tests, kept };
   }
 
-  /** Lets a contender find the pairs of the world as it is; counted, if asked, on a copy. */
-  run(contender: number, counting: boolean): Report {
-    this.#attempt("arena_run", contender, Number(counting));
+  /** Lets a runner find the pairs of the world as it is; counted, if asked, on a copy. */
+  run(runner: number, counting: boolean): Report {
+    this.#attempt("arena_run", runner, Number(counting));
     const [ms = 0, pairs = 0, upper = 0, lower = 0, ...counts] = this.#area();
     const hex = (half: number): string => half.toString(16).padStart(8, "0");
     const counted = (count = -1): number | null => (count < 0 ? null : count);
-    this.#found[contender] = pairs;
+    this.#found[runner] = pairs;
     return {
       ms,
       pairs,
@@ -157,13 +157,13 @@ export class Arena {
     };
   }
 
-  /** The pairs of a contender's last run, `a0, b0, a1, b1, ..`: a view, until the next call. */
-  pairs(contender: number): Uint32Array {
-    const at = this.#call("arena_pairs", contender);
-    return new Uint32Array(this.#memory.buffer, at, 2 * (this.#found[contender] ?? 0));
+  /** The pairs of a runner's last run, `a0, b0, a1, b1, ..`: a view, until the next call. */
+  pairs(runner: number): Uint32Array {
+    const at = this.#call("arena_pairs", runner);
+    return new Uint32Array(this.#memory.buffer, at, 2 * (this.#found[runner] ?? 0));
   }
 
-  #places({ algorithm, sort, axis }: ContenderOptions): [number, number, number] {
+  #indices({ algorithm, sort, axis }: RunnerOptions): [number, number, number] {
     const { algorithms, sorts, axes } = this.lists;
     return [algorithms.indexOf(algorithm), sorts.indexOf(sort), axes.indexOf(axis)];
   }
@@ -173,7 +173,7 @@ export class Arena {
     return new TextDecoder().decode(new Uint8Array(this.#memory.buffer, at, this.#area()[0])).split("\n");
   }
 
-  /** The numbers of the door, a view anew each time: memory moves when it grows. */
+  /** The numbers that both sides exchange: a new view each time, because memory moves when it grows. */
   #area(): Float64Array {
     return new Float64Array(this.#memory.buffer, this.#call("arena_area"), 16);
   }

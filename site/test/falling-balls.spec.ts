@@ -1,5 +1,5 @@
 import { expect, test } from "@playwright/test";
-import { Lab } from "./lab.ts";
+import { FallingBalls } from "./falling-balls.ts";
 
 const IDS = ["discs", "spheres"] as const;
 
@@ -7,34 +7,34 @@ test.describe("running", () => {
   for (const id of IDS) {
     test(`${id}: counters move, pause holds them, the world goes on afterwards`, async ({ page }) => {
       await page.goto(`/falling.html?${id}.algorithm=sorted+pairwise&${id}.bodies=2000`);
-      const lab = await new Lab(page, id).open();
+      const balls = await new FallingBalls(page, id).open();
       const seen = new Set<string>();
       await expect
-        .poll(async () => seen.add(await lab.counter("tests")).size, { message: "tests change" })
+        .poll(async () => seen.add(await balls.counter("tests")).size, { message: "tests change" })
         .toBeGreaterThan(3);
       for (const key of ["tests", "axis-overlaps", "pairs", "comparisons", "broad-phase", "narrow-phase", "solving", "drawing"]) {
-        await expect.poll(() => lab.value(key), { message: key }).toBeGreaterThan(0);
+        await expect.poll(() => balls.value(key), { message: key }).toBeGreaterThan(0);
       }
 
-      await lab.pause();
-      const [step, hash] = [await lab.stepNumber(), await lab.hash()];
+      await balls.pause();
+      const [step, hash] = [await balls.stepNumber(), await balls.hash()];
       await page.waitForTimeout(500);
-      expect([await lab.stepNumber(), await lab.hash()]).toEqual([step, hash]);
+      expect([await balls.stepNumber(), await balls.hash()]).toEqual([step, hash]);
 
-      await lab.play.click();
-      await expect.poll(() => lab.stepNumber()).toBeGreaterThan(step);
+      await balls.play.click();
+      await expect.poll(() => balls.stepNumber()).toBeGreaterThan(step);
     });
   }
 
   test("sleeps while it is off the screen", async ({ page }) => {
     await page.goto("/falling.html?discs.bodies=200");
-    const lab = await new Lab(page, "discs").open();
-    await expect.poll(() => lab.stepNumber()).toBeGreaterThan(5);
+    const balls = await new FallingBalls(page, "discs").open();
+    await expect.poll(() => balls.stepNumber()).toBeGreaterThan(5);
     await page.locator("footer").scrollIntoViewIfNeeded();
     await page.waitForTimeout(300);
-    const before = await lab.stepNumber();
+    const before = await balls.stepNumber();
     await page.waitForTimeout(4000);
-    await lab.root.scrollIntoViewIfNeeded();
+    await balls.root.scrollIntoViewIfNeeded();
     const after = await page.waitForFunction((before) => {
       const step = Number(document.getElementById("discs")?.dataset["step"]);
       return step > before && step;
@@ -50,50 +50,50 @@ test.describe("paused", () => {
   for (const id of IDS) {
     test(`${id}: begins paused where less motion is wanted, and the first step is the first`, async ({ page }) => {
       await page.goto("/falling.html");
-      const lab = await new Lab(page, id).open();
-      await expect(lab.play).toHaveText("Play");
-      expect(await lab.stepNumber()).toBe(0);
-      await lab.step(1);
-      expect(await lab.stepNumber()).toBe(1);
+      const balls = await new FallingBalls(page, id).open();
+      await expect(balls.play).toHaveText("Play");
+      expect(await balls.stepNumber()).toBe(0);
+      await balls.step(1);
+      expect(await balls.stepNumber()).toBe(1);
     });
 
     test(`${id}: the same seed gives the same states, another seed others`, async ({ page }) => {
       await page.goto(`/falling.html?${id}.bodies=500`);
-      const lab = await new Lab(page, id).open();
+      const balls = await new FallingBalls(page, id).open();
       const states = async (): Promise<string[]> => {
-        const all = [await lab.hash()];
+        const all = [await balls.hash()];
         for (let step = 0; step < 8; step++) {
-          await lab.step(1);
-          all.push(await lab.hash());
+          await balls.step(1);
+          all.push(await balls.hash());
         }
         return all;
       };
       const first = await states();
       expect(new Set(first).size).toBe(first.length);
-      await lab.reset();
+      await balls.reset();
       expect(await states()).toEqual(first);
-      await lab.root.getByLabel("Seed").fill("2");
-      await lab.root.getByLabel("Seed").press("Enter");
-      await expect(lab.root).toHaveAttribute("data-step", "0");
-      await expect.poll(() => lab.hash()).not.toBe(first[0]);
+      await balls.root.getByLabel("Seed").fill("2");
+      await balls.root.getByLabel("Seed").press("Enter");
+      await expect(balls.root).toHaveAttribute("data-step", "0");
+      await expect.poll(() => balls.hash()).not.toBe(first[0]);
     });
 
     test(`${id}: all algorithms, with every sort, find the same pairs and leave the same state`, async ({ page }) => {
       test.slow(); // some hundred steps, each waited for until it is drawn
       await page.goto(`/falling.html?${id}.bodies=300`);
-      const lab = await new Lab(page, id).open();
+      const balls = await new FallingBalls(page, id).open();
       const outcomes = new Map<string, unknown>();
-      for (const algorithm of await lab.algorithms()) {
-        await lab.reset();
-        await lab.algorithm.selectOption(algorithm);
-        await lab.step(2);
-        const sort = lab.root.getByLabel("Sort", { exact: true });
+      for (const algorithm of await balls.algorithms()) {
+        await balls.reset();
+        await balls.algorithm.selectOption(algorithm);
+        await balls.step(2);
+        const sort = balls.root.getByLabel("Sort", { exact: true });
         const sorts = (await sort.isEnabled()) ? await sort.locator("option").allTextContents() : [""];
         for (const name of sorts) {
-          await lab.reset();
+          await balls.reset();
           if (name) await sort.selectOption(name);
-          await lab.step(4);
-          outcomes.set(`${algorithm}, ${name}`, { pairs: await lab.value("pairs"), hash: await lab.hash() });
+          await balls.step(4);
+          outcomes.set(`${algorithm}, ${name}`, { pairs: await balls.value("pairs"), hash: await balls.hash() });
         }
       }
       expect(outcomes.size).toBeGreaterThanOrEqual(5);
@@ -104,112 +104,112 @@ test.describe("paused", () => {
 
   test("switching the algorithm in the middle does not disturb the motion", async ({ page }) => {
     await page.goto("/falling.html");
-    const lab = await new Lab(page, "discs").open();
-    await lab.step(6);
-    const undisturbed = await lab.hash();
-    await lab.reset();
-    for (const algorithm of (await lab.algorithms()).slice(0, 6)) {
-      await lab.algorithm.selectOption(algorithm);
-      await lab.step(1);
+    const balls = await new FallingBalls(page, "discs").open();
+    await balls.step(6);
+    const undisturbed = await balls.hash();
+    await balls.reset();
+    for (const algorithm of (await balls.algorithms()).slice(0, 6)) {
+      await balls.algorithm.selectOption(algorithm);
+      await balls.step(1);
     }
-    expect(await lab.hash()).toBe(undisturbed);
+    expect(await balls.hash()).toBe(undisturbed);
   });
 
   test("brute force counts n(n - 1)/2 tests, sorted pairwise far fewer, for the same pairs", async ({ page }) => {
     await page.goto("/falling.html?discs.bodies=1000");
-    const lab = await new Lab(page, "discs").open();
-    await lab.algorithm.selectOption("global pairwise");
-    await lab.step(3);
-    expect(await lab.counter("brute-force")).toBe("499,500");
-    expect(await lab.counter("tests")).toBe("499,500");
-    const pairs = await lab.value("pairs");
-    await lab.reset();
-    await lab.algorithm.selectOption("sorted pairwise");
-    await lab.step(3);
-    expect(await lab.value("tests")).toBeLessThan(100_000);
-    expect(await lab.value("pairs")).toBe(pairs);
+    const balls = await new FallingBalls(page, "discs").open();
+    await balls.algorithm.selectOption("global pairwise");
+    await balls.step(3);
+    expect(await balls.counter("brute-force")).toBe("499,500");
+    expect(await balls.counter("tests")).toBe("499,500");
+    const pairs = await balls.value("pairs");
+    await balls.reset();
+    await balls.algorithm.selectOption("sorted pairwise");
+    await balls.step(3);
+    expect(await balls.value("tests")).toBeLessThan(100_000);
+    expect(await balls.value("pairs")).toBe(pairs);
   });
 
   test("what is not counted is an en dash that says why", async ({ page }) => {
     await page.goto("/falling.html");
-    const lab = await new Lab(page, "spheres").open();
-    await lab.step(1);
-    const [library = ""] = await lab.algorithms();
-    await expect(lab.algorithm).toHaveValue(library);
+    const balls = await new FallingBalls(page, "spheres").open();
+    await balls.step(1);
+    const [library = ""] = await balls.algorithms();
+    await expect(balls.algorithm).toHaveValue(library);
     for (const key of ["tests", "axis-overlaps", "comparisons", "swaps"]) {
-      const cell = lab.root.locator(`[data-counter="${key}"] dd`);
+      const cell = balls.root.locator(`[data-counter="${key}"] dd`);
       await expect(cell).toHaveText("–");
       await expect(cell).toHaveAttribute("title", /not counted/);
     }
-    expect(await lab.value("pairs")).toBeGreaterThan(0);
+    expect(await balls.value("pairs")).toBeGreaterThan(0);
   });
 
   test("the address keeps what was chosen, and nothing else", async ({ page }) => {
     await page.goto("/falling.html");
-    const lab = await new Lab(page, "discs").open();
+    const balls = await new FallingBalls(page, "discs").open();
     expect(new URL(page.url()).search).toBe("");
-    await lab.algorithm.selectOption("global pairwise");
-    await lab.root.getByRole("slider", { name: "Discs" }).fill("3");
-    await lab.root.getByLabel("Seed").fill("7");
-    await lab.root.getByLabel("Seed").press("Enter");
-    await expect(lab.root.locator('[data-part="bodies-value"]')).toHaveText("5");
+    await balls.algorithm.selectOption("global pairwise");
+    await balls.root.getByRole("slider", { name: "Discs" }).fill("3");
+    await balls.root.getByLabel("Seed").fill("7");
+    await balls.root.getByLabel("Seed").press("Enter");
+    await expect(balls.root.locator('[data-part="bodies-value"]')).toHaveText("5");
     const query = (): Record<string, string> => Object.fromEntries(new URL(page.url()).searchParams);
     await expect.poll(query).toEqual({ "discs.algorithm": "global pairwise", "discs.bodies": "5", "discs.seed": "7" });
-    await expect.poll(() => lab.counter("brute-force")).toBe("10");
+    await expect.poll(() => balls.counter("brute-force")).toBe("10");
 
     await page.reload();
-    await lab.open();
-    await expect(lab.algorithm).toHaveValue("global pairwise");
-    await expect(lab.root.getByLabel("Seed")).toHaveValue("7");
-    await lab.step(1);
-    expect(await lab.counter("brute-force")).toBe("10");
+    await balls.open();
+    await expect(balls.algorithm).toHaveValue("global pairwise");
+    await expect(balls.root.getByLabel("Seed")).toHaveValue("7");
+    await balls.step(1);
+    expect(await balls.counter("brute-force")).toBe("10");
   });
 
   test("gravity and substeps change the motion, and the address keeps them", async ({ page }) => {
     await page.goto("/falling.html?spheres.bodies=200");
-    const lab = await new Lab(page, "spheres").open();
+    const balls = await new FallingBalls(page, "spheres").open();
     const after = async (steps: number): Promise<string> => {
-      await lab.reset();
-      await lab.step(steps);
-      return lab.hash();
+      await balls.reset();
+      await balls.step(steps);
+      return balls.hash();
     };
     const usual = await after(3);
-    await lab.root.getByRole("slider", { name: "Gravity" }).fill("0");
+    await balls.root.getByRole("slider", { name: "Gravity" }).fill("0");
     await expect.poll(() => new URL(page.url()).searchParams.get("spheres.gravity")).toBe("-9.81");
     const upwards = await after(3);
-    await lab.root.getByRole("slider", { name: "Substeps" }).fill("0");
+    await balls.root.getByRole("slider", { name: "Substeps" }).fill("0");
     await expect.poll(() => new URL(page.url()).searchParams.get("spheres.substeps")).toBe("1");
     const coarse = await after(3);
     expect(new Set([usual, upwards, coarse]).size).toBe(3);
     await page.reload();
-    await lab.open();
+    await balls.open();
     expect(await after(3)).toBe(coarse);
     await page.goto("/falling.html?spheres.bodies=200");
-    await lab.open();
+    await balls.open();
     expect(await after(3)).toBe(usual);
   });
 
   test("an address that makes no sense is ignored", async ({ page }) => {
     await page.goto("/falling.html?discs.bodies=-3&discs.seed=abc&discs.size=NaN&discs.spread=1e9&discs.algorithm=magic&discs.axis=&discs.gravity=1e9&discs.substeps=0");
-    const lab = await new Lab(page, "discs").open();
-    await lab.step(2);
-    expect(await lab.counter("brute-force")).toBe("12,497,500");
-    await expect(lab.root.getByLabel("Seed")).toHaveValue("1");
+    const balls = await new FallingBalls(page, "discs").open();
+    await balls.step(2);
+    expect(await balls.counter("brute-force")).toBe("12,497,500");
+    await expect(balls.root.getByLabel("Seed")).toHaveValue("1");
   });
 
   test("works by the keyboard alone", async ({ page }) => {
     await page.goto("/falling.html");
-    const lab = await new Lab(page, "discs").open();
-    await lab.play.focus();
+    const balls = await new FallingBalls(page, "discs").open();
+    await balls.play.focus();
     await page.keyboard.press("Tab");
     await page.keyboard.press("Enter");
-    await expect(lab.root).toHaveAttribute("data-step", "1");
+    await expect(balls.root).toHaveAttribute("data-step", "1");
     await page.keyboard.press("Shift+Tab");
     await page.keyboard.press("Space");
-    await expect(lab.play).toHaveText("Pause");
-    await expect.poll(() => lab.stepNumber()).toBeGreaterThan(3);
+    await expect(balls.play).toHaveText("Pause");
+    await expect.poll(() => balls.stepNumber()).toBeGreaterThan(3);
 
-    const spheres = await new Lab(page, "spheres").open();
+    const spheres = await new FallingBalls(page, "spheres").open();
     await spheres.root.getByRole("application").focus();
     const canvas = spheres.root.locator('[data-part="canvas"]');
     const before = await canvas.screenshot();
@@ -221,9 +221,9 @@ test.describe("paused", () => {
   test("one body and the most there are", async ({ page }) => {
     for (const [id, bodies] of [["discs", 1], ["discs", 20_000], ["spheres", 1], ["spheres", 100_000]] as const) {
       await page.goto(`/falling.html?${id}.bodies=${bodies}&${id}.spread=20&${id}.size=150`);
-      const lab = await new Lab(page, id).open();
-      await lab.step(2);
-      expect(await lab.value("brute-force")).toBe((bodies * (bodies - 1)) / 2);
+      const balls = await new FallingBalls(page, id).open();
+      await balls.step(2);
+      expect(await balls.value("brute-force")).toBe((bodies * (bodies - 1)) / 2);
     }
   });
 });

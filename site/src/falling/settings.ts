@@ -1,6 +1,6 @@
 import type { Laws, Method, Setup } from "../simulation/messages.ts";
 
-/** All that a visitor can choose in a laboratory, and all that its address keeps. */
+/** Everything that a visitor can choose for falling balls; the address keeps it. */
 export interface Settings extends Method, Laws {
   readonly bodies: number;
   /** Per cent of the radius at which the bodies fill a fixed share of the box. */

@@ -1,7 +1,7 @@
 import { expect, type Locator, type Page } from "@playwright/test";
 
-/** One laboratory of the page, as its visitor handles it. */
-export class Lab {
+/** One simulation of falling balls, as its visitor handles it. */
+export class FallingBalls {
   readonly root: Locator;
   readonly algorithm: Locator;
   readonly play: Locator;

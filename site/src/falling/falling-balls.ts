@@ -21,11 +21,11 @@ const STAGES = ["broad-phase", "narrow-phase", "solving", "drawing"] as const;
 type NumberKey = "bodies" | "size" | "spread" | keyof Laws;
 
 /**
- * `<ball-lab dimensions="2 or 3" bodies="200" most="10000">`: bodies that fall, the algorithm that
+ * `<falling-balls dimensions="2 or 3" bodies="200" most="10000">`: bodies that fall, the algorithm that
  * finds which of them may touch, and what that costs. Its inside is written by `markup.ts`. While
  * it cannot be seen it sleeps; where the visitor wants less motion it begins paused.
  */
-export class BallLab extends HTMLElement {
+export class FallingBalls extends HTMLElement {
   readonly #dimensions = this.getAttribute("dimensions") === "2" ? 2 : 3;
   readonly #mostBodies = Number(this.getAttribute("most"));
   #defaults!: Settings;
@@ -346,7 +346,7 @@ export class BallLab extends HTMLElement {
 
   #find<E extends HTMLElement = HTMLElement>(selector: string): E {
     const found = this.querySelector<E>(selector);
-    if (!found) throw new Error(`<ball-lab> has no ${selector}`);
+    if (!found) throw new Error(`<falling-balls> has no ${selector}`);
     return found;
   }
 }

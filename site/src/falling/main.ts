@@ -1,0 +1,3 @@
+import { FallingBalls } from "./falling-balls.ts";
+
+customElements.define("falling-balls", FallingBalls);

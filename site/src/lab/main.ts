@@ -1,3 +1,0 @@
-import { BallLab } from "./ball-lab.ts";
-
-customElements.define("ball-lab", BallLab);
