@@ -24,9 +24,9 @@ const LEFT = {
   "scenes": 56,
   "scripts": 1,
   "simulation": 85,
-  "site": 17,
-  "site/src": 266,
-  "site/test": 174,
+  "site": 10,
+  "site/src": 130,
+  "site/test": 46,
   "site/wasm": 86
 };
 
