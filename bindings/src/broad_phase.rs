@@ -125,7 +125,7 @@ impl<const D: usize, T: Scalar> TypedBroadPhase<D, T> {
     /// An empty broad phase.
     ///
     /// # Errors
-    /// [`Error::InvalidMargin`].
+    /// [`Error::InvalidOption`].
     pub fn new(settings: Settings) -> Result<Self, Error> {
         let Settings { margin, prediction, report } = settings;
         let (margin, prediction) = (T::from_f64(margin), T::from_f64(prediction));

@@ -47,7 +47,7 @@ impl Kind {
     /// An empty broad phase; `None` unless there are 1 to 3 dimensions.
     ///
     /// # Errors
-    /// [`Error::InvalidMargin`].
+    /// [`Error::InvalidOption`].
     pub fn broad_phase<I: Id>(
         self,
         settings: Settings,

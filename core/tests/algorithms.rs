@@ -68,7 +68,7 @@ fn sorted_endpoints<const D: usize, T: Scalar>(
 
 fn set(pairs: &[[u32; 2]]) -> BTreeSet<[u32; 2]> {
     let set: BTreeSet<_> = pairs.iter().copied().collect();
-    assert_eq!(set.len(), pairs.len(), "each pair is told once");
+    assert_eq!(set.len(), pairs.len(), "each pair is reported once");
     assert!(set.iter().all(|[a, b]| a < b));
     set
 }
@@ -77,7 +77,7 @@ fn set(pairs: &[[u32; 2]]) -> BTreeSet<[u32; 2]> {
 fn check<const D: usize, T: Scalar>(options: RunnerOptions, frames: &[Slots<D, T>]) {
     let RunnerOptions { method, persistent, .. } = options;
     let mut runner = Runner::<D, T>::new(options);
-    let mut told = (Counts::default(), Trace::new());
+    let mut both = (Counts::default(), Trace::new());
     // Where in the trace each step ends, along which axis it went, and what was counted.
     let mut steps = Vec::new();
     let mut last = BTreeSet::new();
@@ -88,8 +88,8 @@ fn check<const D: usize, T: Scalar>(options: RunnerOptions, frames: &[Slots<D, T
         hole.max[D - 1] = high;
         let boxes: Vec<_> = slots.iter().map(|slot| slot.unwrap_or(hole)).collect();
         let present = |id: u32| slots[id as usize].is_some();
-        told.0 = Counts::default();
-        let step = runner.step_where(&boxes, present, &mut told).unwrap();
+        both.0 = Counts::default();
+        let step = runner.step_where(&boxes, present, &mut both).unwrap();
         let context = || format!("{options:?}, step {number} of {frames:?}");
 
         assert_eq!(Ok(step.axis), options.axis.choose(&dense(slots).0), "{}", context());
@@ -104,12 +104,12 @@ fn check<const D: usize, T: Scalar>(options: RunnerOptions, frames: &[Slots<D, T
         assert_eq!(set(step.begun), begun, "{}", context());
         assert_eq!(set(step.ended), ended, "{}", context());
         assert!(step.begun.is_sorted() && step.ended.is_sorted(), "{}", context());
-        steps.push((told.1.len(), step.axis, told.0));
+        steps.push((both.1.len(), step.axis, both.0));
         last = pairs;
     }
 
-    // The player knows only what was told, and that leads to the same.
-    let mut player = Player::new(told.1);
+    // The player knows only what was reported, and that leads to the same state.
+    let mut player = Player::new(both.1);
     for (slots, (end, axis, counts)) in frames.iter().zip(steps) {
         player.seek(end);
         let state = player.state();
@@ -404,7 +404,7 @@ fn memory_is_linear_in_boxes_and_kept_overlaps() {
 }
 
 #[test]
-fn what_is_refused_changes_nothing() {
+fn a_refused_step_changes_nothing() {
     let good = Scene::Uniform.boxes::<2, f32>(20, 1).unwrap();
     let mut bad = good.clone();
     bad[7].max[1] = f32::NAN;
@@ -434,7 +434,7 @@ fn boxes_without_dimensions_are_refused() {
 }
 
 #[test]
-fn every_name_names_one_thing() {
+fn every_name_is_unique_and_can_be_parsed() {
     assert!(Method::ALL.into_iter().all(|method| Method::from_name(method.name()) == Some(method)));
     assert!(Sort::ALL.into_iter().all(|sort| Sort::from_name(sort.name()) == Some(sort)));
     assert!(Axis::ALL.into_iter().all(|axis| Axis::from_name(axis.name()) == Some(axis)));

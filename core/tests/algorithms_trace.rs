@@ -87,7 +87,7 @@ fn plays_both_ways<const D: usize, T: Scalar>() {
 in_all_dimensions!(a_trace_plays_forward_and_backward, plays_both_ways);
 
 proptest! {
-    /// Whoever watches beside another sees the same; and to watch changes nothing.
+    /// Two observers side by side see the same events, and observing changes nothing.
     #[test]
     fn watching_changes_nothing(
         frames in prop::collection::vec(prop::collection::vec(valid_box::<2, f32>(), 8), 1..4),
@@ -114,11 +114,11 @@ proptest! {
     }
 }
 
-/// What an observer is told, in the order in which it is.
+/// What is reported to an observer, in order.
 #[derive(Default)]
-struct Told(Vec<(u32, u32, Option<Separation>)>);
+struct Reported(Vec<(u32, u32, Option<Separation>)>);
 
-impl Observer for Told {
+impl Observer for Reported {
     fn test(&mut self, a: u32, b: u32, separation: Option<Separation>) {
         self.0.push((a, b, separation));
     }
@@ -133,15 +133,15 @@ proptest! {
     #[test]
     fn a_trace_keeps_the_inequality_that_decided(boxes in valid_boxes::<3, f64>(12)) {
         for method in METHODS {
-            let mut told = (Told::default(), Trace::new());
+            let mut both = (Reported::default(), Trace::new());
             let options = on_x(method, Sort::Standard, false);
-            Runner::new(options).step(&boxes, &mut told).unwrap();
-            let played = told.1.events().filter_map(|event| match event {
+            Runner::new(options).step(&boxes, &mut both).unwrap();
+            let played = both.1.events().filter_map(|event| match event {
                 Event::Test { a, b, separation } => Some((a, b, separation)),
                 Event::Prune { separation } => Some((u32::MAX, u32::MAX, Some(separation))),
                 _ => None,
             });
-            prop_assert_eq!(played.collect::<Vec<_>>(), told.0.0);
+            prop_assert_eq!(played.collect::<Vec<_>>(), both.0.0);
         }
     }
 }
@@ -316,7 +316,7 @@ fn d09_d10_d11_the_line_lights_what_it_touches_and_pairs_as_it_enters() {
             }
             _ => {}
         }
-        // What is lit is what the line touches.
+        // The highlighted boxes are those that the line touches.
         if let (Event::Enter { .. } | Event::Leave { .. }, Some((position, edge))) =
             (event, state.line)
         {
@@ -406,7 +406,7 @@ fn d16_d17_each_swap_says_which_of_the_four_cases_it_is() {
         let at =
             second + events[second..].iter().position(|e| matches!(e, Event::Swap { .. })).unwrap();
         let Event::Swap { positions: [i, j], a, b } = events[at] else { unreachable!() };
-        assert_eq!(j, i + 1, "neighbours");
+        assert_eq!(j, i + 1, "neighbors");
         let letter = |edge: Edge| if edge.side == Side::Left { "L" } else { "R" };
         assert_eq!(format!("{}-{}", letter(a), letter(b)), name);
         let pair = (0, 1);

@@ -142,7 +142,7 @@ fn correction_06_touching_boxes_overlap_in_every_variant() {
             }
         }
     }
-    // As published: open in the test, closed in the break. The neighbours reach the test, which
+    // As published: open in the test, closed in the break. The neighbors reach the test, which
     // says no; the sweep over endpoints, with ties as they come, may say yes.
     let open = |a: &Box2, b: &Box2| a.min[0] < b.max[0] && a.max[0] > b.min[0];
     assert!(!open(&boxes[0], &boxes[1]) && boxes[0].overlaps(&boxes[1]));
@@ -290,19 +290,19 @@ fn correction_09_a_box_without_width_does_not_pair_with_itself() {
 }
 
 #[test]
-fn correction_09_ties_in_any_order_of_arrival_give_the_same() {
+fn correction_09_ties_added_in_any_order_give_the_same_pairs() {
     // Three boxes that meet at 1: one ends there, one is a point there, one begins there.
     let boxes = [interval(0.0, 1.0), interval(1.0, 1.0), interval(1.0, 2.0)];
     let somewhere = [interval(5.0, 6.0), interval(7.0, 8.0), interval(9.0, 10.0)];
     for method in Method::ALL {
-        for arrival in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+        for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
             let mut runner = runner(method, Sort::Insertion);
             let mut now = somewhere;
             runner.step(&now, &mut ()).unwrap();
-            for id in arrival {
+            for id in order {
                 now[id] = boxes[id];
                 let pairs = sorted(runner.step(&now, &mut ()).unwrap().pairs);
-                assert_eq!(pairs, pairwise(&now).unwrap(), "{method:?} {arrival:?}");
+                assert_eq!(pairs, pairwise(&now).unwrap(), "{method:?} {order:?}");
             }
         }
     }
@@ -310,7 +310,7 @@ fn correction_09_ties_in_any_order_of_arrival_give_the_same() {
 
 // 10. A NaN stops the break and the sort.
 #[test]
-fn correction_10_nan_is_refused_at_the_door() {
+fn correction_10_nan_is_refused_before_any_work() {
     let nan = f64::NAN;
     let boxes = Scene::Uniform.boxes::<2, f64>(10, 1).unwrap();
     for method in Method::ALL {
@@ -403,8 +403,8 @@ fn correction_13_one_to_n_really_misses_the_enclosing_box() {
 }
 
 // 14. To bounce while sweeping moves what is being swept. Here the boxes are borrowed for as long
-// as a step lasts, so that nobody can move them; and what moves them while it sweeps does lose
-// pairs. (That the simulation resolves after it has collected is its own test.)
+// as a step lasts, so that they cannot be moved. An algorithm that moves them while it sweeps does
+// lose pairs. (A test of the simulation shows that it resolves contacts after it has collected them.)
 #[test]
 fn correction_14_pairs_are_collected_before_anything_moves() {
     let boxes = [interval(0.0, 3.0), interval(1.0, 4.0), interval(2.0, 5.0)];
@@ -447,19 +447,19 @@ fn correction_15_fast_bodies_tunnel_and_swept_boxes_do_not() {
     }
 }
 
-// 16. The article's script sorts by centre and breaks on edges.
+// 16. The article's script sorts by center and breaks on edges.
 #[test]
-fn correction_16_sorting_by_centre_really_misses_overlaps() {
-    // By centre: the small ball, the middle one, the large one that reaches back over both.
+fn correction_16_sorting_by_center_really_misses_overlaps() {
+    // By center: the small ball, the middle one, the large one that reaches back over both.
     let boxes = [square(0.0, 0.0, 1.0), square(3.0, 0.0, 1.0), square(4.0, 0.0, 4.0)];
-    let mut by_centre: Vec<u32> = vec![0, 1, 2];
-    by_centre.sort_by(|&a, &b| {
-        let centre = |id: u32| boxes[id as usize].min[0] + boxes[id as usize].max[0];
-        centre(a).total_cmp(&centre(b))
+    let mut by_center: Vec<u32> = vec![0, 1, 2];
+    by_center.sort_by(|&a, &b| {
+        let center = |id: u32| boxes[id as usize].min[0] + boxes[id as usize].max[0];
+        center(a).total_cmp(&center(b))
     });
     let mut found = Vec::new();
-    for (i, &a) in by_centre.iter().enumerate() {
-        for &b in &by_centre[i + 1..] {
+    for (i, &a) in by_center.iter().enumerate() {
+        for &b in &by_center[i + 1..] {
             if boxes[b as usize].min[0] > boxes[a as usize].max[0] {
                 break;
             }
@@ -488,8 +488,8 @@ fn correction_17_the_same_thing_is_counted_for_every_method() {
     }
 }
 
-// 18. The "falling spheres" do not fall, and are discs. That ours fall is the simulation's to
-// test; here, that every method does what it does in three dimensions as in two.
+// 18. The "falling spheres" do not fall, and are discs. A test of the simulation
+// shows that its spheres fall; here every method works in three dimensions as in two.
 #[test]
 fn correction_18_spheres_are_in_three_dimensions() {
     // A tetrahedron of touching unit boxes, one axis each, and one that only z keeps apart.

@@ -35,7 +35,7 @@ const SEED: u64 = 1;
 /// The number of frames of a motion, the last of which is reported.
 const FRAMES: usize = 20;
 
-/// What `golden.txt` holds, computed anew: for every scene and motion, in every dimension and
+/// Computes what `golden.txt` holds: for every scene and motion, in every dimension and
 /// coordinate type, the hash of its boxes, the number of its pairs by global pairwise and their
 /// hash. The same text on every platform, in every build.
 ///

@@ -17,7 +17,7 @@
 //! computed in `f64` with operations that IEEE 754 rounds exactly (`+ - * /` and the square root)
 //! and with `libm`'s software functions, and rounded to the coordinate type once, at the end; the
 //! `f32` boxes of a scene are the rounded `f64` boxes, except for the two scenes that are made of
-//! the limits of the type. `golden.txt` holds the results; [`golden_report`] computes them anew.
+//! the limits of the type. `golden.txt` holds the results; [`golden_report`] computes them.
 
 mod golden;
 mod motion;

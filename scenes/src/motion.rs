@@ -74,7 +74,7 @@ impl Motion {
         }
         let (speed, share, jumps) = self.law();
         let mut draw = Draw::new::<T>(n, Random::new(seed));
-        let (centres, half) = recipes::uniform_cubes(&mut draw);
+        let (centers, half) = recipes::uniform_cubes(&mut draw);
         let mut random = draw.random;
         let velocities = (0..n)
             .map(|_| {
@@ -83,7 +83,7 @@ impl Motion {
                 if random.unit() < share { velocity } else { [0.0; D] }
             })
             .collect();
-        let mut moving = Moving { half, centres, velocities, jumps, random, boxes: Vec::new() };
+        let mut moving = Moving { half, centers, velocities, jumps, random, boxes: Vec::new() };
         moving.place();
         Some(moving)
     }
@@ -104,7 +104,7 @@ fn direction<const D: usize>(random: &mut Random) -> [f64; D] {
 #[derive(Clone, Debug)]
 pub struct Moving<const D: usize, T = f32> {
     half: f64,
-    centres: Vec<[f64; D]>,
+    centers: Vec<[f64; D]>,
     velocities: Vec<[f64; D]>,
     jumps: f64,
     random: Random,
@@ -119,10 +119,10 @@ impl<const D: usize, T: Scalar> Moving<D, T> {
 
     /// Moves on by one frame, in place. O(n) time.
     ///
-    /// Centres stay within the unit cube; boxes reach over its walls by half their width.
+    /// Centers stay within the unit cube; boxes reach over its walls by half their width.
     pub fn advance(&mut self) {
-        for (centre, velocity) in self.centres.iter_mut().zip(&mut self.velocities) {
-            for (at, speed) in centre.iter_mut().zip(velocity) {
+        for (center, velocity) in self.centers.iter_mut().zip(&mut self.velocities) {
+            for (at, speed) in center.iter_mut().zip(velocity) {
                 *at += *speed;
                 // More than once only where a few boxes are wider than the cube.
                 while !(0.0..=1.0).contains(at) {
@@ -131,16 +131,16 @@ impl<const D: usize, T: Scalar> Moving<D, T> {
                 }
             }
             if self.jumps > 0.0 && self.random.unit() < self.jumps {
-                *centre = self.random.point();
+                *center = self.random.point();
             }
         }
         self.place();
     }
 
-    /// Puts the boxes around their centres.
+    /// Puts the boxes around their centers.
     fn place(&mut self) {
         let half = [self.half; D];
         self.boxes.clear();
-        self.boxes.extend(self.centres.iter().map(|&at| round(&recipes::around(at, half))));
+        self.boxes.extend(self.centers.iter().map(|&at| round(&recipes::around(at, half))));
     }
 }

@@ -55,14 +55,14 @@ fn root(degree: usize, x: f64) -> f64 {
     }
 }
 
-/// The box of a centre and half its size on each axis.
-pub(crate) fn around<const D: usize>(centre: [f64; D], half: [f64; D]) -> Aabb<D, f64> {
-    Aabb::new(array::from_fn(|k| centre[k] - half[k]), array::from_fn(|k| centre[k] + half[k]))
+/// The box of a center and half its size on each axis.
+pub(crate) fn around<const D: usize>(center: [f64; D], half: [f64; D]) -> Aabb<D, f64> {
+    Aabb::new(array::from_fn(|k| center[k] - half[k]), array::from_fn(|k| center[k] + half[k]))
 }
 
-/// The cube of a centre and half its side.
-fn cube<const D: usize>(centre: [f64; D], half: f64) -> Aabb<D, f64> {
-    around(centre, [half; D])
+/// The cube of a center and half its side.
+fn cube<const D: usize>(center: [f64; D], half: f64) -> Aabb<D, f64> {
+    around(center, [half; D])
 }
 
 /// The axis that points up: y where there is one.
@@ -70,15 +70,15 @@ fn up<const D: usize>() -> usize {
     usize::min(1, D - 1)
 }
 
-// The centres and the half side are also where motion starts.
+// The centers and the half side are also where motion starts.
 pub(crate) fn uniform_cubes<const D: usize>(draw: &mut Draw) -> (Vec<[f64; D]>, f64) {
-    let centres = (0..draw.n).map(|_| draw.random.point()).collect();
-    (centres, side::<D>(draw.n) / 2.0)
+    let centers = (0..draw.n).map(|_| draw.random.point()).collect();
+    (centers, side::<D>(draw.n) / 2.0)
 }
 
 pub(crate) fn uniform<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> {
-    let (centres, half) = uniform_cubes(draw);
-    centres.into_iter().map(|centre| cube(centre, half)).collect()
+    let (centers, half) = uniform_cubes(draw);
+    centers.into_iter().map(|center| cube(center, half)).collect()
 }
 
 pub(crate) fn clustered<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> {
@@ -96,31 +96,31 @@ pub(crate) fn tower<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> {
     let mut half = [0.02; D];
     half[up::<D>()] = 0.6 / draw.n as f64;
     draw.each(|_, random| {
-        let mut centre = random.point().map(|at| at * 0.01);
-        centre[up::<D>()] = random.unit();
-        around(centre, half)
+        let mut center = random.point().map(|at| at * 0.01);
+        center[up::<D>()] = random.unit();
+        around(center, half)
     })
 }
 
 pub(crate) fn slab<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> {
     let half = 0.25 * root(usize::max(1, D - 1), 2.4 / draw.n as f64);
     draw.each(|_, random| {
-        let mut centre = random.point();
-        centre[D - 1] *= 1e-3;
-        cube(centre, half)
+        let mut center = random.point();
+        center[D - 1] *= 1e-3;
+        cube(center, half)
     })
 }
 
 pub(crate) fn mixed<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> {
     let half = 0.35 * side::<D>(draw.n) / 2.0;
     draw.each(|i, random| {
-        let (centre, size) = (random.point(), f64::min(random.pareto(2.5) + 0.5, 40.0));
+        let (center, size) = (random.point(), f64::min(random.pareto(2.5) + 0.5, 40.0));
         if i > 0 {
-            return cube(centre, half * size);
+            return cube(center, half * size);
         }
-        let (mut centre, mut half) = ([0.5; D], [0.5; D]);
-        (centre[up::<D>()], half[up::<D>()]) = (-0.001, 0.01);
-        around(centre, half)
+        let (mut center, mut half) = ([0.5; D], [0.5; D]);
+        (center[up::<D>()], half[up::<D>()]) = (-0.001, 0.01);
+        around(center, half)
     })
 }
 
@@ -129,13 +129,13 @@ pub(crate) fn coincident<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> {
 }
 
 pub(crate) fn nested<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> {
-    let centre = draw.random.point();
+    let center = draw.random.point();
     let step = 0.5 / draw.n as f64;
-    draw.each(|i, _| cube(centre, step * (i + 1) as f64))
+    draw.each(|i, _| cube(center, step * (i + 1) as f64))
 }
 
 /// The scene of Pierre Terdiman's BoxPruning (its Shared/Main.cpp), drawn from the generator of
-/// Microsoft's C library, seeded with 42: integer centres within 2048 of the origin, half sizes
+/// Microsoft's C library, seeded with 42: integer centers within 2048 of the origin, half sizes
 /// below 128.
 pub(crate) fn box_pruning<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> {
     let mut state = 42u32;
@@ -144,8 +144,8 @@ pub(crate) fn box_pruning<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> 
         f64::from((state >> 16) & 0x7fff & mask)
     };
     draw.each(|_, _| {
-        let centre = array::from_fn(|_| rand(4095) - 2048.0);
-        around(centre, array::from_fn(|_| rand(127)))
+        let center = array::from_fn(|_| rand(4095) - 2048.0);
+        around(center, array::from_fn(|_| rand(127)))
     })
 }
 
@@ -177,9 +177,9 @@ pub(crate) fn flat<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> {
     let mut half = [0.25 * root(usize::max(1, D - 1), 2.4 / draw.n as f64); D];
     half[D - 1] = 0.0;
     draw.each(|_, random| {
-        let mut centre = random.point();
-        centre[D - 1] = 0.5;
-        around(centre, half)
+        let mut center = random.point();
+        center[D - 1] = 0.5;
+        around(center, half)
     })
 }
 
@@ -264,12 +264,12 @@ pub(crate) fn one_column<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> {
     let half = 0.25 * root(D, 2.4 * volume / draw.n as f64);
     let last = draw.n.saturating_sub(1);
     draw.each(|i, random| {
-        let mut centre = random.point().map(|at| 0.5 + width * at);
-        centre[D - 1] = random.unit();
+        let mut center = random.point().map(|at| 0.5 + width * at);
+        center[D - 1] = random.unit();
         match i {
             0 => cube([0.0; D], half),
             i if i == last => cube([1.0; D], half),
-            _ => cube(centre, half),
+            _ => cube(center, half),
         }
     })
 }
@@ -292,12 +292,12 @@ pub(crate) fn multi_scale<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> 
 }
 
 pub(crate) fn outlier<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> {
-    let (mut centres, half) = uniform_cubes(draw);
+    let (mut centers, half) = uniform_cubes(draw);
     let middle = draw.n / 2;
-    if let Some(centre) = centres.get_mut(middle) {
-        *centre = [1e6; D];
+    if let Some(center) = centers.get_mut(middle) {
+        *center = [1e6; D];
     }
-    centres.into_iter().map(|centre| cube(centre, half)).collect()
+    centers.into_iter().map(|center| cube(center, half)).collect()
 }
 
 pub(crate) fn far<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> {
@@ -306,19 +306,19 @@ pub(crate) fn far<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> {
 }
 
 pub(crate) fn huge<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> {
-    centred(draw, 1e30)
+    centered(draw, 1e30)
 }
 
 pub(crate) fn tiny<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> {
-    centred(draw, 1e-30)
+    centered(draw, 1e-30)
 }
 
 pub(crate) fn extreme<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> {
-    centred(draw, draw.largest)
+    centered(draw, draw.largest)
 }
 
 /// Uniform over the cube from `-limit` to `limit`, and cut off there.
-fn centred<const D: usize>(draw: &mut Draw, limit: f64) -> Vec<Aabb<D, f64>> {
+fn centered<const D: usize>(draw: &mut Draw, limit: f64) -> Vec<Aabb<D, f64>> {
     let half = side::<D>(draw.n) * limit;
     draw.each(|_, random| {
         let aabb = cube(random.point().map(|at| (2.0 * at - 1.0) * limit), half);

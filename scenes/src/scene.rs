@@ -65,7 +65,7 @@ scenes! {
     BoxPruning, "box-pruning", 3..=3, box_pruning,
         "Pierre Terdiman's BoxPruning scene, the same for every seed: 11,811 pairs of 10,000 boxes and 1,144,045 of 100,000.";
     Grid, "grid", 1..=3, grid,
-        "Shuffled unit cubes of a full lattice, as in a voxel world: every face touches a neighbour exactly.";
+        "Shuffled unit cubes of a full lattice, as in a voxel world: every face touches a neighbor exactly.";
     Points, "points", 1..=3, points,
         "Boxes without size on few coordinates, zero with either sign: a mean size of zero, and ties.";
     Flat, "flat", 1..=3, flat,
@@ -113,7 +113,7 @@ scenes! {
     Reversed, "reversed", 1..=3, reversed,
         "Uniform, in reversed order along x: insertion sort makes a swap for every pair.";
     NearlySorted, "nearly-sorted", 1..=3, nearly_sorted,
-        "Uniform, in order along x but for one exchange of neighbours in ten boxes: should cost hardly more than no sort.";
+        "Uniform, in order along x but for one exchange of neighbors in ten boxes: should cost hardly more than no sort.";
 }
 
 impl Scene {

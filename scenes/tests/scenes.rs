@@ -197,8 +197,8 @@ fn moving_boxes_keep_to_the_cube_and_to_their_size() {
                 assert_eq!(validate(moving.boxes()), Ok(()));
                 for aabb in moving.boxes() {
                     for k in 0..D {
-                        let centre = (aabb.min[k].to_f64() + aabb.max[k].to_f64()) / 2.0;
-                        assert!((-1e-6..=1.0 + 1e-6).contains(&centre), "{centre}");
+                        let center = (aabb.min[k].to_f64() + aabb.max[k].to_f64()) / 2.0;
+                        assert!((-1e-6..=1.0 + 1e-6).contains(&center), "{center}");
                     }
                 }
             }

@@ -24,7 +24,7 @@ impl<const D: usize> Bodies<D> {
     pub fn new(balls: &[Ball<D>]) -> Self {
         let masses: Vec<f32> = balls.iter().map(|ball| mass::<D>(ball.radius)).collect();
         Self {
-            positions: balls.iter().map(|ball| ball.centre).collect(),
+            positions: balls.iter().map(|ball| ball.center).collect(),
             velocities: balls.iter().map(|ball| ball.velocity).collect(),
             radii: balls.iter().map(|ball| ball.radius).collect(),
             inverse_masses: masses.iter().map(|mass| 1.0 / mass).collect(),

@@ -6,7 +6,7 @@ use sweep_and_prune::{Aabb, Error, PairFinder};
 /// Who finds the pairs of boxes. The motion is the same, bit for bit, whichever it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BroadPhase {
-    /// The library's [`PairFinder`], the fast road.
+    /// The library's [`PairFinder`], the fast path.
     #[default]
     Library,
     /// One of the [`algorithms`](sweep_and_prune::algorithms) of

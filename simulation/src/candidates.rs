@@ -11,13 +11,14 @@ use crate::contacts::Contacts;
 use crate::enclosures::{Ahead, Enclosures};
 use crate::grid::Grid;
 use crate::order::PairOrder;
-use crate::vector::{greater, hull};
+use crate::vector::{bounding_box, greater};
 
-/// The pairs of all balls are found anew if more than one in so many are leaving their boxes.
+/// If more than one in this many balls leave their boxes, the pairs of all balls are found from
+/// scratch.
 const MOST_LEAVING: usize = 8;
 
-/// A box for each ball that holds it to the end of the step, as far as can be foreseen, and the
-/// pairs of boxes that overlap.
+/// For each ball a box that should hold it to the end of the step, and the pairs of boxes that
+/// overlap.
 ///
 /// The broad phase runs once a step, over boxes that are large enough for all its substeps
 /// (Müller et al. 2020, "Detailed rigid body simulation with extended position based dynamics",
@@ -36,7 +37,7 @@ pub struct Candidates<const D: usize> {
     leaving: Vec<u32>,
     /// Whether the boxes are new, and their pairs not yet found.
     is_stale: bool,
-    near: Neighbourhood<D>,
+    near: Neighborhood<D>,
 }
 
 impl<const D: usize> Candidates<D> {
@@ -56,15 +57,15 @@ impl<const D: usize> Candidates<D> {
     /// pairs that this adds.
     ///
     /// A box only grows, so its pairs stay: a pair is new if it overlaps the box and did not
-    /// overlap the box that it was. Where many balls leave, all boxes are made anew.
-    pub fn follow(&mut self, bodies: &Bodies<D>, contacts: &Contacts, ahead: &Ahead<D>) {
+    /// overlap the box that it was. Where many balls leave, all boxes are made from scratch.
+    pub fn update(&mut self, bodies: &Bodies<D>, contacts: &Contacts, ahead: &Ahead<D>) {
         self.enclosures.list_leaving(bodies, ahead, &mut self.leaving);
         if self.leaving.len() > bodies.len() / MOST_LEAVING {
             self.enclose(bodies, contacts, ahead);
             return;
         }
         for &ball in &self.leaving {
-            self.near.bring_up(&self.enclosures);
+            self.near.refresh(&self.enclosures);
             let before = self.enclosures.enclose_too(ball, bodies, ahead);
             let boxes = &self.enclosures.boxes;
             let own = &boxes[ball as usize];
@@ -103,7 +104,7 @@ impl<const D: usize> Candidates<D> {
 
 /// Which boxes may be near another: a grid of the places where they began to grow.
 #[derive(Debug)]
-struct Neighbourhood<const D: usize> {
+struct Neighborhood<const D: usize> {
     grid: Grid<D>,
     /// By ball, the middle of its box when it was put into the grid.
     places: Vec<[f32; D]>,
@@ -112,15 +113,15 @@ struct Neighbourhood<const D: usize> {
     /// The balls, cell by cell, and where those of each cell begin, and the last end.
     balls: Vec<u32>,
     starts: Vec<u32>,
-    /// Room for what a search finds: all balls, and one that does not count.
+    /// What a search finds. It holds all balls, and one more that does not count.
     found: Vec<u32>,
     /// By axis, no box reaches further than this from its place.
     reach: [f32; D],
-    /// Whether the boxes have been made anew since.
+    /// Whether the boxes have been made from scratch since.
     is_stale: bool,
 }
 
-impl<const D: usize> Default for Neighbourhood<D> {
+impl<const D: usize> Default for Neighborhood<D> {
     fn default() -> Self {
         Self {
             grid: Grid::default(),
@@ -135,9 +136,9 @@ impl<const D: usize> Default for Neighbourhood<D> {
     }
 }
 
-impl<const D: usize> Neighbourhood<D> {
+impl<const D: usize> Neighborhood<D> {
     /// Puts all boxes into the grid, if that has not been done in this step. O(boxes).
-    fn bring_up(&mut self, enclosures: &Enclosures<D>) {
+    fn refresh(&mut self, enclosures: &Enclosures<D>) {
         if !std::mem::take(&mut self.is_stale) {
             return;
         }
@@ -146,7 +147,7 @@ impl<const D: usize> Neighbourhood<D> {
         self.reach = enclosures.widest.map(|side| 0.5 * side);
         // Twice as wide as boxes reach: fewer rows take less time than fewer balls save.
         let widths = self.reach.map(|reach| 2.0 * reach);
-        self.grid = Grid::new(&hull(&self.places), self.places.len(), widths);
+        self.grid = Grid::new(&bounding_box(&self.places), self.places.len(), widths);
 
         self.cells.clear();
         self.cells.extend(self.places.iter().map(|&place| self.grid.cell(place) as u32));
@@ -233,7 +234,7 @@ mod tests {
             if substep % 8 == 0 {
                 candidates.enclose(&bodies, &contacts, &ahead);
             } else {
-                candidates.follow(&bodies, &contacts, &ahead);
+                candidates.update(&bodies, &contacts, &ahead);
             }
             followed += u32::from(!candidates.find(&mut engine).unwrap());
 

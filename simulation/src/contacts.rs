@@ -178,9 +178,9 @@ fn contact<const D: usize>(
     Contact { normal, pair, inverse_masses, slack, mass, impulse }
 }
 
-/// The unit vector from the first centre to the second, last 0, and how far apart they are.
+/// The unit vector from the first center to the second, last 0, and how far apart they are.
 ///
-/// Coincident centres have no direction between them; they get an axis by their indices, so that
+/// Coincident centers have no direction between them; they get an axis by their indices, so that
 /// many in one place do not all leave along one line.
 #[inline]
 pub fn normal_and_distance<const D: usize>([a, b]: [u32; 2], places: &[Row]) -> (Row, f32) {

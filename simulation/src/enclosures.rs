@@ -40,7 +40,7 @@ pub struct Ahead<const D: usize> {
 #[derive(Debug)]
 pub struct Enclosures<const D: usize> {
     pub boxes: Vec<Aabb<D>>,
-    /// Between which places the centre has to stay for the ball to be inside its box.
+    /// Between which places the center has to stay for the ball to be inside its box.
     lowest: Vec<[f32; D]>,
     highest: Vec<[f32; D]>,
     /// By axis, at least the greatest side of any box.
@@ -57,8 +57,8 @@ impl<const D: usize> Default for Enclosures<D> {
 }
 
 impl<const D: usize> Enclosures<D> {
-    /// Makes the boxes anew: each of all that a ball sweeps through to the end of the step if
-    /// nothing stops it, and a margin around it. `contacts` are those of the substep before.
+    /// Makes all boxes from scratch. A box holds all that its ball sweeps through to the end of the step
+    /// if nothing stops it, and a margin around that. `contacts` are those of the last substep.
     pub fn enclose_all(&mut self, bodies: &Bodies<D>, contacts: &Contacts, ahead: &Ahead<D>) {
         self.in_touch.clear();
         self.in_touch.resize(bodies.len(), false);

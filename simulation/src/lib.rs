@@ -40,7 +40,7 @@
 //!
 //! Bouncing first and resting afterwards, and going through a heap by height, is the scheme of
 //! Guendelman, Bridson and Fedkiw (2003, "Nonconvex rigid bodies with stacking"). Swept in the order
-//! of their indices instead, ten thousand discs in four substeps sink into each other until centres
+//! of their indices instead, ten thousand discs in four substeps sink into each other until centers
 //! coincide; by height they stack.
 //!
 //! # Why energy cannot grow
@@ -52,7 +52,7 @@
 //!   start is scaled to where it is least along its direction. So the energy falls however few
 //!   sweeps are made.
 //! - A ball that went through a wall is put back with the speed that it had at the wall.
-//! - Moving balls apart about their common centre of mass adds nothing. Pressed against the floor
+//! - Moving balls apart about their common center of mass adds nothing. Pressed against the floor
 //!   it lifts the heap: this is done only as far as the energy that the contacts have just lost.
 //! - What remains are errors of the finite substep, where contacts turn while balls slide over each
 //!   other: a few millionths, which are taken out of all velocities alike.

@@ -7,7 +7,7 @@ use crate::vector::Row;
 /// One row a ball and property.
 #[derive(Debug, Default)]
 pub struct Rows {
-    /// The centre, and last the radius.
+    /// The center, and last the radius.
     pub places: Vec<Row>,
     /// The velocity, and last 0.
     pub velocities: Vec<Row>,

@@ -46,13 +46,13 @@ impl<const D: usize> Scatter<D> {
         let mut chains = Chains { heads: vec![NONE; grid.len()], links: Vec::new() };
         let mut balls: Vec<Ball<D>> = Vec::with_capacity(radii.len());
         for radius in radii {
-            let centre = (0..Self::TRIES)
+            let center = (0..Self::TRIES)
                 .map(|_| self.draw_place(radius, &mut random))
-                .find(|&centre| !self.is_taken(&grid, &chains, &balls, centre, radius))
+                .find(|&center| !self.is_taken(&grid, &chains, &balls, center, radius))
                 .ok_or(SetupError::NoRoom { placed: balls.len() })?;
             let velocity = self.speed.map(|speed| between(&mut random, -speed, speed));
-            chains.insert(grid.cell(centre));
-            balls.push(Ball { centre, radius, velocity });
+            chains.insert(grid.cell(center));
+            balls.push(Ball { center, radius, velocity });
         }
         Ok(balls)
     }
@@ -70,15 +70,15 @@ impl<const D: usize> Scatter<D> {
         grid: &Grid<D>,
         chains: &Chains,
         balls: &[Ball<D>],
-        centre: [f32; D],
+        center: [f32; D],
         radius: f32,
     ) -> bool {
-        // A hair more than the farthest centre of a ball that touches, for sums are rounded.
+        // A hair more than the farthest center of a ball that touches, for sums are rounded.
         let farthest = 1.01 * (radius + self.radii[1]);
-        let near = Aabb::new(centre.map(|at| at - farthest), centre.map(|at| at + farthest));
+        let near = Aabb::new(center.map(|at| at - farthest), center.map(|at| at + farthest));
         let touches = |other: u32| {
             let ball = &balls[other as usize];
-            let apart = difference(ball.centre, centre);
+            let apart = difference(ball.center, center);
             let reach = ball.radius + radius;
             dot(apart, apart) <= reach * reach
         };

@@ -45,7 +45,7 @@ fn fill<const D: usize>() -> f32 {
 /// Balls that fall into a box 10 wide, `y` up, gravity 9.81 downwards.
 ///
 /// They begin in a loose cloud above the floor; the box is as high as the cloud, and no lower
-/// than it is wide. The floor is at 0, the box is centred on the `y` axis. If the cloud were
+/// than it is wide. The floor is at 0, the box is centered on the `y` axis. If the cloud were
 /// higher than 60, all radii are made smaller until it is not.
 ///
 /// # Errors
@@ -154,7 +154,7 @@ mod tests {
         assert_eq!(setup.validate(), Ok(()));
         for (index, a) in setup.balls.iter().enumerate() {
             for b in &setup.balls[..index] {
-                let apart = difference(a.centre, b.centre);
+                let apart = difference(a.center, b.center);
                 assert!(dot(apart, apart) > (a.radius + b.radius) * (a.radius + b.radius));
             }
         }

@@ -7,8 +7,8 @@ use sweep_and_prune::Aabb;
 /// A disc (`D = 2`) or a sphere (`D = 3`) of density 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball<const D: usize> {
-    /// The centre.
-    pub centre: [f32; D],
+    /// The center.
+    pub center: [f32; D],
     /// The radius, [`Setup::LEAST_LENGTH`] to [`Setup::GREATEST_LENGTH`].
     pub radius: f32,
     /// The velocity, in units a second.
@@ -17,8 +17,8 @@ pub struct Ball<const D: usize> {
 
 impl<const D: usize> Ball<D> {
     /// A ball at rest.
-    pub fn at_rest(centre: [f32; D], radius: f32) -> Self {
-        Self { centre, radius, velocity: [0.0; D] }
+    pub fn at_rest(center: [f32; D], radius: f32) -> Self {
+        Self { center, radius, velocity: [0.0; D] }
     }
 }
 
@@ -86,12 +86,12 @@ impl<const D: usize> Setup<D> {
 
     /// Whether a ball is well formed and inside the walls.
     fn admits(&self, ball: &Ball<D>) -> bool {
-        let Ball { centre, radius, velocity } = *ball;
+        let Ball { center, radius, velocity } = *ball;
         (Self::LEAST_LENGTH..=Self::GREATEST_LENGTH).contains(&radius)
             && velocity.into_iter().all(f32::is_finite)
             && (0..D).all(|axis| {
                 let (low, high) = (self.bounds.min[axis] + radius, self.bounds.max[axis] - radius);
-                (low..=high).contains(&centre[axis])
+                (low..=high).contains(&center[axis])
             })
     }
 }
@@ -125,7 +125,7 @@ impl fmt::Display for SetupError {
                 write!(f, "ball {index} is malformed or not inside the walls")
             }
             SetupError::NoRoom { placed } => {
-                write!(f, "no room for more than {placed} balls that do not overlap")
+                write!(f, "only {placed} balls fit without an overlap: use fewer or smaller balls")
             }
         }
     }
@@ -160,8 +160,8 @@ mod tests {
         for bad in [
             Ball { radius: 0.0, ..good },
             Ball { radius: nan, ..good },
-            Ball { centre: [nan, 50.0], ..good },
-            Ball { centre: [50.0, 90.5], ..good },
+            Ball { center: [nan, 50.0], ..good },
+            Ball { center: [50.0, 90.5], ..good },
             Ball { radius: 50.5, ..good },
             Ball { velocity: [f32::INFINITY, 0.0], ..good },
         ] {

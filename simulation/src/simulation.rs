@@ -155,10 +155,10 @@ impl<const D: usize> Simulation<D> {
     pub fn place(
         &mut self,
         index: usize,
-        centre: [f32; D],
+        center: [f32; D],
         velocity: [f32; D],
     ) -> Result<(), SetupError> {
-        let finite = centre.into_iter().chain(velocity).all(f32::is_finite);
+        let finite = center.into_iter().chain(velocity).all(f32::is_finite);
         if index >= self.bodies.len() || !finite {
             return Err(SetupError::Ball { index });
         }
@@ -166,7 +166,7 @@ impl<const D: usize> Simulation<D> {
         let half_kick = self.half_kick();
         for axis in 0..D {
             self.bodies.positions[index][axis] =
-                inside_walls(centre[axis], radius, &self.bounds, axis);
+                inside_walls(center[axis], radius, &self.bounds, axis);
             self.bodies.velocities[index][axis] = velocity[axis] + half_kick[axis];
         }
         self.least_energy = f64::INFINITY;
@@ -196,7 +196,7 @@ impl<const D: usize> Simulation<D> {
         if substep == 0 {
             self.candidates.enclose(&self.bodies, &self.contacts, &ahead);
         } else {
-            self.candidates.follow(&self.bodies, &self.contacts, &ahead);
+            self.candidates.update(&self.bodies, &self.contacts, &ahead);
         }
         let enclosed = now();
 
@@ -378,7 +378,7 @@ impl<const D: usize> Simulation<D> {
         self.bounds
     }
 
-    /// The centres.
+    /// The centers.
     pub fn positions(&self) -> &[[f32; D]] {
         &self.bodies.positions
     }

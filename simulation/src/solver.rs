@@ -139,7 +139,7 @@ fn share_of_least_energy<const D: usize>(bodies: &Bodies<D>, after: &[Row], slac
 
 /// Moves balls that overlap apart, and back inside the walls, without touching velocities.
 ///
-/// The centre of mass of two balls stays where it is, so in uniform gravity moving them apart
+/// The center of mass of two balls stays where it is, so in uniform gravity moving them apart
 /// costs no energy; but moving a heap off the floor lifts it. What that adds must not exceed
 /// `allowance`, per unit of mass: else the balls are moved only that part of the way.
 ///

@@ -82,14 +82,14 @@ pub fn lesser(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// The coordinates over and over again.
+/// The coordinates, repeated to fill the array.
 #[inline]
 pub fn repeated<const D: usize, const N: usize>(vector: [f32; D]) -> [f32; N] {
     from_fn(|i| vector[i % D])
 }
 
-/// The smallest box of all points; of none, it is inverted.
-pub fn hull<const D: usize>(points: &[[f32; D]]) -> Aabb<D> {
+/// The smallest box that holds all points; inverted if there are none.
+pub fn bounding_box<const D: usize>(points: &[[f32; D]]) -> Aabb<D> {
     let (mut min, mut max) = ([f32::INFINITY; BLOCK], [f32::NEG_INFINITY; BLOCK]);
     for block in points.as_flattened().chunks(BLOCK) {
         for (i, &at) in block.iter().enumerate() {

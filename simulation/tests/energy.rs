@@ -89,7 +89,7 @@ fn any_gravity() {
 
 #[test]
 fn box_that_hardly_holds_its_ball() {
-    let balls = vec![Ball { centre: [0.5, 0.5], radius: 0.5, velocity: [1e9, -3.0] }];
+    let balls = vec![Ball { center: [0.5, 0.5], radius: 0.5, velocity: [1e9, -3.0] }];
     let bounds = Aabb::new([0.0, 0.0], [1.0, 1.0]);
     let setup = Setup { balls, bounds, ..scenes::canvas(Vec::new(), [1.0, 1.0]) };
     let mut simulation = Simulation::new(&setup).unwrap();

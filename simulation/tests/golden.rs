@@ -17,7 +17,7 @@ fn hash<const D: usize>(setup: &Setup<D>, steps: u32, choice: BroadPhase) -> u64
 }
 
 /// One line of the file: scene, dimensions, bodies, size, spread, seed, steps, hash.
-fn line_anew(line: &str, choice: BroadPhase) -> String {
+fn computed_line(line: &str, choice: BroadPhase) -> String {
     let fields: Vec<&str> = line.split(' ').collect();
     let [scene, dimensions, bodies, size, spread, seed, steps, _] = fields[..] else {
         panic!("'{line}' has not eight fields")
@@ -41,7 +41,7 @@ fn line_anew(line: &str, choice: BroadPhase) -> String {
 }
 
 fn report(choice: BroadPhase) -> String {
-    GOLDEN.lines().map(|line| line_anew(line, choice) + "\n").collect()
+    GOLDEN.lines().map(|line| computed_line(line, choice) + "\n").collect()
 }
 
 #[test]

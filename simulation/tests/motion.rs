@@ -5,7 +5,7 @@ use sweep_and_prune_simulation::scenes::{self, canvas};
 use sweep_and_prune_simulation::{Ball, Setup, SetupError, Simulation};
 
 fn ball(x: f32, y: f32, radius: f32, velocity: [f32; 2]) -> Ball<2> {
-    Ball { centre: [x, y], radius, velocity }
+    Ball { center: [x, y], radius, velocity }
 }
 
 /// A canvas without gravity or loss.
@@ -46,7 +46,7 @@ fn unequal_discs_bounce_by_their_areas() {
 #[test]
 fn unequal_spheres_bounce_by_their_volumes() {
     let sphere =
-        |x, radius, speed| Ball { centre: [x, 5.0, 5.0], radius, velocity: [speed, 0.0, 0.0] };
+        |x, radius, speed| Ball { center: [x, 5.0, 5.0], radius, velocity: [speed, 0.0, 0.0] };
     let setup = Setup {
         balls: vec![sphere(2.0, 1.0, 3.0), sphere(4.0, 0.5, 0.0)],
         bounds: Aabb::new([0.0; 3], [10.0; 3]),
@@ -90,7 +90,7 @@ fn ball_on_the_floor_stays_there() {
     assert!(simulation.velocities().iter().all(|velocity| velocity[1].abs() < 0.1));
 }
 
-/// Centres in one place have no direction between them; they part all the same.
+/// Centers in one place have no direction between them; they part all the same.
 #[test]
 fn coincident_balls_part() {
     for count in [2, 3, 12] {
@@ -137,7 +137,7 @@ fn momentum_is_kept() {
         let angle = i as f32 * 0.785;
         let place = [300.0 + 90.0 * angle.cos(), 200.0 + 90.0 * angle.sin()];
         let velocity = [-150.0 * angle.cos() + 20.0, -150.0 * angle.sin()];
-        Ball { centre: place, radius: 8.0 + i as f32, velocity }
+        Ball { center: place, radius: 8.0 + i as f32, velocity }
     });
     let setup = Setup { restitution: 0.5, ..frictionless(balls.collect()) };
     let momentum = |simulation: &Simulation<2>| {

@@ -36,7 +36,7 @@ struct Rest {
     kinetic_energy: f64,
     deepest: f32,
     mean: f32,
-    /// The mean height of the centres.
+    /// The mean height of the centers.
     height: f64,
 }
 

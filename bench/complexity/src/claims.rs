@@ -121,7 +121,7 @@ fn endpoint_sweep(sort: Sort) -> Variant {
     Variant { options, claims, space: "n", space_cost: |f| 36.0 * f.n }
 }
 
-/// The claims of the forms that sort anew and sweep one axis.
+/// The claims of the forms that sort in every step and sweep one axis.
 fn one_axis_claims(
     sort: Sort,
     n: fn(&Facts) -> f64,

@@ -169,51 +169,55 @@ const HEAD: &str = "\
 
 <!-- Written by `cargo run --release -p sweep-and-prune-complexity`; do not edit. -->
 
-In operations a step: comparisons and swaps of the sort, box tests, overlaps found or ended on an \
-axis, pairs reported. Everything is O(...).
+Operations in one step: comparisons and swaps of the sort, box tests, overlaps that begin or end \
+on an axis, and reported pairs. Every entry is O(...).
 
 - n: boxes.
-- m: pairs that overlap **on the sweep axis**, whether or not they overlap at all; M: the same, \
+- m: pairs that overlap **on the sweep axis**, whether or not the boxes overlap; M: the same, \
 summed over every axis.
 - s: inversions, the pairs of endpoints whose order changed since the last step; S: the same, \
 summed over every axis.
 - p: pairs, boxes that overlap on every axis.
 
-Average means a world that moves a little from step to step, with the order of the last step kept. \
-m, M, s and S may be anything from 0 to about 2n²; p ≤ m ≤ n(n-1)/2.
+*Average* means a world that moves a little from step to step, with the order of the last step \
+kept. m, M, s and S range from 0 to about 2n²; p ≤ m ≤ n(n-1)/2.
 
 ";
 
 const NOTES: &str = "
-What to know about it:
+What to know about the table:
 
-- No algorithm beats its output: where all boxes overlap there are n(n-1)/2 pairs to report.
-- m is not the number of collisions. In a tower swept from the side every pair overlaps on the \
-axis and none collides; and even a square of constant filling has m near n√n. Only in a long level \
-does m grow as n, and only there is the one-axis sweep as good as its n log n.
-- Every axis at once is only as good as the worst axis: in the same long level nearly half of all \
-pairs overlap on y. What it buys is in its best cases: the swap-driven form on every axis pays for \
-what changes, and a tower at rest costs it n comparisons where the others make n²/2 tests.
-- Insertion sort is O(n + s): no swap in a world at rest, and at worst 2n(n-1), when everything \
-flies past everything. A first step in no order is half as bad: n(n-1), so begin with another sort.
-- Quicksort is never O(n), however well its input is sorted. The standard library's sort and \
-Timsort are, on input that is in order throughout; a few exchanges and it is n log n again, if \
-fewer in practice.
-- Nothing that sorts takes O(1) space: the order is an array of its own, so that the caller's is \
-left alone. Quicksort needs O(log n) more for its stack, merge sort and Timsort O(n) for merging.
-- The forms that keep overlaps keep them in a hash table; that a change of it is O(1) is expected, \
-not certain.
+- No algorithm can be faster than its output: if all boxes overlap, there are n(n-1)/2 pairs to \
+report.
+- m is not the number of collisions. In a tower swept from the side, every pair overlaps on the \
+axis and none collides. Even a square of constant density has m near n√n. Only in a long level \
+does m grow as n, and only there does the one-axis sweep take O(n log n).
+- Sweeping every axis is only as good as the worst axis: in the same long level, nearly half of \
+all pairs overlap on y. Its gain is in its best cases. The swap-driven form on every axis \
+compares all 2n endpoints on each axis, and beyond that it pays only for swaps and for reported \
+pairs. A tower at rest costs it O(n) comparisons, where the others make n²/2 tests.
+- Insertion sort is O(n + s): no swap in a world at rest, and 2n(n-1) at worst, when every box \
+moves past every other. A first step in random order takes half as many, n(n-1): use another \
+sort for it.
+- Quicksort is never O(n), even on sorted input, and O(n²) at worst. The standard library's sort \
+and Timsort are O(n) on sorted input. After a few exchanges they are O(n log n) again, but with \
+fewer operations in practice.
+- No algorithm that sorts takes O(1) space: it sorts an array of its own and leaves the caller's \
+as it is. Quicksort needs O(log n) more for its stack, merge sort and Timsort O(n) for merging.
+- The forms that keep overlaps keep them in a hash table. A change of it is O(1) in expectation, \
+not in the worst case.
 ";
 
 const MEASURED_HEAD: &str = "
-The operations of one step, counted at every power of two in the range. A claim is evaluated on n, \
-m and s counted without the algorithm. *Claimed* and *measured* are slopes of log(operations) over \
-log n; *off* is the slope of log(operations / claim), which is 0 if the growth is exactly as \
-claimed, 0.12 or so if it should have had a factor log n more, and has to stay within ±0.06. \
-*Factor* is (operations / claim) at the largest n; the claim is evaluated with the constants of its \
-terms (a test and an overlap for each m, a comparison and a swap for each s), so where nothing but \
-these is counted it is 1. A range ends at 2^16, or where a step would cost more than 2^28 operations \
-or hold more than 2^22 pairs: what is quadratic stays quadratic, and takes minutes.
+The operations of one step, counted at every power of two in the range. A claim is evaluated on \
+n, m and s, which are counted without the algorithm. *Claimed* and *measured* are slopes of \
+log(operations) over log n; *off* is the slope of log(operations / claim), which is 0 if the \
+growth is exactly as claimed, 0.12 or so if it should have had a factor log n more, and has to \
+stay within ±0.06. *Factor* is (operations / claim) at the largest n; the claim is evaluated \
+with the constants of its terms (a test and an overlap for each m, a comparison and a swap for \
+each s), so where nothing but these is counted it is 1. A range ends at 2^16, or where a step \
+would cost more than 2^28 operations or hold more than 2^22 pairs: what is quadratic stays \
+quadratic, and takes minutes.
 
 | algorithm | case | world | claim | n | operations | claimed | measured | off | factor |
 |---|---|---|---|---|---:|---:|---:|---:|---:|

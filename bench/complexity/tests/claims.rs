@@ -29,7 +29,7 @@ fn no_measured_slope_leaves_what_the_table_claims() {
     let report = Report::new(measured);
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/complexity.md");
     let document = std::fs::read_to_string(path).unwrap();
-    assert!(document.contains(&report.claims_table()), "write docs/complexity.md anew");
+    assert!(document.contains(&report.claims_table()), "regenerate docs/complexity.md");
 }
 
 #[test]

@@ -9,16 +9,16 @@ use crate::{Aabb, Error, Scalar};
 pub enum Axis {
     /// This one, less than the number of dimensions.
     Fixed(usize),
-    /// The longest axis of the scene: from the least minimum to the greatest maximum. One
-    /// outlier decides it. O(n).
+    /// The axis on which the scene is longest, from the smallest min to the largest max. A single
+    /// outlier can decide it. O(n).
     LongestExtent,
-    /// The axis on which the centres have the largest variance. It does not see how large the
-    /// boxes are. O(n).
+    /// The axis on which the centers have the largest variance. It ignores the sizes of the boxes.
+    /// O(n).
     #[default]
     LargestVariance,
-    /// The axis on which the fewest overlaps are to be expected: those among 1,024 boxes drawn by
-    /// a fixed rule, counted exactly, or among all if there are no more. Time and memory do not
-    /// grow with n.
+    /// The axis with the fewest overlaps among a sample of 1,024 boxes, or among all if there are no
+    /// more. A fixed rule draws the sample, and its overlaps are counted exactly. Time and memory do
+    /// not grow with n.
     FewestOverlaps,
 }
 
@@ -27,7 +27,7 @@ impl Axis {
     pub const ALL: [Axis; 4] =
         [Axis::Fixed(0), Axis::LongestExtent, Axis::LargestVariance, Axis::FewestOverlaps];
 
-    /// The name that a person reads.
+    /// The name for readers.
     pub const fn name(self) -> &'static str {
         match self {
             Axis::Fixed(_) => "fixed axis",
@@ -42,7 +42,7 @@ impl Axis {
         Self::ALL.into_iter().find(|axis| axis.name() == name)
     }
 
-    /// The axis for these valid boxes. Of equals the first is taken.
+    /// The axis for these boxes, which must be valid. The first of equal axes wins.
     ///
     /// # Errors
     /// [`Error::InvalidAxis`] if a fixed axis is not below `D`, or if there is none at all.
@@ -96,25 +96,25 @@ fn extents<'a, const D: usize, T: Scalar>(
     })
 }
 
-/// The variance of the centres on each axis, in units of the longest extent, so that neither
-/// huge nor tiny coordinates overflow. Boxes with an infinite edge have no centre and do not
+/// The variance of the centers on each axis, in units of the longest extent, so that neither
+/// huge nor tiny coordinates overflow. Boxes with an infinite edge have no center and do not
 /// count.
 fn variances<'a, const D: usize, T: Scalar>(
     boxes: impl Iterator<Item = &'a Aabb<D, T>> + Clone,
 ) -> [f64; D] {
     let unit = extents(boxes.clone()).into_iter().fold(f64::MIN_POSITIVE, f64::max);
     core::array::from_fn(|axis| {
-        let centres = || {
+        let centers = || {
             boxes
                 .clone()
                 .map(|aabb| {
                     aabb.min[axis].to_f64() / unit * 0.5 + aabb.max[axis].to_f64() / unit * 0.5
                 })
-                .filter(|centre| centre.is_finite())
+                .filter(|center| center.is_finite())
         };
-        let count = centres().count().max(1) as f64;
-        let mean = centres().sum::<f64>() / count;
-        centres().map(|centre| (centre - mean) * (centre - mean)).sum::<f64>() / count
+        let count = centers().count().max(1) as f64;
+        let mean = centers().sum::<f64>() / count;
+        centers().map(|center| (center - mean) * (center - mean)).sum::<f64>() / count
     })
 }
 

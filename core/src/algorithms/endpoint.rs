@@ -1,4 +1,4 @@
-//! The entries that the algorithms sort: endpoints of intervals, in one total order.
+//! What the algorithms sort: endpoints of intervals, in one total order.
 
 use core::cmp::Ordering;
 
@@ -48,8 +48,8 @@ impl<T: Scalar> Endpoint<T> {
 
     /// The total order of endpoints: coordinate, then left before right, then id.
     ///
-    /// No two endpoints are equal in it, so every sort gives the same array, and an array that
-    /// is sorted once is left alone ever after, however many coordinates coincide.
+    /// No two endpoints compare as equal, so every sort gives the same array, and no sort changes a
+    /// sorted array, however many coordinates coincide.
     #[inline]
     pub fn order(&self, other: &Self) -> Ordering {
         self.at.order(other.at).then(self.edge.cmp(&other.edge))

@@ -1,9 +1,9 @@
-//! The endpoint array: two entries a box, kept in step with the boxes.
+//! The endpoint array: two endpoints for each box, updated as the boxes change.
 //!
-//! The article leaves out how ("an implementation detail"). Each entry knows its box and its
-//! side, so new coordinates are read in place, whatever order the entries stand in. Boxes that
-//! went are dropped and the others close ranks; boxes that came are appended. Then the array is
-//! in the last order but for what moved: just what insertion sort wants to find.
+//! The article leaves out how this works ("an implementation detail"). Each endpoint knows its box and
+//! its side, so its coordinate can be refreshed in place, in any order of the array. The endpoints of
+//! removed boxes are dropped, and those of added boxes are appended. So the array keeps the order of
+//! the last sort, and only what moved is out of place: the input on which insertion sort is fast.
 
 use alloc::vec::Vec;
 
@@ -13,7 +13,7 @@ use crate::{Aabb, Scalar};
 /// Endpoints on one axis, in the order of the last sort.
 #[derive(Clone, Debug, Default)]
 pub struct EndpointArray<T> {
-    /// The entries. A sort may reorder them.
+    /// The endpoints. A sort may reorder them.
     pub endpoints: Vec<Endpoint<T>>,
 }
 
@@ -37,12 +37,12 @@ impl<T: Scalar> EndpointArray<T> {
         }
     }
 
-    /// Reads every coordinate anew.
+    /// Refreshes every coordinate from the boxes.
     pub fn refresh<const D: usize>(&mut self, boxes: &[Aabb<D, T>], axis: usize) {
         self.refresh_from(0, boxes, axis);
     }
 
-    /// Reads the coordinates of `endpoints[from..]` anew.
+    /// Refreshes the coordinates of `endpoints[from..]` from the boxes.
     pub fn refresh_from<const D: usize>(&mut self, from: usize, boxes: &[Aabb<D, T>], axis: usize) {
         for endpoint in &mut self.endpoints[from..] {
             let aabb = &boxes[endpoint.edge.id as usize];

@@ -1,14 +1,14 @@
-//! The algorithms of the field, each in its own short file, observable step by step.
+//! The classic algorithms, each in its own short file and observable step by step.
 //!
-//! They are here to be read, compared and shown. To only get the pairs, fast, use
-//! [`find_pairs`](crate::find_pairs).
+//! They are here to be read, compared and shown. If you only need the pairs, use
+//! [`find_pairs`](crate::find_pairs), which is much faster.
 //!
-//! Every algorithm runs over the same boxes through one interface, the [`Runner`], and tells an
-//! [`Observer`] what it does: [`Counts`] counts it, [`Trace`] records it, [`Player`] plays the
-//! recording forward and backward. All agree on what a pair is: closed intervals, each pair once,
-//! the smaller index first.
+//! Every algorithm runs over the same boxes through one interface, the [`Runner`], and reports what
+//! it does to an [`Observer`]: [`Counts`] counts it, [`Trace`] records it, [`Player`] plays the
+//! recording forward and backward. All of them agree on what a pair is: intervals are closed, and
+//! each pair is reported once, smaller index first.
 //!
-//! In the order in which to read them: `pairwise.rs`, `sorted_pairwise.rs`, `endpoint_array.rs`,
+//! Read the files in this order: `pairwise.rs`, `sorted_pairwise.rs`, `endpoint_array.rs`,
 //! `one_to_n.rs`, `endpoint_sweep.rs`, `axis_sweeps.rs`, `swap_sweep.rs`.
 
 mod axis;

@@ -1,27 +1,27 @@
-//! Who watches an algorithm at work, and why two boxes are apart.
+//! The observer of an algorithm at work, and why two boxes are apart.
 
 use super::endpoint::{Edge, Endpoint};
 use crate::{Aabb, Scalar};
 
-/// Sees every step of an algorithm. Each method does nothing unless it is overridden, and `()`
-/// watches nothing and costs nothing.
+/// Receives every operation of an algorithm. Each method does nothing unless it is overridden. `()`
+/// observes nothing and costs nothing.
 ///
 /// The words mean the same for every algorithm:
 /// a *comparison* and a *swap* are the sort's; a *test* is one pair of boxes handed to the box
 /// test; an *axis overlap* is a pair found to overlap on an axis that is swept; an *overlap* is a
-/// pair that overlaps on every axis: what a narrow phase receives, told once a step for each pair
-/// by every algorithm. The two forms that sweep every axis need no box test, so they make none.
+/// pair that overlaps on every axis, which a narrow phase would receive. Every algorithm reports it
+/// once a step for each pair. The two forms that sweep every axis need no box test.
 ///
 /// The events are enough to draw an algorithm at work without knowing the algorithm:
 /// [`Trace`](super::Trace) records them, [`Player`](super::Player) turns them back into a state.
-/// Two observers watch together as a pair, `&mut (counts, trace)`.
+/// A pair of observers is an observer: `&mut (counts, trace)`.
 pub trait Observer {
-    /// Whether anyone is watching. Algorithms skip work that only an observer would see.
+    /// Whether the observer uses any event. If not, algorithms skip work that only it would see.
     const ACTIVE: bool = true;
 
-    /// A step begins, along `axis`. Axis overlaps told in earlier steps still stand if
-    /// `keeps_axis_overlaps` (the persistent swap-driven forms tell only what changes); otherwise
-    /// they are found anew.
+    /// A step begins, along `axis`. If `keeps_axis_overlaps`, the axis overlaps of earlier steps are
+    /// still valid, and only changes are reported (in the persistent swap-driven forms). Otherwise all
+    /// of them are found and reported again.
     #[inline]
     fn step(&mut self, _axis: usize, _keeps_axis_overlaps: bool) {}
 
@@ -60,7 +60,7 @@ pub trait Observer {
     #[inline]
     fn test(&mut self, _a: u32, _b: u32, _separation: Option<Separation>) {}
 
-    /// Two boxes overlap on a swept axis, or from now on do; the smaller index first.
+    /// Two boxes overlap on a swept axis, or begin to; the smaller index first.
     #[inline]
     fn axis_overlap(&mut self, _axis: usize, _a: u32, _b: u32) {}
 
@@ -72,11 +72,11 @@ pub trait Observer {
     #[inline]
     fn overlap(&mut self, _a: u32, _b: u32) {}
 
-    /// A pair that was none after the last step; the smaller index first.
+    /// A pair that did not overlap after the last step begins; the smaller index first.
     #[inline]
     fn begin(&mut self, _a: u32, _b: u32) {}
 
-    /// What was a pair after the last step is none any more; the smaller index first.
+    /// A pair that overlapped after the last step ends; the smaller index first.
     #[inline]
     fn end(&mut self, _a: u32, _b: u32) {}
 }
@@ -85,7 +85,7 @@ impl Observer for () {
     const ACTIVE: bool = false;
 }
 
-/// Two observers watch at once, the first of the pair first.
+/// Both observers receive every event, the first of the pair first.
 impl<A: Observer, B: Observer> Observer for (A, B) {
     const ACTIVE: bool = A::ACTIVE || B::ACTIVE;
 
@@ -198,8 +198,8 @@ impl Separation {
         (first_axis..D).chain(0..first_axis).find_map(|axis| Self::on_axis(boxes, a, b, axis))
     }
 
-    /// As [`find`](Self::find) for two boxes that are known to overlap on `known_axis`: that axis
-    /// is not tried.
+    /// The first axis but `known_axis` that separates two of `boxes`, which are known to overlap on
+    /// `known_axis`.
     #[inline]
     pub(super) fn find_beside<const D: usize, T: Scalar>(
         boxes: &[Aabb<D, T>],

@@ -10,8 +10,8 @@
 //!
 //! The flaw: a box that encloses the focus on the axis has no endpoint in between, and is missed.
 //! The article says that the scan is flawed and hides it by focusing the largest ball. Scanning
-//! from *every* box would mend it, since of two intervals that overlap one has an endpoint within
-//! the other; then most overlaps are found twice. The sweep is the better repair: see
+//! from *every* box would fix it, because one of two overlapping intervals has an endpoint within the
+//! other; but then most overlaps are found twice. The sweep is the better fix: see
 //! `endpoint_sweep.rs`.
 //!
 //! Unlike the article's demo, the endpoints at the focus's own coordinates are in between or not

@@ -1,8 +1,8 @@
 //! Plays a trace forward and backward.
 //!
-//! What an event changes is small and can be undone: a swap is its own inverse, what was put into
-//! a set is taken out again. The few events that overwrite something (a new array, a new step, the
-//! place of the sweep line) leave what they overwrote on a stack for the way back.
+//! What an event changes is small and can be undone: a swap is its own inverse, and what was added to
+//! a set is removed again. The few events that overwrite something (a new array, a new step, the
+//! position of the sweep line) push the old value onto a stack.
 
 use alloc::boxed::Box;
 use alloc::collections::BTreeSet;
@@ -13,7 +13,7 @@ use super::counts::Counts;
 use super::endpoint::{Edge, Endpoint};
 use super::trace::{Event, Trace};
 
-/// What is to be drawn at one moment of a trace.
+/// What to draw at one moment of a trace.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlayerState {
     /// The axis along which the current step sweeps, or sweeps first.
@@ -37,7 +37,7 @@ pub struct PlayerState {
     pub counts: Counts,
 }
 
-/// What an event overwrote and the way back needs.
+/// What an event overwrote, to be restored when it is undone.
 #[derive(Clone, Debug)]
 enum Overwritten {
     Line(Option<(usize, Edge)>),
@@ -83,12 +83,12 @@ impl Player {
         self.changed.len()
     }
 
-    /// What is to be drawn.
+    /// What to draw.
     pub fn state(&self) -> &PlayerState {
         &self.state
     }
 
-    /// The event that was played last: what is to be lit.
+    /// The event that was played last: what to highlight.
     pub fn current(&self) -> Option<Event<'_>> {
         Event::last_of(&self.trace.words()[..self.words]).map(|(event, _)| event)
     }
@@ -110,7 +110,7 @@ impl Player {
         Some(event)
     }
 
-    /// Plays or undoes until so many events have been played, or all there are.
+    /// Plays or undoes events until `position` events have been played, or all of them.
     pub fn seek(&mut self, position: usize) {
         while self.position() < position && self.forward().is_some() {}
         while self.position() > position && self.backward().is_some() {}

@@ -21,21 +21,21 @@ use crate::{Aabb, Error, Scalar};
 pub enum Method {
     /// Global pairwise: every box against every other. Pairs sorted.
     Pairwise,
-    /// Sort by left edge, test each box against those that begin before it ends. Pairs in the
+    /// Sorts by left edge, then tests each box against those that begin before it ends. Pairs in the
     /// order of the sweep.
     SortedPairwise,
     /// The one-to-n scan of the endpoints between this box's own: the pairs of one box, and not
     /// even all of those. It misses boxes that enclose it on the axis.
     OneToN(u32),
-    /// Sweep a line over both endpoints of every box. Pairs in the order of the sweep.
+    /// Sweeps a line over both endpoints of every box. Pairs in the order of the sweep.
     EndpointSweep,
     /// The endpoint sweep on every axis; a pair must be flagged on each. Pairs in the order of the
     /// last sweep.
     AxisSweeps,
-    /// Insertion sort whose swaps tell what begins and ends, on one axis. Pairs in an order that
-    /// depends only on the steps so far.
+    /// Insertion sort on one axis; its swaps show which overlaps begin and end. Pairs in an order
+    /// that depends only on the steps so far.
     SwapSweep,
-    /// The swap-driven form on every axis. Pairs as in `SwapSweep`.
+    /// The swap-driven sweep on every axis. Pairs in an order that depends only on the steps so far.
     AxisSwapSweeps,
 }
 
@@ -50,7 +50,7 @@ impl Method {
         Method::AxisSwapSweeps,
     ];
 
-    /// The name that a person reads.
+    /// The name for readers.
     pub const fn name(self) -> &'static str {
         match self {
             Method::Pairwise => "global pairwise",
@@ -63,13 +63,13 @@ impl Method {
         }
     }
 
-    /// The method of this [`name`](Self::name); the one-to-n scan of box 0.
+    /// The method with this [`name`](Self::name). The one-to-n scan is that of box 0.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().chain([Method::OneToN(0)]).find(|method| method.name() == name)
     }
 
-    /// Whether it keeps endpoints sorted, so that [`Sort`] matters. In the swap-driven forms that
-    /// is how boxes which come are sorted; those which move are always sorted by insertion.
+    /// Whether it keeps endpoints sorted, so that [`Sort`] matters. The swap-driven forms use it to
+    /// sort the boxes that are added; insertion sort always sorts those that move.
     pub const fn sorts(self) -> bool {
         !matches!(self, Method::Pairwise)
     }
@@ -87,11 +87,11 @@ pub struct RunnerOptions {
     pub method: Method,
     /// How it sorts, if it does.
     pub sort: Sort,
-    /// Along which axis it sweeps, chosen anew each step. The persistent swap-driven form starts
-    /// over when the axis changes; what began and ended is told right all the same.
+    /// Along which axis it sweeps, chosen in each step. The persistent swap-driven form starts over
+    /// when the axis changes; the begun and ended pairs are correct all the same.
     pub axis: Axis,
-    /// Whether the state of one step is where the next begins: the order of the endpoints, in the
-    /// swap-driven forms the overlaps too. Only then are begun and ended pairs told.
+    /// Whether each step starts from the state of the last: the order of the endpoints and, in the
+    /// swap-driven forms, the overlaps. Only then are begun and ended pairs reported.
     pub persistent: bool,
 }
 
@@ -142,8 +142,8 @@ pub struct Runner<const D: usize, T = f32> {
     /// The boxes of the last step, ascending, and how those of this step differ.
     ids: Vec<u32>,
     next_ids: Vec<u32>,
-    came: Vec<u32>,
-    went: Vec<u32>,
+    added: Vec<u32>,
+    removed: Vec<u32>,
     state: State<D, T>,
     pairs: Vec<[u32; 2]>,
     /// The pairs of the last step, sorted; of the methods that do not keep them themselves.
@@ -194,8 +194,8 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
             options,
             ids: Vec::new(),
             next_ids: Vec::new(),
-            came: Vec::new(),
-            went: Vec::new(),
+            added: Vec::new(),
+            removed: Vec::new(),
             state: State::new(options.method),
             pairs: Vec::new(),
             last_pairs: Vec::new(),
@@ -221,9 +221,9 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
         }
     }
 
-    /// How many overlaps on the swept axes stand after the last step, for the swap-driven forms,
-    /// which keep them and tell an observer only what changes. The others find all of them anew
-    /// and tell each; for them there is none to ask for.
+    /// How many pairs overlap on the swept axes after the last step, summed over those axes. Only the
+    /// swap-driven forms keep these overlaps and report their changes. The others find and report all
+    /// of them in every step, and return `None` here.
     pub fn kept_axis_overlaps(&self) -> Option<u64> {
         match &self.state {
             State::Swaps(sweep) => Some(sweep.axis_overlaps()),
@@ -231,11 +231,11 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
         }
     }
 
-    /// Finds all overlapping pairs of `boxes`, telling the observer every step.
+    /// Finds all overlapping pairs of `boxes`, and reports every operation to the observer.
     ///
     /// # Errors
-    /// [`Error::InvalidBox`], [`Error::TooManyBoxes`] or [`Error::InvalidAxis`]; then nothing has
-    /// changed.
+    /// [`Error::InvalidBox`], [`Error::TooManyBoxes`] or [`Error::InvalidAxis`]. After an error
+    /// nothing has changed.
     pub fn step<O: Observer>(
         &mut self,
         boxes: &[Aabb<D, T>],
@@ -244,11 +244,11 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
         self.step_where(boxes, |_| true, observer)
     }
 
-    /// As [`step`](Self::step), with only those boxes whose index is `present`. The others are
-    /// holes: their coordinates are not read and need not be valid.
+    /// Finds all overlapping pairs of the boxes whose index is `present`. The others are holes: their
+    /// coordinates are not read and need not be valid.
     ///
     /// # Errors
-    /// As [`step`](Self::step).
+    /// Those of [`step`](Self::step).
     pub fn step_where<O: Observer>(
         &mut self,
         boxes: &[Aabb<D, T>],
@@ -265,19 +265,19 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
         // Nothing can fail from here on.
         let RunnerOptions { method, persistent, .. } = self.options;
         observer.step(axis, persistent && method.keeps_axis_overlaps());
-        self.enrol(axis, observer);
+        self.update_ids(axis, observer);
         self.pairs.clear();
         self.begun.clear();
         self.ended.clear();
         self.find(boxes, axis, observer);
         if persistent {
-            self.tell_changes(observer);
+            self.report_changes(observer);
         }
         Ok(Step { pairs: &self.pairs, begun: &self.begun, ended: &self.ended, axis })
     }
 
-    /// Brings `ids` up to `next_ids`, and finds who came and who went.
-    fn enrol<O: Observer>(&mut self, axis: usize, observer: &mut O) {
+    /// Brings `ids` up to `next_ids`, and finds which boxes were added and removed.
+    fn update_ids<O: Observer>(&mut self, axis: usize, observer: &mut O) {
         if !self.options.persistent {
             self.state.forget(self.options.method);
             self.ids.clear();
@@ -288,24 +288,24 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
             sweep.turn_to(axis, &self.ids, observer);
             self.ids.clear();
         }
-        difference(&self.next_ids, &self.ids, &mut self.came);
-        difference(&self.ids, &self.next_ids, &mut self.went);
+        difference(&self.next_ids, &self.ids, &mut self.added);
+        difference(&self.ids, &self.next_ids, &mut self.removed);
         core::mem::swap(&mut self.ids, &mut self.next_ids);
     }
 
     fn find<O: Observer>(&mut self, boxes: &[Aabb<D, T>], axis: usize, observer: &mut O) {
-        let Self { options, ids, came, went, state, pairs, .. } = self;
+        let Self { options, ids, added, removed, state, pairs, .. } = self;
         let RunnerOptions { method, sort, .. } = *options;
         match state {
             State::Nothing => pairwise_observed(boxes, ids, axis, observer, pairs),
             State::Lefts(lefts) => {
-                lefts.remove(went);
-                lefts.append_lefts(came);
+                lefts.remove(removed);
+                lefts.append_lefts(added);
                 sorted_pairwise(boxes, lefts, axis, sort, observer, pairs);
             }
             State::Endpoints(array, touching) => {
-                array.remove(went);
-                array.append(came);
+                array.remove(removed);
+                array.append(added);
                 if let Method::OneToN(focus) = method {
                     one_to_n(boxes, array, focus, axis, sort, observer, pairs);
                 } else {
@@ -314,23 +314,23 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
             }
             State::Axes(sweeps) => {
                 for array in &mut sweeps.arrays {
-                    array.remove(went);
-                    array.append(came);
+                    array.remove(removed);
+                    array.append(added);
                 }
                 sweeps.find(boxes, axis, sort, observer, pairs);
             }
             State::Swaps(sweep) => {
-                sweep.remove(went, observer);
+                sweep.remove(removed, observer);
                 sweep.move_all(boxes, observer);
-                sweep.insert(boxes, came, sort, observer);
+                sweep.insert(boxes, added, sort, observer);
                 sweep.report(boxes, observer, pairs);
             }
         }
     }
 
-    /// Finds which pairs began and ended. The swap-driven forms know; for the others the pairs of
-    /// two steps are compared.
-    fn tell_changes<O: Observer>(&mut self, observer: &mut O) {
+    /// Finds which pairs began and ended. The swap-driven forms keep track of that; for the others
+    /// the pairs of two steps are compared.
+    fn report_changes<O: Observer>(&mut self, observer: &mut O) {
         if let State::Swaps(sweep) = &mut self.state {
             sweep.changes(&mut self.begun, &mut self.ended);
         } else {
@@ -345,7 +345,7 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
     }
 }
 
-/// What is in `a` and not in `b`, both ascending, into `out`.
+/// Writes what is in `a` and not in `b`, both ascending, into `out`.
 fn difference<V: Copy + Ord>(a: &[V], b: &[V], out: &mut Vec<V>) {
     out.clear();
     if a == b {

@@ -14,7 +14,8 @@
 //!
 //! Unlike the article's listing it sorts an array of its own, not the caller's; the order is
 //! total, so ties stay where they are; the break and the box test share one closed rule; and the
-//! order is kept from call to call, so that insertion sort finds it nearly sorted.
+//! order is kept from call to call, so that insertion sort finds it nearly sorted. A NaN would break
+//! the sort and the early exit; the [`Runner`](super::Runner) refuses it before this code runs.
 
 use alloc::vec::Vec;
 

@@ -7,25 +7,25 @@ use super::endpoint::Endpoint;
 use super::observer::Observer;
 use crate::Scalar;
 
-/// How to sort endpoints. All give the same array: the order is total.
+/// How to sort endpoints. All sorts give the same array, because the order is total.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Sort {
-    /// The standard library's unstable sort, O(n log n). It does not show its moves: the observer
+    /// The standard library's unstable sort, O(n log n). It hides its moves: the observer
     /// sees its comparisons, and afterwards the fewest swaps that have the same effect.
     #[default]
     Standard,
-    /// Quicksort (Hoare 1961) on the middle one of three: O(n log n) expected, O(n²) at worst,
-    /// O(log n) memory.
+    /// Quicksort (Hoare 1961) with the median of three as the pivot. O(n log n) on most inputs, but
+    /// O(n²) at worst: some orders defeat the pivot. O(log n) memory.
     Quicksort,
-    /// Insertion sort: O(n + s) for s inversions, so O(n) when hardly anything has moved and
-    /// n(n-1)/2 swaps on a full reversal. Its swaps are exactly the inversions.
+    /// Insertion sort: O(n + s) for s inversions. That is O(n) if hardly anything has moved, and
+    /// n(n-1)/2 swaps if the order is reversed. It makes exactly one swap for each inversion.
     Insertion,
-    /// Merge sort, top down: O(n log n) always, and O(n) memory. Of each merge the observer sees
-    /// the comparisons, and afterwards the fewest swaps that have the same effect.
+    /// Merge sort, top down: O(n log n) always, and O(n) memory. The observer sees the comparisons of
+    /// each merge, and afterwards the fewest swaps that have the same effect.
     Merge,
-    /// As Timsort (Peters 2002), without its galloping: merge sort that starts from the runs
-    /// which the array already has, short ones completed by insertion. O(n + n log r) for r runs:
-    /// O(n) when sorted or reversed, O(n log n) at worst. O(n) memory.
+    /// Timsort (Peters 2002) without galloping: a merge sort that starts from the sorted runs that
+    /// the array already has. Insertion sort extends short runs. O(n + n log r) for r runs: O(n) if
+    /// the array is sorted or reversed, O(n log n) at worst. O(n) memory.
     Timsort,
 }
 
@@ -50,7 +50,7 @@ impl Sort {
         Self::ALL.into_iter().find(|sort| sort.name() == name)
     }
 
-    /// Sorts `endpoints[from..]` in place. Positions are told as those of the whole array.
+    /// Sorts `endpoints[from..]` in place. Reported positions are those of the whole array.
     pub(super) fn sort_tail<T: Scalar, O: Observer>(
         self,
         endpoints: &mut [Endpoint<T>],
@@ -97,8 +97,8 @@ fn swap<T: Scalar, O: Observer>(
     endpoints.swap(i, j);
 }
 
-/// The article's loop: carry each endpoint left, swap by swap, to where it belongs. The first
-/// `sorted >= 1` endpoints are in order already.
+/// The article's loop: carries each endpoint left, swap by swap, to its place. The first
+/// `sorted >= 1` endpoints are already in order.
 fn insertion<T: Scalar, O: Observer>(
     endpoints: &mut [Endpoint<T>],
     sorted: usize,
@@ -115,12 +115,12 @@ fn insertion<T: Scalar, O: Observer>(
     }
 }
 
-/// Below this many endpoints quicksort leaves the rest to insertion sort, and Timsort's runs are
-/// at least so long.
+/// Quicksort leaves parts of at most this many endpoints to insertion sort. Timsort's runs are at
+/// least this long.
 const SMALL: usize = 8;
 
-/// Partition about the median of first, middle and last; recurse into the smaller part and go on
-/// with the larger, so that the stack stays O(log n) deep.
+/// Partitions around the median of the first, the middle and the last. It recurses into the smaller
+/// part and loops over the larger, so that the stack stays O(log n) deep.
 fn quicksort<T: Scalar, O: Observer>(
     mut endpoints: &mut [Endpoint<T>],
     mut offset: usize,
@@ -140,8 +140,8 @@ fn quicksort<T: Scalar, O: Observer>(
     insertion(endpoints, 1, offset, observer);
 }
 
-/// Hoare's partition. Returns `middle` with `0 < middle < len`: nothing in `..middle` stands
-/// after anything in `middle..`.
+/// Hoare's partition. Returns `middle` with `0 < middle < len`: everything in `..middle` precedes
+/// everything in `middle..`.
 fn partition<T: Scalar, O: Observer>(
     endpoints: &mut [Endpoint<T>],
     offset: usize,
@@ -172,7 +172,7 @@ fn partition<T: Scalar, O: Observer>(
     }
 }
 
-/// Sort each half, then merge them.
+/// Sorts each half, then merges them.
 fn merge_sort<T: Scalar, O: Observer>(
     endpoints: &mut [Endpoint<T>],
     offset: usize,
@@ -208,10 +208,11 @@ pub(super) fn merge<T: Scalar, O: Observer>(
         }
         *source += 1;
     }
-    tell_swaps(before, target, offset, observer);
+    report_swaps(before, target, offset, observer);
 }
 
-/// Cut the array into the runs it has, and merge neighbours so that their lengths stay balanced.
+/// Splits the array into the sorted runs that it has, and merges neighbors so that their lengths stay
+/// balanced.
 fn timsort<T: Scalar, O: Observer>(endpoints: &mut [Endpoint<T>], offset: usize, observer: &mut O) {
     // The lengths of the sorted runs that `endpoints[..end]` consists of.
     let mut runs: Vec<usize> = Vec::new();
@@ -233,7 +234,7 @@ fn timsort<T: Scalar, O: Observer>(endpoints: &mut [Endpoint<T>], offset: usize,
     }
 }
 
-/// The length of the run that the slice begins with; one that goes down is turned round.
+/// The length of the run at the start of the slice. A descending run is reversed.
 fn natural_run<T: Scalar, O: Observer>(
     endpoints: &mut [Endpoint<T>],
     offset: usize,
@@ -256,8 +257,7 @@ fn natural_run<T: Scalar, O: Observer>(
     run
 }
 
-/// The run to merge with the one after it, so that from the end backward each is longer than the
-/// next two together.
+/// The run to merge with the next one, until each run is longer than the next two together.
 fn unbalanced(runs: &[usize]) -> Option<usize> {
     let short = |k: usize| runs[k] <= runs[k + 1] + runs.get(k + 2).copied().unwrap_or(0);
     let last = runs.len().checked_sub(2)?;
@@ -300,12 +300,12 @@ fn standard<T: Scalar, O: Observer>(
     for (place, &i) in by_order.iter().enumerate() {
         target[i] = place;
     }
-    tell_swaps(before, target, offset, observer);
+    report_swaps(before, target, offset, observer);
 }
 
-/// Tells the observer the fewest swaps that bring each `array[i]` to `target[i]`: one cycle of
-/// the permutation after another.
-fn tell_swaps<T: Scalar, O: Observer>(
+/// Reports the fewest swaps that bring each `array[i]` to `target[i]`: one cycle of the permutation
+/// after another.
+fn report_swaps<T: Scalar, O: Observer>(
     mut array: Vec<Endpoint<T>>,
     mut target: Vec<usize>,
     offset: usize,
@@ -326,12 +326,16 @@ mod tests {
     use crate::algorithms::{Counts, Edge};
     use proptest::prelude::*;
 
-    /// Follows the swaps on a copy of the array.
+    /// Repeats the reported swaps on a copy of the array.
     struct Mirror(Vec<Edge>);
 
     impl Observer for Mirror {
         fn swap(&mut self, [i, j]: [usize; 2], a: Edge, b: Edge) {
-            assert_eq!([self.0[i], self.0[j]], [a, b], "what is told to stand there does");
+            assert_eq!(
+                [self.0[i], self.0[j]],
+                [a, b],
+                "the reported endpoints are at the reported positions"
+            );
             self.0.swap(i, j);
         }
     }
@@ -356,7 +360,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_sort_gives_the_one_order_and_tells_how(
+        fn every_sort_gives_the_same_order_and_reports_its_swaps(
             coordinates in proptest::collection::vec(-3i8..4, 0..200),
             from in 0usize..20,
         ) {
@@ -369,8 +373,8 @@ mod tests {
                 let mut mirror = Mirror(array.iter().map(|e| e.edge).collect());
                 sort.sort_tail(&mut sorted, from, &mut mirror);
                 prop_assert_eq!(&sorted, &expected, "{}", sort.name());
-                let told: Vec<Edge> = expected.iter().map(|e| e.edge).collect();
-                prop_assert_eq!(mirror.0, told, "{}", sort.name());
+                let reported: Vec<Edge> = expected.iter().map(|e| e.edge).collect();
+                prop_assert_eq!(mirror.0, reported, "{}", sort.name());
                 let mut unobserved = array.clone();
                 sort.sort_tail(&mut unobserved, from, &mut ());
                 prop_assert_eq!(&unobserved, &expected, "{}", sort.name());

@@ -1,37 +1,39 @@
-//! The swap-driven sweep, the article's final form: insertion sort, and whoever watches its swaps
-//! knows every overlap. On one axis, or on every axis at once.
+//! The swap-driven sweep, the article's final form: each swap of insertion sort shows that an overlap
+//! begins or ends. On one axis, or on every axis at once.
 //!
 //! ```text
 //! for i in 1..len                                    insertion sort of last step's endpoints
 //!     for j in i-1 down to 0
 //!         if not endpoints[j+1] < endpoints[j]: break
 //!         swap endpoints[j], endpoints[j+1]
-//!         what was  )(  and is  ()  :  the two boxes begin to overlap on this axis
-//!         what was  ()  and is  )(  :  the two boxes cease to
-//!         ((  and  ))               :  nothing
+//!         )( becomes ()  :  the two boxes begin to overlap on this axis
+//!         () becomes )(  :  the two boxes cease to overlap on this axis
+//!         (( and ))      :  nothing
 //! ```
 //!
-//! A right endpoint carried left is a small sweep line of its own: each left endpoint that it
-//! passes ceases to overlap its box, and a left endpoint carried left begins to overlap each box
-//! whose right endpoint it passes.
+//! When a right endpoint moves left, its box ceases to overlap each box whose left endpoint it
+//! passes. When a left endpoint moves left, its box begins to overlap each box whose right endpoint
+//! it passes.
 //!
-//! Time: O(n + s) for s swaps, which are exactly the inversions: none in a world at rest, a few
-//! when it moves a little, at worst 2n(n-1): a full reversal of the 2n endpoints, n(2n-1), but for
-//! the n pairs that belong to one box, which never change places. On one axis the pairs that
-//! overlap there are then tested on the others, O(m); on every axis a pair must be flagged on
-//! each, and nothing is tested. The pairs are kept in a hash table, so a change of them is
-//! expected O(1). Memory: O(n + m), m the overlaps on *all* swept axes.
+//! Time of an update: O(n + s + m) on each axis. All 2n endpoints are refreshed and compared, also
+//! those of boxes that rest: O(n). There are s swaps, exactly one for each inversion: none in a world
+//! at rest, a few if it moves a little, and at worst 2n(n-1). (A full reversal of 2n endpoints has
+//! n(2n-1) inversions, and the n pairs of endpoints of one box never swap.) At the end all m stored
+//! overlaps are listed. On one axis each of them is tested on the other axes. On every axis a pair
+//! must be flagged on each, and no box is tested. The pairs are kept in a hash table, so that a change
+//! takes expected O(1). Memory: O(n + m), where m is the number of overlaps on *all* swept axes.
 //!
 //! What differs from the article, and why:
 //! - It must start from what overlaps. The article's listing, run on endpoints that were sorted
-//!   first, never sees the overlaps that exist at the start. Here boxes come in bulk: their
-//!   endpoints are sorted, merged in, and one sweep finds what they overlap. The first step is
-//!   the case of an empty array. To leave is the same backward.
+//!   first, never sees the overlaps that exist at the start. Here boxes are added in bulk: their
+//!   endpoints are sorted and merged in, and one sweep finds what they overlap. The first step adds
+//!   boxes to an empty array. Removing boxes works the same way.
 //! - The order is total. With the article's strict `<`, equal coordinates swap in every step:
 //!   touching boxes flicker, and a flat box begins to overlap itself.
-//! - The pairs have one key, smaller id first, however the two met.
-//! - `begun` and `ended` are net. A body thrown past k others makes up to 4k swaps and no pair,
-//!   because what begins and ends within one update cancels.
+//! - A pair has one key, smaller id first, whichever box reached the other.
+//! - `begun` and `ended` are net. A box that teleports past k others makes up to 4k swaps and, on this
+//!   axis, k overlaps that begin and end: 2k events within one update. They cancel, so it reports no
+//!   pair.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -44,9 +46,9 @@ use super::sorts::{Sort, merge};
 use super::touching::Touching;
 use crate::{Aabb, Scalar};
 
-/// Endpoints and overlaps that live from step to step. A step is: [`remove`](Self::remove) who
-/// went, [`move_all`](Self::move_all), [`insert`](Self::insert) who came, then
-/// [`report`](Self::report).
+/// Endpoints and overlaps that persist from step to step. A step consists of
+/// [`remove`](Self::remove), [`move_all`](Self::move_all), [`insert`](Self::insert) and
+/// [`report`](Self::report), in this order.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SwapSweep<T> {
     /// The axes that are swept, each with its sorted endpoints.
@@ -65,15 +67,15 @@ impl<T: Scalar> SwapSweep<T> {
         Self { sweeps: vec![(axis, EndpointArray::default())], ..Self::default() }
     }
 
-    /// No boxes yet, and all of so many axes to sweep.
+    /// No boxes yet, and all `dimensions` axes to sweep.
     pub fn on_every_axis(dimensions: usize) -> Self {
         let sweeps = (0..dimensions).map(|axis| (axis, EndpointArray::default())).collect();
         let overlaps = Overlaps { axes: dimensions, ..Overlaps::default() };
         Self { sweeps, every_axis: true, overlaps, ..Self::default() }
     }
 
-    /// Goes on along another axis, for the form that sweeps one: forgets the endpoints and ends
-    /// every overlap. What is inserted again and overlaps as before is no change.
+    /// Changes the axis of the form that sweeps one: removes all boxes, which ends every overlap. A
+    /// pair that overlaps again once its boxes are inserted is not a change.
     pub fn turn_to<O: Observer>(&mut self, axis: usize, ids: &[u32], observer: &mut O) {
         self.remove(ids, observer);
         self.sweeps[0].0 = axis;
@@ -101,7 +103,8 @@ impl<T: Scalar> SwapSweep<T> {
         }
     }
 
-    /// Reads the boxes anew and lets the swaps of insertion sort tell what changed. O(n + swaps).
+    /// Refreshes all endpoints and sorts them; the swaps show which overlaps begin and end.
+    /// O(n + swaps).
     pub fn move_all<const D: usize, O: Observer>(
         &mut self,
         boxes: &[Aabb<D, T>],
@@ -110,8 +113,8 @@ impl<T: Scalar> SwapSweep<T> {
         for (axis, array) in &mut self.sweeps {
             array.refresh(boxes, *axis);
             observer.array(*axis, &array.endpoints);
-            let mut watch = Watch { axis: *axis, overlaps: &mut self.overlaps, observer };
-            Sort::Insertion.sort(&mut array.endpoints, &mut watch);
+            let mut swaps = SwapObserver { axis: *axis, overlaps: &mut self.overlaps, observer };
+            Sort::Insertion.sort(&mut array.endpoints, &mut swaps);
         }
     }
 
@@ -183,8 +186,8 @@ impl<T: Scalar> SwapSweep<T> {
         changed.clear();
     }
 
-    /// Sweeps the sorted endpoints of axis number `k` and calls `meet` for each pair that
-    /// overlaps there and has a box among the `ids`. Those that have none are not even looked at.
+    /// Sweeps the sorted endpoints of axis number `k` and calls `meet` for each pair that overlaps
+    /// there and has a box among the `ids`. Other pairs cost nothing.
     fn sweep_marked<O: Observer>(
         &mut self,
         k: usize,
@@ -194,10 +197,10 @@ impl<T: Scalar> SwapSweep<T> {
     ) {
         let Self { sweeps, overlaps, staying, marked, .. } = self;
         let (axis, array) = &sweeps[k];
-        let everyone = ids.len() * 2 == array.endpoints.len();
+        let are_all_marked = ids.len() * 2 == array.endpoints.len();
         for (position, endpoint) in array.endpoints.iter().enumerate() {
             let Edge { side, id } = endpoint.edge;
-            let is_marked = everyone || ids.binary_search(&id).is_ok();
+            let is_marked = are_all_marked || ids.binary_search(&id).is_ok();
             observer.visit(position, endpoint.edge);
             if side == Side::Right {
                 if is_marked {
@@ -235,14 +238,15 @@ impl<T: Scalar> SwapSweep<T> {
     }
 }
 
-/// Watches insertion sort and draws the conclusions; hands everything on to the observer.
-struct Watch<'a, O> {
+/// Turns the swaps of insertion sort into overlaps that begin and end, and passes everything on to
+/// the observer.
+struct SwapObserver<'a, O> {
     axis: usize,
     overlaps: &'a mut Overlaps,
     observer: &'a mut O,
 }
 
-impl<O: Observer> Observer for Watch<'_, O> {
+impl<O: Observer> Observer for SwapObserver<'_, O> {
     #[inline]
     fn compare(&mut self, a: Edge, b: Edge) {
         self.observer.compare(a, b);

@@ -7,8 +7,8 @@ use alloc::vec::Vec;
 #[derive(Clone, Debug, Default)]
 pub struct Touching {
     ids: Vec<u32>,
-    /// Where in `ids` a box stands, by its id; meaningless for those that are not in it.
-    places: Vec<u32>,
+    /// By id, the position of the box in `ids`; meaningless for boxes that are not in it.
+    positions: Vec<u32>,
 }
 
 impl Touching {
@@ -21,25 +21,25 @@ impl Touching {
     /// Adds a box that is not in it.
     #[inline]
     pub fn add(&mut self, id: u32) {
-        if self.places.len() <= id as usize {
-            self.places.resize(id as usize + 1, 0);
+        if self.positions.len() <= id as usize {
+            self.positions.resize(id as usize + 1, 0);
         }
-        self.places[id as usize] = self.ids.len() as u32;
+        self.positions[id as usize] = self.ids.len() as u32;
         self.ids.push(id);
     }
 
-    /// Removes a box that is in it; the last one takes its place.
+    /// Removes a box that is in it; the last one moves to its position.
     #[inline]
     pub fn remove(&mut self, id: u32) {
-        let place = self.places[id as usize];
-        self.ids.swap_remove(place as usize);
-        if let Some(&moved) = self.ids.get(place as usize) {
-            self.places[moved as usize] = place;
+        let position = self.positions[id as usize];
+        self.ids.swap_remove(position as usize);
+        if let Some(&moved) = self.ids.get(position as usize) {
+            self.positions[moved as usize] = position;
         }
     }
 
     /// The memory it holds.
     pub fn bytes(&self) -> usize {
-        (self.ids.capacity() + self.places.capacity()) * size_of::<u32>()
+        (self.ids.capacity() + self.positions.capacity()) * size_of::<u32>()
     }
 }

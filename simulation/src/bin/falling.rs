@@ -106,7 +106,7 @@ fn progress_bar(steps: u32, message: &str) -> ProgressBar {
     progress.with_style(style.expect("the template is well formed"))
 }
 
-/// The same boxes given to each contender, several times.
+/// Counts and times of several ways to find the pairs of the same boxes.
 #[derive(Default)]
 struct Comparison {
     samples: u64,
@@ -119,7 +119,7 @@ struct Comparison {
 }
 
 impl Comparison {
-    /// Compares the pairs of all contenders, then counts and times them.
+    /// Checks that all algorithms find the same pairs, then counts and times them.
     fn sample<const D: usize>(
         &mut self,
         boxes: &[Aabb<D>],
@@ -129,7 +129,7 @@ impl Comparison {
         let mut sweep = runner(Method::SortedPairwise);
         let mut finder = PairFinder::new();
 
-        // Unmeasured: the first run makes room.
+        // Not measured: the first run allocates memory.
         let expected = sorted(finder.find(boxes)?);
         let mut counts = Counts::default();
         let swept = sorted(sweep.step(boxes, &mut counts)?.pairs);
@@ -138,7 +138,7 @@ impl Comparison {
         let forced = brute.step(boxes, &mut ())?.pairs;
         let forced_ms = now() - start;
         if sorted(forced) != expected || swept != expected {
-            return Err("the contenders disagree on the pairs; this is a bug".into());
+            return Err("the algorithms disagree on the pairs; this is a bug".into());
         }
 
         self.samples += 1;

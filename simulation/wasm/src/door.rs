@@ -225,7 +225,7 @@ impl Start {
             (2, 2) => {
                 let (rows, _) = balls.as_chunks::<5>();
                 let ball = |&[x, y, radius, vx, vy]: &[f32; 5]| Ball {
-                    centre: [x, y],
+                    center: [x, y],
                     radius,
                     velocity: [vx, vy],
                 };
