@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use sweep_and_prune::{Aabb, BroadPhase, Cast, Error, Filter, ProxyId, Scalar};
+use sweep_and_prune::{BroadPhase, Cast, Error, Filter, ProxyId, Scalar};
 
 use crate::Id;
 use crate::rows::{aabb, point};
@@ -56,6 +56,7 @@ impl<I: Id> Answer<I> {
         self.ends.clear();
     }
 
+    #[inline(never)]
     fn push(&mut self, id: ProxyId, value: f64) {
         self.ids.push(I::from_proxy(id));
         self.values.push(value);
@@ -75,50 +76,43 @@ pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
     answer: &mut Answer<I>,
 ) -> Result<(), Error> {
     answer.clear();
-    let rows = numbers.chunks_exact(query.width(D));
+    let rows = Rows { numbers, width: query.width(D) };
     let queries = world.queries();
     // These words stand for a query without a filter, which finds all bodies.
     let queries = if filter == Filter::ALL { queries } else { queries.with_filter(filter) };
     let lists = match query {
-        Query::Overlapping => {
-            let boxes: Vec<Aabb<D, T>> = rows.map(aabb).collect();
-            queries.overlapping_many(&boxes)?
-        }
-        Query::Containing => {
-            let points: Vec<[T; D]> = rows.map(point).collect();
-            queries.containing_many(&points)?
-        }
-        Query::Within => {
-            let sphere = |row: &[f64]| (point(row), T::from_f64(row[D]));
-            let spheres: Vec<([T; D], T)> = rows.map(sphere).collect();
-            queries.within_many(&spheres)?
-        }
+        Query::Overlapping => queries.overlapping_many(&rows.read(aabb::<D, T, f64>))?,
+        Query::Containing => queries.containing_many(&rows.read(point::<D, T, f64>))?,
+        Query::Within => queries.within_many(&rows.read(sphere::<D, T>))?,
         Query::Cast => {
-            let casts: Vec<Cast<D, T>> = rows.map(cast).collect();
-            for hit in queries.cast_many(&casts)? {
-                hit.into_iter().for_each(|hit| answer.push(hit.id, hit.at));
+            for hit in queries.cast_many(&rows.read(cast::<D, T>))? {
+                if let Some(hit) = hit {
+                    answer.push(hit.id, hit.at);
+                }
                 answer.end();
             }
             return Ok(());
         }
         Query::CastAll => {
-            for (index, row) in rows.enumerate() {
-                let hits = queries.cast_all(&cast(row));
-                let hits = hits.map_err(|error| match error {
+            for (index, cast) in rows.read(cast::<D, T>).iter().enumerate() {
+                let hits = queries.cast_all(cast).map_err(|error| match error {
                     Error::InvalidQuery { argument, value, .. } => {
                         Error::InvalidQuery { index, argument, value }
                     }
                     error => error,
                 })?;
-                hits.into_iter().for_each(|hit| answer.push(hit.id, hit.at));
+                for hit in hits {
+                    answer.push(hit.id, hit.at);
+                }
                 answer.end();
             }
             return Ok(());
         }
         Query::Nearest(k) => {
-            let points: Vec<[T; D]> = rows.map(point).collect();
-            let nearest = queries.nearest_many(&points, k)?;
-            nearest.values().iter().for_each(|near| answer.push(near.id, near.distance_squared));
+            let nearest = queries.nearest_many(&rows.read(point::<D, T, f64>), k)?;
+            for near in nearest.values() {
+                answer.push(near.id, near.distance_squared);
+            }
             answer.ends.extend_from_slice(nearest.ends());
             return Ok(());
         }
@@ -126,6 +120,25 @@ pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
     answer.ids.extend(lists.values().iter().map(|&id| I::from_proxy(id)));
     answer.ends.extend_from_slice(lists.ends());
     Ok(())
+}
+
+/// The numbers of queries, so many for each.
+struct Rows<'a> {
+    numbers: &'a [f64],
+    width: usize,
+}
+
+impl Rows<'_> {
+    /// Not inline, and with a function pointer: a WebAssembly file has this for each type of box.
+    #[inline(never)]
+    fn read<Q>(&self, make: fn(&[f64]) -> Q) -> Vec<Q> {
+        let count = self.numbers.len() / self.width;
+        (0..count).map(|index| make(&self.numbers[index * self.width..])).collect()
+    }
+}
+
+fn sphere<const D: usize, T: Scalar>(row: &[f64]) -> ([T; D], T) {
+    (point(row), T::from_f64(row[D]))
 }
 
 fn cast<const D: usize, T: Scalar>(row: &[f64]) -> Cast<D, T> {

@@ -1,33 +1,34 @@
+import { describe } from "./arguments.js";
 import { unguard } from "./views.js";
 
 /** 1, 2 or 3. */
 export type Dimensions = 1 | 2 | 3;
 
 /**
- * Boxes, one row after another: the least corner and then the greatest, so
- * `minX, minY, maxX, maxY` in 2D.
+ * Boxes, one row after another: the min corner and then the max corner, so `minX, minY, maxX, maxY`
+ * in 2D.
  *
  * Coordinates are compared exactly as given: `Float32Array` in single, `Float64Array` in double
- * precision. Plain arrays, of numbers or of {@link BoxObject | boxes}, are the slower door: each
- * number is looked up, checked and copied to a `Float64Array` at each call.
+ * precision. Plain arrays, of numbers or of {@link BoxObject | boxes}, are slower: each call reads
+ * every number, checks it and copies it to a `Float64Array`.
  */
 export type Boxes = Float32Array | Float64Array | readonly number[] | readonly BoxObject[];
 
 /**
- * A box as other libraries have it: `{ minX, minY, maxX, maxY }` as rbush, with `minZ` and `maxZ` in
- * space; `{ min, max }` as the `Box2` and `Box3` of three.js and the bounds of matter;
- * `{ lowerBound, upperBound }` as cannon and planck; a row of numbers as box-intersect. What else
- * the object holds is not looked at.
+ * A box in the form of another library: `{ minX, minY, maxX, maxY }` of rbush, with `minZ` and
+ * `maxZ` in 3D; `{ min, max }` of the `Box2` and `Box3` of three.js and the bounds of matter;
+ * `{ lowerBound, upperBound }` of cannon and planck; a row of numbers as in box-intersect. Other
+ * properties of the object are ignored.
  */
 export type BoxObject = EdgesBox | MinMaxBox | BoundsBox | readonly number[];
 
-/** A box by its edges, as rbush has it. */
+/** A box by its edges, as in rbush. */
 export interface EdgesBox {
-  /** The least x. */
+  /** The smallest x. */
   readonly minX: number;
-  /** The least y, in the plane and in space. */
+  /** The smallest y, in 2D and 3D. */
   readonly minY?: number;
-  /** The least z, in space. */
+  /** The smallest z, in 3D. */
   readonly minZ?: number;
   /** The greatest x. */
   readonly maxX: number;
@@ -37,19 +38,19 @@ export interface EdgesBox {
   readonly maxZ?: number;
 }
 
-/** A box by its corners, as three.js and matter have it. */
+/** A box by its corners, as in three.js and matter. */
 export interface MinMaxBox {
-  /** The least corner. */
+  /** The min corner. */
   readonly min: Corner;
-  /** The greatest corner. */
+  /** The max corner. */
   readonly max: Corner;
 }
 
-/** A box by its corners, as cannon and planck have it. */
+/** A box by its corners, as in cannon and planck. */
 export interface BoundsBox {
-  /** The least corner. */
+  /** The min corner. */
   readonly lowerBound: Corner;
-  /** The greatest corner. */
+  /** The max corner. */
   readonly upperBound: Corner;
 }
 
@@ -57,29 +58,30 @@ export interface BoundsBox {
 export interface Corner {
   /** The first coordinate. */
   readonly x: number;
-  /** The second, in the plane and in space. */
+  /** The second, in 2D and 3D. */
   readonly y?: number;
-  /** The third, in space. */
+  /** The third, in 3D. */
   readonly z?: number;
 }
 
 /** @internal The dimensions, checked. */
 export function checkDimensions(dimensions: unknown): Dimensions {
   if (dimensions === 1 || dimensions === 2 || dimensions === 3) return dimensions;
-  throw new RangeError(`dimensions must be 1, 2 or 3, not ${String(dimensions)}`);
+  throw new RangeError(`\`dimensions\` must be 1, 2 or 3, not ${describe(dimensions)}`);
 }
 
-/** @internal How many dimensions boxes have that are objects, by the first of them. */
+/** @internal How many dimensions boxes have that are objects: those of the first; `undefined` for flat arrays. */
 export function dimensionsOf(boxes: unknown): Dimensions | undefined {
   const first: unknown = Array.isArray(boxes) ? boxes[0] : undefined;
   if (Array.isArray(first)) return checkDimensions(first.length / 2);
   if (typeof first !== "object" || first === null) return undefined;
   const form = formOf(first);
-  const has = (axis: number): boolean => form !== undefined && read(first, form, 0, axis) !== undefined;
+  if (!form) refuseObject(first, "boxes[0]");
+  const has = (axis: number): boolean => read(first, form, 0, axis) !== undefined;
   return has(2) ? 3 : has(1) ? 2 : has(0) ? 1 : undefined;
 }
 
-/** @internal The boxes as a typed array of whole rows. Their coordinates are not looked at. */
+/** @internal The boxes as a typed array of whole rows. Their coordinates are not checked. */
 export function checkBoxes(boxes: unknown, dimensions: Dimensions, name = "boxes"): Float32Array | Float64Array {
   if (Array.isArray(boxes) && typeof boxes[0] === "object") return fromObjects(boxes, dimensions, name);
   const rows = checkNumbers(boxes, name);
@@ -87,7 +89,7 @@ export function checkBoxes(boxes: unknown, dimensions: Dimensions, name = "boxes
   if (rows.length % width !== 0) {
     throw new RangeError(
       `${name} holds ${rows.length} numbers, which is not a multiple of ${width}: ` +
-        `a box in ${dimensions}D is ${dimensions} of its least and ${dimensions} of its greatest corner`,
+        `a box in ${dimensions}D is the ${dimensions} of its min corner and the ${dimensions} of its max corner`,
     );
   }
   return rows;
@@ -97,15 +99,15 @@ export function checkBoxes(boxes: unknown, dimensions: Dimensions, name = "boxes
 export function checkNumbers(values: unknown, name: string): Float32Array | Float64Array {
   const numbers = Array.isArray(values) ? fromNumbers(values, name) : unguard(values);
   if (!isFloatArray(numbers)) {
-    throw new TypeError(`${name} must be a Float32Array, a Float64Array or a plain array, not ${describe(values)}`);
+    throw new TypeError(`\`${name}\` must be a Float32Array, a Float64Array or a plain array, not ${describe(values)}`);
   }
   if (numbers.length === 0) refuseDetached(numbers, name);
   return numbers;
 }
 
 /**
- * @internal Writes rows of boxes to memory that has at least as many dimensions; the boxes are flat
- * on those that are added.
+ * @internal Writes rows of boxes to memory that has at least as many dimensions. The boxes are flat
+ * on the axes that are added.
  */
 export function writeRows(
   rows: Float32Array | Float64Array,
@@ -135,7 +137,7 @@ function fromNumbers(numbers: readonly unknown[], name: string): Float64Array {
   return rows;
 }
 
-/** The names of a box's two corners and, unless it is a row of numbers, of their coordinates. */
+/** The names of a box's two corners, and whether these are objects (`min.x`) or prefixes (`minX`). */
 type Form = readonly [readonly [string, string], nested: boolean];
 
 const forms: readonly Form[] = [
@@ -145,10 +147,10 @@ const forms: readonly Form[] = [
 ];
 
 function formOf(box: object): Form | undefined {
-  return forms.find(([[least], nested]) => (nested ? least : "minX") in box);
+  return forms.find(([[min], nested]) => (nested ? min : "minX") in box);
 }
 
-/** A coordinate of the corner 0 or 1 of a box; anything if it is none. */
+/** A coordinate of corner 0 or 1 of a box; the caller checks that it is a number. */
 function read(box: object, [corners, nested]: Form, corner: 0 | 1, axis: number): unknown {
   const name = corners[corner];
   const [from, key] = nested
@@ -164,11 +166,7 @@ function fromObjects(boxes: readonly unknown[], dimensions: Dimensions, name: st
     const box = boxes[index];
     const isRow = Array.isArray(box);
     const form = typeof box === "object" && box !== null && !isRow ? formOf(box) : undefined;
-    if (!isRow && form === undefined) {
-      throw new TypeError(
-        `${name}[${index}] must be { minX, .. }, { min, max }, { lowerBound, upperBound } or a row of numbers, not ${describe(box)}`,
-      );
-    }
+    if (!isRow && form === undefined) refuseObject(box, `${name}[${index}]`);
     if (isRow && box.length !== 2 * dimensions) {
       throw new RangeError(`${name}[${index}] must hold ${2 * dimensions} numbers, not ${box.length}`);
     }
@@ -176,7 +174,7 @@ function fromObjects(boxes: readonly unknown[], dimensions: Dimensions, name: st
       for (let axis = 0; axis < dimensions; axis++, at++) {
         const value: unknown = form ? read(box as object, form, corner, axis) : (box as unknown[])[corner * dimensions + axis];
         if (typeof value !== "number") {
-          const which = `${corner ? "greatest" : "least"} ${"xyz"[axis]}`;
+          const which = `${corner ? "max" : "min"} ${"xyz"[axis]}`;
           throw new TypeError(`the ${which} of ${name}[${index}] must be a number, not ${describe(value)}`);
         }
         rows[at] = value;
@@ -186,23 +184,27 @@ function fromObjects(boxes: readonly unknown[], dimensions: Dimensions, name: st
   return rows;
 }
 
-/** By its tag, not by `instanceof`: arrays of another realm (a frame, a test runner) are as good. */
+/** Throws that a value is not a box. */
+function refuseObject(box: unknown, name: string): never {
+  const isObject = typeof box === "object" && box !== null;
+  throw new TypeError(
+    `${name} must be { minX, .. }, { min, max }, { lowerBound, upperBound } or a row of numbers, not ` +
+      (isObject ? `an object with ${Object.keys(box).slice(0, 6).join(", ") || "no properties"}` : describe(box)),
+  );
+}
+
+/** By its tag, not by `instanceof`, which is false for arrays of another realm (a frame, a test runner). */
 function isFloatArray(value: unknown): value is Float32Array | Float64Array {
   if (!ArrayBuffer.isView(value)) return false;
   const tag = (value as Float32Array)[Symbol.toStringTag] as string;
   return tag === "Float32Array" || tag === "Float64Array";
 }
 
-/** A detached array looks like an empty one; only its methods tell. */
+/** A detached array looks like an empty one; only its methods throw. */
 function refuseDetached(rows: Float32Array | Float64Array, name: string): void {
   try {
     rows.indexOf(0);
   } catch {
-    throw new TypeError(`the buffer of ${name} is detached: it was transferred, or its memory has grown`);
+    throw new TypeError(`the buffer of ${name} is detached: it was transferred, or its memory grew`);
   }
-}
-
-function describe(value: unknown): string {
-  if (value === null || typeof value !== "object") return typeof value === "string" ? "a string" : String(value);
-  return `a ${value.constructor?.name ?? "object"}`;
 }

@@ -1,15 +1,15 @@
 export type { BoundsBox, Boxes, BoxObject, Corner, Dimensions, EdgesBox, MinMaxBox } from "./boxes.js";
+export { BroadPhase } from "./world.js";
 export {
-  BroadPhase,
   type BroadPhaseOptions,
   type Buffers,
   type Changes,
   type Hit,
-  type Neighbour,
+  type Neighbor,
   type Numbers,
   type ProxyId,
   slotOf,
-} from "./world.js";
+} from "./world-types.js";
 export {
   InvalidBoxError,
   NotInitializedError,

@@ -7,7 +7,7 @@ import {
   SweepAndPruneError,
 } from "./errors.js";
 
-/** What every build of js/wasm/ exports. Pointers and counts come as signed numbers: `>>> 0` makes them whole. */
+/** What every build of js/wasm/ exports. Pointers and counts are signed numbers: `>>> 0` makes them unsigned. */
 export interface Exports {
   readonly memory: WebAssembly.Memory;
   readonly __stack_pointer: WebAssembly.Global<"i32">;
@@ -24,17 +24,25 @@ const enum Code {
   InvalidSnapshot = 6,
 }
 
-/** Takes pairs, as words of memory; whether it wants more. */
+/** Takes pairs that lie in memory, and returns whether it wants more. */
 export type Each = (at: number, count: number) => boolean;
 
-/** Refuses what memory cannot hold; the core would see its size modulo 2^32. */
+/** Names what a call passed, for its errors. */
+export interface Passed {
+  /** The arguments that hold boxes, in the order in which the core counts them, and how many they hold. */
+  readonly boxes?: readonly (readonly [name: string, count: number])[];
+  /** The ids. */
+  readonly ids?: ArrayLike<number>;
+}
+
+/** Refuses what memory cannot hold: the core would see the size modulo 2^32. */
 export function checkFits(bytes: number): void {
   if (!(bytes < 2 ** 32)) throw new OutOfMemoryError();
 }
 
-/** A compiled core at work, and what its calls need around them. */
+/** A compiled core that was started, and what its calls have in common. */
 export class Engine<E extends Exports> {
-  /** Set while a call of {@link stream} is under way. */
+  /** Set during a call of {@link stream}. */
   #each: Each = () => false;
   #stackTop = 0;
   #statusAt = 0;
@@ -55,16 +63,16 @@ export class Engine<E extends Exports> {
     };
     // Not `new WebAssembly.Instance`, which some browsers refuse on the main thread.
     const instance = await WebAssembly.instantiate(module, { sweep_and_prune: imports });
-    if (!(known in instance.exports)) throw new TypeError("`wasm` is the compiled core of another entry, or of something else");
+    if (!(known in instance.exports)) throw new TypeError("`wasm` is not the compiled core of this entry");
     engine = new Engine(instance.exports as unknown as E, isDevelopment);
     engine.#stackTop = engine.exports.__stack_pointer.value;
     engine.#statusAt = (engine.exports.status() >>> 0) / 4;
     return engine;
   }
 
-  /** All of memory as words: to be asked for again after each call, which may let it grow. */
+  /** All of memory as words. Call it again after each call of the core, which may let the memory grow. */
   words(): Uint32Array {
-    // Growing the memory detaches the view of what it was, which leaves it with length 0.
+    // Growing the memory detaches the view, which leaves it with length 0.
     if (this.#words.length === 0) this.#words = new Uint32Array(this.exports.memory.buffer);
     return this.#words;
   }
@@ -74,19 +82,19 @@ export class Engine<E extends Exports> {
     return this.words()[this.#statusAt + word]!;
   }
 
-  /** Throws what a code other than `Ok` stands for. */
-  check(code: number): void {
+  /** Throws the error of a code other than `Ok`. */
+  check(code: number, passed: Passed = {}): void {
     switch (code) {
       case Code.Ok:
         return;
       case Code.InvalidBox:
-        throw new InvalidBoxError(this.detail(0), this.detail(1));
+        throw invalidBox(this.detail(0), this.detail(1), passed);
       case Code.OutOfMemory:
         throw new OutOfMemoryError();
       case Code.StaleProxy:
-        throw new StaleProxyError(this.detail(0));
+        throw new StaleProxyError(this.detail(0), passed.ids?.[this.detail(0)] ?? NaN);
       case Code.InvalidArgument:
-        throw new RangeError(`argument ${this.detail(0)} is NaN, infinite, negative or inverted where it must not be`);
+        throw new RangeError("`box` is inverted, or a coordinate is too large for single precision");
       case Code.InvalidSnapshot:
         throw new SnapshotError(this.detail(0), this.detail(1));
       default:
@@ -95,14 +103,15 @@ export class Engine<E extends Exports> {
   }
 
   /**
-   * Makes a call that hands pairs to `each`. What `each` throws ends the search, and is thrown
-   * from here: Rust's frames are left by returning. Within `each` other calls are allowed.
+   * Makes a call that hands pairs to `each`. What `each` throws cancels the search, and is thrown
+   * from here, after the call returned: an exception must not skip Rust's frames. Within `each`
+   * other calls are allowed.
    */
-  stream(call: () => number, each: Each): void {
+  stream(call: () => number, each: Each, passed: Passed): void {
     const outer = this.#each;
     let thrown: { error: unknown } | undefined;
     this.#each = (at, count) => {
-      // The frames of the call under way stay where they are if a call within `each` fails.
+      // If a call within `each` fails, the frames of this call must stay where they are.
       const stackTop = this.#stackTop;
       this.#stackTop = this.exports.__stack_pointer.value;
       try {
@@ -117,15 +126,15 @@ export class Engine<E extends Exports> {
     try {
       const code = call();
       if (thrown) throw thrown.error;
-      this.check(code);
+      this.check(code, passed);
     } finally {
       this.#each = outer;
     }
   }
 
   /**
-   * Rust calls this where it can go on no further. Throwing skips its frames, so that the stack
-   * pointer has to be put back to where it was when JavaScript called.
+   * Rust calls this when it cannot continue. Throwing skips its frames, so the stack pointer is put
+   * back to where it was when JavaScript called.
    */
   #fail(isOutOfMemory: boolean): never {
     this.exports.__stack_pointer.value = this.#stackTop;
@@ -133,16 +142,28 @@ export class Engine<E extends Exports> {
   }
 }
 
-/** One of the compiled cores: at first none, then an engine, started once. */
+/** The box at fault, counted within the argument that holds it. */
+function invalidBox(index: number, axis: number, { boxes = [] }: Passed): InvalidBoxError {
+  for (const [name, count] of boxes) {
+    if (index < count) return new InvalidBoxError(index, axis, name);
+    index -= count;
+  }
+  return new InvalidBoxError(index, axis);
+}
+
+/** One of the compiled cores, which is started once. */
 export class Core<E extends Exports> {
   #engine: Engine<E> | undefined;
 
-  /** `known` is the name of an export that only this core has. */
-  constructor(readonly known: string & keyof E) {}
+  /** `known` is the name of an export that only this core has, `entry` that of the package's entry. */
+  constructor(
+    readonly known: string & keyof E,
+    readonly entry: string,
+  ) {}
 
   /** The engine, once {@link start} is done. */
   engine(): Engine<E> {
-    if (this.#engine === undefined) throw new NotInitializedError();
+    if (this.#engine === undefined) throw new NotInitializedError(this.entry);
     return this.#engine;
   }
 

@@ -1,34 +1,37 @@
 /**
- * What this package throws. Misuse of a call is a built-in `TypeError` or `RangeError`; everything
- * that depends on the data or on the machine is one of these. After an error nothing has changed.
+ * The errors of this package. Wrong arguments throw a built-in `TypeError` or `RangeError`; errors
+ * that depend on the data or on the machine extend this class. After an error nothing has changed.
  */
 export class SweepAndPruneError extends Error {
   /** The name of this class. */
   override name = "SweepAndPruneError";
 }
 
-/** A box is not `min <= max` on some axis: it is inverted, or holds a NaN. */
+/** A box is inverted or NaN on some axis: `min <= max` does not hold. */
 export class InvalidBoxError extends SweepAndPruneError {
   /** The name of this class. */
   override name = "InvalidBoxError";
 
   constructor(
-    /** The position of the box: the first one that is invalid. */
+    /** The position of the box in the argument: the first one that is invalid. */
     readonly index: number,
     /** Its first invalid axis: 0 for x, 1 for y, 2 for z. */
     readonly axis: number,
+    /** The name of the argument: `boxes`, `a`, `b`, ... */
+    readonly argument: string = "boxes",
   ) {
-    super(`box ${index} is inverted or NaN on axis ${axis}: min <= max must hold`);
+    super(`box ${index} of \`${argument}\` is inverted or NaN on axis ${axis} (${"xyz"[axis]}): its min must be <= its max`);
   }
 }
 
-/** A call came before the promise of `init()` was fulfilled. */
+/** A call was made before the promise of `init()` was fulfilled. */
 export class NotInitializedError extends SweepAndPruneError {
   /** The name of this class. */
   override name = "NotInitializedError";
 
-  constructor() {
-    super("sweep-and-prune is not ready: `await init()` once before the first call");
+  /** @internal */
+  constructor(entry = "sweep-and-prune") {
+    super(`"${entry}" is not started: \`await init()\`, imported from "${entry}", before the first call; each entry has its own`);
   }
 }
 
@@ -38,24 +41,26 @@ export class OutOfMemoryError extends SweepAndPruneError {
   override name = "OutOfMemoryError";
 
   constructor() {
-    super("out of memory: the boxes or their pairs do not fit in WebAssembly's memory");
+    super("out of memory: the boxes or their pairs do not fit in WebAssembly's memory, 4 GiB at most");
   }
 }
 
-/** A proxy id is of a body that was removed, or was never given out by this world. */
+/** The id of a body that was removed, or an id that never had a body. An id of another `BroadPhase` may go unnoticed. */
 export class StaleProxyError extends SweepAndPruneError {
   /** The name of this class. */
   override name = "StaleProxyError";
 
   constructor(
-    /** The position of the id among those that were passed, 0 for a single one. */
+    /** The position of the id among those that were passed; 0 for a single one. */
     readonly index: number,
+    /** The id. */
+    readonly id: number,
   ) {
-    super(`proxy id ${index} is stale: its body was removed, or it never had one here`);
+    super(`the id at index ${index} (${id}) is stale: its body was removed, or it never had one here`);
   }
 }
 
-/** Bytes that are no snapshot of such a world. */
+/** The bytes are not a snapshot, or not one that can be restored with these options. */
 export class SnapshotError extends SweepAndPruneError {
   /** The name of this class. */
   override name = "SnapshotError";
@@ -63,12 +68,12 @@ export class SnapshotError extends SweepAndPruneError {
   /** @internal */
   constructor(fault: number, found: number) {
     const faults = [
-      "it does not begin as one does",
-      `it is of version ${found}, which cannot be read here`,
-      "it holds a world of other dimensions or of the other precision",
+      "it does not begin as a snapshot does",
+      `it is of version ${found}, which this version of the package cannot read`,
+      `it holds boxes of other dimensions: pass \`dimensions: ${found}\` (JavaScript cannot read the 1D and the double-precision 2D snapshots of Rust and Python)`,
       "it ends too early",
-      "its parts contradict each other or their checksum",
+      "it is damaged: its parts contradict each other or their checksum",
     ];
-    super(`these bytes are no snapshot of such a world: ${faults[fault] ?? "they are damaged"}`);
+    super(`the snapshot cannot be restored: ${faults[fault] ?? faults[4]}`);
   }
 }

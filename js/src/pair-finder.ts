@@ -1,16 +1,17 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 import { type BoxObject, type Boxes, checkBoxes, checkDimensions, type Dimensions, dimensionsOf, writeRows } from "./boxes.js";
-import { checkFits, Core, type Each, type Engine, type Exports } from "./engine.js";
+import { describe } from "./arguments.js";
+import { checkFits, Core, type Each, type Engine, type Exports, type Passed } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
 import { guard, view } from "./views.js";
 
-/** How to find pairs. */
+/** Options of a search. */
 export interface FindPairsOptions {
-  /** How many dimensions the boxes have. Boxes that are objects say it themselves: they need no options. */
+  /** How many dimensions the boxes have. Boxes that are objects tell it themselves, and need no options. */
   dimensions: Dimensions;
 }
 
-/** Takes a pair. If it returns `false` it gets no more. */
+/** Is called with each pair. If it returns `false`, it is not called again. */
 export type EachPair = (a: number, b: number) => unknown;
 
 /** What js/wasm/src/finder.rs exports. */
@@ -21,30 +22,31 @@ interface FinderExports extends Exports {
   finder_free(finder: number): void;
 }
 
-/** What becomes of the pairs; js/wasm/src/finder.rs has the same list. */
+/** What happens to the pairs; js/wasm/src/finder.rs has the same list. */
 const enum Use {
   Store = 0,
   Count = 1,
   Stream = 2,
 }
 
-/** In place of the count of the second set where there is only one. */
+/** Instead of the size of the second set, if there is only one set. */
 const noSet = -1;
 
-/** In place of the second set where there is only one. */
+/** Instead of the second set, if there is only one set. */
 const alone = Symbol("no second set");
 
 /** The core that finds pairs. */
-export const finderCore: Core<FinderExports> = new Core("finder_new");
+export const finderCore: Core<FinderExports> = new Core("finder_new", "sweep-and-prune");
 
 /**
- * All pairs of boxes that overlap: `a0, b0, a1, b1, ...`, indices of boxes, each pair once and
- * its smaller index first, in a deterministic order.
+ * Finds all pairs of boxes that overlap. The result holds indices of boxes, two a pair:
+ * `a0, b0, a1, b1, ...`. Each pair is listed once, with the smaller index first, in a deterministic
+ * order.
  *
- * Touching boxes overlap. Points, flat boxes and infinite edges are allowed. The result is a copy
- * of your own; nothing else is kept. To find pairs again and again, keep a {@link PairFinder}.
+ * Touching boxes overlap. Points, flat boxes and infinite edges are allowed. The result is a copy.
+ * To find pairs many times, keep a {@link PairFinder}, which reuses its buffers.
  *
- * Time O(n log n + pairs) on scenes that anything helps with, memory O(n + pairs).
+ * Time O(n log n + pairs) on typical inputs, memory O(n + pairs).
  *
  * @throws {@link InvalidBoxError} for the first box that is inverted or NaN.
  * @throws {@link OutOfMemoryError} if the boxes or their pairs do not fit in memory.
@@ -65,10 +67,11 @@ export function findPairs(boxes: Boxes, options?: FindPairsOptions): Uint32Array
 }
 
 /**
- * All pairs of a box of `a` and a box of `b` that overlap: `a0, b0, a1, b1, ...`, the index in `a`
- * first. Otherwise as {@link findPairs}. If one set is in double precision, both are compared so.
+ * Finds all pairs of a box of `a` and a box of `b` that overlap: `a0, b0, a1, b1, ...`, the index in
+ * `a` first. If one set is in double precision, all boxes are compared in double precision.
+ * Otherwise it works as {@link findPairs}.
  *
- * @throws As {@link findPairs}; the boxes of `b` are counted after those of `a`.
+ * @throws As {@link findPairs}; an {@link InvalidBoxError} names the set by its `argument`.
  *
  * @example
  * ```js
@@ -88,7 +91,7 @@ export function findPairsBetween(a: Boxes, b: Boxes, options?: FindPairsOptions)
 }
 
 /**
- * How many pairs {@link findPairs} would find. Stores none of them.
+ * Counts the pairs that {@link findPairs} would find, without storing them.
  *
  * @throws As {@link findPairs}.
  */
@@ -100,8 +103,7 @@ export function countPairs(boxes: Boxes, options?: FindPairsOptions): number {
 
 /**
  * Calls `each(a, b)` with every pair that {@link findPairs} would find, in the same order, until
- * it returns `false`. Stores no pairs but a small buffer of them. Returns whether it came to the
- * end.
+ * `each` returns `false`. Stores only a small buffer of pairs. Returns `false` if `each` did.
  *
  * @throws As {@link findPairs}, before the first call of `each`; and what `each` throws.
  */
@@ -109,10 +111,11 @@ export function forEachPair(boxes: Boxes, options: FindPairsOptions, each: EachP
   return once([boxes], options, (finder) => finder.forEach(boxes, each));
 }
 
-/** Without options the boxes themselves say how many dimensions they have; of no boxes it does not matter. */
+/** Without options, boxes that are objects tell how many dimensions they have. No boxes have any number. */
 function once<R>(sets: readonly Boxes[], options: FindPairsOptions | undefined, use: (finder: PairFinder) => R): R {
   const areNone = sets.every((boxes) => Array.isArray(boxes) && boxes.length === 0);
   const dimensions = options ? options.dimensions : areNone ? 1 : sets.map(dimensionsOf).find(Boolean);
+  if (!options && !dimensions) throw new RangeError("`options` is missing: flat arrays of boxes need `{ dimensions: 1 }`, 2 or 3");
   const finder = new PairFinder({ dimensions: dimensions! });
   try {
     return use(finder);
@@ -125,13 +128,13 @@ function copy(pairs: Uint32Array): Uint32Array<ArrayBuffer> {
   try {
     return new Uint32Array(pairs);
   } catch {
-    throw new OutOfMemoryError(); // the copy is what JavaScript itself could not allocate
+    throw new OutOfMemoryError(); // JavaScript could not allocate the copy
   }
 }
 
 /**
- * Finds pairs again and again, and keeps its buffers in between: where the sizes are those of the
- * last call, nothing is allocated.
+ * Finds pairs many times and keeps its buffers in between: a call that needs no more memory than the
+ * ones before allocates nothing.
  *
  * ```js
  * using finder = new PairFinder({ dimensions: 2 });
@@ -139,8 +142,8 @@ function copy(pairs: Uint32Array): Uint32Array<ArrayBuffer> {
  * for (let i = 0; i < pairs.length; i += 2) collide(pairs[i], pairs[i + 1]);
  * ```
  *
- * Its memory comes back when it is freed: by `using`, by {@link PairFinder.free}, or at some time
- * after the last reference to it is gone.
+ * Its memory is freed by `using`, by {@link PairFinder.free}, or some time after the last reference
+ * to it is gone.
  */
 export class PairFinder {
   /** How many dimensions the boxes have. */
@@ -162,9 +165,9 @@ export class PairFinder {
   }
 
   /**
-   * As {@link findPairs}, but the result is a view of this package's memory, valid until the next
-   * call of anything in this package: that may overwrite it, or let the memory grow, which leaves
-   * the view with length 0. Copy it (`pairs.slice()`) to keep it.
+   * Finds the pairs of {@link findPairs}. The result is a view of this package's memory, valid until
+   * the next call of anything in this package: that call may overwrite it, or let the memory grow,
+   * which leaves the view with length 0. Copy it (`pairs.slice()`) to keep it.
    *
    * @throws As {@link findPairs}, and `TypeError` if the finder was freed. It stays usable.
    */
@@ -173,7 +176,7 @@ export class PairFinder {
   }
 
   /**
-   * As {@link findPairsBetween}, a view as that of {@link PairFinder.find}.
+   * Finds the pairs of {@link findPairsBetween}, as a view like that of {@link PairFinder.find}.
    *
    * @throws As {@link findPairsBetween}, and `TypeError` if the finder was freed.
    */
@@ -182,7 +185,7 @@ export class PairFinder {
   }
 
   /**
-   * As {@link countPairs}.
+   * Counts the pairs of {@link findPairs}, without storing them.
    *
    * @throws As {@link countPairs}, and `TypeError` if the finder was freed.
    */
@@ -191,7 +194,7 @@ export class PairFinder {
   }
 
   /**
-   * How many pairs {@link PairFinder.findBetween} would find. Stores none of them.
+   * Counts the pairs of {@link findPairsBetween}, without storing them.
    *
    * @throws As {@link PairFinder.findBetween}.
    */
@@ -200,7 +203,7 @@ export class PairFinder {
   }
 
   /**
-   * As {@link forEachPair}. Within `each` this finder cannot be used; others can.
+   * Calls `each` as {@link forEachPair} does. Within `each` this finder cannot be used; others can.
    *
    * @throws As {@link forEachPair}, and `TypeError` if the finder was freed.
    */
@@ -209,7 +212,7 @@ export class PairFinder {
   }
 
   /**
-   * As {@link PairFinder.forEach}, with the pairs of {@link PairFinder.findBetween}.
+   * Calls `each` with the pairs of {@link findPairsBetween}, otherwise as {@link PairFinder.forEach}.
    *
    * @throws As {@link PairFinder.findBetween}; and what `each` throws.
    */
@@ -232,7 +235,7 @@ export class PairFinder {
   }
 
   #stream(each: EachPair, a: Boxes, b: Boxes | typeof alone): boolean {
-    if (typeof each !== "function") throw new TypeError("each must be a function");
+    if (typeof each !== "function") throw new TypeError(`\`each\` must be a function, not ${describe(each)}`);
     const { engine } = this.#owned;
     let isComplete = true;
     this.#search(Use.Stream, a, b, (at, count) => {
@@ -249,13 +252,13 @@ export class PairFinder {
 
   #search(use: Use, a: Boxes, b: Boxes | typeof alone, each: Each | undefined): void {
     const owned = this.#owned;
-    // First: objects are read, and a getter may do anything.
+    // First of all: this reads objects, and a getter may do anything.
     const first = checkBoxes(a, this.dimensions, b === alone ? "boxes" : "a");
     const second = b === alone ? undefined : checkBoxes(b, this.dimensions, "b");
     if (owned.isFreed) throw new TypeError("this PairFinder was freed");
-    if (owned.isBusy) throw new TypeError("this PairFinder is at work: its callback needs another one");
+    if (owned.isBusy) throw new TypeError("this PairFinder is in use: within its callback, use another one");
     const isDouble = (first.BYTES_PER_ELEMENT | (second?.BYTES_PER_ELEMENT ?? 0)) >= 8;
-    // There is no core for doubles in the plane, nor for a line: see js/wasm/src/finder.rs.
+    // The core has no type for 1D boxes, nor for 2D in double precision: see js/wasm/src/finder.rs.
     const stored = isDouble ? 3 : (Math.max(2, this.dimensions) as Dimensions);
     owned.isBusy = true;
     try {
@@ -264,10 +267,11 @@ export class PairFinder {
       const finder = (owned[isDouble ? "double" : "single"] ||= engine.exports.finder_new(stored, Number(isDouble)));
       const countA = this.#write(finder, 0, first, isDouble, stored);
       const countB = second ? this.#write(finder, 1, second, isDouble, stored) : noSet;
-      if (each) engine.stream(() => engine.exports.finder_find(finder, countA, countB, use), each);
-      else engine.check(engine.exports.finder_find(finder, countA, countB, use));
+      const passed: Passed = { boxes: second ? [["a", countA], ["b", countB]] : [["boxes", countA]] };
+      if (each) engine.stream(() => engine.exports.finder_find(finder, countA, countB, use), each, passed);
+      else engine.check(engine.exports.finder_find(finder, countA, countB, use), passed);
     } catch (error) {
-      // Whoever ran out of memory should not go on holding what it got.
+      // A finder that ran out of memory should not keep what it allocated.
       if (error instanceof OutOfMemoryError) release(owned);
       throw error;
     } finally {
@@ -275,7 +279,7 @@ export class PairFinder {
     }
   }
 
-  /** Writes the rows of a set, and returns how many boxes they are. */
+  /** Writes the rows of a set, and returns how many boxes there are. */
   #write(finder: number, set: 0 | 1, rows: Rows, isDouble: boolean, stored: Dimensions): number {
     const { exports } = this.#owned.engine;
     const count = rows.length / (2 * this.dimensions);
@@ -293,13 +297,13 @@ export class PairFinder {
   }
 
   /**
-   * Gives the memory back. The finder cannot be used any more; to free it twice is no error.
+   * Frees the memory. The finder cannot be used any more. Freeing it twice is not an error.
    *
    * @throws `TypeError` within the callback of its own `forEach`.
    */
   free(): void {
     if (this.#owned.isFreed) return;
-    if (this.#owned.isBusy) throw new TypeError("this PairFinder is at work: free it after its callback");
+    if (this.#owned.isBusy) throw new TypeError("this PairFinder is in use: free it after its callback");
     this.#owned.isFreed = true;
     forgotten?.unregister(this.#owned);
     release(this.#owned);
@@ -313,12 +317,12 @@ export class PairFinder {
 
 type Rows = Float32Array | Float64Array;
 
-/** What a finder holds on the other side: a handle for each precision, or 0. */
+/** The handles of the core's finders, one for each precision, or 0. */
 interface Owned {
   readonly engine: Engine<FinderExports>;
   single: number;
   double: number;
-  /** Whether a call is under way: then Rust holds the handle, and only a callback can come here. */
+  /** Whether a call is running: then Rust uses the handle, and only a callback can call us. */
   isBusy: boolean;
   isFreed: boolean;
 }
@@ -330,6 +334,6 @@ function release(owned: Owned): void {
   owned.single = owned.double = 0;
 }
 
-/** Frees the finders that nobody freed and nobody can reach. */
+/** Frees the handles of finders that were garbage collected. */
 const forgotten =
   typeof FinalizationRegistry === "undefined" ? undefined : new FinalizationRegistry<Owned>(release);

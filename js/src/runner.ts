@@ -24,7 +24,7 @@ export interface AlgorithmsExports extends Exports {
 }
 
 /** The core of the observable algorithms. */
-export const algorithmsCore: Core<AlgorithmsExports> = new Core("runner_new");
+export const algorithmsCore: Core<AlgorithmsExports> = new Core("runner_new", "sweep-and-prune/algorithms");
 
 /** The algorithms, by name. The one-to-n scan finds the pairs of one box, and not even all of those. */
 export const methods = [

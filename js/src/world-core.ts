@@ -1,4 +1,5 @@
 import { Core, type Exports } from "./engine.js";
+import type { FilterWords } from "./filter.js";
 
 /** What js/wasm/src/broad_phase/mod.rs exports. */
 export interface WorldExports extends Exports {
@@ -16,7 +17,7 @@ export interface WorldExports extends Exports {
   world_set_filter(world: number, id: number, ...filter: FilterWords): number;
   world_filter(world: number, id: number): number;
   world_box(world: number, id: number): number;
-  world_has(world: number, id: number): number;
+  world_contains(world: number, id: number): number;
   world_remove_many(world: number, count: number): number;
   world_update(world: number): number;
   world_pairs(world: number): number;
@@ -26,13 +27,10 @@ export interface WorldExports extends Exports {
   world_query(world: number, query: Query, k: number, ...filter: FilterWords): number;
   world_snapshot(world: number): number;
   world_restore(world: number): number;
-  world_hash(world: number): number;
+  world_state_hash(world: number): number;
 }
 
-/** Category, mask, group, static. */
-export type FilterWords = [number, number, number, number];
-
-/** What is asked; js/wasm/src/broad_phase/mod.rs has the same list. */
+/** Which query; js/wasm/src/broad_phase/mod.rs has the same list. */
 export const enum Query {
   Overlapping = 0,
   Containing = 1,
@@ -42,5 +40,5 @@ export const enum Query {
   Nearest = 5,
 }
 
-/** The core of living worlds. */
-export const worldCore: Core<WorldExports> = new Core("world_new");
+/** The core of the persistent broad phase. */
+export const worldCore: Core<WorldExports> = new Core("world_new", "sweep-and-prune/broad-phase");

@@ -1,19 +1,20 @@
+import { refuseCorners } from "./arguments.js";
 import { type Boxes, checkBoxes, checkNumbers, type Dimensions, writeRows } from "./boxes.js";
-import { checkFits, type Engine } from "./engine.js";
+import { checkFits, type Engine, type Passed } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
 import { guard, view } from "./views.js";
-import type { BroadPhaseOptions, Changes, Numbers } from "./world.js";
 import { worldCore, type WorldExports } from "./world-core.js";
+import type { BroadPhaseOptions, Changes, Hit, Numbers } from "./world-types.js";
 
 /**
- * A world as it lies in memory: how it is called, where what a call needs is written, and where its
- * answer is.
+ * A broad phase in WebAssembly's memory: calls it, writes its arguments where it reads them, and
+ * makes views of its answers.
  */
 export class WorldMemory {
   readonly dimensions: Dimensions;
-  /** On how many axes the boxes are stored, at least those that they have. */
-  readonly stored: Dimensions;
   readonly isDouble: boolean;
+  /** How many dimensions the boxes are stored in: at least those that they have. */
+  readonly stored: Dimensions;
   readonly #owned: Owned;
   readonly #numbersAt: number;
   #numbers: Float64Array | undefined;
@@ -23,67 +24,97 @@ export class WorldMemory {
   #begun: Float64Array | undefined;
   #ended: Float64Array | undefined;
 
-  /**
-   * Makes a world.
-   *
-   * @throws `RangeError` for a margin or prediction that is negative, infinite or NaN.
-   */
-  constructor(options: Required<BroadPhaseOptions>) {
-    const { dimensions, precision, report, margin, prediction } = options;
+  private constructor(dimensions: Dimensions, isDouble: boolean, owned: Owned) {
     this.dimensions = dimensions;
-    this.isDouble = precision === "double";
-    // There is no core for doubles in the plane, nor for a line: see js/wasm/src/broad_phase/.
-    this.stored = this.isDouble ? 3 : (Math.max(2, dimensions) as Dimensions);
-    const engine = worldCore.engine();
-    const { world_new, world_numbers } = engine.exports;
-    const world = world_new(this.stored, Number(this.isDouble), margin, prediction, Number(report === "fat"));
-    if (world === 0) throw new RangeError("margin and prediction must be finite and not negative");
-    this.#owned = { engine, world };
-    this.#numbersAt = world_numbers(world) >>> 0;
-    forgotten?.register(this, this.#owned, this.#owned);
+    this.isDouble = isDouble;
+    // The core has no type for 1D boxes, nor for 2D in double precision: js/wasm/src/broad_phase/stored.rs.
+    this.stored = isDouble ? 3 : (Math.max(2, dimensions) as Dimensions);
+    this.#owned = owned;
+    this.#numbersAt = owned.engine.exports.world_numbers(owned.world) >>> 0;
+    forgotten?.register(this, owned, owned);
   }
 
-  /** Frees the world; to free it twice is no error. */
+  /** An empty broad phase. */
+  static create(options: Required<BroadPhaseOptions>): WorldMemory {
+    const { dimensions, precision, report, margin, prediction } = options;
+    const isDouble = precision === "double";
+    const engine = worldCore.engine();
+    const world = engine.exports.world_new(dimensions, Number(isDouble), margin, prediction, Number(report === "fat"));
+    if (world === 0) throw new RangeError("`margin` or `prediction` does not fit in single precision");
+    return new WorldMemory(dimensions, isDouble, { engine, world });
+  }
+
+  /** The broad phase of a snapshot. */
+  static restore(bytes: Uint8Array, dimensions: Dimensions): WorldMemory {
+    const engine = worldCore.engine();
+    const { exports } = engine;
+    checkFits(bytes.length);
+    const owned = { engine, world: exports.world_new(dimensions, 0, 0, 0, 0) };
+    try {
+      engine.calls++;
+      const at = exports.world_bytes(owned.world, bytes.length) >>> 0;
+      if (at === 0) throw new OutOfMemoryError();
+      new Uint8Array(exports.memory.buffer, at, bytes.length).set(bytes);
+      engine.check(exports.world_restore(owned.world));
+      return new WorldMemory(dimensions, engine.detail(0) !== 0, owned);
+    } catch (error) {
+      release(owned);
+      throw error;
+    }
+  }
+
+  /** Frees the memory. Freeing it twice is not an error. */
   free(): void {
     forgotten?.unregister(this.#owned);
     release(this.#owned);
   }
 
-  /** The exports, of a world that was not freed. */
+  /** The exports, unless this was freed. */
   exports(): WorldExports {
     if (this.#owned.world === 0) throw new TypeError("this BroadPhase was freed");
     return this.#owned.engine.exports;
   }
 
-  /** Asks what cannot fail, and overwrites no view. */
+  /** Makes a call that cannot fail and overwrites no view. */
   ask(ask: (exports: WorldExports, world: number) => number): number {
     return ask(this.exports(), this.#owned.world);
   }
 
-  /** Makes a call and throws what its code stands for. */
-  call(call: (exports: WorldExports, world: number) => number): void {
+  /** Makes a call and throws its error. */
+  call(call: (exports: WorldExports, world: number) => number, passed?: Passed): void {
     const owned = this.#owned;
     const exports = this.exports();
     owned.engine.calls++;
     try {
-      owned.engine.check(call(exports, owned.world));
+      owned.engine.check(call(exports, owned.world), passed);
     } catch (error) {
-      // It stopped half-way: there is no world left to go on with.
+      // The call stopped halfway, so the state cannot be used any more.
       if (error instanceof OutOfMemoryError) this.free();
       throw error;
     }
   }
 
-  /** Makes a call and returns the numbers that it tells of. */
-  answer(call: (exports: WorldExports, world: number) => number): Float64Array {
-    this.call(call);
+  /** Makes a call and returns the ids that it reports. */
+  answer(call: (exports: WorldExports, world: number) => number, passed?: Passed): Float64Array {
+    this.call(call, passed);
     const { engine } = this.#owned;
     const { buffer } = engine.exports.memory;
     this.#out = view(Float64Array, this.#out, buffer, engine.detail(0), engine.detail(1));
     return guard(engine, this.#out);
   }
 
-  /** What the call of an update told of, as views of memory. */
+  /** Makes a query whose answer has a value for each id, and returns both. */
+  hits(call: (exports: WorldExports, world: number) => number): Hit[] {
+    this.call(call);
+    const { engine } = this.#owned;
+    const { buffer } = engine.exports.memory;
+    const count = engine.detail(1);
+    const ids = new Float64Array(buffer, engine.detail(0), count);
+    const values = new Float64Array(buffer, this.numbers()[0]!, count);
+    return Array.from(ids, (id, at) => ({ id, t: values[at]! }));
+  }
+
+  /** The changes that the last call reported, as views of memory. */
   changes(into: Changes): void {
     const { engine } = this.#owned;
     const { buffer } = engine.exports.memory;
@@ -94,13 +125,13 @@ export class WorldMemory {
     into.ended = guard(engine, this.#ended);
   }
 
-  /** A copy of the bytes that the last call told of. */
+  /** A copy of the bytes that the last call reported. */
   bytes(): Uint8Array<ArrayBuffer> {
     const { engine } = this.#owned;
     return new Uint8Array(engine.exports.memory.buffer, engine.detail(0), engine.detail(1)).slice();
   }
 
-  /** The 64 bits that the last call told of. */
+  /** The 64 bits that the last call reported. */
   bits(): bigint {
     const { engine } = this.#owned;
     return (BigInt(engine.detail(1)) << 32n) | BigInt(engine.detail(0));
@@ -112,22 +143,28 @@ export class WorldMemory {
     return (this.#numbers = view(Float64Array, this.#numbers, buffer, this.#numbersAt, 16));
   }
 
-  /** Writes a box from separate numbers; a missing one becomes NaN, which no box may hold. */
-  writeBox(at: number, a: number, b: number, c: number = NaN, d: number = NaN, e: number = NaN, f: number = NaN): void {
+  /** Writes a box from separate numbers: as many as it has, and nothing else. */
+  writeBox(a: unknown, b: unknown, c: unknown, d: unknown, e: unknown, f: unknown, more: unknown): void {
     const [numbers, stored] = [this.numbers(), this.stored];
     switch (this.dimensions) {
       case 1:
-        this.#writeAxes(numbers, at, a, 0, 0);
-        this.#writeAxes(numbers, at + stored, b, 0, 0);
-        break;
+        if (typeof a !== "number" || typeof b !== "number" || c !== undefined) break;
+        this.#writeAxes(numbers, 0, a, 0, 0);
+        this.#writeAxes(numbers, stored, b, 0, 0);
+        return;
       case 2:
-        this.#writeAxes(numbers, at, a, b, 0);
-        this.#writeAxes(numbers, at + stored, c, d, 0);
-        break;
+        if (typeof a !== "number" || typeof b !== "number" || typeof c !== "number" || typeof d !== "number" || e !== undefined) break;
+        this.#writeAxes(numbers, 0, a, b, 0);
+        this.#writeAxes(numbers, stored, c, d, 0);
+        return;
       case 3:
-        this.#writeAxes(numbers, at, a, b, c);
-        this.#writeAxes(numbers, at + stored, d, e, f);
+        if (typeof a !== "number" || typeof b !== "number" || typeof c !== "number") break;
+        if (typeof d !== "number" || typeof e !== "number" || typeof f !== "number" || more !== undefined) break;
+        this.#writeAxes(numbers, 0, a, b, c);
+        this.#writeAxes(numbers, stored, d, e, f);
+        return;
     }
+    refuseCorners(this.dimensions, [a, b, c, d, e, f]);
   }
 
   #writeAxes(numbers: Float64Array, at: number, x: number, y: number, z: number): void {
@@ -136,13 +173,18 @@ export class WorldMemory {
     if (this.stored === 3) numbers[at + 2] = z;
   }
 
-  /** Writes one or two corners; numbers on axes that the world does not have are 0. */
-  writeNumbers(at: number, values: Numbers, corners: number, name: string): void {
+  /**
+   * Writes one or two corners, with zeros on the axes that the user's boxes do not have. The core
+   * checks whether a box is valid; what a `rule` says is checked here.
+   */
+  writeCorners(at: number, values: Numbers, corners: number, name: string, rule?: "finite" | "a number"): void {
     const { dimensions } = this;
     const given = checkNumbers(values, name);
     if (given.length !== corners * dimensions) {
-      throw new RangeError(`${name} must be ${corners * dimensions} numbers, not ${given.length}`);
+      throw new RangeError(`\`${name}\` has ${given.length} numbers; in ${dimensions}D it must have ${corners * dimensions}`);
     }
+    const wrong = rule ? given.findIndex((x) => (rule === "finite" ? !Number.isFinite(x) : Number.isNaN(x))) : -1;
+    if (wrong >= 0) throw new RangeError(`\`${name}[${wrong}]\` is ${given[wrong]}; it must be ${rule}`);
     const numbers = this.numbers();
     for (let corner = 0; corner < corners; corner++) {
       for (let axis = 0; axis < this.stored; axis++) {
@@ -151,7 +193,7 @@ export class WorldMemory {
     }
   }
 
-  /** The rows of memory for `count` boxes. */
+  /** Rows in memory for `count` boxes. */
   rowsFor(count: number): Float32Array | Float64Array {
     const exports = this.exports();
     const length = 2 * this.stored * count;
@@ -165,7 +207,7 @@ export class WorldMemory {
         : view(Float32Array, this.#rows, buffer, at, length));
   }
 
-  /** Writes boxes to the rows, unless they are there, and returns how many they are. */
+  /** Writes boxes to the rows, unless they are already there, and returns how many there are. */
   writeRows(boxes: Boxes): number {
     const rows = checkBoxes(boxes, this.dimensions);
     const count = rows.length / (2 * this.dimensions);
@@ -184,19 +226,19 @@ export class WorldMemory {
     return (this.#ids = view(Float64Array, this.#ids, exports.memory.buffer, at, count));
   }
 
-  /** Writes ids to their array, unless they are there. */
+  /** Writes ids to their array, unless they are already there. */
   writeIds(ids: Numbers): void {
     const kept = this.keepIds(ids);
     const into = this.idsFor(kept.length);
     if (!isSame(kept, into)) into.set(kept);
   }
 
-  /** The ids, copied if what is written before them could move them. */
+  /** The ids, copied if writing other arguments first could move them. */
   keepIds(ids: Numbers): Numbers {
     return this.#keep(ids, this.#ids);
   }
 
-  /** The numbers, copied if they lie in memory that may grow, unless just where they will be read. */
+  /** The numbers, copied if they lie in memory that may grow, unless they lie where the core will read them. */
   #keep<T extends Numbers>(numbers: T, written: Float32Array | Float64Array | undefined): T {
     const isOutside = !ArrayBuffer.isView(numbers) || numbers.buffer !== this.exports().memory.buffer;
     return isOutside || (written && isSame(numbers, written)) ? numbers : (numbers.slice() as unknown as T);
@@ -208,7 +250,7 @@ function isSame(a: Numbers, b: Float32Array | Float64Array): boolean {
   return ArrayBuffer.isView(a) && a.buffer === b.buffer && a.byteOffset === b.byteOffset;
 }
 
-/** What a world holds on the other side: a handle, or 0 once it is freed. */
+/** The handle of the core's object, or 0 once it is freed. */
 interface Owned {
   readonly engine: Engine<WorldExports>;
   world: number;
@@ -219,6 +261,6 @@ function release(owned: Owned): void {
   owned.world = 0;
 }
 
-/** Frees the worlds that nobody freed and nobody can reach. */
+/** Frees the handles of objects that were garbage collected. */
 const forgotten =
   typeof FinalizationRegistry === "undefined" ? undefined : new FinalizationRegistry<Owned>(release);

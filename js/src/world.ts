@@ -1,91 +1,27 @@
 /// <reference lib="esnext.disposable" preserve="true" />
+import { checkCount, checkId, checkLength, describe } from "./arguments.js";
 import { type Boxes, checkBoxes, checkDimensions, checkNumbers, type Dimensions } from "./boxes.js";
-import { checkFits } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
 import { defaultFilter, everything, type Filter, filterWords } from "./filter.js";
 import { Query } from "./world-core.js";
 import { WorldMemory } from "./world-memory.js";
+import type { BroadPhaseOptions, Buffers, Changes, Hit, Neighbor, Numbers, ProxyId } from "./world-types.js";
 
 /**
- * The name of a body: a whole number below 2^53. The lower 26 bits are its slot (see
- * {@link slotOf}), the others tell how many bodies have had the slot. So an id never comes to mean
- * another body before its slot has had 134 million others.
- */
-export type ProxyId = number;
-
-/**
- * The slot of a body, less than the greatest number of bodies there ever were at once: an index
- * into tables of your own.
- */
-export function slotOf(id: ProxyId): number {
-  return id % 2 ** 26;
-}
-
-/** How a world treats its boxes. */
-export interface BroadPhaseOptions {
-  /** How many dimensions the boxes have. */
-  dimensions: Dimensions;
-  /**
-   * In which precision coordinates are kept and compared: `"single"`, to which they are rounded,
-   * or `"double"`. Single by default.
-   */
-  precision?: "single" | "double";
-  /** Which boxes the reported pairs are those of: as given, or the fat ones. Exact by default. */
-  report?: "exact" | "fat";
-  /** With fat boxes, what they have around the body's own, in units of length. 0 by default. */
-  margin?: number;
-  /** With fat boxes, how many displacements they reach ahead. 0 by default. */
-  prediction?: number;
-}
-
-/** What an update found; see {@link BroadPhase.update}. */
-export interface Changes {
-  /** The pairs that overlap now and did not at the last update: `a0, b0, a1, b1, ...`. */
-  begun: Float64Array;
-  /** The pairs that overlapped at the last update and do not now; some ids may be stale. */
-  ended: Float64Array;
-}
-
-/** Arrays to write to; see {@link BroadPhase.buffers}. */
-export interface Buffers {
-  /** Room for ids. */
-  ids: Float64Array;
-  /** Room for as many boxes. */
-  boxes: Float32Array | Float64Array;
-}
-
-/** A body that a ray or a moving box hits. */
-export interface Hit {
-  /** The body. */
-  id: ProxyId;
-  /** How many directions from the start; 0 if they overlap there. */
-  at: number;
-}
-
-/** A body near a point. */
-export interface Neighbour {
-  /** The body. */
-  id: ProxyId;
-  /** The distance from the point to its box; 0 if the point is in it. */
-  distance: number;
-}
-
-/** Ids, or the coordinates of a point, a direction or a box. */
-export type Numbers = readonly number[] | Float32Array | Float64Array;
-
-/**
- * A world of boxes that tells which overlaps began and which ended.
+ * A persistent broad phase: it keeps bodies with boxes, and reports which overlaps began and which
+ * ended.
  *
  * ```js
  * using world = new BroadPhase({ dimensions: 2 });
  * const hero = world.insert(0, 0, 1, 2);
  * world.set(hero, 3.5, 0, 4.5, 2);
- * const { begun, ended } = world.update();
+ * const { begun } = world.update();
+ * for (let i = 0; i < begun.length; i += 2) console.log(begun[i], "touches", begun[i + 1]);
  * ```
  *
- * Arrays that it returns are views, valid until the next call of anything in this package; copy
- * them (`begun.slice()`) to keep them. Same calls, same results, on every machine. A refused call
- * changes nothing, except that a world which ran out of memory is freed.
+ * The arrays that it returns are views, valid until the next call of anything in this package. Copy
+ * them (`begun.slice()`) to keep them. The same calls give the same results on every machine. A call
+ * that throws changes nothing, with one exception: a `BroadPhase` that runs out of memory is freed.
  */
 export class BroadPhase {
   /** How many dimensions the boxes have. */
@@ -96,54 +32,31 @@ export class BroadPhase {
   readonly #changes: Changes = { begun: new Float64Array(0), ended: new Float64Array(0) };
 
   /**
-   * An empty world.
+   * An empty broad phase.
    *
    * @throws {@link NotInitializedError} before `init()` is done.
    * @throws `RangeError` for dimensions other than 1, 2 and 3, or a margin or prediction that is
    *   negative, infinite or NaN.
    */
   constructor(options: BroadPhaseOptions) {
-    const { precision = "single", report = "exact", margin = 0, prediction = 0 } = options ?? {};
-    this.dimensions = checkDimensions(options?.dimensions);
-    if (precision !== "single" && precision !== "double") {
-      throw new RangeError(`precision must be "single" or "double", not ${String(precision)}`);
-    }
-    if (report !== "exact" && report !== "fat") {
-      throw new RangeError(`report must be "exact" or "fat", not ${String(report)}`);
-    }
-    this.precision = precision;
-    this.#memory = new WorldMemory({ dimensions: this.dimensions, precision, report, margin, prediction });
+    const given: unknown = options;
+    this.#memory = given instanceof WorldMemory ? given : WorldMemory.create(checkOptions(options));
+    this.dimensions = this.#memory.dimensions;
+    this.precision = this.#memory.isDouble ? "double" : "single";
   }
 
   /**
-   * The world of a {@link BroadPhase.snapshot}: for the same calls it gives the same ids, events
-   * and results. Precision, margins and what is reported are in the bytes.
+   * Restores a {@link BroadPhase.snapshot}: for the same calls it gives the same ids, events and
+   * results. The other options are in the bytes.
    *
-   * @throws {@link SnapshotError} if they are not those of a world of so many dimensions.
+   * @throws {@link SnapshotError} if the bytes are not a snapshot of boxes of so many dimensions.
    */
   static fromSnapshot(bytes: Uint8Array, options: { dimensions: Dimensions }): BroadPhase {
     if (!(ArrayBuffer.isView(bytes) && bytes[Symbol.toStringTag] === "Uint8Array")) {
-      throw new TypeError("a snapshot must be a Uint8Array");
+      throw new TypeError(`\`bytes\` must be a Uint8Array, not ${describe(bytes)}`);
     }
-    const scalarBytes = bytes[6];
-    const world = new BroadPhase({ ...options, precision: scalarBytes === 8 ? "double" : "single" });
-    try {
-      world.#restore(bytes);
-      return world;
-    } catch (error) {
-      world.free();
-      throw error;
-    }
-  }
-
-  #restore(bytes: Uint8Array): void {
-    checkFits(bytes.length);
-    this.#memory.call((exports, world) => {
-      const at = exports.world_bytes(world, bytes.length) >>> 0;
-      if (at === 0) throw new OutOfMemoryError();
-      new Uint8Array(exports.memory.buffer, at, bytes.length).set(bytes);
-      return exports.world_restore(world);
-    });
+    const memory: unknown = WorldMemory.restore(bytes, checkDimensions(options?.dimensions));
+    return new BroadPhase(memory as BroadPhaseOptions);
   }
 
   /** How many bodies there are. */
@@ -156,20 +69,25 @@ export class BroadPhase {
     return this.#memory.answer((exports, world) => exports.world_ids(world));
   }
 
-  /** Whether an id names a body that was inserted here and not removed. */
-  has(id: ProxyId): boolean {
-    return this.#memory.ask((exports, world) => exports.world_has(world, id)) !== 0;
+  /** Whether the body of an id is here: it was inserted here and not removed. */
+  contains(id: ProxyId): boolean {
+    const isId = typeof id === "number"; // the `valueOf` of an object could free the memory
+    return this.#memory.ask((exports, world) => (isId ? exports.world_contains(world, id) : 0)) !== 0;
   }
 
   /**
-   * Adds a body: its least corner and then its greatest. Its filter is the default one, until
-   * {@link BroadPhase.setFilter}.
+   * Adds a body with this box: its min corner and then its max corner. Its filter is the default one,
+   * until {@link BroadPhase.setFilter}.
    *
-   * @throws {@link InvalidBoxError} if the box is inverted or NaN, as a coordinate left out is.
+   * @throws {@link InvalidBoxError} if the box is inverted or NaN; `TypeError` if the arguments are
+   *   not as many numbers as a box has.
    */
-  insert(a: number, b: number, c?: number, d?: number, e?: number, f?: number): ProxyId {
-    this.#memory.writeBox(0, a, b, c, d, e, f);
-    this.#memory.call((exports, world) => exports.world_insert(world));
+  insert(minX: number, maxX: number): ProxyId;
+  insert(minX: number, minY: number, maxX: number, maxY: number): ProxyId;
+  insert(minX: number, minY: number, minZ: number, maxX: number, maxY: number, maxZ: number): ProxyId;
+  insert(a: number, b: number, c?: number, d?: number, e?: number, f?: number, more?: never): ProxyId {
+    this.#memory.writeBox(a, b, c, d, e, f, more);
+    this.#memory.call((exports, world) => exports.world_insert(world), oneBox);
     return this.#memory.numbers()[0]!;
   }
 
@@ -187,45 +105,56 @@ export class BroadPhase {
   /**
    * Gives a body its new box.
    *
-   * @throws {@link StaleProxyError}, {@link InvalidBoxError}.
+   * @throws {@link StaleProxyError}; otherwise as {@link BroadPhase.insert}.
    */
-  set(id: ProxyId, a: number, b: number, c?: number, d?: number, e?: number, f?: number): void {
-    this.#memory.writeBox(0, a, b, c, d, e, f);
-    this.#memory.call((exports, world) => exports.world_set(world, id));
+  set(id: ProxyId, minX: number, maxX: number): void;
+  set(id: ProxyId, minX: number, minY: number, maxX: number, maxY: number): void;
+  set(id: ProxyId, minX: number, minY: number, minZ: number, maxX: number, maxY: number, maxZ: number): void;
+  set(id: ProxyId, a: number, b: number, c?: number, d?: number, e?: number, f?: number, more?: never): void {
+    checkId(id);
+    this.#memory.writeBox(a, b, c, d, e, f, more);
+    this.#memory.call((exports, world) => exports.world_set(world, id), { ids: [id], boxes: oneBox.boxes });
   }
 
   /**
-   * Gives each of many bodies its new box; of an id that comes twice the last box counts. Where
-   * ids and boxes are those of {@link BroadPhase.buffers} nothing is copied.
+   * Gives each of many bodies its new box. If an id is given twice, its last box counts. Nothing is
+   * copied if ids and boxes are those of {@link BroadPhase.buffers}.
    *
-   * @throws {@link StaleProxyError} or {@link InvalidBoxError} with the index of the first that is
-   *   bad, `RangeError` if there are more of one than of the other. Then no box has changed.
+   * @throws {@link StaleProxyError} or {@link InvalidBoxError} with the index of the first bad one,
+   *   `RangeError` if there are not as many ids as boxes. Then no box has changed.
    */
   setMany(ids: Numbers, boxes: Boxes): void {
     const rows = checkBoxes(boxes, this.dimensions);
     const names = checkNumbers(ids, "ids");
     if (names.length * 2 * this.dimensions !== rows.length) {
-      throw new RangeError(`${names.length} ids do not go with ${rows.length / (2 * this.dimensions)} boxes`);
+      throw new RangeError(`\`ids\` has ${names.length} ids and \`boxes\` ${rows.length / (2 * this.dimensions)} boxes; there must be as many`);
     }
-    // Views of memory are left empty when it grows, which writing the others may let it.
+    // Writing the boxes may let the memory grow, which leaves views of it empty.
     const kept = this.#memory.keepIds(names);
     this.#memory.writeRows(rows);
     this.#memory.writeIds(kept);
-    this.#memory.call((exports, world) => exports.world_set_many(world, kept.length));
+    const passed = { ids: kept };
+    this.#memory.call((exports, world) => exports.world_set_many(world, kept.length), passed);
   }
 
   /**
-   * Arrays to write many ids and boxes to, which {@link BroadPhase.setMany} then need not copy:
-   * views of memory, valid until the next call. Where the boxes are stored in another form
-   * (lines; doubles in the plane) they are ordinary arrays.
+   * Arrays to write many ids and boxes to, which {@link BroadPhase.setMany} then does not copy:
+   * views of memory, valid until the next call. For 1D boxes, and 2D boxes in double precision,
+   * which are stored in another form, they are ordinary arrays.
+   *
+   * @throws `RangeError` if `count` is not a whole number, {@link OutOfMemoryError}.
    */
   buffers(count: number): Buffers {
     this.#memory.exports(); // throws if it was freed
-    if (!(Number.isInteger(count) && count >= 0)) throw new RangeError(`count must be a whole number, not ${count}`);
+    if (!(Number.isInteger(count) && count >= 0)) throw new RangeError(`\`count\` is ${describe(count)}; it must be a whole number, 0 or more`);
     const width = 2 * this.dimensions;
     if (this.#memory.stored !== this.dimensions) {
-      const boxes = this.precision === "double" ? new Float64Array(width * count) : new Float32Array(width * count);
-      return { ids: new Float64Array(count), boxes };
+      try {
+        const boxes = this.precision === "double" ? new Float64Array(width * count) : new Float32Array(width * count);
+        return { ids: new Float64Array(count), boxes };
+      } catch {
+        throw new OutOfMemoryError();
+      }
     }
     this.#memory.rowsFor(count);
     const ids = this.#memory.idsFor(count);
@@ -233,25 +162,28 @@ export class BroadPhase {
   }
 
   /**
-   * Moves a fast body all the way from one box to another: until the next update its box is the
-   * smallest that holds both, and from then on `to`. So it pairs with what it would have jumped
-   * over (and, on a diagonal way, with what lies beside it).
+   * Moves a fast body from one box to another: until the next update its box is the union of both,
+   * and from then on `to`. So it pairs with bodies that it would have jumped over (and, if it moves
+   * diagonally, with bodies beside its path).
    *
-   * @throws {@link StaleProxyError}; {@link InvalidBoxError} with index 0 for `from`, 1 for `to`.
+   * @throws {@link StaleProxyError}; {@link InvalidBoxError} for `from` or `to`.
    */
   setSwept(id: ProxyId, from: Numbers, to: Numbers): void {
-    this.#memory.writeNumbers(0, from, 2, "from");
-    this.#memory.writeNumbers(2 * this.#memory.stored, to, 2, "to");
-    this.#memory.call((exports, world) => exports.world_set_swept(world, id));
+    checkId(id);
+    this.#memory.writeCorners(0, from, 2, "from");
+    this.#memory.writeCorners(2 * this.#memory.stored, to, 2, "to");
+    const passed = { ids: [id], boxes: [["from", 1], ["to", 1]] } as const;
+    this.#memory.call((exports, world) => exports.world_set_swept(world, id), passed);
   }
 
   /**
-   * The box of a body as last given: least corner, greatest corner. An array of your own.
+   * The box of a body as last given: its min corner, its max corner. The array is a copy.
    *
    * @throws {@link StaleProxyError}.
    */
   box(id: ProxyId): number[] {
-    this.#memory.call((exports, world) => exports.world_box(world, id));
+    checkId(id);
+    this.#memory.call((exports, world) => exports.world_box(world, id), { ids: [id] });
     const [numbers, stored] = [this.#memory.numbers(), this.#memory.stored];
     return [
       ...numbers.subarray(0, this.dimensions),
@@ -260,26 +192,26 @@ export class BroadPhase {
   }
 
   /**
-   * Removes a body. Its id is stale from now on; the next update reports its ended pairs.
+   * Removes a body. Its id is stale from now on. The next update reports that its pairs ended.
    *
    * @throws {@link StaleProxyError}.
    */
   remove(id: ProxyId): void {
-    this.#memory.writeIds([id]);
-    this.#memory.call((exports, world) => exports.world_remove_many(world, 1));
+    const ids = [checkId(id)];
+    this.#memory.writeIds(ids);
+    this.#memory.call((exports, world) => exports.world_remove_many(world, 1), { ids });
   }
 
   /**
    * Removes many bodies.
    *
-   * @throws {@link StaleProxyError} with the index of the first id that is stale or came before.
-   *   Then none was removed.
+   * @throws {@link StaleProxyError} with the index of the first id that is stale, or that is given
+   *   twice. Then no body was removed.
    */
   removeMany(ids: Numbers): void {
-    const names = checkNumbers(ids, "ids");
-    const count = names.length;
-    this.#memory.writeIds(names);
-    this.#memory.call((exports, world) => exports.world_remove_many(world, count));
+    const kept = this.#memory.keepIds(checkNumbers(ids, "ids"));
+    this.#memory.writeIds(kept);
+    this.#memory.call((exports, world) => exports.world_remove_many(world, kept.length), { ids: kept });
   }
 
   /**
@@ -288,26 +220,31 @@ export class BroadPhase {
    * @throws {@link StaleProxyError}.
    */
   filter(id: ProxyId): Filter {
-    this.#memory.call((exports, world) => exports.world_filter(world, id));
+    checkId(id);
+    this.#memory.call((exports, world) => exports.world_filter(world, id), { ids: [id] });
     const [category = 0, mask = 0, group = 0, isStatic = 0] = this.#memory.numbers();
     return { category, mask, group, isStatic: isStatic !== 0 };
   }
 
   /**
-   * Changes which others a body may pair with; what is left out is that of the default filter.
-   * Pairs begin or end by it at the next update.
+   * Changes which other bodies a body may pair with. What is left out is as in the default filter.
+   * The next update reports the pairs that begin and end because of it.
    *
-   * @throws {@link StaleProxyError}; `RangeError` if a part is not a whole number of 32 bits.
+   * @throws {@link StaleProxyError}; `RangeError` if `category`, `mask` or `group` is not a whole
+   *   number of 32 bits.
    */
   setFilter(id: ProxyId, filter: Partial<Filter>): void {
+    checkId(id);
     const words = filterWords(filter, defaultFilter);
-    this.#memory.call((exports, world) => exports.world_set_filter(world, id, ...words));
+    this.#memory.call((exports, world) => exports.world_set_filter(world, id, ...words), { ids: [id] });
   }
 
   /**
-   * The pairs that began and ended since the last update, each with its smaller id first, sorted.
-   * Time in proportion to the bodies that changed and their neighbours. It returns the same object
-   * each time, with views that are valid until the next call.
+   * The pairs that began and ended since the last update. They are sorted by slot (see
+   * {@link slotOf}), and the body with the smaller slot is first in its pair. The time depends on how
+   * many bodies changed and how many neighbors they have.
+   *
+   * It returns the same object each time, with views that are valid until the next call.
    */
   update(): Changes {
     this.#memory.call((exports, world) => exports.world_update(world));
@@ -315,112 +252,115 @@ export class BroadPhase {
     return this.#changes;
   }
 
-  /** The pairs that overlapped at the last update: `a0, b0, a1, b1, ...`, sorted. */
+  /** The pairs that overlapped at the last update: `a0, b0, a1, b1, ...`, sorted by slot. */
   pairs(): Float64Array {
     return this.#memory.answer((exports, world) => exports.world_pairs(world));
   }
 
   /**
-   * The bodies that overlapped this one at the last update, sorted.
+   * The bodies that overlapped this one at the last update, sorted by slot.
    *
    * @throws {@link StaleProxyError}.
    */
   pairsOf(id: ProxyId): Float64Array {
-    return this.#memory.answer((exports, world) => exports.world_pairs_of(world, id));
+    checkId(id);
+    return this.#memory.answer((exports, world) => exports.world_pairs_of(world, id), { ids: [id] });
   }
 
   /**
-   * The bodies whose boxes, as last given, overlap a box: least corner, greatest corner. Sorted.
+   * The bodies whose boxes, as last given, overlap a box (min corner, max corner), sorted by slot.
    *
-   * Here as in all queries, `filter` is that of a body which asks; without it all are found.
+   * In all queries, `filter` is the filter of an imagined body: the query finds the bodies that may
+   * pair with it. Without a filter it finds every body.
    *
    * @throws {@link InvalidBoxError}.
    */
   overlapping(box: Numbers, filter?: Partial<Filter>): Float64Array {
-    this.#memory.writeNumbers(0, box, 2, "box");
-    return this.#ask(Query.Overlapping, 0, filter);
+    this.#memory.writeCorners(0, box, 2, "box");
+    return this.#ask(Query.Overlapping, filter);
   }
 
   /**
-   * The bodies whose boxes hold a point, sorted.
+   * The bodies whose boxes contain a point, sorted by slot.
    *
    * @throws `RangeError` for a NaN.
    */
   containing(point: Numbers, filter?: Partial<Filter>): Float64Array {
-    this.#memory.writeNumbers(0, point, 1, "point");
-    return this.#ask(Query.Containing, 0, filter);
+    this.#memory.writeCorners(0, point, 1, "point", "a number");
+    return this.#ask(Query.Containing, filter);
   }
 
   /**
-   * The bodies whose boxes are at most `radius` away from `centre`, sorted.
+   * The bodies whose boxes are at most `radius` away from `center`, sorted by slot.
    *
-   * @throws `RangeError` if the centre is not finite, or the radius negative or NaN.
+   * @throws `RangeError` if the center is not finite, or the radius negative or NaN.
    */
-  within(centre: Numbers, radius: number, filter?: Partial<Filter>): Float64Array {
-    this.#memory.writeNumbers(0, centre, 1, "centre");
+  within(center: Numbers, radius: number, filter?: Partial<Filter>): Float64Array {
+    checkLength(radius, "radius");
+    this.#memory.writeCorners(0, center, 1, "center", "finite");
     this.#memory.numbers()[this.#memory.stored] = radius;
-    return this.#ask(Query.Within, 0, filter);
+    return this.#ask(Query.Within, filter);
   }
 
   /**
-   * The body that a ray hits first, `limit` directions far at most; of several at once the least
-   * id. `direction` may be of any length.
+   * The first body that a ray hits, with `t` of the hit, which is at `origin + t * direction`. The
+   * ray ends at `t = limit`. `direction` may have any length: if its length is 1, `t` is a distance.
+   * Of several bodies hit at once it is the one with the smallest slot.
    *
-   * @throws `RangeError` if the origin or the direction is not finite, or the limit negative.
+   * The ray is tested against boxes. To find the first hit of what is inside the boxes, test the
+   * results of {@link BroadPhase.rayCastAll}, nearest first.
+   *
+   * @throws `RangeError` if the origin or the direction is not finite, or the limit negative or NaN.
    */
   rayCast(origin: Numbers, direction: Numbers, limit: number = Infinity, filter?: Partial<Filter>): Hit | undefined {
     this.#writeRay(origin, direction, limit);
-    return hits(this.#ask(Query.Cast, 0, filter))[0];
+    return this.#hits(Query.Cast, filter)[0];
   }
 
   /**
-   * All that a ray hits, nearest first.
+   * All bodies that a ray hits, nearest first.
    *
    * @throws As {@link BroadPhase.rayCast}.
    */
   rayCastAll(origin: Numbers, direction: Numbers, limit: number = Infinity, filter?: Partial<Filter>): Hit[] {
     this.#writeRay(origin, direction, limit);
-    return hits(this.#ask(Query.CastAll, 0, filter));
+    return this.#hits(Query.CastAll, filter);
   }
 
   /**
-   * The body that a moving box hits first.
+   * The first body that a moving box hits.
    *
    * @throws As {@link BroadPhase.rayCast}, also if the box is inverted.
    */
   boxCast(box: Numbers, direction: Numbers, limit: number = Infinity, filter?: Partial<Filter>): Hit | undefined {
     this.#writeCast(box, direction, limit);
-    return hits(this.#ask(Query.Cast, 0, filter))[0];
+    return this.#hits(Query.Cast, filter)[0];
   }
 
   /**
-   * All that a moving box hits, nearest first.
+   * All bodies that a moving box hits, nearest first.
    *
    * @throws As {@link BroadPhase.boxCast}.
    */
   boxCastAll(box: Numbers, direction: Numbers, limit: number = Infinity, filter?: Partial<Filter>): Hit[] {
     this.#writeCast(box, direction, limit);
-    return hits(this.#ask(Query.CastAll, 0, filter));
+    return this.#hits(Query.CastAll, filter);
   }
 
   /**
-   * The `k` bodies nearest to a point, or all if there are fewer, by distance and then by id.
+   * The `k` bodies nearest to a point, or all if there are fewer, sorted by distance and then by slot.
    *
    * @throws `RangeError` if the point is not finite, or `k` not a whole number.
    */
-  nearest(point: Numbers, k: number = 1, filter?: Partial<Filter>): Neighbour[] {
-    if (!(Number.isInteger(k) && k >= 0 && k < 2 ** 32)) throw new RangeError(`k must be a whole number, not ${k}`);
-    this.#memory.writeNumbers(0, point, 1, "point");
-    const found = this.#ask(Query.Nearest, k, filter);
-    return Array.from({ length: found.length / 2 }, (_, i) => ({
-      id: found[2 * i]!,
-      distance: Math.sqrt(found[2 * i + 1]!),
-    }));
+  nearest(point: Numbers, k: number = 1, filter?: Partial<Filter>): Neighbor[] {
+    checkCount(k, "k");
+    this.#memory.writeCorners(0, point, 1, "point", "finite");
+    return this.#hits(Query.Nearest, filter, k).map(({ id, t }) => ({ id, distance: Math.sqrt(t) }));
   }
 
   /**
-   * The whole state as bytes of your own, for rollback, replay and saved games. Equal states give
-   * equal bytes.
+   * A copy of the whole state as bytes, for rollback, replay and saved games. Equal states give equal
+   * bytes.
    */
   snapshot(): Uint8Array<ArrayBuffer> {
     this.#memory.call((exports, world) => exports.world_snapshot(world));
@@ -428,12 +368,12 @@ export class BroadPhase {
   }
 
   /** A 64-bit hash of the whole state, equal for equal states on every machine. */
-  hash(): bigint {
-    this.#memory.call((exports, world) => exports.world_hash(world));
+  stateHash(): bigint {
+    this.#memory.call((exports, world) => exports.world_state_hash(world));
     return this.#memory.bits();
   }
 
-  /** Gives the memory back. The world cannot be used any more; to free it twice is no error. */
+  /** Frees the memory. The object cannot be used any more. Freeing it twice is not an error. */
   free(): void {
     this.#memory.free();
   }
@@ -443,28 +383,49 @@ export class BroadPhase {
     this.free();
   }
 
-  #ask(query: Query, k: number, filter: Partial<Filter> | undefined): Float64Array {
+  #ask(query: Query, filter: Partial<Filter> | undefined): Float64Array {
     const words = filterWords(filter ?? everything, defaultFilter);
-    return this.#memory.answer((exports, world) => exports.world_query(world, query, k, ...words));
+    return this.#memory.answer((exports, world) => exports.world_query(world, query, 0, ...words), oneBox);
+  }
+
+  #hits(query: Query, filter: Partial<Filter> | undefined, k = 0): Hit[] {
+    const words = filterWords(filter ?? everything, defaultFilter);
+    return this.#memory.hits((exports, world) => exports.world_query(world, query, k, ...words));
   }
 
   #writeRay(origin: Numbers, direction: Numbers, limit: number): void {
-    this.#memory.writeNumbers(0, origin, 1, "origin");
-    this.#memory.writeNumbers(this.#memory.stored, origin, 1, "origin");
-    this.#writeWay(direction, limit);
+    this.#memory.writeCorners(0, origin, 1, "origin", "finite");
+    this.#memory.writeCorners(this.#memory.stored, origin, 1, "origin", "finite");
+    this.#writePath(direction, limit);
   }
 
   #writeCast(box: Numbers, direction: Numbers, limit: number): void {
-    this.#memory.writeNumbers(0, box, 2, "box");
-    this.#writeWay(direction, limit);
+    this.#memory.writeCorners(0, box, 2, "box", "finite");
+    this.#writePath(direction, limit);
   }
 
-  #writeWay(direction: Numbers, limit: number): void {
-    this.#memory.writeNumbers(2 * this.#memory.stored, direction, 1, "direction");
+  #writePath(direction: Numbers, limit: number): void {
+    checkLength(limit, "limit");
+    this.#memory.writeCorners(2 * this.#memory.stored, direction, 1, "direction", "finite");
     this.#memory.numbers()[3 * this.#memory.stored] = limit;
   }
 }
 
-function hits(found: Float64Array): Hit[] {
-  return Array.from({ length: found.length / 2 }, (_, i) => ({ id: found[2 * i]!, at: found[2 * i + 1]! }));
+/** The box of a call that has only one. */
+const oneBox = { boxes: [["box", 1]] } as const;
+
+/** The options with their defaults. */
+function checkOptions(options: BroadPhaseOptions): Required<BroadPhaseOptions> {
+  const dimensions = checkDimensions(options?.dimensions);
+  const { precision = "single", report = "exact", margin = 0, prediction = 0 } = options;
+  if (precision !== "single" && precision !== "double") {
+    throw new RangeError(`\`precision\` must be "single" or "double", not ${describe(precision)}`);
+  }
+  if (report !== "exact" && report !== "fat") {
+    throw new RangeError(`\`report\` must be "exact" or "fat", not ${describe(report)}`);
+  }
+  for (const [name, value] of [["margin", margin], ["prediction", prediction]] as const) {
+    if (!(Number.isFinite(value) && value >= 0)) throw new RangeError(`\`${name}\` is ${describe(value)}; it must be finite, and 0 or more`);
+  }
+  return { dimensions, precision, report, margin, prediction };
 }

@@ -6,6 +6,7 @@ import {
   init,
   InvalidBoxError,
   NotInitializedError,
+  OutOfMemoryError,
   SnapshotError,
   slotOf,
   StaleProxyError,
@@ -14,7 +15,7 @@ import { boxesAmong, boxesSpread, oracle, random } from "./support/boxes.js";
 
 /** @typedef {1 | 2 | 3} Dimensions */
 
-assert.throws(() => new BroadPhase({ dimensions: 2 }), NotInitializedError);
+assert.throws(() => new BroadPhase({ dimensions: 2 }), (error) => error instanceof NotInitializedError && /imported from "sweep-and-prune\/broad-phase"/.test(error.message));
 before(() => init());
 
 const every = /** @type {const} */ ([1, 2, 3]);
@@ -104,7 +105,7 @@ for (const dimensions of every) {
   }
 }
 
-test("an id goes stale, and its slot comes back under another", () => {
+test("a removed id is stale, and its slot is reused under another id", () => {
   const world = new BroadPhase({ dimensions: 2 });
   const first = world.insert(0, 0, 1, 1);
   world.remove(first);
@@ -113,9 +114,9 @@ test("an id goes stale, and its slot comes back under another", () => {
   assert.equal(slotOf(first), slotOf(second));
   assert.notEqual(first, second);
   assert.ok(Number.isSafeInteger(second));
-  assert.equal(world.has(first), false);
-  assert.equal(world.has(second), true);
-  const stale = [first, -1, 0.5, NaN, Infinity, 2 ** 60, second + 1, /** @type {any} */ (undefined)];
+  assert.equal(world.contains(first), false);
+  assert.equal(world.contains(second), true);
+  const stale = [first, -1, 0.5, NaN, Infinity, 2 ** 60, second + 1];
   for (const id of stale) {
     assert.throws(() => world.set(id, 0, 0, 1, 1), StaleProxyError);
     assert.throws(() => world.remove(id), StaleProxyError);
@@ -138,8 +139,8 @@ test("an id goes stale, and its slot comes back under another", () => {
 test("a refused call changes nothing", () => {
   const world = new BroadPhase({ dimensions: 2 });
   const id = world.insert(0, 0, 1, 1);
-  const before = world.hash();
-  assert.throws(() => world.insert(0, 0, 1), InvalidBoxError);
+  const before = world.stateHash();
+  assert.throws(() => world.insert(0, 0, 1, NaN), InvalidBoxError);
   assert.throws(() => world.insert(2, 0, 1, 1), InvalidBoxError);
   assert.throws(() => world.set(id, 0, 0, 1, NaN), InvalidBoxError);
   assert.throws(
@@ -158,7 +159,7 @@ test("a refused call changes nothing", () => {
   assert.throws(() => world.nearest([0, Infinity]), RangeError);
   assert.throws(() => world.nearest([0, 0], 0.5), RangeError);
   assert.throws(() => world.buffers(-1), RangeError);
-  assert.equal(world.hash(), before);
+  assert.equal(world.stateHash(), before);
   assert.throws(() => new BroadPhase({ dimensions: 2, margin: -1 }), RangeError);
   assert.throws(() => new BroadPhase({ dimensions: 2, margin: NaN }), RangeError);
   assert.throws(() => new BroadPhase({ dimensions: 2, precision: /** @type {any} */ ("half") }), RangeError);
@@ -168,7 +169,7 @@ test("a refused call changes nothing", () => {
   assert.throws(() => world.insert(0, 0, 1, 1), /^TypeError: this BroadPhase was freed/);
 });
 
-test("filters: masks, groups, static bodies", () => {
+test("masks, groups and static bodies decide which bodies pair", () => {
   const world = new BroadPhase({ dimensions: 1 });
   const [a, b] = [world.insert(0, 1), world.insert(0, 1)];
   const pairs = () => (world.update(), world.pairs().length / 2);
@@ -191,7 +192,7 @@ test("filters: masks, groups, static bodies", () => {
   world.free();
 });
 
-test("a swept body meets what it would have jumped over", () => {
+test("a swept body pairs with what it would have jumped over", () => {
   const world = new BroadPhase({ dimensions: 2 });
   const wall = world.insert(5, -5, 5.1, 5);
   const bullet = world.insert(0, 0, 0.1, 0.1);
@@ -203,7 +204,7 @@ test("a swept body meets what it would have jumped over", () => {
   world.free();
 });
 
-test("fat boxes meet within the margin", () => {
+test("fat AABBs pair within the margin", () => {
   const world = new BroadPhase({ dimensions: 3, margin: 0.5, report: "fat" });
   world.insert(0, 0, 0, 1, 1, 1);
   world.insert(1.75, 0, 0, 2, 1, 1);
@@ -236,7 +237,7 @@ test("queries equal brute force", () => {
       assert.deepEqual([...world.within(point, 0.125)], near);
       const nearest = world.nearest(point, 5);
       const distances = [...ids].map((_, i) => distance(point, at(i))).sort((a, b) => a - b);
-      nearest.forEach((neighbour, i) => assert.ok(Math.abs(neighbour.distance - (distances[i] ?? NaN)) < 1e-9));
+      nearest.forEach((neighbor, i) => assert.ok(Math.abs(neighbor.distance - (distances[i] ?? NaN)) < 1e-9));
       assert.equal(nearest.length, 5);
       const direction = [1, ...point.slice(1).map(() => 0)];
       const hit = world.rayCast(point, direction, 2);
@@ -244,9 +245,9 @@ test("queries equal brute force", () => {
       assert.deepEqual(all[0], hit);
       const end = [...point];
       end[0] = 2;
-      const way = [...point, ...point];
-      way[dimensions] = 3;
-      assert.deepEqual(all.map((hit) => hit.id).sort(), [...world.overlapping(way)].sort());
+      const path = [...point, ...point];
+      path[dimensions] = 3;
+      assert.deepEqual(all.map((hit) => hit.id).sort(), [...world.overlapping(path)].sort());
       assert.deepEqual(world.boxCast([...point, ...point], direction, 2), hit);
       assert.deepEqual(world.boxCastAll([...point, ...point], direction, 2), all);
     }
@@ -254,7 +255,7 @@ test("queries equal brute force", () => {
   }
 });
 
-test("a restored world goes on as the first would have", () => {
+test("a restored world continues like the one that was saved", () => {
   for (const precision of precisions) {
     const next = random(50);
     const world = new BroadPhase({ dimensions: 2, precision });
@@ -265,7 +266,7 @@ test("a restored world goes on as the first would have", () => {
     const bytes = world.snapshot();
     const copy = BroadPhase.fromSnapshot(bytes, { dimensions: 2 });
     assert.equal(copy.precision, precision);
-    assert.equal(copy.hash(), world.hash());
+    assert.equal(copy.stateHash(), world.stateHash());
     assert.deepEqual(copy.snapshot(), bytes);
     const changes = [world, copy].map((each) => {
       each.set(ids[40] ?? 0, 0.25, 0.25, 0.75, 0.75);
@@ -274,14 +275,14 @@ test("a restored world goes on as the first would have", () => {
     });
     assert.ok(/** @type {Float64Array} */ (changes[0]?.[0]).length > 0);
     assert.deepEqual(changes[0], changes[1]);
-    assert.equal(copy.hash(), world.hash());
+    assert.equal(copy.stateHash(), world.stateHash());
     assert.throws(() => copy.set(ids[0] ?? 0, 0, 0, 1, 1), StaleProxyError);
 
     const changed = bytes.slice();
     changed[50] = (changed[50] ?? 0) ^ 1;
     const bad = [new Uint8Array(0), bytes.subarray(0, 30), bytes.subarray(1), changed];
     for (const each of bad) assert.throws(() => BroadPhase.fromSnapshot(each, { dimensions: 2 }), SnapshotError);
-    if (precision === "single") assert.throws(() => BroadPhase.fromSnapshot(bytes, { dimensions: 3 }), /other dimensions/);
+    if (precision === "single") assert.throws(() => BroadPhase.fromSnapshot(bytes, { dimensions: 3 }), /other dimensions: pass `dimensions: 2`/);
     assert.throws(() => BroadPhase.fromSnapshot(/** @type {any} */ ([...bytes]), { dimensions: 2 }), TypeError);
   }
 });
@@ -299,4 +300,97 @@ test("a steady state makes no new view", () => {
   world.setMany(ids, boxes);
   assert.equal(world.buffers(1).boxes, boxes);
   world.free();
+});
+
+test("insert and set take as many numbers as a box has, and nothing else", () => {
+  for (const dimensions of every) {
+    for (const precision of precisions) {
+      const world = /** @type {any} */ (new BroadPhase({ dimensions, precision }));
+      const box = [0, 0, 0, 1, 1, 1].slice(3 - dimensions, 3 + dimensions);
+      const id = world.insert(...box);
+      const before = world.stateHash();
+      const bad = [[...box, 1], box.slice(1), [], [box], ...box.flatMap((_, at) => [null, "1", undefined, 1n].map((odd) => box.with(at, /** @type {any} */ (odd))))];
+      for (const args of bad) {
+        assert.throws(() => world.insert(...args), { name: "TypeError", message: new RegExp(`a box in ${dimensions}D is ${2 * dimensions} numbers: min`) });
+        assert.throws(() => world.set(id, ...args), { name: "TypeError", message: /a box in .D/ });
+      }
+      assert.throws(() => world.insert(...box.with(0, NaN)), InvalidBoxError);
+      assert.equal(world.stateHash(), before);
+      world.free();
+    }
+  }
+  const world = /** @type {any} */ (new BroadPhase({ dimensions: 2 }));
+  assert.throws(() => world.insert(0, 0, null, 1), /`maxX` must be a number, not null; .*minX, minY, maxX, maxY/);
+  assert.throws(() => world.insert(0, 0, 0, 1, 1, 1), /more arguments than maxY/);
+});
+
+test("an id must be a number: an object whose valueOf frees the world reaches no other memory", () => {
+  const world = /** @type {any} */ (new BroadPhase({ dimensions: 1 }));
+  const id = world.insert(0, 1);
+  const calls = { set: [0, 1], setSwept: [[0, 1], [0, 1]], remove: [], box: [], filter: [], setFilter: [{}], pairsOf: [] };
+  const evil = { valueOf: () => (world.free(), id) };
+  for (const [name, rest] of Object.entries(calls)) {
+    for (const odd of [evil, String(id), null, undefined, BigInt(id)]) {
+      assert.throws(() => world[name](odd, ...rest), { name: "TypeError", message: /`id` must be a number, not / }, name);
+    }
+  }
+  assert.equal(world.contains(evil), false);
+  assert.throws(() => world.within([0], evil), /TypeError: `radius` must be a number/);
+  assert.throws(() => world.rayCast([0], [1], evil), /TypeError: `limit` must be a number/);
+  assert.equal(world.size, 1);
+  world.free();
+});
+
+test("messages name the argument, its value and the limit", () => {
+  const world = new BroadPhase({ dimensions: 2 });
+  const id = world.insert(0, 0, 1, 1);
+  /** @type {[() => unknown, RegExp][]} */
+  const cases = [
+    [() => world.set(id + 1, 0, 0, 1, 1), new RegExp(`^StaleProxyError: the id at index 0 \\(${id + 1}\\) is stale`)],
+    [() => world.removeMany([id, 7]), /^StaleProxyError: the id at index 1 \(7\) is stale/],
+    [() => world.setSwept(id, [0, 0, 1, 1], [0, 2, 1, 1]), /^InvalidBoxError: box 0 of `to` is inverted or NaN on axis 1 \(y\)/],
+    [() => world.setSwept(id, [2, 0, 1, 1], [0, 0, 1, 1]), /^InvalidBoxError: box 0 of `from` .* axis 0 \(x\)/],
+    [() => world.overlapping([0, 2, 1, 1]), /^InvalidBoxError: box 0 of `box`/],
+    [() => world.insertMany([0, 0, 1, 1, 2, 2, 1, 1]), /^InvalidBoxError: box 1 of `boxes`/],
+    [() => world.within([0, 0], -1), /^RangeError: `radius` is -1; it must be 0 or more/],
+    [() => world.within([0, NaN], 1), /^RangeError: `center\[1\]` is NaN; it must be finite/],
+    [() => world.containing([NaN, 0]), /^RangeError: `point\[0\]` is NaN; it must be a number/],
+    [() => world.rayCast([0, 0], [1, Infinity]), /^RangeError: `direction\[1\]` is Infinity; it must be finite/],
+    [() => world.rayCast([0, 0], [1, 0], -1), /^RangeError: `limit` is -1; it must be 0 or more/],
+    [() => world.boxCast([0, 2, 1, 1], [1, 0]), /^RangeError: `box` is inverted/],
+    [() => world.nearest([0, 0], 0.5), /^RangeError: `k` is 0.5; it must be a whole number/],
+    [() => world.overlapping([0, 1]), /^RangeError: `box` has 2 numbers; in 2D it must have 4/],
+    [() => world.setFilter(id, { mask: 2 ** 32 }), /^RangeError: `mask` of the filter is 4294967296; /],
+    [() => new BroadPhase({ dimensions: 2, margin: -1 }), /^RangeError: `margin` is -1; it must be finite, and 0 or more/],
+  ];
+  for (const [call, message] of cases) assert.throws(call, message);
+  world.free();
+});
+
+test("buffers that JavaScript cannot allocate are an OutOfMemoryError", () => {
+  const world = new BroadPhase({ dimensions: 1, precision: "double" });
+  for (const count of [2 ** 33, 2 ** 52]) assert.throws(() => world.buffers(count), OutOfMemoryError);
+  assert.throws(() => world.buffers(1.5), /^RangeError: `count` is 1.5/);
+  world.free();
+});
+
+test("a snapshot of another dimension is refused, in each precision", () => {
+  for (const from of every) {
+    for (const precision of precisions) {
+      const world = new BroadPhase({ dimensions: from, precision });
+      const ids = world.insertMany(new Float64Array(8 * from)).slice();
+      world.update();
+      const bytes = world.snapshot();
+      for (const to of every) {
+        if (to !== from) assert.throws(() => BroadPhase.fromSnapshot(bytes, { dimensions: to }), SnapshotError, `${from}D as ${to}D`);
+      }
+      const copy = BroadPhase.fromSnapshot(bytes, { dimensions: from });
+      assert.deepEqual([copy.dimensions, copy.precision, copy.stateHash()], [from, precision, world.stateHash()]);
+      assert.deepEqual([...copy.ids()], [...ids]);
+      assert.deepEqual(copy.snapshot(), bytes);
+      for (let length = 0; length < 12; length++) {
+        assert.throws(() => BroadPhase.fromSnapshot(bytes.subarray(0, length), { dimensions: from }), SnapshotError);
+      }
+    }
+  }
 });

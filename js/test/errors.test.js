@@ -2,11 +2,11 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import vm from "node:vm";
-import { findPairs, init, InvalidBoxError, NotInitializedError, PairFinder, SweepAndPruneError } from "sweep-and-prune";
+import { findPairs, findPairsBetween, init, InvalidBoxError, NotInitializedError, PairFinder, SweepAndPruneError } from "sweep-and-prune";
 
 // Before `init`, and so before everything else in this file.
-test("a call before init", async () => {
-  assert.throws(() => findPairs([0, 1], { dimensions: 1 }), NotInitializedError);
+test("a call before init throws and names the entry", async () => {
+  assert.throws(() => findPairs([0, 1], { dimensions: 1 }), (error) => error instanceof NotInitializedError && error.message.includes('"sweep-and-prune" is not started'));
   assert.throws(() => new PairFinder({ dimensions: 1 }), NotInitializedError);
   const starting = init();
   assert.throws(() => findPairs([0, 1], { dimensions: 1 }), NotInitializedError);
@@ -26,7 +26,7 @@ function expectInvalid(rows, dimensions, expected) {
       (error) => {
         assert.ok(error instanceof InvalidBoxError && error instanceof SweepAndPruneError);
         assert.equal(error.name, "InvalidBoxError");
-        assert.match(error.message, new RegExp(`box ${expected.index} .* axis ${expected.axis}`));
+        assert.match(error.message, new RegExp(`^box ${expected.index} of \`boxes\` .* axis ${expected.axis} \\(${"xyz"[expected.axis]}\\)`));
         assert.deepEqual({ index: error.index, axis: error.axis }, expected);
         return true;
       },
@@ -44,22 +44,43 @@ test("an inverted box and a NaN name the first box and axis at fault", () => {
   expectInvalid([0, 0, 0, NaN], 2, { index: 0, axis: 1 });
 });
 
-test("a number of coordinates that is not whole boxes", () => {
+test("of two sets, the error names the one that is at fault, and the box within it", () => {
+  const good = [0, 1, 2, 3];
+  const bad = [0, 1, 3, 2];
+  /** @type {[() => unknown, string][]} */
+  const cases = [
+    [() => findPairsBetween(bad, good, { dimensions: 1 }), "a"],
+    [() => findPairsBetween(good, bad, { dimensions: 1 }), "b"],
+    [() => new PairFinder({ dimensions: 1 }).forEachBetween(good, bad, () => {}), "b"],
+  ];
+  for (const [call, argument] of cases) {
+    assert.throws(call, (error) => error instanceof InvalidBoxError && error.index === 1 && error.argument === argument && error.message.includes(`box 1 of \`${argument}\``));
+  }
+});
+
+test("objects that are no boxes are named by what they hold", () => {
+  const boxes = /** @type {any} */ ([{ x: 0, y: 0, width: 1, height: 1 }]);
+  const message = /^TypeError: boxes\[0\] must be { minX, .. }.*, not an object with x, y, width, height/;
+  assert.throws(() => findPairs(boxes), message);
+  assert.throws(() => findPairs(boxes, { dimensions: 2 }), message);
+});
+
+test("a number of coordinates that is not a whole number of boxes is refused", () => {
   for (const boxes of [[1, 2, 3], new Float32Array(5), new Float64Array(6)]) {
     assert.throws(() => findPairs(boxes, { dimensions: 2 }), RangeError);
   }
   assert.throws(() => findPairs(new Float32Array(6), { dimensions: 2 }), /6 numbers.*multiple of 4.*2D/);
 });
 
-test("dimensions other than 1, 2 and 3", () => {
+test("dimensions other than 1, 2 and 3 are refused", () => {
   for (const dimensions of [0, 4, -1, 2.5, NaN, "2", null, undefined, 2n, Symbol("2"), {}]) {
     assert.throws(() => findPairs([0, 1], { dimensions: /** @type {any} */ (dimensions) }), RangeError);
     assert.throws(() => new PairFinder({ dimensions: /** @type {any} */ (dimensions) }), RangeError);
   }
-  assert.throws(() => findPairs([0, 1], /** @type {any} */ (undefined)), RangeError);
+  assert.throws(() => findPairs([0, 1], /** @type {any} */ (undefined)), /^RangeError: `options` is missing: .*{ dimensions: 1 }/);
 });
 
-test("boxes of another type", () => {
+test("boxes of another type are refused", () => {
   const others = [
     undefined,
     null,
@@ -83,7 +104,7 @@ test("boxes of another type", () => {
   }
 });
 
-test("a detached buffer, and a view that its buffer no longer holds", () => {
+test("a detached buffer is refused, and a view that its buffer no longer holds", () => {
   const boxes = new Float32Array([0, 1, 1, 2]);
   structuredClone(boxes.buffer, { transfer: [boxes.buffer] });
   assert.throws(() => findPairs(boxes, { dimensions: 1 }), /^TypeError: the buffer of boxes is detached/);
@@ -94,14 +115,14 @@ test("a detached buffer, and a view that its buffer no longer holds", () => {
   assert.throws(() => findPairs(view, { dimensions: 1 }), TypeError);
 });
 
-test("typed arrays of another realm are as good as ours", () => {
+test("typed arrays of another realm are accepted", () => {
   const boxes = vm.runInNewContext("new Float32Array([0, 1, 1, 2])");
   assert.equal(boxes instanceof Float32Array, false);
   assert.deepEqual([...findPairs(boxes, { dimensions: 1 })], [0, 1]);
   assert.deepEqual([...findPairs(vm.runInNewContext("[0, 1, 1, 2]"), { dimensions: 1 })], [0, 1]);
 });
 
-test("after an error a finder goes on as if nothing had been", () => {
+test("after an error a finder works as before", () => {
   const finder = new PairFinder({ dimensions: 1 });
   const good = new Float64Array([0, 1, 1, 2, 2, 3]);
   const expected = [...finder.find(good)];

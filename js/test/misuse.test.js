@@ -31,7 +31,7 @@ function checkError(call, error) {
   const isNamed = named.test(error?.name);
   const isMisuse = error instanceof TypeError || error instanceof RangeError;
   assert.ok(isNamed || isMisuse, `${call} throws ${error?.name}: ${error?.message}`);
-  // What the engine says where nobody has checked.
+  // Messages of the engine, where our code did not check.
   assert.doesNotMatch(error.message, /Cannot read|not a function|unreachable|internal error|call stack/, call);
 }
 
@@ -77,18 +77,18 @@ for (const dimensions of /** @type {const} */ ([1, 2, 3])) {
     test(`a world in ${precision} precision, ${dimensions}D`, () => {
       const box = new Array(2 * dimensions).fill(0);
       const point = new Array(dimensions).fill(0);
-      const way = point.with(0, 1);
-      /** A world of three bodies, and each of its calls with arguments that it takes. */
+      const direction = point.with(0, 1);
+      /** A world of three bodies, and each of its methods with valid arguments. */
       const start = () => {
         const world = /** @type {any} */ (new BroadPhase({ dimensions, precision }));
         const [a, b, c] = world.insertMany(new Float64Array(6 * dimensions));
         world.update();
         const calls = {
           ...{ insert: box, insertMany: [[...box, ...box], {}], set: [a, ...box], setMany: [[a, b], [...box, ...box]], setSwept: [a, box, box] },
-          ...{ remove: [c], removeMany: [[c]], setFilter: [a, {}], filter: [a], has: [a], box: [a], pairsOf: [a], buffers: [2] },
-          ...{ update: [], pairs: [], ids: [], snapshot: [], hash: [], overlapping: [box, {}], containing: [point, {}] },
-          ...{ within: [point, 1, {}], nearest: [point, 1, {}], rayCast: [point, way, 5, {}], rayCastAll: [point, way, 5, {}] },
-          ...{ boxCast: [box, way, 5, {}], boxCastAll: [box, way, 5, {}] },
+          ...{ remove: [c], removeMany: [[c]], setFilter: [a, {}], filter: [a], contains: [a], box: [a], pairsOf: [a], buffers: [2] },
+          ...{ update: [], pairs: [], ids: [], snapshot: [], stateHash: [], overlapping: [box, {}], containing: [point, {}] },
+          ...{ within: [point, 1, {}], nearest: [point, 1, {}], rayCast: [point, direction, 5, {}], rayCastAll: [point, direction, 5, {}] },
+          ...{ boxCast: [box, direction, 5, {}], boxCastAll: [box, direction, 5, {}] },
         };
         return { world, calls: /** @type {Record<string, unknown[]>} */ (calls) };
       };
@@ -97,13 +97,13 @@ for (const dimensions of /** @type {const} */ ([1, 2, 3])) {
         for (let at = 0; at < width; at++) {
           for (const value of odd) {
             const { world, calls } = start();
-            const before = world.hash();
+            const before = world.stateHash();
             try {
               world[name](...(calls[name] ?? []).with(at, value));
             } catch (error) {
               checkError(name, error);
-              // One that ran out of memory is freed.
-              if (/** @type {any} */ (error).name !== "OutOfMemoryError") assert.equal(world.hash(), before, `${name} threw, and changed the world`);
+              // A world that ran out of memory is freed.
+              if (/** @type {any} */ (error).name !== "OutOfMemoryError") assert.equal(world.stateHash(), before, `${name} threw, and changed the world`);
             }
             world.free();
           }

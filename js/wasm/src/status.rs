@@ -48,7 +48,7 @@ pub fn tell_error(error: Error) -> Code {
             let fault = match fault {
                 SnapshotFault::Foreign => [0, 0],
                 SnapshotFault::Version { found } => [1, found.into()],
-                SnapshotFault::OtherWorld { .. } => [2, 0],
+                SnapshotFault::OtherWorld { dimensions, .. } => [2, dimensions],
                 SnapshotFault::Truncated => [3, 0],
                 _ => [4, 0],
             };

@@ -1,46 +1,65 @@
-//! What stands between a world and JavaScript: ids as whole numbers, and what goes in and out.
+//! The handle that JavaScript holds, and the form that ids have there: whole numbers.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use sweep_and_prune::{Error, ProxyId};
+use sweep_and_prune_bindings::{AnyBroadPhase, Answer, Id};
 
-use super::typed::{Numbers, World};
 use crate::status::{Code, tell, tell_error};
 
-/// Bits of an id that are its slot. Each body takes more than 64 bytes, so that 4 GiB hold less.
+/// Bits of an id that are its slot. Each body takes more than 64 bytes, so 4 GiB hold fewer.
 const SLOT_BITS: u32 = 26;
 /// Bits of an id that are its generation: with those of the slot, as many as an `f64` holds.
 const GENERATION_MASK: u32 = (1 << 27) - 1;
 
-/// The id as a whole number below 2^53.
-pub(super) fn to_number(id: ProxyId) -> f64 {
-    f64::from(id.generation() & GENERATION_MASK) * (1 << SLOT_BITS) as f64 + f64::from(id.slot())
+/// An id as a whole number below 2^53.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(transparent)]
+pub(super) struct Number(pub f64);
+
+impl Id for Number {
+    fn from_proxy(id: ProxyId) -> Self {
+        let generation = f64::from(id.generation() & GENERATION_MASK);
+        Self(generation * (1 << SLOT_BITS) as f64 + f64::from(id.slot()))
+    }
 }
+
+/// The broad phase behind a handle.
+pub(super) type World = Box<dyn AnyBroadPhase<Number>>;
 
 /// What JavaScript holds a pointer to.
 pub(super) struct Handle {
-    pub world: Box<dyn World>,
-    pub numbers: Numbers,
-    /// The generation of the last body of each slot: what an id from JavaScript leaves out.
+    pub world: World,
+    /// How many dimensions the boxes have for the user; they may be stored in more.
+    pub dimensions: u32,
+    /// The few numbers that go in and out: two boxes and more.
+    pub numbers: [f64; 16],
+    /// The generation of the last body of each slot: the bits that a number leaves out.
     pub generations: Vec<u32>,
     pub ids_in: Vec<f64>,
     pub ids: Vec<ProxyId>,
-    pub out: Vec<f64>,
+    pub answer: Answer<Number>,
     pub bytes: Vec<u8>,
 }
 
 impl Handle {
-    pub fn new(world: Box<dyn World>) -> Self {
+    pub fn new(world: World, dimensions: u32) -> Self {
         Self {
             world,
+            dimensions,
             numbers: [0.0; 16],
             generations: Vec::new(),
             ids_in: Vec::new(),
             ids: Vec::new(),
-            out: Vec::new(),
+            answer: Answer::default(),
             bytes: Vec::new(),
         }
+    }
+
+    /// How many numbers a box takes.
+    pub fn width(&self) -> usize {
+        2 * self.world.kind().dimensions
     }
 
     /// The id that `number` stands for, if it can be one.
@@ -64,21 +83,21 @@ impl Handle {
         note(&mut self.generations, id);
     }
 
-    /// Tells of what is in `out`.
+    /// Reports the ids in the answer.
     pub fn answer(&self, result: Result<(), Error>) -> Code {
         match result {
-            Ok(()) => tell(Code::Ok, [self.out.as_ptr().addr(), self.out.len()]),
+            Ok(()) => tell(Code::Ok, [self.answer.ids.as_ptr().addr(), self.answer.ids.len()]),
             Err(error) => tell_error(error),
         }
     }
 }
 
 fn id_of(generations: &[u32], number: f64) -> Option<ProxyId> {
-    // Of a number that is none, some slot: to compare numbers afterwards is enough.
+    // A number that is no id gives some slot; comparing the numbers afterwards refuses it.
     let slot = number as i64 as u32 & ((1 << SLOT_BITS) - 1);
     let generation = *generations.get(slot as usize)?;
     let id = ProxyId::from_bits(u64::from(generation) << 32 | u64::from(slot));
-    (to_number(id) == number).then_some(id)
+    (Number::from_proxy(id).0 == number).then_some(id)
 }
 
 /// Remembers the generation of an id, by its slot.

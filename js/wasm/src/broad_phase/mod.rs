@@ -1,27 +1,26 @@
-//! The living world: of either precision, chosen at run time.
+//! The persistent broad phase.
 //!
-//! Numbers go in and out through one small area of `f64`, many boxes through rows, many ids
-//! through an array. As in `finder.rs` there are three types of world, and JavaScript makes boxes
-//! of fewer dimensions flat on the others.
+//! Few numbers go in and out through an area of 16 `f64`, many boxes through rows, many ids through
+//! an array.
 
 mod handle;
-mod typed;
+mod stored;
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use sweep_and_prune::{Filter, Report};
+use sweep_and_prune_bindings::{Id, Query, Settings};
 
 use crate::status::{Code, tell, tell_error};
-use handle::{Handle, note, to_number};
-use typed::{Query, Typed};
+use handle::{Handle, Number, note};
 
 fn filter_of(category: u32, mask: u32, group: i32, is_static: bool) -> Filter {
     Filter { category, mask, group, is_static }
 }
 
-/// A new world, to be freed by [`world_free`]; null if there is none for such boxes, or a margin
-/// is negative, infinite or NaN.
+/// A new broad phase, to be freed by [`world_free`]; null for dimensions other than 1 to 3, or a
+/// margin or prediction that is negative, infinite or NaN.
 #[unsafe(no_mangle)]
 extern "C" fn world_new(
     dimensions: u32,
@@ -31,22 +30,18 @@ extern "C" fn world_new(
     is_fat: bool,
 ) -> Option<Box<Handle>> {
     let report = if is_fat { Report::Fat } else { Report::Exact };
-    let world = match (dimensions, is_double) {
-        (2, false) => Typed::<2, f32>::boxed(margin, prediction, report),
-        (3, false) => Typed::<3, f32>::boxed(margin, prediction, report),
-        (3, true) => Typed::<3, f64>::boxed(margin, prediction, report),
-        _ => None,
-    }?;
-    Some(Box::new(Handle::new(world)))
+    let settings = Settings { margin, prediction, report };
+    let world = stored::broad_phase(dimensions, is_double, settings)?;
+    Some(Box::new(Handle::new(world, dimensions)))
 }
 
-/// Frees a world and all that it holds.
+/// Frees a broad phase and all that it holds.
 #[unsafe(no_mangle)]
 extern "C" fn world_free(handle: Option<Box<Handle>>) {
     drop(handle);
 }
 
-/// Where the 16 numbers are, as long as the world lives.
+/// Where the 16 numbers are, until the broad phase is freed.
 #[unsafe(no_mangle)]
 extern "C" fn world_numbers(handle: &mut Handle) -> *mut f64 {
     handle.numbers.as_mut_ptr()
@@ -87,14 +82,14 @@ extern "C" fn world_insert(handle: &mut Handle) -> Code {
     match handle.world.insert(&handle.numbers) {
         Ok(id) => {
             handle.note(id);
-            handle.numbers[0] = to_number(id);
+            handle.numbers[0] = Number::from_proxy(id).0;
             tell(Code::Ok, [0, 0])
         }
         Err(error) => tell_error(error),
     }
 }
 
-/// Adds a body for each of the first `count` rows. Details: where their ids are, how many.
+/// Adds a body for each of the first `count` rows. Details: where their ids are, and how many.
 #[unsafe(no_mangle)]
 extern "C" fn world_insert_many(
     handle: &mut Handle,
@@ -104,12 +99,12 @@ extern "C" fn world_insert_many(
     group: i32,
     is_static: bool,
 ) -> Code {
-    handle.out.clear();
+    handle.answer.ids.clear();
     let filter = filter_of(category, mask, group, is_static);
     let result = handle.world.insert_many(count, filter).map(|ids| {
         for id in ids {
             handle.note(id);
-            handle.out.push(to_number(id));
+            handle.answer.ids.push(Number::from_proxy(id));
         }
     });
     handle.answer(result)
@@ -132,7 +127,8 @@ extern "C" fn world_set_many(handle: &mut Handle, count: usize) -> Code {
 /// Moves a body from the first box in the numbers to the second.
 #[unsafe(no_mangle)]
 extern "C" fn world_set_swept(handle: &mut Handle, id: f64) -> Code {
-    let result = handle.id(id, 0).and_then(|id| handle.world.set_swept(id, &handle.numbers));
+    let (from, to) = handle.numbers.split_at(handle.width());
+    let result = handle.id(id, 0).and_then(|id| handle.world.set_swept(id, from, to));
     handle.answer(result)
 }
 
@@ -166,14 +162,15 @@ extern "C" fn world_filter(handle: &mut Handle, id: f64) -> Code {
 /// Leaves the box of a body in the numbers.
 #[unsafe(no_mangle)]
 extern "C" fn world_box(handle: &mut Handle, id: f64) -> Code {
-    let result = handle.id(id, 0).and_then(|id| handle.world.aabb(id, &mut handle.numbers));
+    let width = handle.width();
+    let result = handle.id(id, 0).and_then(|id| handle.world.corners(id, &mut handle.numbers[..width]));
     handle.answer(result)
 }
 
-/// Whether an id names a body.
+/// Whether a body is here.
 #[unsafe(no_mangle)]
-extern "C" fn world_has(handle: &mut Handle, id: f64) -> bool {
-    handle.id(id, 0).and_then(|id| handle.world.filter(id)).is_ok()
+extern "C" fn world_contains(handle: &mut Handle, id: f64) -> bool {
+    handle.id(id, 0).is_ok_and(|id| handle.world.contains(id))
 }
 
 /// Removes the bodies of the first `count` ids.
@@ -183,36 +180,37 @@ extern "C" fn world_remove_many(handle: &mut Handle, count: usize) -> Code {
     handle.answer(result)
 }
 
-/// Details: where the pairs are that began and then those that ended, and how many ids; the first
-/// number says how many of those are of pairs that began.
+/// Details: where the ids are and how many: two for each pair that began, and then two for each pair
+/// that ended. The first number is how many ids the former are.
 #[unsafe(no_mangle)]
 extern "C" fn world_update(handle: &mut Handle) -> Code {
-    handle.out.clear();
-    handle.numbers[0] = handle.world.update(&mut handle.out) as f64;
+    handle.answer.ids.clear();
+    handle.numbers[0] = handle.world.update(&mut handle.answer.ids) as f64;
     handle.answer(Ok(()))
 }
 
 /// Details: where the pairs of the last update are, and how many ids.
 #[unsafe(no_mangle)]
 extern "C" fn world_pairs(handle: &mut Handle) -> Code {
-    handle.out.clear();
-    handle.world.pairs(&mut handle.out);
+    handle.answer.ids.clear();
+    handle.world.pairs(&mut handle.answer.ids);
     handle.answer(Ok(()))
 }
 
-/// Details: where the ids are of the bodies that overlapped this one, and how many.
+/// Details: where the ids of the bodies that overlapped this one are, and how many.
 #[unsafe(no_mangle)]
 extern "C" fn world_pairs_of(handle: &mut Handle, id: f64) -> Code {
-    handle.out.clear();
-    let result = handle.id(id, 0).and_then(|id| handle.world.pairs_of(id, &mut handle.out));
+    handle.answer.ids.clear();
+    let result = handle.id(id, 0).and_then(|id| handle.world.pairs_of(id, &mut handle.answer.ids));
     handle.answer(result)
 }
 
 /// Details: where the ids of all bodies are, and how many.
 #[unsafe(no_mangle)]
 extern "C" fn world_ids(handle: &mut Handle) -> Code {
-    handle.out.clear();
-    handle.world.ids(&mut |id| handle.out.push(to_number(id)));
+    handle.answer.ids.clear();
+    let ids = &mut handle.answer.ids;
+    handle.world.for_each_id(&mut |id| ids.push(Number::from_proxy(id)));
     handle.answer(Ok(()))
 }
 
@@ -222,8 +220,8 @@ extern "C" fn world_len(handle: &mut Handle) -> usize {
     handle.world.len()
 }
 
-/// Asks a query whose numbers are in the numbers. Details: where its answer is, and how many
-/// numbers that is: ids, or ids each followed by a place or a squared distance.
+/// Answers a query, whose numbers are in the numbers. Details: where the ids are that it found, and
+/// how many; the first number is where their values are (t, or squared distances), as many.
 #[unsafe(no_mangle)]
 extern "C" fn world_query(
     handle: &mut Handle,
@@ -243,34 +241,39 @@ extern "C" fn world_query(
         _ => Query::Nearest(k),
     };
     let filter = filter_of(category, mask, group, is_static);
-    handle.out.clear();
-    let result = handle.world.query(query, filter, &handle.numbers, &mut handle.out);
+    let numbers = &handle.numbers[..query.width(handle.world.kind().dimensions)];
+    let result = handle.world.query(query, numbers, filter, &mut handle.answer);
+    handle.numbers[0] = handle.answer.values.as_ptr().addr() as f64;
     handle.answer(result)
 }
 
 /// Details: where the snapshot is, and how many bytes; until the next call.
 #[unsafe(no_mangle)]
 extern "C" fn world_snapshot(handle: &mut Handle) -> Code {
-    handle.bytes = handle.world.snapshot();
+    handle.bytes = stored::snapshot(&handle.world, handle.dimensions);
     tell(Code::Ok, [handle.bytes.as_ptr().addr(), handle.bytes.len()])
 }
 
-/// Makes the world that of the snapshot in the bytes.
+/// Becomes the broad phase of the snapshot in the bytes. Details: whether it is in double precision.
 #[unsafe(no_mangle)]
 extern "C" fn world_restore(handle: &mut Handle) -> Code {
-    let result = handle.world.restore(&handle.bytes);
+    let restored = stored::restore(&handle.bytes, handle.dimensions);
     handle.bytes = Vec::new();
-    if result.is_ok() {
-        let generations = &mut handle.generations;
-        generations.clear();
-        handle.world.ids(&mut |id| note(generations, id));
+    match restored {
+        Ok(world) => {
+            handle.world = world;
+            let generations = &mut handle.generations;
+            generations.clear();
+            handle.world.for_each_id(&mut |id| note(generations, id));
+            tell(Code::Ok, [usize::from(handle.world.kind().is_double), 0])
+        }
+        Err(error) => tell_error(error),
     }
-    handle.answer(result)
 }
 
 /// Details: the hash of the state, the low and the high word.
 #[unsafe(no_mangle)]
-extern "C" fn world_hash(handle: &mut Handle) -> Code {
-    let hash = handle.world.hash();
+extern "C" fn world_state_hash(handle: &mut Handle) -> Code {
+    let hash = handle.world.state_hash();
     tell(Code::Ok, [hash as u32 as usize, (hash >> 32) as usize])
 }

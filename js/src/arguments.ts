@@ -1,0 +1,41 @@
+/** @internal What a value is, for an error message. */
+export function describe(value: unknown): string {
+  if (value === null || typeof value !== "object") return typeof value === "string" ? "a string" : String(value);
+  return `a ${value.constructor?.name ?? "object"}`;
+}
+
+/** @internal An id, which may be stale. Only a number: `valueOf` of an object could free the world. */
+export function checkId(id: unknown): number {
+  if (typeof id !== "number") throw new TypeError(`\`id\` must be a number, not ${describe(id)}`);
+  return id;
+}
+
+/** @internal A length that may be infinite. */
+export function checkLength(value: unknown, name: string): number {
+  if (typeof value !== "number") throw new TypeError(`\`${name}\` must be a number, not ${describe(value)}`);
+  if (!(value >= 0)) throw new RangeError(`\`${name}\` is ${value}; it must be 0 or more`);
+  return value;
+}
+
+/** @internal A whole number below 2^32. */
+export function checkCount(value: unknown, name: string): number {
+  if (!(Number.isInteger(value) && (value as number) >= 0 && (value as number) < 2 ** 32)) {
+    throw new RangeError(`\`${name}\` is ${describe(value)}; it must be a whole number from 0 to 2^32 - 1`);
+  }
+  return value as number;
+}
+
+const names = [
+  ["minX", "maxX"],
+  ["minX", "minY", "maxX", "maxY"],
+  ["minX", "minY", "minZ", "maxX", "maxY", "maxZ"],
+];
+
+/** @internal Throws what is wrong with the corners of a box, given as separate numbers. */
+export function refuseCorners(dimensions: number, corners: readonly unknown[]): never {
+  const expected = names[dimensions - 1]!;
+  const form = `a box in ${dimensions}D is ${expected.length} numbers: ${expected.join(", ")}`;
+  const wrong = expected.findIndex((_, at) => typeof corners[at] !== "number");
+  if (wrong < 0) throw new TypeError(`there are more arguments than ${expected.at(-1)}; ${form}`);
+  throw new TypeError(`\`${expected[wrong]}\` must be a number, not ${describe(corners[wrong])}; ${form}`);
+}
