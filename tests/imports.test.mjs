@@ -33,8 +33,6 @@ import { typescriptImports } from "./support/typescript-imports.mjs";
 const KNOWN = {
   "core/src/pairs": 12,
   "core/src/world": 15,
-  "js/src": 2,
-  "js/src/demo": 24,
 };
 
 const folderOf = (file) => Object.keys(KNOWN).sort((a, b) => b.length - a.length).find((it) => file.startsWith(`${it}/`));

@@ -1,4 +1,4 @@
-// A broad phase for cannon: a class with its interface, given to the physics world.
+// A broad phase for cannon: a class with cannon's interface, passed to its world.
 import * as CANNON from "cannon-es";
 import { init, PairFinder } from "sweep-and-prune";
 
@@ -26,7 +26,7 @@ class SweepAndPruneBroadphase extends CANNON.Broadphase {
   }
 }
 
-/** A tower of boxes that falls, and where it lies after two seconds. */
+/** Whether a tower of boxes that falls is still above the ground after two seconds. */
 function fall(broadphase) {
   const world = new CANNON.World({ gravity: new CANNON.Vec3(0, -9.82, 0), broadphase });
   world.addBody(new CANNON.Body({ mass: 0, shape: new CANNON.Box(new CANNON.Vec3(20, 1, 20)) }));

@@ -1,4 +1,4 @@
-// Labels on a map: the important ones first, each only if it meets none that is shown already.
+// Labels on a map: the most important first, each only if it overlaps none that is already shown.
 import { findPairs, init } from "sweep-and-prune";
 
 await init();
@@ -13,10 +13,10 @@ const places = [
 places.sort((a, b) => a.rank - b.rank);
 const labels = places.map(({ name, x, y }) => ({ minX: x - 3 * name.length, minY: y - 7, maxX: x + 3 * name.length, maxY: y + 7 }));
 
-const rivals = places.map(() => []);
+const blockers = places.map(() => []);
 const pairs = findPairs(labels);
-for (let i = 0; i < pairs.length; i += 2) rivals[pairs[i + 1]].push(pairs[i]); // the less important one knows the other
+for (let i = 0; i < pairs.length; i += 2) blockers[pairs[i + 1]].push(pairs[i]); // the smaller index, which is first, is more important
 
 const shown = [];
-for (let i = 0; i < places.length; i++) shown[i] = rivals[i].every((other) => !shown[other]);
+for (let i = 0; i < places.length; i++) shown[i] = blockers[i].every((other) => !shown[other]);
 console.log(places.filter((_, i) => shown[i]).map(({ name }) => name).join(", ")); // Paris, Chartres, Meaux

@@ -1,4 +1,4 @@
-// Another broad phase for matter's bodies: ours says which bounds overlap, matter which bodies touch.
+// Another broad phase for matter: sweep-and-prune finds the bounds that overlap, matter the bodies that touch.
 import Matter from "matter-js";
 import { BroadPhase, init } from "sweep-and-prune/broad-phase";
 
@@ -9,7 +9,7 @@ const world = new BroadPhase({ dimensions: 2, precision: "double" });
 const ids = world.insertMany(bodies.map((body) => body.bounds)).slice();
 const bodyOf = new Map([...ids].map((id, i) => [id, bodies[i]]));
 
-/** The contacts now: matter's narrow phase over our pairs. */
+/** The contacts now: matter's narrow phase over the pairs of sweep-and-prune. */
 function contacts() {
   world.setMany(ids, bodies.map((body) => body.bounds));
   world.update();

@@ -14,7 +14,7 @@ class Shooter extends Phaser.Scene {
     this.bullets = [0, 1, 2].map((i) => this.track(this.add.rectangle(0, 40 * i, 4, 4), { category: 2, mask: 1 }));
   }
 
-  /** From now on the object has a body in the world of boxes, of its id. */
+  /** Gives the object a body, and returns its id. */
   track(object, filter) {
     const [id] = this.world.insertMany([edges(object)], filter);
     this.objectOf.set(id, object);
@@ -22,15 +22,15 @@ class Shooter extends Phaser.Scene {
   }
 
   update() {
-    for (const id of this.bullets.filter((id) => this.world.has(id))) {
+    for (const id of this.bullets.filter((id) => this.world.contains(id))) {
       const bullet = this.objectOf.get(id);
       const before = edges(bullet);
-      bullet.x += 50; // faster than it is large: its whole way counts
+      bullet.x += 50; // more than its own size: its whole path counts
       this.world.setSwept(id, before, edges(bullet));
     }
-    const begun = this.world.update().begun.slice(); // a copy: the calls below end the view
+    const begun = this.world.update().begun.slice(); // a copy: the view is valid until the next call
     this.hits += begun.length / 2;
-    for (const id of begun) {
+    for (const id of new Set(begun)) { // a set: a bullet that hits two rocks is in two pairs
       this.objectOf.get(id).destroy();
       this.world.remove(id);
     }

@@ -1,4 +1,4 @@
-// A game in Pixi: which sprites met in this frame, and which parted. In a browser.
+// A game in Pixi: which sprites began to overlap in this frame. In a browser.
 import { Graphics } from "pixi.js";
 import { BroadPhase, init } from "sweep-and-prune/broad-phase";
 
@@ -16,7 +16,7 @@ const world = new BroadPhase({ dimensions: 2 });
 const ids = world.insertMany(sprites.map((sprite) => sprite.getBounds())).slice();
 const spriteOf = new Map([...ids].map((id, i) => [id, sprites[i]]));
 world.setFilter(ids[0], { category: 1, mask: 2 });
-for (const id of ids.subarray(1)) world.setFilter(id, { category: 2, mask: 1 }); // coins do not meet coins
+for (const id of ids.subarray(1)) world.setFilter(id, { category: 2, mask: 1 }); // coins do not pair with coins
 
 let collected = 0;
 for (let frame = 0; frame < 100; frame++) {
@@ -24,6 +24,7 @@ for (let frame = 0; frame < 100; frame++) {
   const { minX, minY, maxX, maxY } = hero.getBounds();
   world.set(ids[0], minX, minY, maxX, maxY);
   const { begun } = world.update();
+  // Two ids a pair: the hero, and the coin that it touches.
   for (const coin of [...begun].filter((id) => id !== ids[0])) {
     spriteOf.get(coin).visible = false;
     world.remove(coin);

@@ -1,4 +1,4 @@
-// Which meshes of a scene overlap: their world boxes, in space.
+// Which meshes of a scene overlap, by their boxes in world coordinates.
 import { Box3, BoxGeometry, Mesh, Scene } from "three";
 import { findPairs, init } from "sweep-and-prune";
 
@@ -25,5 +25,5 @@ for (let i = 0; i < pairs.length; i += 2) {
   console.log(`${a.name} meets ${b.name}`); // crate at 0 meets crate at 0.9
 }
 
-// A Box3 is taken as it is, too: simpler, and slower.
+// findPairs takes a Box3 too: simpler, and slower.
 console.log(findPairs(scene.children.map((mesh) => new Box3().setFromObject(mesh))).join()); // 0,1

@@ -1,4 +1,4 @@
-import { describe } from "./arguments.js";
+import { describe } from "./describe.js";
 import { unguard } from "./views.js";
 
 /** 1, 2 or 3. */

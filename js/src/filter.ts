@@ -1,4 +1,4 @@
-import { describe } from "./arguments.js";
+import { describe } from "./describe.js";
 
 /** A filter as the core takes it: category, mask, group, whether static. */
 export type FilterWords = [number, number, number, number];

@@ -1,6 +1,6 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 import { type BoxObject, type Boxes, checkBoxes, checkDimensions, type Dimensions, dimensionsOf, writeRows } from "./boxes.js";
-import { describe } from "./arguments.js";
+import { describe } from "./describe.js";
 import { checkFits, Core, type Each, type Engine, type Exports, type Passed } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
 import { guard, view } from "./views.js";

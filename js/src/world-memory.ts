@@ -1,8 +1,8 @@
-import { refuseCorners } from "./arguments.js";
 import { type Boxes, checkBoxes, checkNumbers, type Dimensions, writeRows } from "./boxes.js";
 import { checkFits, type Engine, type Passed } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
 import { guard, view } from "./views.js";
+import { refuseCorners } from "./world-arguments.js";
 import { worldCore, type WorldExports } from "./world-core.js";
 import type { BroadPhaseOptions, Changes, Hit, Numbers } from "./world-types.js";
 

@@ -1,8 +1,9 @@
 /// <reference lib="esnext.disposable" preserve="true" />
-import { checkCount, checkId, checkLength, describe } from "./arguments.js";
+import { describe } from "./describe.js";
 import { type Boxes, checkBoxes, checkDimensions, checkNumbers, type Dimensions } from "./boxes.js";
 import { OutOfMemoryError } from "./errors.js";
 import { defaultFilter, everything, type Filter, filterWords } from "./filter.js";
+import { checkCount, checkId, checkLength } from "./world-arguments.js";
 import { Query } from "./world-core.js";
 import { WorldMemory } from "./world-memory.js";
 import type { BroadPhaseOptions, Buffers, Changes, Hit, Neighbor, Numbers, ProxyId } from "./world-types.js";

@@ -62,20 +62,20 @@ test("what is missing or of another kind is named", () => {
   const box = { minX: 0, minY: 0, maxX: 1, maxY: 1 };
   /** @type {[unknown, RegExp][]} */
   const wrong = [
-    [[box, { ...box, maxY: undefined }], /the greatest y of boxes\[1\] must be a number, not undefined/],
-    [[box, { ...box, minX: "0" }], /the least x of boxes\[1\] must be a number, not a string/],
+    [[box, { ...box, maxY: undefined }], /the max y of boxes\[1\] must be a number, not undefined/],
+    [[box, { ...box, minX: "0" }], /the min x of boxes\[1\] must be a number, not a string/],
     [[box, 12], /boxes\[1\] must be \{ minX/],
     [[box, null], /boxes\[1\] must be .* not null/],
     [[box, undefined], /boxes\[1\] must be .* not undefined/],
     [[box, {}], /boxes\[1\] must be .* not a Object/],
-    [[{ min: null, max: {} }], /the least x of boxes\[0\]/],
-    [[{ ...box, minX: 0n }], /the least x of boxes\[0\]/],
+    [[{ min: null, max: {} }], /the min x of boxes\[0\]/],
+    [[{ ...box, minX: 0n }], /the min x of boxes\[0\]/],
     [[null, box], /boxes\[0\] must be .* not null/],
   ];
   for (const [boxes, message] of wrong) {
     assert.throws(() => findPairs(/** @type {any} */ (boxes), { dimensions: 2 }), { name: "TypeError", message });
   }
-  assert.throws(() => findPairs([box], { dimensions: 3 }), /the least z of boxes\[0\] must be a number, not undefined/);
+  assert.throws(() => findPairs([box], { dimensions: 3 }), /the min z of boxes\[0\] must be a number, not undefined/);
   assert.throws(() => findPairs([[0, 0, 1]]), RangeError);
   assert.throws(() => findPairs([[0, 0, 1, 1], [0, 1]]), /^RangeError: boxes\[1\] must hold 4 numbers, not 2/);
   assert.throws(() => findPairs(/** @type {any} */ ([{}])), RangeError);

@@ -59,14 +59,14 @@ test("of two precisions the double one counts", () => {
   assert.equal(finder.countBetween(new Float32Array([0, 1]), new Float32Array([above, 2])), 1);
 });
 
-test("bad boxes of the second set are counted after those of the first", () => {
+test("a bad box of the second set is named by its set and its index there", () => {
   const [good, bad] = [
     [0, 1, 0, 1],
     [0, 1, 2, 1],
   ];
   assert.throws(
     () => findPairsBetween(good, bad, { dimensions: 1 }),
-    (error) => error instanceof InvalidBoxError && error.index === 3 && error.axis === 0,
+    (error) => error instanceof InvalidBoxError && error.index === 1 && error.axis === 0 && error.argument === "b",
   );
   assert.throws(() => findPairsBetween(good, [1], { dimensions: 1 }), /^RangeError: b holds 1 numbers/);
   assert.throws(() => findPairsBetween(good, /** @type {any} */ (undefined), { dimensions: 1 }), TypeError);
@@ -121,7 +121,7 @@ test("what the callback throws comes out, and the finder goes on", () => {
   finder.free();
 });
 
-test("within a callback other finders work, this one refuses", () => {
+test("within a callback other finders work, and this one refuses", () => {
   const finder = new PairFinder({ dimensions: 2 });
   const boxes = boxesSpread(random(21), 3000, 2);
   const expected = findPairs(boxes, { dimensions: 2 });
@@ -136,9 +136,9 @@ test("within a callback other finders work, this one refuses", () => {
     let calls = 0;
     forEachPair(inner, { dimensions: 3 }, () => ++calls < 3);
     assert.equal(calls, 3);
-    assert.throws(() => finder.find(boxes), /at work/);
-    assert.throws(() => finder.forEach(boxes, () => 0), /at work/);
-    assert.throws(() => finder.free(), /at work/);
+    assert.throws(() => finder.find(boxes), /in use/);
+    assert.throws(() => finder.forEach(boxes, () => 0), /in use/);
+    assert.throws(() => finder.free(), /in use/);
     assert.throws(() => findPairs([1, 0], { dimensions: 1 }), InvalidBoxError);
   });
   assert.deepEqual(streamed, [...expected]);

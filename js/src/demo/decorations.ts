@@ -1,4 +1,4 @@
-import { OptionError } from "./options.js";
+import { OptionError } from "./option-error.js";
 
 /** A CSS colour, or undefined for the theme's own. */
 type Colour = string | undefined;

@@ -1,13 +1,14 @@
 import { type CSSResult, LitElement, type TemplateResult } from "lit";
 import type { TraceEvent } from "../trace.js";
-import type { DemoEvent, DemoState, Row } from "./api.js";
+import type { DemoEvent, DemoState, Row } from "./types.js";
 import { Canvases } from "./canvas.js";
 import { clock } from "./clock.js";
 import type { Explanation } from "./explain.js";
 import { Hands } from "./hands.js";
 import { press } from "./keys.js";
 import { loadDemos } from "./load.js";
-import { attributes, messageOf, type Options, readOptions, readStart } from "./options.js";
+import { messageOf } from "./option-error.js";
+import { attributes, type Options, readOptions, readStart } from "./options.js";
 import { paint } from "./paint.js";
 import { Guesses, type Question } from "./predict.js";
 import { addProperties } from "./properties.js";

@@ -1,4 +1,4 @@
-import type { DemoDrag, SapDemo } from "./api.js";
+import type { DemoDrag, SapDemo } from "./types.js";
 import { Grab } from "./grab.js";
 import type { Keyboard } from "./keys.js";
 import type { Run } from "./run.js";

@@ -1,20 +1,11 @@
 import type { RunnerOptions } from "../runner.js";
-import type { Row } from "./api.js";
+import type { Row } from "./types.js";
 import { type Decorations, readDecorations } from "./decorations.js";
+import { OptionError } from "./option-error.js";
 
 /** The world, in its own units. Pictures scale it. */
 export const WIDTH = 600;
 export const HEIGHT = 400;
-
-/** What an attribute says that cannot be done. Its message is for whoever wrote the page. */
-export class OptionError extends Error {
-  override readonly name = "OptionError";
-}
-
-/** Why a demo cannot begin. */
-export function messageOf(error: unknown): string {
-  return error instanceof OptionError ? error.message : `This demo cannot start: ${String(error)}`;
-}
 
 /** How the world moves from one tick to the next. */
 export type Motion = "bounce" | "drift" | "teleport" | "rest";

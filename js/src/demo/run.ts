@@ -1,4 +1,4 @@
-import type { DemoEvent, DemoState, Row } from "./api.js";
+import type { DemoEvent, DemoState, Row } from "./types.js";
 import { hasFlags, shownKinds } from "./detection.js";
 import { explain, type Explanation } from "./explain.js";
 import { namesOf } from "./names.js";

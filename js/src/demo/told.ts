@@ -1,5 +1,5 @@
 import type { TraceEvent } from "../trace.js";
-import type { DemoEvent, DemoEventMap, DemoSort } from "./api.js";
+import type { DemoEvent, DemoEventMap, DemoSort } from "./types.js";
 
 /** Which kind of event a listener is told a trace event as. */
 const kinds: Partial<Record<TraceEvent["kind"], DemoEvent["kind"]>> = {

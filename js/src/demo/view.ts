@@ -1,5 +1,5 @@
 import { html, nothing, type TemplateResult } from "lit";
-import type { SapDemo } from "./api.js";
+import type { SapDemo } from "./types.js";
 import { hasFlags } from "./detection.js";
 import { keysOf } from "./keys.js";
 import { heightOfArray } from "./paint.js";

@@ -1,6 +1,7 @@
 import { Simulation, SimulationError } from "../../../simulation/wasm/simulation.js";
-import type { Row } from "./api.js";
-import { HEIGHT, OptionError, WIDTH, type WorldOptions } from "./options.js";
+import type { Row } from "./types.js";
+import { OptionError } from "./option-error.js";
+import { HEIGHT, WIDTH, type WorldOptions } from "./options.js";
 
 /** Loads the compiled simulation: the file beside the bundle that this module is part of. */
 export function loadWorlds(): Promise<void> {

@@ -4,7 +4,7 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use sweep_and_prune::{Error, ProxyId};
-use sweep_and_prune_bindings::{AnyBroadPhase, Answer, Id};
+use sweep_and_prune_bindings::{Answer, AnyBroadPhase, Id};
 
 use crate::status::{Code, tell, tell_error};
 

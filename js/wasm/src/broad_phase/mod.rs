@@ -163,7 +163,8 @@ extern "C" fn world_filter(handle: &mut Handle, id: f64) -> Code {
 #[unsafe(no_mangle)]
 extern "C" fn world_box(handle: &mut Handle, id: f64) -> Code {
     let width = handle.width();
-    let result = handle.id(id, 0).and_then(|id| handle.world.corners(id, &mut handle.numbers[..width]));
+    let result =
+        handle.id(id, 0).and_then(|id| handle.world.corners(id, &mut handle.numbers[..width]));
     handle.answer(result)
 }
 

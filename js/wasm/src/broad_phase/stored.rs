@@ -58,8 +58,8 @@ pub(super) fn restore(bytes: &[u8], dimensions: u32) -> Result<World, Error> {
         let fault = SnapshotFault::OtherWorld { dimensions: given, scalar_bytes };
         return Err(Error::InvalidSnapshot(fault));
     }
-    let mut world = broad_phase(dimensions, kind.is_double, Settings::default())
-        .ok_or(Error::OutOfMemory)?;
+    let mut world =
+        broad_phase(dimensions, kind.is_double, Settings::default()).ok_or(Error::OutOfMemory)?;
     world.restore(bytes)?;
     Ok(world)
 }

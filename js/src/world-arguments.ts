@@ -1,8 +1,4 @@
-/** @internal What a value is, for an error message. */
-export function describe(value: unknown): string {
-  if (value === null || typeof value !== "object") return typeof value === "string" ? "a string" : String(value);
-  return `a ${value.constructor?.name ?? "object"}`;
-}
+import { describe } from "./describe.js";
 
 /** @internal An id, which may be stale. Only a number: `valueOf` of an object could free the world. */
 export function checkId(id: unknown): number {
