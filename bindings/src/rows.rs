@@ -13,7 +13,7 @@ pub enum Coordinates<'a> {
     Double(&'a [f64]),
 }
 
-/// Boxes that are written anew for each call; the memory is kept and only grows.
+/// Boxes that are written again for each call. The memory is kept and only grows.
 pub(crate) struct Rows<const D: usize, T>(Vec<Aabb<D, T>>);
 
 impl<const D: usize, T: Scalar> Rows<D, T> {

@@ -1,5 +1,5 @@
 /**
- * The same as `sweep-and-prune/algorithms`, with the compiled algorithms inside the module.
+ * `sweep-and-prune/algorithms` with the compiled algorithms inside the module.
  *
  * @module
  */
@@ -9,7 +9,7 @@ import { algorithmsCore } from "./runner.js";
 
 export * from "./algorithms-api.js";
 
-/** Starts the compiled algorithms; otherwise as that of `sweep-and-prune/inline`. */
+/** Starts the compiled algorithms. Otherwise it works as `init` of `sweep-and-prune/inline`. */
 export function init(options: InitOptions = {}): Promise<Started> {
   return start(algorithmsCore, { simd: () => wasm, scalar: () => wasm }, { ...options, simd: false });
 }

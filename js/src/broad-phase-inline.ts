@@ -1,6 +1,6 @@
 /**
- * The same as `sweep-and-prune/broad-phase`, with both builds of the compiled core inside the
- * module: nothing to load, but more to download.
+ * `sweep-and-prune/broad-phase` with both builds of the compiled core inside the module: no file to
+ * load, but more to download.
  *
  * @module
  */
@@ -11,7 +11,7 @@ import { worldCore } from "./world-core.js";
 
 export * from "./broad-phase-api.js";
 
-/** Starts the compiled core of worlds; otherwise as that of `sweep-and-prune/inline`. */
+/** Starts the compiled core of this entry point. Otherwise it works as `init` of `sweep-and-prune/inline`. */
 export function init(options: InitOptions = {}): Promise<Started> {
   return start(worldCore, { simd: () => simd, scalar: () => scalar }, options);
 }

@@ -1,5 +1,5 @@
 /**
- * A living world of boxes: each update tells which overlaps began and which ended.
+ * A persistent broad phase: each update reports which overlaps began and which ended.
  *
  * ```js
  * import { init, BroadPhase } from "sweep-and-prune/broad-phase";
@@ -9,8 +9,7 @@
  * const hero = world.insert(0, 0, 1, 2);
  * ```
  *
- * It is an entry of its own, with a compiled core of its own, so that whoever only finds pairs
- * need not load it.
+ * It is a separate entry point with its own .wasm file, so pages that only find pairs do not load it.
  *
  * @module
  */
@@ -19,7 +18,7 @@ import { worldCore } from "./world-core.js";
 
 export * from "./broad-phase-api.js";
 
-/** Loads and starts the compiled core of worlds; otherwise as that of `sweep-and-prune`. */
+/** Loads and starts the compiled core of this entry point. Otherwise it works as `init` of `sweep-and-prune`. */
 export function init(options: InitOptions = {}): Promise<Started> {
   return start(
     worldCore,

@@ -1,5 +1,5 @@
 /**
- * Which boxes overlap? All pairs of a set of axis-aligned boxes, in one, two or three dimensions.
+ * Finds every overlapping pair of axis-aligned boxes in 1D, 2D and 3D, fast.
  *
  * ```js
  * import { init, findPairs } from "sweep-and-prune";
@@ -9,8 +9,8 @@
  * findPairs(boxes, { dimensions: 2 }); // Uint32Array [0, 2]
  * ```
  *
- * In pages this entry loads the compiled core from a file beside it; `sweep-and-prune/inline`
- * carries it inside, and is what this entry stands for in Node, Deno and Bun.
+ * In pages this entry point loads the compiled core from a file beside it. In Node, Deno and Bun it
+ * resolves to `sweep-and-prune/inline`, which has the core inside.
  *
  * @module
  */
@@ -20,11 +20,11 @@ import { finderCore } from "./pair-finder.js";
 export * from "./api.js";
 
 /**
- * Loads and starts the compiled core: once, before the first call of anything else. Later and
- * concurrent calls get the promise of the first, whose options are the ones that count; after a
- * failure the next call tries again.
+ * Loads and starts the compiled core. Call it once, before anything else. Later and concurrent calls
+ * get the promise of the first call, and their options are ignored. After a failure the next call
+ * tries again.
  *
- * @throws What loading throws: the network's, the file system's or the compiler's error.
+ * @throws The error of the network, the file system or the compiler.
  */
 export function init(options: InitOptions = {}): Promise<Started> {
   return start(

@@ -3,7 +3,7 @@ import type { Core, Exports } from "./engine.js";
 /** A compiled core: its address, its bytes, its answer from a server, or the module. */
 export type Wasm = string | URL | BufferSource | Response | WebAssembly.Module;
 
-/** How to start. */
+/** Options of `init`. */
 export interface InitOptions {
   /**
    * Whether to use the build with vector instructions (simd128). By default it is used where the
@@ -11,14 +11,14 @@ export interface InitOptions {
    */
   simd?: boolean;
   /**
-   * Where the compiled core is, if it is not beside this module: its address, its bytes, what
-   * `fetch` gave, or the module compiled already; or a promise of one of these. It must be the build
-   * that `simd` names.
+   * The compiled core, if it is not beside this module: its address, its bytes, the response of
+   * `fetch`, or the compiled module; or a promise of one of these. It must be the build that `simd`
+   * names.
    */
   wasm?: Wasm | PromiseLike<Wasm>;
   /**
-   * Whether views that are used after their time throw a `TypeError`, at a price in speed: they
-   * are then proxies of typed arrays. For development; off by default.
+   * Whether stale views throw a `TypeError` when they are used. This is slower: views are then proxies
+   * of typed arrays. For development; off by default.
    */
   development?: boolean;
 }
@@ -29,7 +29,7 @@ export interface Started {
   readonly simd: boolean;
 }
 
-/** Where the two builds are to be had, unless the caller says otherwise. */
+/** Where the two builds are, unless the caller passes one. */
 export interface Sources {
   simd(): Wasm;
   scalar(): Wasm;
@@ -58,7 +58,7 @@ async function load<E extends Exports>(core: Core<E>, sources: Sources, options:
   return { simd };
 }
 
-/** The core that the package brings; if it cannot be had, what to do about it. */
+/** The core of the package. If it cannot be loaded, the error says what to do. */
 async function beside(wasm: Wasm): Promise<WebAssembly.Module> {
   try {
     return await compile(wasm);
@@ -75,7 +75,7 @@ async function beside(wasm: Wasm): Promise<WebAssembly.Module> {
 async function compile(wasm: Wasm): Promise<WebAssembly.Module> {
   if (wasm instanceof WebAssembly.Module) return wasm;
   if (typeof Response !== "undefined" && wasm instanceof Response) return compileResponse(wasm);
-  if (!isAddress(wasm)) return WebAssembly.compile(wasm as BufferSource); // which refuses what is none
+  if (!isAddress(wasm)) return WebAssembly.compile(wasm as BufferSource); // which throws for anything else
   const address = String(wasm);
   if (address.startsWith("file:")) {
     const fs = nodeFiles();
@@ -100,13 +100,13 @@ interface FileSystem {
   readFile(path: URL): Promise<Uint8Array<ArrayBuffer>>;
 }
 
-/** Node's files, whose `fetch` knows no `file:`; asked for so that no bundler sees an import. */
+/** Node's file system, since its `fetch` cannot read `file:`. Not imported, so that bundlers do not see it. */
 function nodeFiles(): FileSystem | undefined {
   const { process } = globalThis as { process?: { getBuiltinModule?(name: string): FileSystem } };
   return process?.getBuiltinModule?.("node:fs/promises");
 }
 
-/** Whether the engine takes the smallest function with a vector instruction. */
+/** Whether the engine accepts the smallest function with a vector instruction. */
 function hasSimd(): boolean {
   return WebAssembly.validate(
     // prettier-ignore

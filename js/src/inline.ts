@@ -1,6 +1,6 @@
 /**
- * The same as `sweep-and-prune`, with both builds of the compiled core inside the module: nothing
- * to load, but three times as much to download.
+ * `sweep-and-prune` with both builds of the compiled core inside the module: no file to load, but
+ * three times as much to download.
  *
  * @module
  */
@@ -12,8 +12,8 @@ import { finderCore } from "./pair-finder.js";
 export * from "./api.js";
 
 /**
- * Starts the compiled core: once, before the first call of anything else. Later and concurrent
- * calls get the promise of the first, whose options are the ones that count.
+ * Starts the compiled core. Call it once, before anything else. Later and concurrent calls get the
+ * promise of the first call, and their options are ignored.
  */
 export function init(options: InitOptions = {}): Promise<Started> {
   return start(finderCore, { simd: () => simd, scalar: () => scalar }, options);

@@ -29,13 +29,13 @@ export interface AxisOverlap {
   b: number;
 }
 
-/** What is to be drawn at one moment of a trace. An edge is `2 * box`, and one more if it is a right end. */
+/** The state at one moment of a trace, for drawing. An edge is `2 * box` for a left end, and one more for a right end. */
 export interface PlayerState {
   /** The axis along which the current step sweeps, or sweeps first. */
   axis: number;
   /** The axis whose array is being sorted or swept. */
   arrayAxis: number;
-  /** The endpoints on each axis, as far as they are sorted by now. */
+  /** The endpoints on each axis, as far as they are sorted now. */
   arrays: Place[][];
   /** The position in the current array, and the edge there, that the sweep line reached last. */
   line: Line | undefined;
@@ -78,7 +78,7 @@ export class Player {
     return this.#position;
   }
 
-  /** The event that was played last: what is to be lit. */
+  /** The event that was played last: the one to highlight. */
   get current(): TraceEvent | undefined {
     return this.#at === 0 ? undefined : eventAt(this.words, this.#at - lengthBefore(this.words, this.#at));
   }

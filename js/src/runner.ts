@@ -26,7 +26,7 @@ export interface AlgorithmsExports extends Exports {
 /** The core of the observable algorithms. */
 export const algorithmsCore: Core<AlgorithmsExports> = new Core("runner_new", "sweep-and-prune/algorithms");
 
-/** The algorithms, by name. The one-to-n scan finds the pairs of one box, and not even all of those. */
+/** The algorithms, by name. The one-to-n scan finds only pairs of one box, and not all of those. */
 export const methods = [
   "global pairwise",
   "sorted pairwise",
@@ -38,8 +38,8 @@ export const methods = [
 ] as const;
 
 /**
- * Algorithms with an error that is often made, to show what comes of it; by name. Never to be used:
- * they miss pairs, or report ones that there are not.
+ * Broken variants, by name, each with a common error, to show its effect. Never use their results: they
+ * miss pairs or report wrong ones.
  */
 export const wrongMethods = ["strict ties (wrong)", "sorted start (wrong)", "sort by centre (wrong)"] as const;
 
@@ -53,13 +53,13 @@ export const axes = ["fixed axis", "longest extent", "largest variance", "fewest
 export interface RunnerOptions {
   /** How many dimensions the boxes have. */
   dimensions: Dimensions;
-  /** Which algorithm. */
+  /** The name of the algorithm. */
   method: (typeof methods)[number] | (typeof wrongMethods)[number];
-  /** How it sorts, if it does. `"standard library"` by default. */
+  /** How it sorts, if it sorts. `"standard library"` by default. */
   sort?: (typeof sorts)[number];
-  /** Along which axis it sweeps: chosen at each step, or this one. `"largest variance"` by default. */
+  /** The axis to sweep along, or the rule that chooses it at each step. `"largest variance"` by default. */
   axis?: Exclude<(typeof axes)[number], "fixed axis"> | 0 | 1 | 2;
-  /** Whether a step goes on where the last one ended. Only then are begun and ended pairs told. */
+  /** Whether a step continues from the state of the last one. Only then are begun and ended pairs reported. */
   persistent?: boolean;
   /** The box of the one-to-n scan. 0 by default. */
   focus?: number;
@@ -67,7 +67,7 @@ export interface RunnerOptions {
   traceWords?: number;
 }
 
-/** What an algorithm did; the same is counted for every algorithm. */
+/** What an algorithm did. The counters mean the same for every algorithm. */
 export interface Counts {
   /** Comparisons of the sort. */
   comparisons: number;
@@ -91,25 +91,25 @@ export interface Counts {
   maxActive: number;
 }
 
-/** What a step found: arrays of your own. */
+/** What a step found. The arrays are copies. */
 export interface Step {
   /** The overlapping pairs, in the order of the method: `a0, b0, a1, b1, ...`. */
   pairs: Uint32Array;
-  /** The pairs that the step before did not have, sorted. */
+  /** The pairs that the previous step did not have, sorted. */
   begun: Uint32Array;
-  /** The pairs that only the step before had, sorted. */
+  /** The pairs that only the previous step had, sorted. */
   ended: Uint32Array;
-  /** The axis that was swept, or was the first to be. */
+  /** The axis that was swept, or swept first. */
   axis: number;
   /** What was done. */
   counts: Counts;
-  /** The memory that the algorithm holds to work with, in bytes. */
+  /** The memory that the algorithm uses, in bytes. */
   bytes: number;
 }
 
 /**
- * Runs one of the classic algorithms, over the boxes of one step after another, and records what
- * it does. To only get the pairs, fast, use `findPairs` of `sweep-and-prune`.
+ * Runs one of the classic algorithms, step by step, and records what it does. To find pairs fast, use
+ * `findPairs` of `sweep-and-prune`.
  *
  * ```js
  * const runner = new Runner({ dimensions: 1, method: "swap-driven sweep", persistent: true });
@@ -122,8 +122,8 @@ export class Runner {
   readonly #owned: Owned;
 
   /**
-   * A runner with no state yet; or, of another runner, a copy with the same state and trace, which
-   * goes on as that one would. Each is to be freed.
+   * A new runner; or a copy of another runner, with the same state and trace, which continues as that
+   * one would. Free each of them.
    *
    * @throws {@link NotInitializedError} before `init()` is done; `RangeError` for a name that does
    *   not exist, or an axis or dimensions that do not.
@@ -180,29 +180,29 @@ export class Runner {
     return { pairs: this.#list(0), begun: this.#list(1), ended: this.#list(2), axis, counts, bytes };
   }
 
-  /** The words recorded so far, an array of your own. {@link events} reads them. */
+  /** A copy of the words recorded so far. {@link events} decodes them. */
   trace(): Uint32Array<ArrayBuffer> {
     return this.#list(3);
   }
 
-  /** Whether something was not recorded, because it was beyond the limit. */
+  /** Whether something was not recorded because of the limit. */
   get isTruncated(): boolean {
     const { engine, runner } = this.#live();
     return engine.exports.runner_is_truncated(runner) !== 0;
   }
 
-  /** Forgets what was recorded. */
+  /** Clears the recording. */
   clearTrace(): void {
     const { engine, runner } = this.#live();
     engine.exports.runner_clear_trace(runner);
   }
 
   /**
-   * Forgets what was recorded but for what the next step goes on from: the arrays, the axis
-   * overlaps and the pairs held are now the only events. For a trace of one step at a time, which a
-   * {@link Player} can play by itself. O(what was recorded).
+   * Clears the recording except for what the next step continues from: the arrays, the axis overlaps
+   * and the current pairs are then its only events. With this, each step has a trace of its own that a
+   * {@link Player} can play. The time depends on the length of the recording.
    *
-   * @returns how many events there are now.
+   * @returns how many events remain.
    */
   trimTrace(): number {
     const { engine, runner } = this.#live();
@@ -215,7 +215,7 @@ export class Runner {
     return { engine, player: engine.exports.player_new(runner) };
   }
 
-  /** Gives the memory back. To free it twice is no error. */
+  /** Frees the memory. Freeing it twice is not an error. */
   free(): void {
     forgotten?.unregister(this.#owned);
     release(this.#owned);
@@ -274,6 +274,6 @@ export function release(owned: Owned): void {
   owned.handle = 0;
 }
 
-/** @internal Frees what nobody freed and nobody can reach. */
+/** @internal Frees the handles of objects that were garbage collected. */
 export const forgotten: FinalizationRegistry<Owned> | undefined =
   typeof FinalizationRegistry === "undefined" ? undefined : new FinalizationRegistry<Owned>(release);

@@ -30,7 +30,7 @@ export interface TraceEvent {
  * | kind | words |
  * |---|---|
  * | step | axis; keeps: 1 if earlier axis overlaps still stand |
- * | array | axis: the endpoints on it are written anew; see `Player` |
+ * | array | axis: the endpoints on it are rewritten; see `Player` |
  * | compare | a, b: the sort compared two edges |
  * | swap | i, j, a, b: the sort exchanged positions i and j, where the edges a and b stood |
  * | visit | position, edge: the sweep line reached this endpoint |

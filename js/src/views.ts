@@ -1,7 +1,7 @@
 /** The arrays that views of memory are. */
 export type Typed = Float32Array | Float64Array | Uint32Array | Uint8Array;
 
-/** The last view if it still is the one asked for, which saves the garbage, or a new one. */
+/** The last view if it still shows this part of memory, which avoids garbage, or a new one. */
 export function view<T extends Typed>(
   Type: new (buffer: ArrayBuffer, at: number, length: number) => T,
   last: Typed | undefined,
@@ -14,18 +14,18 @@ export function view<T extends Typed>(
   return isSame ? last : new Type(buffer, at, length);
 }
 
-/** What knows whether its memory may have changed since. */
+/** Tells whether memory may have changed. */
 interface Clock {
-  /** Whether views are to be watched. */
+  /** Whether to check the use of views. */
   readonly isDevelopment: boolean;
   /** How many calls have been made that may overwrite what a view shows. */
   readonly calls: number;
 }
 
-/** The views that stand behind what {@link guard} returned. */
+/** The views behind the proxies that {@link guard} returned. */
 const guarded = new WeakMap<object, Typed>();
 
-/** A view that {@link guard} gave out, for a call that takes it; other values as they are. */
+/** The view behind a proxy of {@link guard}; other values are returned as they are. */
 export function unguard(value: unknown): unknown {
   const view = typeof value === "object" && value !== null ? guarded.get(value) : undefined;
   if (view === undefined) return value;
@@ -33,10 +33,7 @@ export function unguard(value: unknown): unknown {
   return view;
 }
 
-/**
- * The view itself; in development mode something like it, which throws when it is used after it
- * has become stale.
- */
+/** The view itself; in development mode a proxy of it that throws if it is used when it is stale. */
 export function guard<T extends Typed>(clock: Clock, view: T): T {
   if (!clock.isDevelopment) return view;
   const { calls } = clock;

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { BroadPhase, init, slotOf } from "sweep-and-prune/broad-phase";
 
-test("a world of half a million bodies is followed as it moves", async () => {
+test("half a million moving bodies are tracked", async () => {
   await init();
   const count = 600_000;
   const width = 1000;
@@ -16,7 +16,7 @@ test("a world of half a million bodies is followed as it moves", async () => {
   const world = new BroadPhase({ dimensions: 2 });
   const ids = world.insertMany(boxes).slice();
   assert.equal(world.update().begun.length, 0);
-  // One in two hundred touches its right neighbour, and leaves it again.
+  // One in two hundred touches its right neighbor, and leaves it again.
   for (const [x, frame] of [[1, "begun"], [0, "ended"], [1, "begun"], [0, "ended"]]) {
     for (let body = 0; body < count; body += 200) place(body, Number(x));
     world.setMany(ids, boxes);

@@ -1,5 +1,5 @@
 // Every public call of every entry, with odd values in the place of each argument in turn: what it
-// throws is a named error or a TypeError or RangeError of ours, and a call that throws changes nothing.
+// throws is a named error, or a TypeError or RangeError of this package, and a call that throws changes nothing.
 import assert from "node:assert/strict";
 import { before, test } from "node:test";
 import { countPairs, findPairs, findPairsBetween, forEachPair, init, PairFinder } from "sweep-and-prune";

@@ -1,4 +1,4 @@
-// The slower door: boxes as other libraries have them give the pairs of the rows they stand for.
+// Boxes in the forms of other libraries give the same pairs as rows of numbers.
 import assert from "node:assert/strict";
 import { before, test } from "node:test";
 import { countPairs, findPairs, findPairsBetween, init, InvalidBoxError, PairFinder } from "sweep-and-prune";
@@ -67,7 +67,7 @@ test("what is missing or of another kind is named", () => {
     [[box, 12], /boxes\[1\] must be \{ minX/],
     [[box, null], /boxes\[1\] must be .* not null/],
     [[box, undefined], /boxes\[1\] must be .* not undefined/],
-    [[box, {}], /boxes\[1\] must be .* not a Object/],
+    [[box, {}], /boxes\[1\] must be .* not an object with no properties/],
     [[{ min: null, max: {} }], /the min x of boxes\[0\]/],
     [[{ ...box, minX: 0n }], /the min x of boxes\[0\]/],
     [[null, box], /boxes\[0\] must be .* not null/],

@@ -101,7 +101,7 @@ test("what is freed is used again", () => {
   assert.equal(memory(), before);
 });
 
-test("finders that nobody frees are freed when they are gone", async () => {
+test("finders that are never freed are freed once they are garbage", async () => {
   setFlagsFromString("--expose-gc");
   const collect = vm.runInNewContext("gc");
   const before = memory();

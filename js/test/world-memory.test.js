@@ -22,7 +22,7 @@ function memory() {
 }
 
 // Before those that leave gigabytes to spare.
-test("worlds that nobody frees are freed when they are gone", async () => {
+test("worlds that are never freed are freed once they are garbage", async () => {
   setFlagsFromString("--expose-gc");
   const collect = vm.runInNewContext("gc");
   const before = memory();

@@ -1,6 +1,7 @@
 //! Simulations of two and of three dimensions behind one trait, and what they start from.
 
 use sweep_and_prune::algorithms::Counts;
+use sweep_and_prune_exchange::clock;
 use sweep_and_prune_simulation::scenes::{self, Population};
 use sweep_and_prune_simulation::{Ball, BroadPhase, Moment, Setup, SetupError, Simulation};
 
@@ -11,24 +12,6 @@ pub const MOST_BODIES: f64 = 100_000.0;
 /// The most balls that can be given. They may all overlap each other, and the pairs must fit in
 /// memory.
 pub const MOST_GIVEN: u32 = 4_096;
-
-#[cfg(target_arch = "wasm32")]
-#[link(wasm_import_module = "env")]
-unsafe extern "C" {
-    /// Milliseconds from any origin.
-    safe fn now() -> f64;
-}
-
-/// Outside WebAssembly the crate is only checked, never timed.
-#[cfg(not(target_arch = "wasm32"))]
-fn now() -> f64 {
-    0.0
-}
-
-/// The imported function as one of Rust's own, which alone is an `Fn`.
-fn clock() -> f64 {
-    now()
-}
 
 /// What the exports do with a simulation, whatever its dimensions.
 pub trait Door {

@@ -37,7 +37,9 @@ mod door;
 mod names;
 
 use std::cell::RefCell;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::AtomicU64;
+
+use sweep_and_prune_exchange::{read_area, write_area};
 
 use door::{Door, Start};
 
@@ -57,19 +59,6 @@ pub enum Code {
     TooMany = 4,
     /// A bug.
     Internal = 5,
-}
-
-/// Atomic only because a static must be: in WebAssembly these are plain loads and stores.
-static AREA: [AtomicU64; 16] = [const { AtomicU64::new(0) }; 16];
-
-fn read_area() -> [f64; 16] {
-    std::array::from_fn(|index| f64::from_bits(AREA[index].load(Relaxed)))
-}
-
-fn write_area(numbers: &[f64]) {
-    for (word, number) in AREA.iter().zip(numbers) {
-        word.store(number.to_bits(), Relaxed);
-    }
 }
 
 #[derive(Default)]
@@ -98,7 +87,7 @@ fn code(result: Result<(), Code>) -> Code {
 /// Where the area is.
 #[unsafe(no_mangle)]
 pub extern "C" fn sim_area() -> *const AtomicU64 {
-    AREA.as_ptr()
+    sweep_and_prune_exchange::area()
 }
 
 /// Where to write `count` given balls, at most 4,096; null if there are more.

@@ -1,10 +1,11 @@
 //! A world of two or of three dimensions and its contenders, behind one trait.
 
 use sweep_and_prune::PairFinder;
+use sweep_and_prune_exchange::clock;
 
 use crate::contender::{Choice, Contender, Forecast, Report, forecast};
 use crate::motion::{LAWS, Moving, resize};
-use crate::{SCENES, clock};
+use crate::SCENES;
 
 /// The most boxes of a world.
 const MOST_BOXES: f64 = 100_000.0;

@@ -29,31 +29,14 @@ pub mod motion;
 
 use std::cell::RefCell;
 use std::sync::LazyLock;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::AtomicU64;
 
 use sweep_and_prune::algorithms::{Axis, Method, RunnerOptions, Sort};
+use sweep_and_prune_exchange::{read_area, write_area};
 use sweep_and_prune_scenes::Scene;
 
 use arena::Arena;
 use contender::Choice;
-
-#[cfg(target_arch = "wasm32")]
-#[link(wasm_import_module = "env")]
-unsafe extern "C" {
-    /// Milliseconds from any origin.
-    safe fn now() -> f64;
-}
-
-/// Outside WebAssembly the crate is only checked, never timed.
-#[cfg(not(target_arch = "wasm32"))]
-fn now() -> f64 {
-    0.0
-}
-
-/// The imported function as one of Rust's own, which alone is an `Fn`.
-fn clock() -> f64 {
-    now()
-}
 
 /// Whether a call was done. What is not done has changed nothing.
 #[repr(u32)]
@@ -63,19 +46,6 @@ pub enum Code {
     Ok = 0,
     /// A number does not name anything, or there is no world.
     Invalid = 1,
-}
-
-/// Atomic only because a static must be: in WebAssembly these are plain loads and stores.
-static AREA: [AtomicU64; 16] = [const { AtomicU64::new(0) }; 16];
-
-fn read_area() -> [f64; 16] {
-    std::array::from_fn(|index| f64::from_bits(AREA[index].load(Relaxed)))
-}
-
-fn write_area(numbers: &[f64]) {
-    for (word, number) in AREA.iter().zip(numbers) {
-        word.store(number.to_bits(), Relaxed);
-    }
 }
 
 thread_local! {
@@ -119,7 +89,7 @@ static NAMES: LazyLock<[String; 5]> = LazyLock::new(|| {
 /// Where the area is.
 #[unsafe(no_mangle)]
 pub extern "C" fn arena_area() -> *const AtomicU64 {
-    AREA.as_ptr()
+    sweep_and_prune_exchange::area()
 }
 
 /// The names of contenders (0), sorts (1), axis rules (2), scenes with a sentence, their least and
