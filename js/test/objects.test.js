@@ -78,7 +78,7 @@ test("what is missing or of another kind is named", () => {
   assert.throws(() => findPairs([box], { dimensions: 3 }), /the min z of boxes\[0\] must be a number, not undefined/);
   assert.throws(() => findPairs([[0, 0, 1]]), RangeError);
   assert.throws(() => findPairs([[0, 0, 1, 1], [0, 1]]), /^RangeError: boxes\[1\] must hold 4 numbers, not 2/);
-  assert.throws(() => findPairs(/** @type {any} */ ([{}])), RangeError);
+  assert.throws(() => findPairs(/** @type {any} */ ([{}])), /^TypeError: boxes\[0\] must be .* an object with no properties/);
   assert.throws(
     () => findPairs([box, { ...box, minX: NaN }]),
     (error) => error instanceof InvalidBoxError && error.index === 1 && error.axis === 0,

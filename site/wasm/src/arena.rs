@@ -3,9 +3,9 @@
 use sweep_and_prune::PairFinder;
 use sweep_and_prune_exchange::clock;
 
+use crate::SCENES;
 use crate::contender::{Choice, Contender, Forecast, Report, forecast};
 use crate::motion::{LAWS, Moving, resize};
-use crate::SCENES;
 
 /// The most boxes of a world.
 const MOST_BOXES: f64 = 100_000.0;
