@@ -20,6 +20,8 @@ const folder = process.env["SITE_TEST_DIST"];
 /** The built pages in the system's Chromium, which draws in software: no graphics card is needed. */
 export default defineConfig({
   testDir: "test",
+  // Times hold on a machine that does nothing else: `./test --long` takes them.
+  testIgnore: process.env["SITE_TEST_TIMES"] ? [] : ["responsiveness.spec.ts"],
   outputDir: "test-results",
   // One reference for every machine: what is compared has no fonts in it.
   snapshotPathTemplate: "{testDir}/{testFileName}-snapshots/{arg}{ext}",
