@@ -31,8 +31,8 @@ import { typescriptImports } from "./support/typescript-imports.mjs";
 
 /** Files that are still in cycles, by folder. A number may only shrink; the aim is an empty list. */
 const KNOWN = {
-  "core/src/pairs": 12,
-  "core/src/world": 15,
+  "core/src/pairs": 11,
+  "core/src/world": 14,
 };
 
 const folderOf = (file) => Object.keys(KNOWN).sort((a, b) => b.length - a.length).find((it) => file.startsWith(`${it}/`));

@@ -13,15 +13,15 @@ import { Scenes } from "./scenes.js";
 /** What is measured unless scenes are named. */
 const DEFAULT_SCENES = ["uniform", "clustered", "mixed", "slab", "tower", "box-pruning", "drift", "fast", "mostly-still", "teleport"];
 
-const HELP = `Measures the JavaScript package beside its peers, and keeps the results in bench/js/results.
+const HELP = `Measures the JavaScript package and its alternatives, and keeps the results in bench/js/results.
 
   --quick            1,000 and 10,000 boxes, three rounds
   --scenes LIST      names of scenes and motions, or "all" for every one
   --sizes LIST       numbers of boxes (1000,10000,100000)
   --dimensions LIST  2, 3 or both
-  --peers LIST       only the contenders whose names begin with one of these, and ours
+  --libraries LIST   only the libraries whose names begin with one of these, and sweep-and-prune
   --rounds N         rounds of a case (5)
-  --limit SECONDS    who takes longer for one call is not timed (1)
+  --limit SECONDS    a library that takes longer for one call is not timed (1)
   --minutes N        begin no case after so many minutes
   --output FILE      the file of results; those of other boxes in it are kept
   --report           measure nothing; make the table from what was kept
@@ -34,7 +34,7 @@ const { values: flags } = parseArgs({
     scenes: { type: "string" },
     sizes: { type: "string" },
     dimensions: { type: "string", default: "2,3" },
-    peers: { type: "string", default: "" },
+    libraries: { type: "string", default: "" },
     rounds: { type: "string" },
     limit: { type: "string", default: "1" },
     minutes: { type: "string", default: "Infinity" },
@@ -67,8 +67,8 @@ async function run() {
   const sizes = list(flags.sizes ?? (flags.quick ? "1000,10000" : "1000,10000,100000")).map(Number);
   const rounds = Number(flags.rounds ?? (flags.quick ? 3 : 5));
   const installed = contenders.filter((one) => one.package === "" || versionOf(one.package));
-  const wanted = list(flags.peers);
-  const peers = installed.filter(
+  const wanted = list(flags.libraries);
+  const chosenLibraries = installed.filter(
     ({ name }) => wanted.length === 0 || [OURS, WORLD].includes(name) || wanted.some((start) => name.startsWith(start)),
   );
   const plan = [];
@@ -99,7 +99,7 @@ async function run() {
     }
     label = `${scene.name} ${dimensions}D ${boxes.toLocaleString("en")}`;
     show(0);
-    const who = peers.filter((one) => one.dimensions.includes(dimensions) && one.tasks.includes(scene.task));
+    const who = chosenLibraries.filter((one) => one.dimensions.includes(dimensions) && one.tasks.includes(scene.task));
     const result = await measurement.measure(scene, dimensions, boxes, who);
     done += 1;
     if (typeof result === "string") {
@@ -121,10 +121,10 @@ function summary(/** @type {string} */ label, /** @type {import("./record.js").C
     const times = timesOf(result, name);
     return times ? `${name} ${(times.median_ns / 1e6).toPrecision(3)} ms` : undefined;
   };
-  const rivals = result.results
+  const alternatives = result.results
     .filter((entry) => entry.rival && "Timed" in entry.outcome)
     .sort((a, b) => /** @type {any} */ (a.outcome).Timed.median_ns - /** @type {any} */ (b.outcome).Timed.median_ns);
-  const first = rivals[0];
+  const first = alternatives[0];
   const ratio = first && timesOf(result, first.name)?.ratio;
   const untimed = result.results.flatMap(({ name, outcome }) => ("Untimed" in outcome ? [`${name}: ${outcome.Untimed.why}`] : []));
   const parts = [show(OURS), show(WORLD), show("native"), first && `${show(first.name)} (${ratio?.toPrecision(3)} times)`, ...untimed];

@@ -19,23 +19,23 @@ export function writeReport() {
 function report(/** @type {Kept} */ kept) {
   const { machine } = kept;
   const loads = [...kept.cases, ...kept.worlds].map((one) => one.load ?? 0);
-  return `# The JavaScript package beside its peers
+  return `# The JavaScript package and its alternatives
 
 <!-- Made by bench/js/run from bench/js/results: change those, not this. -->
 
 ${kept.date}, ${machine.cpu}, ${machine.cores} cores, ${kept.node}. ${loadText(loads)}
-Milliseconds from a \`Float32Array\` of boxes to stored pairs, everything included: the median of the
-rounds. A ratio is the median of the rounds' ratios: how many times as long as ours. Everybody's
-pairs were checked first.
+Times are in milliseconds, from a \`Float32Array\` of boxes to stored pairs, everything included; lower is better. A
+time is the median over the rounds. A ratio is the median over the rounds of how many times as long as sweep-and-prune a
+library takes. The pairs of each library were checked first.
 
 ## Finding all pairs
 
 ${table(kept.cases, [OURS])}
 
-## Following motion
+## Moving boxes
 
-A frame: from the moved boxes to their pairs, or to what began and ended. Ratios are to the faster of
-ours.
+The time of a frame: from the moved boxes to their pairs, or to the pairs that began and ended. Ratios are to the faster of
+the two columns of sweep-and-prune.
 
 ${table(kept.worlds, [OURS, WORLD])}
 
@@ -45,12 +45,12 @@ The same calls of the same library on the same boxes, compiled for this machine 
 
 ${nativeTable(kept)}
 
-## Who is measured, and how
+## The libraries, and how each is called
 
 | | version | what is called |
 |---|---|---|
 ${Object.entries(kept.how)
-  .map(([name, how]) => `| ${name} | ${kept.versions[name] ?? ""} | ${how} |`)
+  .map(([name, how]) => `| ${name} | ${kept.versions[name] ?? ""} | ${how.replace(" anew", " from scratch")} |`)
   .join("\n")}
 `;
 }
@@ -59,8 +59,8 @@ function loadText(/** @type {number[]} */ loads) {
   const [least, greatest] = [Math.min(...loads), Math.max(...loads)];
   const range = `load average ${least.toFixed(1)} to ${greatest.toFixed(1)}`;
   return greatest > 2.5
-    ? `**Provisional: other programs were at work (${range}); time spent waiting for a processor is not counted.**`
-    : `The machine was quiet but for this (${range}).`;
+    ? `**Provisional: other programs were running (${range}); time spent waiting for a processor is not counted.**`
+    : `The machine was otherwise idle (${range}).`;
 }
 
 const order = ["uniform", "clustered", "mixed", "slab", "tower", "box-pruning", "drift", "fast", "mostly-still", "teleport"];
@@ -69,9 +69,9 @@ const place = (/** @type {Case} */ one) => (order.indexOf(one.scene) + 1 || orde
 const byScene = (/** @type {Case} */ a, /** @type {Case} */ b) =>
   place(a) - place(b) || a.scene.localeCompare(b.scene) || a.dimensions - b.dimensions || a.boxes - b.boxes;
 
-/** The fastest of ours: its times. */
-function best(/** @type {Case} */ one, /** @type {readonly string[]} */ ours) {
-  const times = ours.flatMap((name) => timesOf(one, name) ?? []);
+/** The times of the faster of these settings of sweep-and-prune. */
+function best(/** @type {Case} */ one, /** @type {readonly string[]} */ own) {
+  const times = own.flatMap((name) => timesOf(one, name) ?? []);
   return times.sort((a, b) => a.median_ns - b.median_ns)[0];
 }
 
@@ -79,36 +79,36 @@ function best(/** @type {Case} */ one, /** @type {readonly string[]} */ ours) {
  * Many a round's time is another's multiple: the median of the ratios, where both took part.
  *
  * @param {import("./record.js").Times} one
- * @param {import("./record.js").Times} ours
+ * @param {import("./record.js").Times} own
  */
-export function ratio(one, ours) {
-  const ratios = one.rounds_ns.flatMap((time, at) => (ours.rounds_ns[at] ? [time / ours.rounds_ns[at]] : []));
+export function ratio(one, own) {
+  const ratios = one.rounds_ns.flatMap((time, at) => (own.rounds_ns[at] ? [time / own.rounds_ns[at]] : []));
   ratios.sort((a, b) => a - b);
   return ratios[ratios.length >> 1] ?? NaN;
 }
 
 /**
- * The peers that were timed, the fastest first, without the plain sweep.
+ * The alternatives that were timed, the fastest first, without the plain sweep.
  *
  * @param {Case} one
  */
-export function peersOf(one) {
-  const rivals = one.results.filter((entry) => entry.rival && entry.name !== PLAIN && "Timed" in entry.outcome);
-  const found = rivals.map(({ name }) => ({ name, times: /** @type {import("./record.js").Times} */ (timesOf(one, name)) }));
+export function alternativesOf(one) {
+  const alternatives = one.results.filter((entry) => entry.rival && entry.name !== PLAIN && "Timed" in entry.outcome);
+  const found = alternatives.map(({ name }) => ({ name, times: /** @type {import("./record.js").Times} */ (timesOf(one, name)) }));
   return found.sort((a, b) => a.times.median_ns - b.times.median_ns);
 }
 
-/** What the package promises: at least so many times faster than the fastest peer. */
+/** What the package promises: at least this many times faster than the fastest alternative. */
 export const goal = (/** @type {number} */ boxes) => (boxes >= 10_000 ? 10 : 3);
 /** And than the plain sweep. */
 export const PLAIN_GOAL = 1.5;
 
-function table(/** @type {Case[]} */ cases, /** @type {readonly string[]} */ ours) {
-  const head = ["scene", "boxes", "pairs", ...ours, "fastest peer", "ratio", "next", "plain sweep", "ratio"];
+function table(/** @type {Case[]} */ cases, /** @type {readonly string[]} */ own) {
+  const head = ["scene", "boxes", "pairs", ...own, "fastest alternative", "ratio", "next", "plain sweep", "ratio"];
   const rows = [...cases].sort(byScene).flatMap((one) => {
-    const mine = best(one, ours);
+    const mine = best(one, own);
     if (!mine) return [];
-    const [first, second] = peersOf(one);
+    const [first, second] = alternativesOf(one);
     const plain = timesOf(one, PLAIN);
     const mark = (/** @type {number} */ is, /** @type {number} */ wanted) => `${figure(is)}${is < wanted ? " (goal " + wanted + ")" : ""}`;
     return [
@@ -116,7 +116,7 @@ function table(/** @type {Case[]} */ cases, /** @type {readonly string[]} */ our
         `${one.scene} ${one.dimensions}D`,
         one.boxes.toLocaleString("en"),
         Math.round(one.pairs).toLocaleString("en"),
-        ...ours.map((name) => ms(timesOf(one, name))),
+        ...own.map((name) => ms(timesOf(one, name))),
         first ? `${first.name} ${ms(first.times)}` : "",
         first ? mark(ratio(first.times, mine), goal(one.boxes)) : "",
         second ? `${second.name} ${ms(second.times)}` : "",

@@ -1,5 +1,5 @@
 // Keeps the benchmark from rotting: every light peer is checked and timed on a few boxes. The heavy
-// peers (the engines in WebAssembly) take part where they are installed and asked for.
+// alternatives (the engines in WebAssembly) take part where they are installed and asked for.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -22,10 +22,10 @@ const light = contenders.filter((one) => !heavy.test(one.name));
 test("every light contender finds the right pairs and is timed, at rest and in motion", () => {
   const output = join(folder, "results.json");
   const main = fileURLToPath(new URL("../src/main.js", import.meta.url));
-  const peers = light.map(({ name }) => name).join();
+  const libraries = light.map(({ name }) => name).join();
   const { status, stdout, stderr } = spawnSync(
     process.execPath,
-    [main, "--scenes", "mixed,drift", "--sizes", "150", "--rounds", "1", "--no-native", "--peers", peers, "--output", output],
+    [main, "--scenes", "mixed,drift", "--sizes", "150", "--rounds", "1", "--no-native", "--libraries", libraries, "--output", output],
     { encoding: "utf8" },
   );
   assert.equal(status, 0, stderr);
