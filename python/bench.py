@@ -1,5 +1,5 @@
-"""All pairs of n squares in the plane, in double precision, by this package and by what else there is for Python:
-`pip install shapely scipy`, then `python bench.py`. Pairs are counted before times are told."""
+"""Measures how long it takes to find all pairs of n squares in the plane, in double precision, with this package and
+with the alternatives for Python: `pip install shapely scipy`, then `python bench.py`. Checks the number of pairs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import sweep_and_prune as sap
 
 
 def best(find: Callable[[], Any], least_seconds: float = 1.0) -> tuple[float, Any]:
-    """The shortest of as many calls as fit in a second, in milliseconds, and what they find."""
+    """The shortest time of as many calls as fit in a second, in milliseconds, and the result."""
     times: list[float] = []
     while sum(times) < least_seconds:
         began = time.perf_counter()
@@ -28,7 +28,7 @@ def squares(count: int) -> Any:
     return np.hstack([least, least + count**-0.5])
 
 
-def all_with_all(boxes: Any) -> Any:
+def brute_force(boxes: Any) -> Any:
     least, most = boxes[:, :2], boxes[:, 2:]
     return np.argwhere(np.triu(((least[:, None] <= most[None]) & (least[None] <= most[:, None])).all(axis=2), 1))
 
@@ -38,11 +38,11 @@ def main() -> None:
         import shapely
         from scipy.spatial import cKDTree
     except ImportError:
-        raise SystemExit("pip install shapely scipy, to measure beside them") from None
+        raise SystemExit("pip install shapely scipy, to compare with them") from None
     for count in (1000, 10_000, 100_000):
         boxes = squares(count)
-        ours, pairs = best(lambda: sap.find_pairs(boxes))
-        print(f"{count} squares, {len(pairs)} pairs: find_pairs {ours:.3f} ms")
+        own, pairs = best(lambda: sap.find_pairs(boxes))
+        print(f"{count} squares, {len(pairs)} pairs: find_pairs {own:.3f} ms")
         shapes = shapely.box(*boxes.T)
         others = {
             "shapely, STRtree": lambda: (lambda found: found[:, found[0] < found[1]].T)(
@@ -53,11 +53,11 @@ def main() -> None:
             ),
         }
         if count == 1000:
-            others["NumPy, all with all"] = lambda: all_with_all(boxes)
+            others["NumPy, brute force"] = lambda: brute_force(boxes)
         for name, find in others.items():
-            theirs, found = best(find)
-            assert abs(len(found) - len(pairs)) <= 1, name  # of sums that round
-            print(f"  {name}: {theirs:.1f} ms, {theirs / ours:.0f} times as long")
+            other, found = best(find)
+            assert abs(len(found) - len(pairs)) <= 1, name  # sums are rounded
+            print(f"  {name}: {other:.1f} ms, {other / own:.0f} times as long")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 """Writes the API reference of the package to a folder: `python python/docs.py FOLDER`, in the environment of
-`python/requirements.txt`. Static pages that load nothing from elsewhere."""
+`python/requirements.txt`. The pages are static and load nothing from other sites."""
 
 import sys
 from pathlib import Path
@@ -23,7 +23,7 @@ DARK = """
 
 
 class AsWritten:
-    """An annotation as it stands in the code: `ArrayLike`, not the ten types that this is short for."""
+    """An annotation as it is written in the code: `ArrayLike`, not the ten types that it stands for."""
 
     def __init__(self, annotation: object) -> None:
         self.text = annotation.__forward_arg__ if isinstance(annotation, ForwardRef) else str(annotation)
@@ -39,7 +39,7 @@ def as_written(annotation: object, *_: object) -> object:
 package = Path(__file__).parent / "sweep_and_prune"
 sys.path.insert(0, str(package.parent))
 if not list(package.glob("_native*.so")) + list(package.glob("_native*.pyd")):
-    # All that is public is written in Python: to describe it, the compiled part need not be there.
+    # Everything public is written in Python, so the compiled part is not needed to describe it.
     stand_in = ModuleType("sweep_and_prune._native")
     stand_in.Finder = stand_in.World = object  # type: ignore[attr-defined]
     sys.modules[stand_in.__name__] = stand_in

@@ -1,4 +1,4 @@
-"""The loop of a game: a hero, monsters, coins and walls; what begins to touch what. No window: it prints."""
+"""A game loop: a hero, monsters, coins and walls, and what begins to touch what. It prints instead of drawing."""
 
 import sweep_and_prune as sap
 
@@ -14,7 +14,7 @@ def add(name: str, x: float, y: float, size: float, filter: sap.Filter) -> int:
     return id
 
 
-# Coins and walls stand still; coins are for the hero alone, and monsters walk through each other.
+# Coins and walls stand still. Only the hero can take coins, and monsters walk through each other.
 hero = add("hero", 0, 0, 1, sap.Filter(HERO))
 monsters = [add(f"monster {i}", 20 - 4 * i, 0, 1, sap.Filter(MONSTER, mask=HERO | WALL)) for i in range(2)]
 for i in range(3):
@@ -36,4 +36,4 @@ for frame in range(12):
         if names[b].startswith("monster"):
             print(f"frame {frame}: {names[a]} got away from {names[b]}")
 sight = world.ray_cast(origin=[12.5, 0.5], direction=[-1, 0], filter=sap.Filter(HERO, mask=MONSTER))
-print(f"{score} coins; behind the hero: {names[sight.id] if sight else 'nobody'}")
+print(f"{score} coins; behind the hero: {names[sight.id] if sight else 'nothing'}")

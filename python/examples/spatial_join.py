@@ -1,6 +1,6 @@
 """A spatial join of two tables: which photographs show which parcels of land?
 
-Both tables have a rectangle in each row. The join is the table of all (photograph, parcel) whose rectangles touch.
+Both tables have one rectangle in each row. The join has a row for each photograph and parcel that overlap.
 """
 
 import numpy as np
@@ -9,22 +9,22 @@ import sweep_and_prune as sap
 
 random = np.random.default_rng(2026)
 
-# Parcels: a town of streets, each parcel 18 by 28 metres.
+# Parcels: a town with streets, each parcel 18 by 28 meters.
 x, y = np.meshgrid(np.arange(0, 4000, 20.0), np.arange(0, 3000, 30.0))
 corners = np.stack([x.ravel(), y.ravel()], axis=1)
 parcels = np.hstack([corners, corners + [18, 28]])
 owners = random.integers(0, 500, len(parcels))
 
-# Photographs from the air: 2,000 of them, each 60 to 200 metres wide.
-centres = random.uniform([0, 0], [4000, 3000], (2000, 2))
+# Photographs from the air: 2,000 of them, each 60 to 200 meters wide.
+centers = random.uniform([0, 0], [4000, 3000], (2000, 2))
 halves = random.uniform(30, 100, (2000, 1))
-photographs = np.hstack([centres - halves, centres + halves])
+photographs = np.hstack([centers - halves, centers + halves])
 
 join = sap.find_pairs_between(photographs, parcels)
 photograph, parcel = join.T
 print(f"{len(parcels)} parcels, {len(photographs)} photographs: {len(join)} rows in the join")
 
-# What one does with a join: how many parcels on each photograph, and who has to be asked about most of them.
+# Use the join: how many parcels does each photograph show, and which owner is on most photographs?
 on_each = np.bincount(photograph, minlength=len(photographs))
 asked = np.bincount(owners[parcel], minlength=500)
 print(f"{on_each.mean():.1f} parcels on a photograph, {on_each.max()} at most")

@@ -1,87 +1,107 @@
-//! Between NumPy's arrays and slices. Nothing is copied on the way in; on the way out each array
-//! is the caller's own.
+//! Conversion between NumPy arrays and the data of the core. Arrays are copied on the way in and on
+//! the way out, and NumPy makes the copies that go in.
+//!
+//! Another Python thread may write to a user's array while a search runs without the GIL, and NumPy
+//! has no means to forbid that. In Rust it is undefined behavior to read memory while it is written.
+//! So Rust never reads a user's array: NumPy copies it to memory that nobody else knows. A write
+//! during the copy can mix old and new numbers; after the copy it has no effect.
 
+use numpy::ndarray::ArrayView2;
 use numpy::{
-    Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+    Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyUntypedArray,
     PyUntypedArrayMethods,
 };
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use sweep_and_prune::{Aabb, ProxyId, Scalar};
+use sweep_and_prune_bindings::Kind;
 
-/// A coordinate that NumPy has too.
-pub trait Coordinate: Scalar + Element {}
+use crate::run::call;
 
-impl Coordinate for f32 {}
-impl Coordinate for f64 {}
+pub type Array<'py> = Bound<'py, PyAny>;
 
-/// An array of rows, borrowed for reading.
-pub struct Rows<'py, T: Element>(PyReadonlyArray2<'py, T>);
+/// Copies the boxes of an array to rows, and returns their number. `rows` allocates the memory of
+/// that many boxes of this kind, which stay valid until this function returns.
+pub fn copy_boxes(
+    array: &Array<'_>,
+    kind: Kind,
+    rows: impl FnOnce(usize) -> Option<*mut u8>,
+) -> PyResult<usize> {
+    let shape = match *array.cast::<PyUntypedArray>()?.shape() {
+        [count, width] if width == 2 * kind.dimensions => [count, width],
+        _ => return Err(PyValueError::new_err("rows of the right width are expected")),
+    };
+    let memory = rows(shape[0]).ok_or_else(|| PyMemoryError::new_err("no memory for the boxes"))?;
+    match kind.is_double {
+        true => copy_rows::<f64>(array, shape, memory.cast())?,
+        false => copy_rows::<f32>(array, shape, memory.cast())?,
+    }
+    Ok(shape[0])
+}
 
-impl<'py, T: Coordinate> Rows<'py, T> {
-    /// The rows of an array, each so wide.
-    pub fn of(array: &Bound<'py, PyAny>, width: usize) -> PyResult<Self> {
-        let array = array.cast::<PyArray2<T>>()?;
-        if array.shape()[1] != width || !array.is_c_contiguous() {
-            return Err(PyValueError::new_err("contiguous rows of the right width are expected"));
+fn copy_rows<T: Element>(array: &Array<'_>, shape: [usize; 2], memory: *mut T) -> PyResult<()> {
+    static COPYTO: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    let py = array.py();
+    // SAFETY: the memory has room for these boxes, and a box is `repr(C)`: scalars without padding.
+    // The only reference to this view of it is dropped when this function returns.
+    #[allow(unsafe_code)]
+    let view = unsafe {
+        let view = ArrayView2::from_shape_ptr(shape, memory.cast_const());
+        PyArray2::borrow_from_array(&view, py.None().into_bound(py))
+    };
+    call(numpy(py, &COPYTO, "copyto")?, (&view, array)).map(drop)
+}
+
+/// A private copy of the numbers of an array, of any shape.
+pub fn copy_numbers<'py, T: Element>(array: &Array<'py>) -> PyResult<PyReadonlyArray1<'py, T>> {
+    static ARRAY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    let copy = call(numpy(array.py(), &ARRAY, "array")?, (array,))?;
+    let flat = call(&copy.getattr("reshape")?, (-1,))?;
+    flat.cast::<PyArray1<T>>()?.try_readonly().map_err(|_| borrowed())
+}
+
+/// The type of the indices in a result.
+#[derive(Clone, Copy)]
+pub enum Index {
+    Int32,
+    Uint32,
+    Int64,
+    Uint64,
+}
+
+impl Index {
+    /// The type that NumPy calls so.
+    pub fn of(name: &str) -> PyResult<Self> {
+        Ok(match name {
+            "int32" => Self::Int32,
+            "uint32" => Self::Uint32,
+            "int64" => Self::Int64,
+            "uint64" => Self::Uint64,
+            _ => return Err(PyValueError::new_err("an integer type of 32 or 64 bits is expected")),
+        })
+    }
+
+    /// A new array of pairs. All indices fit: the package limits the number of boxes.
+    pub fn pairs<'py>(self, py: Python<'py>, found: &[[u32; 2]]) -> PyResult<Array<'py>> {
+        let found = found.iter().copied();
+        match self {
+            Self::Int32 => pairs(py, found.map(|pair| pair.map(|index| index as i32))),
+            Self::Uint32 => pairs(py, found),
+            Self::Int64 => pairs(py, found.map(|pair| pair.map(i64::from))),
+            Self::Uint64 => pairs(py, found.map(|pair| pair.map(u64::from))),
         }
-        Ok(Self(array.try_readonly().map_err(|_| written())?))
     }
-
-    pub fn numbers(&self) -> PyResult<&[T]> {
-        self.0.as_slice().map_err(|_| PyTypeError::new_err("an aligned array is expected"))
-    }
-
-    /// The rows as boxes, in place.
-    ///
-    /// Another thread of Python may write to the array while it is read without the interpreter's
-    /// lock: NumPy has no means to forbid that. The core reads coordinates with safe code, keeps
-    /// copies of what it has put in order, and its vector kernels see only those copies: so
-    /// whoever writes meanwhile gets pairs of neither state, or an error, and harms no memory.
-    pub fn boxes<const D: usize>(&self) -> PyResult<&[Aabb<D, T>]> {
-        let numbers = self.numbers()?;
-        let (at, count) = (numbers.as_ptr().cast(), numbers.len() / (2 * D));
-        // SAFETY: a box is `repr(C)`, two arrays of `D` scalars: aligned as they are, without
-        // padding, and every pattern of their bits is a value. There are `2 * D` of them for each,
-        // and they stay where they are as long as `self` refers to the array.
-        #[allow(unsafe_code)]
-        let boxes = unsafe { std::slice::from_raw_parts(at, count) };
-        Ok(boxes)
-    }
-
-    /// The rows as points.
-    pub fn points<const D: usize>(&self) -> PyResult<&[[T; D]]> {
-        Ok(self.numbers()?.as_chunks().0)
-    }
-}
-
-/// The ids in an array.
-pub fn read_ids<'py>(array: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArray1<'py, u64>> {
-    array.cast::<PyArray1<u64>>()?.try_readonly().map_err(|_| written())
-}
-
-/// The numbers in an array.
-pub fn read_numbers<'py, T: Coordinate>(
-    array: &Bound<'py, PyAny>,
-) -> PyResult<PyReadonlyArray1<'py, T>> {
-    array.cast::<PyArray1<T>>()?.try_readonly().map_err(|_| written())
-}
-
-/// As ids of the core.
-pub fn proxies(ids: &[u64]) -> Vec<ProxyId> {
-    ids.iter().map(|&id| ProxyId::from_bits(id)).collect()
 }
 
 /// A new array of pairs.
 pub fn pairs<'py, V: Element + Copy>(
     py: Python<'py>,
     pairs: impl ExactSizeIterator<Item = [V; 2]>,
-) -> PyResult<Bound<'py, PyAny>> {
-    let array = empty(py)?.call1(((pairs.len(), 2), numpy::dtype::<V>(py)))?;
+) -> PyResult<Array<'py>> {
+    let array = empty::<V>(py, (pairs.len(), 2))?;
     {
-        let mut into = array.cast::<PyArray2<V>>()?.try_readwrite().map_err(|_| written())?;
-        let into = into.as_slice_mut().map_err(|_| written())?.as_chunks_mut().0;
+        let mut into = array.cast::<PyArray2<V>>()?.try_readwrite().map_err(|_| borrowed())?;
+        let into = into.as_slice_mut().map_err(|_| borrowed())?.as_chunks_mut().0;
         into.iter_mut().zip(pairs).for_each(|(into, pair)| *into = pair);
     }
     Ok(array)
@@ -91,24 +111,32 @@ pub fn pairs<'py, V: Element + Copy>(
 pub fn numbers<'py, V: Element + Copy>(
     py: Python<'py>,
     numbers: impl ExactSizeIterator<Item = V>,
-) -> PyResult<Bound<'py, PyAny>> {
-    let array = empty(py)?.call1((numbers.len(), numpy::dtype::<V>(py)))?;
+) -> PyResult<Array<'py>> {
+    let array = empty::<V>(py, (numbers.len(),))?;
     {
-        let mut into = array.cast::<PyArray1<V>>()?.try_readwrite().map_err(|_| written())?;
-        let into = into.as_slice_mut().map_err(|_| written())?;
+        let mut into = array.cast::<PyArray1<V>>()?.try_readwrite().map_err(|_| borrowed())?;
+        let into = into.as_slice_mut().map_err(|_| borrowed())?;
         into.iter_mut().zip(numbers).for_each(|(into, number)| *into = number);
     }
     Ok(array)
 }
 
-/// `numpy.empty`, which tells of too little memory by an exception.
-fn empty<'py>(py: Python<'py>) -> PyResult<&'py Bound<'py, PyAny>> {
+/// A new array without values. NumPy reports too little memory by an exception.
+fn empty<'py, V: Element>(py: Python<'py>, shape: impl IntoPyObject<'py>) -> PyResult<Array<'py>> {
     static EMPTY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
-    let empty =
-        EMPTY.get_or_try_init(py, || py.import("numpy")?.getattr("empty").map(Bound::unbind));
-    Ok(empty?.bind(py))
+    call(numpy(py, &EMPTY, "empty")?, (shape, numpy::dtype::<V>(py)))
 }
 
-fn written() -> PyErr {
-    PyValueError::new_err("the array is being written to by another extension")
+/// A function of NumPy.
+fn numpy<'py>(
+    py: Python<'py>,
+    function: &'static PyOnceLock<Py<PyAny>>,
+    name: &str,
+) -> PyResult<&'py Array<'py>> {
+    let import = || py.import("numpy")?.getattr(name).map(Bound::unbind);
+    Ok(function.get_or_try_init(py, import)?.bind(py))
+}
+
+fn borrowed() -> PyErr {
+    PyValueError::new_err("another extension module is writing to the array")
 }

@@ -1,218 +1,170 @@
-//! Finding pairs: a finder of any dimensions and type, chosen at run time.
+//! Finds pairs: a pair finder whose dimensions and precision are chosen at run time.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use sweep_and_prune::{Aabb, Error, PairFinder};
+use sweep_and_prune::Error;
+use sweep_and_prune_bindings::{ArrayPairFinder, Kind};
 
-use crate::arrays::{Coordinate, Rows, pairs};
+use crate::arrays::{Array, Index, copy_boxes};
 use crate::errors::{busy, raise};
-use crate::run::{processors, run};
+use crate::run::{call, processors, run};
 
-type Array<'py> = Bound<'py, PyAny>;
+/// A pair finder, which one call uses at a time.
+#[pyclass(frozen, module = "sweep_and_prune._native")]
+pub struct Finder(Mutex<Search>);
 
-/// A finder of any type. The second set is that of pairs between two.
-trait Find: Send {
-    fn find<'py>(&mut self, a: &Array<'py>, b: Option<&Array<'py>>) -> PyResult<Array<'py>>;
-    fn count(&mut self, a: &Array<'_>, b: Option<&Array<'_>>) -> PyResult<u64>;
-    /// Whether it came to the end.
-    fn for_each(
-        &mut self,
-        a: &Array<'_>,
-        b: Option<&Array<'_>>,
-        each: &Array<'_>,
-        size: usize,
-    ) -> PyResult<bool>;
-}
-
-struct Typed<const D: usize, T: Coordinate> {
-    finder: PairFinder<D, T>,
+struct Search {
+    finder: Box<dyn ArrayPairFinder>,
+    kind: Kind,
     threads: usize,
 }
 
-impl<const D: usize, T: Coordinate> Typed<D, T> {
-    fn boxed(threads: usize) -> Box<dyn Find> {
-        Box::new(Self { finder: Self::fresh(threads), threads })
-    }
-
-    fn fresh(threads: usize) -> PairFinder<D, T> {
-        PairFinder::new().threads(threads)
-    }
+/// How many boxes one or two sets have.
+#[derive(Clone, Copy)]
+struct Sets {
+    a: usize,
+    b: Option<usize>,
 }
 
-impl<const D: usize, T: Coordinate> Find for Typed<D, T> {
-    fn find<'py>(&mut self, a: &Array<'py>, b: Option<&Array<'py>>) -> PyResult<Array<'py>> {
-        let (py, threads) = (a.py(), self.threads);
-        let (first, second) = (rows::<D, T>(a)?, b.map(rows::<D, T>).transpose()?);
-        let (first, second) =
-            (first.boxes::<D>()?, second.as_ref().map(Rows::boxes::<D>).transpose()?);
-        let finder = &mut self.finder;
-        let found = run(py, count(first, second), threads, move |watch| match second {
-            None => finder.find_watched(first, watch),
-            Some(second) => finder.find_between_watched(first, second, watch),
-        });
-        match found {
-            Ok(Ok(found)) => pairs(py, found.unwrap_or(&[]).iter().copied()),
-            Ok(Err(error)) => Err(fault(py, error, first, second)),
-            Err(error) => {
-                self.finder = Self::fresh(threads);
-                Err(error)
-            }
-        }
-    }
-
-    fn count(&mut self, a: &Array<'_>, b: Option<&Array<'_>>) -> PyResult<u64> {
-        let (py, threads) = (a.py(), self.threads);
-        let (first, second) = (rows::<D, T>(a)?, b.map(rows::<D, T>).transpose()?);
-        let (first, second) =
-            (first.boxes::<D>()?, second.as_ref().map(Rows::boxes::<D>).transpose()?);
-        let finder = &mut self.finder;
-        let counted = run(py, count(first, second), threads, move |watch| match second {
-            None => finder.count_watched(first, watch),
-            Some(second) => finder.count_between_watched(first, second, watch),
-        });
-        match counted {
-            Ok(Ok(counted)) => Ok(counted.unwrap_or(0)),
-            Ok(Err(error)) => Err(fault(py, error, first, second)),
-            Err(error) => {
-                self.finder = Self::fresh(threads);
-                Err(error)
-            }
-        }
-    }
-
-    fn for_each(
-        &mut self,
-        a: &Array<'_>,
-        b: Option<&Array<'_>>,
-        each: &Array<'_>,
-        size: usize,
-    ) -> PyResult<bool> {
-        let py = a.py();
-        // Copies: whoever is called back may well write to the boxes.
-        let first = rows::<D, T>(a)?.boxes::<D>()?.to_vec();
-        let second = match b {
-            None => None,
-            Some(b) => Some(rows::<D, T>(b)?.boxes::<D>()?.to_vec()),
-        };
-        let (finder, each) = (&mut self.finder, each.clone().unbind());
-        let streamed = run(py, count(&first, second.as_deref()), 1, |_| {
-            let mut chunk = Vec::new();
-            let take = |pair| {
-                chunk.push(pair);
-                if chunk.len() < size {
-                    return ControlFlow::Continue(());
-                }
-                hand_over(&each, &mut chunk)
-            };
-            let end = match &second {
-                None => finder.for_each(&first, take),
-                Some(second) => finder.for_each_between(&first, second, take),
-            }?;
-            Ok(match end {
-                ControlFlow::Continue(()) if !chunk.is_empty() => hand_over(&each, &mut chunk),
-                end => end,
-            })
-        });
-        match streamed {
-            Ok(Ok(ControlFlow::Continue(()))) => Ok(true),
-            Ok(Ok(ControlFlow::Break(raised))) => raised.map_or(Ok(false), Err),
-            Ok(Err(error)) => Err(fault(py, error, &first, second.as_deref())),
-            Err(error) => {
-                self.finder = Self::fresh(self.threads);
-                Err(error)
-            }
-        }
+impl Sets {
+    fn boxes(self) -> usize {
+        self.a + self.b.unwrap_or(0)
     }
 }
-
-/// Hands a chunk of pairs to a function of Python's and empties it. Breaks with what that raised,
-/// or with nothing if it returned `False`.
-fn hand_over(each: &Py<PyAny>, chunk: &mut Vec<[u32; 2]>) -> ControlFlow<Option<PyErr>> {
-    let wants_more = Python::attach(|py| {
-        let wants_more = each.bind(py).call1((pairs(py, chunk.iter().copied())?,))?;
-        py.check_signals()?;
-        Ok(!wants_more.is(pyo3::types::PyBool::new(py, false)))
-    });
-    chunk.clear();
-    match wants_more {
-        Ok(true) => ControlFlow::Continue(()),
-        Ok(false) => ControlFlow::Break(None),
-        Err(raised) => ControlFlow::Break(Some(raised)),
-    }
-}
-
-fn rows<'py, const D: usize, T: Coordinate>(array: &Array<'py>) -> PyResult<Rows<'py, T>> {
-    Rows::of(array, 2 * D)
-}
-
-fn count<const D: usize, T>(a: &[Aabb<D, T>], b: Option<&[Aabb<D, T>]>) -> usize {
-    a.len() + b.map_or(0, <[_]>::len)
-}
-
-/// The core counts the boxes of a second set after those of the first.
-fn fault<const D: usize, T>(
-    py: Python<'_>,
-    error: Error,
-    a: &[Aabb<D, T>],
-    b: Option<&[Aabb<D, T>]>,
-) -> PyErr {
-    match error {
-        Error::InvalidBox { index, axis, min, max } if index >= a.len() => {
-            raise(py, Error::InvalidBox { index: index - a.len(), axis, min, max }, "b", &[])
-        }
-        error => raise(py, error, if b.is_some() { "a" } else { "boxes" }, &[]),
-    }
-}
-
-/// A `PairFinder` of so many dimensions, of doubles or of singles.
-#[pyclass(frozen, module = "sweep_and_prune._native")]
-pub struct Finder(Mutex<Box<dyn Find>>);
 
 #[pymethods]
 impl Finder {
     #[new]
     fn new(dimensions: usize, double: bool, threads: usize) -> PyResult<Self> {
         let threads = if threads > 1 { threads.min(processors()) } else { 1 };
-        let finder = match (dimensions, double) {
-            (1, false) => Typed::<1, f32>::boxed(threads),
-            (2, false) => Typed::<2, f32>::boxed(threads),
-            (3, false) => Typed::<3, f32>::boxed(threads),
-            (1, true) => Typed::<1, f64>::boxed(threads),
-            (2, true) => Typed::<2, f64>::boxed(threads),
-            (3, true) => Typed::<3, f64>::boxed(threads),
-            _ => return Err(PyValueError::new_err("dimensions must be 1, 2 or 3")),
-        };
-        Ok(Self(Mutex::new(finder)))
+        let kind = Kind { dimensions, is_double: double };
+        let finder = kind.pair_finder(threads);
+        let finder = finder.ok_or_else(|| PyValueError::new_err("dimensions must be 1, 2 or 3"))?;
+        Ok(Self(Mutex::new(Search { finder, kind, threads })))
     }
 
-    #[pyo3(signature = (a, b=None))]
-    fn find<'py>(&self, a: Array<'py>, b: Option<Array<'py>>) -> PyResult<Array<'py>> {
-        self.with(|finder| finder.find(&a, b.as_ref()))
+    #[pyo3(signature = (a, b=None, index="int64"))]
+    fn find<'py>(&self, a: Array<'py>, b: Option<Array<'py>>, index: &str) -> PyResult<Array<'py>> {
+        let (py, index) = (a.py(), Index::of(index)?);
+        self.with(|search| {
+            let sets = search.copy(&a, b.as_ref())?;
+            let finder = &mut search.finder;
+            let found = run(py, sets.boxes(), search.threads, |progress| {
+                finder.find(sets.a, sets.b, progress).map(|found| found.unwrap_or(&[]))
+            });
+            match found {
+                Ok(Ok(found)) => index.pairs(py, found),
+                Ok(Err(error)) => Err(raise_for(py, error, sets)),
+                Err(error) => Err(search.fail(error)),
+            }
+        })
     }
 
     #[pyo3(signature = (a, b=None))]
     fn count(&self, a: Array<'_>, b: Option<Array<'_>>) -> PyResult<u64> {
-        self.with(|finder| finder.count(&a, b.as_ref()))
+        let py = a.py();
+        self.with(|search| {
+            let sets = search.copy(&a, b.as_ref())?;
+            let finder = &mut search.finder;
+            let counted = run(py, sets.boxes(), search.threads, |progress| {
+                finder.count(sets.a, sets.b, progress).map(|count| count.unwrap_or(0))
+            });
+            match counted {
+                Ok(Ok(count)) => Ok(count),
+                Ok(Err(error)) => Err(raise_for(py, error, sets)),
+                Err(error) => Err(search.fail(error)),
+            }
+        })
     }
 
-    fn for_each(
+    /// Calls `each` with chunks of `size` pairs, and returns whether all pairs were passed to it.
+    fn for_each_chunk(
         &self,
         a: Array<'_>,
         b: Option<Array<'_>>,
         each: Array<'_>,
         size: usize,
+        index: &str,
     ) -> PyResult<bool> {
-        self.with(|finder| finder.for_each(&a, b.as_ref(), &each, size))
+        let (py, index) = (a.py(), Index::of(index)?);
+        self.with(|search| {
+            let sets = search.copy(&a, b.as_ref())?;
+            let (finder, each) = (&mut search.finder, each.unbind());
+            let streamed = run(py, sets.boxes(), 1, |_| {
+                let mut buffer: Vec<[u32; 2]> = Vec::new();
+                let mut end = Ok(true);
+                let mut hand_over = |chunk: &[[u32; 2]]| {
+                    end = Python::attach(|py| wants_more(each.bind(py), index.pairs(py, chunk)?));
+                    match end {
+                        Ok(true) => ControlFlow::Continue(()),
+                        _ => ControlFlow::Break(()),
+                    }
+                };
+                let complete = finder.for_each_chunk(sets.a, sets.b, &mut |mut found| {
+                    while buffer.len() + found.len() >= size {
+                        let (now, later) = found.split_at(size - buffer.len());
+                        buffer.extend_from_slice(now);
+                        hand_over(&buffer)?;
+                        buffer.clear();
+                        found = later;
+                    }
+                    buffer.extend_from_slice(found);
+                    ControlFlow::Continue(())
+                })?;
+                if complete.is_continue() && !buffer.is_empty() {
+                    // What it returned counts as if more pairs could follow.
+                    let _ = hand_over(&buffer);
+                }
+                Ok(end)
+            });
+            match streamed {
+                Ok(Ok(end)) => end,
+                Ok(Err(error)) => Err(raise_for(py, error, sets)),
+                Err(error) => Err(search.fail(error)),
+            }
+        })
     }
 }
 
+/// The core counts the boxes of a second set after those of the first.
+fn raise_for(py: Python<'_>, error: Error, sets: Sets) -> PyErr {
+    match error {
+        Error::InvalidBox { index, axis, min, max } if index >= sets.a => {
+            raise(py, Error::InvalidBox { index: index - sets.a, axis, min, max }, "b", &[])
+        }
+        error => raise(py, error, if sets.b.is_some() { "a" } else { "boxes" }, &[]),
+    }
+}
+
+/// Calls `each` with a chunk, and returns whether it wants another one.
+fn wants_more<'py>(each: &Array<'py>, chunk: Array<'py>) -> PyResult<bool> {
+    let answer = call(each, (chunk,))?;
+    each.py().check_signals()?;
+    Ok(answer.is_none() || answer.is_truthy()?)
+}
+
 impl Finder {
-    /// One call at a time: a second one is refused, not kept waiting for what may be itself.
-    fn with<R>(&self, call: impl FnOnce(&mut dyn Find) -> PyResult<R>) -> PyResult<R> {
-        let mut finder = self.0.try_lock().map_err(|_| busy("PairFinder"))?;
-        call(&mut **finder)
+    /// A second call meanwhile is refused. It cannot wait, since the first may be waiting for it.
+    fn with<R>(&self, call: impl FnOnce(&mut Search) -> PyResult<R>) -> PyResult<R> {
+        let mut search = self.0.try_lock().map_err(|_| busy("PairFinder"))?;
+        call(&mut search)
+    }
+}
+
+impl Search {
+    fn copy(&mut self, a: &Array<'_>, b: Option<&Array<'_>>) -> PyResult<Sets> {
+        let finder = &mut self.finder;
+        let a = copy_boxes(a, self.kind, |count| finder.rows(0, count))?;
+        let b = b.map(|b| copy_boxes(b, self.kind, |count| finder.rows(1, count))).transpose()?;
+        Ok(Sets { a, b })
+    }
+
+    /// After a signal or a panic, which may have left the finder's buffers half written.
+    fn fail(&mut self, error: PyErr) -> PyErr {
+        self.finder.reset();
+        error
     }
 }

@@ -1,6 +1,6 @@
-//! The door from Python to `sweep-and-prune`: arrays of NumPy in and out, nothing else. The
-//! package around it, `sweep_and_prune/`, brings whatever a user passes into the form that is
-//! wanted here, C-contiguous rows of the right type, and has the documentation.
+//! The Python binding of `sweep-and-prune`: NumPy arrays in, NumPy arrays out, and nothing else. The
+//! package around it, `sweep_and_prune/`, converts and checks what users pass, and has the
+//! documentation.
 
 mod arrays;
 mod errors;

@@ -1,7 +1,9 @@
-//! How a call is run: without the interpreter's lock if it is long, on threads if they were asked
-//! for, with an eye on the keyboard, and so that a bug here or in the core becomes an exception.
+//! Runs a call of the core: without the GIL if the call is long, on several threads if the user asked
+//! for them, interruptible by signals, and with panics turned into exceptions. Also calls Python
+//! functions so that a thread can survive the end of the interpreter.
 
 use std::any::Any;
+use std::hint::black_box;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,67 +13,116 @@ use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
 
 use pyo3::exceptions::PyRuntimeError;
+use pyo3::ffi::{PyObject, PyObject_CallObject};
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// Fewer boxes than this take less time than giving the lock back and waiting for it.
+/// Fewer boxes than this take less time than releasing the GIL and waiting to acquire it again.
 pub const FEW: usize = 1024;
 
-/// With fewer boxes the core does not use threads.
-const WORTH: usize = 4096;
+/// With fewer boxes than this the core uses one thread.
+const MIN_FOR_THREADS: usize = 4096;
 
-/// How often it is asked whether someone wants to stop.
-const PATIENCE: Duration = Duration::from_millis(20);
+/// Time between two checks for signals.
+const SIGNAL_INTERVAL: Duration = Duration::from_millis(20);
 
-/// What the core tells of its progress, and what may end it.
-pub type Watch<'a> = &'a (dyn Fn(f64) -> ControlFlow<()> + Sync);
+/// A progress callback of the core; it may cancel the search.
+pub type Progress<'a> = &'a (dyn Fn(f64) -> ControlFlow<()> + Sync);
 
-/// Runs `work` of so many boxes.
+/// Runs `work`, which looks at about `boxes` boxes.
 ///
 /// # Errors
-/// What a signal's handler raised, `KeyboardInterrupt` as a rule: then the work was broken off, if
-/// it uses its watch, or came to its end. `RuntimeError` if it panicked; what it worked on is in
-/// pieces then.
+/// What a signal handler raised, usually `KeyboardInterrupt`: then the work was cancelled if it uses
+/// its progress callback, or ran to its end. `RuntimeError` if the work panicked: then the object
+/// that it worked on is unusable.
 pub fn run<R: Send>(
     py: Python<'_>,
     boxes: usize,
     threads: usize,
-    work: impl FnOnce(Watch<'_>) -> R + Send,
+    work: impl FnOnce(Progress<'_>) -> R + Send,
 ) -> PyResult<R> {
-    let work = |watch: Watch<'_>| catch_unwind(AssertUnwindSafe(|| work(watch)));
-    let interrupts = Interrupts::new();
+    let work = |progress: Progress<'_>| catch_unwind(AssertUnwindSafe(|| work(progress)));
+    let signals = Signals::new();
     let done = if boxes < FEW {
         work(&|_| ControlFlow::Continue(()))
-    } else if let Some(pool) = (threads > 1 && boxes >= WORTH).then(pool).flatten() {
-        py.detach(|| on_pool(&pool, &interrupts, work))
+    } else if let Some(pool) = (threads > 1 && boxes >= MIN_FOR_THREADS).then(pool).flatten() {
+        py.detach(|| on_pool(&pool, &signals, work))
     } else {
-        py.detach(|| work(&|_| interrupts.look()))
+        py.detach(|| work(&|_| signals.check_now_and_then()))
     };
-    interrupts.raised()?;
-    done.map_err(|panic| broken(&*panic))
+    signals.raised()?;
+    done.map_err(|panic| panicked(&*panic))
 }
 
-/// Runs work on a pool, while the calling thread, which may be Python's main one and then is the
-/// only one that signals are told to, waits and watches.
+/// Calls a Python function. All Python code that this crate runs is run by this function.
+///
+/// While the interpreter shuts down, Python up to 3.13 ends other threads by `pthread_exit` when they
+/// run Python code. That unwinds the stack, which aborts the process if Rust frames without cleanup
+/// are on it. This function catches the unwinding and lets the thread sleep until the process ends,
+/// as Python 3.14 does.
+///
+/// # Errors
+/// What the function raises.
+#[allow(unsafe_code)]
+pub fn call<'py>(
+    function: &Bound<'py, PyAny>,
+    arguments: impl IntoPyObject<
+        'py,
+        Target = PyTuple,
+        Output = Bound<'py, PyTuple>,
+        Error: Into<PyErr>,
+    >,
+) -> PyResult<Bound<'py, PyAny>> {
+    type Plain = unsafe extern "C" fn(*mut PyObject, *mut PyObject) -> *mut PyObject;
+    type Unwinding = unsafe extern "C-unwind" fn(*mut PyObject, *mut PyObject) -> *mut PyObject;
+    let py = function.py();
+    let arguments = arguments.into_pyobject(py).map_err(Into::into)?;
+    // SAFETY: the two types differ only in that the second tells the compiler that the call may
+    // unwind, so that it runs `guard`'s destructor then. The black box keeps the compiler from
+    // recognizing the function, which is declared as one that never unwinds.
+    let call_object: Unwinding =
+        black_box(unsafe { std::mem::transmute::<Plain, Unwinding>(PyObject_CallObject) });
+    let guard = SleepForever;
+    // SAFETY: both are live objects, the second is a tuple, and the GIL is held.
+    let result = unsafe { call_object(function.as_ptr(), arguments.as_ptr()) };
+    std::mem::forget(guard);
+    // SAFETY: the call returned a new reference, or null with an exception set.
+    unsafe { Bound::from_owned_ptr_or_err(py, result) }
+}
+
+/// Never lets the thread that drops it go on.
+struct SleepForever;
+
+impl Drop for SleepForever {
+    fn drop(&mut self) {
+        loop {
+            std::thread::sleep(Duration::from_secs(3600));
+        }
+    }
+}
+
+/// Runs work on a pool while the calling thread checks for signals: Python delivers them only to its
+/// main thread, which this may be.
 fn on_pool<R: Send>(
     pool: &ThreadPool,
-    interrupts: &Interrupts,
-    work: impl FnOnce(Watch<'_>) -> std::thread::Result<R> + Send,
+    signals: &Signals,
+    work: impl FnOnce(Progress<'_>) -> std::thread::Result<R> + Send,
 ) -> std::thread::Result<R> {
-    let stop = AtomicBool::new(false);
-    let asked = |_| match stop.load(Ordering::Relaxed) {
+    let cancelled = AtomicBool::new(false);
+    let progress = |_| match cancelled.load(Ordering::Relaxed) {
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
     };
-    let (done, wait) = channel();
+    let (sender, receiver) = channel();
     pool.in_place_scope(|scope| {
-        scope.spawn(|_| drop(done.send(work(&asked))));
+        scope.spawn(|_| drop(sender.send(work(&progress))));
         loop {
-            match wait.recv_timeout(PATIENCE) {
+            match receiver.recv_timeout(SIGNAL_INTERVAL) {
                 Ok(result) => return result,
                 Err(RecvTimeoutError::Timeout) => {
-                    if interrupts.ask().is_break() {
-                        stop.store(true, Ordering::Relaxed);
+                    if signals.check().is_break() {
+                        cancelled.store(true, Ordering::Relaxed);
                     }
                 }
                 Err(RecvTimeoutError::Disconnected) => return Err(Box::new("a thread was lost")),
@@ -80,50 +131,50 @@ fn on_pool<R: Send>(
     })
 }
 
-/// The threads, one for each processor, made when first wanted; none if they cannot be had. To be
-/// called with the interpreter's lock, so that nobody forks meanwhile.
+/// The thread pool, with one thread for each processor, created when first used; `None` if the
+/// system gives no threads. Call it with the GIL held, so that no other thread forks meanwhile.
 fn pool() -> Option<Arc<ThreadPool>> {
     static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
     let mut pool = POOL.lock().unwrap_or_else(PoisonError::into_inner);
     let process = std::process::id();
     match &*pool {
-        Some((of, pool)) if *of == process => return Some(Arc::clone(pool)),
+        Some((owner, pool)) if *owner == process => return Some(Arc::clone(pool)),
         _ => (),
     }
-    // A process that was forked has none of its parent's threads: who waited for them would wait
-    // for ever, so they are forgotten.
+    // A forked process has none of its parent's threads. Dropping the pool would wait for them
+    // forever, so it is forgotten.
     std::mem::forget(pool.take());
     let built = Arc::new(ThreadPoolBuilder::new().num_threads(processors()).build().ok()?);
     *pool = Some((process, Arc::clone(&built)));
     Some(built)
 }
 
-/// How many threads can be at work at once. The system takes its time to answer.
+/// The number of threads that can run at once. Cached, because the system call is slow.
 pub fn processors() -> usize {
     static PROCESSORS: OnceLock<usize> = OnceLock::new();
     *PROCESSORS.get_or_init(|| available_parallelism().map_or(1, usize::from))
 }
 
-/// Whether a handler of signals has raised an exception.
-struct Interrupts(Mutex<(Instant, Option<PyErr>)>);
+/// When signals were last checked, and the exception that a signal handler raised.
+struct Signals(Mutex<(Instant, Option<PyErr>)>);
 
-impl Interrupts {
+impl Signals {
     fn new() -> Self {
         Self(Mutex::new((Instant::now(), None)))
     }
 
-    /// Asks, if it is time for that.
-    fn look(&self) -> ControlFlow<()> {
+    /// Checks for signals if the last check was long ago.
+    fn check_now_and_then(&self) -> ControlFlow<()> {
         let state = self.lock();
-        if state.0.elapsed() <= PATIENCE && state.1.is_none() {
+        if state.0.elapsed() <= SIGNAL_INTERVAL && state.1.is_none() {
             return ControlFlow::Continue(());
         }
         drop(state);
-        self.ask()
+        self.check()
     }
 
-    /// Has Python call the handlers of signals that came.
-    fn ask(&self) -> ControlFlow<()> {
+    /// Runs Python's handlers of the signals that have arrived.
+    fn check(&self) -> ControlFlow<()> {
         let mut state = self.lock();
         if state.1.is_none() {
             state.1 = Python::attach(|py| py.check_signals()).err();
@@ -141,10 +192,10 @@ impl Interrupts {
     }
 }
 
-fn broken(panic: &(dyn Any + Send)) -> PyErr {
-    let said = panic.downcast_ref::<String>().map(String::as_str);
-    let said = said.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("unknown");
+fn panicked(panic: &(dyn Any + Send)) -> PyErr {
+    let message = panic.downcast_ref::<String>().map(String::as_str);
+    let message = message.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("unknown");
     PyRuntimeError::new_err(format!(
-        "the search broke off: an array was written to meanwhile, or this is a bug ({said})"
+        "the search failed; this is a bug, please report it ({message})"
     ))
 }

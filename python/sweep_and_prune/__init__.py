@@ -1,5 +1,5 @@
-"""Which boxes overlap? All pairs of a set of axis-aligned boxes, in one, two or three dimensions, from arrays of
-NumPy; or a living world of bodies that tells which overlaps begin and which end.
+"""Finds every overlapping pair of axis-aligned boxes in 1D, 2D and 3D, fast, from NumPy arrays; or tracks a world of
+moving bodies and reports which overlaps begin and end.
 
 >>> import numpy as np
 >>> import sweep_and_prune as sap
@@ -9,29 +9,28 @@ NumPy; or a living world of bodies that tells which overlaps begin and which end
 ...     [2, 1, 3, 4],  # touches the first box: that is an overlap
 ... ], dtype=np.float32)
 >>> sap.find_pairs(boxes)
-array([[0, 2]], dtype=uint32)
+array([[0, 2]])
 
-- Intervals are closed: touching boxes overlap. Points, flat boxes and infinite edges are boxes, and `-0.0` equals
-  `0.0`. There is no epsilon.
-- Each pair comes once, smaller index first, in an order that is the same on every machine.
-- A box that is inverted or NaN is refused with an error that names its index; after an error nothing has changed.
-- Arrays that are returned are copies of your own. In signatures `Pairs` are arrays of `uint32`, `Ids` of `uint64`,
-  `Floats` of `float32` or `float64`.
+- Intervals are closed: touching boxes overlap, unless you pass `closed`. Points, flat boxes and infinite edges are
+  boxes, and `-0.0` equals `0.0`. There is no epsilon.
+- Each pair occurs once, the smaller index first, in an order that is the same on every machine.
+- A box that is inverted or has a NaN is refused with an error that names it. After an error nothing has changed.
+- The arrays that are passed are copied, and those that are returned are yours. In signatures `Pairs` are arrays of
+  indices (`int64` by default), `Ids` arrays of `int64`, `Floats` arrays of `float32` or `float64`.
 
 | you have | call |
 |---|---|
 | boxes, once | `find_pairs` |
 | two sets: bullets and targets, two tables to join | `find_pairs_between` |
-| a question that only needs a number | `count_pairs` |
-| more pairs than should be stored, or a search that ends early | `for_each_chunk` |
+| a question that only needs a number | `count_pairs`, `count_pairs_between` |
+| more pairs than fit in memory, or a search that may stop early | `for_each_chunk` |
 | any of these every frame | `PairFinder` |
-| bodies of which most rest; what began, what ended; queries and rays | `BroadPhase` |
+| bodies that mostly rest; begin and end events; queries and rays | `BroadPhase` |
 """
 
-from importlib.metadata import PackageNotFoundError as _PackageNotFoundError
-from importlib.metadata import version as _version
+from typing import TYPE_CHECKING as _TYPE_CHECKING
 
-from ._broad_phase import BroadPhase, Changes, Hit, Hits, Lists, Neighbours, slots_of
+from ._broad_phase import BroadPhase, Changes, Hit, Hits, Lists, Neighbors, slots_of
 from ._errors import (
     InvalidBoxError,
     InvalidQueryError,
@@ -40,18 +39,24 @@ from ._errors import (
     SweepAndPruneError,
 )
 from ._filter import Filter
-from ._pairs import PairFinder, count_pairs, find_pairs, find_pairs_between, for_each_chunk
+from ._pairs import (
+    PairFinder,
+    count_pairs,
+    count_pairs_between,
+    find_pairs,
+    find_pairs_between,
+    for_each_chunk,
+)
 
-try:
-    __version__ = _version("sweep-and-prune")
-except _PackageNotFoundError:  # used in place, not installed
-    __version__ = "unknown"
+if _TYPE_CHECKING:
+    __version__: str
 
-# In the order in which they are read about.
+# In the order in which the documentation explains them.
 __all__ = [  # noqa: RUF022
     "find_pairs",
     "find_pairs_between",
     "count_pairs",
+    "count_pairs_between",
     "for_each_chunk",
     "PairFinder",
     "BroadPhase",
@@ -60,7 +65,7 @@ __all__ = [  # noqa: RUF022
     "Lists",
     "Hit",
     "Hits",
-    "Neighbours",
+    "Neighbors",
     "slots_of",
     "SweepAndPruneError",
     "InvalidBoxError",
@@ -68,3 +73,15 @@ __all__ = [  # noqa: RUF022
     "InvalidQueryError",
     "SnapshotError",
 ]
+
+
+def __getattr__(name: str) -> str:
+    """Looks up the version when it is asked for: that takes longer than the rest of the import."""
+    if name != "__version__":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("sweep-and-prune")
+    except PackageNotFoundError:  # the package is used in place, not installed
+        return "unknown"

@@ -1,5 +1,5 @@
-"""From whatever a user passes to the arrays that the compiled part takes: C-contiguous rows, in the machine's
-own byte order, of `float32` or `float64`. An array that is so already is not copied."""
+"""Checks arguments and converts them to the arrays that the compiled part takes: rows in native byte order, of
+`float32` or `float64`. The compiled part copies them, so an array that is right already is passed on as it is."""
 
 from __future__ import annotations
 
@@ -10,16 +10,18 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ._errors import StaleProxyError
+from ._inputs import as_array, raw_boxes
 
 Floats = Union[NDArray[np.float32], NDArray[np.float64]]
 """Coordinates, in single or in double precision."""
-Pairs = NDArray[np.uint32]
-"""Indices of boxes, two in each row."""
-Ids = NDArray[np.uint64]
+Pairs = NDArray[Any]
+"""Indices of boxes, two in each row: `int64`, or another integer type on request."""
+Ids = NDArray[np.int64]
 """Ids of bodies."""
 
 _WIDTHS = {2: 1, 4: 2, 6: 3}
-_MOST = 2**32 - 1
+_MAX_BOXES = 2**32 - 1
+_MAX_THREADS = 1024
 
 
 def float_dtype(dtype: DTypeLike) -> np.dtype[Any]:
@@ -33,12 +35,42 @@ def float_dtype(dtype: DTypeLike) -> np.dtype[Any]:
     return wanted
 
 
+def index_dtype(dtype: DTypeLike) -> str:
+    """The name of the type of indices, or a `ValueError`."""
+    try:
+        name = np.dtype(dtype).newbyteorder("=").name
+    except (TypeError, ValueError):
+        name = ""
+    if dtype is None or name not in ("int64", "int32", "uint32", "uint64"):
+        raise ValueError(f"dtype must be int64, int32, uint32 or uint64, not {dtype!r}")
+    return name
+
+
+def checked_closed(closed: object, *sets: Any) -> bool:
+    """Whether intervals contain both their ends. An IntervalIndex says so itself, unless the argument is given."""
+    if closed is None:
+        own = {getattr(boxes, "closed", "both") for boxes in sets}
+        closed = own.pop() if len(own) == 1 else own
+    if not (isinstance(closed, str) and closed in ("both", "left", "right", "neither")):
+        raise ValueError(f'closed must be "both", "left", "right" or "neither", not {closed!r}')
+    return closed == "both"
+
+
+def thread_count(threads: object) -> int:
+    """How many threads to use at most: -1 is one for each processor, and None is one, as in joblib."""
+    if threads is None:
+        return 1
+    if type(threads) is int and threads == -1:
+        return _MAX_THREADS  # the compiled part takes no more than there are processors
+    return whole(threads, "threads", 1, _MAX_THREADS)
+
+
 def whole(value: object, name: str, least: int, most: int) -> int:
     """A whole number in a range."""
     try:
         number = operator.index(value)  # type: ignore[arg-type]
     except TypeError:
-        raise TypeError(f"{name} must be a whole number, not {_said(value)}") from None
+        raise TypeError(f"{name} must be a whole number, not {_described(value)}") from None
     if not least <= number <= most:
         raise ValueError(f"{name} must be from {least} to {most}, not {number}")
     return number
@@ -46,61 +78,71 @@ def whole(value: object, name: str, least: int, most: int) -> int:
 
 def real(value: object, name: str) -> float:
     """A number as Python's own `float`."""
-    if isinstance(value, (str, bytes)):
-        raise TypeError(f"{name} must be a number, not {_said(value)}")
+    if isinstance(value, (str, bytes)) or (isinstance(value, np.ndarray) and value.ndim > 0):
+        raise TypeError(f"{name} must be a number, not {_described(value)}")
     try:
         return float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
-        raise TypeError(f"{name} must be a number, not {_said(value)}") from None
+        raise TypeError(f"{name} must be a number, not {_described(value)}") from None
 
 
 def numbers(values: ArrayLike, name: str, dtype: np.dtype[Any] | None = None) -> Floats:
     """An array of coordinates of any shape: of `dtype`, or else of its own precision."""
-    array = np.asarray(values)
+    array = as_array(values, name)
     if array.dtype.kind not in "iuf":
         raise TypeError(f"{name} must be numbers, not of dtype {array.dtype}")
     if dtype is None:
         is_single = array.dtype.kind == "f" and array.dtype.itemsize == 4
         dtype = np.dtype(np.float32 if is_single else np.float64)
-    shape = array.shape
-    with np.errstate(over="ignore"):  # what is too large for float32 is infinite there
-        array = np.ascontiguousarray(array, dtype).reshape(shape)  # a 0-d array stays one
-    return array if array.flags.aligned else array.copy()
+    if array.dtype == dtype and array.dtype.isnative:
+        return array
+    with np.errstate(over="ignore", invalid="ignore"):  # what is too large for float32 becomes infinite
+        return array.astype(dtype)
 
 
-def box_rows(boxes: ArrayLike, name: str, dtype: np.dtype[Any] | None = None, dimensions: int = 0) -> Floats:
+def box_rows(
+    boxes: ArrayLike,
+    name: str,
+    dtype: np.dtype[Any] | None = None,
+    dimensions: int = 0,
+    format: str = "xyxy",
+) -> Floats:
     """Boxes as rows, of so many dimensions unless that is 0."""
-    array = np.asarray(boxes)
+    return numbers(box_array(boxes, name, dimensions, format), name, dtype)
+
+
+def box_array(boxes: ArrayLike, name: str, dimensions: int = 0, format: str = "xyxy") -> NDArray[Any]:
+    """Boxes as rows, in the type in which they were passed."""
+    array = raw_boxes(boxes, name, format)
     if array.ndim == 1 and array.size == 0:
         array = array.reshape(0, 2 * (dimensions or 1))
     is_wide = array.ndim == 2 and (_WIDTHS.get(array.shape[1]) in ((dimensions,) if dimensions else (1, 2, 3)))
     if not is_wide:
         wanted = f"(n, {2 * dimensions})" if dimensions else "(n, 2), (n, 4) or (n, 6)"
-        raise ValueError(f"{name} must be of shape {wanted}, least corner and then greatest, not {array.shape}")
-    if len(array) > _MOST:
-        raise ValueError(f"{name} are {len(array)} boxes, more than the limit of {_MOST}")
-    return numbers(array, name, dtype)
+        raise ValueError(f"{name} must be of shape {wanted}, min corner and then max corner, not {array.shape}")
+    if len(array) > _MAX_BOXES:
+        raise ValueError(f"{name} are {len(array)} boxes, more than the limit of {_MAX_BOXES}")
+    return array
 
 
-def box_sets(a: ArrayLike, b: ArrayLike) -> tuple[Floats, Floats]:
-    """Two sets of boxes of the same dimensions and type; if one is in double precision, both are."""
-    first, second = box_rows(a, "a"), box_rows(b, "b")
+def same_width(first: NDArray[Any], second: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Two sets of boxes of the same dimensions."""
     if first.shape[1] != second.shape[1]:
-        # Of no boxes it does not matter how wide they are.
+        # The width of an empty set does not matter.
         if len(first) == 0:
             first = first.reshape(0, second.shape[1])
         elif len(second) == 0:
             second = second.reshape(0, first.shape[1])
         else:
-            raise ValueError(f"a and b must be as wide: they are of shape {first.shape} and {second.shape}")
-    if first.dtype != second.dtype:
-        return first.astype(np.float64, copy=False), second.astype(np.float64, copy=False)
+            raise ValueError(
+                f"a and b must have the same number of columns: they are of shape {first.shape} and {second.shape}"
+            )
     return first, second
 
 
 def row(values: ArrayLike, name: str, dtype: np.dtype[Any], width: int) -> Floats:
     """One box, point or direction, as an array of one row."""
-    array = np.asarray(values)
+    array = as_array(values, name)
     if array.shape != (width,):
         raise ValueError(f"{name} must be {width} numbers, not of shape {array.shape}")
     return numbers(array[None], name, dtype)
@@ -108,7 +150,7 @@ def row(values: ArrayLike, name: str, dtype: np.dtype[Any], width: int) -> Float
 
 def rows(values: ArrayLike, name: str, dtype: np.dtype[Any], width: int) -> Floats:
     """Points or directions as rows."""
-    array = np.asarray(values)
+    array = as_array(values, name)
     if array.ndim == 1 and array.size == 0:
         array = array.reshape(0, width)
     if array.ndim != 2 or array.shape[1] != width:
@@ -118,7 +160,7 @@ def rows(values: ArrayLike, name: str, dtype: np.dtype[Any], width: int) -> Floa
 
 def each(values: ArrayLike, name: str, dtype: np.dtype[Any], count: int) -> Floats:
     """A number for each of `count`, or one for all of them."""
-    array = np.asarray(values)
+    array = as_array(values, name)
     if array.ndim > 1 or (array.ndim == 1 and len(array) != count):
         raise ValueError(f"{name} must be a number or {count} of them, not of shape {array.shape}")
     return numbers(np.broadcast_to(array, (count,)), name, dtype)
@@ -126,7 +168,7 @@ def each(values: ArrayLike, name: str, dtype: np.dtype[Any], count: int) -> Floa
 
 def one_id(id: object) -> Ids:
     """An id as an array of one."""
-    return np.array([_id(id, 0)], np.uint64)
+    return np.array([_id(id, 0)], np.int64)
 
 
 def id_array(ids: ArrayLike) -> Ids:
@@ -135,29 +177,30 @@ def id_array(ids: ArrayLike) -> Ids:
     if array.ndim != 1:
         raise ValueError(f"ids must be of shape (n,), not {array.shape}")
     if array.size == 0 and array.dtype.kind == "f":
-        return np.empty(0, np.uint64)
+        return np.empty(0, np.int64)
     if array.dtype.kind in "fO" and isinstance(ids, (list, tuple)):
-        # NumPy takes whole numbers of which some are below and some above 2^63 for floats, or for objects.
-        array = np.array([_id(id, index) for index, id in enumerate(ids)], np.uint64)
+        # NumPy makes floats or objects of integers of which some are too large for int64.
+        array = np.array([_id(id, index) for index, id in enumerate(ids)], np.int64)
     if array.dtype.kind not in "iu":
         raise TypeError(f"ids must be whole numbers, not of dtype {array.dtype}")
-    if array.dtype.kind == "i" and (array < 0).any():
-        index = int(np.argmax(array < 0))
+    if array.dtype.kind == "u" and array.dtype.itemsize == 8 and (array >= 2**63).any():
+        index = int(np.argmax(array >= 2**63))
         raise StaleProxyError(int(array[index]), index)
-    array = np.ascontiguousarray(array, np.uint64)
-    return array if array.flags.aligned else array.copy()
+    return array.astype(np.int64, copy=False)
 
 
 def _id(id: object, index: int) -> int:
+    if isinstance(id, (bool, np.bool_)):
+        raise TypeError(f"an id must be a whole number, not {id!r}")
     try:
         number = operator.index(id)  # type: ignore[arg-type]
     except TypeError:
-        raise TypeError(f"an id must be a whole number, not {_said(id)}") from None
-    if not 0 <= number < 2**64:
+        raise TypeError(f"an id must be a whole number, not {_described(id)}") from None
+    if not -(2**63) <= number < 2**63:
         raise StaleProxyError(number, index)
     return number
 
 
-def _said(value: object) -> str:
+def _described(value: object) -> str:
     text = repr(value)
     return text if len(text) <= 60 else f"a {type(value).__name__}"

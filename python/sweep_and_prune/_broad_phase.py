@@ -1,4 +1,4 @@
-"""The living world: bodies that are inserted, moved and removed, and what begins and ends."""
+"""The persistent broad phase: bodies that are inserted, moved and removed, and the overlaps that begin and end."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ._arrays import Floats, Ids, box_rows, each, float_dtype, id_array, one_id, real, row, rows, whole
-from ._errors import StaleProxyError
+from ._errors import InvalidQueryError, StaleProxyError
 from ._filter import ALL, Filter, words
 from ._native import World
 
 
 class Changes(NamedTuple):
-    """What an update found; see `BroadPhase.update`."""
+    """The overlaps that began and ended; see `BroadPhase.update`."""
 
     begun: Ids
-    """`(m, 2)` ids: the pairs that overlap now and did not at the last update."""
+    """`(m, 2)` ids: the pairs that overlap now and did not overlap at the last update."""
     ended: Ids
-    """`(m, 2)` ids: the pairs that overlapped at the last update and do not now; some may be stale."""
+    """`(m, 2)` ids: the pairs that overlapped at the last update and do not now; removed bodies may be among them."""
 
 
 class Hit(NamedTuple):
@@ -28,48 +28,48 @@ class Hit(NamedTuple):
 
     id: int
     """The body."""
-    at: float
-    """How many directions from the start; 0 if they overlap there."""
+    t: float
+    """The ray hits at `origin + t * direction`; 0 if they overlap at the start."""
 
 
 class Hits(NamedTuple):
-    """The hits of a cast, nearest first; or the first hit of each of many casts."""
+    """All hits of one cast, nearest first, or the first hit of each of many casts."""
 
     ids: Ids
-    """`(n,)` ids; of many casts 0 for one that hits nothing, which is no body's id."""
-    at: NDArray[np.float64]
-    """`(n,)`: how many directions from the start; infinite for a cast that hits nothing."""
+    """`(n,)` ids; of many casts, -1 for a cast that hits nothing."""
+    t: NDArray[np.float64]
+    """`(n,)`: each hit is at `origin + t * direction`; of many casts, infinite for a cast that hits nothing."""
 
 
-class Neighbours(NamedTuple):
-    """The bodies nearest to a point, nearest first; or to each of many points."""
+class Neighbors(NamedTuple):
+    """The bodies nearest to a point, nearest first, or to each of many points."""
 
     ids: Ids
     """`(k,)` ids; of many points `(n, k)`."""
     distances: NDArray[np.float64]
-    """As many: from the point to each body's box; 0 if the point is in it."""
+    """The distance from the point to each body's box, in the same shape; 0 if the box contains the point."""
 
 
 class Lists(NamedTuple):
-    """The bodies found by each of many queries.
+    """The bodies that each of many queries found.
 
     >>> import sweep_and_prune as sap
     >>> world = sap.BroadPhase(dimensions=1)
     >>> ids = world.insert_many([[0, 2], [1, 3]])
     >>> found = world.containing_many([[0.5], [1.5], [9]])
-    >>> [list(sap.slots_of(of_query)) for of_query in found.each()]
-    [[np.uint32(0)], [np.uint32(0), np.uint32(1)], []]
+    >>> [ids_of_query.tolist() for ids_of_query in found.each()]
+    [[0], [0, 1], []]
     >>> found.queries()  # which query found each of found.ids
     array([0, 1, 1])
     """
 
     ids: Ids
-    """`(m,)` ids, query by query, those of each sorted."""
+    """`(m,)` ids, query by query, those of each query sorted by slot."""
     ends: NDArray[np.int64]
-    """`(n,)`: where those of each query end in `ids`; they begin where those before end."""
+    """`(n,)`: where the ids of each query end in `ids`. They begin where those of the query before end."""
 
     def each(self) -> Iterator[Ids]:
-        """The ids of each query in turn."""
+        """Iterates over the ids of each query."""
         return iter(np.split(self.ids, self.ends[:-1]) if len(self.ends) else [])
 
     def queries(self) -> NDArray[np.int64]:
@@ -78,38 +78,45 @@ class Lists(NamedTuple):
         return np.repeat(np.arange(len(self.ends)), counts)
 
 
-def slots_of(ids: ArrayLike) -> NDArray[np.uint32]:
-    """The slots of bodies: small whole numbers, indices into tables of your own.
+def slots_of(ids: ArrayLike) -> NDArray[np.int64]:
+    """Returns the slots of bodies: small integers, to be used as rows of your own tables.
 
-    A slot is less than the greatest number of bodies there ever were at once (those counted in that were removed
-    since the last update). It is used again after its body was removed; an id is not.
+    Two bodies never share a slot at the same time, and slots are less than the largest number of bodies there ever
+    were at once (bodies that were removed since the last update count too). A slot is used again after its body was
+    removed; an id is not. While nothing was removed, the slot of a body is its id.
 
     Args:
         ids: ids of any shape.
 
     >>> import sweep_and_prune as sap
     >>> world = sap.BroadPhase(dimensions=1)
-    >>> sap.slots_of(world.insert_many([[0, 2], [1, 3]]))
-    array([0, 1], dtype=uint32)
+    >>> a, b = world.insert([0, 2]), world.insert([1, 3])
+    >>> world.remove(a)
+    >>> changes = world.update()
+    >>> c = world.insert([5, 6])
+    >>> c, sap.slots_of([b, c]).tolist()  # a new id in the slot of a
+    (4294967296, [1, 0])
     """
     array = np.asarray(ids)
     if array.dtype.kind not in "iu" and array.size:
         raise TypeError(f"ids must be whole numbers, not of dtype {array.dtype}")
-    return (array.astype(np.uint64) & np.uint64(0xFFFF_FFFF)).astype(np.uint32)
+    return array.astype(np.int64) & 0xFFFF_FFFF
 
 
 class BroadPhase:
-    """A world of boxes that tells which overlaps began and which ended.
+    """A world of boxes that reports which overlaps began and which ended.
 
-    Bodies are inserted, set and removed as often as one likes; `update` then reports the pairs that began and those
-    that ended since the last update. Touching boxes overlap; which bodies may pair at all is their `Filter`'s to
-    say. What a body that rests costs is its memory.
+    Insert, set and remove bodies as often as you like; `update` then reports the pairs that began and ended since the
+    last update. Touching boxes overlap. A `Filter` decides which bodies may pair. A resting body costs only memory.
 
-    An id is a whole number, slot and generation in one (`uint64` in arrays), never 0, and never comes to mean
-    another body: an id of a body that was removed is refused.
+    Ids are `int64`, slot and generation in one. Until a body is removed, the ids of a world are 0, 1, 2 and so on: the
+    rows of the boxes that you inserted. After that, new bodies in used slots have larger ids, so that the id of a
+    removed body never means another body: it is refused (`StaleProxyError`). `slots_of` then gives rows. -1 is never
+    an id. An id of another world is not recognized as such.
 
-    Same calls, same results, on every machine. A refused call changes nothing. One call at a time: a second thread
-    that calls meanwhile gets a `RuntimeError`. A world can be copied and pickled.
+    The same calls give the same results on every machine. A call that is refused changes nothing. Only one call runs
+    at a time: a second thread that calls meanwhile gets a `RuntimeError`. A world can be copied and pickled, with its
+    attributes and its subclass.
 
     >>> import sweep_and_prune as sap
     >>> world = sap.BroadPhase(dimensions=2)
@@ -135,40 +142,46 @@ class BroadPhase:
         prediction: float = 0.0,
         report: str = "exact",
     ) -> None:
-        """An empty world.
+        """Creates an empty world.
 
         Args:
             dimensions: 1, 2 or 3.
-            dtype: `float32` or `float64`, in which coordinates are kept and compared. All that is passed is
-                converted to it, which rounds `float64` to `float32`.
-            margin: with `report="fat"`, what a fat box has around the body's own, in units of length.
-            prediction: with `report="fat"`, how many displacements a fat box reaches ahead.
-            report: `"exact"`: the pairs of the boxes as given; margin and prediction change nothing then, and are
-                not needed for speed. `"fat"`: those of the fat boxes, which begin and end less often.
+            dtype: `float32` or `float64`, in which coordinates are stored and compared. Everything that is passed
+                is converted to it, which rounds `float64` to `float32`.
+            margin: only with `report="fat"`: how far a fattened AABB extends around the body's box, in units of
+                length.
+            prediction: only with `report="fat"`: how many displacements ahead a fattened AABB reaches.
+            report: `"exact"` reports the pairs of the boxes as given. `"fat"` reports the pairs of fattened AABBs,
+                which begin and end less often. Fattening is not needed for speed.
 
         Raises:
-            ValueError, TypeError: for other dimensions, types or reports, or a margin or prediction that is
-                negative, infinite or NaN.
+            ValueError, TypeError: for other dimensions, types or reports, for a margin or prediction that is
+                negative, infinite or NaN, or for one that has no effect because of `report`.
         """
         self._dimensions = whole(dimensions, "dimensions", 1, 3)
         self._dtype = float_dtype(dtype)
         if not (isinstance(report, str) and report in ("exact", "fat")):
             raise ValueError(f'report must be "exact" or "fat", not {report!r}')
         margin, prediction = real(margin, "margin"), real(prediction, "prediction")
+        for name, value in (("margin", margin), ("prediction", prediction)):
+            if not (0 <= value < np.inf):
+                raise ValueError(f"{name} is {value}; it must be finite and 0 or more")
+            if value and report == "exact":
+                raise ValueError(f'{name} is {value}, which has no effect with report="exact": pass report="fat" too')
         self._world = World(self._dimensions, self._dtype.itemsize == 8, margin, prediction, report == "fat")
 
     @classmethod
     def from_snapshot(cls, snapshot: bytes | bytearray | memoryview) -> BroadPhase:
-        """The world of a `snapshot`: for the same calls it gives the same ids, events and results.
+        """Restores a world from a `snapshot`: for the same calls it gives the same ids, events and results.
 
-        Dimensions, type, margins and what is reported are in the bytes. Takes the time of finding all pairs.
+        Dimensions, dtype, margins and report are in the bytes. Takes the time of finding all pairs.
 
         Args:
             snapshot: the bytes.
 
         Raises:
-            SnapshotError: for bytes that are truncated, changed, of another version, or no snapshot at all.
-            TypeError: for what is not bytes.
+            SnapshotError: for bytes that are truncated, changed, of another version, or not a snapshot.
+            TypeError: for anything but bytes.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -179,35 +192,50 @@ class BroadPhase:
         """
         if not isinstance(snapshot, (bytes, bytearray, memoryview)):
             raise TypeError(f"a snapshot must be bytes, not a {type(snapshot).__name__}")
-        native, dimensions, is_double = World.restore(bytes(snapshot))
         world = cls.__new__(cls)
-        world._world, world._dimensions = native, dimensions
-        world._dtype = np.dtype(np.float64 if is_double else np.float32)
+        world._restore(bytes(snapshot))
         return world
+
+    def _restore(self, snapshot: bytes) -> None:
+        self._world, self._dimensions, is_double = World.restore(snapshot)
+        self._dtype = np.dtype(np.float64 if is_double else np.float32)
 
     @property
     def dimensions(self) -> int:
-        """How many dimensions the boxes have."""
+        """The number of dimensions of the boxes."""
         return self._dimensions
 
     @property
     def dtype(self) -> np.dtype[Any]:
-        """In which precision coordinates are kept and compared."""
+        """The precision in which coordinates are stored and compared."""
         return self._dtype
 
     def __len__(self) -> int:
-        """How many bodies there are."""
+        """The number of bodies."""
         return len(self._world)
 
     def __contains__(self, id: object) -> bool:
-        """Whether an id names a body that was inserted here and not removed."""
+        """Tells whether an id names a body of this world."""
         try:
             return bool(self._world.contains(one_id(id))[0])
         except (StaleProxyError, TypeError):
             return False
 
+    def contains(self, id: object) -> bool:
+        """Tells whether an id names a body of this world, as `id in world` does.
+
+        Args:
+            id: anything; what cannot be an id is not contained.
+
+        >>> import sweep_and_prune as sap
+        >>> world = sap.BroadPhase(dimensions=1)
+        >>> world.contains(world.insert([0, 1]))
+        True
+        """
+        return id in self
+
     def contains_many(self, ids: ArrayLike) -> NDArray[np.bool_]:
-        """Whether each of many ids names a body that was inserted here and not removed.
+        """Tells whether each of many ids names a body of this world.
 
         Args:
             ids: `(n,)` ids.
@@ -225,19 +253,19 @@ class BroadPhase:
         return self._world.contains(id_array(ids))
 
     def ids(self) -> Ids:
-        """`(n,)`: the ids of all bodies, sorted by slot. O(n) time."""
+        """Returns the ids of all bodies, `(n,)`, sorted by slot. O(n) time."""
         return self._world.ids()
 
     def insert(self, box: ArrayLike, filter: Filter | None = None) -> int:
         """Adds a body and returns its id.
 
         Args:
-            box: `2 * dimensions` numbers, the least corner and then the greatest.
-            filter: which others it may pair with; `Filter()` by default.
+            box: `2 * dimensions` numbers, the min corner and then the max corner.
+            filter: which bodies it may pair with; `Filter()` by default.
 
         Raises:
-            InvalidBoxError: if the box is inverted or NaN.
-            ValueError, TypeError: for another shape, or what is not numbers.
+            InvalidBoxError: if the box is inverted or has a NaN.
+            ValueError, TypeError: for another shape, or anything but numbers.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=2)
@@ -245,21 +273,21 @@ class BroadPhase:
         >>> wall in world
         True
         """
-        return int(self._world.insert(self._row(box, "box"), words(filter))[0])
+        return int(self._world.insert(self._row(box, "box"), words(filter), "box")[0])
 
     def insert_many(self, boxes: ArrayLike, filter: Filter | None = None) -> Ids:
-        """Adds bodies with one filter.
+        """Adds many bodies that share a filter.
 
         Args:
             boxes: `(n, 2 * dimensions)` numbers, a row for each.
-            filter: which others they may pair with; `Filter()` by default.
+            filter: which bodies they may pair with; `Filter()` by default.
 
         Returns:
-            `(n,)` `uint64`: their ids, in the order of their boxes.
+            `(n,)` ids, in the order of their boxes.
 
         Raises:
-            InvalidBoxError: for the first box that is inverted or NaN; then none was added.
-            ValueError, TypeError: for another shape, or what is not numbers.
+            InvalidBoxError: for the first box that is inverted or has a NaN; then none was added.
+            ValueError, TypeError: for another shape, or anything but numbers.
 
         >>> import numpy as np
         >>> import sweep_and_prune as sap
@@ -267,10 +295,10 @@ class BroadPhase:
         >>> len(world.insert_many(np.zeros((1000, 6)))), len(world)
         (1000, 1000)
         """
-        return self._world.insert(self._rows(boxes, "boxes"), words(filter))
+        return self._world.insert(self._rows(boxes, "boxes"), words(filter), "boxes")
 
     def set(self, id: SupportsIndex, box: ArrayLike) -> None:
-        """Gives a body its new box.
+        """Sets the box of a body.
 
         Args:
             id: the body.
@@ -278,7 +306,7 @@ class BroadPhase:
 
         Raises:
             StaleProxyError, InvalidBoxError: then nothing has changed.
-            ValueError, TypeError: for another shape, or what is not numbers.
+            ValueError, TypeError: for another shape, or anything but numbers.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -287,18 +315,20 @@ class BroadPhase:
         >>> world.box(hero)
         array([5., 6.])
         """
-        self._world.set(one_id(id), self._row(box, "box"))
+        self._world.set(one_id(id), self._row(box, "box"), "box")
 
     def set_many(self, ids: ArrayLike, boxes: ArrayLike) -> None:
-        """Gives each of many bodies its new box; of an id that comes twice the last box counts.
+        """Sets the boxes of many bodies.
+
+        If an id occurs twice, the last box counts.
 
         Args:
             ids: `(n,)` ids.
             boxes: `(n, 2 * dimensions)` numbers.
 
         Raises:
-            StaleProxyError, InvalidBoxError: for the first that is bad; then no box has changed.
-            ValueError, TypeError: for other shapes, or what is not numbers.
+            StaleProxyError, InvalidBoxError: for the first id or box that is invalid; then no box has changed.
+            ValueError, TypeError: for other shapes, or anything but numbers.
 
         >>> import numpy as np
         >>> import sweep_and_prune as sap
@@ -310,22 +340,24 @@ class BroadPhase:
         array([[1., 2.],
                [6., 7.]])
         """
-        self._world.set(id_array(ids), self._rows(boxes, "boxes"))
+        array, rows = id_array(ids), self._rows(boxes, "boxes")
+        _same_length(len(array), boxes=len(rows))
+        self._world.set(array, rows, "boxes")
 
     def set_swept(self, id: SupportsIndex, start: ArrayLike, end: ArrayLike) -> None:
-        """Moves a fast body all the way from one box to another.
+        """Moves a fast body from one box to another without passing through other bodies.
 
-        Until the next update its box is the smallest that holds both, and from then on `end`. So it pairs with what
-        it would have jumped over (and, on a diagonal way, with what lies beside it).
+        Until the next update its box is the union of both, and from then on `end`. So it pairs with the bodies that
+        it would have jumped over (and, on a diagonal path, with bodies beside the path).
 
         Args:
             id: the body.
             start: `2 * dimensions` numbers.
-            end: as many.
+            end: `2 * dimensions` numbers.
 
         Raises:
             StaleProxyError, InvalidBoxError: then nothing has changed.
-            ValueError, TypeError: for other shapes, or what is not numbers.
+            ValueError, TypeError: for other shapes, or anything but numbers.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -334,19 +366,20 @@ class BroadPhase:
         >>> len(world.update().begun)  # it went through the wall
         1
         """
-        self._world.set_swept(one_id(id), self._row(start, "start"), self._row(end, "end"))
+        from_box, to_box = self._row(start, "start"), self._row(end, "end")
+        self._world.set_swept(one_id(id), _double(from_box), _double(to_box), ("start", "end"))
 
     def set_swept_many(self, ids: ArrayLike, starts: ArrayLike, ends: ArrayLike) -> None:
-        """As `set_swept`, for many bodies.
+        """Moves many fast bodies, each as `set_swept` does.
 
         Args:
             ids: `(n,)` ids.
             starts: `(n, 2 * dimensions)` numbers.
-            ends: as many.
+            ends: `(n, 2 * dimensions)` numbers.
 
         Raises:
-            StaleProxyError, InvalidBoxError: for the first that is bad; then nothing has changed.
-            ValueError, TypeError: for other shapes, or what is not numbers.
+            StaleProxyError, InvalidBoxError: for the first id or box that is invalid; then nothing has changed.
+            ValueError, TypeError: for other shapes, or anything but numbers.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -355,7 +388,9 @@ class BroadPhase:
         >>> len(world.update().begun)
         1
         """
-        self._world.set_swept(id_array(ids), self._rows(starts, "starts"), self._rows(ends, "ends"))
+        array, first, last = id_array(ids), self._rows(starts, "starts"), self._rows(ends, "ends")
+        _same_length(len(array), starts=len(first), ends=len(last))
+        self._world.set_swept(array, _double(first), _double(last), ("starts", "ends"))
 
     def remove(self, id: SupportsIndex) -> None:
         """Removes a body. Its id is stale from now on; the next update reports its ended pairs.
@@ -364,7 +399,7 @@ class BroadPhase:
             id: the body.
 
         Raises:
-            StaleProxyError: if it is not here.
+            StaleProxyError: if the id names no body of this world.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -392,32 +427,32 @@ class BroadPhase:
         self._world.remove(id_array(ids))
 
     def box(self, id: SupportsIndex) -> Floats:
-        """The box of a body as last given: for a swept one, until the next update, the whole way.
+        """Returns the box of a body as last set; for a swept body, until the next update, the union of both boxes.
 
         Args:
             id: the body.
 
         Returns:
-            `(2 * dimensions,)` coordinates of the world's type.
+            `(2 * dimensions,)` coordinates in the world's dtype.
 
         Raises:
-            StaleProxyError: if it is not here.
+            StaleProxyError: if the id names no body of this world.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
         >>> world.box(world.insert([0, 1]))
         array([0., 1.])
         """
-        return self._world.boxes(one_id(id))
+        return self._boxes(one_id(id))
 
     def box_many(self, ids: ArrayLike) -> Floats:
-        """The boxes of many bodies as last given.
+        """Returns the boxes of many bodies as last set.
 
         Args:
             ids: `(n,)` ids.
 
         Returns:
-            `(n, 2 * dimensions)` coordinates of the world's type.
+            `(n, 2 * dimensions)` coordinates in the world's dtype.
 
         Raises:
             StaleProxyError: for the first id that is stale.
@@ -428,16 +463,16 @@ class BroadPhase:
         array([[0., 1.],
                [5., 6.]])
         """
-        return self._world.boxes(id_array(ids)).reshape(-1, 2 * self._dimensions)
+        return self._boxes(id_array(ids)).reshape(-1, 2 * self._dimensions)
 
     def filter(self, id: SupportsIndex) -> Filter:
-        """The filter of a body.
+        """Returns the filter of a body.
 
         Args:
             id: the body.
 
         Raises:
-            StaleProxyError: if it is not here.
+            StaleProxyError: if the id names no body of this world.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -447,15 +482,15 @@ class BroadPhase:
         return Filter(*self._world.filters(one_id(id))[0])
 
     def set_filter(self, id: SupportsIndex, filter: Filter) -> None:
-        """Changes which others a body may pair with; pairs begin or end by it at the next update.
+        """Changes which bodies a body may pair with; the next update reports the pairs that begin or end.
 
         Args:
             id: the body.
             filter: its new filter.
 
         Raises:
-            StaleProxyError: if it is not here.
-            ValueError, TypeError: for what is no filter.
+            StaleProxyError: if the id names no body of this world.
+            ValueError, TypeError: for anything but a filter.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -469,7 +504,7 @@ class BroadPhase:
         self._world.set_filter(one_id(id), words(filter))
 
     def set_filter_many(self, ids: ArrayLike, filter: Filter) -> None:
-        """Gives many bodies the same filter.
+        """Changes the filter of many bodies.
 
         Args:
             ids: `(n,)` ids.
@@ -477,7 +512,7 @@ class BroadPhase:
 
         Raises:
             StaleProxyError: for the first id that is stale; then no filter has changed.
-            ValueError, TypeError: for what is no filter.
+            ValueError, TypeError: for anything but a filter.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -489,10 +524,11 @@ class BroadPhase:
         self._world.set_filter(id_array(ids), words(filter))
 
     def update(self) -> Changes:
-        """The pairs that began and ended since the last update, each with its smaller id first, sorted by slot.
+        """Reports the pairs that began and ended since the last update.
 
-        A pair that began and ended between the two is in neither. Time in proportion to the bodies that changed and
-        their neighbours, and not much more than finding all pairs takes.
+        In each pair the smaller slot is first; the pairs are sorted by slot. A pair that began and ended between two
+        updates is not reported. The time depends on the number of bodies that changed and on their neighbors. If most
+        bodies move far, it can exceed the time of finding all pairs (see the benchmark).
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -504,50 +540,50 @@ class BroadPhase:
         return Changes(*self._world.update())
 
     def pairs(self) -> Ids:
-        """`(m, 2)` ids: the pairs that overlapped at the last update, sorted by slot. O(pairs) time.
+        """Returns the pairs that overlapped at the last update, `(m, 2)` ids sorted by slot. O(pairs) time.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
         >>> ids = world.insert_many([[0, 2], [1, 3]])
         >>> changes = world.update()
-        >>> sap.slots_of(world.pairs())
-        array([[0, 1]], dtype=uint32)
+        >>> world.pairs()
+        array([[0, 1]])
         """
         return self._world.pairs()
 
     def pairs_of(self, id: SupportsIndex) -> Ids:
-        """`(m,)` ids: the bodies that overlapped this one at the last update, sorted by slot.
+        """Returns the bodies that overlapped this one at the last update, `(m,)` ids sorted by slot.
 
         Args:
             id: the body.
 
         Raises:
-            StaleProxyError: if it is not here.
+            StaleProxyError: if the id names no body of this world.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
         >>> a, b = world.insert([0, 2]), world.insert([1, 3])
         >>> changes = world.update()
-        >>> world.pairs_of(a) == [b]
-        array([ True])
+        >>> world.pairs_of(a).tolist() == [b]
+        True
         """
         return self._world.pairs_of(int(one_id(id)[0]))
 
     def overlapping(self, box: ArrayLike, filter: Filter | None = None) -> Ids:
-        """The bodies whose boxes overlap a box.
+        """Finds the bodies whose boxes overlap a box.
 
-        All queries see the boxes as last given, updated or not. The first one after bodies changed takes longer.
+        All queries see the boxes as last set, whether updated or not. The first query after a change takes longer.
 
         Args:
             box: `2 * dimensions` numbers.
-            filter: as if a body with this filter asked: what it may pair with. Without one all are found.
+            filter: finds only bodies with which a body with this filter may pair; by default, all bodies.
 
         Returns:
             `(m,)` ids, sorted by slot.
 
         Raises:
-            InvalidBoxError: if the box is inverted or NaN.
-            ValueError, TypeError: for another shape, or what is not numbers.
+            InvalidBoxError: if the box is inverted or has a NaN.
+            ValueError, TypeError: for another shape, or anything but numbers.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -555,18 +591,18 @@ class BroadPhase:
         >>> world.overlapping([1, 3]) == [a]
         array([ True])
         """
-        return self._world.overlapping(self._row(box, "box"), words(filter, ALL))[0]
+        return self._ask("overlapping", filter, Part("box", self._row(box, "box")))[0]
 
     def overlapping_many(self, boxes: ArrayLike, filter: Filter | None = None) -> Lists:
-        """As `overlapping`, for many boxes at once.
+        """Finds the bodies that overlap each of many boxes.
 
         Args:
             boxes: `(n, 2 * dimensions)` numbers.
             filter: as in `overlapping`.
 
         Raises:
-            InvalidBoxError: for the first box that is inverted or NaN.
-            ValueError, TypeError: for another shape, or what is not numbers.
+            InvalidBoxError: for the first box that is inverted or has a NaN.
+            ValueError, TypeError: for another shape, or anything but numbers.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -574,10 +610,11 @@ class BroadPhase:
         >>> world.overlapping_many([[1, 3], [3, 4], [0, 9]]).ends
         array([1, 1, 3])
         """
-        return Lists(*self._world.overlapping(self._rows(boxes, "boxes"), words(filter, ALL)))
+        ids, _, ends = self._ask("overlapping", filter, Part("boxes", self._rows(boxes, "boxes")))
+        return Lists(ids, ends)
 
     def containing(self, point: ArrayLike, filter: Filter | None = None) -> Ids:
-        """The bodies whose boxes hold a point.
+        """Finds the bodies whose boxes contain a point.
 
         Args:
             point: `dimensions` numbers.
@@ -588,7 +625,7 @@ class BroadPhase:
 
         Raises:
             InvalidQueryError: for a NaN.
-            ValueError, TypeError: for another shape, or what is not numbers.
+            ValueError, TypeError: for another shape, or anything but numbers.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=2)
@@ -596,10 +633,10 @@ class BroadPhase:
         >>> world.containing([2, 1]) == [a]
         array([ True])
         """
-        return self._world.containing(self._point(point, "point"), words(filter, ALL))[0]
+        return self._ask("containing", filter, Part("point", self._point(point, "point"), "not NaN"))[0]
 
     def containing_many(self, points: ArrayLike, filter: Filter | None = None) -> Lists:
-        """As `containing`, for many points at once.
+        """Finds the bodies whose boxes contain each of many points.
 
         Args:
             points: `(n, dimensions)` numbers.
@@ -607,7 +644,7 @@ class BroadPhase:
 
         Raises:
             InvalidQueryError: for the first point with a NaN.
-            ValueError, TypeError: for another shape, or what is not numbers.
+            ValueError, TypeError: for another shape, or anything but numbers.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -615,13 +652,14 @@ class BroadPhase:
         >>> world.containing_many([[0], [1]]).ends
         array([1, 3])
         """
-        return Lists(*self._world.containing(self._points(points, "points"), words(filter, ALL)))
+        ids, _, ends = self._ask("containing", filter, Part("points", self._points(points, "points"), "not NaN"))
+        return Lists(ids, ends)
 
-    def within(self, centre: ArrayLike, radius: float, filter: Filter | None = None) -> Ids:
-        """The bodies whose boxes are at most `radius` away from a point: those that a ball touches.
+    def within(self, center: ArrayLike, radius: float, filter: Filter | None = None) -> Ids:
+        """Finds the bodies whose boxes are at most `radius` away from a point.
 
         Args:
-            centre: `dimensions` numbers, finite.
+            center: `dimensions` numbers, finite.
             radius: not negative; may be infinite.
             filter: as in `overlapping`.
 
@@ -629,8 +667,8 @@ class BroadPhase:
             `(m,)` ids, sorted by slot.
 
         Raises:
-            InvalidQueryError: if the centre is not finite, or the radius negative or NaN.
-            ValueError, TypeError: for another shape, or what is not numbers.
+            InvalidQueryError: if the center is not finite, or the radius negative or NaN.
+            ValueError, TypeError: for another shape, or anything but numbers.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=2)
@@ -638,20 +676,20 @@ class BroadPhase:
         >>> len(world.within([0, 0], 5)), len(world.within([0, 0], 4.9))
         (1, 0)
         """
-        radii = np.array([real(radius, "radius")], self._dtype)
-        return self._world.within(self._point(centre, "centre"), radii, words(filter, ALL))[0]
+        point, length = Part("center", self._point(center, "center"), "finite"), self._number(radius, "radius")
+        return self._ask("within", filter, point, length)[0]
 
-    def within_many(self, centres: ArrayLike, radii: ArrayLike, filter: Filter | None = None) -> Lists:
-        """As `within`, for many points at once.
+    def within_many(self, centers: ArrayLike, radii: ArrayLike, filter: Filter | None = None) -> Lists:
+        """Finds the bodies near each of many points.
 
         Args:
-            centres: `(n, dimensions)` numbers.
+            centers: `(n, dimensions)` numbers.
             radii: `(n,)` numbers, or one for all.
             filter: as in `overlapping`.
 
         Raises:
-            InvalidQueryError: for the first that makes no sense.
-            ValueError, TypeError: for other shapes, or what is not numbers.
+            InvalidQueryError: for the first that is invalid, as for a single one.
+            ValueError, TypeError: for other shapes, or anything but numbers.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -659,21 +697,22 @@ class BroadPhase:
         >>> world.within_many([[3], [4]], 1).ends
         array([1, 2])
         """
-        points = self._points(centres, "centres")
-        each_radius = each(radii, "radii", self._dtype, len(points))
-        return Lists(*self._world.within(points, each_radius, words(filter, ALL)))
+        points = self._points(centers, "centers")
+        lengths = Part("radii", each(radii, "radii", self._dtype, len(points))[:, None], "0 or more")
+        ids, _, ends = self._ask("within", filter, Part("centers", points, "finite"), lengths)
+        return Lists(ids, ends)
 
-    def nearest(self, point: ArrayLike, k: int = 1, filter: Filter | None = None) -> Neighbours:
-        """The `k` bodies nearest to a point, or all if there are fewer, by distance and then by slot.
+    def nearest(self, point: ArrayLike, k: int = 1, filter: Filter | None = None) -> Neighbors:
+        """Finds the `k` bodies nearest to a point, or all if there are fewer, sorted by distance and then by slot.
 
         Args:
             point: `dimensions` numbers, finite.
-            k: not negative.
+            k: how many; 0 or more.
             filter: as in `overlapping`.
 
         Raises:
             InvalidQueryError: if the point is not finite.
-            ValueError, TypeError: for another shape, or what is not numbers.
+            ValueError, TypeError: for another shape, or anything but numbers.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -681,14 +720,14 @@ class BroadPhase:
         >>> world.nearest([3]).distances
         array([1.])
         """
-        return Neighbours(*(found[0] for found in self._nearest(self._point(point, "point"), k, filter)))
+        return Neighbors(*(found[0] for found in self._nearest("point", self._point(point, "point"), k, filter)))
 
-    def nearest_many(self, points: ArrayLike, k: int = 1, filter: Filter | None = None) -> Neighbours:
-        """As `nearest`, for many points at once.
+    def nearest_many(self, points: ArrayLike, k: int = 1, filter: Filter | None = None) -> Neighbors:
+        """Finds the `k` bodies nearest to each of many points.
 
         Args:
             points: `(n, dimensions)` numbers.
-            k: not negative.
+            k: how many; 0 or more.
             filter: as in `overlapping`.
 
         Returns:
@@ -696,7 +735,7 @@ class BroadPhase:
 
         Raises:
             InvalidQueryError: for the first point that is not finite.
-            ValueError, TypeError: for another shape, or what is not numbers.
+            ValueError, TypeError: for another shape, or anything but numbers.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -705,30 +744,30 @@ class BroadPhase:
         array([[1., 2.],
                [3., 7.]])
         """
-        return self._nearest(self._points(points, "points"), k, filter)
+        return self._nearest("points", self._points(points, "points"), k, filter)
 
     def ray_cast(
         self, origin: ArrayLike, direction: ArrayLike, limit: float = np.inf, filter: Filter | None = None
     ) -> Hit | None:
-        """The body that a ray hits first, `limit` directions far at most; of several at once the least slot.
+        """Finds the first body that a ray hits; if it hits several at once, the one with the smallest slot.
 
         Args:
             origin: `dimensions` numbers, finite.
-            direction: as many, finite, of any length.
-            limit: how many directions far; not negative, may be infinite.
+            direction: `dimensions` numbers, finite, of any length.
+            limit: the largest t, in lengths of `direction`: 0 or more, may be infinite.
             filter: as in `overlapping`.
 
         Returns:
-            The hit, or `None`.
+            The hit, at `origin + t * direction`, or `None`.
 
         Raises:
-            InvalidQueryError: if a part is NaN, infinite or negative where it must not be.
-            ValueError, TypeError: for other shapes, or what is not numbers.
+            InvalidQueryError: if the origin or the direction is not finite, or the limit is negative or NaN.
+            ValueError, TypeError: for other shapes, or anything but numbers.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=2)
         >>> wall = world.insert([5, 0, 6, 9])
-        >>> world.ray_cast([1, 1], [2, 0]).at
+        >>> world.ray_cast([1, 1], [2, 0]).t
         2.0
         """
         return _first(self._cast(self._ray(origin), direction, limit, filter, False))
@@ -736,12 +775,12 @@ class BroadPhase:
     def ray_cast_all(
         self, origin: ArrayLike, direction: ArrayLike, limit: float = np.inf, filter: Filter | None = None
     ) -> Hits:
-        """All that a ray hits, nearest first and then by slot. Otherwise as `ray_cast`.
+        """Finds all bodies that a ray hits, sorted by t and then by slot.
 
         Args:
             origin: `dimensions` numbers, finite.
-            direction: as many, finite.
-            limit: how many directions far.
+            direction: `dimensions` numbers, finite.
+            limit: the largest t, in lengths of `direction`.
             filter: as in `overlapping`.
 
         Raises:
@@ -750,7 +789,7 @@ class BroadPhase:
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
         >>> ids = world.insert_many([[5, 6], [2, 3]])
-        >>> world.ray_cast_all([0], [1]).at
+        >>> world.ray_cast_all([0], [1]).t
         array([2., 5.])
         """
         return self._cast(self._ray(origin), direction, limit, filter, True)
@@ -758,39 +797,40 @@ class BroadPhase:
     def ray_cast_many(
         self, origins: ArrayLike, directions: ArrayLike, limits: ArrayLike = np.inf, filter: Filter | None = None
     ) -> Hits:
-        """The first hit of each of many rays.
+        """Finds the first hit of each of many rays.
 
         Args:
             origins: `(n, dimensions)` numbers.
-            directions: as many.
+            directions: `(n, dimensions)` numbers.
             limits: `(n,)` numbers, or one for all.
             filter: as in `overlapping`.
 
         Returns:
-            `(n,)` ids and places; id 0 and an infinite place for a ray that hits nothing.
+            `(n,)` ids and t; id -1 and an infinite t for a ray that hits nothing.
 
         Raises:
-            InvalidQueryError: for the first that makes no sense.
-            ValueError, TypeError: for other shapes, or what is not numbers.
+            InvalidQueryError: for the first that is invalid, as for a single one.
+            ValueError, TypeError: for other shapes, or anything but numbers.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
         >>> wall = world.insert([5, 6])
-        >>> world.ray_cast_many([[0], [0]], [[1], [-1]]).at
+        >>> world.ray_cast_many([[0], [0]], [[1], [-1]]).t
         array([ 5., inf])
         """
         points = self._points(origins, "origins")
-        return self._cast_many(np.concatenate([points, points], axis=1), directions, limits, filter)
+        starts = Part("origins", np.concatenate([points, points], axis=1), "finite")
+        return self._cast_many(starts, directions, limits, filter)
 
     def box_cast(
         self, box: ArrayLike, direction: ArrayLike, limit: float = np.inf, filter: Filter | None = None
     ) -> Hit | None:
-        """The body that a moving box hits first. Otherwise as `ray_cast`.
+        """Finds the first body that a moving box hits.
 
         Args:
             box: `2 * dimensions` numbers, finite: the box at its start.
             direction: `dimensions` numbers, finite.
-            limit: how many directions far.
+            limit: the largest t, in lengths of `direction`.
             filter: as in `overlapping`.
 
         Raises:
@@ -800,19 +840,19 @@ class BroadPhase:
         >>> world = sap.BroadPhase(dimensions=1)
         >>> wall = world.insert([5, 6])
         >>> world.box_cast([0, 1], [1])
-        Hit(id=4294967296, at=4.0)
+        Hit(id=0, t=4.0)
         """
-        return _first(self._cast(self._row(box, "box"), direction, limit, filter, False))
+        return _first(self._cast(Part("box", self._row(box, "box"), "finite"), direction, limit, filter, False))
 
     def box_cast_all(
         self, box: ArrayLike, direction: ArrayLike, limit: float = np.inf, filter: Filter | None = None
     ) -> Hits:
-        """All that a moving box hits, nearest first and then by slot. Otherwise as `box_cast`.
+        """Finds all bodies that a moving box hits, sorted by t and then by slot.
 
         Args:
             box: `2 * dimensions` numbers, finite.
             direction: `dimensions` numbers, finite.
-            limit: how many directions far.
+            limit: the largest t, in lengths of `direction`.
             filter: as in `overlapping`.
 
         Raises:
@@ -821,15 +861,15 @@ class BroadPhase:
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
         >>> ids = world.insert_many([[5, 6], [2, 3]])
-        >>> world.box_cast_all([0, 1], [1], limit=3).at
+        >>> world.box_cast_all([0, 1], [1], limit=3).t
         array([1.])
         """
-        return self._cast(self._row(box, "box"), direction, limit, filter, True)
+        return self._cast(Part("box", self._row(box, "box"), "finite"), direction, limit, filter, True)
 
     def box_cast_many(
         self, boxes: ArrayLike, directions: ArrayLike, limits: ArrayLike = np.inf, filter: Filter | None = None
     ) -> Hits:
-        """The first hit of each of many moving boxes. Otherwise as `ray_cast_many`.
+        """Finds the first hit of each of many moving boxes.
 
         Args:
             boxes: `(n, 2 * dimensions)` numbers.
@@ -838,21 +878,22 @@ class BroadPhase:
             filter: as in `overlapping`.
 
         Raises:
-            InvalidQueryError: for the first that makes no sense.
-            ValueError, TypeError: for other shapes, or what is not numbers.
+            InvalidQueryError: for the first that is invalid, as for a single one.
+            ValueError, TypeError: for other shapes, or anything but numbers.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
         >>> wall = world.insert([5, 6])
-        >>> world.box_cast_many([[0, 1], [9, 10]], [[1], [-2]]).at
+        >>> world.box_cast_many([[0, 1], [9, 10]], [[1], [-2]]).t
         array([4. , 1.5])
         """
-        return self._cast_many(self._rows(boxes, "boxes"), directions, limits, filter)
+        return self._cast_many(Part("boxes", self._rows(boxes, "boxes"), "finite"), directions, limits, filter)
 
     def snapshot(self) -> bytes:
-        """The whole state as bytes, for rollback, replay and saved games. Equal states give equal bytes.
+        """Returns the whole state as bytes, for rollback, replay and saved games.
 
-        O(n) time; about as many bytes as the boxes take, and two for each body at rest.
+        Equal states give equal bytes. O(n) time; about as many bytes as the boxes take, and two for each resting
+        body.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -862,9 +903,10 @@ class BroadPhase:
         return self._world.snapshot()
 
     def state_hash(self) -> int:
-        """A 64-bit hash of the whole state, equal for equal states on every machine. O(n) time.
+        """Returns a 64-bit hash of the whole state, the same for equal states on every machine. O(n) time.
 
-        To notice when two machines that should run the same simulation do not. Not for defence against forgery.
+        Use it to detect that two machines which should run the same simulation differ. It does not protect against
+        forgery.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -873,12 +915,19 @@ class BroadPhase:
         """
         return self._world.state_hash()
 
-    def __reduce__(self) -> tuple[Any, tuple[bytes]]:
-        """Copies and pickles by way of a snapshot."""
-        return type(self).from_snapshot, (self.snapshot(),)
+    def __getstate__(self) -> dict[str, Any]:
+        """The attributes, those of subclasses included, and a snapshot in place of the compiled part."""
+        own = ("_world", "_dimensions", "_dtype")
+        attributes = {key: value for key, value in vars(self).items() if key not in own}
+        return {"snapshot": self.snapshot(), "attributes": attributes}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Restores a copy."""
+        self._restore(state["snapshot"])
+        vars(self).update(state["attributes"])
 
     def __repr__(self) -> str:
-        """What it was made with, and how many bodies it has."""
+        """Shows the number of bodies and the arguments with which the world was created."""
         return f"<BroadPhase of {len(self)} bodies, dimensions={self._dimensions}, dtype={self._dtype}>"
 
     def _row(self, box: ArrayLike, name: str) -> Floats:
@@ -893,28 +942,88 @@ class BroadPhase:
     def _points(self, points: ArrayLike, name: str) -> Floats:
         return rows(points, name, self._dtype, self._dimensions)
 
-    def _ray(self, origin: ArrayLike) -> Floats:
+    def _number(self, value: object, name: str) -> Part:
+        with np.errstate(over="ignore"):
+            return Part(name, np.array([[real(value, name)]]).astype(self._dtype), "0 or more")
+
+    def _ray(self, origin: ArrayLike) -> Part:
         point = self._point(origin, "origin")
-        return np.concatenate([point, point], axis=1)
+        return Part("origin", np.concatenate([point, point], axis=1), "finite")
 
-    def _nearest(self, points: Floats, k: int, filter: Filter | None) -> Neighbours:
+    def _boxes(self, ids: Ids) -> Floats:
+        return self._world.boxes(ids).astype(self._dtype, copy=False)
+
+    def _ask(
+        self, kind: str, filter: Filter | None, *parts: Part, k: int = 0
+    ) -> tuple[Ids, NDArray[np.float64], NDArray[np.int64]]:
+        """Answers queries whose numbers are in the rows of the parts, side by side."""
+        rows = parts[0].rows if len(parts) == 1 else np.concatenate([part.rows for part in parts], axis=1)
+        try:
+            return self._world.query(kind, _double(rows), words(filter, ALL), parts[0].name, k)
+        except InvalidQueryError as error:
+            raise _explained(error.index, parts) from None
+
+    def _nearest(self, name: str, points: Floats, k: int, filter: Filter | None) -> Neighbors:
         count = min(whole(k, "k", 0, 2**63 - 1), len(self))
-        ids, squares = self._world.nearest(points, count, words(filter, ALL))
-        # Each point has as many neighbours, since all see the same bodies.
+        ids, squares, _ = self._ask("nearest", filter, Part(name, points, "finite"), k=count)
+        # Each point has the same number of neighbors, since all queries see the same bodies.
         shape = (len(points), len(ids) // len(points) if len(points) else 0)
-        return Neighbours(ids.reshape(shape), np.sqrt(squares).reshape(shape))
+        return Neighbors(ids.reshape(shape), np.sqrt(squares).reshape(shape))
 
-    def _cast(self, box: Floats, direction: ArrayLike, limit: float, filter: Filter | None, all: bool) -> Hits:
-        way, far = self._point(direction, "direction"), np.array([real(limit, "limit")], self._dtype)
-        return Hits(*self._world.cast(box, way, far, words(filter, ALL), all))
+    def _cast(self, start: Part, direction: ArrayLike, limit: float, filter: Filter | None, all: bool) -> Hits:
+        way = Part("direction", self._point(direction, "direction"), "finite")
+        kind = "cast_all" if all else "cast"
+        ids, t, _ = self._ask(kind, filter, start, way, self._number(limit, "limit"))
+        return Hits(ids, t)
 
-    def _cast_many(self, boxes: Floats, directions: ArrayLike, limits: ArrayLike, filter: Filter | None) -> Hits:
-        ways = self._points(directions, "directions")
-        if len(ways) != len(boxes):
-            raise ValueError(f"{len(boxes)} starts do not go with {len(ways)} directions")
-        far = each(limits, "limits", self._dtype, len(boxes))
-        return Hits(*self._world.cast(boxes, ways, far, words(filter, ALL), False))
+    def _cast_many(self, starts: Part, directions: ArrayLike, limits: ArrayLike, filter: Filter | None) -> Hits:
+        ways, count = self._points(directions, "directions"), len(starts.rows)
+        if len(ways) != count:
+            raise ValueError(
+                f"{starts.name} and directions must have the same length: they have {count} and {len(ways)} rows"
+            )
+        far = Part("limits", each(limits, "limits", self._dtype, count)[:, None], "0 or more")
+        found, times, ends = self._ask("cast", filter, starts, Part("directions", ways, "finite"), far)
+        ids, t = np.full(count, -1), np.full(count, np.inf)
+        hits = np.diff(ends, prepend=0) > 0
+        ids[hits], t[hits] = found, times
+        return Hits(ids, t)
+
+
+class Part(NamedTuple):
+    """An argument of a query: a row for each query, and the rule that the core has for its numbers."""
+
+    name: str
+    rows: Floats
+    rule: str = "valid"
+
+
+def _double(rows: Floats) -> NDArray[np.float64]:
+    return rows.astype(np.float64, copy=False)
+
+
+def _same_length(ids: int, **others: int) -> None:
+    for name, count in others.items():
+        if count != ids:
+            raise ValueError(f"ids and {name} must have the same length: there are {ids} ids and {count} {name}")
+
+
+def _explained(index: int, parts: tuple[Part, ...]) -> InvalidQueryError:
+    """The error for an invalid query, with the argument that is at fault."""
+    for name, numbers, rule in parts:
+        values = numbers[index]
+        broken = {
+            "finite": ~np.isfinite(values),
+            "not NaN": np.isnan(values),
+            "0 or more": ~(values >= 0),
+        }.get(rule, np.zeros(len(values), bool))
+        if broken.any():
+            shown = values.tolist() if len(values) > 1 else float(values[0])
+            if name.startswith("origin"):
+                shown = values[: len(values) // 2].tolist()
+            return InvalidQueryError(index, name, shown, rule)
+    return InvalidQueryError(index, parts[0].name, parts[0].rows[index].tolist(), "min <= max on every axis")
 
 
 def _first(hits: Hits) -> Hit | None:
-    return Hit(int(hits.ids[0]), float(hits.at[0])) if hits.ids[0] else None
+    return Hit(int(hits.ids[0]), float(hits.t[0])) if len(hits.ids) else None

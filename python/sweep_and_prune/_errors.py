@@ -1,25 +1,27 @@
-"""What the package raises."""
+"""The exceptions of the package."""
 
 from __future__ import annotations
 
+import math
+
 
 class SweepAndPruneError(Exception):
-    """What all errors of this package have in common.
+    """Base class of the errors that depend on the data.
 
-    Misuse of a call (a wrong shape or type) is a built-in `TypeError` or `ValueError`; what depends on the
-    data is one of these, and a `ValueError` or a `LookupError` too. After an error nothing has changed.
+    Misuse of a call (a wrong shape or type) raises a built-in `TypeError` or `ValueError`. The errors of this package
+    are `ValueError`s or `LookupError`s too. After an error nothing has changed.
 
     >>> import sweep_and_prune as sap
     >>> try:
     ...     sap.find_pairs([[0, 0, 1, 1], [3, 0, 2, 1]])
     ... except sap.SweepAndPruneError as error:
     ...     print(error)
-    box 1 of boxes is inverted or NaN on axis 0: min <= max must hold
+    boxes[1] is inverted on axis 0: min 3.0 is greater than max 2.0; pass the min corner first, then the max corner
     """
 
 
 class InvalidBoxError(SweepAndPruneError, ValueError):
-    """A box is not `min <= max` on some axis: it is inverted, or holds a NaN.
+    """A box does not have `min <= max` on some axis: it is inverted, or it has a NaN.
 
     >>> import sweep_and_prune as sap
     >>> try:
@@ -30,24 +32,43 @@ class InvalidBoxError(SweepAndPruneError, ValueError):
     """
 
     index: int
-    """The position of the box in the argument that it was passed in: the first one that is invalid."""
+    """The position of the first invalid box in the argument."""
     axis: int
     """Its first invalid axis: 0 for x, 1 for y, 2 for z."""
     argument: str
-    """The name of the argument: `boxes`, or `a` or `b` where there are two sets, or `start` or `end`."""
+    """The name of the argument, such as `boxes`, `box`, `a` or `b`."""
+    minimum: float
+    """The min of the box on this axis, in the precision in which boxes are compared."""
+    maximum: float
+    """The max of the box on this axis."""
 
-    def __init__(self, index: int, axis: int, argument: str = "boxes") -> None:
-        """An error for the box at `index`."""
-        super().__init__(index, axis, argument)
+    def __init__(
+        self,
+        index: int,
+        axis: int,
+        argument: str = "boxes",
+        minimum: float = math.nan,
+        maximum: float = math.nan,
+    ) -> None:
+        """Creates the error for the box at `index`."""
+        super().__init__(index, axis, argument, minimum, maximum)
         self.index, self.axis, self.argument = index, axis, argument
+        self.minimum, self.maximum = minimum, maximum
 
     def __str__(self) -> str:
-        """Which box, and what is wrong with it."""
-        return f"box {self.index} of {self.argument} is inverted or NaN on axis {self.axis}: min <= max must hold"
+        """Names the box, its values and what to do."""
+        box = _place(self.argument, self.index)
+        if self.minimum != self.minimum or self.maximum != self.maximum:  # NaN, or NaT
+            values = f"min {self.minimum}, max {self.maximum}"
+            return f"{box} has a NaN on axis {self.axis} ({values}): remove it or replace it"
+        return (
+            f"{box} is inverted on axis {self.axis}: min {self.minimum} is greater than max {self.maximum}; "
+            "pass the min corner first, then the max corner"
+        )
 
 
 class StaleProxyError(SweepAndPruneError, LookupError):
-    """An id is of a body that was removed, or was never given out by this world.
+    """An id names no body of this world: its body was removed, or there never was one.
 
     >>> import sweep_and_prune as sap
     >>> world = sap.BroadPhase(dimensions=1)
@@ -56,52 +77,58 @@ class StaleProxyError(SweepAndPruneError, LookupError):
     >>> try:
     ...     world.box(hero)
     ... except sap.StaleProxyError as error:
-    ...     print(error.id == hero, error.index)
-    True 0
+    ...     print(error)
+    the id at index 0 (0) is stale: its body was removed, or this world never had it
     """
 
     id: int
-    """The id at fault."""
+    """The stale id."""
     index: int
-    """Its position among those that were passed, 0 for a single one."""
+    """Its position in the argument, 0 for a single id."""
 
     def __init__(self, id: int, index: int = 0) -> None:
-        """An error for the id at `index`."""
+        """Creates the error for the id at `index`."""
         super().__init__(id, index)
         self.id, self.index = id, index
 
     def __str__(self) -> str:
-        """Which id."""
-        return f"id {self.id}, at {self.index}, is stale: its body was removed, or it never had one here"
+        """Names the id and its position."""
+        return f"the id at index {self.index} ({self.id}) is stale: its body was removed, or this world never had it"
 
 
 class InvalidQueryError(SweepAndPruneError, ValueError):
-    """A query has a part that is NaN, infinite where it has to be finite, or negative where that means nothing.
+    """A query has a value that is NaN, infinite, negative or inverted where that is not allowed.
 
     >>> import sweep_and_prune as sap
     >>> world = sap.BroadPhase(dimensions=2)
     >>> try:
     ...     world.within_many([[0, 0], [1, 1]], [1, -1])
     ... except sap.InvalidQueryError as error:
-    ...     print(error.index)
-    1
+    ...     print(error)
+    radii[1] is -1.0; it must be 0 or more
     """
 
     index: int
     """The position of the query among those that were passed, 0 for a single one."""
+    argument: str
+    """The name of the argument."""
+    value: object
+    """The value that is not allowed."""
+    rule: str
+    """What the value must be."""
 
-    def __init__(self, index: int = 0) -> None:
-        """An error for the query at `index`."""
-        super().__init__(index)
-        self.index = index
+    def __init__(self, index: int = 0, argument: str = "query", value: object = None, rule: str = "valid") -> None:
+        """Creates the error for the query at `index`."""
+        super().__init__(index, argument, value, rule)
+        self.index, self.argument, self.value, self.rule = index, argument, value, rule
 
     def __str__(self) -> str:
-        """Which query."""
-        return f"query {self.index} has a part that is NaN, infinite or negative"
+        """Names the argument, its value and what it must be."""
+        return f"{_place(self.argument, self.index)} is {self.value}; it must be {self.rule}"
 
 
 class SnapshotError(SweepAndPruneError, ValueError):
-    """Bytes that are no snapshot of a world.
+    """Bytes that are not a snapshot of a world.
 
     >>> import sweep_and_prune as sap
     >>> try:
@@ -110,3 +137,9 @@ class SnapshotError(SweepAndPruneError, ValueError):
     ...     print(error)
     these bytes are not a snapshot
     """
+
+
+def _place(argument: str, index: int) -> str:
+    """An argument for one thing is named by itself, one for many by its element."""
+    is_many = argument in ("a", "b") or (argument.endswith("s") and argument != "radius")
+    return f"{argument}[{index}]" if is_many else argument

@@ -1,4 +1,4 @@
-"""Which bodies may pair at all."""
+"""Filters: which bodies may pair."""
 
 from __future__ import annotations
 
@@ -8,14 +8,16 @@ from ._arrays import whole
 
 
 class Filter(NamedTuple):
-    """Which bodies may pair. Two do if their boxes overlap and
+    """Decides which bodies may pair.
+
+    Two bodies pair if their boxes overlap and
 
     1. at least one of them is not static;
-    2. they are of the same group, other than 0, and it is positive; or they are not of the same group (or of
-       group 0), and each one's category has a bit in the other's mask.
+    2. they have the same group, which is positive; or they have different groups or group 0, and the category of
+       each has a bit in common with the mask of the other.
 
-    So a shared negative group keeps bodies apart and a shared positive one joins them, whatever their masks;
-    these are box2d's rules.
+    So a shared negative group keeps bodies apart and a shared positive group joins them, whatever their masks. These
+    are the rules of box2d.
 
     >>> import sweep_and_prune as sap
     >>> wall = sap.Filter(is_static=True)
@@ -27,28 +29,29 @@ class Filter(NamedTuple):
     category: int = 1
     """What the body is: 32 bits."""
     mask: int = 0xFFFF_FFFF
-    """What it pairs with: the categories of others. 32 bits; `~2` is all but the second."""
+    """The categories that it pairs with: 32 bits. `~2` is all but the second."""
     group: int = 0
-    """0, or a number of 32 bits that decides over category and mask between two of the same group."""
+    """0, or a 32-bit number. Between two bodies of the same group it overrides category and mask."""
     is_static: bool = False
-    """Whether it is a static body: two of these never pair."""
+    """Whether it is a static body: two static bodies never pair."""
 
     def allows(self, other: Filter) -> bool:
-        """Whether two bodies with these filters may pair. Symmetric."""
-        (category, mask, group, is_static), (others, wanted, gang, stands) = words(self), words(other)
-        if is_static and stands:
+        """Tells whether two bodies with these filters may pair. Symmetric."""
+        category, mask, group, is_static = words(self)
+        other_category, other_mask, other_group, other_is_static = words(other)
+        if is_static and other_is_static:
             return False
-        if group == gang != 0:
+        if group == other_group != 0:
             return group > 0
-        return category & wanted != 0 and others & mask != 0
+        return category & other_mask != 0 and other_category & mask != 0
 
 
 ALL = Filter(category=0xFFFF_FFFF)
-"""What a query sees the world with unless told otherwise."""
+"""The filter of a query without a filter: it finds all bodies."""
 
 
 def words(filter: object, default: Filter = Filter()) -> tuple[int, int, int, bool]:  # noqa: B008
-    """A filter, checked, as the compiled part takes it."""
+    """Checks a filter and converts it to what the compiled part takes."""
     if filter is None:
         filter = default
     if not isinstance(filter, Filter):

@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import tomllib
 
 import sweep_and_prune as sap
 
@@ -42,12 +41,13 @@ def test_the_readme_prints_what_it_says(block: str) -> None:
 
 
 def test_the_readme_has_examples() -> None:
-    assert len(BLOCKS) == 3
+    assert len(re.findall("```python", README)) == 3
 
 
-def test_every_path_in_the_readme_exists() -> None:
-    named = set(re.findall(r"`(examples/[\w./]+)`", README))
-    assert named == {f"examples/{name}" for name in EXAMPLES}
+def test_the_readme_names_no_path_that_the_wheel_lacks() -> None:
+    """Only bench.py is named, as a file of the repository."""
+    assert re.findall(r"`[\w./]*/[\w./]+`", README.replace("`./test python`", "")) == []
+    assert set(re.findall(r"`(\w+\.py)`", README)) == {"bench.py"}
 
 
 @pytest.mark.parametrize("name", sorted(path.name for path in (PYTHON / "examples").glob("*.py")))
@@ -92,7 +92,7 @@ def test_every_call_has_an_example_that_runs() -> None:
             examples += result.attempted
     assert examples > 100
     exempt = {"Filter.allows", "Lists.each", "Lists.queries", "BroadPhase.ids"}
-    short = {"Changes", "Hit", "Hits", "Neighbours"}
+    short = {"Changes", "Hit", "Hits", "Neighbors"}
     without = [
         name
         for name, item in public().items()
@@ -102,6 +102,7 @@ def test_every_call_has_an_example_that_runs() -> None:
 
 
 def test_the_version_is_that_of_the_project() -> None:
+    tomllib = pytest.importorskip("tomllib")  # from Python 3.11 on
     workspace = tomllib.loads((PYTHON.parent / "Cargo.toml").read_text())["workspace"]["package"]
     crate = tomllib.loads((PYTHON / "Cargo.toml").read_text())["package"]
     assert sap.__version__ == workspace["version"] == crate["version"]
@@ -132,9 +133,9 @@ world.insert([0, 0, 1, 1], filter=5)
         [sys.executable, "-m", "mypy", "--strict", program], capture_output=True, text=True, cwd=tmp_path
     )
     notes = re.findall(r'Revealed type is "(.*)"', done.stdout)
-    assert "uint32" in notes[0] or "unsignedinteger[numpy._typing._nbit_base._32Bit]" in notes[0], notes
+    assert "ndarray" in notes[0], notes
     assert notes[1] in ("int", "builtins.int")
-    assert "uint64" in notes[2] or "64Bit" in notes[2]
+    assert "int64" in notes[2] or "64Bit" in notes[2]
     assert "Hit" in notes[3] and "None" in notes[3]
     assert "arg-type" in done.stdout and done.stdout.count("error") == 2
 

@@ -17,7 +17,6 @@ from hypothesis.extra import numpy as hnp
 from oracle import FLOATS, in_order, pairs, random_boxes
 
 import sweep_and_prune as sap
-from sweep_and_prune._arrays import box_rows
 
 PAIR = [[0, 1]]
 
@@ -67,19 +66,10 @@ def test_precision_is_that_of_the_array() -> None:
     assert sap.PairFinder(1, "float32").dtype == np.float32
 
 
-@pytest.mark.parametrize("dtype", FLOATS)
-def test_arrays_of_the_right_form_are_not_copied(dtype: Any) -> None:
-    boxes = random_boxes(60, 3, dtype)
-    for form in (boxes, boxes[10:]):
-        assert np.shares_memory(box_rows(form, "boxes"), boxes)
-        assert np.shares_memory(box_rows(form, "boxes", np.dtype(dtype), 3), boxes)
-    assert not np.shares_memory(box_rows(boxes[::2], "boxes"), boxes)
-
-
 @pytest.mark.parametrize("empty", [[], (), np.empty((0, 2)), np.empty((0, 6), np.float32), np.empty((0, 4), int)])
 def test_no_boxes_have_no_pairs(empty: Any) -> None:
     found = sap.find_pairs(empty)
-    assert found.shape == (0, 2) and found.dtype == np.uint32
+    assert found.shape == (0, 2) and found.dtype == np.int64
     assert sap.count_pairs(empty) == 0
     assert sap.find_pairs_between(empty, [[0, 0, 1, 1]]).shape == (0, 2)
     assert sap.find_pairs_between([[0, 0, 1, 1]], empty).shape == (0, 2)
@@ -102,7 +92,6 @@ WRONG: list[Any] = [
     [[1, 2, 3]],
     [[]],
     [[], []],
-    [[[0, 0, 1, 1]]],
     [[0, 0, 1, 1], [0, 0]],
     [["a", "b"]],
     [[None, None]],
@@ -110,7 +99,6 @@ WRONG: list[Any] = [
     [[1j, 2j]],
     [[True, False]],
     [[Decimal(1), Decimal(2)]],
-    np.zeros((2, 4), "datetime64[s]"),
     np.zeros((2, 4), object),
     np.zeros(3, [("min", "f8", 2), ("max", "f8", 2)]),
     np.zeros((3, 2), [("x", "f8")]),
@@ -146,7 +134,7 @@ def test_what_is_no_boxes_is_refused(wrong: Any) -> None:
 def test_shapes_in_messages_name_the_argument() -> None:
     with pytest.raises(ValueError, match=r"b must be of shape \(n, 2\), \(n, 4\) or \(n, 6\).*\(1, 3\)"):
         sap.find_pairs_between([[0, 1]], [[1, 2, 3]])
-    with pytest.raises(ValueError, match="as wide"):
+    with pytest.raises(ValueError, match="same number of columns"):
         sap.find_pairs_between([[0, 1]], [[0, 0, 1, 1]])
     with pytest.raises(ValueError, match=r"\(n, 4\)"):
         sap.PairFinder(2).find([[0, 1]])
@@ -210,7 +198,7 @@ def test_any_numbers_at_all(boxes: Any) -> None:
             assert caught.value.index == int(np.argmin(valid))
 
 
-@pytest.mark.parametrize("threads", [0, -1, 1025, 2**70, -(2**70), 1.5, "2", None, [1], np.nan])
+@pytest.mark.parametrize("threads", [0, -2, 1025, 2**70, -(2**70), 1.5, "2", [1], np.nan])
 def test_numbers_of_threads_that_make_no_sense(threads: Any) -> None:
     for call in (
         lambda: sap.find_pairs([[0, 1]], threads=threads),
@@ -250,9 +238,9 @@ def test_what_cannot_be_called_back(each: Any) -> None:
 
 def test_errors_can_be_caught_by_kind_copied_and_pickled() -> None:
     for error, kinds in (
-        (sap.InvalidBoxError(3, 1, "a"), (ValueError,)),
+        (sap.InvalidBoxError(3, 1, "a", 2.0, 1.0), (ValueError,)),
         (sap.StaleProxyError(77, 2), (LookupError,)),
-        (sap.InvalidQueryError(5), (ValueError,)),
+        (sap.InvalidQueryError(5, "limits", -1.0, "0 or more"), (ValueError,)),
         (sap.SnapshotError("why"), (ValueError,)),
     ):
         assert isinstance(error, sap.SweepAndPruneError) and isinstance(error, kinds)

@@ -1,4 +1,4 @@
-"""The living world against the oracle: random sequences of operations, then what these do not say."""
+"""The broad phase against the oracle: random sequences of operations, then what these do not cover."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Worlds(RuleBasedStateMachine):
     def insert_many(self, data: st.DataObject, count: int, filter: sap.Filter) -> None:
         boxes = [self.draw_box(data) for _ in range(count)]
         ids = self.world.insert_many(boxes, filter)
-        assert ids.dtype == np.uint64 and ids.shape == (count,)
+        assert ids.dtype == np.int64 and ids.shape == (count,)
         for id, box in zip(ids.tolist(), boxes):
             self.boxes[id], self.filters[id] = box, filter
 
@@ -121,13 +121,13 @@ class Worlds(RuleBasedStateMachine):
             self.world.insert_many([box, bad])
         with pytest.raises(sap.InvalidBoxError) as caught:
             self.world.set_swept_many([id, id], [box, box], [box, bad])
-        assert (caught.value.index, caught.value.argument) == (1, "end")
-        stale = data.draw(st.sampled_from([*self.gone, 0, 2**63, 2**64 - 1]))
+        assert (caught.value.index, caught.value.argument) == (1, "ends")
+        stale = data.draw(st.sampled_from([*self.gone, -1, 2**40, 2**63 - 1]))
         for call in (
             lambda: self.world.set_many([id, stale], [box, box]),
             lambda: self.world.set_swept_many([id, stale], [box, box], [box, box]),
             lambda: self.world.set_filter_many([id, stale], FILTERS[1]),
-            lambda: self.world.remove_many(np.array([id, stale], np.uint64)),
+            lambda: self.world.remove_many(np.array([id, stale], np.int64)),
             lambda: self.world.box_many([id, stale]),
         ):
             with pytest.raises(sap.StaleProxyError) as stale_error:
@@ -142,7 +142,7 @@ class Worlds(RuleBasedStateMachine):
         begun, ended = self.world.update()
         now = self.allowed_pairs()
         for found, wanted in ((begun, now - self.known), (ended, self.known - now), (self.world.pairs(), now)):
-            assert found.dtype == np.uint64 and found.shape == (len(wanted), 2)
+            assert found.dtype == np.int64 and found.shape == (len(wanted), 2)
             assert as_set(found) == wanted
             slots = sap.slots_of(found)
             assert (slots[:, 0] < slots[:, 1]).all() and np.array_equal(in_order(slots), slots)
@@ -169,7 +169,7 @@ class Worlds(RuleBasedStateMachine):
             assert np.array_equal(self.world.box_many(ids), np.array([self.boxes[id] for id in ids.tolist()]))
         for id in self.boxes:
             assert id in self.world and self.world.filter(id) == self.filters[id]
-        assert not self.world.contains_many(np.array(self.gone, np.uint64)).any()
+        assert not self.world.contains_many(np.array(self.gone, np.int64)).any()
 
     @rule(data=st.data(), filter=st.sampled_from([None, *FILTERS]))
     def query(self, data: st.DataObject, filter: sap.Filter | None) -> None:
@@ -186,7 +186,7 @@ class Worlds(RuleBasedStateMachine):
         lists = [each.tolist() for each in found.each()]
         assert len(lists) == len(boxes)
         for row, hits in zip(overlaps(boxes, mine), lists):
-            assert sorted(np.array(ids, np.uint64)[row].tolist()) == sorted(hits)
+            assert sorted(np.array(ids, np.int64)[row].tolist()) == sorted(hits)
             assert hits == sorted(hits, key=lambda id: id & 0xFFFF_FFFF)
 
     def allowed_pairs(self) -> set[tuple[int, int]]:
@@ -257,13 +257,13 @@ def test_casts_and_neighbours_equal_brute_force(dtype: Any) -> None:
             start = cast if first is hits else points[i]
             times = sorted((at, slot) for slot, at in enumerate(touches(cast, ways[i], limit, boxes)) if at is not None)
             got = all(start, ways[i], limit)
-            assert [(at, slot) for at, slot in zip(got.at.tolist(), sap.slots_of(got.ids).tolist())] == times
+            assert [(at, slot) for at, slot in zip(got.t.tolist(), sap.slots_of(got.ids).tolist())] == times
             single = one(start, ways[i], limit)
             if times:
-                assert single is not None and (single.at, single.id) == (times[0][0], ids[times[0][1]])
-                assert (first.at[i], first.ids[i]) == (single.at, single.id)
+                assert single is not None and (single.t, single.id) == (times[0][0], ids[times[0][1]])
+                assert (first.t[i], first.ids[i]) == (single.t, single.id)
             else:
-                assert single is None and first.ids[i] == 0 and first.at[i] == np.inf
+                assert single is None and first.ids[i] == -1 and first.t[i] == np.inf
 
 
 def touches(box: Any, way: Any, limit: float, boxes: Any) -> list[float | None]:
@@ -371,11 +371,11 @@ def test_what_are_no_ids_is_refused(wrong: Any) -> None:
 def test_ids_of_every_kind_of_whole_number() -> None:
     world = sap.BroadPhase(1)
     ids = world.insert_many([[0, 1], [5, 6]])
-    for form in (ids.tolist(), tuple(ids.tolist()), ids.astype(np.int64), ids[::-1][::-1], ids.astype(">u8")):
+    for form in (ids.tolist(), tuple(ids.tolist()), ids.astype(np.uint64), ids[::-1][::-1], ids.astype(">u8")):
         assert world.box_many(form).tolist() == [[0, 1], [5, 6]]
     assert world.box(ids[1]).tolist() == world.box(np.int64(ids[1])).tolist() == [5, 6]
     assert ids[0] in world and int(ids[0]) in world and True not in world
-    for stale in (-1, -(2**70), 2**70, 0, 1):
+    for stale in (-1, -(2**70), 2**70, 2, 2**32):
         assert stale not in world
         with pytest.raises(sap.StaleProxyError) as caught:
             world.remove(stale)
@@ -389,7 +389,7 @@ def test_ids_of_every_kind_of_whole_number() -> None:
     world.remove_many([])
     world.set_many([], [])
     assert world.contains_many([]).shape == (0,) and world.box_many([]).shape == (0, 2)
-    with pytest.raises(ValueError, match="there are 2 ids but 1 boxes"):
+    with pytest.raises(ValueError, match="ids and boxes must have the same length: there are 2 ids and 1 boxes"):
         world.set_many(ids, [[0, 1]])
     with pytest.raises(ValueError):
         world.set_swept_many(ids, [[0, 1]], [[0, 1], [2, 3]])
@@ -534,3 +534,79 @@ def test_filters_allow_what_the_world_reports() -> None:
         world.insert([0, 1], a)
         world.insert([0, 1], b)
         assert len(world.update().begun) == a.allows(b) == b.allows(a)
+
+
+def test_ids_are_rows_until_a_body_is_removed() -> None:
+    world = sap.BroadPhase(1)
+    boxes = np.array([[0, 2], [1, 3], [5, 6]])
+    ids = world.insert_many(boxes)
+    assert ids.dtype == np.int64 and ids.tolist() == [0, 1, 2]
+    assert np.bincount(world.update().begun.ravel(), minlength=3).tolist() == [1, 1, 0]
+    world.remove(0)
+    world.update()
+    new = world.insert([1, 2])
+    assert new > 2 and sap.slots_of([new]).tolist() == [0]
+    with pytest.raises(sap.StaleProxyError, match=r"the id at index 0 \(0\) is stale"):
+        world.box(0)
+    assert world.contains(new) and not world.contains(0) and not world.contains("hero")
+
+
+def test_messages_name_the_argument_its_value_and_the_rule() -> None:
+    world = sap.BroadPhase(2)
+    ids = world.insert_many([[0, 0, 1, 1], [2, 2, 3, 3]])
+    nan = np.nan
+    cases: list[tuple[Any, str]] = [
+        (lambda: world.insert([3, 0, 2, 1]), "box is inverted on axis 0: min 3.0 is greater than max 2.0"),
+        (lambda: world.set(0, [0, nan, 1, 1]), "box has a NaN on axis 1 (min nan, max 1.0)"),
+        (lambda: world.set_many(ids, [[0, 0, 1, 1], [0, 2, 1, 1]]), "boxes[1] is inverted on axis 1"),
+        (lambda: world.set_swept(0, [0, 0, 1, 1], [1, 0, 0, 1]), "end is inverted on axis 0"),
+        (lambda: world.set_swept_many([0], [[1, 0, 0, 1]], [[0, 0, 1, 1]]), "starts[0] is inverted on axis 0"),
+        (lambda: world.overlapping([1, 1, 0, 0]), "box is inverted on axis 0: min 1.0 is greater than max 0.0"),
+        (lambda: world.overlapping_many([[1, 1, 2, 2], [1, 1, 2, 0]]), "boxes[1] is inverted on axis 1"),
+        (lambda: world.containing([nan, 0]), "point is [nan, 0.0]; it must be not NaN"),
+        (lambda: world.within([0, 0], -1), "radius is -1.0; it must be 0 or more"),
+        (lambda: world.within_many([[0.0, 0.0], [np.inf, 0.0]], 1), "centers[1] is [inf, 0.0]; it must be finite"),
+        (lambda: world.ray_cast([0, 0], [1, 1], -1), "limit is -1.0; it must be 0 or more"),
+        (lambda: world.ray_cast([0, nan], [1, 1]), "origin is [0.0, nan]; it must be finite"),
+        (lambda: world.ray_cast_many([[0, 0]], [[nan, 1.0]]), "directions[0] is [nan, 1.0]; it must be finite"),
+        (
+            lambda: world.box_cast([1, 1, 0, 0], [1, 1]),
+            "box is [1.0, 1.0, 0.0, 0.0]; it must be min <= max on every axis",
+        ),
+        (lambda: world.nearest([0, np.inf]), "point is [0.0, inf]; it must be finite"),
+        (lambda: sap.find_pairs_between([[0, 1]], [[0, 1], [2, 1]]), "b[1] is inverted on axis 0"),
+        (lambda: sap.BroadPhase(2, margin=1), 'margin is 1.0, which has no effect with report="exact"'),
+        (lambda: sap.BroadPhase(2, prediction=2), 'prediction is 2.0, which has no effect with report="exact"'),
+        (lambda: sap.BroadPhase(2, margin=-1, report="fat"), "margin is -1.0; it must be finite and 0 or more"),
+    ]
+    for call, message in cases:
+        with pytest.raises(ValueError) as caught:
+            call()
+        assert str(caught.value).startswith(message), str(caught.value)
+
+
+def test_every_cast_keeps_to_its_limit_and_its_filter() -> None:
+    world = sap.BroadPhase(1)
+    ghost = world.insert([5, 6], sap.Filter(category=2))
+    wall = world.insert([8, 9])
+    only_walls = sap.Filter(mask=1)
+    casts: list[tuple[Any, Any]] = [
+        (lambda *more: world.ray_cast_all([0], [1], *more), lambda *more: world.ray_cast([0], [1], *more)),
+        (lambda *more: world.box_cast_all([-1, 0], [1], *more), lambda *more: world.box_cast([-1, 0], [1], *more)),
+    ]
+    for all_hits, first in casts:
+        assert all_hits().ids.tolist() == [ghost, wall] and first().id == ghost
+        assert all_hits(5).ids.tolist() == [ghost] and all_hits(4.9).ids.tolist() == [] and first(4.9) is None
+        assert first(5).t == 5 and all_hits(8, only_walls).ids.tolist() == [wall] and first(8, only_walls).id == wall
+        assert first(7.9, only_walls) is None
+    many_casts: list[Any] = [
+        lambda *more: world.ray_cast_many([[0], [0]], [[1], [1]], *more),
+        lambda *more: world.box_cast_many([[-1, 0], [-1, 0]], [[1], [1]], *more),
+    ]
+    for many in many_casts:
+        assert many().ids.tolist() == [ghost, ghost]
+        hits = many([4.9, 5])
+        assert hits.ids.tolist() == [-1, ghost] and hits.t.tolist() == [np.inf, 5]
+        assert many(4.9).ids.tolist() == [-1, -1]
+        assert many([7.9, 8], only_walls).ids.tolist() == [-1, wall]
+        assert many([7.9, 8], only_walls).t.tolist() == [np.inf, 8]

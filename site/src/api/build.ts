@@ -38,7 +38,7 @@ boxes = np.array([
     [5, 5, 6, 6],
     [2, 1, 3, 4],  # touches the first box
 ], dtype=np.float32)
-sap.find_pairs(boxes)  # array([[0, 2]], dtype=uint32)`,
+sap.find_pairs(boxes)  # array([[0, 2]])`,
   },
 } as const;
 

@@ -1,0 +1,148 @@
+"""Recognizes the forms in which users have boxes: arrays, data frames, geometries, tensors."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+_AXES = "xyz"
+_FORMATS = ("xyxy", "xywh", "cxcywh")
+
+
+def _spellings(format: str) -> list[tuple[list[str], list[str]]]:
+    """The names of columns for the first and for the second half of a row, in the order in which they are tried."""
+    if format == "xyxy":
+        found = [
+            ([pattern.format(axis) for axis in _AXES], [other.format(axis) for axis in _AXES])
+            for pattern, other in (("min{}", "max{}"), ("{}min", "{}max"), ("{}1", "{}2"), ("{}0", "{}1"))
+        ]
+        return [*found, (["left", "top"], ["right", "bottom"]), (["start"], ["end"])]
+    sizes = (["w", "h", "d"], ["width", "height", "depth"])
+    starts = (["x", "y", "z"], ["left", "top"]) if format == "xywh" else (["cx", "cy", "cz"], ["x", "y", "z"])
+    return [(start, size) for start in starts for size in sizes]
+
+
+def checked_format(format: object) -> str:
+    """The name of a format of boxes, or a `ValueError`."""
+    if not (isinstance(format, str) and format in _FORMATS):
+        raise ValueError(f'format must be "xyxy", "xywh" or "cxcywh", not {format!r}')
+    return format
+
+
+def raw_boxes(values: Any, name: str, format: str = "xyxy") -> NDArray[Any]:
+    """Boxes as an array, two-dimensional if they are in a form that is known. Other forms are left to the caller."""
+    if type(values) is np.ndarray and values.dtype.kind == "f" and values.ndim == 2 and format == "xyxy":
+        return values  # the common case, without further questions
+    if hasattr(values, "closed") and hasattr(values, "left") and hasattr(values, "right"):  # IntervalIndex
+        return np.column_stack((np.asarray(values.left), np.asarray(values.right)))
+    columns = _column_names(values)
+    if columns is not None:
+        return _corners(_from_columns(values, columns, name, format), format, name)
+    if isinstance(values, tuple) and len(values) == 2 and all(isinstance(part, np.ndarray) for part in values):
+        raise ValueError(
+            f"{name} must be one array with a row for each box, not a tuple of two arrays: "
+            "pass np.column_stack((starts, ends)) for intervals, np.stack(rows) for rows"
+        )
+    array = as_array(values, name)
+    if array.dtype.kind == "O" and array.ndim == 1:
+        array = _from_geometries(array)
+    if array.ndim == 3 and array.shape[1] == 2 and 1 <= array.shape[2] <= 3:
+        array = array.reshape(len(array), -1)
+    return _corners(array, format, name)
+
+
+def as_array(values: Any, name: str) -> NDArray[Any]:
+    """Anything array-like as an array. Tensors are detached and brought to the CPU; masked values are refused."""
+    if type(values) is np.ndarray:
+        return values
+    if isinstance(values, np.ma.MaskedArray):
+        if np.ma.getmaskarray(values).any():
+            if values.dtype.kind != "f":
+                raise ValueError(
+                    f'{name} has masked values: pass values.astype(float) and missing="skip", or drop them'
+                )
+            return np.asarray(values.filled(np.nan))
+        return values.data
+    if hasattr(values, "detach") and hasattr(values, "cpu"):
+        values = values.detach().cpu()
+    elif hasattr(values, "__dlpack__") and not hasattr(values, "__array__") and hasattr(np, "from_dlpack"):
+        return np.from_dlpack(values)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # NumPy up to 1.23 only warns of rows of different lengths
+            return np.asarray(values)
+    except Warning as warning:
+        raise ValueError(f"{name} must be an array: {warning}") from None
+
+
+def _column_names(values: Any) -> list[str] | None:
+    """The names of the columns of a data frame or a table; None for anything else."""
+    if hasattr(values, "total_bounds") and hasattr(values, "bounds"):  # GeoSeries, GeoDataFrame
+        return ["minx", "miny", "maxx", "maxy"]
+    if isinstance(values, (np.ndarray, list, tuple, dict)):
+        return None
+    for attribute in ("column_names", "columns"):  # pyarrow; pandas, polars
+        names = getattr(values, attribute, None)
+        if names is not None and not callable(names) and hasattr(values, "__getitem__"):
+            try:
+                return [str(column) for column in names]
+            except TypeError:
+                return None
+    return None
+
+
+def _from_columns(values: Any, columns: list[str], name: str, format: str) -> NDArray[Any]:
+    if hasattr(values, "total_bounds"):
+        values = values.bounds
+    known = {column.lower().replace("_", ""): column for column in columns}
+    for first, second in _spellings(format):
+        count = sum(1 for pair in zip(first, second) if pair[0] in known and pair[1] in known)
+        if count and all(part in known for part in first[:count] + second[:count]):
+            names = [known[part] for part in first[:count] + second[:count]]
+            table = np.column_stack([_column(values[column]) for column in names])
+            if "top" in first and count == 2:  # the y axis may point up or down
+                table[:, [1, 3]] = np.sort(table[:, [1, 3]], axis=1)
+            return table
+    wanted = {"xyxy": "minx, miny, maxx, maxy", "xywh": "x, y, w, h", "cxcywh": "cx, cy, w, h"}[format]
+    raise ValueError(
+        f"{name} has no columns that are known as boxes, such as {wanted}: its columns are {', '.join(columns)}. "
+        "Rename them, or pass an array"
+    )
+
+
+def _column(values: Any) -> NDArray[Any]:
+    array: NDArray[Any] = np.asarray(values)
+    if array.dtype.kind == "O":  # nullable integers of pandas
+        if hasattr(values, "to_numpy"):
+            try:
+                return np.asarray(values.to_numpy(dtype=np.float64, na_value=np.nan))
+            except TypeError:
+                pass
+        return np.array([np.nan if value is None else value for value in array.tolist()], np.float64)
+    return array
+
+
+def _from_geometries(array: NDArray[Any]) -> NDArray[Any]:
+    """The bounds of geometries of shapely; those that are empty or None have bounds of NaN."""
+    shapely = sys.modules.get("shapely")
+    if shapely is None or not hasattr(shapely, "bounds"):
+        return array
+    are_geometries = shapely.is_geometry(array) | np.array([item is None for item in array], bool)
+    return np.asarray(shapely.bounds(array)) if are_geometries.all() and len(array) else array
+
+
+def _corners(array: NDArray[Any], format: str, name: str) -> NDArray[Any]:
+    if format == "xyxy" or array.ndim != 2 or array.shape[1] % 2:
+        return array
+    if array.dtype.kind not in "iuf":
+        raise TypeError(f"{name} must be numbers, not of dtype {array.dtype}")
+    if array.dtype.kind != "f":
+        array = array.astype(np.float64)
+    half = array.shape[1] // 2
+    start, size = array[:, :half], array[:, half:]
+    low = start if format == "xywh" else start - size / 2
+    return np.hstack([low, low + size])

@@ -1,0 +1,51 @@
+"""The process ends without a crash while daemon threads search."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+PROGRAM = """
+import sys, threading, time
+import numpy as np
+import sweep_and_prune as sap
+
+low = np.random.default_rng(1).random((1500, 3))
+boxes = np.hstack([low, low + 0.1]).astype(np.float32)
+started = threading.Semaphore(0)
+
+def work():
+    world = sap.BroadPhase(3, np.float32)
+    ids = world.insert_many(boxes)
+    finder = sap.PairFinder(3, np.float32, threads=2)
+    invalid = np.full((1500, 6), np.nan)
+    started.release()
+    while True:
+        if sys.argv[1] == "callback":
+            sap.for_each_chunk(boxes, lambda chunk: None, size=3)
+        elif sys.argv[1] == "world":
+            world.set_many(ids, boxes)
+            world.update()
+        elif sys.argv[1] == "error":
+            try:
+                finder.find(invalid)
+            except sap.InvalidBoxError:
+                pass
+        else:
+            finder.find(boxes)
+
+for _ in range(3):
+    threading.Thread(target=work, daemon=True).start()
+for _ in range(3):
+    started.acquire()
+time.sleep(0.05)
+"""
+
+
+@pytest.mark.parametrize("work", ["callback", "find", "world", "error"])
+def test_the_interpreter_exits_while_daemon_threads_search(work: str) -> None:
+    for _ in range(6 if work == "callback" else 2):
+        done = subprocess.run([sys.executable, "-c", PROGRAM, work], capture_output=True, text=True, timeout=120)
+        assert (done.returncode, done.stderr) == (0, "")

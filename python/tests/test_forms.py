@@ -1,0 +1,239 @@
+"""Every form of input gives the pairs of brute force, or one clear error."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from oracle import DIMENSIONS, in_order, pairs, pairs_between, random_boxes
+
+import sweep_and_prune as sap
+
+BOXES = random_boxes(60, 2, np.float64)
+PAIRS = pairs(BOXES)
+
+
+def same(found: Any, wanted: Any = PAIRS) -> bool:
+    return np.array_equal(in_order(found), wanted)
+
+
+@pytest.mark.parametrize("dtype", [np.int64, np.int32, np.uint32, np.uint64, "i4", int])
+def test_indices_have_the_wanted_type(dtype: Any) -> None:
+    found = sap.find_pairs(BOXES, dtype=dtype)
+    assert found.dtype == np.dtype(dtype) and same(found)
+    between = sap.find_pairs_between(BOXES, BOXES, dtype=dtype)
+    assert between.dtype == np.dtype(dtype) and same(between, pairs_between(BOXES, BOXES))
+    assert same(sap.PairFinder(2, index_dtype=dtype).find(BOXES))
+    chunks: list[Any] = []
+    sap.for_each_chunk(BOXES, chunks.append, dtype=dtype)
+    assert same(np.concatenate(chunks)) and chunks[0].dtype == np.dtype(dtype)
+
+
+@pytest.mark.parametrize("dtype", [None, float, "i2", "nonsense", object, bool])
+def test_other_types_of_indices_are_refused(dtype: Any) -> None:
+    with pytest.raises(ValueError, match="dtype must be int64, int32, uint32 or uint64"):
+        sap.find_pairs(BOXES, dtype=dtype)
+
+
+@pytest.mark.parametrize("dimensions", DIMENSIONS)
+def test_corners_may_have_an_axis_of_their_own(dimensions: int) -> None:
+    boxes = random_boxes(50, dimensions, np.float32)
+    assert same(sap.find_pairs(boxes.reshape(-1, 2, dimensions)), pairs(boxes))
+
+
+def test_boxes_may_be_given_by_their_size() -> None:
+    sizes = BOXES[:, 2:] - BOXES[:, :2]
+    assert same(sap.find_pairs(np.hstack([BOXES[:, :2], sizes]), format="xywh"))
+    assert same(sap.find_pairs(np.hstack([BOXES[:, :2] + sizes / 2, sizes]), format="cxcywh"))
+    assert sap.count_pairs(np.hstack([BOXES[:, :2], sizes]).tolist(), format="xywh") == len(PAIRS)
+    with pytest.raises(sap.InvalidBoxError):
+        sap.find_pairs([[0, 0, -1, 1]], format="xywh")
+    for wrong in ("xyXY", None, 3):
+        with pytest.raises(ValueError, match="format must be"):
+            sap.find_pairs(BOXES, format=wrong)  # type: ignore[arg-type]
+
+
+class Frame:
+    """The part of a data frame that is used: columns by name."""
+
+    def __init__(self, **columns: Any) -> None:
+        self.data = columns
+
+    @property
+    def columns(self) -> list[str]:
+        return list(self.data)
+
+    def __len__(self) -> int:
+        return len(next(iter(self.data.values())))
+
+    def __getitem__(self, name: str) -> Any:
+        return self.data[name]
+
+
+@pytest.mark.parametrize(
+    "names",
+    ["minx miny maxx maxy", "xmin ymin xmax ymax", "x_min y_min x_max y_max", "x1 y1 x2 y2", "x0 y0 x1 y1"]
+    + ["left top right bottom", "Left Bottom Right Top", "MinX MinY MaxX MaxY"],
+)
+def test_columns_are_recognized_by_their_names(names: str) -> None:
+    named = dict(zip(names.split(), BOXES.T))
+    backwards = dict(reversed(list(named.items())))
+    for frame in (Frame(**named), Frame(label=np.array(["a"] * 60), **backwards)):
+        assert same(sap.find_pairs(frame))  # type: ignore[arg-type]
+        assert same(sap.PairFinder(2).find(frame))  # type: ignore[arg-type]
+        assert len(sap.BroadPhase(2).insert_many(frame)) == 60  # type: ignore[arg-type]
+
+
+def test_columns_of_other_dimensions_and_formats() -> None:
+    x, y, _, _ = BOXES.T
+    width, height = (BOXES[:, 2:] - BOXES[:, :2]).T
+    sized = Frame(x=x, y=y, w=width, h=height)
+    assert same(sap.find_pairs(sized, format="xywh"))  # type: ignore[arg-type]
+    centered = Frame(cx=x + width / 2, cy=y + height / 2, width=width, height=height)
+    assert same(sap.find_pairs(centered, format="cxcywh"))  # type: ignore[arg-type]
+    intervals = Frame(chrom=["a"] * 60, start=x, end=x + width)
+    assert same(sap.find_pairs(intervals), pairs(np.stack([x, x + width], 1)))  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"no columns that are known as boxes.*its columns are a, b"):
+        sap.find_pairs(Frame(a=x, b=y))  # type: ignore[arg-type]
+
+
+def test_missing_boxes_are_refused_or_left_out() -> None:
+    boxes = BOXES.copy()
+    boxes[[3, 40], [0, 3]] = np.nan
+    with pytest.raises(sap.InvalidBoxError, match=r"boxes\[3\] has a NaN on axis 0"):
+        sap.find_pairs(boxes)
+    left = PAIRS[~np.isin(PAIRS, [3, 40]).any(axis=1)]
+    assert same(sap.find_pairs(boxes, missing="skip"), left)
+    assert sap.count_pairs(boxes, missing="skip") == len(left)
+    between = pairs_between(BOXES, BOXES)
+    assert same(sap.find_pairs_between(boxes, BOXES, missing="skip"), between[~np.isin(between[:, 0], [3, 40])])
+    with pytest.raises(sap.InvalidBoxError, match="inverted"):
+        sap.find_pairs([[1, 0]], missing="skip")
+    with pytest.raises(ValueError, match="missing must be"):
+        sap.find_pairs(boxes, missing="drop")
+
+
+def test_masked_values_are_missing_and_not_ignored() -> None:
+    masked = np.ma.array(BOXES, mask=np.zeros(BOXES.shape, bool))
+    assert same(sap.find_pairs(masked))
+    masked[3, 0] = np.ma.masked
+    with pytest.raises(sap.InvalidBoxError):
+        sap.find_pairs(masked)
+    assert same(sap.find_pairs(masked, missing="skip"), PAIRS[~np.isin(PAIRS, [3]).any(axis=1)])
+    with pytest.raises(ValueError, match="masked"):
+        sap.find_pairs(np.ma.array([[0, 1], [0, 1]], mask=[[True, False], [False, False]]))
+
+
+def test_a_tuple_of_two_arrays_is_not_read_as_boxes() -> None:
+    starts, ends = np.array([0.0, 5.0]), np.array([1.0, 6.0])
+    with pytest.raises(ValueError, match=r"np\.column_stack"):
+        sap.find_pairs((starts, ends))
+    assert len(sap.find_pairs(np.column_stack((starts, ends)))) == 0
+
+
+small = st.lists(st.tuples(st.integers(-3, 3), st.integers(0, 3)), min_size=1, max_size=25)
+
+
+@pytest.mark.parametrize("closed", ["left", "right", "neither"])
+@pytest.mark.parametrize("kind", ["f4", "f8", "i8", "large", "M8[ns]"])
+@settings(max_examples=40)
+@given(intervals=small)
+def test_open_ends_follow_their_definition(closed: str, kind: str, intervals: Any) -> None:
+    array: Any = np.array([(start, start + length) for start, length in intervals])
+    given_as = array + 2**60 if kind == "large" else array.astype(kind)
+    half = array.shape[1] // 2
+    low, high = array[:, :half], array[:, half:]
+    overlap = ((low[:, None] < high[None]) & (low[None] < high[:, None])).all(axis=2)
+    filled = (low < high).all(axis=1)
+    wanted = np.argwhere(np.triu(overlap & filled[:, None] & filled[None], 1))
+    assert same(sap.find_pairs(given_as, closed=closed), wanted)
+    assert sap.count_pairs(given_as, closed=closed) == len(wanted)
+
+
+def test_ends_are_closed_unless_said_otherwise() -> None:
+    touching = [[0, 1], [1, 2]]
+    assert sap.count_pairs(touching) == sap.count_pairs(touching, closed="both") == 1
+    with pytest.raises(sap.InvalidBoxError):
+        sap.find_pairs([[0, 0], [3, 2]], closed="left")
+    with pytest.raises(ValueError, match="closed must be"):
+        sap.find_pairs(touching, closed="open")
+
+
+def test_integers_and_times_are_compared_exactly() -> None:
+    large = 2**62 + np.array([[0, 10], [11, 20], [20, 30]])
+    assert sap.find_pairs(large).tolist() == [[1, 2]]
+    assert sap.find_pairs_between(large[:1], large[1:]).tolist() == []
+    times = np.datetime64("2026-11-22T12:00:00", "ns") + np.array([[0, 10], [20, 30], [30, 40]])
+    assert sap.find_pairs(times).tolist() == [[1, 2]]
+    assert in_order(sap.find_pairs_between(times, times.astype("M8[s]"))).tolist() == [[0, 0], [0, 1], [0, 2]]
+    with pytest.raises(sap.InvalidBoxError, match=r"boxes\[0\] is inverted"):
+        sap.find_pairs(large[:, ::-1])
+    times[1, 0] = "NaT"
+    with pytest.raises(sap.InvalidBoxError, match=r"boxes\[1\] has a NaN"):
+        sap.find_pairs(times)
+    assert sap.find_pairs(times, missing="skip").tolist() == []
+
+
+@pytest.mark.parametrize("dimensions", DIMENSIONS)
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_groups_never_pair_with_each_other(dimensions: int, dtype: Any) -> None:
+    boxes = random_boxes(80, dimensions, dtype)
+    by = np.array(["chr1", "chr2", "X"])[np.arange(80) % 3]
+    wanted = pairs(boxes)
+    wanted = wanted[by[wanted[:, 0]] == by[wanted[:, 1]]]
+    assert len(wanted) and same(sap.find_pairs(boxes, by=by), wanted)
+    assert sap.count_pairs(boxes, by=by.tolist()) == len(wanted)
+    between = pairs_between(boxes[:30], boxes)
+    between = between[by[between[:, 0]] == by[between[:, 1]]]
+    assert same(sap.find_pairs_between(boxes[:30], boxes, by=(by[:30], by)), between)
+    assert sap.count_pairs_between(boxes[:30], boxes, by=(by[:30], by)) == len(between)
+    boxes[5, 0] = np.nan
+    kept = wanted[(wanted != 5).all(axis=1)]
+    assert same(sap.find_pairs(boxes, by=by, missing="skip"), kept)
+    with pytest.raises(ValueError, match="by must have one value for each box"):
+        sap.find_pairs(boxes, by=by[:-1])
+
+
+def test_int32_is_compared_in_double_precision_and_rounded_only_by_single_finders() -> None:
+    boxes = np.array([[0, 2**24], [2**24 + 1, 2**25]], np.int32)
+    assert len(sap.find_pairs(boxes)) == 0
+    assert len(sap.PairFinder(1, np.float32).find(boxes)) == 1
+    assert len(sap.PairFinder(1, np.float64).find(boxes)) == 0
+
+
+def test_frames_of_pandas() -> None:
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.DataFrame(BOXES[:, ::-1], columns=["maxy", "maxx", "miny", "minx"], index=range(100, 160))
+    assert same(sap.find_pairs(frame))
+    frame = pandas.DataFrame((BOXES * 2).astype(int), columns=["x1", "y1", "x2", "y2"]).astype("Int64")
+    assert same(sap.find_pairs(frame))
+    frame.loc[3, "x2"] = pandas.NA
+    assert same(sap.find_pairs(frame, missing="skip"), PAIRS[~np.isin(PAIRS, [3]).any(axis=1)])
+    index = pandas.IntervalIndex.from_arrays([0, 1, 3], [1, 3, 4])  # closed on the right
+    assert len(sap.find_pairs(index)) == 0
+    assert sap.find_pairs(index.set_closed("both")).tolist() == [[0, 1], [1, 2]]
+
+
+def test_geometries_of_shapely() -> None:
+    shapely = pytest.importorskip("shapely")
+    shapes = shapely.box(*BOXES.T)
+    assert same(sap.find_pairs(shapes))
+    assert same(sap.find_pairs(shapes.tolist()))
+    shapes[3] = None
+    with pytest.raises(sap.InvalidBoxError):
+        sap.find_pairs(shapes)
+    assert same(sap.find_pairs(shapes, missing="skip"), PAIRS[~np.isin(PAIRS, [3]).any(axis=1)])
+
+
+def test_tables_of_arrow() -> None:
+    arrow = pytest.importorskip("pyarrow")
+    table = arrow.table(dict(zip(["xmin", "ymin", "xmax", "ymax"], BOXES.T)))
+    assert same(sap.find_pairs(table))
+
+
+def test_tensors_of_torch() -> None:
+    torch = pytest.importorskip("torch")
+    assert same(sap.find_pairs(torch.tensor(BOXES, requires_grad=True)))
