@@ -1005,7 +1005,7 @@ def _double(rows: Floats) -> NDArray[np.float64]:
 def _same_length(ids: int, **others: int) -> None:
     for name, count in others.items():
         if count != ids:
-            raise ValueError(f"ids and {name} must have the same length: there are {ids} ids and {count} {name}")
+            raise ValueError(f"there are {ids} ids but {count} {name}: pass one for each id")
 
 
 def _explained(index: int, parts: tuple[Part, ...]) -> InvalidQueryError:

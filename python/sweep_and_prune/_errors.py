@@ -141,5 +141,5 @@ class SnapshotError(SweepAndPruneError, ValueError):
 
 def _place(argument: str, index: int) -> str:
     """An argument for one thing is named by itself, one for many by its element."""
-    is_many = argument in ("a", "b") or (argument.endswith("s") and argument != "radius")
+    is_many = argument in ("a", "b", "radii") or (argument.endswith("s") and argument != "radius")
     return f"{argument}[{index}]" if is_many else argument
