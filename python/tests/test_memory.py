@@ -23,7 +23,7 @@ for find in (sap.find_pairs, finder.find, lambda boxes: sap.find_pairs_between(b
     try:
         find(boxes)
     except MemoryError as error:
-        print("not enough" in str(error))
+        print("memory" in str(error))
 print(finder.find(boxes[:3]).tolist(), finder.count(boxes), sap.count_pairs(boxes))
 seen = 0
 def each(pairs):
