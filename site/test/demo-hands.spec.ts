@@ -42,7 +42,11 @@ test("keys alone: step, back, play, pause, and a ball moved", async ({ page }) =
   const { tick } = await stateOf(moving);
   await page.waitForTimeout(300);
   expect((await stateOf(moving)).tick).toBe(tick);
-  await moving.evaluate((element: SapDemo) => element.reset());
+  await moving.evaluate((element: SapDemo) => {
+    element.removeAttribute("paused");
+    element.pause();
+    element.reset();
+  });
   expect(await moving.evaluate((element: SapDemo) => element.isPlaying), "reset leaves a paused demo paused").toBe(false);
 });
 
