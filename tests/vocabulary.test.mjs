@@ -18,7 +18,6 @@ const LEFT = {
   "js/src": 1,
   "js/src/demo": 92,
   "js/wasm": 16,
-  "python": 79,
   "simulation": 24,
   "site": 10,
   "site/src": 130,

@@ -3,7 +3,7 @@
 //!
 //! Another Python thread may write to a user's array while a search runs without the GIL, and NumPy
 //! has no means to forbid that. In Rust it is undefined behavior to read memory while it is written.
-//! So Rust never reads a user's array: NumPy copies it to memory that nobody else knows. A write
+//! So Rust never reads a user's array: NumPy copies it to memory that no other code refers to. A write
 //! during the copy can mix old and new numbers; after the copy it has no effect.
 
 use numpy::ndarray::ArrayView2;
@@ -42,7 +42,7 @@ pub fn copy_boxes(
 fn copy_rows<T: Element>(array: &Array<'_>, shape: [usize; 2], memory: *mut T) -> PyResult<()> {
     static COPYTO: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let py = array.py();
-    // SAFETY: the memory has room for these boxes, and a box is `repr(C)`: scalars without padding.
+    // SAFETY: the memory is large enough for these boxes, and a box is `repr(C)`: scalars without padding.
     // The only reference to this view of it is dropped when this function returns.
     #[allow(unsafe_code)]
     let view = unsafe {

@@ -121,14 +121,14 @@ class BroadPhase:
     >>> import sweep_and_prune as sap
     >>> world = sap.BroadPhase(dimensions=2)
     >>> hero = world.insert([0, 0, 1, 2])
-    >>> door = world.insert([3, 0, 4, 2])
+    >>> gate = world.insert([3, 0, 4, 2])
     >>> len(world.update().begun)
     0
     >>> world.set(hero, [2.5, 0, 3.5, 2])
     >>> for a, b in world.update().begun:
-    ...     print(a == hero, b == door)
+    ...     print(a == hero, b == gate)
     True True
-    >>> world.remove(door)
+    >>> world.remove(gate)
     >>> len(world.update().ended)
     1
     """

@@ -392,7 +392,7 @@ class PairFinder:
         return _stream(self._finder, self._rows(a, "a"), self._rows(b, "b"), each, size, self._index)
 
     def __getstate__(self) -> dict[str, Any]:
-        """Everything but the buffers, which a copy creates anew."""
+        """Everything but the buffers, which a copy creates itself."""
         return {key: value for key, value in vars(self).items() if key != "_finder"}
 
     def __setstate__(self, state: dict[str, Any]) -> None:

@@ -40,7 +40,7 @@ def test_others_go_on_while_a_search_runs(threads: int) -> None:
         steps.append(now - last)
         last = now
     thread.join()
-    # If nobody else could go on, each step would take as long as a search.
+    # If no other thread could run, each step would take as long as a search.
     assert np.median(steps) < min(searches) / 2
 
 
@@ -102,7 +102,7 @@ def test_writing_to_the_boxes_during_a_search_gives_some_pairs_or_an_error(dtype
     assert np.array_equal(finder.find(boxes), sap.find_pairs(boxes))
 
 
-class Enough(Exception):
+class Cancelled(Exception):
     pass
 
 
@@ -127,7 +127,7 @@ def test_a_signal_ends_a_long_search(threads: int) -> None:
     ]
 
     def handler(number: int, frame: Any) -> None:
-        raise Enough
+        raise Cancelled
 
     before = signal.signal(signal.SIGALRM, handler)
 
@@ -138,7 +138,7 @@ def test_a_signal_ends_a_long_search(threads: int) -> None:
 
     def cost_until_the_signal(call: Callable[[], Any]) -> float:
         began = time.process_time()
-        with pytest.raises(Enough):
+        with pytest.raises(Cancelled):
             signal.setitimer(signal.ITIMER_REAL, 0.005)
             call()
         return time.process_time() - began
@@ -158,12 +158,12 @@ def test_a_signal_ends_a_long_search(threads: int) -> None:
 @pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there are no such timers here")
 def test_a_signal_ends_a_stream() -> None:
     def handler(number: int, frame: Any) -> None:
-        raise Enough
+        raise Cancelled
 
     chunks: list[int] = []
     before = signal.signal(signal.SIGALRM, handler)
     try:
-        with pytest.raises(Enough):
+        with pytest.raises(Cancelled):
             signal.setitimer(signal.ITIMER_REAL, 0.05)
             sap.for_each_chunk(np.zeros((100_000, 2)), lambda chunk: chunks.append(1))
     finally:

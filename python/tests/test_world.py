@@ -223,7 +223,7 @@ def test_many_bodies_in_motion(dtype: Any) -> None:
 
 
 @pytest.mark.parametrize("dtype", FLOATS)
-def test_casts_and_neighbours_equal_brute_force(dtype: Any) -> None:
+def test_casts_and_neighbors_equal_brute_force(dtype: Any) -> None:
     random = np.random.default_rng(6)
     boxes = random_boxes(300, 2, dtype, seed=2)
     world = sap.BroadPhase(2, dtype)
@@ -282,7 +282,7 @@ def touches(box: Any, way: Any, limit: float, boxes: Any) -> list[float | None]:
     return times
 
 
-def test_fat_boxes_begin_early_and_end_late() -> None:
+def test_pairs_of_fat_aabbs_begin_early_and_end_late() -> None:
     world = sap.BroadPhase(1, report="fat", margin=1)
     a, b = world.insert([0, 1]), world.insert([2.5, 3])
     assert world.update().begun.tolist() == [[a, b]]  # a's reaches to 2, b's begins at 1.5
