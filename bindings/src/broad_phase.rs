@@ -129,7 +129,8 @@ impl<const D: usize, T: Scalar> TypedBroadPhase<D, T> {
     pub fn new(settings: Settings) -> Result<Self, Error> {
         let Settings { margin, prediction, report } = settings;
         let (margin, prediction) = (T::from_f64(margin), T::from_f64(prediction));
-        let world = BroadPhase::with_options(Options { margin, prediction, report })?;
+        let options = Options::default().margin(margin).prediction(prediction).report(report);
+        let world = BroadPhase::with_options(options)?;
         Ok(Self { world, rows: Rows::new() })
     }
 }
@@ -205,11 +206,12 @@ impl<const D: usize, T: Scalar, I: Id> AnyBroadPhase<I> for TypedBroadPhase<D, T
     }
 
     fn pairs(&mut self, ids: &mut Vec<I>) {
-        ids.extend(self.world.pairs().into_iter().flatten().map(I::from_proxy));
+        ids.extend(sorted(self.world.pairs()).into_iter().flatten().map(I::from_proxy));
     }
 
     fn pairs_of(&mut self, id: ProxyId, ids: &mut Vec<I>) -> Result<(), Error> {
-        ids.extend(self.world.pairs_of(id)?.into_iter().map(I::from_proxy));
+        self.world.queries(); // which makes the tree that `pairs_of` searches
+        ids.extend(sorted(self.world.pairs_of(id)?).into_iter().map(I::from_proxy));
         Ok(())
     }
 
@@ -249,4 +251,10 @@ impl<const D: usize, T: Scalar, I: Id> ArrayBroadPhase<I> for TypedBroadPhase<D,
     fn reset(&mut self) {
         self.world = BroadPhase::with_options(self.world.options()).unwrap_or_default();
     }
+}
+
+fn sorted<V: Ord>(values: impl Iterator<Item = V>) -> Vec<V> {
+    let mut values: Vec<_> = values.collect();
+    values.sort_unstable();
+    values
 }

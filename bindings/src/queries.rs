@@ -87,7 +87,7 @@ pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
         Query::Cast => {
             for hit in queries.cast_many(&rows.read(cast::<D, T>))? {
                 if let Some(hit) = hit {
-                    answer.push(hit.id, hit.at);
+                    answer.push(hit.id, hit.t);
                 }
                 answer.end();
             }
@@ -102,7 +102,7 @@ pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
                     error => error,
                 })?;
                 for hit in hits {
-                    answer.push(hit.id, hit.at);
+                    answer.push(hit.id, hit.t);
                 }
                 answer.end();
             }

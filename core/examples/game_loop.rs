@@ -1,4 +1,4 @@
-//! A game loop: bodies move, the world tells which contacts begin and end.
+//! A game loop: bodies move, and the world reports which contacts begin and end.
 //!
 //! `cargo run --example game_loop`
 
@@ -28,7 +28,8 @@ fn main() -> Result<(), sweep_and_prune::Error> {
             ball.x += ball.speed;
             world.set(ball.id, aabb(ball.x))?;
         }
-        for pair in world.update().begun() {
+        world.update();
+        for pair in world.changes().begun() {
             println!("frame {frame}: {} meets {}", pair[0].slot(), pair[1].slot());
             let turns = |ball: &&mut Ball| pair.contains(&ball.id);
             balls.iter_mut().filter(turns).for_each(|ball| ball.speed = -ball.speed);

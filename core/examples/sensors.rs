@@ -1,5 +1,5 @@
-//! Sensors: a door that opens when a guest comes near and closes when the last has left.
-//! Filters see to it that it minds guests only.
+//! Sensors: a door that opens when a guest comes near and closes when the last one has left.
+//! By its filter it reacts only to guests.
 //!
 //! `cargo run --example sensors`
 
@@ -32,6 +32,6 @@ fn main() -> Result<(), sweep_and_prune::Error> {
             println!("step {step}: the door {}", if inside > 0 { "opens" } else { "closes" });
         }
     }
-    assert!(!world.pairs_of(sensor)?.contains(&cat));
+    assert!(!world.pairs_of(sensor)?.any(|other| other == cat));
     Ok(())
 }

@@ -115,7 +115,7 @@ pub use error::{Error, SnapshotFault, Value};
 pub use geometry::{Aabb, Scalar, validate};
 pub use pairs::{Kernel, PairFinder, count_pairs, find_pairs, find_pairs_between};
 pub use world::{
-    BroadPhase, Cast, Changes, Filter, Hit, Lists, Neighbour, Options, Pairs, ProxyId, Queries,
+    BroadPhase, Cast, Changes, Filter, Hit, Lists, Neighbor, Options, Pairs, ProxyId, Queries,
     Report, SnapshotInfo,
 };
 

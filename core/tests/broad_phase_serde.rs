@@ -11,6 +11,7 @@ fn a_world_survives_json_and_a_cut_one_is_refused() {
     world.update();
     let json = serde_json::to_string(&(&world, id)).unwrap();
     let (read, read_id): (BroadPhase<2>, ProxyId) = serde_json::from_str(&json).unwrap();
-    assert_eq!((read.snapshot(), read.pairs(), read_id), (world.snapshot(), world.pairs(), id));
+    assert_eq!((read.snapshot(), read_id), (world.snapshot(), id));
+    assert!(read.pairs().eq(world.pairs()));
     assert!(serde_json::from_str::<BroadPhase<2>>("[83, 97, 80]").is_err());
 }

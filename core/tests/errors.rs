@@ -39,7 +39,7 @@ fn a_message_about_an_id_shows_the_id_and_its_index() {
 
 #[test]
 fn a_message_about_an_option_names_the_option() {
-    let options = Options { prediction: -1.5, ..Options::default() };
+    let options = Options::default().prediction(-1.5);
     assert_eq!(
         message(BroadPhase::<2>::with_options(options)),
         "the option `prediction` is -1.5, but it must be finite and 0 or more"

@@ -4,7 +4,7 @@ use sweep_and_prune::algorithms::{
     Axis, Counts, Edge, Endpoint, Event, Method, Player, Runner, RunnerOptions, Sort, Trace,
 };
 use sweep_and_prune::{
-    Aabb, BroadPhase, Cast, Changes, Error, Filter, Hit, Kernel, Lists, Neighbour, Options,
+    Aabb, BroadPhase, Cast, Changes, Error, Filter, Hit, Kernel, Lists, Neighbor, Options,
     PairFinder, Pairs, ProxyId, Queries, Report, SnapshotFault,
 };
 
@@ -34,7 +34,7 @@ fn worlds_and_what_they_return_are_send_and_sync() {
     is_send_and_sync::<Lists<ProxyId>>();
     is_send_and_sync::<Cast<2>>();
     is_send_and_sync::<Hit>();
-    is_send_and_sync::<Neighbour>();
+    is_send_and_sync::<Neighbor>();
     is_send_and_sync::<Report>();
 }
 

@@ -1,35 +1,48 @@
 //! What an update reports.
 
+use alloc::vec::Vec;
 use core::slice;
 
-use super::proxy::{ProxyId, Slots};
+use super::bodies::{ProxyId, Slots};
+
+/// What the last update found, as slots.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Events {
+    pub begun: Vec<[u32; 2]>,
+    pub ended: Vec<[u32; 2]>,
+    /// The bodies that were removed before that update, sorted: their slots may have new bodies.
+    pub removed: Vec<ProxyId>,
+}
 
 /// The pairs that began and those that ended between two updates.
 ///
 /// Each pair comes once, its smaller id first, and both lists are sorted. A pair that began and
-/// ended between the two is in neither.
+/// ended between the two updates is in neither list.
 #[derive(Clone, Copy, Debug)]
 pub struct Changes<'w> {
     pub(super) slots: &'w Slots,
-    pub(super) begun: &'w [[u32; 2]],
-    pub(super) ended: &'w [[u32; 2]],
+    pub(super) events: &'w Events,
 }
 
 impl<'w> Changes<'w> {
-    /// The pairs that overlap now and did not at the last update.
+    /// The pairs that overlap at this update and did not at the one before.
     pub fn begun(&self) -> Pairs<'w> {
-        Pairs { slots: self.slots, pairs: self.begun.iter() }
+        self.named(&self.events.begun)
     }
 
-    /// The pairs that overlapped at the last update and do not now. The ids of bodies that were
-    /// removed since are among them, and stale.
+    /// The pairs that overlapped at the update before and do not at this one. They include pairs of
+    /// removed bodies, whose ids are stale.
     pub fn ended(&self) -> Pairs<'w> {
-        Pairs { slots: self.slots, pairs: self.ended.iter() }
+        self.named(&self.events.ended)
     }
 
     /// Whether nothing began and nothing ended.
     pub fn is_empty(&self) -> bool {
-        self.begun.is_empty() && self.ended.is_empty()
+        self.events.begun.is_empty() && self.events.ended.is_empty()
+    }
+
+    fn named(&self, pairs: &'w [[u32; 2]]) -> Pairs<'w> {
+        Pairs { slots: self.slots, removed: &self.events.removed, pairs: pairs.iter() }
     }
 }
 
@@ -37,13 +50,25 @@ impl<'w> Changes<'w> {
 #[derive(Clone, Debug)]
 pub struct Pairs<'w> {
     slots: &'w Slots,
+    removed: &'w [ProxyId],
     pairs: slice::Iter<'w, [u32; 2]>,
 }
 
 impl Pairs<'_> {
-    /// The pairs that are left, as pairs of [slots](ProxyId::slot): the cheapest form.
+    /// The remaining pairs as pairs of [slots](ProxyId::slot): the cheapest form.
     pub fn slots(&self) -> &[[u32; 2]] {
         self.pairs.as_slice()
+    }
+
+    #[inline]
+    fn name(&self, pair: &[u32; 2]) -> [ProxyId; 2] {
+        pair.map(|slot| {
+            if self.removed.is_empty() {
+                return self.slots.id_of_slot(slot);
+            }
+            let found = self.removed.binary_search_by_key(&slot, |id| id.slot());
+            found.map_or_else(|_| self.slots.id_of_slot(slot), |at| self.removed[at])
+        })
     }
 }
 
@@ -52,7 +77,7 @@ impl Iterator for Pairs<'_> {
 
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
-        self.pairs.next().map(|pair| pair.map(|slot| self.slots.id_of_slot(slot)))
+        self.pairs.next().map(|pair| self.name(pair))
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
@@ -62,7 +87,7 @@ impl Iterator for Pairs<'_> {
 
 impl DoubleEndedIterator for Pairs<'_> {
     fn next_back(&mut self) -> Option<Self::Item> {
-        self.pairs.next_back().map(|pair| pair.map(|slot| self.slots.id_of_slot(slot)))
+        self.pairs.next_back().map(|pair| self.name(pair))
     }
 }
 

@@ -1,37 +1,66 @@
-//! Margins: how much larger than its body a box is, and which box is reported.
+//! Options: which boxes are reported, and how much larger than bodies fat AABBs are.
 
 use crate::{Aabb, Error, Scalar};
 
 /// Which boxes the reported pairs are those of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Report {
     /// The boxes as they were given.
     #[default]
     Exact,
-    /// The fat boxes of [`Options::margin`] and [`Options::prediction`].
+    /// The fat AABBs of [`Options::margin`] and [`Options::prediction`].
     Fat,
 }
 
-/// How a [`BroadPhase`](super::BroadPhase) treats its boxes.
+/// How a [`BroadPhase`](crate::BroadPhase) treats its boxes.
 ///
-/// The world fattens boxes for itself, by what it sees of their motion, and never lets it show:
-/// with [`Report::Exact`], the default, margin and prediction are not needed for speed and change
-/// no result. With [`Report::Fat`] the pairs are those of the *fat boxes*, and begin and end less
-/// often: a fat box stays where it is until the body's own box leaves it. Then it is made anew:
-/// the box, grown by `margin` on every side, and on each axis by `prediction` times the last
-/// displacement in its direction.
+/// With [`Report::Exact`], the default, margin and prediction change no result and are not needed for
+/// speed: the world chooses fat AABBs of its own by the motion it sees. With [`Report::Fat`] the pairs are
+/// those of *fat AABBs*, and begin and end less often: a fat AABB stays where it is until the body's box
+/// leaves it. Then it is replaced: by the box, grown by `margin` on every side, and on each axis by
+/// `prediction` times the last displacement in its direction.
+///
+/// ```
+/// use sweep_and_prune::{BroadPhase, Options, Report};
+///
+/// let options = Options::default().margin(0.1).prediction(2.0).report(Report::Fat);
+/// let world = BroadPhase::<2>::with_options(options)?;
+/// # Ok::<(), sweep_and_prune::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Options<T = f32> {
-    /// What a fat box has around the body's own, in units of length. Finite, not negative.
+    /// How far a fat AABB reaches beyond the body on every side, in units of length. Finite, 0 or more.
     pub margin: T,
-    /// How many displacements a fat box reaches ahead. Finite, not negative.
+    /// How many displacements a fat AABB reaches ahead. Finite, 0 or more.
     pub prediction: T,
     /// Which pairs are reported.
     pub report: Report,
 }
 
+impl<T> Options<T> {
+    /// These options with another [`margin`](Self#structfield.margin).
+    #[must_use]
+    pub fn margin(self, margin: T) -> Self {
+        Self { margin, ..self }
+    }
+
+    /// These options with another [`prediction`](Self#structfield.prediction).
+    #[must_use]
+    pub fn prediction(self, prediction: T) -> Self {
+        Self { prediction, ..self }
+    }
+
+    /// These options with another [`report`](Self#structfield.report).
+    #[must_use]
+    pub fn report(self, report: Report) -> Self {
+        Self { report, ..self }
+    }
+}
+
 impl<T: Scalar> Options<T> {
-    pub(super) fn check(&self) -> Result<(), Error> {
+    pub(crate) fn check(&self) -> Result<(), Error> {
         for (option, value) in [("margin", self.margin), ("prediction", self.prediction)] {
             if !(value >= T::default() && value < T::INFINITY) {
                 return Err(Error::InvalidOption { option, value: value.to_f64().into() });
@@ -40,56 +69,31 @@ impl<T: Scalar> Options<T> {
         Ok(())
     }
 
-    /// The fat box of a body that came here by `displacement`.
-    pub(super) fn fatten<const D: usize>(
+    /// The fat AABB of a body that moved by `displacement`. It contains the body whatever the rounding,
+    /// since adding what is not negative never makes a number less.
+    pub(crate) fn fatten<const D: usize>(
         &self,
         aabb: &Aabb<D, T>,
         displacement: [T; D],
     ) -> Aabb<D, T> {
-        fatten(aabb, displacement, self.prediction, [self.margin; D])
+        let mut fat = *aabb;
+        let zero = T::default();
+        for axis in 0..D {
+            let ahead = displacement[axis] * self.prediction;
+            let (back, front) = if ahead < zero { (ahead, zero) } else { (zero, ahead) };
+            fat.min[axis] = aabb.min[axis] - self.margin + back;
+            fat.max[axis] = aabb.max[axis] + self.margin + front;
+        }
+        fat
     }
-}
-
-/// A box grown by a margin on each axis, and `steps` displacements ahead. It contains the box
-/// whatever the rounding, since adding what is not negative never makes a number less.
-pub(super) fn fatten<const D: usize, T: Scalar>(
-    aabb: &Aabb<D, T>,
-    displacement: [T; D],
-    steps: T,
-    margin: [T; D],
-) -> Aabb<D, T> {
-    let mut fat = *aabb;
-    let zero = T::default();
-    for axis in 0..D {
-        let ahead = displacement[axis] * steps;
-        let (back, front) = if ahead < zero { (ahead, zero) } else { (zero, ahead) };
-        fat.min[axis] = aabb.min[axis] - margin[axis] + back;
-        fat.max[axis] = aabb.max[axis] + margin[axis] + front;
-    }
-    fat
 }
 
 /// How far a box moved on each axis: 0 where that is not a finite number.
-pub(super) fn displacement<const D: usize, T: Scalar>(
-    from: &Aabb<D, T>,
-    to: &Aabb<D, T>,
-) -> [T; D] {
+pub fn displacement<const D: usize, T: Scalar>(from: &Aabb<D, T>, to: &Aabb<D, T>) -> [T; D] {
     core::array::from_fn(|axis| {
         let way = to.min[axis] - from.min[axis];
         if way < T::INFINITY && way > T::NEG_INFINITY { way } else { T::default() }
     })
-}
-
-/// Whether a box holds another.
-#[inline]
-pub(super) fn contains<const D: usize, T: Scalar>(outer: &Aabb<D, T>, inner: &Aabb<D, T>) -> bool {
-    outer.contains(inner)
-}
-
-/// The smallest box that holds two.
-#[inline]
-pub(super) fn hull<const D: usize, T: Scalar>(a: &Aabb<D, T>, b: &Aabb<D, T>) -> Aabb<D, T> {
-    a.union(b)
 }
 
 #[cfg(test)]
@@ -97,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_fat_box_reaches_ahead_and_holds_its_body_at_the_edge_of_the_range() {
+    fn a_fat_aabb_reaches_ahead_and_contains_its_body_at_the_edge_of_the_range() {
         let options = Options { margin: 1.0f32, prediction: 2.0, report: Report::Fat };
         let body = Aabb::new([0.0, 0.0], [1.0, 1.0]);
         let fat = options.fatten(&body, [3.0, -3.0]);
@@ -107,6 +111,6 @@ mod tests {
         let far = Aabb::new([f32::MIN, inf], [f32::MAX, inf]);
         let from = Aabb::new([f32::MAX, -inf], [f32::MAX, inf]);
         let fat = options.fatten(&far, displacement(&from, &far));
-        assert!(fat.is_valid() && contains(&fat, &far));
+        assert!(fat.is_valid() && fat.contains(&far));
     }
 }

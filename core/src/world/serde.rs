@@ -6,7 +6,7 @@ use core::fmt;
 use serde::de::{self, Deserialize, Deserializer, SeqAccess, Visitor};
 use serde::ser::{Serialize, Serializer};
 
-use super::BroadPhase;
+use super::broad_phase::BroadPhase;
 use crate::Scalar;
 
 impl<const D: usize, T: Scalar> Serialize for BroadPhase<D, T> {

@@ -82,7 +82,7 @@ impl<const D: usize> Contender<D> {
                 }
                 world.update();
                 self.pairs.clear();
-                self.pairs.extend(world.pairs().into_iter().map(|pair| pair.map(ProxyId::slot)));
+                self.pairs.extend(world.pairs().map(|pair| pair.map(ProxyId::slot)));
             }
             Engine::Algorithm(runner) => copy(runner.step(boxes, &mut ())?.pairs, &mut self.pairs),
         }

@@ -4,8 +4,9 @@ use alloc::vec::Vec;
 use core::cmp::Ordering;
 use core::ops::ControlFlow;
 
-use super::{Fault, Queries, check_each, fault_in, is_finite, is_length};
-use crate::world::ProxyId;
+use super::math::{Fault, check_each, fault_in, is_finite, is_length};
+use super::region::Queries;
+use crate::world::bodies::ProxyId;
 use crate::world::tree::Search;
 use crate::{Aabb, Error, Scalar};
 
@@ -68,7 +69,7 @@ pub struct Hit {
     /// The body.
     pub id: ProxyId,
     /// How many directions from the start; 0 if they overlap there.
-    pub at: f64,
+    pub t: f64,
 }
 
 impl<const D: usize, T: Scalar> Queries<'_, D, T> {
@@ -91,11 +92,11 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         let first_hit = |cast: &Cast<D, T>| {
             let mut best = None;
             self.run_cast(cast, |hit| {
-                let is_better = |best: Hit| hit.at.total_cmp(&best.at).then(hit.id.cmp(&best.id));
+                let is_better = |best: Hit| hit.t.total_cmp(&best.t).then(hit.id.cmp(&best.id));
                 if best.is_none_or(|best| is_better(best) == Ordering::Less) {
                     best = Some(hit);
                 }
-                ControlFlow::Continue(hit.at)
+                ControlFlow::Continue(hit.t)
             });
             best
         };
@@ -112,7 +113,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
             hits.push(hit);
             ControlFlow::Continue(f64::INFINITY)
         })?;
-        hits.sort_unstable_by(|a, b| a.at.total_cmp(&b.at).then(a.id.cmp(&b.id)));
+        hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.id.cmp(&b.id)));
         Ok(hits)
     }
 
@@ -133,8 +134,8 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
 
     fn run_cast(&self, cast: &Cast<D, T>, visit: impl FnMut(Hit) -> ControlFlow<(), f64>) {
         let limit = cast.limit.to_f64();
-        // Whoever broke off knows it.
-        let _ = self.world.updater.tree.search(&mut Casting { queries: self, cast, limit, visit });
+        // The visitor knows whether it stopped.
+        let _ = self.tree.search(&mut Casting { queries: self, cast, limit, visit });
     }
 }
 
@@ -156,11 +157,11 @@ where
         self.cast.touches(bounds, self.limit)
     }
 
-    fn visit(&mut self, seat: u32) -> ControlFlow<()> {
-        if let Some(at) = self.cast.touches(self.queries.world.shape(seat), self.limit)
-            && self.queries.sees(seat)
+    fn visit(&mut self, index: u32) -> ControlFlow<()> {
+        if let Some(t) = self.cast.touches(self.queries.bodies.shape(index), self.limit)
+            && self.queries.sees(index)
         {
-            let limit = (self.visit)(Hit { id: self.queries.world.slots.id(seat), at });
+            let limit = (self.visit)(Hit { id: self.queries.bodies.slots.id(index), t });
             self.limit = self.limit.min(match limit {
                 ControlFlow::Continue(limit) => limit,
                 ControlFlow::Break(()) => return ControlFlow::Break(()),

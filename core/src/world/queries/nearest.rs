@@ -5,14 +5,16 @@ use alloc::vec::Vec;
 
 use core::ops::ControlFlow;
 
-use super::{Lists, Queries, check_each, fault_in, gap, is_finite};
-use crate::world::ProxyId;
+use super::lists::Lists;
+use super::math::{check_each, fault_in, gap, is_finite};
+use super::region::Queries;
+use crate::world::bodies::ProxyId;
 use crate::world::tree::Search;
 use crate::{Aabb, Error, Scalar};
 
 /// A body near a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Neighbour {
+pub struct Neighbor {
     /// The body.
     pub id: ProxyId,
     /// The square of the distance from the point to the body's box; 0 if the point is in it.
@@ -25,7 +27,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     ///
     /// # Errors
     /// [`Error::InvalidQuery`] if the point is not finite.
-    pub fn nearest(&self, point: [T; D], k: usize) -> Result<Vec<Neighbour>, Error> {
+    pub fn nearest(&self, point: [T; D], k: usize) -> Result<Vec<Neighbor>, Error> {
         self.list(&point, |queries, points| queries.nearest_many(points, k))
     }
 
@@ -33,7 +35,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     ///
     /// # Errors
     /// [`Error::InvalidQuery`] with the index of the first bad one.
-    pub fn nearest_many(&self, points: &[[T; D]], k: usize) -> Result<Lists<Neighbour>, Error> {
+    pub fn nearest_many(&self, points: &[[T; D]], k: usize) -> Result<Lists<Neighbor>, Error> {
         check_each(points, |point| fault_in("point", point, is_finite))?;
         let mut lists = Lists::new();
         let mut search =
@@ -42,18 +44,18 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         for &point in points {
             search.point = point;
             if k > 0 {
-                let _ = self.world.updater.tree.search(&mut search);
+                let _ = self.tree.search(&mut search);
             }
             sorted.extend(search.nearest.drain());
             sorted.sort_unstable();
-            let neighbours: Vec<_> = sorted
+            let neighbors: Vec<_> = sorted
                 .drain(..)
-                .map(|(bits, slot)| Neighbour {
-                    id: self.world.slots.id_of_slot(slot),
+                .map(|(bits, slot)| Neighbor {
+                    id: self.bodies.slots.id_of_slot(slot),
                     distance_squared: f64::from_bits(bits),
                 })
                 .collect();
-            lists.push(&neighbours);
+            lists.push(&neighbors);
         }
         Ok(lists)
     }
@@ -76,10 +78,10 @@ impl<const D: usize, T: Scalar> Search<D, T> for Nearest<'_, D, T> {
         farthest.is_none_or(|&(bits, _)| distance.to_bits() <= bits).then_some(distance)
     }
 
-    fn visit(&mut self, seat: u32) -> ControlFlow<()> {
-        if self.queries.sees(seat) {
-            let aabb = self.queries.world.shape(seat);
-            let slot = self.queries.world.slots.slots[seat as usize];
+    fn visit(&mut self, index: u32) -> ControlFlow<()> {
+        if self.queries.sees(index) {
+            let aabb = self.queries.bodies.shape(index);
+            let slot = self.queries.bodies.slots.slot_of[index as usize];
             self.nearest.push((distance_squared(&self.point, aabb).to_bits(), slot));
             if self.nearest.len() > self.k {
                 self.nearest.pop();

@@ -1,38 +1,30 @@
 //! Builds a tree from the top, and fits it to boxes that moved.
 
-use super::node::{FAN, FILL, Node, finite, size};
-use super::{NONE, Tree};
+use super::edit::{Entry, Tree};
+use super::node::{FAN, FILL, NONE, Node, finite, size};
 use crate::{Aabb, Scalar};
 
-/// Of so many bodies is looked at how they spread.
+/// Sample size for measuring how bodies spread.
 const SAMPLE: usize = 64;
 
-/// A body that is to be put into a leaf. What is asked of it again and again is at hand.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Entry<const D: usize> {
-    centre: [f64; D],
-    class: u32,
-    seat: u32,
-}
-
 impl<const D: usize, T: Scalar> Tree<D, T> {
-    /// Builds the tree anew of these seats. O(n log n) time.
-    pub fn build(&mut self, seats: impl Iterator<Item = u32>, boxes: &[Aabb<D, T>]) {
+    /// Builds the tree from scratch of these bodies. O(n log n) time.
+    pub fn build(&mut self, bodies: impl Iterator<Item = u32>, boxes: &[Aabb<D, T>]) {
         self.clear();
         self.leaves.resize(boxes.len(), NONE);
         let mut entries = core::mem::take(&mut self.entries);
         entries.clear();
-        entries.extend(seats.map(|seat| {
-            let aabb = &boxes[seat as usize];
-            let centre = core::array::from_fn(|axis| aabb.centre(axis));
-            Entry { centre, class: size_class(aabb), seat }
+        entries.extend(bodies.map(|body| {
+            let aabb = &boxes[body as usize];
+            let center = core::array::from_fn(|axis| aabb.doubled_center(axis));
+            Entry { center, class: size_class(aabb), body }
         }));
         self.count = entries.len();
-        entries.sort_unstable_by_key(|entry| (entry.class, entry.seat));
+        entries.sort_unstable_by_key(|entry| (entry.class, entry.body));
         let mut roots = Node::new(false);
         let mut start = 0;
         while let Some(&Entry { class, .. }) = entries.get(start) {
-            // Where there are more classes than a node has room for, the last holds the others.
+            // Where there are more classes than a node can hold, the last holds the others.
             let is_last = roots.count == FAN - 1;
             let end =
                 start + entries[start..].partition_point(|entry| is_last || entry.class == class);
@@ -48,7 +40,7 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
             _ => self.add_inner(roots),
         };
         self.built = (self.leaf_size(), self.count);
-        // Room for what moving bodies add and take away, so that it need not be found later.
+        // Spare capacity for what moving bodies add, so that steady motion does not allocate.
         self.nodes.reserve(self.nodes.len() / 2);
         self.free.reserve(self.nodes.len() / 2);
     }
@@ -62,34 +54,34 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
     ) -> (u32, Aabb<D, T>) {
         if leaves <= 1 {
             let mut leaf = Node::new(true);
-            for &Entry { seat, .. } in entries.iter() {
-                leaf.push(seat, &boxes[seat as usize]);
-                self.leaves[seat as usize] = self.nodes.len() as u32;
+            for &Entry { body, .. } in entries.iter() {
+                leaf.push(body, &boxes[body as usize]);
+                self.leaves[body as usize] = self.nodes.len() as u32;
             }
             self.nodes.push(leaf);
             return ((self.nodes.len() - 1) as u32, leaf.bounds());
         }
         // As few children as hold the leaves when they are full to the bottom.
-        let mut room = 1;
-        while room * FAN < leaves {
-            room *= FAN;
+        let mut capacity = 1;
+        while capacity * FAN < leaves {
+            capacity *= FAN;
         }
         let mut inner = Node::new(false);
-        inner.has_leaves = room == 1;
-        self.build_children(entries, boxes, leaves, room, &mut inner);
+        inner.has_leaves = capacity == 1;
+        self.build_children(entries, boxes, leaves, capacity, &mut inner);
         (self.add_inner(inner), inner.bounds())
     }
 
-    /// Cuts bodies in two until what is left goes into a child of `room` leaves.
+    /// Cuts bodies in two until what is left goes into a child of `capacity` leaves.
     fn build_children(
         &mut self,
         entries: &mut [Entry<D>],
         boxes: &[Aabb<D, T>],
         leaves: usize,
-        room: usize,
+        capacity: usize,
         inner: &mut Node<D, T>,
     ) {
-        let count = leaves.div_ceil(room);
+        let count = leaves.div_ceil(capacity);
         if count <= 1 {
             let (child, bounds) = self.build_node(entries, boxes, leaves);
             inner.push(child, &bounds);
@@ -100,11 +92,11 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         let middle = (entries.len() as u64 * left as u64 / leaves as u64) as usize;
         let axis = widest_axis(entries, boxes);
         entries.select_nth_unstable_by(middle, |a, b| {
-            a.centre[axis].total_cmp(&b.centre[axis]).then(a.seat.cmp(&b.seat))
+            a.center[axis].total_cmp(&b.center[axis]).then(a.body.cmp(&b.body))
         });
         let (low, high) = entries.split_at_mut(middle);
-        self.build_children(low, boxes, left, room, inner);
-        self.build_children(high, boxes, leaves - left, room, inner);
+        self.build_children(low, boxes, left, capacity, inner);
+        self.build_children(high, boxes, leaves - left, capacity, inner);
     }
 
     /// Takes over new boxes of all bodies. Returns how many times as large as when built the
@@ -137,24 +129,24 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
 }
 
 /// Sizes that differ by less than a factor of 8 on the longest axis are of one class, or of two
-/// neighbouring ones.
+/// neighboring ones.
 fn size_class<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> u32 {
     let longest =
         (0..D).map(|axis| finite(aabb.max[axis]) - finite(aabb.min[axis])).fold(0.0, f64::max);
-    // The exponent, in threes; larger first, so that the many small classes are the ones to share.
+    // The exponent, in threes; larger first, so that the many small classes come last.
     let exponent = (longest.to_bits() >> 52) as u32;
     2047 / 3 - exponent / 3
 }
 
-/// The axis on which the centres spread most for the size of the boxes, by a sample.
+/// The axis on which the centers spread most for the size of the boxes, by a sample.
 fn widest_axis<const D: usize, T: Scalar>(entries: &[Entry<D>], boxes: &[Aabb<D, T>]) -> usize {
     let mut best = (0, -1.0, 0.0);
     for axis in 0..D {
         let (mut low, mut high, mut width) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
         for entry in entries.iter().step_by(entries.len().div_ceil(SAMPLE)) {
-            let aabb = &boxes[entry.seat as usize];
-            low = low.min(entry.centre[axis]);
-            high = high.max(entry.centre[axis]);
+            let aabb = &boxes[entry.body as usize];
+            low = low.min(entry.center[axis]);
+            high = high.max(entry.center[axis]);
             width += finite(aabb.max[axis]) - finite(aabb.min[axis]);
         }
         let spread = high - low;

@@ -2,20 +2,21 @@
 
 use core::hint::black_box;
 
-use super::NONE;
 use crate::{Aabb, Scalar};
 
+/// No node, no body.
+pub const NONE: u32 = u32::MAX;
 /// Boxes a node holds at most.
-pub(super) const FAN: usize = 16;
-/// Bodies a leaf is built with, which leaves room for more.
-pub(super) const FILL: usize = 12;
+pub const FAN: usize = 16;
+/// Bodies a leaf is built with, which leaves spare capacity.
+pub const FILL: usize = 12;
 /// A leaf with fewer is given up.
-pub(super) const LEAST: usize = 3;
+pub const LEAST: usize = 3;
 
 /// Up to 16 boxes, each of a child node or of a body.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub(super) struct Node<const D: usize, T> {
+pub struct Node<const D: usize, T> {
     /// By axis and lane; a lane without a box has what changes no bounds.
     pub min: [[T; FAN]; D],
     pub max: [[T; FAN]; D],
@@ -80,7 +81,7 @@ impl<const D: usize, T: Scalar> Node<D, T> {
         (bits & ((1 << self.count) - 1)).trailing_zeros() as usize % FAN
     }
 
-    /// Has it come from memory, and does not wait for it.
+    /// Prefetches it.
     #[inline]
     pub fn prefetch(&self) {
         for axis in 0..D {
@@ -163,24 +164,24 @@ const BITS: [u32; FAN] = {
 };
 
 impl<const D: usize, T: Scalar> Aabb<D, T> {
-    /// The centre on an axis, doubled and kept finite: to sort by.
-    pub(in crate::world) fn centre(&self, axis: usize) -> f64 {
+    /// The center on an axis, doubled and kept finite: to sort by.
+    pub fn doubled_center(&self, axis: usize) -> f64 {
         finite(self.min[axis]) + finite(self.max[axis])
     }
 }
 
-pub(super) fn finite<T: Scalar>(at: T) -> f64 {
+pub fn finite<T: Scalar>(at: T) -> f64 {
     at.to_f64().clamp(-1e300, 1e300)
 }
 
 /// Half the perimeter, in proportion to which a box is met by chance. Finite.
-pub(super) fn size<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> f64 {
+pub fn size<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> f64 {
     (0..D).map(|axis| finite(aabb.max[axis]) - finite(aabb.min[axis])).sum()
 }
 
 /// Divides a full node's boxes and one more in two halves: in the order of an axis or of size,
 /// whichever makes the smallest halves.
-pub(super) fn split<const D: usize, T: Scalar>(
+pub fn split<const D: usize, T: Scalar>(
     node: &Node<D, T>,
     item: u32,
     aabb: &Aabb<D, T>,
@@ -191,7 +192,8 @@ pub(super) fn split<const D: usize, T: Scalar>(
     }
     let halves = |order: usize| {
         let mut sorted = entries;
-        let key = |aabb: &Aabb<D, T>| if order < D { aabb.centre(order) } else { size(aabb) };
+        let key =
+            |aabb: &Aabb<D, T>| if order < D { aabb.doubled_center(order) } else { size(aabb) };
         sorted.sort_unstable_by(|a, b| key(&a.1).total_cmp(&key(&b.1)).then(a.0.cmp(&b.0)));
         let half = Node { has_leaves: node.has_leaves, ..Node::new(node.is_leaf) };
         let mut halves = (half, half);

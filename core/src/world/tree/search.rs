@@ -3,33 +3,31 @@
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
-use super::node::FAN;
-use super::{NONE, Tree};
+use super::edit::Tree;
+use super::node::{FAN, NONE};
 use crate::{Aabb, Scalar};
 
-/// What is somewhere in memory is called from there so many at a time, before it is looked at: then
-/// one waits for all instead of for each.
-pub(in crate::world) const TOGETHER: usize = 16;
+/// Random reads are prefetched this many at a time, so that their cache misses overlap.
+pub const TOGETHER: usize = 16;
 
-/// So many boxes are looked up at a time.
-pub(in crate::world) const BATCH: usize = 256;
+/// How many boxes are looked up at a time.
+pub const BATCH: usize = 256;
 
 /// What a query looks for.
-pub(in crate::world) trait Search<const D: usize, T> {
-    /// How near the nearest body in `bounds` may be; `None` if none in there can matter.
+pub trait Search<const D: usize, T> {
+    /// A lower bound of the distance of all bodies in `bounds`; `None` if none of them can matter.
     fn bound(&self, bounds: &Aabb<D, T>) -> Option<f64>;
 
-    /// Looks at the body in a seat.
-    fn visit(&mut self, seat: u32) -> ControlFlow<()>;
+    /// Visits a body.
+    fn visit(&mut self, body: u32) -> ControlFlow<()>;
 }
 
 impl<const D: usize, T: Scalar> Tree<D, T> {
-    /// Lists for each of up to [`BATCH`] boxes, which come with a number, all bodies whose box overlaps it, as
-    /// pairs of the index of the query and a seat.
+    /// Lists for each of up to [`BATCH`] boxes all bodies whose box overlaps it, as pairs of the
+    /// position of the box in `queries` and a body.
     ///
-    /// First the leaves are listed that any box touches, and then these are gone through: it is known
-    /// early which comes when, and so they are called from memory some time before they are needed,
-    /// several at once.
+    /// It first lists the leaves that any box overlaps and then reads these in turn: so they can be
+    /// prefetched, several at once.
     pub fn overlapping_many(
         &self,
         queries: &[(u32, Aabb<D, T>)],
@@ -38,10 +36,10 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
     ) {
         scratch.clear();
         found.clear();
-        // Room for more than are found, so that it need not be found later.
-        let room = self.count.min(BATCH) * 4 * FAN;
-        scratch.reserve(room);
-        found.reserve(room);
+        // Spare capacity, so that steady motion does not allocate.
+        let spare = self.count.min(BATCH) * 4 * FAN;
+        scratch.reserve(spare);
+        found.reserve(spare);
         if self.root == NONE {
             return;
         }
@@ -80,11 +78,36 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         }
     }
 
-    /// Calls the leaf of a body from memory.
+    /// The bodies whose boxes overlap `area`, in no particular order, without allocating: the way back
+    /// up the tree is that of the parents.
+    pub fn overlapping(&self, area: Aabb<D, T>) -> impl Iterator<Item = u32> {
+        let mut node = self.root;
+        let mut bits = self.nodes.get(node as usize).map_or(0, |node| node.overlapping(&area));
+        core::iter::from_fn(move || {
+            loop {
+                let current = self.nodes.get(node as usize)?;
+                if bits == 0 {
+                    let above = self.nodes.get(current.parent as usize)?;
+                    bits = above.overlapping(&area) & (u32::MAX << above.lane_of(node) << 1);
+                    node = current.parent;
+                    continue;
+                }
+                let item = current.items[bits.trailing_zeros() as usize];
+                bits &= bits - 1;
+                if current.is_leaf {
+                    return Some(item);
+                }
+                node = item;
+                bits = self.nodes[node as usize].overlapping(&area);
+            }
+        })
+    }
+
+    /// Prefetches the leaf of a body.
     #[inline]
-    pub fn call_leaf_of(&self, seat: u32) {
+    pub fn prefetch_leaf_of(&self, body: u32) {
         if let Some(node) =
-            self.leaves.get(seat as usize).and_then(|&leaf| self.nodes.get(leaf as usize))
+            self.leaves.get(body as usize).and_then(|&leaf| self.nodes.get(leaf as usize))
         {
             node.prefetch();
         }

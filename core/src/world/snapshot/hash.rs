@@ -1,11 +1,8 @@
 //! One number for the state of a world.
 
-use super::BroadPhase;
-use crate::Scalar;
-
 /// A 64-bit hash of bytes, which mixes word by word as those of the xxHash family do. Each bit
 /// depends on every byte and on their number.
-pub(super) fn hash(bytes: &[u8]) -> u64 {
+pub fn hash(bytes: &[u8]) -> u64 {
     const FIRST: u64 = 0x9e37_79b1_85eb_ca87;
     const SECOND: u64 = 0xc2b2_ae3d_27d4_eb4f;
     let mut hash = FIRST ^ bytes.len() as u64;
@@ -19,18 +16,6 @@ pub(super) fn hash(bytes: &[u8]) -> u64 {
     hash = (hash ^ (hash >> 33)).wrapping_mul(SECOND);
     hash = (hash ^ (hash >> 29)).wrapping_mul(FIRST);
     hash ^ (hash >> 32)
-}
-
-impl<const D: usize, T: Scalar> BroadPhase<D, T> {
-    /// A hash of the whole state, that of its [`snapshot`](Self::snapshot): boxes, filters, the
-    /// ids given out, and what the next update has to report. Equal for equal states, on every
-    /// platform: to notice when two machines that should run the same simulation do not. Not for
-    /// defence against forgery.
-    ///
-    /// O(n) time and memory.
-    pub fn state_hash(&self) -> u64 {
-        hash(&self.snapshot())
-    }
 }
 
 #[cfg(test)]

@@ -1,39 +1,39 @@
-//! How far ahead a fat box reaches.
+//! How far ahead fat AABBs reach.
 
-use super::options::Options;
+use crate::world::options::Options;
 use crate::{Aabb, Scalar};
 
-/// Chooses fat boxes from what is seen of the motion.
+/// Chooses fat AABBs by the motion of a sample of bodies.
 ///
-/// A fat box that reaches further lasts longer and has more candidates. Bodies that all move get
-/// boxes that last equally long, so that they are done with at once, by the finder.
+/// A fat AABB that reaches further lasts longer and has more candidates. If most bodies move, all get
+/// fat AABBs that last equally long, so that all are replaced at once, by the finder.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Prediction {
-    /// The mean longest side of the boxes that moved when last seen together.
+pub struct Motion {
+    /// The mean longest side of the sample.
     size: f64,
-    /// The updates that boxes made together last.
-    steps: f64,
+    /// How many updates fat AABBs that are made together last.
+    lifetime: f64,
 }
 
-/// How far a fat box reaches in box sizes: made together with others in the mean, alone.
+/// How far a fat AABB reaches, in box sizes: if made together with others, on average; if made alone.
 const REACH: f64 = 0.6;
 const REACH_ALONE: f64 = 1.2;
-/// What moves further is taken for a jump, which says nothing of the next step.
+/// What moves further than this, in box sizes, jumps: its motion says nothing of the next step.
 const JUMP: f64 = 2.0;
-/// The updates a fat box is to last at most.
+/// How many updates a fat AABB lasts at most.
 const LONGEST: f64 = 80.0;
-/// What one that is made after a jump has on every side, in box sizes.
+/// The margin of a fat AABB after a jump, in box sizes.
 const LANDED: f64 = 0.4;
-/// What it has on every side for inexact motion, in displacements.
+/// The margin for inexact motion, in displacements.
 const SLACK: f64 = 0.125;
+/// How many bodies are sampled.
+const SAMPLE: usize = 512;
 /// Larger sides are left out of the mean: their sum would overflow.
 const LARGEST: f64 = f64::MAX / (2 * SAMPLE) as f64;
-/// Of so many bodies the motion is looked at.
-const SAMPLE: usize = 512;
 
-impl Prediction {
-    /// Looks at bodies that move: where they were at the last update and where they are.
-    pub fn look<'a, const D: usize, T: Scalar>(
+impl Motion {
+    /// Samples the motion of bodies: their boxes at the last update and now.
+    pub fn sample<'a, const D: usize, T: Scalar>(
         &mut self,
         moves: impl ExactSizeIterator<Item = (&'a Aabb<D, T>, &'a Aabb<D, T>)>,
     ) {
@@ -45,24 +45,24 @@ impl Prediction {
                 (size, way, count) = (size + side, way + moved, count + 1.0);
             }
         }
-        self.steps = 0.0;
+        self.lifetime = 0.0;
         if count > 0.0 {
             self.size = size / count;
-            self.steps = (REACH * size / way).min(LONGEST);
+            self.lifetime = (REACH * size / way).min(LONGEST);
         }
     }
 
-    /// The updates that boxes made together last.
-    pub fn steps(&self) -> f64 {
-        self.steps
+    /// How many updates fat AABBs that are made together last.
+    pub fn lifetime(&self) -> f64 {
+        self.lifetime
     }
 
-    /// Whether boxes made together are larger than the bodies' own.
+    /// Whether fat AABBs that are made together are larger than bodies.
     pub fn reaches(&self) -> bool {
-        self.steps >= 2.0
+        self.lifetime >= 2.0
     }
 
-    /// The fat box of a body that moves with most others.
+    /// The fat AABB of a body that moves together with most others.
     #[inline]
     pub fn together<const D: usize, T: Scalar>(
         &self,
@@ -70,12 +70,12 @@ impl Prediction {
         now: &Aabb<D, T>,
         options: &Options<T>,
     ) -> Aabb<D, T> {
-        let is_jump = self.is_beyond(before, now, JUMP * self.size / self.steps);
-        let steps = if is_jump { T::default() } else { T::from_f64(self.steps) };
+        let is_jump = self.is_beyond(before, now, JUMP * self.size / self.lifetime);
+        let steps = if is_jump { T::default() } else { T::from_f64(self.lifetime) };
         fatten(before, now, steps, options)
     }
 
-    /// Whether a body went so far that where it was says little of where it is.
+    /// Whether a body moved so far that its motion says nothing of the next step.
     pub fn is_jump<const D: usize, T: Scalar>(
         &self,
         before: &Aabb<D, T>,
@@ -98,11 +98,11 @@ impl Prediction {
         })
     }
 
-    /// The fat box of a body that moves by itself, the one in this seat: others get boxes that last
-    /// longer or less long, lest they leave them all at once.
+    /// The fat AABB of a body that moves by itself. How long it lasts depends on the index, so that
+    /// bodies do not all leave their fat AABBs at once.
     pub fn alone<const D: usize, T: Scalar>(
         &self,
-        seat: u32,
+        index: u32,
         before: &Aabb<D, T>,
         now: &Aabb<D, T>,
         options: &Options<T>,
@@ -110,10 +110,10 @@ impl Prediction {
         let side = longest_side(now);
         let size = if side < f64::INFINITY { side.max(self.size) } else { self.size };
         let way = displacement(before, now);
-        let longest = LONGEST * (1.0 - f64::from(seat % 16) / 32.0);
+        let longest = LONGEST * (1.0 - f64::from(index % 16) / 32.0);
         let steps = if way > 0.0 { (REACH_ALONE * size / way).min(longest) } else { 0.0 };
         if steps < 1.0 {
-            // A jump: where to from here is unknown.
+            // A jump: where it goes from here is unknown.
             let landed = T::from_f64(LANDED * size);
             let margin = options.margin + if landed < T::INFINITY { landed } else { T::default() };
             return fatten(before, now, T::default(), &Options { margin, ..*options });
@@ -171,10 +171,9 @@ fn longest_side<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::options::contains;
 
     #[test]
-    fn fat_boxes_hold_their_bodies_whatever_comes_from_or_goes_to_infinity() {
+    fn a_fat_aabb_contains_its_body_even_at_infinity() {
         let ends = [f32::NEG_INFINITY, f32::MIN, -1.0, 0.0, 1e-30, f32::MAX, f32::INFINITY];
         let intervals = || {
             let pairs = ends.iter().flat_map(|&a| ends.iter().map(move |&b| (a, b)));
@@ -185,12 +184,12 @@ mod tests {
             for now in intervals() {
                 for steps in [0.0, 1.0, 8.0, f32::MAX] {
                     let fat = fatten(&before, &now, steps, &options);
-                    assert!(contains(&fat, &now), "{before:?} {now:?} {steps} {fat:?}");
+                    assert!(fat.contains(&now), "{before:?} {now:?} {steps} {fat:?}");
                 }
-                let mut prediction = Prediction::default();
-                prediction.look([(&before, &now)].into_iter());
-                assert!(contains(&prediction.alone(7, &before, &now, &options), &now));
-                assert!(contains(&prediction.together(&before, &now, &options), &now));
+                let mut motion = Motion::default();
+                motion.sample([(&before, &now)].into_iter());
+                assert!(motion.alone(7, &before, &now, &options).contains(&now));
+                assert!(motion.together(&before, &now, &options).contains(&now));
             }
         }
     }

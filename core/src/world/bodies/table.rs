@@ -1,0 +1,231 @@
+//! The tables of bodies: what the next update compares, the world now and at the last update.
+
+use alloc::vec::Vec;
+
+use super::filter::Filter;
+use super::slots::{Slots, flag};
+use crate::world::options::{Options, Report};
+use crate::{Aabb, Error, Scalar};
+
+/// Reading a row at random takes as long as reading this many rows in order (see `crate::memory`).
+pub const RANDOM_READ: usize = 16;
+/// Above this share of changed bodies, one in so many, all bodies are scanned in storage order.
+const SCAN_ALL: usize = 4;
+
+/// All bodies, by storage index, and what changed since the last update.
+#[derive(Clone, Debug)]
+pub struct Bodies<const D: usize, T: Scalar> {
+    pub options: Options<T>,
+    pub slots: Slots,
+    /// The boxes whose overlaps are reported.
+    pub boxes: Vec<Aabb<D, T>>,
+    /// The boxes as given, where these are not the ones reported; else empty.
+    pub shapes: Vec<Aabb<D, T>>,
+    pub filters: Vec<Filter>,
+    /// Whether a body ever had another filter than the default: if not, every pair is allowed.
+    pub any_filter: bool,
+    /// The boxes at the last update. Meaningless for bodies of [`flag::NEW`].
+    pub previous: Vec<Aabb<D, T>>,
+    /// The filters at the last update, of bodies of [`flag::REFILTERED`]; only as long as needed.
+    pub old_filters: Vec<Filter>,
+    /// Whether there is a body of [`flag::REFILTERED`].
+    pub any_refiltered: bool,
+    /// Whether there is a body of [`flag::NEW`].
+    pub any_new: bool,
+    /// The bodies of [`flag::CHANGED`], at least once each, and some that were removed since.
+    pub changed: Vec<u32>,
+    /// Whether boxes of other bodies may differ from those of the last update too.
+    pub any_unlisted: bool,
+    /// The bodies of [`flag::LEAVING`].
+    pub leaving: Vec<u32>,
+    /// Removed bodies that only the tree knew: it has to forget them before it is used.
+    pub only_in_tree: Vec<u32>,
+    /// Where bodies of [`flag::SWEPT`] are after the next update; only as long as needed.
+    pub rests: Vec<Aabb<D, T>>,
+    /// The bodies of [`flag::SWEPT`], and others, some twice.
+    pub swept: Vec<u32>,
+    /// Bodies that moved recently have smaller indices than this, with few exceptions.
+    pub front: usize,
+}
+
+impl<const D: usize, T: Scalar> Bodies<D, T> {
+    pub fn new(options: Options<T>) -> Self {
+        Self {
+            options,
+            slots: Slots::default(),
+            boxes: Vec::new(),
+            shapes: Vec::new(),
+            filters: Vec::new(),
+            any_filter: false,
+            previous: Vec::new(),
+            old_filters: Vec::new(),
+            any_refiltered: false,
+            any_new: false,
+            changed: Vec::new(),
+            any_unlisted: false,
+            leaving: Vec::new(),
+            only_in_tree: Vec::new(),
+            rests: Vec::new(),
+            swept: Vec::new(),
+            front: 0,
+        }
+    }
+
+    /// How many bodies live.
+    pub fn live(&self) -> usize {
+        self.slots.live
+    }
+
+    /// Whether this many changes are found faster by scanning all bodies than one by one.
+    pub fn scans_all(&self, changes: usize) -> bool {
+        changes * SCAN_ALL > self.slots.len()
+    }
+
+    /// How many rows of a table are better read in order, if `count` rows are needed: all, those of
+    /// the bodies that move, or none.
+    pub fn rows_to_scan(&self, count: usize) -> usize {
+        let (worth, front, all) = (count.saturating_mul(RANDOM_READ), self.front, self.slots.len());
+        if front > all / 2 && worth > all {
+            all
+        } else if worth > front {
+            front
+        } else {
+            0
+        }
+    }
+
+    /// The box of a body as given.
+    pub fn shape(&self, index: u32) -> &Aabb<D, T> {
+        match self.options.report {
+            Report::Exact => &self.boxes[index as usize],
+            Report::Fat => &self.shapes[index as usize],
+        }
+    }
+
+    /// Writes all that is known of a body whose index is that of an existing row or the next.
+    pub fn put(&mut self, index: u32, shape: Aabb<D, T>, boxed: Aabb<D, T>, filter: Filter) {
+        if self.options.report == Report::Fat {
+            put(&mut self.shapes, index, shape);
+        }
+        put(&mut self.boxes, index, boxed);
+        put(&mut self.filters, index, filter);
+        self.any_filter |= filter != Filter::default();
+        if self.previous.len() < self.boxes.len() {
+            self.front += usize::from(self.front == self.previous.len());
+            self.previous.push(boxed);
+        }
+    }
+
+    /// Has the next update look at a body, and the next query too.
+    #[inline]
+    pub fn touch(&mut self, index: u32) {
+        let flags = &mut self.slots.flags[index as usize];
+        if *flags & (flag::CHANGED | flag::IN_TREE) != flag::CHANGED {
+            self.changed.push(index);
+            *flags = (*flags | flag::CHANGED) & !flag::IN_TREE;
+        }
+    }
+
+    /// Lists the bodies whose boxes changed and are not listed yet, and some that are.
+    pub fn list_changed(&mut self) {
+        if core::mem::take(&mut self.any_unlisted) {
+            for index in 0..self.slots.len() {
+                let flags = self.slots.flags[index];
+                // The previous box of a new body is that of the body that had the slot before.
+                let is_changed =
+                    flags & flag::NEW != 0 || differ(&self.boxes[index], &self.previous[index]);
+                if flags & flag::LIVE != 0 && is_changed {
+                    self.touch(index as u32);
+                }
+            }
+        }
+    }
+
+    /// Whether two bodies are there, overlap, and may pair.
+    pub fn is_live(&self, [a, b]: [u32; 2]) -> bool {
+        let (first, second) = (a as usize, b as usize);
+        self.slots.has(a, flag::LIVE)
+            && self.slots.has(b, flag::LIVE)
+            && self.boxes[first].overlaps_branch_free(&self.boxes[second])
+            && self.allows([a, b])
+    }
+
+    /// Whether a pair was live at the last update, given the boxes of both then.
+    pub fn was_live(&self, [a, b]: [u32; 2], [box_a, box_b]: [&Aabb<D, T>; 2]) -> bool {
+        !self.slots.has(a, flag::NEW)
+            && !self.slots.has(b, flag::NEW)
+            && box_a.overlaps_branch_free(box_b)
+            && (!self.any_filter || self.old_filter(a).allows(self.old_filter(b)))
+    }
+
+    /// Whether the filters of two bodies allow them to pair.
+    #[inline]
+    pub fn allows(&self, [a, b]: [u32; 2]) -> bool {
+        !self.any_filter || self.filters[a as usize].allows(&self.filters[b as usize])
+    }
+
+    /// The filter of a body at the last update.
+    pub fn old_filter(&self, index: u32) -> &Filter {
+        if self.slots.has(index, flag::REFILTERED) {
+            &self.old_filters[index as usize]
+        } else {
+            &self.filters[index as usize]
+        }
+    }
+
+    /// Keeps the filter that a body had at the last update.
+    pub fn keep_old_filter(&mut self, index: u32, filter: Filter) {
+        self.slots.raise(index, flag::REFILTERED);
+        self.any_refiltered = true;
+        self.any_filter |= filter != Filter::default();
+        if self.old_filters.len() <= index as usize {
+            self.old_filters.resize(self.slots.len(), filter);
+        }
+        self.old_filters[index as usize] = filter;
+    }
+
+    /// Keeps where a sweep ends.
+    pub fn sweep_to(&mut self, index: u32, to: Aabb<D, T>) {
+        if !self.slots.has(index, flag::SWEPT) {
+            if self.swept.len() > self.slots.len() {
+                // Bodies that were set after they were swept are still listed: drop them.
+                let all = 0..self.slots.len() as u32;
+                let slots = &self.slots;
+                self.swept.clear();
+                self.swept.extend(all.filter(|&index| slots.has(index, flag::SWEPT)));
+            }
+            self.slots.raise(index, flag::SWEPT);
+            self.swept.push(index);
+        }
+        if self.rests.len() <= index as usize {
+            self.rests.resize(self.slots.len(), to);
+        }
+        self.rests[index as usize] = to;
+    }
+}
+
+/// An error that names the position of a box if it is not valid.
+pub fn check_box<const D: usize, T: Scalar>(
+    aabb: &Aabb<D, T>,
+    position: usize,
+) -> Result<(), Error> {
+    aabb.check(position)
+}
+
+/// Whether the bits of two boxes differ: without a branch, and in the order of the bits in memory, so
+/// that compilers vectorize it.
+#[inline]
+pub fn differ<const D: usize, T: Scalar>(a: &Aabb<D, T>, b: &Aabb<D, T>) -> bool {
+    let corners = |a: &[T; D], b: &[T; D]| {
+        (0..D).fold(0, |bits, axis| bits | (a[axis].to_raw() ^ b[axis].to_raw()))
+    };
+    corners(&a.min, &b.min) | corners(&a.max, &b.max) != 0
+}
+
+/// Writes to a table, which grows by one where the index is new.
+fn put<V>(table: &mut Vec<V>, index: u32, value: V) {
+    match table.get_mut(index as usize) {
+        Some(row) => *row = value,
+        None => table.push(value),
+    }
+}

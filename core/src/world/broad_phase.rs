@@ -1,0 +1,335 @@
+//! The persistent broad phase: its public interface.
+
+use alloc::vec::Vec;
+
+use super::bodies::{Bodies, Filter, ProxyId, flag};
+use super::changes::{Changes, Events};
+use super::options::Options;
+use super::queries::Queries;
+use super::snapshot;
+use super::tracking::{Tracking, TreeState};
+use super::update::{ready_for_queries, restore, update};
+use crate::{Aabb, Error, Scalar};
+
+/// A set of bodies, each with a box, that reports which overlaps begin and which end.
+///
+/// Bodies are [inserted](Self::insert), [set](Self::set) and [removed](Self::remove) in any order;
+/// [`update`](Self::update) then reports the pairs that began and those that ended since the last
+/// update, each once, sorted by id. Touching boxes overlap. The [`Filter`] of each body says with which
+/// others it may pair. You don't have to track which bodies moved, and a resting body costs only memory.
+///
+/// [`queries`](Self::queries) finds what overlaps a box, a point or a sphere, what a ray or a moving box
+/// hits, and which bodies are nearest.
+///
+/// The same calls give the same results, bit for bit, on every platform. A call that returns an error
+/// changes nothing.
+///
+/// ```
+/// use sweep_and_prune::{Aabb, BroadPhase};
+///
+/// let mut world = BroadPhase::<2>::new();
+/// let hero = world.insert(Aabb::new([0.0, 0.0], [1.0, 2.0]))?;
+/// let door = world.insert(Aabb::new([3.0, 0.0], [4.0, 2.0]))?;
+/// assert!(world.update().is_empty());
+///
+/// world.set(hero, Aabb::new([2.5, 0.0], [3.5, 2.0]))?;
+/// world.update();
+/// for [a, b] in world.changes().begun() {
+///     println!("{:?} touches {:?}", world.aabb(a)?, world.aabb(b)?);
+/// }
+/// assert!(world.pairs().eq([[hero, door]]));
+///
+/// world.remove(door)?;
+/// assert_eq!(world.update().ended().next(), Some([hero, door]));
+/// # Ok::<(), sweep_and_prune::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct BroadPhase<const D: usize, T: Scalar = f32> {
+    bodies: Bodies<D, T>,
+    tracking: Tracking<D, T>,
+    events: Events,
+}
+
+impl<const D: usize, T: Scalar> BroadPhase<D, T> {
+    /// An empty broad phase that reports the pairs of the exact boxes.
+    pub fn new() -> Self {
+        Self::from_options(Options::default())
+    }
+
+    /// An empty broad phase with margins.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] if the margin or the prediction is negative, infinite or NaN.
+    pub fn with_options(options: Options<T>) -> Result<Self, Error> {
+        options.check()?;
+        Ok(Self::from_options(options))
+    }
+
+    fn from_options(options: Options<T>) -> Self {
+        Self { bodies: Bodies::new(options), tracking: Tracking::new(), events: Events::default() }
+    }
+
+    /// Uses this many threads of rayon's current pool in updates in which most bodies move; 0 counts as
+    /// one. Results do not depend on it. Clones keep it, snapshots do not.
+    #[cfg(feature = "parallel")]
+    #[must_use]
+    pub fn threads(mut self, threads: usize) -> Self {
+        self.tracking.set_threads(threads);
+        self
+    }
+
+    /// The options that it was made with.
+    pub fn options(&self) -> Options<T> {
+        self.bodies.options
+    }
+
+    /// How many bodies there are.
+    pub fn len(&self) -> usize {
+        self.bodies.live()
+    }
+
+    /// Whether there is no body.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The ids of all bodies, sorted.
+    pub fn ids(&self) -> impl Iterator<Item = ProxyId> + '_ {
+        let slots = &self.bodies.slots;
+        let live = slots.index_of.iter().filter(|&&index| slots.has(index, flag::LIVE));
+        live.map(|&index| slots.id(index))
+    }
+
+    /// Whether an id names a body that is here. Ids of other worlds are not told apart: two worlds
+    /// give out the same ids, so that a restored world takes the ids of the one that was saved.
+    pub fn contains(&self, id: ProxyId) -> bool {
+        self.bodies.slots.is_living(id)
+    }
+
+    /// The box of a body as last set. That of a swept body is, until the next update, the union of the
+    /// boxes where the sweep begins and ends.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`].
+    pub fn aabb(&self, id: ProxyId) -> Result<Aabb<D, T>, Error> {
+        Ok(*self.bodies.shape(self.bodies.slots.check(id, 0)?))
+    }
+
+    /// The box of a body whose overlaps are reported: its [`aabb`](Self::aabb), or with
+    /// [`Report::Fat`](crate::Report::Fat) its fat AABB.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`].
+    pub fn reported_aabb(&self, id: ProxyId) -> Result<Aabb<D, T>, Error> {
+        Ok(self.bodies.boxes[self.bodies.slots.check(id, 0)? as usize])
+    }
+
+    /// The filter of a body.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`].
+    pub fn filter(&self, id: ProxyId) -> Result<Filter, Error> {
+        Ok(self.bodies.filters[self.bodies.slots.check(id, 0)? as usize])
+    }
+
+    /// Adds a body with the default filter.
+    ///
+    /// # Errors
+    /// [`Error::InvalidBox`]; [`Error::TooManyBoxes`] if no slot is left.
+    pub fn insert(&mut self, aabb: Aabb<D, T>) -> Result<ProxyId, Error> {
+        self.bodies.insert(aabb, Filter::default())
+    }
+
+    /// Adds a body.
+    ///
+    /// # Errors
+    /// As [`insert`](Self::insert).
+    pub fn insert_with(&mut self, aabb: Aabb<D, T>, filter: Filter) -> Result<ProxyId, Error> {
+        self.bodies.insert(aabb, filter)
+    }
+
+    /// Adds bodies with one filter. Their ids are in the order of their boxes.
+    ///
+    /// # Errors
+    /// As [`insert`](Self::insert), with the position of the first bad box; then none was added.
+    pub fn insert_many(
+        &mut self,
+        boxes: &[Aabb<D, T>],
+        filter: Filter,
+    ) -> Result<Vec<ProxyId>, Error> {
+        self.bodies.insert_many(boxes, filter)
+    }
+
+    /// Gives a body its new box.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`], [`Error::InvalidBox`].
+    pub fn set(&mut self, id: ProxyId, aabb: Aabb<D, T>) -> Result<(), Error> {
+        self.bodies.set_many(&[id], &[aabb])
+    }
+
+    /// Gives each of many bodies its new box. If an id occurs twice, the last box counts.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`]; [`Error::StaleProxy`] or [`Error::InvalidBox`] with the position of
+    /// the first bad id or box. Then no box has changed.
+    pub fn set_many(&mut self, ids: &[ProxyId], boxes: &[Aabb<D, T>]) -> Result<(), Error> {
+        self.bodies.set_many(ids, boxes)
+    }
+
+    /// Moves a fast body from one box to another: until the next update its box is the union of both,
+    /// then `to`. So it pairs with what it would have jumped over (and, on a diagonal way, with what is
+    /// beside it).
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`]; [`Error::InvalidBox`] with index 0 for `from` and 1 for `to`.
+    pub fn set_swept(
+        &mut self,
+        id: ProxyId,
+        from: Aabb<D, T>,
+        to: Aabb<D, T>,
+    ) -> Result<(), Error> {
+        self.bodies.set_swept(id, from, to)
+    }
+
+    /// Changes with which others a body may pair. Its pairs begin or end at the next update.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`].
+    pub fn set_filter(&mut self, id: ProxyId, filter: Filter) -> Result<(), Error> {
+        self.bodies.set_filter(id, filter)
+    }
+
+    /// Removes a body. Its id is stale from now on; the next update reports its ended pairs.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`].
+    pub fn remove(&mut self, id: ProxyId) -> Result<(), Error> {
+        self.bodies.remove_many(&[id])
+    }
+
+    /// Removes many bodies.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`] with the position of the first id that is stale or occurs twice. Then none
+    /// was removed.
+    pub fn remove_many(&mut self, ids: &[ProxyId]) -> Result<(), Error> {
+        self.bodies.remove_many(ids)
+    }
+
+    /// Finds the pairs that began and ended since the last update.
+    ///
+    /// Takes time in proportion to the bodies that changed and their neighbors, and not much more than
+    /// finding all pairs takes. The result borrows the world mutably; [`changes`](Self::changes) gives
+    /// the same changes with the world only borrowed.
+    pub fn update(&mut self) -> Changes<'_> {
+        update(&mut self.bodies, &mut self.tracking, &mut self.events);
+        self.changes()
+    }
+
+    /// What the last [`update`](Self::update) found. Edits since do not change it; a restored world or
+    /// a world that was never updated has no changes.
+    pub fn changes(&self) -> Changes<'_> {
+        Changes { slots: &self.bodies.slots, events: &self.events }
+    }
+
+    /// The pairs that overlapped at the last update, each once, its smaller id first.
+    ///
+    /// Their order is the same for the same calls, but not specified: a restored world may give another.
+    /// Iterating over all takes O(pairs) time and does not allocate.
+    pub fn pairs(&self) -> impl Iterator<Item = [ProxyId; 2]> + '_ {
+        let slots = &self.bodies.slots;
+        self.tracking.candidates.live_pairs(slots).map(|pair| {
+            let [a, b] = pair.map(|index| slots.id(index));
+            if a < b { [a, b] } else { [b, a] }
+        })
+    }
+
+    /// The bodies that overlapped this one at the last update, in no specified order. Does not allocate.
+    ///
+    /// Takes O(log n) time and that of its neighbors if the tree is up to date, as it is after
+    /// [`queries`](Self::queries) until the next update; otherwise O(pairs) time.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`].
+    pub fn pairs_of(&self, id: ProxyId) -> Result<impl Iterator<Item = ProxyId> + '_, Error> {
+        let Self { bodies, tracking, .. } = self;
+        let slots = &bodies.slots;
+        let index = slots.check(id, 0)?;
+        let area = bodies.previous[index as usize];
+        let is_known = !slots.has(index, flag::NEW);
+        let has_tree = matches!(tracking.tree_state, TreeState::Fresh { .. });
+        let near = (is_known && has_tree).then(|| tracking.tree.overlapping(area));
+        let near = near.into_iter().flatten().filter(move |&other| {
+            let boxes = [&area, &bodies.previous[other as usize]];
+            other != index
+                && slots.has(other, flag::LIVE | flag::LEAVING)
+                && bodies.was_live([index, other], boxes)
+        });
+        let listed = (is_known && !has_tree).then(|| tracking.candidates.live_pairs(slots));
+        let listed = listed.into_iter().flatten().filter_map(move |[a, b]| match index {
+            _ if a == index => Some(b),
+            _ if b == index => Some(a),
+            _ => None,
+        });
+        Ok(near.chain(listed).map(|other| slots.id(other)))
+    }
+
+    /// Prepares for queries, which takes time if bodies changed since it last did, and answers them.
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, BroadPhase, Cast};
+    ///
+    /// let mut world = BroadPhase::<2>::new();
+    /// let wall = world.insert(Aabb::new([5.0, 0.0], [6.0, 9.0]))?;
+    /// let tree = world.insert(Aabb::new([8.0, 0.0], [9.0, 9.0]))?;
+    ///
+    /// let queries = world.queries();
+    /// assert_eq!(queries.overlapping(&Aabb::new([0.0, 0.0], [5.0, 1.0]))?, [wall]);
+    /// let hit = queries.cast(&Cast::ray([1.0, 1.0], [1.0, 0.0], 100.0))?.unwrap();
+    /// assert_eq!((hit.id, hit.t), (wall, 4.0));
+    /// assert_eq!(queries.nearest([10.0, 1.0], 1)?[0].id, tree);
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
+    pub fn queries(&mut self) -> Queries<'_, D, T> {
+        ready_for_queries(&mut self.bodies, &mut self.tracking);
+        Queries::new(&self.bodies, &self.tracking.tree)
+    }
+
+    /// The whole state as bytes. A world [restored](Self::from_snapshot) from them gives, for the
+    /// same calls, the same ids, events and results, bit for bit.
+    ///
+    /// Takes O(n) time; about `2 * D * size_of::<T>() + 2` bytes for each body at rest.
+    pub fn snapshot(&self) -> Vec<u8> {
+        snapshot::write(&self.bodies)
+    }
+
+    /// The world of a snapshot. Any bytes give a world or an error.
+    ///
+    /// Takes the time of finding all pairs, and memory in proportion to the bytes and the pairs.
+    ///
+    /// # Errors
+    /// [`Error::InvalidSnapshot`] for bytes that are truncated, changed, of another version, of a
+    /// world with other dimensions or coordinates, or no snapshot at all.
+    pub fn from_snapshot(bytes: &[u8]) -> Result<Self, Error> {
+        let bodies = snapshot::read(bytes).map_err(Error::InvalidSnapshot)?;
+        let tracking = restore(&bodies);
+        Ok(Self { bodies, tracking, events: Events::default() })
+    }
+
+    /// A hash of the whole state, that of its [`snapshot`](Self::snapshot): boxes, filters, the
+    /// ids given out, and what the next update has to report. Equal for equal states, on every
+    /// platform: it shows whether two machines that run the same simulation diverged. It is no
+    /// protection against forgery.
+    ///
+    /// Takes O(n) time and memory.
+    pub fn state_hash(&self) -> u64 {
+        snapshot::hash(&self.snapshot())
+    }
+}
+
+impl<const D: usize, T: Scalar> Default for BroadPhase<D, T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

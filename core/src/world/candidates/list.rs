@@ -1,0 +1,155 @@
+//! The pairs of fat AABBs that overlap: only these can begin or end while no body leaves its fat AABB.
+//! Each has a flag, whether it was live at the last update: whether the boxes themselves overlapped.
+//!
+//! Pairs with an awake body are in one flat list, which each update with motion scans. Of pairs of two
+//! bodies asleep only the live ones are kept, to be listed to users: before such a pair begins or ends
+//! one of the bodies wakes, and the tree finds its candidates.
+
+use alloc::vec::Vec;
+
+use super::sort::PairSorter;
+use crate::world::bodies::{Slots, flag};
+
+#[derive(Clone, Debug, Default)]
+pub struct Candidates {
+    /// Each candidate with an awake body once, as indices, smaller first. Filters allow them.
+    pub pairs: Vec<[u32; 2]>,
+    /// By pair, whether it was live at the last update.
+    pub live: Vec<bool>,
+    /// The live pairs of bodies that are both asleep, and some of which one woke or was removed since.
+    pub asleep: Vec<[u32; 2]>,
+    /// After an update from scratch all live pairs, sorted; then the other lists are empty, no body is
+    /// asleep, and indices are slots.
+    pub sorted: Vec<[u32; 2]>,
+    /// Whether the pairs are in `sorted`.
+    pub are_sorted: bool,
+}
+
+impl Candidates {
+    /// Moves the live pairs, as slots, to `sorted`, and drops all other candidates.
+    pub fn sort(&mut self, slots: &Slots, sorter: &mut PairSorter) {
+        if !self.are_sorted {
+            let mut sorted = core::mem::take(&mut self.sorted);
+            sorted.extend(self.live_pairs(slots));
+            slots.to_slots(&mut sorted);
+            sorter.sort(&mut sorted, slots.len());
+            self.clear();
+            (self.sorted, self.are_sorted) = (sorted, true);
+        }
+    }
+
+    /// Makes the sorted pairs the candidates again.
+    pub fn unsort(&mut self) {
+        if core::mem::take(&mut self.are_sorted) {
+            self.pairs.append(&mut self.sorted);
+            self.live.resize(self.pairs.len(), true);
+        }
+    }
+
+    /// Drops all candidates of the unsorted lists.
+    pub fn clear(&mut self) {
+        self.pairs.clear();
+        self.live.clear();
+        self.asleep.clear();
+    }
+
+    /// The live pairs, in no particular order.
+    pub fn live_pairs<'a>(&'a self, slots: &'a Slots) -> impl Iterator<Item = [u32; 2]> + 'a {
+        let awake = self.pairs.iter().zip(&self.live).filter(|(_, is_live)| **is_live);
+        let awake = awake.map(|(&pair, _)| pair).chain(self.asleep_pairs(slots));
+        awake.chain(self.sorted.iter().copied())
+    }
+
+    /// The live pairs of bodies that are both asleep.
+    pub fn asleep_pairs<'a>(&'a self, slots: &'a Slots) -> impl Iterator<Item = [u32; 2]> + 'a {
+        self.asleep.iter().copied().filter(|pair| are_asleep(slots, pair))
+    }
+
+    /// Follows a new storage order.
+    pub fn rename(&mut self, renamed: &[u32]) {
+        for pair in self.pairs.iter_mut().chain(&mut self.asleep) {
+            let [a, b] = pair.map(|index| renamed[index as usize]);
+            *pair = [a.min(b), a.max(b)];
+        }
+    }
+
+    /// Reserves spare capacity for what moving bodies add, so that steady motion does not allocate.
+    pub fn reserve(&mut self) {
+        let count = self.pairs.len();
+        if self.pairs.capacity() - count < count / 4 {
+            self.pairs.reserve(count);
+        }
+        self.live.reserve(self.pairs.capacity() - self.live.len());
+    }
+
+    /// Writes a pair to a position that is free, or else to the end.
+    #[inline]
+    pub fn put(&mut self, position: Option<&usize>, pair: [u32; 2], is_live: bool) {
+        if let Some(&at) = position {
+            self.pairs[at] = pair;
+            self.live[at] = is_live;
+        } else {
+            self.pairs.push(pair);
+            self.live.push(is_live);
+        }
+    }
+
+    /// Removes the pairs at these positions, which ascend. The others keep their order, which is roughly
+    /// that of their boxes in memory.
+    pub fn remove(&mut self, positions: &[usize]) {
+        let Some(&first) = positions.first() else { return };
+        let mut kept = first;
+        for (index, &position) in positions.iter().enumerate() {
+            let end = positions.get(index + 1).map_or(self.pairs.len(), |&next| next);
+            self.pairs.copy_within(position + 1..end, kept);
+            self.live.copy_within(position + 1..end, kept);
+            kept += end - position - 1;
+        }
+        self.pairs.truncate(kept);
+        self.live.truncate(kept);
+    }
+
+    /// Takes the pairs of bodies that are both asleep out of the list, and those that are no longer
+    /// `is_near`.
+    pub fn put_to_sleep(&mut self, slots: &Slots, is_near: impl Fn([u32; 2]) -> bool) {
+        let mut kept = 0;
+        for at in 0..self.pairs.len() {
+            let (pair, is_live) = (self.pairs[at], self.live[at]);
+            let sleeps = are_asleep(slots, &pair);
+            if sleeps && is_live {
+                self.asleep.push(pair);
+            }
+            self.pairs[kept] = pair;
+            self.live[kept] = is_live;
+            kept += usize::from(!sleeps && is_near(pair));
+        }
+        self.pairs.truncate(kept);
+        self.live.truncate(kept);
+    }
+}
+
+/// Whether both bodies are asleep.
+pub fn are_asleep(slots: &Slots, pair: &[u32; 2]) -> bool {
+    pair.iter().all(|&index| slots.has(index, flag::ASLEEP))
+}
+
+/// Appends what `choose` makes of each item and its position, if it says so, without a branch: it is
+/// unpredictable which candidates begin or end.
+#[inline]
+pub fn push_wanted<I: Copy, O: Copy + Default>(
+    out: &mut Vec<O>,
+    items: &[I],
+    mut choose: impl FnMut(usize, I) -> (O, bool),
+) {
+    const CHUNK: usize = 256;
+    for (chunk, items) in items.chunks(CHUNK).enumerate() {
+        let mut end = out.len();
+        out.resize(end + items.len(), O::default());
+        for (position, &item) in items.iter().enumerate() {
+            let (made, is_wanted) = choose(chunk * CHUNK + position, item);
+            out[end] = made;
+            end += usize::from(is_wanted);
+        }
+        out.truncate(end);
+    }
+}

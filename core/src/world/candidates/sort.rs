@@ -1,0 +1,182 @@
+//! Sorts lists of pairs, and finds how two sorted lists differ.
+
+use alloc::vec::Vec;
+
+/// Shorter lists are sorted by the standard library.
+const RADIX_FROM: usize = 128;
+/// Longer lists do not fit the second-level cache together with their copy: then the copy is first
+/// overwritten in order, which is fast and caches it for the scattered writes (an update from scratch of
+/// 100,000 bodies takes 0.94 of the time).
+const PRELOAD_FROM: usize = 1 << 15;
+/// Bits that a pass sorts by, at most: as many counters as the first-level cache holds. The last number
+/// is sorted by in one pass if there are as many pairs as counters.
+const DIGIT: u32 = 11;
+/// How many steps a comparison takes between checks of its bounds.
+const CHUNK: usize = 256;
+
+/// Sorts pairs, longer lists by radix (least digit first), since slots are small numbers. Keeps its
+/// buffers.
+#[derive(Clone, Debug, Default)]
+pub struct PairSorter {
+    buffer: Vec<[u32; 2]>,
+    unsorted: Vec<[u32; 2]>,
+    starts: Vec<u32>,
+}
+
+impl PairSorter {
+    /// Sorts pairs of numbers less than `bound`.
+    pub fn sort(&mut self, pairs: &mut Vec<[u32; 2]>, bound: usize) {
+        let mut unsorted = core::mem::take(&mut self.unsorted);
+        core::mem::swap(&mut unsorted, pairs);
+        self.sort_into(&unsorted, pairs, bound);
+        self.unsorted = unsorted;
+    }
+
+    /// Sorts pairs of numbers less than `bound` from one list into another, which is overwritten.
+    #[inline(never)]
+    pub fn sort_into(&mut self, from: &[[u32; 2]], sorted: &mut Vec<[u32; 2]>, bound: usize) {
+        if from.len() < RADIX_FROM || u32::try_from(from.len()).is_err() {
+            sorted.clear();
+            sorted.extend_from_slice(from);
+            sorted.sort_unstable_by_key(|&pair| key(pair));
+            return;
+        }
+        let bits = usize::BITS - bound.saturating_sub(1).leading_zeros();
+        self.starts.reserve(1 << bits.min(16));
+        for buffer in [&mut *sorted, &mut self.buffer] {
+            if from.len() > PRELOAD_FROM {
+                buffer.clear();
+            }
+            buffer.resize(from.len(), [0; 2]);
+        }
+        let mut is_first = true;
+        for (side, most) in [(1, DIGIT), (0, DIGIT.max(from.len().ilog2() + 1))] {
+            let passes = bits.div_ceil(most).max(1);
+            let digit = bits.div_ceil(passes);
+            for pass in 0..passes {
+                self.starts.clear();
+                self.starts.resize(1 << digit, 0);
+                let from = if is_first { from } else { &self.buffer };
+                distribute(from, sorted, &mut self.starts, |pair| pair[side] >> (pass * digit));
+                core::mem::swap(sorted, &mut self.buffer);
+                is_first = false;
+            }
+        }
+        core::mem::swap(sorted, &mut self.buffer);
+    }
+}
+
+/// A stable counting sort by the low bits of a key, of which there are as many values as `starts`.
+fn distribute(
+    from: &[[u32; 2]],
+    to: &mut [[u32; 2]],
+    starts: &mut [u32],
+    key: impl Fn(&[u32; 2]) -> u32,
+) {
+    let mask = starts.len() - 1;
+    for pair in from {
+        starts[key(pair) as usize & mask] += 1;
+    }
+    let mut sum = 0;
+    for start in &mut *starts {
+        sum += core::mem::replace(start, sum);
+    }
+    for pair in from {
+        let start = &mut starts[key(pair) as usize & mask];
+        to[*start as usize] = *pair;
+        *start += 1;
+    }
+}
+
+/// The pair as one number in the same order.
+#[inline(always)]
+fn key(pair: [u32; 2]) -> u64 {
+    u64::from(pair[0]) << 32 | u64::from(pair[1])
+}
+
+/// Of two sorted lists without duplicates, appends what is only in the first and what is only in the
+/// second, sorted. Without a branch that depends on what they hold: it would be unpredictable.
+#[inline(never)]
+pub fn differences(
+    before: &[[u32; 2]],
+    now: &[[u32; 2]],
+    ended: &mut Vec<[u32; 2]>,
+    begun: &mut Vec<[u32; 2]>,
+) {
+    let (mut old, mut new) = (0, 0);
+    while old < before.len() && new < now.len() {
+        let (ends, begins) = (ended.len(), begun.len());
+        let steps = CHUNK.min(before.len() - old).min(now.len() - new);
+        ended.resize(ends + steps, [0; 2]);
+        begun.resize(begins + steps, [0; 2]);
+        let (ended_here, begun_here) = (&mut ended[ends..], &mut begun[begins..]);
+        let (mut end, mut begin) = (0, 0);
+        for _ in 0..steps {
+            let (pair, other) = (before[old], now[new]);
+            let (old_key, new_key) = (key(pair), key(other));
+            ended_here[end] = pair;
+            begun_here[begin] = other;
+            end += usize::from(old_key < new_key);
+            begin += usize::from(new_key < old_key);
+            old += usize::from(old_key <= new_key);
+            new += usize::from(new_key <= old_key);
+        }
+        ended.truncate(ends + end);
+        begun.truncate(begins + begin);
+    }
+    ended.extend_from_slice(&before[old..]);
+    begun.extend_from_slice(&now[new..]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec;
+
+    fn random_pairs() -> impl FnMut(usize, u64) -> Vec<[u32; 2]> {
+        let mut state = 1u64;
+        let mut random = move || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 33) as u32
+        };
+        move |count, bound| {
+            (0..count).map(|_| [0; 2].map(|_| (u64::from(random()) % bound) as u32)).collect()
+        }
+    }
+
+    #[test]
+    fn any_list_is_sorted_as_the_standard_library_sorts_it() {
+        let mut random = random_pairs();
+        for bound in [1u64, 2, 5, 2048, 2049, 1 << 22, 1 << 32] {
+            for count in [0, 1, RADIX_FROM - 1, RADIX_FROM, 1000] {
+                let mut pairs = random(count, bound);
+                let mut expected = pairs.clone();
+                expected.sort();
+                PairSorter::default().sort(&mut pairs, bound as usize);
+                assert_eq!(pairs, expected);
+            }
+        }
+    }
+
+    #[test]
+    fn differences_are_what_only_one_list_has() {
+        let mut random = random_pairs();
+        for (count, bound) in [(0, 9), (1, 2), (30, 7), (300, 20), (300, 1 << 32)] {
+            for other in [0, 1, count] {
+                let [before, now] = [count, other].map(|count| {
+                    let mut pairs = random(count, bound);
+                    pairs.sort();
+                    pairs.dedup();
+                    pairs
+                });
+                let (mut ended, mut begun) = (vec![[7, 8]], vec![[9, 9]]);
+                differences(&before, &now, &mut ended, &mut begun);
+                let alone = |a: &[[u32; 2]], b: &[[u32; 2]]| {
+                    a.iter().copied().filter(|pair| !b.contains(pair)).collect::<Vec<_>>()
+                };
+                assert_eq!(ended[1..], alone(&before, &now));
+                assert_eq!(begun[1..], alone(&now, &before));
+            }
+        }
+    }
+}

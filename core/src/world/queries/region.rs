@@ -1,0 +1,181 @@
+//! Queries for all bodies in a region: a box, a point or a sphere.
+
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
+
+use super::lists::Lists;
+use super::math::{check_each, fault_in, is_finite, is_length, is_within};
+use crate::world::bodies::{Bodies, Filter, ProxyId, flag};
+use crate::world::tree::{Search, Tree};
+use crate::{Aabb, Error, Scalar};
+
+/// The questions that a world answers; see [`BroadPhase::queries`](crate::BroadPhase::queries).
+///
+/// They see the boxes as last given, updated or not, and all bodies unless they get a
+/// [filter](Self::with_filter). Lists are sorted by id, and equally near
+/// bodies too, so every answer follows from the state alone.
+#[derive(Clone, Copy, Debug)]
+pub struct Queries<'w, const D: usize, T: Scalar = f32> {
+    pub(super) bodies: &'w Bodies<D, T>,
+    pub(super) tree: &'w Tree<D, T>,
+    filter: Option<Filter>,
+}
+
+impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
+    pub(in crate::world) fn new(bodies: &'w Bodies<D, T>, tree: &'w Tree<D, T>) -> Self {
+        Self { bodies, tree, filter: None }
+    }
+
+    /// The same queries by a body of this filter: they find what it may pair with.
+    pub fn with_filter(self, filter: Filter) -> Self {
+        Self { filter: Some(filter), ..self }
+    }
+
+    /// The bodies whose boxes overlap a box, sorted.
+    ///
+    /// # Errors
+    /// [`Error::InvalidBox`].
+    pub fn overlapping(&self, area: &Aabb<D, T>) -> Result<Vec<ProxyId>, Error> {
+        self.list(area, Self::overlapping_many)
+    }
+
+    /// [`overlapping`](Self::overlapping) for each of many boxes.
+    ///
+    /// # Errors
+    /// [`Error::InvalidBox`] with the index of the first bad one.
+    pub fn overlapping_many(&self, areas: &[Aabb<D, T>]) -> Result<Lists<ProxyId>, Error> {
+        crate::validate(areas)?;
+        let bound = |area: &Aabb<D, T>, bounds: &Aabb<D, T>| bounds.overlaps(area);
+        Ok(self.collect(areas, bound))
+    }
+
+    /// Shows the bodies whose boxes overlap a box to `visit`, which may break off; in no
+    /// particular order.
+    ///
+    /// # Errors
+    /// [`Error::InvalidBox`].
+    pub fn visit_overlapping(
+        &self,
+        area: &Aabb<D, T>,
+        mut visit: impl FnMut(ProxyId) -> ControlFlow<()>,
+    ) -> Result<(), Error> {
+        crate::validate(core::slice::from_ref(area))?;
+        let is_near = |bounds: &Aabb<D, T>| bounds.overlaps(area);
+        // The visitor knows whether it stopped.
+        let _ = self.visit_region(is_near, &mut visit);
+        Ok(())
+    }
+
+    /// The bodies whose boxes hold a point, sorted.
+    ///
+    /// # Errors
+    /// [`Error::InvalidQuery`] for a NaN.
+    pub fn containing(&self, point: [T; D]) -> Result<Vec<ProxyId>, Error> {
+        self.list(&point, Self::containing_many)
+    }
+
+    /// [`containing`](Self::containing) for each of many points.
+    ///
+    /// # Errors
+    /// [`Error::InvalidQuery`] with the index of the first bad one.
+    pub fn containing_many(&self, points: &[[T; D]]) -> Result<Lists<ProxyId>, Error> {
+        let is_number = |at: T| at <= T::INFINITY && at >= T::NEG_INFINITY;
+        check_each(points, |point| fault_in("point", point, is_number))?;
+        let bound =
+            |&point: &[T; D], bounds: &Aabb<D, T>| bounds.overlaps(&Aabb::new(point, point));
+        Ok(self.collect(points, bound))
+    }
+
+    /// The bodies whose boxes are at most `radius` away from `center`, sorted.
+    ///
+    /// # Errors
+    /// [`Error::InvalidQuery`] if the center is not finite, or the radius negative or NaN.
+    pub fn within(&self, center: [T; D], radius: T) -> Result<Vec<ProxyId>, Error> {
+        self.list(&(center, radius), Self::within_many)
+    }
+
+    /// [`within`](Self::within) for each of many spheres, of center and radius.
+    ///
+    /// # Errors
+    /// [`Error::InvalidQuery`] with the index of the first bad one.
+    pub fn within_many(&self, spheres: &[([T; D], T)]) -> Result<Lists<ProxyId>, Error> {
+        check_each(spheres, |(center, radius)| {
+            fault_in("center", center, is_finite).or(fault_in("radius", &[*radius], is_length))
+        })?;
+        let bound = |sphere: &([T; D], T), bounds: &Aabb<D, T>| {
+            is_within(&sphere.0, sphere.1.to_f64(), bounds)
+        };
+        Ok(self.collect(spheres, bound))
+    }
+
+    /// One query by way of the form for many.
+    pub(super) fn list<Q, V: Copy>(
+        &self,
+        query: &Q,
+        many: impl Fn(&Self, &[Q]) -> Result<Lists<V>, Error>,
+    ) -> Result<Vec<V>, Error> {
+        Ok(many(self, core::slice::from_ref(query))?.values)
+    }
+
+    /// The bodies in each of many regions.
+    fn collect<Q>(
+        &self,
+        regions: &[Q],
+        is_near: impl Fn(&Q, &Aabb<D, T>) -> bool,
+    ) -> Lists<ProxyId> {
+        let mut lists = Lists::new();
+        for region in regions {
+            let start = lists.values.len();
+            let _ = self.visit_region(
+                |bounds| is_near(region, bounds),
+                |id| {
+                    lists.values.push(id);
+                    ControlFlow::Continue(())
+                },
+            );
+            lists.values[start..].sort_unstable();
+            lists.ends.push(lists.values.len());
+        }
+        lists
+    }
+
+    fn visit_region(
+        &self,
+        is_near: impl Fn(&Aabb<D, T>) -> bool,
+        visit: impl FnMut(ProxyId) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        self.tree.search(&mut Region { queries: self, is_near, visit })
+    }
+
+    /// Whether a body is there, which the tree alone does not say, and not filtered out.
+    pub(super) fn sees(&self, index: u32) -> bool {
+        self.bodies.slots.has(index, flag::LIVE)
+            && self.filter.is_none_or(|filter| filter.allows(&self.bodies.filters[index as usize]))
+    }
+}
+
+/// All bodies in a region.
+struct Region<'q, const D: usize, T: Scalar, N, V> {
+    queries: &'q Queries<'q, D, T>,
+    is_near: N,
+    visit: V,
+}
+
+impl<const D: usize, T, N, V> Search<D, T> for Region<'_, D, T, N, V>
+where
+    T: Scalar,
+    N: Fn(&Aabb<D, T>) -> bool,
+    V: FnMut(ProxyId) -> ControlFlow<()>,
+{
+    #[inline]
+    fn bound(&self, bounds: &Aabb<D, T>) -> Option<f64> {
+        (self.is_near)(bounds).then_some(0.0)
+    }
+
+    fn visit(&mut self, index: u32) -> ControlFlow<()> {
+        if (self.is_near)(self.queries.bodies.shape(index)) && self.queries.sees(index) {
+            (self.visit)(self.queries.bodies.slots.id(index))?;
+        }
+        ControlFlow::Continue(())
+    }
+}

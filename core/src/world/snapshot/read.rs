@@ -1,0 +1,149 @@
+//! Reads snapshots: any bytes give a world or an error.
+
+use super::format::{SnapshotInfo, holds, read_header};
+use super::hash::hash;
+use crate::world::bodies::{Bodies, Filter, check_box, flag};
+use crate::world::options::{Options, Report};
+use crate::{Aabb, Scalar, SnapshotFault};
+
+/// The bodies of a snapshot.
+pub fn read<const D: usize, T: Scalar>(bytes: &[u8]) -> Result<Bodies<D, T>, SnapshotFault> {
+    let (SnapshotInfo { dimensions, scalar_bytes }, report, body) = read_header(bytes)?;
+    if (dimensions, scalar_bytes) != (D, T::BYTES) {
+        return Err(SnapshotFault::OtherWorld { dimensions, scalar_bytes });
+    }
+    let mut reader = Reader { bytes: body };
+    let (margin, prediction) = (reader.scalar()?, reader.scalar()?);
+    let report = match report {
+        0 => Report::Exact,
+        1 => Report::Fat,
+        _ => return Err(SnapshotFault::Corrupt),
+    };
+    let options = Options { margin, prediction, report };
+    options.check().map_err(|_| SnapshotFault::Corrupt)?;
+    let mut bodies = Bodies::new(options);
+    let count = u32::try_from(reader.number()?).map_err(|_| SnapshotFault::Corrupt)?;
+    for _ in 0..count {
+        read_slot(&mut reader, &mut bodies)?;
+    }
+    let sum = hash(&bytes[..bytes.len() - reader.bytes.len()]);
+    if reader.take()? != sum.to_le_bytes() || !reader.bytes.is_empty() {
+        return Err(SnapshotFault::Corrupt);
+    }
+    Ok(bodies)
+}
+
+/// Reads one slot.
+fn read_slot<const D: usize, T: Scalar>(
+    reader: &mut Reader<'_>,
+    bodies: &mut Bodies<D, T>,
+) -> Result<(), SnapshotFault> {
+    let [held] = reader.take()?;
+    let has = |bits: u8| held & bits != 0;
+    let generation = u32::try_from(reader.number()?).map_err(|_| SnapshotFault::Corrupt)?;
+    let is_live = has(holds::BODY);
+    let is_known = (is_live || has(holds::LEAVING)) && !has(holds::NEW);
+    let is_absurd = generation == 0
+        || held & 128 != 0
+        || is_live && has(holds::LEAVING)
+        || !is_live && (has(holds::SWEEP | holds::OLD_FILTER) || has(holds::OLD_BOX) != is_known)
+        || !is_live && !is_known && has(holds::FILTER)
+        || !is_known && has(holds::OLD_BOX | holds::OLD_FILTER)
+        || has(holds::NEW) && !is_live && !has(holds::LEAVING);
+    if is_absurd {
+        return Err(SnapshotFault::Corrupt);
+    }
+    let nothing = Aabb::new([T::default(); D], [T::default(); D]);
+    let (mut shape, mut boxed) = (nothing, nothing);
+    let index = bodies.slots.add(generation);
+    if is_live {
+        bodies.slots.activate(index);
+        shape = reader.aabb()?;
+        boxed = if bodies.options.report == Report::Fat { reader.aabb()? } else { shape };
+        if !boxed.contains(&shape) {
+            return Err(SnapshotFault::Corrupt);
+        }
+        if has(holds::SWEEP) {
+            let to = reader.aabb()?;
+            bodies.sweep_to(index, to);
+        }
+    } else if has(holds::LEAVING) {
+        bodies.slots.raise(index, flag::LEAVING);
+        bodies.leaving.push(index);
+    } else {
+        bodies.slots.release(index, 0);
+    }
+    let filter = if has(holds::FILTER) { reader.filter()? } else { Filter::default() };
+    let old_box = if has(holds::OLD_BOX) { reader.aabb()? } else { boxed };
+    bodies.put(index, shape, boxed, filter);
+    bodies.previous[index as usize] = old_box;
+    if has(holds::NEW) {
+        bodies.slots.raise(index, flag::NEW);
+        bodies.any_new = true;
+    }
+    if has(holds::OLD_FILTER) {
+        let old = reader.filter()?;
+        bodies.keep_old_filter(index, old);
+    }
+    if is_live && has(holds::NEW | holds::OLD_BOX | holds::OLD_FILTER) {
+        bodies.touch(index);
+    }
+    Ok(())
+}
+
+/// Takes bytes from the front, as long as there are any.
+struct Reader<'a> {
+    bytes: &'a [u8],
+}
+
+impl Reader<'_> {
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], SnapshotFault> {
+        let (taken, rest) = self.bytes.split_first_chunk().ok_or(SnapshotFault::Truncated)?;
+        self.bytes = rest;
+        Ok(*taken)
+    }
+
+    fn number(&mut self) -> Result<u64, SnapshotFault> {
+        let mut number = 0;
+        for shift in (0..64).step_by(7) {
+            let [byte] = self.take()?;
+            let bits = u64::from(byte & 0x7f);
+            if bits << shift >> shift != bits {
+                return Err(SnapshotFault::Corrupt);
+            }
+            number |= bits << shift;
+            if byte < 0x80 {
+                return Ok(number);
+            }
+        }
+        Err(SnapshotFault::Corrupt)
+    }
+
+    fn scalar<T: Scalar>(&mut self) -> Result<T, SnapshotFault> {
+        let mut word = [0; 8];
+        for byte in &mut word[..T::BYTES] {
+            [*byte] = self.take()?;
+        }
+        Ok(T::from_raw(u64::from_le_bytes(word)))
+    }
+
+    fn aabb<const D: usize, T: Scalar>(&mut self) -> Result<Aabb<D, T>, SnapshotFault> {
+        let mut aabb = Aabb::new([T::default(); D], [T::default(); D]);
+        for at in aabb.min.iter_mut().chain(&mut aabb.max) {
+            *at = self.scalar()?;
+        }
+        check_box(&aabb, 0).map_err(|_| SnapshotFault::Corrupt)?;
+        Ok(aabb)
+    }
+
+    fn filter(&mut self) -> Result<Filter, SnapshotFault> {
+        let mut word = || Ok(u32::from_le_bytes(self.take()?));
+        let (category, mask, group) = (word()?, word()?, word()? as i32);
+        match self.take()? {
+            [is_static @ (0 | 1)] => {
+                Ok(Filter { category, mask, group, is_static: is_static == 1 })
+            }
+            _ => Err(SnapshotFault::Corrupt),
+        }
+    }
+}

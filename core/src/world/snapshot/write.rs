@@ -1,0 +1,91 @@
+//! Writes snapshots.
+
+use alloc::vec::Vec;
+
+use super::format::{MAGIC, VERSION, holds};
+use super::hash::hash;
+use crate::world::bodies::{Bodies, Filter, flag};
+use crate::world::options::Report;
+use crate::{Aabb, Scalar};
+
+/// The snapshot of a world.
+pub fn write<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(64 + bodies.slots.len() * (2 * D * T::BYTES + 2));
+    bytes.extend(MAGIC);
+    bytes.extend([VERSION, D as u8, T::BYTES as u8, bodies.options.report as u8]);
+    put_scalars(&mut bytes, &[bodies.options.margin, bodies.options.prediction]);
+    put_number(&mut bytes, bodies.slots.len() as u64);
+    for &index in &bodies.slots.index_of {
+        put_slot(&mut bytes, bodies, index);
+    }
+    let sum = hash(&bytes);
+    bytes.extend(sum.to_le_bytes());
+    bytes
+}
+
+fn put_slot<const D: usize, T: Scalar>(bytes: &mut Vec<u8>, bodies: &Bodies<D, T>, index: u32) {
+    let row = index as usize;
+    let flags = bodies.slots.flags[row];
+    let is_known = flags & (flag::LIVE | flag::LEAVING) != 0 && flags & flag::NEW == 0;
+    let old_box = Some(&bodies.previous[row]).filter(|_| is_known);
+    let old_filter = Some(bodies.old_filter(index)).filter(|_| is_known);
+    // A body that left is only what it was at the last update.
+    let is_live = flags & flag::LIVE != 0;
+    let (filter, old_box, old_filter) = if is_live {
+        let filter = &bodies.filters[row];
+        let old_box = old_box.filter(|&old| *old != bodies.boxes[row]);
+        (Some(filter), old_box, old_filter.filter(|&old| old != filter))
+    } else {
+        (old_filter, old_box, None)
+    };
+    let filter = filter.filter(|&filter| *filter != Filter::default());
+    let bit = |is_set, bit| if is_set { bit } else { 0 };
+    bytes.push(
+        bit(is_live, holds::BODY)
+            | bit(flags & flag::LEAVING != 0, holds::LEAVING)
+            | bit(flags & flag::NEW != 0, holds::NEW)
+            | bit(flags & flag::SWEPT != 0, holds::SWEEP)
+            | bit(filter.is_some(), holds::FILTER)
+            | bit(old_box.is_some(), holds::OLD_BOX)
+            | bit(old_filter.is_some(), holds::OLD_FILTER),
+    );
+    put_number(bytes, u64::from(bodies.slots.id(index).generation()));
+    if is_live {
+        put_box(bytes, bodies.shape(index));
+        if bodies.options.report == Report::Fat {
+            put_box(bytes, &bodies.boxes[row]);
+        }
+        if flags & flag::SWEPT != 0 {
+            put_box(bytes, &bodies.rests[row]);
+        }
+    }
+    filter.into_iter().for_each(|filter| put_filter(bytes, filter));
+    old_box.into_iter().for_each(|aabb| put_box(bytes, aabb));
+    old_filter.into_iter().for_each(|filter| put_filter(bytes, filter));
+}
+
+fn put_number(bytes: &mut Vec<u8>, mut number: u64) {
+    while number >= 0x80 {
+        bytes.push(number as u8 | 0x80);
+        number >>= 7;
+    }
+    bytes.push(number as u8);
+}
+
+fn put_scalars<T: Scalar>(bytes: &mut Vec<u8>, scalars: &[T]) {
+    for at in scalars {
+        bytes.extend_from_slice(&at.to_raw().to_le_bytes()[..T::BYTES]);
+    }
+}
+
+fn put_box<const D: usize, T: Scalar>(bytes: &mut Vec<u8>, aabb: &Aabb<D, T>) {
+    put_scalars(bytes, &aabb.min);
+    put_scalars(bytes, &aabb.max);
+}
+
+fn put_filter(bytes: &mut Vec<u8>, filter: &Filter) {
+    for word in [filter.category, filter.mask, filter.group as u32] {
+        bytes.extend(word.to_le_bytes());
+    }
+    bytes.push(u8::from(filter.is_static));
+}

@@ -1,0 +1,61 @@
+//! The update: from boxes that changed to the pairs that begin and end.
+//!
+//! Every body has a fat AABB around its box, and the pairs of fat AABBs are kept as candidates. While
+//! bodies stay within their fat AABBs only candidates can begin or end, and an update tests the list of
+//! them, without those of sleeping bodies. A body that leaves its fat AABB gets a new one, which reaches
+//! ahead in the direction of its motion, and a tree finds what that overlaps (`incremental`). When many
+//! leave theirs, the finder finds all candidates (`rebuild`). Where that happens again and again, fat
+//! AABBs do not pay, and for some updates all pairs of the boxes themselves are found and compared with
+//! those of the last update (`from_scratch`).
+//!
+//! Neither fat AABBs nor the strategy can be seen in the results. A pair is live if the last update knew
+//! both bodies, their boxes overlapped and their filters allowed it: a fact about boxes and filters only.
+//!
+//! The steps are compiled as separate functions: inlined into one they are larger and no faster.
+
+mod collect;
+mod finish;
+mod from_scratch;
+mod incremental;
+mod rebuild;
+mod search_tree;
+
+pub use rebuild::restore;
+pub use search_tree::ready_for_queries;
+
+use super::bodies::Bodies;
+use super::changes::Events;
+use super::layout::{self, Reorder};
+use super::policy::rebuild_pays;
+use super::tracking::Tracking;
+use crate::Scalar;
+
+/// Finds the pairs that begin and end, and makes the world of now that of the last update.
+pub fn update<const D: usize, T: Scalar>(
+    bodies: &mut Bodies<D, T>,
+    tracking: &mut Tracking<D, T>,
+    events: &mut Events,
+) {
+    events.begun.clear();
+    events.ended.clear();
+    tracking.grow(bodies);
+    search_tree::forget_removed(bodies, tracking);
+    let mut reorder = Reorder::No;
+    let changed = collect::count_changes(bodies);
+    if changed > 0 {
+        if collect::skips_tracking(bodies, tracking, changed) {
+            from_scratch::from_scratch(bodies, tracking, events);
+        } else {
+            collect::collect_escaped(bodies, tracking);
+            let moves = tracking.scratch.escaped.len() + bodies.leaving.len();
+            reorder = if rebuild_pays(moves, bodies.live()) {
+                rebuild::rebuild(bodies, tracking, events)
+            } else {
+                incremental::incremental(bodies, tracking, events)
+            };
+            finish::sort_events(bodies, tracking, events);
+        }
+    }
+    reorder = reorder.or(finish::finish(bodies, tracking, events));
+    layout::reorder(bodies, tracking, reorder);
+}
