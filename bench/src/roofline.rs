@@ -116,9 +116,9 @@ fn of<const D: usize>(n: usize, test_rate: f64) -> Result<Vec<Stage>> {
 /// One call that ends after the bins, the order, the sweep, or when the pairs are stored.
 fn run<const D: usize>(finder: &mut PairFinder<D>, boxes: &[Aabb<D>], until: usize) -> Result<()> {
     match until {
-        0 => black_box(finder.find_watched(boxes, &|_| ControlFlow::Break(()))?.map(<[_]>::len)),
-        1 => finder.order(black_box(boxes)).map(|()| None)?,
-        2 => black_box(Some(finder.count(boxes)? as usize)),
+        0 => black_box(finder.search(boxes).progress(&|_| ControlFlow::Break(())).pairs().ok().map(<[_]>::len)),
+        1 => finder.search(black_box(boxes)).sort_only().map(|()| None)?,
+        2 => black_box(Some(finder.search(boxes).count()? as usize)),
         _ => black_box(Some(finder.find(boxes)?.len())),
     };
     Ok(())

@@ -2,7 +2,7 @@
 
 use core::ops::ControlFlow;
 
-use sweep_and_prune::{Error, PairFinder, Scalar};
+use sweep_and_prune::{Error, PairFinder, Scalar, Search};
 
 use crate::rows::{Coordinates, Rows};
 
@@ -18,8 +18,7 @@ pub trait AnyPairFinder: Send {
     /// Calls `each` with chunks of pairs, in their order, until it breaks. Stores no pairs.
     ///
     /// # Errors
-    /// [`Error::InvalidBox`], before the first chunk; the boxes of set 1 are counted after those of
-    /// set 0. [`Error::OutOfMemory`].
+    /// [`Error::InvalidBox`], which names the set, before the first chunk. [`Error::OutOfMemory`].
     fn for_each_chunk(
         &mut self,
         a: usize,
@@ -89,6 +88,27 @@ fn fresh<const D: usize, T: Scalar>(_: usize) -> PairFinder<D, T> {
     PairFinder::new()
 }
 
+/// A search of the first rows of one set, or of two.
+fn search<'a, const D: usize, T: Scalar>(
+    finder: &'a mut PairFinder<D, T>,
+    sets: &'a [Rows<D, T>; 2],
+    a: usize,
+    b: Option<usize>,
+) -> Search<'a, 'a, D, T> {
+    let search = finder.search(sets[0].first(a));
+    match b {
+        None => search,
+        Some(b) => search.against(sets[1].first(b)),
+    }
+}
+
+fn unless_cancelled<R>(result: Result<R, Error>) -> Result<Option<R>, Error> {
+    match result {
+        Err(Error::Cancelled) => Ok(None),
+        result => result.map(Some),
+    }
+}
+
 impl<const D: usize, T: Scalar> AnyPairFinder for TypedPairFinder<D, T> {
     fn rows(&mut self, set: usize, count: usize) -> Option<*mut u8> {
         self.sets.get_mut(set)?.reserve(count)
@@ -100,11 +120,7 @@ impl<const D: usize, T: Scalar> AnyPairFinder for TypedPairFinder<D, T> {
         b: Option<usize>,
         each: &mut dyn FnMut(&[[u32; 2]]) -> ControlFlow<()>,
     ) -> Result<ControlFlow<()>, Error> {
-        let first = self.sets[0].first(a);
-        match b {
-            None => self.finder.for_each_slice(first, each),
-            Some(b) => self.finder.for_each_slice_between(first, self.sets[1].first(b), each),
-        }
+        search(&mut self.finder, &self.sets, a, b).for_each_chunk(each)
     }
 }
 
@@ -119,11 +135,7 @@ impl<const D: usize, T: Scalar> ArrayPairFinder for TypedPairFinder<D, T> {
         b: Option<usize>,
         progress: Progress<'_>,
     ) -> Result<Option<&[[u32; 2]]>, Error> {
-        let first = self.sets[0].first(a);
-        match b {
-            None => self.finder.find_watched(first, progress),
-            Some(b) => self.finder.find_between_watched(first, self.sets[1].first(b), progress),
-        }
+        unless_cancelled(search(&mut self.finder, &self.sets, a, b).progress(progress).pairs())
     }
 
     fn count(
@@ -132,11 +144,7 @@ impl<const D: usize, T: Scalar> ArrayPairFinder for TypedPairFinder<D, T> {
         b: Option<usize>,
         progress: Progress<'_>,
     ) -> Result<Option<u64>, Error> {
-        let first = self.sets[0].first(a);
-        match b {
-            None => self.finder.count_watched(first, progress),
-            Some(b) => self.finder.count_between_watched(first, self.sets[1].first(b), progress),
-        }
+        unless_cancelled(search(&mut self.finder, &self.sets, a, b).progress(progress).count())
     }
 
     fn reset(&mut self) {

@@ -22,7 +22,9 @@ use core::fmt;
 pub enum Error {
     /// A box is inverted or NaN on an axis: `min <= max` does not hold.
     InvalidBox {
-        /// The index of the first invalid box in the slice that was passed, 0 for a single box.
+        /// The set of the box: 0, or 1 for the second of two sets.
+        set: usize,
+        /// The index of the first invalid box in its set, 0 for a single box.
         index: usize,
         /// The first axis on which it is invalid.
         axis: usize,
@@ -39,6 +41,8 @@ pub enum Error {
     /// The pairs, or the memory for finding them, do not fit. The finder keeps none of the pairs and
     /// can be used again. Counting or streaming the pairs needs less memory.
     OutOfMemory,
+    /// The progress callback ended the search: see [`Search::progress`](crate::Search::progress).
+    Cancelled,
     /// The boxes do not have this axis.
     InvalidAxis {
         /// The axis that was passed.
@@ -154,10 +158,11 @@ impl Error {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Error::InvalidBox { index, axis, min, max } => write!(
+            Error::InvalidBox { set, index, axis, min, max } => write!(
                 f,
-                "box {index} is invalid on axis {axis}: min is {min} and max is {max}, but \
-                 min <= max must hold and neither may be NaN"
+                "box {index}{} is invalid on axis {axis}: min is {min} and max is {max}, but \
+                 min <= max must hold and neither may be NaN",
+                if *set == 0 { "" } else { " of the second set" },
             ),
             Error::TooManyBoxes { count } => {
                 let limit = Error::BOX_LIMIT;
@@ -168,6 +173,7 @@ impl fmt::Display for Error {
                 "out of memory: the pairs of these boxes do not fit; count or stream the pairs, or \
                  pass fewer boxes"
             ),
+            Error::Cancelled => write!(f, "cancelled: the progress callback ended the search"),
             Error::InvalidAxis { axis, dimensions } => write!(
                 f,
                 "axis {axis} does not exist: the boxes have {dimensions} dimensions, and the axis \

@@ -360,7 +360,7 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
         (inverted.min[axis], inverted.max[axis]) = (T::INFINITY, T::NEG_INFINITY);
         let invalid = |index, aabb: Aabb<D, T>| {
             let [min, max] = [aabb.min, aabb.max].map(|corner| corner[axis].to_f64().into());
-            Error::InvalidBox { index, axis, min, max }
+            Error::InvalidBox { set: 0, index, axis, min, max }
         };
         let stale = |index, id: ProxyId| Error::StaleProxy { index, id: id.to_bits() };
         let world = &mut self.world;

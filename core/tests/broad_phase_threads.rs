@@ -43,7 +43,7 @@ fn check<const D: usize>(motion: Motion) {
                 assert_eq!(world.state_hash(), first.state_hash());
             }
             if !some_are_static {
-                let count = PairFinder::new().count(moving.boxes()).unwrap();
+                let count = PairFinder::new().search(moving.boxes()).count().unwrap();
                 assert_eq!(first.pairs().count() as u64, count);
             }
             // A clone keeps its threads.

@@ -320,7 +320,11 @@ fn correction_10_nan_is_refused_before_any_work() {
                 bad[index].min[axis] = nan;
                 let error = runner(method, Sort::Insertion).step(&bad, &mut ()).unwrap_err();
                 let [min, max] = [nan, bad[index].max[axis]].map(Into::into);
-                assert_eq!(error, Error::InvalidBox { index, axis, min, max }, "{method:?}");
+                assert_eq!(
+                    error,
+                    Error::InvalidBox { set: 0, index, axis, min, max },
+                    "{method:?}"
+                );
             }
         }
     }

@@ -156,7 +156,7 @@ fn bad_boxes_are_refused<const D: usize, T: Scalar>() {
             let error = |bad: &[Aabb<D, T>]| {
                 let Aabb { min, max } = bad[index];
                 let [min, max] = [min, max].map(|corner| corner[axis].to_f64().into());
-                Error::InvalidBox { index, axis, min, max }
+                Error::InvalidBox { set: 0, index, axis, min, max }
             };
             for (turn, (min, max)) in [
                 (nan, one),
@@ -199,7 +199,7 @@ fn bad_random_boxes_are_refused<const D: usize, T: Scalar>() {
             Some((index, axis)) => {
                 let Aabb { min, max } = wild[index];
                 let [min, max] = [min, max].map(|corner| corner[axis].to_f64().into());
-                refuses(turn, &good, &wild, Error::InvalidBox { index, axis, min, max });
+                refuses(turn, &good, &wild, Error::InvalidBox { set: 0, index, axis, min, max });
             }
             None => finder_agrees("wild", &[wild]),
         }

@@ -157,7 +157,7 @@ impl<const D: usize, T: Scalar> Aabb<D, T> {
             None => Ok(()),
             Some(axis) => {
                 let [min, max] = [self.min, self.max].map(|corner| corner[axis].to_f64().into());
-                Err(Error::InvalidBox { index, axis, min, max })
+                Err(Error::InvalidBox { set: 0, index, axis, min, max })
             }
         }
     }
@@ -238,10 +238,10 @@ mod tests {
         let inverted = Aabb::new([2.0f32, 0.0], [1.0, 1.0]);
         assert_eq!(validate(&[good, good]), Ok(()));
         let [zero, one, two, nan_value] = [0.0, 1.0, 2.0, f64::NAN].map(Value::from);
-        let error = Error::InvalidBox { index: 1, axis: 1, min: nan_value, max: one };
+        let error = Error::InvalidBox { set: 0, index: 1, axis: 1, min: nan_value, max: one };
         assert_eq!(validate(&[good, nan]), Err(error));
-        assert_ne!(error, Error::InvalidBox { index: 1, axis: 1, min: zero, max: one });
-        let error = Error::InvalidBox { index: 2, axis: 0, min: two, max: one };
+        assert_ne!(error, Error::InvalidBox { set: 0, index: 1, axis: 1, min: zero, max: one });
+        let error = Error::InvalidBox { set: 0, index: 2, axis: 0, min: two, max: one };
         assert_eq!(validate(&[good, good, inverted]), Err(error));
     }
 }

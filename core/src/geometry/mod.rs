@@ -1,6 +1,7 @@
 //! The box, its coordinates, and the rules that hold for boxes: what is valid, what overlaps.
 
 mod aabb;
+mod arithmetic;
 mod arrays;
 #[cfg(feature = "bytemuck")]
 mod bytes;
@@ -12,4 +13,6 @@ mod vectors;
 
 pub(crate) use aabb::check_count;
 pub use aabb::{Aabb, validate};
+pub(crate) use arithmetic::{Arithmetic, Quantizer};
+pub(crate) use scalar::Key;
 pub use scalar::Scalar;

@@ -4,21 +4,43 @@ use core::cmp::Ordering;
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Sub};
 
-use crate::pairs::Number;
+use super::arithmetic::{Arithmetic, Ieee754};
 
 mod sealed {
-    pub trait Sealed {}
-    impl Sealed for f32 {}
-    impl Sealed for f64 {}
+    use super::{Arithmetic, Ieee754};
+
+    /// Keeps others from implementing [`Scalar`](super::Scalar).
+    pub trait Sealed: Sized {
+        /// What the crate computes with coordinates, beside what users may.
+        type Arithmetic: Arithmetic<Self>;
+    }
+
+    impl Sealed for f32 {
+        type Arithmetic = Ieee754;
+    }
+
+    impl Sealed for f64 {
+        type Arithmetic = Ieee754;
+    }
 }
+
+/// The sort key of a coordinate: see [`Arithmetic::Key`].
+pub(crate) type Key<T> = <<T as sealed::Sealed>::Arithmetic as Arithmetic<T>>::Key;
 
 /// A coordinate: `f32` or `f64`, and nothing else (the trait is sealed).
 ///
 /// Coordinates are compared exactly as given: no rounding, no epsilon. Public functions refuse NaN,
 /// so inside the crate `<` and `<=` order coordinates totally, with `-0.0` equal to `0.0`.
+///
+/// What the crate itself computes with coordinates is not part of the trait:
+///
+/// ```compile_fail,E0599
+/// fn key<T: sweep_and_prune::Scalar>(coordinate: T) {
+///     coordinate.key(0);
+/// }
+/// ```
 pub trait Scalar:
     sealed::Sealed
-    + Number
     + Copy
     + Debug
     + Default

@@ -1,55 +1,57 @@
-//! How space is cut: columns and slabs, and between which of them a box lies.
+//! How space is cut into columns, and which columns a box touches.
 
-use super::kernel::Copied;
-use super::numbers::{BLOCK, Ruler};
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+use core::any::Any;
+
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+use super::kernel::quantize_by_four;
+use crate::geometry::{Arithmetic, Quantizer};
 use crate::{Aabb, Scalar};
 
+/// Boxes whose cells are computed at a time: few enough for the first-level cache.
+pub(super) const BLOCK: usize = 64;
+
 /// Equal cells on one axis; the outermost reach to infinity.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Cells<T> {
     axis: usize,
-    ruler: Ruler<T>,
+    quantizer: Quantizer<T>,
     count: u32,
 }
 
 impl<T: Scalar> Cells<T> {
     /// One cell, all of the axis.
     pub fn one(axis: usize) -> Self {
-        let zero = T::ZERO;
-        Cells { axis, ruler: Ruler { unit: zero, origin: zero, scale: zero, last: zero }, count: 1 }
+        let zero = T::default();
+        let quantizer = Quantizer { unit: zero, origin: zero, scale: zero, last: zero };
+        Cells { axis, quantizer, count: 1 }
     }
 
     /// `count` cells, less than 2^22, over `low ..= high`, which are coordinates times the unit.
     pub fn new(axis: usize, unit: T, low: f64, high: f64, count: u32) -> Self {
         let scale = f64::from(count) / (high - low);
-        let ruler = Ruler {
+        let quantizer = Quantizer {
             unit,
             // The first cell begins half a cell below its middle.
             origin: T::from_f64(low + 0.5 / scale),
             scale: T::from_f64(scale),
             last: T::from_f64(f64::from(count - 1)),
         };
-        Cells { axis, ruler, count }
+        Cells { axis, quantizer, count }
     }
 }
 
-/// How space is cut: into columns on the axes that are not swept, and if those are long, on the
-/// sweep axis into slabs, for the sake of the caches and of threads.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// How space is cut: into columns along the sweep axis, and if those are long, also into slabs along
+/// it, for the caches and for threads. A slab of a column is a column of its own.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Grid<T> {
     pub sweep: usize,
-    /// The axes in turn, the first varying slowest: at first those that do not exist, of one cell,
-    /// at last the sweep axis.
+    /// The axes, the first varying slowest: first those that do not exist, with one cell, last the
+    /// sweep axis.
     cells: [Cells<T>; 3],
 }
 
 impl<T: Scalar> Grid<T> {
-    /// The bin of a cell.
-    #[inline(always)]
-    pub fn bin(&self, [x, y, z]: [u32; 3]) -> u32 {
-        (x * self.cells[1].count + y) * self.cells[2].count + z
-    }
-
     /// A grid with these cells on each axis.
     pub fn new<const D: usize>(sweep: usize, cells: [Cells<T>; D]) -> Self {
         let mut grid = Self { sweep, cells: [cells[sweep]; 3] };
@@ -59,51 +61,49 @@ impl<T: Scalar> Grid<T> {
         grid
     }
 
-    /// One cell.
-    pub fn uncut<const D: usize>(sweep: usize) -> Self {
-        Self::new::<D>(sweep, core::array::from_fn(Cells::one))
-    }
-
-    /// The axes that are cut, and how wide their cells are.
-    pub fn widths(&self) -> impl Iterator<Item = (usize, f64)> {
-        let cut = self.cells.into_iter().filter(|cells| cells.count > 1);
-        cut.map(|cells| (cells.axis, 1.0 / cells.ruler.scale.to_f64() / cells.ruler.unit.to_f64()))
-    }
-
-    /// How many bins there are.
+    /// How many columns there are.
     pub fn len(&self) -> usize {
         self.cells.iter().map(|cells| cells.count as usize).product()
     }
 
-    /// From a bin to the next on each axis.
+    /// The axes, the first varying slowest.
+    pub fn axes(&self) -> [usize; 3] {
+        self.cells.map(|cells| cells.axis)
+    }
+
+    /// From a column to the next on each of the [axes](Self::axes).
     pub fn steps(&self) -> [u32; 3] {
         let [_, y, z] = &self.cells;
         [y.count * z.count, z.count, 1]
     }
 
-    /// The mark of each axis, in the place where [`Copied`] holds it.
-    pub fn marks(&self) -> [u32; 3] {
-        self.cells.map(|cells| Copied::mark(cells.axis))
+    /// The axes that are cut, and how wide their cells are.
+    pub fn widths(&self) -> impl Iterator<Item = (usize, f64)> {
+        let cut = self.cells.into_iter().filter(|cells| cells.count > 1);
+        cut.map(|Cells { axis, quantizer, .. }| {
+            (axis, 1.0 / quantizer.scale.to_f64() / quantizer.unit.to_f64())
+        })
     }
 }
 
-/// A block of boxes in the grid: for each box the bin of its lower corner, and how many more cells
-/// it touches on each axis; none on one that is not cut.
-pub(super) struct Places<T> {
-    pub bin: [u32; BLOCK],
+/// A block of boxes in the grid: for each box the column of its min corner, and how many more cells
+/// it touches on each axis; none on an axis that is not cut.
+pub(super) struct CellCoordinates<T> {
+    pub column: [u32; BLOCK],
     pub more: [[u32; BLOCK]; 3],
-    /// The edges of the boxes on one axis.
+    /// The intervals of the boxes on one axis.
     low: [T; BLOCK],
     high: [T; BLOCK],
 }
 
-impl<T: Scalar> Places<T> {
-    pub const fn new() -> Self {
-        let edges = [T::ZERO; BLOCK];
-        Self { bin: [0; BLOCK], more: [[0; BLOCK]; 3], low: edges, high: edges }
+impl<T: Scalar> CellCoordinates<T> {
+    pub fn new() -> Self {
+        let edges = [T::default(); BLOCK];
+        Self { column: [0; BLOCK], more: [[0; BLOCK]; 3], low: edges, high: edges }
     }
 
-    /// Places up to [`BLOCK`] boxes. False if one is inverted or NaN, now or before.
+    /// Computes the cells of up to [`BLOCK`] boxes. False if one of them is inverted or NaN; also if
+    /// one of the last block was, since a block may have fewer boxes than the one before.
     #[inline(always)]
     pub fn fill<'a, const D: usize>(
         &mut self,
@@ -111,9 +111,9 @@ impl<T: Scalar> Places<T> {
         grid: &Grid<T>,
     ) -> bool {
         let mut valid = true;
-        self.bin.fill(0);
+        self.column.fill(0);
         let steps = grid.steps();
-        for (k, Cells { axis, ruler, count }) in grid.cells.iter().enumerate().skip(3 - D) {
+        for (k, Cells { axis, quantizer, count }) in grid.cells.iter().enumerate().skip(3 - D) {
             let edges = boxes.clone().map(|aabb| (aabb.min[*axis], aabb.max[*axis]));
             if *count == 1 {
                 valid &= edges.fold(true, |valid, (min, max)| valid & (min <= max));
@@ -122,8 +122,33 @@ impl<T: Scalar> Places<T> {
             for ((low, high), edges) in self.low.iter_mut().zip(&mut self.high).zip(edges) {
                 (*low, *high) = edges;
             }
-            let edges = [&self.low, &self.high];
-            valid &= T::spans(edges, ruler, steps[k], &mut self.bin, &mut self.more[k]);
+            valid &= self.quantize(quantizer, k, steps[k]);
+        }
+        valid
+    }
+
+    /// Adds `step` times the first cell of each interval to the column, and computes how many more
+    /// cells it touches. False if an interval is inverted or NaN; it touches no more.
+    #[inline(always)]
+    fn quantize(&mut self, quantizer: &Quantizer<T>, k: usize, step: u32) -> bool {
+        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+        {
+            let (quantizer, cells): (&dyn Any, &mut dyn Any) = (quantizer, &mut *self);
+            if let (Some(quantizer), Some(cells)) =
+                (quantizer.downcast_ref(), cells.downcast_mut::<CellCoordinates<f32>>())
+            {
+                let CellCoordinates { column, more, low, high } = cells;
+                return quantize_by_four([low, high], quantizer, step, column, &mut more[k]);
+            }
+        }
+        let Self { column, more, low, high } = self;
+        let more = &mut more[k];
+        let mut valid = true;
+        for i in 0..BLOCK {
+            valid &= low[i] <= high[i];
+            let first = T::Arithmetic::cell(low[i], quantizer);
+            column[i] += first * step;
+            more[i] = T::Arithmetic::cell(high[i], quantizer).saturating_sub(first);
         }
         valid
     }

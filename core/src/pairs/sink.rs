@@ -5,82 +5,93 @@ use alloc::vec::Vec;
 use core::mem::take;
 use core::ops::ControlFlow;
 
-#[cfg(feature = "parallel")]
-use super::gather::Gathered;
+use super::control::Stop;
 use super::kernel::PAD;
-use super::search::Stop;
 use crate::memory::grow_to;
 
-/// Pairs that are stored between two looks at the watch, at most.
-const STRETCH: usize = 1 << 16;
+/// The most pairs that are stored between two calls of the progress callback.
+const MOST_AT_A_TIME: usize = 1 << 16;
 
-/// A part that has room for so many pairs does not grow: what it has fits a cache.
+/// A chunk with a capacity of so many pairs does not grow: it fits a second-level cache.
 #[cfg(feature = "parallel")]
-const PART: usize = 1 << 14;
+const CHUNK: usize = 1 << 14;
 
 /// Pairs in a buffer that is handed on when it is full.
 const BUFFER: usize = 4096;
 
 /// Takes pairs a buffer at a time.
 pub(super) trait Sink {
-    /// Whether it is for pairs at all: else columns are ordered and not swept.
+    /// Whether it wants pairs at all: otherwise columns are sorted and not swept.
     const SWEEPS: bool = true;
 
-    /// What takes a part of the pairs on another thread.
+    /// What takes a chunk of the pairs on another thread.
     #[cfg(feature = "parallel")]
-    type Part: Part;
+    type Chunk: Chunk;
 
-    /// Room for at least [`PAD`] pairs.
+    /// Spare capacity for at least [`PAD`] pairs.
     ///
     /// # Errors
     /// [`Stop::Memory`].
-    fn room(&mut self) -> Result<&mut [[u32; 2]], Stop>;
+    fn spare(&mut self) -> Result<&mut [[u32; 2]], Stop>;
 
-    /// Takes the first `count` pairs of the room.
+    /// Takes the first `count` pairs of the spare capacity.
     ///
     /// # Errors
-    /// [`Stop::Enough`], to end the search.
+    /// [`Stop::Cancelled`], to end the search.
     fn take(&mut self, count: usize) -> Result<(), Stop>;
 
-    /// Whether it takes parts: not if the pairs must come in order, one by one.
+    /// Whether it takes chunks: not if the pairs must come in order, one by one.
     #[cfg(feature = "parallel")]
-    const TAKES_PARTS: bool = true;
+    const TAKES_CHUNKS: bool = true;
 
-    /// Empty parts that were kept.
+    /// Empty chunks that were kept.
     #[cfg(feature = "parallel")]
-    fn parts(&mut self) -> Vec<Self::Part> {
+    fn spare_chunks(&mut self) -> Vec<Self::Chunk> {
         Vec::new()
     }
 
-    /// Room that there is behind its pairs.
+    /// All spare capacity behind its pairs.
     #[cfg(feature = "parallel")]
     fn free(&mut self) -> &mut [[u32; 2]] {
         &mut []
     }
 
-    /// Takes the pairs that were written to that room, and then those of the parts that wait.
+    /// Takes the pairs that were written to that capacity, and then those of the chunks that wait.
     ///
     /// # Errors
     /// [`Stop::Memory`].
     #[cfg(feature = "parallel")]
-    fn join(&mut self, found: Gathered<Self::Part>) -> Result<(), Stop>;
+    fn join(&mut self, found: Gathered<Self::Chunk>) -> Result<(), Stop>;
 }
 
 /// What takes pairs on another thread.
 #[cfg(feature = "parallel")]
-pub(super) trait Part: Sink + Default + Send {
+pub(super) trait Chunk: Sink + Default + Send {
     /// The pairs that it has stored.
-    fn held(&self) -> &[[u32; 2]] {
+    fn pairs(&self) -> &[[u32; 2]] {
         &[]
     }
 
-    /// Stores them no more. (What counts them goes on.)
-    fn forget(&mut self) {}
+    /// Drops the stored pairs. (A count goes on.)
+    fn clear(&mut self) {}
 
-    /// Whether it has stored so many that it had better be copied to its place.
+    /// Whether it has stored so many that they should be copied to their place.
     fn is_full(&self) -> bool {
         false
     }
+}
+
+/// Where the pairs of a search on threads are.
+#[cfg(feature = "parallel")]
+#[derive(Debug)]
+pub(super) struct Gathered<C> {
+    /// How many were copied to their places.
+    pub written: usize,
+    /// The chunks with those behind them, for which there was no spare capacity.
+    pub waiting: Vec<C>,
+    /// Empty chunks, and how many of them, the first ones, were not needed.
+    pub spare: Vec<C>,
+    pub unused: usize,
 }
 
 /// Stores pairs. The buffer is longer than what it holds, and only grows.
@@ -88,7 +99,7 @@ pub(super) trait Part: Sink + Default + Send {
 pub(super) struct Store {
     buffer: Vec<[u32; 2]>,
     len: usize,
-    /// Parts of earlier calls, kept for their buffers.
+    /// Chunks of earlier calls, kept for their buffers.
     #[cfg(feature = "parallel")]
     spare: Vec<Store>,
 }
@@ -99,8 +110,8 @@ impl Store {
         self.len = 0;
     }
 
-    /// Has at most so many pairs written, by a function that tells how many they are. False, with
-    /// nothing stored, if there is not enough memory.
+    /// Replaces the pairs by at most so many, which a function writes; it returns how many. False,
+    /// with nothing stored, if there is not enough memory.
     #[inline]
     pub fn put(&mut self, most: usize, write: impl FnOnce(&mut [[u32; 2]]) -> usize) -> bool {
         if self.buffer.len() < most && grow_to(&mut self.buffer, most, [0; 2]).is_err() {
@@ -123,15 +134,15 @@ impl Store {
 
 impl Sink for Store {
     #[cfg(feature = "parallel")]
-    type Part = Store;
+    type Chunk = Store;
 
     #[inline]
-    fn room(&mut self) -> Result<&mut [[u32; 2]], Stop> {
+    fn spare(&mut self) -> Result<&mut [[u32; 2]], Stop> {
         if self.buffer.len() - self.len < PAD {
-            let room = 2 * self.buffer.len() + 4 * PAD;
-            grow_to(&mut self.buffer, room, [0; 2])?;
+            let size = 2 * self.buffer.len() + 4 * PAD;
+            grow_to(&mut self.buffer, size, [0; 2])?;
         }
-        let end = self.buffer.len().min(self.len + STRETCH);
+        let end = self.buffer.len().min(self.len + MOST_AT_A_TIME);
         Ok(&mut self.buffer[self.len..end])
     }
 
@@ -142,7 +153,7 @@ impl Sink for Store {
     }
 
     #[cfg(feature = "parallel")]
-    fn parts(&mut self) -> Vec<Store> {
+    fn spare_chunks(&mut self) -> Vec<Store> {
         take(&mut self.spare)
     }
 
@@ -155,22 +166,22 @@ impl Sink for Store {
     fn join(&mut self, found: Gathered<Store>) -> Result<(), Stop> {
         let Gathered { written, mut waiting, mut spare, unused } = found;
         self.len += written;
-        let len = self.len + waiting.iter().map(|part| part.len).sum::<usize>();
+        let len = self.len + waiting.iter().map(|chunk| chunk.len).sum::<usize>();
         if self.buffer.len() < len {
             grow_to(&mut self.buffer, len, [0; 2])?;
         }
         let mut rest = &mut self.buffer[self.len..len];
         let mut copies = Vec::new();
         copies.try_reserve_exact(waiting.len())?;
-        for part in &waiting {
-            let (to, behind) = rest.split_at_mut(part.len);
-            copies.push((to, part.pairs()));
+        for chunk in &waiting {
+            let (to, behind) = rest.split_at_mut(chunk.len);
+            copies.push((to, chunk.pairs()));
             rest = behind;
         }
-        super::threads::copy(copies);
+        super::parallel::copy(copies);
         self.len = len;
         waiting.iter_mut().for_each(Store::clear);
-        // The first search, which has no room, needs a part for every pair; later ones need few.
+        // The first search, without capacity, stores all pairs in chunks; later ones need few.
         spare.drain(..unused.div_ceil(2));
         spare.append(&mut waiting);
         self.spare = spare;
@@ -179,17 +190,17 @@ impl Sink for Store {
 }
 
 #[cfg(feature = "parallel")]
-impl Part for Store {
-    fn held(&self) -> &[[u32; 2]] {
+impl Chunk for Store {
+    fn pairs(&self) -> &[[u32; 2]] {
         self.pairs()
     }
 
-    fn forget(&mut self) {
+    fn clear(&mut self) {
         self.clear();
     }
 
     fn is_full(&self) -> bool {
-        self.buffer.len() >= PART && self.buffer.len() - self.len < PAD
+        self.buffer.len() >= CHUNK && self.buffer.len() - self.len < PAD
     }
 }
 
@@ -201,24 +212,24 @@ pub(super) struct Count {
 }
 
 #[cfg(feature = "parallel")]
-impl Part for Count {}
+impl Chunk for Count {}
 
-/// Takes no pairs, so that the time of a search without its sweep can be told.
+/// Takes no pairs, to measure the time of a search without its sweep.
 #[cfg(feature = "std")]
 #[derive(Debug, Default)]
 pub(super) struct Unswept;
 
 #[cfg(all(feature = "std", feature = "parallel"))]
-impl Part for Unswept {}
+impl Chunk for Unswept {}
 
 #[cfg(feature = "std")]
 impl Sink for Unswept {
     const SWEEPS: bool = false;
 
     #[cfg(feature = "parallel")]
-    type Part = Unswept;
+    type Chunk = Unswept;
 
-    fn room(&mut self) -> Result<&mut [[u32; 2]], Stop> {
+    fn spare(&mut self) -> Result<&mut [[u32; 2]], Stop> {
         Ok(&mut [])
     }
 
@@ -232,13 +243,13 @@ impl Sink for Unswept {
     }
 }
 
-/// Room for a few pairs at a time.
+/// A buffer of a few pairs.
 #[derive(Debug, Default)]
 pub(super) struct Buffer(Vec<[u32; 2]>);
 
 impl Buffer {
     #[inline]
-    fn room(&mut self) -> Result<&mut [[u32; 2]], Stop> {
+    fn spare(&mut self) -> Result<&mut [[u32; 2]], Stop> {
         if self.0.is_empty() {
             grow_to(&mut self.0, BUFFER, [0; 2])?;
         }
@@ -248,11 +259,11 @@ impl Buffer {
 
 impl Sink for Count {
     #[cfg(feature = "parallel")]
-    type Part = Count;
+    type Chunk = Count;
 
     #[inline]
-    fn room(&mut self) -> Result<&mut [[u32; 2]], Stop> {
-        self.buffer.room()
+    fn spare(&mut self) -> Result<&mut [[u32; 2]], Stop> {
+        self.buffer.spare()
     }
 
     #[inline]
@@ -263,12 +274,13 @@ impl Sink for Count {
 
     #[cfg(feature = "parallel")]
     fn join(&mut self, found: Gathered<Count>) -> Result<(), Stop> {
-        self.count += found.waiting.iter().chain(&found.spare).map(|part| part.count).sum::<u64>();
+        self.count +=
+            found.waiting.iter().chain(&found.spare).map(|chunk| chunk.count).sum::<u64>();
         Ok(())
     }
 }
 
-/// Hands pairs to a function, some at a time and in order, and stores only a buffer of them.
+/// Hands chunks of pairs to a function, in order, and stores only one buffer.
 #[derive(Debug)]
 pub(super) struct Stream<'a, F> {
     pub buffer: &'a mut Buffer,
@@ -277,23 +289,23 @@ pub(super) struct Stream<'a, F> {
 
 impl<F: FnMut(&[[u32; 2]]) -> ControlFlow<()>> Sink for Stream<'_, F> {
     #[cfg(feature = "parallel")]
-    type Part = Count;
+    type Chunk = Count;
 
     #[inline]
-    fn room(&mut self) -> Result<&mut [[u32; 2]], Stop> {
-        self.buffer.room()
+    fn spare(&mut self) -> Result<&mut [[u32; 2]], Stop> {
+        self.buffer.spare()
     }
 
     #[inline]
     fn take(&mut self, count: usize) -> Result<(), Stop> {
         if count > 0 && (self.each)(&self.buffer.0[..count]).is_break() {
-            return Err(Stop::Enough);
+            return Err(Stop::Cancelled);
         }
         Ok(())
     }
 
     #[cfg(feature = "parallel")]
-    const TAKES_PARTS: bool = false;
+    const TAKES_CHUNKS: bool = false;
 
     #[cfg(feature = "parallel")]
     fn join(&mut self, _: Gathered<Count>) -> Result<(), Stop> {

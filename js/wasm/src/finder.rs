@@ -8,6 +8,7 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::ops::ControlFlow::{self, Break, Continue};
 
+use sweep_and_prune::Error;
 use sweep_and_prune_bindings::{AnyPairFinder, TypedPairFinder};
 
 use crate::status::{Code, tell, tell_error};
@@ -109,7 +110,11 @@ extern "C" fn finder_find(finder: Option<&mut Finder>, a: usize, b: usize, purpo
         _ => Use::Stream,
     });
     let b = (b != NO_SET).then_some(b);
-    if let Err(error) = finder.for_each_chunk(a, b, &mut |pairs| taker.take(pairs)) {
+    if let Err(mut error) = finder.for_each_chunk(a, b, &mut |pairs| taker.take(pairs)) {
+        // JavaScript counts the boxes of the second set after those of the first.
+        if let Error::InvalidBox { set: 1, index, .. } = &mut error {
+            *index += a;
+        }
         return tell_error(error);
     }
     match taker.purpose {

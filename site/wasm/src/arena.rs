@@ -62,7 +62,7 @@ impl<const D: usize> Arena for Inside<D> {
     }
 
     fn count_pairs(&self) -> Option<u64> {
-        PairFinder::new().count(self.world.boxes()).ok()
+        PairFinder::new().search(self.world.boxes()).count().ok()
     }
 
     fn enter(&mut self, choice: Choice) -> Option<()> {

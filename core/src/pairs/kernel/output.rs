@@ -1,36 +1,36 @@
-//! Where a sweep's hits become pairs. Vectors that can pack their lanes write pairs at once. For the
-//! others hits are noted, and made pairs of many at a time: how many hits a vector has cannot be
-//! foretold, and a loop over them that ends with each vector is guessed wrong as often as not; one
-//! over all that were noted is not.
+//! Turns the hits of a sweep into pairs. Vectors that can pack their lanes write pairs at once. For the
+//! others hits are noted, and made pairs many at a time: how many hits a vector has is unpredictable, so
+//! the processor mispredicts the end of a loop over the hits of each vector. It does not mispredict one
+//! loop over all hits that were noted.
 
 use core::hint::black_box;
 use core::marker::PhantomData;
 use core::mem::MaybeUninit;
 
-use super::column::Column;
+use super::sorted_boxes::SortedBoxes;
 use super::vector::{Reporter, Vector};
 
-/// So many vectors with hits are noted before their pairs are written.
+/// The most vectors with hits that are noted before their pairs are written (0.983 of the time on the
+/// classic scene in WebAssembly, compared with fewer).
 const MOST: usize = 256;
 
 /// The hits of a box in one vector.
 #[derive(Clone, Copy)]
 struct Note {
-    /// The position of the first lane. (A column has a box once at most, and boxes are counted by 32
-    /// bits.)
+    /// The position of the first lane. (Boxes are counted by 32 bits.)
     at: u32,
     /// One bit a lane.
     bits: u32,
-    /// Of the box that was tested.
+    /// The id of the probe.
     id: u32,
-    /// Its marks, and [`IN_FIRST`].
-    marks: u32,
+    /// Its dedup bitmap, and [`IN_FIRST`].
+    dedup: u32,
 }
 
-/// Beside the marks, which are not that many: the other boxes are those of the first of two columns.
+/// Beside the dedup bits, which are not that many: the other boxes are those of the first of two sets.
 const IN_FIRST: u32 = 1 << 31;
 
-/// Room for notes, and for two behind them, which are read before it is known that they are none.
+/// Space for notes, and for two behind them, which are read before it is known that they are none.
 /// Apart from [`Output`], so that the compiler may keep that in registers.
 pub(super) struct Notes([MaybeUninit<Note>; MOST + 2]);
 
@@ -46,7 +46,7 @@ pub(super) struct Output<'a, V> {
     pairs: &'a mut [[u32; 2]],
     written: usize,
     noted: usize,
-    /// For so many notes there is room.
+    /// For so many notes there is space.
     most: usize,
     vector: PhantomData<V>,
 }
@@ -62,17 +62,17 @@ impl<'a, V> Output<'a, V> {
         Self { pairs, written: 0, noted: 0, most, vector: PhantomData }
     }
 
-    /// Takes the hits in the vector at a position of a column.
+    /// Takes the hits in the vector at a position.
     ///
     /// # Safety
-    /// The instructions of `V` are present, and so are its lanes in the column; it is not
+    /// The instructions of `V` are present, and its lanes are positions of `boxes`; it is not
     /// [full](Self::is_full).
     #[inline(always)]
     pub unsafe fn take<T: Copy>(
         &mut self,
         hits: V::Mask,
         probe: &Reporter,
-        column: &Column<T>,
+        boxes: &SortedBoxes<T>,
         at: usize,
         notes: &mut Notes,
     ) where
@@ -81,37 +81,37 @@ impl<'a, V> Output<'a, V> {
         // SAFETY: the caller's promise.
         unsafe {
             if V::PACKS {
-                let (ids, marks) = (column.id.as_ptr().add(at), column.marks.as_ptr().add(at));
-                let room = self.pairs.as_mut_ptr().add(self.written);
-                self.written += V::pack(hits, probe, ids, marks, room);
+                let (ids, dedup) = (boxes.id.as_ptr().add(at), boxes.dedup.as_ptr().add(at));
+                let out = self.pairs.as_mut_ptr().add(self.written);
+                self.written += V::pack(hits, probe, ids, dedup, out);
             } else {
                 let bits = V::bits(hits);
-                let marks = probe.marks | if probe.in_first { IN_FIRST } else { 0 };
-                let note = Note { at: at as u32, bits, id: probe.id, marks };
+                let dedup = probe.dedup | if probe.in_first { IN_FIRST } else { 0 };
+                let note = Note { at: at as u32, bits, id: probe.id, dedup };
                 notes.0.get_unchecked_mut(self.noted).write(note);
                 self.noted += usize::from(bits != 0);
             }
         }
     }
 
-    /// Whether it takes no more before it has [made room](Self::make_room).
+    /// Whether it takes no more before a [flush](Self::flush).
     #[inline(always)]
     pub fn is_full<T: Copy>(&self) -> bool
     where
         V: Vector<T>,
     {
-        if V::PACKS { !self.has_room() } else { self.noted >= self.most }
+        if V::PACKS { !self.has_space() } else { self.noted >= self.most }
     }
 
-    /// Writes what is noted. False if there is no room for more. The columns are the one or two that
-    /// are swept; of one the smaller id comes first in any case.
+    /// Writes what is noted. False if there is no space for more. The sets are the one or two that are
+    /// swept; with one the smaller id comes first in any case.
     ///
     /// # Safety
-    /// All was taken from these columns.
+    /// All was taken from these sets.
     #[inline(always)]
-    pub unsafe fn make_room<T: Copy, const N: usize>(
+    pub unsafe fn flush<T: Copy, const N: usize>(
         &mut self,
-        columns: [&Column<T>; N],
+        sets: [&SortedBoxes<T>; N],
         ascending: bool,
         notes: &mut Notes,
     ) -> bool
@@ -119,19 +119,19 @@ impl<'a, V> Output<'a, V> {
         V: Vector<T>,
     {
         if !V::PACKS {
-            // SAFETY: the caller's promise; there is room for `most` vectors full of pairs.
+            // SAFETY: the caller's promise; there is space for `most` vectors full of pairs.
             unsafe {
-                let room = self.pairs.as_mut_ptr().add(self.written);
-                self.written += write(notes, self.noted, columns, ascending, room);
+                let out = self.pairs.as_mut_ptr().add(self.written);
+                self.written += write(notes, self.noted, sets, ascending, out);
             }
             self.noted = 0;
             self.most = MOST.min((self.pairs.len() - self.written) / V::LANES);
         }
-        self.has_room()
+        self.has_space()
     }
 
     #[inline(always)]
-    fn has_room<T: Copy>(&self) -> bool
+    fn has_space<T: Copy>(&self) -> bool
     where
         V: Vector<T>,
     {
@@ -144,21 +144,21 @@ impl<'a, V> Output<'a, V> {
     }
 }
 
-/// Writes the pairs of the first so many notes: of those that share no mark, in their order. Returns
-/// how many. One that is no pair may be written behind.
+/// Writes the pairs of the first `noted` notes, in their order, apart from those that share a dedup
+/// bit. Returns how many. One that is no pair may be written behind them.
 ///
 /// # Safety
-/// So many notes were made, at most [`MOST`]. The lanes of all bits are positions in their columns,
-/// and there is room at `out` for as many pairs as there are bits.
+/// So many notes were made, at most [`MOST`]. The lanes of all bits are positions in their sets, and
+/// there is space at `out` for as many pairs as there are bits.
 #[inline(never)]
 unsafe fn write<T, const N: usize>(
     notes: &mut Notes,
     noted: usize,
-    columns: [&Column<T>; N],
+    sets: [&SortedBoxes<T>; N],
     ascending: bool,
     out: *mut [u32; 2],
 ) -> usize {
-    let none = Note { at: 0, bits: 0, id: 0, marks: 0 };
+    let none = Note { at: 0, bits: 0, id: 0, dedup: 0 };
     notes.0[noted].write(none);
     notes.0[noted + 1].write(none);
     let mut note = notes.0.as_ptr().cast::<Note>();
@@ -168,16 +168,16 @@ unsafe fn write<T, const N: usize>(
         let end = note.add(noted);
         let mut count = 0;
         let mut bits = (*note).bits;
-        // Or else compilers load it where it is used, and make that a branch.
+        // Otherwise compilers load it where it is used, and make that a branch.
         let mut next = black_box((*note.add(1)).bits);
         while note < end {
-            let Note { at, id, marks, .. } = *note;
-            let in_first = N == 1 || marks & IN_FIRST != 0;
-            let column = columns[usize::from(!in_first)];
-            let place = at as usize + bits.trailing_zeros() as usize;
-            let other = *column.id.as_ptr().add(place);
-            // Written whether it counts or not, and all without a branch: what is smaller, what counts,
-            // and when the next note is due cannot be foretold.
+            let Note { at, id, dedup, .. } = *note;
+            let in_first = N == 1 || dedup & IN_FIRST != 0;
+            let boxes = sets[usize::from(!in_first)];
+            let position = at as usize + bits.trailing_zeros() as usize;
+            let other = *boxes.id.as_ptr().add(position);
+            // Written whether it counts or not, and without a branch: what is smaller, what counts,
+            // and when the next note is due are unpredictable.
             let low = if N == 1 || ascending {
                 id.min(other)
             } else if in_first {
@@ -186,7 +186,7 @@ unsafe fn write<T, const N: usize>(
                 id
             };
             *out.add(count) = [low, id ^ other ^ low];
-            count += usize::from(*column.marks.as_ptr().add(place) & marks == 0);
+            count += usize::from(*boxes.dedup.as_ptr().add(position) & dedup == 0);
             bits &= bits - 1;
             let is_last = bits == 0;
             bits = if is_last { next } else { bits };

@@ -6,7 +6,7 @@ use super::vector::{Reporter, Vector};
 #[derive(Clone, Copy)]
 pub(super) struct One<T>(T);
 
-// SAFETY: reads one coordinate, id and marks, writes one pair; no instructions beyond the baseline.
+// SAFETY: reads one coordinate, id and bitmap, writes one pair; no instructions beyond the baseline.
 unsafe impl<T: Copy + PartialOrd> Vector<T> for One<T> {
     const LANES: usize = 1;
     type Mask = bool;
@@ -44,16 +44,16 @@ unsafe impl<T: Copy + PartialOrd> Vector<T> for One<T> {
         hit: bool,
         probe: &Reporter,
         id: *const u32,
-        marks: *const u32,
+        dedup: *const u32,
         out: *mut [u32; 2],
     ) -> usize {
         if !hit {
             return 0;
         }
-        // SAFETY: the caller has an id and marks, and room for a pair.
+        // SAFETY: the caller has an id and a bitmap, and space for a pair.
         unsafe {
             *out = probe.pair(*id);
-            usize::from(*marks & probe.marks == 0)
+            usize::from(*dedup & probe.dedup == 0)
         }
     }
 }

@@ -3,7 +3,7 @@
 //! ```text
 //! for each box in sweep order                      (the probe)
 //!     for each box ahead, LANES at a time
-//!         report those that overlap on every axis and are not reported by another column
+//!         report those that overlap on every axis and that no other column reports
 //!         stop when a left edge passes the probe's right edge
 //! ```
 //!
@@ -12,27 +12,27 @@
 #[cfg(feature = "parallel")]
 use alloc::vec::Vec;
 
-use super::Coordinate;
-use super::column::Column;
 use super::output::{Notes, Output};
-use super::vector::{Arrange, Reporter, Vector};
+use super::sorted_boxes::SortedBoxes;
+use super::vector::{PairOrder, Reporter, Vector};
+use crate::Scalar;
 
-/// Where a sweep stands when its output is full: it is called again to go on.
+/// Where a sweep stopped because its output was full: it goes on from here in the next call.
 #[derive(Clone, Copy, Debug)]
 pub struct Cursor {
-    /// The next probe of the first column, and of the second where there are two.
-    pub first: usize,
-    pub second: usize,
+    /// The next probe of the first set, and of the second if there are two.
+    first: usize,
+    second: usize,
     /// How far ahead of the probe the scan has come.
-    pub ahead: usize,
-    /// Before which probe the sweep ends, of those of all columns in sweep order.
+    ahead: usize,
+    /// The sweep ends before this probe, of those of all sets in sweep order.
     #[cfg(feature = "parallel")]
     end: usize,
-    pub done: bool,
+    done: bool,
 }
 
 impl Default for Cursor {
-    /// Of the whole sweep.
+    /// Before the first probe of a whole sweep.
     fn default() -> Self {
         Self {
             first: 0,
@@ -46,7 +46,31 @@ impl Default for Cursor {
 }
 
 impl Cursor {
-    /// Whether the next probe is beyond those of its stretch.
+    /// Whether the sweep has come to its end.
+    pub fn is_done(&self) -> bool {
+        self.done
+    }
+
+    /// Whether a sweep of these sets, one or two, may go on from here: the scan of the next probe
+    /// would begin at a box or at the sentinels. Always so, unless the cursor is from another sweep.
+    pub(super) fn fits<T: Scalar>(&self, sets: &[&SortedBoxes<T>]) -> bool {
+        let left = |set: &SortedBoxes<T>, at: usize| set.left[at];
+        match sets {
+            [a] => self.first >= a.len() || self.ahead < a.len() - self.first,
+            [a, b] => {
+                self.first >= a.len()
+                    || self.second >= b.len()
+                    || if left(a, self.first) <= left(b, self.second) {
+                        self.ahead <= b.len() - self.second
+                    } else {
+                        self.ahead <= a.len() - self.first
+                    }
+            }
+            _ => false,
+        }
+    }
+
+    /// Whether the next probe is beyond those of its chunk.
     #[inline(always)]
     fn is_at_end(&self) -> bool {
         #[cfg(feature = "parallel")]
@@ -55,23 +79,23 @@ impl Cursor {
         false
     }
 
-    /// The sweep of columns that stand ordered in stretches of so many probes, one behind the other.
+    /// Splits a sweep into chunks of so many probes.
     #[cfg(feature = "parallel")]
-    pub fn stretches<T: Coordinate>(columns: &[Column<T>], probes: usize) -> Vec<Self> {
-        let boxes = columns.iter().map(Column::len).sum();
-        let stretch = |begin| {
-            let first = columns.get(1).map_or(begin, |second| part(&columns[0], second, begin));
+    pub fn chunks<T: Scalar>(sets: &[SortedBoxes<T>], probes: usize) -> Vec<Self> {
+        let boxes = sets.iter().map(SortedBoxes::len).sum();
+        let chunk = |begin| {
+            let first = sets.get(1).map_or(begin, |second| probes_of(&sets[0], second, begin));
             let end = begin + probes;
             Self { first, second: begin - first, end, ..Self::default() }
         };
-        (0..boxes).step_by(probes).map(stretch).collect()
+        (0..boxes).step_by(probes).map(chunk).collect()
     }
 }
 
-/// How many of the first so many probes are boxes of the first column. Binary search (Odeh et al.
-/// 2012, "Merge Path").
+/// How many of the first so many probes are boxes of the first set. Binary search (Odeh et al. 2012,
+/// "Merge Path").
 #[cfg(feature = "parallel")]
-fn part<T: Coordinate>(first: &Column<T>, second: &Column<T>, probes: usize) -> usize {
+fn probes_of<T: Scalar>(first: &SortedBoxes<T>, second: &SortedBoxes<T>, probes: usize) -> usize {
     let (mut low, mut high) = (probes.saturating_sub(second.len()), probes.min(first.len()));
     while low < high {
         let middle = (low + high) / 2;
@@ -84,27 +108,28 @@ fn part<T: Coordinate>(first: &Column<T>, second: &Column<T>, probes: usize) -> 
     low
 }
 
-/// Pairs of one column, with `K` axes tested beside the sweep axis. Writes to `out` and returns how
-/// many; `cursor.done` tells whether that was all. The scan of a box stops where `out` has no room
-/// for a full vector.
+/// The pairs of one set, with `K` axes tested beside the sweep axis. Writes to `out` and returns how
+/// many; `cursor.done` tells whether that was all. The scan of a box stops where `out` has no space for
+/// a full vector.
 ///
 /// # Safety
-/// The instructions of `V` are present; `column.is_ready(K)`; `out.len() >= V::LANES`.
+/// The instructions of `V` are present; `boxes.is_ready(K)`; `cursor.fits(&[boxes])`;
+/// `out.len() >= V::LANES`.
 #[inline(always)]
-pub(super) unsafe fn within<T: Coordinate, V: Vector<T>, const K: usize>(
-    column: &Column<T>,
+pub(super) unsafe fn within<T: Scalar, V: Vector<T>, const K: usize>(
+    boxes: &SortedBoxes<T>,
     cursor: &mut Cursor,
     out: &mut [[u32; 2]],
 ) -> usize {
     let (mut output, mut notes) = (Output::<V>::new(out), Notes::new());
     loop {
-        while cursor.first < column.len() && !cursor.is_at_end() && !output.is_full() {
+        while cursor.first < boxes.len() && !cursor.is_at_end() && !output.is_full() {
             let i = cursor.first;
-            // SAFETY: i < len, and the scan begins at i + 1 + ahead, which the last vector of the
-            // sentinels ends.
+            // SAFETY: i < len. The scan begins at i + 1 + ahead <= len: the cursor fits, and later
+            // probes start with ahead = 0.
             let finished = unsafe {
-                let probe = Probe::<T, V, K>::new(column, i, true, false);
-                probe.scan(column, i + 1, &mut cursor.ahead, &mut output, &mut notes)
+                let probe = Probe::<T, V, K>::new(boxes, i, true, false);
+                probe.scan(boxes, i + 1, &mut cursor.ahead, &mut output, &mut notes)
             };
             if finished {
                 cursor.first = i + 1;
@@ -112,36 +137,38 @@ pub(super) unsafe fn within<T: Coordinate, V: Vector<T>, const K: usize>(
             }
         }
         cursor.done = !output.is_full();
-        // SAFETY: the column is that which is swept.
-        if !unsafe { output.make_room([column], true, &mut notes) } || cursor.done {
+        // SAFETY: all hits are those of `boxes`.
+        if !unsafe { output.flush([boxes], true, &mut notes) } || cursor.done {
             return output.written();
         }
     }
 }
 
-/// Pairs of one box of each column. The probe is whichever comes first in sweep order, the first
-/// column's where both begin together.
+/// The pairs of one box of each set. The probe is the box that comes first in sweep order, that of the
+/// first set where both begin together.
 ///
 /// # Safety
-/// The instructions of `V` are present; both columns are ready for `K`; `out.len() >= V::LANES`.
+/// The instructions of `V` are present; both sets are ready for `K`; `cursor.fits(&[a, b])`;
+/// `out.len() >= V::LANES`.
 #[inline(always)]
-pub(super) unsafe fn between<T: Coordinate, V: Vector<T>, const K: usize>(
-    [a, b]: [&Column<T>; 2],
-    arrange: Arrange,
+pub(super) unsafe fn between<T: Scalar, V: Vector<T>, const K: usize>(
+    [a, b]: [&SortedBoxes<T>; 2],
+    pair_order: PairOrder,
     cursor: &mut Cursor,
     out: &mut [[u32; 2]],
 ) -> usize {
-    let ascending = arrange == Arrange::Ascending;
+    let ascending = pair_order == PairOrder::Ascending;
     let (mut output, mut notes) = (Output::<V>::new(out), Notes::new());
     loop {
-        // Where one column has ended, nothing of it is ahead of the rest of the other.
+        // Where one set has ended, nothing of it is ahead of the rest of the other.
         while cursor.first < a.len()
             && cursor.second < b.len()
             && !cursor.is_at_end()
             && !output.is_full()
         {
             let Cursor { first: i, second: j, .. } = *cursor;
-            // SAFETY: i and j are positions of boxes; a scan begins at a box or at the sentinels.
+            // SAFETY: i and j are positions of boxes. A scan begins at a box or at the sentinels: the
+            // cursor fits, and later probes start with ahead = 0.
             let finished = unsafe {
                 if *a.left.get_unchecked(i) <= *b.left.get_unchecked(j) {
                     let probe = Probe::<T, V, K>::new(a, i, ascending, false);
@@ -160,8 +187,8 @@ pub(super) unsafe fn between<T: Coordinate, V: Vector<T>, const K: usize>(
             }
         }
         cursor.done = !output.is_full();
-        // SAFETY: the columns are those which are swept.
-        if !unsafe { output.make_room([a, b], ascending, &mut notes) } || cursor.done {
+        // SAFETY: all hits are those of `a` and `b`.
+        if !unsafe { output.flush([a, b], ascending, &mut notes) } || cursor.done {
             return output.written();
         }
     }
@@ -176,21 +203,21 @@ struct Probe<T, V, const K: usize> {
     reporter: Reporter,
 }
 
-impl<T: Coordinate, V: Vector<T>, const K: usize> Probe<T, V, K> {
+impl<T: Scalar, V: Vector<T>, const K: usize> Probe<T, V, K> {
     /// # Safety
-    /// `i` is the position of a box in a column that is ready for `K`.
+    /// `i` is the position of a box, and `boxes` are ready for `K`.
     #[inline(always)]
-    unsafe fn new(column: &Column<T>, i: usize, ascending: bool, in_first: bool) -> Self {
+    unsafe fn new(boxes: &SortedBoxes<T>, i: usize, ascending: bool, in_first: bool) -> Self {
         // SAFETY: i is inside every array.
         unsafe {
             Self {
-                last: *column.right.get_unchecked(i),
-                right: V::splat(*column.right.get_unchecked(i)),
-                min: core::array::from_fn(|k| V::splat(*column.min[k].get_unchecked(i))),
-                max: core::array::from_fn(|k| V::splat(*column.max[k].get_unchecked(i))),
+                last: *boxes.right.get_unchecked(i),
+                right: V::splat(*boxes.right.get_unchecked(i)),
+                min: core::array::from_fn(|k| V::splat(*boxes.min[k].get_unchecked(i))),
+                max: core::array::from_fn(|k| V::splat(*boxes.max[k].get_unchecked(i))),
                 reporter: Reporter {
-                    id: *column.id.get_unchecked(i),
-                    marks: *column.marks.get_unchecked(i),
+                    id: *boxes.id.get_unchecked(i),
+                    dedup: *boxes.dedup.get_unchecked(i),
                     ascending,
                     in_first,
                 },
@@ -199,14 +226,14 @@ impl<T: Coordinate, V: Vector<T>, const K: usize> Probe<T, V, K> {
     }
 
     /// Tests the boxes from `start + ahead` on. Returns false if it stopped because the output was
-    /// full; then `ahead` tells where to go on.
+    /// full; then it goes on from `ahead`.
     ///
     /// # Safety
-    /// `start + ahead <= column.len()`, and the column is ready for `K`; the output is not full.
+    /// `start + ahead <= boxes.len()`, and they are ready for `K`; the output is not full.
     #[inline(always)]
     unsafe fn scan(
         &self,
-        column: &Column<T>,
+        boxes: &SortedBoxes<T>,
         start: usize,
         ahead: &mut usize,
         output: &mut Output<'_, V>,
@@ -217,15 +244,15 @@ impl<T: Coordinate, V: Vector<T>, const K: usize> Probe<T, V, K> {
             // SAFETY: j <= len, so LANES <= PAD entries from j are inside every array: a vector
             // that reaches the sentinels ends the scan.
             let more = unsafe {
-                let begun = V::le(V::load(column.left.as_ptr().add(j)), self.right);
+                let begun = V::le(V::load(boxes.left.as_ptr().add(j)), self.right);
                 let mut hits = begun;
                 for k in 0..K {
-                    hits = V::and_le(hits, V::load(column.min[k].as_ptr().add(j)), self.max[k]);
-                    hits = V::and_le(hits, self.min[k], V::load(column.max[k].as_ptr().add(j)));
+                    hits = V::and_le(hits, V::load(boxes.min[k].as_ptr().add(j)), self.max[k]);
+                    hits = V::and_le(hits, self.min[k], V::load(boxes.max[k].as_ptr().add(j)));
                 }
-                output.take(hits, &self.reporter, column, j, notes);
+                output.take(hits, &self.reporter, boxes, j, notes);
                 // They ascend: if the last of these has begun, all have.
-                *column.left.get_unchecked(j + V::LANES - 1) <= self.last
+                *boxes.left.get_unchecked(j + V::LANES - 1) <= self.last
             };
             if !more {
                 return true;

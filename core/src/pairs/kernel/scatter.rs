@@ -1,138 +1,170 @@
-//! The last step of a counting sort, by one thread or by several at once: each has a list of what
-//! goes where, and all write into one array.
+//! The last step of a counting sort, by one thread or by several at once: each has a list of what goes
+//! to which column, and all write to one array.
 //!
-//! That no two write to one place follows from the counts, which are made here, of lists that
-//! nobody can change until they are written.
+//! No two write to one place. That follows from the counts, which are made here, of lists that nobody
+//! can change until they are written.
 
 use core::marker::PhantomData;
 use core::mem::{replace, take};
 
 use crate::memory::prefetch;
 
-/// Bytes of the array that the second cache may hold,
+/// An array of more bytes does not fit the second-level cache: lines are prefetched,
 const LARGE: usize = 1 << 20;
-/// and how far ahead its lines are asked for, if it is larger.
-const LINES: usize = 128;
+/// so many bytes ahead. A column is written front to back, so these are its next lines.
+const AHEAD: usize = 128;
 
-/// Bits of [`Copied::bin`] that are the bin.
-const BIN_BITS: u32 = 29;
+/// The bits of [`Placement::column`] that are the column.
+const COLUMN_BITS: u32 = 29;
 
-/// One copy of a box to a bin.
+/// Which column a box is copied to.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Copied {
-    /// The bin, and above it the marks that the copy adds.
-    bin: u32,
-    /// The box's position in the source.
+pub struct Placement {
+    /// The column, and above it the dedup bits that the copy adds.
+    column: u32,
+    /// The position of the box in the source.
     pub of: u32,
 }
 
-impl Copied {
-    /// A copy of box `of` to a bin, to which its [marks](Self::mark) have been added.
+impl Placement {
+    /// The placement of box `of` in a column, to which its [dedup bits](Self::dedup_bit) are added.
     #[inline(always)]
-    pub fn new(bin: u32, of: u32) -> Self {
-        Self { bin, of }
+    pub fn new(column: u32, of: u32) -> Self {
+        Self { column, of }
     }
 
-    /// What to add to a bin, so that its copies are marked for an axis.
-    pub fn mark(axis: usize) -> u32 {
-        1 << BIN_BITS << axis
-    }
-
-    #[inline(always)]
-    pub fn bin(self) -> usize {
-        (self.bin & ((1 << BIN_BITS) - 1)) as usize
+    /// What to add to a column to set the dedup bit of an axis.
+    pub fn dedup_bit(axis: usize) -> u32 {
+        1 << COLUMN_BITS << axis
     }
 
     #[inline(always)]
-    pub fn marks(self) -> u32 {
-        self.bin >> BIN_BITS
+    pub fn column(self) -> usize {
+        (self.column & ((1 << COLUMN_BITS) - 1)) as usize
+    }
+
+    #[inline(always)]
+    pub fn dedup(self) -> u32 {
+        self.column >> COLUMN_BITS
     }
 }
 
-/// A list of copies, and how many of them go to each bin.
+/// A list of placements, and how many of them each column has.
 #[derive(Debug)]
-pub struct Counted<'a> {
-    copies: &'a [Copied],
-    /// For each bin at first how many, in the end where they end.
+pub struct CountedPlacements<'a> {
+    placements: &'a [Placement],
+    /// How many each column has; while they are written, where the next one goes.
     ends: &'a mut [u32],
 }
 
-impl<'a> Counted<'a> {
-    /// Counts. There is an end for each bin.
-    pub fn new(copies: &'a [Copied], ends: &'a mut [u32]) -> Self {
+impl<'a> CountedPlacements<'a> {
+    /// Counts. There is an end for each column.
+    pub fn new(placements: &'a [Placement], ends: &'a mut [u32]) -> Self {
         ends.fill(0);
-        for copy in copies {
-            ends[copy.bin()] += 1;
+        for placement in placements {
+            ends[placement.column()] += 1;
         }
-        Self { copies, ends }
+        Self { placements, ends }
     }
 
-    /// How many copies there are.
+    /// How many placements there are.
     pub fn len(&self) -> usize {
-        self.copies.len()
+        self.placements.len()
     }
 }
 
-/// Gives each list its share of an array, which has just room for all: bin by bin, and within a
-/// bin list by list.
-pub fn place<'a, V: Copy>(
-    lists: &mut [Counted<'a>],
-    room: &'a mut [V],
-) -> impl Iterator<Item = Share<'a, V>> {
-    let bins = lists.first().map_or(0, |list| list.ends.len());
-    let len = lists.iter().map(Counted::len).sum::<usize>();
-    assert!(len == room.len() && u32::try_from(len).is_ok());
-    assert!(lists.iter().all(|list| list.ends.len() == bins));
+/// Gives each list its slots in an array, which is exactly as long as all lists together: column by
+/// column, and within a column list by list.
+///
+/// # Panics
+/// If the array has another length, or the lists have different numbers of columns.
+pub fn assign_slots<'a, V: Copy>(
+    lists: &mut [CountedPlacements<'a>],
+    array: &'a mut [V],
+) -> impl Iterator<Item = Slots<'a, V>> {
+    let columns = lists.first().map_or(0, |list| list.ends.len());
+    let len = lists.iter().map(CountedPlacements::len).sum::<usize>();
+    assert!(len == array.len() && u32::try_from(len).is_ok());
+    assert!(lists.iter().all(|list| list.ends.len() == columns));
     let mut total = 0;
     let mut start = |end: &mut u32| total += replace(end, total);
     if let [list] = lists {
         list.ends.iter_mut().for_each(&mut start);
     } else {
-        (0..bins).for_each(|bin| lists.iter_mut().for_each(|list| start(&mut list.ends[bin])));
+        (0..columns).for_each(|at| lists.iter_mut().for_each(|list| start(&mut list.ends[at])));
     }
-    let start = room.as_mut_ptr();
-    // Taken, so that no list is placed twice.
-    lists.iter_mut().map(move |list| Share {
-        copies: take(&mut list.copies),
+    let start = array.as_mut_ptr();
+    // Taken, so that no list gets slots twice.
+    lists.iter_mut().map(move |list| Slots {
+        placements: take(&mut list.placements),
         ends: take(&mut list.ends),
         start,
         is_large: size_of::<V>() * len > LARGE,
-        room: PhantomData,
+        array: PhantomData,
     })
 }
 
-/// The places in an array that one list fills. See [`place`].
+/// The places in an array that one list fills. See [`assign_slots`].
 #[derive(Debug)]
-pub struct Share<'a, V> {
-    copies: &'a [Copied],
+pub struct Slots<'a, V> {
+    placements: &'a [Placement],
     ends: &'a mut [u32],
     start: *mut V,
     is_large: bool,
-    room: PhantomData<&'a mut [V]>,
+    array: PhantomData<&'a mut [V]>,
 }
 
-// SAFETY: a share writes values to places that no other share of the array has.
-unsafe impl<V: Send> Send for Share<'_, V> {}
+// SAFETY: it writes values to places that no other `Slots` of the array has.
+unsafe impl<V: Send> Send for Slots<'_, V> {}
 
-impl<V: Copy> Share<'_, V> {
-    /// Puts the value of each copy to its place.
+impl<V: Copy> Slots<'_, V> {
+    /// Writes the value of each placement to its slot.
     #[inline(always)]
-    pub fn put(self, value: impl Fn(Copied) -> V) {
-        for &copy in self.copies {
-            let value = value(copy);
-            let end = &mut self.ends[copy.bin()];
-            // In bounds, as is the place itself.
-            let place = self.start.wrapping_add(*end as usize);
-            // Places that the caches do not hold take their time to come, but are known early.
+    pub fn write(self, value: impl Fn(Placement) -> V) {
+        for &placement in self.placements {
+            let value = value(placement);
+            let end = &mut self.ends[placement.column()];
+            // In bounds, as is the slot itself.
+            let slot = self.start.wrapping_add(*end as usize);
             if self.is_large {
-                prefetch(place.wrapping_add(LINES / size_of::<V>()));
+                prefetch(slot.wrapping_add(AHEAD / size_of::<V>()));
             }
-            // SAFETY: `place` gave each bin of each list as many places of the array, which this
-            // share has borrowed, as the list has copies for the bin, and no two share one. The
-            // list is the one that was counted: it has been borrowed since. So there is one for
-            // this copy.
-            unsafe { place.write(value) };
+            // SAFETY: `assign_slots` gave each column of each list as many slots of the array, which
+            // `self` has borrowed, as the list has placements in the column, and no two share one.
+            // The list is the one that was counted: it has been borrowed since. So there is a slot
+            // for this placement.
+            unsafe { slot.write(value) };
             *end += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec;
+    use alloc::vec::Vec;
+
+    use super::*;
+
+    /// More than 1 MiB, so that lines are prefetched; by one list and by three.
+    #[test]
+    fn values_are_sorted_by_column_and_stay_in_order_within_it() {
+        for len in [0, 10, 40_000] {
+            let column = |of: u32| (of.wrapping_mul(0x9E37_79B9) >> 8) % 1000;
+            let all: Vec<_> = (0..len).map(|of| Placement::new(column(of), of)).collect();
+            let mut expected: Vec<_> = all.iter().map(|it| [u64::from(it.of); 6]).collect();
+            expected.sort_by_key(|&[of, ..]| all[of as usize].column());
+            for lists in [1, 3] {
+                let mut ends = vec![vec![0; 1000]; lists];
+                let chunks = all.chunks(all.len().div_ceil(lists).max(1));
+                let counted = chunks.zip(&mut ends);
+                let mut counted: Vec<_> =
+                    counted.map(|(chunk, ends)| CountedPlacements::new(chunk, ends)).collect();
+                let mut array = vec![[u64::MAX; 6]; all.len()];
+                assign_slots(&mut counted, &mut array)
+                    .for_each(|slots| slots.write(|placement| [u64::from(placement.of); 6]));
+                assert!(array == expected, "{len} in {lists} lists");
+            }
         }
     }
 }

@@ -1,13 +1,13 @@
-//! What a kernel needs of a processor: a vector of coordinates, compared lane by lane.
+//! What a kernel needs from a processor: a vector of coordinates, compared lane by lane.
 
 /// A vector of `LANES` coordinates.
 ///
 /// # Safety
-/// An implementation must read exactly `LANES` coordinates in `load`, `LANES` ids and marks in
+/// An implementation must read exactly `LANES` coordinates in `load`, `LANES` ids and dedup bitmaps in
 /// `pack`, and write no more than `LANES` pairs there. Each function may be called only where
 /// the instructions of the implementation are present.
 pub(super) unsafe trait Vector<T: Copy>: Copy {
-    /// Coordinates in one vector, at most [`PAD`](super::column::PAD).
+    /// Coordinates in one vector, at most [`PAD`](super::sorted_boxes::PAD).
     const LANES: usize;
     /// One boolean a lane.
     type Mask: Copy;
@@ -26,26 +26,26 @@ pub(super) unsafe trait Vector<T: Copy>: Copy {
     /// Whether it can [`pack`](Self::pack).
     const PACKS: bool = false;
 
-    /// Writes the pairs of the lanes in `hits` whose marks share no bit with the probe's, in lane
+    /// Writes the pairs of the lanes in `hits` whose dedup bitmaps share no bit with the probe's, in lane
     /// order. Returns how many. Up to `LANES` pairs may be overwritten at `out`.
     #[inline(always)]
     unsafe fn pack(
         _hits: Self::Mask,
         _probe: &Reporter,
         _ids: *const u32,
-        _marks: *const u32,
+        _dedup: *const u32,
         _out: *mut [u32; 2],
     ) -> usize {
         unreachable!("it does not pack")
     }
 }
 
-/// How the two ids of a pair are arranged.
+/// The order of the two ids of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Arrange {
+pub enum PairOrder {
     /// Two boxes of one set: smaller id first.
     Ascending,
-    /// Boxes of two sets: the first column's first.
+    /// Boxes of two sets: that of the first set first.
     BySet,
 }
 
@@ -53,10 +53,10 @@ pub enum Arrange {
 #[derive(Clone, Copy)]
 pub(super) struct Reporter {
     pub id: u32,
-    pub marks: u32,
-    /// Whether the smaller id comes first, or else that of the first column.
+    pub dedup: u32,
+    /// Whether the smaller id comes first, or else that of the first set.
     pub ascending: bool,
-    /// Whether the other boxes are those of the first of two columns.
+    /// Whether the other boxes are those of the first of two sets.
     pub in_first: bool,
 }
 

@@ -1,10 +1,10 @@
 //! WebAssembly's simd128, where the crate is built with it. A vector here is two of the engine's,
-//! 8 `f32` or 4 `f64`: most scans are then over after one turn, which the processor foretells.
+//! 8 `f32` or 4 `f64`: most scans then end after one turn, which the processor predicts.
 
 use core::arch::wasm32::*;
 
-use super::super::numbers::{BLOCK, Ruler};
 use super::vector::Vector;
+use crate::geometry::Quantizer;
 
 /// Eight `f32`.
 #[derive(Clone, Copy)]
@@ -64,36 +64,38 @@ fn bits_of_four(low: v128, high: v128) -> u32 {
     u32::from(i32x4_bitmask(i32x4_shuffle::<0, 2, 4, 6>(low, high)))
 }
 
-/// As [`Number::spans`](super::super::numbers::Number::spans), which the compiler makes vectors of
-/// only where it does not go for size.
-pub fn spans_by_four(
-    [low, high]: [&[f32; BLOCK]; 2],
-    ruler: &Ruler<f32>,
+/// Adds `step` times the first cell of each interval to its column, and computes how many more cells
+/// it touches. False if an interval is inverted or NaN. The compiler makes vectors of the loop in
+/// `grid.rs`, which does the same, only where it does not optimize for size.
+pub fn quantize_by_four<const N: usize>(
+    [low, high]: [&[f32; N]; 2],
+    quantizer: &Quantizer<f32>,
     step: u32,
-    bin: &mut [u32; BLOCK],
-    more: &mut [u32; BLOCK],
+    column: &mut [u32; N],
+    more: &mut [u32; N],
 ) -> bool {
-    let (unit, origin) = (f32x4_splat(ruler.unit), f32x4_splat(ruler.origin));
-    let (scale, last) = (f32x4_splat(ruler.scale), f32x4_splat(ruler.last));
+    const { assert!(N.is_multiple_of(4)) };
+    let (unit, origin) = (f32x4_splat(quantizer.unit), f32x4_splat(quantizer.origin));
+    let (scale, last) = (f32x4_splat(quantizer.scale), f32x4_splat(quantizer.last));
     let anchor = f32x4_splat((1 << (f32::MANTISSA_DIGITS - 1)) as f32);
     let cell = |at| {
-        let place = f32x4_mul(f32x4_sub(f32x4_mul(at, unit), origin), scale);
+        let at = f32x4_mul(f32x4_sub(f32x4_mul(at, unit), origin), scale);
         // In this order the first also turns a NaN into 0.
-        let place = f32x4_pmin(last, f32x4_pmax(f32x4_splat(0.0), place));
-        v128_xor(f32x4_add(place, anchor), anchor)
+        let at = f32x4_pmin(last, f32x4_pmax(f32x4_splat(0.0), at));
+        v128_xor(f32x4_add(at, anchor), anchor)
     };
     let mut valid = u32x4_splat(u32::MAX);
-    for i in (0..BLOCK).step_by(4) {
-        // SAFETY: all four are arrays of BLOCK, a multiple of four.
+    for i in (0..N).step_by(4) {
+        // SAFETY: all four are arrays of N, a multiple of four.
         unsafe {
             let low = v128_load(low.as_ptr().add(i).cast());
             let high = v128_load(high.as_ptr().add(i).cast());
-            let bin: *mut v128 = bin.as_mut_ptr().add(i).cast();
+            let column: *mut v128 = column.as_mut_ptr().add(i).cast();
             let more: *mut v128 = more.as_mut_ptr().add(i).cast();
             valid = v128_and(valid, f32x4_le(low, high));
             let first = cell(low);
             let behind = i32x4_mul(first, u32x4_splat(step));
-            v128_store(bin, i32x4_add(v128_load(bin), behind));
+            v128_store(column, i32x4_add(v128_load(column), behind));
             v128_store(more, i32x4_sub(u32x4_max(cell(high), first), first));
         }
     }

@@ -12,14 +12,14 @@ pub(super) struct Sse2<V>(V);
 #[derive(Clone, Copy)]
 pub(super) struct Avx2<V>(V);
 
-/// A vector of AVX-512 (F and VL).
+/// A vector of AVX-512 F.
 #[derive(Clone, Copy)]
 pub(super) struct Avx512<V>(V);
 
 macro_rules! masks_in_vectors {
     ($name:ident, $vector:ty, $scalar:ty, $lanes:literal, $splat:ident, $load:ident, $le:expr, $and:ident, $bits:ident $(, $ids:ident)?) => {
         // SAFETY: one load of exactly LANES coordinates; `pack`, where it is, reads LANES
-        // ids and marks and writes LANES pairs.
+        // ids and bitmaps and writes LANES pairs.
         unsafe impl Vector<$scalar> for $name<$vector> {
             const LANES: usize = $lanes;
             type Mask = $vector;
@@ -62,12 +62,12 @@ macro_rules! masks_in_vectors {
                     hits: $vector,
                     probe: &Reporter,
                     ids: *const u32,
-                    marks: *const u32,
+                    dedup: *const u32,
                     out: *mut [u32; 2],
                 ) -> usize {
-                    // SAFETY: the caller has the instructions, LANES ids and marks, and room for
+                    // SAFETY: the caller has the instructions, LANES ids and bitmaps, and space for
                     // LANES pairs.
-                    unsafe { pack(Self::bits(hits), $ids(ids), $ids(marks), probe, out, $lanes) }
+                    unsafe { pack(Self::bits(hits), $ids(ids), $ids(dedup), probe, out, $lanes) }
                 }
             )?
         }
@@ -141,12 +141,12 @@ unsafe fn four_numbers(from: *const u32) -> __m256i {
 /// instruction for is looked up.
 ///
 /// # Safety
-/// AVX2; room for `lanes` (4 or 8) pairs at `out`; no hit beyond `lanes`.
+/// AVX2; space for `lanes` (4 or 8) pairs at `out`; no hit beyond `lanes`.
 #[inline(always)]
 unsafe fn pack(
     hits: u32,
     ids: __m256i,
-    marks: __m256i,
+    dedup: __m256i,
     probe: &Reporter,
     out: *mut [u32; 2],
     lanes: usize,
@@ -154,9 +154,9 @@ unsafe fn pack(
     // SAFETY: the caller's promise; four pairs are one vector.
     unsafe {
         let own = _mm256_set1_epi32(probe.id as i32);
-        let shared = _mm256_and_si256(marks, _mm256_set1_epi32(probe.marks as i32));
-        let unmarked = _mm256_cmpeq_epi32(shared, _mm256_setzero_si256());
-        let reported = hits & _mm256_movemask_ps(_mm256_castsi256_ps(unmarked)) as u32;
+        let shared = _mm256_and_si256(dedup, _mm256_set1_epi32(probe.dedup as i32));
+        let reported_here = _mm256_cmpeq_epi32(shared, _mm256_setzero_si256());
+        let reported = hits & _mm256_movemask_ps(_mm256_castsi256_ps(reported_here)) as u32;
         let (first, second) = if probe.ascending {
             (_mm256_min_epu32(ids, own), _mm256_max_epu32(ids, own))
         } else if probe.in_first {
@@ -200,7 +200,7 @@ static FRONT: [[u8; 8]; 256] = {
 
 macro_rules! masks_in_registers {
     ($vector:ty, $scalar:ty, $lanes:literal, $mask:ty, $splat:ident, $load:ident, $le:ident, $and_le:ident, $ids:expr) => {
-        // SAFETY: one load of exactly LANES coordinates; `pack` reads LANES ids and marks and
+        // SAFETY: one load of exactly LANES coordinates; `pack` reads LANES ids and bitmaps and
         // writes LANES pairs.
         unsafe impl Vector<$scalar> for Avx512<$vector> {
             const LANES: usize = $lanes;
@@ -242,12 +242,12 @@ macro_rules! masks_in_registers {
                 hits: $mask,
                 probe: &Reporter,
                 ids: *const u32,
-                marks: *const u32,
+                dedup: *const u32,
                 out: *mut [u32; 2],
             ) -> usize {
-                // SAFETY: the caller has the instructions, LANES ids and marks, and room for
+                // SAFETY: the caller has the instructions, LANES ids and bitmaps, and space for
                 // LANES pairs.
-                unsafe { compress(u16::from(hits), $ids(ids), $ids(marks), probe, out, $lanes) }
+                unsafe { compress(u16::from(hits), $ids(ids), $ids(dedup), probe, out, $lanes) }
             }
         }
     };
@@ -295,12 +295,12 @@ unsafe fn load_eight(from: *const u32) -> __m512i {
 /// The pairs of the lanes in `hits`, packed to the front without a branch.
 ///
 /// # Safety
-/// AVX-512 F; room for `lanes` (8 or 16) pairs at `out`; no hit beyond `lanes`.
+/// AVX-512 F; space for `lanes` (8 or 16) pairs at `out`; no hit beyond `lanes`.
 #[inline(always)]
 unsafe fn compress(
     hits: __mmask16,
     ids: __m512i,
-    marks: __m512i,
+    dedup: __m512i,
     probe: &Reporter,
     out: *mut [u32; 2],
     lanes: usize,
@@ -309,7 +309,7 @@ unsafe fn compress(
     unsafe {
         let own = _mm512_set1_epi32(probe.id as i32);
         let reported =
-            _mm512_mask_testn_epi32_mask(hits, marks, _mm512_set1_epi32(probe.marks as i32));
+            _mm512_mask_testn_epi32_mask(hits, dedup, _mm512_set1_epi32(probe.dedup as i32));
         let swapped = if probe.ascending {
             _mm512_cmplt_epu32_mask(ids, own)
         } else {

@@ -1,32 +1,33 @@
-//! Stage 2: the boxes of a column in the order of their left edges, as a structure of arrays.
+//! Sorts the boxes of a column by left edge, and lays them out as a structure of arrays.
 //!
-//! A counting pass spreads the edges over about as many equal intervals as there are edges, one
-//! pass exchanges neighbours, and insertion sort finishes. Where many edges fall into one interval
-//! (clusters, equal edges), the standard library's sort does that interval, so the whole is
-//! O(n log n) on any input.
+//! A counting pass spreads the edges over about as many equal intervals as there are edges, one pass
+//! exchanges neighbors, and insertion sort finishes. Where many edges fall into one interval (clusters,
+//! equal edges), the standard library's sort sorts that interval, so all of it is O(n log n) for any
+//! input.
 
 use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::bins::Source;
-use super::kernel::Column;
-use super::numbers::Ruler;
+use super::kernel::SortedBoxes;
 use super::plan::greater;
+use super::source::Source;
+use crate::geometry::{Arithmetic, Key, Quantizer};
 use crate::memory::grow;
 use crate::{Aabb, Scalar};
 
-/// Up to this many keys insertion sort has no need of intervals.
-const FEW: usize = 24;
-
-/// An interval with more keys than this goes to the standard sort.
-const CROWD: u32 = 16;
+/// Up to this many keys are sorted by insertion alone.
+const INSERTION_ONLY: usize = 24;
+/// An interval with more keys than this is sorted by the standard sort.
+const CROWDED_INTERVAL: u32 = 16;
+/// The most intervals: their counters fit the second-level cache.
+const MOST_INTERVALS: usize = 1 << 16;
 
 /// The buffers of the sort.
 #[derive(Debug)]
 pub(super) struct Sorter<T: Scalar> {
-    keys: Vec<T::Key>,
-    sorted: Vec<T::Key>,
+    keys: Vec<Key<T>>,
+    sorted: Vec<Key<T>>,
     lefts: Vec<T>,
     intervals: Vec<u32>,
     ends: Vec<u32>,
@@ -43,79 +44,78 @@ impl<T: Scalar> Sorter<T> {
         }
     }
 
-    /// Fills `column` with the boxes of `source` in the order of left edge on `axis`, then place
-    /// in the source.
-    pub fn order<const D: usize, S: Source<D, T>>(
+    /// Fills `boxes` with those of `source`, by left edge on `axis`, then by position in the source.
+    pub fn sort<const D: usize, S: Source<D, T>>(
         &mut self,
         source: S,
         axis: usize,
-        column: &mut Column<T>,
+        boxes: &mut SortedBoxes<T>,
     ) -> Result<(), TryReserveError> {
-        self.sort(source, axis)?;
-        self.lay_out(source, axis, column)
+        self.sort_keys(source, axis)?;
+        self.lay_out(source, axis, boxes)
     }
 
-    /// Fills `column` with some of the boxes as they stand, all axes beside the sweep axis, on
-    /// which all overlap: for a sweep that tests each against each.
-    pub fn unordered<const D: usize, S: Source<D, T>>(
+    /// Fills `boxes` with a range of those of `source`, unsorted, for brute force: with all axes beside
+    /// a sweep axis on which all overlap.
+    pub fn unsorted<const D: usize, S: Source<D, T>>(
         source: S,
-        boxes: Range<usize>,
-        column: &mut Column<T>,
+        range: Range<usize>,
+        boxes: &mut SortedBoxes<T>,
     ) -> Result<(), TryReserveError> {
-        column.reset(boxes.len(), D)?;
-        column.left[..boxes.len()].fill(T::ZERO);
-        column.right[..boxes.len()].fill(T::ZERO);
-        for (at, i) in boxes.enumerate() {
+        boxes.reset(range.len(), D)?;
+        boxes.left[..range.len()].fill(T::default());
+        boxes.right[..range.len()].fill(T::default());
+        for (at, i) in range.enumerate() {
             let Aabb { min, max } = source.aabb(i);
             for axis in 0..D {
-                column.min[axis][at] = min[axis];
-                column.max[axis][at] = max[axis];
+                boxes.min[axis][at] = min[axis];
+                boxes.max[axis][at] = max[axis];
             }
-            column.id[at] = source.id(i);
-            column.marks[at] = source.marks(i);
+            boxes.id[at] = source.id(i);
+            boxes.dedup[at] = source.dedup(i);
         }
         Ok(())
     }
 
-    /// Fills the column as the keys in `sorted` say.
+    /// Fills `boxes` in the order of the keys in `sorted`.
     fn lay_out<const D: usize, S: Source<D, T>>(
         &self,
         source: S,
         axis: usize,
-        column: &mut Column<T>,
+        boxes: &mut SortedBoxes<T>,
     ) -> Result<(), TryReserveError> {
         let len = source.len();
-        column.reset(len, D - 1)?;
+        boxes.reset(len, D - 1)?;
         for (at, &key) in self.sorted[..len].iter().enumerate() {
-            put(column, at, source, T::place(key) as usize, axis);
+            put(boxes, at, source, T::Arithmetic::position(key) as usize, axis);
         }
         Ok(())
     }
 
     /// Leaves the sorted keys of the boxes in `sorted`.
     #[inline(never)]
-    fn sort<const D: usize, S: Source<D, T>>(
+    fn sort_keys<const D: usize, S: Source<D, T>>(
         &mut self,
         source: S,
         axis: usize,
     ) -> Result<(), TryReserveError> {
         let len = source.len();
-        grow(&mut self.sorted, len, T::Key::default())?;
-        if len <= FEW {
+        grow(&mut self.sorted, len, Key::<T>::default())?;
+        if len <= INSERTION_ONLY {
             for (i, key) in self.sorted[..len].iter_mut().enumerate() {
-                *key = edge(source, i, axis).key(i as u32);
+                *key = T::Arithmetic::key(edge(source, i, axis), i as u32);
             }
             insertion(&mut self.sorted[..len]);
             return Ok(());
         }
-        grow(&mut self.keys, len, T::Key::default())?;
-        grow(&mut self.lefts, len, T::ZERO)?;
-        // The least and the greatest by their keys: comparing whole numbers takes less time.
-        let mut least = edge(source, 0, axis).key(0);
+        grow(&mut self.keys, len, Key::<T>::default())?;
+        grow(&mut self.lefts, len, T::default())?;
+        // The least and the greatest by their keys: whole numbers are compared faster.
+        let mut least = T::Arithmetic::key(edge(source, 0, axis), 0);
         let mut greatest = least;
         for (i, (key, left)) in self.keys.iter_mut().zip(&mut self.lefts[..len]).enumerate() {
             *left = edge(source, i, axis);
-            *key = left.key(i as u32);
+            *key = T::Arithmetic::key(*left, i as u32);
             least = least.min(*key);
             greatest = greatest.max(*key);
         }
@@ -123,17 +123,18 @@ impl<T: Scalar> Sorter<T> {
     }
 
     /// Leaves `keys`, of `lefts`, sorted in `sorted`; given are the least and the greatest of them.
-    fn spread(&mut self, len: usize, ends: [T::Key; 2]) -> Result<(), TryReserveError> {
-        let ends = ends.map(|key| self.lefts[T::place(key) as usize].to_f64());
-        let unit = T::unit(greater(ends[0].abs(), ends[1].abs()));
-        let [low, high] = ends.map(|end| (end * unit.to_f64()).clamp(-T::LIMIT, T::LIMIT));
-        let count = len.next_power_of_two().min(1 << 16);
+    fn spread(&mut self, len: usize, ends: [Key<T>; 2]) -> Result<(), TryReserveError> {
+        let ends = ends.map(|key| self.lefts[T::Arithmetic::position(key) as usize].to_f64());
+        let unit = T::Arithmetic::unit(greater(ends[0].abs(), ends[1].abs()));
+        let [low, high] = ends
+            .map(|end| (end * unit.to_f64()).clamp(-T::Arithmetic::LIMIT, T::Arithmetic::LIMIT));
+        let count = len.next_power_of_two().min(MOST_INTERVALS);
         let last = (count - 1) as f64;
         let [origin, scale, last] = [low, last / (high - low), last].map(T::from_f64);
         grow(&mut self.intervals, len, 0)?;
-        let ruler = Ruler { unit, origin, scale, last };
+        let quantizer = Quantizer { unit, origin, scale, last };
         for (interval, left) in self.intervals.iter_mut().zip(&self.lefts[..len]) {
-            *interval = left.cell(&ruler);
+            *interval = T::Arithmetic::cell(*left, &quantizer);
         }
         grow(&mut self.ends, count, 0)?;
         let ends = &mut self.ends[..count];
@@ -151,10 +152,10 @@ impl<T: Scalar> Sorter<T> {
             self.sorted[*end as usize] = key;
             *end += 1;
         }
-        if most > CROWD {
+        if most > CROWDED_INTERVAL {
             let mut begin = 0;
             for &end in &*ends {
-                if end - begin > CROWD {
+                if end - begin > CROWDED_INTERVAL {
                     self.sorted[begin as usize..end as usize].sort_unstable();
                 }
                 begin = end;
@@ -166,8 +167,8 @@ impl<T: Scalar> Sorter<T> {
     }
 }
 
-/// One pass of exchanges between neighbours, without a branch, which could not be foretold: most
-/// keys that are not in their place are one beside it.
+/// One pass of exchanges between neighbors, without a branch, which would be unpredictable: most keys
+/// that are not in their place are one beside it.
 fn exchange<K: Copy + Ord>(keys: &mut [K]) {
     if let [first, ..] = *keys {
         let mut most = first;
@@ -199,24 +200,24 @@ fn insertion<K: Copy + Ord>(keys: &mut [K]) {
     }
 }
 
-/// Writes box `i` of the source to its position in the column.
+/// Writes box `i` of the source to position `at`.
 #[inline(always)]
 fn put<const D: usize, T: Scalar, S: Source<D, T>>(
-    column: &mut Column<T>,
+    boxes: &mut SortedBoxes<T>,
     at: usize,
     source: S,
     i: usize,
     axis: usize,
 ) {
     let Aabb { min, max } = source.aabb(i);
-    column.left[at] = min[axis];
-    column.right[at] = max[axis];
+    boxes.left[at] = min[axis];
+    boxes.right[at] = max[axis];
     let mut other = axis;
     for k in 0..D - 1 {
         other = if other + 1 == D { 0 } else { other + 1 };
-        column.min[k][at] = min[other];
-        column.max[k][at] = max[other];
+        boxes.min[k][at] = min[other];
+        boxes.max[k][at] = max[other];
     }
-    column.id[at] = source.id(i);
-    column.marks[at] = source.marks(i);
+    boxes.id[at] = source.id(i);
+    boxes.dedup[at] = source.dedup(i);
 }

@@ -1,6 +1,5 @@
-//! The finder against global pairwise, on every road through it: each kernel, each number of
-//! threads, one set and two, stored, counted and streamed; with scenes that each defeat some
-//! simple design.
+//! The finder against brute force, with every kernel and number of threads, for one set and two,
+//! stored, counted and streamed; on scenes that each defeat some simple design.
 
 mod common;
 
@@ -10,18 +9,18 @@ use common::{coordinate, valid_boxes};
 use proptest::prelude::*;
 use sweep_and_prune::algorithms::pairwise;
 use sweep_and_prune::{
-    Aabb, Error, Kernel, PairFinder, Scalar, Value, count_pairs, find_pairs, find_pairs_between,
-    validate,
+    Aabb, Error, Kernel, PairFinder, Scalar, Search, Value, count_pairs, find_pairs,
+    find_pairs_between, validate,
 };
 use sweep_and_prune_scenes::{Motion, Random};
 
 type Boxes<const D: usize, T> = Vec<Aabb<D, T>>;
 
-/// A box about a centre; the edges are rounded to the type.
-fn around<const D: usize, T: Scalar>(centre: [f64; D], half: [f64; D]) -> Aabb<D, T> {
+/// A box around a center; the edges are rounded to the type.
+fn around<const D: usize, T: Scalar>(center: [f64; D], half: [f64; D]) -> Aabb<D, T> {
     Aabb::new(
-        core::array::from_fn(|k| T::from_f64(centre[k] - half[k])),
-        core::array::from_fn(|k| T::from_f64(centre[k] + half[k])),
+        core::array::from_fn(|k| T::from_f64(center[k] - half[k])),
+        core::array::from_fn(|k| T::from_f64(center[k] + half[k])),
     )
 }
 
@@ -31,7 +30,7 @@ fn some<const D: usize, T: Scalar>(n: usize, half: f64) -> Boxes<D, T> {
     (0..n).map(|_| around(random.point(), [half * (0.5 + random.unit()); D])).collect()
 }
 
-/// The half size at which boxes in the unit cube overlap one other on the average.
+/// The half size at which boxes in the unit cube overlap one other box on average.
 fn half_size<const D: usize>(n: usize) -> f64 {
     0.25 * (2.0 / n as f64).powf(1.0 / D as f64)
 }
@@ -150,9 +149,9 @@ fn pairwise_between<const D: usize, T: Scalar>(
     pairs
 }
 
-/// All roads give the right pairs, in the same order.
+/// Every finder gives the right pairs, in the same order.
 fn check<const D: usize, T: Scalar>(name: &str, boxes: &[Aabb<D, T>]) {
-    // The oracle takes its time, and there is nothing to learn from the second million of pairs.
+    // The oracle is slow, and a second million of pairs would show nothing new.
     let mut boxes = boxes;
     while count_pairs(boxes).unwrap() > 1_000_000 {
         boxes = &boxes[..boxes.len() / 2];
@@ -161,10 +160,10 @@ fn check<const D: usize, T: Scalar>(name: &str, boxes: &[Aabb<D, T>]) {
     assert!(sorted(&found) == pairwise(boxes).unwrap(), "{name}, {D}D, {} boxes", boxes.len());
     for (with, mut finder) in finders() {
         assert!(finder.find(boxes).unwrap() == found, "{name}, {D}D, {with}");
-        assert_eq!(finder.count(boxes).unwrap(), found.len() as u64, "{name}, {D}D, {with}");
+        assert_eq!(finder.search(boxes).count(), Ok(found.len() as u64), "{name}, {D}D, {with}");
     }
     let mut streamed = Vec::new();
-    let flow = PairFinder::new().for_each(boxes, |pair| {
+    let flow = PairFinder::new().search(boxes).for_each(|pair| {
         streamed.push(pair);
         ControlFlow::<()>::Continue(())
     });
@@ -173,17 +172,17 @@ fn check<const D: usize, T: Scalar>(name: &str, boxes: &[Aabb<D, T>]) {
 
 fn check_between<const D: usize, T: Scalar>(name: &str, a: &[Aabb<D, T>], b: &[Aabb<D, T>]) {
     let (mut a, mut b) = (a, b);
-    while PairFinder::new().count_between(a, b).unwrap() > 1_000_000 {
+    while PairFinder::new().search(a).against(b).count().unwrap() > 1_000_000 {
         (a, b) = (&a[..a.len().div_ceil(2)], &b[..b.len().div_ceil(2)]);
     }
     let found = find_pairs_between(a, b).unwrap();
     assert!(sorted(&found) == pairwise_between(a, b), "{name}, {D}D, {} {}", a.len(), b.len());
     for (with, mut finder) in finders() {
         assert!(finder.find_between(a, b).unwrap() == found, "{name}, {D}D, {with}");
-        assert_eq!(finder.count_between(a, b).unwrap(), found.len() as u64, "{name}, {with}");
+        assert_eq!(finder.search(a).against(b).count(), Ok(found.len() as u64), "{name}, {with}");
     }
     let mut streamed = Vec::new();
-    let flow = PairFinder::new().for_each_between(a, b, |pair| {
+    let flow = PairFinder::new().search(a).against(b).for_each(|pair| {
         streamed.push(pair);
         ControlFlow::<()>::Continue(())
     });
@@ -200,7 +199,7 @@ fn adversaries_in_one_set<const D: usize, T: Scalar>() {
         }
     }
 }
-in_all_dimensions!(every_road_finds_the_pairs_of_every_adversary, adversaries_in_one_set);
+in_all_dimensions!(every_finder_finds_the_pairs_of_every_adversary, adversaries_in_one_set);
 
 fn adversaries_in_two_sets<const D: usize, T: Scalar>() {
     let few: Boxes<D, T> = some(7, 0.3);
@@ -213,7 +212,7 @@ fn adversaries_in_two_sets<const D: usize, T: Scalar>() {
         check_between(name, &boxes, &[]);
     }
 }
-in_all_dimensions!(every_road_finds_the_pairs_between_sets, adversaries_in_two_sets);
+in_all_dimensions!(every_finder_finds_the_pairs_between_sets, adversaries_in_two_sets);
 
 fn random_boxes<const D: usize, T: Scalar>() {
     proptest!(ProptestConfig::with_cases(96), |(boxes in valid_boxes::<D, T>(150))| {
@@ -222,7 +221,7 @@ fn random_boxes<const D: usize, T: Scalar>() {
     proptest!(ProptestConfig::with_cases(48), |(a in valid_boxes::<D, T>(90), b in valid_boxes::<D, T>(150))| {
         check_between("random", &a, &b);
     });
-    // So many boxes that the plan cuts, on so few coordinates that edges of boxes and bins meet.
+    // So many boxes that space is cut, on so few coordinates that edges of boxes and columns meet.
     let whole = |k: usize| move |random: &mut Random| random.below(k) as f64;
     let mut random = Random::new(17);
     for k in [3, 10, 40] {
@@ -241,10 +240,10 @@ fn random_boxes<const D: usize, T: Scalar>() {
         check("whole numbers", &boxes);
     }
 }
-in_all_dimensions!(every_road_finds_the_pairs_of_random_boxes, random_boxes);
+in_all_dimensions!(every_finder_finds_the_pairs_of_random_boxes, random_boxes);
 
 /// Frames of boxes that move little, teleport, grow and shrink in number.
-fn the_past_does_not_matter<const D: usize, T: Scalar>() {
+fn earlier_calls_do_not_matter<const D: usize, T: Scalar>() {
     let mut finders = finders::<D, T>();
     let mut random = Random::new(3);
     for n in [MANY, MANY, 3, 600, MANY, 20, MANY / 3, 0, MANY] {
@@ -261,21 +260,21 @@ fn the_past_does_not_matter<const D: usize, T: Scalar>() {
         }
     }
 }
-in_all_dimensions!(a_finder_finds_what_a_new_one_finds, the_past_does_not_matter);
+in_all_dimensions!(a_used_finder_finds_what_a_new_one_finds, earlier_calls_do_not_matter);
 
 /// Another box in the place of one.
 type Change<'a, const D: usize, T> = &'a dyn Fn(usize, Aabb<D, T>) -> Aabb<D, T>;
 
 /// Frames of boxes that move little and now and then teleport, change in number, or are another
 /// scene: a finder that was used before finds what a new one finds, in the same order.
-fn the_last_order_does_not_matter<const D: usize, T: Scalar>() {
+fn earlier_frames_do_not_matter<const D: usize, T: Scalar>() {
     let frames = if cfg!(debug_assertions) { 20 } else { 40 };
     let each = |it: Aabb<D, T>, change: &dyn Fn(f64) -> f64| {
         let changed = |at: T| T::from_f64(change(at.to_f64()));
         Aabb::new(it.min.map(changed), it.max.map(changed))
     };
-    // With many equal edges; with half of the boxes in a corner, too many for the bin there; with a
-    // bundle of needles along each axis, which are swept across, and not along as the rest is.
+    // With many equal edges; with half of the boxes in a corner, too many for the column there; with a
+    // bundle of needles along each axis, for which another sweep axis is better than for the rest.
     let coarse = |_: usize, it| each(it, &|at| (at * 64.0).round() / 64.0);
     let corner = |i: usize, it| if i.is_multiple_of(2) { it } else { each(it, &|at| at * 0.01) };
     let bundles = |i: usize, it: Aabb<D, T>| {
@@ -318,11 +317,14 @@ fn the_last_order_does_not_matter<const D: usize, T: Scalar>() {
         }
     }
 }
-in_all_dimensions!(a_used_finder_finds_what_a_new_one_finds, the_last_order_does_not_matter);
+in_all_dimensions!(
+    a_finder_used_for_moving_boxes_finds_what_a_new_one_finds,
+    earlier_frames_do_not_matter
+);
 
-/// Pairs some at a time: the same in the same order, never none, and no more after a break.
+/// The same pairs in the same order, never an empty chunk, and none after a break.
 #[test]
-fn pairs_come_some_at_a_time() {
+fn pairs_come_in_chunks() {
     for n in [0, 1, 2, 30, 200, 3000] {
         let (a, b) = (some::<2, f32>(n, 0.1), some::<2, f32>(n / 2, 0.1));
         let mut finder = PairFinder::new();
@@ -332,13 +334,13 @@ fn pairs_come_some_at_a_time() {
             taken.extend_from_slice(pairs);
             ControlFlow::<()>::Continue(())
         };
-        assert!(finder.for_each_slice(&a, &mut take).unwrap().is_continue());
-        assert!(finder.for_each_slice_between(&a, &b, &mut take).unwrap().is_continue());
+        assert!(finder.search(&a).for_each_chunk(&mut take).unwrap().is_continue());
+        assert!(finder.search(&a).against(&b).for_each_chunk(&mut take).unwrap().is_continue());
         let expected = [find_pairs(&a).unwrap(), find_pairs_between(&a, &b).unwrap()].concat();
         assert_eq!(taken, expected, "{n}");
 
         let mut calls = 0;
-        let end = finder.for_each_slice(&a, |pairs| {
+        let end = finder.search(&a).for_each_chunk(|pairs| {
             calls += 1;
             ControlFlow::Break(pairs[0])
         });
@@ -347,11 +349,11 @@ fn pairs_come_some_at_a_time() {
     }
 }
 
-/// What several threads share out in ways of their own: bins that hold most of the boxes, sweeps with
-/// no bins, pairs that fill many parts. Again and again by the same finders, whose buffers then are
-/// there, and of two sets.
+/// What threads share in different ways: columns that hold most of the boxes, sweeps of one column,
+/// pairs that fill many chunks. Repeated by the same finders, whose buffers then exist, and for two
+/// sets.
 #[cfg(feature = "parallel")]
-fn threads_share_everything<const D: usize, T: Scalar>() {
+fn threads_share<const D: usize, T: Scalar>() {
     let crossing = |n: usize| -> Boxes<D, T> {
         let mut random = Random::new(9);
         let long = |i: usize| core::array::from_fn(|k| if i % D == k { 1.0 } else { 1e-3 });
@@ -386,7 +388,11 @@ fn threads_share_everything<const D: usize, T: Scalar>() {
             let between = find_pairs_between(boxes, few).unwrap();
             for finder in &mut used {
                 assert!(finder.find(boxes).unwrap() == fresh, "{name} {D}D {frame}");
-                assert_eq!(finder.count(boxes), Ok(fresh.len() as u64), "{name} {D}D {frame}");
+                assert_eq!(
+                    finder.search(boxes).count(),
+                    Ok(fresh.len() as u64),
+                    "{name} {D}D {frame}"
+                );
                 let found = finder.find_between(boxes, few).unwrap();
                 assert!(found == between, "{name} {D}D {frame}, between");
             }
@@ -396,12 +402,12 @@ fn threads_share_everything<const D: usize, T: Scalar>() {
 
 #[cfg(feature = "parallel")]
 #[test]
-fn threads_share_everything_and_find_what_one_finds() {
-    threads_share_everything::<2, f32>();
-    threads_share_everything::<3, f64>();
+fn several_threads_find_what_one_finds() {
+    threads_share::<2, f32>();
+    threads_share::<3, f64>();
 }
 
-/// Boxes as they come, most of them bad.
+/// Random boxes, most of them invalid.
 fn refuses_bad_boxes<const D: usize, T: Scalar>() {
     let bad = |a: T, b: T| Aabb::new([a; D], [b; D]);
     let nan = T::from_f64(f64::NAN);
@@ -410,38 +416,41 @@ fn refuses_bad_boxes<const D: usize, T: Scalar>() {
     proptest!(ProptestConfig::with_cases(64), |(corners in boxes, n in 0..3000usize)| {
         let corners: Boxes<D, T> = corners.into_iter().map(|(a, b)| bad(a, b)).collect();
         let mut boxes: Boxes<D, T> = some(n, 0.01);
-        let error = validate(&[&boxes[..], &corners[..]].concat()).err();
-        if let Some(error) = error {
-            prop_assert_eq!(find_pairs_between(&boxes, &corners), Err(error));
+        if let Err(error) = validate(&corners) {
+            let Error::InvalidBox { index, axis, min, max, .. } = error else { unreachable!() };
+            let second = Error::InvalidBox { set: 1, index, axis, min, max };
+            prop_assert_eq!(find_pairs_between(&boxes, &corners), Err(second));
+            prop_assert_eq!(find_pairs_between(&corners, &boxes), Err(error));
+            let error = Error::InvalidBox { set: 0, index: n + index, axis, min, max };
             boxes.extend(corners);
             prop_assert_eq!(find_pairs(&boxes), Err(error));
             prop_assert_eq!(count_pairs(&boxes), Err(error));
             for (_, mut finder) in finders::<D, T>() {
                 prop_assert_eq!(finder.find(&boxes), Err(error));
-                prop_assert_eq!(finder.for_each(&boxes, |_| -> ControlFlow<()> { panic!("a pair") }), Err(error));
+                prop_assert_eq!(finder.search(&boxes).for_each(|_| -> ControlFlow<()> { panic!("a pair") }), Err(error));
             }
         }
     });
 }
-in_all_dimensions!(bad_boxes_are_refused_by_index, refuses_bad_boxes);
+in_all_dimensions!(invalid_boxes_are_refused_by_index, refuses_bad_boxes);
 
 #[test]
-fn indices_of_the_second_set_go_on_from_the_first() {
+fn an_invalid_box_of_two_sets_is_named_by_its_set_and_its_index_there() {
     let (good, bad) = (Aabb::new([0.0f32], [1.0]), Aabb::new([1.0f32], [0.0]));
-    let error =
-        Error::InvalidBox { index: 3, axis: 0, min: Value::from(1.0), max: Value::from(0.0) };
-    assert_eq!(find_pairs_between(&[good, good], &[good, bad]), Err(error));
-    assert_eq!(find_pairs_between(&[], &[good, good, good, bad]), Err(error));
-    assert_eq!(find_pairs_between(&[good; 3], &[bad; 3000]), Err(error));
+    let [min, max] = [1.0, 0.0].map(Value::from);
+    let error = |set, index| Error::InvalidBox { set, index, axis: 0, min, max };
+    assert_eq!(find_pairs_between(&[good, good], &[good, bad]), Err(error(1, 1)));
+    assert_eq!(find_pairs_between(&[], &[good, good, good, bad]), Err(error(1, 3)));
+    assert_eq!(find_pairs_between(&[good; 3], &[bad; 3000]), Err(error(1, 0)));
 }
 
 #[test]
-fn a_stream_ends_when_it_is_told() {
+fn a_stream_ends_when_its_receiver_breaks() {
     let boxes: Boxes<2, f32> = some(3000, 0.05);
     let all = find_pairs(&boxes).unwrap();
     for end in [0, 1, 5000, all.len() - 1] {
         let mut seen = Vec::new();
-        let flow = PairFinder::new().for_each(&boxes, |pair| {
+        let flow = PairFinder::new().search(&boxes).for_each(|pair| {
             seen.push(pair);
             if seen.len() > end { ControlFlow::Break(pair) } else { ControlFlow::Continue(()) }
         });
@@ -450,21 +459,29 @@ fn a_stream_ends_when_it_is_told() {
     }
 }
 
-/// What a finder tells a watch that lets it go on, and that what it returned is what it returns if
-/// it is not watched.
-fn told<const D: usize, R: PartialEq>(
-    finder: &mut PairFinder<D, f64>,
-    unwatched: impl Fn(&mut PairFinder<D, f64>) -> R,
-    watched: impl Fn(&mut PairFinder<D, f64>, &(dyn Fn(f64) -> ControlFlow<()> + Sync)) -> Option<R>,
+/// What a search reports to a progress callback that lets it go on. It returns the same as without a
+/// callback, and is cancelled by one that breaks.
+fn reported<'b, R: PartialEq + std::fmt::Debug>(
+    finder: &mut PairFinder<3, f64>,
+    (a, b): (&'b [Aabb<3, f64>], Option<&'b [Aabb<3, f64>]>),
+    end: impl Fn(Search<'_, '_, 3, f64>) -> Result<R, Error>,
 ) -> Vec<f64> {
+    fn search<'f, 'b>(
+        finder: &'f mut PairFinder<3, f64>,
+        (a, b): (&'b [Aabb<3, f64>], Option<&'b [Aabb<3, f64>]>),
+    ) -> Search<'f, 'b, 3, f64> {
+        let search = finder.search(a);
+        if let Some(b) = b { search.against(b) } else { search }
+    }
     let half = |share| if share > 0.5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-    assert!(watched(finder, &half).is_none());
+    assert!(end(search(finder, (a, b)).progress(&half)) == Err(Error::Cancelled));
     let shares = std::sync::Mutex::new(Vec::new());
-    let found = watched(finder, &|share| {
+    let report = |share| {
         shares.lock().unwrap().push(share);
         ControlFlow::Continue(())
-    });
-    assert!(found.is_some_and(|found| found == unwatched(finder)));
+    };
+    let found = end(search(finder, (a, b)).progress(&report));
+    assert!(found.is_ok() && found == end(search(finder, (a, b))));
     let mut shares = shares.into_inner().unwrap();
     shares.sort_by(f64::total_cmp);
     assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)), "{shares:?}");
@@ -472,60 +489,55 @@ fn told<const D: usize, R: PartialEq>(
 }
 
 #[test]
-fn a_watch_hears_of_progress_and_ends_the_search() {
+fn a_progress_callback_hears_of_progress_and_cancels_the_search() {
     use std::sync::Mutex;
     let boxes: Boxes<3, f64> = some(60_000, half_size::<3>(60_000));
     let (a, b) = boxes.split_at(20_000);
     for (name, finder) in &mut finders() {
-        let to_vec = |found: Option<&[[u32; 2]]>| found.map(<[_]>::to_vec);
-        let all_told = [
-            told(
-                finder,
-                |finder| finder.find(&boxes).unwrap().to_vec(),
-                |finder, watch| to_vec(finder.find_watched(&boxes, watch).unwrap()),
-            ),
-            told(
-                finder,
-                |finder| finder.find_between(a, b).unwrap().to_vec(),
-                |finder, watch| to_vec(finder.find_between_watched(a, b, watch).unwrap()),
-            ),
-            told(
-                finder,
-                |finder| finder.count(&boxes).unwrap(),
-                |finder, watch| finder.count_watched(&boxes, watch).unwrap(),
-            ),
-            told(
-                finder,
-                |finder| finder.count_between(b, a).unwrap(),
-                |finder, watch| finder.count_between_watched(b, a, watch).unwrap(),
-            ),
+        let pairs = |search: Search<'_, '_, 3, f64>| search.pairs().map(<[_]>::to_vec);
+        let count = |search: Search<'_, '_, 3, f64>| search.count();
+        let each_chunk = |search: Search<'_, '_, 3, f64>| {
+            let mut all = Vec::new();
+            let end = search.for_each_chunk(|chunk| {
+                all.extend_from_slice(chunk);
+                ControlFlow::<()>::Continue(())
+            });
+            end.map(|_| all)
+        };
+        let all_reported = [
+            reported(finder, (&boxes, None), pairs),
+            reported(finder, (a, Some(b)), pairs),
+            reported(finder, (&boxes, None), count),
+            reported(finder, (b, Some(a)), count),
+            reported(finder, (a, Some(b)), each_chunk),
         ];
-        for shares in all_told {
+        for shares in all_reported {
             assert!(shares.len() > 10, "{name}: {shares:?}");
             assert!(*shares.last().unwrap() > 0.95, "{name}: {shares:?}");
         }
-        // They share no bin, and that is all there is to tell.
+        // They share no column, and that is all there is to report.
         let apart = boxes
             .iter()
             .map(|aabb| Aabb::new(aabb.min.map(|x| x + 9.0), aabb.max.map(|x| x + 9.0)));
         let apart: Boxes<3, f64> = apart.collect();
         let shares = Mutex::new(Vec::new());
-        let count = finder.count_between_watched(&boxes, &apart, &|share| {
+        let report = |share| {
             shares.lock().unwrap().push(share);
             ControlFlow::Continue(())
-        });
-        assert_eq!(count, Ok(Some(0)), "{name}");
+        };
+        let count = finder.search(&boxes).against(&apart).progress(&report).count();
+        assert_eq!(count, Ok(0), "{name}");
         assert_eq!(shares.into_inner().unwrap(), [1.0], "{name}");
     }
-    // One bin full of pairs: the watch is asked while they are found.
+    // One column full of pairs: the callback is called while they are found.
     let heap = vec![Aabb::new([0.0f32], [1.0]); 20_000];
     let asked = Mutex::new(0);
     let mut finder = PairFinder::new();
-    let found = finder.find_watched(&heap, &|_| {
+    let third = |_| {
         *asked.lock().unwrap() += 1;
         if *asked.lock().unwrap() == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
-    assert_eq!(found.unwrap(), None);
+    };
+    assert_eq!(finder.search(&heap).progress(&third).pairs(), Err(Error::Cancelled));
 }
 
 #[test]
@@ -534,7 +546,7 @@ fn a_billion_pairs_are_counted_in_bounded_memory() {
     let boxes = vec![Aabb::new([1.0f32, 2.0, 3.0], [2.0, 3.0, 4.0]); n as usize];
     assert_eq!(count_pairs(&boxes), Ok(n * (n - 1) / 2));
     let mut streamed = 0;
-    let flow = PairFinder::new().for_each(&boxes, |_| {
+    let flow = PairFinder::new().search(&boxes).for_each(|_| {
         streamed += 1;
         ControlFlow::<()>::Continue(())
     });

@@ -1,4 +1,4 @@
-//! What the finder allocates: nothing in a steady state, and no more than it says before.
+//! What the finder allocates: nothing in a steady state, and before no more than documented.
 
 use std::ops::ControlFlow;
 
@@ -18,9 +18,9 @@ fn a_steady_state_allocates_nothing() {
         let half = boxes.len() / 2;
         let mut all = || {
             let found = finder.find(&boxes).unwrap().len() as u64;
-            assert_eq!(finder.count(&boxes), Ok(found));
+            assert_eq!(finder.search(&boxes).count(), Ok(found));
             let mut streamed = 0;
-            let flow = finder.for_each(&boxes, |_| {
+            let flow = finder.search(&boxes).for_each(|_| {
                 streamed += 1;
                 ControlFlow::<()>::Continue(())
             });
@@ -35,14 +35,14 @@ fn a_steady_state_allocates_nothing() {
 /// The most bytes in use while the pairs are counted, for each box.
 fn peak<const D: usize, T: Scalar>(kind: Scene, n: usize) -> Option<u64> {
     let boxes = kind.boxes::<D, T>(n, 1)?;
-    let counted = measure(|| assert!(PairFinder::new().count(&boxes).is_ok()));
+    let counted = measure(|| assert!(PairFinder::new().search(&boxes).count().is_ok()));
     Some(counted.bytes_max / n as u64)
 }
 
 /// Of coincident boxes there are nearly two billion pairs to count.
 #[test]
 #[cfg_attr(debug_assertions, ignore = "slow where nothing is optimized")]
-fn the_peak_is_as_documented() {
+fn peak_memory_is_as_documented() {
     for &kind in Scene::ALL {
         for n in [3_000, 60_000] {
             // As the finder's documentation says: so many times what the boxes take, and a little
@@ -66,11 +66,11 @@ fn the_peak_is_as_documented() {
 }
 
 #[test]
-fn pairs_take_what_their_buffer_takes() {
+fn storing_pairs_takes_only_their_buffer() {
     let boxes = scene::<3, f32>(Scene::BoxPruning, 30_000, 1);
     let mut pairs = 0;
     let stored = measure(|| pairs = PairFinder::<3>::new().find(&boxes).unwrap().len() as u64);
-    let counted = measure(|| assert_eq!(PairFinder::new().count(&boxes), Ok(pairs)));
+    let counted = measure(|| assert_eq!(PairFinder::new().search(&boxes).count(), Ok(pairs)));
     // 8 bytes each, twice while their buffer grows, and it may be half empty.
     let most = counted.bytes_max + 32 * pairs;
     assert!(stored.bytes_max < most, "{} of {most}", stored.bytes_max);
@@ -79,12 +79,13 @@ fn pairs_take_what_their_buffer_takes() {
 #[test]
 fn a_stream_needs_no_memory_for_pairs() {
     let boxes = [Aabb::new([0.0f64], [1.0]); 3000];
-    let info = measure(|| assert_eq!(PairFinder::new().count(&boxes), Ok(3000 * 2999 / 2)));
+    let info =
+        measure(|| assert_eq!(PairFinder::new().search(&boxes).count(), Ok(3000 * 2999 / 2)));
     // Four and a half million pairs.
     assert!(info.bytes_max < 1_000_000, "{}", info.bytes_max);
 }
 
-/// The test below, where memory has an end.
+/// What the next test runs with limited memory.
 #[test]
 #[ignore = "run by the next test, in a process of its own"]
 fn with_little_memory() {
@@ -100,14 +101,14 @@ fn with_little_memory() {
         assert_eq!(finder.find(&many), Err(Error::OutOfMemory)); // ten gigabytes of pairs
         assert_eq!(finder.find_between(&many, &many), Err(Error::OutOfMemory));
         assert_eq!(finder.find(&few), Ok(&found[..]));
-        assert_eq!(finder.count(&many), Ok(50_000 * 49_999 / 2));
+        assert_eq!(finder.search(&many).count(), Ok(50_000 * 49_999 / 2));
     }
     println!("went on");
 }
 
 #[cfg(target_os = "linux")]
 #[test]
-fn where_memory_ends_there_is_an_error() {
+fn too_little_memory_is_an_error() {
     let this = std::env::current_exe().unwrap();
     let limited =
         r#"ulimit -v 1000000 && exec "$0" --ignored --exact --nocapture with_little_memory"#;

@@ -1,0 +1,144 @@
+//! The arithmetic on coordinates that placing and sorting boxes needs. It never decides overlap: that
+//! takes comparisons of the coordinates as given.
+
+use core::fmt::Debug;
+
+/// Arithmetic on coordinates of type `T`. Its functions are not methods of `T`, so that users of
+/// [`Scalar`](super::Scalar) do not see them.
+pub trait Arithmetic<T> {
+    /// A coordinate in the high bits and a position in the low ones: sorts by coordinate (`-0.0`
+    /// equal to `0.0`), then by position.
+    type Key: Copy + Ord + Default + Debug + Send + Sync;
+
+    /// Grids reach from minus this to this; the outermost columns hold what lies beyond. Far enough
+    /// from the greatest number for a few additions.
+    const LIMIT: f64;
+
+    /// A power of two: coordinates of at most this magnitude, multiplied by it, can be subtracted
+    /// and have reciprocals without overflow. 1 for all but the very great and the very small.
+    fn unit(magnitude: f64) -> T;
+
+    /// See [`Key`](Self::Key).
+    fn key(coordinate: T, position: u32) -> Self::Key;
+
+    /// The position in a key.
+    fn position(key: Self::Key) -> u32;
+
+    /// `(coordinate * unit - origin) * scale`, rounded to a whole number and clamped to `0 ..= last`.
+    /// Monotone: a greater coordinate never has a lesser cell. Takes infinities, overflow, and NaN
+    /// (also from `0 * inf`), which counts as 0.
+    fn cell(coordinate: T, quantizer: &Quantizer<T>) -> u32;
+}
+
+/// Cuts an axis into equal cells, numbered from 0. The outermost reach to infinity.
+#[derive(Clone, Copy, Debug)]
+pub struct Quantizer<T> {
+    /// What coordinates are multiplied by first: see [`Arithmetic::unit`].
+    pub unit: T,
+    /// The middle of the first cell, in that unit.
+    pub origin: T,
+    /// Cells per unit.
+    pub scale: T,
+    /// The last cell, a whole number below 2^22.
+    pub last: T,
+}
+
+/// The [`Arithmetic`] of `f32` and `f64`.
+#[derive(Debug)]
+pub struct Ieee754;
+
+macro_rules! arithmetic {
+    ($scalar:ident, $bits:ident, $signed:ident, $key:ident, $limit:literal, $tiny:literal, $up:literal) => {
+        impl Arithmetic<$scalar> for Ieee754 {
+            type Key = $key;
+            const LIMIT: f64 = $limit;
+
+            fn unit(magnitude: f64) -> $scalar {
+                const UP: $scalar = (1u128 << $up) as $scalar;
+                match magnitude {
+                    ..$tiny => UP,
+                    ..=$limit => 1.0,
+                    _ => 1.0 / UP,
+                }
+            }
+
+            #[inline(always)]
+            fn key(coordinate: $scalar, position: u32) -> $key {
+                let bits = (coordinate + 0.0).to_bits(); // -0.0 becomes 0.0
+                // Negative numbers fall as their bits rise: flip all bits. Otherwise flip the sign.
+                let negative = ((bits as $signed) >> ($bits::BITS - 1)) as $bits;
+                let ordered = bits ^ (negative | 1 << ($bits::BITS - 1));
+                $key::from(ordered) << 32 | $key::from(position)
+            }
+
+            #[inline(always)]
+            fn position(key: $key) -> u32 {
+                key as u32
+            }
+
+            #[inline(always)]
+            fn cell(coordinate: $scalar, quantizer: &Quantizer<$scalar>) -> u32 {
+                // Added to this number, a small one is rounded to a whole and stands in the low bits.
+                const ANCHOR: $scalar = (1u64 << ($scalar::MANTISSA_DIGITS - 1)) as $scalar;
+                let at = (coordinate * quantizer.unit - quantizer.origin) * quantizer.scale;
+                // Not `clamp`: the first comparison also turns a NaN into 0.
+                let at = if at > 0.0 { at } else { 0.0 };
+                let at = if at < quantizer.last { at } else { quantizer.last };
+                ((at + ANCHOR).to_bits() ^ ANCHOR.to_bits()) as u32
+            }
+        }
+    };
+}
+
+arithmetic!(f32, u32, i32, u64, 1e37, 1e-20, 64);
+arithmetic!(f64, u64, i64, u128, 1e300, 1e-280, 120);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn key<T>(coordinate: T, position: u32) -> <Ieee754 as Arithmetic<T>>::Key
+    where
+        Ieee754: Arithmetic<T>,
+    {
+        Ieee754::key(coordinate, position)
+    }
+
+    #[test]
+    fn keys_sort_as_coordinates_do() {
+        let ascending =
+            [f32::NEG_INFINITY, -1e30, -1.0, -1e-40, 0.0, 1e-40, 1.0, 1e30, f32::INFINITY];
+        for pair in ascending.windows(2) {
+            assert!(key(pair[0], 9) < key(pair[1], 0));
+            assert!(key(f64::from(pair[0]), 9) < key(f64::from(pair[1]), 0));
+        }
+        assert_eq!(key(-0.0f32, 3), key(0.0f32, 3));
+        assert_eq!(<Ieee754 as Arithmetic<f64>>::position(key(-7.0f64, u32::MAX)), u32::MAX);
+    }
+
+    #[test]
+    fn cells_are_monotone_for_all_coordinates() {
+        let ascending = [
+            f64::NEG_INFINITY,
+            f64::MIN,
+            -1e30,
+            -1.0,
+            -1e-320,
+            0.0,
+            0.3,
+            1.0,
+            1e30,
+            f64::MAX,
+            f64::INFINITY,
+        ];
+        for origin in [-1e300, -1.0, 0.0, 1e-320, 1e300] {
+            for scale in [0.0, 1e-300, 1.0, 1e300, f64::INFINITY] {
+                let quantizer = Quantizer { unit: 1.0, origin, scale, last: 100.0 };
+                let cells = ascending.map(|x| Ieee754::cell(x, &quantizer));
+                assert!(cells.is_sorted() && cells[10] <= 100, "{origin} {scale} {cells:?}");
+            }
+        }
+        let quantizer = Quantizer { unit: 1.0, origin: 0.0, scale: 1.0, last: 7.0 };
+        assert_eq!([0.4f32, 0.6, 4.6, 9.0].map(|x| Ieee754::cell(x, &quantizer)), [0, 1, 5, 7]);
+    }
+}

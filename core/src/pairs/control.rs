@@ -1,0 +1,94 @@
+//! What controls a search: its progress callback, how deep it has split its boxes, why it stopped.
+
+use alloc::collections::TryReserveError;
+use core::ops::ControlFlow;
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use super::kernel::PairOrder;
+
+/// Progress is counted in units of 2^-24,
+const UNIT: f64 = 1.0 / (1 << 24) as f64;
+/// and reported in steps of 2^-8.
+const STEP_BITS: u32 = 16;
+
+/// The caller's progress callback. Threads share it.
+pub(super) type Report<'a> = &'a (dyn Fn(f64) -> ControlFlow<()> + Sync);
+
+/// A progress callback, and how much of the work is done.
+pub(super) struct Progress<'a> {
+    report: Report<'a>,
+    /// In units of 2^-24.
+    done: AtomicU32,
+}
+
+impl<'a> Progress<'a> {
+    pub fn new(report: Report<'a>) -> Self {
+        Self { report, done: AtomicU32::new(0) }
+    }
+
+    /// Adds a share of the work, and reports what is done if a step is complete.
+    fn add(&self, share: f64) -> ControlFlow<()> {
+        let share = (share / UNIT) as u32;
+        let before = self.done.fetch_add(share, Ordering::Relaxed);
+        if before >> STEP_BITS == (before + share) >> STEP_BITS {
+            ControlFlow::Continue(())
+        } else {
+            self.report()
+        }
+    }
+
+    /// Reports what is done, even if that is no more than before, to ask whether to go on.
+    pub fn report(&self) -> ControlFlow<()> {
+        (self.report)((f64::from(self.done.load(Ordering::Relaxed)) * UNIT).min(1.0))
+    }
+}
+
+/// What holds for a search and for all searches within it.
+#[derive(Clone, Copy)]
+pub(super) struct Task<'a> {
+    pub pair_order: PairOrder,
+    pub progress: Option<&'a Progress<'a>>,
+    /// The share of the whole work.
+    pub share: f64,
+    /// How many plans it is nested in.
+    pub depth: u32,
+}
+
+impl<'a> Task<'a> {
+    pub fn new(pair_order: PairOrder, progress: Option<&'a Progress<'a>>) -> Self {
+        Self { pair_order, progress, share: 1.0, depth: 0 }
+    }
+
+    /// A task nested in this one, with a share of its work.
+    pub fn nested(self, share: f64) -> Self {
+        Self { depth: self.depth + 1, share: self.share * share, ..self }
+    }
+
+    /// Adds a share of the task to the progress.
+    ///
+    /// # Errors
+    /// [`Stop::Cancelled`].
+    pub fn done(self, share: f64) -> Result<(), Stop> {
+        match self.progress.map(|progress| progress.add(self.share * share)) {
+            Some(ControlFlow::Break(())) => Err(Stop::Cancelled),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Why a search stopped early, the most important reason first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Stop {
+    /// A box is inverted or NaN; no pair has been found.
+    Invalid,
+    /// There is not enough memory.
+    Memory,
+    /// The progress callback or the receiver of the pairs ended it.
+    Cancelled,
+}
+
+impl From<TryReserveError> for Stop {
+    fn from(_: TryReserveError) -> Self {
+        Stop::Memory
+    }
+}

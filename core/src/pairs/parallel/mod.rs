@@ -1,0 +1,9 @@
+//! Several threads for one search.
+
+mod gather;
+mod schedule;
+mod threads;
+
+pub(super) use gather::Gather;
+pub(super) use schedule::Schedule;
+pub(super) use threads::{copy, for_each_on_threads, on_threads};

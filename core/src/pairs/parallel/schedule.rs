@@ -1,0 +1,63 @@
+//! Which columns a thread sweeps together.
+
+use alloc::vec::Vec;
+use core::ops::Range;
+
+/// Groups of columns for each thread: some take longer than others.
+const GROUPS: usize = 16;
+
+/// A range of columns, and how many records they have.
+struct Group {
+    columns: Range<usize>,
+    records: usize,
+}
+
+/// The columns in groups of about equally many records.
+pub struct Schedule {
+    groups: Vec<Group>,
+    /// Groups of one column each that hold more than half of a thread's share, and that will be
+    /// planned again: all threads search them together, before the rest.
+    pub huge: Vec<usize>,
+    /// The other groups, the large ones first, so that none is left for the end.
+    pub rest: Vec<usize>,
+}
+
+impl Schedule {
+    /// For columns with so many records each. A column with more than `crowd` is planned again.
+    pub fn new(records: impl Iterator<Item = usize> + Clone, threads: usize, crowd: usize) -> Self {
+        let groups = groups(records, threads * GROUPS);
+        let records = groups.iter().map(|group| group.records).sum::<usize>();
+        let huge = crowd.max(records / (2 * threads));
+        let is_huge =
+            |&group: &usize| groups[group].columns.len() == 1 && groups[group].records > huge;
+        let (huge, mut rest): (Vec<_>, Vec<_>) = (0..groups.len()).partition(is_huge);
+        rest.sort_by_key(|&group| groups[group].records < 2 * (records / groups.len()));
+        Self { groups, huge, rest }
+    }
+
+    /// How many groups there are.
+    pub fn len(&self) -> usize {
+        self.groups.len()
+    }
+
+    /// The columns of a group.
+    pub fn columns(&self, group: usize) -> Range<usize> {
+        self.groups[group].columns.clone()
+    }
+}
+
+/// Groups of columns with about as many records each; a column that has so many is by itself.
+fn groups(records: impl Iterator<Item = usize> + Clone, count: usize) -> Vec<Group> {
+    let share = records.clone().sum::<usize>() / count + 1;
+    let mut groups: Vec<Group> = Vec::with_capacity(count + 1);
+    for (column, records) in records.enumerate() {
+        match groups.last_mut() {
+            Some(group) if group.records.max(records) < share => {
+                group.columns.end = column + 1;
+                group.records += records;
+            }
+            _ => groups.push(Group { columns: column..column + 1, records }),
+        }
+    }
+    groups
+}

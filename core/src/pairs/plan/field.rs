@@ -1,0 +1,165 @@
+//! Where the boxes of the samples are: how far they reach, how they cluster.
+
+use super::float::{floor, greater, lesser};
+use super::sample::{SAMPLE, Sample, sort};
+
+/// The cells of an axis are halved one time less than this to see how boxes cluster: at most, with a
+/// full sample.
+const LEVELS: usize = 11;
+/// The least chance that a sample can tell from none.
+const SURE: f64 = 1.0 / 2048.0;
+
+/// Where the boxes are: the same for the boxes up to a size, and for those above, as for all.
+pub struct Field<const D: usize> {
+    /// From where to where, apart from a few outliers.
+    pub low: [f64; D],
+    pub high: [f64; D],
+    /// The chance that two boxes begin in the same of 1, 2, 4 .. equal cells.
+    together: [[f64; LEVELS]; D],
+    /// How many of them are known: the fewer boxes were drawn, the less the finest cells would tell.
+    levels: usize,
+    /// The extent over which evenly spread boxes would be as near to each other as these are:
+    /// less than `high - low` if they are clustered.
+    pub spread: [f64; D],
+    /// The chance that two boxes begin at the same coordinate.
+    pub ties: [f64; D],
+}
+
+impl<const D: usize> Field<D> {
+    pub fn new(samples: &[&Sample<D>]) -> Self {
+        let drawn = samples.iter().map(|sample| sample.len).max().unwrap_or(1);
+        let levels = (drawn.next_power_of_two().ilog2() as usize + 3).min(LEVELS);
+        let mut field = Field {
+            levels,
+            low: [0.0; D],
+            high: [0.0; D],
+            together: [[1.0; LEVELS]; D],
+            spread: [0.0; D],
+            ties: core::array::from_fn(|axis| ties(samples, axis)),
+        };
+        for axis in 0..D {
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            for sample in samples {
+                let sorted = &sample.sorted[axis][..sample.len];
+                let tail = sample.len / 20;
+                let (least, most) = (sorted[tail], sorted[sample.len - 1 - tail]);
+                let margin = 0.125 * (most - least);
+                low = lesser(greater(least - margin, sorted[0]), low);
+                high = greater(lesser(most + margin, sorted[sample.len - 1]), high);
+            }
+            let (low, high) = snapped(low, high);
+            (field.low[axis], field.high[axis]) = (low, high);
+            let extent = high - low;
+            field.together[axis] = together(samples, axis, levels, low, extent);
+            // As fine as the sample can tell.
+            let level = (0..levels).rev().find(|&level| field.together[axis][level] > SURE);
+            let level = level.unwrap_or(0);
+            let cells = (1u32 << level) as f64;
+            field.spread[axis] = lesser(extent / cells / field.together[axis][level], extent);
+        }
+        field
+    }
+
+    fn clip(&self, axis: usize, coordinate: f64) -> f64 {
+        // Not `clamp`: unchecked boxes come this far, and a NaN must not panic.
+        lesser(greater(coordinate, self.low[axis]), self.high[axis])
+    }
+
+    pub fn extent(&self, axis: usize) -> f64 {
+        self.high[axis] - self.low[axis]
+    }
+
+    /// The size of a sampled box on an axis, as far as it lies in the field.
+    pub fn size(&self, sample: &Sample<D>, axis: usize, i: usize) -> f64 {
+        self.clip(axis, sample.max[axis][i]) - self.clip(axis, sample.min[axis][i])
+    }
+
+    /// Sizes that the largest half, quarter .. of the sample reach on an axis.
+    pub fn quantiles(&self, sample: &Sample<D>, axis: usize) -> impl Iterator<Item = f64> {
+        let mut sizes = [0.0; SAMPLE];
+        let len = sample.len;
+        for (i, size) in sizes[..len].iter_mut().enumerate() {
+            *size = self.size(sample, axis, i);
+        }
+        sort(&mut sizes[..len]);
+        (1..6).map(move |quantile| sizes[len - 1 - (len >> quantile)])
+    }
+
+    /// The chance that two boxes begin in the same of so many columns.
+    pub fn together(&self, axis: usize, columns: f64) -> f64 {
+        // Between the powers of two, and beyond the last, as if evenly spread.
+        let level = ((columns as u32).ilog2() as usize).min(self.levels - 1);
+        let beyond = columns / f64::from(1u32 << level);
+        let finer = self.together[axis][(level + 1).min(self.levels - 1)];
+        greater(self.together[axis][level] / beyond, finer)
+    }
+}
+
+/// The interval with its ends at whole multiples of a power of two, an eighth to a sixteenth of its
+/// extent: that of boxes which move little is the same from call to call. It holds all of the old
+/// one but a few hundredths, and where boxes reach a little over a round number that is not the
+/// next end.
+fn snapped(low: f64, high: f64) -> (f64, f64) {
+    const EXPONENT: u64 = 0x7FF << 52;
+    let step = f64::from_bits((high - low).to_bits() & EXPONENT) / 8.0;
+    if step < f64::MIN_POSITIVE {
+        return (low, high);
+    }
+    let low = floor(low / step + 0.125);
+    let high = -floor(0.125 - high / step);
+    (low * step, greater(high, low + 1.0) * step)
+}
+
+/// The chance that two boxes begin in the same of 1, 2, 4 .. equal cells, from the finest up.
+fn together<const D: usize>(
+    samples: &[&Sample<D>],
+    axis: usize,
+    levels: usize,
+    low: f64,
+    extent: f64,
+) -> [f64; LEVELS] {
+    let finest = 1 << (levels - 1);
+    let mut counts = [[0u32; 1 << (LEVELS - 1)]; 2];
+    let scale = if extent > 0.0 { finest as f64 / extent } else { 0.0 };
+    for (counts, sample) in counts.iter_mut().zip(samples) {
+        for at in &sample.min[axis][..sample.len] {
+            let cell = ((at - low) * scale) as usize; // below and beyond: the outermost
+            counts[cell.min(finest - 1)] += 1;
+        }
+    }
+    let mut chances = [1.0; LEVELS];
+    let [first, second] = &mut counts;
+    let len = samples[0].len as f64;
+    for level in (0..levels).rev() {
+        let cells = 1 << level;
+        let pairs: u32 = if samples.len() == 1 {
+            first[..cells].iter().map(|&count| count * count.saturating_sub(1)).sum()
+        } else {
+            first[..cells].iter().zip(&second[..cells]).map(|(a, b)| a * b).sum()
+        };
+        let all = if samples.len() == 1 { len * (len - 1.0) } else { len * samples[1].len as f64 };
+        chances[level] = if all > 0.0 { f64::from(pairs) / all } else { 1.0 };
+        for counts in [&mut *first, &mut *second].into_iter().take(samples.len()) {
+            for cell in 0..cells / 2 {
+                counts[cell] = counts[2 * cell] + counts[2 * cell + 1];
+            }
+        }
+    }
+    chances
+}
+
+/// The chance that two boxes begin at the same coordinate.
+fn ties<const D: usize>(samples: &[&Sample<D>], axis: usize) -> f64 {
+    let [first, last] = [samples[0], samples[samples.len() - 1]];
+    let mut pairs = 0;
+    let mut begin = 0;
+    for (i, at) in first.sorted[axis][..first.len].iter().enumerate() {
+        // In one sample, those before it; of another, all.
+        let others = &last.sorted[axis][..if samples.len() == 1 { i } else { last.len }];
+        begin += others[begin..].iter().take_while(|&other| other < at).count();
+        pairs += others[begin..].iter().take_while(|&other| other == at).count();
+    }
+    let all =
+        if samples.len() == 1 { first.len * (first.len - 1) / 2 } else { first.len * last.len };
+    pairs as f64 / all.max(1) as f64
+}

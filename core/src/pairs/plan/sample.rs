@@ -1,0 +1,94 @@
+//! A sample of a set of boxes, from which the plan is made.
+
+use super::float::greatest;
+use crate::geometry::Arithmetic;
+use crate::pairs::source::Source;
+use crate::{Aabb, Scalar};
+
+/// The most boxes in a sample.
+pub const SAMPLE: usize = 256;
+/// One box in so many is drawn,
+const ONE_IN: u64 = 32;
+/// but at least so many.
+const FEWEST: u64 = 24;
+
+/// The boxes that were drawn from a set.
+pub struct Sample<const D: usize> {
+    /// Boxes in the set.
+    pub count: f64,
+    /// Boxes in the sample.
+    pub len: usize,
+    /// Corners by axis, times the unit, clamped to the limit of the coordinate type.
+    pub min: [[f64; SAMPLE]; D],
+    pub max: [[f64; SAMPLE]; D],
+    /// The coordinates of `min`, sorted.
+    pub sorted: [[f64; SAMPLE]; D],
+}
+
+impl<const D: usize> Sample<D> {
+    pub fn take<T: Scalar, S: Source<D, T>>(source: S, unit: T) -> Self {
+        let mut sample = Self {
+            count: source.len() as f64,
+            len: 0,
+            min: [[0.0; SAMPLE]; D],
+            max: [[0.0; SAMPLE]; D],
+            sorted: [[0.0; SAMPLE]; D],
+        };
+        let limit = T::Arithmetic::LIMIT;
+        let limited = |at: T| (at.to_f64() * unit.to_f64()).clamp(-limit, limit);
+        for i in drawn(source) {
+            let aabb = source.aabb(i);
+            for axis in 0..D {
+                sample.min[axis][sample.len] = limited(aabb.min[axis]);
+                sample.max[axis][sample.len] = limited(aabb.max[axis]);
+            }
+            sample.len += 1;
+        }
+        for (sorted, min) in sample.sorted.iter_mut().zip(&sample.min) {
+            *sorted = *min;
+            sort(&mut sorted[..sample.len]);
+        }
+        sample
+    }
+}
+
+/// The [unit](Arithmetic::unit) in which the boxes that are drawn from some sets are planned.
+pub fn unit<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[S]) -> T {
+    let magnitude = |set: &S| greatest(drawn(*set).map(|i| magnitude(set.aabb(i))));
+    T::Arithmetic::unit(greatest(sets.iter().map(magnitude)))
+}
+
+/// The positions of the boxes in the sample of a set: one at a random place of each of equal chunks.
+/// The randomness is the same in every run.
+fn drawn<const D: usize, T: Scalar, S: Source<D, T>>(source: S) -> impl Iterator<Item = usize> {
+    let count = source.len() as u64; // `usize` has 32 bits in WebAssembly
+    let len = (count / ONE_IN).clamp(FEWEST, SAMPLE as u64).min(count);
+    let mut random = 0x9E37_79B9_7F4A_7C15u64;
+    (0..len).map(move |i| {
+        random = random.wrapping_mul(0x5851_F42D_4C95_7F2D).wrapping_add(1);
+        let (from, to) = (i * count / len, (i + 1) * count / len);
+        (from + (random >> 33) % (to - from)) as usize
+    })
+}
+
+/// The greatest absolute coordinate that is finite.
+fn magnitude<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> f64 {
+    let magnitudes = aabb.min.iter().chain(&aabb.max).map(|at| at.to_f64().abs());
+    greatest(magnitudes.filter(|at| at.is_finite()))
+}
+
+/// Sorts at most [`SAMPLE`] values by `f64::total_cmp`: as whole numbers, which is faster and, in
+/// WebAssembly, shares the code of the sort of keys.
+pub fn sort(values: &mut [f64]) {
+    const SIGN: u64 = 1 << 63;
+    let mut keys = [0; SAMPLE];
+    let keys = &mut keys[..values.len()];
+    for (key, value) in keys.iter_mut().zip(&*values) {
+        let bits = value.to_bits();
+        *key = if bits & SIGN == 0 { bits | SIGN } else { !bits };
+    }
+    keys.sort_unstable();
+    for (value, &key) in values.iter_mut().zip(&*keys) {
+        *value = f64::from_bits(if key & SIGN == 0 { !key } else { key ^ SIGN });
+    }
+}
