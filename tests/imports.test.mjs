@@ -31,7 +31,6 @@ import { typescriptImports } from "./support/typescript-imports.mjs";
 
 /** Files that are still in cycles, by folder. A number may only shrink; the aim is an empty list. */
 const KNOWN = {
-  "core/src/pairs": 11,
 };
 
 const folderOf = (file) => Object.keys(KNOWN).sort((a, b) => b.length - a.length).find((it) => file.startsWith(`${it}/`));
