@@ -132,14 +132,15 @@ impl<T: Scalar> CellCoordinates<T> {
     #[inline(always)]
     fn quantize(&mut self, quantizer: &Quantizer<T>, k: usize, step: u32) -> bool {
         #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-        {
-            let (quantizer, cells): (&dyn Any, &mut dyn Any) = (quantizer, &mut *self);
-            if let (Some(quantizer), Some(cells)) =
+        if T::BYTES == 4 {
+            let (quantizer, cells): (&dyn Any, &mut dyn Any) = (quantizer, self);
+            let (Some(quantizer), Some(cells)) =
                 (quantizer.downcast_ref(), cells.downcast_mut::<CellCoordinates<f32>>())
-            {
-                let CellCoordinates { column, more, low, high } = cells;
-                return quantize_by_four([low, high], quantizer, step, column, &mut more[k]);
-            }
+            else {
+                unreachable!("4 bytes are an f32")
+            };
+            let CellCoordinates { column, more, low, high } = cells;
+            return quantize_by_four([low, high], quantizer, step, column, &mut more[k]);
         }
         let Self { column, more, low, high } = self;
         let more = &mut more[k];

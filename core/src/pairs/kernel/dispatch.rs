@@ -115,12 +115,10 @@ impl Kernel {
     ) -> usize {
         assert!(out.len() >= PAD && boxes.is_ready(others) && cursor.fits(&[boxes]));
         let boxes: &dyn Any = boxes;
-        if let Some(boxes) = boxes.downcast_ref() {
-            single::within(self.0, boxes, others, cursor, out)
-        } else if let Some(boxes) = boxes.downcast_ref() {
-            double::within(self.0, boxes, others, cursor, out)
+        if T::BYTES == 4 {
+            single::within(self.0, typed(boxes), others, cursor, out)
         } else {
-            unreachable!("coordinates are f32 or f64")
+            double::within(self.0, typed(boxes), others, cursor, out)
         }
     }
 
@@ -139,14 +137,17 @@ impl Kernel {
         assert!(out.len() >= PAD && a.is_ready(others) && b.is_ready(others));
         assert!(cursor.fits(&[a, b]));
         let (a, b): (&dyn Any, &dyn Any) = (a, b);
-        if let (Some(a), Some(b)) = (a.downcast_ref(), b.downcast_ref()) {
-            single::between(self.0, [a, b], others, pair_order, cursor, out)
-        } else if let (Some(a), Some(b)) = (a.downcast_ref(), b.downcast_ref()) {
-            double::between(self.0, [a, b], others, pair_order, cursor, out)
+        if T::BYTES == 4 {
+            single::between(self.0, [typed(a), typed(b)], others, pair_order, cursor, out)
         } else {
-            unreachable!("coordinates are f32 or f64")
+            double::between(self.0, [typed(a), typed(b)], others, pair_order, cursor, out)
         }
     }
+}
+
+/// The boxes as those of `f32`, or those of `f64`, which they are.
+fn typed<T: Scalar>(boxes: &dyn Any) -> &SortedBoxes<T> {
+    boxes.downcast_ref().unwrap_or_else(|| unreachable!("coordinates are f32 or f64"))
 }
 
 /// A module with both sweeps over one vector type, compiled for its instructions.
