@@ -10,7 +10,7 @@ use crate::run::call;
 /// The exception for an error. `argument` is the one that held the boxes, `ids` are those passed.
 pub fn raise(py: Python<'_>, error: Error, argument: &str, ids: &[i64]) -> PyErr {
     match error {
-        Error::InvalidBox { index, axis, min, max } => {
+        Error::InvalidBox { index, axis, min, max, .. } => {
             make(py, "InvalidBoxError", (index, axis, argument, min.get(), max.get()))
         }
         Error::InvalidQuery { index, .. } => make(py, "InvalidQueryError", (index,)),

@@ -129,14 +129,14 @@ impl Finder {
     }
 }
 
-/// The core counts the boxes of a second set after those of the first.
+/// The error names the argument: `boxes`, or `a` or `b` where there are two.
 fn raise_for(py: Python<'_>, error: Error, sets: Sets) -> PyErr {
-    match error {
-        Error::InvalidBox { index, axis, min, max } if index >= sets.a => {
-            raise(py, Error::InvalidBox { index: index - sets.a, axis, min, max }, "b", &[])
-        }
-        error => raise(py, error, if sets.b.is_some() { "a" } else { "boxes" }, &[]),
-    }
+    let argument = match error {
+        Error::InvalidBox { set: 1, .. } => "b",
+        _ if sets.b.is_some() => "a",
+        _ => "boxes",
+    };
+    raise(py, error, argument, &[])
 }
 
 /// Calls `each` with a chunk, and returns whether it wants another one.
