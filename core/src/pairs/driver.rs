@@ -324,9 +324,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
 
     fn sweep<'a>(&self, others: usize, task: Task<'a>) -> Sweep<'a> {
         let Task { pair_order, progress, .. } = task;
-        // Without `std` there is no choice, and the compiler leaves out the other kernels.
-        let kernel = if cfg!(feature = "std") { self.kernel } else { Kernel::best() };
-        Sweep { kernel, others, pair_order, progress }
+        Sweep { kernel: self.kernel, others, pair_order, progress }
     }
 }
 

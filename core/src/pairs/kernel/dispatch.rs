@@ -100,6 +100,12 @@ impl Kernel {
         }
     }
 
+    /// Without `std` there is no choice, and the compiler leaves out the other kernels.
+    #[inline(always)]
+    fn instructions(self) -> Instructions {
+        if cfg!(feature = "std") { self.0 } else { Self::best().0 }
+    }
+
     /// Writes the pairs within a set, by the boxes' order and then by their partners', until all are
     /// written or `out` is full, and returns how many. `others` axes are tested beside the sweep axis.
     ///
@@ -116,9 +122,9 @@ impl Kernel {
         assert!(out.len() >= PAD && boxes.is_ready(others) && cursor.fits(&[boxes]));
         let boxes: &dyn Any = boxes;
         if T::BYTES == 4 {
-            single::within(self.0, typed(boxes), others, cursor, out)
+            single::within(self.instructions(), typed(boxes), others, cursor, out)
         } else {
-            double::within(self.0, typed(boxes), others, cursor, out)
+            double::within(self.instructions(), typed(boxes), others, cursor, out)
         }
     }
 
@@ -138,9 +144,23 @@ impl Kernel {
         assert!(cursor.fits(&[a, b]));
         let (a, b): (&dyn Any, &dyn Any) = (a, b);
         if T::BYTES == 4 {
-            single::between(self.0, [typed(a), typed(b)], others, pair_order, cursor, out)
+            single::between(
+                self.instructions(),
+                [typed(a), typed(b)],
+                others,
+                pair_order,
+                cursor,
+                out,
+            )
         } else {
-            double::between(self.0, [typed(a), typed(b)], others, pair_order, cursor, out)
+            double::between(
+                self.instructions(),
+                [typed(a), typed(b)],
+                others,
+                pair_order,
+                cursor,
+                out,
+            )
         }
     }
 }
