@@ -10,6 +10,7 @@ use crate::record::Record;
 mod cases;
 mod format;
 mod plot;
+mod readme;
 mod single;
 mod table;
 mod worlds;
@@ -33,6 +34,9 @@ pub fn write(results: &Path) -> Result<()> {
     }
     let report = results.parent().unwrap_or(results).join("RESULTS.md");
     std::fs::write(&report, text).with_context(|| format!("writing {}", report.display()))?;
+    if let (Some((_, record)), Some(root)) = (newest.last(), results.ancestors().nth(2)) {
+        readme::write(record, root)?;
+    }
     println!("Written: {} and the plots in {}", report.display(), results.display());
     Ok(())
 }
