@@ -43,6 +43,9 @@ enum Command {
         /// The folder of the results; the table is written beside it, the plots into it.
         #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/results"))]
         results: PathBuf,
+        /// The root of the repository, to also write the table and the chart of its READMEs.
+        #[arg(long)]
+        readmes: Option<PathBuf>,
     },
     /// List the libraries that were compiled in.
     Libraries,
@@ -54,7 +57,7 @@ enum Command {
 fn main() -> Result<()> {
     match Cli::parse().command {
         Command::Measure(options) => measure::run(&options),
-        Command::Report { results } => report::write(&results),
+        Command::Report { results, readmes } => report::write(&results, readmes.as_deref()),
         Command::Libraries => {
             let finders = libraries::all().into_iter().map(|library| library.info());
             let trackers = worlds::all().into_iter().map(|library| library.info());

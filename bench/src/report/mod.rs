@@ -18,8 +18,9 @@ mod worlds;
 pub use format::time;
 
 /// Reads every record in the folder and writes `RESULTS.md` beside it and the plots into it. Of
-/// each machine only the newest record is shown.
-pub fn write(results: &Path) -> Result<()> {
+/// each machine only the newest record is shown. With the root of the repository, also writes what its
+/// READMEs show.
+pub fn write(results: &Path, readmes: Option<&Path>) -> Result<()> {
     let newest = newest(results)?;
     anyhow::ensure!(!newest.is_empty(), "there are no results in {}", results.display());
     let mut text = String::from(table::INTRODUCTION);
@@ -34,7 +35,7 @@ pub fn write(results: &Path) -> Result<()> {
     }
     let report = results.parent().unwrap_or(results).join("RESULTS.md");
     std::fs::write(&report, text).with_context(|| format!("writing {}", report.display()))?;
-    if let (Some((_, record)), Some(root)) = (newest.last(), results.ancestors().nth(2)) {
+    if let (Some((_, record)), Some(root)) = (newest.last(), readmes) {
         readme::write(record, root)?;
     }
     println!("Written: {} and the plots in {}", report.display(), results.display());
