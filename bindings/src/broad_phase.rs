@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use sweep_and_prune::{BroadPhase, Error, Filter, Options, ProxyId, Scalar, validate};
+use sweep_and_prune::{BroadPhase, Error, Filter, Options, Pairs, ProxyId, Scalar, validate};
 
 use crate::queries::{Answer, Query, ask};
 use crate::rows::{Coordinates, Rows, aabb};
@@ -199,19 +199,27 @@ impl<const D: usize, T: Scalar, I: Id> AnyBroadPhase<I> for TypedBroadPhase<D, T
     fn update(&mut self, ids: &mut Vec<I>) -> usize {
         let before = ids.len();
         let changes = self.world.update();
-        ids.extend(changes.begun().flatten().map(I::from_proxy));
+        append(changes.begun(), ids);
         let begun = ids.len() - before;
-        ids.extend(changes.ended().flatten().map(I::from_proxy));
+        append(changes.ended(), ids);
         begun
     }
 
     fn pairs(&mut self, ids: &mut Vec<I>) {
-        ids.extend(sorted(self.world.pairs()).into_iter().flatten().map(I::from_proxy));
+        let pair = |[a, b]: [ProxyId; 2]| u128::from(key(a)) << 64 | u128::from(key(b));
+        let mut keys: Vec<_> = self.world.pairs().map(pair).collect();
+        keys.sort_unstable();
+        ids.reserve(2 * keys.len());
+        for pair in keys {
+            ids.extend([pair >> 64, pair].map(|key| I::from_proxy(id(key as u64))));
+        }
     }
 
-    fn pairs_of(&mut self, id: ProxyId, ids: &mut Vec<I>) -> Result<(), Error> {
+    fn pairs_of(&mut self, of: ProxyId, ids: &mut Vec<I>) -> Result<(), Error> {
         self.world.queries(); // which makes the tree that `pairs_of` searches
-        ids.extend(sorted(self.world.pairs_of(id)?).into_iter().map(I::from_proxy));
+        let mut keys: Vec<_> = self.world.pairs_of(of)?.map(key).collect();
+        keys.sort_unstable();
+        ids.extend(keys.into_iter().map(|key| I::from_proxy(id(key))));
         Ok(())
     }
 
@@ -253,8 +261,22 @@ impl<const D: usize, T: Scalar, I: Id> ArrayBroadPhase<I> for TypedBroadPhase<D,
     }
 }
 
-fn sorted<V: Ord>(values: impl Iterator<Item = V>) -> Vec<V> {
-    let mut values: Vec<_> = values.collect();
-    values.sort_unstable();
-    values
+/// Appends pairs of ids. One copy of it serves all dimensions.
+#[inline(never)]
+fn append<I: Id>(pairs: Pairs<'_>, ids: &mut Vec<I>) {
+    ids.reserve(2 * pairs.len());
+    for pair in pairs {
+        ids.extend(pair.map(I::from_proxy));
+    }
+}
+
+/// The id as a number of the same order, slot above generation. Numbers are sorted by code that the finder
+/// contains anyway, which keeps the .wasm file small.
+fn key(id: ProxyId) -> u64 {
+    id.to_bits().rotate_left(32)
+}
+
+/// The id of a [`key`].
+fn id(key: u64) -> ProxyId {
+    ProxyId::from_bits(key.rotate_left(32))
 }

@@ -78,8 +78,8 @@ impl<T: Scalar> Options<T> {
     ) -> Aabb<D, T> {
         let mut fat = *aabb;
         let zero = T::default();
-        for axis in 0..D {
-            let ahead = displacement[axis] * self.prediction;
+        for (axis, &step) in displacement.iter().enumerate() {
+            let ahead = step * self.prediction;
             let (back, front) = if ahead < zero { (ahead, zero) } else { (zero, ahead) };
             fat.min[axis] = aabb.min[axis] - self.margin + back;
             fat.max[axis] = aabb.max[axis] + self.margin + front;

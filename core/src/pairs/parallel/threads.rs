@@ -63,8 +63,11 @@ impl Drop for Busy<'_> {
     }
 }
 
-/// Copies pairs: of each chunk the target and the source. On threads if they are many.
-pub fn copy(chunks: Vec<(&mut [[u32; 2]], &[[u32; 2]])>) {
+/// The place of a chunk of pairs, and the pairs.
+pub type Placed<'a> = (&'a mut [[u32; 2]], &'a [[u32; 2]]);
+
+/// Copies chunks of pairs to their places, on threads if they are many.
+pub fn copy(chunks: Vec<Placed<'_>>) {
     let pairs: usize = chunks.iter().map(|(_, from)| from.len()).sum();
     if pairs < MANY_PAIRS {
         chunks.into_iter().for_each(|(to, from)| to.copy_from_slice(from));

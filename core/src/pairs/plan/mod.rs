@@ -143,7 +143,8 @@ mod tests {
             (state >> 8) as f32 / 16.0
         };
         let mut points = |count: usize| -> alloc::vec::Vec<Aabb<3, f32>> {
-            let point = |i: usize| if i % 10 == 0 { [0.0; 3] } else { [0; 3].map(|_| random()) };
+            let point =
+                |i: usize| if i.is_multiple_of(10) { [0.0; 3] } else { [0; 3].map(|_| random()) };
             (0..count).map(point).map(|point| Aabb::new(point, point)).collect()
         };
         for (few, many) in [(200, 200), (1000, 4000)] {
