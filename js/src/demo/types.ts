@@ -105,7 +105,7 @@ export interface SapDemo extends HTMLElement {
   /** Listens to one of the {@link DemoEventMap | element's own events}. */
   addEventListener<K extends keyof DemoEventMap>(
     type: K,
-    listener: (this: SapDemo, event: DemoEventMap[K]) => unknown,
+    listener: (this: this, event: DemoEventMap[K]) => unknown,
     options?: boolean | AddEventListenerOptions,
   ): void;
   /** Listens to any other event. */
