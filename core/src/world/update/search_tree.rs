@@ -51,10 +51,11 @@ pub fn ready_for_queries<const D: usize, T: Scalar>(
     while let Some(&index) = bodies.changed.get(*known) {
         *known += 1;
         let row = index as usize;
+        // Also for a free slot: a body that takes it has to be listed again.
+        bodies.slots.raise(index, flag::IN_TREE);
         if !bodies.slots.has(index, flag::LIVE) {
             continue;
         }
-        bodies.slots.raise(index, flag::IN_TREE);
         if bodies.slots.has(index, flag::NEW) {
             tree.set(index, &bodies.boxes[row]);
         } else if !fat[row].contains(&bodies.boxes[row]) {
