@@ -125,7 +125,7 @@ test.describe("paused", () => {
     await race.lane(2).getByLabel("Sort").selectOption("Timsort");
     await race.lane(2).getByLabel("Sweep axis").selectOption("y");
     await race.lane(4).getByLabel("Algorithm").selectOption("none");
-    const kept = { scene: "tower", motion: "teleport", "2": "endpoint sweep", "2.sort": "Timsort", "2.axis": "y", "4": "nobody" };
+    const kept = { scene: "tower", motion: "teleport", "2": "endpoint sweep", "2.sort": "Timsort", "2.axis": "y", "4": "none" };
     expect(Object.fromEntries(new URL(page.url()).searchParams)).toEqual(kept);
     await page.reload();
     await expect(race.root).toHaveAttribute("data-step", "0");
