@@ -94,7 +94,7 @@ function compileCore({ feature, levels }, { directory, flags }) {
 /** Compiles a crate to WebAssembly, into a target folder of its own. */
 function compile(crate, what, { directory, flags, levels }) {
   const profile = ["--profile", "wasm", "--target", "wasm32-unknown-unknown"];
-  // Where a dependency lies on this machine is nobody's business.
+  // Paths of this machine do not belong in the package.
   const all = [...flags, ...levels.flags, `--remap-path-prefix=${registry}=registry`].join("\x1f");
   const inner = ["--config", `profile.wasm.package.sweep-and-prune.opt-level=${JSON.stringify(levels.core)}`];
   run(

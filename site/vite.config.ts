@@ -1,15 +1,15 @@
 import { defineConfig, type Plugin, type Rolldown } from "vite";
 import { api } from "./src/api/build.ts";
 import { article } from "./src/article/build.ts";
-import { benchmark, peers } from "./src/benchmark/build.ts";
+import { benchmark, alternatives } from "./src/benchmark/build.ts";
 import { insertComplexity } from "./src/complexity/table.ts";
 import { expandFallingBalls } from "./src/falling/markup.ts";
 import { offline } from "./src/shell/offline.ts";
 import { pages, shell } from "./src/shell/pages.ts";
 
 /** Writes the inside of each `<falling-balls>` into the page, so that nothing moves when scripts arrive. */
-const labs: Plugin = {
-  name: "labs",
+const fallingBalls: Plugin = {
+  name: "falling-balls",
   transformIndexHtml: { order: "pre", handler: expandFallingBalls },
 };
 
@@ -19,7 +19,7 @@ const complexity: Plugin = {
   transformIndexHtml: { order: "pre", handler: insertComplexity },
 };
 
-/** What bundling the benchmark's peers warns of is theirs to mend. */
+/** Warnings about the packages of the alternatives are not for this project to fix. */
 const quiet: Rolldown.InputOptions = {
   checks: { pluginTimings: false },
   onLog(level, log, report) {
@@ -30,8 +30,8 @@ const quiet: Rolldown.InputOptions = {
 export default defineConfig({
   base: "./",
   appType: "mpa",
-  plugins: [shell, article, api, labs, complexity, benchmark, offline],
-  worker: { format: "es", plugins: () => [peers()], rolldownOptions: quiet },
+  plugins: [shell, article, api, fallingBalls, complexity, benchmark, offline],
+  worker: { format: "es", plugins: () => [alternatives()], rolldownOptions: quiet },
   build: {
     target: "es2022",
     chunkSizeWarningLimit: 800,

@@ -48,7 +48,7 @@ export const WORDS = [
   {
     not: "watched, broken off, had enough",
     but: "with a progress callback, cancelled",
-    pattern: /(?<![a-z])watched(?![a-z])|\bbroken off\b|\bbreaks? off\b|\bhad enough\b|\bEnough\b/,
+    pattern: /(?<![a-z])watched(?![a-z])|\bbroken off\b|\bbreaks? off\b|\bhad enough\b|\b(struct|enum|impl|for) Enough\b|\bEnough(::|\()/,
   },
   { not: "lab, laboratory", but: "broken variant, shown on purpose", pattern: /(?<![a-z])labs?(?![a-z])|laborator(y|ies)/i },
   { not: "lit", but: "highlighted", pattern: /\blit\b/i },
@@ -84,11 +84,17 @@ export const WORDS = [
 
 /** Legitimate uses: where, of which word, and why. `line` narrows them to lines that match. */
 export const EXCEPTIONS = [
-  { path: /./, not: "lit", line: /["'`]lit["'`/]|lit\/|\bLit\b/, why: "Lit is the library that the elements are written with" },
+  { path: /./, not: "lit", line: /["'`]lit["'`/]|lit\/|\bLit(Element)?\b/, why: "Lit is the library that the elements are written with" },
   { path: /./, not: "called from memory, warm", line: /warm.?up/i, why: "the warm-up of a benchmark" },
   { path: /(package(-lock)?\.json|\.toml)$/, not: "ours, rival, peer, contender", line: /peerDependencies|peer"/, why: "a key of npm" },
+  {
+    path: /^core\/(examples\/sensors|src\/world\/broad_phase)\.rs$/,
+    not: "door",
+    line: /\bdoor\b/,
+    why: "a door in the world of a game",
+  },
   { path: /./, not: "hull", line: /convex hull/i, why: "a convex hull is the field's term" },
-  { path: /./, not: "bins, strips (of the grid)", line: /\[\[bin\]\]|--bin\b|src\/bin|bin\//, why: "a binary of Cargo" },
+  { path: /./, not: "bins, strips (of the grid)", line: /\[\[bin\]\]|--bin\b|src\/bin|bin\/|CARGO_BIN_EXE/, why: "a binary of Cargo" },
 ];
 
 const SKIPPED =
@@ -109,9 +115,11 @@ const isException = (path, not, line) =>
 /** Every place of a text that has one of the words: { path, line, word, text }. The path itself is line 0. */
 export function placesIn(path, text) {
   const lines = [path, ...text.split("\n")];
+  // `labOptions` has the word "lab" too.
+  const split = lines.map((line) => line.replace(/([a-z])(?=[A-Z])/g, "$1 "));
   return WORDS.filter(({ only }) => !only || only.test(path)).flatMap((word) =>
     lines.flatMap((line, number) =>
-      word.pattern.test(line) && !isException(path, word.not, line)
+      (word.pattern.test(line) || word.pattern.test(split[number])) && !isException(path, word.not, line)
         ? [{ path, line: number, word, text: line.trim() }]
         : [],
     ),

@@ -6,8 +6,6 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 
-use crate::libraries::THIS_CRATE;
-
 /// One file of results.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Record {
@@ -114,7 +112,6 @@ pub struct Entry {
     /// The library's name.
     pub name: String,
     /// Whether it is another library, or this one in another setting.
-    #[serde(alias = "rival")]
     pub alternative: bool,
     /// What came of it.
     pub outcome: Outcome,
@@ -186,30 +183,7 @@ impl Record {
     /// Reads a file of results.
     pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read(path).with_context(|| format!("reading {}", path.display()))?;
-        let mut record: Self =
-            serde_json::from_slice(&text).with_context(|| format!("parsing {}", path.display()))?;
-        record.update_wording();
-        Ok(record)
-    }
-
-    /// Gives this library the name that it has now, and the notes the words: until 2026-11-22 it was recorded
-    /// as "ours".
-    fn update_wording(&mut self) {
-        let renamed = |name: &str| match name.strip_prefix("ours") {
-            Some(rest) if rest.is_empty() || rest.starts_with(',') => format!("{THIS_CRATE}{rest}"),
-            _ => name.to_owned(),
-        };
-        for map in [&mut self.versions, &mut self.how] {
-            let reworded =
-                |text: &str| text.replace(" anew", " from scratch").replace("fat box", "fat AABB");
-            *map = map.iter().map(|(name, text)| (renamed(name), reworded(text))).collect();
-        }
-        for case in self.cases.iter_mut().chain(&mut self.worlds) {
-            case.reference = case.reference.replace("ours", THIS_CRATE);
-            for entry in &mut case.results {
-                entry.name = renamed(&entry.name);
-            }
-        }
+        serde_json::from_slice(&text).with_context(|| format!("parsing {}", path.display()))
     }
 
     /// Replaces the file, whole or not at all.

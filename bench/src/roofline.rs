@@ -2,7 +2,7 @@
 //! at the rates that the machine reaches when it does nothing else.
 //!
 //! The stages are told apart from outside, by runs that end earlier: a run that is stopped at the
-//! first sign of progress has made the plan and filled the bins, and ordered and swept but the first
+//! first sign of progress has made the plan and filled the columns, and ordered and swept but the first
 //! of them; one that only orders has not swept; one that counts has; one that stores the pairs has
 //! done it all.
 
@@ -104,7 +104,7 @@ fn of<const D: usize>(n: usize, test_rate: f64) -> Result<Vec<Stage>> {
         }
     };
     Ok(vec![
-        stage("plan and bins", binned, read + records, 0),
+        stage("plan and columns", binned, read + records, 0),
         // What is ordered stays in the caches until it is swept.
         stage("order", ordered, records, 0),
         stage("sweep", swept, 0.0, pairs),
@@ -113,7 +113,7 @@ fn of<const D: usize>(n: usize, test_rate: f64) -> Result<Vec<Stage>> {
     ])
 }
 
-/// One call that ends after the bins, the order, the sweep, or when the pairs are stored.
+/// One call that ends after the columns, the order, the sweep, or when the pairs are stored.
 fn run<const D: usize>(finder: &mut PairFinder<D>, boxes: &[Aabb<D>], until: usize) -> Result<()> {
     match until {
         0 => black_box(

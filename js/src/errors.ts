@@ -31,7 +31,7 @@ export class NotInitializedError extends SweepAndPruneError {
 
   /** @internal */
   constructor(entry = "sweep-and-prune") {
-    super(`"${entry}" is not started: \`await init()\`, imported from "${entry}", before the first call; each entry has its own`);
+    super(`"${entry}" is not initialized: import \`init\` from "${entry}" and \`await init()\` before the first call; each entry point has its own \`init\``);
   }
 }
 

@@ -41,7 +41,7 @@ export const methods = [
  * Broken variants, by name, each with a common error, to show its effect. Never use their results: they
  * miss pairs or report wrong ones.
  */
-export const wrongMethods = ["strict ties (wrong)", "sorted start (wrong)", "sort by centre (wrong)"] as const;
+export const wrongMethods = ["strict ties (wrong)", "sorted start (wrong)", "sort by center (wrong)"] as const;
 
 /** How endpoints are sorted, by name. */
 export const sorts = ["standard library", "quicksort", "insertion sort", "merge sort", "Timsort"] as const;

@@ -128,7 +128,7 @@ test("the wrong methods are wrong, as their names say, and play like the others"
   const worlds = {
     "strict ties (wrong)": [0, 0, 1, 1, 1, 0, 2, 1],
     "sorted start (wrong)": [0, 0, 2, 1, 1, 0, 3, 1],
-    "sort by centre (wrong)": [-1, 0, 1, 1, 2, 0, 4, 1, 0, 0, 8, 1],
+    "sort by center (wrong)": [-1, 0, 1, 1, 2, 0, 4, 1, 0, 0, 8, 1],
   };
   for (const method of wrongMethods) {
     const runner = new Runner({ dimensions: 2, method, axis: 0, persistent: true, traceWords: 1 << 16 });

@@ -97,8 +97,8 @@ test("nothing moves when the script comes, in any form", async () => {
     'decorations="checks,edges:array"',
     'heading="Five balls"',
     "predict",
-    'lab="teleport"',
-    'lab="one-to-n"',
+    'variant="teleport"',
+    'variant="one-to-n"',
     'strategy="swap" balls="20" array style="--sap-array-rows: 3"',
   ];
   body = forms.map((form) => `<sap-demo ${form} paused><p slot="caption" style="margin: 0">A caption</p></sap-demo>`).join("");

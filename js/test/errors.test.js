@@ -6,7 +6,7 @@ import { findPairs, findPairsBetween, init, InvalidBoxError, NotInitializedError
 
 // Before `init`, and so before everything else in this file.
 test("a call before init throws and names the entry", async () => {
-  assert.throws(() => findPairs([0, 1], { dimensions: 1 }), (error) => error instanceof NotInitializedError && error.message.includes('"sweep-and-prune" is not started'));
+  assert.throws(() => findPairs([0, 1], { dimensions: 1 }), (error) => error instanceof NotInitializedError && error.message.includes('"sweep-and-prune" is not initialized'));
   assert.throws(() => new PairFinder({ dimensions: 1 }), NotInitializedError);
   const starting = init();
   assert.throws(() => findPairs([0, 1], { dimensions: 1 }), NotInitializedError);

@@ -75,7 +75,7 @@ async function textOf(address) {
   }
 }
 
-/** A port that nobody listens on. */
+/** A port without a server. */
 async function freePort() {
   const server = createServer().listen(0, "127.0.0.1");
   await once(server, "listening");

@@ -33,7 +33,7 @@ impl<const D: usize> Scatter<D> {
     /// Radii have the density r^-2 between their bounds: many small ones, few large ones.
     ///
     /// # Errors
-    /// [`SetupError::NoRoom`].
+    /// [`SetupError::TooCrowded`].
     pub fn balls(&self) -> Result<Vec<Ball<D>>, SetupError> {
         let mut random = Random::new(self.seed);
         let [least, greatest] = self.radii.map(|radius| 1.0 / radius);
@@ -49,7 +49,7 @@ impl<const D: usize> Scatter<D> {
             let center = (0..Self::TRIES)
                 .map(|_| self.draw_place(radius, &mut random))
                 .find(|&center| !self.is_taken(&grid, &chains, &balls, center, radius))
-                .ok_or(SetupError::NoRoom { placed: balls.len() })?;
+                .ok_or(SetupError::TooCrowded { placed: balls.len() })?;
             let velocity = self.speed.map(|speed| between(&mut random, -speed, speed));
             chains.insert(grid.cell(center));
             balls.push(Ball { center, radius, velocity });

@@ -58,7 +58,7 @@ pub fn falling<const D: usize>(population: Population) -> Result<Setup<D>, Setup
     while height(&population) > GREATEST_HEIGHT - DROP {
         population.size *= 0.95;
     }
-    // Large balls cannot come near the walls, and a few of them may need more room than the mean.
+    // Large balls cannot come near the walls, and a few of them may need more space than the mean.
     let mut cloud = height(&population) + 2.0 * population.radii()[1];
     let half = WIDTH / 2.0;
     let balls = loop {
@@ -70,7 +70,7 @@ pub fn falling<const D: usize>(population: Population) -> Result<Setup<D>, Setup
             seed: population.seed,
         };
         match scatter.balls() {
-            Err(SetupError::NoRoom { .. }) => cloud *= 1.25,
+            Err(SetupError::TooCrowded { .. }) => cloud *= 1.25,
             balls => break balls?,
         }
     };
@@ -85,7 +85,7 @@ pub fn falling<const D: usize>(population: Population) -> Result<Setup<D>, Setup
 /// A canvas of `width` x `height` pixels, `y` down, with balls at random, none overlapping.
 ///
 /// # Errors
-/// [`SetupError::NoRoom`] if they do not fit; [`SetupError::Parameter`].
+/// [`SetupError::TooCrowded`] if they do not fit; [`SetupError::Parameter`].
 pub fn bouncing(population: Population, size: [f32; 2]) -> Result<Setup<2>, SetupError> {
     let canvas = canvas(Vec::new(), size);
     canvas.validate()?;
@@ -215,7 +215,7 @@ mod tests {
             assert_eq!(falling::<2>(bad), Err(SetupError::Parameter { name }));
         }
         let crowd = Population { bodies: 100, size: 60.0, ..good };
-        assert!(matches!(bouncing(crowd, [600.0, 400.0]), Err(SetupError::NoRoom { .. })));
+        assert!(matches!(bouncing(crowd, [600.0, 400.0]), Err(SetupError::TooCrowded { .. })));
         let nowhere = bouncing(good, [f32::NAN, 400.0]);
         assert_eq!(nowhere, Err(SetupError::Parameter { name: "bounds" }));
     }

@@ -111,7 +111,7 @@ pub enum SetupError {
         index: usize,
     },
     /// No place was found for a ball that overlaps no other.
-    NoRoom {
+    TooCrowded {
         /// How many had been placed.
         placed: usize,
     },
@@ -124,7 +124,7 @@ impl fmt::Display for SetupError {
             SetupError::Ball { index } => {
                 write!(f, "ball {index} is malformed or not inside the walls")
             }
-            SetupError::NoRoom { placed } => {
+            SetupError::TooCrowded { placed } => {
                 write!(f, "only {placed} balls fit without an overlap: use fewer or smaller balls")
             }
         }

@@ -148,7 +148,7 @@ export class Simulation {
   readonly steps: number;
 
   /**
-   * Centres, `dimensions` numbers a ball. A view of the module's memory: valid until the next
+   * Centers, `dimensions` numbers a ball. A view of the module's memory: valid until the next
    * call of any method or constructor, then read the property again (it is cheap). Copy to keep
    * or to transfer.
    */

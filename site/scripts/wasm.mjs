@@ -12,7 +12,7 @@ const output = join(root, "site/src/generated");
 
 const crates = [
   { name: "simulation", package: "sweep-and-prune-simulation-wasm" },
-  { name: "arena", package: "sweep-and-prune-site-wasm" },
+  { name: "experiment", package: "sweep-and-prune-site-wasm" },
   { name: "bench-scenes", package: "sweep-and-prune-js-bench" },
 ];
 

@@ -74,7 +74,7 @@ describe("find all pairs, each once", () => {
   }
 });
 
-describe("follow a world that moves", () => {
+describe("highlights the listing of a demo that moves", () => {
   const follow = {
     "swap-driven": (boxes) => {
       const state = swapDriven.begin(boxes);

@@ -180,7 +180,7 @@ test.describe("mistakes are shown to be mistakes", () => {
     return pairs;
   };
 
-  for (const [id, missed] of [["centre-sort", 1], ["one-to-n-misses", 1], ["wrong-start-demo", 2]] as const) {
+  for (const [id, missed] of [["center-sort", 1], ["one-to-n-misses", 1], ["wrong-start-demo", 2]] as const) {
     test(`${id}: ${missed} of the pairs ${missed === 1 ? "is" : "are"} missed`, async ({ page }) => {
       const demo = await new Demo(page, id).open();
       const { pairs } = await demo.state();

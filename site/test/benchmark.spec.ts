@@ -24,9 +24,7 @@ test.describe("the recorded results", () => {
     await page.getByText("The numbers of this scene").click();
     const rows = page.locator("#recorded-table tbody tr");
     for (const { name, outcome } of scene.results) {
-      // Until 2026-11-22 the results called this library "ours".
-      const library = name.replace(/^ours(?=,|$)/, "sweep-and-prune");
-      const row = rows.filter({ has: page.getByRole("rowheader", { name: library, exact: true }) });
+      const row = rows.filter({ has: page.getByRole("rowheader", { name, exact: true }) });
       const expected = outcome.Timed ? /\d (ns|µs|ms|s)\b/ : outcome.Untimed.why;
       await expect(row.locator("td").first()).toContainText(expected);
     }
@@ -36,7 +34,7 @@ test.describe("the recorded results", () => {
     await expect(page.locator("#plot-ratio > svg")).toHaveAttribute("aria-label", /fastest alternative takes at least [\d.]+ times/);
   });
 
-  test("show every contender by name, of ours what a user would call, and the others when ticked", async ({ page }) => {
+  test("show the libraries that a user would choose between, and the others when ticked", async ({ page }) => {
     const shown = page.locator("#plot-time > svg");
     const text = async (): Promise<string[]> => (await shown.locator("text").allTextContents()).map((name) => name.replace(/, to \d+[KM]$/, ""));
     expect(await text()).toEqual(expect.arrayContaining(["sweep-and-prune", "sweep-and-prune, 2 threads", "plain sweep", "parry"]));
@@ -47,7 +45,7 @@ test.describe("the recorded results", () => {
     await expect.poll(text).toContain("sweep-and-prune, again");
     await page.getByLabel("parry", { exact: true }).uncheck();
     await expect.poll(text).not.toContain("parry");
-    await expect(page.locator("#recorded-contenders")).toContainText((kept.how["sweep-and-prune, again"] ?? kept.how["ours, again"]).replaceAll("`", ""));
+    await expect(page.locator("#recorded-libraries")).toContainText(kept.how["sweep-and-prune, again"].replaceAll("`", ""));
     expect(await violations(page)).toEqual([]);
 
     // Where there is no room beside the lines, their names stand beneath.
@@ -64,7 +62,7 @@ test.describe("the recorded results", () => {
       names.sort((a, b) => a.top - b.top);
       names.slice(1).forEach(({ top }, at) => expect(top, scene).toBeGreaterThanOrEqual((names[at]?.bottom ?? 0) - 2));
     }
-    const entries: { name: string; rival: boolean }[] = kept.cases.flatMap(({ results }: { results: { name: string; rival: boolean }[] }) => results);
+    const entries: { name: string; alternative: boolean }[] = kept.cases.flatMap(({ results }: { results: { name: string; alternative: boolean }[] }) => results);
     const look = looksOf(entries);
     const names = [...new Set(entries.map(({ name }) => name))];
     expect(new Set(names.map((name) => JSON.stringify(look(name)))).size).toBe(names.length);
@@ -76,19 +74,19 @@ test.describe("the recorded results", () => {
   });
 });
 
-/** Chooses few boxes and these peers only. */
-async function choose(page: Page, peers: readonly string[], sizes = ["1000"]): Promise<void> {
+/** Chooses few boxes and these alternatives only. */
+async function choose(page: Page, alternatives: readonly string[], sizes = ["1000"]): Promise<void> {
   await page.goto("/benchmark.html");
   await expect(page.getByRole("button", { name: "Run" })).toBeEnabled();
   for (const box of await page.locator("#here input[name=size]").all()) await box.setChecked(sizes.includes(await box.inputValue()));
-  for (const box of await page.locator("#here input[name=peer]").all()) await box.setChecked(peers.includes(await box.inputValue()));
+  for (const box of await page.locator("#here input[name=alternative]").all()) await box.setChecked(alternatives.includes(await box.inputValue()));
 }
 
 const row = (page: Page, name: string) =>
   page.locator("#here-table tbody tr").filter({ has: page.getByRole("rowheader", { name, exact: true }) });
 
 test.describe("run it here", () => {
-  test("every light peer is checked and timed, in its worker, without a request to anybody else", async ({ page, baseURL }) => {
+  test("every light alternative is checked and timed, in its worker, without a request to anybody else", async ({ page, baseURL }) => {
     const heard = complaints(page);
     const elsewhere = requestsElsewhere(page, baseURL ?? "");
     for (const [scene, dimensions] of [["mixed", "2"], ["drift", "3"]] as const) {
@@ -97,11 +95,11 @@ test.describe("run it here", () => {
       await page.locator("#here-scene").selectOption(scene);
       await page.locator("#here-dimensions").selectOption(dimensions);
       await page.getByLabel("10,000", { exact: true }).uncheck();
-      const peers = await page.locator("#here input[name=peer]:checked").evaluateAll((all) => all.map((box) => (box as HTMLInputElement).value));
-      expect(peers.length).toBeGreaterThan(3);
+      const alternatives = await page.locator("#here input[name=alternative]:checked").evaluateAll((all) => all.map((box) => (box as HTMLInputElement).value));
+      expect(alternatives.length).toBeGreaterThan(3);
       await page.getByRole("button", { name: "Run" }).click();
       await expect(page.locator("#here-status")).toContainText("Done.", { timeout: 90_000 });
-      for (const name of ["sweep-and-prune", ...peers]) await expect(row(page, name).locator("td")).toHaveText(/\d (µs|ms)/);
+      for (const name of ["sweep-and-prune", ...alternatives]) await expect(row(page, name).locator("td")).toHaveText(/\d (µs|ms)/);
       await expect(page.locator("#here-status")).toContainText(/alternative, .* times as long/);
       await expect(page.locator("#plot-here > svg")).toBeVisible();
     }

@@ -6,11 +6,11 @@ import { type Attributes, complainOfNothing, open, pairwise, stateOf, step, walk
 complainOfNothing();
 
 for (const [balls, tests] of [["5", 10], ["20", 190], ["10", 45], ["0", 0], ["1", 0], ["2", 1]] as const) {
-  test(`pairwise: ${balls} balls are ${tests} tests, each lit once`, async ({ page }) => {
+  test(`pairwise: ${balls} balls are ${tests} tests, each highlighted once`, async ({ page }) => {
     const demo = await open(page, { ...pairwise, balls });
     expect((await stateOf(demo)).tests).toBe(0);
-    const lit = (await walk(demo)).filter(({ kind }) => kind === "test");
-    const first = lit.slice(0, tests);
+    const highlighted = (await walk(demo)).filter(({ kind }) => kind === "test");
+    const first = highlighted.slice(0, tests);
     expect(first).toHaveLength(tests);
     expect(new Set(first.map(({ a, b }) => `${a} ${b}`)).size).toBe(tests);
     expect((await stateOf(demo)).tests).toBe(tests);
@@ -30,8 +30,8 @@ const everyStrategy: Attributes[] = [
   { strategy: "swap-all-axes", decorations: "checks", balls: "12" },
   { strategy: "one-to-n", focus: "2", decorations: "checks,edges:focus" },
   { strategy: "sap-insertionsort", motion: "drift", "no-bounce": "" },
-  { lab: "strict-ties" },
-  { lab: "teleport" },
+  { variant: "strict-ties" },
+  { variant: "teleport" },
 ];
 
 for (const attributes of everyStrategy) {
@@ -61,7 +61,7 @@ for (const attributes of everyStrategy) {
   });
 }
 
-test("what is done anew from the past comes out as it did, bit for bit", async ({ page }) => {
+test("a detection that runs again from an earlier tick gives the same bits", async ({ page }) => {
   // A ball held by hand is where it is anyway, so all that follows is simulated again.
   const demo = await open(page, { strategy: "swap", balls: "9", draggable: "", paused: "" });
   const walk = (count: number): Promise<DemoState[]> =>
@@ -104,9 +104,9 @@ test("the pairs are those of brute force, whatever finds them", async ({ page })
 test("the array is sorted after each step", async ({ page }) => {
   const demo = await open(page, { strategy: "sap-quicksort", decorations: "edges:array", "no-bounce": "", paused: "", balls: "8" });
   const arrays = await demo.evaluate((element: SapDemo) => {
-    const told: { kind: string; i: number; j: number }[] = [];
-    element.addEventListener("sap-sort", ({ detail }) => told.push(detail));
-    const sorts: { swaps: number; told: number; comparisons: number; compared: number }[] = [];
+    const reported: { kind: string; i: number; j: number }[] = [];
+    element.addEventListener("sap-sort", ({ detail }) => reported.push(detail));
+    const sorts: { swaps: number; reported: number; comparisons: number; compared: number }[] = [];
     let tick = element.state.tick;
     for (let count = 0; count < 300; count++) {
       const before = element.state;
@@ -114,39 +114,39 @@ test("the array is sorted after each step", async ({ page }) => {
       if (element.state.tick === tick) continue;
       sorts.push({
         swaps: before.swaps,
-        told: told.filter(({ kind }) => kind === "swap").length,
+        reported: reported.filter(({ kind }) => kind === "swap").length,
         comparisons: before.comparisons,
-        compared: told.filter(({ kind }) => kind === "compare").length,
+        compared: reported.filter(({ kind }) => kind === "compare").length,
       });
-      told.length = 0;
+      reported.length = 0;
       tick = element.state.tick;
     }
     return sorts;
   });
   expect(arrays.length).toBeGreaterThan(2);
-  // The first event of the next detection may have been told with it.
-  for (const { swaps, told, comparisons, compared } of arrays) {
-    expect(Math.abs(told - swaps)).toBeLessThanOrEqual(1);
+  // The first event of the next detection may have been reported with it.
+  for (const { swaps, reported, comparisons, compared } of arrays) {
+    expect(Math.abs(reported - swaps)).toBeLessThanOrEqual(1);
     expect(Math.abs(compared - comparisons)).toBeLessThanOrEqual(1);
   }
 });
 
-test("the laboratories go wrong as they should, and say so", async ({ page }) => {
-  const ties = await open(page, { lab: "strict-ties", decorations: "", "skip-interval": "0", paused: "" });
+test("the broken variants miss pairs as they should, and say so", async ({ page }) => {
+  const ties = await open(page, { variant: "strict-ties", decorations: "", "skip-interval": "0", paused: "" });
   const counts = await ties.evaluate((element: SapDemo) => Array.from({ length: 6 }, () => (element.step(), element.pairs.length)));
   expect(new Set(counts.filter((_, index) => index % 2 === 0)).size).toBe(1);
   expect(counts[0]).not.toBe(counts[1]);
   const hashes = await ties.evaluate((element: SapDemo) => new Set([element.state.hash, (element.step(), element.state.hash)]).size);
   expect(hashes, "nothing moves").toBe(1);
 
-  const center = await open(page, { lab: "centre-sort" });
+  const center = await open(page, { variant: "center-sort" });
   expect(await center.evaluate((element: SapDemo) => element.pairs)).toEqual([[1, 2]]);
   await expect(center.locator('[part="said"]')).toContainText("Missed: A and C");
 
-  const one = await open(page, { lab: "one-to-n" });
+  const one = await open(page, { variant: "one-to-n" });
   await expect(one.locator('[part="said"]')).toContainText("Missed: A and B");
 
-  const start = await open(page, { lab: "wrong-start", paused: "" });
+  const start = await open(page, { variant: "wrong-start", paused: "" });
   await step(start);
   expect(await start.evaluate((element: SapDemo) => element.pairs.length)).toBe(0);
   const later = await start.evaluate((element: SapDemo) => {
@@ -158,7 +158,7 @@ test("the laboratories go wrong as they should, and say so", async ({ page }) =>
   });
   expect(later, "seen once they have parted and met again").toBeGreaterThan(30);
 
-  const thrown = await open(page, { lab: "teleport", decorations: "", "skip-interval": "0", paused: "" });
+  const thrown = await open(page, { variant: "teleport", decorations: "", "skip-interval": "0", paused: "" });
   const [swaps, pairs] = await thrown.evaluate((element: SapDemo) => {
     element.step();
     const before = JSON.stringify(element.pairs.sort());

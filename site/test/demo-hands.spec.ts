@@ -52,7 +52,7 @@ test("keys alone: step, back, play, pause, and a ball moved", async ({ page }) =
 
 test("a ball is dragged by a mouse, and goes no further than the wall", async ({ page }) => {
   const demo = await open(page, { balls: "[[150,250,50],[300,150,55]]", static: "", draggable: "", decorations: "checks" });
-  const told = await demo.evaluateHandle((element: SapDemo) => {
+  const reported = await demo.evaluateHandle((element: SapDemo) => {
     const balls: number[] = [];
     element.addEventListener("sap-drag", ({ detail }) => balls.push(detail.ball));
     return balls;
@@ -67,7 +67,7 @@ test("a ball is dragged by a mouse, and goes no further than the wall", async ({
   const [x, y] = await demo.evaluate((element: SapDemo) => element.balls[0]!);
   expect(x, "held outside the picture, stopped by the wall").toBe(50);
   expect(y).toBeCloseTo(160, 0);
-  expect(await told.evaluate((balls) => [...new Set(balls)])).toEqual([0]);
+  expect(await reported.evaluate((balls) => [...new Set(balls)])).toEqual([0]);
   await demo.evaluate((element: SapDemo) => element.seek(0));
   expect((await demo.evaluate((element: SapDemo) => element.balls[0]!))[0], "a drag can be undone").toBe(150);
 });

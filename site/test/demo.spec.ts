@@ -17,11 +17,11 @@ test("bad attributes are said in its place, once, and can be mended", async ({ p
     [{ sort: "bogo" }, /quicksort/],
     [{ axis: "z" }, /widest/],
     [{ decorations: "glitter" }, /glitter/],
-    [{ decorations: "checks:nocolour" }, /nocolour/],
+    [{ decorations: "checks:nocolor" }, /nocolor/],
     [{ focus: "5", balls: "5" }, /there are 5 balls/],
     [{ seed: "-1" }, /seed/],
     [{ speed: "0" }, /speed/],
-    [{ lab: "bench" }, /one-to-n/],
+    [{ variant: "bench" }, /one-to-n/],
   ] as [Attributes, RegExp][]) {
     const demo = await open(page, attributes);
     await expect(demo.getByRole("alert")).toHaveText(message);
@@ -61,7 +61,7 @@ test("it can be moved, removed and added; many live on one page", async ({ page 
     return [moved - before, element.state.tick];
   });
   expect(ticks).toEqual([0, 0]);
-  await expect.poll(async () => (await stateOf(demo)).tick, "begun anew").toBeGreaterThan(2);
+  await expect.poll(async () => (await stateOf(demo)).tick, "started again").toBeGreaterThan(2);
   const count = await page.evaluate(async () => {
     const all = Array.from({ length: 30 }, (_, index) => {
       const element = document.createElement("sap-demo");

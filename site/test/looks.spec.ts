@@ -5,7 +5,7 @@ import type { SapDemo } from "sweep-and-prune/demo";
 // How the pages lie on a phone, a tablet and a desktop, in light and in dark: each part of each page
 // beside the picture of it that was looked at and kept. What moves or is measured is left blank.
 // Words are set in a font of blocks, so that they take the same room on every machine. Pictures are
-// kept at half size: --update-snapshots makes them anew.
+// kept at half size: --update-snapshots draws them again.
 
 const BLOCKS = readFileSync(new URL("./support/blocks.ttf", import.meta.url)).toString("base64");
 
@@ -14,7 +14,7 @@ const STYLE = `
   :root, sap-demo { --serif: Blocks; --sans: Blocks; --mono: Blocks; --sap-font: Blocks; }
   /* Widths as the font has them, not rounded to pixels as the machine would; and where lines are broken for beauty, browsers differ. */
   * { text-rendering: geometricPrecision !important; text-wrap: wrap !important; }
-  /* Moving pictures, and what was measured now or will be measured anew. */
+  /* Moving pictures, and figures that are measured in each run. */
   canvas, sap-demo::part(picture), sap-demo::part(array), .plot > *, #recorded-machine, [data-counter="ms"] dd, [data-counter="drawing"] dd, .trial-result { visibility: hidden !important; }
   .benchmark .plot { height: 300px !important; min-height: 0 !important; overflow: hidden; }
   #recorded-choice select { color: transparent !important; }

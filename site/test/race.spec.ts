@@ -106,7 +106,7 @@ test.describe("paused", () => {
     expect(algorithms.length).toBe(9);
     for (const motion of await race.root.getByLabel("Motion").locator("option").allTextContents()) {
       await race.root.getByLabel("Motion").selectOption(motion);
-      for (const [second, third] of [["endpoint sweep", "living world"], ["endpoint sweep on every axis", "swap-driven sweep on every axis"]]) {
+      for (const [second, third] of [["endpoint sweep", "broad phase"], ["endpoint sweep on every axis", "swap-driven sweep on every axis"]]) {
         await race.lane(2).getByLabel("Algorithm").selectOption(second ?? "");
         await race.lane(3).getByLabel("Algorithm").selectOption(third ?? "");
         await expect(race.root).toHaveAttribute("data-step", "0");

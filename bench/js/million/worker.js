@@ -8,12 +8,12 @@ addEventListener("message", async ({ data: { scene, boxes, dimensions, by } }) =
   try {
     const scenes = await Scenes.start(await (await fetch("/scenes.wasm")).arrayBuffer());
     const moving = scenes.open(scene, Number(dimensions), Number(boxes));
-    const contender = by === "world" ? await world(moving.first, Number(dimensions)) : await finder(Number(dimensions));
+    const library = by === "world" ? await world(moving.first, Number(dimensions)) : await finder(Number(dimensions));
     for (;;) {
       const began = performance.now();
       const rows = moving.next();
       const moved = performance.now();
-      const pairs = contender(rows);
+      const pairs = library(rows);
       const found = performance.now();
       const shown = rows.slice(0, SHOWN * 2 * Number(dimensions));
       postMessage({ update: { moving: moved - began, finding: found - moved, pairs }, shown }, [shown.buffer]);

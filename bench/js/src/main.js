@@ -2,7 +2,7 @@
 import { readFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { parseArgs } from "node:util";
-import { contenders, OURS, WORLD } from "../contenders/index.js";
+import { libraries, FINDER, WORLD } from "../libraries/index.js";
 import { buildNative, buildWasm } from "./build.js";
 import { describe } from "./machine.js";
 import { Measurement } from "./measure.js";
@@ -66,10 +66,10 @@ async function run() {
   });
   const sizes = list(flags.sizes ?? (flags.quick ? "1000,10000" : "1000,10000,100000")).map(Number);
   const rounds = Number(flags.rounds ?? (flags.quick ? 3 : 5));
-  const installed = contenders.filter((one) => one.package === "" || versionOf(one.package));
+  const installed = libraries.filter((one) => one.package === "" || versionOf(one.package));
   const wanted = list(flags.libraries);
   const chosenLibraries = installed.filter(
-    ({ name }) => wanted.length === 0 || [OURS, WORLD].includes(name) || wanted.some((start) => name.startsWith(start)),
+    ({ name }) => wanted.length === 0 || [FINDER, WORLD].includes(name) || wanted.some((start) => name.startsWith(start)),
   );
   const plan = [];
   for (const boxes of sizes.sort((a, b) => a - b)) {
@@ -91,7 +91,7 @@ async function run() {
     show,
   );
   const earlier = [...kept.cases, ...kept.worlds].filter(({ boxes }) => boxes < Math.min(...sizes));
-  for (const one of earlier.sort((a, b) => a.boxes - b.boxes)) measurement.learn(one, contenders);
+  for (const one of earlier.sort((a, b) => a.boxes - b.boxes)) measurement.learn(one, libraries);
   for (const { scene, dimensions, boxes } of plan) {
     if (seconds() > 60 * Number(flags.minutes)) {
       line(`${plan.length - done} cases were not begun: the time is over`);
@@ -107,7 +107,7 @@ async function run() {
       continue;
     }
     line(summary(label, result));
-    put(scene.task === "follow" ? kept.worlds : kept.cases, result);
+    put(scene.task === "track" ? kept.worlds : kept.cases, result);
     write(file, kept);
   }
   bar(1, seconds(), "");
@@ -122,12 +122,12 @@ function summary(/** @type {string} */ label, /** @type {import("./record.js").C
     return times ? `${name} ${(times.median_ns / 1e6).toPrecision(3)} ms` : undefined;
   };
   const alternatives = result.results
-    .filter((entry) => entry.rival && "Timed" in entry.outcome)
+    .filter((entry) => entry.alternative && "Timed" in entry.outcome)
     .sort((a, b) => /** @type {any} */ (a.outcome).Timed.median_ns - /** @type {any} */ (b.outcome).Timed.median_ns);
   const first = alternatives[0];
   const ratio = first && timesOf(result, first.name)?.ratio;
   const untimed = result.results.flatMap(({ name, outcome }) => ("Untimed" in outcome ? [`${name}: ${outcome.Untimed.why}`] : []));
-  const parts = [show(OURS), show(WORLD), show("native"), first && `${show(first.name)} (${ratio?.toPrecision(3)} times)`, ...untimed];
+  const parts = [show(FINDER), show(WORLD), show("native"), first && `${show(first.name)} (${ratio?.toPrecision(3)} times)`, ...untimed];
   return `${label}: ${parts.filter(Boolean).join("; ")}`;
 }
 

@@ -1,42 +1,42 @@
-// Measures one case: a scene, a number of dimensions, a number of boxes. Every contender runs in a
+// Measures one case: a scene, a number of dimensions, a number of boxes. Every library runs in a
 // process of its own, its pairs are checked before it is timed, and every round times all of them
 // in turn, so that what slows the machine slows them all; ratios are taken within a round.
 import { fileURLToPath } from "node:url";
-import { OURS, WORLD } from "../contenders/index.js";
+import { FINDER, WORLD } from "../libraries/index.js";
 import { load, revision } from "./machine.js";
 import { median } from "./record.js";
-import { contender as bruteForce, REFERENCE_LIMIT } from "./reference.js";
+import { library as bruteForce, REFERENCE_LIMIT } from "./reference.js";
 import { NoAnswer, Remote } from "./remote.js";
 
 const WORKER = fileURLToPath(new URL("worker.js", import.meta.url));
 
-/** A contender's turn in a round takes about so long, in milliseconds. */
+/** A library's turn in a round takes about so long, in milliseconds. */
 const TURN = 20;
 /** Shorter calls are timed together until they take so long. */
 const BATCH = 1;
-/** No contender takes part in more rounds once it has taken so long, but for the first three. */
+/** No library takes part in more rounds once it has taken so long, but for the first three. */
 const PATIENCE = 1000;
-/** Whose call takes so long is warm when its pairs have been checked. */
+/** A library whose call takes this long (ms) needs no warm-up after its pairs were checked. */
 const LONG = 200;
-/** Who was so many times as slow as the fastest peer is not asked with ten times as many boxes. */
+/** Who was so many times as slow as the fastest alternative is not asked with ten times as many boxes. */
 const BEHIND = 4;
 
-/** The names of ours compiled for this machine. */
+/** The names of sweep-and-prune compiled for this machine. */
 export const NATIVE = "native";
 export const NATIVE_WORLD = "native, BroadPhase";
 
 /**
  * @typedef {import("./record.js").Case} Case
  * @typedef {import("./record.js").Entry} Entry
- * @typedef {{ name: string, rival: boolean, package: string }} Who
+ * @typedef {{ name: string, alternative: boolean, package: string }} Who
  * @typedef {{ who: Who, remote: Remote, fingerprint: string, pairs: number, peak_bytes: number | null,
  *   estimate: number, rounds: number[], spent: number }} Running
  */
 
 export class Measurement {
-  /** How long contenders took at how many boxes of a scene: what more boxes will take at least. */
+  /** How long libraries took at how many boxes of a scene: what more boxes will take at least. */
   #slow = new Map();
-  /** The fastest peer so far on a scene: its name, at how many boxes, and how long it took. */
+  /** The fastest alternative so far on a scene: its name, at how many boxes, and how long it took. */
   #fastest = new Map();
   /** What was found in the case under way, by those that are too slow to be timed too. */
   #witnesses = /** @type {{ who: Who, fingerprint: string, pairs: number }[]} */ ([]);
@@ -52,19 +52,19 @@ export class Measurement {
   }
 
   /**
-   * Takes from an earlier result how long contenders take: who is too slow is not asked again.
+   * Takes from an earlier result how long libraries take: who is too slow is not asked again.
    *
    * @param {Case} earlier
-   * @param {readonly Who[]} contenders
+   * @param {readonly Who[]} libraries
    */
-  learn({ scene, dimensions, boxes, results }, contenders) {
+  learn({ scene, dimensions, boxes, results }, libraries) {
     for (const { name, outcome } of results) {
-      const who = contenders.find((one) => one.name === name);
+      const who = libraries.find((one) => one.name === name);
       if (!who || !("Timed" in outcome)) continue;
       const took = outcome.Timed.median_ns / 1e6;
       this.#slow.set(`${scene} ${dimensions} ${name}`, { boxes, took });
       const fastest = this.#fastest.get(`${scene} ${dimensions}`);
-      if (isPeer({ who }) && !(fastest?.boxes === boxes && fastest.took < took)) {
+      if (isAlternative({ who }) && !(fastest?.boxes === boxes && fastest.took < took)) {
         this.#fastest.set(`${scene} ${dimensions}`, { name, boxes, took });
       }
     }
@@ -74,33 +74,33 @@ export class Measurement {
    * @param {import("./scenes.js").Listed} scene
    * @param {number} dimensions
    * @param {number} boxes
-   * @param {readonly import("../contenders/index.js").Contender[]} contenders
+   * @param {readonly import("../libraries/index.js").Library[]} libraries
    * @returns {Promise<Case | string>} why there is nothing, if there is nothing
    */
-  async measure(scene, dimensions, boxes, contenders) {
+  async measure(scene, dimensions, boxes, libraries) {
     const setting = [scene.name, String(dimensions), String(boxes)];
     /** @type {Running[]} */
     let running = [];
     /** @type {Entry[]} */
     const results = [];
     this.#witnesses = [];
-    const drop = (/** @type {Who} */ { name, rival }, /** @type {string} */ why) =>
-      results.push({ name, rival, outcome: { Untimed: { why } } });
+    const drop = (/** @type {Who} */ { name, alternative }, /** @type {string} */ why) =>
+      results.push({ name, alternative, outcome: { Untimed: { why } } });
 
     try {
       const right = boxes <= REFERENCE_LIMIT ? await this.#reference(setting) : undefined;
       // Two at a time: nothing is timed yet but who is too slow.
-      for (let at = 0; at < contenders.length; at += 2) {
-        const two = contenders.slice(at, at + 2);
+      for (let at = 0; at < libraries.length; at += 2) {
+        const two = libraries.slice(at, at + 2);
         const checked = await Promise.all(two.map((who) => this.#check(who, setting)));
         for (const [i, one] of checked.entries()) {
           if (typeof one === "string") drop(/** @type {Who} */ (two[i]), one);
           else running.push(one);
         }
-        this.progress((0.5 * (at + 2)) / (contenders.length + 2));
+        this.progress((0.5 * (at + 2)) / (libraries.length + 2));
       }
       const reference = right ?? agreement(this.#witnesses);
-      if (!reference) return "no two contenders agree";
+      if (!reference) return "no two libraries agree";
       for (const one of running) {
         if (one.fingerprint !== reference.fingerprint) {
           drop(one.who, `other pairs, ${one.pairs.toLocaleString("en")} of them`);
@@ -111,14 +111,14 @@ export class Measurement {
       running.push(...(await this.#natives(scene, setting)));
       await this.#rounds(running, drop);
 
-      const [fastest] = running.filter(isPeer).sort((one, other) => one.estimate - other.estimate);
+      const [fastest] = running.filter(isAlternative).sort((one, other) => one.estimate - other.estimate);
       if (fastest) this.#fastest.set(`${scene.name} ${dimensions}`, { name: fastest.who.name, boxes, took: fastest.estimate });
 
       const base = (name) => running.find((one) => one.who.name === name)?.rounds;
-      const ours = (scene.task === "follow" ? base(WORLD) : undefined) ?? base(OURS) ?? [];
+      const own = (scene.task === "track" ? base(WORLD) : undefined) ?? base(FINDER) ?? [];
       const timed = running.filter((one) => one.rounds.length > 0);
       results.unshift(
-        ...timed.map((one) => ({ name: one.who.name, rival: one.who.rival, outcome: { Timed: times(one, ours) } })),
+        ...timed.map((one) => ({ name: one.who.name, alternative: one.who.alternative, outcome: { Timed: times(one, own) } })),
       );
       return {
         scene: scene.name,
@@ -151,7 +151,7 @@ export class Measurement {
   }
 
   /**
-   * A contender that has found the pairs once and is warm, or why it is not.
+   * A library that has found the pairs once and had its warm-up, or why it takes no part.
    *
    * @param {Who} who
    * @param {string[]} setting
@@ -167,7 +167,7 @@ export class Measurement {
       return `over ${limit / 1000} s, as its time for ${known.boxes.toLocaleString("en")} boxes shows`;
     }
     const fastest = this.#fastest.get(`${scene} ${dimensions}`);
-    if (known && isPeer({ who }) && fastest?.boxes === known.boxes && 10 * known.boxes <= Number(boxes)) {
+    if (known && isAlternative({ who }) && fastest?.boxes === known.boxes && 10 * known.boxes <= Number(boxes)) {
       const behind = known.took / fastest.took;
       if (behind > BEHIND) return `${behind.toFixed(1)} times as slow as ${fastest.name} with ${known.boxes.toLocaleString("en")} boxes`;
     }
@@ -201,14 +201,14 @@ export class Measurement {
   async #natives(scene, setting) {
     const { native } = this.options;
     if (!native) return [];
-    const names = scene.task === "follow" ? [NATIVE, NATIVE_WORLD] : [NATIVE];
+    const names = scene.task === "track" ? [NATIVE, NATIVE_WORLD] : [NATIVE];
     return Promise.all(
       names.map(async (name) => {
         const remote = new Remote(native, name === NATIVE_WORLD ? [...setting, "world"] : setting);
         await remote.ask("", 20_000);
         await remote.ask("check", 20_000);
         const { ns } = await remote.ask("time 3 1", 20_000);
-        const who = { name, rival: false, package: "" };
+        const who = { name, alternative: false, package: "" };
         return { who, remote, fingerprint: "", pairs: 0, peak_bytes: null, estimate: median(ns) / 1e6, rounds: [], spent: 0 };
       }),
     );
@@ -247,13 +247,13 @@ export class Measurement {
   }
 }
 
-/** Whether it is another library: neither ours nor the plain sweep. */
-function isPeer(/** @type {{ who: Who }} */ { who }) {
-  return who.rival && who.package !== "";
+/** Whether it is another library: neither sweep-and-prune nor the plain sweep. */
+function isAlternative(/** @type {{ who: Who }} */ { who }) {
+  return who.alternative && who.package !== "";
 }
 
 /**
- * The pairs that ours and a rival agree on, or two rivals.
+ * The pairs that sweep-and-prune and an alternative agree on, or two alternatives.
  *
  * @param {readonly { who: Who, fingerprint: string, pairs: number }[]} witnesses
  */
@@ -267,11 +267,11 @@ function agreement(witnesses) {
 
 /**
  * @param {Running} one
- * @param {number[]} ours
+ * @param {number[]} own
  * @returns {import("./record.js").Times}
  */
-function times({ rounds, peak_bytes }, ours) {
-  const ratios = rounds.flatMap((time, round) => (ours[round] === undefined ? [] : [time / ours[round]]));
+function times({ rounds, peak_bytes }, own) {
+  const ratios = rounds.flatMap((time, round) => (own[round] === undefined ? [] : [time / own[round]]));
   return {
     median_ns: median(rounds),
     min_ns: Math.min(...rounds),

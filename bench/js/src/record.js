@@ -3,13 +3,13 @@ import { mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
-import { contenders } from "../contenders/index.js";
+import { libraries } from "../libraries/index.js";
 
 export const RESULTS = fileURLToPath(new URL("../results", import.meta.url));
 
 /**
  * @typedef {{ median_ns: number, min_ns: number, rounds_ns: number[], ratio: number | null, peak_bytes: number | null }} Times
- * @typedef {{ name: string, rival: boolean, outcome: { Timed: Times } | { Untimed: { why: string } } }} Entry
+ * @typedef {{ name: string, alternative: boolean, outcome: { Timed: Times } | { Untimed: { why: string } } }} Entry
  * @typedef {{ scene: string, dimensions: number, boxes: number, pairs: number, reference: string,
  *   revision: string | null, load: number | null, results: Entry[] }} Case
  * @typedef {{ date: string, machine: any, node: string, versions: Record<string, string>,
@@ -29,7 +29,7 @@ export function open(machine, path) {
   /** @type {Kept} */
   const kept = read(file) ?? { date, machine, node: "", versions: {}, how: {}, cases: [], worlds: [] };
   Object.assign(kept, { date, machine, node: `Node ${process.versions.node}, V8 ${process.versions.v8}` });
-  for (const { name, package: from, how } of contenders) {
+  for (const { name, package: from, how } of libraries) {
     kept.how[name] = how;
     const version = from && versionOf(from);
     if (version) kept.versions[name] = version;

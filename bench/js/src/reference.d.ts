@@ -1,4 +1,4 @@
-import type { Contender } from "../contenders/index.js";
+import type { Library } from "../libraries/index.js";
 
 export const REFERENCE_LIMIT: number;
-export const contender: Contender;
+export const library: Library;

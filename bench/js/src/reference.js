@@ -1,15 +1,15 @@
-// The contender that decides who is right, up to the number of boxes that it can.
+// The library that decides who is right, up to the number of boxes that it can.
 
-/** Up to so many boxes brute force is the reference; beyond, ours and a rival that agree. */
+/** Up to this many boxes brute force is the reference; above, sweep-and-prune and an alternative that agree. */
 export const REFERENCE_LIMIT = 10_000;
 
-/** @type {import("../contenders/index.js").Contender} */
-export const contender = {
+/** @type {import("../libraries/index.js").Library} */
+export const library = {
   name: "brute force",
   package: "",
   dimensions: [2, 3],
-  tasks: ["find", "follow"],
-  rival: false,
-  how: "all pairs tested",
+  tasks: ["find", "track"],
+  alternative: false,
+  how: "brute force",
   module: "brute-force",
 };

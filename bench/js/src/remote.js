@@ -1,4 +1,4 @@
-// A contender in a process of its own: asked, and stopped when it takes too long.
+// A library in a process of its own: asked, and stopped when it takes too long.
 import { spawn } from "node:child_process";
 import { createInterface } from "node:readline";
 
@@ -43,7 +43,7 @@ export class Remote {
   }
 
   /**
-   * The next answer. Whoever does not answer in time is stopped.
+   * The next answer. A process that does not answer in time is stopped.
    *
    * @param {string} request empty to wait for what comes by itself
    * @param {number} limit milliseconds

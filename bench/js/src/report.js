@@ -1,6 +1,6 @@
 // Makes RESULTS.md from the newest results that were kept.
 import { writeFileSync } from "node:fs";
-import { OURS, PLAIN, WORLD } from "../contenders/index.js";
+import { FINDER, PLAIN, WORLD } from "../libraries/index.js";
 import { NATIVE, NATIVE_WORLD } from "./measure.js";
 import { all, timesOf } from "./record.js";
 
@@ -30,14 +30,14 @@ library takes. The pairs of each library were checked first.
 
 ## Finding all pairs
 
-${table(kept.cases, [OURS])}
+${table(kept.cases, [FINDER])}
 
 ## Moving boxes
 
 The time of a frame: from the moved boxes to their pairs, or to the pairs that began and ended. Ratios are to the faster of
 the two columns of sweep-and-prune.
 
-${table(kept.worlds, [OURS, WORLD])}
+${table(kept.worlds, [FINDER, WORLD])}
 
 ## WebAssembly against native
 
@@ -50,7 +50,7 @@ ${nativeTable(kept)}
 | | version | what is called |
 |---|---|---|
 ${Object.entries(kept.how)
-  .map(([name, how]) => `| ${name} | ${kept.versions[name] ?? ""} | ${how.replace(" anew", " from scratch")} |`)
+  .map(([name, how]) => `| ${name} | ${kept.versions[name] ?? ""} | ${how} |`)
   .join("\n")}
 `;
 }
@@ -93,7 +93,7 @@ export function ratio(one, own) {
  * @param {Case} one
  */
 export function alternativesOf(one) {
-  const alternatives = one.results.filter((entry) => entry.rival && entry.name !== PLAIN && "Timed" in entry.outcome);
+  const alternatives = one.results.filter((entry) => entry.alternative && entry.name !== PLAIN && "Timed" in entry.outcome);
   const found = alternatives.map(({ name }) => ({ name, times: /** @type {import("./record.js").Times} */ (timesOf(one, name)) }));
   return found.sort((a, b) => a.times.median_ns - b.times.median_ns);
 }
@@ -131,7 +131,7 @@ function table(/** @type {Case[]} */ cases, /** @type {readonly string[]} */ own
 function nativeTable(/** @type {Kept} */ kept) {
   const rows = [...kept.cases, ...kept.worlds].sort(byScene).flatMap((one) =>
     [
-      [OURS, NATIVE],
+      [FINDER, NATIVE],
       [WORLD, NATIVE_WORLD],
     ].flatMap(([name = "", native = ""]) => {
       const [wasm, compiled] = [timesOf(one, name), timesOf(one, native)];

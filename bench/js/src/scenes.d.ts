@@ -1,4 +1,4 @@
-import type { Task } from "../contenders/index.js";
+import type { Task } from "../libraries/index.js";
 
 export interface Listed {
   readonly name: string;

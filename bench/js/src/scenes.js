@@ -3,7 +3,7 @@
 /**
  * A scene or motion: see scenes/src/scene.rs and scenes/src/motion.rs.
  *
- * @typedef {{ name: string, task: "find" | "follow", dimensions: number[], description: string }} Listed
+ * @typedef {{ name: string, task: "find" | "track", dimensions: number[], description: string }} Listed
  */
 
 export class Scenes {
@@ -35,7 +35,7 @@ export class Scenes {
    */
   open(name, dimensions, boxes) {
     const bytes = new TextEncoder().encode(name);
-    this.#exports.make_room(bytes.length);
+    this.#exports.reserve_text(bytes.length);
     this.#bytes(this.#exports.text(), bytes.length).set(bytes);
     const kind = this.#exports.open(dimensions, boxes);
     if (kind === 0) throw new Error(`there is no scene '${name}' in ${dimensions} dimensions`);

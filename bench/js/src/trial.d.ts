@@ -1,4 +1,4 @@
-import type { ContenderModule } from "../contenders/index.js";
+import type { LibraryModule } from "../libraries/index.js";
 import type { Scene } from "./scenes.js";
 
 export interface Clock {
@@ -7,7 +7,7 @@ export interface Clock {
 }
 
 export class Trial {
-  static start(scene: Scene, dimensions: number, module: ContenderModule, clock: Clock): Promise<Trial>;
+  static start(scene: Scene, dimensions: number, module: LibraryModule, clock: Clock): Promise<Trial>;
   check(): { fingerprint: string; pairs: number; longest: number };
   warmUp(): void;
   time(repeats: number, batch?: number): number[];

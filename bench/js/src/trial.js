@@ -1,4 +1,4 @@
-// One contender on one scene: its pairs, and its times. The same in Node and in the browser.
+// One library on one scene: its pairs, and its times. The same in Node and in the browser.
 import { Fingerprint } from "./fingerprint.js";
 
 /**
@@ -14,24 +14,24 @@ const WARM_UP_CALLS = 1000;
 
 export class Trial {
   #scene;
-  #contender;
+  #library;
   #clock;
-  /** What began and did not end, of a contender that tells only that. */
+  /** What began and did not end, of a library that tells only that. */
   #live = new Set();
 
   /**
    * @param {Awaited<ReturnType<import("./scenes.js").Scenes["open"]>>} scene
-   * @param {any} contender what its module's `create` returned
+   * @param {any} library what its module's `create` returned
    * @param {Clock} clock
    */
-  constructor(scene, contender, clock) {
+  constructor(scene, library, clock) {
     this.#scene = scene;
-    this.#contender = contender;
+    this.#library = library;
     this.#clock = clock;
   }
 
   /**
-   * Makes a contender on a scene's first boxes.
+   * Makes a library on a scene's first boxes.
    *
    * @param {any} scene
    * @param {number} dimensions
@@ -40,9 +40,9 @@ export class Trial {
    */
   static async start(scene, dimensions, module, clock) {
     const rows = scene.first;
-    const contender = await module.create({ dimensions, isMoving: scene.isMoving, rows });
-    const trial = new Trial(scene, contender, clock);
-    if (contender.slotOf) trial.#take(contender.find(rows));
+    const library = await module.create({ dimensions, isMoving: scene.isMoving, rows });
+    const trial = new Trial(scene, library, clock);
+    if (library.slotOf) trial.#take(library.find(rows));
     return trial;
   }
 
@@ -53,7 +53,7 @@ export class Trial {
     for (let frame = 0; frame < this.#scene.frames; frame++) {
       const rows = this.#scene.next();
       const start = this.#clock.start();
-      const found = this.#contender.find(rows);
+      const found = this.#library.find(rows);
       longest = Math.max(longest, this.#clock.since(start));
       sum.add(this.#take(found));
     }
@@ -64,7 +64,7 @@ export class Trial {
   warmUp() {
     const start = this.#clock.start();
     for (let call = 0; call < WARM_UP_CALLS && this.#clock.since(start) < WARM_UP; call++) {
-      this.#contender.find(this.#scene.next());
+      this.#library.find(this.#scene.next());
     }
   }
 
@@ -79,7 +79,7 @@ export class Trial {
     for (let repeat = 0; repeat < repeats; repeat++) {
       const frames = Array.from({ length: batch }, () => this.#scene.next());
       const start = this.#clock.start();
-      for (const rows of frames) this.#contender.find(rows);
+      for (const rows of frames) this.#library.find(rows);
       times.push(this.#clock.since(start) / batch);
     }
     return times;
@@ -88,7 +88,7 @@ export class Trial {
   /** All pairs there are now. */
   #take(/** @type {any} */ found) {
     if (!("begun" in found)) return found;
-    const { slotOf } = this.#contender;
+    const { slotOf } = this.#library;
     const key = (/** @type {Float64Array} */ ids, /** @type {number} */ i) => slotOf(ids[i]) * 2 ** 26 + slotOf(ids[i + 1]);
     for (let i = 0; i < found.ended.length; i += 2) this.#live.delete(key(found.ended, i));
     for (let i = 0; i < found.begun.length; i += 2) this.#live.add(key(found.begun, i));

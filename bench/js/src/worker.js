@@ -1,14 +1,14 @@
-// One contender on one scene in a process of its own:
+// One library on one scene in a process of its own:
 //
-//     node worker.js CONTENDER SCENE DIMENSIONS BOXES
+//     node worker.js LIBRARY SCENE DIMENSIONS BOXES
 //
 // It reads a request a line, `check`, `warm-up` or `time REPEATS BATCH`, and answers each with a line of JSON that
 // begins with a mark: a library may print what it likes on others.
 import { readFileSync, writeFileSync } from "node:fs";
 import { createInterface } from "node:readline";
-import { contenders } from "../contenders/index.js";
-import { load } from "../contenders/load.js";
-import { contender as bruteForce } from "./reference.js";
+import { libraries } from "../libraries/index.js";
+import { load } from "../libraries/load.js";
+import { library as bruteForce } from "./reference.js";
 import { Scenes } from "./scenes.js";
 import { Trial } from "./trial.js";
 import { MARK } from "./remote.js";
@@ -62,8 +62,8 @@ process.on("uncaughtException", (error) => {
 
 const scenes = await Scenes.start(readFileSync(process.env.SCENES_WASM ?? ""));
 const scene = scenes.open(sceneName ?? "", Number(dimensions), Number(boxes));
-const entry = [...contenders, bruteForce].find((one) => one.name === name);
-if (!entry) throw new Error(`there is no contender '${name}'`);
+const entry = [...libraries, bruteForce].find((one) => one.name === name);
+if (!entry) throw new Error(`there is no library '${name}'`);
 const module = await load(entry);
 resetPeak();
 const before = memory("VmRSS");
@@ -77,7 +77,7 @@ for await (const line of createInterface({ input: process.stdin })) {
     answer({ ...checked, peak_bytes: peak !== null && before !== null ? Math.max(0, peak - before) : null });
   } else if (request === "warm-up") {
     trial.warmUp();
-    answer({ warm: true });
+    answer({ ready: true });
   } else {
     answer({ ms: trial.time(Number(repeats), Number(batch)) });
   }

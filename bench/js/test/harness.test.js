@@ -1,4 +1,4 @@
-// Keeps the benchmark from rotting: every light peer is checked and timed on a few boxes. The heavy
+// Keeps the benchmark from rotting: every light alternative is checked and timed on a few boxes. The heavy
 // alternatives (the engines in WebAssembly) take part where they are installed and asked for.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
@@ -7,19 +7,19 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { contenders } from "../contenders/index.js";
-import { Candidates } from "../contenders/candidates.js";
-import { create as plainSweep } from "../contenders/plain-sweep.js";
-import { create as bruteForce } from "../contenders/brute-force.js";
+import { libraries } from "../libraries/index.js";
+import { Candidates } from "../libraries/candidates.js";
+import { create as plainSweep } from "../libraries/plain-sweep.js";
+import { create as bruteForce } from "../libraries/brute-force.js";
 import { Fingerprint } from "../src/fingerprint.js";
 
 const folder = mkdtempSync(join(tmpdir(), "bench-js-"));
 after(() => rmSync(folder, { recursive: true }));
 
 const heavy = /rapier|jolt/;
-const light = contenders.filter((one) => !heavy.test(one.name));
+const light = libraries.filter((one) => !heavy.test(one.name));
 
-test("every light contender finds the right pairs and is timed, at rest and in motion", () => {
+test("every light library finds the right pairs and is timed, at rest and in motion", () => {
   const output = join(folder, "results.json");
   const main = fileURLToPath(new URL("../src/main.js", import.meta.url));
   const libraries = light.map(({ name }) => name).join();
@@ -35,7 +35,7 @@ test("every light contender finds the right pairs and is timed, at rest and in m
     assert.equal(boxes, 150);
     assert.equal(reference, "brute force");
     assert.ok(pairs > 20, `${pairs} pairs`);
-    const task = scene === "drift" ? "follow" : "find";
+    const task = scene === "drift" ? "track" : "find";
     const expected = light.filter((one) => one.dimensions.includes(dimensions) && one.tasks.includes(task));
     assert.deepEqual(
       results.flatMap(({ name, outcome }) => ("Timed" in outcome && outcome.Timed.ratio > 0 ? [name] : [])).sort(),

@@ -76,7 +76,7 @@ pub fn regions(boxes: &[PxBounds3], margin: f32) -> [PxBounds3; (REGIONS * REGIO
     world.maximum = per_axis(|at, margin| at + margin, world.maximum, around);
     let mut regions = [world; (REGIONS * REGIONS) as usize];
     const Z_IS_UP: u32 = 2;
-    // SAFETY: it writes REGIONS² bounds, for which there is room.
+    // SAFETY: it writes REGIONS² bounds, and the array has capacity for them.
     unsafe {
         PxBroadPhaseExt_createRegionsFromWorldBounds(
             regions.as_mut_ptr(),

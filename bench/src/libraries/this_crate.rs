@@ -13,8 +13,8 @@ pub const LIBRARY: Library = Library {
     origin: Origin::Here,
     how: "`PairFinder::find`, one finder for all calls",
     alternative: false,
-    two: Some(|| Box::new(Warm(PairFinder::<2>::new()))),
-    three: Some(|| Box::new(Warm(PairFinder::<3>::new()))),
+    two: Some(|| Box::new(Reused(PairFinder::<2>::new()))),
+    three: Some(|| Box::new(Reused(PairFinder::<3>::new()))),
 };
 
 /// The same on two threads.
@@ -23,8 +23,8 @@ pub const TWO_THREADS: Library = Library {
     origin: Origin::Here,
     how: "`PairFinder::find` with `threads(2)`, one finder for all calls",
     alternative: false,
-    two: Some(|| Box::new(Warm(PairFinder::<2>::new().threads(2)))),
-    three: Some(|| Box::new(Warm(PairFinder::<3>::new().threads(2)))),
+    two: Some(|| Box::new(Reused(PairFinder::<2>::new().threads(2)))),
+    three: Some(|| Box::new(Reused(PairFinder::<3>::new().threads(2)))),
 };
 
 /// The same, called with the boxes of the last call once more.
@@ -58,9 +58,9 @@ pub const FRESH: Library = Library {
     three: Some(|| Box::new(Fresh(Vec::new()))),
 };
 
-struct Warm<const D: usize>(PairFinder<D>);
+struct Reused<const D: usize>(PairFinder<D>);
 
-impl<const D: usize> Finder<D> for Warm<D> {
+impl<const D: usize> Finder<D> for Reused<D> {
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]> {
         Ok(self.0.find(boxes)?)
     }

@@ -16,7 +16,7 @@ const MANY: usize = 100_000;
 /// All of them.
 pub fn section(record: &Record) -> String {
     let mut text = threads(record);
-    text += &again(record);
+    text += &second_call(record);
     text += &small(record);
     text += &flat(record);
     text += &memory(record);
@@ -64,7 +64,7 @@ fn threads(record: &Record) -> String {
     )
 }
 
-fn again(record: &Record) -> String {
+fn second_call(record: &Record) -> String {
     let mut rows = String::new();
     for case in sorted(&record.cases).into_iter().filter(|case| case.boxes > SMALL) {
         let (Some(one), Some(again)) = (case.times(THIS_CRATE), case.times(SAME_BOXES)) else {

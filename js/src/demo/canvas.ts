@@ -57,7 +57,7 @@ export class Canvases {
     return context && { context, width: sized.width };
   }
 
-  /** Forgets all. They are measured anew when they are opened again. */
+  /** Forgets all sizes. Each is measured again when its demo opens again. */
   close(): void {
     this.#observer.disconnect();
     this.#sized.clear();

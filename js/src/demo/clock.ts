@@ -1,4 +1,4 @@
-/** One who wants to be told of time while it can be seen. */
+/** A demo that the clock calls while it is visible. */
 export interface Ticking {
   /** So many milliseconds have passed; called once a frame. Whether it wants the next one too. */
   frame(ms: number): boolean;

@@ -6,7 +6,7 @@ import type { Detecting } from "./options.js";
 
 /** What one run of an algorithm did, event by event: the compiled algorithm's own trace. */
 export class Detection {
-  /** The boxes it ran over: rows of least and greatest corner. */
+  /** The boxes it ran over: rows of min corner and max corner. */
   readonly boxes: Float64Array;
   readonly step: Step;
   /** How many events it has. */

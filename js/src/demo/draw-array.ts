@@ -69,16 +69,16 @@ function drawOne(context: CanvasRenderingContext2D, edges: number[], scene: Arra
     if (swapped.includes(edge)) context.fillStyle = swap;
     if (compared.includes(edge)) context.fillStyle = comparison;
     context.fillRect(x + 1, y, cell - 2, height);
-    const isLit = swapped.includes(edge) || compared.includes(edge);
-    context.lineWidth = isAtLine || isLit || chosen.includes(ball) ? 3 : 1;
-    context.strokeStyle = isAtLine ? theme.sweep : isLit ? theme.ink : chosen.includes(ball) ? theme.chosen : theme.line;
+    const isHighlighted = swapped.includes(edge) || compared.includes(edge);
+    context.lineWidth = isAtLine || isHighlighted || chosen.includes(ball) ? 3 : 1;
+    context.strokeStyle = isAtLine ? theme.sweep : isHighlighted ? theme.ink : chosen.includes(ball) ? theme.chosen : theme.line;
     context.strokeRect(x + 1, y, cell - 2, height);
     const name = labels[ball] || String(ball);
     if (decorations.array?.isSortShown && moved.has(edge)) {
       context.fillStyle = swap;
       context.fillRect(x + 1, y + height - 4, cell - 2, 4);
     }
-    context.fillStyle = isLit ? theme.stage : isRainbow && !isWithin ? "#1c2126" : theme.ink;
+    context.fillStyle = isHighlighted ? theme.stage : isRainbow && !isWithin ? "#1c2126" : theme.ink;
     context.fillText(edge % 2 === 0 ? `(${name}` : `${name})`, x + cell / 2, y + height / 2 + 1);
   });
 }

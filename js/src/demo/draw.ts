@@ -110,7 +110,7 @@ class Painter {
         this.#context.strokeStyle = isInside ? inside : outside;
         this.#context.lineWidth = isInside ? 2 : 1;
         this.#context.setLineDash(side === 0 ? [] : [4, 3]);
-        this.#across(axis, at, this.#centre(ball)[1 - axis]!);
+        this.#across(axis, at, this.#center(ball)[1 - axis]!);
       }
     }
   }
@@ -134,7 +134,7 @@ class Painter {
 
   event(): void {
     const { event, options } = this.#scene;
-    const check = options.decorations.checks?.colour ?? this.#theme.check;
+    const check = options.decorations.checks?.color ?? this.#theme.check;
     if (event?.kind === "test" || event?.kind === "overlap") {
       const [a, b] = [Number(event["a"]), Number(event["b"])];
       this.#context.strokeStyle = check;
@@ -184,7 +184,7 @@ class Painter {
     this.#context.textBaseline = "middle";
     labels.forEach((label, ball) => {
       if (ball >= radii.length || label === "") return;
-      const [x, y] = this.#centre(ball);
+      const [x, y] = this.#center(ball);
       const size = Math.max(9, Math.min(radii[ball]! * (label.length > 2 ? 0.7 : 1), 40));
       this.#context.font = `600 ${size}px system-ui, sans-serif`;
       this.#context.fillStyle = isRainbow ? "#1c2126" : this.#theme.ink;
@@ -193,11 +193,11 @@ class Painter {
   }
 
   /** The gap between the right edge of one ball and the left edge of another. */
-  #gap(axis: number, left: number, right: number, colour: string): void {
+  #gap(axis: number, left: number, right: number, color: string): void {
     const [, from] = this.#interval(left, axis);
     const [to] = this.#interval(right, axis);
-    const [a, b] = [this.#centre(left)[1 - axis]!, this.#centre(right)[1 - axis]!];
-    this.#context.strokeStyle = colour;
+    const [a, b] = [this.#center(left)[1 - axis]!, this.#center(right)[1 - axis]!];
+    this.#context.strokeStyle = color;
     this.#context.lineWidth = 2.5;
     const point = (along: number, across: number): [number, number] => (axis === 0 ? [along, across] : [across, along]);
     this.#context.beginPath();
@@ -229,30 +229,30 @@ class Painter {
 
   #between(a: number, b: number): void {
     this.#context.beginPath();
-    this.#context.moveTo(...this.#centre(a));
-    this.#context.lineTo(...this.#centre(b));
+    this.#context.moveTo(...this.#center(a));
+    this.#context.lineTo(...this.#center(b));
     this.#context.stroke();
   }
 
   #disc(ball: number, radius: number): void {
     this.#context.beginPath();
-    this.#context.arc(...this.#centre(ball), Math.max(radius, 0.5), 0, 2 * Math.PI);
+    this.#context.arc(...this.#center(ball), Math.max(radius, 0.5), 0, 2 * Math.PI);
   }
 
-  #box(ball: number, colour: string): void {
-    const [x, y] = this.#centre(ball);
+  #box(ball: number, color: string): void {
+    const [x, y] = this.#center(ball);
     const radius = this.#scene.radii[ball]!;
-    this.#context.strokeStyle = colour;
+    this.#context.strokeStyle = color;
     this.#context.lineWidth = 1;
     this.#context.strokeRect(x - radius, y - radius, 2 * radius, 2 * radius);
   }
 
-  #centre(ball: number): [number, number] {
+  #center(ball: number): [number, number] {
     return [this.#scene.positions[2 * ball]!, this.#scene.positions[2 * ball + 1]!];
   }
 
   #interval(ball: number, axis: number): [number, number] {
-    const at = this.#centre(ball)[axis === 1 ? 1 : 0];
+    const at = this.#center(ball)[axis === 1 ? 1 : 0];
     const radius = this.#scene.radii[ball]!;
     return [at - radius, at + radius];
   }

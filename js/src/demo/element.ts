@@ -17,7 +17,7 @@ import { iframeOf, shareUrl } from "./share.js";
 import { Speech } from "./speech.js";
 import { styles } from "./styles.js";
 import { type Theme, ThemeProbe } from "./theme.js";
-import { emit, tell } from "./told.js";
+import { emit, report } from "./report.js";
 import { type Acts, inside } from "./view.js";
 
 /** Numbers that change more often cannot be read. */
@@ -93,7 +93,7 @@ export class SapDemoElement extends LitElement {
     this.#isPlaying = false;
     if (timeline.isDetected && options.isStatic) timeline.rewind();
     else if (timeline.isDetected) run.nextDetection(this.#listener);
-    if (!timeline.isDetected) this.#tell(timeline.nextStop());
+    if (!timeline.isDetected) this.#report(timeline.nextStop());
     this.#guesses.outcome = "";
     this.#changed();
     this.#speech.soon();
@@ -196,7 +196,7 @@ export class SapDemoElement extends LitElement {
     this.#hasChanged = true;
   }
 
-  /** Reads the attributes anew, and goes on in the same world if they leave it as it was. */
+  /** Reads the attributes again, and keeps the world if they do not change it. */
   #understand(): void {
     this.#hasChanged = false;
     const options = this.#readOptions();
@@ -244,7 +244,7 @@ export class SapDemoElement extends LitElement {
     }
   }
 
-  /** Says what is wrong in the picture: an exception would tell nobody. */
+  /** Shows the error in the picture, because no reader of a page sees an exception. */
   #refuse(message: string): void {
     this.#run?.free();
     this.#run = undefined;
@@ -277,12 +277,12 @@ export class SapDemoElement extends LitElement {
   }
 
   readonly #listener = {
-    stopped: (events: readonly TraceEvent[]): void => this.#tell(events),
+    stopped: (events: readonly TraceEvent[]): void => this.#report(events),
     ticking: (): void => this.#hands.hold(),
     ticked: (): void => emit(this, "simulate", this.state),
   };
 
-  /** Something is to be shown anew. */
+  /** Requests a new drawing. */
   #changed(): void {
     if (this.#isPlaying) clock.wake(this);
     this.#update(performance.now());
@@ -297,15 +297,15 @@ export class SapDemoElement extends LitElement {
 
   // Telling
 
-  #tell(events: readonly TraceEvent[]): void {
+  #report(events: readonly TraceEvent[]): void {
     const first = this.#run!.timeline.position - events.length;
-    events.forEach((event, index) => tell(this, event, first + index));
+    events.forEach((event, index) => report(this, event, first + index));
   }
 
   /** After a jump: what is at work here, and in words. */
   #arrived({ timeline }: Run): void {
     const { event, position } = timeline;
-    if (event) tell(this, event, position - 1);
+    if (event) report(this, event, position - 1);
     this.#guesses.outcome = "";
     this.#changed();
     this.#speech.soon();

@@ -8,7 +8,7 @@ import { Selection } from "./selection.js";
 export interface Handled {
   run(): Run | undefined;
   guess(choice: 0 | 1): void;
-  /** A ball is where a hand put it, and a still world has been looked at anew. */
+  /** A ball was moved by hand; a static world has run its detection again. */
   moved(drag: DemoDrag, isDetected: boolean): void;
   /** A choice is to be shown. */
   chose(): void;

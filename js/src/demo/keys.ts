@@ -47,7 +47,7 @@ export function press(event: KeyboardEvent, { isDraggable }: Options, keyboard: 
   action();
 }
 
-/** The keys in words, for those who do not see the buttons. */
+/** The keys in words, for screen readers. */
 export function keysOf(options: Options | undefined): string {
   const keys = ["Space plays or pauses.", "Comma and full stop step back and forward."];
   if (options?.isDraggable || options?.explains) keys.push("B chooses the next ball.");

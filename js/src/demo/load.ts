@@ -3,7 +3,7 @@ import { loadWorlds } from "./world.js";
 
 let loading: Promise<void> | undefined;
 
-/** Loads the compiled algorithms and the compiled simulation, once; after a failure anew. */
+/** Loads the compiled algorithms and the compiled simulation, once; after a failure the next call tries again. */
 export function loadDemos(): Promise<void> {
   loading ??= Promise.all([init(), loadWorlds()]).then(
     () => undefined,

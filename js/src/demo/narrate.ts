@@ -72,7 +72,7 @@ export function describeEvent(event: TraceEvent, known: Known): string {
   }
 }
 
-/** What a swap of neighbours means. `a` stood before `b`. */
+/** What a swap of neighbors means. `a` stood before `b`. */
 function swapCase(a: number, b: number, name: (ball: number) => string): string {
   const pair = `${name(a >> 1)} and ${name(b >> 1)}`;
   if (a % 2 === 1 && b % 2 === 0) return `)( becomes (), ${pair} begin to overlap on this axis.`;

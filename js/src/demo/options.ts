@@ -80,14 +80,14 @@ const axes = {
   "fewest-overlaps": "fewest expected overlaps",
 } as const satisfies Record<string, Detecting["axis"]>;
 
-/** A laboratory: a method, and the attributes that it has unless the page says otherwise. */
-interface Lab {
+/** A method shown on purpose, with the default attributes that show its fault. */
+interface Variant {
   readonly method: Detecting["method"];
   readonly defaults: Readonly<Partial<Record<Attribute, string>>>;
 }
 
-/** Demonstrations of errors, and of what is costly. `js/wasm/src/labs.rs` has what is wrong. */
-export const labs: Readonly<Record<string, Lab>> = {
+/** Broken variants and expensive cases, shown on purpose. `js/wasm/src/broken.rs` has the broken algorithms. */
+export const variants: Readonly<Record<string, Variant>> = {
   // Four balls in a row, each touching the next, at rest.
   "strict-ties": {
     method: "strict ties (wrong)",
@@ -110,8 +110,8 @@ export const labs: Readonly<Record<string, Lab>> = {
     },
   },
   // A small ball, a middle one, and a large one that reaches back over both.
-  "centre-sort": {
-    method: "sort by centre (wrong)",
+  "center-sort": {
+    method: "sort by center (wrong)",
     defaults: {
       balls: "[[130,170,40],[270,210,45],[320,200,170]]",
       static: "",
@@ -177,7 +177,7 @@ export const attributes = [
   "explain",
   "predict",
   "motion",
-  "lab",
+  "variant",
   "start",
   "heading",
   "no-counters",
@@ -208,9 +208,9 @@ export const booleans: ReadonlySet<Attribute> = new Set<Attribute>([
  * @throws {@link OptionError} for the first that cannot be done.
  */
 export function readOptions(attribute: (name: Attribute) => string | null): Options {
-  const labName = attribute("lab");
-  const lab = labName === null ? undefined : choose("lab", labs, labName);
-  const get = (name: Attribute): string | null => attribute(name) ?? lab?.defaults[name] ?? null;
+  const variantName = attribute("variant");
+  const variant = variantName === null ? undefined : choose("variant", variants, variantName);
+  const get = (name: Attribute): string | null => attribute(name) ?? variant?.defaults[name] ?? null;
   const has = (name: Attribute): boolean => get(name) !== null && get(name) !== "false";
   const strategy = choose("strategy", strategies, get("strategy") ?? "sorted-pairwise");
   const axis = get("axis") ?? "x";
@@ -229,7 +229,7 @@ export function readOptions(attribute: (name: Attribute) => string | null): Opti
       focus: focus ?? 0,
     },
     detecting: {
-      method: lab?.method ?? (axis === "all" ? onAllAxes(strategy.method) : strategy.method),
+      method: variant?.method ?? (axis === "all" ? onAllAxes(strategy.method) : strategy.method),
       sort: get("sort") === null ? (strategy.sort ?? "standard library") : choose("sort", sorts, get("sort")!),
       axis: choose("axis", { ...axes, all: 0 }, axis),
       focus: focus ?? 0,

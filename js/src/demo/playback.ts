@@ -3,7 +3,7 @@ import type { Options } from "./options.js";
 import type { Timeline } from "./timeline.js";
 
 const MS_PER_TICK = 1000 / 60;
-/** How long each event of a sort stays lit. */
+/** How long each event of a sort stays highlighted. */
 const SORT_MS = 90;
 /** How fast the sweep line goes, in units of the world a millisecond. */
 const LINE_SPEED = 0.35;
@@ -20,7 +20,7 @@ export interface Listener {
   ticked(): void;
 }
 
-/** Turns time into stops and ticks: a world stands still while an event is lit. */
+/** Turns time into stops and ticks: a world stands still while an event is highlighted. */
 export class Playback {
   readonly #timeline: Timeline;
   readonly #options: Options;
@@ -32,7 +32,7 @@ export class Playback {
     this.#options = options;
   }
 
-  /** Begins to count anew. */
+  /** Sets the counters to zero. */
   restart(): void {
     this.#spent = 0;
   }

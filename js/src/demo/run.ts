@@ -7,7 +7,7 @@ import { isWorldKept, type Options } from "./options.js";
 import { type Listener, Playback } from "./playback.js";
 import { type Question, questionAt } from "./predict.js";
 import { Timeline } from "./timeline.js";
-import { toldAs } from "./told.js";
+import { demoEventOf } from "./report.js";
 import { rowsOf } from "./world.js";
 
 /** What a demo counts. */
@@ -73,7 +73,7 @@ export class Run {
 
   get event(): DemoEvent | undefined {
     const { event, position } = this.timeline;
-    return event && toldAs(event, position - 1);
+    return event && demoEventOf(event, position - 1);
   }
 
   get pairs(): [number, number][] {

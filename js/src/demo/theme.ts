@@ -1,5 +1,5 @@
 /**
- * The colours of a demo, each a CSS custom property `--sap-…` that a page can set. The defaults
+ * The colors of a demo, each a CSS custom property `--sap-…` that a page can set. The defaults
  * follow the page's `color-scheme`.
  */
 const defaults = {
@@ -29,21 +29,21 @@ const defaults = {
   chosen: "light-dark(#8a1f7a, #f08fe0)",
 } as const;
 
-export type ColourName = keyof typeof defaults;
-/** Resolved colours, as a canvas takes them. */
-export type Theme = Readonly<Record<ColourName, string>>;
+export type ColorName = keyof typeof defaults;
+/** Resolved colors, as a canvas takes them. */
+export type Theme = Readonly<Record<ColorName, string>>;
 
-const names = Object.keys(defaults) as ColourName[];
+const names = Object.keys(defaults) as ColorName[];
 
-/** Declarations for the style of the element: each colour as `--_name`. */
+/** Declarations for the style of the element: each color as `--_name`. */
 export const declarations: string = names.map((name) => `--_${name}: var(--sap-${name}, ${defaults[name]});`).join("\n");
 
 /**
- * Resolves the colours where the element stands, and notices when they change for whatever reason:
- * each is the colour of an invisible probe, and the probes have transitions, which tell.
+ * Resolves the colors where the element stands, and notices when they change for whatever reason:
+ * each is the color of an invisible probe, and the probes have transitions, which tell.
  */
 export class ThemeProbe {
-  readonly #probes: ReadonlyMap<ColourName, HTMLElement>;
+  readonly #probes: ReadonlyMap<ColorName, HTMLElement>;
   /** To be put into the shadow root. */
   readonly element: HTMLElement;
 
@@ -65,11 +65,11 @@ export class ThemeProbe {
   }
 
   read(): Theme {
-    const colour = (name: ColourName): string => getComputedStyle(this.#probes.get(name)!).color;
-    return Object.fromEntries(names.map((name) => [name, colour(name)])) as Theme;
+    const color = (name: ColorName): string => getComputedStyle(this.#probes.get(name)!).color;
+    return Object.fromEntries(names.map((name) => [name, color(name)])) as Theme;
   }
 
-  #probe(name: ColourName): HTMLElement {
+  #probe(name: ColorName): HTMLElement {
     const probe = document.createElement("i");
     probe.style.cssText = `color: var(--_${name}); forced-color-adjust: none; transition: color 1ms step-end`;
     this.element.append(probe);
@@ -77,7 +77,7 @@ export class ThemeProbe {
   }
 }
 
-/** Colours of as many balls, well apart, readable under dark text. */
+/** Colors of as many balls, well apart, readable under dark text. */
 export function rainbow(index: number, count: number): string {
   return `oklch(0.78 0.13 ${Math.round((360 * index) / Math.max(count, 1) + 20)})`;
 }

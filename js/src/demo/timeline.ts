@@ -222,7 +222,7 @@ export class Timeline {
     this.#world.place(ball, x, y, vx, vy);
   }
 
-  /** Detects anew, here: where a world does not move, to see what was changed. */
+  /** Runs the detection again at this tick, to show a change in a world that does not move. */
   detectAgain(): void {
     this.#record(this.tick, true);
     this.#stop = this.#stops.length - 1;

@@ -1,4 +1,4 @@
-/** A ball as it is given: its centre and radius; its velocity, in units a second, if it has one. */
+/** A ball as it is given: its center and radius; its velocity, in units a second, if it has one. */
 export type Row = readonly [x: number, y: number, radius: number, vx?: number, vy?: number];
 
 /** What a demo shows at one moment, in numbers that mean the same for every algorithm. */
@@ -49,9 +49,9 @@ export interface DemoSort {
 export interface DemoDrag {
   /** Which ball. */
   ball: number;
-  /** The x of its centre now. */
+  /** The x of its center now. */
   x: number;
-  /** The y of its centre now. */
+  /** The y of its center now. */
   y: number;
 }
 

@@ -26,7 +26,7 @@ export class World {
     this.radii = this.#simulation.radii.slice();
   }
 
-  /** Centres, two numbers a ball, to keep. */
+  /** Centers, two numbers a ball, to keep. */
   positions(): Float32Array {
     return this.#simulation.positions.slice();
   }
@@ -107,7 +107,7 @@ function sideways(seed: number, index: number): number {
   return ((mixed / 0xffffff) * 2 - 1) * GIVEN_SPEED;
 }
 
-/** Boxes as rows of least and greatest corner, which is what a runner takes. */
+/** Boxes as rows of min corner and max corner, which is what a runner takes. */
 export function boxesOf(positions: Float32Array, radii: Float32Array): Float64Array {
   const boxes = new Float64Array(positions.length * 2);
   radii.forEach((radius, ball) => {

@@ -10,8 +10,8 @@ use sweep_and_prune::algorithms::{
 };
 use sweep_and_prune::{Aabb, Error};
 
-use crate::labs::{Wrong, WrongRunner};
-use crate::status::{Code, tell, tell_error};
+use crate::broken::{Wrong, WrongRunner};
+use crate::status::{Code, report, report_error};
 
 /// A runner of any dimensions, with the rows that it reads.
 trait Steps {
@@ -205,18 +205,18 @@ extern "C" fn runner_rows(handle: &mut Handle, count: usize) -> *mut f64 {
 #[unsafe(no_mangle)]
 extern "C" fn runner_step(handle: &mut Handle, count: usize) -> Code {
     let Handle { steps: Some(steps), observer, lists, numbers, .. } = handle else {
-        return tell(Code::Internal, [0, 0]);
+        return report(Code::Internal, [0, 0]);
     };
     let before = core::mem::take(&mut observer.0);
     match steps.step(count, observer, lists) {
         Ok(axis) => {
             let bytes = steps.bytes();
             *numbers = numbers_of(axis, bytes, &observer.0);
-            tell(Code::Ok, [numbers.as_ptr().addr(), numbers.len()])
+            report(Code::Ok, [numbers.as_ptr().addr(), numbers.len()])
         }
         Err(error) => {
             observer.0 = before;
-            tell_error(error)
+            report_error(error)
         }
     }
 }
@@ -249,10 +249,10 @@ fn numbers_of(axis: usize, bytes: usize, counts: &Counts) -> [f64; 12] {
 #[unsafe(no_mangle)]
 extern "C" fn runner_list(handle: &mut Handle, which: usize) -> Code {
     match handle.lists.get(which) {
-        Some(list) => tell(Code::Ok, [list.as_ptr().addr(), 2 * list.len()]),
+        Some(list) => report(Code::Ok, [list.as_ptr().addr(), 2 * list.len()]),
         None => {
             let words = handle.observer.1.words();
-            tell(Code::Ok, [words.as_ptr().addr(), words.len()])
+            report(Code::Ok, [words.as_ptr().addr(), words.len()])
         }
     }
 }
@@ -352,7 +352,7 @@ extern "C" fn player_state(playing: &mut Playing) -> Code {
             }),
         );
     }
-    tell(Code::Ok, [out.as_ptr().addr(), out.len()])
+    report(Code::Ok, [out.as_ptr().addr(), out.len()])
 }
 
 /// As in a trace: twice the box, and one more for the right endpoint.

@@ -11,7 +11,7 @@ use core::ops::ControlFlow::{self, Break, Continue};
 use sweep_and_prune::Error;
 use sweep_and_prune_bindings::{AnyPairFinder, TypedPairFinder};
 
-use crate::status::{Code, tell, tell_error};
+use crate::status::{Code, report, report_error};
 
 /// What happens to the pairs; `js/src/pair-finder.ts` has the same list.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -103,7 +103,7 @@ extern "C" fn finder_rows(finder: Option<&mut Finder>, set: usize, count: usize)
 /// 2, to stream, through the import `each`: none.
 #[unsafe(no_mangle)]
 extern "C" fn finder_find(finder: Option<&mut Finder>, a: usize, b: usize, purpose: u32) -> Code {
-    let Some(Finder { finder, taker }) = finder else { return tell(Code::Internal, [0, 0]) };
+    let Some(Finder { finder, taker }) = finder else { return report(Code::Internal, [0, 0]) };
     taker.start(match purpose {
         0 => Use::Store,
         1 => Use::Count,
@@ -115,17 +115,17 @@ extern "C" fn finder_find(finder: Option<&mut Finder>, a: usize, b: usize, purpo
         if let Error::InvalidBox { set: 1, index, .. } = &mut error {
             *index += a;
         }
-        return tell_error(error);
+        return report_error(error);
     }
     match taker.purpose {
-        Use::Store => tell(Code::Ok, [taker.buffer.as_ptr().addr(), taker.buffer.len()]),
-        Use::Count => tell(Code::Ok, [taker.count as usize, (taker.count >> 32) as usize]),
+        Use::Store => report(Code::Ok, [taker.buffer.as_ptr().addr(), taker.buffer.len()]),
+        Use::Count => report(Code::Ok, [taker.count as usize, (taker.count >> 32) as usize]),
         Use::Stream => {
             // Empty if the callback cancelled the search.
             if !taker.buffer.is_empty() {
                 let _ = taker.flush();
             }
-            tell(Code::Ok, [0, 0])
+            report(Code::Ok, [0, 0])
         }
     }
 }

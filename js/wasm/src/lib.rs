@@ -16,10 +16,10 @@ extern crate alloc;
 mod algorithms;
 #[cfg(feature = "broad-phase")]
 mod broad_phase;
+#[cfg(feature = "algorithms")]
+mod broken;
 #[cfg(feature = "finder")]
 mod finder;
-#[cfg(feature = "algorithms")]
-mod labs;
 #[cfg(target_arch = "wasm32")]
 mod runtime;
 mod status;

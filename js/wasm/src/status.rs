@@ -29,7 +29,7 @@ pub enum Code {
 static DETAILS: [AtomicU32; 2] = [AtomicU32::new(0), AtomicU32::new(0)];
 
 /// Leaves two words for JavaScript to read.
-pub fn tell(code: Code, details: [usize; 2]) -> Code {
+pub fn report(code: Code, details: [usize; 2]) -> Code {
     for (word, value) in DETAILS.iter().zip(details) {
         word.store(value as u32, Relaxed);
     }
@@ -37,13 +37,13 @@ pub fn tell(code: Code, details: [usize; 2]) -> Code {
 }
 
 /// The code and details of an error of the core.
-pub fn tell_error(error: Error) -> Code {
+pub fn report_error(error: Error) -> Code {
     match error {
-        Error::InvalidBox { index, axis, .. } => tell(Code::InvalidBox, [index, axis]),
-        Error::TooManyBoxes { .. } | Error::OutOfMemory => tell(Code::OutOfMemory, [0, 0]),
-        Error::StaleProxy { index, .. } => tell(Code::StaleProxy, [index, 0]),
-        Error::InvalidAxis { axis, .. } => tell(Code::InvalidArgument, [axis, 0]),
-        Error::InvalidQuery { index, .. } => tell(Code::InvalidArgument, [index, 0]),
+        Error::InvalidBox { index, axis, .. } => report(Code::InvalidBox, [index, axis]),
+        Error::TooManyBoxes { .. } | Error::OutOfMemory => report(Code::OutOfMemory, [0, 0]),
+        Error::StaleProxy { index, .. } => report(Code::StaleProxy, [index, 0]),
+        Error::InvalidAxis { axis, .. } => report(Code::InvalidArgument, [axis, 0]),
+        Error::InvalidQuery { index, .. } => report(Code::InvalidArgument, [index, 0]),
         Error::InvalidSnapshot(fault) => {
             let fault = match fault {
                 SnapshotFault::Foreign => [0, 0],
@@ -52,9 +52,9 @@ pub fn tell_error(error: Error) -> Code {
                 SnapshotFault::Truncated => [3, 0],
                 _ => [4, 0],
             };
-            tell(Code::InvalidSnapshot, fault)
+            report(Code::InvalidSnapshot, fault)
         }
-        _ => tell(Code::Internal, [0, 0]),
+        _ => report(Code::Internal, [0, 0]),
     }
 }
 

@@ -1,4 +1,4 @@
-//! The balls behind a door of plain `extern "C"` functions over linear memory, called by
+//! The balls as plain `extern "C"` functions over linear memory, called by
 //! `simulation.js` beside this crate, which hides all of it behind a class.
 //!
 //! # Layout
@@ -33,7 +33,7 @@
 // numbers only and dereference no pointer.
 #![allow(unsafe_code)]
 
-mod door;
+mod dynamic;
 mod names;
 
 use std::cell::RefCell;
@@ -41,7 +41,7 @@ use std::sync::atomic::AtomicU64;
 
 use sweep_and_prune_exchange::{read_area, write_area};
 
-use door::{Door, Start};
+use dynamic::{DynSimulation, Start};
 
 /// How a call ended; `simulation.js` has the same list.
 #[repr(u32)]
@@ -54,7 +54,7 @@ pub enum Code {
     /// An option is NaN, or does not exist.
     InvalidOption = 2,
     /// The balls do not fit without overlap.
-    NoRoom = 3,
+    TooCrowded = 3,
     /// More balls, or simulations, than can be held.
     TooMany = 4,
     /// A bug.
@@ -64,7 +64,7 @@ pub enum Code {
 #[derive(Default)]
 struct State {
     /// A handle is an index into these; places of freed simulations are used again.
-    simulations: Vec<Option<Box<dyn Door>>>,
+    simulations: Vec<Option<Box<dyn DynSimulation>>>,
     balls: Vec<f32>,
 }
 
@@ -73,7 +73,7 @@ thread_local! {
 }
 
 /// Runs a function on a simulation.
-fn with<R>(handle: u32, run: impl FnOnce(&mut dyn Door) -> R) -> Result<R, Code> {
+fn with<R>(handle: u32, run: impl FnOnce(&mut dyn DynSimulation) -> R) -> Result<R, Code> {
     STATE.with_borrow_mut(|state| match state.simulations.get_mut(handle as usize) {
         Some(Some(simulation)) => Ok(run(simulation.as_mut())),
         _ => Err(Code::NoSuchSimulation),
@@ -93,7 +93,7 @@ pub extern "C" fn sim_area() -> *const AtomicU64 {
 /// Where to write `count` given balls, at most 4,096; null if there are more.
 #[unsafe(no_mangle)]
 pub extern "C" fn sim_balls(count: u32) -> *mut f32 {
-    if count > door::MOST_GIVEN {
+    if count > dynamic::MOST_GIVEN {
         return std::ptr::null_mut();
     }
     STATE.with_borrow_mut(|state| {
@@ -108,7 +108,7 @@ pub extern "C" fn sim_new() -> Code {
     let area = read_area();
     STATE.with_borrow_mut(|state| {
         let start = Start::read(&area, &state.balls);
-        let simulation = match start.and_then(|start| door::open(&start)) {
+        let simulation = match start.and_then(|start| dynamic::open(&start)) {
             Ok(simulation) => simulation,
             Err(code) => return code,
         };
@@ -181,7 +181,7 @@ pub extern "C" fn sim_names(kind: u32) -> *const u8 {
     names.as_ptr()
 }
 
-/// The centres; null without such a simulation.
+/// The centers; null without such a simulation.
 #[unsafe(no_mangle)]
 pub extern "C" fn sim_positions(handle: u32) -> *const f32 {
     with(handle, |simulation| simulation.positions().as_ptr()).unwrap_or(std::ptr::null())
@@ -232,7 +232,8 @@ pub extern "C" fn sim_forget(handle: u32, moment: u32) -> Code {
 /// Puts a ball at x, y, with this velocity.
 #[unsafe(no_mangle)]
 pub extern "C" fn sim_place(handle: u32, ball: u32, x: f32, y: f32, vx: f32, vy: f32) -> Code {
-    let place = |simulation: &mut dyn Door| simulation.place(ball as usize, [x, y], [vx, vy]);
+    let place =
+        |simulation: &mut dyn DynSimulation| simulation.place(ball as usize, [x, y], [vx, vy]);
     code(with(handle, place).flatten())
 }
 

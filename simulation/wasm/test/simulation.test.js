@@ -38,7 +38,7 @@ function assertRefused(code, action) {
 }
 
 /** What a line of golden.txt says, by this module. */
-function lineAnew(line, broadPhase) {
+function lineFromScratch(line, broadPhase) {
   const [scene, dimensions, bodies, size, spread, seed, steps] = line.split(" ");
   const numbers = { dimensions: +dimensions, bodies: +bodies, size: +size, spread: +spread, seed: +seed };
   const simulation = new Simulation({ scene, ...numbers, broadPhase });
@@ -66,8 +66,8 @@ describe("loaded", () => {
   test("the states are those of the native build, over every algorithm", () => {
     assert.ok(golden.length >= 6);
     for (const algorithm of Simulation.algorithms) {
-      const anew = golden.map((line) => lineAnew(line, { algorithm }));
-      assert.deepEqual(anew, golden, algorithm);
+      const fromScratch = golden.map((line) => lineFromScratch(line, { algorithm }));
+      assert.deepEqual(fromScratch, golden, algorithm);
     }
   });
 
@@ -130,7 +130,7 @@ describe("loaded", () => {
     simulation.free();
   });
 
-  test("views made anew survive the growth of memory", () => {
+  test("views that are made again survive the growth of memory", () => {
     const small = new Simulation({ scene: "bouncing" });
     const before = small.positions.slice();
     const large = new Simulation({ bodies: 60_000, size: 0.1 });

@@ -1,5 +1,5 @@
 // What the benchmark page needs when the site is built: the recorded results, as the page reads
-// them and as files to download, and the peers, of which those that are not installed are left out.
+// them and as files to download, and the alternatives, of which those that are not installed are left out.
 
 import { readdirSync, readFileSync } from "node:fs";
 import type { Plugin } from "vite";
@@ -44,24 +44,14 @@ export function runs(): Run[] {
   return files().map(({ kind, name, address, text }) => {
     const { date, machine, node, rustc, versions = {}, how = {}, cases = [], worlds = [] } = JSON.parse(text) as Recorded;
     const tools = node ?? rustc ?? "";
-    return { kind, name, address, date, machine, tools, versions: renamedKeys(versions), how: renamedKeys(how), cases: cases.map(slim), worlds: worlds.map(slim) };
+    return { kind, name, address, date, machine, tools, versions, how, cases: cases.map(slim), worlds: worlds.map(slim) };
   });
 }
 
 function slim({ scene, dimensions, boxes, pairs, reference, load = null, results }: Case): Case {
-  const kept = results.map(({ name, rival, alternative = rival, outcome }) => ({
-    name: renamed(name),
-    rival: alternative,
-    outcome: slimOutcome(outcome),
-  }));
-  return { scene, dimensions, boxes, pairs, reference: reference.replace(/\bours\b/, "sweep-and-prune"), load, results: kept };
+  const kept = results.map(({ name, alternative, outcome }) => ({ name, alternative, outcome: slimOutcome(outcome) }));
+  return { scene, dimensions, boxes, pairs, reference, load, results: kept };
 }
-
-/** Until 2026-11-22 this library was recorded as "ours", and the key `alternative` was `rival`. */
-const renamed = (name: string): string => name.replace(/^ours(?=,|$)/, "sweep-and-prune");
-
-const renamedKeys = (of: Readonly<Record<string, string>>): Record<string, string> =>
-  Object.fromEntries(Object.entries(of).map(([name, text]) => [renamed(name), text]));
 
 function slimOutcome(outcome: Outcome): Outcome {
   if (!("Timed" in outcome)) return outcome;
@@ -94,16 +84,16 @@ export const benchmark: Plugin = {
 const NO_BUFFER = "virtual:no-buffer";
 
 /**
- * In the place of a contender whose package is not installed, one that says so; and for those
+ * In the place of a library whose package is not installed, one that says so; and for those
  * written when everybody used browserify, what it gave them of Node.
  */
-export const peers = (): Plugin => ({
-  name: "peers",
+export const alternatives = (): Plugin => ({
+  name: "alternatives",
   enforce: "pre",
   resolveId: (id, importer) => (id === "buffer" && importer?.includes("typedarray-pool") ? `\0${NO_BUFFER}` : undefined),
   load: (id) => (id === `\0${NO_BUFFER}` ? "export const Buffer = { isBuffer: () => false };" : undefined),
   async transform(code, id) {
-    if (!/\/bench\/js\/contenders\/[^/]+\.js$/.test(id)) return undefined;
+    if (!/\/bench\/js\/libraries\/[^/]+\.js$/.test(id)) return undefined;
     for (const [, specifier = ""] of code.matchAll(/^import .*? from "([^".][^"]*)";$/gm)) {
       if (await this.resolve(specifier, id)) continue;
       return { code: `export const create = () => { throw new Error("not part of this build"); };`, map: null };

@@ -2,13 +2,13 @@
 
 import { Scenes } from "../../../bench/js/src/scenes.js";
 import type { Listed } from "../../../bench/js/src/scenes.js";
-import { OURS, WORLD } from "../../../bench/js/contenders/index.js";
+import { FINDER, WORLD } from "../../../bench/js/libraries/index.js";
 import scenesUrl from "../generated/bench-scenes.wasm?url";
 import { looksOf } from "./looks.ts";
 import type { Point } from "./plots.ts";
 import { element, fill, select, table } from "./recorded.ts";
-import { type Case, duration, fastestOurs, fastestPeer, significant, timesOf } from "./results.ts";
-import { contendersFor, measure } from "./trial-here.ts";
+import { type Case, duration, fastestOwn, fastestAlternative, significant, timesOf } from "./results.ts";
+import { librariesFor, measure } from "./trial-here.ts";
 
 /** The scenes that everybody can be measured on; the others try robustness. */
 const SCENES = ["uniform", "clustered", "mixed", "slab", "tower", "box-pruning", "drift", "fast", "mostly-still", "teleport"];
@@ -35,7 +35,7 @@ export class BenchmarkHere {
 
   private constructor(scenes: readonly Listed[]) {
     this.#scenes = scenes;
-    fill(this.#scene, scenes.map(({ name, task }) => [name, task === "follow" ? `${name} (motion)` : name]));
+    fill(this.#scene, scenes.map(({ name, task }) => [name, task === "track" ? `${name} (motion)` : name]));
     this.#dimensions.disabled = this.#run.disabled = false;
     for (const set of this.#form.querySelectorAll("fieldset")) set.disabled = false;
     this.#scene.addEventListener("change", () => this.#offer());
@@ -66,13 +66,13 @@ export class BenchmarkHere {
     element("here-description").textContent = description;
     for (const option of this.#dimensions.options) option.disabled = !dimensions.includes(Number(option.value));
     if (this.#dimensions.selectedOptions[0]?.disabled) this.#dimensions.value = "3";
-    const offered = contendersFor(Number(this.#dimensions.value), task).filter(({ name }) => ![OURS, WORLD].includes(name));
-    element("here-peers").replaceChildren(
+    const offered = librariesFor(Number(this.#dimensions.value), task).filter(({ name }) => ![FINDER, WORLD].includes(name));
+    element("here-alternatives").replaceChildren(
       ...offered.map(({ name }) => {
         const label = document.createElement("label");
         const box = document.createElement("input");
         box.type = "checkbox";
-        box.name = "peer";
+        box.name = "alternative";
         box.value = name;
         box.checked = !HEAVY.test(name);
         label.append(box, HEAVY.test(name) ? `${name} (loads megabytes)` : name);
@@ -90,12 +90,12 @@ export class BenchmarkHere {
     const { name: scene, task } = this.#listed;
     const dimensions = Number(this.#dimensions.value);
     const sizes = this.#checked("size").map(Number);
-    const peers = this.#checked("peer");
+    const alternatives = this.#checked("alternative");
     if (sizes.length === 0) {
       this.#status.textContent = "Choose at least one number of boxes.";
       return;
     }
-    const contenders = contendersFor(dimensions, task).filter(({ name }) => [OURS, WORLD, ...peers].includes(name));
+    const libraries = librariesFor(dimensions, task).filter(({ name }) => [FINDER, WORLD, ...alternatives].includes(name));
     const stop = (this.#stop = new AbortController());
     this.#busy(true);
     this.#cases = [];
@@ -104,7 +104,7 @@ export class BenchmarkHere {
       this.#status.textContent = `Measuring: ${what} ...`;
     };
     try {
-      for await (const one of measure({ scene, dimensions, sizes, contenders, isMoving: task === "follow" }, progress, stop.signal)) {
+      for await (const one of measure({ scene, dimensions, sizes, libraries, isMoving: task === "track" }, progress, stop.signal)) {
         this.#cases.push(one);
         element("here-results").hidden = false;
         element("here-table").replaceChildren(...table(this.#cases));
@@ -135,7 +135,7 @@ export class BenchmarkHere {
     const points = this.#cases.flatMap(({ boxes, results }) =>
       results.flatMap((entry): Point[] => {
         const times = timesOf(entry);
-        return times ? [{ name: entry.name, rival: entry.rival, boxes, value: times.median_ns }] : [];
+        return times ? [{ name: entry.name, alternative: entry.alternative, boxes, value: times.median_ns }] : [];
       }),
     );
     if (points.length === 0) return;
@@ -146,10 +146,10 @@ export class BenchmarkHere {
 
 /** The result for the largest number of boxes, in a sentence. */
 function verdict(one: Case | undefined): string {
-  const ours = one && fastestOurs(one);
-  if (!one || !ours) return "";
-  const peer = fastestPeer(one);
+  const own = one && fastestOwn(one);
+  if (!one || !own) return "";
+  const alternative = fastestAlternative(one);
   const size = `${one.boxes.toLocaleString("en")} boxes`;
-  if (!peer) return `sweep-and-prune finds the ${one.pairs.toLocaleString("en")} pairs of ${size} in ${duration(ours)}.`;
-  return `${size}: sweep-and-prune takes ${duration(ours)}. The fastest alternative, ${peer.name}, takes ${significant(peer.ratio)} times as long.`;
+  if (!alternative) return `sweep-and-prune finds the ${one.pairs.toLocaleString("en")} pairs of ${size} in ${duration(own)}.`;
+  return `${size}: sweep-and-prune takes ${duration(own)}. The fastest alternative, ${alternative.name}, takes ${significant(alternative.ratio)} times as long.`;
 }

@@ -1,4 +1,4 @@
-// What each contender is drawn with. It is the same in every plot of a page, whoever else is in it.
+// What each library is drawn with. It is the same in every plot of a page, whatever else is in it.
 
 import type { Entry } from "./results.ts";
 import { PLAIN } from "./results.ts";
@@ -21,20 +21,20 @@ export const COLORS = 8;
 const SYMBOLS = ["square", "triangle", "diamond", "star", "cross", "wye", "circle"] as const;
 const DASHES = ["7 4", "2 3", "10 3 2 3", "4 2", "1 5"] as const;
 
-/** Ours are thick and in one color, each with its dash; peers have colors and symbols. */
-export function looksOf(contenders: readonly Pick<Entry, "name" | "rival">[]): Looks {
-  const named = (of: (entry: Pick<Entry, "name" | "rival">) => boolean): string[] => [...new Set(contenders.filter(of).map(({ name }) => name))];
-  const own = named(({ rival }) => !rival);
-  const peers = named(({ name, rival }) => rival && !PLAIN.test(name));
+/** Lines of sweep-and-prune are thick and in one color, each with its dash; alternatives have colors and symbols. */
+export function looksOf(libraries: readonly Pick<Entry, "name" | "alternative">[]): Looks {
+  const named = (of: (entry: Pick<Entry, "name" | "alternative">) => boolean): string[] => [...new Set(libraries.filter(of).map(({ name }) => name))];
+  const own = named(({ alternative }) => !alternative);
+  const alternatives = named(({ name, alternative }) => alternative && !PLAIN.test(name));
   return (name) => {
     const mine = own.indexOf(name);
-    if (mine === 0) return { color: "var(--line-ours)", dash: "", width: 3.5, symbol: "circle", isFull: true };
+    if (mine === 0) return { color: "var(--line-own)", dash: "", width: 3.5, symbol: "circle", isFull: true };
     if (mine > 0) {
       const at = mine - 1;
-      return { color: "var(--line-ours)", dash: DASHES[at % DASHES.length] ?? "", width: 2.25, symbol: SYMBOLS[at % SYMBOLS.length] ?? "circle", isFull: false };
+      return { color: "var(--line-own)", dash: DASHES[at % DASHES.length] ?? "", width: 2.25, symbol: SYMBOLS[at % SYMBOLS.length] ?? "circle", isFull: false };
     }
     if (PLAIN.test(name)) return { color: "var(--ink)", dash: "2 4", width: 1.75, symbol: "circle", isFull: false };
-    const at = peers.indexOf(name);
+    const at = alternatives.indexOf(name);
     return { color: `var(--line-${(at % COLORS) + 1})`, dash: "", width: 1.5, symbol: SYMBOLS[at % SYMBOLS.length] ?? "circle", isFull: true };
   };
 }

@@ -1,14 +1,14 @@
-// What the page and the worker of a contender say to each other.
+// What the page and the worker of a library say to each other.
 
 /** The first message: what to run. */
 export interface Start {
-  readonly contender: string;
+  readonly library: string;
   readonly scene: string;
   readonly dimensions: number;
   readonly boxes: number;
 }
 
-/** What the worker answers when it is warm: its pairs and about how long a call takes, in ms. */
+/** The worker's answer after its warm-up: its pairs, and about how long a call takes, in ms. */
 export interface Ready {
   readonly fingerprint: string;
   readonly pairs: number;

@@ -4,10 +4,10 @@ import * as Plot from "@observablehq/plot";
 import { COLORS, type Look, type Looks } from "./looks.ts";
 import { bytes, count, duration, significant } from "./results.ts";
 
-/** A contender's number at a number of boxes. */
+/** A library's number at a number of boxes. */
 export interface Point {
   readonly name: string;
-  readonly rival: boolean;
+  readonly alternative: boolean;
   readonly boxes: number;
   readonly value: number;
 }
@@ -117,12 +117,12 @@ function apart(points: readonly Point[], heightOf: (value: number) => number, [t
   return names;
 }
 
-/** A dot for each scene and number of boxes: how many times as long as ours the fastest peer takes. */
+/** A dot for each scene and number of boxes: how many times as long as sweep-and-prune the fastest alternative takes. */
 export interface Lead {
   readonly scene: string;
   readonly boxes: number;
   readonly ratio: number;
-  readonly peer: string;
+  readonly alternative: string;
 }
 
 export function drawLeads(place: HTMLElement, leads: readonly Lead[]): void {
@@ -131,8 +131,8 @@ export function drawLeads(place: HTMLElement, leads: readonly Lead[]): void {
     const at = sizes.indexOf(boxes);
     return { color: `var(--line-${((at + 3) % COLORS) + 1})`, dash: "", width: 0, symbol: SIZES[at % SIZES.length] ?? "circle", isFull: true };
   };
-  const title = ({ scene, boxes, ratio, peer }: Lead): string =>
-    `${scene}, ${count(boxes)} boxes\n${peer} takes ${significant(ratio)} times as long`;
+  const title = ({ scene, boxes, ratio, alternative }: Lead): string =>
+    `${scene}, ${count(boxes)} boxes\n${alternative} takes ${significant(ratio)} times as long`;
   const scenes = [...new Set(leads.map(({ scene }) => scene))];
   const ratios = leads.map(({ ratio }) => ratio);
   const domain: [number, number] = [Math.min(1, ...ratios), Math.max(...ratios)];

@@ -1,9 +1,9 @@
 // The recorded runs: which to look at, and their plots, table and file.
 
 import runs from "virtual:benchmark-results";
-import { Contenders } from "./contenders.ts";
+import { LibraryList } from "./library-list.ts";
 import { looksOf } from "./looks.ts";
-import { bytes, type Case, count, duration, type Entry, fastestOurs, fastestPeer, type Run, significant, timesOf } from "./results.ts";
+import { bytes, type Case, count, duration, type Entry, fastestOwn, fastestAlternative, type Run, significant, timesOf } from "./results.ts";
 import type { Lead, Point } from "./plots.ts";
 
 type Task = "cases" | "worlds";
@@ -18,7 +18,7 @@ export class RecordedRuns {
   readonly #run = select("recorded-run");
   readonly #task = select("recorded-task");
   readonly #scene = select("recorded-scene");
-  readonly #contenders = new Contenders(element("recorded-contenders"), () => void this.#showScene());
+  readonly #libraries = new LibraryList(element("recorded-libraries"), () => void this.#showScene());
 
   constructor() {
     const machine = element("recorded-machine");
@@ -70,7 +70,7 @@ export class RecordedRuns {
   #showTask(): void {
     const scenes = new Set(this.#cases.map(({ scene, dimensions }) => `${scene} ${dimensions}D`));
     fill(this.#scene, [...scenes].map((scene) => [scene, scene]));
-    void this.#showContenders();
+    void this.#showLibraries();
     void this.#showScene();
     void this.#showLeads();
   }
@@ -80,10 +80,10 @@ export class RecordedRuns {
     return this.#cases.flatMap(({ results }) => results);
   }
 
-  async #showContenders(): Promise<void> {
+  async #showLibraries(): Promise<void> {
     const { swatch } = await import("./plots.ts");
     const entries = this.#entries;
-    this.#contenders.list(entries, this.#chosen, this.#task.value === "worlds", looksOf(entries), swatch);
+    this.#libraries.list(entries, this.#chosen, this.#task.value === "worlds", looksOf(entries), swatch);
   }
 
   async #showScene(): Promise<void> {
@@ -94,7 +94,7 @@ export class RecordedRuns {
       cases.flatMap(({ boxes, results }) =>
         results.flatMap((entry) => {
           const number = timesOf(entry)?.[value];
-          return number && this.#contenders.isShown(entry.name) ? [{ name: entry.name, rival: entry.rival, boxes, value: number }] : [];
+          return number && this.#libraries.isShown(entry.name) ? [{ name: entry.name, alternative: entry.alternative, boxes, value: number }] : [];
         }),
       );
     const { drawLines, drawNothing } = await import("./plots.ts");
@@ -109,8 +109,8 @@ export class RecordedRuns {
 
   async #showLeads(): Promise<void> {
     const leads = this.#cases.flatMap((one): Lead[] => {
-      const peer = fastestPeer(one);
-      return peer ? [{ scene: `${one.scene} ${one.dimensions}D`, boxes: one.boxes, ratio: peer.ratio, peer: peer.name }] : [];
+      const alternative = fastestAlternative(one);
+      return alternative ? [{ scene: `${one.scene} ${one.dimensions}D`, boxes: one.boxes, ratio: alternative.ratio, alternative: alternative.name }] : [];
     });
     const { drawLeads, drawNothing } = await import("./plots.ts");
     if (leads.length > 0) drawLeads(element("plot-ratio"), leads);
@@ -118,7 +118,7 @@ export class RecordedRuns {
   }
 }
 
-/** The head and the body of the table: a row for each contender, columns for each number of boxes. */
+/** The head and the body of the table: a row for each library, columns for each number of boxes. */
 export function table(cases: readonly Case[]): HTMLElement[] {
   const names = [...new Set(cases.flatMap(({ results }) => results.map(({ name }) => name)))];
   const head = document.createElement("thead");
@@ -129,13 +129,13 @@ export function table(cases: readonly Case[]): HTMLElement[] {
       const entry = one.results.find((entry) => entry.name === name);
       const times = entry && timesOf(entry);
       if (!times) return cell("td", entry && "Untimed" in entry.outcome ? entry.outcome.Untimed.why : "", undefined, "why");
-      const ours = fastestOurs(one);
-      const ratio = entry.rival && ours ? ` (×${significant(times.median_ns / ours)})` : "";
+      const own = fastestOwn(one);
+      const ratio = entry.alternative && own ? ` (×${significant(times.median_ns / own)})` : "";
       const memory = times.peak_bytes ? `, ${bytes(times.peak_bytes)}` : "";
       return cell("td", `${duration(times.median_ns)}${ratio}${memory}`);
     });
     const line = row([cell("th", name, "row"), ...cells]);
-    if (cases.some(({ results }) => results.some((entry) => entry.name === name && !entry.rival))) line.className = "ours";
+    if (cases.some(({ results }) => results.some((entry) => entry.name === name && !entry.alternative))) line.className = "own";
     body.append(line);
   }
   const caption = document.createElement("caption");

@@ -10,9 +10,8 @@ export type Outcome = { readonly Timed: Times } | { readonly Untimed: { readonly
 
 export interface Entry {
   readonly name: string;
-  readonly rival: boolean;
-  /** As `rival` is called in the files from 2026-11-23 on. */
-  readonly alternative?: boolean;
+  /** Whether it is another library, not sweep-and-prune in some setting. */
+  readonly alternative: boolean;
   readonly outcome: Outcome;
 }
 
@@ -59,26 +58,26 @@ export interface Run {
   readonly worlds: readonly Case[];
 }
 
-/** The sweep that a good developer writes in an hour: beside the peers, and not one of them. */
+/** The sweep that a good developer writes in an hour: beside the alternatives, and not one of them. */
 export const PLAIN = /^plain\b/;
 
 export function timesOf({ outcome }: Entry): Times | undefined {
   return "Timed" in outcome ? outcome.Timed : undefined;
 }
 
-/** The fastest of ours; in JavaScript beside native, that which JavaScript calls. */
-export function fastestOurs(one: Case): number | undefined {
-  const times = one.results.filter((entry) => !entry.rival && !/^native/.test(entry.name)).flatMap((entry) => timesOf(entry) ?? []);
+/** The fastest setting of sweep-and-prune; in JavaScript the one that JavaScript calls, not native code. */
+export function fastestOwn(one: Case): number | undefined {
+  const times = one.results.filter((entry) => !entry.alternative && !/^native/.test(entry.name)).flatMap((entry) => timesOf(entry) ?? []);
   return times.length > 0 ? Math.min(...times.map(({ median_ns }) => median_ns)) : undefined;
 }
 
-/** The fastest peer and how many times as long as ours it takes. */
-export function fastestPeer(one: Case): { name: string; ratio: number } | undefined {
-  const ours = fastestOurs(one);
-  const peers = one.results.filter((entry) => entry.rival && !PLAIN.test(entry.name));
-  const timed = peers.flatMap((entry) => (timesOf(entry) ? [{ name: entry.name, ns: timesOf(entry)?.median_ns ?? 0 }] : []));
+/** The fastest alternative and how many times as long as sweep-and-prune it takes. */
+export function fastestAlternative(one: Case): { name: string; ratio: number } | undefined {
+  const own = fastestOwn(one);
+  const alternatives = one.results.filter((entry) => entry.alternative && !PLAIN.test(entry.name));
+  const timed = alternatives.flatMap((entry) => (timesOf(entry) ? [{ name: entry.name, ns: timesOf(entry)?.median_ns ?? 0 }] : []));
   const first = timed.sort((a, b) => a.ns - b.ns)[0];
-  return first && ours ? { name: first.name, ratio: first.ns / ours } : undefined;
+  return first && own ? { name: first.name, ratio: first.ns / own } : undefined;
 }
 
 /** A number of nanoseconds with a unit that suits it. */

@@ -1,7 +1,7 @@
-// A run in this browser: contenders in workers, checked, then timed in rounds.
+// A run in this browser: libraries in workers, checked, then timed in rounds.
 
-import { type Contender, contenders, OURS, WORLD } from "../../../bench/js/contenders/index.js";
-import { contender as bruteForce, REFERENCE_LIMIT } from "../../../bench/js/src/reference.js";
+import { type Library, libraries, FINDER, WORLD } from "../../../bench/js/libraries/index.js";
+import { library as bruteForce, REFERENCE_LIMIT } from "../../../bench/js/src/reference.js";
 import type { Answer, Ready, Start, Time } from "./messages.ts";
 import type { Case, Entry } from "./results.ts";
 
@@ -10,14 +10,14 @@ const LIMIT = 10_000;
 /** Who takes longer for a call is not timed, in ms. */
 const TOO_SLOW = 3_000;
 const ROUNDS = 5;
-/** A contender's turn in a round, in ms. */
+/** A library's turn in a round, in ms. */
 const TURN = 30;
 
 export interface Wish {
   readonly scene: string;
   readonly dimensions: number;
   readonly sizes: readonly number[];
-  readonly contenders: readonly Contender[];
+  readonly libraries: readonly Library[];
   readonly isMoving: boolean;
 }
 
@@ -35,14 +35,14 @@ export async function* measure(
 }
 
 interface Running {
-  readonly contender: Contender;
+  readonly library: Library;
   readonly remote: Remote;
   readonly ready: Ready;
   readonly rounds: number[];
 }
 
 async function measureOne(
-  { scene, dimensions, contenders: chosen, isMoving }: Wish,
+  { scene, dimensions, libraries: chosen, isMoving }: Wish,
   boxes: number,
   progress: (share: number, what: string) => void,
   signal: AbortSignal,
@@ -51,25 +51,25 @@ async function measureOne(
   const setting = { scene, dimensions, boxes };
   const remotes: Remote[] = [];
   const results: Entry[] = [];
-  const drop = ({ name, rival }: Contender, why: string): void => {
-    results.push({ name, rival, outcome: { Untimed: { why } } });
+  const drop = ({ name, alternative }: Library, why: string): void => {
+    results.push({ name, alternative, outcome: { Untimed: { why } } });
   };
-  const check = async (contender: Contender): Promise<Running | undefined> => {
-    const known = slow.get(contender.name);
+  const check = async (library: Library): Promise<Running | undefined> => {
+    const known = slow.get(library.name);
     if (known !== undefined && known * boxes > TOO_SLOW) {
-      drop(contender, "skipped: too slow with fewer boxes");
+      drop(library, "skipped: too slow with fewer boxes");
       return undefined;
     }
     const remote = new Remote(signal);
     remotes.push(remote);
     try {
-      const ready = await remote.start({ ...setting, contender: contender.name });
-      slow.set(contender.name, ready.estimate / boxes);
-      return { contender, remote, ready, rounds: [] };
+      const ready = await remote.start({ ...setting, library: library.name });
+      slow.set(library.name, ready.estimate / boxes);
+      return { library, remote, ready, rounds: [] };
     } catch (error) {
       signal.throwIfAborted();
-      if (error instanceof TooLong) slow.set(contender.name, Infinity);
-      drop(contender, error instanceof Error ? error.message : String(error));
+      if (error instanceof TooLong) slow.set(library.name, Infinity);
+      drop(library, error instanceof Error ? error.message : String(error));
       return undefined;
     }
   };
@@ -79,13 +79,13 @@ async function measureOne(
     const size = boxes.toLocaleString("en");
     progress(0, `the right pairs of ${size} boxes`);
     const right = boxes <= REFERENCE_LIMIT ? await check(bruteForce) : undefined;
-    for (const [at, contender] of chosen.entries()) {
-      progress((0.6 * (at + 1)) / (chosen.length + 1), `${contender.name} checked on ${size} boxes`);
-      const one = await check(contender);
+    for (const [at, library] of chosen.entries()) {
+      progress((0.6 * (at + 1)) / (chosen.length + 1), `${library.name} checked on ${size} boxes`);
+      const one = await check(library);
       if (one) running.push(one);
     }
     const agreed = right ?? running.find((one) => running.some((other) => isWitness(one, other)));
-    running = running.filter(({ contender, ready }) => {
+    running = running.filter(({ library, ready }) => {
       const why = !agreed
         ? "no second library to check it against"
         : ready.fingerprint !== agreed.ready.fingerprint
@@ -93,7 +93,7 @@ async function measureOne(
           : ready.estimate > TOO_SLOW
             ? `over ${TOO_SLOW / 1000} s`
             : undefined;
-      if (why) drop(contender, why);
+      if (why) drop(library, why);
       return !why;
     });
 
@@ -106,10 +106,10 @@ async function measureOne(
         one.rounds.push(await one.remote.time({ calls }));
       }
     }
-    const ours = (isMoving ? running.find(({ contender }) => contender.name === WORLD) : undefined) ?? running.find(({ contender }) => contender.name === OURS);
-    const timed = running.map(({ contender: { name, rival }, rounds }): Entry => {
-      const ratios = rounds.map((time, round) => time / (ours?.rounds[round] ?? NaN));
-      return { name, rival, outcome: { Timed: { median_ns: median(rounds) * 1e6, ratio: median(ratios), peak_bytes: null } } };
+    const own = (isMoving ? running.find(({ library }) => library.name === WORLD) : undefined) ?? running.find(({ library }) => library.name === FINDER);
+    const timed = running.map(({ library: { name, alternative }, rounds }): Entry => {
+      const ratios = rounds.map((time, round) => time / (own?.rounds[round] ?? NaN));
+      return { name, alternative, outcome: { Timed: { median_ns: median(rounds) * 1e6, ratio: median(ratios), peak_bytes: null } } };
     });
     const reference = right ? bruteForce.name : agreed ? "two libraries that agree" : "nothing";
     return { ...setting, pairs: agreed?.ready.pairs ?? 0, reference, load: null, results: [...timed, ...results] };
@@ -118,14 +118,14 @@ async function measureOne(
   }
 }
 
-/** Whether two contenders from different packages found the same. */
+/** Whether two libraries from different packages found the same. */
 function isWitness(one: Running, other: Running): boolean {
-  return one.contender.package !== other.contender.package && one.ready.fingerprint === other.ready.fingerprint;
+  return one.library.package !== other.library.package && one.ready.fingerprint === other.ready.fingerprint;
 }
 
 class TooLong extends Error {}
 
-/** A contender in its worker. */
+/** A library in its worker. */
 class Remote {
   readonly #worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
   readonly #signal: AbortSignal;
@@ -183,6 +183,6 @@ function median(numbers: readonly number[]): number {
 }
 
 /** Those that can take part in a task. */
-export function contendersFor(dimensions: number, task: "find" | "follow"): readonly Contender[] {
-  return contenders.filter((one) => one.dimensions.includes(dimensions) && one.tasks.includes(task));
+export function librariesFor(dimensions: number, task: "find" | "track"): readonly Library[] {
+  return libraries.filter((one) => one.dimensions.includes(dimensions) && one.tasks.includes(task));
 }

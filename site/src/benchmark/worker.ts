@@ -1,9 +1,9 @@
-// One contender on one scene, in a thread of its own: it can be stopped, and what it leaves behind
-// slows nobody.
+// One library on one scene, in a thread of its own: it can be stopped, and what it leaves behind
+// slows nothing else.
 
-import { contenders } from "../../../bench/js/contenders/index.js";
-import { load } from "../../../bench/js/contenders/load.js";
-import { contender as bruteForce } from "../../../bench/js/src/reference.js";
+import { libraries } from "../../../bench/js/libraries/index.js";
+import { load } from "../../../bench/js/libraries/load.js";
+import { library as bruteForce } from "../../../bench/js/src/reference.js";
 import { Scenes } from "../../../bench/js/src/scenes.js";
 import { Trial } from "../../../bench/js/src/trial.js";
 import scenesUrl from "../generated/bench-scenes.wasm?url";
@@ -17,9 +17,9 @@ const answer = (message: Answer): void => postMessage(message);
 
 let trial: Trial | undefined;
 
-async function start({ contender, scene, dimensions, boxes }: Start): Promise<void> {
-  const entry = [...contenders, bruteForce].find(({ name }) => name === contender);
-  if (!entry) throw new Error(`there is no contender '${contender}'`);
+async function start({ library, scene, dimensions, boxes }: Start): Promise<void> {
+  const entry = [...libraries, bruteForce].find(({ name }) => name === library);
+  if (!entry) throw new Error(`there is no library '${library}'`);
   const [scenes, module] = await Promise.all([
     fetch(scenesUrl).then(async (response) => Scenes.start(await response.arrayBuffer())),
     load(entry),
@@ -33,7 +33,7 @@ async function start({ contender, scene, dimensions, boxes }: Start): Promise<vo
 
 addEventListener("message", async ({ data }: MessageEvent<Start | Time>) => {
   try {
-    if ("contender" in data) await start(data);
+    if ("library" in data) await start(data);
     // Clocks of browsers are coarse: calls are timed together.
     else answer({ time: trial?.time(1, data.calls)[0] ?? NaN });
   } catch (error) {

@@ -6,7 +6,7 @@ import { expandRace } from "../race/markup.ts";
 import { bruteForceTests, COUNTERS, formatCount } from "./counters.ts";
 import { choice, slider } from "./parts.ts";
 
-interface LabOptions {
+interface SimulationOptions {
   readonly id: string;
   readonly dimensions: 2 | 3;
   /** How many bodies it begins with. */
@@ -21,7 +21,7 @@ export function expandFallingBalls(page: string): string {
       if (value === undefined) throw new Error(`<falling-balls${attributes}> has no ${name}`);
       return value;
     };
-    const options: LabOptions = {
+    const options: SimulationOptions = {
       id: attribute("id"),
       dimensions: attribute("dimensions") === "2" ? 2 : 3,
       bodies: Number(attribute("bodies")),
@@ -30,7 +30,7 @@ export function expandFallingBalls(page: string): string {
   });
 }
 
-function inside({ id, dimensions, bodies }: LabOptions): string {
+function inside({ id, dimensions, bodies }: SimulationOptions): string {
   return `
     <div class="panel" role="group" aria-labelledby="${id}-heading">
       <div class="panel-stage">

@@ -1,6 +1,6 @@
-import { numberWithin, readAddress, writeAddress } from "../arena/address.ts";
-import { type BoxColors, drawBoxes, type Window2, windowOf } from "../arena/box-picture.ts";
-import type { RunnerOptions, Lists, WorldOptions } from "../arena/arena.ts";
+import { numberWithin, readAddress, writeAddress } from "../experiment/address.ts";
+import { type BoxColors, drawBoxes, type Window2, windowOf } from "../experiment/box-picture.ts";
+import type { RunnerOptions, Lists, WorldOptions } from "../experiment/experiment.ts";
 import { onAwake } from "../falling/awake.ts";
 import { formatCount } from "../falling/counters.ts";
 import { bindSlider } from "../falling/slider.ts";
@@ -169,17 +169,17 @@ export class BoxPlayground extends HTMLElement {
       if (!snapshot) throw new Error("there are no boxes yet");
       return write(snapshot, this.#format());
     };
-    const told = (text: string, work: () => Promise<void>): void => {
+    const reportDone = (text: string, work: () => Promise<void>): void => {
       const output = this.#part("exported");
       work().then(
         () => (output.textContent = text),
         (error: unknown) => (output.textContent = `That did not work: ${error instanceof Error ? error.message : String(error)}`),
       );
     };
-    this.#onClick("copy", () => told("Copied.", async () => navigator.clipboard.writeText(await written())));
-    this.#onClick("share", () => told("Address copied.", () => navigator.clipboard.writeText(location.href)));
+    this.#onClick("copy", () => reportDone("Copied.", async () => navigator.clipboard.writeText(await written())));
+    this.#onClick("share", () => reportDone("Address copied.", () => navigator.clipboard.writeText(location.href)));
     this.#onClick("download", () =>
-      told("Downloaded.", async () => {
+      reportDone("Downloaded.", async () => {
         const link = document.createElement("a");
         link.href = URL.createObjectURL(new Blob([await written()], { type: typeOf(this.#format()) }));
         link.download = `boxes.${this.#format() === "js" ? "mjs" : this.#format()}`;

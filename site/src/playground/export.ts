@@ -1,6 +1,6 @@
 // A world as it stands, written down: every coordinate in the fewest digits that give the same bits.
 
-import type { RunnerOptions, WorldOptions } from "../arena/arena.ts";
+import type { RunnerOptions, WorldOptions } from "../experiment/experiment.ts";
 import { formatCount } from "../falling/counters.ts";
 
 /** What is written down. */

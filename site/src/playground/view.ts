@@ -1,6 +1,6 @@
 // Moving about in a picture: by pointer, wheel and keys.
 
-import type { Window2 } from "../arena/box-picture.ts";
+import type { Window2 } from "../experiment/box-picture.ts";
 
 /** A key moves the view by this share of what is shown. */
 const KEY_STEP = 0.1;

@@ -1,6 +1,6 @@
 // What the page of the race and its thread say to each other.
 
-import type { RunnerOptions, Lists, Report, WorldOptions } from "../arena/arena.ts";
+import type { RunnerOptions, Lists, Report, WorldOptions } from "../experiment/experiment.ts";
 
 export type ToRace =
   | { readonly type: "begin"; readonly run: number; readonly world: WorldOptions; readonly runners: readonly RunnerOptions[] }

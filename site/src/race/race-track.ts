@@ -1,6 +1,6 @@
-import { readAddress, numberWithin, writeAddress } from "../arena/address.ts";
-import { type BoxColors, drawBoxes, type Window2, windowOf } from "../arena/box-picture.ts";
-import type { RunnerOptions, Lists, WorldOptions } from "../arena/arena.ts";
+import { readAddress, numberWithin, writeAddress } from "../experiment/address.ts";
+import { type BoxColors, drawBoxes, type Window2, windowOf } from "../experiment/box-picture.ts";
+import type { RunnerOptions, Lists, WorldOptions } from "../experiment/experiment.ts";
 import { onAwake } from "../falling/awake.ts";
 import { formatCount } from "../falling/counters.ts";
 import { bindSlider } from "../falling/slider.ts";
@@ -9,7 +9,7 @@ import { onThemeChange } from "../shell/theme.ts";
 import { LANE_COUNTERS, LANES } from "./markup.ts";
 import type { FromRace, Lane, RaceFrame, ToRace } from "./messages.ts";
 import { MEASURES, type Measure, RaceRecord, SHOWN } from "./record.ts";
-import { countersOf, verdict } from "./told.ts";
+import { countersOf, verdict } from "./wording.ts";
 
 /** The numbers of boxes that the slider offers. */
 const BOXES = [10, 20, 50, 100, 200, 500, 1_000, 2_000, 5_000, 10_000, 20_000];
@@ -38,7 +38,7 @@ interface Colors {
   readonly grid: string;
 }
 
-type PartOfLane = "algorithm" | "sort" | "axis";
+type LaneChoice = "algorithm" | "sort" | "axis";
 
 /**
  * `<race-track>`: up to four runners on the same boxes, in lockstep, on a thread of their own.
@@ -145,7 +145,7 @@ export class RaceTrack extends HTMLElement {
     }
   }
 
-  #bindLane(lane: number, part: PartOfLane, names: readonly string[]): void {
+  #bindLane(lane: number, part: LaneChoice, names: readonly string[]): void {
     const select = this.#lanePart<HTMLSelectElement>(lane, part);
     const key = (part === "algorithm" ? String(lane) : `${lane}.${part}`) as Key;
     if (part !== "axis") select.replaceChildren(...names.map((name) => new Option(name)));
@@ -380,7 +380,7 @@ export class RaceTrack extends HTMLElement {
     if (status.textContent !== text) status.textContent = text;
   }
 
-  #lanePart<E extends HTMLElement = HTMLElement>(lane: number, name: PartOfLane | "out"): E {
+  #lanePart<E extends HTMLElement = HTMLElement>(lane: number, name: LaneChoice | "out"): E {
     return this.#find<E>(`[data-lane="${lane}"] [data-part="${name}"]`);
   }
 

@@ -1,6 +1,6 @@
 // What has happened in a race so far.
 
-import type { Report } from "../arena/arena.ts";
+import type { Report } from "../experiment/experiment.ts";
 import type { Lane, RaceFrame } from "./messages.ts";
 
 /** What can be plotted. */

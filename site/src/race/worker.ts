@@ -1,7 +1,7 @@
 // The thread of the race: one step of the world, then every runner on the same boxes, one after
 // another, so that none disturbs the clock of another.
 
-import { Arena, type RunnerOptions, type Report, type WorldOptions } from "../arena/arena.ts";
+import { Experiment, type RunnerOptions, type Report, type WorldOptions } from "../experiment/experiment.ts";
 import { formatCount } from "../falling/counters.ts";
 import type { FromRace, Lane, ToRace } from "./messages.ts";
 
@@ -20,7 +20,7 @@ const BUDGET_IN_ALL_MS = 2000;
 
 interface Runner {
   readonly options: RunnerOptions;
-  /** Its number in the arena. */
+  /** Its number in the experiment. */
   readonly number: number;
   /** Steps over the budget in a row. */
   late: number;
@@ -42,10 +42,10 @@ let timer: ReturnType<typeof setTimeout> | undefined;
 
 const send = (message: FromRace, transfer: Transferable[] = []): void => self.postMessage(message, { transfer });
 
-function begin(arena: Arena, run: number, world: WorldOptions, options: readonly RunnerOptions[]): void {
+function begin(experiment: Experiment, run: number, world: WorldOptions, options: readonly RunnerOptions[]): void {
   race = undefined;
-  arena.begin(world);
-  const pairs = arena.countPairs();
+  experiment.begin(world);
+  const pairs = experiment.countPairs();
   if (pairs > MOST_PAIRS) {
     const reason = `${formatCount(world.boxes)} boxes of this scene make ${formatCount(pairs)} pairs; the limit is ${formatCount(MOST_PAIRS)}. Choose fewer or smaller boxes, or another scene.`;
     send({ type: "refused", run, reason });
@@ -53,31 +53,31 @@ function begin(arena: Arena, run: number, world: WorldOptions, options: readonly
   }
   let number = 0;
   const runners = options.map((options): Runner => {
-    const out = refusal(arena, options);
-    if (out === undefined) arena.enter(options);
+    const out = refusal(experiment, options);
+    if (out === undefined) experiment.enter(options);
     return { options, number: out === undefined ? number++ : -1, late: 0, out };
   });
   race = { run, runners, step: 0, unseen: false };
-  compete(arena, race);
+  compete(experiment, race);
 }
 
 /** Why a runner cannot even begin, if it cannot. */
-function refusal(arena: Arena, options: RunnerOptions): string | undefined {
-  const { tests, kept } = arena.forecast(options);
+function refusal(experiment: Experiment, options: RunnerOptions): string | undefined {
+  const { tests, kept } = experiment.forecast(options);
   if (tests > MOST_TESTS) return `Stopped: it would have to look at ${formatCount(tests)} pairs per step; the limit is ${formatCount(MOST_TESTS)}.`;
   if (kept > MOST_KEPT) return `Stopped: it would have to keep ${formatCount(kept)} overlaps in memory; the limit is ${formatCount(MOST_KEPT)}.`;
   return undefined;
 }
 
 /** Lets every runner that is in find the pairs, each step another one first. */
-function compete(arena: Arena, race: Race): void {
+function compete(experiment: Experiment, race: Race): void {
   const { runners, step } = race;
   const reports = new Map<Runner, Report>();
   runners.forEach((_, place) => {
     const runner = runners[(place + step) % runners.length];
     if (!runner || runner.out !== undefined) return;
     const started = performance.now();
-    const report = arena.run(runner.number, true);
+    const report = experiment.run(runner.number, true);
     const inAll = performance.now() - started;
     reports.set(runner, report);
     // The first step sorts from scratch and makes room: it does not count.
@@ -94,48 +94,48 @@ function compete(arena: Arena, race: Race): void {
     return report ? { report } : { out: runner.out ?? "" };
   });
   const first = runners.find((runner) => reports.has(runner));
-  const pairs = first ? arena.pairs(first.number).slice() : new Uint32Array(0);
-  const boxes = arena.boxes.slice();
+  const pairs = first ? experiment.pairs(first.number).slice() : new Uint32Array(0);
+  const boxes = experiment.boxes.slice();
   race.unseen = true;
   send({ type: "frame", run: race.run, step, boxes, pairs, lanes }, [boxes.buffer, pairs.buffer]);
 }
 
-function advance(arena: Arena): void {
+function advance(experiment: Experiment): void {
   if (!race) return;
-  arena.advance();
+  experiment.advance();
   race.step++;
-  compete(arena, race);
+  compete(experiment, race);
 }
 
 /** One step if it is time and the page has shown the last, then back to the queue of messages. */
-function tick(arena: Arena): void {
+function tick(experiment: Experiment): void {
   timer = undefined;
   if (!running || !race || race.unseen) return;
   const now = performance.now();
   if (now < due) {
-    timer = setTimeout(() => tick(arena), due - now);
+    timer = setTimeout(() => tick(experiment), due - now);
     return;
   }
   due = now + STEP_MS;
-  guarded(() => advance(arena));
+  guarded(() => advance(experiment));
 }
 
-function receive(arena: Arena, message: ToRace): void {
+function receive(experiment: Experiment, message: ToRace): void {
   switch (message.type) {
     case "begin":
-      begin(arena, message.run, message.world, message.runners);
+      begin(experiment, message.run, message.world, message.runners);
       break;
     case "pace":
       running = message.running;
       break;
     case "step":
-      advance(arena);
+      advance(experiment);
       break;
     case "seen":
       if (race && message.run === race.run) race.unseen = false;
       break;
   }
-  timer ??= setTimeout(() => tick(arena));
+  timer ??= setTimeout(() => tick(experiment));
 }
 
 /** An error is told to the page, and stops the race. */
@@ -148,11 +148,11 @@ function guarded(work: () => void): void {
   }
 }
 
-// Messages that come before the arena is there wait for it, in their order.
-const loaded = Arena.load().then(
-  (arena) => {
-    send({ type: "ready", lists: arena.lists });
-    return arena;
+// Messages that come before the experiment is there wait for it, in their order.
+const loaded = Experiment.load().then(
+  (experiment) => {
+    send({ type: "ready", lists: experiment.lists });
+    return experiment;
   },
   (error: unknown) => {
     send({ type: "failed", message: String(error) });
@@ -160,5 +160,5 @@ const loaded = Arena.load().then(
   },
 );
 self.addEventListener("message", ({ data }: MessageEvent<ToRace>) => {
-  void loaded.then((arena) => guarded(() => receive(arena, data)), () => undefined);
+  void loaded.then((experiment) => guarded(() => receive(experiment, data)), () => undefined);
 });

@@ -28,7 +28,7 @@ interface World {
 /** A world to warm up by: large enough for all of the code, and small enough not to be waited for. */
 const WARM_UP = { bodies: 2000, steps: 4 };
 /** The dimensions that have been warmed up. */
-const warm = new Set<number>();
+const warmedUp = new Set<number>();
 
 let world: World | undefined;
 let running = false;
@@ -63,8 +63,8 @@ function begin(run: number, setup: Setup, { gravity, substeps }: Laws, method: M
 /** A browser compiles a function when it is first called, and again when it was called often: so that the
  * times of the first steps are not those of the compiler, a few steps are run first and not shown. */
 function warmUp(dimensions: 2 | 3): void {
-  if (warm.has(dimensions)) return;
-  warm.add(dimensions);
+  if (warmedUp.has(dimensions)) return;
+  warmedUp.add(dimensions);
   const simulation = new Simulation({ scene: "falling", dimensions, bodies: WARM_UP.bodies });
   for (let step = 0; step < WARM_UP.steps; step++) simulation.step();
   simulation.free();

@@ -1,6 +1,6 @@
 """Makes blocks.ttf: a font in which every character is a block, about as wide and high as a letter.
 
-Words set in it take up as much room on one machine as on any other, whatever fonts there are. It
+Words set in it take up the same space on every machine, whatever fonts there are. It
 needs fontTools, and is run only to change the font: python3 blocks.py, here
 """
 

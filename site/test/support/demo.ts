@@ -69,7 +69,7 @@ export class Demo {
   async finish(): Promise<State & { balls: number[][] }> {
     return this.root.evaluate((element) => {
       const demo = element as unknown as Element;
-      // The next step after the last of a detection begins another: its counters start anew.
+      // The next step after the last of a detection begins another: its counters start at zero.
       let last = { ...demo.state, balls: demo.balls };
       for (let steps = 0; steps < 2000; steps++) {
         demo.step();

@@ -26,11 +26,11 @@ export const stateOf = (demo: Locator): Promise<DemoState> => demo.evaluate((ele
 export const step = (demo: Locator): Promise<void> => demo.evaluate((element: SapDemo) => element.step());
 export const counter = (demo: Locator, name: string): Promise<string | null> => demo.locator(`[data-counter="${name}"]`).textContent();
 
-/** Steps through one detection to its end; the events that were told. */
+/** Steps through one detection to its end; the events that were reported. */
 export function walk(demo: Locator): Promise<DemoEvent[]> {
   return demo.evaluate((element: SapDemo) => {
-    const told: DemoEvent[] = [];
-    const hear = (event: CustomEvent<DemoEvent>): unknown => told.push(event.detail);
+    const reported: DemoEvent[] = [];
+    const hear = (event: CustomEvent<DemoEvent>): unknown => reported.push(event.detail);
     element.addEventListener("sap-event", hear);
     const { tick } = element.state;
     let last = -1;
@@ -40,9 +40,9 @@ export function walk(demo: Locator): Promise<DemoEvent[]> {
     }
     if (element.state.tick !== tick) element.back();
     element.removeEventListener("sap-event", hear as EventListener);
-    return told;
+    return reported;
   });
 }
 
-/** Every pair of the balls, lit one after another. */
+/** Every pair of the balls, highlighted one after another. */
 export const pairwise = { strategy: "pairwise", "skip-interval": "4", decorations: "checks:#4c8", paused: "" };

@@ -1,10 +1,10 @@
-//! What the race and the playground run on: the scenes in motion, and who looks for their pairs.
-//! A door of plain `extern "C"` functions over linear memory, called by `src/arena/arena.ts`.
+//! The race and the playground run on this: scenes in motion, and the searchers that find their pairs.
+//! Plain `extern "C"` functions over linear memory, called by `src/experiment/experiment.ts`.
 //!
 //! # Layout
-//! Numbers pass through one area of 16 `f64` at [`arena_area`]:
+//! Numbers pass through one area of 16 `f64` at [`experiment_area`]:
 //!
-//! | index | in: [`arena_begin`] | out: [`arena_run`] | out: [`arena_forecast`] |
+//! | index | in: [`experiment_begin`] | out: [`experiment_run`] | out: [`experiment_forecast`] |
 //! |---|---|---|---|
 //! | 0 | dimensions: 2 or 3 | ms from boxes to pairs | tests |
 //! | 1 | scene, by its place in the list | pairs | overlaps to be kept |
@@ -15,17 +15,17 @@
 //! | 6 | spread | comparisons, or -1 | |
 //! | 7 | | swaps, or -1 | |
 //!
-//! There is one world at a time. Contenders are numbered from 0 in the order in which they came;
-//! [`arena_begin`] forgets them.
+//! There is one world at a time. Searchers are numbered from 0 in the order in which they came;
+//! [`experiment_begin`] forgets them.
 //!
 //! The module imports one function, `env.now() -> f64`: milliseconds from any origin.
-// SAFETY of the exports: their names begin with `arena_` and no other symbol has them. They take
+// SAFETY of the exports: their names begin with `experiment_` and no other symbol has them. They take
 // numbers only and dereference no pointer.
 #![allow(unsafe_code)]
 
-mod arena;
-pub mod contender;
+mod experiment;
 pub mod motion;
+pub mod searcher;
 
 use std::cell::RefCell;
 use std::sync::LazyLock;
@@ -35,8 +35,8 @@ use sweep_and_prune::algorithms::{Axis, Method, RunnerOptions, Sort};
 use sweep_and_prune_exchange::{read_area, write_area};
 use sweep_and_prune_scenes::Scene;
 
-use arena::Arena;
-use contender::Choice;
+use experiment::Experiment;
+use searcher::Choice;
 
 /// Whether a call was done. What is not done has changed nothing.
 #[repr(u32)]
@@ -49,18 +49,18 @@ pub enum Code {
 }
 
 thread_local! {
-    static ARENA: RefCell<Option<Box<dyn Arena>>> = const { RefCell::new(None) };
+    static EXPERIMENT: RefCell<Option<Box<dyn Experiment>>> = const { RefCell::new(None) };
 }
 
-fn with<R>(run: impl FnOnce(&mut dyn Arena) -> Option<R>) -> Option<R> {
-    ARENA.with_borrow_mut(|arena| run(arena.as_mut()?.as_mut()))
+fn with<R>(run: impl FnOnce(&mut dyn Experiment) -> Option<R>) -> Option<R> {
+    EXPERIMENT.with_borrow_mut(|experiment| run(experiment.as_mut()?.as_mut()))
 }
 
 fn code(done: Option<()>) -> Code {
     if done.is_some() { Code::Ok } else { Code::Invalid }
 }
 
-/// The scenes that can be shown: not the three whose coordinates leave no room for a motion.
+/// The scenes that can be shown: not the three whose coordinates are too extreme to move.
 static SCENES: LazyLock<Vec<Scene>> = LazyLock::new(|| {
     let hidden = [Scene::Extreme, Scene::Subnormal, Scene::Infinite];
     Scene::ALL.iter().copied().filter(|scene| !hidden.contains(scene)).collect()
@@ -71,7 +71,7 @@ const RULES: [Axis; 3] = [Axis::LargestVariance, Axis::LongestExtent, Axis::Fewe
 
 /// Of each kind one item a line, its parts parted by tabs.
 static NAMES: LazyLock<[String; 5]> = LazyLock::new(|| {
-    let library = ["find pairs", "living world"].into_iter();
+    let library = ["find pairs", "broad phase"].into_iter();
     let scenes = SCENES.iter().map(|scene| {
         let (least, most) = scene.dimensions().into_inner();
         format!("{}\t{}\t{}\t{most}", scene.name(), scene.description(), least.max(2))
@@ -88,73 +88,74 @@ static NAMES: LazyLock<[String; 5]> = LazyLock::new(|| {
 
 /// Where the area is.
 #[unsafe(no_mangle)]
-pub extern "C" fn arena_area() -> *const AtomicU64 {
+pub extern "C" fn experiment_area() -> *const AtomicU64 {
     sweep_and_prune_exchange::area()
 }
 
-/// The names of contenders (0), sorts (1), axis rules (2), scenes with a sentence, their least and
+/// The names of searchers (0), sorts (1), axis rules (2), scenes with a sentence, their least and
 /// their greatest number of dimensions (3), motions with a sentence (4), in UTF-8. How many bytes
 /// there are is in the area at 0; none of a kind that does not exist.
 #[unsafe(no_mangle)]
-pub extern "C" fn arena_names(kind: u32) -> *const u8 {
+pub extern "C" fn experiment_names(kind: u32) -> *const u8 {
     let names = NAMES.get(kind as usize).map_or("", String::as_str);
     write_area(&[names.len() as f64]);
     names.as_ptr()
 }
 
-/// Makes the world in the area, and forgets the one before and its contenders.
+/// Makes the world in the area, and forgets the one before and its searchers.
 #[unsafe(no_mangle)]
-pub extern "C" fn arena_begin() -> Code {
+pub extern "C" fn experiment_begin() -> Code {
     let area = read_area();
-    let made = arena::open(&area);
+    let made = experiment::open(&area);
     let done = made.is_some().then_some(());
     if made.is_some() {
-        ARENA.set(made);
+        EXPERIMENT.set(made);
     }
     code(done)
 }
 
 /// Moves the world on by one step.
 #[unsafe(no_mangle)]
-pub extern "C" fn arena_advance() -> Code {
-    code(with(|arena| {
-        arena.advance();
+pub extern "C" fn experiment_advance() -> Code {
+    code(with(|experiment| {
+        experiment.advance();
         Some(())
     }))
 }
 
-/// The boxes: rows of `f32`, the least corner and then the greatest; null without a world.
+/// The boxes: rows of `f32`, the min corner and then the max corner; null without a world.
 #[unsafe(no_mangle)]
-pub extern "C" fn arena_boxes() -> *const f32 {
-    with(|arena| Some(arena.boxes())).unwrap_or(std::ptr::null())
+pub extern "C" fn experiment_boxes() -> *const f32 {
+    with(|experiment| Some(experiment.boxes())).unwrap_or(std::ptr::null())
 }
 
 /// How many pairs the world has now, by the library's finder, which stores none of them; -1 without
 /// a world.
 #[unsafe(no_mangle)]
-pub extern "C" fn arena_count_pairs() -> f64 {
-    with(|arena| arena.count_pairs()).map_or(-1.0, |count| count as f64)
+pub extern "C" fn experiment_count_pairs() -> f64 {
+    with(|experiment| experiment.count_pairs()).map_or(-1.0, |count| count as f64)
 }
 
-/// Adds a contender: its place, its sort's and its axis' in the lists of [`arena_names`]; an axis
+/// Adds a searcher: its place, its sort's and its axis' in the lists of [`experiment_names`]; an axis
 /// beyond the list is that one, counted from there. Sorts and axes of the library's two are not read.
 #[unsafe(no_mangle)]
-pub extern "C" fn arena_enter(contender: u32, sort: u32, axis: u32, persistent: u32) -> Code {
-    code(choice(contender, sort, axis, persistent).and_then(|choice| with(|a| a.enter(choice))))
+pub extern "C" fn experiment_enter(searcher: u32, sort: u32, axis: u32, persistent: u32) -> Code {
+    code(choice(searcher, sort, axis, persistent).and_then(|choice| with(|a| a.enter(choice))))
 }
 
-/// What a contender's first run would cost, into the area, without adding it.
+/// What a searcher's first run would cost, into the area, without adding it.
 #[unsafe(no_mangle)]
-pub extern "C" fn arena_forecast(contender: u32, sort: u32, axis: u32) -> Code {
-    let forecast = choice(contender, sort, axis, 1).and_then(|c| with(|arena| arena.forecast(c)));
+pub extern "C" fn experiment_forecast(searcher: u32, sort: u32, axis: u32) -> Code {
+    let forecast =
+        choice(searcher, sort, axis, 1).and_then(|c| with(|experiment| experiment.forecast(c)));
     code(forecast.map(|forecast| write_area(&[forecast.tests, forecast.kept])))
 }
 
-/// Lets a contender find the pairs of the world as it is; its report into the area. It is counted
+/// Lets a searcher find the pairs of the world as it is; its report into the area. It is counted
 /// what it does, on a copy, if `counting` is not 0.
 #[unsafe(no_mangle)]
-pub extern "C" fn arena_run(contender: u32, counting: u32) -> Code {
-    let report = with(|arena| arena.run(contender as usize, counting != 0));
+pub extern "C" fn experiment_run(searcher: u32, counting: u32) -> Code {
+    let report = with(|experiment| experiment.run(searcher as usize, counting != 0));
     code(report.map(|report| {
         let count = |read: fn(&sweep_and_prune::algorithms::Counts) -> u64| {
             report.counts.as_ref().map_or(-1.0, |counts| read(counts) as f64)
@@ -172,14 +173,14 @@ pub extern "C" fn arena_run(contender: u32, counting: u32) -> Code {
     }))
 }
 
-/// The pairs of a contender's last run, as many as it reported; null without such a contender.
+/// The pairs of a searcher's last run, as many as it reported; null without such a searcher.
 #[unsafe(no_mangle)]
-pub extern "C" fn arena_pairs(contender: u32) -> *const u32 {
-    with(|arena| arena.pairs(contender as usize)).unwrap_or(std::ptr::null())
+pub extern "C" fn experiment_pairs(searcher: u32) -> *const u32 {
+    with(|experiment| experiment.pairs(searcher as usize)).unwrap_or(std::ptr::null())
 }
 
-fn choice(contender: u32, sort: u32, axis: u32, persistent: u32) -> Option<Choice> {
-    let method = match contender as usize {
+fn choice(searcher: u32, sort: u32, axis: u32, persistent: u32) -> Option<Choice> {
+    let method = match searcher as usize {
         0 => return Some(Choice::Finder),
         1 => return Some(Choice::World),
         place => *Method::ALL.get(place - 2)?,

@@ -75,14 +75,14 @@ pub const LAWS: [Law; 6] = [
 /// So many steps a box needs to fall from the top of the scene to its floor.
 const FALL_STEPS: f64 = 90.0;
 
-/// The boxes of a scene in motion. Centres stay where the first ones were: within their hull.
+/// The boxes of a scene in motion. Centers stay inside the bounds of the first centers.
 #[derive(Clone, Debug)]
 pub struct Moving<const D: usize> {
     boxes: Vec<Aabb<D>>,
-    centres: Vec<[f64; D]>,
+    centers: Vec<[f64; D]>,
     halves: Vec<[f64; D]>,
     velocities: Vec<[f64; D]>,
-    /// The hull of the centres.
+    /// The bounds of the first centers.
     walls: Aabb<D, f64>,
     /// What falling adds to the velocity on each axis.
     gravity: [f64; D],
@@ -93,10 +93,10 @@ pub struct Moving<const D: usize> {
 impl<const D: usize> Moving<D> {
     /// Boxes with finite coordinates, about to move. The same seed gives the same motion.
     pub fn new(boxes: Vec<Aabb<D>>, law: &Law, seed: u64) -> Self {
-        let centres: Vec<[f64; D]> = boxes.iter().map(centre).collect();
+        let centers: Vec<[f64; D]> = boxes.iter().map(center).collect();
         let halves: Vec<[f64; D]> = boxes.iter().map(half).collect();
         let mut walls = Aabb::new([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
-        for at in &centres {
+        for at in &centers {
             for (axis, &at) in at.iter().enumerate() {
                 walls.min[axis] = walls.min[axis].min(at);
                 walls.max[axis] = walls.max[axis].max(at);
@@ -115,7 +115,7 @@ impl<const D: usize> Moving<D> {
                 if random.unit() < law.share { velocity } else { [0.0; D] }
             })
             .collect();
-        Self { boxes, centres, halves, velocities, walls, gravity, jumps: law.jumps, random }
+        Self { boxes, centers, halves, velocities, walls, gravity, jumps: law.jumps, random }
     }
 
     /// The boxes of the current step.
@@ -126,39 +126,39 @@ impl<const D: usize> Moving<D> {
     /// Moves on by one step. O(n).
     pub fn advance(&mut self) {
         for index in 0..self.boxes.len() {
-            let (centre, velocity) = (&mut self.centres[index], &mut self.velocities[index]);
-            let before = *centre;
+            let (center, velocity) = (&mut self.centers[index], &mut self.velocities[index]);
+            let before = *center;
             for axis in 0..D {
                 // Half the kick before the way and half after it: what falls rises as high again.
                 velocity[axis] += 0.5 * self.gravity[axis];
-                centre[axis] += velocity[axis];
+                center[axis] += velocity[axis];
                 velocity[axis] += 0.5 * self.gravity[axis];
                 let (low, high) = (self.walls.min[axis], self.walls.max[axis]);
-                if centre[axis] < low || centre[axis] > high {
-                    let wall = if centre[axis] < low { low } else { high };
-                    centre[axis] = (2.0 * wall - centre[axis]).clamp(low, high);
+                if center[axis] < low || center[axis] > high {
+                    let wall = if center[axis] < low { low } else { high };
+                    center[axis] = (2.0 * wall - center[axis]).clamp(low, high);
                     velocity[axis] = -velocity[axis];
                 }
             }
             if self.jumps > 0.0 && self.random.unit() < self.jumps {
-                for (axis, at) in centre.iter_mut().enumerate() {
+                for (axis, at) in center.iter_mut().enumerate() {
                     let (low, high) = (self.walls.min[axis], self.walls.max[axis]);
                     *at = low + self.random.unit() * (high - low);
                 }
             }
             // A box that rests keeps the bits of its scene.
-            if *centre != before {
+            if *center != before {
                 let half = self.halves[index];
                 self.boxes[index] = Aabb::new(
-                    std::array::from_fn(|axis| (centre[axis] - half[axis]) as f32),
-                    std::array::from_fn(|axis| (centre[axis] + half[axis]) as f32),
+                    std::array::from_fn(|axis| (center[axis] - half[axis]) as f32),
+                    std::array::from_fn(|axis| (center[axis] + half[axis]) as f32),
                 );
             }
         }
     }
 }
 
-/// The boxes `size` times as large about their centres, and the largest made `spread` times as
+/// The boxes `size` times as large about their centers, and the largest made `spread` times as
 /// large as the smallest: factors from `size / √spread` to `size * √spread`, even in their
 /// logarithm. Both 1 leave every bit as it is.
 pub fn resize<const D: usize>(boxes: &mut [Aabb<D>], size: f64, spread: f64, seed: u64) {
@@ -168,15 +168,15 @@ pub fn resize<const D: usize>(boxes: &mut [Aabb<D>], size: f64, spread: f64, see
     let mut random = Random::new(seed.wrapping_add(1));
     for aabb in boxes {
         let factor = size * spread.powf(random.unit() - 0.5);
-        let (centre, half) = (centre(aabb), half(aabb).map(|at| at * factor));
+        let (center, half) = (center(aabb), half(aabb).map(|at| at * factor));
         *aabb = Aabb::new(
-            std::array::from_fn(|axis| (centre[axis] - half[axis]) as f32),
-            std::array::from_fn(|axis| (centre[axis] + half[axis]) as f32),
+            std::array::from_fn(|axis| (center[axis] - half[axis]) as f32),
+            std::array::from_fn(|axis| (center[axis] + half[axis]) as f32),
         );
     }
 }
 
-fn centre<const D: usize>(aabb: &Aabb<D>) -> [f64; D] {
+fn center<const D: usize>(aabb: &Aabb<D>) -> [f64; D] {
     std::array::from_fn(|axis| 0.5 * (f64::from(aabb.min[axis]) + f64::from(aabb.max[axis])))
 }
 

@@ -60,31 +60,31 @@ enum Open {
 
 /// What JavaScript reads and writes.
 #[derive(Default)]
-struct Door {
+struct Shared {
     open: Option<Open>,
     text: String,
     rows: Vec<f32>,
 }
 
 thread_local! {
-    static DOOR: RefCell<Door> = RefCell::default();
+    static SHARED: RefCell<Shared> = RefCell::default();
 }
 
 /// Writes the table of what there is, as JSON, and returns its length in bytes.
 #[unsafe(no_mangle)]
 extern "C" fn table() -> usize {
-    DOOR.with_borrow_mut(|door| {
+    SHARED.with_borrow_mut(|shared| {
         let mut text = String::from("[");
         for scene in Scene::ALL {
             let dimensions: Vec<_> = scene.dimensions().collect();
             line(&mut text, scene.name(), "find", &dimensions, scene.description());
         }
         for motion in Motion::ALL {
-            line(&mut text, motion.name(), "follow", &[1, 2, 3], motion.description());
+            line(&mut text, motion.name(), "track", &[1, 2, 3], motion.description());
         }
         text.pop();
-        door.text = text + "]";
-        door.text.len()
+        shared.text = text + "]";
+        shared.text.len()
     })
 }
 
@@ -96,29 +96,29 @@ fn line(text: &mut String, name: &str, task: &str, dimensions: &[usize], descrip
     );
 }
 
-/// Makes room for a text of so many bytes.
+/// Reserves memory for a text of this many bytes.
 #[unsafe(no_mangle)]
-extern "C" fn make_room(bytes: usize) {
-    DOOR.with_borrow_mut(|door| door.text = "\0".repeat(bytes));
+extern "C" fn reserve_text(bytes: usize) {
+    SHARED.with_borrow_mut(|shared| shared.text = "\0".repeat(bytes));
 }
 
 /// Where the text is: the table, or what JavaScript wrote.
 #[unsafe(no_mangle)]
 extern "C" fn text() -> *const u8 {
-    DOOR.with_borrow(|door| door.text.as_ptr())
+    SHARED.with_borrow(|shared| shared.text.as_ptr())
 }
 
 /// Opens the scene whose name is the text. 0: there is none in so many dimensions, 1: boxes at
 /// rest, 2: boxes in motion.
 #[unsafe(no_mangle)]
 extern "C" fn open(dimensions: usize, n: usize) -> u32 {
-    DOOR.with_borrow_mut(|door| {
-        door.open = match dimensions {
-            2 => Boxes::new(&door.text, n).map(Open::Two),
-            3 => Boxes::new(&door.text, n).map(Open::Three),
+    SHARED.with_borrow_mut(|shared| {
+        shared.open = match dimensions {
+            2 => Boxes::new(&shared.text, n).map(Open::Two),
+            3 => Boxes::new(&shared.text, n).map(Open::Three),
             _ => None,
         };
-        match &door.open {
+        match &shared.open {
             None => 0,
             Some(Open::Two(Boxes::AtRest(_)) | Open::Three(Boxes::AtRest(_))) => 1,
             Some(_) => 2,
@@ -130,8 +130,8 @@ extern "C" fn open(dimensions: usize, n: usize) -> u32 {
 /// where they are.
 #[unsafe(no_mangle)]
 extern "C" fn rows(turn: usize) -> *const f32 {
-    DOOR.with_borrow_mut(|door| {
-        let Door { open, rows, .. } = door;
+    SHARED.with_borrow_mut(|shared| {
+        let Shared { open, rows, .. } = shared;
         rows.clear();
         match open {
             Some(Open::Two(boxes)) => flatten(boxes.turn(turn), rows),
@@ -149,7 +149,7 @@ fn flatten<const D: usize>(boxes: &[Aabb<D>], rows: &mut Vec<f32>) {
 /// Moves on by one frame.
 #[unsafe(no_mangle)]
 extern "C" fn advance() {
-    DOOR.with_borrow_mut(|door| match &mut door.open {
+    SHARED.with_borrow_mut(|shared| match &mut shared.open {
         Some(Open::Two(boxes)) => boxes.advance(),
         Some(Open::Three(boxes)) => boxes.advance(),
         None => {}

@@ -14,16 +14,17 @@ const SEED: u64 = 1;
 const FRAMES: usize = 20;
 
 /// A name and bytes that JavaScript reads.
-struct Part {
+struct Section {
     name: String,
     bytes: Vec<u8>,
 }
 
 /// The whole report, and then the boxes of each of its lines: rows of little-endian coordinates.
-fn parts() -> &'static [Part] {
-    static PARTS: OnceLock<Vec<Part>> = OnceLock::new();
+fn parts() -> &'static [Section] {
+    static PARTS: OnceLock<Vec<Section>> = OnceLock::new();
     PARTS.get_or_init(|| {
-        let mut parts = vec![Part { name: "report".into(), bytes: golden_report().into_bytes() }];
+        let mut parts =
+            vec![Section { name: "report".into(), bytes: golden_report().into_bytes() }];
         dimension::<1>(&mut parts);
         dimension::<2>(&mut parts);
         dimension::<3>(&mut parts);
@@ -31,7 +32,7 @@ fn parts() -> &'static [Part] {
     })
 }
 
-fn dimension<const D: usize>(parts: &mut Vec<Part>) {
+fn dimension<const D: usize>(parts: &mut Vec<Section>) {
     for &scene in Scene::ALL {
         add(parts, scene.name(), scene.boxes::<D, f32>(N, SEED), |at| at.to_le_bytes().to_vec());
         add(parts, scene.name(), scene.boxes::<D, f64>(N, SEED), |at| at.to_le_bytes().to_vec());
@@ -49,7 +50,7 @@ fn last_frame<const D: usize, T: Scalar>(motion: Motion) -> Option<Vec<Aabb<D, T
 }
 
 fn add<const D: usize, T: Scalar>(
-    parts: &mut Vec<Part>,
+    parts: &mut Vec<Section>,
     name: &str,
     boxes: Option<Vec<Aabb<D, T>>>,
     to_bytes: impl Fn(T) -> Vec<u8>,
@@ -57,7 +58,7 @@ fn add<const D: usize, T: Scalar>(
     let Some(boxes) = boxes else { return };
     let coordinates = boxes.iter().flat_map(|aabb| aabb.min.into_iter().chain(aabb.max));
     let bytes = coordinates.flat_map(to_bytes).collect();
-    parts.push(Part { name: format!("{name} {D}d f{}", 8 * size_of::<T>()), bytes });
+    parts.push(Section { name: format!("{name} {D}d f{}", 8 * size_of::<T>()), bytes });
 }
 
 #[unsafe(no_mangle)]

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use sweep_and_prune::{Error, ProxyId};
 use sweep_and_prune_bindings::{Answer, AnyBroadPhase, Id};
 
-use crate::status::{Code, tell, tell_error};
+use crate::status::{Code, report, report_error};
 
 /// Bits of an id that are its slot. Each body takes more than 64 bytes, so 4 GiB hold fewer.
 const SLOT_BITS: u32 = 26;
@@ -86,8 +86,8 @@ impl Handle {
     /// Reports the ids in the answer.
     pub fn answer(&self, result: Result<(), Error>) -> Code {
         match result {
-            Ok(()) => tell(Code::Ok, [self.answer.ids.as_ptr().addr(), self.answer.ids.len()]),
-            Err(error) => tell_error(error),
+            Ok(()) => report(Code::Ok, [self.answer.ids.as_ptr().addr(), self.answer.ids.len()]),
+            Err(error) => report_error(error),
         }
     }
 }

@@ -12,7 +12,7 @@ use alloc::vec::Vec;
 use sweep_and_prune::{Filter, Report};
 use sweep_and_prune_bindings::{Id, Query, Settings};
 
-use crate::status::{Code, tell, tell_error};
+use crate::status::{Code, report, report_error};
 use handle::{Handle, Number, note};
 
 fn filter_of(category: u32, mask: u32, group: i32, is_static: bool) -> Filter {
@@ -83,9 +83,9 @@ extern "C" fn world_insert(handle: &mut Handle) -> Code {
         Ok(id) => {
             handle.note(id);
             handle.numbers[0] = Number::from_proxy(id).0;
-            tell(Code::Ok, [0, 0])
+            report(Code::Ok, [0, 0])
         }
-        Err(error) => tell_error(error),
+        Err(error) => report_error(error),
     }
 }
 
@@ -252,7 +252,7 @@ extern "C" fn world_query(
 #[unsafe(no_mangle)]
 extern "C" fn world_snapshot(handle: &mut Handle) -> Code {
     handle.bytes = stored::snapshot(&handle.world, handle.dimensions);
-    tell(Code::Ok, [handle.bytes.as_ptr().addr(), handle.bytes.len()])
+    report(Code::Ok, [handle.bytes.as_ptr().addr(), handle.bytes.len()])
 }
 
 /// Becomes the broad phase of the snapshot in the bytes. Details: whether it is in double precision.
@@ -266,9 +266,9 @@ extern "C" fn world_restore(handle: &mut Handle) -> Code {
             let generations = &mut handle.generations;
             generations.clear();
             handle.world.for_each_id(&mut |id| note(generations, id));
-            tell(Code::Ok, [usize::from(handle.world.kind().is_double), 0])
+            report(Code::Ok, [usize::from(handle.world.kind().is_double), 0])
         }
-        Err(error) => tell_error(error),
+        Err(error) => report_error(error),
     }
 }
 
@@ -276,5 +276,5 @@ extern "C" fn world_restore(handle: &mut Handle) -> Code {
 #[unsafe(no_mangle)]
 extern "C" fn world_state_hash(handle: &mut Handle) -> Code {
     let hash = handle.world.state_hash();
-    tell(Code::Ok, [hash as u32 as usize, (hash >> 32) as usize])
+    report(Code::Ok, [hash as u32 as usize, (hash >> 32) as usize])
 }

@@ -1,4 +1,4 @@
-//! Who looks for the pairs: an algorithm, the library's finder, or its living world.
+//! A searcher finds the pairs: an algorithm, the library's `PairFinder`, or its `BroadPhase`.
 
 use sweep_and_prune::algorithms::{Axis, Counts, Method, Runner, RunnerOptions};
 use sweep_and_prune::{Aabb, BroadPhase, Error, Filter, PairFinder, ProxyId};
@@ -6,7 +6,7 @@ use sweep_and_prune::{Aabb, BroadPhase, Error, Filter, PairFinder, ProxyId};
 /// Which one.
 #[derive(Clone, Copy, Debug)]
 pub enum Choice {
-    /// [`PairFinder`]: finds all pairs anew.
+    /// [`PairFinder`]: finds all pairs from scratch.
     Finder,
     /// [`BroadPhase`]: keeps a world, and lists its pairs.
     World,
@@ -14,9 +14,9 @@ pub enum Choice {
     Algorithm(RunnerOptions),
 }
 
-/// One contender with what it keeps from step to step.
+/// One searcher with what it keeps from step to step.
 #[derive(Debug)]
-pub struct Contender<const D: usize> {
+pub struct Searcher<const D: usize> {
     choice: Choice,
     engine: Engine<D>,
     pairs: Vec<[u32; 2]>,
@@ -42,8 +42,8 @@ pub struct Report {
     pub fingerprint: u64,
 }
 
-impl<const D: usize> Contender<D> {
-    /// A contender that has seen nothing.
+impl<const D: usize> Searcher<D> {
+    /// A searcher that has seen nothing.
     ///
     /// # Errors
     /// [`Error::InvalidAxis`].

@@ -1,6 +1,6 @@
 import { PairList } from "./pair-list.js";
 
-/** All pairs tested: the reference that the others are checked against. */
+/** Tests every pair: the reference for all other libraries. */
 export async function create({ dimensions }) {
   const pairs = new PairList();
   return {

@@ -4,7 +4,7 @@ import { PairList } from "./pair-list.js";
 import { isAtRest, meanWidth } from "./rows.js";
 
 // The broad phase of its world. It reports a pair once for each of its boxes that is new or has
-// left its fat box.
+// left its fattened AABB.
 export async function create({ isMoving, rows: first }) {
   const aabb = new AABB();
   const write = (rows, at) => {

@@ -2,7 +2,7 @@ import initJolt from "jolt-physics";
 import { PairList } from "./pair-list.js";
 import { isAtRest, overlaps, rounding } from "./rows.js";
 
-// Its quadtree, asked for each box. Boxes are a centre and half sizes in single precision there, so
+// Its quadtree, asked for each box. Boxes are a center and half sizes in single precision there, so
 // they are made larger by what rounding takes, and the pairs tested once more.
 export async function create({ isMoving, rows: first }) {
   const Jolt = await initJolt();
@@ -59,7 +59,7 @@ export async function create({ isMoving, rows: first }) {
     return !isSame;
   }
 
-  function centre(i) {
+  function center(i) {
     const at = 6 * i;
     position.Set((rows[at] + rows[at + 3]) / 2, (rows[at + 1] + rows[at + 4]) / 2, (rows[at + 2] + rows[at + 5]) / 2);
     return position;
@@ -68,7 +68,7 @@ export async function create({ isMoving, rows: first }) {
   const list = new Jolt.ArrayBodyID();
   for (let i = 0; i < count; i++) {
     isResized(i);
-    const body = new Jolt.BodyCreationSettings(new Jolt.BoxShape(min, 0), centre(i), rotation, Jolt.EMotionType_Kinematic, 0);
+    const body = new Jolt.BodyCreationSettings(new Jolt.BoxShape(min, 0), center(i), rotation, Jolt.EMotionType_Kinematic, 0);
     const id = bodies.CreateBody(body).GetID();
     Jolt.destroy(body);
     boxOf[id.GetIndex()] = i;
@@ -98,7 +98,7 @@ export async function create({ isMoving, rows: first }) {
       rows = boxes;
       for (let i = 0; i < count; i++) {
         if (isAtRest(rows, before, 6 * i, 6)) continue;
-        bodies.SetPosition(ids[i], centre(i), Jolt.EActivation_DontActivate);
+        bodies.SetPosition(ids[i], center(i), Jolt.EActivation_DontActivate);
         if (isResized(i)) bodies.SetShape(ids[i], new Jolt.BoxShape(min, 0), false, Jolt.EActivation_DontActivate);
       }
       before.set(rows);

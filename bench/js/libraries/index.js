@@ -10,51 +10,51 @@
 // The same modules run in Node and in the browser.
 
 /**
- * @typedef {object} Contender
+ * @typedef {object} Library
  * @property {string} name
  * @property {string} package where it comes from; empty if it stands here
  * @property {readonly number[]} dimensions
- * @property {readonly ("find" | "follow")[]} tasks
- * @property {boolean} rival whether it competes with ours
+ * @property {readonly ("find" | "track")[]} tasks
+ * @property {boolean} alternative whether it is another library, or code without one
  * @property {string} how what is called
  * @property {string} module the file that does it, here; `load.js` loads it
  */
 
 /** The name that the others are compared with. */
-export const OURS = "sweep-and-prune";
-/** Ours as a world that is followed. */
+export const FINDER = "sweep-and-prune";
+/** The persistent broad phase of sweep-and-prune. */
 export const WORLD = "sweep-and-prune, BroadPhase";
 /** The sweep that a good developer writes in an hour. */
 export const PLAIN = "plain sweep";
 
-const BOTH = Object.freeze(/** @type {const} */ (["find", "follow"]));
+const BOTH = Object.freeze(/** @type {const} */ (["find", "track"]));
 
-/** @type {readonly Contender[]} */
-export const contenders = [
+/** @type {readonly Library[]} */
+export const libraries = [
   {
-    name: OURS,
+    name: FINDER,
     package: "sweep-and-prune",
     dimensions: [2, 3],
     tasks: BOTH,
-    rival: false,
+    alternative: false,
     how: "`PairFinder.find` on all boxes",
-    module: "ours",
+    module: "pair-finder",
   },
   {
     name: WORLD,
     package: "sweep-and-prune",
     dimensions: [2, 3],
-    tasks: ["follow"],
-    rival: false,
+    tasks: ["track"],
+    alternative: false,
     how: "`BroadPhase.setMany` with all boxes, `update`",
-    module: "ours-broad-phase",
+    module: "broad-phase",
   },
   {
     name: PLAIN,
     package: "",
     dimensions: [2, 3],
     tasks: BOTH,
-    rival: true,
+    alternative: true,
     how: "70 lines: sorted and swept along the axis of most variance, in typed arrays",
     module: "plain-sweep",
   },
@@ -63,7 +63,7 @@ export const contenders = [
     package: "box-intersect",
     dimensions: [2, 3],
     tasks: BOTH,
-    rival: true,
+    alternative: true,
     how: "`boxIntersect(boxes, visit)`, its arrays of boxes kept",
     module: "box-intersect",
   },
@@ -72,8 +72,8 @@ export const contenders = [
     package: "flatbush",
     dimensions: [2],
     tasks: BOTH,
-    rival: true,
-    how: "index of `Float32Array` built anew, `search` for each box, pairs taken in its callback",
+    alternative: true,
+    how: "index of `Float32Array` built from scratch, `search` for each box, pairs taken in its callback",
     module: "flatbush",
   },
   {
@@ -81,7 +81,7 @@ export const contenders = [
     package: "rbush",
     dimensions: [2],
     tasks: BOTH,
-    rival: true,
+    alternative: true,
     how: "`load` of all boxes, `search` for each, its items kept",
     module: "rbush",
   },
@@ -90,7 +90,7 @@ export const contenders = [
     package: "rbush-3d",
     dimensions: [3],
     tasks: BOTH,
-    rival: true,
+    alternative: true,
     how: "`load` of all boxes, `search` for each, its items kept",
     module: "rbush-3d",
   },
@@ -99,7 +99,7 @@ export const contenders = [
     package: "detect-collisions",
     dimensions: [2],
     tasks: BOTH,
-    rival: true,
+    alternative: true,
     how: "`createBox` each, or `setPosition` of those that moved, and its tree's `search`",
     module: "detect-collisions",
   },
@@ -108,7 +108,7 @@ export const contenders = [
     package: "cannon-es",
     dimensions: [3],
     tasks: BOTH,
-    rival: true,
+    alternative: true,
     how: "`SAPBroadphase.collisionPairs`, axis detected, boxes written to its bodies",
     module: "cannon-es",
   },
@@ -117,7 +117,7 @@ export const contenders = [
     package: "matter-js",
     dimensions: [2],
     tasks: BOTH,
-    rival: true,
+    alternative: true,
     how: "`Detector.collisions` without the exact test, boxes written to its bodies",
     module: "matter-js",
   },
@@ -126,7 +126,7 @@ export const contenders = [
     package: "p2-es",
     dimensions: [2],
     tasks: BOTH,
-    rival: true,
+    alternative: true,
     how: "`SAPBroadphase.getCollisionPairs`, best axis, boxes written to its bodies",
     module: "p2-es",
   },
@@ -135,7 +135,7 @@ export const contenders = [
     package: "planck",
     dimensions: [2],
     tasks: BOTH,
-    rival: true,
+    alternative: true,
     how: "`BroadPhase`: proxies created and its tree queried, or moved and `updatePairs`",
     module: "planck",
   },
@@ -144,7 +144,7 @@ export const contenders = [
     package: "@dimforge/rapier2d-compat",
     dimensions: [2],
     tasks: BOTH,
-    rival: true,
+    alternative: true,
     how: "a world of sensors, `step`, collision events",
     module: "rapier2d",
   },
@@ -153,7 +153,7 @@ export const contenders = [
     package: "@dimforge/rapier2d-simd-compat",
     dimensions: [2],
     tasks: BOTH,
-    rival: true,
+    alternative: true,
     how: "as rapier 2D",
     module: "rapier2d-simd",
   },
@@ -162,7 +162,7 @@ export const contenders = [
     package: "@dimforge/rapier3d-compat",
     dimensions: [3],
     tasks: BOTH,
-    rival: true,
+    alternative: true,
     how: "a world of sensors, `step`, collision events",
     module: "rapier3d",
   },
@@ -171,7 +171,7 @@ export const contenders = [
     package: "@dimforge/rapier3d-simd-compat",
     dimensions: [3],
     tasks: BOTH,
-    rival: true,
+    alternative: true,
     how: "as rapier 3D",
     module: "rapier3d-simd",
   },
@@ -180,7 +180,7 @@ export const contenders = [
     package: "jolt-physics",
     dimensions: [3],
     tasks: BOTH,
-    rival: true,
+    alternative: true,
     how: "bodies added in bulk or moved, `BroadPhaseQuery.CollideAABox` for each",
     module: "jolt-physics",
   },

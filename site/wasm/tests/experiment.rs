@@ -3,8 +3,8 @@
 use sweep_and_prune::Aabb;
 use sweep_and_prune::algorithms::{Axis, Counts, Method, Runner, RunnerOptions, Sort};
 use sweep_and_prune_scenes::Scene;
-use sweep_and_prune_site_wasm::contender::{Choice, Contender, forecast};
 use sweep_and_prune_site_wasm::motion::{LAWS, Moving, resize};
+use sweep_and_prune_site_wasm::searcher::{Choice, Searcher, forecast};
 
 const SCENES: [Scene; 5] =
     [Scene::Uniform, Scene::Clustered, Scene::Mixed, Scene::Grid, Scene::Needles];
@@ -23,16 +23,16 @@ fn everyone() -> Vec<Choice> {
 fn race<const D: usize>(scene: Scene, law: usize) {
     let boxes = scene.boxes::<D, f32>(150, 7).unwrap();
     let mut world = Moving::new(boxes, &LAWS[law], 7);
-    let mut contenders: Vec<Contender<D>> =
-        everyone().into_iter().map(|choice| Contender::new(choice).unwrap()).collect();
+    let mut searchers: Vec<Searcher<D>> =
+        everyone().into_iter().map(|choice| Searcher::new(choice).unwrap()).collect();
     for step in 0..12 {
         let brute = brute_force(world.boxes());
         let mut fingerprints = Vec::new();
-        for (who, contender) in contenders.iter_mut().enumerate() {
-            let report = contender.run(world.boxes(), true, || 0.0).unwrap();
-            let mut pairs = contender.pairs().to_vec();
+        for (who, searcher) in searchers.iter_mut().enumerate() {
+            let report = searcher.run(world.boxes(), true, || 0.0).unwrap();
+            let mut pairs = searcher.pairs().to_vec();
             pairs.sort_unstable();
-            assert_eq!(pairs, brute, "{scene:?}, law {law}, step {step}, contender {who}");
+            assert_eq!(pairs, brute, "{scene:?}, law {law}, step {step}, searcher {who}");
             assert_eq!(report.pairs, brute.len());
             fingerprints.push(report.fingerprint);
         }
@@ -48,7 +48,7 @@ fn brute_force<const D: usize>(boxes: &[Aabb<D>]) -> Vec<[u32; 2]> {
 }
 
 #[test]
-fn every_contender_finds_the_pairs_in_every_motion() {
+fn every_searcher_finds_the_pairs_in_every_motion() {
     for scene in SCENES {
         for law in 0..LAWS.len() {
             race::<2>(scene, law);
@@ -61,7 +61,7 @@ fn every_contender_finds_the_pairs_in_every_motion() {
 fn other_pairs_have_another_fingerprint() {
     let boxes = Scene::Uniform.boxes::<2, f32>(100, 1).unwrap();
     let print = |boxes: &[Aabb<2>]| {
-        let mut finder = Contender::new(Choice::Finder).unwrap();
+        let mut finder = Searcher::new(Choice::Finder).unwrap();
         let report = finder.run(boxes, false, || 0.0).unwrap();
         (report.pairs, report.fingerprint)
     };
@@ -120,7 +120,7 @@ fn the_forecast_is_what_the_first_run_does() {
         let boxes = scene.boxes::<2, f32>(400, 2).unwrap();
         for method in Method::ALL {
             let choice = algorithm(method, Sort::Standard);
-            let report = Contender::new(choice).unwrap().run(&boxes, true, || 0.0).unwrap();
+            let report = Searcher::new(choice).unwrap().run(&boxes, true, || 0.0).unwrap();
             let counts = report.counts.unwrap();
             let cast = forecast(choice, &boxes).unwrap();
             let tested = if counts.tests > 0 { counts.tests } else { counts.axis_overlaps };
@@ -129,18 +129,18 @@ fn the_forecast_is_what_the_first_run_does() {
     }
 }
 
-/// Brute force is not watched at work, because it is known what it does.
+/// Brute force is not observed, because its counts are known in advance.
 #[test]
-fn brute_force_is_counted_as_if_it_were_watched() {
+fn brute_force_has_the_counts_that_an_observer_sees() {
     for scene in SCENES {
         let boxes = scene.boxes::<3, f32>(150, 2).unwrap();
         let choice = algorithm(Method::Pairwise, Sort::Standard);
         let Choice::Algorithm(options) = choice else { unreachable!() };
-        let mut watched = Counts::default();
-        Runner::new(options).step(&boxes, &mut watched).unwrap();
-        let told = Contender::new(choice).unwrap().run(&boxes, true, || 0.0).unwrap().counts;
-        let Counts { tests, axis_overlaps, comparisons, swaps, .. } = told.unwrap();
-        assert_eq!((tests, axis_overlaps), (watched.tests, watched.axis_overlaps), "{scene:?}");
-        assert_eq!((comparisons, swaps), (watched.comparisons, watched.swaps));
+        let mut observed = Counts::default();
+        Runner::new(options).step(&boxes, &mut observed).unwrap();
+        let counts = Searcher::new(choice).unwrap().run(&boxes, true, || 0.0).unwrap().counts;
+        let Counts { tests, axis_overlaps, comparisons, swaps, .. } = counts.unwrap();
+        assert_eq!((tests, axis_overlaps), (observed.tests, observed.axis_overlaps), "{scene:?}");
+        assert_eq!((comparisons, swaps), (observed.comparisons, observed.swaps));
     }
 }

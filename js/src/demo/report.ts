@@ -1,7 +1,7 @@
 import type { TraceEvent } from "../trace.js";
 import type { DemoEvent, DemoEventMap, DemoSort } from "./types.js";
 
-/** Which kind of event a listener is told a trace event as. */
+/** The kind of demo event that each kind of trace event becomes. */
 const kinds: Partial<Record<TraceEvent["kind"], DemoEvent["kind"]>> = {
   compare: "compare",
   swap: "swap",
@@ -12,8 +12,8 @@ const kinds: Partial<Record<TraceEvent["kind"], DemoEvent["kind"]>> = {
   prune: "skip",
 };
 
-/** What listeners are told of an event, the so-manyeth of its detection, if anything. */
-export function toldAs(event: TraceEvent, index: number): DemoEvent | undefined {
+/** The demo event of a trace event, if it has one. `index` counts within its detection. */
+export function demoEventOf(event: TraceEvent, index: number): DemoEvent | undefined {
   const kind = kinds[event.kind];
   if (!kind) return undefined;
   const a = Number(event["a"] ?? event["left"] ?? event["id"]);
@@ -22,23 +22,23 @@ export function toldAs(event: TraceEvent, index: number): DemoEvent | undefined 
   return { kind, a: isOfEdges ? a >> 1 : a, b: isOfEdges ? b >> 1 : b, index };
 }
 
-/** What it is as an event of the sort, if it is one. */
-function toldOfSort({ kind, i, j, a, b }: TraceEvent): DemoSort | undefined {
+/** The event of the sort, if it is one. */
+function demoSortOf({ kind, i, j, a, b }: TraceEvent): DemoSort | undefined {
   if (kind === "swap") return { kind, i: Number(i), j: Number(j) };
   if (kind === "compare") return { kind, i: Number(a), j: Number(b) };
   return undefined;
 }
 
-/** Tells those who listen to a demo. */
+/** Dispatches an event to the listeners of a demo. */
 export function emit<K extends keyof DemoEventMap>(demo: Element, type: K, detail: DemoEventMap[K]["detail"]): void {
   demo.dispatchEvent(new CustomEvent(type, { detail, bubbles: true, composed: true }));
 }
 
-/** Tells of an event, the so-manyeth of its detection, if it is one to be told. */
-export function tell(demo: Element, event: TraceEvent, index: number): void {
-  const detail = toldAs(event, index);
+/** Reports a trace event to listeners, if it is of a kind that they can see. `index` counts within its detection. */
+export function report(demo: Element, event: TraceEvent, index: number): void {
+  const detail = demoEventOf(event, index);
   if (!detail) return;
-  const ofSort = toldOfSort(event);
+  const ofSort = demoSortOf(event);
   if (ofSort) emit(demo, "sap-sort", ofSort);
   emit(demo, "sap-event", detail);
 }

@@ -1,8 +1,8 @@
-// The compiled arena of site/wasm: scenes in motion, and runners that find their pairs. Its layout
-// is described in site/wasm/src/lib.rs. Each thread has one arena.
+// The compiled experiment of site/wasm: scenes in motion, and runners that find their pairs. Its layout
+// is described in site/wasm/src/lib.rs. Each thread has one experiment.
 
-import scalarWasm from "../generated/arena.wasm?url";
-import simdWasm from "../generated/arena.simd.wasm?url";
+import scalarWasm from "../generated/experiment.wasm?url";
+import simdWasm from "../generated/experiment.simd.wasm?url";
 import { hasSimd } from "../simulation/simd.ts";
 
 /** The axes by name. */
@@ -66,7 +66,7 @@ export interface Forecast {
 
 type Exports = Record<string, (...numbers: number[]) => number>;
 
-export class Arena {
+export class Experiment {
   readonly lists: Lists;
   readonly #exports: Exports;
   readonly #memory: WebAssembly.Memory;
@@ -95,11 +95,11 @@ export class Arena {
     };
   }
 
-  static async load(): Promise<Arena> {
+  static async load(): Promise<Experiment> {
     const response = await fetch(new URL(hasSimd() ? simdWasm : scalarWasm, self.location.href));
-    if (!response.ok) throw new Error(`the arena could not be loaded: ${response.status}`);
+    if (!response.ok) throw new Error(`the experiment could not be loaded: ${response.status}`);
     const env = { now: () => performance.now() };
-    return new Arena((await WebAssembly.instantiate(await response.arrayBuffer(), { env })).instance);
+    return new Experiment((await WebAssembly.instantiate(await response.arrayBuffer(), { env })).instance);
   }
 
   /** Makes a world at its first step, and forgets the one before and its runners. */
@@ -108,40 +108,40 @@ export class Arena {
     const place = (list: readonly Named[], name: string): number => list.findIndex((item) => item.name === name);
     const { dimensions, scene, motion, boxes, seed, size, spread } = options;
     this.#area().set([dimensions, place(lists.scenes, scene), place(lists.motions, motion), boxes, seed, size, spread]);
-    this.#attempt("arena_begin");
+    this.#attempt("experiment_begin");
     this.#dimensions = dimensions;
     this.#boxes = boxes;
     this.#found = [];
   }
 
   advance(): void {
-    this.#attempt("arena_advance");
+    this.#attempt("experiment_advance");
   }
 
-  /** Rows of min corner and max corner: a view of the arena's memory, until the next call. */
+  /** Rows of min corner and max corner: a view of the experiment's memory, until the next call. */
   get boxes(): Float32Array {
-    return new Float32Array(this.#memory.buffer, this.#call("arena_boxes"), 2 * this.#dimensions * this.#boxes);
+    return new Float32Array(this.#memory.buffer, this.#call("experiment_boxes"), 2 * this.#dimensions * this.#boxes);
   }
 
   /** How many pairs there are, without storing any. */
   countPairs(): number {
-    return this.#exports["arena_count_pairs"]?.() ?? -1;
+    return this.#exports["experiment_count_pairs"]?.() ?? -1;
   }
 
   /** Adds a runner. They are numbered from 0. */
   enter(options: RunnerOptions): void {
-    this.#attempt("arena_enter", ...this.#indices(options), 1);
+    this.#attempt("experiment_enter", ...this.#indices(options), 1);
   }
 
   forecast(options: RunnerOptions): Forecast {
-    this.#attempt("arena_forecast", ...this.#indices(options));
+    this.#attempt("experiment_forecast", ...this.#indices(options));
     const [tests = 0, kept = 0] = this.#area();
     return { tests, kept };
   }
 
   /** Lets a runner find the pairs of the world as it is; counted, if asked, on a copy. */
   run(runner: number, counting: boolean): Report {
-    this.#attempt("arena_run", runner, Number(counting));
+    this.#attempt("experiment_run", runner, Number(counting));
     const [ms = 0, pairs = 0, upper = 0, lower = 0, ...counts] = this.#area();
     const hex = (half: number): string => half.toString(16).padStart(8, "0");
     const counted = (count = -1): number | null => (count < 0 ? null : count);
@@ -159,7 +159,7 @@ export class Arena {
 
   /** The pairs of a runner's last run, `a0, b0, a1, b1, ..`: a view, until the next call. */
   pairs(runner: number): Uint32Array {
-    const at = this.#call("arena_pairs", runner);
+    const at = this.#call("experiment_pairs", runner);
     return new Uint32Array(this.#memory.buffer, at, 2 * (this.#found[runner] ?? 0));
   }
 
@@ -169,13 +169,13 @@ export class Arena {
   }
 
   #names(kind: number): string[] {
-    const at = this.#call("arena_names", kind);
+    const at = this.#call("experiment_names", kind);
     return new TextDecoder().decode(new Uint8Array(this.#memory.buffer, at, this.#area()[0])).split("\n");
   }
 
   /** The numbers that both sides exchange: a new view each time, because memory moves when it grows. */
   #area(): Float64Array {
-    return new Float64Array(this.#memory.buffer, this.#call("arena_area"), 16);
+    return new Float64Array(this.#memory.buffer, this.#call("experiment_area"), 16);
   }
 
   #call(name: string, ...numbers: number[]): number {
@@ -183,6 +183,6 @@ export class Arena {
   }
 
   #attempt(name: string, ...numbers: number[]): void {
-    if (this.#call(name, ...numbers) !== 0) throw new RangeError("the arena does not have what it was asked for");
+    if (this.#call(name, ...numbers) !== 0) throw new RangeError("the experiment does not have what it was asked for");
   }
 }

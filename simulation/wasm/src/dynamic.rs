@@ -14,7 +14,7 @@ pub const MOST_BODIES: f64 = 100_000.0;
 pub const MOST_GIVEN: u32 = 4_096;
 
 /// What the exports do with a simulation, whatever its dimensions.
-pub trait Door {
+pub trait DynSimulation {
     fn step(&mut self) -> Result<[f64; 10], Code>;
     fn describe(&self) -> [f64; 14];
     fn set(&mut self, setting: u32, value: f64) -> Result<(), Code>;
@@ -28,7 +28,7 @@ pub trait Door {
     fn save(&mut self) -> usize;
     fn restore(&mut self, moment: usize) -> Result<(), Code>;
     fn forget(&mut self, moment: usize);
-    fn place(&mut self, ball: usize, centre: [f32; 2], velocity: [f32; 2]) -> Result<(), Code>;
+    fn place(&mut self, ball: usize, center: [f32; 2], velocity: [f32; 2]) -> Result<(), Code>;
 }
 
 /// A simulation, and which way down is.
@@ -41,7 +41,7 @@ struct Inside<const D: usize> {
     free_moments: Vec<usize>,
 }
 
-impl<const D: usize> Door for Inside<D> {
+impl<const D: usize> DynSimulation for Inside<D> {
     fn step(&mut self) -> Result<[f64; 10], Code> {
         let report = self.simulation.step(clock).map_err(|_| Code::Internal)?;
         let counted = |count: fn(&Counts) -> u64| {
@@ -165,13 +165,13 @@ impl<const D: usize> Door for Inside<D> {
         }
     }
 
-    fn place(&mut self, ball: usize, centre: [f32; 2], velocity: [f32; 2]) -> Result<(), Code> {
+    fn place(&mut self, ball: usize, center: [f32; 2], velocity: [f32; 2]) -> Result<(), Code> {
         // Further axes keep their coordinate and come to rest.
         let Some(&(mut at)) = self.simulation.positions().get(ball) else {
             return Err(Code::InvalidOption);
         };
         let mut speed = [0.0; D];
-        at[..2].copy_from_slice(&centre);
+        at[..2].copy_from_slice(&center);
         speed[..2].copy_from_slice(&velocity);
         self.simulation.place(ball, at, speed).map_err(refusal)
     }
@@ -220,7 +220,7 @@ impl Start {
 }
 
 /// Makes the simulation.
-pub fn open(start: &Start) -> Result<Box<dyn Door>, Code> {
+pub fn open(start: &Start) -> Result<Box<dyn DynSimulation>, Code> {
     Ok(match start {
         Start::Falling2(population) => inside(scenes::falling::<2>(*population), -1.0)?,
         Start::Falling3(population) => inside(scenes::falling::<3>(*population), -1.0)?,
@@ -232,14 +232,14 @@ pub fn open(start: &Start) -> Result<Box<dyn Door>, Code> {
 fn inside<const D: usize>(
     setup: Result<Setup<D>, SetupError>,
     down: f32,
-) -> Result<Box<dyn Door>, Code> {
+) -> Result<Box<dyn DynSimulation>, Code> {
     let simulation = setup.and_then(|setup| Simulation::new(&setup)).map_err(refusal)?;
     Ok(Box::new(Inside { simulation, down, moments: Vec::new(), free_moments: Vec::new() }))
 }
 
 fn refusal(error: SetupError) -> Code {
     match error {
-        SetupError::NoRoom { .. } => Code::NoRoom,
+        SetupError::TooCrowded { .. } => Code::TooCrowded,
         _ => Code::InvalidOption,
     }
 }

@@ -1,4 +1,4 @@
-/** A growing list of pairs: what contenders that call back with each pair store them in. */
+/** A growing list of pairs: what libraries that call back with each pair store them in. */
 export class PairList {
   #words = new Uint32Array(1 << 12);
   #length = 0;

@@ -1,20 +1,20 @@
-export type Task = "find" | "follow";
+export type Task = "find" | "track";
 
-export interface Contender {
+export interface Library {
   readonly name: string;
   readonly package: string;
   readonly dimensions: readonly number[];
   readonly tasks: readonly Task[];
-  readonly rival: boolean;
+  readonly alternative: boolean;
   readonly how: string;
   readonly module: string;
 }
 
-export interface ContenderModule {
+export interface LibraryModule {
   create(setting: { dimensions: number; isMoving: boolean; rows: Float32Array }): Promise<unknown>;
 }
 
-export const OURS: string;
+export const FINDER: string;
 export const WORLD: string;
 export const PLAIN: string;
-export const contenders: readonly Contender[];
+export const libraries: readonly Library[];

@@ -2,7 +2,7 @@ import { Candidates } from "./candidates.js";
 import { isAtRest, meanWidth, rounding } from "./rows.js";
 
 // Its world of sensors on bodies that the caller moves, stepped: what begins and ends to overlap
-// comes as events. Boxes are a centre and half sizes in single precision there, so they are made
+// comes as events. Boxes are a center and half sizes in single precision there, so they are made
 // larger by what rounding takes, and the pairs tested once more.
 
 /**
@@ -39,18 +39,18 @@ export async function createWith(RAPIER, { dimensions, rows: first }) {
   }
 
   const sizes = new Float64Array((bodies.length || 1) * dimensions);
-  const [centre, half] = [{ ...zero }, { ...zero }];
+  const [center, half] = [{ ...zero }, { ...zero }];
   const axes = /** @type {const} */ (["x", "y", "z"]).slice(0, dimensions);
 
   function place(/** @type {Float32Array} */ rows, /** @type {number} */ i) {
     let isSame = true;
     axes.forEach((axis, k) => {
       const [least, greatest] = [rows[i * width + k], rows[i * width + dimensions + k]];
-      centre[axis] = (least + greatest) / 2;
+      center[axis] = (least + greatest) / 2;
       half[axis] = (greatest - least) / 2 + more;
       isSame &&= Math.abs(half[axis] - sizes[i * dimensions + k]) < more / 2;
     });
-    bodies[i].setTranslation(centre, true);
+    bodies[i].setTranslation(center, true);
     if (isSame) return;
     colliders[i].setHalfExtents(half);
     axes.forEach((axis, k) => (sizes[i * dimensions + k] = half[axis]));

@@ -1,8 +1,8 @@
-//! Algorithms that are wrong, each by one error that is often made, so that a laboratory can show
-//! what comes of it: pairs that flicker, pairs that are missed. Never to be used for anything else.
+//! Broken variants: algorithms with one common mistake each, shown on purpose, so that a demo can show
+//! the effect: pairs that flicker, pairs that are missed. Never use them for anything else.
 //!
-//! They tell an observer what they do as the right ones in `core/src/algorithms/` do, and take the
-//! axis and the boxes as those do.
+//! They report to an observer and take the axis and the boxes as the correct algorithms in
+//! `core/src/algorithms/` do.
 
 use alloc::vec::Vec;
 use core::mem;
@@ -19,20 +19,20 @@ pub enum Wrong {
     /// The swap-driven sweep begun on endpoints that were sorted first: what overlaps then makes
     /// no swap, so it is not seen until it has parted and met again.
     SortedStart,
-    /// Sorted pairwise, but by centre: the scan still breaks at the first left edge beyond, after
+    /// Sorted pairwise, but by center: the scan still breaks at the first left edge beyond, after
     /// which a larger box may come that reaches back.
-    SortByCentre,
+    SortByCenter,
 }
 
 impl Wrong {
-    const ALL: [Wrong; 3] = [Wrong::StrictTies, Wrong::SortedStart, Wrong::SortByCentre];
+    const ALL: [Wrong; 3] = [Wrong::StrictTies, Wrong::SortedStart, Wrong::SortByCenter];
 
     /// The name by which it is chosen, which says that it is wrong.
     pub const fn name(self) -> &'static str {
         match self {
             Wrong::StrictTies => "strict ties (wrong)",
             Wrong::SortedStart => "sorted start (wrong)",
-            Wrong::SortByCentre => "sort by centre (wrong)",
+            Wrong::SortByCenter => "sort by center (wrong)",
         }
     }
 
@@ -43,14 +43,14 @@ impl Wrong {
 }
 
 /// Runs a wrong algorithm over the boxes of one step after another. With another number of boxes
-/// it begins anew.
+/// it starts from scratch.
 #[derive(Clone, Debug)]
 pub struct WrongRunner<const D: usize> {
     wrong: Wrong,
     axis: Axis,
     last_axis: usize,
     boxes: usize,
-    /// The endpoints, or, sorted by centre, the left ones.
+    /// The endpoints, or, sorted by center, the left ones.
     array: Vec<Endpoint<f64>>,
     /// What it believes to overlap on the axis, sorted.
     overlapping: Vec<[u32; 2]>,
@@ -87,16 +87,16 @@ impl<const D: usize> WrongRunner<D> {
         let axis = self.axis.choose(boxes)?;
         let begins = self.boxes != boxes.len() || self.last_axis != axis;
         (self.boxes, self.last_axis) = (boxes.len(), axis);
-        observer.step(axis, self.wrong != Wrong::SortByCentre);
+        observer.step(axis, self.wrong != Wrong::SortByCenter);
         if begins {
             for &[a, b] in &mem::take(&mut self.overlapping) {
                 observer.axis_apart(axis, a, b);
             }
-            self.array = endpoints(boxes, self.wrong != Wrong::SortByCentre);
+            self.array = endpoints(boxes, self.wrong != Wrong::SortByCenter);
         }
         refresh(&mut self.array, boxes, axis);
         self.pairs.clear();
-        if self.wrong == Wrong::SortByCentre {
+        if self.wrong == Wrong::SortByCenter {
             self.scan(boxes, axis, observer);
         } else {
             if begins && self.wrong == Wrong::SortedStart {
@@ -108,7 +108,7 @@ impl<const D: usize> WrongRunner<D> {
                 test(boxes, axis, [a, b], observer, &mut self.pairs);
             }
         }
-        self.tell_changes(observer);
+        self.report_changes(observer);
         Ok(axis)
     }
 
@@ -159,9 +159,9 @@ impl<const D: usize> WrongRunner<D> {
         }
     }
 
-    /// Sorted by centre, each box against those that follow until one begins after it ends.
+    /// Sorted by center, each box against those that follow until one begins after it ends.
     fn scan<O: Observer>(&mut self, boxes: &[Aabb<D, f64>], axis: usize, observer: &mut O) {
-        let centre = |endpoint: &Endpoint<f64>| {
+        let center = |endpoint: &Endpoint<f64>| {
             let aabb = &boxes[endpoint.edge.id as usize];
             aabb.min[axis] * 0.5 + aabb.max[axis] * 0.5
         };
@@ -170,7 +170,7 @@ impl<const D: usize> WrongRunner<D> {
             for j in (0..i).rev() {
                 let [first, second] = [self.array[j], self.array[j + 1]];
                 observer.compare(second.edge, first.edge);
-                if centre(&first) <= centre(&second) {
+                if center(&first) <= center(&second) {
                     break;
                 }
                 observer.swap([j, j + 1], first.edge, second.edge);
@@ -198,7 +198,7 @@ impl<const D: usize> WrongRunner<D> {
         }
     }
 
-    fn tell_changes<O: Observer>(&mut self, observer: &mut O) {
+    fn report_changes<O: Observer>(&mut self, observer: &mut O) {
         self.held.swap(0, 1);
         self.held[0].clone_from(&self.pairs);
         self.held[0].sort_unstable();
@@ -297,13 +297,13 @@ mod tests {
     }
 
     #[test]
-    fn sorted_by_centre_a_large_box_is_missed_behind_a_break() {
+    fn sorted_by_center_a_large_box_is_missed_behind_a_break() {
         let boxes = [square(0.0, 0.0, 1.0), square(3.0, 0.0, 1.0), square(4.0, 0.0, 4.0)];
         assert_eq!(pairwise(&boxes).unwrap(), [[0, 2], [1, 2]]);
-        assert_eq!(pairs(&mut new(Wrong::SortByCentre), &boxes), [[1, 2]]);
-        // Of one size, by centre is by left edge.
+        assert_eq!(pairs(&mut new(Wrong::SortByCenter), &boxes), [[1, 2]]);
+        // Of one size, by center is by left edge.
         let same = [0.0, 1.5, 2.5, 9.0].map(|x| square(x, 0.0, 1.0));
-        assert_eq!(pairs(&mut new(Wrong::SortByCentre), &same), pairwise(&same).unwrap());
+        assert_eq!(pairs(&mut new(Wrong::SortByCenter), &same), pairwise(&same).unwrap());
     }
 
     #[test]

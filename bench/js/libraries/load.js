@@ -1,10 +1,10 @@
-// Loads the module of a contender, which brings its library along: only who runs it needs this.
+// Loads the module of a library, which brings its library along: only who runs it needs this.
 
 /** @type {Record<string, () => Promise<any>>} */
 const modules = {
   "brute-force": () => import("./brute-force.js"),
-  "ours": () => import("./ours.js"),
-  "ours-broad-phase": () => import("./ours-broad-phase.js"),
+  "pair-finder": () => import("./pair-finder.js"),
+  "broad-phase": () => import("./broad-phase.js"),
   "plain-sweep": () => import("./plain-sweep.js"),
   "box-intersect": () => import("./box-intersect.js"),
   "flatbush": () => import("./flatbush.js"),
@@ -22,7 +22,7 @@ const modules = {
   "jolt-physics": () => import("./jolt-physics.js"),
 };
 
-/** @param {{ module: string }} contender */
+/** @param {{ module: string }} library */
 export function load({ module }) {
   const start = modules[module];
   if (!start) throw new Error(`there is no module '${module}'`);

@@ -1,4 +1,4 @@
-// The contenders of a recorded run, to be ticked: how each is drawn, called, and of which version.
+// The libraries of a recorded run, to be ticked: how each is drawn, called, and of which version.
 
 import type { Looks } from "./looks.ts";
 import type { Entry, Run } from "./results.ts";
@@ -6,7 +6,7 @@ import type { Entry, Run } from "./results.ts";
 /** What measures the machine or another use, and not what a user of the library would choose between. */
 const ASIDE = /, (again|fresh|two at once)$/;
 
-export class Contenders {
+export class LibraryList {
   readonly #list: HTMLElement;
   readonly #change: () => void;
   /** By name, of all runs: who is chosen stays so. */
@@ -24,7 +24,7 @@ export class Contenders {
   /** Lists who took part; `swatch` draws a line as the plots do. */
   list(entries: readonly Entry[], { how, versions }: Run, isWorld: boolean, looks: Looks, swatch: (look: ReturnType<Looks>) => Element): void {
     const names = [...new Set(entries.map(({ name }) => name))];
-    const told = (of: Readonly<Record<string, string>>, name: string): string | undefined => (isWorld ? of[`${name}, world`] : undefined) ?? of[name];
+    const noted = (of: Readonly<Record<string, string>>, name: string): string | undefined => (isWorld ? of[`${name}, world`] : undefined) ?? of[name];
     this.#list.replaceChildren(
       ...names.map((name) => {
         const label = document.createElement("label");
@@ -38,8 +38,8 @@ export class Contenders {
         label.append(box, swatch(looks(name)), name);
         const item = document.createElement("li");
         item.append(label);
-        const version = told(versions, name);
-        const text = [version && /^\d/.test(version) ? `version ${version}` : version, told(how, name)].filter(Boolean).join(": ");
+        const version = noted(versions, name);
+        const text = [version && /^\d/.test(version) ? `version ${version}` : version, noted(how, name)].filter(Boolean).join(": ");
         item.append(...withCode(text));
         return item;
       }),

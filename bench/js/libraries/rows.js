@@ -1,7 +1,7 @@
-// What contenders need of boxes in rows: the minimum corner and then the maximum corner.
+// What libraries need of boxes in rows: the minimum corner and then the maximum corner.
 
 /**
- * The axis on which the centres vary most: the one to sweep along.
+ * The axis on which the centers vary most: the one to sweep along.
  *
  * @param {Float32Array} rows
  * @param {number} dimensions
@@ -12,9 +12,9 @@ export function axisOfMostVariance(rows, dimensions) {
   for (let axis = 0; axis < dimensions; axis++) {
     let [sum, squares] = [0, 0];
     for (let at = axis; at < rows.length; at += width) {
-      const centre = rows[at] + rows[at + dimensions];
-      sum += centre;
-      squares += centre * centre;
+      const center = rows[at] + rows[at + dimensions];
+      sum += center;
+      squares += center * center;
     }
     const variance = squares - (sum * sum * width) / rows.length;
     if (variance > most) [best, most] = [axis, variance];
@@ -53,7 +53,7 @@ export function isAtRest(rows, before, at, width) {
 }
 
 /**
- * The mean width of the boxes: a length that libraries with margins and tolerances are told.
+ * The mean width of the boxes: the length unit for libraries that have margins and tolerances.
  *
  * @param {Float32Array} rows
  * @param {number} dimensions
@@ -68,7 +68,7 @@ export function meanWidth(rows, dimensions) {
 }
 
 /**
- * A length that is lost when a box is rounded to its centre and half sizes in single precision:
+ * A length that is lost when a box is rounded to its center and half sizes in single precision:
  * boxes larger by so much on each side hold all that the exact ones do.
  *
  * @param {Float32Array} rows

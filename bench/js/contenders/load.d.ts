@@ -1,3 +1,0 @@
-import type { Contender, ContenderModule } from "./index.js";
-
-export function load(contender: Contender): Promise<ContenderModule>;

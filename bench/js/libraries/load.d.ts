@@ -1,0 +1,3 @@
+import type { Library, LibraryModule } from "./index.js";
+
+export function load(library: Library): Promise<LibraryModule>;

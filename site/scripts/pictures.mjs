@@ -1,0 +1,55 @@
+// Draws docs/picture.png and docs/picture-dark.png for the READMEs: the falling spheres of the built site, in light and
+// dark, with the figures that the page itself measures in this run. Build the site first (`npm run build`).
+//
+//   npm run pictures -w site [-- STEP]    STEP: the step of the simulation to draw (default 240)
+//
+// Chromium draws without a graphics card here, so the time of drawing says nothing about a visitor's machine: the
+// picture leaves it out. The time of the broad phase is that of this machine; run it while nothing else does.
+import { dirname, join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+import { chromium } from "@playwright/test";
+import { preview } from "vite";
+
+const site = resolve(dirname(fileURLToPath(import.meta.url)), "..");
+const docs = resolve(site, "../docs");
+const lastStep = Number(process.argv[2] ?? 240);
+
+/** Leaves the view and, below it, four figures that hold on any machine or are worth comparing. */
+const STYLE = `
+  #spheres { padding: 0; margin: 0; max-width: none; }
+  #spheres .panel { display: block; width: 44rem; padding: 1rem; background: var(--paper, Canvas); }
+  #spheres .panel-stage { aspect-ratio: 16 / 10; }
+  #spheres :is(.panel-transport, .panel-world, .panel-method, .panel-stages, h3) { display: none; }
+  #spheres .panel-counters { display: grid; grid-template-columns: 1fr 1fr; gap: 0 2.5rem; margin-top: 0.75rem; }
+  #spheres .counter:not([data-counter=brute-force], [data-counter=pairs], [data-counter=broad-phase], [data-counter=narrow-phase]) { display: none; }
+  #spheres .counter { font-size: 1.0625rem; color: inherit; border: 0; }
+`;
+
+const server = await preview({ root: site, preview: { host: "127.0.0.1", port: 4300 }, logLevel: "error" });
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+  args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"],
+});
+try {
+  for (const [colorScheme, file] of [["light", "picture.png"], ["dark", "picture-dark.png"]]) {
+    const page = await browser.newPage({ colorScheme, deviceScaleFactor: 2, viewport: { width: 1000, height: 700 } });
+    await page.goto(new URL("falling.html", server.resolvedUrls.local[0]).href);
+    // The discs would take half of the processor.
+    await page.evaluate(() => document.getElementById("discs").closest("section").remove());
+    await page.addStyleTag({ content: STYLE });
+    const spheres = page.locator("#spheres");
+    await spheres.scrollIntoViewIfNeeded();
+    const moment = spheres.locator("[data-part=moment]");
+    const stepOf = (text) => Number(/\d[\d,]*/.exec(text ?? "")?.[0].replaceAll(",", "") ?? 0);
+    while (stepOf(await moment.textContent()) < lastStep) await page.waitForTimeout(100);
+    await spheres.locator("[data-part=play]").dispatchEvent("click");
+    await page.waitForTimeout(500);
+    const figures = await spheres.locator(".counter:visible").evaluateAll((all) => all.map((row) => row.innerText.replace(/\s+/g, " ")));
+    await spheres.locator(".panel").screenshot({ path: join(docs, file) });
+    console.log(`docs/${file}: step ${stepOf(await moment.textContent())}; ${figures.join("; ")}`);
+    await page.close();
+  }
+} finally {
+  await browser.close();
+  await new Promise((done) => server.httpServer.close(done));
+}
