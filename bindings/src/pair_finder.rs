@@ -1,5 +1,6 @@
 //! A pair finder of any dimensions and precision.
 
+use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
 use sweep_and_prune::{Error, PairFinder, Scalar, Search};
@@ -50,6 +51,9 @@ pub trait ArrayPairFinder: AnyPairFinder {
         b: Option<usize>,
         progress: Progress<'_>,
     ) -> Result<Option<&[[u32; 2]]>, Error>;
+
+    /// The pairs of the last call of [`find`](ArrayPairFinder::find), without a copy.
+    fn take_pairs(&mut self) -> Vec<[u32; 2]>;
 
     /// How many pairs there are; `None` if the search was cancelled. Stores no pairs.
     #[allow(clippy::missing_errors_doc)]
@@ -145,6 +149,10 @@ impl<const D: usize, T: Scalar> ArrayPairFinder for TypedPairFinder<D, T> {
         progress: Progress<'_>,
     ) -> Result<Option<u64>, Error> {
         unless_cancelled(search(&mut self.finder, &self.sets, a, b).progress(progress).count())
+    }
+
+    fn take_pairs(&mut self) -> Vec<[u32; 2]> {
+        self.finder.take_pairs()
     }
 
     fn reset(&mut self) {

@@ -91,6 +91,43 @@ impl Index {
             Self::Uint64 => pairs(py, found.map(|pair| pair.map(u64::from))),
         }
     }
+
+    /// A new array of many pairs. What was converted is freed at once, so that both together take
+    /// little more memory than the array.
+    pub fn many_pairs<'py>(self, py: Python<'py>, found: Vec<[u32; 2]>) -> PyResult<Array<'py>> {
+        match self {
+            Self::Int32 => many_pairs(py, found, |index| index as i32),
+            Self::Uint32 => many_pairs(py, found, |index| index),
+            Self::Int64 => many_pairs(py, found, i64::from),
+            Self::Uint64 => many_pairs(py, found, u64::from),
+        }
+    }
+}
+
+/// From so many pairs on, memory is worth more than a buffer that is kept for the next call.
+pub const MANY: usize = 1 << 20;
+
+fn many_pairs<'py, V: Element + Copy>(
+    py: Python<'py>,
+    mut found: Vec<[u32; 2]>,
+    convert: impl Fn(u32) -> V,
+) -> PyResult<Array<'py>> {
+    let array = empty::<V>(py, (found.len(), 2))?;
+    {
+        let mut into = array.cast::<PyArray2<V>>()?.try_readwrite().map_err(|_| borrowed())?;
+        let into = into.as_slice_mut().map_err(|_| borrowed())?.as_chunks_mut().0;
+        while !found.is_empty() {
+            let rest = found.len().saturating_sub(MANY);
+            let chunk = into[rest..].iter_mut().zip(&found[rest..]);
+            chunk.for_each(|(into, pair)| *into = pair.map(&convert));
+            found.truncate(rest);
+            // Elsewhere this might copy, which takes memory instead of freeing it.
+            if cfg!(target_os = "linux") {
+                found.shrink_to_fit();
+            }
+        }
+    }
+    Ok(array)
 }
 
 /// A new array of pairs.

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use sweep_and_prune::Error;
 use sweep_and_prune_bindings::{ArrayPairFinder, Kind};
 
-use crate::arrays::{Array, Index, copy_boxes};
+use crate::arrays::{Array, Index, MANY, copy_boxes};
 use crate::errors::{busy, raise};
 use crate::run::{call, processors, run};
 
@@ -46,30 +46,48 @@ impl Finder {
         Ok(Self(Mutex::new(Search { finder, kind, threads })))
     }
 
-    #[pyo3(signature = (a, b=None, index="int64"))]
-    fn find<'py>(&self, a: Array<'py>, b: Option<Array<'py>>, index: &str) -> PyResult<Array<'py>> {
+    #[pyo3(signature = (a, b=None, index="int64", progress=None))]
+    fn find<'py>(
+        &self,
+        a: Array<'py>,
+        b: Option<Array<'py>>,
+        index: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Array<'py>> {
         let (py, index) = (a.py(), Index::of(index)?);
         self.with(|search| {
             let sets = search.copy(&a, b.as_ref())?;
             let finder = &mut search.finder;
-            let found = run(py, sets.boxes(), search.threads, |progress| {
+            let found = run(py, sets.boxes(), search.threads, progress.as_ref(), |progress| {
                 finder.find(sets.a, sets.b, progress).map(|found| found.unwrap_or(&[]))
             });
             match found {
-                Ok(Ok(found)) => index.pairs(py, found),
+                Ok(Ok(found)) if found.len() < MANY => index.pairs(py, found),
+                Ok(Ok(_)) => {
+                    let found = search.finder.take_pairs();
+                    if search.threads > 1 {
+                        return_freed_memory();
+                    }
+                    index.many_pairs(py, found)
+                }
                 Ok(Err(error)) => Err(raise_for(py, error, sets)),
                 Err(error) => Err(search.fail(error)),
             }
         })
     }
 
-    #[pyo3(signature = (a, b=None))]
-    fn count(&self, a: Array<'_>, b: Option<Array<'_>>) -> PyResult<u64> {
+    #[pyo3(signature = (a, b=None, progress=None))]
+    fn count(
+        &self,
+        a: Array<'_>,
+        b: Option<Array<'_>>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<u64> {
         let py = a.py();
         self.with(|search| {
             let sets = search.copy(&a, b.as_ref())?;
             let finder = &mut search.finder;
-            let counted = run(py, sets.boxes(), search.threads, |progress| {
+            let counted = run(py, sets.boxes(), search.threads, progress.as_ref(), |progress| {
                 finder.count(sets.a, sets.b, progress).map(|count| count.unwrap_or(0))
             });
             match counted {
@@ -93,7 +111,7 @@ impl Finder {
         self.with(|search| {
             let sets = search.copy(&a, b.as_ref())?;
             let (finder, each) = (&mut search.finder, each.unbind());
-            let streamed = run(py, sets.boxes(), 1, |_| {
+            let streamed = run(py, sets.boxes(), 1, None, |_| {
                 let mut buffer: Vec<[u32; 2]> = Vec::new();
                 let mut end = Ok(true);
                 let mut hand_over = |chunk: &[[u32; 2]]| {
@@ -166,5 +184,18 @@ impl Search {
     fn fail(&mut self, error: PyErr) -> PyErr {
         self.finder.reset();
         error
+    }
+}
+
+/// Threads store pairs in small chunks, which the allocator of glibc keeps when they are freed.
+fn return_freed_memory() {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    #[allow(unsafe_code)]
+    {
+        // SAFETY: this is the declaration of glibc. It may be called at any time, from any thread.
+        unsafe extern "C" {
+            safe fn malloc_trim(pad: usize) -> std::ffi::c_int;
+        }
+        malloc_trim(0);
     }
 }

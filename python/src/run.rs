@@ -6,7 +6,7 @@ use std::any::Any;
 use std::hint::black_box;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread::available_parallelism;
@@ -24,38 +24,40 @@ pub const FEW: usize = 1024;
 /// With fewer boxes than this the core uses one thread.
 const MIN_FOR_THREADS: usize = 4096;
 
-/// Time between two checks for signals.
-const SIGNAL_INTERVAL: Duration = Duration::from_millis(20);
+/// Time between two checks for signals, and between two reports of progress.
+const INTERVAL: Duration = Duration::from_millis(20);
 
 /// A progress callback of the core; it may cancel the search.
 pub type Progress<'a> = &'a (dyn Fn(f64) -> ControlFlow<()> + Sync);
 
-/// Runs `work`, which looks at about `boxes` boxes.
+/// Runs `work`, which looks at about `boxes` boxes. Now and then it calls `report` with the share of
+/// the work that is done, from 0 to 1; not if there are few boxes.
 ///
 /// # Errors
-/// What a signal handler raised, usually `KeyboardInterrupt`: then the work was cancelled if it uses
-/// its progress callback, or ran to its end. `RuntimeError` if the work panicked: then the object
+/// What `report` raised, or a signal handler, usually `KeyboardInterrupt`: then the work was cancelled
+/// if it uses its progress callback, or ran to its end. `RuntimeError` if the work panicked: then the object
 /// that it worked on is unusable.
 pub fn run<R: Send>(
     py: Python<'_>,
     boxes: usize,
     threads: usize,
+    report: Option<&Py<PyAny>>,
     work: impl FnOnce(Progress<'_>) -> R + Send,
 ) -> PyResult<R> {
     let work = |progress: Progress<'_>| catch_unwind(AssertUnwindSafe(|| work(progress)));
-    let signals = Signals::new();
+    let watch = Watch::new(report);
     let done = if boxes < FEW {
         work(&|_| ControlFlow::Continue(()))
     } else if let Some(pool) = (threads > 1 && boxes >= MIN_FOR_THREADS).then(pool).flatten() {
-        py.detach(|| on_pool(&pool, &signals, work))
+        py.detach(|| on_pool(&pool, &watch, work))
     } else {
-        py.detach(|| work(&|_| signals.check_now_and_then()))
+        py.detach(|| work(&|done| watch.check_now_and_then(done)))
     };
-    signals.raised()?;
+    watch.raised()?;
     done.map_err(|panic| panicked(&*panic))
 }
 
-/// Calls a Python function. All Python code that this crate runs is run by this function.
+/// Calls a Python function. This crate calls no Python function in another way.
 ///
 /// While the interpreter shuts down, Python up to 3.13 ends other threads by `pthread_exit` when they
 /// run Python code. That unwinds the stack, which aborts the process if Rust frames without cleanup
@@ -102,26 +104,30 @@ impl Drop for SleepForever {
     }
 }
 
-/// Runs work on a pool while the calling thread checks for signals: Python delivers them only to its
-/// main thread, which this may be.
+/// Runs work on a pool while the calling thread watches: Python delivers signals only to its main
+/// thread, which this may be.
 fn on_pool<R: Send>(
     pool: &ThreadPool,
-    signals: &Signals,
+    watch: &Watch<'_>,
     work: impl FnOnce(Progress<'_>) -> std::thread::Result<R> + Send,
 ) -> std::thread::Result<R> {
     let cancelled = AtomicBool::new(false);
-    let progress = |_| match cancelled.load(Ordering::Relaxed) {
-        true => ControlFlow::Break(()),
-        false => ControlFlow::Continue(()),
+    let most_done = AtomicU64::new(0); // bits of a number that is not negative: in the same order
+    let progress = |done: f64| {
+        most_done.fetch_max(done.to_bits(), Ordering::Relaxed);
+        match cancelled.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
     };
     let (sender, receiver) = channel();
     pool.in_place_scope(|scope| {
         scope.spawn(|_| drop(sender.send(work(&progress))));
         loop {
-            match receiver.recv_timeout(SIGNAL_INTERVAL) {
+            match receiver.recv_timeout(INTERVAL) {
                 Ok(result) => return result,
                 Err(RecvTimeoutError::Timeout) => {
-                    if signals.check().is_break() {
+                    if watch.check(f64::from_bits(most_done.load(Ordering::Relaxed))).is_break() {
                         cancelled.store(true, Ordering::Relaxed);
                     }
                 }
@@ -155,40 +161,47 @@ pub fn processors() -> usize {
     *PROCESSORS.get_or_init(|| available_parallelism().map_or(1, usize::from))
 }
 
-/// When signals were last checked, and the exception that a signal handler raised.
-struct Signals(Mutex<(Instant, Option<PyErr>)>);
+/// Lets Python handle signals during a search, and reports progress.
+struct Watch<'a> {
+    /// When that was last done, and the exception that it raised.
+    state: Mutex<(Instant, Option<PyErr>)>,
+    report: Option<&'a Py<PyAny>>,
+}
 
-impl Signals {
-    fn new() -> Self {
-        Self(Mutex::new((Instant::now(), None)))
+impl<'a> Watch<'a> {
+    fn new(report: Option<&'a Py<PyAny>>) -> Self {
+        Self { state: Mutex::new((Instant::now(), None)), report }
     }
 
-    /// Checks for signals if the last check was long ago.
-    fn check_now_and_then(&self) -> ControlFlow<()> {
+    /// Checks if the last check was long ago.
+    fn check_now_and_then(&self, done: f64) -> ControlFlow<()> {
         let state = self.lock();
-        if state.0.elapsed() <= SIGNAL_INTERVAL && state.1.is_none() {
+        if state.0.elapsed() <= INTERVAL && state.1.is_none() {
             return ControlFlow::Continue(());
         }
         drop(state);
-        self.check()
+        self.check(done)
     }
 
-    /// Runs Python's handlers of the signals that have arrived.
-    fn check(&self) -> ControlFlow<()> {
+    /// Runs Python's handlers of the signals that have arrived, and reports how much is done.
+    fn check(&self, done: f64) -> ControlFlow<()> {
         let mut state = self.lock();
         if state.1.is_none() {
-            state.1 = Python::attach(|py| py.check_signals()).err();
-            state.0 = Instant::now();
+            let checked = Python::attach(|py| {
+                py.check_signals()?;
+                self.report.map_or(Ok(()), |report| call(report.bind(py), (done,)).map(drop))
+            });
+            *state = (Instant::now(), checked.err());
         }
         if state.1.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
     fn lock(&self) -> MutexGuard<'_, (Instant, Option<PyErr>)> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn raised(self) -> PyResult<()> {
-        self.0.into_inner().unwrap_or_else(PoisonError::into_inner).1.map_or(Ok(()), Err)
+        self.state.into_inner().unwrap_or_else(PoisonError::into_inner).1.map_or(Ok(()), Err)
     }
 }
 

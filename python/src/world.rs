@@ -75,7 +75,7 @@ impl World {
         let dimensions = if matches!(info.dimensions, 1..=3) { info.dimensions } else { 1 };
         let kind = Kind { dimensions, is_double: info.scalar_bytes == 8 };
         let mut space = Space::new(py, kind, Settings::default())?;
-        let restored = run(py, bytes.len(), 1, |_| space.world.restore(bytes))?;
+        let restored = run(py, bytes.len(), 1, None, |_| space.world.restore(bytes))?;
         restored.map_err(|error| raise(py, error, "", &[]))?;
         Ok((Self::of(space), kind.dimensions, kind.is_double))
     }
@@ -321,7 +321,7 @@ impl Space {
         call: impl FnOnce(&mut dyn ArrayBroadPhase<PythonId>) -> R + Send,
     ) -> PyResult<R> {
         let world = &mut *self.world;
-        run(py, count, 1, |_| call(world)).inspect_err(|_| self.world.reset())
+        run(py, count, 1, None, |_| call(world)).inspect_err(|_| self.world.reset())
     }
 
     fn check_ids(&mut self, py: Python<'_>, ids: &[i64]) -> PyResult<()> {

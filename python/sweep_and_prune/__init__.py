@@ -23,7 +23,8 @@ array([[0, 2]])
 | boxes, once | `find_pairs` |
 | two sets: bullets and targets, two tables to join | `find_pairs_between` |
 | a question that only needs a number | `count_pairs`, `count_pairs_between` |
-| more pairs than fit in memory, or a search that may stop early | `for_each_chunk` |
+| more pairs than fit in memory, or a search that may stop early | `iter_chunks`, `for_each_chunk` |
+| two data frames: rows whose boxes or geometries overlap | `join` |
 | any of these every frame | `PairFinder` |
 | bodies that mostly rest; begin and end events; queries and rays | `BroadPhase` |
 """
@@ -39,6 +40,7 @@ from ._errors import (
     SweepAndPruneError,
 )
 from ._filter import Filter
+from ._join import join
 from ._pairs import (
     PairFinder,
     count_pairs,
@@ -46,6 +48,9 @@ from ._pairs import (
     find_pairs,
     find_pairs_between,
     for_each_chunk,
+    for_each_chunk_between,
+    iter_chunks,
+    iter_chunks_between,
 )
 
 if _TYPE_CHECKING:
@@ -58,6 +63,10 @@ __all__ = [  # noqa: RUF022
     "count_pairs",
     "count_pairs_between",
     "for_each_chunk",
+    "for_each_chunk_between",
+    "iter_chunks",
+    "iter_chunks_between",
+    "join",
     "PairFinder",
     "BroadPhase",
     "Filter",

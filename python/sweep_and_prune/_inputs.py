@@ -47,6 +47,9 @@ def raw_boxes(values: Any, name: str, format: str = "xyxy") -> NDArray[Any]:
             f"{name} must be one array with a row for each box, not a tuple of two arrays: "
             "pass np.column_stack((starts, ends)) for intervals, np.stack(rows) for rows"
         )
+    nested = _from_arrow(values, name, format)
+    if nested is not None:
+        return _corners(nested, format, name)
     array = as_array(values, name)
     if array.dtype.kind == "O" and array.ndim == 1:
         array = _from_geometries(array)
@@ -95,6 +98,35 @@ def _column_names(values: Any) -> list[str] | None:
     return None
 
 
+def _from_arrow(values: Any, name: str, format: str) -> NDArray[Any] | None:
+    """Boxes of an Arrow array of lists of fixed size or of structs; None for anything else."""
+    if not (hasattr(values, "__arrow_c_array__") or hasattr(values, "__arrow_c_stream__")):
+        return None
+    try:
+        import pyarrow
+    except ImportError:
+        return None
+    array = pyarrow.array(values) if hasattr(values, "__arrow_c_array__") else pyarrow.chunked_array(values)
+    if isinstance(array, pyarrow.ChunkedArray):
+        array = array.combine_chunks()
+        if isinstance(array, pyarrow.ChunkedArray):  # of no chunks
+            array = pyarrow.concat_arrays([*array.chunks, pyarrow.array([], array.type)])
+    if isinstance(array, pyarrow.ExtensionArray):  # such as geoarrow.box
+        array = array.storage
+    if pyarrow.types.is_struct(array.type):
+        fields = [field.name for field in array.type]
+        return _from_columns(dict(zip(fields, array.flatten())), fields, name, format)
+    if not pyarrow.types.is_fixed_size_list(array.type):
+        return None
+    width = array.type.list_size
+    flat = array.values.slice(array.offset * width, len(array) * width).to_numpy(zero_copy_only=False)
+    rows: NDArray[Any] = flat.reshape(len(array), width)
+    if array.null_count:
+        rows = rows.astype(np.float64 if rows.dtype.kind != "f" else rows.dtype)
+        rows[array.is_null().to_numpy(zero_copy_only=False)] = np.nan
+    return rows
+
+
 def _from_columns(values: Any, columns: list[str], name: str, format: str) -> NDArray[Any]:
     if hasattr(values, "total_bounds"):
         values = values.bounds
@@ -107,6 +139,10 @@ def _from_columns(values: Any, columns: list[str], name: str, format: str) -> ND
             if "top" in first and count == 2:  # the y axis may point up or down
                 table[:, [1, 3]] = np.sort(table[:, [1, 3]], axis=1)
             return table
+    if "bbox" in known and len(columns) > 1:  # as in GeoParquet
+        nested = _from_arrow(values[known["bbox"]], name, format)
+        if nested is not None:
+            return nested
     wanted = {"xyxy": "minx, miny, maxx, maxy", "xywh": "x, y, w, h", "cxcywh": "cx, cy, w, h"}[format]
     raise ValueError(
         f"{name} has no columns that are known as boxes, such as {wanted}: its columns are {', '.join(columns)}. "

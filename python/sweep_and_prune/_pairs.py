@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from datetime import timedelta
+from queue import Empty, Queue
+from threading import Thread
+from typing import Any, TypeVar, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
@@ -11,6 +15,11 @@ from numpy.typing import ArrayLike, DTypeLike
 from ._arrays import Floats, Pairs, box_rows, float_dtype, index_dtype, thread_count, whole
 from ._native import Finder
 from ._prepare import Prepared, prepare
+
+Margin = Union[ArrayLike, timedelta]
+"""A distance: a number, one for each axis, or a `timedelta`."""
+Progress = Callable[[float], object]
+"""A function of the share of the work that is done, from 0 to 1."""
 
 _CHUNK = 65_536
 _MAX_CHUNK = 2**24
@@ -25,6 +34,8 @@ def find_pairs(
     closed: str | None = None,
     missing: str = "raise",
     by: ArrayLike | None = None,
+    margin: Margin = 0,
+    progress: Progress | None = None,
 ) -> Pairs:
     """Finds all pairs of boxes that overlap.
 
@@ -50,6 +61,11 @@ def find_pairs(
             `IntervalIndex` decides.
         missing: `"raise"` refuses a box with a NaN, `"skip"` leaves it out: it has no pairs.
         by: `(n,)` values of any type: only boxes with equal values pair.
+        margin: finds boxes within this distance of each other on each axis, too. One number for all axes, or D of
+            them; a `timedelta` for times. On each axis `min <= other max + margin` holds for both boxes, where the
+            sum is rounded to the precision of the boxes.
+        progress: called about 50 times a second with the share of the work that is done, from 0 to 1, and with 1
+            at the end. An exception that it raises ends the search. Short searches only call it at the end.
 
     Returns:
         `(m, 2)` indices of rows.
@@ -58,7 +74,8 @@ def find_pairs(
         InvalidBoxError: for the first box that is inverted or has a NaN.
         ValueError: for another shape, or unknown options.
         TypeError: if the boxes are not numbers.
-        MemoryError: if the pairs do not fit in memory.
+        MemoryError: if the pairs do not fit in memory. With `int64` indices, the most that is used is 1.2 times the
+            size of a large result, and less than five times the size of the boxes.
 
     >>> import sweep_and_prune as sap
     >>> sap.find_pairs([[0, 0, 2, 2], [5, 5, 6, 6], [2, 1, 3, 4]])  # the third touches the first
@@ -67,9 +84,11 @@ def find_pairs(
     array([[1, 2]])
     >>> sap.find_pairs([[0, 10], [5, 20], [15, 30]], by=["chr1", "chr2", "chr2"])
     array([[1, 2]])
+    >>> sap.find_pairs([[0, 10], [12, 20], [23, 30]], margin=2)
+    array([[0, 1]])
     """
-    prepared = prepare({"boxes": boxes}, format, closed, missing, None if by is None else [by])
-    return _find(prepared, threads, dtype)
+    prepared = prepare({"boxes": boxes}, format, closed, missing, None if by is None else [by], margin)
+    return _find(prepared, threads, dtype, progress)
 
 
 def find_pairs_between(
@@ -82,6 +101,8 @@ def find_pairs_between(
     closed: str | None = None,
     missing: str = "raise",
     by: tuple[ArrayLike, ArrayLike] | None = None,
+    margin: Margin = 0,
+    progress: Progress | None = None,
 ) -> Pairs:
     """Finds all pairs of a box of `a` and a box of `b` that overlap.
 
@@ -97,6 +118,8 @@ def find_pairs_between(
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
         by: a pair of arrays, `(n,)` and `(k,)`: only boxes with equal values pair.
+        margin: finds boxes within this distance on each axis, too.
+        progress: called with the share of the work that is done, from 0 to 1.
 
     Returns:
         `(m, 2)`: an index of a row of `a` and one of `b`.
@@ -113,8 +136,8 @@ def find_pairs_between(
     >>> sap.find_pairs_between(bullets, targets)
     array([[1, 0]])
     """
-    prepared = prepare({"a": a, "b": b}, format, closed, missing, None if by is None else _two(by))
-    return _find(prepared, threads, dtype)
+    prepared = prepare({"a": a, "b": b}, format, closed, missing, None if by is None else _two(by), margin)
+    return _find(prepared, threads, dtype, progress)
 
 
 def count_pairs(
@@ -125,6 +148,8 @@ def count_pairs(
     closed: str | None = None,
     missing: str = "raise",
     by: ArrayLike | None = None,
+    margin: Margin = 0,
+    progress: Progress | None = None,
 ) -> int:
     """Counts the pairs that `find_pairs` finds, without storing them.
 
@@ -137,6 +162,8 @@ def count_pairs(
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
         by: `(n,)` values: only boxes with equal values pair.
+        margin: counts boxes within this distance on each axis, too.
+        progress: called with the share of the work that is done, from 0 to 1.
 
     Raises:
         InvalidBoxError, ValueError, TypeError: as `find_pairs`.
@@ -146,8 +173,8 @@ def count_pairs(
     >>> sap.count_pairs(np.zeros((1000, 6)))
     499500
     """
-    prepared = prepare({"boxes": boxes}, format, closed, missing, None if by is None else [by])
-    return _count(prepared, threads)
+    prepared = prepare({"boxes": boxes}, format, closed, missing, None if by is None else [by], margin)
+    return _count(prepared, threads, progress)
 
 
 def count_pairs_between(
@@ -159,6 +186,8 @@ def count_pairs_between(
     closed: str | None = None,
     missing: str = "raise",
     by: tuple[ArrayLike, ArrayLike] | None = None,
+    margin: Margin = 0,
+    progress: Progress | None = None,
 ) -> int:
     """Counts the pairs that `find_pairs_between` finds, without storing them.
 
@@ -170,6 +199,8 @@ def count_pairs_between(
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
         by: a pair of arrays: only boxes with equal values pair.
+        margin: counts boxes within this distance on each axis, too.
+        progress: called with the share of the work that is done, from 0 to 1.
 
     Raises:
         InvalidBoxError, ValueError, TypeError: as `find_pairs_between`.
@@ -178,24 +209,39 @@ def count_pairs_between(
     >>> sap.count_pairs_between([[0, 2], [5, 6]], [[1, 7]])
     2
     """
-    prepared = prepare({"a": a, "b": b}, format, closed, missing, None if by is None else _two(by))
-    return _count(prepared, threads)
+    prepared = prepare({"a": a, "b": b}, format, closed, missing, None if by is None else _two(by), margin)
+    return _count(prepared, threads, progress)
 
 
 def for_each_chunk(
-    boxes: ArrayLike, each: Callable[[Pairs], object], *, size: int = _CHUNK, dtype: DTypeLike = np.int64
+    boxes: ArrayLike,
+    each: Callable[[Pairs], object],
+    *,
+    size: int = _CHUNK,
+    dtype: DTypeLike = np.int64,
+    format: str = "xyxy",
+    closed: str | None = None,
+    missing: str = "raise",
+    by: ArrayLike | None = None,
+    margin: Margin = 0,
 ) -> bool:
     """Calls a function with all pairs that `find_pairs` finds, in the same order, one chunk at a time.
 
     Use it for more pairs than fit in memory, or to stop early. Memory O(n + size). The boxes are copied first, so
-    `each` may change them.
+    `each` may change them. One thread.
 
     Args:
         boxes: `(n, 2 * D)` numbers, or another form that `find_pairs` accepts.
         each: takes an array of shape `(m, 2)`, m from 1 to `size`. If it returns something false other than
             `None`, such as `False` or 0, the search stops.
-        size: the number of pairs in each chunk but the last, at most 2^24.
+        size: the number of pairs in each chunk but the last, at most 2^24. (With `by` in three dimensions, chunks
+            may be smaller.)
         dtype: the type of the indices.
+        format: `"xyxy"`, `"xywh"` or `"cxcywh"`.
+        closed: `"both"`, `"left"`, `"right"` or `"neither"`.
+        missing: `"raise"` or `"skip"`.
+        by: `(n,)` values: only boxes with equal values pair.
+        margin: finds boxes within this distance on each axis, too.
 
     Returns:
         Whether `each` never stopped the search.
@@ -214,8 +260,140 @@ def for_each_chunk(
     >>> int(degrees.min()), int(degrees.max())
     (999, 999)
     """
-    rows = box_rows(boxes, "boxes")
-    return _stream(_finder(rows, 1), rows, None, each, size, index_dtype(dtype))
+    prepared = prepare({"boxes": boxes}, format, closed, missing, None if by is None else [by], margin)
+    return _stream(prepared, each, size, dtype)
+
+
+def for_each_chunk_between(
+    a: ArrayLike,
+    b: ArrayLike,
+    each: Callable[[Pairs], object],
+    *,
+    size: int = _CHUNK,
+    dtype: DTypeLike = np.int64,
+    format: str = "xyxy",
+    closed: str | None = None,
+    missing: str = "raise",
+    by: tuple[ArrayLike, ArrayLike] | None = None,
+    margin: Margin = 0,
+) -> bool:
+    """Calls a function with all pairs that `find_pairs_between` finds, in the same order, one chunk at a time.
+
+    Otherwise as `for_each_chunk`.
+
+    Args:
+        a: `(n, 2 * D)` numbers.
+        b: `(k, 2 * D)` numbers.
+        each: takes an array of shape `(m, 2)`. If it returns something false other than `None`, the search stops.
+        size: the number of pairs in each chunk but the last, at most 2^24.
+        dtype: the type of the indices.
+        format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
+        closed: `"both"`, `"left"`, `"right"` or `"neither"`.
+        missing: `"raise"` or `"skip"`.
+        by: a pair of arrays: only boxes with equal values pair.
+        margin: finds boxes within this distance on each axis, too.
+
+    Returns:
+        Whether `each` never stopped the search.
+
+    Raises:
+        InvalidBoxError, ValueError, TypeError: as `find_pairs_between`; and what `each` raises.
+
+    >>> import sweep_and_prune as sap
+    >>> sap.for_each_chunk_between([[0, 9]], [[1, 2], [3, 4]], print)
+    [[0 0]
+     [0 1]]
+    True
+    """
+    prepared = prepare({"a": a, "b": b}, format, closed, missing, None if by is None else _two(by), margin)
+    return _stream(prepared, each, size, dtype)
+
+
+def iter_chunks(
+    boxes: ArrayLike,
+    *,
+    size: int = _CHUNK,
+    dtype: DTypeLike = np.int64,
+    format: str = "xyxy",
+    closed: str | None = None,
+    missing: str = "raise",
+    by: ArrayLike | None = None,
+    margin: Margin = 0,
+) -> Iterator[Pairs]:
+    """Iterates over all pairs that `find_pairs` finds, in the same order, one chunk at a time.
+
+    What `for_each_chunk` is for a function, this is for a loop. The search runs in a thread of its own, at most three
+    chunks ahead, and ends with the loop. Memory O(n + size).
+
+    Args:
+        boxes: `(n, 2 * D)` numbers, or another form that `find_pairs` accepts.
+        size: the number of pairs in each chunk but the last, at most 2^24. (With `by` in three dimensions, chunks
+            may be smaller.)
+        dtype: the type of the indices.
+        format: `"xyxy"`, `"xywh"` or `"cxcywh"`.
+        closed: `"both"`, `"left"`, `"right"` or `"neither"`.
+        missing: `"raise"` or `"skip"`.
+        by: `(n,)` values: only boxes with equal values pair.
+        margin: finds boxes within this distance on each axis, too.
+
+    Returns:
+        An iterator over arrays of shape `(m, 2)`, m from 1 to `size`.
+
+    Raises:
+        InvalidBoxError, ValueError, TypeError: as `find_pairs`, at the latest with the first chunk.
+
+    >>> import numpy as np
+    >>> import sweep_and_prune as sap
+    >>> for pairs in sap.iter_chunks(np.zeros((1000, 2)), size=200_000):
+    ...     print(len(pairs))
+    200000
+    200000
+    99500
+    """
+    prepared = prepare({"boxes": boxes}, format, closed, missing, None if by is None else [by], margin)
+    return _iterate(prepared, size, dtype)
+
+
+def iter_chunks_between(
+    a: ArrayLike,
+    b: ArrayLike,
+    *,
+    size: int = _CHUNK,
+    dtype: DTypeLike = np.int64,
+    format: str = "xyxy",
+    closed: str | None = None,
+    missing: str = "raise",
+    by: tuple[ArrayLike, ArrayLike] | None = None,
+    margin: Margin = 0,
+) -> Iterator[Pairs]:
+    """Iterates over all pairs that `find_pairs_between` finds, in the same order, one chunk at a time.
+
+    Otherwise as `iter_chunks`.
+
+    Args:
+        a: `(n, 2 * D)` numbers.
+        b: `(k, 2 * D)` numbers.
+        size: the number of pairs in each chunk but the last, at most 2^24.
+        dtype: the type of the indices.
+        format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
+        closed: `"both"`, `"left"`, `"right"` or `"neither"`.
+        missing: `"raise"` or `"skip"`.
+        by: a pair of arrays: only boxes with equal values pair.
+        margin: finds boxes within this distance on each axis, too.
+
+    Returns:
+        An iterator over arrays of shape `(m, 2)`, m from 1 to `size`.
+
+    Raises:
+        InvalidBoxError, ValueError, TypeError: as `find_pairs_between`, at the latest with the first chunk.
+
+    >>> import sweep_and_prune as sap
+    >>> for pairs in sap.iter_chunks_between([[0, 9]], [[1, 2], [3, 4]]):
+    ...     print(pairs.tolist())
+    [[0, 0], [0, 1]]
+    """
+    prepared = prepare({"a": a, "b": b}, format, closed, missing, None if by is None else _two(by), margin)
+    return _iterate(prepared, size, dtype)
 
 
 class PairFinder:
@@ -278,11 +456,12 @@ class PairFinder:
         """The precision in which boxes are compared."""
         return self._dtype
 
-    def find(self, boxes: ArrayLike) -> Pairs:
+    def find(self, boxes: ArrayLike, *, progress: Progress | None = None) -> Pairs:
         """Finds all pairs of boxes that overlap, as `find_pairs` does.
 
         Args:
             boxes: `(n, 2 * dimensions)` numbers.
+            progress: called with the share of the work that is done, from 0 to 1.
 
         Raises:
             InvalidBoxError, ValueError, TypeError, MemoryError: as `find_pairs`. The finder stays usable.
@@ -291,14 +470,15 @@ class PairFinder:
         >>> sap.PairFinder(dimensions=1).find([[0, 2], [5, 6], [2, 3]])
         array([[0, 2]])
         """
-        return self._finder.find(self._rows(boxes, "boxes"), None, self._index)
+        return _done(self._finder.find(self._rows(boxes, "boxes"), None, self._index, _checked(progress)), progress)
 
-    def find_between(self, a: ArrayLike, b: ArrayLike) -> Pairs:
+    def find_between(self, a: ArrayLike, b: ArrayLike, *, progress: Progress | None = None) -> Pairs:
         """Finds all pairs of a box of `a` and a box of `b` that overlap, as `find_pairs_between` does.
 
         Args:
             a: `(n, 2 * dimensions)` numbers.
             b: `(k, 2 * dimensions)` numbers.
+            progress: called with the share of the work that is done, from 0 to 1.
 
         Raises:
             InvalidBoxError, ValueError, TypeError, MemoryError: as `find_pairs_between`.
@@ -307,13 +487,15 @@ class PairFinder:
         >>> sap.PairFinder(dimensions=1).find_between([[0, 2], [5, 6]], [[6, 7]])
         array([[1, 0]])
         """
-        return self._finder.find(self._rows(a, "a"), self._rows(b, "b"), self._index)
+        rows = self._rows(a, "a"), self._rows(b, "b")
+        return _done(self._finder.find(*rows, self._index, _checked(progress)), progress)
 
-    def count(self, boxes: ArrayLike) -> int:
+    def count(self, boxes: ArrayLike, *, progress: Progress | None = None) -> int:
         """Counts the pairs that `find` finds, without storing them.
 
         Args:
             boxes: `(n, 2 * dimensions)` numbers.
+            progress: called with the share of the work that is done, from 0 to 1.
 
         Raises:
             InvalidBoxError, ValueError, TypeError: as `find_pairs`.
@@ -322,14 +504,15 @@ class PairFinder:
         >>> sap.PairFinder(dimensions=1).count([[0, 2], [5, 6], [2, 3]])
         1
         """
-        return self._finder.count(self._rows(boxes, "boxes"))
+        return _done(self._finder.count(self._rows(boxes, "boxes"), None, _checked(progress)), progress)
 
-    def count_between(self, a: ArrayLike, b: ArrayLike) -> int:
+    def count_between(self, a: ArrayLike, b: ArrayLike, *, progress: Progress | None = None) -> int:
         """Counts the pairs that `find_between` finds, without storing them.
 
         Args:
             a: `(n, 2 * dimensions)` numbers.
             b: `(k, 2 * dimensions)` numbers.
+            progress: called with the share of the work that is done, from 0 to 1.
 
         Raises:
             InvalidBoxError, ValueError, TypeError: as `find_pairs_between`.
@@ -338,7 +521,7 @@ class PairFinder:
         >>> sap.PairFinder(dimensions=1).count_between([[0, 2], [5, 6]], [[1, 7]])
         2
         """
-        return self._finder.count(self._rows(a, "a"), self._rows(b, "b"))
+        return _done(self._finder.count(self._rows(a, "a"), self._rows(b, "b"), _checked(progress)), progress)
 
     def for_each_chunk(self, boxes: ArrayLike, each: Callable[[Pairs], object], *, size: int = _CHUNK) -> bool:
         """Calls a function with the pairs that `find` finds, in the same order, one chunk at a time.
@@ -363,7 +546,7 @@ class PairFinder:
         [[0 2]]
         True
         """
-        return _stream(self._finder, self._rows(boxes, "boxes"), None, each, size, self._index)
+        return self._finder.for_each_chunk(self._rows(boxes, "boxes"), None, *_chunks(each, size), self._index)
 
     def for_each_chunk_between(
         self, a: ArrayLike, b: ArrayLike, each: Callable[[Pairs], object], *, size: int = _CHUNK
@@ -389,7 +572,8 @@ class PairFinder:
          [0 1]]
         True
         """
-        return _stream(self._finder, self._rows(a, "a"), self._rows(b, "b"), each, size, self._index)
+        rows = self._rows(a, "a"), self._rows(b, "b")
+        return self._finder.for_each_chunk(*rows, *_chunks(each, size), self._index)
 
     def __getstate__(self) -> dict[str, Any]:
         """Everything but the buffers, which a copy creates itself."""
@@ -409,17 +593,90 @@ class PairFinder:
 
 
 _index_dtype = index_dtype
+_Result = TypeVar("_Result")
+_Each = Callable[[Pairs], object]
 
 
-def _find(prepared: Prepared, threads: int | None, dtype: DTypeLike) -> Pairs:
+def _find(prepared: Prepared, threads: int | None, dtype: DTypeLike, progress: Progress | None = None) -> Pairs:
     index = index_dtype(dtype)
-    return prepared.translate(_finder(prepared.sets[0], threads).find(*_arguments(prepared), index))
+    found = _finder(prepared, threads).find(*_arguments(prepared), index, _checked(progress))
+    return _done(prepared.translate(found), progress)
 
 
-def _count(prepared: Prepared, threads: int | None) -> int:
+def _count(prepared: Prepared, threads: int | None, progress: Progress | None) -> int:
     if prepared.groups is not None:
-        return len(_find(prepared, threads, np.int64))
-    return _finder(prepared.sets[0], threads).count(*_arguments(prepared))
+        return len(_find(prepared, threads, np.int64, progress))
+    return _done(_finder(prepared, threads).count(*_arguments(prepared), _checked(progress)), progress)
+
+
+def _stream(prepared: Prepared, each: _Each, size: int, dtype: DTypeLike) -> bool:
+    index = index_dtype(dtype)
+    each, size = _chunks(each, size)
+
+    def translated(found: Pairs) -> object:
+        pairs = prepared.translate(found)
+        return each(pairs) if len(pairs) else None
+
+    is_plain = prepared.groups is None and all(rows is None for rows in prepared.kept)
+    return _finder(prepared, 1).for_each_chunk(*_arguments(prepared), each if is_plain else translated, size, index)
+
+
+def _iterate(prepared: Prepared, size: int, dtype: DTypeLike) -> Iterator[Pairs]:
+    _chunks(print, size)
+    index_dtype(dtype)  # refused now, and not with the first chunk
+    return _chunks_of_thread(lambda each: _stream(prepared, each, size, dtype))
+
+
+def _chunks_of_thread(stream: Callable[[_Each], object]) -> Iterator[Pairs]:
+    """The chunks of a stream that runs in a thread, which waits while two of them are not taken."""
+    chunks: Queue[Any] = Queue(maxsize=2)
+    is_ended = False
+
+    def each(chunk: Pairs) -> bool:
+        chunks.put(chunk)
+        return not is_ended
+
+    def work() -> None:
+        try:
+            stream(each)
+        except BaseException as error:
+            chunks.put(error)
+        else:
+            chunks.put(None)
+
+    Thread(target=work, daemon=True).start()
+    try:
+        while True:
+            chunk = chunks.get()
+            if isinstance(chunk, BaseException):
+                raise chunk
+            if chunk is None:
+                return
+            yield chunk
+    finally:
+        is_ended = True
+        # The thread puts one more chunk at most, and its end: there is place for both.
+        with suppress(Empty):
+            while True:
+                chunks.get_nowait()
+
+
+def _chunks(each: object, size: object) -> tuple[_Each, int]:
+    if not callable(each):
+        raise TypeError(f"each must be callable, not a {type(each).__name__}")
+    return each, whole(size, "size", 1, _MAX_CHUNK)
+
+
+def _checked(progress: Progress | None) -> Progress | None:
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress must be callable, not a {type(progress).__name__}")
+    return progress
+
+
+def _done(result: _Result, progress: Progress | None) -> _Result:
+    if progress is not None:
+        progress(1.0)
+    return result
 
 
 def _arguments(prepared: Prepared) -> tuple[Floats, Floats | None]:
@@ -432,13 +689,6 @@ def _two(by: tuple[ArrayLike, ArrayLike]) -> list[ArrayLike]:
     return list(by)
 
 
-def _finder(rows: Floats, threads: int | None) -> Finder:
+def _finder(prepared: Prepared, threads: int | None) -> Finder:
+    rows = prepared.sets[0]
     return Finder(rows.shape[1] // 2, rows.dtype.itemsize == 8, thread_count(threads))
-
-
-def _stream(
-    finder: Finder, a: Floats, b: Floats | None, each: Callable[[Pairs], object], size: int, index: str
-) -> bool:
-    if not callable(each):
-        raise TypeError(f"each must be callable, not a {type(each).__name__}")
-    return finder.for_each_chunk(a, b, each, whole(size, "size", 1, _MAX_CHUNK), index)

@@ -1,8 +1,9 @@
-"""Brings one or two sets of boxes into the form that is searched: open ends, missing values, groups and integers
-beyond 2^53 become plain boxes in floating point that have exactly the wanted pairs."""
+"""Brings one or two sets of boxes into the form that is searched: open ends, margins, missing values, groups and
+integers beyond 2^53 become plain boxes in floating point that have exactly the wanted pairs."""
 
 from __future__ import annotations
 
+from datetime import timedelta
 from typing import Any, NamedTuple, Optional
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import Floats, box_array, box_rows, checked_closed, numbers, same_width
 from ._errors import InvalidBoxError
-from ._inputs import checked_format
+from ._inputs import as_array, checked_format
 
 Rows = Optional[NDArray[np.int64]]
 
@@ -37,10 +38,16 @@ class Prepared(NamedTuple):
 
 
 def prepare(
-    sets: dict[str, ArrayLike], format: str, closed: str | None, missing: str, by: list[ArrayLike] | None
+    sets: dict[str, ArrayLike],
+    format: str = "xyxy",
+    closed: str | None = None,
+    missing: str = "raise",
+    by: list[ArrayLike] | None = None,
+    margin: object = 0,
 ) -> Prepared:
     """Brings sets of boxes, by the names of their arguments, into the form that is searched."""
-    is_plain = format == "xyxy" and closed is None and missing == "raise" and by is None
+    has_margin = not (type(margin) is int and margin == 0)
+    is_plain = format == "xyxy" and closed is None and missing == "raise" and by is None and not has_margin
     if is_plain and all(type(boxes) is np.ndarray and boxes.dtype.kind == "f" for boxes in sets.values()):
         rows = [box_rows(boxes, name) for name, boxes in sets.items()]  # the common case, quickly
         if len(rows) == 2:
@@ -59,18 +66,26 @@ def prepare(
     kept: list[Rows] = [None for _ in arrays]
     if missing == "skip":
         arrays, kept = _leave_out([_is_missing(array) for array in arrays], arrays, kept)
-    rows = _exact(arrays, names)
+    arrays = _comparable(arrays, names)
+    is_float, half = arrays[0].dtype.kind == "f", arrays[0].shape[1] // 2
+    is_all = all(rows is None for rows in kept)
+    if not (is_float and is_closed and is_all and not has_margin):
+        # The compiled part would not see these boxes, or not by these indices.
+        for array, name, own in zip(arrays, names, kept):
+            _refuse_inverted(array, name, own)
     if not is_closed:
-        for array, name in zip(rows, names):
-            _refuse_inverted(array, name)
-        half = rows[0].shape[1] // 2
         # An interval without its ends that begins where it ends is empty, and overlaps nothing.
-        empty = [(array[:, :half] == array[:, half:]).any(axis=1) for array in rows]
-        rows, kept = _leave_out(empty, rows, kept)
+        empty = [np.asarray((array[:, :half] == array[:, half:]).any(axis=1), bool) for array in arrays]
+        arrays, kept = _leave_out(empty, arrays, kept)
+    if has_margin:
+        # Two boxes are within a margin if neither begins more than the margin after the other's end.
+        arrays = [_extended(array, margin) for array in arrays]
+    rows = arrays if is_float else _ranks(arrays)
+    if not is_closed:
         rows = [_without_ends(array) for array in rows]
     groups = None if by is None else _groups(by, sets, kept)
     if groups is not None and rows[0].shape[1] < 6:
-        half, dtype = rows[0].shape[1] // 2, np.result_type(*rows)
+        dtype = np.result_type(*rows)
         dtype = np.dtype(np.float64) if max(map(_most, groups)) >= 2**24 else dtype
         codes = [group.astype(dtype)[:, None] for group in groups]
         rows = [_with_axis(boxes, code) for boxes, code in zip(rows, codes)]
@@ -109,26 +124,65 @@ def _leave_out(masks: list[NDArray[np.bool_]], arrays: list[Any], kept: list[Row
     return result, rows
 
 
-def _exact(arrays: list[NDArray[Any]], names: list[str]) -> list[Floats]:
-    """Coordinates in floating point. Times, and integers that would be rounded, become their ranks on each axis:
-    these are in the same order."""
-    if all(array.dtype.kind in "mM" for array in arrays) or (
-        all(array.dtype.kind in "iu" for array in arrays) and any(_is_rounded(array) for array in arrays)
-    ):
-        for array, name in zip(arrays, names):
-            _refuse_inverted(array, name)
-        half, ends = arrays[0].shape[1] // 2, np.cumsum([len(array) for array in arrays])[:-1]
-        if any(array.dtype.kind == "u" for array in arrays) and len({array.dtype for array in arrays}) > 1:
-            arrays = [array.astype(object) for array in arrays]  # no integer type holds both
-        every = np.concatenate(arrays)
-        ranks = np.empty(every.shape)
-        for axis in range(half):
-            both = every[:, [axis, axis + half]]
-            ranks[:, [axis, axis + half]] = np.unique(both, return_inverse=True)[1].reshape(both.shape)
-        return list(np.split(ranks, ends))
+def _comparable(arrays: list[NDArray[Any]], names: list[str]) -> list[NDArray[Any]]:
+    """Coordinates of one type: times, integers if floating point would round them, or floating point."""
+    kinds = {array.dtype.kind for array in arrays}
+    if kinds <= {"m"} or kinds <= {"M"}:
+        return arrays
+    if kinds <= {"i", "u"} and any(_is_rounded(array) for array in arrays):
+        is_mixed = any(array.dtype.kind == "u" for array in arrays) and len({array.dtype for array in arrays}) > 1
+        # No integer type of NumPy holds both signed and unsigned ones.
+        return [array.astype(object) for array in arrays] if is_mixed else arrays
     rows = [numbers(array, name) for array, name in zip(arrays, names)]
     # If one set is in double precision, both are compared so.
     return [array.astype(np.result_type(*rows), copy=False) for array in rows]
+
+
+def _ranks(arrays: list[NDArray[Any]]) -> list[Floats]:
+    """The ranks of coordinates among all of their axis, which are in the same order and exact in floating point."""
+    half, ends = arrays[0].shape[1] // 2, np.cumsum([len(array) for array in arrays])[:-1]
+    every = np.concatenate(arrays)
+    ranks = np.empty(every.shape)
+    for axis in range(half):
+        both = every[:, [axis, axis + half]]
+        ranks[:, [axis, axis + half]] = np.unique(both, return_inverse=True)[1].reshape(both.shape)
+    return list(np.split(ranks, ends))
+
+
+def _extended(boxes: NDArray[Any], margin: object) -> NDArray[Any]:
+    """Boxes whose max corners are moved by a margin, one for all axes or one for each."""
+    half, kind = boxes.shape[1] // 2, boxes.dtype.kind
+    if kind in "mM":
+        add = np.asarray(margin.to_timedelta64() if hasattr(margin, "to_timedelta64") else margin)
+        if add.dtype.kind == "O" and add.shape == () and isinstance(margin, timedelta):
+            add = np.asarray(np.timedelta64(margin))
+        if add.dtype.kind != "m":
+            raise TypeError(f"margin must be a timedelta for times, not {margin!r}")
+        least: Any = np.timedelta64(0)
+    else:
+        add = as_array(margin, "margin")
+        if add.dtype.kind not in "iuf":
+            raise TypeError(f"margin must be a number, not {margin!r}")
+        least = 0
+        if kind != "f" and not (np.asarray(add) == np.floor(add)).all():
+            raise ValueError(f"margin is {margin}; it must be a whole number for integers beyond 2^53")
+    if add.shape not in ((), (half,)):
+        raise ValueError(f"margin must be a number or {half} of them, one for each axis, not of shape {add.shape}")
+    if not (add >= least).all() or (add.dtype.kind == "f" and np.isinf(add).any()):
+        raise ValueError(f"margin is {margin}; it must be finite and 0 or more")
+    ends: Any = boxes[:, half:]
+    if kind == "f":
+        with np.errstate(over="ignore"):
+            ends = ends + add.astype(boxes.dtype)
+    elif kind in "mM":
+        ends = ends + add
+        if (ends < boxes[:, half:]).any():
+            raise ValueError(f"margin is {margin}; it must be so small that the ends of the boxes are times of NumPy")
+    else:
+        # Python's integers do not overflow.
+        ends = ends.astype(object) + np.array([int(one) for one in np.broadcast_to(add, half)], object)
+        return np.hstack([boxes[:, :half].astype(object), ends])
+    return np.hstack([boxes[:, :half], ends])
 
 
 def _is_rounded(array: NDArray[Any]) -> bool:
@@ -136,14 +190,14 @@ def _is_rounded(array: NDArray[Any]) -> bool:
     return array.dtype.itemsize == 8 and array.size > 0 and bool(array.max() > most or array.min() < -most)
 
 
-def _refuse_inverted(array: NDArray[Any], name: str) -> None:
+def _refuse_inverted(array: NDArray[Any], name: str, kept: Rows) -> None:
     half = array.shape[1] // 2
-    invalid = ~(array[:, :half] <= array[:, half:])
+    invalid = ~np.asarray(array[:, :half] <= array[:, half:], bool)
     if invalid.any():
         index = int(np.argmax(invalid.any(axis=1)))
         axis = int(np.argmax(invalid[index]))
         low, high = array[index, axis], array[index, axis + half]
-        raise InvalidBoxError(index, axis, name, low, high)
+        raise InvalidBoxError(index if kept is None else int(kept[index]), axis, name, low, high)
 
 
 def _without_ends(boxes: Floats) -> Floats:

@@ -41,7 +41,7 @@ def test_the_readme_prints_what_it_says(block: str) -> None:
 
 
 def test_the_readme_has_examples() -> None:
-    assert len(re.findall("```python", README)) == 3
+    assert len(re.findall("```python", README)) == 4
 
 
 def test_the_readme_names_no_path_that_the_wheel_lacks() -> None:

@@ -234,6 +234,39 @@ def test_tables_of_arrow() -> None:
     assert same(sap.find_pairs(table))
 
 
+def test_nested_arrays_of_arrow() -> None:
+    arrow = pytest.importorskip("pyarrow")
+    table = arrow.table(dict(zip(["xmin", "ymin", "xmax", "ymax"], BOXES.T)))
+    struct = table.to_struct_array()
+    fixed = arrow.FixedSizeListArray.from_arrays(arrow.array(BOXES.ravel()), 4)
+    without_first = pairs(BOXES[1:])
+    for nested in (struct, fixed, struct.combine_chunks(), arrow.chunked_array([fixed[:20], fixed[20:]])):
+        assert same(sap.find_pairs(nested))
+        assert same(sap.find_pairs(nested[1:]), without_first)
+        assert len(sap.find_pairs(nested[:0])) == 0
+        assert same(sap.PairFinder(2).find(nested))
+    assert same(sap.find_pairs(arrow.table({"name": ["a"] * 60, "bbox": struct})))
+    sizes = np.hstack([BOXES[:, :2], BOXES[:, 2:] - BOXES[:, :2]])
+    fixed = arrow.FixedSizeListArray.from_arrays(arrow.array(sizes.ravel()), 4)
+    assert same(sap.find_pairs(fixed, format="xywh"))
+    rows: Any = [None if index == 3 else row for index, row in enumerate(BOXES.tolist())]
+    rows[5][2] = None
+    gaps = arrow.array(rows, arrow.list_(arrow.float64(), 4))
+    with pytest.raises(sap.InvalidBoxError, match=r"boxes\[3\] has a NaN"):
+        sap.find_pairs(gaps)
+    assert same(sap.find_pairs(gaps, missing="skip"), PAIRS[~np.isin(PAIRS, [3, 5]).any(axis=1)])
+    with pytest.raises(ValueError, match="no columns that are known"):
+        sap.find_pairs(arrow.table({"a": [1], "b": [2]}).to_struct_array())
+
+
+def test_frames_of_polars() -> None:
+    polars = pytest.importorskip("polars")
+    frame = polars.DataFrame(dict(zip(["xmin", "ymin", "xmax", "ymax"], BOXES.T)))
+    assert same(sap.find_pairs(frame))
+    assert same(sap.find_pairs(frame.to_struct("box")))
+    assert same(sap.find_pairs(polars.Series(BOXES.tolist(), dtype=polars.Array(polars.Float64, 4))))
+
+
 def test_tensors_of_torch() -> None:
     torch = pytest.importorskip("torch")
     assert same(sap.find_pairs(torch.tensor(BOXES, requires_grad=True)))

@@ -82,3 +82,55 @@ def test_more_boxes_than_indices_can_tell_apart_are_refused_before_they_are_copi
     ):
         with pytest.raises(ValueError, match="4294967296 boxes, more than the limit"):
             call()
+
+
+PEAK = """
+import sys
+import numpy as np
+import sweep_and_prune as sap
+
+def peak(name):
+    with open("/proc/self/status") as status:
+        return next(int(line.split()[1]) * 1024 for line in status if line.startswith(name))
+
+boxes = np.zeros((4400, 4))  # 10 million pairs
+sap.find_pairs(boxes[:2000], threads=2)  # starts the threads
+finder, threads = sap.PairFinder(2, threads=int(sys.argv[2])), int(sys.argv[2])
+with open("/proc/self/clear_refs", "w") as file:
+    file.write("5")  # the peak is what there is now
+before = peak("VmRSS")
+calls = {
+    "find": lambda: sap.find_pairs(boxes, threads=threads),
+    "finder": lambda: finder.find(boxes),
+    "between": lambda: sap.find_pairs_between(boxes[:2200], boxes, threads=threads),
+}
+found = calls[sys.argv[1]]()
+print((peak("VmHWM") - before) / found.nbytes)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="memory is read in the way of Linux")
+@pytest.mark.parametrize("threads", ["1", "2"])
+@pytest.mark.parametrize("call", ["find", "finder", "between"])
+def test_a_large_result_takes_little_more_memory_than_its_own(call: str, threads: str) -> None:
+    done = subprocess.run([sys.executable, "-c", PEAK, call, threads], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert float(done.stdout) < 1.2
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="memory is read in the way of Linux")
+def test_inserting_and_removing_without_an_update_takes_no_more_memory() -> None:
+    def resident() -> int:
+        with open("/proc/self/statm") as statm:
+            return int(statm.read().split()[1]) * 4096
+
+    world = sap.BroadPhase(2)
+
+    def churn(count: int) -> None:
+        for _ in range(count):
+            world.remove(world.insert([0, 0, 1, 1]))
+
+    churn(2000)
+    before = resident()
+    churn(30_000)  # used to take 4.5 MB
+    assert resident() - before < 1_000_000

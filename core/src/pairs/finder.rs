@@ -1,6 +1,7 @@
 //! The finder, and functions that find the pairs of one or two sets once.
 
 use alloc::vec::Vec;
+use core::mem::take;
 
 use super::brute::find_few;
 #[cfg(feature = "parallel")]
@@ -145,6 +146,22 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
         b: &[Aabb<D, T>],
     ) -> Result<&[[u32; 2]], Error> {
         self.search(a).against(b).pairs()
+    }
+
+    /// The pairs of the last search, without a copy: the finder gives up their buffer, and the next
+    /// search begins with an empty one.
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, PairFinder};
+    ///
+    /// let mut finder = PairFinder::new();
+    /// finder.find(&[Aabb::new([0.0], [1.0]); 3])?;
+    /// assert_eq!(finder.take_pairs(), [[0, 1], [0, 2], [1, 2]]);
+    /// assert_eq!(finder.take_pairs(), [[0; 2]; 0]);
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
+    pub fn take_pairs(&mut self) -> Vec<[u32; 2]> {
+        take(&mut self.0.store).into_pairs()
     }
 
     /// A search with options, whose pairs can also be counted or received one by one: see [`Search`].

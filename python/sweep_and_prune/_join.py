@@ -1,0 +1,279 @@
+"""Joins data frames: rows of two tables whose boxes overlap, or whose geometries fulfill a predicate."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._pairs import Progress, find_pairs_between
+
+_FLIPPED = {"contains": "within", "covers": "covered_by", "within": "contains", "covered_by": "covers"}
+_SYMMETRIC = ("intersects", "touches", "overlaps", "dwithin")
+_PREDICATES = (*_FLIPPED, *_SYMMETRIC, "contains_properly", "crosses")
+
+_FEW_POINTS = 5
+"""A geometry with so few points gains nothing by being prepared."""
+
+Indices = NDArray[np.int64]
+
+
+def join(
+    left: Any,
+    right: Any,
+    how: str = "inner",
+    predicate: str = "intersects",
+    *,
+    distance: ArrayLike | None = None,
+    by: str | list[str] | None = None,
+    lsuffix: str = "left",
+    rsuffix: str = "right",
+    format: str = "xyxy",
+    closed: str | None = None,
+    threads: int | None = 1,
+    progress: Progress | None = None,
+) -> Any:
+    """Joins two data frames: a row for each pair of rows whose boxes or geometries overlap.
+
+    For GeoDataFrames the result has the rows, columns and index of `geopandas.sjoin`. Candidates are found by
+    `find_pairs_between`, and shapely tests the exact predicate on them. For data frames of pandas without geometries,
+    the boxes are columns such as `minx, miny, maxx, maxy` or `start, end`.
+
+    The rows are sorted by the position of the left row and then by that of the right row; with `how="right"` the
+    other way around. Rows whose geometry is empty or `None`, or whose box has a NaN, match nothing. Time O(n log n +
+    candidates), memory O(n + candidates). Needs pandas, and geopandas for geometries.
+
+    Args:
+        left: a `DataFrame` or `GeoDataFrame`.
+        right: another of the same kind.
+        how: `"inner"` keeps the rows that match. `"left"` and `"right"` keep all rows of that frame, with missing
+            values where nothing matches. The index and the geometry are those of the left frame, with `"right"`
+            those of the right one.
+        predicate: `predicate(left, right)` of shapely: `"intersects"`, `"contains"`, `"within"`, `"covers"`,
+            `"covered_by"`, `"contains_properly"`, `"crosses"`, `"overlaps"`, `"touches"` or `"dwithin"`. Boxes
+            without geometries know only `"intersects"`.
+        distance: with `"dwithin"`: the largest distance, in the units of the coordinates; a number, or one for each
+            left row. With boxes it is the `margin` of `find_pairs_between`.
+        by: names of columns that both frames have: only rows with equal values match, and the result has these
+            columns once. (`geopandas.sjoin` calls this `on_attribute`.)
+        lsuffix: what is added, after `_`, to names of left columns that the right frame has too.
+        rsuffix: the same for right columns, and for the column that has the index of the right frame.
+        format: of boxes without geometries: `"xyxy"`, `"xywh"` or `"cxcywh"`.
+        closed: of boxes without geometries: `"both"`, `"left"`, `"right"` or `"neither"`.
+        threads: how many `find_pairs_between` uses at most; -1 for one on each processor.
+        progress: called with the share of the search for candidates that is done, from 0 to 1.
+
+    Returns:
+        A frame of the kind that was passed.
+
+    Raises:
+        ValueError: for frames of different coordinate reference systems, unknown options, and boxes that are not
+            recognized.
+        InvalidBoxError: for the first box that is inverted.
+        TypeError: for anything but two frames of the same kind.
+
+    >>> import pytest; pandas = pytest.importorskip("pandas")
+    >>> import sweep_and_prune as sap
+    >>> genes = pandas.DataFrame({"start": [0, 50], "end": [10, 80], "gene": ["a", "b"]})
+    >>> reads = pandas.DataFrame({"start": [5, 9, 90], "end": [7, 60, 95]})
+    >>> sap.join(genes, reads)[["gene", "index_right", "start_right", "end_right"]]
+      gene  index_right  start_right  end_right
+    0    a            0            5          7
+    0    a            1            9         60
+    1    b            1            9         60
+    """
+    has_geometries = [hasattr(frame, "total_bounds") and hasattr(frame, "geometry") for frame in (left, right)]
+    if not all(hasattr(frame, "iloc") and getattr(frame, "ndim", 0) == 2 for frame in (left, right)) or (
+        has_geometries[0] != has_geometries[1]
+    ):
+        kinds = " and ".join(type(frame).__name__ for frame in (left, right))
+        raise TypeError(f"left and right must be two DataFrames of pandas or two GeoDataFrames, not {kinds}")
+    if how not in ("inner", "left", "right"):
+        raise ValueError(f'how must be "inner", "left" or "right", not {how!r}')
+    if predicate not in _PREDICATES:
+        raise ValueError(f"predicate must be one of {', '.join(_PREDICATES)}, not {predicate!r}")
+    columns = [] if by is None else [by] if isinstance(by, str) else list(by)
+    groups = _groups(left, right, columns)
+    if has_geometries[0]:
+        _check_distance(predicate, distance)
+        if left.crs is not None and right.crs is not None and left.crs != right.crs:
+            raise ValueError(
+                f"left and right have different coordinate reference systems, {left.crs.to_string()} and "
+                f"{right.crs.to_string()}: pass right.to_crs(left.crs)"
+            )
+        if closed is not None or format != "xyxy":
+            raise ValueError("closed and format are for boxes; geometries have neither")
+        found = _of_geometries(left, right, predicate, distance, groups, threads, progress)
+    else:
+        if predicate != "intersects":
+            raise ValueError(f'predicate "{predicate}" needs geometries; boxes know only "intersects"')
+        pairs = find_pairs_between(
+            left,
+            right,
+            threads=threads,
+            format=format,
+            closed=closed,
+            missing="skip",
+            by=groups,
+            margin=0 if distance is None else distance,
+            progress=progress,
+        )
+        found = pairs[:, 0], pairs[:, 1]
+    return _frame(left, right, _in_order(found, len(right)), how, columns, (lsuffix, rsuffix))
+
+
+def _check_distance(predicate: str, distance: ArrayLike | None) -> None:
+    if (predicate == "dwithin") != (distance is not None):
+        raise ValueError('distance must be passed with predicate="dwithin", and only with it')
+
+
+def _groups(left: Any, right: Any, columns: list[str]) -> tuple[Indices, Indices] | None:
+    """A number for the values of each row in some columns."""
+    if not columns:
+        return None
+    import pandas
+
+    for name, frame in (("left", left), ("right", right)):
+        absent = [column for column in columns if column not in frame.columns]
+        if absent:
+            raise ValueError(f"by names {absent[0]!r}, which is no column of {name}")
+    both = pandas.concat([pandas.DataFrame(frame)[columns] for frame in (left, right)], ignore_index=True)
+    numbers = both.groupby(columns, sort=False, dropna=False).ngroup().to_numpy()
+    return numbers[: len(left)], numbers[len(left) :]
+
+
+def _of_geometries(
+    left: Any,
+    right: Any,
+    predicate: str,
+    distance: ArrayLike | None,
+    groups: tuple[Indices, Indices] | None,
+    threads: int | None,
+    progress: Progress | None,
+) -> tuple[Indices, Indices]:
+    import shapely
+
+    geometries = [np.asarray(frame.geometry.array, object) for frame in (left, right)]
+    bounds = [np.asarray(shapely.bounds(array), np.float64).reshape(-1, 4) for array in geometries]
+    distances = None
+    if distance is not None:
+        try:
+            distances = np.broadcast_to(np.asarray(distance, np.float64), len(left))
+        except ValueError:
+            raise ValueError(f"distance must be a number or {len(left)} of them, one for each left row") from None
+        bounds[0] = _extended(bounds[0], distances)
+    pairs = find_pairs_between(*bounds, threads=threads, missing="skip", by=groups, progress=progress)
+    first, second = pairs[:, 0], pairs[:, 1]
+    if len(pairs) == 0:
+        return first, second
+    # A prepared geometry is tested faster. Those that have more points are prepared, if they may come first.
+    sizes = [shapely.get_num_coordinates(array) for array in geometries]
+    is_flipped = (predicate in _FLIPPED or predicate in _SYMMETRIC) and bool(
+        sizes[1][second].mean() > sizes[0][first].mean()
+    )
+    test: Callable[..., NDArray[np.bool_]] = getattr(
+        shapely, _FLIPPED.get(predicate, predicate) if is_flipped else predicate
+    )
+    a, b = reversed(geometries) if is_flipped else geometries
+    of_a, of_b = (second, first) if is_flipped else (first, second)
+    used = np.unique(of_a)
+    used = used[(sizes[is_flipped][used] > _FEW_POINTS) & ~shapely.is_prepared(a[used])]
+    shapely.prepare(a[used])
+    try:
+        arguments = () if distances is None else (distances[first],)
+        kept = test(a[of_a], b[of_b], *arguments)
+    finally:
+        shapely.destroy_prepared(a[used])
+    return first[kept], second[kept]
+
+
+def _extended(bounds: NDArray[np.float64], distances: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Bounds that reach so far, and a little farther: the exact test follows."""
+    more = (distances + 4 * np.finfo(float).eps * (np.abs(bounds).max(axis=1, initial=0) + distances))[:, None]
+    return np.hstack([bounds[:, :2] - more, bounds[:, 2:] + more])
+
+
+def _in_order(found: tuple[Indices, Indices], count: int) -> tuple[Indices, Indices]:
+    """Pairs sorted by the left row and then by the right one."""
+    first, second = found
+    if len(first) == 0:
+        return found
+    # Sorting one number is several times faster than np.lexsort. 2^32 rows at most: it fits.
+    keys = first.astype(np.uint64) * np.uint64(count) + second.astype(np.uint64)
+    keys.sort()
+    first, second = (part.astype(np.int64) for part in np.divmod(keys, np.uint64(count)))
+    return first, second
+
+
+def _frame(
+    left: Any, right: Any, found: tuple[Indices, Indices], how: str, columns: list[str], suffixes: tuple[str, str]
+) -> Any:
+    """The joined frame."""
+    import pandas
+
+    rows = list(found)
+    kept, other = (1, 0) if how == "right" else (0, 1)
+    if how != "inner":
+        rows = _with_missing(rows, kept, len((left, right)[kept]))
+    frames = [left, right.drop(columns=columns) if columns else right]
+    geometry = frames[kept].geometry.name if hasattr(frames[kept], "total_bounds") else None
+    if geometry is not None:
+        frames[other] = pandas.DataFrame(frames[other]).drop(columns=frames[other].geometry.name)
+    # The index of the other frame becomes columns. That of this one has names, too, which must differ from columns.
+    indices = [_index_columns(frame.index, suffix) for frame, suffix in zip(frames, suffixes)]
+    for name in (name for side in (0, 1) for name in indices[side] if name not in frames[side].index.names):
+        if any(name in frame.columns for frame in frames):
+            raise ValueError(f"{name!r} cannot be a column of left or right: the result has it for an index")
+    labels = [[*names, *frame.columns] for names, frame in zip(indices, frames)]
+    common = set(labels[0]) & set(labels[1])
+    if common and not any(suffixes):
+        raise ValueError(f"lsuffix and rsuffix are empty, but both frames have columns {sorted(map(str, common))}")
+
+    def renamed(side: int) -> list[Any]:
+        return [
+            f"{label}_{suffixes[side]}"
+            if label in common and suffixes[side] and not (side == kept and label == geometry)
+            else label
+            for label in labels[side]
+        ]
+
+    index, depth = frames[kept].index, len(indices[kept])
+    frames[other] = frames[other].reset_index(names=indices[other])
+    taken = []
+    for side, frame in enumerate(frames):
+        frame = frame.reset_index(drop=True)
+        frame.columns = renamed(side) if side == other else renamed(side)[depth:]
+        of_frame = rows[side]
+        frame = frame.reindex(of_frame) if (of_frame < 0).any() else frame.take(of_frame)
+        frame.index = pandas.RangeIndex(len(of_frame))
+        taken.append(frame)
+    joined = pandas.concat(taken, axis=1)
+    if geometry is not None:
+        import geopandas
+
+        joined = geopandas.GeoDataFrame(joined, geometry=geometry)
+    names = [None if old is None else new for old, new in zip(index.names, renamed(kept))]
+    joined.index = index.take(rows[kept]).set_names(names)
+    return joined
+
+
+def _with_missing(rows: list[Indices], kept: int, count: int) -> list[Indices]:
+    """Pairs sorted by the rows of the frame that is kept, with a pair of -1 for each of its rows that has none."""
+    of_kept, of_other = rows[kept], rows[1 - kept]
+    missing = np.setdiff1d(np.arange(count), of_kept)
+    of_kept = np.concatenate([of_kept, missing])
+    of_other = np.concatenate([of_other, np.full(len(missing), -1)])
+    order = np.argsort(of_kept, kind="stable")
+    rows[kept], rows[1 - kept] = of_kept[order], of_other[order]
+    return rows
+
+
+def _index_columns(index: Any, suffix: str) -> list[str]:
+    """The names of the columns that hold the index of the frame whose index is not kept."""
+    number = index.nlevels
+    return [
+        name if name is not None else f"index_{suffix}" if number == 1 else f"index_{suffix}{level}"
+        for level, name in enumerate(index.names)
+    ]

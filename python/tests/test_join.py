@@ -1,0 +1,194 @@
+"""Joins equal those of geopandas, and those of brute force where there are no geometries."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from oracle import random_boxes
+
+import sweep_and_prune as sap
+
+pandas = pytest.importorskip("pandas")
+
+
+def intervals(count: int, seed: int) -> Any:
+    start, end = random_boxes(count, 1, np.float64, seed).T
+    frame = pandas.DataFrame({"start": start, "end": end, "chrom": np.array(["1", "2", "X"])[np.arange(count) % 3]})
+    frame["name"] = [f"{seed}-{index}" for index in range(count)]
+    return frame.set_index(np.arange(count)[::-1] + 100)
+
+
+def brute_force(left: Any, right: Any, closed: bool, margin: float, by: bool) -> list[tuple[int, int]]:
+    def near(a: Any, b: Any) -> bool:
+        if by and a.chrom != b.chrom:
+            return False
+        if closed:
+            return bool(a.start <= b.end + margin and b.start <= a.end + margin)
+        overlaps = a.start < b.end + margin and b.start < a.end + margin
+        return bool(overlaps and a.start < a.end and b.start < b.end)
+
+    return [(i, j) for i, a in enumerate(left.itertuples()) for j, b in enumerate(right.itertuples()) if near(a, b)]
+
+
+@pytest.mark.parametrize("how", ["inner", "left", "right"])
+@pytest.mark.parametrize("closed", [True, False])
+@pytest.mark.parametrize("margin", [0, 0.5])
+@pytest.mark.parametrize("by", [True, False])
+def test_tables_of_intervals(how: str, closed: bool, margin: float, by: bool) -> None:
+    left, right = intervals(60, 1), intervals(50, 2)
+    right.loc[right.index[7], "start"] = np.nan
+    pairs: list[Any] = brute_force(left, right, closed, margin, by)
+    if how == "left":
+        alone = set(range(60)) - {i for i, _ in pairs}
+        pairs = sorted([*pairs, *((i, -1) for i in alone)])
+    elif how == "right":
+        alone = set(range(50)) - {j for _, j in pairs}
+        pairs = sorted([*pairs, *((-1, j) for j in alone)], key=lambda pair: pair[::-1])
+    joined = sap.join(
+        left,
+        right,
+        how,
+        distance=margin or None,
+        closed=None if closed else "left",
+        by="chrom" if by else None,
+    )
+    kept, other = (1, 0) if how == "right" else (0, 1)
+    frames, suffixes = (left, right), ("left", "right")
+    rows = np.array(pairs)
+    assert len(pairs) > 5 and (rows >= 0).all(axis=1).any()
+    assert list(joined.index) == list(frames[kept].index[rows[:, kept]])
+    for side in (0, 1):
+        names = frames[side]["name"].to_numpy(object)[rows[:, side]]
+        names[rows[:, side] < 0] = None
+        found = joined[f"name_{suffixes[side]}"]
+        assert [None if value != value or value is None else value for value in found] == names.tolist()
+    index = joined[f"index_{suffixes[other]}"].fillna(-1).to_numpy(int)
+    wanted = np.where(rows[:, other] < 0, -1, frames[other].index.to_numpy()[rows[:, other]])
+    assert np.array_equal(index, wanted)
+    assert ("chrom" in joined.columns) == by and ("chrom_left" in joined.columns) != by
+
+
+def test_frames_without_matches_and_without_rows() -> None:
+    left, right = intervals(5, 1), intervals(4, 2)
+    right[["start", "end"]] += 1e6
+    assert len(sap.join(left, right)) == 0
+    assert len(sap.join(left, right, "left")) == 5 and sap.join(left, right, "left")["name_right"].isna().all()
+    assert list(sap.join(left, right).columns) == list(sap.join(left, right, "left").columns)
+    assert len(sap.join(left[:0], right)) == 0 and len(sap.join(left[:0], right, "right")) == 4
+
+
+def test_misuse_is_refused() -> None:
+    left, right = intervals(5, 1), intervals(4, 2)
+    for arguments, options, error, message in (
+        ((left, np.zeros((2, 2))), {}, TypeError, "left and right must be two DataFrames"),
+        ((left, right, "outer"), {}, ValueError, "how must be"),
+        ((left, right, "inner", "near"), {}, ValueError, "predicate must be one of"),
+        ((left, right, "inner", "within"), {}, ValueError, "needs geometries"),
+        ((left, right), {"by": "gene"}, ValueError, "by names 'gene', which is no column of left"),
+        ((left, right), {"distance": -1}, ValueError, "margin"),
+        ((left, right), {"lsuffix": "", "rsuffix": ""}, ValueError, "lsuffix and rsuffix are empty"),
+        ((left.assign(index_right=1), right), {}, ValueError, "'index_right' cannot be a column"),
+        ((left.drop(columns="end"), right), {}, ValueError, "no columns that are known"),
+    ):
+        with pytest.raises(error, match=message):
+            sap.join(*arguments, **options)
+
+
+def shapes(count: int, seed: int) -> Any:
+    """Points, lines and polygons with many points, some of them empty or None."""
+    geopandas, shapely = pytest.importorskip("geopandas"), pytest.importorskip("shapely")
+    random = np.random.default_rng(seed)
+    x, y = random.integers(0, 20, (2, count)) / 2
+    made = shapely.points(x, y)
+    made[count // 4 :] = shapely.box(x, y, x + random.integers(1, 4, count) / 2, y + 1)[count // 4 :]
+    made[count // 2 :] = shapely.buffer(shapely.points(x, y)[count // 2 :], 0.8)
+    line = shapely.linestrings(np.stack([x, y, x + 2, y + random.integers(0, 3, count)], 1).reshape(-1, 2, 2))
+    made[-count // 5 :] = line[-count // 5 :]
+    made[3], made[5] = None, shapely.Point()
+    return geopandas.GeoDataFrame(
+        {"value": random.integers(0, 5, count), f"only_{seed}": x, "kind": np.arange(count) % 3},
+        geometry=geopandas.GeoSeries(made, crs="EPSG:3857"),
+        index=np.arange(count)[::-1] * 2,
+    )
+
+
+def check_same(left: Any, right: Any, *arguments: Any, **options: Any) -> int:
+    geopandas = pytest.importorskip("geopandas")
+    joined = sap.join(left, right, *arguments, **options)
+    if "by" in options:
+        options["on_attribute"] = options.pop("by")
+    wanted = geopandas.sjoin(left, right, *arguments, **options)
+
+    def arranged(frame: Any) -> Any:
+        """Rows in an order of their own: that of geopandas is not defined where several rows match one."""
+        named = pandas.DataFrame(frame)
+        named.index = named.index.set_names([f"level {level}" for level in range(named.index.nlevels)])
+        named = named.reset_index()
+        return named.sort_values(list(named.select_dtypes("number").columns)).reset_index(drop=True)
+
+    pandas.testing.assert_frame_equal(arranged(joined), arranged(wanted))
+    assert type(joined) is type(wanted) and joined.crs == wanted.crs
+    assert joined.geometry.name == wanted.geometry.name and list(joined.columns) == list(wanted.columns)
+    assert joined.index.names == wanted.index.names
+    return len(joined)
+
+
+@pytest.mark.parametrize("how", ["inner", "left", "right"])
+@pytest.mark.parametrize(
+    "predicate",
+    ["intersects", "contains", "within", "covers", "covered_by", "contains_properly", "crosses", "overlaps", "touches"],
+)
+def test_geometries_are_joined_as_by_geopandas(how: str, predicate: str) -> None:
+    left, right = shapes(150, 1), shapes(120, 2)
+    assert check_same(left, right, how, predicate) > 5
+    check_same(left, left, how, predicate)
+    # Either side may have the geometries with more points.
+    check_same(left[left.geometry.geom_type == "Point"], right, how, predicate)
+    check_same(left, right[right.geometry.geom_type == "Point"], how, predicate)
+
+
+def test_distances_names_indices_and_groups_are_those_of_geopandas() -> None:
+    left, right = shapes(80, 1), shapes(60, 2)
+    for how in ("inner", "left", "right"):
+        for distance in (0, 0.5, np.linspace(0, 1, 80)):
+            check_same(left, right, how, "dwithin", distance=distance)
+        check_same(left, right, how, by="kind")
+        check_same(left, right, how, by=["kind", "value"])
+        check_same(left, right, how, lsuffix="a", rsuffix="b")
+        check_same(left.rename_axis("id"), right.rename_axis("number"), how)
+        check_same(left.set_index(["kind", "value"]), right.set_index([right.index, "value"]), how)
+        check_same(left.rename_geometry("shape"), right.rename_geometry("geom"), how)
+        check_same(left.rename_geometry("shape"), right, how)
+        check_same(left[:0], right, how)
+        check_same(left, right[:0], how)
+    # 0.1 + 0.2 > 0.3, but the distance of 0.1 and 0.3 is not more than 0.2.
+    geopandas = pytest.importorskip("geopandas")
+    a, b = (geopandas.GeoDataFrame(geometry=geopandas.points_from_xy([x], [0])) for x in (0.1, 0.3))
+    assert check_same(a, b, "inner", "dwithin", distance=0.2) == check_same(b, a, "inner", "dwithin", distance=0.2)
+
+
+def test_prepared_geometries_are_left_as_they_were() -> None:
+    shapely = pytest.importorskip("shapely")
+    left, right = shapes(80, 1), shapes(60, 2)
+    shapely.prepare(left.geometry.array[50:55])
+    before = [shapely.is_prepared(np.asarray(frame.geometry.array)).tolist() for frame in (left, right)]
+    sap.join(left, right)
+    assert [shapely.is_prepared(np.asarray(frame.geometry.array)).tolist() for frame in (left, right)] == before
+
+
+def test_geometries_are_checked() -> None:
+    left, right = shapes(10, 1), shapes(10, 2)
+    with pytest.raises(ValueError, match=r"EPSG:3857 and EPSG:4326: pass right\.to_crs"):
+        sap.join(left, right.to_crs(4326))
+    for options, message in (
+        ({"distance": 1}, "distance must be passed with"),
+        ({"predicate": "dwithin"}, "distance must be passed with"),
+        ({"predicate": "dwithin", "distance": [1, 2]}, "one for each left row"),
+        ({"closed": "left"}, "closed and format are for boxes"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            sap.join(left, right, **options)
+    with pytest.raises(TypeError, match="GeoDataFrame and DataFrame"):
+        sap.join(left, pandas.DataFrame(right))

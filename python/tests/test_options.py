@@ -1,0 +1,224 @@
+"""Margins, progress and chunks equal brute force, and compose with the other options."""
+
+from __future__ import annotations
+
+import gc
+import threading
+import time
+from collections.abc import Callable
+from datetime import timedelta
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from oracle import DIMENSIONS, FLOATS, Array, box_sets, in_order, pairs, pairs_between, random_boxes
+
+import sweep_and_prune as sap
+
+
+def within(a: Array, b: Array, margin: Any, closed: str = "both") -> Array:
+    """`(n, k)`: whether the boxes of two sets are within a margin, by definition."""
+    half = a.shape[1] // 2
+    low_a, high_a, low_b, high_b = a[:, None, :half], a[:, None, half:], b[None, :, :half], b[None, :, half:]
+    if closed == "both":
+        return np.asarray(((low_a <= high_b + margin) & (low_b <= high_a + margin)).all(axis=2))
+    near = ((low_a < high_b + margin) & (low_b < high_a + margin)).all(axis=2)
+    return np.asarray(near & (low_a < high_a).all(axis=2) & (low_b < high_b).all(axis=2))
+
+
+@pytest.mark.parametrize("dtype", FLOATS)
+@pytest.mark.parametrize("dimensions", DIMENSIONS)
+@settings(max_examples=40)
+@given(data=st.data())
+def test_margins_follow_their_definition(dimensions: int, dtype: Any, data: st.DataObject) -> None:
+    a = data.draw(box_sets(dimensions)).astype(dtype)
+    b = data.draw(box_sets(dimensions)).astype(dtype)
+    closed = data.draw(st.sampled_from(["both", "left", "neither"]))
+    numbers = st.sampled_from([0.0, 0.1, 0.5, 1.0, 3.0])
+    margin: Any = data.draw(numbers | st.lists(numbers, min_size=dimensions, max_size=dimensions))
+    rounded = np.asarray(margin).astype(dtype)
+    wanted = np.argwhere(np.triu(within(a, a, rounded, closed), 1))
+    assert np.array_equal(in_order(sap.find_pairs(a, margin=margin, closed=closed)), wanted)
+    assert sap.count_pairs(a, margin=margin, closed=closed) == len(wanted)
+    between = np.argwhere(within(a, b, rounded, closed))
+    assert np.array_equal(in_order(sap.find_pairs_between(a, b, margin=margin, closed=closed)), between)
+    assert sap.count_pairs_between(a, b, margin=margin, closed=closed) == len(between)
+
+
+def test_margins_of_integers_and_times_are_exact() -> None:
+    large = 2**62 + np.array([[0, 10], [13, 20], [24, 30]])
+    assert sap.find_pairs(large, margin=3).tolist() == [[0, 1]]
+    assert sap.find_pairs(large, margin=2).tolist() == []
+    assert sap.find_pairs(large, margin=4.0, closed="left").tolist() == [[0, 1]]
+    assert sap.find_pairs(large, margin=2**62).tolist() == [[0, 1], [0, 2], [1, 2]]
+    with pytest.raises(ValueError, match="whole number for integers beyond"):
+        sap.find_pairs(large, margin=0.5)
+    times = np.datetime64("2026-11-22T12:00:00", "ns") + np.array([[0, 10], [13, 20], [24, 30]])
+    for margin in (np.timedelta64(3, "ns"), np.timedelta64(3, "ns").reshape(1)):
+        assert sap.find_pairs(times, margin=margin).tolist() == [[0, 1]]
+    assert sap.find_pairs(times, margin=np.timedelta64(2, "ns")).tolist() == []
+    assert len(sap.find_pairs(times, margin=timedelta(microseconds=1))) == 3
+    assert len(sap.find_pairs_between(times[:1], times, margin=np.timedelta64(3, "ns"))) == 2
+    for wrong in (3, 0.5, "3"):
+        with pytest.raises(TypeError, match="margin must be a timedelta for times"):
+            sap.find_pairs(times, margin=wrong)
+    with pytest.raises(ValueError, match="0 or more"):
+        sap.find_pairs(times, margin=timedelta(-1))
+    with pytest.raises(ValueError, match="must be so small that"):
+        sap.find_pairs(times, margin=np.timedelta64(2**63 - 1, "ns"))
+
+
+@pytest.mark.parametrize("margin", [-1, np.nan, np.inf, [1, -1], "1", None, [1, 2, 3], [[1, 2]], timedelta(1), 1j])
+def test_margins_that_make_no_sense(margin: Any) -> None:
+    with pytest.raises((ValueError, TypeError), match="margin"):
+        sap.find_pairs([[0, 0, 1, 1]], margin=margin)
+
+
+def test_a_margin_does_not_hide_invalid_boxes_and_errors_name_the_row_that_was_passed() -> None:
+    with pytest.raises(sap.InvalidBoxError, match=r"boxes\[1\] is inverted"):
+        sap.find_pairs([[0, 1], [3, 2]], margin=5)
+    with pytest.raises(sap.InvalidBoxError, match=r"boxes\[1\] has a NaN"):
+        sap.find_pairs(np.array([[0, 1], [3, np.nan]]), margin=5)
+    for margin in (0, 5):
+        with pytest.raises(sap.InvalidBoxError, match=r"b\[2\] is inverted"):
+            sap.find_pairs_between([[0, 1]], np.array([[np.nan, 1], [0, 1], [3, 2]]), missing="skip", margin=margin)
+
+
+def test_options_compose() -> None:
+    boxes = random_boxes(200, 2, np.float64)
+    by = np.arange(200) % 3
+    boxes[::20, 1] = np.nan
+    kept: Array = np.array([not np.isnan(box).any() for box in boxes])
+    same = (by[:, None] == by[None]) & kept[:, None] & kept[None]
+    near = within(np.nan_to_num(boxes), np.nan_to_num(boxes), 0.5, "left")
+    wanted = np.argwhere(np.triu(near & same, 1))
+    options: dict[str, Any] = {"by": by, "missing": "skip", "margin": 0.5, "closed": "left"}
+    assert len(wanted) > 10 and np.array_equal(in_order(sap.find_pairs(boxes, **options)), wanted)
+    found = list(sap.iter_chunks(boxes, size=7, dtype=np.uint32, **options))
+    assert np.array_equal(in_order(np.concatenate(found)), wanted) and found[0].dtype == np.uint32
+    options["by"] = (by, by)
+    between = np.concatenate(list(sap.iter_chunks_between(boxes, boxes, **options)))
+    assert np.array_equal(in_order(between), np.argwhere(near & same))
+
+
+@pytest.mark.parametrize("dimensions", DIMENSIONS)
+def test_chunks_are_the_pairs_in_their_order(dimensions: int) -> None:
+    a, b = random_boxes(300, dimensions, np.float32), random_boxes(200, dimensions, np.float32, 2)
+    by = np.arange(300) % 2
+    for options in ({}, {"by": by}, {"missing": "skip"}):
+        found = sap.find_pairs(a, **options)
+        for size in (1, 50, 10**6):
+            chunks = list(sap.iter_chunks(a, size=size, **options))
+            assert np.array_equal(np.concatenate(chunks), found) and all(0 < len(chunk) <= size for chunk in chunks)
+    between = sap.find_pairs_between(a, b)
+    assert np.array_equal(np.concatenate(list(sap.iter_chunks_between(a, b, size=9))), between)
+    seen: list[Any] = []
+    assert sap.for_each_chunk_between(a, b, seen.append, size=9)
+    assert np.array_equal(np.concatenate(seen), between)
+    assert not sap.for_each_chunk_between(a, b, lambda chunk: False)
+    assert np.array_equal(in_order(between), pairs_between(a, b))
+
+
+def test_an_iteration_that_is_left_ends_its_search() -> None:
+    def threads_of_searches() -> int:
+        return sum(thread.daemon for thread in threading.enumerate())
+
+    before = threads_of_searches()
+    boxes = np.zeros((50_000, 2))  # 1.2 billion pairs: far more than the test waits for
+    for pairs_of_chunk in sap.iter_chunks(boxes):
+        assert len(pairs_of_chunk) == 65_536
+        break
+    chunks = sap.iter_chunks(boxes)
+    next(chunks)
+    del chunks, pairs_of_chunk
+    gc.collect()
+    end = time.monotonic() + 20
+    while threads_of_searches() > before and time.monotonic() < end:
+        time.sleep(0.01)
+    assert threads_of_searches() == before
+    # One that is never begun starts no search.
+    iterator = sap.iter_chunks(boxes)
+    assert threads_of_searches() == before
+    del iterator
+
+
+def test_what_is_wrong_is_said_when_iterating() -> None:
+    with pytest.raises(sap.InvalidBoxError):
+        next(iter(sap.iter_chunks(np.array([[1.0, 0.0]]))))
+    with pytest.raises(ValueError, match="boxes must be of shape"):
+        sap.iter_chunks([[1, 2, 3]])
+    with pytest.raises(ValueError, match="size must be"):
+        sap.iter_chunks([[1, 2]], size=0)
+    with pytest.raises(ValueError, match="dtype"):
+        sap.iter_chunks([[1, 2]], dtype=float)
+    assert list(sap.iter_chunks([[0, 1]])) == []
+
+
+def heap(count: int) -> Array:
+    """Boxes that all overlap."""
+    return np.hstack([np.zeros((count, 3)), np.random.default_rng(1).random((count, 3)) + 1]).astype(np.float32)
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_progress_is_reported(threads: int) -> None:
+    boxes = heap(30_000)
+    finder = sap.PairFinder(3, np.float32, threads=threads)
+    calls: list[Callable[[Callable[[float], None]], Any]] = [
+        lambda report: sap.count_pairs(boxes, threads=threads, progress=report),
+        lambda report: sap.count_pairs_between(boxes[:20_000], boxes, threads=threads, progress=report),
+        lambda report: finder.count(boxes, progress=report),
+        lambda report: finder.count_between(boxes[:20_000], boxes, progress=report),
+        lambda report: sap.find_pairs(boxes[:8000], threads=threads, progress=report),
+        lambda report: sap.find_pairs_between(boxes[:4000], boxes[:8000], threads=threads, progress=report),
+        lambda report: finder.find(boxes[:8000], progress=report),
+        lambda report: finder.find_between(boxes[:4000], boxes[:8000], progress=report),
+    ]
+    for call in calls:
+        seen: list[float] = []
+        call(seen.append)
+        assert seen == sorted(seen) and all(type(done) is float and 0 <= done <= 1 for done in seen)
+        assert seen[-1] == 1.0
+    seen = []
+    finder.count(boxes, progress=seen.append)
+    assert len(seen) > 3
+    sap.find_pairs([[0, 1]], progress=seen.append)
+    assert seen[-1] == 1.0
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_what_progress_raises_ends_the_search(threads: int) -> None:
+    boxes, calls = heap(40_000), 0
+    finder = sap.PairFinder(3, np.float32, threads=threads)
+
+    def fail(done: float) -> None:
+        nonlocal calls
+        calls += 1
+        assert done < 0.9
+        raise KeyError("enough")
+
+    for call in (finder.count, lambda boxes, progress: sap.count_pairs(boxes, threads=threads, progress=progress)):
+        calls = 0
+        with pytest.raises(KeyError, match="enough"):
+            call(boxes, progress=fail)
+        assert calls == 1
+    assert finder.count(boxes[:100]) == 4950
+
+
+@pytest.mark.parametrize("progress", [5, "print", []])
+def test_progress_must_be_callable(progress: Any) -> None:
+    with pytest.raises(TypeError, match="progress must be callable"):
+        sap.find_pairs([[0, 1]], progress=progress)
+
+
+def test_large_results_are_those_of_small_ones_in_every_type() -> None:
+    boxes = heap(1600)  # 1,279,200 pairs: more than are converted at once
+    alone = pairs(boxes)
+    for dtype in (np.int64, np.int32, np.uint32, np.uint64):
+        found = sap.find_pairs(boxes, dtype=dtype)
+        assert found.dtype == dtype and np.array_equal(in_order(found), alone)
+    chunks = np.concatenate(list(sap.iter_chunks(boxes)))
+    assert np.array_equal(chunks, sap.find_pairs(boxes))
+    finder = sap.PairFinder(3, np.float32, threads=2)
+    assert np.array_equal(finder.find(boxes), finder.find(boxes)) and len(finder.find(boxes[:3])) == 3
