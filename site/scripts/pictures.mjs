@@ -1,10 +1,11 @@
 // Draws docs/picture.png and docs/picture-dark.png for the READMEs: the falling spheres of the built site, in light and
 // dark, with the figures that the page itself measures in this run. Build the site first (`npm run build`).
 //
-//   npm run pictures -w site [-- STEP]    STEP: the step of the simulation to draw (default 240)
+//   npm run pictures -w site [-- STEP]    STEP: the step of the simulation to draw (default 110)
 //
 // Chromium draws without a graphics card here, so the time of drawing says nothing about a visitor's machine: the
-// picture leaves it out. The time of the broad phase is that of this machine; run it while nothing else does.
+// picture leaves it out, and the view is small until the simulation pauses. The times of the phases are those of this
+// machine: run it while nothing else runs.
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { chromium } from "@playwright/test";
@@ -12,7 +13,7 @@ import { preview } from "vite";
 
 const site = resolve(dirname(fileURLToPath(import.meta.url)), "..");
 const docs = resolve(site, "../docs");
-const lastStep = Number(process.argv[2] ?? 240);
+const lastStep = Number(process.argv[2] ?? 110);
 
 /** Leaves the view and, below it, four figures that hold on any machine or are worth comparing. */
 const STYLE = `
@@ -20,6 +21,7 @@ const STYLE = `
   #spheres .panel { display: block; width: 44rem; padding: 1rem; background: var(--paper, Canvas); }
   #spheres .panel-stage { aspect-ratio: 16 / 10; }
   #spheres :is(.panel-transport, .panel-world, .panel-method, .panel-stages, h3) { display: none; }
+  #spheres:not(.paused) .panel-stage { width: 4rem; }
   #spheres .panel-counters { display: grid; grid-template-columns: 1fr 1fr; gap: 0 2.5rem; margin-top: 0.75rem; }
   #spheres .counter:not([data-counter=brute-force], [data-counter=pairs], [data-counter=broad-phase], [data-counter=narrow-phase]) { display: none; }
   #spheres .counter { font-size: 1.0625rem; color: inherit; border: 0; }
@@ -43,7 +45,8 @@ try {
     const stepOf = (text) => Number(/\d[\d,]*/.exec(text ?? "")?.[0].replaceAll(",", "") ?? 0);
     while (stepOf(await moment.textContent()) < lastStep) await page.waitForTimeout(100);
     await spheres.locator("[data-part=play]").dispatchEvent("click");
-    await page.waitForTimeout(500);
+    await spheres.evaluate((element) => element.classList.add("paused"));
+    await page.waitForTimeout(1500);
     const figures = await spheres.locator(".counter:visible").evaluateAll((all) => all.map((row) => row.innerText.replace(/\s+/g, " ")));
     await spheres.locator(".panel").screenshot({ path: join(docs, file) });
     console.log(`docs/${file}: step ${stepOf(await moment.textContent())}; ${figures.join("; ")}`);

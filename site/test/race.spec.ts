@@ -166,7 +166,7 @@ test.describe("paused", () => {
   }
 });
 
-test("20,000 boxes and brute force leave the page responsive; who is too slow is out", async ({ page }) => {
+test("20,000 boxes and brute force leave the page responsive; what is too slow is stopped", async ({ page }) => {
   const race = await new Race(page).open("?boxes=20000");
   await expect.poll(async () => Number(await race.root.getAttribute("data-step")), { timeout: 40_000 }).toBeGreaterThan(2);
   const longest = await page.evaluate(async () => {
