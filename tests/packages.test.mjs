@@ -87,6 +87,8 @@ describe("Python: the wheel", { skip }, () => {
     run(path, python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", join(wheels, wheel));
     const codes = ["README.md", "python/README.md"].flatMap((readme) => examples(readme, "python"));
     assert.ok(codes.length >= 4, `${codes.length} examples`);
+    // Not needed by the package, but one example uses it, and its readers have it.
+    run(path, python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "pandas");
     for (const code of codes) {
       const expected = [...code.matchAll(/^\s*print\(.*\)\s+# (.*)$/gm)].map(([, said]) => said);
       assert.ok(expected.length > 0, code);
