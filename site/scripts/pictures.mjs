@@ -1,7 +1,7 @@
 // Draws docs/picture.png and docs/picture-dark.png for the READMEs: the falling spheres of the built site, in light and
 // dark, with the figures that the page itself measures in this run. Build the site first (`npm run build`).
 //
-//   npm run pictures -w site [-- STEP]    STEP: the step of the simulation to draw (default 110)
+//   npm run pictures -w site [-- STEP]    STEP: the step of the simulation to draw (default 75)
 //
 // Chromium draws without a graphics card here, so the time of drawing says nothing about a visitor's machine: the
 // picture leaves it out, and the view is small until the simulation pauses. The times of the phases are those of this
@@ -13,7 +13,7 @@ import { preview } from "vite";
 
 const site = resolve(dirname(fileURLToPath(import.meta.url)), "..");
 const docs = resolve(site, "../docs");
-const lastStep = Number(process.argv[2] ?? 110);
+const lastStep = Number(process.argv[2] ?? 75);
 
 /** Leaves the view and, below it, four figures that hold on any machine or are worth comparing. */
 const STYLE = `
@@ -33,25 +33,25 @@ const browser = await chromium.launch({
   args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"],
 });
 try {
+  const page = await browser.newPage({ deviceScaleFactor: 2, viewport: { width: 1000, height: 700 } });
+  await page.goto(new URL("falling.html", server.resolvedUrls.local[0]).href);
+  // The discs would take half of the processor.
+  await page.evaluate(() => document.getElementById("discs").closest("section").remove());
+  await page.addStyleTag({ content: STYLE });
+  const spheres = page.locator("#spheres");
+  await spheres.scrollIntoViewIfNeeded();
+  const moment = spheres.locator("[data-part=moment]");
+  const step = async () => Number(/\d[\d,]*/.exec((await moment.textContent()) ?? "")?.[0].replaceAll(",", "") ?? 0);
+  while ((await step()) < lastStep) await page.waitForTimeout(50);
+  await spheres.locator("[data-part=play]").dispatchEvent("click");
+  await spheres.evaluate((element) => element.classList.add("paused"));
   for (const [colorScheme, file] of [["light", "picture.png"], ["dark", "picture-dark.png"]]) {
-    const page = await browser.newPage({ colorScheme, deviceScaleFactor: 2, viewport: { width: 1000, height: 700 } });
-    await page.goto(new URL("falling.html", server.resolvedUrls.local[0]).href);
-    // The discs would take half of the processor.
-    await page.evaluate(() => document.getElementById("discs").closest("section").remove());
-    await page.addStyleTag({ content: STYLE });
-    const spheres = page.locator("#spheres");
-    await spheres.scrollIntoViewIfNeeded();
-    const moment = spheres.locator("[data-part=moment]");
-    const stepOf = (text) => Number(/\d[\d,]*/.exec(text ?? "")?.[0].replaceAll(",", "") ?? 0);
-    while (stepOf(await moment.textContent()) < lastStep) await page.waitForTimeout(100);
-    await spheres.locator("[data-part=play]").dispatchEvent("click");
-    await spheres.evaluate((element) => element.classList.add("paused"));
+    await page.emulateMedia({ colorScheme });
     await page.waitForTimeout(1500);
-    const figures = await spheres.locator(".counter:visible").evaluateAll((all) => all.map((row) => row.innerText.replace(/\s+/g, " ")));
     await spheres.locator(".panel").screenshot({ path: join(docs, file) });
-    console.log(`docs/${file}: step ${stepOf(await moment.textContent())}; ${figures.join("; ")}`);
-    await page.close();
   }
+  const figures = await spheres.locator(".counter:visible").evaluateAll((all) => all.map((row) => row.innerText.replace(/\s+/g, " ")));
+  console.log(`step ${await step()}: ${figures.join("; ")}`);
 } finally {
   await browser.close();
   await new Promise((done) => server.httpServer.close(done));

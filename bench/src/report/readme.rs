@@ -97,7 +97,7 @@ fn replaced(text: &str, table: &str) -> Result<String> {
 /// Four rows, from a thousand boxes to a million, and what was measured.
 fn table(record: &Record) -> Result<String> {
     let mut text = String::from(
-        "| boxes | sweep-and-prune | fastest alternative | all scenes: fastest alternative takes | at least |\n\
+        "| boxes | sweep-and-prune | fastest alternative | mean of all scenes | closest scene |\n\
          |--:|--:|---|--:|--:|\n",
     );
     let mut scenes = Vec::new();
@@ -132,8 +132,8 @@ fn table(record: &Record) -> Result<String> {
     let _ = write!(
         text,
         "\nThe times (lower is better) are those of the scene *{scene} {dimensions}D*; the last two \
-         columns are the geometric mean and the minimum over {scenes} scenes in 2D and 3D, each against \
-         the fastest alternative on that scene. One thread, from raw boxes to stored pairs. {}, {} \
+         columns say how long the fastest alternative of each scene takes, compared with sweep-and-prune: the \
+         geometric mean and the minimum over {scenes} scenes in 2D and 3D. One thread, from raw boxes to stored pairs. {}, {} \
          cores, {}.",
         record.machine.cpu, record.machine.cores, record.date,
     );
