@@ -168,12 +168,11 @@ impl fmt::Display for Error {
                 let limit = Error::BOX_LIMIT;
                 write!(f, "{count} boxes are too many: one set can hold {limit}, so split it")
             }
-            Error::OutOfMemory => write!(
-                f,
+            Error::OutOfMemory => f.write_str(
                 "out of memory: the pairs of these boxes do not fit; count or stream the pairs, or \
-                 pass fewer boxes"
+                 pass fewer boxes",
             ),
-            Error::Cancelled => write!(f, "cancelled: the progress callback ended the search"),
+            Error::Cancelled => f.write_str("cancelled: the progress callback ended the search"),
             Error::InvalidAxis { axis, dimensions } => write!(
                 f,
                 "axis {axis} does not exist: the boxes have {dimensions} dimensions, and the axis \
@@ -207,7 +206,7 @@ impl fmt::Display for Error {
 impl fmt::Display for SnapshotFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            SnapshotFault::Foreign => write!(f, "these bytes are not a snapshot"),
+            SnapshotFault::Foreign => f.write_str("these bytes are not a snapshot"),
             SnapshotFault::Version { found } => write!(
                 f,
                 "the snapshot is of version {found}, which this version of the library cannot read: \
@@ -222,14 +221,11 @@ impl fmt::Display for SnapshotFault {
                 )
             }
             SnapshotFault::Truncated => {
-                write!(f, "the snapshot ends too early: some of its bytes are missing")
+                f.write_str("the snapshot ends too early: some of its bytes are missing")
             }
-            SnapshotFault::Corrupt => {
-                write!(
-                    f,
-                    "the snapshot is corrupt: its parts or its checksum contradict each other"
-                )
-            }
+            SnapshotFault::Corrupt => f.write_str(
+                "the snapshot is corrupt: its parts or its checksum contradict each other",
+            ),
         }
     }
 }

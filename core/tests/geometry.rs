@@ -1,6 +1,6 @@
-//! Boxes: centers and sizes, conversions from and to arrays, tuples and the types of other crates.
+//! Boxes: what overlaps, what is valid, centers and sizes, conversions from and to arrays, tuples and the types of other crates.
 
-use sweep_and_prune::{Aabb, Scalar};
+use sweep_and_prune::{Aabb, Error, Scalar, Value, validate};
 
 #[test]
 fn a_box_has_a_center_and_full_and_half_extents() {
@@ -138,4 +138,38 @@ fn a_box_is_its_two_corners_in_json() {
     ] {
         assert!(serde_json::from_str::<Aabb<2>>(wrong).is_err(), "{wrong}");
     }
+}
+
+#[test]
+fn touching_boxes_overlap_and_negative_zero_is_zero() {
+    let a = Aabb::new([0.0f32], [0.0]);
+    let b = Aabb::new([-0.0f32], [-0.0]);
+    let c = Aabb::new([0.0f32], [1.0]);
+    assert!(a.overlaps(&b) && b.overlaps(&c) && c.overlaps(&a));
+}
+
+#[test]
+fn infinite_boxes_overlap_what_they_should() {
+    let inf = f64::INFINITY;
+    let everything = Aabb::new([-inf, -inf], [inf, inf]);
+    let point_at_infinity = Aabb::new([inf, inf], [inf, inf]);
+    let point = Aabb::new([3.0, 4.0], [3.0, 4.0]);
+    assert!(everything.is_valid() && point_at_infinity.is_valid());
+    assert!(everything.overlaps(&point_at_infinity));
+    assert!(everything.overlaps(&point));
+    assert!(!point.overlaps(&point_at_infinity));
+}
+
+#[test]
+fn validation_names_the_box_and_the_axis() {
+    let good = Aabb::new([0.0f32, 0.0], [1.0, 1.0]);
+    let nan = Aabb::new([0.0f32, f32::NAN], [1.0, 1.0]);
+    let inverted = Aabb::new([2.0f32, 0.0], [1.0, 1.0]);
+    assert_eq!(validate(&[good, good]), Ok(()));
+    let [zero, one, two, nan_value] = [0.0, 1.0, 2.0, f64::NAN].map(Value::from);
+    let error = Error::InvalidBox { set: 0, index: 1, axis: 1, min: nan_value, max: one };
+    assert_eq!(validate(&[good, nan]), Err(error));
+    assert_ne!(error, Error::InvalidBox { set: 0, index: 1, axis: 1, min: zero, max: one });
+    let error = Error::InvalidBox { set: 0, index: 2, axis: 0, min: two, max: one };
+    assert_eq!(validate(&[good, good, inverted]), Err(error));
 }

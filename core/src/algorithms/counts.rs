@@ -39,15 +39,26 @@ impl Counts {
     }
 }
 
-impl Observer for Counts {
-    #[inline]
-    fn compare(&mut self, _: Edge, _: Edge) {
-        self.comparisons += 1;
-    }
+/// Methods that count their event.
+macro_rules! counted {
+    ($($count:ident: $method:ident($($type:ty),*);)*) => {$(
+        #[inline]
+        fn $method(&mut self, $(_: $type),*) {
+            self.$count += 1;
+        }
+    )*};
+}
 
-    #[inline]
-    fn swap(&mut self, _: [usize; 2], _: Edge, _: Edge) {
-        self.swaps += 1;
+impl Observer for Counts {
+    counted! {
+        comparisons: compare(Edge, Edge);
+        swaps: swap([usize; 2], Edge, Edge);
+        tests: test(u32, u32, Option<Separation>);
+        axis_overlaps: axis_overlap(usize, u32, u32);
+        axis_ends: axis_apart(usize, u32, u32);
+        pairs: overlap(u32, u32);
+        begun: begin(u32, u32);
+        ended: end(u32, u32);
     }
 
     #[inline]
@@ -59,35 +70,5 @@ impl Observer for Counts {
     #[inline]
     fn leave(&mut self, _: u32) {
         self.active = self.active.saturating_sub(1);
-    }
-
-    #[inline]
-    fn test(&mut self, _: u32, _: u32, _: Option<Separation>) {
-        self.tests += 1;
-    }
-
-    #[inline]
-    fn axis_overlap(&mut self, _: usize, _: u32, _: u32) {
-        self.axis_overlaps += 1;
-    }
-
-    #[inline]
-    fn axis_apart(&mut self, _: usize, _: u32, _: u32) {
-        self.axis_ends += 1;
-    }
-
-    #[inline]
-    fn overlap(&mut self, _: u32, _: u32) {
-        self.pairs += 1;
-    }
-
-    #[inline]
-    fn begin(&mut self, _: u32, _: u32) {
-        self.begun += 1;
-    }
-
-    #[inline]
-    fn end(&mut self, _: u32, _: u32) {
-        self.ended += 1;
     }
 }

@@ -23,7 +23,7 @@ use alloc::vec::Vec;
 
 use super::endpoint::{Edge, Endpoint, Side};
 use super::endpoint_array::EndpointArray;
-use super::observer::{Observer, Separation, pair};
+use super::observer::{Observer, test_beside};
 use super::sorts::Sort;
 use super::touching::Touching;
 use crate::{Aabb, Scalar};
@@ -43,14 +43,7 @@ pub(super) fn endpoint_sweep<const D: usize, T: Scalar, O: Observer>(
     observer.array(axis, &array.endpoints);
     sort.sort(&mut array.endpoints, observer);
     sweep(&array.endpoints, touching, observer, |observer, a, b| {
-        let [least, other] = pair(a, b);
-        observer.axis_overlap(axis, least, other);
-        let separation = Separation::find_beside(boxes, a, b, axis);
-        observer.test(a, b, separation);
-        if separation.is_none() {
-            observer.overlap(least, other);
-            pairs.push([least, other]);
-        }
+        test_beside(boxes, [a, b], axis, observer, pairs);
     });
 }
 

@@ -1,5 +1,7 @@
 //! The observer of an algorithm at work, and why two boxes are apart.
 
+use alloc::vec::Vec;
+
 use super::endpoint::{Edge, Endpoint};
 use crate::{Aabb, Scalar};
 
@@ -85,15 +87,20 @@ impl Observer for () {
     const ACTIVE: bool = false;
 }
 
+/// Methods that hand an event to both observers of a pair.
+macro_rules! both {
+    ($($method:ident($($argument:ident: $type:ty),*);)*) => {$(
+        #[inline]
+        fn $method(&mut self, $($argument: $type),*) {
+            self.0.$method($($argument),*);
+            self.1.$method($($argument),*);
+        }
+    )*};
+}
+
 /// Both observers receive every event, the first of the pair first.
 impl<A: Observer, B: Observer> Observer for (A, B) {
     const ACTIVE: bool = A::ACTIVE || B::ACTIVE;
-
-    #[inline]
-    fn step(&mut self, axis: usize, keeps_axis_overlaps: bool) {
-        self.0.step(axis, keeps_axis_overlaps);
-        self.1.step(axis, keeps_axis_overlaps);
-    }
 
     #[inline]
     fn array<T: Scalar>(&mut self, axis: usize, endpoints: &[Endpoint<T>]) {
@@ -101,76 +108,20 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
         self.1.array(axis, endpoints);
     }
 
-    #[inline]
-    fn compare(&mut self, a: Edge, b: Edge) {
-        self.0.compare(a, b);
-        self.1.compare(a, b);
-    }
-
-    #[inline]
-    fn swap(&mut self, positions: [usize; 2], a: Edge, b: Edge) {
-        self.0.swap(positions, a, b);
-        self.1.swap(positions, a, b);
-    }
-
-    #[inline]
-    fn visit(&mut self, position: usize, edge: Edge) {
-        self.0.visit(position, edge);
-        self.1.visit(position, edge);
-    }
-
-    #[inline]
-    fn enter(&mut self, id: u32) {
-        self.0.enter(id);
-        self.1.enter(id);
-    }
-
-    #[inline]
-    fn leave(&mut self, id: u32) {
-        self.0.leave(id);
-        self.1.leave(id);
-    }
-
-    #[inline]
-    fn prune(&mut self, separation: Separation) {
-        self.0.prune(separation);
-        self.1.prune(separation);
-    }
-
-    #[inline]
-    fn test(&mut self, a: u32, b: u32, separation: Option<Separation>) {
-        self.0.test(a, b, separation);
-        self.1.test(a, b, separation);
-    }
-
-    #[inline]
-    fn axis_overlap(&mut self, axis: usize, a: u32, b: u32) {
-        self.0.axis_overlap(axis, a, b);
-        self.1.axis_overlap(axis, a, b);
-    }
-
-    #[inline]
-    fn axis_apart(&mut self, axis: usize, a: u32, b: u32) {
-        self.0.axis_apart(axis, a, b);
-        self.1.axis_apart(axis, a, b);
-    }
-
-    #[inline]
-    fn overlap(&mut self, a: u32, b: u32) {
-        self.0.overlap(a, b);
-        self.1.overlap(a, b);
-    }
-
-    #[inline]
-    fn begin(&mut self, a: u32, b: u32) {
-        self.0.begin(a, b);
-        self.1.begin(a, b);
-    }
-
-    #[inline]
-    fn end(&mut self, a: u32, b: u32) {
-        self.0.end(a, b);
-        self.1.end(a, b);
+    both! {
+        step(axis: usize, keeps_axis_overlaps: bool);
+        compare(a: Edge, b: Edge);
+        swap(positions: [usize; 2], a: Edge, b: Edge);
+        visit(position: usize, edge: Edge);
+        enter(id: u32);
+        leave(id: u32);
+        prune(separation: Separation);
+        test(a: u32, b: u32, separation: Option<Separation>);
+        axis_overlap(axis: usize, a: u32, b: u32);
+        axis_apart(axis: usize, a: u32, b: u32);
+        overlap(a: u32, b: u32);
+        begin(a: u32, b: u32);
+        end(a: u32, b: u32);
     }
 }
 
@@ -226,6 +177,24 @@ impl Separation {
         } else {
             Some(Self { axis, left: b, right: a })
         }
+    }
+}
+
+/// Tests two boxes that overlap on `axis` on the other axes, and appends them if they are a pair.
+pub(super) fn test_beside<const D: usize, T: Scalar, O: Observer>(
+    boxes: &[Aabb<D, T>],
+    [a, b]: [u32; 2],
+    axis: usize,
+    observer: &mut O,
+    pairs: &mut Vec<[u32; 2]>,
+) {
+    let [least, other] = pair(a, b);
+    observer.axis_overlap(axis, least, other);
+    let separation = Separation::find_beside(boxes, a, b, axis);
+    observer.test(a, b, separation);
+    if separation.is_none() {
+        observer.overlap(least, other);
+        pairs.push([least, other]);
     }
 }
 

@@ -21,7 +21,7 @@ use alloc::vec::Vec;
 
 use super::endpoint::{Edge, Endpoint, Side};
 use super::endpoint_array::EndpointArray;
-use super::observer::{Observer, Separation, pair};
+use super::observer::{Observer, test_beside};
 use super::sorts::Sort;
 use crate::{Aabb, Scalar};
 
@@ -55,14 +55,7 @@ pub(super) fn one_to_n<const D: usize, T: Scalar, O: Observer>(
         // A box with both endpoints in between is met at its left one.
         let began_before = || Endpoint::left(boxes[id as usize].min[axis], id).precedes(&left);
         if side == Side::Left || began_before() {
-            let [least, other] = pair(focus, id);
-            observer.axis_overlap(axis, least, other);
-            let separation = Separation::find_beside(boxes, focus, id, axis);
-            observer.test(focus, id, separation);
-            if separation.is_none() {
-                observer.overlap(least, other);
-                pairs.push([least, other]);
-            }
+            test_beside(boxes, [focus, id], axis, observer, pairs);
         }
     }
     observer.leave(focus);

@@ -20,7 +20,7 @@
 use alloc::vec::Vec;
 
 use super::endpoint_array::EndpointArray;
-use super::observer::{Observer, Separation, pair};
+use super::observer::{Observer, Separation, test_beside};
 use super::sorts::Sort;
 use crate::{Aabb, Scalar};
 
@@ -48,14 +48,7 @@ pub(crate) fn sorted_pairwise<const D: usize, T: Scalar, O: Observer>(
                 observer.prune(Separation { axis, left: a, right: b });
                 break;
             }
-            let [least, other] = pair(a, b);
-            observer.axis_overlap(axis, least, other);
-            let separation = Separation::find_beside(boxes, a, b, axis);
-            observer.test(a, b, separation);
-            if separation.is_none() {
-                observer.overlap(least, other);
-                pairs.push([least, other]);
-            }
+            test_beside(boxes, [a, b], axis, observer, pairs);
         }
         observer.leave(a);
     }

@@ -2,6 +2,7 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use super::endpoint::Endpoint;
 use super::observer::Observer;
@@ -57,13 +58,14 @@ impl Sort {
         from: usize,
         observer: &mut O,
     ) {
-        let tail = &mut endpoints[from..];
+        let tail = from..endpoints.len();
+        let mut array = Array { endpoints, observer };
         match self {
-            Sort::Standard => standard(tail, from, observer),
-            Sort::Quicksort => quicksort(tail, from, observer),
-            Sort::Insertion => insertion(tail, 1, from, observer),
-            Sort::Merge => merge_sort(tail, from, observer),
-            Sort::Timsort => timsort(tail, from, observer),
+            Sort::Standard => array.standard(tail),
+            Sort::Quicksort => array.quicksort(tail),
+            Sort::Insertion => array.insertion(tail, 1),
+            Sort::Merge => array.merge_sort(tail),
+            Sort::Timsort => array.timsort(tail),
         }
     }
 
@@ -77,184 +79,195 @@ impl Sort {
     }
 }
 
-/// One observed comparison: whether `a` stands before `b`.
-#[inline]
-fn precedes<T: Scalar, O: Observer>(a: &Endpoint<T>, b: &Endpoint<T>, observer: &mut O) -> bool {
-    observer.compare(a.edge, b.edge);
-    a.precedes(b)
-}
-
-/// One observed swap of two positions of a slice that begins at `offset` of the whole array.
-#[inline]
-fn swap<T: Scalar, O: Observer>(
-    endpoints: &mut [Endpoint<T>],
-    offset: usize,
-    i: usize,
-    j: usize,
-    observer: &mut O,
-) {
-    observer.swap([offset + i, offset + j], endpoints[i].edge, endpoints[j].edge);
-    endpoints.swap(i, j);
-}
-
-/// The article's loop: carries each endpoint left, swap by swap, to its place. The first
-/// `sorted >= 1` endpoints are already in order.
-fn insertion<T: Scalar, O: Observer>(
-    endpoints: &mut [Endpoint<T>],
-    sorted: usize,
-    offset: usize,
-    observer: &mut O,
-) {
-    for i in sorted..endpoints.len() {
-        for j in (0..i).rev() {
-            if !precedes(&endpoints[j + 1], &endpoints[j], observer) {
-                break;
-            }
-            swap(endpoints, offset, j, j + 1, observer);
-        }
-    }
-}
-
 /// Quicksort leaves parts of at most this many endpoints to insertion sort. Timsort's runs are at
 /// least this long.
 const SMALL: usize = 8;
 
-/// Partitions around the median of the first, the middle and the last. It recurses into the smaller
-/// part and loops over the larger, so that the stack stays O(log n) deep.
-fn quicksort<T: Scalar, O: Observer>(
-    mut endpoints: &mut [Endpoint<T>],
-    mut offset: usize,
-    observer: &mut O,
-) {
-    while endpoints.len() > SMALL {
-        let middle = partition(endpoints, offset, observer);
-        let (left, right) = endpoints.split_at_mut(middle);
-        if left.len() < right.len() {
-            quicksort(left, offset, observer);
-            (endpoints, offset) = (right, offset + middle);
-        } else {
-            quicksort(right, offset + middle, observer);
-            endpoints = left;
-        }
-    }
-    insertion(endpoints, 1, offset, observer);
+/// An array of endpoints whose sort is observed.
+pub(super) struct Array<'a, T, O> {
+    pub endpoints: &'a mut [Endpoint<T>],
+    pub observer: &'a mut O,
 }
 
-/// Hoare's partition. Returns `middle` with `0 < middle < len`: everything in `..middle` precedes
-/// everything in `middle..`.
-fn partition<T: Scalar, O: Observer>(
-    endpoints: &mut [Endpoint<T>],
-    offset: usize,
-    observer: &mut O,
-) -> usize {
-    let last = endpoints.len() - 1;
-    // Sort the three, so that the median is in the middle and the ends are sentinels.
-    for (i, j) in [(0, last / 2), (last / 2, last), (0, last / 2)] {
-        if precedes(&endpoints[j], &endpoints[i], observer) {
-            swap(endpoints, offset, i, j, observer);
+impl<T: Scalar, O: Observer> Array<'_, T, O> {
+    /// One observed comparison: whether `a` stands before `b`.
+    #[inline]
+    fn precedes(&mut self, a: Endpoint<T>, b: Endpoint<T>) -> bool {
+        self.observer.compare(a.edge, b.edge);
+        a.precedes(&b)
+    }
+
+    /// One observed swap.
+    #[inline]
+    fn swap(&mut self, i: usize, j: usize) {
+        self.observer.swap([i, j], self.endpoints[i].edge, self.endpoints[j].edge);
+        self.endpoints.swap(i, j);
+    }
+
+    /// The article's loop: carries each endpoint left, swap by swap, to its place. The first
+    /// `sorted >= 1` endpoints of the range are already in order.
+    fn insertion(&mut self, Range { start, end }: Range<usize>, sorted: usize) {
+        for i in start + sorted..end {
+            for j in (start..i).rev() {
+                if !self.precedes(self.endpoints[j + 1], self.endpoints[j]) {
+                    break;
+                }
+                self.swap(j, j + 1);
+            }
         }
     }
-    let pivot = endpoints[last / 2];
-    let (mut i, mut j) = (0, last);
-    loop {
-        i += 1;
-        while precedes(&endpoints[i], &pivot, observer) {
+
+    /// Partitions around the median of the first, the middle and the last. It recurses into the smaller
+    /// part and loops over the larger, so that the stack stays O(log n) deep.
+    fn quicksort(&mut self, mut range: Range<usize>) {
+        while range.len() > SMALL {
+            let middle = self.partition(range.clone());
+            let (left, right) = (range.start..middle, middle..range.end);
+            let (smaller, larger) =
+                if left.len() < right.len() { (left, right) } else { (right, left) };
+            self.quicksort(smaller);
+            range = larger;
+        }
+        self.insertion(range, 1);
+    }
+
+    /// Hoare's partition. Returns `middle` with `start < middle < end`: everything before `middle`
+    /// precedes everything from it on.
+    fn partition(&mut self, Range { start, end }: Range<usize>) -> usize {
+        let last = end - 1;
+        let middle = start + (last - start) / 2;
+        // Sort the three, so that the median is in the middle and the ends are sentinels.
+        for (i, j) in [(start, middle), (middle, last), (start, middle)] {
+            if self.precedes(self.endpoints[j], self.endpoints[i]) {
+                self.swap(i, j);
+            }
+        }
+        let pivot = self.endpoints[middle];
+        let (mut i, mut j) = (start, last);
+        loop {
             i += 1;
-        }
-        j -= 1;
-        while precedes(&pivot, &endpoints[j], observer) {
+            while self.precedes(self.endpoints[i], pivot) {
+                i += 1;
+            }
             j -= 1;
+            while self.precedes(pivot, self.endpoints[j]) {
+                j -= 1;
+            }
+            if i >= j {
+                return i;
+            }
+            self.swap(i, j);
         }
-        if i >= j {
-            return i;
-        }
-        swap(endpoints, offset, i, j, observer);
     }
-}
 
-/// Sorts each half, then merges them.
-fn merge_sort<T: Scalar, O: Observer>(
-    endpoints: &mut [Endpoint<T>],
-    offset: usize,
-    observer: &mut O,
-) {
-    let middle = endpoints.len() / 2;
-    if middle == 0 {
-        return;
-    }
-    merge_sort(&mut endpoints[..middle], offset, observer);
-    merge_sort(&mut endpoints[middle..], offset + middle, observer);
-    merge(endpoints, middle, offset, observer);
-}
-
-/// Merges `endpoints[..middle]` and `endpoints[middle..]`, each in order, into one.
-pub(super) fn merge<T: Scalar, O: Observer>(
-    endpoints: &mut [Endpoint<T>],
-    middle: usize,
-    offset: usize,
-    observer: &mut O,
-) {
-    let before: Vec<_> = if O::ACTIVE { endpoints.to_vec() } else { Vec::new() };
-    let mut target = vec![0; before.len()];
-    let left = endpoints[..middle].to_vec();
-    let (mut i, mut j) = (0, middle);
-    for place in 0..endpoints.len() {
-        let from_right =
-            i == left.len() || j < endpoints.len() && precedes(&endpoints[j], &left[i], observer);
-        let source = if from_right { &mut j } else { &mut i };
-        endpoints[place] = if from_right { endpoints[*source] } else { left[*source] };
-        if O::ACTIVE {
-            target[*source] = place;
-        }
-        *source += 1;
-    }
-    report_swaps(before, target, offset, observer);
-}
-
-/// Splits the array into the sorted runs that it has, and merges neighbors so that their lengths stay
-/// balanced.
-fn timsort<T: Scalar, O: Observer>(endpoints: &mut [Endpoint<T>], offset: usize, observer: &mut O) {
-    // The lengths of the sorted runs that `endpoints[..end]` consists of.
-    let mut runs: Vec<usize> = Vec::new();
-    let mut end = 0;
-    while end < endpoints.len() {
-        let rest = &mut endpoints[end..];
-        let natural = natural_run(rest, offset + end, observer);
-        let run = natural.max(SMALL).min(rest.len());
-        insertion(&mut rest[..run], natural, offset + end, observer);
-        runs.push(run);
-        end += run;
-        while let Some(k) = unbalanced(&runs) {
-            merge_runs(endpoints, &mut runs, k, end, offset, observer);
+    /// Sorts each half, then merges them.
+    fn merge_sort(&mut self, Range { start, end }: Range<usize>) {
+        let middle = start + (end - start) / 2;
+        if middle > start {
+            self.merge_sort(start..middle);
+            self.merge_sort(middle..end);
+            self.merge(start..end, middle);
         }
     }
-    while runs.len() > 1 {
-        let k = runs.len() - 2;
-        merge_runs(endpoints, &mut runs, k, end, offset, observer);
-    }
-}
 
-/// The length of the run at the start of the slice. A descending run is reversed.
-fn natural_run<T: Scalar, O: Observer>(
-    endpoints: &mut [Endpoint<T>],
-    offset: usize,
-    observer: &mut O,
-) -> usize {
-    let n = endpoints.len();
-    if n < 2 {
-        return n;
+    /// Merges the endpoints of a range before `middle` and those from it on, each in order, into one.
+    pub fn merge(&mut self, Range { start, end }: Range<usize>, middle: usize) {
+        let left = self.endpoints[start..middle].to_vec();
+        let before: Vec<_> =
+            if O::ACTIVE { self.endpoints[start..end].to_vec() } else { Vec::new() };
+        let mut target = vec![0; before.len()];
+        let (mut i, mut j) = (0, middle);
+        for place in start..end {
+            let from_right =
+                i == left.len() || j < end && self.precedes(self.endpoints[j], left[i]);
+            let source = if from_right { j } else { start + i };
+            self.endpoints[place] = if from_right { self.endpoints[j] } else { left[i] };
+            if O::ACTIVE {
+                target[source - start] = place - start;
+            }
+            if from_right { j += 1 } else { i += 1 }
+        }
+        self.report_swaps(before, target, start);
     }
-    let down = precedes(&endpoints[1], &endpoints[0], observer);
-    let mut run = 2;
-    while run < n && precedes(&endpoints[run], &endpoints[run - 1], observer) == down {
-        run += 1;
-    }
-    if down {
-        for i in 0..run / 2 {
-            swap(endpoints, offset, i, run - 1 - i, observer);
+
+    /// Splits the range into the sorted runs that it has, and merges neighbors so that their lengths
+    /// stay balanced.
+    fn timsort(&mut self, Range { start, end }: Range<usize>) {
+        // The lengths of the sorted runs from `start` on.
+        let mut runs: Vec<usize> = Vec::new();
+        let mut sorted = start;
+        while sorted < end {
+            let natural = self.natural_run(sorted..end);
+            let run = natural.max(SMALL).min(end - sorted);
+            self.insertion(sorted..sorted + run, natural);
+            runs.push(run);
+            sorted += run;
+            while let Some(k) = unbalanced(&runs) {
+                self.merge_runs(&mut runs, k, sorted);
+            }
+        }
+        while runs.len() > 1 {
+            let k = runs.len() - 2;
+            self.merge_runs(&mut runs, k, sorted);
         }
     }
-    run
+
+    /// The length of the run at the start of the range. A descending run is reversed.
+    fn natural_run(&mut self, Range { start, end }: Range<usize>) -> usize {
+        if end - start < 2 {
+            return end - start;
+        }
+        let down = self.precedes(self.endpoints[start + 1], self.endpoints[start]);
+        let mut run = start + 2;
+        while run < end && self.precedes(self.endpoints[run], self.endpoints[run - 1]) == down {
+            run += 1;
+        }
+        let run = run - start;
+        if down {
+            for i in 0..run / 2 {
+                self.swap(start + i, start + run - 1 - i);
+            }
+        }
+        run
+    }
+
+    /// Merges run `k` with the one after it; the last run ends at `end`.
+    fn merge_runs(&mut self, runs: &mut Vec<usize>, k: usize, end: usize) {
+        let start = end - runs[k..].iter().sum::<usize>();
+        self.merge(start..start + runs[k] + runs[k + 1], start + runs[k]);
+        runs[k] += runs.remove(k + 1);
+    }
+
+    fn standard(&mut self, range: Range<usize>) {
+        let start = range.start;
+        let endpoints = &mut self.endpoints[range];
+        let before: Vec<_> = if O::ACTIVE { endpoints.to_vec() } else { Vec::new() };
+        endpoints.sort_unstable_by(|a, b| {
+            self.observer.compare(a.edge, b.edge);
+            a.order(b)
+        });
+        // Where each endpoint belongs, found by its place in the order.
+        let mut by_order: Vec<usize> = (0..before.len()).collect();
+        by_order.sort_unstable_by(|&i, &j| before[i].order(&before[j]));
+        let mut target = vec![0; before.len()];
+        for (place, &i) in by_order.iter().enumerate() {
+            target[i] = place;
+        }
+        self.report_swaps(before, target, start);
+    }
+
+    /// Reports the fewest swaps that bring each `before[i]`, which stood at `start + i`, to
+    /// `start + target[i]`: one cycle of the permutation after another.
+    fn report_swaps(&mut self, mut before: Vec<Endpoint<T>>, mut target: Vec<usize>, start: usize) {
+        for i in 0..before.len() {
+            while target[i] != i {
+                let j = target[i];
+                self.observer.swap([start + i, start + j], before[i].edge, before[j].edge);
+                before.swap(i, j);
+                target.swap(i, j);
+            }
+        }
+    }
 }
 
 /// The run to merge with the next one, until each run is longer than the next two together.
@@ -265,58 +278,6 @@ fn unbalanced(runs: &[usize]) -> Option<usize> {
         Some(if runs[last - 1] < runs[last + 1] { last - 1 } else { last })
     } else {
         (runs[last] <= runs[last + 1]).then_some(last)
-    }
-}
-
-/// Merges run `k` with the one after it; the last run ends at `end`.
-fn merge_runs<T: Scalar, O: Observer>(
-    endpoints: &mut [Endpoint<T>],
-    runs: &mut Vec<usize>,
-    k: usize,
-    end: usize,
-    offset: usize,
-    observer: &mut O,
-) {
-    let start = end - runs[k..].iter().sum::<usize>();
-    let both = start..start + runs[k] + runs[k + 1];
-    merge(&mut endpoints[both], runs[k], offset + start, observer);
-    runs[k] += runs.remove(k + 1);
-}
-
-fn standard<T: Scalar, O: Observer>(
-    endpoints: &mut [Endpoint<T>],
-    offset: usize,
-    observer: &mut O,
-) {
-    let before: Vec<_> = if O::ACTIVE { endpoints.to_vec() } else { Vec::new() };
-    endpoints.sort_unstable_by(|a, b| {
-        observer.compare(a.edge, b.edge);
-        a.order(b)
-    });
-    // Where each endpoint belongs, found by its place in the order.
-    let mut by_order: Vec<usize> = (0..before.len()).collect();
-    by_order.sort_unstable_by(|&i, &j| before[i].order(&before[j]));
-    let mut target = vec![0; before.len()];
-    for (place, &i) in by_order.iter().enumerate() {
-        target[i] = place;
-    }
-    report_swaps(before, target, offset, observer);
-}
-
-/// Reports the fewest swaps that bring each `array[i]` to `target[i]`: one cycle of the permutation
-/// after another.
-fn report_swaps<T: Scalar, O: Observer>(
-    mut array: Vec<Endpoint<T>>,
-    mut target: Vec<usize>,
-    offset: usize,
-    observer: &mut O,
-) {
-    for i in 0..array.len() {
-        while target[i] != i {
-            let j = target[i];
-            swap(&mut array, offset, i, j, observer);
-            target.swap(i, j);
-        }
     }
 }
 

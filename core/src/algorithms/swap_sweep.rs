@@ -42,7 +42,7 @@ use super::endpoint::{Edge, Side};
 use super::endpoint_array::EndpointArray;
 use super::observer::{Observer, Separation, pair};
 use super::pair_map::PairMap;
-use super::sorts::{Sort, merge};
+use super::sorts::{Array, Sort};
 use super::touching::Touching;
 use crate::{Aabb, Scalar};
 
@@ -137,7 +137,8 @@ impl<T: Scalar> SwapSweep<T> {
             array.refresh_from(old, boxes, *axis);
             observer.array(*axis, &array.endpoints);
             sort.sort_tail(&mut array.endpoints, old, observer);
-            merge(&mut array.endpoints, old, 0, observer);
+            let len = array.endpoints.len();
+            Array { endpoints: &mut array.endpoints, observer }.merge(0..len, old);
             self.sweep_marked(k, ids, observer, |overlaps, observer, axis, [a, b]| {
                 observer.axis_overlap(axis, a, b);
                 overlaps.begin([a, b]);

@@ -155,41 +155,22 @@ enum Kind {
     End,
 }
 
-impl Observer for Trace {
-    fn step(&mut self, axis: usize, keeps_axis_overlaps: bool) {
-        self.record(Kind::Step, [word(axis), Some(u32::from(keeps_axis_overlaps))]);
-    }
+/// Methods that record their event: its kind and its words.
+macro_rules! recorded {
+    ($($method:ident($($argument:ident: $type:ty),*) = $kind:ident $words:expr;)*) => {$(
+        fn $method(&mut self, $($argument: $type),*) {
+            self.record(Kind::$kind, $words);
+        }
+    )*};
+}
 
+impl Observer for Trace {
     fn array<T: Scalar>(&mut self, axis: usize, endpoints: &[Endpoint<T>]) {
         let entry = |endpoint: &Endpoint<T>| {
             [edge_word(endpoint.edge), Some((endpoint.at.to_f64() as f32).to_bits())]
         };
         let axis = core::iter::once(word(axis));
         self.record(Kind::Array, axis.chain(endpoints.iter().flat_map(entry)));
-    }
-
-    fn compare(&mut self, a: Edge, b: Edge) {
-        self.record(Kind::Compare, [edge_word(a), edge_word(b)]);
-    }
-
-    fn swap(&mut self, [i, j]: [usize; 2], a: Edge, b: Edge) {
-        self.record(Kind::Swap, [word(i), word(j), edge_word(a), edge_word(b)]);
-    }
-
-    fn visit(&mut self, position: usize, edge: Edge) {
-        self.record(Kind::Visit, [word(position), edge_word(edge)]);
-    }
-
-    fn enter(&mut self, id: u32) {
-        self.record(Kind::Enter, [Some(id)]);
-    }
-
-    fn leave(&mut self, id: u32) {
-        self.record(Kind::Leave, [Some(id)]);
-    }
-
-    fn prune(&mut self, Separation { axis, left, right }: Separation) {
-        self.record(Kind::Prune, [word(axis), Some(left), Some(right)]);
     }
 
     fn test(&mut self, a: u32, b: u32, separation: Option<Separation>) {
@@ -200,24 +181,20 @@ impl Observer for Trace {
         self.record(Kind::Test, [Some(a), Some(b), axis, left]);
     }
 
-    fn axis_overlap(&mut self, axis: usize, a: u32, b: u32) {
-        self.record(Kind::AxisOverlap, [word(axis), Some(a), Some(b)]);
-    }
-
-    fn axis_apart(&mut self, axis: usize, a: u32, b: u32) {
-        self.record(Kind::AxisApart, [word(axis), Some(a), Some(b)]);
-    }
-
-    fn overlap(&mut self, a: u32, b: u32) {
-        self.record(Kind::Overlap, [Some(a), Some(b)]);
-    }
-
-    fn begin(&mut self, a: u32, b: u32) {
-        self.record(Kind::Begin, [Some(a), Some(b)]);
-    }
-
-    fn end(&mut self, a: u32, b: u32) {
-        self.record(Kind::End, [Some(a), Some(b)]);
+    recorded! {
+        step(axis: usize, keeps: bool) = Step [word(axis), Some(u32::from(keeps))];
+        compare(a: Edge, b: Edge) = Compare [edge_word(a), edge_word(b)];
+        swap(at: [usize; 2], a: Edge, b: Edge) =
+            Swap [word(at[0]), word(at[1]), edge_word(a), edge_word(b)];
+        visit(position: usize, edge: Edge) = Visit [word(position), edge_word(edge)];
+        enter(id: u32) = Enter [Some(id)];
+        leave(id: u32) = Leave [Some(id)];
+        prune(apart: Separation) = Prune [word(apart.axis), Some(apart.left), Some(apart.right)];
+        axis_overlap(axis: usize, a: u32, b: u32) = AxisOverlap [word(axis), Some(a), Some(b)];
+        axis_apart(axis: usize, a: u32, b: u32) = AxisApart [word(axis), Some(a), Some(b)];
+        overlap(a: u32, b: u32) = Overlap [Some(a), Some(b)];
+        begin(a: u32, b: u32) = Begin [Some(a), Some(b)];
+        end(a: u32, b: u32) = End [Some(a), Some(b)];
     }
 }
 

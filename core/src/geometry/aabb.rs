@@ -165,7 +165,9 @@ impl<const D: usize, T: Scalar> Aabb<D, T> {
     /// The first axis on which the box is inverted or NaN.
     #[inline]
     pub fn invalid_axis(&self) -> Option<usize> {
-        (0..D).find(|&axis| !is_interval(self.min[axis], self.max[axis]))
+        // Also false for a NaN on either side.
+        let is_interval = |&axis: &usize| self.min[axis] <= self.max[axis];
+        (0..D).find(|axis| !is_interval(axis))
     }
 }
 
@@ -177,12 +179,6 @@ fn midpoint<T: Scalar>(min: T, max: T) -> T {
     let sum = min + max;
     let overflows = !(T::NEG_INFINITY < sum && sum < T::INFINITY);
     if overflows { min * half + max * half } else { sum * half }
-}
-
-/// `min <= max`, which is false for a NaN on either side.
-#[inline]
-fn is_interval<T: Scalar>(min: T, max: T) -> bool {
-    min <= max
 }
 
 /// Checks that each box is valid and that the indices of the boxes fit in a `u32`. O(n) time.
@@ -204,44 +200,4 @@ pub fn validate<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>]) -> Result<(), E
 pub(crate) fn check_count(count: usize) -> Result<(), Error> {
     // Not `count > BOX_LIMIT`: where addresses have 32 bits, that is never true, and Clippy objects.
     u32::try_from(count).map(|_| ()).map_err(|_| Error::TooManyBoxes { count })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::error::Value;
-
-    #[test]
-    fn touching_boxes_overlap_and_negative_zero_is_zero() {
-        let a = Aabb::new([0.0f32], [0.0]);
-        let b = Aabb::new([-0.0f32], [-0.0]);
-        let c = Aabb::new([0.0f32], [1.0]);
-        assert!(a.overlaps(&b) && b.overlaps(&c) && c.overlaps(&a));
-    }
-
-    #[test]
-    fn infinite_boxes_overlap_what_they_should() {
-        let inf = f64::INFINITY;
-        let everything = Aabb::new([-inf, -inf], [inf, inf]);
-        let point_at_infinity = Aabb::new([inf, inf], [inf, inf]);
-        let point = Aabb::new([3.0, 4.0], [3.0, 4.0]);
-        assert!(everything.is_valid() && point_at_infinity.is_valid());
-        assert!(everything.overlaps(&point_at_infinity));
-        assert!(everything.overlaps(&point));
-        assert!(!point.overlaps(&point_at_infinity));
-    }
-
-    #[test]
-    fn validation_names_the_box_and_the_axis() {
-        let good = Aabb::new([0.0f32, 0.0], [1.0, 1.0]);
-        let nan = Aabb::new([0.0f32, f32::NAN], [1.0, 1.0]);
-        let inverted = Aabb::new([2.0f32, 0.0], [1.0, 1.0]);
-        assert_eq!(validate(&[good, good]), Ok(()));
-        let [zero, one, two, nan_value] = [0.0, 1.0, 2.0, f64::NAN].map(Value::from);
-        let error = Error::InvalidBox { set: 0, index: 1, axis: 1, min: nan_value, max: one };
-        assert_eq!(validate(&[good, nan]), Err(error));
-        assert_ne!(error, Error::InvalidBox { set: 0, index: 1, axis: 1, min: zero, max: one });
-        let error = Error::InvalidBox { set: 0, index: 2, axis: 0, min: two, max: one };
-        assert_eq!(validate(&[good, good, inverted]), Err(error));
-    }
 }

@@ -2,14 +2,12 @@
 
 mod aabb;
 mod arithmetic;
-mod arrays;
 #[cfg(feature = "bytemuck")]
 mod bytes;
+mod conversions;
 mod scalar;
 #[cfg(feature = "serde")]
 mod serde;
-#[cfg(any(feature = "glam", feature = "mint"))]
-mod vectors;
 
 pub(crate) use aabb::check_count;
 pub use aabb::{Aabb, validate};

@@ -85,54 +85,35 @@ pub trait Scalar:
     }
 }
 
-impl Scalar for f32 {
-    const BYTES: usize = 4;
-    const INFINITY: Self = f32::INFINITY;
-    const NEG_INFINITY: Self = f32::NEG_INFINITY;
+macro_rules! scalar {
+    ($scalar:ident, $bits:ident) => {
+        impl Scalar for $scalar {
+            const BYTES: usize = size_of::<$scalar>();
+            const INFINITY: Self = $scalar::INFINITY;
+            const NEG_INFINITY: Self = $scalar::NEG_INFINITY;
 
-    #[inline]
-    fn to_f64(self) -> f64 {
-        f64::from(self)
-    }
+            #[inline]
+            fn to_f64(self) -> f64 {
+                self.into()
+            }
 
-    #[inline]
-    fn from_f64(value: f64) -> Self {
-        value as f32
-    }
+            #[inline]
+            fn from_f64(value: f64) -> Self {
+                value as $scalar
+            }
 
-    #[inline]
-    fn to_raw(self) -> u64 {
-        u64::from(self.to_bits())
-    }
+            #[inline]
+            fn to_raw(self) -> u64 {
+                self.to_bits().into()
+            }
 
-    #[inline]
-    fn from_raw(bits: u64) -> Self {
-        f32::from_bits(bits as u32)
-    }
+            #[inline]
+            fn from_raw(bits: u64) -> Self {
+                $scalar::from_bits(bits as $bits)
+            }
+        }
+    };
 }
 
-impl Scalar for f64 {
-    const BYTES: usize = 8;
-    const INFINITY: Self = f64::INFINITY;
-    const NEG_INFINITY: Self = f64::NEG_INFINITY;
-
-    #[inline]
-    fn to_f64(self) -> f64 {
-        self
-    }
-
-    #[inline]
-    fn from_f64(value: f64) -> Self {
-        value
-    }
-
-    #[inline]
-    fn to_raw(self) -> u64 {
-        self.to_bits()
-    }
-
-    #[inline]
-    fn from_raw(bits: u64) -> Self {
-        f64::from_bits(bits)
-    }
-}
+scalar!(f32, u32);
+scalar!(f64, u64);

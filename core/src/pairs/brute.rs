@@ -7,8 +7,10 @@ use super::sort::Sorter;
 use super::source::Source;
 use crate::{Aabb, Scalar};
 
-/// Up to this many boxes of one set are tested one by one, and stored without a sink (0.7 to 1.2 times
-/// brute force that validates).
+// Measured on random boxes in the plane and in space, one core of an AMD EPYC (Zen 5).
+
+/// Up to this many boxes of one set are tested one by one, and stored without a sink: 0.7 to 1.2 times
+/// brute force that validates; 41 sparse boxes by vectors take 1.3 times.
 const FEW: usize = 40;
 /// Up to this many tests, boxes are tested one by one.
 const FEW_TESTS: usize = 400;

@@ -106,13 +106,14 @@ impl<const D: usize, T: Scalar> Columns<D, T> {
         Ok(())
     }
 
-    /// How many records there are.
-    pub fn len(&self) -> usize {
-        self.records.len
+    /// Whether a column has records.
+    #[inline]
+    fn has_records(&self, column: usize) -> bool {
+        self.ends[column] > if column == 0 { 0 } else { self.ends[column - 1] }
     }
 
     /// The records of a column.
-    pub fn column(&self, column: usize) -> &[Record<D, T>] {
+    fn column(&self, column: usize) -> &[Record<D, T>] {
         let start = if column == 0 { 0 } else { self.ends[column - 1] };
         &self.records.array[start as usize..self.ends[column] as usize]
     }
@@ -155,4 +156,67 @@ fn write<const D: usize, T: Scalar, S: Source<D, T>>(source: S, slots: Slots<'_,
 /// The most records that so many boxes may become.
 fn most_records(boxes: usize) -> u64 {
     (RECORDS_PER_BOX * boxes as u64 + MORE_RECORDS).min(u32::MAX.into())
+}
+
+/// The columns of a grid, filled with the boxes of one set or two.
+pub(super) struct Filled<'a, const D: usize, T> {
+    /// Of each set.
+    columns: &'a [Columns<D, T>],
+    pub grid: &'a Grid<T>,
+    /// A column with more records is planned again.
+    pub crowd: usize,
+}
+
+impl<'a, const D: usize, T: Scalar> Filled<'a, D, T> {
+    /// The columns of as many sets. None if a set has no records, as when two share no column: then
+    /// there are no pairs.
+    pub fn new(columns: &'a [Columns<D, T>], grid: &'a Grid<T>, crowd: usize) -> Option<Self> {
+        let all_have = columns.iter().all(|columns| columns.records.len > 0);
+        all_have.then_some(Self { columns, grid, crowd })
+    }
+
+    /// The records of a column: of each set, as far as there are sets.
+    pub fn column(&self, column: usize) -> ([&'a [Record<D, T>]; 2], usize) {
+        let of = |set: usize| self.columns.get(set).map_or(&[][..], |set| set.column(column));
+        ([of(0), of(1)], self.columns.len())
+    }
+
+    /// Whether each set has records in a column. Of columns between two sparse sets most have none:
+    /// to pass over them here takes a sixth of the time that it takes to sweep nothing.
+    #[inline]
+    pub fn is_shared(&self, column: usize) -> bool {
+        self.columns.iter().all(|set| set.has_records(column))
+    }
+
+    /// Which share of the records of the first set a column has.
+    pub fn share(&self, column: usize) -> f64 {
+        let first = &self.columns[0];
+        first.column(column).len() as f64 / first.records.len as f64
+    }
+
+    /// How many records a column has.
+    #[cfg(feature = "parallel")]
+    pub fn records(&self, column: usize) -> usize {
+        self.columns.iter().map(|set| set.column(column).len()).sum()
+    }
+}
+
+/// Fills the columns with the boxes of one set or two: with those of the larger set only where the
+/// smaller set has boxes.
+pub(super) fn fill<const D: usize, T: Scalar, S: Source<D, T>>(
+    sets: &[S],
+    columns: &mut [Columns<D, T>; 2],
+    mut fill: impl FnMut(S, &mut Columns<D, T>, Option<&Columns<D, T>>) -> Result<(), Refusal>,
+) -> Result<(), Refusal> {
+    let [first_columns, last_columns] = columns;
+    let &[first, last] = sets else {
+        return fill(sets[0], first_columns, None);
+    };
+    if first.len() <= last.len() {
+        fill(first, first_columns, None)?;
+        fill(last, last_columns, Some(first_columns))
+    } else {
+        fill(last, last_columns, None)?;
+        fill(first, first_columns, Some(last_columns))
+    }
 }

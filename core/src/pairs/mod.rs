@@ -27,13 +27,13 @@
 //! it missed is found while the copies are listed: at more than 4 copies per box the plan is dropped, and
 //! boxes wider than 8 columns are split from the rest.
 //!
-//! **Sizes.** If no width suits all boxes (one in ten spans the scene), the model looks for a size that
-//! splits them. Then the pairs within the small boxes, within the large ones and between both are three
-//! searches, each with its own plan.
+//! **Sizes** (`sizes.rs`). If no width suits all boxes (one in ten spans the scene), the model looks for a
+//! size that splits them. Then the pairs within the small boxes, within the large ones and between both
+//! are three searches, each with its own plan.
 //!
-//! **Clusters.** The model knows how boxes cluster from a histogram of the sample at eleven resolutions. A
-//! column that holds far more boxes than expected, or whose sweep would test far more candidates, is
-//! planned again by itself. Plans are nested at most 12 deep.
+//! **Clusters** (`crowding.rs`). The model knows how boxes cluster from a histogram of the sample at eleven
+//! resolutions. A column that holds far more boxes than expected, or whose sweep would test far more
+//! candidates, is planned again by itself. Plans are nested at most 12 deep.
 //!
 //! **Long columns** are also cut along the sweep axis, into slabs that fit the caches.
 //!
@@ -69,6 +69,7 @@
 mod brute;
 mod columns;
 mod control;
+mod crowding;
 mod driver;
 mod finder;
 mod grid;
@@ -79,6 +80,7 @@ mod placements;
 mod plan;
 mod search;
 mod sink;
+mod sizes;
 mod sort;
 mod source;
 mod sweep;

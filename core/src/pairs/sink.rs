@@ -61,7 +61,9 @@ pub(super) trait Sink {
     /// # Errors
     /// [`Stop::Memory`].
     #[cfg(feature = "parallel")]
-    fn join(&mut self, found: Gathered<Self::Chunk>) -> Result<(), Stop>;
+    fn join(&mut self, _found: Gathered<Self::Chunk>) -> Result<(), Stop> {
+        Ok(())
+    }
 }
 
 /// What takes pairs on another thread.
@@ -236,11 +238,6 @@ impl Sink for Unswept {
     fn take(&mut self, _: usize) -> Result<(), Stop> {
         Ok(())
     }
-
-    #[cfg(feature = "parallel")]
-    fn join(&mut self, _: Gathered<Unswept>) -> Result<(), Stop> {
-        Ok(())
-    }
 }
 
 /// A buffer of a few pairs.
@@ -306,9 +303,4 @@ impl<F: FnMut(&[[u32; 2]]) -> ControlFlow<()>> Sink for Stream<'_, F> {
 
     #[cfg(feature = "parallel")]
     const TAKES_CHUNKS: bool = false;
-
-    #[cfg(feature = "parallel")]
-    fn join(&mut self, _: Gathered<Count>) -> Result<(), Stop> {
-        Ok(())
-    }
 }

@@ -4,6 +4,9 @@
 //! exchanges neighbors, and insertion sort finishes. Where many edges fall into one interval (clusters,
 //! equal edges), the standard library's sort sorts that interval, so all of it is O(n log n) for any
 //! input.
+//!
+//! The limits below were chosen on uniform boxes of 1,000 to 100,000, one core of an AMD EPYC (Zen 5). They
+//! were not measured one by one, apart from the exchange: 0.97 of the time, in clusters 0.9.
 
 use alloc::collections::TryReserveError;
 use alloc::vec::Vec;

@@ -28,11 +28,7 @@ impl Sweep<'_> {
     ) -> Result<(), Stop> {
         loop {
             let out = sink.spare()?;
-            let count = if let [a, b] = sets {
-                self.kernel.between([a, b], self.others, self.pair_order, &mut cursor, out)
-            } else {
-                self.kernel.within(&sets[0], self.others, &mut cursor, out)
-            };
+            let count = self.kernel.sweep(sets, self.others, self.pair_order, &mut cursor, out);
             sink.take(count)?;
             if cursor.is_done() {
                 return Ok(());
@@ -41,26 +37,5 @@ impl Sweep<'_> {
                 return Err(Stop::Cancelled);
             }
         }
-    }
-}
-
-/// About how many candidates a sweep would test, from so many probes.
-pub(super) fn candidates<T: Scalar>(sets: &[SortedBoxes<T>], probes: u64) -> u64 {
-    let last = &sets[sets.len() - 1];
-    let one_way = |boxes: &SortedBoxes<T>, against: &SortedBoxes<T>| {
-        let left = &against.left[..against.len()];
-        let len = boxes.len() as u64; // `usize` has 32 bits in WebAssembly
-        let ahead: u64 = (0..probes)
-            .map(|probe| {
-                let i = ((2 * probe + 1) * len / (2 * probes)) as usize;
-                let end = left.partition_point(|&left| left <= boxes.right[i]);
-                (end - left.partition_point(|&left| left < boxes.left[i])) as u64
-            })
-            .sum();
-        ahead * len / probes
-    };
-    match sets {
-        [first, _] => one_way(first, last) + one_way(last, first),
-        _ => one_way(last, last),
     }
 }

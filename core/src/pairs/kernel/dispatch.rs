@@ -5,7 +5,7 @@ use core::any::Any;
 #[cfg(target_arch = "aarch64")]
 use super::neon;
 use super::scalar;
-use super::scan::{self, Cursor};
+use super::scan::{self, Cursor, Sets};
 use super::sorted_boxes::{PAD, SortedBoxes};
 use super::vector::PairOrder;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
@@ -106,207 +106,103 @@ impl Kernel {
         if cfg!(feature = "std") { self.0 } else { Self::best().0 }
     }
 
-    /// Writes the pairs within a set, by the boxes' order and then by their partners', until all are
-    /// written or `out` is full, and returns how many. `others` axes are tested beside the sweep axis.
+    /// Writes the pairs within a set, or those of one box of each of two sets, by the probes' order and
+    /// then by their partners', until all are written or `out` is full, and returns how many. `others`
+    /// axes are tested beside the sweep axis. Within a set the smaller id comes first in any case.
     ///
     /// # Panics
     /// If `out` is shorter than [`PAD`], the boxes are not ready, or the cursor is from another sweep.
     /// These are the conditions under which the unchecked accesses of the loop are in bounds.
-    pub(crate) fn within<T: Scalar>(
+    pub(crate) fn sweep<T: Scalar>(
         self,
-        boxes: &SortedBoxes<T>,
-        others: usize,
-        cursor: &mut Cursor,
-        out: &mut [[u32; 2]],
-    ) -> usize {
-        assert!(out.len() >= PAD && boxes.is_ready(others) && cursor.fits(&[boxes]));
-        let boxes: &dyn Any = boxes;
-        if T::BYTES == 4 {
-            single::within(self.instructions(), typed(boxes), others, cursor, out)
-        } else {
-            double::within(self.instructions(), typed(boxes), others, cursor, out)
-        }
-    }
-
-    /// Writes the pairs of one box of each set, otherwise as [`within`](Self::within).
-    ///
-    /// # Panics
-    /// As [`within`](Self::within).
-    pub(crate) fn between<T: Scalar>(
-        self,
-        [a, b]: [&SortedBoxes<T>; 2],
+        sets: &[SortedBoxes<T>],
         others: usize,
         pair_order: PairOrder,
         cursor: &mut Cursor,
         out: &mut [[u32; 2]],
     ) -> usize {
-        assert!(out.len() >= PAD && a.is_ready(others) && b.is_ready(others));
-        assert!(cursor.fits(&[a, b]));
-        let (a, b): (&dyn Any, &dyn Any) = (a, b);
+        assert!(out.len() >= PAD && sets.iter().all(|set| set.is_ready(others)));
+        assert!(cursor.fits(sets));
+        let (first, second) = (&sets[0], sets.get(1));
         if T::BYTES == 4 {
-            single::between(
-                self.instructions(),
-                [typed(a), typed(b)],
-                others,
-                pair_order,
-                cursor,
-                out,
-            )
+            let sets = (typed(first), second.map(typed));
+            single(self.instructions(), sets, others, pair_order, cursor, out)
         } else {
-            double::between(
-                self.instructions(),
-                [typed(a), typed(b)],
-                others,
-                pair_order,
-                cursor,
-                out,
-            )
+            let sets = (typed(first), second.map(typed));
+            double(self.instructions(), sets, others, pair_order, cursor, out)
         }
     }
 }
 
 /// The boxes as those of `f32`, or those of `f64`, which they are.
-fn typed<T: Scalar>(boxes: &dyn Any) -> &SortedBoxes<T> {
+fn typed<T: Scalar, U: Scalar>(boxes: &SortedBoxes<T>) -> &SortedBoxes<U> {
+    let boxes: &dyn Any = boxes;
     boxes.downcast_ref().unwrap_or_else(|| unreachable!("coordinates are f32 or f64"))
 }
 
-/// A module with both sweeps over one vector type, compiled for its instructions.
-macro_rules! shell {
-    ($(#[$cfg:meta])* $name:ident, $scalar:ty, $vector:ty $(, $feature:literal)?) => {
-        $(#[$cfg])*
-        mod $name {
-            use super::super::*;
-
-            /// # Safety
-            /// The instructions are present; the rest is as [`Kernel::within`] asserts.
-            $(#[target_feature(enable = $feature)])?
-            pub(super) unsafe fn within(
-                boxes: &SortedBoxes<$scalar>,
-                others: usize,
-                cursor: &mut Cursor,
-                out: &mut [[u32; 2]],
-            ) -> usize {
-                // SAFETY: the caller's promise.
-                unsafe {
-                    match others {
-                        0 => scan::within::<$scalar, $vector, 0>(boxes, cursor, out),
-                        1 => scan::within::<$scalar, $vector, 1>(boxes, cursor, out),
-                        2 => scan::within::<$scalar, $vector, 2>(boxes, cursor, out),
-                        _ => scan::within::<$scalar, $vector, 3>(boxes, cursor, out),
+/// The sweep over coordinates of one type: compiled for each of these instructions, with its vector
+/// and the target features that this takes.
+macro_rules! sweep {
+    ($sweep:ident, $scalar:ty,
+     $($(#[$cfg:meta])* $instructions:ident => $vector:ty $(, $feature:literal)?;)*) => {
+        fn $sweep(
+            instructions: Instructions,
+            sets: Sets<'_, $scalar>,
+            others: usize,
+            pair_order: PairOrder,
+            cursor: &mut Cursor,
+            out: &mut [[u32; 2]],
+        ) -> usize {
+            match instructions {
+                $($(#[$cfg])* Instructions::$instructions => {
+                    /// # Safety
+                    /// The instructions are present; the rest is as [`Kernel::sweep`] asserts.
+                    $(#[target_feature(enable = $feature)])?
+                    unsafe fn compiled(
+                        sets: Sets<'_, $scalar>,
+                        others: usize,
+                        pair_order: PairOrder,
+                        cursor: &mut Cursor,
+                        out: &mut [[u32; 2]],
+                    ) -> usize {
+                        // SAFETY: the caller's promise.
+                        unsafe { scan::sweep::<_, $vector>(sets, others, pair_order, cursor, out) }
                     }
-                }
-            }
-
-            /// # Safety
-            /// The instructions are present; the rest is as [`Kernel::between`] asserts.
-            $(#[target_feature(enable = $feature)])?
-            pub(super) unsafe fn between(
-                sets: [&SortedBoxes<$scalar>; 2],
-                others: usize,
-                pair_order: PairOrder,
-                cursor: &mut Cursor,
-                out: &mut [[u32; 2]],
-            ) -> usize {
-                // SAFETY: the caller's promise.
-                unsafe {
-                    match others {
-                        0 => scan::between::<$scalar, $vector, 0>(sets, pair_order, cursor, out),
-                        1 => scan::between::<$scalar, $vector, 1>(sets, pair_order, cursor, out),
-                        2 => scan::between::<$scalar, $vector, 2>(sets, pair_order, cursor, out),
-                        _ => scan::between::<$scalar, $vector, 3>(sets, pair_order, cursor, out),
-                    }
-                }
+                    // SAFETY: a `Kernel` exists only where its instructions do, and its method, the
+                    // only caller, has checked the boxes, the cursor and the output.
+                    unsafe { compiled(sets, others, pair_order, cursor, out) }
+                })*
             }
         }
     };
 }
 
-/// Calls the function of that name compiled for the instructions.
-macro_rules! choose {
-    ($instructions:ident, $function:ident, $arguments:tt) => {
-        // SAFETY: a `Kernel` exists only where its instructions do, and its methods, the only
-        // callers, have checked the boxes, the cursor and the output.
-        unsafe {
-            match $instructions {
-                Instructions::Scalar => scalar::$function $arguments,
-                #[cfg(target_arch = "x86_64")]
-                Instructions::Sse2 => sse2::$function $arguments,
-                #[cfg(target_arch = "x86_64")]
-                Instructions::Avx2 => avx2::$function $arguments,
-                #[cfg(target_arch = "x86_64")]
-                Instructions::Avx512 => avx512::$function $arguments,
-                #[cfg(target_arch = "aarch64")]
-                Instructions::Neon => neon::$function $arguments,
-                #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-                Instructions::Simd128 => simd128::$function $arguments,
-            }
-        }
-    };
+sweep! {
+    single, f32,
+    Scalar => scalar::One<f32>;
+    #[cfg(target_arch = "x86_64")]
+    Sse2 => x86::Sse2<core::arch::x86_64::__m128>;
+    #[cfg(target_arch = "x86_64")]
+    Avx2 => x86::Avx2<core::arch::x86_64::__m256>, "avx2,bmi1,popcnt";
+    #[cfg(target_arch = "x86_64")]
+    Avx512 => x86::Avx512<core::arch::x86_64::__m512>, "avx512f,bmi1,popcnt";
+    #[cfg(target_arch = "aarch64")]
+    Neon => neon::Neon<core::arch::aarch64::float32x4_t>;
+    #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+    Simd128 => wasm::F32x8;
 }
 
-/// The shells of one coordinate type, and the choice among them.
-macro_rules! coordinate {
-    ($scalar:ident, $shells:ident, $x128:ident, $x256:ident, $x512:ident, $neon:ident, $simd128:ident) => {
-        mod $shells {
-            shell!(scalar, $scalar, scalar::One<$scalar>);
-            shell!(
-                #[cfg(target_arch = "x86_64")]
-                sse2,
-                $scalar,
-                x86::Sse2<core::arch::x86_64::$x128>
-            );
-            shell!(
-                #[cfg(target_arch = "x86_64")]
-                avx2,
-                $scalar,
-                x86::Avx2<core::arch::x86_64::$x256>,
-                "avx2,bmi1,popcnt"
-            );
-            shell!(
-                #[cfg(target_arch = "x86_64")]
-                avx512,
-                $scalar,
-                x86::Avx512<core::arch::x86_64::$x512>,
-                "avx512f,bmi1,popcnt"
-            );
-            shell!(
-                #[cfg(target_arch = "aarch64")]
-                neon,
-                $scalar,
-                neon::Neon<core::arch::aarch64::$neon>
-            );
-            shell!(
-                #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-                simd128,
-                $scalar,
-                wasm::$simd128
-            );
-
-            use super::*;
-
-            pub(super) fn within(
-                instructions: Instructions,
-                boxes: &SortedBoxes<$scalar>,
-                others: usize,
-                cursor: &mut Cursor,
-                out: &mut [[u32; 2]],
-            ) -> usize {
-                choose!(instructions, within, (boxes, others, cursor, out))
-            }
-
-            pub(super) fn between(
-                instructions: Instructions,
-                sets: [&SortedBoxes<$scalar>; 2],
-                others: usize,
-                pair_order: PairOrder,
-                cursor: &mut Cursor,
-                out: &mut [[u32; 2]],
-            ) -> usize {
-                choose!(instructions, between, (sets, others, pair_order, cursor, out))
-            }
-        }
-    };
+sweep! {
+    double, f64,
+    Scalar => scalar::One<f64>;
+    #[cfg(target_arch = "x86_64")]
+    Sse2 => x86::Sse2<core::arch::x86_64::__m128d>;
+    #[cfg(target_arch = "x86_64")]
+    Avx2 => x86::Avx2<core::arch::x86_64::__m256d>, "avx2,bmi1,popcnt";
+    #[cfg(target_arch = "x86_64")]
+    Avx512 => x86::Avx512<core::arch::x86_64::__m512d>, "avx512f,bmi1,popcnt";
+    #[cfg(target_arch = "aarch64")]
+    Neon => neon::Neon<core::arch::aarch64::float64x2_t>;
+    #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+    Simd128 => wasm::F64x4;
 }
-
-coordinate!(f32, single, __m128, __m256, __m512, float32x4_t, F32x8);
-coordinate!(f64, double, __m128d, __m256d, __m512d, float64x2_t, F64x4);

@@ -64,6 +64,7 @@ mod tests {
     use alloc::vec;
     use alloc::vec::Vec;
 
+    use super::super::Kernel;
     use super::super::scalar::One;
     use super::super::scan::{self, Cursor};
     use super::super::sorted_boxes::{PAD, SortedBoxes};
@@ -103,13 +104,8 @@ mod tests {
         while !cursor.is_done() {
             // SAFETY: the vectors need no instructions, the boxes are ready for two axes, the cursor
             // is from this sweep, and the output is long enough.
-            let count = unsafe {
-                match sets {
-                    [boxes] => scan::within::<f32, V, 2>(boxes, &mut cursor, &mut out),
-                    [a, b] => scan::between::<f32, V, 2>([a, b], order, &mut cursor, &mut out),
-                    _ => unreachable!(),
-                }
-            };
+            let sets = (&sets[0], sets.get(1));
+            let count = unsafe { scan::sweep::<f32, V>(sets, 2, order, &mut cursor, &mut out) };
             all.extend_from_slice(&out[..count]);
         }
         all
@@ -145,12 +141,14 @@ mod tests {
     #[test]
     #[should_panic(expected = "fits")]
     fn a_cursor_from_another_sweep_is_refused() {
-        let (long, short) = (vec![sorted_boxes(600, 8)], sorted_boxes(16, 5));
+        let (long, short) = ([sorted_boxes(600, 8)], [sorted_boxes(16, 5)]);
         let (mut out, mut cursor) = (vec![[0; 2]; PAD], Cursor::default());
-        let kernel = super::super::Kernel::SCALAR;
-        while cursor.fits(&[&short]) && !cursor.is_done() {
-            kernel.within(&long[0], 2, &mut cursor, &mut out);
+        let mut sweep = |boxes, cursor: &mut Cursor| {
+            Kernel::SCALAR.sweep(boxes, 2, PairOrder::Ascending, cursor, &mut out);
+        };
+        while cursor.fits(&short) && !cursor.is_done() {
+            sweep(&long, &mut cursor);
         }
-        kernel.within(&short, 2, &mut cursor, &mut out);
+        sweep(&short, &mut cursor);
     }
 }

@@ -53,14 +53,13 @@ impl Cursor {
 
     /// Whether a sweep of these sets, one or two, may go on from here: the scan of the next probe
     /// would begin at a box or at the sentinels. Always so, unless the cursor is from another sweep.
-    pub(super) fn fits<T: Scalar>(&self, sets: &[&SortedBoxes<T>]) -> bool {
-        let left = |set: &SortedBoxes<T>, at: usize| set.left[at];
+    pub(super) fn fits<T: Scalar>(&self, sets: &[SortedBoxes<T>]) -> bool {
         match sets {
             [a] => self.first >= a.len() || self.ahead < a.len() - self.first,
             [a, b] => {
                 self.first >= a.len()
                     || self.second >= b.len()
-                    || if left(a, self.first) <= left(b, self.second) {
+                    || if a.left[self.first] <= b.left[self.second] {
                         self.ahead <= b.len() - self.second
                     } else {
                         self.ahead <= a.len() - self.first
@@ -108,15 +107,60 @@ fn probes_of<T: Scalar>(first: &SortedBoxes<T>, second: &SortedBoxes<T>, probes:
     low
 }
 
-/// The pairs of one set, with `K` axes tested beside the sweep axis. Writes to `out` and returns how
-/// many; `cursor.done` tells whether that was all. The scan of a box stops where `out` has no space for
-/// a full vector.
+/// The set that is swept, or the two between which pairs are found.
+pub(super) type Sets<'a, T> = (&'a SortedBoxes<T>, Option<&'a SortedBoxes<T>>);
+
+/// Writes the pairs of one set or of two to `out` and returns how many; `cursor.done` tells whether that
+/// was all. The scan of a box stops where `out` has no space for a full vector.
 ///
 /// # Safety
-/// The instructions of `V` are present; `boxes.is_ready(K)`; `cursor.fits(&[boxes])`;
-/// `out.len() >= V::LANES`.
+/// The instructions of `V` are present; the sets are ready for `others` axes, at most three, which are
+/// tested beside the sweep axis; the cursor fits the sets; `out.len() >= V::LANES`.
 #[inline(always)]
-pub(super) unsafe fn within<T: Scalar, V: Vector<T>, const K: usize>(
+pub(super) unsafe fn sweep<T: Scalar, V: Vector<T>>(
+    sets: Sets<'_, T>,
+    others: usize,
+    pair_order: PairOrder,
+    cursor: &mut Cursor,
+    out: &mut [[u32; 2]],
+) -> usize {
+    // SAFETY: the caller's promise.
+    unsafe {
+        match others {
+            0 => sweep_on::<T, V, 0>(sets, pair_order, cursor, out),
+            1 => sweep_on::<T, V, 1>(sets, pair_order, cursor, out),
+            2 => sweep_on::<T, V, 2>(sets, pair_order, cursor, out),
+            _ => sweep_on::<T, V, 3>(sets, pair_order, cursor, out),
+        }
+    }
+}
+
+/// [`sweep`] with `K` axes tested beside the sweep axis.
+///
+/// # Safety
+/// As [`sweep`].
+#[inline(always)]
+unsafe fn sweep_on<T: Scalar, V: Vector<T>, const K: usize>(
+    (first, second): Sets<'_, T>,
+    pair_order: PairOrder,
+    cursor: &mut Cursor,
+    out: &mut [[u32; 2]],
+) -> usize {
+    // SAFETY: the caller's promise.
+    unsafe {
+        match second {
+            None => within::<T, V, K>(first, cursor, out),
+            Some(second) => between::<T, V, K>([first, second], pair_order, cursor, out),
+        }
+    }
+}
+
+/// The pairs of one set.
+///
+/// # Safety
+/// As [`sweep`].
+#[inline(always)]
+unsafe fn within<T: Scalar, V: Vector<T>, const K: usize>(
     boxes: &SortedBoxes<T>,
     cursor: &mut Cursor,
     out: &mut [[u32; 2]],
@@ -148,10 +192,9 @@ pub(super) unsafe fn within<T: Scalar, V: Vector<T>, const K: usize>(
 /// first set where both begin together.
 ///
 /// # Safety
-/// The instructions of `V` are present; both sets are ready for `K`; `cursor.fits(&[a, b])`;
-/// `out.len() >= V::LANES`.
+/// As [`sweep`].
 #[inline(always)]
-pub(super) unsafe fn between<T: Scalar, V: Vector<T>, const K: usize>(
+unsafe fn between<T: Scalar, V: Vector<T>, const K: usize>(
     [a, b]: [&SortedBoxes<T>; 2],
     pair_order: PairOrder,
     cursor: &mut Cursor,

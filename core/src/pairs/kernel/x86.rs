@@ -16,13 +16,16 @@ pub(super) struct Avx2<V>(V);
 #[derive(Clone, Copy)]
 pub(super) struct Avx512<V>(V);
 
-macro_rules! masks_in_vectors {
-    ($name:ident, $vector:ty, $scalar:ty, $lanes:literal, $splat:ident, $load:ident, $le:expr, $and:ident, $bits:ident $(, $ids:ident)?) => {
+/// A vector, the instructions on it, its mask, and what packs pairs, if it can.
+macro_rules! vector {
+    ($name:ident<$vector:ty>, $lanes:literal, $scalar:ty, $splat:ident, $load:ident,
+     $mask:ty, $le:expr, |$and:ident, $a:ident, $b:ident| $and_le:expr, $bits:expr
+     $(, $pack:ident, $ids:ident)?) => {
         // SAFETY: one load of exactly LANES coordinates; `pack`, where it is, reads LANES
         // ids and bitmaps and writes LANES pairs.
         unsafe impl Vector<$scalar> for $name<$vector> {
             const LANES: usize = $lanes;
-            type Mask = $vector;
+            type Mask = $mask;
 
             #[inline(always)]
             unsafe fn splat(value: $scalar) -> Self {
@@ -37,19 +40,20 @@ macro_rules! masks_in_vectors {
             }
 
             #[inline(always)]
-            unsafe fn le(a: Self, b: Self) -> $vector {
+            unsafe fn le(a: Self, b: Self) -> $mask {
                 // SAFETY: the caller has the instructions.
                 unsafe { $le(a.0, b.0) }
             }
 
             #[inline(always)]
-            unsafe fn and_le(mask: $vector, a: Self, b: Self) -> $vector {
+            unsafe fn and_le($and: $mask, $a: Self, $b: Self) -> $mask {
                 // SAFETY: the caller has the instructions.
-                unsafe { $and(mask, $le(a.0, b.0)) }
+                unsafe { $and_le }
             }
 
             #[inline(always)]
-            unsafe fn bits(mask: $vector) -> u32 {
+            #[allow(unused_unsafe)] // The masks of AVX-512 are numbers.
+            unsafe fn bits(mask: $mask) -> u32 {
                 // SAFETY: the caller has the instructions.
                 unsafe { $bits(mask) as u32 }
             }
@@ -59,7 +63,7 @@ macro_rules! masks_in_vectors {
 
                 #[inline(always)]
                 unsafe fn pack(
-                    hits: $vector,
+                    hits: $mask,
                     probe: &Reporter,
                     ids: *const u32,
                     dedup: *const u32,
@@ -67,59 +71,45 @@ macro_rules! masks_in_vectors {
                 ) -> usize {
                     // SAFETY: the caller has the instructions, LANES ids and bitmaps, and space for
                     // LANES pairs.
-                    unsafe { pack(Self::bits(hits), $ids(ids), $ids(dedup), probe, out, $lanes) }
+                    unsafe { $pack(Self::bits(hits), $ids(ids), $ids(dedup), probe, out, $lanes) }
                 }
             )?
         }
     };
 }
 
-masks_in_vectors!(
-    Sse2,
-    __m128,
-    f32,
-    4,
-    _mm_set1_ps,
-    _mm_loadu_ps,
-    _mm_cmple_ps,
-    _mm_and_ps,
-    _mm_movemask_ps
-);
-masks_in_vectors!(
-    Sse2,
-    __m128d,
-    f64,
-    2,
-    _mm_set1_pd,
-    _mm_loadu_pd,
-    _mm_cmple_pd,
-    _mm_and_pd,
-    _mm_movemask_pd
-);
-masks_in_vectors!(
-    Avx2,
-    __m256,
-    f32,
-    8,
-    _mm256_set1_ps,
-    _mm256_loadu_ps,
-    _mm256_cmp_ps::<_CMP_LE_OQ>,
-    _mm256_and_ps,
-    _mm256_movemask_ps,
-    eight_numbers
-);
-masks_in_vectors!(
-    Avx2,
-    __m256d,
-    f64,
-    4,
-    _mm256_set1_pd,
-    _mm256_loadu_pd,
-    _mm256_cmp_pd::<_CMP_LE_OQ>,
-    _mm256_and_pd,
-    _mm256_movemask_pd,
-    four_numbers
-);
+vector! {
+    Sse2<__m128>, 4, f32, _mm_set1_ps, _mm_loadu_ps,
+    __m128, _mm_cmple_ps, |mask, a, b| _mm_and_ps(mask, _mm_cmple_ps(a.0, b.0)), _mm_movemask_ps
+}
+vector! {
+    Sse2<__m128d>, 2, f64, _mm_set1_pd, _mm_loadu_pd,
+    __m128d, _mm_cmple_pd, |mask, a, b| _mm_and_pd(mask, _mm_cmple_pd(a.0, b.0)), _mm_movemask_pd
+}
+vector! {
+    Avx2<__m256>, 8, f32, _mm256_set1_ps, _mm256_loadu_ps,
+    __m256, _mm256_cmp_ps::<_CMP_LE_OQ>,
+    |mask, a, b| _mm256_and_ps(mask, _mm256_cmp_ps::<_CMP_LE_OQ>(a.0, b.0)),
+    _mm256_movemask_ps, pack, eight_numbers
+}
+vector! {
+    Avx2<__m256d>, 4, f64, _mm256_set1_pd, _mm256_loadu_pd,
+    __m256d, _mm256_cmp_pd::<_CMP_LE_OQ>,
+    |mask, a, b| _mm256_and_pd(mask, _mm256_cmp_pd::<_CMP_LE_OQ>(a.0, b.0)),
+    _mm256_movemask_pd, pack, four_numbers
+}
+vector! {
+    Avx512<__m512>, 16, f32, _mm512_set1_ps, _mm512_loadu_ps,
+    __mmask16, _mm512_cmp_ps_mask::<_CMP_LE_OQ>,
+    |mask, a, b| _mm512_mask_cmp_ps_mask::<_CMP_LE_OQ>(mask, a.0, b.0),
+    u32::from, compress, sixteen_numbers
+}
+vector! {
+    Avx512<__m512d>, 8, f64, _mm512_set1_pd, _mm512_loadu_pd,
+    __mmask8, _mm512_cmp_pd_mask::<_CMP_LE_OQ>,
+    |mask, a, b| _mm512_mask_cmp_pd_mask::<_CMP_LE_OQ>(mask, a.0, b.0),
+    u32::from, compress, eight_of_sixteen
+}
 
 /// # Safety
 /// AVX2; eight numbers at `from`.
@@ -198,88 +188,10 @@ static FRONT: [[u8; 8]; 256] = {
     table
 };
 
-macro_rules! masks_in_registers {
-    ($vector:ty, $scalar:ty, $lanes:literal, $mask:ty, $splat:ident, $load:ident, $le:ident, $and_le:ident, $ids:expr) => {
-        // SAFETY: one load of exactly LANES coordinates; `pack` reads LANES ids and bitmaps and
-        // writes LANES pairs.
-        unsafe impl Vector<$scalar> for Avx512<$vector> {
-            const LANES: usize = $lanes;
-            type Mask = $mask;
-
-            #[inline(always)]
-            unsafe fn splat(value: $scalar) -> Self {
-                // SAFETY: the caller has the instructions.
-                Self(unsafe { $splat(value) })
-            }
-
-            #[inline(always)]
-            unsafe fn load(from: *const $scalar) -> Self {
-                // SAFETY: the caller has the instructions, and LANES coordinates at `from`.
-                Self(unsafe { $load(from) })
-            }
-
-            #[inline(always)]
-            unsafe fn le(a: Self, b: Self) -> $mask {
-                // SAFETY: the caller has the instructions.
-                unsafe { $le::<_CMP_LE_OQ>(a.0, b.0) }
-            }
-
-            #[inline(always)]
-            unsafe fn and_le(mask: $mask, a: Self, b: Self) -> $mask {
-                // SAFETY: the caller has the instructions.
-                unsafe { $and_le::<_CMP_LE_OQ>(mask, a.0, b.0) }
-            }
-
-            #[inline(always)]
-            unsafe fn bits(mask: $mask) -> u32 {
-                u32::from(mask)
-            }
-
-            const PACKS: bool = true;
-
-            #[inline(always)]
-            unsafe fn pack(
-                hits: $mask,
-                probe: &Reporter,
-                ids: *const u32,
-                dedup: *const u32,
-                out: *mut [u32; 2],
-            ) -> usize {
-                // SAFETY: the caller has the instructions, LANES ids and bitmaps, and space for
-                // LANES pairs.
-                unsafe { compress(u16::from(hits), $ids(ids), $ids(dedup), probe, out, $lanes) }
-            }
-        }
-    };
-}
-
-masks_in_registers!(
-    __m512,
-    f32,
-    16,
-    __mmask16,
-    _mm512_set1_ps,
-    _mm512_loadu_ps,
-    _mm512_cmp_ps_mask,
-    _mm512_mask_cmp_ps_mask,
-    load_sixteen
-);
-masks_in_registers!(
-    __m512d,
-    f64,
-    8,
-    __mmask8,
-    _mm512_set1_pd,
-    _mm512_loadu_pd,
-    _mm512_cmp_pd_mask,
-    _mm512_mask_cmp_pd_mask,
-    load_eight
-);
-
 /// # Safety
 /// AVX-512 F; sixteen numbers at `from`.
 #[inline(always)]
-unsafe fn load_sixteen(from: *const u32) -> __m512i {
+unsafe fn sixteen_numbers(from: *const u32) -> __m512i {
     // SAFETY: the caller's promise.
     unsafe { _mm512_loadu_si512(from.cast()) }
 }
@@ -287,7 +199,7 @@ unsafe fn load_sixteen(from: *const u32) -> __m512i {
 /// # Safety
 /// AVX-512 F; eight numbers at `from`. The upper half is undefined.
 #[inline(always)]
-unsafe fn load_eight(from: *const u32) -> __m512i {
+unsafe fn eight_of_sixteen(from: *const u32) -> __m512i {
     // SAFETY: the caller's promise.
     unsafe { _mm512_castsi256_si512(_mm256_loadu_si256(from.cast())) }
 }
@@ -298,7 +210,7 @@ unsafe fn load_eight(from: *const u32) -> __m512i {
 /// AVX-512 F; space for `lanes` (8 or 16) pairs at `out`; no hit beyond `lanes`.
 #[inline(always)]
 unsafe fn compress(
-    hits: __mmask16,
+    hits: u32,
     ids: __m512i,
     dedup: __m512i,
     probe: &Reporter,
@@ -309,7 +221,7 @@ unsafe fn compress(
     unsafe {
         let own = _mm512_set1_epi32(probe.id as i32);
         let reported =
-            _mm512_mask_testn_epi32_mask(hits, dedup, _mm512_set1_epi32(probe.dedup as i32));
+            _mm512_mask_testn_epi32_mask(hits as u16, dedup, _mm512_set1_epi32(probe.dedup as i32));
         let swapped = if probe.ascending {
             _mm512_cmplt_epu32_mask(ids, own)
         } else {

@@ -10,7 +10,8 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 /// With fewer pairs threads do not pay to copy them (two busy cores of a virtual machine).
 const MANY_PAIRS: usize = 1 << 18;
 /// How often the calling thread checks whether the others have finished, and then how often more
-/// while it lets others run, before it goes to sleep: some hundred microseconds in all.
+/// while it lets others run, before it goes to sleep: some hundred microseconds in all. (Two threads at
+/// 100,000 boxes take 0.93 to 0.95 of the time that they take if it sleeps at once; 11 scenes.)
 const SPINS: u32 = 10_000;
 const YIELDS: u32 = 200;
 

@@ -7,6 +7,7 @@ mod field;
 mod float;
 mod sample;
 
+pub(super) use choose::SizeSplit;
 use choose::{Choice, cheapest};
 pub(super) use cost::CANDIDATE;
 use cost::Cut;
@@ -27,9 +28,8 @@ const MOST_CELLS: f64 = 65535.0;
 pub(super) enum Plan<T> {
     /// Cut space into columns (perhaps one) and sweep each.
     Cut(Grid<T>),
-    /// Split the boxes of one set (0 or 1) by their size on an axis, and search the two groups
-    /// separately.
-    SplitBySize { set: usize, axis: usize, size: f64 },
+    /// Split the boxes of one set by their size, and search the two groups separately.
+    SplitBySize(SizeSplit),
 }
 
 impl<T: Scalar> Plan<T> {
@@ -64,8 +64,8 @@ pub(super) fn plan<const D: usize, T: Scalar, S: Source<D, T>>(
     let (choice, cost) = cheapest(&field, samples, may_split);
     let plan = match choice {
         Choice::Cut(cut) => Plan::Cut(grid(&cut, &field, unit)),
-        Choice::SplitBySize { set, axis, size } => {
-            Plan::SplitBySize { set, axis, size: size / unit.to_f64() }
+        Choice::SplitBySize(split) => {
+            Plan::SplitBySize(SizeSplit { size: split.size / unit.to_f64(), ..split })
         }
     };
     Planned { plan, cost }
@@ -104,7 +104,7 @@ mod tests {
     fn columns<T: Scalar>(step: f64, size: f64) -> usize {
         match plan(&[&boxes::<T>(step, size)[..]], true).plan {
             Plan::Cut(grid) => grid.len(),
-            Plan::SplitBySize { .. } => 0,
+            Plan::SplitBySize(_) => 0,
         }
     }
 

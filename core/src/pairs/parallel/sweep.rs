@@ -1,0 +1,30 @@
+//! A single sweep on several threads.
+
+use alloc::vec::Vec;
+
+use super::gather::Gather;
+use super::threads::on_threads;
+use crate::Scalar;
+use crate::pairs::control::Stop;
+use crate::pairs::kernel::{Cursor, SortedBoxes};
+use crate::pairs::sink::Sink;
+use crate::pairs::sweep::Sweep;
+
+/// Each thread takes so many probes at a time, so that their pairs stay in its cache.
+const PROBES: usize = 256;
+
+/// Runs a sweep on so many threads, at least two.
+pub fn sweep_on_threads<T: Scalar, O: Sink>(
+    sweep: Sweep<'_>,
+    sorted: &[SortedBoxes<T>],
+    threads: usize,
+    sink: &mut O,
+) -> Result<(), Stop> {
+    let chunks = Cursor::chunks(sorted, PROBES);
+    let jobs: Vec<_> = (0..chunks.len()).collect();
+    let gather = Gather::new(sink, chunks.len());
+    let do_all = || gather.do_all(&jobs, |job, sink| sweep.run(sorted, chunks[job], sink));
+    on_threads(do_all, 1..threads, |_| do_all());
+    let found = gather.end()?;
+    sink.join(found)
+}
