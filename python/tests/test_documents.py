@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 
 import sweep_and_prune as sap
+from sweep_and_prune._command import _parser
 
 PYTHON = Path(__file__).parents[1]
 README = (PYTHON / "README.md").read_text()
@@ -48,6 +49,15 @@ def test_the_readme_names_no_path_that_the_wheel_lacks() -> None:
     """Only bench.py is named, as a file of the repository."""
     assert re.findall(r"`[\w./]*/[\w./]+`", README.replace("`./test python`", "")) == []
     assert set(re.findall(r"`(\w+\.py)`", README)) == {"bench.py"}
+
+
+def test_the_readme_shows_commands_that_there_are() -> None:
+    commands = re.findall(r"^sap (.*)$", README, re.MULTILINE)
+    assert len(commands) == 6
+    for command in commands:
+        assert _parser().parse_args(command.split(" > ")[0].split()).files
+    project = (PYTHON / "pyproject.toml").read_text()
+    assert 'sap = "sweep_and_prune._command:main"' in project
 
 
 @pytest.mark.parametrize("name", sorted(path.name for path in (PYTHON / "examples").glob("*.py")))

@@ -163,10 +163,25 @@ def test_distances_names_indices_and_groups_are_those_of_geopandas() -> None:
         check_same(left.rename_geometry("shape"), right, how)
         check_same(left[:0], right, how)
         check_same(left, right[:0], how)
-    # 0.1 + 0.2 > 0.3, but the distance of 0.1 and 0.3 is not more than 0.2.
-    geopandas = pytest.importorskip("geopandas")
-    a, b = (geopandas.GeoDataFrame(geometry=geopandas.points_from_xy([x], [0])) for x in (0.1, 0.3))
-    assert check_same(a, b, "inner", "dwithin", distance=0.2) == check_same(b, a, "inner", "dwithin", distance=0.2)
+
+
+def test_distances_are_rounded_as_by_shapely() -> None:
+    geopandas, shapely = pytest.importorskip("geopandas"), pytest.importorskip("shapely")
+    x = np.random.default_rng(1).random((2, 1000)) * 10
+    ids = np.arange(1000)
+    left, right = (geopandas.GeoDataFrame({"id": ids}, geometry=geopandas.points_from_xy(row, row * 0)) for row in x)
+    distance = np.abs(x[0] - x[1])
+    is_within = shapely.dwithin(left.geometry.array, right.geometry.array, distance)
+    assert sap.join(left, right, "inner", "dwithin", distance=distance, by="id").id.tolist() == ids[is_within].tolist()
+    assert is_within.sum() > 900
+
+
+def test_rows_are_sorted() -> None:
+    left, right = intervals(3000, 1), intervals(2000, 2)
+    for how in ("inner", "left", "right"):
+        joined = sap.join(left, right, how)
+        rows = [-joined.index.to_numpy(), -joined[f"index_{'left' if how == 'right' else 'right'}"].to_numpy()]
+        assert np.array_equal(np.lexsort(rows[::-1]), np.arange(len(joined))) and len(joined) > 1000
 
 
 def test_prepared_geometries_are_left_as_they_were() -> None:

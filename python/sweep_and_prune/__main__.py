@@ -1,0 +1,8 @@
+"""`python -m sweep_and_prune` is the command line `sap`."""
+
+import sys
+
+from ._command import main
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,428 @@
+"""Reads boxes from files and writes pairs to files, for the command line."""
+
+from __future__ import annotations
+
+import csv
+import gzip
+import json
+import math
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, Any, Protocol
+from zipfile import BadZipFile
+
+import numpy as np
+from numpy.typing import NDArray
+
+_MISSING = {"", "na", "n/a", "nan", "null", "none", "."}
+_ARROW = (".arrow", ".feather", ".ipc")
+READABLE = ".csv, .tsv, .bed, .npy, .npz, .geojson, .json, .parquet, .arrow, .feather"
+WRITABLE = ("csv", "tsv", "npy", "parquet", "arrow")
+
+
+class FileError(Exception):
+    """What is wrong with a file, for people."""
+
+
+class Columns(Protocol):
+    """The part of a data frame that is used."""
+
+    @property
+    def columns(self) -> list[str]: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, name: str) -> Any: ...
+
+
+class Source:
+    """A file with a box in each row."""
+
+    closed: str | None = None
+    """What the format says about the ends of boxes."""
+    by: str | None = None
+    """The column that the format groups by."""
+
+    def __init__(self, name: str, values: Any, labels: dict[str, Any] | None = None) -> None:
+        self.name, self.values, self.labels = name, values, labels or {}
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    @property
+    def columns(self) -> list[str]:
+        """The names of its columns, none for an array."""
+        names = getattr(self.values, "column_names", getattr(self.values, "columns", []))
+        return [*map(str, names), *self.labels]
+
+    def boxes(self, columns: Sequence[str]) -> Any:
+        """The boxes, from columns with these names or else from those that are recognized."""
+        if not columns:
+            return self.values
+        return np.column_stack([np.asarray(self._column(name)) for name in columns])
+
+    def label(self, name: str) -> NDArray[Any]:
+        """A column of any type."""
+        if isinstance(self.values, _Text):
+            return np.array(self.values.text(name), object)
+        return np.asarray(self.labels[name] if name in self.labels else self._column(name))
+
+    def _column(self, name: str) -> Any:
+        if name not in self.columns or not hasattr(self.values, "columns"):
+            raise FileError(f"{self.name} has no column {name!r}; {_listed(self.columns)}")
+        return self.values[name]
+
+    def place(self, index: int) -> str:
+        """Where a row is."""
+        if isinstance(self.values, _Text):
+            return f"{self.name}, line {self.values.line(index)}"
+        return f"{self.name}, row {index} (the first is 0)"
+
+
+def _listed(columns: list[str]) -> str:
+    return f"its columns are {', '.join(columns)}" if columns else "it has no columns with names"
+
+
+class _Text:
+    """A table of text, whose columns become numbers when they are used."""
+
+    def __init__(self, name: str, columns: list[str], rows: list[list[str]], lines: list[int]) -> None:
+        self.name, self.columns, self._lines = name, columns, lines
+        width = len(columns)
+        for row, line in zip(rows, lines):
+            if len(row) < width:
+                raise FileError(f"{name}, line {line}: it has {len(row)} columns, where {width} are expected")
+        self._cells = dict(zip(columns, zip(*rows))) if rows else {column: () for column in columns}
+
+    def __len__(self) -> int:
+        return len(self._lines)
+
+    def line(self, index: int) -> int:
+        return self._lines[index]
+
+    def text(self, name: str) -> Sequence[str]:
+        if name not in self._cells:
+            raise FileError(f"{self.name} has no column {name!r}; {_listed(self.columns)}")
+        return self._cells[name]
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        cells = self.text(name)
+        for dtype in (np.int64, np.float64):
+            try:
+                return np.array(list(map(int if dtype is np.int64 else float, cells)), dtype)
+            except (ValueError, OverflowError):
+                pass
+        return np.array([self._number(cell, name, index) for index, cell in enumerate(cells)])
+
+    def _number(self, cell: str, name: str, index: int) -> float:
+        if cell.strip().lower() in _MISSING:
+            return math.nan
+        try:
+            return float(cell)
+        except ValueError:
+            raise FileError(f"{self.name}, line {self.line(index)}, column {name}: {cell!r} is no number") from None
+
+
+def read(path: str) -> Source:
+    """Reads a file; its name tells the format, and `-` is CSV from standard input."""
+    if path == "-":
+        return _read_text("standard input", sys.stdin, "")
+    suffix = Path(path.removesuffix(".gz")).suffix.lower()
+    try:
+        if suffix in (".csv", ".tsv", ".txt", ".bed"):
+            opened: Any = gzip.open if path.endswith(".gz") else open
+            with opened(path, "rt", encoding="utf-8-sig", newline="") as file:
+                return _read_text(path, file, suffix)
+        if suffix in (".npy", ".npz"):
+            return Source(path, _read_numpy(path))
+        if suffix in (".geojson", ".json"):
+            return _read_geojson(path)
+        if suffix in (".parquet", ".geoparquet", *_ARROW):
+            return _read_arrow(path, suffix)
+    except OSError as error:
+        raise FileError(f"{path} cannot be read: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise FileError(f"{path} is not text in UTF-8") from None
+    raise FileError(f"{path} has a name that does not tell its format: {READABLE} are known")
+
+
+def _read_text(name: str, file: IO[str], suffix: str) -> Source:
+    delimiter = "\t"
+    if suffix not in (".tsv", ".bed"):
+        first = file.readline()
+        delimiter = max(",;\t", key=first.count)
+        file = _Again(first, file)  # type: ignore[assignment]
+    rows, lines = [], []
+    reader = csv.reader(file, delimiter=delimiter)
+    try:
+        for row in reader:
+            if not row or (suffix == ".bed" and row[0].split(" ")[0].startswith(("#", "track", "browser"))):
+                continue
+            rows.append(row)
+            lines.append(reader.line_num)
+    except csv.Error as error:
+        raise FileError(f"{name}, line {reader.line_num}: {error}") from None
+    if suffix == ".bed":
+        known = ["chrom", "start", "end", "name", "score", "strand"]
+        width = min(map(len, rows), default=3)
+        if width < 3:
+            line = next(line for row, line in zip(rows, lines) if len(row) < 3)
+            raise FileError(f"{name}, line {line}: chrom, start and end are expected, separated by tabs")
+        source = Source(name, _Text(name, known[:width], rows, lines))
+        source.closed, source.by = "left", "chrom"
+        return source
+    if not rows:
+        raise FileError(f"{name} is empty")
+    if all(_is_number(cell) for cell in rows[0]):
+        width = len(rows[0])
+        if width not in (2, 4, 6):
+            raise FileError(f"{name} has no header and {width} columns; boxes have 2, 4 or 6")
+        columns = {2: "min0 max0", 4: "min0 min1 max0 max1", 6: "min0 min1 min2 max0 max1 max2"}[width].split()
+        table = _Text(name, columns, rows, lines)
+        return Source(name, np.column_stack([table[column] for column in columns]))
+    return Source(name, _Text(name, [cell.strip() for cell in rows[0]], rows[1:], lines[1:]))
+
+
+class _Again:
+    """Lines of a file of which the first was read already."""
+
+    def __init__(self, first: str, file: IO[str]) -> None:
+        self._first, self._file = first, file
+
+    def __iter__(self) -> Iterator[str]:
+        if self._first:
+            yield self._first
+        yield from self._file
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
+
+
+def _read_numpy(path: str) -> NDArray[Any]:
+    try:
+        loaded = np.load(path, allow_pickle=False)
+    except (ValueError, EOFError, BadZipFile) as error:
+        raise FileError(f"{path} is no array of NumPy: {error}") from None
+    if isinstance(loaded, np.ndarray):
+        return loaded
+    names = loaded.files
+    if "boxes" not in names and len(names) != 1:
+        raise FileError(f"{path} has the arrays {', '.join(names)}: one of them must be called boxes")
+    array: NDArray[Any] = loaded["boxes" if "boxes" in names else names[0]]
+    return array
+
+
+def _read_geojson(path: str) -> Source:
+    with open(path, encoding="utf-8") as file:
+        try:
+            document = json.load(file)
+        except json.JSONDecodeError as error:
+            raise FileError(f"{path}, line {error.lineno}: {error.msg}") from None
+    features = document.get("features") if isinstance(document, dict) else None
+    if not isinstance(features, list):
+        raise FileError(f"{path} is no FeatureCollection of GeoJSON")
+    boxes = np.array([_bounds(feature.get("geometry")) for feature in features]).reshape(-1, 4)
+    properties = [feature.get("properties") or {} for feature in features]
+    names = sorted({name for row in properties for name in row})
+    labels = {name: np.array([row.get(name) for row in properties], object) for name in names}
+    labels.setdefault("id", np.array([feature.get("id") for feature in features], object))
+    return Source(path, boxes, labels)
+
+
+def _bounds(geometry: Any) -> tuple[float, float, float, float]:
+    points = list(_points(geometry)) if geometry else []
+    if not points:
+        return (math.nan,) * 4
+    x, y = zip(*points)
+    return min(x), min(y), max(x), max(y)
+
+
+def _points(geometry: Any) -> Iterator[tuple[float, float]]:
+    for part in geometry.get("geometries", []):
+        yield from _points(part)
+    waiting = [geometry.get("coordinates") or []]
+    while waiting:
+        item = waiting.pop()
+        if item and isinstance(item[0], (int, float)):
+            yield item[0], item[1]
+        else:
+            waiting.extend(item)
+
+
+def _read_arrow(path: str, suffix: str) -> Source:
+    arrow = _pyarrow(path)
+    try:
+        if suffix in _ARROW:
+            import pyarrow.feather
+
+            table = pyarrow.feather.read_table(path)
+        else:
+            import pyarrow.parquet
+
+            rows = pyarrow.parquet.ParquetFile(path).metadata.num_rows
+            check_memory(path, rows, 4)
+            table = pyarrow.parquet.read_table(path)
+    except arrow.ArrowInvalid as error:
+        raise FileError(f"{path} cannot be read: {error}") from None
+    geo = (table.schema.metadata or {}).get(b"geo")
+    if geo is not None and "bbox" not in table.column_names:
+        try:
+            import shapely
+        except ImportError:
+            raise FileError(f"{path} has geometries, for which shapely must be installed") from None
+        column = json.loads(geo)["primary_column"]
+        shapes = shapely.from_wkb(np.asarray(table[column], object))
+        others = {name: np.asarray(table[name]) for name in table.column_names if name != column}
+        return Source(path, np.asarray(shapely.bounds(shapes)).reshape(-1, 4), others)
+    return Source(path, table)
+
+
+def _pyarrow(path: str) -> Any:
+    try:
+        import pyarrow
+    except ImportError:
+        raise FileError(f"{path} needs pyarrow: pip install 'sweep-and-prune[files]'") from None
+    return pyarrow
+
+
+def check_memory(path: str, rows: int, numbers: int) -> None:
+    """Refuses files that cannot be searched in this machine's memory."""
+    try:
+        memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, ValueError, OSError):
+        return
+    # The table, the boxes, and what the search keeps.
+    needed = rows * numbers * 8 * 7
+    if needed > memory:
+        gigabytes = f"{needed / 1e9:.0f} GB of memory, and this machine has {memory / 1e9:.0f} GB"
+        raise FileError(f"{path} has {rows} boxes; to search them takes about {gigabytes}")
+
+
+class Writer(Protocol):
+    """Takes pairs, chunk by chunk."""
+
+    def write(self, pairs: Sequence[NDArray[Any]]) -> None: ...
+    def close(self) -> None: ...
+
+
+class _TextWriter:
+    def __init__(self, file: IO[bytes], delimiter: str, names: tuple[str, str]) -> None:
+        self._file, self._delimiter = file, delimiter
+        self._file.write(f"{names[0]}{delimiter}{names[1]}\n".encode())
+
+    def write(self, pairs: Sequence[NDArray[Any]]) -> None:
+        a, b = (column.tolist() for column in pairs)
+        delimiter = self._delimiter
+        if pairs[0].dtype.kind in "iu" and pairs[1].dtype.kind in "iu":
+            lines = [f"{i}{delimiter}{j}\n" for i, j in zip(a, b)]
+        else:
+            lines = [f"{_quoted(i, delimiter)}{delimiter}{_quoted(j, delimiter)}\n" for i, j in zip(a, b)]
+        self._file.write("".join(lines).encode())
+
+    def close(self) -> None:
+        self._file.flush()
+
+
+def _quoted(value: object, delimiter: str) -> str:
+    text = "" if value is None else str(value)
+    if delimiter in text or '"' in text or "\n" in text or "\r" in text:
+        return '"' + text.replace('"', '""') + '"'
+    return text
+
+
+class _NumpyWriter:
+    def __init__(self, file: IO[bytes], count: int) -> None:
+        self._file = file
+        header = {"descr": "<i8", "fortran_order": False, "shape": (count, 2)}
+        np.lib.format.write_array_header_1_0(file, header)
+
+    def write(self, pairs: Sequence[NDArray[Any]]) -> None:
+        try:
+            rows = np.stack(pairs, axis=1).astype("<i8", casting="same_kind")
+        except TypeError:
+            raise FileError(
+                "an array of NumPy holds whole numbers only: leave --id out, or write another format"
+            ) from None
+        self._file.write(rows.tobytes())
+
+    def close(self) -> None:
+        self._file.flush()
+
+
+class _ArrowWriter:
+    def __init__(self, file: IO[bytes], kind: str, names: tuple[str, str], is_pipe: bool) -> None:
+        self._arrow = _pyarrow(f"--to {kind}")
+        self._file, self._kind, self._names, self._is_pipe = file, kind, names, is_pipe
+        self._writer: Any = None
+
+    def write(self, pairs: Sequence[NDArray[Any]]) -> None:
+        table = self._arrow.table([self._arrow.array(column) for column in pairs], names=list(self._names))
+        if self._writer is None:
+            self._writer = self._open(table.schema)
+        self._writer.write_table(table.cast(self._writer.schema if self._kind == "parquet" else table.schema))
+
+    def _open(self, schema: Any) -> Any:
+        if self._kind == "parquet":
+            import pyarrow.parquet
+
+            return pyarrow.parquet.ParquetWriter(self._file, schema)
+        # A file of Arrow needs to seek; a pipe takes a stream.
+        opened = self._arrow.ipc.new_stream if self._is_pipe else self._arrow.ipc.new_file
+        return opened(self._file, schema)
+
+    def close(self) -> None:
+        if self._writer is None:
+            integer = self._arrow.int64()
+            self._writer = self._open(self._arrow.schema([(name, integer) for name in self._names]))
+        self._writer.close()
+
+
+@contextmanager
+def writer(path: str | None, kind: str, count: int, names: tuple[str, str]) -> Iterator[Writer]:
+    """Opens a file for so many pairs, or standard output. A file that could not be completed is removed."""
+    if path is None:
+        yield from _closing(sys.stdout.buffer, kind, count, names, True)
+        return
+    part = f"{path}.part"
+    try:
+        with open(part, "wb") as file:
+            yield from _closing(file, kind, count, names, False)
+        os.replace(part, path)
+    except OSError as error:
+        raise FileError(f"{path} cannot be written: {error.strerror or error}") from None
+    finally:
+        if os.path.exists(part):
+            os.remove(part)
+
+
+def _closing(file: IO[bytes], kind: str, count: int, names: tuple[str, str], is_pipe: bool) -> Iterator[Writer]:
+    made: Writer
+    if kind == "npy":
+        made = _NumpyWriter(file, count)
+    elif kind in ("csv", "tsv"):
+        made = _TextWriter(file, "," if kind == "csv" else "\t", names)
+    else:
+        made = _ArrowWriter(file, kind, names, is_pipe)
+    yield made
+    made.close()
+
+
+def kind_of(path: str | None, kind: str | None) -> str:
+    """The format to write: as told, or as the name of the file tells, or CSV."""
+    if kind is not None:
+        return kind
+    if path is None:
+        return "csv"
+    suffix = Path(path).suffix.lower()
+    known = "arrow" if suffix in _ARROW else suffix[1:]
+    if known not in WRITABLE:
+        raise FileError(
+            f"{path} has a name that does not tell a format: end it by .csv, .tsv, .npy, .parquet or .arrow"
+        )
+    return known

@@ -1,0 +1,311 @@
+"""The command line gives the pairs of brute force, in every format, and says where a file is wrong."""
+
+from __future__ import annotations
+
+import gzip
+import importlib
+import io
+import json
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from oracle import Array, in_order, pairs, pairs_between, random_boxes
+
+from sweep_and_prune._command import main
+
+BOXES = random_boxes(120, 2, np.float64)
+NAMES = ["xmin", "ymin", "xmax", "ymax"]
+SAP = [sys.executable, "-m", "sweep_and_prune"]
+
+
+@pytest.fixture(autouse=True)
+def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def csv_of(boxes: Array, delimiter: str = ",", header: list[str] | None = NAMES) -> str:
+    rows = [delimiter.join(f"{number}" for number in box) for box in boxes.tolist()]
+    return "\n".join([*([delimiter.join(header)] if header else []), *rows]) + "\n"
+
+
+def run(*arguments: str) -> str:
+    """Standard output of a call that must succeed."""
+    done = subprocess.run([*SAP, *arguments], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout
+
+
+def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    """The message of a call that must fail."""
+    assert main(arguments) == 1
+    captured = capsys.readouterr()
+    assert captured.err.count("\n") == 1
+    return captured.err
+
+
+def numbers(text: str) -> Array:
+    lines = text.splitlines()
+    assert lines[0] == "a,b"
+    return in_order(np.array([line.split(",") for line in lines[1:]], np.int64).reshape(-1, 2))
+
+
+def write(name: str, boxes: Array = BOXES) -> str:
+    """A file of boxes in the format that its name tells."""
+    if name.endswith(".npy"):
+        np.save(name, boxes)
+    elif name.endswith(".npz"):
+        np.savez(name, boxes=boxes, other=np.zeros(3))
+    elif name.endswith(".gz"):
+        with gzip.open(name, "wt") as file:
+            file.write(csv_of(boxes))
+    elif name.endswith((".csv", ".tsv", ".txt")):
+        delimiter = {"tsv": "\t", "txt": ";"}.get(name[-3:], ",")
+        Path(name).write_text(csv_of(boxes, delimiter, None if name.startswith("bare") else NAMES))
+    elif name.endswith("json"):
+        features = [
+            {"type": "Feature", "properties": {"n": index}, "geometry": {"type": "LineString", "coordinates": corners}}
+            for index, corners in enumerate(boxes.reshape(-1, 2, 2).tolist())
+        ]
+        Path(name).write_text(json.dumps({"type": "FeatureCollection", "features": features}))
+    else:
+        arrow = pytest.importorskip("pyarrow")
+        table = arrow.table(dict(zip(NAMES, boxes.T)))
+        if name.startswith("nested"):
+            table = arrow.table({"n": np.arange(len(boxes)), "bbox": table.to_struct_array()})
+        if name.endswith("parquet"):
+            importlib.import_module("pyarrow.parquet").write_table(table, name)
+        else:
+            importlib.import_module("pyarrow.feather").write_feather(table, name)
+    return name
+
+
+FILES = "a.csv a.tsv a.txt bare.csv a.csv.gz a.npy a.npz a.geojson a.json a.parquet nested.parquet a.feather a.arrow"
+
+
+@pytest.mark.parametrize("name", FILES.split())
+def test_every_format_is_read(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["pairs", write(name), "-o", "pairs.csv"]) == 0
+    assert np.array_equal(numbers(Path("pairs.csv").read_text()), pairs(BOXES))
+    assert main(["count", name]) == 0
+    assert capsys.readouterr().out == f"{len(pairs(BOXES))}\n"
+    assert main(["join", name, write("b.npy", BOXES[:50]), "-o", "pairs.csv"]) == 0
+    assert np.array_equal(numbers(Path("pairs.csv").read_text()), pairs_between(BOXES, BOXES[:50]))
+
+
+def test_geometries_of_geoparquet_are_read(capsys: pytest.CaptureFixture[str]) -> None:
+    geopandas, shapely = pytest.importorskip("geopandas"), pytest.importorskip("shapely")
+    geopandas.GeoDataFrame({"n": range(120)}, geometry=shapely.box(*BOXES.T)).to_parquet("a.parquet")
+    assert main(["count", "a.parquet"]) == 0
+    assert capsys.readouterr().out == f"{len(pairs(BOXES))}\n"
+    assert main(["pairs", "a.parquet", "--id", "n", "-o", "pairs.csv"]) == 0
+    assert np.array_equal(numbers(Path("pairs.csv").read_text()), pairs(BOXES))
+
+
+@pytest.mark.parametrize("name", ["p.csv", "p.tsv", "p.npy", "p.parquet", "p.arrow", "p.feather"])
+def test_every_format_is_written_to_a_file_and_to_a_pipe(name: str) -> None:
+    write("a.npy")
+    kind = "arrow" if name.endswith("feather") else name.split(".")[1]
+    run("pairs", "a.npy", "-o", name)
+    piped = subprocess.run([*SAP, "pairs", "a.npy", "--to", kind], capture_output=True, check=True).stdout
+    for number, data in enumerate((Path(name).read_bytes(), piped)):
+        found: Any
+        if kind == "npy":
+            found = np.load(io.BytesIO(data))
+        elif kind in ("csv", "tsv"):
+            found = numbers(data.decode().replace("\t", ","))
+        elif kind == "parquet":
+            table = pytest.importorskip("pyarrow.parquet").read_table(io.BytesIO(data))
+            found = np.stack([np.asarray(table[column]) for column in ("a", "b")], axis=1)
+        else:
+            ipc = pytest.importorskip("pyarrow").ipc
+            table = (ipc.open_stream if number else ipc.open_file)(data).read_all()
+            found = np.stack([np.asarray(table[column]) for column in ("a", "b")], axis=1)
+        assert np.array_equal(in_order(found), pairs(BOXES))
+    assert sorted(path.name for path in Path().iterdir()) == sorted(["a.npy", name])
+
+
+@pytest.mark.parametrize("kind", ["npy", "parquet", "arrow", "csv"])
+def test_no_pairs_are_a_file_without_rows(kind: str) -> None:
+    np.save("a.npy", [[0.0, 1.0]])
+    if kind in ("parquet", "arrow"):
+        pytest.importorskip("pyarrow")
+    assert main(["pairs", "a.npy", "-o", f"p.{kind}"]) == 0
+    assert Path(f"p.{kind}").stat().st_size > 0
+
+
+def test_intervals_of_bed_are_half_open_and_of_one_chromosome() -> None:
+    Path("r.bed").write_text("track name=x\n#c\nchr1\t0\t10\tr1\nchr1\t10\t20\tr2\nchr2\t5\t9\tr3\n")
+    Path("g.bed").write_text("chr1\t5\t15\tg1\nchr2\t9\t12\tg2\n")
+    assert run("join", "r.bed", "g.bed", "--id", "name") == "a,b\nr1,g1\nr2,g1\n"
+    assert run("join", "r.bed", "g.bed", "--closed", "both", "--to", "tsv") == "a\tb\n0\t0\n1\t0\n2\t1\n"
+    assert run("pairs", "r.bed") == "a,b\n"
+    assert run("count", "r.bed", "--distance", "1") == "1\n"
+
+
+def test_options_are_those_of_find_pairs() -> None:
+    sizes = np.hstack([BOXES[:, :2], BOXES[:, 2:] - BOXES[:, :2]])
+    frame = np.arange(120) % 2
+    rows = [f"{i},{','.join(map(str, box))}" for i, box in zip(frame, sizes.tolist())]
+    Path("a.csv").write_text("\n".join(["frame,x,y,width,height", *rows]))
+    wanted = pairs(BOXES)
+    assert np.array_equal(numbers(run("pairs", "a.csv", "--format", "xywh", "--threads", "-1")), wanted)
+    wanted = wanted[frame[wanted[:, 0]] == frame[wanted[:, 1]]]
+    chosen = ["--columns", "x,y,width,height", "--format", "xywh"]
+    assert np.array_equal(numbers(run("pairs", "a.csv", *chosen, "--by", "frame")), wanted)
+    only_x = np.column_stack([BOXES[:, 0], BOXES[:, 2]])
+    assert run("count", "a.csv", "--columns", "x,width", "--format", "xywh") == f"{len(pairs(only_x))}\n"
+
+
+def test_names_are_quoted_where_it_is_needed() -> None:
+    Path("a.csv").write_text('start,end,name\n0,2,"a,b"\n1,3,"say ""x"""\n')
+    assert run("pairs", "a.csv", "--id", "name") == 'a,b\n"a,b","say ""x"""\n'
+
+
+def test_standard_input_is_read() -> None:
+    done = subprocess.run([*SAP, "count", "-"], input=csv_of(BOXES), capture_output=True, text=True)
+    assert done.stdout == f"{len(pairs(BOXES))}\n"
+
+
+def test_missing_numbers_are_refused_with_their_line_or_left_out(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("a.csv").write_text("xmin,ymin,xmax,ymax\n0,0,1,1\n\n0,NA,2,2\n0,0,3,3\n")
+    assert refused(capsys, "pairs", "a.csv").startswith("sap: a.csv, line 4: the box has a NaN on axis 1")
+    assert run("pairs", "a.csv", "--missing", "skip") == "a,b\n0,2\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("a.csv", "xmin,ymin,xmax,ymax\n0,0,1,1\n0,0,x,1\n", "a.csv, line 3, column xmax: 'x' is no number"),
+        ("a.csv", "xmin,ymin,xmax,ymax\n0,0,1,1\n0,0\n", "a.csv, line 3: it has 2 columns, where 4 are expected"),
+        ("a.csv", "xmin,ymin,xmax,ymax\n3,0,2,1\n", "a.csv, line 2: the box is inverted on axis 0: min 3.0 is greater"),
+        ("a.csv", "a,b,c\n1,2,3\n", "a.csv: boxes has no columns that are known as boxes"),
+        ("a.csv", "1,2,3\n", "a.csv has no header and 3 columns; boxes have 2, 4 or 6"),
+        ("a.csv", "", "a.csv is empty"),
+        ("a.bed", "chr1\t5\n", "a.bed, line 1: chrom, start and end are expected"),
+        ("a.json", "{", "a.json, line 1: "),
+        ("a.json", "[]", "a.json is no FeatureCollection"),
+        ("a.npy", "", "a.npy is no array of NumPy"),
+        ("a.parquet", "nonsense", "a.parquet cannot be read"),
+        ("a.feather", "nonsense", "a.feather cannot be read"),
+        ("a.shp", "", "a.shp has a name that does not tell its format"),
+    ],
+)
+def test_what_is_wrong_with_a_file_is_said(
+    name: str, content: str, message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if name.endswith((".parquet", ".feather")):
+        pytest.importorskip("pyarrow")
+    Path(name).write_text(content)
+    assert refused(capsys, "pairs", name).startswith(f"sap: {message}")
+
+
+def test_what_is_wrong_with_the_arguments_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+    write("a.csv")
+    write("a.npy")
+    assert "no-file.csv cannot be read: No such file" in refused(capsys, "pairs", "no-file.csv")
+    assert "a.csv has no column 'q'; its columns are xmin" in refused(capsys, "pairs", "a.csv", "--by", "q")
+    assert "a.csv has no column 'q'" in refused(capsys, "pairs", "a.csv", "--columns", "xmin,q")
+    assert "margin is -1.0" in refused(capsys, "count", "a.npy", "--margin", "-1")
+    assert "threads must be from" in refused(capsys, "count", "a.npy", "--threads", "0")
+    assert "does not tell a format" in refused(capsys, "pairs", "a.npy", "-o", "pairs.xyz")
+    assert "cannot be written" in refused(capsys, "pairs", "a.npy", "-o", "no/such/folder.csv")
+    assert "one file or two" in refused(capsys, "count", "a.npy", "a.npy", "a.npy")
+    Path("r.bed").write_text("chr1\t0\t10\n")
+    assert "a.npy has no groups, the other file has" in refused(capsys, "join", "r.bed", "a.npy")
+    for arguments in ([], ["pairs"], ["unknown"], ["pairs", "a.npy", "--format", "abc"], ["join", "a.npy"]):
+        with pytest.raises(SystemExit) as ended:
+            main(arguments)
+        assert ended.value.code == 2
+    capsys.readouterr()
+
+
+def test_help_and_version_are_there(capsys: pytest.CaptureFixture[str]) -> None:
+    for command in ([], ["pairs"], ["join"], ["count"], ["stats"], ["plot"]):
+        with pytest.raises(SystemExit) as ended:
+            main([*command, "--help"])
+        assert ended.value.code == 0
+    assert "examples:" in capsys.readouterr().out
+    with pytest.raises(SystemExit):
+        main(["--version"])
+    assert capsys.readouterr().out.startswith("sap ")
+
+
+def test_stats_describe_the_boxes(capsys: pytest.CaptureFixture[str]) -> None:
+    np.save("a.npy", np.array([[0.0, 2, 1, 3], [1, 2, 5, 9], [np.nan, 0, 0, 0], [20, 20, 21, 21]]))
+    assert main(["stats", "a.npy", "--missing", "skip"]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "4 boxes in 2D, 1 pairs",
+        "1 boxes with missing numbers",
+        "x: from 0 to 21; sizes 1 to 4, median 1",
+        "y: from 2 to 21; sizes 1 to 7, median 1",
+        "pairs of each box: 0.50 on average, 1 at most",
+        "0 | ######################################## 2",
+        "1 | ######################################## 2",
+    ]
+    np.save("a.npy", np.zeros((0, 4)))
+    assert main(["stats", "a.npy"]) == 0
+
+
+@pytest.mark.parametrize("dimensions", [1, 2, 3])
+def test_plots_are_drawn(dimensions: int, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("matplotlib")
+    np.save("a.npy", random_boxes(30, dimensions, np.float64))
+    for name in ("a.svg", "a.png"):
+        assert main(["plot", "a.npy", "--pairs", "-o", name]) == 0
+    text = Path("a.svg").read_text()
+    assert text.count("#4c78a8") >= 30 and "#e45756" in text
+    assert "cannot be written" in refused(capsys, "plot", "a.npy", "-o", "a.nonsense")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes end in another way there")
+def test_a_pipe_that_is_closed_ends_the_program_quietly() -> None:
+    np.save("a.npy", np.zeros((3000, 2)))  # 4.5 million pairs
+    with subprocess.Popen([*SAP, "pairs", "a.npy"], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as program:
+        assert program.stdout and program.stderr
+        assert program.stdout.readline() == b"a,b\n"
+        program.stdout.close()
+        assert program.stderr.read() == b"" and program.wait(60) == 141
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals there")
+def test_ctrl_c_ends_the_program_and_leaves_no_file() -> None:
+    np.save("a.npy", np.zeros((30_000, 2)))  # 450 million pairs
+    program = subprocess.Popen([*SAP, "pairs", "a.npy", "-o", "p.csv"], stderr=subprocess.PIPE, text=True)
+    while not Path("p.csv.part").exists():
+        assert program.poll() is None
+    program.send_signal(signal.SIGINT)
+    _, said = program.communicate(timeout=60)
+    assert (program.returncode, said.strip()) == (130, "sap: cancelled")
+    assert [path.name for path in Path().iterdir()] == ["a.npy"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such terminals there")
+def test_a_terminal_shows_progress_with_the_time_that_is_left() -> None:
+    import os
+    import pty
+
+    np.save("a.npy", np.zeros((2500, 2)))  # 3 million pairs
+    terminal, end = pty.openpty()
+    program = subprocess.Popen([*SAP, "pairs", "a.npy", "-o", "p.csv"], stderr=end)
+    os.close(end)
+    shown = b""
+    try:
+        while chunk := os.read(terminal, 4096):
+            shown += chunk
+    except OSError:  # the other end is closed
+        pass
+    assert program.wait(60) == 0
+    assert b"writing: " in shown and b" s left" in shown and shown.endswith(b"\r")
+
+
+def test_too_large_a_file_is_refused_before_it_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    from sweep_and_prune import _tables
+
+    monkeypatch.setattr("os.sysconf", lambda name: 1000)
+    with pytest.raises(_tables.FileError, match=r"a\.parquet has 100000000 boxes; to search them takes about 22 GB"):
+        _tables.check_memory("a.parquet", 10**8, 4)
