@@ -67,7 +67,7 @@ mod tests {
 
     /// The first outputs for seed 1234567 of the authors' reference implementation.
     #[test]
-    fn is_splitmix64() {
+    fn the_generator_is_splitmix64() {
         let mut random = Random::new(1_234_567);
         let expected = [
             6_457_827_717_110_365_317,
@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn below_stays_below() {
+    fn below_gives_every_number_under_its_limit() {
         let mut random = Random::new(3);
         let mut seen = [false; 5];
         (0..200).for_each(|_| seen[random.below(5)] = true);

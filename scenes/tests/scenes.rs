@@ -43,7 +43,7 @@ fn any_number_and_any_seed_give_valid_boxes() {
 }
 
 #[test]
-fn seeds_matter_and_repeat() {
+fn equal_seeds_give_equal_scenes_and_others_differ() {
     let boxes = |scene: Scene, seed| scene.boxes::<3, f32>(50, seed).unwrap();
     for &scene in Scene::ALL {
         assert_eq!(boxes(scene, 5), boxes(scene, 5));
@@ -82,7 +82,7 @@ fn names_are_unique_and_found_again() {
 }
 
 #[test]
-fn scenes_exist_where_they_say() {
+fn scenes_exist_in_the_dimensions_that_they_list() {
     assert!(Scene::BoxPruning.boxes::<2, f32>(9, 1).is_none());
     assert!(Scene::BoxPruning.boxes::<3, f32>(9, 1).is_some());
     assert!(Scene::NeedlesY.boxes::<1, f32>(9, 1).is_none());
@@ -114,7 +114,7 @@ fn box_pruning_has_its_known_pairs() {
 }
 
 #[test]
-fn pair_counts_are_as_intended() {
+fn scenes_have_about_the_intended_number_of_pairs() {
     fn pairs<const D: usize, T: Scalar>(scene: Scene, n: usize) -> usize {
         find_pairs(&scene.boxes::<D, T>(n, 11).unwrap()).unwrap().len()
     }
@@ -152,7 +152,7 @@ fn nested_boxes_are_strictly_nested() {
 }
 
 #[test]
-fn hard_values_are_there() {
+fn scenes_contain_signed_zeros_infinities_and_subnormals() {
     let coordinates = |scene: Scene| -> Vec<f32> {
         let boxes = scene.boxes::<2, f32>(400, 1).unwrap();
         boxes.iter().flat_map(|aabb| [aabb.min, aabb.max]).flatten().collect()
@@ -172,7 +172,7 @@ fn hard_values_are_there() {
 }
 
 #[test]
-fn orders_are_what_they_say() {
+fn orders_are_what_their_names_say() {
     let descents = |scene: Scene| {
         let boxes = scene.boxes::<2, f64>(1000, 1).unwrap();
         boxes.windows(2).filter(|pair| pair[0].min[0] > pair[1].min[0]).count()
@@ -208,7 +208,7 @@ fn moving_boxes_keep_to_the_cube_and_to_their_size() {
 }
 
 #[test]
-fn motions_move_as_much_as_they_say() {
+fn motions_move_as_many_boxes_as_they_say() {
     let n = 2000;
     // The mean distance on x in box widths, among those that moved, their share, and jumps.
     let measure = |motion: Motion| {

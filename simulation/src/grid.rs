@@ -1,4 +1,4 @@
-//! Where is near: a uniform grid. Who is in its cells is kept by who uses it.
+//! A uniform grid: which cells a box touches. The caller keeps what is in the cells.
 
 use std::array::from_fn;
 use std::cmp::Ordering;

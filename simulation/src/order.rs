@@ -116,7 +116,7 @@ mod tests {
     use sweep_and_prune_scenes::Random;
 
     #[test]
-    fn pairs_are_sorted_at_once_and_as_they_come() {
+    fn pairs_are_in_order_whether_sorted_at_once_or_inserted() {
         let mut random = Random::new(1);
         let mut order = PairOrder::default();
         let mut pairs = Vec::new();

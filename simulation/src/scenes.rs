@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn seeds_differ() {
+    fn equal_seeds_give_equal_balls_and_others_differ() {
         let balls = |seed| {
             falling::<3>(Population { bodies: 10, size: 0.2, spread: 1.0, seed }).unwrap().balls
         };
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_refused() {
+    fn impossible_populations_are_refused_with_the_parameter_name() {
         let good = Population { bodies: 10, size: 0.2, spread: 1.0, seed: 1 };
         for (bad, name) in [
             (Population { size: f32::NAN, ..good }, "size"),

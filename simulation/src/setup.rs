@@ -140,7 +140,7 @@ mod tests {
     use crate::scenes::canvas;
 
     #[test]
-    fn refusals_name_what_is_at_fault() {
+    fn errors_name_the_parameter_or_ball_at_fault() {
         let setup = canvas(vec![Ball::at_rest([50.0, 50.0], 10.0)], [100.0, 100.0]);
         assert_eq!(setup.validate(), Ok(()));
         let nan = f32::NAN;

@@ -25,7 +25,7 @@ fn fall<const D: usize>(setup: &Setup<D>, steps: u32) -> Vec<f64> {
 }
 
 #[test]
-fn falls_and_heaps() {
+fn energy_does_not_grow_in_falls_and_heaps() {
     let p = |bodies, size, spread| Population { bodies, size, spread, seed: 3 };
     fall(&scenes::falling::<3>(p(150, 0.6, 1.0)).unwrap(), 300);
     fall(&scenes::falling::<3>(p(100, 0.5, 6.0)).unwrap(), 200);
@@ -35,7 +35,7 @@ fn falls_and_heaps() {
 
 /// A heap at rest is neither compressed nor lifted: its energy stays where it is.
 #[test]
-fn heap_at_rest_stays() {
+fn a_heap_at_rest_keeps_its_energy() {
     let population = Population { bodies: 60, size: 0.7, spread: 1.0, seed: 3 };
     let energies = fall(&scenes::falling::<3>(population).unwrap(), 1500);
     let (settled, last) = (energies[1000], energies[1499]);
@@ -43,7 +43,7 @@ fn heap_at_rest_stays() {
 }
 
 #[test]
-fn any_restitution_any_substeps() {
+fn energy_does_not_grow_for_any_restitution_and_substeps() {
     for (restitution, substeps) in [(0.0, 1), (0.3, 2), (0.96, 4), (1.0, 1), (1.0, 16)] {
         let population = Population { bodies: 20, size: 25.0, spread: 5.0, seed: 8 };
         let setup = scenes::bouncing(population, [600.0, 400.0]).unwrap();
@@ -53,7 +53,7 @@ fn any_restitution_any_substeps() {
 
 /// Where nothing takes energy away, none goes.
 #[test]
-fn elastic_balls_bounce_for_ever() {
+fn elastic_balls_keep_their_energy() {
     let balls = [(100.0, 90.0, 30.0), (300.0, 100.0, 40.0), (470.0, 150.0, 25.0)];
     let balls: Vec<_> = balls.map(|(x, y, radius)| Ball::at_rest([x, y], radius)).to_vec();
     let energies = fall(&Setup { restitution: 1.0, ..scenes::canvas(balls, [600.0, 400.0]) }, 3600);
@@ -63,7 +63,7 @@ fn elastic_balls_bounce_for_ever() {
 
 /// Overlapping starts, a heavy ball on a light one, everything in one place.
 #[test]
-fn unkind_starts() {
+fn energy_does_not_grow_from_overlapping_or_coincident_starts() {
     let heavy_on_light = vec![
         Ball::at_rest([100.0, 397.0], 3.0),
         Ball::at_rest([100.0, 300.0], 90.0),
@@ -79,7 +79,7 @@ fn unkind_starts() {
 
 /// Sideways, upwards, not at all.
 #[test]
-fn any_gravity() {
+fn energy_does_not_grow_under_any_gravity() {
     let population = Population { bodies: 60, size: 0.5, spread: 2.0, seed: 8 };
     let setup = scenes::falling::<3>(population).unwrap();
     for gravity in [[0.0, 0.0, 0.0], [3.0, 9.0, -20.0], [0.0, 9.81, 0.0], [0.0, -200.0, 0.0]] {
@@ -88,7 +88,7 @@ fn any_gravity() {
 }
 
 #[test]
-fn box_that_hardly_holds_its_ball() {
+fn a_ball_as_wide_as_the_box_stays_in_place() {
     let balls = vec![Ball { center: [0.5, 0.5], radius: 0.5, velocity: [1e9, -3.0] }];
     let bounds = Aabb::new([0.0, 0.0], [1.0, 1.0]);
     let setup = Setup { balls, bounds, ..scenes::canvas(Vec::new(), [1.0, 1.0]) };

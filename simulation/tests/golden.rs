@@ -62,7 +62,7 @@ fn every_algorithm_gives_the_same_state() {
 
 /// Neither counting nor a change of algorithm on the way leaves a trace.
 #[test]
-fn switching_and_counting_leave_no_trace() {
+fn switching_algorithms_and_counting_do_not_change_the_motion() {
     let population = Population { bodies: 150, size: 0.5, spread: 3.0, seed: 5 };
     let setup = scenes::falling::<2>(population).unwrap();
     let mut plain = Simulation::new(&setup).unwrap();
@@ -81,7 +81,7 @@ fn switching_and_counting_leave_no_trace() {
 }
 
 #[test]
-fn counts_mean_the_same_for_each() {
+fn counts_mean_the_same_for_each_algorithm() {
     let population = Population { bodies: 60, size: 0.5, spread: 1.0, seed: 5 };
     let setup = scenes::falling::<3>(population).unwrap();
     let counts = |method, persistent| {

@@ -62,7 +62,7 @@ fn unequal_spheres_bounce_by_their_volumes() {
 
 /// The height of a bounce is the square of the restitution.
 #[test]
-fn floor_returns_its_share() {
+fn a_bounce_returns_the_share_of_energy_that_restitution_says() {
     let setup = canvas(vec![Ball::at_rest([300.0, 100.0], 50.0)], [600.0, 400.0]);
     let mut simulation = Simulation::new(&setup).unwrap();
     let mut heights = Vec::new();
@@ -83,7 +83,7 @@ fn free_fall_is_exact() {
 }
 
 #[test]
-fn ball_on_the_floor_stays_there() {
+fn a_ball_on_the_floor_stays_there() {
     let balls = vec![Ball::at_rest([300.0, 350.0], 50.0), Ball::at_rest([300.0, 290.0], 10.0)];
     let simulation = after(&canvas(balls, [600.0, 400.0]), 300);
     assert_near(simulation.positions()[0][1], 350.0, 0.01);
@@ -92,7 +92,7 @@ fn ball_on_the_floor_stays_there() {
 
 /// Centers in one place have no direction between them; they part all the same.
 #[test]
-fn coincident_balls_part() {
+fn coincident_balls_separate() {
     for count in [2, 3, 12] {
         let balls = vec![Ball::at_rest([300.0, 200.0], 10.0); count];
         let setup = Setup { gravity: [0.0; 2], ..canvas(balls, [600.0, 400.0]) };
@@ -118,7 +118,7 @@ fn fast_balls_do_not_pass_through_each_other() {
 }
 
 #[test]
-fn without_collisions_balls_pass() {
+fn balls_pass_through_each_other_without_collisions() {
     let balls = vec![ball(100.0, 200.0, 20.0, [120.0, 0.0]), ball(200.0, 200.0, 20.0, [0.0; 2])];
     let mut simulation = Simulation::new(&frictionless(balls)).unwrap();
     simulation.set_collisions(false);
@@ -152,7 +152,7 @@ fn momentum_is_kept() {
 }
 
 #[test]
-fn no_balls_at_all() {
+fn a_simulation_without_balls_steps() {
     let simulation = after(&canvas(Vec::new(), [600.0, 400.0]), 3);
     assert_eq!(simulation.energy().total(), 0.0);
     assert_eq!(simulation.steps(), 3);
@@ -160,7 +160,7 @@ fn no_balls_at_all() {
 
 /// Whatever is done to gravity on the way, the state stays finite and inside.
 #[test]
-fn wild_gravity_breaks_nothing() {
+fn changing_gravity_keeps_the_state_finite_and_inside() {
     let balls = (0..30).map(|i| Ball::at_rest([20.0 + 19.0 * i as f32, 200.0], 9.0)).collect();
     let mut simulation = Simulation::new(&canvas(balls, [600.0, 400.0])).unwrap();
     for step in 0..200 {
@@ -178,7 +178,7 @@ fn wild_gravity_breaks_nothing() {
 /// Resting contacts keep their impulses from step to step, so a heap is where a copy that lacks
 /// something would go another way.
 #[test]
-fn from_a_saved_moment_the_same_steps_give_the_same_bits() {
+fn a_restored_simulation_takes_the_same_steps_bit_for_bit() {
     let population = scenes::Population { bodies: 40, size: 20.0, spread: 3.0, seed: 3 };
     let mut simulation =
         Simulation::new(&scenes::bouncing(population, [600.0, 400.0]).unwrap()).unwrap();

@@ -108,7 +108,7 @@ test.describe("run it here", () => {
     expect(elsewhere).toEqual([]);
   });
 
-  test("who finds other pairs is not timed", async ({ page, context }) => {
+  test("a library that finds other pairs is not timed", async ({ page, context }) => {
     await context.route(/\/flatbush-[^/]*\.js/, (route) =>
       route.fulfill({
         contentType: "text/javascript",

@@ -116,7 +116,7 @@ test.describe("paused", () => {
     }
   });
 
-  test("the address keeps who races where, and nothing else", async ({ page }) => {
+  test("the address keeps the algorithm of each lane, and nothing else", async ({ page }) => {
     const race = await new Race(page).open();
     expect(new URL(page.url()).search).toBe("");
     await race.root.getByLabel("Scene").selectOption("tower");

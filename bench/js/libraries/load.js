@@ -1,4 +1,4 @@
-// Loads the module of a library, which brings its library along: only who runs it needs this.
+// Loads the module of a library, with the package that it measures; only what runs it imports this.
 
 /** @type {Record<string, () => Promise<any>>} */
 const modules = {

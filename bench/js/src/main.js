@@ -99,8 +99,8 @@ async function run() {
     }
     label = `${scene.name} ${dimensions}D ${boxes.toLocaleString("en")}`;
     show(0);
-    const who = chosenLibraries.filter((one) => one.dimensions.includes(dimensions) && one.tasks.includes(scene.task));
-    const result = await measurement.measure(scene, dimensions, boxes, who);
+    const measured = chosenLibraries.filter((one) => one.dimensions.includes(dimensions) && one.tasks.includes(scene.task));
+    const result = await measurement.measure(scene, dimensions, boxes, measured);
     done += 1;
     if (typeof result === "string") {
       line(`${label}: left out, ${result}`);

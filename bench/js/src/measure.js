@@ -18,7 +18,7 @@ const BATCH = 1;
 const PATIENCE = 1000;
 /** A library whose call takes this long (ms) needs no warm-up after its pairs were checked. */
 const LONG = 200;
-/** Who was so many times as slow as the fastest alternative is not asked with ten times as many boxes. */
+/** A library this many times as slow as the fastest alternative is not measured with ten times as many boxes. */
 const BEHIND = 4;
 
 /** The names of sweep-and-prune compiled for this machine. */
@@ -28,8 +28,8 @@ export const NATIVE_WORLD = "native, BroadPhase";
 /**
  * @typedef {import("./record.js").Case} Case
  * @typedef {import("./record.js").Entry} Entry
- * @typedef {{ name: string, alternative: boolean, package: string }} Who
- * @typedef {{ who: Who, remote: Remote, fingerprint: string, pairs: number, peak_bytes: number | null,
+ * @typedef {{ name: string, alternative: boolean, package: string }} Library
+ * @typedef {{ library: Library, remote: Remote, fingerprint: string, pairs: number, peak_bytes: number | null,
  *   estimate: number, rounds: number[], spent: number }} Running
  */
 
@@ -39,7 +39,7 @@ export class Measurement {
   /** The fastest alternative so far on a scene: its name, at how many boxes, and how long it took. */
   #fastest = new Map();
   /** What was found in the case under way, by those that are too slow to be timed too. */
-  #witnesses = /** @type {{ who: Who, fingerprint: string, pairs: number }[]} */ ([]);
+  #witnesses = /** @type {{ library: Library, fingerprint: string, pairs: number }[]} */ ([]);
 
   /**
    * @param {{ rounds: number, limit: number, wasm: string, native: string | undefined }} options
@@ -52,26 +52,26 @@ export class Measurement {
   }
 
   /**
-   * Takes from an earlier result how long libraries take: who is too slow is not asked again.
+   * Takes from an earlier result how long libraries take: a library that is too slow is not asked again.
    *
    * @param {Case} earlier
-   * @param {readonly Who[]} libraries
+   * @param {readonly Library[]} libraries
    */
   learn({ scene, dimensions, boxes, results }, libraries) {
     for (const { name, outcome } of results) {
-      const who = libraries.find((one) => one.name === name);
-      if (!who || !("Timed" in outcome)) continue;
+      const library = libraries.find((one) => one.name === name);
+      if (!library || !("Timed" in outcome)) continue;
       const took = outcome.Timed.median_ns / 1e6;
       this.#slow.set(`${scene} ${dimensions} ${name}`, { boxes, took });
       const fastest = this.#fastest.get(`${scene} ${dimensions}`);
-      if (isAlternative({ who }) && !(fastest?.boxes === boxes && fastest.took < took)) {
+      if (isAlternative({ library }) && !(fastest?.boxes === boxes && fastest.took < took)) {
         this.#fastest.set(`${scene} ${dimensions}`, { name, boxes, took });
       }
     }
   }
 
   /**
-   * @param {import("./scenes.js").Listed} scene
+   * @param {import("./scenes.js").Library} scene
    * @param {number} dimensions
    * @param {number} boxes
    * @param {readonly import("../libraries/index.js").Library[]} libraries
@@ -84,17 +84,17 @@ export class Measurement {
     /** @type {Entry[]} */
     const results = [];
     this.#witnesses = [];
-    const drop = (/** @type {Who} */ { name, alternative }, /** @type {string} */ why) =>
+    const drop = (/** @type {Library} */ { name, alternative }, /** @type {string} */ why) =>
       results.push({ name, alternative, outcome: { Untimed: { why } } });
 
     try {
       const right = boxes <= REFERENCE_LIMIT ? await this.#reference(setting) : undefined;
-      // Two at a time: nothing is timed yet but who is too slow.
+      // Two at a time: nothing is timed yet except libraries that are too slow.
       for (let at = 0; at < libraries.length; at += 2) {
         const two = libraries.slice(at, at + 2);
-        const checked = await Promise.all(two.map((who) => this.#check(who, setting)));
+        const checked = await Promise.all(two.map((library) => this.#check(library, setting)));
         for (const [i, one] of checked.entries()) {
-          if (typeof one === "string") drop(/** @type {Who} */ (two[i]), one);
+          if (typeof one === "string") drop(/** @type {Library} */ (two[i]), one);
           else running.push(one);
         }
         this.progress((0.5 * (at + 2)) / (libraries.length + 2));
@@ -103,7 +103,7 @@ export class Measurement {
       if (!reference) return "no two libraries agree";
       for (const one of running) {
         if (one.fingerprint !== reference.fingerprint) {
-          drop(one.who, `other pairs, ${one.pairs.toLocaleString("en")} of them`);
+          drop(one.library, `other pairs, ${one.pairs.toLocaleString("en")} of them`);
           one.remote.stop();
         }
       }
@@ -112,13 +112,13 @@ export class Measurement {
       await this.#rounds(running, drop);
 
       const [fastest] = running.filter(isAlternative).sort((one, other) => one.estimate - other.estimate);
-      if (fastest) this.#fastest.set(`${scene.name} ${dimensions}`, { name: fastest.who.name, boxes, took: fastest.estimate });
+      if (fastest) this.#fastest.set(`${scene.name} ${dimensions}`, { name: fastest.library.name, boxes, took: fastest.estimate });
 
-      const base = (name) => running.find((one) => one.who.name === name)?.rounds;
+      const base = (name) => running.find((one) => one.library.name === name)?.rounds;
       const own = (scene.task === "track" ? base(WORLD) : undefined) ?? base(FINDER) ?? [];
       const timed = running.filter((one) => one.rounds.length > 0);
       results.unshift(
-        ...timed.map((one) => ({ name: one.who.name, alternative: one.who.alternative, outcome: { Timed: times(one, own) } })),
+        ...timed.map((one) => ({ name: one.library.name, alternative: one.library.alternative, outcome: { Timed: times(one, own) } })),
       );
       return {
         scene: scene.name,
@@ -153,36 +153,36 @@ export class Measurement {
   /**
    * A library that has found the pairs once and had its warm-up, or why it takes no part.
    *
-   * @param {Who} who
+   * @param {Library} library
    * @param {string[]} setting
    * @returns {Promise<Running | string>}
    */
-  async #check(who, setting) {
+  async #check(library, setting) {
     const { limit } = this.options;
     const [scene, dimensions, boxes] = setting;
-    const key = `${scene} ${dimensions} ${who.name}`;
+    const key = `${scene} ${dimensions} ${library.name}`;
     const known = this.#slow.get(key);
     // Nothing here takes less than proportionally longer for more boxes.
     if (known && (known.took * Number(boxes)) / known.boxes > limit) {
       return `over ${limit / 1000} s, as its time for ${known.boxes.toLocaleString("en")} boxes shows`;
     }
     const fastest = this.#fastest.get(`${scene} ${dimensions}`);
-    if (known && isAlternative({ who }) && fastest?.boxes === known.boxes && 10 * known.boxes <= Number(boxes)) {
+    if (known && isAlternative({ library }) && fastest?.boxes === known.boxes && 10 * known.boxes <= Number(boxes)) {
       const behind = known.took / fastest.took;
       if (behind > BEHIND) return `${behind.toFixed(1)} times as slow as ${fastest.name} with ${known.boxes.toLocaleString("en")} boxes`;
     }
-    const remote = this.#start(who.name, setting);
+    const remote = this.#start(library.name, setting);
     try {
       await remote.ask("", 10_000 + 4 * limit);
       const { fingerprint, pairs, peak_bytes, longest } = await remote.ask("check", 4 * limit);
-      this.#witnesses.push({ who, fingerprint, pairs });
+      this.#witnesses.push({ library, fingerprint, pairs });
       if (longest > 2 * limit) throw new NoAnswer(`over ${limit / 1000} s`);
       if (longest < LONG) await remote.ask("warm-up", 10_000 + limit);
       const repeats = longest < LONG ? 3 : 1;
       const estimate = median((await remote.ask(`time ${repeats} 1`, 10_000 + repeats * limit)).ms);
       this.#slow.set(key, { boxes: Number(boxes), took: estimate });
       if (estimate > limit) throw new NoAnswer(`over ${limit / 1000} s`);
-      return { who, remote, fingerprint, pairs, peak_bytes, estimate, rounds: [], spent: 0 };
+      return { library, remote, fingerprint, pairs, peak_bytes, estimate, rounds: [], spent: 0 };
     } catch (error) {
       remote.stop();
       if (!(error instanceof NoAnswer)) throw error;
@@ -194,7 +194,7 @@ export class Measurement {
   /**
    * The library compiled for this machine, if it was.
    *
-   * @param {import("./scenes.js").Listed} scene
+   * @param {import("./scenes.js").Library} scene
    * @param {string[]} setting
    * @returns {Promise<Running[]>}
    */
@@ -208,15 +208,15 @@ export class Measurement {
         await remote.ask("", 20_000);
         await remote.ask("check", 20_000);
         const { ns } = await remote.ask("time 3 1", 20_000);
-        const who = { name, alternative: false, package: "" };
-        return { who, remote, fingerprint: "", pairs: 0, peak_bytes: null, estimate: median(ns) / 1e6, rounds: [], spent: 0 };
+        const library = { name, alternative: false, package: "" };
+        return { library, remote, fingerprint: "", pairs: 0, peak_bytes: null, estimate: median(ns) / 1e6, rounds: [], spent: 0 };
       }),
     );
   }
 
   /**
    * @param {Running[]} running
-   * @param {(who: Who, why: string) => void} drop
+   * @param {(library: Library, why: string) => void} drop
    */
   async #rounds(running, drop) {
     const { rounds, limit } = this.options;
@@ -239,7 +239,7 @@ export class Measurement {
           if (!(error instanceof NoAnswer)) throw error;
           lost.add(one);
           one.rounds.length = 0;
-          drop(one.who, error.message);
+          drop(one.library, error.message);
         }
       }
       this.progress(0.5 + (0.5 * (round + 1)) / rounds);
@@ -248,19 +248,19 @@ export class Measurement {
 }
 
 /** Whether it is another library: neither sweep-and-prune nor the plain sweep. */
-function isAlternative(/** @type {{ who: Who }} */ { who }) {
-  return who.alternative && who.package !== "";
+function isAlternative(/** @type {{ library: Library }} */ { library }) {
+  return library.alternative && library.package !== "";
 }
 
 /**
  * The pairs that sweep-and-prune and an alternative agree on, or two alternatives.
  *
- * @param {readonly { who: Who, fingerprint: string, pairs: number }[]} witnesses
+ * @param {readonly { library: Library, fingerprint: string, pairs: number }[]} witnesses
  */
 function agreement(witnesses) {
   for (const one of witnesses) {
-    const other = witnesses.find((it) => it !== one && it.who.package !== one.who.package && it.fingerprint === one.fingerprint);
-    if (other) return { fingerprint: one.fingerprint, pairs: one.pairs, how: `${one.who.name} and ${other.who.name} agree` };
+    const other = witnesses.find((it) => it !== one && it.library.package !== one.library.package && it.fingerprint === one.fingerprint);
+    if (other) return { fingerprint: one.fingerprint, pairs: one.pairs, how: `${one.library.name} and ${other.library.name} agree` };
   }
   return undefined;
 }

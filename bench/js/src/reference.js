@@ -1,4 +1,4 @@
-// The library that decides who is right, up to the number of boxes that it can.
+// Brute force, which decides which pairs are right, up to the number of boxes that it can handle.
 
 /** Up to this many boxes brute force is the reference; above, sweep-and-prune and an alternative that agree. */
 export const REFERENCE_LIMIT = 10_000;

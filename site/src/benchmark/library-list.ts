@@ -9,7 +9,7 @@ const ASIDE = /, (again|fresh|two at once)$/;
 export class LibraryList {
   readonly #list: HTMLElement;
   readonly #change: () => void;
-  /** By name, of all runs: who is chosen stays so. */
+  /** By name, for all runs: a chosen library stays chosen. */
   readonly #isShown = new Map<string, boolean>();
 
   constructor(list: HTMLElement, change: () => void) {
@@ -21,7 +21,7 @@ export class LibraryList {
     return this.#isShown.get(name) ?? !ASIDE.test(name);
   }
 
-  /** Lists who took part; `swatch` draws a line as the plots do. */
+  /** Lists the libraries that took part; `swatch` draws a line as the plots do. */
   list(entries: readonly Entry[], { how, versions }: Run, isWorld: boolean, looks: Looks, swatch: (look: ReturnType<Looks>) => Element): void {
     const names = [...new Set(entries.map(({ name }) => name))];
     const noted = (of: Readonly<Record<string, string>>, name: string): string | undefined => (isWorld ? of[`${name}, world`] : undefined) ?? of[name];

@@ -17,7 +17,7 @@ export interface Look {
 export type Looks = (name: string) => Look;
 
 export const COLORS = 8;
-/** One fewer than colors: who shares a color has another symbol. */
+/** One fewer than colors, so that two lines of one color have different symbols. */
 const SYMBOLS = ["square", "triangle", "diamond", "star", "cross", "wye", "circle"] as const;
 const DASHES = ["7 4", "2 3", "10 3 2 3", "4 2", "1 5"] as const;
 

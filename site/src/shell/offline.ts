@@ -6,7 +6,7 @@ import type { Plugin } from "vite";
 
 const publicFiles = new URL("../../public/", import.meta.url);
 
-/** What is larger, the engines of the benchmark page, is fetched by who wants it. */
+/** What is larger, the engines of the benchmark page, is fetched when it is needed. */
 const LARGE = 1_000_000;
 
 export const offline: Plugin = {

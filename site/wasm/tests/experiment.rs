@@ -84,7 +84,7 @@ fn a_world_begins_with_the_bits_of_its_scene() {
 }
 
 #[test]
-fn size_and_spread_are_what_they_say() {
+fn size_and_spread_scale_the_boxes_as_documented() {
     let boxes = Scene::Uniform.boxes::<2, f32>(2_000, 5).unwrap();
     let width = |aabb: &Aabb<2>| aabb.max[0] - aabb.min[0];
     let mut larger = boxes.clone();
