@@ -78,12 +78,13 @@ pub trait AnyBroadPhase<I: Id>: Send {
     /// Appends the ids of the bodies that overlapped this one at the last update.
     fn pairs_of(&mut self, id: ProxyId, ids: &mut Vec<I>) -> Result<(), Error>;
 
-    /// Answers queries of one kind, whose numbers follow each other: see [`Query`].
+    /// Answers queries of one kind, whose numbers follow each other: see [`Query`]. Without a filter they
+    /// find every body.
     fn query(
         &mut self,
         query: Query,
         numbers: &[f64],
-        filter: Filter,
+        filter: Option<Filter>,
         answer: &mut Answer<I>,
     ) -> Result<(), Error>;
 
@@ -227,7 +228,7 @@ impl<const D: usize, T: Scalar, I: Id> AnyBroadPhase<I> for TypedBroadPhase<D, T
         &mut self,
         query: Query,
         numbers: &[f64],
-        filter: Filter,
+        filter: Option<Filter>,
         answer: &mut Answer<I>,
     ) -> Result<(), Error> {
         ask(&mut self.world, query, numbers, filter, answer)

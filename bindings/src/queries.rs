@@ -72,14 +72,13 @@ pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
     world: &mut BroadPhase<D, T>,
     query: Query,
     numbers: &[f64],
-    filter: Filter,
+    filter: Option<Filter>,
     answer: &mut Answer<I>,
 ) -> Result<(), Error> {
     answer.clear();
     let rows = Rows { numbers, width: query.width(D) };
     let queries = world.queries();
-    // These words stand for a query without a filter, which finds all bodies.
-    let queries = if filter == Filter::ALL { queries } else { queries.with_filter(filter) };
+    let queries = filter.map_or(queries, |filter| queries.with_filter(filter));
     let lists = match query {
         Query::Overlapping => queries.overlapping_many(&rows.read(aabb::<D, T, f64>))?,
         Query::Containing => queries.containing_many(&rows.read(point::<D, T, f64>))?,

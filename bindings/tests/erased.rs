@@ -73,7 +73,7 @@ fn broad_phase_gives_what_the_core_gives<const D: usize, T: Scalar>() {
     let mut erased = kind.broad_phase::<u64>(Settings::default()).unwrap().unwrap();
     assert_eq!(erased.kind(), kind);
     let (start, end) = (boxes::<D, T>(3), boxes::<D, T>(4));
-    let filter = Filter { category: 2, ..Filter::default() };
+    let filter = Filter::default().category(2);
 
     let count = erased.write_rows(Coordinates::Double(&numbers(&start))).unwrap();
     assert_eq!(erased.validate(count), Ok(()));
@@ -139,7 +139,7 @@ fn broad_phase_gives_what_the_core_gives<const D: usize, T: Scalar>() {
 
     queries_give_what_the_core_gives(&mut core, &mut |query, numbers| {
         let mut answer = Answer { values: vec![7.0], ..Answer::default() };
-        erased.query(query, numbers, Filter::ALL, &mut answer).map(|()| answer)
+        erased.query(query, numbers, None, &mut answer).map(|()| answer)
     });
     let stale = [ids[0], ids[310]];
     assert_eq!(

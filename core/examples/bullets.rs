@@ -12,7 +12,7 @@ fn main() -> Result<(), sweep_and_prune::Error> {
     let mut world = BroadPhase::<2>::new();
     let target = world.insert_with(Aabb::new([50.0, 0.0], [50.2, 2.0]), Filter::STATIC)?;
     // Bullets of one negative group never meet each other.
-    let filter = Filter { group: -1, ..Filter::default() };
+    let filter = Filter::default().group(-1);
     let low = world.insert_with(bullet(0.0, 1.0), filter)?;
     let high = world.insert_with(bullet(0.0, 5.0), filter)?;
     world.update();

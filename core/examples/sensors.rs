@@ -11,7 +11,7 @@ const SENSOR: u32 = 4;
 
 fn main() -> Result<(), sweep_and_prune::Error> {
     let mut world = BroadPhase::<1>::new();
-    let of = |category, mask| Filter { category, mask, ..Filter::default() };
+    let of = |category, mask| Filter::default().category(category).mask(mask);
     let sensor = world.insert_with(Aabb::new([4.0], [6.0]), of(SENSOR, GUEST))?;
     let ada = world.insert_with(Aabb::new([0.0], [0.5]), of(GUEST, u32::MAX))?;
     let bob = world.insert_with(Aabb::new([1.0], [1.5]), of(GUEST, u32::MAX))?;

@@ -143,12 +143,11 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
         if self.chance(2) {
             return Filter::default();
         }
-        Filter {
-            category: 1 << self.random.below(2),
-            mask: if self.chance(8) { 0 } else { self.random.below(4) as u32 | u32::MAX << 2 },
-            group: self.random.below(5) as i32 - 2,
-            is_static: self.chance(3),
-        }
+        Filter::default()
+            .category(1 << self.random.below(2))
+            .mask(if self.chance(8) { 0 } else { self.random.below(4) as u32 | u32::MAX << 2 })
+            .group(self.random.below(5) as i32 - 2)
+            .is_static(self.chance(3))
     }
 
     fn some_ids(&mut self) -> Vec<ProxyId> {
@@ -306,7 +305,7 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
         } else {
             Aabb::new(point, point.map(|at| at + T::from_f64(self.unit)))
         };
-        let cast = Cast { from, direction, limit };
+        let cast = Cast::aabb(from, direction, limit);
 
         let queries = self.world.queries();
         let queries = filter.map_or(queries, |filter| queries.with_filter(filter));
@@ -512,7 +511,7 @@ fn a_sleeping_body_wakes_with_all_its_pairs() {
         Aabb::new(at, at.map(|at| at + 0.06))
     };
     let still = Filter::STATIC;
-    let odd = Filter { category: 2, mask: 1, ..Filter::default() };
+    let odd = Filter::default().category(2).mask(1);
     let filters = [Filter::default(), Filter::default(), Filter::default(), still, odd];
     for _ in 0..400 {
         let (aabb, filter) = (draw(&mut random), filters[random.below(filters.len())]);
@@ -650,8 +649,8 @@ fn a_point_at_infinity_pairs_beside_bodies_of_the_largest_size() {
 fn queries_without_a_filter_find_bodies_that_pair_with_nothing() {
     let mut world = BroadPhase::<2>::new();
     let aabb = Aabb::new([0.0, 0.0], [1.0, 1.0]);
-    let maskless = Filter { mask: 0, ..Filter::default() };
-    let nameless = Filter { category: 0, ..Filter::default() };
+    let maskless = Filter::default().mask(0);
+    let nameless = Filter::default().category(0);
     let ids = [maskless, nameless].map(|filter| world.insert_with(aabb, filter).unwrap());
     let queries = world.queries();
     assert_eq!(queries.overlapping(&aabb).unwrap(), ids);

@@ -46,7 +46,7 @@ fn busy_world<const D: usize, T: Scalar>(report: Report, random: &mut Random) ->
         let min: [T; D] = std::array::from_fn(|_| T::from_f64(random.below(6) as f64));
         Aabb::new(min, min.map(|at| at + T::from_f64(random.below(3) as f64)))
     };
-    let odd = Filter { category: 2, mask: 3, group: -1, is_static: false };
+    let odd = Filter::default().category(2).mask(3).group(-1);
     let ids: Vec<_> = (0..12)
         .map(|index| {
             let filter = [Filter::default(), Filter::STATIC, odd][index % 3];

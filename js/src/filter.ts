@@ -26,8 +26,8 @@ export interface Filter {
 /** The filter of a body by default. */
 export const defaultFilter: Filter = { category: 1, mask: 2 ** 32 - 1, group: 0, isStatic: false };
 
-/** The filter of a query by default. */
-export const everything: Filter = { category: 2 ** 32 - 1, mask: 2 ** 32 - 1, group: 0, isStatic: false };
+/** What the core takes for no filter: a query without one finds every body. */
+export const noFilter: FilterWords = [0, 0, 0, 2];
 
 /** A filter as the core takes it, checked. `others` gives what is left out. */
 export function filterWords(filter: Partial<Filter>, others: Filter): FilterWords {

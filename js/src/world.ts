@@ -2,7 +2,7 @@
 import { describe } from "./describe.js";
 import { type Boxes, checkBoxes, checkDimensions, checkNumbers, type Dimensions } from "./boxes.js";
 import { OutOfMemoryError } from "./errors.js";
-import { defaultFilter, everything, type Filter, filterWords } from "./filter.js";
+import { defaultFilter, type Filter, filterWords, noFilter } from "./filter.js";
 import { checkCount, checkId, checkLength } from "./world-arguments.js";
 import { Query } from "./world-core.js";
 import { WorldMemory } from "./world-memory.js";
@@ -385,12 +385,12 @@ export class BroadPhase {
   }
 
   #ask(query: Query, filter: Partial<Filter> | undefined): Float64Array {
-    const words = filterWords(filter ?? everything, defaultFilter);
+    const words = filter == null ? noFilter : filterWords(filter, defaultFilter);
     return this.#memory.answer((exports, world) => exports.world_query(world, query, 0, ...words), oneBox);
   }
 
   #hits(query: Query, filter: Partial<Filter> | undefined, k = 0): Hit[] {
-    const words = filterWords(filter ?? everything, defaultFilter);
+    const words = filter == null ? noFilter : filterWords(filter, defaultFilter);
     return this.#memory.hits((exports, world) => exports.world_query(world, query, k, ...words));
   }
 

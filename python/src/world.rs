@@ -17,7 +17,7 @@ use crate::run::run;
 type Words = (u32, u32, i32, bool);
 
 fn filter_of((category, mask, group, is_static): Words) -> Filter {
-    Filter { category, mask, group, is_static }
+    Filter::default().category(category).mask(mask).group(group).is_static(is_static)
 }
 
 /// An id in Python: slot and generation in one number, as [`ProxyId::to_bits`], but counted from
@@ -83,7 +83,7 @@ impl World {
     fn insert<'py>(
         &self,
         boxes: Array<'py>,
-        filter: Words,
+        filter: Option<Words>,
         argument: &str,
     ) -> PyResult<Array<'py>> {
         let py = boxes.py();
@@ -244,7 +244,7 @@ impl World {
         &self,
         kind: &str,
         queries: Array<'py>,
-        filter: Words,
+        filter: Option<Words>,
         argument: &str,
         k: usize,
     ) -> PyResult<(Array<'py>, Array<'py>, Array<'py>)> {
@@ -260,7 +260,7 @@ impl World {
         let (py, queries) = (queries.py(), copy_numbers::<f64>(&queries)?);
         let queries = queries.as_slice()?;
         self.with(|space| {
-            let (mut answer, filter) = (Answer::default(), filter_of(filter));
+            let (mut answer, filter) = (Answer::default(), filter.map(filter_of));
             let count = space.world.len() + queries.len();
             let done =
                 space.run(py, count, |world| world.query(query, queries, filter, &mut answer))?;

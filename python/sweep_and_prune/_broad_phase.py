@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ._arrays import Floats, Ids, box_rows, each, float_dtype, id_array, one_id, real, row, rows, whole
 from ._errors import InvalidQueryError, StaleProxyError
-from ._filter import ALL, Filter, words
+from ._filter import Filter, words
 from ._native import World
 
 
@@ -959,7 +959,8 @@ class BroadPhase:
         """Answers queries whose numbers are in the rows of the parts, side by side."""
         rows = parts[0].rows if len(parts) == 1 else np.concatenate([part.rows for part in parts], axis=1)
         try:
-            return self._world.query(kind, _double(rows), words(filter, ALL), parts[0].name, k)
+            checked = None if filter is None else words(filter)
+            return self._world.query(kind, _double(rows), checked, parts[0].name, k)
         except InvalidQueryError as error:
             raise _explained(error.index, parts) from None
 

@@ -46,14 +46,10 @@ class Filter(NamedTuple):
         return category & other_mask != 0 and other_category & mask != 0
 
 
-ALL = Filter(category=0xFFFF_FFFF)
-"""The filter of a query without a filter: it finds all bodies."""
-
-
-def words(filter: object, default: Filter = Filter()) -> tuple[int, int, int, bool]:  # noqa: B008
+def words(filter: object) -> tuple[int, int, int, bool]:
     """Checks a filter and converts it to what the compiled part takes."""
     if filter is None:
-        filter = default
+        filter = Filter()
     if not isinstance(filter, Filter):
         raise TypeError(f"filter must be a Filter, not a {type(filter).__name__}")
     category, mask, group, is_static = filter

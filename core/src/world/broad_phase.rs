@@ -4,11 +4,13 @@ use alloc::vec::Vec;
 
 use super::bodies::{Bodies, Filter, ProxyId, flag};
 use super::changes::{Changes, Events};
+#[cfg(feature = "parallel")]
+use super::finder::Finder;
 use super::options::Options;
 use super::queries::Queries;
 use super::snapshot;
 use super::tracking::{Tracking, TreeState};
-use super::update::{ready_for_queries, restore, update};
+use super::update::{restore, update};
 use crate::{Aabb, Error, Scalar};
 
 /// A set of bodies, each with a box, that reports which overlaps begin and which end.
@@ -45,8 +47,8 @@ use crate::{Aabb, Error, Scalar};
 /// ```
 #[derive(Clone, Debug)]
 pub struct BroadPhase<const D: usize, T: Scalar = f32> {
-    bodies: Bodies<D, T>,
-    tracking: Tracking<D, T>,
+    pub(super) bodies: Bodies<D, T>,
+    pub(super) tracking: Tracking<D, T>,
     events: Events,
 }
 
@@ -66,7 +68,11 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     }
 
     fn from_options(options: Options<T>) -> Self {
-        Self { bodies: Bodies::new(options), tracking: Tracking::new(), events: Events::default() }
+        Self {
+            bodies: Bodies { options, ..Bodies::default() },
+            tracking: Tracking::default(),
+            events: Events::default(),
+        }
     }
 
     /// Uses this many threads of rayon's current pool in updates in which most bodies move; 0 counts as
@@ -74,7 +80,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     #[cfg(feature = "parallel")]
     #[must_use]
     pub fn threads(mut self, threads: usize) -> Self {
-        self.tracking.set_threads(threads);
+        self.tracking.finder = Finder::with_threads(threads);
         self
     }
 
@@ -85,7 +91,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
 
     /// How many bodies there are.
     pub fn len(&self) -> usize {
-        self.bodies.live()
+        self.bodies.slots.live
     }
 
     /// Whether there is no body.
@@ -132,91 +138,6 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         Ok(self.bodies.filters[self.bodies.slots.check(id, 0)? as usize])
     }
 
-    /// Adds a body with the default filter.
-    ///
-    /// # Errors
-    /// [`Error::InvalidBox`]; [`Error::TooManyBoxes`] if no slot is left.
-    pub fn insert(&mut self, aabb: Aabb<D, T>) -> Result<ProxyId, Error> {
-        self.bodies.insert(aabb, Filter::default())
-    }
-
-    /// Adds a body.
-    ///
-    /// # Errors
-    /// As [`insert`](Self::insert).
-    pub fn insert_with(&mut self, aabb: Aabb<D, T>, filter: Filter) -> Result<ProxyId, Error> {
-        self.bodies.insert(aabb, filter)
-    }
-
-    /// Adds bodies with one filter. Their ids are in the order of their boxes.
-    ///
-    /// # Errors
-    /// As [`insert`](Self::insert), with the position of the first bad box; then none was added.
-    pub fn insert_many(
-        &mut self,
-        boxes: &[Aabb<D, T>],
-        filter: Filter,
-    ) -> Result<Vec<ProxyId>, Error> {
-        self.bodies.insert_many(boxes, filter)
-    }
-
-    /// Gives a body its new box.
-    ///
-    /// # Errors
-    /// [`Error::StaleProxy`], [`Error::InvalidBox`].
-    pub fn set(&mut self, id: ProxyId, aabb: Aabb<D, T>) -> Result<(), Error> {
-        self.bodies.set_many(&[id], &[aabb])
-    }
-
-    /// Gives each of many bodies its new box. If an id occurs twice, the last box counts.
-    ///
-    /// # Errors
-    /// [`Error::LengthMismatch`]; [`Error::StaleProxy`] or [`Error::InvalidBox`] with the position of
-    /// the first bad id or box. Then no box has changed.
-    pub fn set_many(&mut self, ids: &[ProxyId], boxes: &[Aabb<D, T>]) -> Result<(), Error> {
-        self.bodies.set_many(ids, boxes)
-    }
-
-    /// Moves a fast body from one box to another: until the next update its box is the union of both,
-    /// then `to`. So it pairs with what it would have jumped over (and, on a diagonal way, with what is
-    /// beside it).
-    ///
-    /// # Errors
-    /// [`Error::StaleProxy`]; [`Error::InvalidBox`] with index 0 for `from` and 1 for `to`.
-    pub fn set_swept(
-        &mut self,
-        id: ProxyId,
-        from: Aabb<D, T>,
-        to: Aabb<D, T>,
-    ) -> Result<(), Error> {
-        self.bodies.set_swept(id, from, to)
-    }
-
-    /// Changes with which others a body may pair. Its pairs begin or end at the next update.
-    ///
-    /// # Errors
-    /// [`Error::StaleProxy`].
-    pub fn set_filter(&mut self, id: ProxyId, filter: Filter) -> Result<(), Error> {
-        self.bodies.set_filter(id, filter)
-    }
-
-    /// Removes a body. Its id is stale from now on; the next update reports its ended pairs.
-    ///
-    /// # Errors
-    /// [`Error::StaleProxy`].
-    pub fn remove(&mut self, id: ProxyId) -> Result<(), Error> {
-        self.bodies.remove_many(&[id])
-    }
-
-    /// Removes many bodies.
-    ///
-    /// # Errors
-    /// [`Error::StaleProxy`] with the position of the first id that is stale or occurs twice. Then none
-    /// was removed.
-    pub fn remove_many(&mut self, ids: &[ProxyId]) -> Result<(), Error> {
-        self.bodies.remove_many(ids)
-    }
-
     /// Finds the pairs that began and ended since the last update.
     ///
     /// Takes time in proportion to the bodies that changed and their neighbors, and not much more than
@@ -261,10 +182,9 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         let has_tree = matches!(tracking.tree_state, TreeState::Fresh { .. });
         let near = (is_known && has_tree).then(|| tracking.tree.overlapping(area));
         let near = near.into_iter().flatten().filter(move |&other| {
-            let boxes = [&area, &bodies.previous[other as usize]];
             other != index
                 && slots.has(other, flag::LIVE | flag::LEAVING)
-                && bodies.was_live([index, other], boxes)
+                && bodies.was_live([index, other])
         });
         let listed = (is_known && !has_tree).then(|| tracking.candidates.live_pairs(slots));
         let listed = listed.into_iter().flatten().filter_map(move |[a, b]| match index {
@@ -292,7 +212,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// # Ok::<(), sweep_and_prune::Error>(())
     /// ```
     pub fn queries(&mut self) -> Queries<'_, D, T> {
-        ready_for_queries(&mut self.bodies, &mut self.tracking);
+        self.tracking.ready_for_queries(&mut self.bodies);
         Queries::new(&self.bodies, &self.tracking.tree)
     }
 

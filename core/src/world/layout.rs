@@ -8,8 +8,9 @@ use super::tracking::{Scratch, Tracking, TreeState};
 use crate::Scalar;
 use crate::memory::reserve;
 
-/// Fewer bodies are near each other in memory in any order.
-const FEW: usize = 64;
+// Measured on mostly-still in 3D, together with branch-free tests: an update takes 0.27 of finding all pairs
+// instead of 0.33 at 10,000 bodies, and 0.42 instead of 0.65 at 100,000.
+
 /// How many new fat AABBs per body make the order useless.
 const DECAY: usize = 16;
 /// How much a body decays the order that jumped away from its neighbors in memory, in new fat AABBs.
@@ -28,13 +29,6 @@ pub enum Reorder {
     BySlot,
 }
 
-impl Reorder {
-    /// This one, or another where this is [`No`](Self::No).
-    pub fn or(self, other: Self) -> Self {
-        if self == Self::No { other } else { self }
-    }
-}
-
 /// Notes that this many bodies jumped.
 pub fn note_jumps(decay: &mut usize, jumped: usize) {
     *decay = decay.saturating_add(jumped.saturating_mul(JUMP_DECAY));
@@ -44,88 +38,78 @@ pub fn note_jumps(decay: &mut usize, jumped: usize) {
 /// Returns whether to reorder storage of so many bodies.
 pub fn note_rebuild(decay: &mut usize, moved: usize, new: usize, bodies: usize) -> bool {
     *decay = decay.saturating_add(moved).saturating_add(2 * DECAY * new);
-    let is_decayed = *decay > DECAY * bodies && bodies >= FEW;
+    let is_decayed = *decay > DECAY * bodies;
     if is_decayed {
         *decay = 0;
     }
     is_decayed
 }
 
-/// Reorders storage. To be called at the end of an update. O(n + pairs) time.
-pub fn reorder<const D: usize, T: Scalar>(
-    bodies: &mut Bodies<D, T>,
-    tracking: &mut Tracking<D, T>,
-    reorder: Reorder,
-) {
-    match reorder {
-        Reorder::No => {}
-        Reorder::BySpace => {
-            order_by_space(bodies, tracking);
-            apply_order(bodies, tracking);
-            bodies.slots.is_reordered = true;
-        }
-        Reorder::BySlot => {
-            tracking.locality_decay = usize::MAX;
-            tracking.tree_state = TreeState::Unbuilt;
-            if bodies.slots.is_reordered {
-                let Scratch { indices: order, renamed, .. } = &mut tracking.scratch;
-                order.clone_from(&bodies.slots.index_of);
-                renamed.clone_from(&bodies.slots.slot_of);
-                apply_order(bodies, tracking);
-                bodies.slots.is_reordered = false;
+impl<const D: usize, T: Scalar> Tracking<D, T> {
+    /// Reorders storage. To be called at the end of an update. O(n + pairs) time.
+    pub fn reorder(&mut self, bodies: &mut Bodies<D, T>, reorder: Reorder) {
+        match reorder {
+            Reorder::No => {}
+            Reorder::BySpace => {
+                self.order_by_space(bodies);
+                self.apply_order(bodies);
+                bodies.slots.is_reordered = true;
+            }
+            Reorder::BySlot => {
+                self.locality_decay = usize::MAX;
+                self.tree_state = TreeState::Unbuilt;
+                if bodies.slots.is_reordered {
+                    self.scratch.order.clone_from(&bodies.slots.index_of);
+                    self.scratch.renamed.clone_from(&bodies.slots.slot_of);
+                    self.apply_order(bodies);
+                    bodies.slots.is_reordered = false;
+                }
             }
         }
     }
-}
 
-/// Makes the order of the candidates that of the bodies: first the awake ones with candidates, then the
-/// other awake ones, then the sleeping ones.
-#[inline(never)]
-fn order_by_space<const D: usize, T: Scalar>(
-    bodies: &mut Bodies<D, T>,
-    tracking: &mut Tracking<D, T>,
-) {
-    let Tracking { candidates, scratch, .. } = tracking;
-    let Scratch { indices: order, renamed, .. } = scratch;
-    let flags = &bodies.slots.flags;
-    let is_awake = |&index: &u32| flags[index as usize] & (flag::LIVE | flag::ASLEEP) == flag::LIVE;
-    let all = 0..bodies.slots.len() as u32;
-    let paired = || candidates.pairs.iter().flatten().copied();
-    order.clear();
-    renamed.clear();
-    renamed.resize(bodies.slots.len(), NONE);
-    let mut add = |old: u32| {
-        let new = &mut renamed[old as usize];
-        if *new == NONE {
-            *new = order.len() as u32;
-            order.push(old);
+    /// Makes the order of the candidates that of the bodies: first the awake ones with candidates, then
+    /// the other awake ones, then the sleeping ones.
+    #[inline(never)]
+    fn order_by_space(&mut self, bodies: &mut Bodies<D, T>) {
+        let Self { candidates, scratch: Scratch { order, renamed, .. }, .. } = self;
+        let flags = &bodies.slots.flags;
+        let is_awake =
+            |&index: &u32| flags[index as usize] & (flag::LIVE | flag::ASLEEP) == flag::LIVE;
+        let all = 0..bodies.slots.len() as u32;
+        let paired = || candidates.pairs.iter().flatten().copied();
+        order.clear();
+        renamed.clear();
+        renamed.resize(bodies.slots.len(), NONE);
+        let mut add = |old: u32| {
+            let new = &mut renamed[old as usize];
+            if *new == NONE {
+                *new = order.len() as u32;
+                order.push(old);
+            }
+        };
+        paired().filter(is_awake).for_each(&mut add);
+        all.clone().filter(is_awake).for_each(&mut add);
+        paired().for_each(&mut add);
+        all.clone().for_each(&mut add);
+        bodies.front = all.filter(is_awake).count();
+    }
+
+    /// Moves all rows to their new indices, given the old index of each and the new index of each.
+    fn apply_order(&mut self, bodies: &mut Bodies<D, T>) {
+        let Scratch { boxes: spare, order, renamed, words, filters, flags, .. } = &mut self.scratch;
+        for table in [&mut bodies.boxes, &mut bodies.shapes, &mut bodies.previous, &mut self.fat] {
+            apply(table, order, spare);
         }
-    };
-    paired().filter(is_awake).for_each(&mut add);
-    all.clone().filter(is_awake).for_each(&mut add);
-    paired().for_each(&mut add);
-    all.clone().for_each(&mut add);
-    bodies.front = all.filter(is_awake).count();
-}
-
-/// Moves all rows to their new indices, given the old index of each and the new index of each.
-fn apply_order<const D: usize, T: Scalar>(
-    bodies: &mut Bodies<D, T>,
-    tracking: &mut Tracking<D, T>,
-) {
-    let Scratch { boxes: spare, indices: order, renamed, words, filters, flags, .. } =
-        &mut tracking.scratch;
-    for table in [&mut bodies.boxes, &mut bodies.shapes, &mut bodies.previous, &mut tracking.fat] {
-        apply(table, order, spare);
+        apply(&mut bodies.filters, order, filters);
+        apply(&mut bodies.slots.flags, order, flags);
+        apply(&mut bodies.slots.slot_of, order, words);
+        for index in bodies.slots.index_of.iter_mut().chain(&mut bodies.changed) {
+            *index = renamed[*index as usize];
+        }
+        self.candidates.rename(renamed);
+        self.tree.rename(renamed);
     }
-    apply(&mut bodies.filters, order, filters);
-    apply(&mut bodies.slots.flags, order, flags);
-    apply(&mut bodies.slots.slot_of, order, words);
-    for index in bodies.slots.index_of.iter_mut().chain(&mut bodies.changed) {
-        *index = renamed[*index as usize];
-    }
-    tracking.candidates.rename(renamed);
-    tracking.tree.rename(renamed);
 }
 
 /// Puts a table into a new order; an empty one stays empty.

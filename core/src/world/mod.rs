@@ -2,7 +2,7 @@
 //! and end.
 //!
 //! ```text
-//! bodies -> tree -> candidates -> policy -> tracking -> layout -> update -> queries, snapshot -> broad_phase
+//! bodies -> tree -> candidates -> policy -> finder -> tracking -> layout -> update -> queries, snapshot -> broad_phase -> edit
 //! ```
 //! Each of these uses only those before it. `update/mod.rs` is the update on one page.
 
@@ -10,6 +10,8 @@ mod bodies;
 mod broad_phase;
 mod candidates;
 mod changes;
+mod edit;
+mod finder;
 mod layout;
 mod options;
 mod policy;

@@ -14,14 +14,15 @@
 /// ```
 /// use sweep_and_prune::Filter;
 ///
-/// let wall = Filter { is_static: true, ..Filter::default() };
-/// let ghost = Filter { category: 2, mask: 2, ..Filter::default() };
+/// let wall = Filter::default().is_static(true);
+/// let ghost = Filter::default().category(2).mask(2);
 /// assert!(wall.allows(&Filter::default()));
 /// assert!(!wall.allows(&wall));
 /// assert!(!wall.allows(&ghost));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Filter {
     /// What the body is: bits.
     pub category: u32,
@@ -40,6 +41,30 @@ impl Filter {
     /// All categories and all bits in the mask, no group, dynamic: it pairs with every body whose
     /// category and mask are not 0.
     pub const ALL: Self = Self { category: u32::MAX, mask: u32::MAX, group: 0, is_static: false };
+
+    /// This filter with another [`category`](Self#structfield.category).
+    #[must_use]
+    pub const fn category(self, category: u32) -> Self {
+        Self { category, ..self }
+    }
+
+    /// This filter with another [`mask`](Self#structfield.mask).
+    #[must_use]
+    pub const fn mask(self, mask: u32) -> Self {
+        Self { mask, ..self }
+    }
+
+    /// This filter with another [`group`](Self#structfield.group).
+    #[must_use]
+    pub const fn group(self, group: i32) -> Self {
+        Self { group, ..self }
+    }
+
+    /// This filter with another [`is_static`](Self#structfield.is_static).
+    #[must_use]
+    pub const fn is_static(self, is_static: bool) -> Self {
+        Self { is_static, ..self }
+    }
 
     /// Whether two bodies with these filters may pair. Symmetric.
     #[inline]

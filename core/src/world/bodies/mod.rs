@@ -1,6 +1,5 @@
 //! The bodies: their ids, filters and boxes, and what was done to them since the last update.
 
-mod edit;
 mod filter;
 mod id;
 mod slots;
@@ -9,4 +8,4 @@ mod table;
 pub use filter::Filter;
 pub use id::ProxyId;
 pub(super) use slots::{Slots, flag};
-pub(super) use table::{Bodies, RANDOM_READ, check_box, differ};
+pub(super) use table::{Bodies, RANDOM_READ, differ};

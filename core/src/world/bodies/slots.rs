@@ -88,12 +88,6 @@ impl Slots {
         self.id_of_slot(self.slot_of[index as usize])
     }
 
-    /// The index of a living body.
-    #[inline]
-    pub fn find(&self, id: ProxyId) -> Option<u32> {
-        self.is_living(id).then(|| self.index_of[id.slot as usize])
-    }
-
     /// Whether an id names a living body.
     #[inline]
     pub fn is_living(&self, id: ProxyId) -> bool {
@@ -105,7 +99,8 @@ impl Slots {
     /// The index of a living body; `position` is that of its id in the argument, for the error.
     #[inline]
     pub fn check(&self, id: ProxyId, position: usize) -> Result<u32, Error> {
-        self.find(id).ok_or(Error::StaleProxy { index: position, id: id.to_bits() })
+        let error = Error::StaleProxy { index: position, id: id.to_bits() };
+        if self.is_living(id) { Ok(self.index_of[id.slot as usize]) } else { Err(error) }
     }
 
     /// Whether there are slots for `count` more bodies.

@@ -3,9 +3,10 @@
 use alloc::vec::Vec;
 
 use super::filter::Filter;
+use super::id::ProxyId;
 use super::slots::{Slots, flag};
-use crate::world::options::{Options, Report};
-use crate::{Aabb, Error, Scalar};
+use crate::world::options::{Options, Report, displacement};
+use crate::{Aabb, Scalar};
 
 /// Reading a row at random takes as long as reading this many rows in order (see `crate::memory`).
 pub const RANDOM_READ: usize = 16;
@@ -13,7 +14,7 @@ pub const RANDOM_READ: usize = 16;
 const SCAN_ALL: usize = 4;
 
 /// All bodies, by storage index, and what changed since the last update.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Bodies<const D: usize, T: Scalar> {
     pub options: Options<T>,
     pub slots: Slots,
@@ -38,8 +39,6 @@ pub struct Bodies<const D: usize, T: Scalar> {
     pub any_unlisted: bool,
     /// The bodies of [`flag::LEAVING`].
     pub leaving: Vec<u32>,
-    /// Removed bodies that only the tree knew: it has to forget them before it is used.
-    pub only_in_tree: Vec<u32>,
     /// Where bodies of [`flag::SWEPT`] are after the next update; only as long as needed.
     pub rests: Vec<Aabb<D, T>>,
     /// The bodies of [`flag::SWEPT`], and others, some twice.
@@ -49,33 +48,6 @@ pub struct Bodies<const D: usize, T: Scalar> {
 }
 
 impl<const D: usize, T: Scalar> Bodies<D, T> {
-    pub fn new(options: Options<T>) -> Self {
-        Self {
-            options,
-            slots: Slots::default(),
-            boxes: Vec::new(),
-            shapes: Vec::new(),
-            filters: Vec::new(),
-            any_filter: false,
-            previous: Vec::new(),
-            old_filters: Vec::new(),
-            any_refiltered: false,
-            any_new: false,
-            changed: Vec::new(),
-            any_unlisted: false,
-            leaving: Vec::new(),
-            only_in_tree: Vec::new(),
-            rests: Vec::new(),
-            swept: Vec::new(),
-            front: 0,
-        }
-    }
-
-    /// How many bodies live.
-    pub fn live(&self) -> usize {
-        self.slots.live
-    }
-
     /// Whether this many changes are found faster by scanning all bodies than one by one.
     pub fn scans_all(&self, changes: usize) -> bool {
         changes * SCAN_ALL > self.slots.len()
@@ -116,6 +88,41 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
         }
     }
 
+    /// Adds a body, for which there is a slot.
+    pub fn add(&mut self, aabb: Aabb<D, T>, filter: Filter) -> ProxyId {
+        let index = self.slots.take();
+        let boxed = match self.options.report {
+            Report::Exact => aabb,
+            Report::Fat => self.options.fatten(&aabb, [T::default(); D]),
+        };
+        self.put(index, aabb, boxed, filter);
+        self.slots.raise(index, flag::NEW);
+        self.any_new = true;
+        self.touch(index);
+        self.slots.id(index)
+    }
+
+    /// Gives a body its new box, which is valid.
+    #[inline]
+    pub fn place(&mut self, index: u32, aabb: &Aabb<D, T>) {
+        let row = index as usize;
+        match self.options.report {
+            Report::Exact => {
+                if differ(&self.boxes[row], aabb) {
+                    self.boxes[row] = *aabb;
+                    self.touch(index);
+                }
+            }
+            Report::Fat => {
+                let before = core::mem::replace(&mut self.shapes[row], *aabb);
+                if !self.boxes[row].contains(aabb) {
+                    self.boxes[row] = self.options.fatten(aabb, displacement(&before, aabb));
+                    self.touch(index);
+                }
+            }
+        }
+    }
+
     /// Has the next update look at a body, and the next query too.
     #[inline]
     pub fn touch(&mut self, index: u32) {
@@ -124,6 +131,12 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
             self.changed.push(index);
             *flags = (*flags | flag::CHANGED) & !flag::IN_TREE;
         }
+    }
+
+    /// About how many bodies changed or were removed.
+    pub fn count_changes(&self) -> usize {
+        let listed = self.changed.len() + self.leaving.len();
+        if self.any_unlisted { listed.max(self.slots.live) } else { listed }
     }
 
     /// Lists the bodies whose boxes changed and are not listed yet, and some that are.
@@ -150,11 +163,16 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
             && self.allows([a, b])
     }
 
-    /// Whether a pair was live at the last update, given the boxes of both then.
-    pub fn was_live(&self, [a, b]: [u32; 2], [box_a, box_b]: [&Aabb<D, T>; 2]) -> bool {
+    /// Whether a pair was live at the last update.
+    pub fn was_live(&self, [a, b]: [u32; 2]) -> bool {
+        self.previous[a as usize].overlaps_branch_free(&self.previous[b as usize])
+            && self.was_allowed([a, b])
+    }
+
+    /// Whether the last update knew two bodies, and their filters allowed them to pair then.
+    pub fn was_allowed(&self, [a, b]: [u32; 2]) -> bool {
         !self.slots.has(a, flag::NEW)
             && !self.slots.has(b, flag::NEW)
-            && box_a.overlaps_branch_free(box_b)
             && (!self.any_filter || self.old_filter(a).allows(self.old_filter(b)))
     }
 
@@ -202,14 +220,23 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
         }
         self.rests[index as usize] = to;
     }
-}
 
-/// An error that names the position of a box if it is not valid.
-pub fn check_box<const D: usize, T: Scalar>(
-    aabb: &Aabb<D, T>,
-    position: usize,
-) -> Result<(), Error> {
-    aabb.check(position)
+    /// Puts swept bodies where their sweeps ended.
+    pub fn settle(&mut self) {
+        while let Some(index) = self.swept.pop() {
+            if self.slots.has(index, flag::SWEPT) {
+                self.slots.lower(index, flag::SWEPT);
+                let to = self.rests[index as usize];
+                if self.options.report == Report::Fat {
+                    self.shapes[index as usize] = to;
+                    self.boxes[index as usize] = self.options.fatten(&to, [T::default(); D]);
+                    self.touch(index);
+                } else {
+                    self.place(index, &to);
+                }
+            }
+        }
+    }
 }
 
 /// Whether the bits of two boxes differ: without a branch, and in the order of the bits in memory, so

@@ -6,6 +6,6 @@ mod cost;
 mod motion;
 mod sleep;
 
-pub use cost::{LOOK_UP, Policy, Work, rebuild_pays, refit_pays};
+pub use cost::{LOOK_UP, Policy, rebuild_pays, refit_pays};
 pub use motion::Motion;
 pub use sleep::Sleep;

@@ -4,13 +4,15 @@
 //! search of the tree, as long as hundreds of tests: so bodies fall asleep soon in a world in which the
 //! same ones always rest, and late where they take turns.
 
+// Measured together, on mostly-still in 3D at 100,000 bodies: sleep took an update from 1.96 to 1.11 ms.
+
 /// Waking a body takes as long as testing this many candidates.
 const WAKE: usize = 400;
 /// For how many updates a body rests before it falls asleep, at least and at most.
 const PATIENCE: [usize; 2] = [8, 256];
 
 /// When bodies fall asleep.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Sleep {
     /// How many are asleep.
     pub count: usize,
@@ -18,16 +20,10 @@ pub struct Sleep {
     pub woke: usize,
     /// The updates since then in which most awake bodies rested.
     idle: usize,
-    /// How many of these it takes now.
+    /// How many of these it takes now, or fewer than the least.
     patience: usize,
     /// How often bodies moved since storage was last reordered to bring awake bodies together.
     moves: usize,
-}
-
-impl Default for Sleep {
-    fn default() -> Self {
-        Self { count: 0, woke: 0, idle: 0, patience: PATIENCE[0], moves: 0 }
-    }
 }
 
 impl Sleep {
@@ -43,12 +39,12 @@ impl Sleep {
         self.moves = self.moves.saturating_add(moved);
         self.idle += usize::from(moved * 2 < awake);
         // Then sleeping bodies and their pairs are scanned too.
-        let is_time = self.idle >= self.patience && self.idle * awake * 4 >= kept;
+        let patience = self.patience.max(PATIENCE[0]);
+        let is_time = self.idle >= patience && self.idle * awake * 4 >= kept;
         if is_time {
             let saved = self.count * self.idle;
             let is_worth = self.woke * WAKE <= saved;
-            let patience = if is_worth { self.patience / 2 } else { self.patience * 2 };
-            self.patience = patience.clamp(PATIENCE[0], PATIENCE[1]);
+            self.patience = if is_worth { patience / 2 } else { (2 * patience).min(PATIENCE[1]) };
             (self.woke, self.idle) = (0, 0);
         }
         is_time

@@ -1,17 +1,20 @@
 //! What a ray or a moving box hits.
 
 use alloc::vec::Vec;
+use core::cell::Cell;
 use core::cmp::Ordering;
 use core::ops::ControlFlow;
 
 use super::math::{Fault, check_each, fault_in, is_finite, is_length};
 use super::region::Queries;
 use crate::world::bodies::ProxyId;
-use crate::world::tree::Search;
 use crate::{Aabb, Error, Scalar};
 
 /// A box or a point on its way: from where, in which direction, how far.
+///
+/// Made by [`ray`](Self::ray) or [`aabb`](Self::aabb).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Cast<const D: usize, T = f32> {
     /// The box at its start; for a ray a point.
     pub from: Aabb<D, T>,
@@ -132,41 +135,20 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         Ok(())
     }
 
-    fn run_cast(&self, cast: &Cast<D, T>, visit: impl FnMut(Hit) -> ControlFlow<(), f64>) {
-        let limit = cast.limit.to_f64();
-        // The visitor knows whether it stopped.
-        let _ = self.tree.search(&mut Casting { queries: self, cast, limit, visit });
-    }
-}
-
-/// What a cast hits up to a limit that the visitor lowers.
-struct Casting<'q, const D: usize, T: Scalar, V> {
-    queries: &'q Queries<'q, D, T>,
-    cast: &'q Cast<D, T>,
-    limit: f64,
-    visit: V,
-}
-
-impl<const D: usize, T, V> Search<D, T> for Casting<'_, D, T, V>
-where
-    T: Scalar,
-    V: FnMut(Hit) -> ControlFlow<(), f64>,
-{
-    #[inline]
-    fn bound(&self, bounds: &Aabb<D, T>) -> Option<f64> {
-        self.cast.touches(bounds, self.limit)
-    }
-
-    fn visit(&mut self, index: u32) -> ControlFlow<()> {
-        if let Some(t) = self.cast.touches(self.queries.bodies.shape(index), self.limit)
-            && self.queries.sees(index)
-        {
-            let limit = (self.visit)(Hit { id: self.queries.bodies.slots.id(index), t });
-            self.limit = self.limit.min(match limit {
-                ControlFlow::Continue(limit) => limit,
-                ControlFlow::Break(()) => return ControlFlow::Break(()),
-            });
-        }
-        ControlFlow::Continue(())
+    fn run_cast(&self, cast: &Cast<D, T>, mut visit: impl FnMut(Hit) -> ControlFlow<(), f64>) {
+        // The visitor lowers it.
+        let limit = Cell::new(cast.limit.to_f64());
+        let touches = |aabb: &Aabb<D, T>| cast.touches(aabb, limit.get());
+        self.tree.search(touches, |index| {
+            if let Some(t) = touches(self.bodies.shape(index))
+                && self.sees(index)
+            {
+                match visit(Hit { id: self.bodies.slots.id(index), t }) {
+                    ControlFlow::Continue(lower) => limit.set(limit.get().min(lower)),
+                    ControlFlow::Break(()) => return ControlFlow::Break(()),
+                }
+            }
+            ControlFlow::Continue(())
+        });
     }
 }

@@ -15,11 +15,8 @@ impl<V> Lists<V> {
         Self { ends: Vec::new(), values: Vec::new() }
     }
 
-    pub(super) fn push(&mut self, values: &[V])
-    where
-        V: Copy,
-    {
-        self.values.extend_from_slice(values);
+    /// Ends the list of the values that were added since the last one.
+    pub(super) fn end(&mut self) {
         self.ends.push(self.values.len());
     }
 

@@ -2,14 +2,13 @@
 
 use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
-
+use core::cell::RefCell;
 use core::ops::ControlFlow;
 
 use super::lists::Lists;
 use super::math::{check_each, fault_in, gap, is_finite};
 use super::region::Queries;
 use crate::world::bodies::ProxyId;
-use crate::world::tree::Search;
 use crate::{Aabb, Error, Scalar};
 
 /// A body near a point.
@@ -38,56 +37,40 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     pub fn nearest_many(&self, points: &[[T; D]], k: usize) -> Result<Lists<Neighbor>, Error> {
         check_each(points, |point| fault_in("point", point, is_finite))?;
         let mut lists = Lists::new();
-        let mut search =
-            Nearest { queries: self, point: [T::default(); D], k, nearest: BinaryHeap::new() };
-        let mut sorted = Vec::new();
-        for &point in points {
-            search.point = point;
+        // The k nearest so far, the farthest on top, as bits of the squared distance (which order as the
+        // numbers do, none being negative) and slot.
+        let nearest = RefCell::new(BinaryHeap::new());
+        for point in points {
+            let bound = |bounds: &Aabb<D, T>| {
+                let (distance, nearest) = (distance_squared(point, bounds), nearest.borrow());
+                let farthest = nearest.peek().filter(|_| nearest.len() == k);
+                farthest.is_none_or(|&(bits, _)| distance.to_bits() <= bits).then_some(distance)
+            };
+            let visit = |index: u32| {
+                if self.sees(index) {
+                    let distance = distance_squared(point, self.bodies.shape(index));
+                    let mut nearest = nearest.borrow_mut();
+                    nearest.push((distance.to_bits(), self.bodies.slots.slot_of[index as usize]));
+                    if nearest.len() > k {
+                        nearest.pop();
+                    }
+                }
+                ControlFlow::Continue(())
+            };
             if k > 0 {
-                let _ = self.tree.search(&mut search);
+                self.tree.search(bound, visit);
             }
-            sorted.extend(search.nearest.drain());
-            sorted.sort_unstable();
-            let neighbors: Vec<_> = sorted
-                .drain(..)
-                .map(|(bits, slot)| Neighbor {
-                    id: self.bodies.slots.id_of_slot(slot),
-                    distance_squared: f64::from_bits(bits),
-                })
-                .collect();
-            lists.push(&neighbors);
+            let start = lists.values.len();
+            lists.values.extend(nearest.borrow_mut().drain().map(|(bits, slot)| Neighbor {
+                id: self.bodies.slots.id_of_slot(slot),
+                distance_squared: f64::from_bits(bits),
+            }));
+            lists.values[start..].sort_unstable_by(|a, b| {
+                a.distance_squared.total_cmp(&b.distance_squared).then(a.id.cmp(&b.id))
+            });
+            lists.end();
         }
         Ok(lists)
-    }
-}
-
-/// The k nearest so far, the farthest on top, as bits of the squared distance (which order as the
-/// numbers do, none being negative) and slot.
-struct Nearest<'q, const D: usize, T: Scalar> {
-    queries: &'q Queries<'q, D, T>,
-    point: [T; D],
-    k: usize,
-    nearest: BinaryHeap<(u64, u32)>,
-}
-
-impl<const D: usize, T: Scalar> Search<D, T> for Nearest<'_, D, T> {
-    fn bound(&self, bounds: &Aabb<D, T>) -> Option<f64> {
-        let distance = distance_squared(&self.point, bounds);
-        let is_full = self.nearest.len() == self.k;
-        let farthest = self.nearest.peek().filter(|_| is_full);
-        farthest.is_none_or(|&(bits, _)| distance.to_bits() <= bits).then_some(distance)
-    }
-
-    fn visit(&mut self, index: u32) -> ControlFlow<()> {
-        if self.queries.sees(index) {
-            let aabb = self.queries.bodies.shape(index);
-            let slot = self.queries.bodies.slots.slot_of[index as usize];
-            self.nearest.push((distance_squared(&self.point, aabb).to_bits(), slot));
-            if self.nearest.len() > self.k {
-                self.nearest.pop();
-            }
-        }
-        ControlFlow::Continue(())
     }
 }
 

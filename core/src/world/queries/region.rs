@@ -6,7 +6,7 @@ use core::ops::ControlFlow;
 use super::lists::Lists;
 use super::math::{check_each, fault_in, is_finite, is_length, is_within};
 use crate::world::bodies::{Bodies, Filter, ProxyId, flag};
-use crate::world::tree::{Search, Tree};
+use crate::world::tree::Tree;
 use crate::{Aabb, Error, Scalar};
 
 /// The questions that a world answers; see [`BroadPhase::queries`](crate::BroadPhase::queries).
@@ -26,7 +26,8 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         Self { bodies, tree, filter: None }
     }
 
-    /// The same queries by a body of this filter: they find what it may pair with.
+    /// The same queries by a body of this filter: they find what it may pair with. Without a filter they
+    /// find every body; with [`Filter::ALL`] none whose category or mask is 0.
     pub fn with_filter(self, filter: Filter) -> Self {
         Self { filter: Some(filter), ..self }
     }
@@ -59,10 +60,8 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         area: &Aabb<D, T>,
         mut visit: impl FnMut(ProxyId) -> ControlFlow<()>,
     ) -> Result<(), Error> {
-        crate::validate(core::slice::from_ref(area))?;
-        let is_near = |bounds: &Aabb<D, T>| bounds.overlaps(area);
-        // The visitor knows whether it stopped.
-        let _ = self.visit_region(is_near, &mut visit);
+        area.check(0)?;
+        self.visit_region(|bounds| bounds.overlaps(area), &mut visit);
         Ok(())
     }
 
@@ -126,7 +125,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         let mut lists = Lists::new();
         for region in regions {
             let start = lists.values.len();
-            let _ = self.visit_region(
+            self.visit_region(
                 |bounds| is_near(region, bounds),
                 |id| {
                     lists.values.push(id);
@@ -134,7 +133,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
                 },
             );
             lists.values[start..].sort_unstable();
-            lists.ends.push(lists.values.len());
+            lists.end();
         }
         lists
     }
@@ -142,40 +141,20 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
     fn visit_region(
         &self,
         is_near: impl Fn(&Aabb<D, T>) -> bool,
-        visit: impl FnMut(ProxyId) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        self.tree.search(&mut Region { queries: self, is_near, visit })
+        mut visit: impl FnMut(ProxyId) -> ControlFlow<()>,
+    ) {
+        let bound = |bounds: &Aabb<D, T>| is_near(bounds).then_some(0.0);
+        self.tree.search(bound, |index| {
+            if is_near(self.bodies.shape(index)) && self.sees(index) {
+                visit(self.bodies.slots.id(index))?;
+            }
+            ControlFlow::Continue(())
+        });
     }
 
     /// Whether a body is there, which the tree alone does not say, and not filtered out.
     pub(super) fn sees(&self, index: u32) -> bool {
         self.bodies.slots.has(index, flag::LIVE)
             && self.filter.is_none_or(|filter| filter.allows(&self.bodies.filters[index as usize]))
-    }
-}
-
-/// All bodies in a region.
-struct Region<'q, const D: usize, T: Scalar, N, V> {
-    queries: &'q Queries<'q, D, T>,
-    is_near: N,
-    visit: V,
-}
-
-impl<const D: usize, T, N, V> Search<D, T> for Region<'_, D, T, N, V>
-where
-    T: Scalar,
-    N: Fn(&Aabb<D, T>) -> bool,
-    V: FnMut(ProxyId) -> ControlFlow<()>,
-{
-    #[inline]
-    fn bound(&self, bounds: &Aabb<D, T>) -> Option<f64> {
-        (self.is_near)(bounds).then_some(0.0)
-    }
-
-    fn visit(&mut self, index: u32) -> ControlFlow<()> {
-        if (self.is_near)(self.queries.bodies.shape(index)) && self.queries.sees(index) {
-            (self.visit)(self.queries.bodies.slots.id(index))?;
-        }
-        ControlFlow::Continue(())
     }
 }

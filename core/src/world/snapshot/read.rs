@@ -2,7 +2,7 @@
 
 use super::format::{SnapshotInfo, holds, read_header};
 use super::hash::hash;
-use crate::world::bodies::{Bodies, Filter, check_box, flag};
+use crate::world::bodies::{Bodies, Filter, flag};
 use crate::world::options::{Options, Report};
 use crate::{Aabb, Scalar, SnapshotFault};
 
@@ -21,7 +21,7 @@ pub fn read<const D: usize, T: Scalar>(bytes: &[u8]) -> Result<Bodies<D, T>, Sna
     };
     let options = Options { margin, prediction, report };
     options.check().map_err(|_| SnapshotFault::Corrupt)?;
-    let mut bodies = Bodies::new(options);
+    let mut bodies = Bodies { options, ..Bodies::default() };
     let count = u32::try_from(reader.number()?).map_err(|_| SnapshotFault::Corrupt)?;
     for _ in 0..count {
         read_slot(&mut reader, &mut bodies)?;
@@ -132,7 +132,7 @@ impl Reader<'_> {
         for at in aabb.min.iter_mut().chain(&mut aabb.max) {
             *at = self.scalar()?;
         }
-        check_box(&aabb, 0).map_err(|_| SnapshotFault::Corrupt)?;
+        aabb.check(0).map_err(|_| SnapshotFault::Corrupt)?;
         Ok(aabb)
     }
 

@@ -10,7 +10,9 @@ const SAMPLE: usize = 64;
 impl<const D: usize, T: Scalar> Tree<D, T> {
     /// Builds the tree from scratch of these bodies. O(n log n) time.
     pub fn build(&mut self, bodies: impl Iterator<Item = u32>, boxes: &[Aabb<D, T>]) {
-        self.clear();
+        self.nodes.clear();
+        self.free.clear();
+        self.leaves.clear();
         self.leaves.resize(boxes.len(), NONE);
         let mut entries = core::mem::take(&mut self.entries);
         entries.clear();

@@ -28,8 +28,8 @@ pub struct Tree<const D: usize, T> {
     pub(super) built: (f64, usize),
 }
 
-impl<const D: usize, T: Scalar> Tree<D, T> {
-    pub fn new() -> Self {
+impl<const D: usize, T: Scalar> Default for Tree<D, T> {
+    fn default() -> Self {
         Self {
             nodes: Vec::new(),
             free: Vec::new(),
@@ -40,18 +40,12 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
             built: (0.0, 0),
         }
     }
+}
 
+impl<const D: usize, T: Scalar> Tree<D, T> {
     /// How many bodies it holds.
     pub fn len(&self) -> usize {
         self.count
-    }
-
-    pub fn clear(&mut self) {
-        self.nodes.clear();
-        self.free.clear();
-        self.leaves.clear();
-        self.root = NONE;
-        self.count = 0;
     }
 
     pub fn holds(&self, body: u32) -> bool {

@@ -11,4 +11,4 @@ mod node;
 mod search;
 
 pub use edit::Tree;
-pub use search::{BATCH, Search, TOGETHER};
+pub use search::{BATCH, TOGETHER};

@@ -20,7 +20,7 @@ pub struct Node<const D: usize, T> {
     /// By axis and lane; a lane without a box has what changes no bounds.
     pub min: [[T; FAN]; D],
     pub max: [[T; FAN]; D],
-    /// Seats in a leaf, else nodes.
+    /// Bodies in a leaf, else nodes.
     pub items: [u32; FAN],
     pub count: usize,
     pub parent: u32,

@@ -13,15 +13,6 @@ pub const TOGETHER: usize = 16;
 /// How many boxes are looked up at a time.
 pub const BATCH: usize = 256;
 
-/// What a query looks for.
-pub trait Search<const D: usize, T> {
-    /// A lower bound of the distance of all bodies in `bounds`; `None` if none of them can matter.
-    fn bound(&self, bounds: &Aabb<D, T>) -> Option<f64>;
-
-    /// Visits a body.
-    fn visit(&mut self, body: u32) -> ControlFlow<()>;
-}
-
 impl<const D: usize, T: Scalar> Tree<D, T> {
     /// Lists for each of up to [`BATCH`] boxes all bodies whose box overlaps it, as pairs of the
     /// position of the box in `queries` and a body.
@@ -113,21 +104,32 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         }
     }
 
-    /// Goes through what a search does not exclude, the nearer of a node's parts first.
-    pub fn search(&self, search: &mut impl Search<D, T>) -> ControlFlow<()> {
-        if self.root == NONE {
-            ControlFlow::Continue(())
-        } else {
-            self.search_in(self.root, search)
+    /// Visits the bodies in boxes that `bound` does not exclude, the nearer of a node's parts first.
+    ///
+    /// `bound` gives a lower bound of the distance of all bodies in a box, or `None` if none of them can
+    /// matter.
+    pub fn search(
+        &self,
+        bound: impl Fn(&Aabb<D, T>) -> Option<f64>,
+        mut visit: impl FnMut(u32) -> ControlFlow<()>,
+    ) {
+        if self.root != NONE {
+            // The visitor knows whether it stopped.
+            let _ = self.search_in(self.root, &bound, &mut visit);
         }
     }
 
-    fn search_in(&self, index: u32, search: &mut impl Search<D, T>) -> ControlFlow<()> {
+    fn search_in(
+        &self,
+        index: u32,
+        bound: &impl Fn(&Aabb<D, T>) -> Option<f64>,
+        visit: &mut impl FnMut(u32) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
         let node = &self.nodes[index as usize];
         let mut parts = [(0.0, 0); FAN];
         let mut count = 0;
         for lane in 0..node.count {
-            if let Some(bound) = search.bound(&node.aabb(lane)) {
+            if let Some(bound) = bound(&node.aabb(lane)) {
                 parts[count] = (bound, lane);
                 count += 1;
             }
@@ -136,13 +138,13 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         parts.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for &mut (_, lane) in parts {
             // What was seen since may exclude it now.
-            if search.bound(&node.aabb(lane)).is_none() {
+            if bound(&node.aabb(lane)).is_none() {
                 continue;
             }
             if node.is_leaf {
-                search.visit(node.items[lane])?;
+                visit(node.items[lane])?;
             } else {
-                self.search_in(node.items[lane], search)?;
+                self.search_in(node.items[lane], bound, visit)?;
             }
         }
         ControlFlow::Continue(())

@@ -5,7 +5,6 @@ use alloc::vec::Vec;
 use crate::Scalar;
 use crate::memory::preload;
 use crate::world::bodies::{Bodies, differ, flag};
-use crate::world::policy::Work;
 use crate::world::tracking::{Scratch, Tracking};
 
 /// How many bodies are compared at a time.
@@ -14,53 +13,6 @@ const CHUNK: usize = 64;
 const ESCAPES: u16 = flag::NEW | flag::REFILTERED | flag::ASLEEP;
 /// The flags that an update keeps.
 const KEPT: u16 = !(flag::CHANGED | flag::IN_TREE);
-
-/// About how many bodies changed or were removed.
-pub fn count_changes<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> usize {
-    let listed = bodies.changed.len() + bodies.leaving.len();
-    if bodies.any_unlisted { listed.max(bodies.live()) } else { listed }
-}
-
-/// Whether to find all pairs from scratch, as the policy says.
-pub fn skips_tracking<const D: usize, T: Scalar>(
-    bodies: &mut Bodies<D, T>,
-    tracking: &mut Tracking<D, T>,
-    changed: usize,
-) -> bool {
-    if tracking.policy.skips_tracking(changed, bodies.live()) {
-        return true;
-    }
-    let margin = bodies.options.margin;
-    if !tracking.candidates.are_sorted || margin > T::default() {
-        return false;
-    }
-    bodies.list_changed();
-    sample_motion(bodies, tracking);
-    let Tracking { candidates, policy, motion, .. } = tracking;
-    let jumps = |&&index: &&u32| {
-        let row = index as usize;
-        !bodies.slots.has(index, flag::NEW)
-            && motion.is_jump(&bodies.previous[row], &bodies.boxes[row])
-    };
-    let jumped = bodies.changed.iter().filter(jumps).count();
-    let changed = bodies.changed.len();
-    let work = Work { bodies: bodies.live(), changed, tests: 0, escaped: jumped, jumped };
-    policy.skips_again(&work, candidates.sorted.len(), motion.lifetime())
-}
-
-/// Samples the motion of the bodies that changed.
-pub fn sample_motion<const D: usize, T: Scalar>(
-    bodies: &Bodies<D, T>,
-    tracking: &mut Tracking<D, T>,
-) {
-    tracking.motion.sample(bodies.changed.iter().map(|&index| {
-        let row = index as usize;
-        // What had the slot of a new body before does not count as motion.
-        let is_new = bodies.slots.has(index, flag::NEW);
-        let before = if is_new { &bodies.boxes } else { &bodies.previous };
-        (&before[row], &bodies.boxes[row])
-    }));
-}
 
 /// Lists the bodies that need a new fat AABB: those that left theirs, are new, or have another filter.
 /// Leaves each living changed body in the list of changes once.

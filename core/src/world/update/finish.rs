@@ -5,30 +5,25 @@ use crate::Scalar;
 use crate::world::bodies::{Bodies, flag};
 use crate::world::candidates::are_asleep;
 use crate::world::changes::Events;
-use crate::world::layout::Reorder;
-use crate::world::tracking::{Scratch, Tracking, TreeState};
+use crate::world::tracking::{Tracking, TreeState};
 
-/// Turns the pairs of an update into sorted pairs of slots.
-pub fn sort_events<const D: usize, T: Scalar>(
-    bodies: &Bodies<D, T>,
-    tracking: &mut Tracking<D, T>,
-    events: &mut Events,
-) {
-    let Scratch { sorter, .. } = &mut tracking.scratch;
-    for pairs in [&mut events.begun, &mut events.ended] {
-        bodies.slots.to_slots(pairs);
-        sorter.sort(pairs, bodies.slots.len());
-    }
-}
-
-/// Ends an update. Returns how to reorder storage.
+/// Ends an update. Returns whether the awake bodies are scattered in memory.
 #[inline(never)]
 pub fn finish<const D: usize, T: Scalar>(
     bodies: &mut Bodies<D, T>,
     tracking: &mut Tracking<D, T>,
     events: &mut Events,
-) -> Reorder {
-    copy_boxes(bodies);
+) -> bool {
+    // Boxes of bodies that did not change are the same or meaningless.
+    let read = bodies.rows_to_scan(bodies.changed.len());
+    let Bodies { boxes, previous, changed, any_unlisted, .. } = bodies;
+    let read = if core::mem::take(any_unlisted) { previous.len() } else { read };
+    previous[..read].copy_from_slice(&boxes[..read]);
+    if read < previous.len() {
+        for row in changed.iter().map(|&index| index as usize).filter(|&row| row >= read) {
+            previous[row] = boxes[row];
+        }
+    }
     if core::mem::take(&mut bodies.any_refiltered) | core::mem::take(&mut bodies.any_new) {
         for &index in &bodies.changed {
             bodies.slots.lower(index, flag::NEW | flag::REFILTERED);
@@ -40,7 +35,7 @@ pub fn finish<const D: usize, T: Scalar>(
         *known = 0;
     }
     // After an update from scratch no body falls asleep.
-    let is_scattered = !tracking.candidates.are_sorted && fall_asleep(bodies, tracking, moved);
+    let is_scattered = !tracking.candidates.are_sorted && tracking.fall_asleep(bodies, moved);
     events.removed.clear();
     events.removed.extend(bodies.leaving.iter().map(|&index| bodies.slots.id(index)));
     events.removed.sort_unstable();
@@ -48,46 +43,31 @@ pub fn finish<const D: usize, T: Scalar>(
         bodies.slots.release(index, 0);
     }
     bodies.settle();
-    if is_scattered { Reorder::BySpace } else { Reorder::No }
+    is_scattered
 }
 
-/// Copies the boxes of now to those of the last update. Boxes of bodies that did not change are the same
-/// or meaningless.
-fn copy_boxes<const D: usize, T: Scalar>(bodies: &mut Bodies<D, T>) {
-    let read = bodies.rows_to_scan(bodies.changed.len());
-    let Bodies { boxes, previous, changed, any_unlisted, .. } = bodies;
-    let read = if core::mem::take(any_unlisted) { previous.len() } else { read };
-    previous[..read].copy_from_slice(&boxes[..read]);
-    if read < previous.len() {
-        for row in changed.iter().map(|&index| index as usize).filter(|&row| row >= read) {
-            previous[row] = boxes[row];
+impl<const D: usize, T: Scalar> Tracking<D, T> {
+    /// Lets bodies that rested for long fall asleep, if it is time, after an update in which `moved`
+    /// bodies moved. Returns whether the awake bodies are scattered in memory.
+    #[inline(never)]
+    fn fall_asleep(&mut self, bodies: &mut Bodies<D, T>, moved: usize) -> bool {
+        let Self { sleep, candidates, fat, .. } = self;
+        let Bodies { slots, boxes, front, .. } = bodies;
+        if moved == 0 || !sleep.note(slots.live - sleep.count, moved, candidates.asleep.len()) {
+            return false;
         }
-    }
-}
-
-/// Lets bodies that rested for long fall asleep, if it is time, after an update in which `moved` bodies
-/// moved. Returns whether the awake bodies are scattered in memory.
-#[inline(never)]
-fn fall_asleep<const D: usize, T: Scalar>(
-    bodies: &mut Bodies<D, T>,
-    tracking: &mut Tracking<D, T>,
-    moved: usize,
-) -> bool {
-    let Tracking { sleep, candidates, fat, .. } = tracking;
-    let Bodies { slots, boxes, front, .. } = bodies;
-    if moved == 0 || !sleep.note(slots.live - sleep.count, moved, candidates.asleep.len()) {
-        return false;
-    }
-    candidates.asleep.retain(|pair| are_asleep(slots, pair));
-    for (row, flags) in slots.flags.iter_mut().enumerate() {
-        let rests = *flags & (flag::LIVE | flag::RECENT | flag::ASLEEP) == flag::LIVE;
-        if rests {
-            *flags |= flag::ASLEEP;
-            fat[row] = boxes[row];
-            sleep.count += 1;
+        candidates.asleep.retain(|pair| are_asleep(slots, pair));
+        for (row, flags) in slots.flags.iter_mut().enumerate() {
+            let rests = *flags & (flag::LIVE | flag::RECENT | flag::ASLEEP) == flag::LIVE;
+            if rests {
+                *flags |= flag::ASLEEP;
+                fat[row] = boxes[row];
+                sleep.count += 1;
+            }
+            *flags &= !flag::RECENT;
         }
-        *flags &= !flag::RECENT;
+        candidates
+            .put_to_sleep(slots, |[a, b]| fat[a as usize].overlaps_branch_free(&fat[b as usize]));
+        sleep.scatters(slots.live - sleep.count, *front, slots.len())
     }
-    candidates.put_to_sleep(slots, |[a, b]| fat[a as usize].overlaps_branch_free(&fat[b as usize]));
-    sleep.scatters(slots.live - sleep.count, *front, slots.len())
 }

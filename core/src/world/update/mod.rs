@@ -21,11 +21,16 @@ mod rebuild;
 mod search_tree;
 
 pub use rebuild::restore;
-pub use search_tree::ready_for_queries;
+
+use collect::collect_escaped;
+use finish::finish;
+use from_scratch::from_scratch;
+use incremental::incremental;
+use rebuild::rebuild;
 
 use super::bodies::Bodies;
 use super::changes::Events;
-use super::layout::{self, Reorder};
+use super::layout::Reorder;
 use super::policy::rebuild_pays;
 use super::tracking::Tracking;
 use crate::Scalar;
@@ -38,24 +43,25 @@ pub fn update<const D: usize, T: Scalar>(
 ) {
     events.begun.clear();
     events.ended.clear();
-    tracking.grow(bodies);
-    search_tree::forget_removed(bodies, tracking);
-    let mut reorder = Reorder::No;
-    let changed = collect::count_changes(bodies);
-    if changed > 0 {
-        if collect::skips_tracking(bodies, tracking, changed) {
-            from_scratch::from_scratch(bodies, tracking, events);
+    let mut order = Reorder::No;
+    let changed = bodies.count_changes();
+    if changed > 0 && tracking.policy.skips_tracking(changed, bodies.slots.live) {
+        from_scratch(bodies, tracking, events);
+    } else if changed > 0 {
+        collect_escaped(bodies, tracking);
+        let moves = tracking.scratch.escaped.len() + bodies.leaving.len();
+        if rebuild_pays(moves, bodies.slots.live) {
+            order = rebuild(bodies, tracking, events);
         } else {
-            collect::collect_escaped(bodies, tracking);
-            let moves = tracking.scratch.escaped.len() + bodies.leaving.len();
-            reorder = if rebuild_pays(moves, bodies.live()) {
-                rebuild::rebuild(bodies, tracking, events)
-            } else {
-                incremental::incremental(bodies, tracking, events)
-            };
-            finish::sort_events(bodies, tracking, events);
+            incremental(bodies, tracking, events);
+        }
+        for pairs in [&mut events.begun, &mut events.ended] {
+            bodies.slots.to_slots(pairs);
+            tracking.scratch.sorter.sort(pairs, bodies.slots.len());
         }
     }
-    reorder = reorder.or(finish::finish(bodies, tracking, events));
-    layout::reorder(bodies, tracking, reorder);
+    if finish(bodies, tracking, events) && order == Reorder::No {
+        order = Reorder::BySpace;
+    }
+    tracking.reorder(bodies, order);
 }

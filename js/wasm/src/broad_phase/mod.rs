@@ -16,7 +16,7 @@ use crate::status::{Code, report, report_error};
 use handle::{Handle, Number, note};
 
 fn filter_of(category: u32, mask: u32, group: i32, is_static: bool) -> Filter {
-    Filter { category, mask, group, is_static }
+    Filter::default().category(category).mask(mask).group(group).is_static(is_static)
 }
 
 /// A new broad phase, to be freed by [`world_free`]; null for dimensions other than 1 to 3, or a
@@ -222,7 +222,8 @@ extern "C" fn world_len(handle: &mut Handle) -> usize {
 }
 
 /// Answers a query, whose numbers are in the numbers. Details: where the ids are that it found, and
-/// how many; the first number is where their values are (t, or squared distances), as many.
+/// how many; the first number is where their values are (t, or squared distances), as many. If
+/// `is_static` is 2 there is no filter.
 #[unsafe(no_mangle)]
 extern "C" fn world_query(
     handle: &mut Handle,
@@ -231,7 +232,7 @@ extern "C" fn world_query(
     category: u32,
     mask: u32,
     group: i32,
-    is_static: bool,
+    is_static: u32,
 ) -> Code {
     let query = match query {
         0 => Query::Overlapping,
@@ -241,7 +242,7 @@ extern "C" fn world_query(
         4 => Query::CastAll,
         _ => Query::Nearest(k),
     };
-    let filter = filter_of(category, mask, group, is_static);
+    let filter = (is_static < 2).then(|| filter_of(category, mask, group, is_static == 1));
     let numbers = &handle.numbers[..query.width(handle.world.kind().dimensions)];
     let result = handle.world.query(query, numbers, filter, &mut handle.answer);
     handle.numbers[0] = handle.answer.values.as_ptr().addr() as f64;

@@ -1,0 +1,198 @@
+//! Inserts, sets and removes bodies: what users tell the broad phase between two updates.
+
+use alloc::vec::Vec;
+
+use super::bodies::{Bodies, Filter, ProxyId, flag};
+use super::broad_phase::BroadPhase;
+use super::options::Report;
+use crate::memory::{prefetch_item, prefetch_pays, preload};
+use crate::{Aabb, Error, Scalar, validate};
+
+/// How many bodies ahead boxes are prefetched. In 3D `set_many` takes 0.9 of the time with it at 10,000 and
+/// 100,000 bodies, and 0.6 at 1,000,000 (paired, one core of a virtual AMD EPYC of 2024).
+const AHEAD: usize = 32;
+
+impl<const D: usize, T: Scalar> BroadPhase<D, T> {
+    /// Adds a body with the default filter.
+    ///
+    /// # Errors
+    /// [`Error::InvalidBox`]; [`Error::TooManyBoxes`] if no slot is left.
+    pub fn insert(&mut self, aabb: Aabb<D, T>) -> Result<ProxyId, Error> {
+        self.insert_with(aabb, Filter::default())
+    }
+
+    /// Adds a body.
+    ///
+    /// # Errors
+    /// As [`insert`](Self::insert).
+    pub fn insert_with(&mut self, aabb: Aabb<D, T>, filter: Filter) -> Result<ProxyId, Error> {
+        aabb.check(0)?;
+        self.bodies.slots.check_capacity(1)?;
+        Ok(self.bodies.add(aabb, filter))
+    }
+
+    /// Adds bodies with one filter. Their ids are in the order of their boxes.
+    ///
+    /// # Errors
+    /// As [`insert`](Self::insert), with the position of the first bad box; then none was added.
+    pub fn insert_many(
+        &mut self,
+        boxes: &[Aabb<D, T>],
+        filter: Filter,
+    ) -> Result<Vec<ProxyId>, Error> {
+        validate(boxes)?;
+        self.bodies.slots.check_capacity(boxes.len())?;
+        Ok(boxes.iter().map(|&aabb| self.bodies.add(aabb, filter)).collect())
+    }
+
+    /// Gives a body its new box.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`], [`Error::InvalidBox`].
+    pub fn set(&mut self, id: ProxyId, aabb: Aabb<D, T>) -> Result<(), Error> {
+        self.set_many(&[id], &[aabb])
+    }
+
+    /// Gives each of many bodies its new box. If an id occurs twice, the last box counts.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`]; [`Error::StaleProxy`] or [`Error::InvalidBox`] with the position of
+    /// the first bad id or box. Then no box has changed.
+    #[inline(never)]
+    pub fn set_many(&mut self, ids: &[ProxyId], boxes: &[Aabb<D, T>]) -> Result<(), Error> {
+        let bodies = &mut self.bodies;
+        if ids.len() != boxes.len() {
+            return Err(Error::LengthMismatch { ids: ids.len(), boxes: boxes.len() });
+        }
+        let rows = ids.iter().zip(boxes);
+        let is_sound =
+            |(&id, aabb): (&ProxyId, &Aabb<D, T>)| bodies.slots.is_living(id) & is_valid(aabb);
+        if !rows.clone().map(is_sound).fold(true, |all, each| all & each) {
+            for (position, (&id, aabb)) in rows.clone().enumerate() {
+                bodies.slots.check(id, position)?;
+                aabb.check(position)?;
+            }
+        }
+        if !bodies.swept.is_empty() {
+            for id in ids {
+                bodies.slots.lower(bodies.slots.index_of[id.slot() as usize], flag::SWEPT);
+            }
+        }
+        let index_of =
+            |bodies: &Bodies<D, T>, id: &ProxyId| bodies.slots.index_of[id.slot() as usize];
+        // Of many boxes the update finds out which differ from those of the last one.
+        if bodies.scans_all(ids.len()) && bodies.options.report == Report::Exact {
+            bodies.any_unlisted = true;
+            let is_far = bodies.slots.is_reordered && prefetch_pays(&bodies.boxes);
+            for (position, (id, aabb)) in rows.enumerate() {
+                if is_far && let Some(later) = ids.get(position + AHEAD) {
+                    prefetch_item(&bodies.boxes, index_of(bodies, later) as usize);
+                }
+                let index = index_of(bodies, id) as usize;
+                bodies.boxes[index] = *aabb;
+            }
+            return Ok(());
+        }
+        preload(&bodies.boxes[..bodies.rows_to_scan(ids.len())]);
+        bodies.changed.reserve(ids.len());
+        let is_far = prefetch_pays(&bodies.boxes);
+        for (position, (id, aabb)) in rows.enumerate() {
+            // Rows are in the order of space, ids are not: rows are read all over the tables.
+            if is_far && let Some(later) = ids.get(position + AHEAD) {
+                let index = index_of(bodies, later) as usize;
+                prefetch_item(&bodies.boxes, index);
+                prefetch_item(&bodies.slots.flags, index);
+            }
+            bodies.place(index_of(bodies, id), aabb);
+        }
+        Ok(())
+    }
+
+    /// Moves a fast body from one box to another: until the next update its box is the union of both,
+    /// then `to`. So it pairs with what it would have jumped over (and, on a diagonal way, with what is
+    /// beside it).
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`]; [`Error::InvalidBox`] with index 0 for `from` and 1 for `to`.
+    pub fn set_swept(
+        &mut self,
+        id: ProxyId,
+        from: Aabb<D, T>,
+        to: Aabb<D, T>,
+    ) -> Result<(), Error> {
+        let index = self.bodies.slots.check(id, 0)?;
+        validate(&[from, to])?;
+        self.set(id, from.union(&to))?;
+        self.bodies.sweep_to(index, to);
+        Ok(())
+    }
+
+    /// Changes with which others a body may pair. Its pairs begin or end at the next update.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`].
+    pub fn set_filter(&mut self, id: ProxyId, filter: Filter) -> Result<(), Error> {
+        let bodies = &mut self.bodies;
+        let index = bodies.slots.check(id, 0)?;
+        let before = core::mem::replace(&mut bodies.filters[index as usize], filter);
+        bodies.any_filter |= filter != Filter::default();
+        if before != filter {
+            if !bodies.slots.has(index, flag::NEW | flag::REFILTERED) {
+                bodies.keep_old_filter(index, before);
+            }
+            bodies.touch(index);
+        }
+        Ok(())
+    }
+
+    /// Removes a body. Its id is stale from now on; the next update reports its ended pairs.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`].
+    pub fn remove(&mut self, id: ProxyId) -> Result<(), Error> {
+        self.remove_many(&[id])
+    }
+
+    /// Removes many bodies.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`] with the position of the first id that is stale or occurs twice. Then none
+    /// was removed.
+    pub fn remove_many(&mut self, ids: &[ProxyId]) -> Result<(), Error> {
+        let Bodies { slots, leaving, .. } = &mut self.bodies;
+        let bad = ids.iter().position(|&id| match slots.check(id, 0) {
+            Ok(index) if !slots.has(index, flag::MARKED) => {
+                slots.raise(index, flag::MARKED);
+                false
+            }
+            _ => true,
+        });
+        for id in &ids[..bad.unwrap_or(ids.len())] {
+            slots.lower(slots.index_of[id.slot() as usize], flag::MARKED);
+        }
+        if let Some(index) = bad {
+            return Err(Error::StaleProxy { index, id: ids[index].to_bits() });
+        }
+        for id in ids {
+            let index = slots.index_of[id.slot() as usize];
+            slots.retire(index);
+            if !slots.has(index, flag::NEW) {
+                leaving.push(index);
+                continue;
+            }
+            // No update knew it, so none has to report its end, and its slot is free at once: a world
+            // that is edited and never updated does not grow.
+            if slots.has(index, flag::IN_TREE) {
+                self.tracking.tree.remove(index);
+            }
+            slots.release(index, flag::CHANGED | flag::IN_TREE);
+        }
+        Ok(())
+    }
+}
+
+/// Whether a box is valid, without a branch.
+#[inline]
+fn is_valid<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> bool {
+    (0..D).fold(true, |all, axis| all & (aabb.min[axis] <= aabb.max[axis]))
+}

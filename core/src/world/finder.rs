@@ -1,0 +1,82 @@
+//! Finds pairs of bodies with the pair finder.
+
+use alloc::alloc::{Layout, handle_alloc_error};
+use alloc::vec::Vec;
+
+use super::bodies::Bodies;
+use crate::pairs::PairFinder;
+use crate::{Aabb, Error, Scalar};
+
+/// A pair finder, and its buffers for the case that not all bodies take part.
+#[derive(Debug, Default)]
+pub struct Finder<const D: usize, T: Scalar> {
+    finder: PairFinder<D, T>,
+    threads: usize,
+    /// The boxes that take part, and their indices.
+    boxes: Vec<Aabb<D, T>>,
+    indices: Vec<u32>,
+    pairs: Vec<[u32; 2]>,
+}
+
+impl<const D: usize, T: Scalar> Finder<D, T> {
+    pub fn with_threads(threads: usize) -> Self {
+        let finder = PairFinder::new();
+        #[cfg(feature = "parallel")]
+        let finder = finder.threads(threads);
+        Self { finder, threads, ..Self::default() }
+    }
+
+    /// The pairs of overlapping boxes of a table, as indices, of bodies that have one of the flags of
+    /// `any` and none of `none`, as far as `allows` does. The boxes are valid. Pairs of two bodies that are
+    /// and were static are not even searched.
+    #[inline(never)]
+    pub fn find(
+        &mut self,
+        table: &[Aabb<D, T>],
+        bodies: &Bodies<D, T>,
+        [any, none]: [u16; 2],
+        allows: &dyn Fn([u32; 2]) -> bool,
+    ) -> &[[u32; 2]] {
+        let Self { finder, boxes, indices, pairs, .. } = self;
+        let flags = &bodies.slots.flags;
+        let takes_part = |flags: u16| (flags & any != 0) & (flags & none == 0);
+        if !bodies.any_filter && flags.iter().all(|&flags| takes_part(flags)) {
+            return found(finder.find(table));
+        }
+        let all = || (0..flags.len() as u32).filter(|&index| takes_part(flags[index as usize]));
+        let is_static = |&index: &u32| {
+            bodies.filters[index as usize].is_static && bodies.old_filter(index).is_static
+        };
+        indices.clear();
+        indices.extend(all().filter(|index| !is_static(index)));
+        let movable = indices.len();
+        indices.extend(all().filter(is_static));
+        boxes.clear();
+        boxes.extend(indices.iter().map(|&index| table[index as usize]));
+        let (movable_boxes, static_boxes) = boxes.split_at(movable);
+        let (movable, fixed) = indices.split_at(movable);
+        pairs.clear();
+        let found_pairs = found(finder.find(movable_boxes));
+        pairs.extend(found_pairs.iter().map(|pair| pair.map(|at| movable[at as usize])));
+        let found_pairs = found(finder.find_between(movable_boxes, static_boxes));
+        pairs.extend(found_pairs.iter().map(|&[a, b]| {
+            let (a, b) = (movable[a as usize], fixed[b as usize]);
+            [a.min(b), a.max(b)]
+        }));
+        pairs.retain(|&pair| allows(pair));
+        pairs
+    }
+}
+
+impl<const D: usize, T: Scalar> Clone for Finder<D, T> {
+    /// A finder with as many threads and empty buffers.
+    fn clone(&self) -> Self {
+        Self::with_threads(self.threads)
+    }
+}
+
+/// What the finder found. Its boxes are valid, so it fails only if memory is exhausted. A broad phase
+/// that lacks pairs would be wrong, so then the program ends, as when a collection cannot grow.
+fn found(result: Result<&[[u32; 2]], Error>) -> &[[u32; 2]] {
+    result.unwrap_or_else(|_| handle_alloc_error(Layout::new::<[u32; 2]>()))
+}
