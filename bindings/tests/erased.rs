@@ -246,3 +246,17 @@ fn a_bad_margin_is_refused() {
     let value = (-1.0).into();
     assert_eq!(refused, Err(Error::InvalidOption { option: "margin", value }));
 }
+
+#[test]
+fn queries_without_a_filter_find_bodies_that_pair_with_nothing() {
+    let mut world = kind::<2, f64>().broad_phase::<u64>(Settings::default()).unwrap().unwrap();
+    let aabb = [0.0, 0.0, 1.0, 1.0];
+    let id = world.insert(&aabb).unwrap();
+    world.set_filter(id, Filter::default().mask(0)).unwrap();
+    let mut found = |filter| {
+        let mut answer = Answer::default();
+        world.query(Query::Overlapping, &aabb, filter, &mut answer).map(|()| answer.ids)
+    };
+    assert_eq!(found(None), Ok(vec![id.to_bits()]));
+    assert_eq!(found(Some(Filter::ALL)), Ok(vec![]));
+}

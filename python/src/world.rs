@@ -83,7 +83,7 @@ impl World {
     fn insert<'py>(
         &self,
         boxes: Array<'py>,
-        filter: Option<Words>,
+        filter: Words,
         argument: &str,
     ) -> PyResult<Array<'py>> {
         let py = boxes.py();

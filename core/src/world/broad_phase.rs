@@ -213,7 +213,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// ```
     pub fn queries(&mut self) -> Queries<'_, D, T> {
         self.tracking.ready_for_queries(&mut self.bodies);
-        Queries::new(&self.bodies, &self.tracking.tree)
+        Queries { bodies: &self.bodies, tree: &self.tracking.tree, filter: None }
     }
 
     /// The whole state as bytes. A world [restored](Self::from_snapshot) from them gives, for the

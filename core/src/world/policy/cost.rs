@@ -78,32 +78,30 @@ mod tests {
 
     const BODIES: usize = 1000;
 
-    /// How many of so many updates skip tracking, where `note` notes each that does not.
-    fn skipped(updates: usize, mut note: impl FnMut(&mut Policy) -> bool) -> usize {
-        let mut policy = Policy::default();
-        (0..updates).filter(|_| policy.skips_tracking(BODIES, BODIES) || note(&mut policy)).count()
-    }
-
-    /// How many of 1000 updates skip tracking, where fat AABBs last for one update after which this
-    /// many bodies are looked up, and then have to be replaced.
-    fn skipped_where(escaped: usize, lifetime: usize) -> usize {
-        let mut age = 0;
-        skipped(1000, |policy| {
-            let skips = age == 0 && policy.note_rebuild(BODIES, true, false);
+    /// How many of 1000 updates skip tracking, where fat AABBs are larger than bodies or not, and last so
+    /// many updates, of which each but the first looks up this many bodies.
+    fn skipped(is_fat: bool, lifetime: usize, escaped: usize) -> usize {
+        let (mut policy, mut age) = (Policy::default(), 0);
+        let mut skips = || {
+            if policy.skips_tracking(BODIES, BODIES) {
+                return true;
+            }
+            let gives_up = age == 0 && policy.note_rebuild(BODIES, is_fat, false);
             if age > 0 {
                 policy.note_incremental(escaped);
             }
-            age = if skips { 0 } else { (age + 1) % lifetime };
-            skips
-        })
+            age = if gives_up { 0 } else { (age + 1) % lifetime };
+            gives_up
+        };
+        (0..1000).filter(|_| skips()).count()
     }
 
     #[test]
     fn tracking_is_skipped_where_it_costs_more_and_tried_less_and_less_often() {
-        assert!(skipped(1000, |policy| policy.note_rebuild(BODIES, false, false)) > 980);
-        let tracked = 1000 - skipped_where(BODIES / LOOK_UP, 2);
+        assert_eq!(skipped(true, 12, 1), 0);
+        assert!(skipped(false, 1, 0) > 980);
+        let tracked = 1000 - skipped(true, 2, BODIES / LOOK_UP);
         assert!((10..50).contains(&tracked), "{tracked}");
-        assert_eq!(skipped_where(1, 12), 0);
     }
 
     #[test]

@@ -16,16 +16,12 @@ use crate::{Aabb, Error, Scalar};
 /// bodies too, so every answer follows from the state alone.
 #[derive(Clone, Copy, Debug)]
 pub struct Queries<'w, const D: usize, T: Scalar = f32> {
-    pub(super) bodies: &'w Bodies<D, T>,
-    pub(super) tree: &'w Tree<D, T>,
-    filter: Option<Filter>,
+    pub(in crate::world) bodies: &'w Bodies<D, T>,
+    pub(in crate::world) tree: &'w Tree<D, T>,
+    pub(in crate::world) filter: Option<Filter>,
 }
 
-impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
-    pub(in crate::world) fn new(bodies: &'w Bodies<D, T>, tree: &'w Tree<D, T>) -> Self {
-        Self { bodies, tree, filter: None }
-    }
-
+impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     /// The same queries by a body of this filter: they find what it may pair with. Without a filter they
     /// find every body; with [`Filter::ALL`] none whose category or mask is 0.
     pub fn with_filter(self, filter: Filter) -> Self {

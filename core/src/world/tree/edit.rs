@@ -21,7 +21,8 @@ pub struct Tree<const D: usize, T> {
     pub(super) root: u32,
     /// By body, its leaf.
     pub(super) leaves: Vec<u32>,
-    pub(super) count: usize,
+    /// How many bodies it holds.
+    pub count: usize,
     /// A buffer for building.
     pub(super) entries: Vec<Entry<D>>,
     /// The size of the leaves as built, and the number of bodies then.
@@ -43,11 +44,6 @@ impl<const D: usize, T: Scalar> Default for Tree<D, T> {
 }
 
 impl<const D: usize, T: Scalar> Tree<D, T> {
-    /// How many bodies it holds.
-    pub fn len(&self) -> usize {
-        self.count
-    }
-
     pub fn holds(&self, body: u32) -> bool {
         self.leaves.get(body as usize).is_some_and(|&leaf| leaf != NONE)
     }

@@ -21,13 +21,10 @@ pub fn from_scratch<const D: usize, T: Scalar>(
     tracking.wake_all(bodies);
     let has_tree = tracking.tree_state != TreeState::Unbuilt;
     let Tracking { candidates, scratch, finder, .. } = &mut *tracking;
-    let Scratch { sorter, before, escaped, .. } = scratch;
+    let Scratch { sorter, before, .. } = scratch;
     core::mem::swap(before, &mut candidates.sorted);
-    escaped.clear();
     if has_tree {
         bodies.list_changed();
-        let slots = &bodies.slots;
-        escaped.extend(bodies.changed.iter().filter(|&&index| slots.has(index, flag::LIVE)));
     }
     for &index in &bodies.changed {
         bodies.slots.lower(index, flag::CHANGED | flag::IN_TREE);

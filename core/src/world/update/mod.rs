@@ -22,12 +22,6 @@ mod search_tree;
 
 pub use rebuild::restore;
 
-use collect::collect_escaped;
-use finish::finish;
-use from_scratch::from_scratch;
-use incremental::incremental;
-use rebuild::rebuild;
-
 use super::bodies::Bodies;
 use super::changes::Events;
 use super::layout::Reorder;
@@ -46,21 +40,21 @@ pub fn update<const D: usize, T: Scalar>(
     let mut order = Reorder::No;
     let changed = bodies.count_changes();
     if changed > 0 && tracking.policy.skips_tracking(changed, bodies.slots.live) {
-        from_scratch(bodies, tracking, events);
+        from_scratch::from_scratch(bodies, tracking, events);
     } else if changed > 0 {
-        collect_escaped(bodies, tracking);
+        collect::collect_escaped(bodies, tracking);
         let moves = tracking.scratch.escaped.len() + bodies.leaving.len();
         if rebuild_pays(moves, bodies.slots.live) {
-            order = rebuild(bodies, tracking, events);
+            order = rebuild::rebuild(bodies, tracking, events);
         } else {
-            incremental(bodies, tracking, events);
+            incremental::incremental(bodies, tracking, events);
         }
         for pairs in [&mut events.begun, &mut events.ended] {
             bodies.slots.to_slots(pairs);
             tracking.scratch.sorter.sort(pairs, bodies.slots.len());
         }
     }
-    if finish(bodies, tracking, events) && order == Reorder::No {
+    if finish::finish(bodies, tracking, events) && order == Reorder::No {
         order = Reorder::BySpace;
     }
     tracking.reorder(bodies, order);

@@ -13,7 +13,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         let Self { tree, tree_state, tree_uses, fat, .. } = self;
         match *tree_state {
             TreeState::Fresh { .. } => return,
-            TreeState::Old if refit_pays(tree.refit(fat), *tree_uses, tree.len()) => {}
+            TreeState::Old if refit_pays(tree.refit(fat), *tree_uses, tree.count) => {}
             _ => {
                 *tree_uses = 0;
                 let is_known = |&index: &u32| {
@@ -69,12 +69,14 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             tree.remove(index);
         }
         let moved = &mut scratch.escaped;
-        moved.retain(|&index| {
+        moved.clear();
+        moved.extend(bodies.changed.iter().copied().filter(|&index| {
             let row = index as usize;
-            bodies.slots.has(index, flag::NEW)
-                || motion.is_jump(&bodies.previous[row], &bodies.boxes[row])
-        });
-        if moved.len() * 2 > tree.len() {
+            bodies.slots.has(index, flag::LIVE)
+                && (bodies.slots.has(index, flag::NEW)
+                    || motion.is_jump(&bodies.previous[row], &bodies.boxes[row]))
+        }));
+        if moved.len() * 2 > tree.count {
             *tree_state = TreeState::Unbuilt;
             return;
         }
