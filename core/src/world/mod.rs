@@ -2,7 +2,8 @@
 //! and end.
 //!
 //! ```text
-//! bodies -> tree -> candidates -> policy -> finder -> tracking -> layout -> update -> queries, snapshot -> broad_phase -> edit
+//! bodies -> tree -> candidates -> policy -> finder -> tracking -> layout -> update
+//!     -> queries, snapshot -> broad_phase -> edit
 //! ```
 //! Each of these uses only those before it. `update/mod.rs` is the update on one page.
 

@@ -5,16 +5,22 @@
 //! more than from scratch, it is skipped for some updates and then tried again: soon at first, and less
 //! and less often while it fails.
 
-/// The one ratio of the model: what it costs to track a body that left its fat AABB.
-///
-/// FIGURES
+// Measured in pairs on one core against the seven weights that were here before (of changed bodies, tests,
+// searches, jumps, rebuilds, and two for predicted candidates): drift, fast, mostly-still and teleport of
+// `scenes/` in 2D and 3D at 1,000, 10,000 and 100,000 bodies.
+
+/// The ratio of the model: tracking a body that left its fat AABB costs as much as finding all pairs from
+/// scratch does for this many bodies. With 64, medians were 0.93 to 1.03 of the time before. With 32,
+/// teleport is tracked: 0.75 at 1,000 bodies, but 1.14 in 2D and 1.41 in 3D at 100,000. 100 is as 64
+/// or up to 2 % slower.
 pub const LOOK_UP: usize = 64;
-/// What finding all candidates costs for each body: there are more of them than pairs.
+/// What finding all candidates costs for each body: there are more of them than pairs. Without it tracking
+/// would never cost more than from scratch. Kept from before.
 const REBUILD: usize = 2;
-/// For how many updates tracking is skipped, at least and at most.
+/// For how many updates tracking is skipped, at least and at most. Kept from before.
 const SKIPPED: [usize; 2] = [16, 128];
 /// How many times the cost of building a tree for a body a search costs more in a tree whose leaves are
-/// twice too large.
+/// twice too large. No measurement is on record.
 const LARGE_LEAVES: usize = 3;
 
 /// Whether finding all candidates is cheaper than looking up this many bodies.

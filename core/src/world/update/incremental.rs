@@ -2,8 +2,9 @@
 //! the tree.
 //!
 //! Where most bodies move, the fat AABB of a body that left it is extended: its candidates stay, and
-//! some are added. Where few move it gets a new one, and its candidates are replaced: that takes a scan
-//! of the list, but extended again and again a fat AABB would grow for ever.
+//! some are added; replacing them too takes 1.07 to 1.14 of the time where all drift (1,000 and 10,000
+//! bodies, paired). Where few move it gets a new one, and its candidates are replaced: that takes a scan of
+//! the list, but extended again and again a fat AABB would grow for ever.
 
 use alloc::vec::Vec;
 use core::hint::black_box;
