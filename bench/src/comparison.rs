@@ -17,9 +17,9 @@ use crate::remote::{self, Remote};
 use crate::worlds::FROM_SCRATCH;
 use crate::{machine, scene, worlds};
 
-/// Up to so many boxes brute force is the reference; beyond, two libraries that agree.
+/// Up to this many boxes brute force is the reference; above, two libraries that agree.
 const ORACLE_LIMIT: usize = 10_000;
-/// Fewer boxes than this are found in batches of calls, of about so many boxes together.
+/// With fewer boxes than this, calls are timed in batches that have about this many boxes together.
 const BATCHED: usize = 1000;
 /// No library takes part in more rounds once it has taken so long, but for the first three.
 const PATIENCE: Duration = Duration::from_secs(2);

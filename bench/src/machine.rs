@@ -87,7 +87,7 @@ fn tsc_mhz() -> Option<f64> {
     None
 }
 
-/// Bytes read plus bytes written a second by one thread that copies half of so many bytes: the best
+/// Bytes read plus bytes written a second by one thread that copies half of these bytes: the best
 /// of several copies. Few bytes stay in the caches.
 pub fn copy_bandwidth(bytes: usize) -> f64 {
     let half = (bytes / 2).max(1);

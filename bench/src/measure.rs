@@ -62,7 +62,7 @@ pub struct Options {
     /// Seconds after which a library is stopped and recorded as too slow.
     #[arg(long, default_value_t = 1.5)]
     limit: f64,
-    /// After so many minutes no case is begun; `--resume` goes on from there.
+    /// Begin no case after this many minutes; `--resume` continues from there.
     #[arg(long)]
     minutes: Option<f64>,
     /// The file of results; those of other boxes in it are kept. By default it is named for the

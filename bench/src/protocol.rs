@@ -19,7 +19,7 @@ pub enum Kind {
 pub enum Request {
     /// Find the pairs once, or track them for a while, and report what they are.
     Check,
-    /// Find the pairs, or go on to the next frame, so many times and report how long each took.
+    /// Find the pairs, or go on to the next frame, this many times, and report how long each call took.
     Time {
         /// How many times.
         repeats: usize,

@@ -58,7 +58,7 @@ fn test_rate<const D: usize>() -> Result<f64> {
     Ok(best)
 }
 
-/// The stages on so many boxes.
+/// The stages of a search with this many boxes.
 fn of<const D: usize>(n: usize, test_rate: f64) -> Result<Vec<Stage>> {
     let boxes = SCENE.boxes::<D, f32>(n, SEED).context("in two and three dimensions")?;
     let mut shuffled = boxes.clone();

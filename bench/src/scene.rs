@@ -21,7 +21,7 @@ const FRAMES_CHECKED: usize = 4;
 /// The name that stands for every scene at rest.
 pub const ALL: &str = "all";
 
-/// Whether a scene exists in so many dimensions.
+/// Whether a scene exists in these dimensions.
 pub fn exists(name: &str, dimensions: usize) -> Result<bool> {
     if is_file(name) || Motion::from_name(name).is_some() {
         return Ok(true);

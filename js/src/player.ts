@@ -97,7 +97,7 @@ export class Player {
     return undone;
   }
 
-  /** Plays or undoes until so many events have been played, or all there are. */
+  /** Plays or undoes until `position` events have been played, at most all of them. */
   seek(position: number): void {
     if (!(Number.isInteger(position) && position >= 0)) {
       throw new RangeError(`position must be a whole number, not ${String(position)}`);

@@ -50,7 +50,7 @@ export class BroadPhase {
    * Restores a {@link BroadPhase.snapshot}: for the same calls it gives the same ids, events and
    * results. The other options are in the bytes.
    *
-   * @throws {@link SnapshotError} if the bytes are not a snapshot of boxes of so many dimensions.
+   * @throws {@link SnapshotError} if the bytes are not a snapshot of boxes with these dimensions.
    */
   static fromSnapshot(bytes: Uint8Array, options: { dimensions: Dimensions }): BroadPhase {
     if (!(ArrayBuffer.isView(bytes) && bytes[Symbol.toStringTag] === "Uint8Array")) {

@@ -121,7 +121,7 @@ mod tests {
         let mut order = PairOrder::default();
         let mut pairs = Vec::new();
         let mut sorted = 0;
-        // None, many, a few more time and again; among them the least and the greatest.
+        // No pairs, many, then a few more several times; among them the smallest and the largest.
         for count in [0, 300, 1, 0, 7, 2, 40] {
             let mut draw = || random.below(60) as u32;
             pairs.extend((0..count).map(|_| [draw(), draw()]));

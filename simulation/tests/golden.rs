@@ -50,7 +50,7 @@ fn state_is_golden() {
     assert_eq!(report, GOLDEN, "if the change is meant, this is the new golden.txt:\n{report}");
 }
 
-/// Every algorithm finds its pairs in an order of its own; none of it may be felt.
+/// Every algorithm finds its pairs in another order; the motion must not depend on it.
 #[test]
 fn every_algorithm_gives_the_same_state() {
     for method in Method::ALL {

@@ -22,7 +22,7 @@ const HELP = `Measures the JavaScript package and its alternatives, and keeps th
   --libraries LIST   only the libraries whose names begin with one of these, and sweep-and-prune
   --rounds N         rounds of a case (5)
   --limit SECONDS    a library that takes longer for one call is not timed (1)
-  --minutes N        begin no case after so many minutes
+  --minutes N        begin no case after this many minutes
   --output FILE      the file of results; those of other boxes in it are kept
   --report           measure nothing; make the table from what was kept
   --no-native        leave out the library compiled for this machine

@@ -7,9 +7,9 @@ import { Fingerprint } from "./fingerprint.js";
  * @typedef {{ start(): any, since(start: any): number }} Clock
  */
 
-/** It warms up for so long, in milliseconds, that the engine has compiled what it will compile. */
+/** The warm-up in milliseconds: long enough for the engine to compile everything. */
 const WARM_UP = 150;
-/** And for at most so many calls. */
+/** The most calls of the warm-up. */
 const WARM_UP_CALLS = 1000;
 
 export class Trial {

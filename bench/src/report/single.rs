@@ -10,7 +10,7 @@ use super::format::{count, significant, time};
 use crate::libraries::{ON_TWO_THREADS, SAME_BOXES, THIS_CRATE, TWO_AT_ONCE};
 use crate::record::{Case, Record, Roofline};
 
-/// From so many boxes on, threads and the memory's speed are looked at.
+/// The least number of boxes for which threads and the speed of memory are reported.
 const MANY: usize = 100_000;
 
 /// All of them.
@@ -258,7 +258,7 @@ fn roofline(roofline: &Roofline) -> String {
              that it has to read and write, at the rate at which one thread copies as many \
              ({:.1} GB/s if they are far more than the caches hold), and that of its tests. It has \
              to read each box and write it to one column, to read it there, to test each pair \
-             once, and to write the pairs. What is missing to the whole are further copies, the \
+             once, and to write the pairs. The rest of the time goes to further copies, the \
              sort and the ordered columns, which stay in the caches, candidates that are no pairs, \
              and waiting. Where the \
              output is said to reach 100 %, the writes are hidden behind the sweep.",

@@ -15,13 +15,13 @@ use crate::machine;
 use crate::protocol::{Job, Reply};
 use crate::scene::SEED;
 
-/// Every so many frames the pairs are compared with the right ones.
+/// The number of frames between two comparisons of all pairs with the right ones.
 const EVERY: usize = 5;
 
 /// The number of frames before a world is timed, so that it has reached its steady state.
 const CHECKED: usize = 3 * EVERY + 1;
 
-/// Of so many frames the pairs are compared.
+/// The number of frames whose pairs are compared.
 pub const FRAMES_CHECKED: usize = CHECKED.div_ceil(EVERY);
 
 /// The number of frames over which the memory of a world is measured.

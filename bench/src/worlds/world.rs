@@ -15,7 +15,7 @@ pub trait World<const D: usize> {
     /// are, or which began and ended.
     fn step<'a>(&'a mut self, boxes: &'a [Aabb<D>], moved: &[u32]) -> Result<Found<'a>>;
 
-    /// The pairs that there are, of a world that keeps them in a form of its own. Not timed.
+    /// The current pairs of a world that stores them in its own form. Not timed.
     fn kept(&mut self) -> &[[u32; 2]] {
         &[]
     }

@@ -19,7 +19,7 @@ class Sized {
     this.height = this.#canvas.clientHeight;
   }
 
-  /** Scaled to so many units across, or to CSS pixels. None while it is not shown. */
+  /** The context, scaled to `units` across or to CSS pixels; undefined while the canvas is not shown. */
   context(units: number | undefined): CanvasRenderingContext2D | undefined {
     if (!this.#context || this.width === 0) return undefined;
     const ratio = Math.min(devicePixelRatio, 3);

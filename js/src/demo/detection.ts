@@ -45,7 +45,7 @@ export class Detection {
   }
 
   /**
-   * How often the flags of a pair had been looked at when so many of the events had been played:
+   * How often the flags of a pair were read in the first `position` events:
    * once for each overlap that was found on an axis, or began there or ended.
    */
   flagChecksAt(position: number): number {
@@ -54,7 +54,7 @@ export class Detection {
     return count;
   }
 
-  /** What is to be drawn when so many of its events have been played. */
+  /** The state to draw after this many of its events. */
   stateAt(position: number): PlayerState {
     if (this.#last?.position !== position) {
       this.#player.seek(this.#before + position);

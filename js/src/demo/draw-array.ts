@@ -19,7 +19,7 @@ const CELLS = 16;
 const CELL_HEIGHT = 30;
 const GAP = 6;
 
-/** The height of the arrays, in CSS pixels, for so many endpoints on each of so many axes. */
+/** The height of the arrays in CSS pixels, by the number of endpoints on each axis and the number of axes. */
 export function arrayHeight(endpoints: number, axes: number): number {
   return Math.max(1, axes) * (Math.max(1, Math.ceil(endpoints / CELLS)) * CELL_HEIGHT + GAP) - GAP + 4;
 }

@@ -19,11 +19,11 @@ export interface Grabbing {
   choose(ball: number | undefined): void;
 }
 
-/** A finger hits a ball from so many CSS pixels away. */
+/** A finger hits a ball from this many CSS pixels away. */
 const REACH = 14;
 /** A press that moves less, in CSS pixels, is a choice. */
 const CLICK = 4;
-/** The speed at which a ball is let go is that of the last so many milliseconds. */
+/** A released ball keeps its mean speed over this many milliseconds. */
 const SPEED_MS = 80;
 
 /** Lets pointers (a mouse, fingers, a pen) take hold of balls in a picture. */

@@ -93,7 +93,7 @@ export class Hands {
     this.hasMoved = true;
   }
 
-  /** Where the world stands still, the algorithm runs again at once. */
+  /** In a static world, the algorithm runs again at once. */
   #move(ball: number, x: number, y: number): void {
     const run = this.#handled.run()!;
     const isStill = !this.#demo.isPlaying;

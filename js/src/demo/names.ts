@@ -1,4 +1,4 @@
-/** Names for so many balls: as given, or letters, or after Z numbers. */
+/** Names of the balls: those given, otherwise letters, and numbers after Z. */
 export function namesOf(labels: readonly string[] | "emoji" | undefined, count: number): string[] {
   const given = labels === "emoji" ? emoji : (labels ?? []);
   return Array.from({ length: count }, (_, ball) => {

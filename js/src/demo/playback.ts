@@ -20,7 +20,7 @@ export interface Listener {
   ticked(): void;
 }
 
-/** Turns time into stops and ticks: a world stands still while an event is highlighted. */
+/** Turns time into stops and ticks: a world waits while an event is highlighted. */
 export class Playback {
   readonly #timeline: Timeline;
   readonly #options: Options;

@@ -30,7 +30,7 @@ export class Run {
     this.names = namesOf(options.labels, timeline.radii.length);
   }
 
-  /** A world of its own, after so many ticks. */
+  /** A separate world, after this many ticks. */
   static begin(options: Options, ticks: number): Run {
     return new Run(options, Timeline.at(options, shownKinds(options.decorations, options.detecting), ticks));
   }

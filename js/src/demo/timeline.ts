@@ -20,7 +20,7 @@ interface Tick {
 /** So many ticks can be gone back, a quarter of a minute; of many balls fewer, for the memory's sake. */
 const MOST_TICKS = 900;
 const MOST_BALL_TICKS = 90_000;
-/** If detections are rarer, so many of those. */
+/** The number of detections to keep, if they are rarer than that. */
 const LEAST_DETECTIONS = 4;
 
 /**
@@ -58,7 +58,7 @@ export class Timeline {
   }
 
   /**
-   * As the world is after so many ticks. Only the last of its detections are run: of all of them a
+   * The state of the world after this many ticks. Only the last of its detections are run: of all of them a
    * swap-driven method remembers no more than that.
    */
   static at(options: Options, kinds: ReadonlySet<TraceEvent["kind"]>, ticks: number): Timeline {
@@ -199,7 +199,7 @@ export class Timeline {
     return false;
   }
 
-  /** To the so-manyeth stop of those that are kept; 0 is the beginning. */
+  /** Goes to a stop by its index among the kept ones; 0 is the first. */
   seek(place: number): void {
     let left = Math.max(0, Math.trunc(place));
     let last = 0;

@@ -19,7 +19,7 @@ export class World {
   readonly #options: WorldOptions;
   readonly radii: Float32Array;
 
-  /** @throws {@link OptionError} if so many balls do not fit. */
+  /** @throws {@link OptionError} if the balls do not fit. */
   constructor(options: WorldOptions) {
     this.#options = options;
     this.#simulation = start(options);

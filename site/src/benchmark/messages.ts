@@ -15,7 +15,7 @@ export interface Ready {
   readonly estimate: number;
 }
 
-/** Asks for the mean time of a call, in ms, over so many. */
+/** Asks for the mean time of a call in ms, over this many calls. */
 export interface Time {
   readonly calls: number;
 }

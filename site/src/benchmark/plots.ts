@@ -31,7 +31,7 @@ export function drawLines(place: HTMLElement, points: readonly Point[], looks: L
   const base = frame(place);
   const most = Math.max(...sizes);
   const ends = names.map((name) => of(name).reduce((a, b) => (b.boxes > a.boxes ? b : a)));
-  // Who was not asked with the most boxes has no place of its own at the right: the corner below is free.
+  // A library that was not measured with the most boxes has no label at the right: the corner below is free.
   const text = ({ name, boxes }: Point): string => (boxes < most ? `${name}, to ${shortCount(boxes)}` : name);
   const isBeside = base.width >= ROOM_BESIDE;
   const marginRight = isBeside ? LEADER + 16 + NAME_WIDTH * Math.max(...ends.map((end) => text(end).length)) : base.marginRight;

@@ -11,7 +11,7 @@ const TASKS: readonly (readonly [Task, string])[] = [
   ["cases", "find all pairs"],
   ["worlds", "track moving boxes"],
 ];
-/** Below so many boxes one is at the small inputs, for which plots over the number are no help. */
+/** Inputs with fewer boxes are small: a plot over their number does not help. */
 const SMALL = 100;
 
 export class RecordedRuns {

@@ -5,7 +5,7 @@ import { library as bruteForce, REFERENCE_LIMIT } from "../../../bench/js/src/re
 import type { Answer, Ready, Start, Time } from "./messages.ts";
 import type { Case, Entry } from "./results.ts";
 
-/** Who does not answer for so long is stopped, in ms. */
+/** A worker that does not answer for this long (ms) is stopped. */
 const LIMIT = 10_000;
 /** Who takes longer for a call is not timed, in ms. */
 const TOO_SLOW = 3_000;

@@ -13,7 +13,7 @@ const COUNTER_MS = 120;
 const NOT_COUNTED = "not counted by this algorithm";
 /** The time of drawing is the mean of this many pictures. */
 const WINDOW = 30;
-/** The plot of the stages shows so many of its moments, one each time the counters change. */
+/** The plot of the stages shows this many moments, one for each change of the counters. */
 const MOMENTS = 80;
 /** The stages of a picture in their order: the names of their custom properties too. */
 const STAGES = ["broad-phase", "narrow-phase", "solving", "drawing"] as const;

@@ -121,7 +121,7 @@ export class BoxPlayground extends HTMLElement {
     });
   }
 
-  /** The scenes and the axes that exist in so many dimensions. */
+  /** The scenes and the axes that exist in the chosen dimensions. */
   #fill(): void {
     const dimensions = Number(this.#state.dimensions);
     const { scenes, axes } = this.#lists;

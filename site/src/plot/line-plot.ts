@@ -85,7 +85,7 @@ export function drawLines(canvas: HTMLCanvasElement, width: number, height: numb
   }
 }
 
-/** The context of a canvas of so many CSS pixels, sharp on this screen. */
+/** The context of a canvas of this size in CSS pixels, sharp on this screen. */
 export function fitted(canvas: HTMLCanvasElement, width: number, height: number): CanvasRenderingContext2D {
   const ratio = Math.min(devicePixelRatio, 2);
   const [wide, high] = [Math.round(width * ratio), Math.round(height * ratio)];

@@ -130,7 +130,7 @@ export class RaceTrack extends HTMLElement {
     });
   }
 
-  /** The scenes that exist in so many dimensions. */
+  /** The scenes that exist in the chosen dimensions. */
   #fillScenes(): void {
     const dimensions = Number(this.#state.dimensions);
     const there = this.#lists.scenes.filter(({ dimensions: [least, most] }) => least <= dimensions && dimensions <= most);

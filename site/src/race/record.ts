@@ -19,9 +19,9 @@ export type Measure = (typeof MEASURES)[number];
 
 /** Steps that the plot shows. */
 export const SHOWN = 240;
-/** Times are means of the middle half of so many steps: browsers tell the time in tenths of a millisecond. */
+/** Times are means of the middle half of this many steps: browsers tell the time in tenths of a millisecond. */
 export const WINDOW = 60;
-/** And in the plot of so many. */
+/** The same for the plot. */
 const SMOOTH = 16;
 
 /** The reports of the last steps, by lane, and whether all agreed on the pairs in every one. */

@@ -9,7 +9,7 @@ export interface Listener {
   failed(message: string): void;
 }
 
-/** A simulation on a thread of its own. Everything asked of it is done in the order asked. */
+/** A simulation in its own thread. It handles requests in their order. */
 export class SimulationClient {
   readonly #worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
   readonly #listener: Listener;

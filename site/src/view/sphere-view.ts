@@ -110,7 +110,7 @@ export class SphereView implements View {
     this.#renderer.render(this.#scene, this.#camera);
   }
 
-  /** Stands back just as far as the whole world needs, looking from where it looks now. */
+  /** Moves the camera along its direction until the world fits the view. */
   #frame(): void {
     const { position, fov, aspect } = this.#camera;
     const target = this.#controls.target;

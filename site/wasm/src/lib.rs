@@ -136,8 +136,8 @@ pub extern "C" fn experiment_count_pairs() -> f64 {
     with(|experiment| experiment.count_pairs()).map_or(-1.0, |count| count as f64)
 }
 
-/// Adds a searcher: its place, its sort's and its axis' in the lists of [`experiment_names`]; an axis
-/// beyond the list is that one, counted from there. Sorts and axes of the library's two are not read.
+/// Adds a searcher, given by the indices of its method, sort and axis in the lists of [`experiment_names`]; an
+/// index beyond the axis rules is the axis itself, counted from there. Sorts and axes of the library's two are not read.
 #[unsafe(no_mangle)]
 pub extern "C" fn experiment_enter(searcher: u32, sort: u32, axis: u32, persistent: u32) -> Code {
     code(choice(searcher, sort, axis, persistent).and_then(|choice| with(|a| a.enter(choice))))
@@ -151,8 +151,8 @@ pub extern "C" fn experiment_forecast(searcher: u32, sort: u32, axis: u32) -> Co
     code(forecast.map(|forecast| write_area(&[forecast.tests, forecast.kept])))
 }
 
-/// Lets a searcher find the pairs of the world as it is; its report into the area. It is counted
-/// what it does, on a copy, if `counting` is not 0.
+/// Lets a searcher find the current pairs of the world, and writes its report into the area. If `counting`
+/// is not 0, its operations are counted on a copy.
 #[unsafe(no_mangle)]
 pub extern "C" fn experiment_run(searcher: u32, counting: u32) -> Code {
     let report = with(|experiment| experiment.run(searcher as usize, counting != 0));

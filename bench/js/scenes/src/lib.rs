@@ -108,7 +108,7 @@ extern "C" fn text() -> *const u8 {
     SHARED.with_borrow(|shared| shared.text.as_ptr())
 }
 
-/// Opens the scene whose name is the text. 0: there is none in so many dimensions, 1: boxes at
+/// Opens the scene whose name is the text. 0: it does not exist in these dimensions, 1: boxes at
 /// rest, 2: boxes in motion.
 #[unsafe(no_mangle)]
 extern "C" fn open(dimensions: usize, n: usize) -> u32 {
