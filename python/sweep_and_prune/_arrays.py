@@ -68,7 +68,7 @@ def thread_count(threads: object) -> int:
 def whole(value: object, name: str, least: int, most: int) -> int:
     """A whole number in a range."""
     try:
-        number = operator.index(value)  # type: ignore[arg-type]
+        number = operator.index(None if isinstance(value, np.bool_) else value)  # type: ignore[arg-type]
     except TypeError:
         raise TypeError(f"{name} must be a whole number, not {_described(value)}") from None
     if not least <= number <= most:
@@ -173,7 +173,7 @@ def one_id(id: object) -> Ids:
 
 def id_array(ids: ArrayLike) -> Ids:
     """Ids as an array."""
-    array = np.asarray(ids)
+    array = as_array(ids, "ids")
     if array.ndim != 1:
         raise ValueError(f"ids must be of shape (n,), not {array.shape}")
     if array.size == 0 and array.dtype.kind == "f":

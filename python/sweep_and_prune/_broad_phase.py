@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from ._arrays import Floats, Ids, box_rows, each, float_dtype, id_array, one_id, real, row, rows, whole
 from ._errors import InvalidQueryError, StaleProxyError
 from ._filter import Filter, words
+from ._inputs import as_array
 from ._native import World
 
 
@@ -97,7 +98,7 @@ def slots_of(ids: ArrayLike) -> NDArray[np.int64]:
     >>> c, sap.slots_of([b, c]).tolist()  # a new id in the slot of a
     (4294967296, [1, 0])
     """
-    array = np.asarray(ids)
+    array = as_array(ids, "ids")
     if array.dtype.kind not in "iu" and array.size:
         raise TypeError(f"ids must be whole numbers, not of dtype {array.dtype}")
     return array.astype(np.int64) & 0xFFFF_FFFF

@@ -74,7 +74,7 @@ def join(
         InvalidBoxError: for the first box that is inverted.
         TypeError: for anything but two frames of the same kind.
 
-    >>> import pytest; pandas = pytest.importorskip("pandas")
+    >>> import pandas
     >>> import sweep_and_prune as sap
     >>> genes = pandas.DataFrame({"start": [0, 50], "end": [10, 80], "gene": ["a", "b"]})
     >>> reads = pandas.DataFrame({"start": [5, 9, 90], "end": [7, 60, 95]})
@@ -94,6 +94,9 @@ def join(
         raise ValueError(f'how must be "inner", "left" or "right", not {how!r}')
     if predicate not in _PREDICATES:
         raise ValueError(f"predicate must be one of {', '.join(_PREDICATES)}, not {predicate!r}")
+    for name, suffix in (("lsuffix", lsuffix), ("rsuffix", rsuffix)):
+        if not isinstance(suffix, str):
+            raise TypeError(f"{name} must be a string, not {suffix!r}")
     columns = [] if by is None else [by] if isinstance(by, str) else list(by)
     groups = _groups(left, right, columns)
     if has_geometries[0]:

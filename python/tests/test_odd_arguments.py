@@ -3,6 +3,7 @@ be a `PanicException`, which is none of these."""
 
 from __future__ import annotations
 
+import importlib
 import inspect
 from collections.abc import Iterator
 from typing import Any
@@ -12,6 +13,11 @@ import pytest
 from oracle import random_boxes
 
 import sweep_and_prune as sap
+
+try:
+    pandas: Any = importlib.import_module("pandas")
+except ImportError:
+    pandas = None
 
 
 class Stubborn:
@@ -106,7 +112,16 @@ def sensible(name: str, ids: Any) -> Any:
         **dict.fromkeys(("threads", "k", "size", "index", "axis", "group", "category", "mask"), 1),
         **{"id": int(ids[0]), "ids": ids, "filter": sap.Filter(), "each": lambda chunk: None, "snapshot": b""},
         **{"format": "xyxy", "closed": "both", "missing": "raise", "by": None, "index_dtype": np.int64},
-        **{"dimensions": 2, "dtype": np.float64, "report": "exact", "other": sap.Filter(), "is_static": False},
+        **{"how": "inner", "predicate": "intersects", "distance": None, "lsuffix": "left", "rsuffix": "right"},
+        **dict.fromkeys(("left", "right"), pandas and pandas.DataFrame(ROWS, columns=["x1", "y1", "x2", "y2"])),
+        **{
+            "dimensions": 2,
+            "progress": None,
+            "dtype": np.float64,
+            "report": "exact",
+            "other": sap.Filter(),
+            "is_static": False,
+        },
     }
     return values[name]
 
@@ -131,6 +146,10 @@ def calls() -> Iterator[tuple[str, Any]]:
         "count_pairs",
         "count_pairs_between",
         "for_each_chunk",
+        "for_each_chunk_between",
+        "iter_chunks",
+        "iter_chunks_between",
+        *(["join"] if pandas else []),
         "slots_of",
         "PairFinder",
         "BroadPhase",
@@ -158,7 +177,9 @@ def test_odd_values(name: str, make: Any) -> None:
             try:
                 if {"boxes", "a"} & set(parameters) and arguments.get("dtype") is np.float64:
                     arguments["dtype"] = np.int64  # that of indices
-                function(**arguments)
+                result = function(**arguments)
+                if isinstance(result, Iterator):
+                    list(result)
             except ALLOWED as error:
                 refused += 1
                 assert str(error) or isinstance(error, ZeroDivisionError)
