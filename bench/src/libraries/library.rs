@@ -9,9 +9,6 @@ pub const THIS_CRATE: &str = "sweep-and-prune";
 /// The name of this library on two threads.
 pub const ON_TWO_THREADS: &str = "sweep-and-prune, 2 threads";
 
-/// The name of this library called with the boxes of the last call.
-pub const SAME_BOXES: &str = "sweep-and-prune, again";
-
 /// The name of two finders of this library at the same time.
 pub const TWO_AT_ONCE: &str = "sweep-and-prune, two at once";
 

@@ -23,19 +23,13 @@ pub mod physx;
 mod rstar;
 
 pub use library::{
-    Finder, Library, LibraryInfo, ON_TWO_THREADS, Origin, SAME_BOXES, THIS_CRATE, TWO_AT_ONCE,
-    WITNESSES,
+    Finder, Library, LibraryInfo, ON_TWO_THREADS, Origin, THIS_CRATE, TWO_AT_ONCE, WITNESSES,
 };
 
 /// All libraries that were compiled in, this repository's first.
 pub fn all() -> Vec<Library> {
-    let mut all = vec![
-        this_crate::LIBRARY,
-        this_crate::TWO_THREADS,
-        this_crate::TWICE,
-        this_crate::AGAIN,
-        this_crate::FRESH,
-    ];
+    let mut all =
+        vec![this_crate::LIBRARY, this_crate::TWO_THREADS, this_crate::TWICE, this_crate::FRESH];
     all.extend([plain::SWEEP, plain::BRUTE_FORCE]);
     #[cfg(feature = "light")]
     all.extend([

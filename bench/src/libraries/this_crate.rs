@@ -3,9 +3,7 @@
 use anyhow::Result;
 use sweep_and_prune::{Aabb, PairFinder};
 
-use super::library::{
-    Finder, Library, ON_TWO_THREADS, Origin, SAME_BOXES, THIS_CRATE, TWO_AT_ONCE,
-};
+use super::library::{Finder, Library, ON_TWO_THREADS, Origin, THIS_CRATE, TWO_AT_ONCE};
 
 /// A finder that keeps its buffers.
 pub const LIBRARY: Library = Library {
@@ -25,16 +23,6 @@ pub const TWO_THREADS: Library = Library {
     alternative: false,
     two: Some(|| Box::new(Reused(PairFinder::<2>::new().threads(2)))),
     three: Some(|| Box::new(Reused(PairFinder::<3>::new().threads(2)))),
-};
-
-/// The same, called with the boxes of the last call once more.
-pub const AGAIN: Library = Library {
-    name: SAME_BOXES,
-    origin: Origin::Here,
-    how: "`PairFinder::find` with the boxes of the last call, all at rest",
-    alternative: false,
-    two: Some(|| Box::new(Again(PairFinder::<2>::new()))),
-    three: Some(|| Box::new(Again(PairFinder::<3>::new()))),
 };
 
 /// Two finders of one thread each at work at once, each on all boxes: what the machine makes of
@@ -68,14 +56,6 @@ impl<const D: usize> Finder<D> for Reused<D> {
     fn forget(&mut self, shuffled: &[Aabb<D>]) -> Result<()> {
         self.0.find(shuffled)?;
         Ok(())
-    }
-}
-
-struct Again<const D: usize>(PairFinder<D>);
-
-impl<const D: usize> Finder<D> for Again<D> {
-    fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]> {
-        Ok(self.0.find(boxes)?)
     }
 }
 

@@ -7,7 +7,7 @@ use std::fmt::Write;
 use super::cases::{SMALL, find, names, scenes, sorted};
 use super::format::{count, significant, time};
 
-use crate::libraries::{ON_TWO_THREADS, SAME_BOXES, THIS_CRATE, TWO_AT_ONCE};
+use crate::libraries::{ON_TWO_THREADS, THIS_CRATE, TWO_AT_ONCE};
 use crate::record::{Case, Record, Roofline};
 
 /// The least number of boxes for which threads and the speed of memory are reported.
@@ -16,7 +16,6 @@ const MANY: usize = 100_000;
 /// All of them.
 pub fn section(record: &Record) -> String {
     let mut text = threads(record);
-    text += &second_call(record);
     text += &small(record);
     text += &flat(record);
     text += &memory(record);
@@ -60,33 +59,6 @@ fn threads(record: &Record) -> String {
         "Goal: at least 1.7 times as fast as one thread. The last column is what two independent finders \
          gain, each on a thread of its own: the most that this machine offers.",
         "| scene | boxes | one thread | two threads | gain | gain of two independent finders |",
-        &rows,
-    )
-}
-
-fn second_call(record: &Record) -> String {
-    let mut rows = String::new();
-    for case in sorted(&record.cases).into_iter().filter(|case| case.boxes > SMALL) {
-        let (Some(one), Some(again)) = (case.times(THIS_CRATE), case.times(SAME_BOXES)) else {
-            continue;
-        };
-        let Some(share) = again.ratio else { continue };
-        let _ = writeln!(
-            rows,
-            "| {} {}D | {} | {} | {} | {} |",
-            case.scene,
-            case.dimensions,
-            count(case.boxes as u64),
-            time(one.median_ns),
-            time(again.median_ns),
-            significant(1.0 / share),
-        );
-    }
-    table(
-        "The same boxes again",
-        "With the boxes of the last call, all at rest, against the same boxes in another order. From \
-         512 to 16,384 boxes the finder starts from the last order.",
-        "| scene | boxes | other boxes before | same boxes before | gain |",
         &rows,
     )
 }
