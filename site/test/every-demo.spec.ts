@@ -16,6 +16,28 @@ const keys = async (demo: Locator, key: string, times: number): Promise<unknown[
   return moments;
 };
 
+/** A demo, paused at a moment that nothing but time and keys may change. */
+interface Paused {
+  demo: Locator;
+  name: string;
+  moment: unknown;
+}
+
+const canvasOf = ({ demo }: Paused): Locator => demo.locator(".picture canvas");
+
+const isFitted = (paused: Paused): Promise<boolean> =>
+  canvasOf(paused).evaluate((canvas: HTMLCanvasElement) => Math.abs(canvas.width - canvas.clientWidth * devicePixelRatio) <= 1 && canvas.width > 0);
+
+/** The sum of all that is painted, some pictures later. */
+const looks = (paused: Paused): Promise<number> =>
+  canvasOf(paused).evaluate(async (canvas: HTMLCanvasElement) => {
+    for (let frame = 0; frame < 3; frame++) await new Promise(requestAnimationFrame);
+    const { width, height } = canvas;
+    const copy = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true })!;
+    copy.drawImage(canvas, 0, 0);
+    return copy.getImageData(0, 0, width, height).data.reduce((sum, value) => sum + value, 0);
+  });
+
 test("every demo: keys alone step it, back and forward again is the same, neither size nor theme disturbs it", async ({ page }) => {
   test.setTimeout(900_000); // three dozen demos, each for several seconds, on a machine that may be busy
   const heard = complaints(page);
@@ -24,6 +46,7 @@ test("every demo: keys alone step it, back and forward again is the same, neithe
   const demos = page.locator("sap-demo");
   const count = await demos.count();
   expect(count).toBeGreaterThan(30);
+  const all: Paused[] = [];
   let moving = 0;
   for (let at = 0; at < count; at++) {
     const demo = demos.nth(at);
@@ -55,36 +78,30 @@ test("every demo: keys alone step it, back and forward again is the same, neithe
         expect(await keys(demo, ".", 11), name).toEqual(forward.slice(1));
       }
       await expect(demo.locator('[role="status"]'), name).not.toBeEmpty();
-
-      const before = await momentOf(demo);
-      const canvas = demo.locator(".picture canvas");
-      const isFitted = (): Promise<boolean> =>
-        canvas.evaluate((canvas: HTMLCanvasElement) => Math.abs(canvas.width - canvas.clientWidth * devicePixelRatio) <= 1 && canvas.width > 0);
-      // The sum of all that is painted, some pictures later.
-      const looks = (): Promise<number> =>
-        canvas.evaluate(async (canvas: HTMLCanvasElement) => {
-          for (let frame = 0; frame < 3; frame++) await new Promise(requestAnimationFrame);
-          const { width, height } = canvas;
-          const copy = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true })!;
-          copy.drawImage(canvas, 0, 0);
-          return copy.getImageData(0, 0, width, height).data.reduce((sum, value) => sum + value, 0);
-        });
-      for (const width of [390, 1280]) {
-        await page.setViewportSize({ width, height: 900 });
-        await demo.scrollIntoViewIfNeeded();
-        await expect.poll(isFitted, { message: `${name} at ${width} pixels` }).toBe(true);
-      }
-      const light = await looks();
-      await page.emulateMedia({ colorScheme: "dark" });
-      const change = async (): Promise<number> => Math.abs((await looks()) / light - 1);
-      await expect.poll(change, { message: `${name} is dark` }).toBeGreaterThan(0.003);
-      await page.emulateMedia({ colorScheme: "light" });
-      await expect.poll(change, { message: `${name} is light again` }).toBeLessThan(0.001);
-      expect(await momentOf(demo), `${name} after another size and theme`).toEqual(before);
-      await demo.evaluate((element: SapDemo) => element.pause());
+      all.push({ demo, name, moment: await momentOf(demo) });
     });
   }
   expect(moving).toBeGreaterThan(15);
+
+  // Each change of size or theme is made once for the whole page: laying it out again is what takes time.
+  const inView = async (check: (paused: Paused, at: number) => Promise<void>): Promise<void> => {
+    for (const [at, paused] of all.entries()) {
+      await paused.demo.scrollIntoViewIfNeeded();
+      await check(paused, at);
+    }
+  };
+  for (const width of [390, 1280]) {
+    await page.setViewportSize({ width, height: 900 });
+    await inView((paused) => expect.poll(() => isFitted(paused), { message: `${paused.name} at ${width} pixels` }).toBe(true));
+  }
+  const light: number[] = [];
+  await inView(async (paused) => void light.push(await looks(paused)));
+  const change = async (paused: Paused, at: number): Promise<number> => Math.abs((await looks(paused)) / light[at]! - 1);
+  await page.emulateMedia({ colorScheme: "dark" });
+  await inView((paused, at) => expect.poll(() => change(paused, at), { message: `${paused.name} is dark` }).toBeGreaterThan(0.003));
+  await page.emulateMedia({ colorScheme: "light" });
+  await inView((paused, at) => expect.poll(() => change(paused, at), { message: `${paused.name} is light again` }).toBeLessThan(0.001));
+  for (const { demo, name, moment } of all) expect(await momentOf(demo), `${name} after another size and theme`).toEqual(moment);
   expect(heard).toEqual([]);
 });
 
