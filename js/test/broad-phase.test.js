@@ -15,7 +15,7 @@ import { boxesAmong, boxesSpread, oracle, random } from "./support/boxes.js";
 
 /** @typedef {1 | 2 | 3} Dimensions */
 
-assert.throws(() => new BroadPhase({ dimensions: 2 }), (error) => error instanceof NotInitializedError && /imported from "sweep-and-prune\/broad-phase"/.test(error.message));
+assert.throws(() => new BroadPhase({ dimensions: 2 }), (error) => error instanceof NotInitializedError && /import `init` from "sweep-and-prune\/broad-phase"/.test(error.message));
 before(() => init());
 
 const every = /** @type {const} */ ([1, 2, 3]);

@@ -102,9 +102,9 @@ mod tests {
     ) -> Vec<[u32; 2]> {
         let (mut all, mut out, mut cursor) = (Vec::new(), vec![[0; 2]; size], Cursor::default());
         while !cursor.is_done() {
+            let sets = (&sets[0], sets.get(1));
             // SAFETY: the vectors need no instructions, the boxes are ready for two axes, the cursor
             // is from this sweep, and the output is long enough.
-            let sets = (&sets[0], sets.get(1));
             let count = unsafe { scan::sweep::<f32, V>(sets, 2, order, &mut cursor, &mut out) };
             all.extend_from_slice(&out[..count]);
         }
