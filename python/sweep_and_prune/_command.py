@@ -158,7 +158,7 @@ class _Progress:
 
 def _search(options: argparse.Namespace, sources: list[Source]) -> tuple[list[Any], dict[str, Any]]:
     """The sets of boxes and the options of the search."""
-    sets = [source.boxes(options.columns) for source in sources]
+    sets = [source.boxes(options.columns, options.format) for source in sources]
     by = [options.by or source.by for source in sources]
     groups = [source.label(name) for source, name in zip(sources, by) if name is not None]
     if groups and len(groups) != len(sources):

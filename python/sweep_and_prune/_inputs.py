@@ -127,20 +127,27 @@ def _from_arrow(values: Any, name: str, format: str) -> NDArray[Any] | None:
     return rows
 
 
-def _from_columns(values: Any, columns: list[str], name: str, format: str) -> NDArray[Any]:
-    if hasattr(values, "total_bounds"):
-        values = values.bounds
+def box_columns(columns: list[str], format: str) -> list[str]:
+    """The columns that are recognized as boxes: min corner and then max corner, or one column of nested boxes."""
     known = {column.lower().replace("_", ""): column for column in columns}
     for first, second in _spellings(format):
         count = sum(1 for pair in zip(first, second) if pair[0] in known and pair[1] in known)
         if count and all(part in known for part in first[:count] + second[:count]):
-            names = [known[part] for part in first[:count] + second[:count]]
-            table = np.column_stack([_column(values[column]) for column in names])
-            if "top" in first and count == 2:  # the y axis may point up or down
-                table[:, [1, 3]] = np.sort(table[:, [1, 3]], axis=1)
-            return table
-    if "bbox" in known and len(columns) > 1:  # as in GeoParquet
-        nested = _from_arrow(values[known["bbox"]], name, format)
+            return [known[part] for part in first[:count] + second[:count]]
+    return [known["bbox"]] if "bbox" in known and len(columns) > 1 else []  # as in GeoParquet
+
+
+def _from_columns(values: Any, columns: list[str], name: str, format: str) -> NDArray[Any]:
+    if hasattr(values, "total_bounds"):
+        values = values.bounds
+    names = box_columns(columns, format)
+    if len(names) > 1:
+        table = np.column_stack([_column(values[column]) for column in names])
+        if format == "xyxy" and len(names) == 4 and names[1].lower() == "top":  # the y axis may point up or down
+            table[:, [1, 3]] = np.sort(table[:, [1, 3]], axis=1)
+        return table
+    if names:
+        nested = _from_arrow(values[names[0]], name, format)
         if nested is not None:
             return nested
     wanted = {"xyxy": "minx, miny, maxx, maxy", "xywh": "x, y, w, h", "cxcywh": "cx, cy, w, h"}[format]

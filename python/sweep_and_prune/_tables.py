@@ -17,6 +17,8 @@ from zipfile import BadZipFile
 import numpy as np
 from numpy.typing import NDArray
 
+from ._inputs import box_columns
+
 _MISSING = {"", "na", "n/a", "nan", "null", "none", "."}
 _ARROW = (".arrow", ".feather", ".ipc")
 READABLE = ".csv, .tsv, .bed, .npy, .npz, .geojson, .json, .parquet, .arrow, .feather"
@@ -56,9 +58,14 @@ class Source:
         names = getattr(self.values, "column_names", getattr(self.values, "columns", []))
         return [*map(str, names), *self.labels]
 
-    def boxes(self, columns: Sequence[str]) -> Any:
+    def boxes(self, columns: Sequence[str], format: str) -> Any:
         """The boxes, from columns with these names or else from those that are recognized."""
         if not columns:
+            if self.columns and not box_columns(self.columns, format) and not isinstance(self.values, np.ndarray):
+                raise FileError(
+                    f"{self.name} has no columns that are known as boxes: choose them by --columns; "
+                    + _listed(self.columns)
+                )
             return self.values
         return np.column_stack([np.asarray(self._column(name)) for name in columns])
 

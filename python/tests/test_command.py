@@ -185,7 +185,11 @@ def test_missing_numbers_are_refused_with_their_line_or_left_out(capsys: pytest.
         ("a.csv", "xmin,ymin,xmax,ymax\n0,0,1,1\n0,0,x,1\n", "a.csv, line 3, column xmax: 'x' is no number"),
         ("a.csv", "xmin,ymin,xmax,ymax\n0,0,1,1\n0,0\n", "a.csv, line 3: it has 2 columns, where 4 are expected"),
         ("a.csv", "xmin,ymin,xmax,ymax\n3,0,2,1\n", "a.csv, line 2: the box is inverted on axis 0: min 3.0 is greater"),
-        ("a.csv", "a,b,c\n1,2,3\n", "a.csv: boxes has no columns that are known as boxes"),
+        (
+            "a.csv",
+            "a,b,c\n1,2,3\n",
+            "a.csv has no columns that are known as boxes: choose them by --columns; its columns are a, b, c",
+        ),
         ("a.csv", "1,2,3\n", "a.csv has no header and 3 columns; boxes have 2, 4 or 6"),
         ("a.csv", "", "a.csv is empty"),
         ("a.bed", "chr1\t5\n", "a.bed, line 1: chrom, start and end are expected"),

@@ -94,6 +94,8 @@ def test_columns_of_other_dimensions_and_formats() -> None:
     assert same(sap.find_pairs(sized, format="xywh"))  # type: ignore[arg-type]
     centered = Frame(cx=x + width / 2, cy=y + height / 2, width=width, height=height)
     assert same(sap.find_pairs(centered, format="cxcywh"))  # type: ignore[arg-type]
+    placed = Frame(left=x, top=y, width=width, height=height)  # as in COCO: no column is one of y's ends
+    assert same(sap.find_pairs(placed, format="xywh"))  # type: ignore[arg-type]
     intervals = Frame(chrom=["a"] * 60, start=x, end=x + width)
     assert same(sap.find_pairs(intervals), pairs(np.stack([x, x + width], 1)))  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"no columns that are known as boxes.*its columns are a, b"):
