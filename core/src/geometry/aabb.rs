@@ -153,13 +153,9 @@ impl<const D: usize, T: Scalar> Aabb<D, T> {
     /// Refuses an invalid box; `index` is its position in what was passed.
     #[inline]
     pub(crate) fn check(&self, index: usize) -> Result<(), Error> {
-        match self.invalid_axis() {
-            None => Ok(()),
-            Some(axis) => {
-                let [min, max] = [self.min, self.max].map(|corner| corner[axis].to_f64().into());
-                Err(Error::InvalidBox { set: 0, index, axis, min, max })
-            }
-        }
+        self.invalid_axis().map_or(Ok(()), |axis| {
+            Err(invalid_box(index, axis, self.min[axis].to_f64(), self.max[axis].to_f64()))
+        })
     }
 
     /// The first axis on which the box is inverted or NaN.
@@ -169,6 +165,13 @@ impl<const D: usize, T: Scalar> Aabb<D, T> {
         let is_interval = |&axis: &usize| self.min[axis] <= self.max[axis];
         (0..D).find(|axis| !is_interval(axis))
     }
+}
+
+/// The error for an invalid box. Apart, so that the checks of boxes are short.
+#[cold]
+#[inline(never)]
+fn invalid_box(index: usize, axis: usize, min: f64, max: f64) -> Error {
+    Error::InvalidBox { set: 0, index, axis, min: min.into(), max: max.into() }
 }
 
 /// The middle of an interval. The sum comes first because it is exact for tiny numbers; where it

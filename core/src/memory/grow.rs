@@ -6,8 +6,8 @@ use alloc::vec::Vec;
 use super::pages::enlarge_pages;
 
 /// Makes an array at least so long. Some slack is added, so that arrays of nearly one size do not
-/// grow again and again: twice as much where they are small, as the bins are whose numbers differ
-/// most from call to call. It never shrinks.
+/// grow again and again: twice as much where they are small, as those for the columns are whose
+/// lengths differ most from call to call. It never shrinks.
 ///
 /// # Errors
 /// If there is not enough memory; then the array is as it was.

@@ -2,11 +2,11 @@
 //!
 //! Arrays of many megabytes that are written and read in no order cost a walk of the page tables
 //! for every few lines, and one fault for every page when they are new. Pages of 2 MiB spare most
-//! of both, where the system gives them to who asks: Linux in its usual setting (`madvise`).
+//! of both, where the system gives them on request: Linux in its usual setting (`madvise`).
 
 use alloc::vec::Vec;
 
-/// Asks for large pages behind what an array has room for and has not used yet. The system may
+/// Asks for large pages behind the spare capacity of an array. The system may
 /// refuse, and nothing differs but time. Only whole large pages are asked for, so that no memory is
 /// taken that would not be anyway.
 #[cfg(all(
@@ -23,10 +23,10 @@ pub fn enlarge_pages<V>(array: &mut Vec<V>) {
     const LARGE: usize = 2 << 20;
     const MADV_HUGEPAGE: c_int = 14;
 
-    let room = array.spare_capacity_mut().as_mut_ptr_range();
-    let start = room.start.cast::<u8>();
+    let spare = array.spare_capacity_mut().as_mut_ptr_range();
+    let start = spare.start.cast::<u8>();
     let skipped = start.addr().next_multiple_of(LARGE) - start.addr();
-    let pages = (room.end.addr() - room.start.addr()).saturating_sub(skipped) / LARGE;
+    let pages = (spare.end.addr() - spare.start.addr()).saturating_sub(skipped) / LARGE;
     if pages > 0 {
         // SAFETY: the range lies in the array's own allocation, and the advice changes neither what
         // it holds nor whether it may be used. Whether it is followed does not matter.

@@ -8,6 +8,7 @@ use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
 #[cfg(feature = "parallel")]
 use core::iter::once;
+use core::ops::Range;
 
 use super::grid::Grid;
 use super::kernel::{CountedPlacements, Placement, Slots, assign_slots};
@@ -106,16 +107,15 @@ impl<const D: usize, T: Scalar> Columns<D, T> {
         Ok(())
     }
 
-    /// Whether a column has records.
+    /// How many records the columns before this one have.
     #[inline]
-    fn has_records(&self, column: usize) -> bool {
-        self.ends[column] > if column == 0 { 0 } else { self.ends[column - 1] }
+    fn before(&self, column: usize) -> usize {
+        if column == 0 { 0 } else { self.ends[column - 1] as usize }
     }
 
     /// The records of a column.
     fn column(&self, column: usize) -> &[Record<D, T>] {
-        let start = if column == 0 { 0 } else { self.ends[column - 1] };
-        &self.records.array[start as usize..self.ends[column] as usize]
+        &self.records.array[self.before(column)..self.before(column + 1)]
     }
 }
 
@@ -176,22 +176,26 @@ impl<'a, const D: usize, T: Scalar> Filled<'a, D, T> {
     }
 
     /// The records of a column: of each set, as far as there are sets.
+    #[inline(never)]
     pub fn column(&self, column: usize) -> ([&'a [Record<D, T>]; 2], usize) {
         let of = |set: usize| self.columns.get(set).map_or(&[][..], |set| set.column(column));
         ([of(0), of(1)], self.columns.len())
     }
 
-    /// Whether each set has records in a column. Of columns between two sparse sets most have none:
-    /// to pass over them here takes a sixth of the time that it takes to sweep nothing.
-    #[inline]
-    pub fn is_shared(&self, column: usize) -> bool {
-        self.columns.iter().all(|set| set.has_records(column))
+    /// The first of some columns in which each set has records. Between two sparse sets most columns have
+    /// none: to pass over them here takes a sixth of the time that it takes to sweep nothing. (Not inline:
+    /// it is the same for all sinks.)
+    #[inline(never)]
+    pub fn next_shared(&self, mut columns: Range<usize>) -> Option<usize> {
+        let has_records = |set: &Columns<D, T>, at| set.before(at) < set.before(at + 1);
+        columns.find(|&column| self.columns.iter().all(|set| has_records(set, column)))
     }
 
-    /// Which share of the records of the first set a column has.
-    pub fn share(&self, column: usize) -> f64 {
+    /// Which share of the records of the first set some columns have.
+    pub fn share(&self, columns: Range<usize>) -> f64 {
         let first = &self.columns[0];
-        first.column(column).len() as f64 / first.records.len as f64
+        let records = first.before(columns.end) - first.before(columns.start);
+        records as f64 / first.records.len as f64
     }
 
     /// How many records a column has.

@@ -92,10 +92,10 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
                 if O::SWEEPS { sweep.run(sets, Cursor::default(), sink) } else { Ok(()) }
             });
         }
-        self.follow(plan(sets, task.depth < DEPTH).plan, sets, task, sink)
+        self.run_plan(plan(sets, task.depth < DEPTH).plan, sets, task, sink)
     }
 
-    fn follow<S: Source<D, T>, O: Sink>(
+    fn run_plan<S: Source<D, T>, O: Sink>(
         &mut self,
         plan: Plan<T>,
         sets: &[S],
@@ -191,19 +191,22 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
     fn columns<O: Sink>(
         &mut self,
         filled: &Filled<'_, D, T>,
-        columns: Range<usize>,
+        Range { mut start, end }: Range<usize>,
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
-        for column in columns {
-            if !filled.is_shared(column) && task.progress.is_none() {
-                continue;
+        while start < end {
+            let shared = filled.next_shared(start..end);
+            if let Some(column) = shared {
+                let (records, sets) = filled.column(column);
+                let records = &records[..sets];
+                self.sort_and_sweep(records, filled.grid.sweep, filled.crowd, task, sink)?;
             }
-            let (records, sets) = filled.column(column);
-            self.sort_and_sweep(&records[..sets], filled.grid.sweep, filled.crowd, task, sink)?;
+            let next = shared.map_or(end, |column| column + 1);
             if task.progress.is_some() {
-                task.done(filled.share(column))?;
+                task.done(filled.share(start..next))?;
             }
+            start = next;
         }
         Ok(())
     }
@@ -225,7 +228,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
         if boxes > crowd && task.depth < DEPTH {
             let planned = plan(sets, true);
             if planned.plan.divides() {
-                return self.follow(planned.plan, sets, task.nested(0.0), sink);
+                return self.run_plan(planned.plan, sets, task.nested(0.0), sink);
             }
         }
         for (&set, sorted) in sets.iter().zip(&mut self.sorted) {
@@ -235,7 +238,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
         if task.depth < DEPTH
             && let Some(plan) = better_plan(sets, sorted)
         {
-            return self.follow(plan, sets, task.nested(0.0), sink);
+            return self.run_plan(plan, sets, task.nested(0.0), sink);
         }
         if !O::SWEEPS {
             return Ok(());

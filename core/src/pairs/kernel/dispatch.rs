@@ -5,7 +5,7 @@ use core::any::Any;
 #[cfg(target_arch = "aarch64")]
 use super::neon;
 use super::scalar;
-use super::scan::{self, Cursor, Sets};
+use super::scan::{self, Cursor};
 use super::sorted_boxes::{PAD, SortedBoxes};
 use super::vector::PairOrder;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
@@ -147,7 +147,7 @@ macro_rules! sweep {
      $($(#[$cfg:meta])* $instructions:ident => $vector:ty $(, $feature:literal)?;)*) => {
         fn $sweep(
             instructions: Instructions,
-            sets: Sets<'_, $scalar>,
+            (first, second): (&SortedBoxes<$scalar>, Option<&SortedBoxes<$scalar>>),
             others: usize,
             pair_order: PairOrder,
             cursor: &mut Cursor,
@@ -158,19 +158,25 @@ macro_rules! sweep {
                     /// # Safety
                     /// The instructions are present; the rest is as [`Kernel::sweep`] asserts.
                     $(#[target_feature(enable = $feature)])?
-                    unsafe fn compiled(
-                        sets: Sets<'_, $scalar>,
+                    #[inline(never)] // One function for all sweeps takes a kilobyte more in WebAssembly.
+                    unsafe fn compiled<const N: usize>(
+                        sets: [&SortedBoxes<$scalar>; N],
                         others: usize,
                         pair_order: PairOrder,
                         cursor: &mut Cursor,
                         out: &mut [[u32; 2]],
                     ) -> usize {
                         // SAFETY: the caller's promise.
-                        unsafe { scan::sweep::<_, $vector>(sets, others, pair_order, cursor, out) }
+                        unsafe { scan::sweep::<_, $vector, N>(sets, others, pair_order, cursor, out) }
                     }
                     // SAFETY: a `Kernel` exists only where its instructions do, and its method, the
                     // only caller, has checked the boxes, the cursor and the output.
-                    unsafe { compiled(sets, others, pair_order, cursor, out) }
+                    unsafe {
+                        match second {
+                            None => compiled([first], others, pair_order, cursor, out),
+                            Some(b) => compiled([first, b], others, pair_order, cursor, out),
+                        }
+                    }
                 })*
             }
         }

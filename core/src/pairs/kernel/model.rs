@@ -102,10 +102,14 @@ mod tests {
     ) -> Vec<[u32; 2]> {
         let (mut all, mut out, mut cursor) = (Vec::new(), vec![[0; 2]; size], Cursor::default());
         while !cursor.is_done() {
-            let sets = (&sets[0], sets.get(1));
             // SAFETY: the vectors need no instructions, the boxes are ready for two axes, the cursor
             // is from this sweep, and the output is long enough.
-            let count = unsafe { scan::sweep::<f32, V>(sets, 2, order, &mut cursor, &mut out) };
+            let count = unsafe {
+                match sets {
+                    [a, b] => scan::sweep::<_, V, 2>([a, b], 2, order, &mut cursor, &mut out),
+                    _ => scan::sweep::<_, V, 1>([&sets[0]], 2, order, &mut cursor, &mut out),
+                }
+            };
             all.extend_from_slice(&out[..count]);
         }
         all

@@ -107,9 +107,6 @@ fn probes_of<T: Scalar>(first: &SortedBoxes<T>, second: &SortedBoxes<T>, probes:
     low
 }
 
-/// The set that is swept, or the two between which pairs are found.
-pub(super) type Sets<'a, T> = (&'a SortedBoxes<T>, Option<&'a SortedBoxes<T>>);
-
 /// Writes the pairs of one set or of two to `out` and returns how many; `cursor.done` tells whether that
 /// was all. The scan of a box stops where `out` has no space for a full vector.
 ///
@@ -117,8 +114,8 @@ pub(super) type Sets<'a, T> = (&'a SortedBoxes<T>, Option<&'a SortedBoxes<T>>);
 /// The instructions of `V` are present; the sets are ready for `others` axes, at most three, which are
 /// tested beside the sweep axis; the cursor fits the sets; `out.len() >= V::LANES`.
 #[inline(always)]
-pub(super) unsafe fn sweep<T: Scalar, V: Vector<T>>(
-    sets: Sets<'_, T>,
+pub(super) unsafe fn sweep<T: Scalar, V: Vector<T>, const N: usize>(
+    sets: [&SortedBoxes<T>; N],
     others: usize,
     pair_order: PairOrder,
     cursor: &mut Cursor,
@@ -127,10 +124,10 @@ pub(super) unsafe fn sweep<T: Scalar, V: Vector<T>>(
     // SAFETY: the caller's promise.
     unsafe {
         match others {
-            0 => sweep_on::<T, V, 0>(sets, pair_order, cursor, out),
-            1 => sweep_on::<T, V, 1>(sets, pair_order, cursor, out),
-            2 => sweep_on::<T, V, 2>(sets, pair_order, cursor, out),
-            _ => sweep_on::<T, V, 3>(sets, pair_order, cursor, out),
+            0 => sweep_on::<T, V, N, 0>(sets, pair_order, cursor, out),
+            1 => sweep_on::<T, V, N, 1>(sets, pair_order, cursor, out),
+            2 => sweep_on::<T, V, N, 2>(sets, pair_order, cursor, out),
+            _ => sweep_on::<T, V, N, 3>(sets, pair_order, cursor, out),
         }
     }
 }
@@ -140,17 +137,18 @@ pub(super) unsafe fn sweep<T: Scalar, V: Vector<T>>(
 /// # Safety
 /// As [`sweep`].
 #[inline(always)]
-unsafe fn sweep_on<T: Scalar, V: Vector<T>, const K: usize>(
-    (first, second): Sets<'_, T>,
+unsafe fn sweep_on<T: Scalar, V: Vector<T>, const N: usize, const K: usize>(
+    sets: [&SortedBoxes<T>; N],
     pair_order: PairOrder,
     cursor: &mut Cursor,
     out: &mut [[u32; 2]],
 ) -> usize {
     // SAFETY: the caller's promise.
     unsafe {
-        match second {
-            None => within::<T, V, K>(first, cursor, out),
-            Some(second) => between::<T, V, K>([first, second], pair_order, cursor, out),
+        match *sets.as_slice() {
+            [boxes] => within::<T, V, K>(boxes, cursor, out),
+            [a, b] => between::<T, V, K>([a, b], pair_order, cursor, out),
+            _ => unreachable!("there are one or two sets"),
         }
     }
 }

@@ -1,8 +1,8 @@
 //! The last step of a counting sort, by one thread or by several at once: each has a list of what goes
 //! to which column, and all write to one array.
 //!
-//! No two write to one place. That follows from the counts, which are made here, of lists that nobody
-//! can change until they are written.
+//! No two write to one place. That follows from the counts, which are made here, of lists that cannot
+//! change until they are written.
 
 use core::marker::PhantomData;
 use core::mem::{replace, take};
