@@ -254,7 +254,7 @@ def _plot(options: argparse.Namespace, sources: list[Source]) -> None:
         from matplotlib.collections import LineCollection, PolyCollection
         from matplotlib.figure import Figure
     except ImportError:
-        raise FileError("plot needs matplotlib: pip install matplotlib") from None
+        raise FileError("plot needs matplotlib: pip install 'sweep-and-prune[plot]'") from None
     sets, search = _search(options, sources)
     boxes = _corners(sets[0], options)
     pairs = find_pairs(sets[0], threads=options.threads, **search) if options.pairs else np.empty((0, 2), np.int64)
