@@ -1,5 +1,6 @@
-"""Measures how long it takes to find all pairs of n squares in the plane, in double precision, with this package and
-with the alternatives for Python: `pip install shapely scipy`, then `python bench.py`. Checks the number of pairs."""
+"""Measures how long it takes to find all pairs of n squares in the plane, in double precision, and to join tables of
+geometries, with this package and with the alternatives for Python: `pip install shapely scipy geopandas`, then
+`python bench.py`. Checks the number of pairs and of rows."""
 
 from __future__ import annotations
 
@@ -33,6 +34,38 @@ def brute_force(boxes: Any) -> Any:
     return np.argwhere(np.triu(((least[:, None] <= most[None]) & (least[None] <= most[:, None])).all(axis=2), 1))
 
 
+def joins(count: int) -> None:
+    """Compares `join` with `geopandas.sjoin`; both begin without an index."""
+    import geopandas
+    import shapely
+
+    random = np.random.default_rng(1)
+    boxes = geopandas.GeoDataFrame({"a": np.arange(count)}, geometry=shapely.box(*squares(count).T))
+    points = geopandas.GeoDataFrame({"b": np.arange(count)}, geometry=shapely.points(random.random((count, 2))))
+    centers = shapely.points(random.random((count // 100, 2)))
+    areas = geopandas.GeoDataFrame(geometry=shapely.buffer(centers, (count // 100) ** -0.5, quad_segs=32))
+    for name, left, right, predicate, options in (
+        ("boxes that intersect boxes", boxes, boxes, "intersects", {}),
+        ("points that intersect polygons", points, areas, "intersects", {}),
+        ("points within polygons", points, areas, "within", {}),
+        ("polygons that contain points", areas, points, "contains", {}),
+        ("polygons that intersect polygons", areas, areas, "intersects", {}),
+        ("points within a distance of points", points, points, "dwithin", {"distance": count**-0.5}),
+    ):
+
+        def other() -> Any:
+            # A copy has no index.
+            copies = [frame.set_geometry(frame.geometry.array.copy()) for frame in (left, right)]
+            return geopandas.sjoin(*copies, predicate=predicate, **options)
+
+        own, joined = best(lambda: sap.join(left, right, predicate=predicate, **options))
+        theirs, expected = best(other)
+        assert len(joined) == len(expected), name
+        print(
+            f"{count} {name}, {len(joined)} rows: join {own:.1f} ms, geopandas.sjoin {theirs / own:.1f} times as long"
+        )
+
+
 def main() -> None:
     try:
         import shapely
@@ -58,6 +91,10 @@ def main() -> None:
             other, found = best(find)
             assert abs(len(found) - len(pairs)) <= 1, name  # sums are rounded
             print(f"  {name}: {other:.1f} ms, {other / own:.0f} times as long")
+    try:
+        joins(100_000)
+    except ImportError:
+        print("pip install geopandas, to compare join with geopandas.sjoin")
 
 
 if __name__ == "__main__":

@@ -217,6 +217,22 @@ def _groups(by: list[ArrayLike], sets: dict[str, Any], kept: list[Rows]) -> list
             raise ValueError(
                 f"by must have one value for each box of {name}: shape ({len(boxes)},), not {column.shape}"
             )
-    codes = np.unique(np.concatenate(columns), return_inverse=True)[1].reshape(-1).astype(np.int64)
+    codes = _codes(columns)
     split = np.split(codes, np.cumsum([len(column) for column in columns])[:-1])
     return [group if rows is None else group[rows] for group, rows in zip(split, kept)]
+
+
+def _codes(columns: list[NDArray[Any]]) -> NDArray[np.int64]:
+    """A number for each value, the same for equal ones."""
+    kinds = {column.dtype.kind for column in columns}
+    if kinds <= set("biuf") or (len(kinds) == 1 and kinds <= set("mM")):
+        return np.unique(np.concatenate(columns), return_inverse=True)[1].reshape(-1).astype(np.int64)
+    # Text and other objects: looking them up is several times faster than sorting them, and they need no order.
+    values = [
+        value if type(value) is not float or value == value else None for column in columns for value in column.tolist()
+    ]
+    known: dict[Any, int] = {}
+    try:
+        return np.fromiter((known.setdefault(value, len(known)) for value in values), np.int64, len(values))
+    except TypeError:
+        raise TypeError("by must have values that can be compared, such as numbers or text") from None

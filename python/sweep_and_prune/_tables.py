@@ -10,6 +10,7 @@ import os
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from itertools import chain
 from pathlib import Path
 from typing import IO, Any, Protocol
 from zipfile import BadZipFile
@@ -27,15 +28,6 @@ WRITABLE = ("csv", "tsv", "npy", "parquet", "arrow")
 
 class FileError(Exception):
     """What is wrong with a file, for people."""
-
-
-class Columns(Protocol):
-    """The part of a data frame that is used."""
-
-    @property
-    def columns(self) -> list[str]: ...
-    def __len__(self) -> int: ...
-    def __getitem__(self, name: str) -> Any: ...
 
 
 class Source:
@@ -155,13 +147,13 @@ def read(path: str) -> Source:
 
 
 def _read_text(name: str, file: IO[str], suffix: str) -> Source:
-    delimiter = "\t"
+    delimiter, text = "\t", iter(file)
     if suffix not in (".tsv", ".bed"):
-        first = file.readline()
+        first = next(text, "")
         delimiter = max(",;\t", key=first.count)
-        file = _Again(first, file)  # type: ignore[assignment]
+        text = chain([first] if first else [], text)
     rows, lines = [], []
-    reader = csv.reader(file, delimiter=delimiter)
+    reader = csv.reader(text, delimiter=delimiter)
     try:
         for row in reader:
             if not row or (suffix == ".bed" and row[0].split(" ")[0].startswith(("#", "track", "browser"))):
@@ -191,18 +183,6 @@ def _read_text(name: str, file: IO[str], suffix: str) -> Source:
     return Source(name, _Text(name, [cell.strip() for cell in rows[0]], rows[1:], lines[1:]))
 
 
-class _Again:
-    """Lines of a file of which the first was read already."""
-
-    def __init__(self, first: str, file: IO[str]) -> None:
-        self._first, self._file = first, file
-
-    def __iter__(self) -> Iterator[str]:
-        if self._first:
-            yield self._first
-        yield from self._file
-
-
 def _is_number(cell: str) -> bool:
     try:
         float(cell)
@@ -213,11 +193,12 @@ def _is_number(cell: str) -> bool:
 
 def _read_numpy(path: str) -> NDArray[Any]:
     try:
-        loaded = np.load(path, allow_pickle=False)
+        loaded = np.load(path, mmap_mode="r", allow_pickle=False)
     except (ValueError, EOFError, BadZipFile) as error:
         raise FileError(f"{path} is no array of NumPy: {error}") from None
     if isinstance(loaded, np.ndarray):
-        return loaded
+        check_memory(path, loaded.shape[0] if loaded.ndim else 0, loaded.size)
+        return np.asarray(loaded)
     names = loaded.files
     if "boxes" not in names and len(names) != 1:
         raise FileError(f"{path} has the arrays {', '.join(names)}: one of them must be called boxes")
@@ -273,7 +254,7 @@ def _read_arrow(path: str, suffix: str) -> Source:
             import pyarrow.parquet
 
             rows = pyarrow.parquet.ParquetFile(path).metadata.num_rows
-            check_memory(path, rows, 4)
+            check_memory(path, rows, 4 * rows)
             table = pyarrow.parquet.read_table(path)
     except arrow.ArrowInvalid as error:
         raise FileError(f"{path} cannot be read: {error}") from None
@@ -299,13 +280,13 @@ def _pyarrow(path: str) -> Any:
 
 
 def check_memory(path: str, rows: int, numbers: int) -> None:
-    """Refuses files that cannot be searched in this machine's memory."""
+    """Refuses a file with so many boxes and numbers if they cannot be searched in this machine's memory."""
     try:
         memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, ValueError, OSError):
         return
     # The table, the boxes, and what the search keeps.
-    needed = rows * numbers * 8 * 7
+    needed = numbers * 8 * 7
     if needed > memory:
         gigabytes = f"{needed / 1e9:.0f} GB of memory, and this machine has {memory / 1e9:.0f} GB"
         raise FileError(f"{path} has {rows} boxes; to search them takes about {gigabytes}")

@@ -314,4 +314,7 @@ def test_too_large_a_file_is_refused_before_it_is_read(monkeypatch: pytest.Monke
 
     monkeypatch.setattr("os.sysconf", lambda name: 1000)
     with pytest.raises(_tables.FileError, match=r"a\.parquet has 100000000 boxes; to search them takes about 22 GB"):
-        _tables.check_memory("a.parquet", 10**8, 4)
+        _tables.check_memory("a.parquet", 10**8, 4 * 10**8)
+    with pytest.raises(_tables.FileError, match="120 boxes"):
+        monkeypatch.setattr("os.sysconf", lambda name: 100)
+        _tables.read(write("a.npy"))

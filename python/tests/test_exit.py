@@ -25,6 +25,9 @@ def work():
     while True:
         if sys.argv[1] == "callback":
             sap.for_each_chunk(boxes, lambda chunk: None, size=3)
+        elif sys.argv[1] == "iterate":
+            for _ in sap.iter_chunks(boxes, size=3):
+                pass
         elif sys.argv[1] == "world":
             world.set_many(ids, boxes)
             world.update()
@@ -44,7 +47,7 @@ time.sleep(0.05)
 """
 
 
-@pytest.mark.parametrize("work", ["callback", "find", "world", "error"])
+@pytest.mark.parametrize("work", ["callback", "iterate", "find", "world", "error"])
 def test_the_interpreter_exits_while_daemon_threads_search(work: str) -> None:
     for _ in range(6 if work == "callback" else 2):
         done = subprocess.run([sys.executable, "-c", PROGRAM, work], capture_output=True, text=True, timeout=120)

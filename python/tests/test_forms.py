@@ -199,6 +199,24 @@ def test_groups_never_pair_with_each_other(dimensions: int, dtype: Any) -> None:
         sap.find_pairs(boxes, by=by[:-1])
 
 
+def test_groups_may_be_of_any_type() -> None:
+    boxes = np.zeros((6, 2))
+    for by, wanted in (
+        ([1, "1", None, 1, None, "1"], [[0, 3], [1, 5], [2, 4]]),
+        ([0.5, np.nan, 1, np.nan, 0.5, 2], [[0, 4], [1, 3]]),
+        (np.array(["a", np.nan, "a", float("nan"), None, "b"], object), [[0, 2], [1, 3], [1, 4], [3, 4]]),
+        (np.array(["2026-01-01", "2026-01-02"] * 3, "M8[D]"), [[0, 2], [0, 4], [1, 3], [1, 5], [2, 4], [3, 5]]),
+        ([True, False, True, False, False, False], [[0, 2], [1, 3], [1, 4], [1, 5], [3, 4], [3, 5], [4, 5]]),
+    ):
+        found = sap.find_pairs(boxes, by=by if isinstance(by, np.ndarray) else np.array(by, object))
+        assert in_order(found).tolist() == wanted
+    assert len(sap.find_pairs_between(boxes, boxes, by=([1] * 6, ["1"] * 6))) == 0
+    unhashable = np.empty(6, object)
+    unhashable[:] = [[1], [2], [3], [4], [5], [6]]
+    with pytest.raises(TypeError, match="values that can be compared"):
+        sap.find_pairs(boxes, by=unhashable)
+
+
 def test_int32_is_compared_in_double_precision_and_rounded_only_by_single_finders() -> None:
     boxes = np.array([[0, 2**24], [2**24 + 1, 2**25]], np.int32)
     assert len(sap.find_pairs(boxes)) == 0
