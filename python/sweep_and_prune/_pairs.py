@@ -74,8 +74,8 @@ def find_pairs(
         InvalidBoxError: for the first box that is inverted or has a NaN.
         ValueError: for another shape, or unknown options.
         TypeError: if the boxes are not numbers.
-        MemoryError: if the pairs do not fit in memory. With `int64` indices, the most that is used is 1.2 times the
-            size of a large result, and less than five times the size of the boxes.
+        MemoryError: if the pairs do not fit in memory. A large `int64` result takes at most 1.2 times its size while
+            it is found (on Linux with glibc), and besides less than five times the size of the boxes.
 
     >>> import sweep_and_prune as sap
     >>> sap.find_pairs([[0, 0, 2, 2], [5, 5, 6, 6], [2, 1, 3, 4]])  # the third touches the first
