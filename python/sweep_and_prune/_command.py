@@ -179,10 +179,17 @@ def _counted(options: argparse.Namespace, sets: list[Any], search: dict[str, Any
     return number
 
 
-def _chunks(sets: list[Any], search: dict[str, Any]) -> Iterator[NDArray[Any]]:
+def _chunks(
+    options: argparse.Namespace, sets: list[Any], search: dict[str, Any], count: int, what: str
+) -> Iterator[NDArray[Any]]:
+    """So many pairs, with progress: each chunk counts as done when the next one is asked for."""
+    progress, done = _Progress(what, options.quiet), 0
+    # Large, since there is work for each chunk; it takes 16 MB.
     chunks: Any = iter_chunks if len(sets) == 1 else iter_chunks_between
-    found: Iterator[NDArray[Any]] = chunks(*sets, **search)
-    return found
+    for chunk in chunks(*sets, size=2**20, **search):
+        yield chunk
+        done += len(chunk)
+        progress(done / count)
 
 
 def _pairs(options: argparse.Namespace, sources: list[Source]) -> None:
@@ -190,15 +197,12 @@ def _pairs(options: argparse.Namespace, sources: list[Source]) -> None:
     labels = [source.label(options.id) for source in sources] if options.id else None
     sets, search = _search(options, sources)
     count = _counted(options, sets, search)
-    progress, written = _Progress("writing", options.quiet), 0
     with writer(options.output, kind, count, ("a", "b")) as file:
-        for chunk in _chunks(sets, search):
+        for chunk in _chunks(options, sets, search, count, "writing"):
             columns = [chunk[:, 0], chunk[:, 1]]
             if labels:
                 columns = [labels[0][columns[0]], labels[-1][columns[1]]]
             file.write(columns)
-            written += len(chunk)
-            progress(written / count)
 
 
 def _count(options: argparse.Namespace, sources: list[Source]) -> None:
@@ -211,10 +215,11 @@ def _stats(options: argparse.Namespace, sources: list[Source]) -> None:
     sets, search = _search(options, sources)
     boxes = _corners(sets[0], options)
     of_each = np.zeros(len(boxes), np.int64)
-    for chunk in _chunks(sets, search):
+    count = _counted(options, sets, search)
+    for chunk in _chunks(options, sets, search, count, "describing"):
         of_each += np.bincount(chunk.ravel(), minlength=len(boxes))
     half = boxes.shape[1] // 2
-    print(f"{len(boxes)} boxes in {half}D, {of_each.sum() // 2} pairs")
+    print(f"{len(boxes)} boxes in {half}D, {count} pairs")
     known = boxes[~np.isnan(boxes).any(axis=1)]
     if len(known) < len(boxes):
         print(f"{len(boxes) - len(known)} boxes with missing numbers")
