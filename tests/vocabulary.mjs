@@ -1,7 +1,7 @@
 // The words that this project does not use, and where they still stand.
 //
-//   node tests/vocabulary.mjs                  how many places each folder has, and the words
-//   node tests/vocabulary.mjs --list [PATH]    each place, in all files or below PATH
+//   node tests/vocabulary.mjs           the words, and what to write instead
+//   node tests/vocabulary.mjs --list    each place where one of them stands
 import { execFileSync } from "node:child_process";
 import { existsSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -101,14 +101,6 @@ const SKIPPED =
   /^((\w+\/)?LICENSE|tests\/(vocabulary|support\/)|\.tools|bench\/(js\/)?results\/)|package-lock\.json$|Cargo\.lock$|\.(png|svg|webp|ico|snap|json5?|wasm|gif)$/;
 const KEPT_JSON = /package\.json$/;
 
-/** The folders whose counts are kept, the longest first where one is in another. */
-const FOLDERS = [
-  "bench/complexity", "bench/js", "bench", "core/src/algorithms", "core/src/pairs", "core/src/world", "core/src",
-  "core", "docs", "js/src/demo", "js/src", "js/wasm", "js", "python", "scenes", "scripts", "simulation",
-  "site/src", "site/test", "site/wasm", "site", "tests",
-];
-export const folderOf = (path) => FOLDERS.find((folder) => path.startsWith(`${folder}/`)) ?? "(top)";
-
 const isException = (path, not, line) =>
   EXCEPTIONS.some((it) => it.not === not && it.path.test(path) && (!it.line || it.line.test(line)));
 
@@ -138,29 +130,10 @@ export function places() {
   return wanted.flatMap((path) => placesIn(path, readFileSync(join(root, path), "utf8")));
 }
 
-/** How many places each folder has. */
-export function counts(found) {
-  const sums = {};
-  for (const { path } of found) sums[folderOf(path)] = (sums[folderOf(path)] ?? 0) + 1;
-  return Object.fromEntries(Object.entries(sums).sort(([a], [b]) => a.localeCompare(b)));
-}
-
 export const describe = ({ path, line, word, text }) =>
   `${path}${line ? `:${line}` : " (its name)"}: not "${word.not}", but "${word.but}": ${text.slice(0, 120)}`;
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
-  const found = places();
-  if (process.argv[2] === "--list") {
-    const below = process.argv[3] ?? "";
-    for (const place of found.filter(({ path }) => path.startsWith(below))) console.log(describe(place));
-  } else if (process.argv[2] === "--counts") {
-    console.log(JSON.stringify(counts(found), null, 2));
-  } else {
-    for (const [folder, count] of Object.entries(counts(found))) console.log(`${String(count).padStart(5)}  ${folder}`);
-    console.log();
-    for (const word of WORDS) {
-      const count = found.filter((place) => place.word === word).length;
-      console.log(`${String(count).padStart(5)}  ${word.not} -> ${word.but}`);
-    }
-  }
+  if (process.argv[2] === "--list") for (const place of places()) console.log(describe(place));
+  else for (const { not, but } of WORDS) console.log(`${not} -> ${but}`);
 }

@@ -322,7 +322,7 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
         let nearest: Vec<_> = nearest.iter().map(|it| (it.distance_squared, it.id)).collect();
         assert_eq!(nearest, model.nearest(point, k, &filter));
 
-        // A visitor that breaks off is not called again.
+        // A visitor that stops the search is not called again.
         let mut left = k;
         let mut count = 0;
         queries

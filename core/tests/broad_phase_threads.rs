@@ -37,8 +37,8 @@ fn check<const D: usize>(motion: Motion) {
             assert!(motion == Motion::MostlyStill || !expected[0].is_empty());
             for world in others.iter_mut() {
                 let changes = world.update();
-                let told = [changes.begun(), changes.ended()].map(Vec::from_iter);
-                assert_eq!(told, expected, "{motion:?} {D} {step}");
+                let reported = [changes.begun(), changes.ended()].map(Vec::from_iter);
+                assert_eq!(reported, expected, "{motion:?} {D} {step}");
                 assert!(world.pairs().eq(first.pairs()));
                 assert_eq!(world.state_hash(), first.state_hash());
             }

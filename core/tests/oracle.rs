@@ -117,8 +117,8 @@ fn finder_agrees_on_random_boxes<const D: usize, T: Scalar>() {
 }
 in_all_dimensions!(finder_agrees_on_all_random_boxes, finder_agrees_on_random_boxes);
 
-/// NaN or inverted boxes: the error names the first, nobody is told anything, and the next step
-/// is as if the bad one had not been.
+/// NaN or inverted boxes: the error names the first, no observer is called, and the next
+/// step is as if there had been no bad one.
 fn refuses<const D: usize, T: Scalar>(
     turn: usize,
     good: &[Aabb<D, T>],
@@ -133,17 +133,17 @@ fn refuses<const D: usize, T: Scalar>(
     assert_eq!(finder.find(bad), Err(error));
     assert_eq!(finder.find(good).unwrap(), before);
     for options in all_options::<D>(turn) {
-        let (mut told, mut spared) = (Runner::new(options), Runner::new(options));
-        told.step(good, &mut ()).unwrap();
-        spared.step(good, &mut ()).unwrap();
+        let (mut disturbed, mut undisturbed) = (Runner::new(options), Runner::new(options));
+        disturbed.step(good, &mut ()).unwrap();
+        undisturbed.step(good, &mut ()).unwrap();
         let mut counts = Counts::default();
-        assert_eq!(told.step(bad, &mut counts).unwrap_err(), error, "{options:?}");
+        assert_eq!(disturbed.step(bad, &mut counts).unwrap_err(), error, "{options:?}");
         assert_eq!(counts, Counts::default(), "{options:?}");
-        let (mut told_counts, mut spared_counts) = (counts, counts);
-        let told = told.step(good, &mut told_counts).unwrap();
-        let spared = spared.step(good, &mut spared_counts).unwrap();
-        assert_eq!(told.pairs, spared.pairs, "{options:?}");
-        assert_eq!(told_counts, spared_counts, "{options:?}");
+        let (mut counts, mut undisturbed_counts) = (counts, counts);
+        let found = disturbed.step(good, &mut counts).unwrap();
+        let expected = undisturbed.step(good, &mut undisturbed_counts).unwrap();
+        assert_eq!(found.pairs, expected.pairs, "{options:?}");
+        assert_eq!(counts, undisturbed_counts, "{options:?}");
     }
 }
 

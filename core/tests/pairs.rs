@@ -189,7 +189,7 @@ fn check_between<const D: usize, T: Scalar>(name: &str, a: &[Aabb<D, T>], b: &[A
     assert!(flow == Ok(ControlFlow::Continue(())) && streamed == found, "{name}, {D}D, streamed");
 }
 
-/// Where the oracle is not a debug build, enough boxes for many bins, and for threads.
+/// In an optimized build, enough boxes for many columns and for threads.
 const MANY: usize = if cfg!(debug_assertions) { 700 } else { 5000 };
 
 fn adversaries_in_one_set<const D: usize, T: Scalar>() {

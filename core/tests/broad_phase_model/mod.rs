@@ -1,4 +1,4 @@
-//! What the living world should do, by brute force over a map of bodies.
+//! What `BroadPhase` should do, by brute force over a map of bodies.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -143,10 +143,10 @@ impl<const D: usize, T: Scalar> Model<D, T> {
         gaps.fold(0.0, |sum, gap| sum + gap * gap)
     }
 
-    pub fn within(&self, centre: [T; D], radius: T, filter: &Option<Filter>) -> Vec<ProxyId> {
+    pub fn within(&self, center: [T; D], radius: T, filter: &Option<Filter>) -> Vec<ProxyId> {
         let radius = radius.to_f64();
         let is_near =
-            |aabb: &Aabb<D, T>| Self::distance_squared(centre, aabb, 1.0) <= radius * radius;
+            |aabb: &Aabb<D, T>| Self::distance_squared(center, aabb, 1.0) <= radius * radius;
         self.seen(filter).filter(|(_, aabb)| is_near(aabb)).map(|(id, _)| id).collect()
     }
 

@@ -36,7 +36,7 @@ macro_rules! in_all_dimensions {
     };
 }
 
-/// Few values, so that ties are common: both zeros and infinities, neighbours in either type, and
+/// Few values, so that ties are common: both zeros and infinities, neighbors in either type, and
 /// the limits of both types, which fall together with others when rounded to `f32`.
 const COORDINATES: [f64; 16] = [
     f64::NEG_INFINITY,

@@ -117,7 +117,7 @@ impl Slots {
         } else {
             self.add(1)
         };
-        // A new body in a slot that is still listed as changed is listed again only if the tree was told.
+        // A new body in a slot that is still listed as changed is listed again only if the tree knows of the change.
         self.flags[index as usize] &= flag::CHANGED | flag::IN_TREE;
         self.activate(index);
         index

@@ -121,7 +121,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     }
 
     /// Shows what a ray or a moving box hits to `visit`, nearer parts of the world roughly first.
-    /// It may break off, or shorten the cast by continuing with a lower limit, in directions.
+    /// It may stop the cast, or shorten the cast by continuing with a lower limit, in directions.
     ///
     /// # Errors
     /// As [`cast`](Self::cast).

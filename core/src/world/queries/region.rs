@@ -46,7 +46,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         Ok(self.collect(areas, bound))
     }
 
-    /// Shows the bodies whose boxes overlap a box to `visit`, which may break off; in no
+    /// Shows the bodies whose boxes overlap a box to `visit`, which may stop the search; in no
     /// particular order.
     ///
     /// # Errors

@@ -208,7 +208,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
 }
 
 impl<const D: usize, T: Scalar> Scratch<D, T> {
-    /// Marks the bodies that escaped or left, or clears the marks.
+    /// Sets whether the bodies that escaped or left are marked.
     fn mark(&mut self, bodies: &Bodies<D, T>, is_marked: bool) {
         self.is_escaped.resize(bodies.slots.len(), false);
         for &index in self.escaped.iter().chain(&bodies.leaving) {
