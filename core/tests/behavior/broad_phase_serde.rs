@@ -1,5 +1,4 @@
 //! Worlds through serde, in a format without bytes: JSON.
-#![cfg(feature = "serde")]
 
 use sweep_and_prune::{Aabb, BroadPhase, ProxyId};
 

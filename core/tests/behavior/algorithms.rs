@@ -2,11 +2,9 @@
 //! begins and ends is the difference of two oracle runs, what it tells is true, and its counts are
 //! the known ones.
 
-mod common;
-
 use std::collections::BTreeSet;
 
-use common::{valid_box, valid_boxes};
+use crate::common::{valid_box, valid_boxes};
 use proptest::prelude::*;
 use sweep_and_prune::algorithms::{
     Axis, Counts, Endpoint, Method, Player, Runner, RunnerOptions, Sort, Trace, pairwise,

@@ -1,9 +1,7 @@
 //! Every way to find pairs gives the pairs of global pairwise: on every scene, on every frame of
 //! every motion, and on random boxes full of ties.
 
-mod common;
-
-use common::{coordinate, valid_boxes};
+use crate::common::{coordinate, valid_boxes};
 use proptest::prelude::*;
 use sweep_and_prune::algorithms::{Axis, Counts, Method, Runner, RunnerOptions, Sort, pairwise};
 use sweep_and_prune::{Aabb, Error, PairFinder, Scalar, find_pairs, validate};
@@ -101,7 +99,7 @@ in_all_dimensions!(all_agree_on_every_motion, all_agree_in_motion);
 fn algorithms_agree_on_random_boxes<const D: usize, T: Scalar>() {
     // Two frames of as many boxes, and one of any number.
     let sets = (0..=25usize).prop_flat_map(|n| {
-        let frame = || prop::collection::vec(common::valid_box::<D, T>(), n);
+        let frame = || prop::collection::vec(crate::common::valid_box::<D, T>(), n);
         (frame(), frame(), valid_boxes::<D, T>(25))
     });
     proptest!(ProptestConfig::with_cases(64), |((a, b, c) in sets, turn in 0..D + 3)| {
@@ -190,7 +188,7 @@ fn bad_random_boxes_are_refused<const D: usize, T: Scalar>() {
     let wild = prop_oneof![40 => coordinate::<T>(), 1 => Just(T::from_f64(f64::NAN))];
     let corners = (prop::array::uniform::<_, D>(wild.clone()), prop::array::uniform::<_, D>(wild));
     let wild_box = corners.prop_map(|(min, max)| Aabb::new(min, max));
-    let any_box = prop_oneof![4 => common::valid_box(), 1 => wild_box];
+    let any_box = prop_oneof![4 => crate::common::valid_box(), 1 => wild_box];
     let sets = (valid_boxes::<D, T>(12), prop::collection::vec(any_box, 0..12));
     proptest!(ProptestConfig::with_cases(64), |((good, wild) in sets, turn in 0..D + 3)| {
         let valid = |index: usize, axis: usize| wild[index].min[axis] <= wild[index].max[axis];

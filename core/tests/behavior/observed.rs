@@ -1,8 +1,6 @@
 //! What an observer is told is true, and its counts are the known ones.
 
-mod common;
-
-use common::valid_boxes;
+use crate::common::valid_boxes;
 use proptest::prelude::*;
 use sweep_and_prune::algorithms::{
     Axis, Counts, Edge, Endpoint, Method, Observer, Runner, RunnerOptions, Separation, Sort,

@@ -1,7 +1,5 @@
 //! The broad phase on several threads: the same events, pairs and state as on one.
 
-#![cfg(feature = "parallel")]
-
 use sweep_and_prune::{BroadPhase, Filter, PairFinder, ProxyId};
 use sweep_and_prune_scenes::Motion;
 

@@ -1,10 +1,8 @@
 //! A trace plays forward and backward, and what it holds is enough to draw every demo.
 
-mod common;
-
 use std::collections::BTreeSet;
 
-use common::{valid_box, valid_boxes};
+use crate::common::{valid_box, valid_boxes};
 use proptest::prelude::*;
 use sweep_and_prune::algorithms::{
     Axis, Counts, Edge, Event, Method, Observer, Player, PlayerState, Runner, RunnerOptions,

@@ -1,11 +1,9 @@
 //! The finder against brute force, with every kernel and number of threads, for one set and two,
 //! stored, counted and streamed; on scenes that each defeat some simple design.
 
-mod common;
-
 use std::ops::ControlFlow;
 
-use common::{coordinate, valid_boxes};
+use crate::common::{coordinate, valid_boxes};
 use proptest::prelude::*;
 use sweep_and_prune::algorithms::pairwise;
 use sweep_and_prune::{

@@ -1,12 +1,10 @@
 //! The persistent broad phase against brute force: random sequences of every operation, with coordinates so
 //! few that ties are common, in 1D to 3D, `f32` and `f64`.
 
-mod broad_phase_model;
-
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
-use broad_phase_model::{Model, Pair};
+use crate::broad_phase_model::{Model, Pair};
 use sweep_and_prune::{
     Aabb, BroadPhase, Cast, Error, Filter, Hit, Options, PairFinder, ProxyId, Report, Scalar,
     SnapshotFault, SnapshotInfo,
