@@ -10,7 +10,7 @@ use sweep_and_prune_bindings::{ArrayPairFinder, Kind};
 
 use crate::arrays::{Array, Index, MANY, copy_boxes};
 use crate::errors::{busy, raise};
-use crate::run::{call, processors, run};
+use crate::run::{attach, call, processors, run};
 
 /// A pair finder, which one call uses at a time.
 #[pyclass(frozen, module = "sweep_and_prune._native")]
@@ -115,7 +115,7 @@ impl Finder {
                 let mut buffer: Vec<[u32; 2]> = Vec::new();
                 let mut end = Ok(true);
                 let mut hand_over = |chunk: &[[u32; 2]]| {
-                    end = Python::attach(|py| wants_more(each.bind(py), index.pairs(py, chunk)?));
+                    end = attach(|py| wants_more(each.bind(py), index.pairs(py, chunk)?));
                     match end {
                         Ok(true) => ControlFlow::Continue(()),
                         _ => ControlFlow::Break(()),

@@ -98,10 +98,19 @@ struct SleepForever;
 
 impl Drop for SleepForever {
     fn drop(&mut self) {
-        loop {
-            std::thread::sleep(Duration::from_secs(3600));
-        }
+        sleep_forever()
     }
+}
+
+fn sleep_forever() -> ! {
+    loop {
+        std::thread::sleep(Duration::from_secs(3600));
+    }
+}
+
+/// Acquires the GIL. If the interpreter has shut down, the thread sleeps until the process ends.
+pub fn attach<R>(work: impl FnOnce(Python<'_>) -> R) -> R {
+    Python::try_attach(work).unwrap_or_else(|| sleep_forever())
 }
 
 /// Runs work on a pool while the calling thread watches: Python delivers signals only to its main
@@ -187,7 +196,7 @@ impl<'a> Watch<'a> {
     fn check(&self, done: f64) -> ControlFlow<()> {
         let mut state = self.lock();
         if state.1.is_none() {
-            let checked = Python::attach(|py| {
+            let checked = attach(|py| {
                 py.check_signals()?;
                 self.report.map_or(Ok(()), |report| call(report.bind(py), (done,)).map(drop))
             });
