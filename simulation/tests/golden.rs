@@ -55,7 +55,7 @@ fn state_is_golden() {
 fn every_algorithm_gives_the_same_state() {
     for method in Method::ALL {
         let (sort, axis, persistent) = (Sort::Insertion, Axis::LargestVariance, true);
-        let options = RunnerOptions { method, sort, axis, persistent };
+        let options = RunnerOptions::new(method).sort(sort).axis(axis).persistent(persistent);
         assert_eq!(report(BroadPhase::Algorithm(options)), GOLDEN, "{options:?}");
     }
 }
@@ -71,7 +71,7 @@ fn switching_algorithms_and_counting_do_not_change_the_motion() {
     for step in 0..70 {
         let method = Method::ALL[step % Method::ALL.len()];
         let axis = Axis::Fixed(step % 2);
-        let options = RunnerOptions { method, sort: Sort::Insertion, axis, persistent: true };
+        let options = RunnerOptions::new(method).sort(Sort::Insertion).axis(axis).persistent(true);
         restless.set_broad_phase(BroadPhase::Algorithm(options)).unwrap();
         let counts = restless.step(|| 0.0).unwrap().counts;
         assert!(counts.is_some());
@@ -87,7 +87,8 @@ fn counts_mean_the_same_for_each_algorithm() {
     let counts = |method, persistent| {
         let mut simulation = Simulation::new(&setup).unwrap();
         let axis = Axis::Fixed(0);
-        let options = RunnerOptions { method, sort: Sort::Standard, axis, persistent };
+        let options =
+            RunnerOptions::new(method).sort(Sort::Standard).axis(axis).persistent(persistent);
         simulation.set_broad_phase(BroadPhase::Algorithm(options)).unwrap();
         for _ in 0..60 {
             simulation.step(|| 0.0).unwrap();
@@ -118,7 +119,8 @@ fn refused_axis_changes_nothing() {
     let population = Population { bodies: 10, size: 0.5, spread: 1.0, seed: 5 };
     let mut simulation = Simulation::new(&scenes::falling::<2>(population).unwrap()).unwrap();
     let (method, sort) = (Method::SortedPairwise, Sort::Standard);
-    let options = |axis| RunnerOptions { method, sort, axis: Axis::Fixed(axis), persistent: true };
+    let options =
+        |axis| RunnerOptions::new(method).sort(sort).axis(Axis::Fixed(axis)).persistent(true);
     simulation.set_broad_phase(BroadPhase::Algorithm(options(1))).unwrap();
     assert!(simulation.set_broad_phase(BroadPhase::Algorithm(options(2))).is_err());
     assert!(simulation.step(|| 0.0).unwrap().counts.is_some());

@@ -68,7 +68,7 @@ pub fn variants() -> Vec<Variant> {
 }
 
 fn options(method: Method, sort: Sort) -> RunnerOptions {
-    RunnerOptions { method, sort, axis: Axis::Fixed(0), persistent: true }
+    RunnerOptions::new(method).sort(sort).axis(Axis::Fixed(0)).persistent(true)
 }
 
 fn claim(case: Case, world: World, formula: &'static str, cost: fn(&Facts) -> f64) -> Claim {
@@ -128,19 +128,14 @@ fn one_axis_claims(
     n_log_n_m: fn(&Facts) -> f64,
     n_s_m: fn(&Facts) -> f64,
 ) -> Vec<Claim> {
-    let best = match sort {
-        Sort::Quicksort | Sort::Merge => ("n log n", n_log_n_m),
-        Sort::Standard | Sort::Timsort | Sort::Insertion => ("n", n),
-    };
+    // These take an array that is in order in one pass: s = 0.
+    let is_adaptive = matches!(sort, Sort::Standard | Sort::Timsort | Sort::Insertion);
+    let best = if is_adaptive { ("n", n) } else { ("n log n", n_log_n_m) };
     let (average, average_cost) = match sort {
         Sort::Insertion => ("n + s + m", n_s_m),
         _ => ("n log n + m", n_log_n_m),
     };
-    // These take an array that is in order in one pass: s = 0.
-    let at_rest = match sort {
-        Sort::Quicksort | Sort::Merge => n_log_n_m,
-        Sort::Standard | Sort::Timsort | Sort::Insertion => n_s_m,
-    };
+    let at_rest = if is_adaptive { n_s_m } else { n_log_n_m };
     // The order in which the sort does worst.
     let (order, by_sort) = match sort {
         Sort::Insertion => (World::Mirror, "n² (s)"),

@@ -6,6 +6,7 @@ use crate::{Aabb, Error, Scalar};
 
 /// How to choose the sweep axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Axis {
     /// This one, less than the number of dimensions.
     Fixed(usize),

@@ -18,6 +18,7 @@ use crate::{Aabb, Error, Scalar};
 
 /// Which algorithm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Method {
     /// Global pairwise: every box against every other. Pairs sorted.
     Pairwise,
@@ -82,6 +83,7 @@ impl Method {
 
 /// An algorithm and how to run it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub struct RunnerOptions {
     /// Which algorithm.
     pub method: Method,
@@ -93,6 +95,31 @@ pub struct RunnerOptions {
     /// Whether each step starts from the state of the last: the order of the endpoints and, in the
     /// swap-driven forms, the overlaps. Only then are begun and ended pairs reported.
     pub persistent: bool,
+}
+
+impl RunnerOptions {
+    /// This method with the standard sort, along the axis of largest variance, from scratch in each step.
+    pub const fn new(method: Method) -> Self {
+        Self { method, sort: Sort::Standard, axis: Axis::LargestVariance, persistent: false }
+    }
+
+    /// Sets how it sorts.
+    #[must_use]
+    pub const fn sort(self, sort: Sort) -> Self {
+        Self { sort, ..self }
+    }
+
+    /// Sets along which axis it sweeps.
+    #[must_use]
+    pub const fn axis(self, axis: Axis) -> Self {
+        Self { axis, ..self }
+    }
+
+    /// Sets whether each step starts from the state of the last.
+    #[must_use]
+    pub const fn persistent(self, persistent: bool) -> Self {
+        Self { persistent, ..self }
+    }
 }
 
 /// What one step found.
@@ -117,15 +144,11 @@ pub struct Step<'a> {
 ///
 /// ```
 /// use sweep_and_prune::Aabb;
-/// use sweep_and_prune::algorithms::{Axis, Counts, Method, Runner, RunnerOptions, Sort};
+/// use sweep_and_prune::algorithms::{Axis, Counts, Method, Runner, RunnerOptions};
 ///
 /// let mut boxes = [Aabb::new([0.0], [2.0]), Aabb::new([1.0], [3.0]), Aabb::new([5.0], [6.0])];
-/// let mut runner = Runner::new(RunnerOptions {
-///     method: Method::SwapSweep,
-///     sort: Sort::Standard,
-///     axis: Axis::Fixed(0),
-///     persistent: true,
-/// });
+/// let options = RunnerOptions::new(Method::SwapSweep).axis(Axis::Fixed(0)).persistent(true);
+/// let mut runner = Runner::new(options);
 /// assert_eq!(runner.step(&boxes, &mut ())?.pairs, [[0, 1]]);
 ///
 /// boxes[1] = Aabb::new([4.0], [7.0]);

@@ -10,6 +10,7 @@ use crate::Scalar;
 
 /// How to sort endpoints. All sorts give the same array, because the order is total.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Sort {
     /// The standard library's unstable sort, O(n log n). It hides its moves: the observer
     /// sees its comparisons, and afterwards the fewest swaps that have the same effect.

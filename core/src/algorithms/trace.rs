@@ -213,6 +213,7 @@ fn edge_of(word: u32) -> Edge {
 /// One recorded event: a call of the [`Observer`] method of the same name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)] // The fields are the parameters of those methods.
+#[non_exhaustive]
 pub enum Event<'a> {
     Step { axis: usize, keeps_axis_overlaps: bool },
     Array { axis: usize, endpoints: TracedArray<'a> },

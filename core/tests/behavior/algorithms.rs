@@ -22,10 +22,9 @@ fn all_axes<const D: usize>() -> Vec<Axis> {
 /// Every algorithm with every sort, on this axis.
 fn all_options(axis: Axis, persistent: bool) -> impl Iterator<Item = RunnerOptions> {
     Method::ALL.into_iter().flat_map(move |method| {
-        Sort::ALL
-            .into_iter()
-            .filter(move |&sort| method.sorts() || sort == Sort::Standard)
-            .map(move |sort| RunnerOptions { method, sort, axis, persistent })
+        Sort::ALL.into_iter().filter(move |&sort| method.sorts() || sort == Sort::Standard).map(
+            move |sort| RunnerOptions::new(method).sort(sort).axis(axis).persistent(persistent),
+        )
     })
 }
 
@@ -236,12 +235,7 @@ fn boxes_beyond_the_end_of_a_shorter_slice_are_gone() {
 /// One-to-n finds what overlaps its focus, but for what encloses it on the axis.
 fn one_to_n_finds_all_but_enclosing<const D: usize, T: Scalar>() {
     proptest!(|(boxes in valid_boxes::<D, T>(12), focus in 0u32..13, axis in 0..D, later in any::<bool>())| {
-        let mut runner = Runner::new(RunnerOptions {
-            method: Method::OneToN(focus),
-            sort: Sort::Standard,
-            axis: Axis::Fixed(axis),
-            persistent: later,
-        });
+        let mut runner = Runner::new(RunnerOptions::new(Method::OneToN(focus)).sort(Sort::Standard).axis(Axis::Fixed(axis)).persistent(later));
         if later {
             let reversed: Vec<_> = boxes.iter().rev().copied().collect();
             runner.step(&reversed, &mut ()).unwrap();
@@ -265,7 +259,7 @@ fn one_to_n_finds_all_but_enclosing<const D: usize, T: Scalar>() {
 in_all_dimensions!(one_to_n_misses_exactly_what_encloses, one_to_n_finds_all_but_enclosing);
 
 fn endpoint_options(method: Method, sort: Sort) -> RunnerOptions {
-    RunnerOptions { method, sort, axis: Axis::Fixed(0), persistent: true }
+    RunnerOptions::new(method).sort(sort).axis(Axis::Fixed(0)).persistent(true)
 }
 
 fn inversions(before: &[Endpoint<f32>], after: &[Aabb<2, f32>]) -> u64 {
@@ -309,7 +303,7 @@ proptest! {
         let on_axis = |axis| axis_oracle(&slots, axis).len() as u64;
         for method in Method::ALL {
             let axis = Axis::Fixed(axis);
-            let mut runner = Runner::new(RunnerOptions { axis, ..endpoint_options(method, Sort::Merge) });
+            let mut runner = Runner::new(endpoint_options(method, Sort::Merge).axis(axis));
             let mut counts = Counts::default();
             let step = runner.step(&boxes, &mut counts).unwrap();
             let (tests, overlaps) = match method {

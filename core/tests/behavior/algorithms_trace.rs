@@ -52,7 +52,7 @@ fn plays_both_ways<const D: usize, T: Scalar>() {
         let axis = [Axis::Fixed(0), Axis::Fixed(D - 1), Axis::LargestVariance, Axis::FewestOverlaps][axis];
         for method in METHODS {
             for sort in Sort::ALL {
-                let trace = record(RunnerOptions { method, sort, axis, persistent }, &frames);
+                let trace = record(RunnerOptions::new(method).sort(sort).axis(axis).persistent(persistent), &frames);
                 assert_eq!(walk(trace.words()), trace.len());
                 let events: Vec<Event<'_>> = trace.events().collect();
                 assert_eq!(events.len(), trace.len());
@@ -93,7 +93,7 @@ proptest! {
         for method in METHODS {
             for sort in Sort::ALL {
                 let axis = Axis::Fixed(0);
-                let options = RunnerOptions { method, sort, axis, persistent: true };
+                let options = RunnerOptions::new(method).sort(sort).axis(axis).persistent(true);
                 let mut runners = [(); 3].map(|()| Runner::new(options));
                 let mut alone = Trace::new();
                 let mut together = (Counts::default(), Trace::new());
@@ -147,12 +147,10 @@ proptest! {
 #[test]
 fn a_full_trace_stops_and_says_so() {
     let boxes = Motion::Drift.start::<2, f32>(20, 1).unwrap().boxes().to_vec();
-    let options = RunnerOptions {
-        method: Method::EndpointSweep,
-        sort: Sort::Insertion,
-        axis: Axis::Fixed(0),
-        persistent: false,
-    };
+    let options = RunnerOptions::new(Method::EndpointSweep)
+        .sort(Sort::Insertion)
+        .axis(Axis::Fixed(0))
+        .persistent(false);
     let full = record(options, std::slice::from_ref(&boxes));
     for limit in (0..full.words().len()).step_by(7) {
         let mut trace = Trace::with_limit(limit);
@@ -177,7 +175,7 @@ fn balls(balls: &[(f64, f64, f64)]) -> Vec<Aabb<2, f64>> {
 }
 
 fn on_x(method: Method, sort: Sort, persistent: bool) -> RunnerOptions {
-    RunnerOptions { method, sort, axis: Axis::Fixed(0), persistent }
+    RunnerOptions::new(method).sort(sort).axis(Axis::Fixed(0)).persistent(persistent)
 }
 
 fn tested(trace: &Trace) -> Vec<[u32; 2]> {

@@ -21,7 +21,7 @@ fn square(x: f64, y: f64, half: f64) -> Box2 {
 }
 
 fn runner<const D: usize>(method: Method, sort: Sort) -> Runner<D, f64> {
-    Runner::new(RunnerOptions { method, sort, axis: Axis::Fixed(0), persistent: true })
+    Runner::new(RunnerOptions::new(method).sort(sort).axis(Axis::Fixed(0)).persistent(true))
 }
 
 fn count<const D: usize>(runner: &mut Runner<D, f64>, boxes: &[Aabb<D, f64>]) -> Counts {
@@ -134,7 +134,8 @@ fn correction_06_touching_boxes_overlap_in_every_variant() {
             for axis in [0, 1] {
                 let axis = Axis::Fixed(axis);
                 for persistent in [false, true] {
-                    let options = RunnerOptions { method, sort, axis, persistent };
+                    let options =
+                        RunnerOptions::new(method).sort(sort).axis(axis).persistent(persistent);
                     let mut runner = Runner::new(options);
                     let pairs = runner.step(&boxes, &mut ()).unwrap().pairs;
                     assert_eq!(sorted(pairs), expected, "{options:?}");
@@ -509,7 +510,7 @@ fn correction_18_spheres_are_in_three_dimensions() {
     for method in Method::ALL {
         for axis in 0..3 {
             let axis = Axis::Fixed(axis);
-            let options = RunnerOptions { method, sort: Sort::Merge, axis, persistent: true };
+            let options = RunnerOptions::new(method).sort(Sort::Merge).axis(axis).persistent(true);
             let mut runner = Runner::<3, f64>::new(options);
             assert_eq!(sorted(runner.step(&boxes, &mut ()).unwrap().pairs), expected);
         }

@@ -120,7 +120,7 @@ fn fewest_swaps<T: Scalar>(endpoints: &[Endpoint<T>]) -> u64 {
 }
 
 fn runner<const D: usize, T: Scalar>(method: Method, sort: Sort, axis: usize) -> Runner<D, T> {
-    Runner::new(RunnerOptions { method, sort, axis: Axis::Fixed(axis), persistent: true })
+    Runner::new(RunnerOptions::new(method).sort(sort).axis(Axis::Fixed(axis)).persistent(true))
 }
 
 fn check_pairwise<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>], axis: usize) {

@@ -17,7 +17,7 @@ fn all_options<const D: usize>(turn: usize) -> Vec<RunnerOptions> {
     for method in Method::ALL {
         for sort in Sort::ALL {
             for persistent in [false, true] {
-                all.push(RunnerOptions { method, sort, axis, persistent });
+                all.push(RunnerOptions::new(method).sort(sort).axis(axis).persistent(persistent));
             }
         }
     }

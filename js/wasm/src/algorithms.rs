@@ -187,7 +187,7 @@ extern "C" fn runner_choose(handle: &mut Handle, part: u32, index: u32) -> bool 
 #[unsafe(no_mangle)]
 extern "C" fn runner_start(handle: &mut Handle, persistent: bool) {
     let Handle { method, wrong, sort, axis, .. } = *handle;
-    let options = RunnerOptions { method, sort, axis, persistent };
+    let options = RunnerOptions::new(method).sort(sort).axis(axis).persistent(persistent);
     handle.steps = Some(match handle.dimensions {
         1 => Typed::<1>::boxed(options, wrong),
         2 => Typed::<2>::boxed(options, wrong),

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use clap::{Parser, value_parser};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use sweep_and_prune::algorithms::{Axis, Counts, Method, Runner, RunnerOptions, Sort};
+use sweep_and_prune::algorithms::{Counts, Method, Runner, RunnerOptions};
 use sweep_and_prune::{Aabb, PairFinder};
 use sweep_and_prune_simulation::scenes::{self, Population};
 use sweep_and_prune_simulation::{Setup, Simulation};
@@ -175,12 +175,7 @@ impl Comparison {
 }
 
 fn runner<const D: usize>(method: Method) -> Runner<D> {
-    Runner::new(RunnerOptions {
-        method,
-        sort: Sort::Standard,
-        axis: Axis::LargestVariance,
-        persistent: false,
-    })
+    Runner::new(RunnerOptions::new(method))
 }
 
 fn sorted(pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {

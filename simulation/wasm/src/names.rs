@@ -39,5 +39,7 @@ pub fn broad_phase(
     };
     let method = *Method::ALL.get(method).ok_or(Code::InvalidOption)?;
     let sort = *Sort::ALL.get(sort as usize).ok_or(Code::InvalidOption)?;
-    Ok(BroadPhase::Algorithm(RunnerOptions { method, sort, axis, persistent }))
+    Ok(BroadPhase::Algorithm(
+        RunnerOptions::new(method).sort(sort).axis(axis).persistent(persistent),
+    ))
 }

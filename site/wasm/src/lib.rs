@@ -188,5 +188,7 @@ fn choice(searcher: u32, sort: u32, axis: u32, persistent: u32) -> Option<Choice
     let sort = *Sort::ALL.get(sort as usize)?;
     let axis = axis as usize;
     let axis = RULES.get(axis).copied().unwrap_or(Axis::Fixed(axis.wrapping_sub(RULES.len())));
-    Some(Choice::Algorithm(RunnerOptions { method, sort, axis, persistent: persistent != 0 }))
+    Some(Choice::Algorithm(
+        RunnerOptions::new(method).sort(sort).axis(axis).persistent(persistent != 0),
+    ))
 }

@@ -11,7 +11,7 @@ const SCENES: [Scene; 5] =
 
 fn algorithm(method: Method, sort: Sort) -> Choice {
     let axis = Axis::LargestVariance;
-    Choice::Algorithm(RunnerOptions { method, sort, axis, persistent: true })
+    Choice::Algorithm(RunnerOptions::new(method).sort(sort).axis(axis).persistent(true))
 }
 
 fn everyone() -> Vec<Choice> {
