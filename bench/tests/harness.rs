@@ -14,7 +14,6 @@ const EVERYWHERE: &[&str] = &[
     "sweep-and-prune",
     "sweep-and-prune, 2 threads",
     "sweep-and-prune, two at once",
-    "sweep-and-prune, again",
     "sweep-and-prune, fresh",
     "plain sweep",
     "brute force",
