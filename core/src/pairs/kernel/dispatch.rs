@@ -159,22 +159,27 @@ macro_rules! sweep {
                     /// The instructions are present; the rest is as [`Kernel::sweep`] asserts.
                     $(#[target_feature(enable = $feature)])?
                     #[inline(never)] // One function for all sweeps takes a kilobyte more in WebAssembly.
-                    unsafe fn compiled<const N: usize>(
-                        sets: [&SortedBoxes<$scalar>; N],
+                    unsafe fn compiled<const TWO: bool>(
+                        first: &SortedBoxes<$scalar>,
+                        second: &SortedBoxes<$scalar>,
                         others: usize,
                         pair_order: PairOrder,
                         cursor: &mut Cursor,
                         out: &mut [[u32; 2]],
                     ) -> usize {
                         // SAFETY: the caller's promise.
-                        unsafe { scan::sweep::<_, $vector, N>(sets, others, pair_order, cursor, out) }
+                        unsafe {
+                            scan::sweep::<_, $vector, TWO>(first, second, others, pair_order, cursor, out)
+                        }
                     }
                     // SAFETY: a `Kernel` exists only where its instructions do, and its method, the
                     // only caller, has checked the boxes, the cursor and the output.
                     unsafe {
                         match second {
-                            None => compiled([first], others, pair_order, cursor, out),
-                            Some(b) => compiled([first, b], others, pair_order, cursor, out),
+                            None => compiled::<false>(first, first, others, pair_order, cursor, out),
+                            Some(second) => {
+                                compiled::<true>(first, second, others, pair_order, cursor, out)
+                            }
                         }
                     }
                 })*

@@ -106,8 +106,15 @@ mod tests {
             // is from this sweep, and the output is long enough.
             let count = unsafe {
                 match sets {
-                    [a, b] => scan::sweep::<_, V, 2>([a, b], 2, order, &mut cursor, &mut out),
-                    _ => scan::sweep::<_, V, 1>([&sets[0]], 2, order, &mut cursor, &mut out),
+                    [a, b] => scan::sweep::<_, V, true>(a, b, 2, order, &mut cursor, &mut out),
+                    _ => scan::sweep::<_, V, false>(
+                        &sets[0],
+                        &sets[0],
+                        2,
+                        order,
+                        &mut cursor,
+                        &mut out,
+                    ),
                 }
             };
             all.extend_from_slice(&out[..count]);
