@@ -87,7 +87,7 @@ def find_pairs(
     >>> sap.find_pairs([[0, 10], [12, 20], [23, 30]], margin=2)
     array([[0, 1]])
     """
-    prepared = prepare({"boxes": boxes}, format, closed, missing, None if by is None else [by], margin)
+    prepared = _one_set(boxes, format, closed, missing, by, margin)
     return _find(prepared, threads, dtype, progress)
 
 
@@ -136,7 +136,7 @@ def find_pairs_between(
     >>> sap.find_pairs_between(bullets, targets)
     array([[1, 0]])
     """
-    prepared = prepare({"a": a, "b": b}, format, closed, missing, None if by is None else _two(by), margin)
+    prepared = _two_sets(a, b, format, closed, missing, by, margin)
     return _find(prepared, threads, dtype, progress)
 
 
@@ -173,7 +173,7 @@ def count_pairs(
     >>> sap.count_pairs(np.zeros((1000, 6)))
     499500
     """
-    prepared = prepare({"boxes": boxes}, format, closed, missing, None if by is None else [by], margin)
+    prepared = _one_set(boxes, format, closed, missing, by, margin)
     return _count(prepared, threads, progress)
 
 
@@ -209,7 +209,7 @@ def count_pairs_between(
     >>> sap.count_pairs_between([[0, 2], [5, 6]], [[1, 7]])
     2
     """
-    prepared = prepare({"a": a, "b": b}, format, closed, missing, None if by is None else _two(by), margin)
+    prepared = _two_sets(a, b, format, closed, missing, by, margin)
     return _count(prepared, threads, progress)
 
 
@@ -260,7 +260,7 @@ def for_each_chunk(
     >>> int(degrees.min()), int(degrees.max())
     (999, 999)
     """
-    prepared = prepare({"boxes": boxes}, format, closed, missing, None if by is None else [by], margin)
+    prepared = _one_set(boxes, format, closed, missing, by, margin)
     return _stream(prepared, each, size, dtype)
 
 
@@ -305,7 +305,7 @@ def for_each_chunk_between(
      [0 1]]
     True
     """
-    prepared = prepare({"a": a, "b": b}, format, closed, missing, None if by is None else _two(by), margin)
+    prepared = _two_sets(a, b, format, closed, missing, by, margin)
     return _stream(prepared, each, size, dtype)
 
 
@@ -350,7 +350,7 @@ def iter_chunks(
     200000
     99500
     """
-    prepared = prepare({"boxes": boxes}, format, closed, missing, None if by is None else [by], margin)
+    prepared = _one_set(boxes, format, closed, missing, by, margin)
     return _iterate(prepared, size, dtype)
 
 
@@ -392,7 +392,7 @@ def iter_chunks_between(
     ...     print(pairs.tolist())
     [[0, 0], [0, 1]]
     """
-    prepared = prepare({"a": a, "b": b}, format, closed, missing, None if by is None else _two(by), margin)
+    prepared = _two_sets(a, b, format, closed, missing, by, margin)
     return _iterate(prepared, size, dtype)
 
 
@@ -622,8 +622,9 @@ def _stream(prepared: Prepared, each: _Each, size: int, dtype: DTypeLike) -> boo
 
 
 def _iterate(prepared: Prepared, size: int, dtype: DTypeLike) -> Iterator[Pairs]:
-    _chunks(print, size)
-    index_dtype(dtype)  # refused now, and not with the first chunk
+    # Refused now, and not with the first chunk.
+    _chunk_size(size)
+    index_dtype(dtype)
     return _chunks_of_thread(lambda each: _stream(prepared, each, size, dtype))
 
 
@@ -664,7 +665,11 @@ def _chunks_of_thread(stream: Callable[[_Each], object]) -> Iterator[Pairs]:
 def _chunks(each: object, size: object) -> tuple[_Each, int]:
     if not callable(each):
         raise TypeError(f"each must be callable, not a {type(each).__name__}")
-    return each, whole(size, "size", 1, _MAX_CHUNK)
+    return each, _chunk_size(size)
+
+
+def _chunk_size(size: object) -> int:
+    return whole(size, "size", 1, _MAX_CHUNK)
 
 
 def _checked(progress: Progress | None) -> Progress | None:
@@ -683,10 +688,24 @@ def _arguments(prepared: Prepared) -> tuple[Floats, Floats | None]:
     return prepared.sets[0], prepared.sets[1] if len(prepared.sets) == 2 else None
 
 
-def _two(by: tuple[ArrayLike, ArrayLike]) -> list[ArrayLike]:
-    if not (isinstance(by, (tuple, list)) and len(by) == 2):
+def _one_set(
+    boxes: ArrayLike, format: str, closed: str | None, missing: str, by: ArrayLike | None, margin: Margin
+) -> Prepared:
+    return prepare({"boxes": boxes}, format, closed, missing, None if by is None else [by], margin)
+
+
+def _two_sets(
+    a: ArrayLike,
+    b: ArrayLike,
+    format: str,
+    closed: str | None,
+    missing: str,
+    by: tuple[ArrayLike, ArrayLike] | None,
+    margin: Margin,
+) -> Prepared:
+    if by is not None and not (isinstance(by, (tuple, list)) and len(by) == 2):
         raise ValueError("by must be a pair of arrays: one for a, one for b")
-    return list(by)
+    return prepare({"a": a, "b": b}, format, closed, missing, None if by is None else list(by), margin)
 
 
 def _finder(prepared: Prepared, threads: int | None) -> Finder:
