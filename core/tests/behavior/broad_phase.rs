@@ -764,3 +764,16 @@ fn swept_boxes_find_what_a_jump_passes_over() {
     assert_eq!(world.aabb(bullet).unwrap(), to);
     assert!(world.update().ended().eq([[wall, bullet]]));
 }
+
+#[test]
+fn groups_decide_over_masks_and_static_over_groups() {
+    let none = Filter::default().mask(0);
+    let joined = none.group(3);
+    let apart = Filter::default().group(-3);
+    assert!(!none.allows(&none));
+    assert!(joined.allows(&joined));
+    assert!(!apart.allows(&apart));
+    assert!(apart.allows(&Filter::default()));
+    let fixed = joined.is_static(true);
+    assert!(!fixed.allows(&fixed) && fixed.allows(&joined));
+}

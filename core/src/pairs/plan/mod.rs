@@ -133,6 +133,7 @@ mod tests {
             assert!(is_alike(columns::<f64>(step, 1.0)), "{step}");
         }
     }
+
     /// Objects that wait at the origin of a large world, as pools of unspawned ones do. Each column
     /// costs time and memory even if it is empty.
     #[test]

@@ -84,21 +84,3 @@ impl Default for Filter {
         Self { category: 1, mask: u32::MAX, group: 0, is_static: false }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn groups_decide_over_masks_and_static_over_groups() {
-        let none = Filter { mask: 0, ..Filter::default() };
-        let joined = Filter { group: 3, ..none };
-        let apart = Filter { group: -3, ..Filter::default() };
-        assert!(!none.allows(&none));
-        assert!(joined.allows(&joined));
-        assert!(!apart.allows(&apart));
-        assert!(apart.allows(&Filter::default()));
-        let fixed = Filter { is_static: true, ..joined };
-        assert!(!fixed.allows(&fixed) && fixed.allows(&joined));
-    }
-}
