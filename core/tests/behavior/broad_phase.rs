@@ -777,3 +777,10 @@ fn groups_decide_over_masks_and_static_over_groups() {
     let fixed = joined.is_static(true);
     assert!(!fixed.allows(&fixed) && fixed.allows(&joined));
 }
+
+#[test]
+fn an_id_survives_conversion_to_a_number_and_back() {
+    let bits = u64::from(u32::MAX) << 32 | 7;
+    let id = ProxyId::from_bits(bits);
+    assert_eq!((id.to_bits(), id.slot()), (bits, 7));
+}

@@ -38,14 +38,3 @@ impl ProxyId {
         Self { slot: bits as u32, generation: (bits >> 32) as u32 }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_id_survives_conversion_to_a_number_and_back() {
-        let id = ProxyId { slot: 7, generation: u32::MAX };
-        assert_eq!(ProxyId::from_bits(id.to_bits()), id);
-    }
-}
