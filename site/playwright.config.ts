@@ -21,7 +21,7 @@ const folder = process.env["SITE_TEST_DIST"];
 export default defineConfig({
   testDir: "test",
   // Times hold on a machine that does nothing else: `./test --long` takes them.
-  testIgnore: process.env["SITE_TEST_TIMES"] ? [] : ["responsiveness.spec.ts"],
+  testIgnore: process.env["TEST_LONG"] ? [] : ["responsiveness.spec.ts"],
   outputDir: "test-results",
   // One reference for every machine: what is compared has no fonts in it.
   snapshotPathTemplate: "{testDir}/{testFileName}-snapshots/{arg}{ext}",

@@ -11,26 +11,34 @@ use sweep_and_prune::{
 };
 use sweep_and_prune_scenes::{Motion, Random, Scene};
 
-/// 10,000 in all as users run it.
-const SEQUENCES: u64 = if cfg!(debug_assertions) { 20 } else { 1667 };
 const STEPS: usize = 200;
+
+/// How many sequences are run of each dimension and precision: with `./test --long` 10,000 in all.
+fn sequences() -> core::ops::Range<u64> {
+    let is_long = std::env::var_os("TEST_LONG").is_some();
+    0..match (cfg!(debug_assertions), is_long) {
+        (true, _) => 20,
+        (false, false) => 150,
+        (false, true) => 1667,
+    }
+}
 
 #[test]
 fn random_sequences_in_1d_agree_with_the_oracle() {
-    (0..SEQUENCES).for_each(Sequence::<1, f32>::run);
-    (0..SEQUENCES).for_each(Sequence::<1, f64>::run);
+    sequences().for_each(Sequence::<1, f32>::run);
+    sequences().for_each(Sequence::<1, f64>::run);
 }
 
 #[test]
 fn random_sequences_in_2d_agree_with_the_oracle() {
-    (0..SEQUENCES).for_each(Sequence::<2, f32>::run);
-    (0..SEQUENCES).for_each(Sequence::<2, f64>::run);
+    sequences().for_each(Sequence::<2, f32>::run);
+    sequences().for_each(Sequence::<2, f64>::run);
 }
 
 #[test]
 fn random_sequences_in_3d_agree_with_the_oracle() {
-    (0..SEQUENCES).for_each(Sequence::<3, f32>::run);
-    (0..SEQUENCES).for_each(Sequence::<3, f64>::run);
+    sequences().for_each(Sequence::<3, f32>::run);
+    sequences().for_each(Sequence::<3, f64>::run);
 }
 
 fn sorted<V: Ord>(values: impl Iterator<Item = V>) -> Vec<V> {
