@@ -36,7 +36,7 @@ def as_written(annotation: object, *_: object) -> object:
     return AsWritten(annotation) if isinstance(annotation, (str, ForwardRef)) else annotation
 
 
-package = Path(__file__).parent / "sweep_and_prune"
+package = Path(__file__).parent / "src/sweep_and_prune"
 sys.path.insert(0, str(package.parent))
 if not list(package.glob("_native*.so")) + list(package.glob("_native*.pyd")):
     # Everything public is written in Python, so the compiled part is not needed to describe it.

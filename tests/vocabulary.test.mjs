@@ -17,7 +17,7 @@ test("the words are found in prose, in identifiers and in the names of files", (
   assert.deepEqual(found("core/src/world/a.rs", "fn starts_anew() {}"), ["anew"]);
   assert.deepEqual(found("core/src/world/a.rs", "let fat_box = hull(a, b);"), ["fat box", "hull"]);
   assert.deepEqual(found("bench/a.js", "export const CONTENDERS = rivals;"), ["ours, rival, peer, contender"]);
-  assert.deepEqual(found("python/src/door.rs", ""), ["door"]);
+  assert.deepEqual(found("python/extension/door.rs", ""), ["door"]);
   assert.deepEqual(found("core/src/a.rs", "bodies who rest"), ["who, somebody, nobody (for a thing)"]);
   assert.deepEqual(found("site/src/a.ts", "interface LabOptions {}"), ["lab, laboratory"]);
 });

@@ -27,7 +27,7 @@ const languages = [
   },
   {
     name: "python",
-    sources: ["python/sweep_and_prune", "python/docs.py"],
+    sources: ["python/src", "python/docs.py"],
     tool: [python, [join(root, "python/docs.py"), pythonPages]],
     made: pythonPages,
     first: "sweep_and_prune.html",
