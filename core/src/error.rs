@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// Why a call was refused. Nothing has changed after an error.
+/// Why a call was rejected. Nothing has changed after an error.
 ///
 /// Each message names the argument, its value, the limit that the value broke, and what to do:
 ///

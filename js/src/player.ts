@@ -138,7 +138,7 @@ export class Player {
     };
   }
 
-  /** Gives the memory back. To free it twice is no error. */
+  /** Frees the memory. Freeing it twice is not an error. */
   free(): void {
     forgotten?.unregister(this.#owned);
     release(this.#owned);

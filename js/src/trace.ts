@@ -42,8 +42,8 @@ export interface TraceEvent {
  *
  * An edge is `2 * box` for the left end and one more for the right one.
  *
- * @throws While it is iterated, `TypeError` if `words` is no `Uint32Array`, `RangeError` where it
- *   holds what is no event.
+ * @throws During iteration: `TypeError` if `words` is not a `Uint32Array`, `RangeError` at words that
+ *   are not an event.
  */
 export function* events(words: Uint32Array): Generator<TraceEvent, void, undefined> {
   if (!(ArrayBuffer.isView(words) && words[Symbol.toStringTag] === "Uint32Array")) {
@@ -53,7 +53,7 @@ export function* events(words: Uint32Array): Generator<TraceEvent, void, undefin
     length = words[at]! >>> 8;
     const names = kinds[(words[at]! & 255) - 1];
     if (names === undefined || length < names.length || at + length > words.length) {
-      throw new RangeError(`word ${at} begins no event: this is not a trace`);
+      throw new RangeError(`no event begins at word ${at}: these words are not a trace`);
     }
     yield eventAt(words, at);
   }

@@ -178,7 +178,7 @@ export class BroadPhase {
   }
 
   /**
-   * The box of a body as last given: its min corner, its max corner. The array is a copy.
+   * The box of a body as last set: its min corner, its max corner. The array is a copy.
    *
    * @throws {@link StaleProxyError}.
    */
@@ -243,7 +243,8 @@ export class BroadPhase {
   /**
    * The pairs that began and ended since the last update. They are sorted by slot (see
    * {@link slotOf}), and the body with the smaller slot is first in its pair. The time depends on how
-   * many bodies changed and how many neighbors they have.
+   * many bodies changed and how many neighbors they have. If most bodies move far, it can exceed the
+   * time of finding all pairs (see the benchmark).
    *
    * It returns the same object each time, with views that are valid until the next call.
    */
@@ -269,7 +270,7 @@ export class BroadPhase {
   }
 
   /**
-   * The bodies whose boxes, as last given, overlap a box (min corner, max corner), sorted by slot.
+   * The bodies whose boxes, as last set, overlap a box (min corner, max corner), sorted by slot.
    *
    * In all queries, `filter` is the filter of an imagined body: the query finds the bodies that may
    * pair with it. Without a filter it finds every body.

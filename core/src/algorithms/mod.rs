@@ -1,7 +1,8 @@
 //! The classic algorithms, each in its own short file and observable step by step.
 //!
 //! They are here to be read, compared and shown. If you only need the pairs, use
-//! [`find_pairs`](crate::find_pairs), which is much faster.
+//! [`find_pairs`](crate::find_pairs), which is much faster. "The article" in their files is Lean's
+//! [*Sort, sweep, and prune*](https://leanrada.com/notes/sweep-and-prune/) of 2023.
 //!
 //! Every algorithm runs over the same boxes through one interface, the [`Runner`], and reports what
 //! it does to an [`Observer`]: [`Counts`] counts it, [`Trace`] records it, [`Player`] plays the

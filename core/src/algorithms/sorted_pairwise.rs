@@ -1,4 +1,4 @@
-//! Sorted pairwise: the simplified sweep and prune, Müller's ten lines.
+//! Sorted pairwise: the simplified sweep and prune, ten lines in Matthias Müller's *Ten Minute Physics*.
 //!
 //! ```text
 //! sort by left edge

@@ -57,7 +57,7 @@ impl Trace {
         Self::with_limit(Self::DEFAULT_LIMIT)
     }
 
-    /// An empty trace that holds at most so many words. The first event that does not fit, and
+    /// An empty trace that holds at most this many words. The first event that does not fit, and
     /// all that follow, are not recorded.
     pub fn with_limit(limit: usize) -> Self {
         Self { words: Vec::new(), events: 0, limit, truncated: false }

@@ -109,11 +109,11 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
         self
     }
 
-    /// Uses so many threads of rayon's current pool; 0 counts as 1. [`Search::for_each`],
+    /// Uses this many threads of rayon's current pool; 0 counts as 1. [`Search::for_each`],
     /// [`Search::for_each_chunk`], and sets too small to profit use one.
     ///
-    /// Pairs wait for those before them: in the first call that takes as much memory again as the pairs
-    /// do; in later calls most are stored in their final place. Each call allocates a few short lists.
+    /// Pairs wait for those before them. In the first call, this takes as much memory again as the pairs;
+    /// in later calls most are stored in their final place. Each call allocates a few short lists.
     #[cfg(feature = "parallel")]
     #[must_use]
     pub fn threads(mut self, threads: usize) -> Self {

@@ -140,9 +140,9 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
 
     /// Finds the pairs that began and ended since the last update.
     ///
-    /// Takes time in proportion to the bodies that changed and their neighbors, and not much more than
-    /// finding all pairs takes. The result borrows the world mutably; [`changes`](Self::changes) gives
-    /// the same changes with the world only borrowed.
+    /// Takes time in proportion to the bodies that changed and their neighbors. If all bodies fly, or some
+    /// jump anywhere, it takes 1.2 to 2.3 times as long as finding all pairs (10,000 to 1,000,000 bodies).
+    /// The result borrows the world mutably; [`changes`](Self::changes) gives the same by a shared borrow.
     pub fn update(&mut self) -> Changes<'_> {
         update(&mut self.bodies, &mut self.tracking, &mut self.events);
         self.changes()

@@ -14,7 +14,7 @@ array([[0, 2]])
 - Intervals are closed: touching boxes overlap, unless you pass `closed`. Points, flat boxes and infinite edges are
   boxes, and `-0.0` equals `0.0`. There is no epsilon.
 - Each pair occurs once, the smaller index first, in an order that is the same on every machine.
-- A box that is inverted or has a NaN is refused with an error that names it. After an error nothing has changed.
+- A box that is inverted or has a NaN is rejected with an error that names it. After an error nothing has changed.
 - The arrays that are passed are copied, and those that are returned are yours. In signatures `Pairs` are arrays of
   indices (`int64` by default), `Ids` arrays of `int64`, `Floats` arrays of `float32` or `float64`.
 

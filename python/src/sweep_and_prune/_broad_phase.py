@@ -112,12 +112,12 @@ class BroadPhase:
 
     Ids are `int64`, slot and generation in one. Until a body is removed, the ids of a world are 0, 1, 2 and so on: the
     rows of the boxes that you inserted. After that, new bodies in used slots have larger ids, so that the id of a
-    removed body never means another body: it is refused (`StaleProxyError`). `slots_of` then gives rows. -1 is never
+    removed body never means another body: it is rejected (`StaleProxyError`). `slots_of` then gives rows. -1 is never
     an id. An id of another world is not recognized as such.
 
-    The same calls give the same results on every machine. A call that is refused changes nothing. Only one call runs
-    at a time: a second thread that calls meanwhile gets a `RuntimeError`. A world can be copied and pickled, with its
-    attributes and its subclass.
+    The same calls give the same results on every machine. A call that raises an error changes nothing. Only one call
+    runs at a time: a second thread that calls meanwhile gets a `RuntimeError`. A world can be copied and pickled, with
+    its attributes and its subclass.
 
     >>> import sweep_and_prune as sap
     >>> world = sap.BroadPhase(dimensions=2)

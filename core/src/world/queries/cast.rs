@@ -10,17 +10,17 @@ use super::region::Queries;
 use crate::world::bodies::ProxyId;
 use crate::{Aabb, Error, Scalar};
 
-/// A box or a point on its way: from where, in which direction, how far.
+/// A ray or a moving box, made by [`ray`](Self::ray) or [`aabb`](Self::aabb).
 ///
-/// Made by [`ray`](Self::ray) or [`aabb`](Self::aabb).
+/// It is at `from + t * direction` for each t from 0 to `limit`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Cast<const D: usize, T = f32> {
-    /// The box at its start; for a ray a point.
+    /// The box at t = 0; for a ray a point, its origin.
     pub from: Aabb<D, T>,
-    /// The way it goes for each unit of [`limit`](Self::limit), of any length. Finite.
+    /// How far it moves as t grows by 1: of any length, finite. If its length is 1, t is a distance.
     pub direction: [T; D],
-    /// How many directions far: not negative, may be infinite.
+    /// The largest t: 0 or more, may be infinite.
     pub limit: T,
 }
 
@@ -45,7 +45,7 @@ impl<const D: usize, T: Scalar> Cast<D, T> {
             .or(fault_in("limit", &[*limit], is_length))
     }
 
-    /// When it first touches a box, in directions, if it does by `limit`.
+    /// The t at which it first touches a box, if it does by `limit`.
     fn touches(&self, other: &Aabb<D, T>, limit: f64) -> Option<f64> {
         let (mut first, mut last) = (0.0f64, limit);
         for axis in 0..D {
@@ -71,12 +71,12 @@ impl<const D: usize, T: Scalar> Cast<D, T> {
 pub struct Hit {
     /// The body.
     pub id: ProxyId,
-    /// How many directions from the start; 0 if they overlap there.
+    /// Where the hit is: at `from + t * direction`. 0 if they overlap at the start.
     pub t: f64,
 }
 
 impl<const D: usize, T: Scalar> Queries<'_, D, T> {
-    /// The body that a ray or a moving box hits first; of several at once the least id.
+    /// The body that a ray or a moving box hits first; of several at once that with the smallest id.
     ///
     /// # Errors
     /// [`Error::InvalidQuery`] if its box or direction is not finite, its box is inverted, or its
@@ -106,7 +106,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         Ok(casts.iter().map(first_hit).collect())
     }
 
-    /// Everything that a ray or a moving box hits, sorted by where and then by id.
+    /// Everything that a ray or a moving box hits, sorted by t and then by id.
     ///
     /// # Errors
     /// As [`cast`](Self::cast).
@@ -120,8 +120,8 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         Ok(hits)
     }
 
-    /// Shows what a ray or a moving box hits to `visit`, nearer parts of the world roughly first.
-    /// It may stop the cast, or shorten the cast by continuing with a lower limit, in directions.
+    /// Calls `visit` with what a ray or a moving box hits, nearer parts of the world roughly first.
+    /// It may stop the cast, or shorten it by continuing with a smaller limit.
     ///
     /// # Errors
     /// As [`cast`](Self::cast).

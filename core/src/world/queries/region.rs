@@ -9,11 +9,10 @@ use crate::world::bodies::{Bodies, Filter, ProxyId, flag};
 use crate::world::tree::Tree;
 use crate::{Aabb, Error, Scalar};
 
-/// The questions that a world answers; see [`BroadPhase::queries`](crate::BroadPhase::queries).
+/// The queries of a world; see [`BroadPhase::queries`](crate::BroadPhase::queries).
 ///
-/// They see the boxes as last given, updated or not, and all bodies unless they get a
-/// [filter](Self::with_filter). Lists are sorted by id, and equally near
-/// bodies too, so every answer follows from the state alone.
+/// They see the boxes as last set, updated or not, and all bodies unless they get a
+/// [filter](Self::with_filter). Lists are sorted by id, and so are bodies that are equally near.
 #[derive(Clone, Copy, Debug)]
 pub struct Queries<'w, const D: usize, T: Scalar = f32> {
     pub(in crate::world) bodies: &'w Bodies<D, T>,
@@ -22,8 +21,8 @@ pub struct Queries<'w, const D: usize, T: Scalar = f32> {
 }
 
 impl<const D: usize, T: Scalar> Queries<'_, D, T> {
-    /// The same queries by a body of this filter: they find what it may pair with. Without a filter they
-    /// find every body; with [`Filter::ALL`] none whose category or mask is 0.
+    /// The same queries with a filter: they find what a body with this filter may pair with. Without one
+    /// they find every body; with [`Filter::ALL`] none whose category or mask is 0.
     pub fn with_filter(self, filter: Filter) -> Self {
         Self { filter: Some(filter), ..self }
     }
@@ -89,7 +88,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         self.list(&(center, radius), Self::within_many)
     }
 
-    /// [`within`](Self::within) for each of many spheres, of center and radius.
+    /// [`within`](Self::within) for each of many spheres, each a center and a radius.
     ///
     /// # Errors
     /// [`Error::InvalidQuery`] with the index of the first bad one.
