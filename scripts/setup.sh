@@ -69,7 +69,7 @@ install_packages() {
 }
 
 setup_rust() {
-  have cc || install_packages cc "build-essential|gcc|base-devel|build-base|gcc"
+  [ "${OS:-}" = Windows_NT ] || have cc || install_packages cc "build-essential|gcc|base-devel|build-base|gcc"
   export PATH="$PATH:${CARGO_HOME:-$HOME/.cargo}/bin"
   if ! have rustup; then
     have curl || install_packages curl curl
@@ -144,21 +144,52 @@ setup_chromium() {
 
 # A Python with what python/requirements.txt names, of our own: nothing is installed outside.
 setup_python() {
-  local folder=$root/.tools/python wanted=$root/python/requirements.txt installed
+  python_environment python "$root/python/requirements.txt"
+  export VIRTUAL_ENV=$root/.tools/python PATH="$root/.tools/python/bin:$PATH"
+}
+
+# What builds and checks the packages of a release: the programs of scripts/requirements.txt.
+setup_release() {
+  python_environment release "$root/scripts/requirements.txt"
+  export PATH="$PATH:$root/.tools/release/bin:$root/.tools/release/Scripts"
+}
+
+# python_environment NAME REQUIREMENTS: an environment in .tools/NAME with what the file names.
+python_environment() {
+  local folder=$root/.tools/$1 wanted=$2 installed programs=bin
   installed=$folder/requirements.txt
-  if ! "$folder/bin/python" -c '' 2>/dev/null; then
+  [ "${OS:-}" != Windows_NT ] || programs=Scripts
+  if ! "$folder/$programs/python" -c '' 2>/dev/null; then
     python3 -c 'import ensurepip, venv' 2>/dev/null ||
       install_packages python3 "python3-venv|python3|python|python3|python"
     python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' ||
-      fail "Python 3.11 or later is needed for the tests of the Python package, but 'python3' here is $(python3 --version)."
+      fail "Python 3.11 or later is needed, but 'python3' here is $(python3 --version)."
     rm -rf "$folder"
-    python3 -m venv "$folder" || fail "An environment for Python could not be made in .tools/python."
+    python3 -m venv "$folder" || fail "An environment for Python could not be made in .tools/$1."
   fi
   if ! cmp -s "$wanted" "$installed"; then
-    say "Installing what python/requirements.txt names into .tools/python ..."
-    quietly "$folder/bin/pip" install --quiet --disable-pip-version-check --requirement "$wanted" ||
+    say "Installing what ${wanted#"$root/"} names into .tools/$1 ..."
+    quietly "$folder/$programs/python" -m pip install --quiet --disable-pip-version-check --requirement "$wanted" ||
       fail "The Python packages could not be installed: is the network reachable?"
     cp "$wanted" "$installed"
   fi
-  export VIRTUAL_ENV=$folder PATH="$folder/bin:$PATH"
+}
+
+# Checks the workflows of GitHub Actions. Written in Go, and not published as a package elsewhere.
+setup_actionlint() {
+  export PATH="$root/.tools/bin:$PATH"
+  have actionlint && return
+  have go || install_packages go "golang-go|golang|go|go|go"
+  say "Installing actionlint into .tools/bin ..."
+  GOBIN=$root/.tools/bin quietly go install github.com/rhysd/actionlint/cmd/actionlint@v1.7.12 ||
+    fail "actionlint could not be installed: is the network reachable, and is 'go' 1.25 or later?"
+}
+
+# Checks licenses, sources and known vulnerabilities of the crates that we depend on.
+setup_cargo_deny() {
+  export PATH="$root/.tools/bin:$PATH"
+  have cargo-deny && return
+  say "Installing cargo-deny into .tools/bin ..."
+  quietly cargo install --quiet --locked --root "$root/.tools" --version 0.19.0 cargo-deny ||
+    fail "cargo-deny could not be installed: is the network reachable?"
 }

@@ -2,11 +2,11 @@
 // the repository's README run there. Slow, because each package is built as it would be published: only with
 // TEST_PACKAGES=1, which `./test --long` sets.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { execFileSync, spawnSync } from "node:child_process";
+import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { homedir, tmpdir } from "node:os";
 import { dirname, join } from "node:path";
-import { after, describe, test } from "node:test";
+import { after, before, describe, test } from "node:test";
 import { fileURLToPath } from "node:url";
 
 const root = dirname(dirname(fileURLToPath(import.meta.url)));
@@ -75,16 +75,22 @@ describe("JavaScript: the packed package", { skip }, () => {
   });
 });
 
-describe("Python: the wheel", { skip }, () => {
+describe("Python: the wheel and the source distribution", { skip }, () => {
+  const dist = skip ? "" : join(folder, "dist");
+  const of = (ending) => join(dist, readdirSync(dist).find((name) => name.endsWith(ending)));
+  const tryWheel = (python, ...options) =>
+    execFileSync("scripts/try-wheel", options, { cwd: root, env: { ...process.env, PYTHON: python }, stdio: "inherit" });
+
+  before(() => {
+    if (skip) return;
+    execFileSync("scripts/wheels", [dist], { cwd: root, env: { ...process.env, PROFILE: "checked" }, stdio: "inherit" });
+  });
+
   test("prints in a fresh environment what each example says", () => {
     const path = project("python");
-    const wheels = join(folder, "wheels");
-    run(root, "maturin", "build", "--quiet", "--profile", "checked", "--manifest-path", "python/Cargo.toml", "--out", wheels);
-    const [wheel, ...more] = readdirSync(wheels);
-    assert.ok(wheel && more.length === 0, `${wheel}, ${more}`);
     const python = join(path, "environment/bin/python");
     run(path, "python3", "-m", "venv", "environment");
-    run(path, python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", join(wheels, wheel));
+    run(path, python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", of(".whl"));
     const codes = ["README.md", "python/README.md"].flatMap((readme) => examples(readme, "python"));
     assert.ok(codes.length >= 4, `${codes.length} examples`);
     // Not needed by the package, but one example uses it, and its readers have it.
@@ -95,4 +101,28 @@ describe("Python: the wheel", { skip }, () => {
       assert.deepEqual(run(path, python, "-c", code).trim().split("\n"), expected);
     }
   });
+
+  test("passes its whole suite with all optional libraries", () => {
+    tryWheel("python3", of(".whl"), "--requirement=python/requirements.txt");
+  });
+
+  test("passes on the oldest Python and NumPy, and on the newest", () => {
+    const [oldest, newest] = [pythons().at(0), pythons().at(-1)];
+    tryWheel(oldest, of(".whl"), ...(oldest.includes("3.9") ? ["numpy==1.22.*"] : []));
+    tryWheel(newest, of(".whl"));
+  });
+
+  test("builds from the source distribution", () => tryWheel("python3", of(".tar.gz")));
 });
+
+/** The Pythons of this machine that the package supports, oldest first: on the PATH, or installed by pyenv. */
+function pythons() {
+  const versions = join(process.env.PYENV_ROOT ?? join(homedir(), ".pyenv"), "versions");
+  const installed = existsSync(versions) ? readdirSync(versions) : [];
+  return [9, 10, 11, 12, 13, 14, 15].flatMap((minor) => {
+    const folders = installed.filter((name) => name.startsWith(`3.${minor}.`));
+    const names = [`python3.${minor}`, ...folders.map((name) => join(versions, name, "bin/python"))];
+    const works = (name) => spawnSync(name, ["-c", "import ensurepip, venv"]).status === 0;
+    return names.filter(works).slice(0, 1);
+  });
+}

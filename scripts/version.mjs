@@ -1,0 +1,79 @@
+// All packages have one version number and one minimum Rust version. This says where they stand.
+//
+//   node scripts/version.mjs           prints the version; fails if two places differ
+//   node scripts/version.mjs 0.2.0     writes a new version to every place, and to the lock files
+//   node scripts/version.mjs --tag v0.2.0
+//       prints what the changelog says of this release; fails if the tag names another version than the files
+import { execFileSync } from "node:child_process";
+import { readFileSync, writeFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const root = dirname(dirname(fileURLToPath(import.meta.url)));
+const read = (file) => readFileSync(join(root, file), "utf8");
+
+/** Where the version stands: a pattern with three groups, the second of which is the version. Each matches once. */
+export const VERSIONS = [
+  ["Cargo.toml", /^(version = ")(.*?)(")/m],
+  ["Cargo.toml", /^(sweep-and-prune = .*version = ")(.*?)(")/m],
+  ["Cargo.toml", /^(sweep-and-prune-scenes = .*version = ")(.*?)(")/m],
+  ["python/Cargo.toml", /^(version = ")(.*?)(")/m],
+  ["python/conda/recipe.yaml", /^( *version: ")(.*?)(")/m],
+  ["js/package.json", /^( *"version": ")(.*?)(")/m],
+  ["site/package.json", /^( *"version": ")(.*?)(")/m],
+  ["site/package.json", /^( *"sweep-and-prune": ")(.*?)(")/m],
+  ["CHANGELOG.md", /^(## (?:Unreleased \()?)(\d[^ )\n]*)(\)?.*)$/m],
+];
+
+/** Where the minimum Rust version stands. */
+export const RUST_VERSIONS = [
+  ["Cargo.toml", /^(rust-version = ")(.*?)(")/m],
+  ["python/Cargo.toml", /^(rust-version = ")(.*?)(")/m],
+  ["python/conda/recipe.yaml", /(rust >=)(.*?)($)/m],
+  ["README.md", /(Rust )([\d.]+)( or later)/],
+  ["core/README.md", /(Rust )([\d.]+)( or newer)/],
+  ["python/README.md", /(Rust )([\d.]+)( or later)/],
+];
+
+/** The value of each place, by a name of the place. */
+export const valuesOf = (places) =>
+  new Map(places.map(([file, pattern]) => [`${file} ${pattern.source}`, read(file).match(pattern)?.[2]]));
+
+/** The one version number. */
+export function version() {
+  const values = valuesOf(VERSIONS);
+  const [first] = values.values();
+  for (const [place, value] of values) if (value !== first) throw new Error(`${place} has ${value}, not ${first}`);
+  return first;
+}
+
+/** What the changelog says of a released version. */
+export function notes(changelog, released) {
+  const [, ...sections] = changelog.split(/^## /m);
+  const section = sections.find((text) => text.startsWith(`${released} (`));
+  if (!section) throw new Error(`CHANGELOG.md has no heading "## ${released} (DATE)"`);
+  return section.slice(section.indexOf("\n")).trim();
+}
+
+function write(next) {
+  if (!/^\d+\.\d+\.\d+$/.test(next)) throw new Error(`${next} is not of the form 1.2.3`);
+  for (const [file, pattern] of VERSIONS) {
+    writeFileSync(join(root, file), read(file).replace(pattern, `$1${next}$3`));
+  }
+  const run = (...command) => execFileSync(command[0], command.slice(1), { cwd: root, stdio: "inherit" });
+  run("npm", "install", "--package-lock-only", "--ignore-scripts", "--no-audit", "--no-fund");
+  for (const workspace of ["Cargo.toml", "python/Cargo.toml", "bench/Cargo.toml"]) {
+    run("cargo", "update", "--quiet", "--workspace", "--manifest-path", workspace);
+  }
+}
+
+if (process.argv[1] === fileURLToPath(import.meta.url)) {
+  const [first, tag] = process.argv.slice(2);
+  if (first === "--tag") {
+    if (tag !== `v${version()}`) throw new Error(`the tag ${tag} is not v${version()}`);
+    console.log(notes(read("CHANGELOG.md"), version()));
+  } else {
+    if (first !== undefined) write(first);
+    console.log(version());
+  }
+}

@@ -1,0 +1,107 @@
+// What a release needs: one version number, one minimum Rust version, lock files that fit, licenses that we accept, and
+// workflows that use fixed versions of actions, have no more rights than they need, and run scripts that exist.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { existsSync, readdirSync, readFileSync, statSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { test } from "node:test";
+import { fileURLToPath } from "node:url";
+
+import { RUST_VERSIONS, VERSIONS, notes, valuesOf } from "../scripts/version.mjs";
+
+const root = dirname(dirname(fileURLToPath(import.meta.url)));
+const read = (path) => readFileSync(join(root, path), "utf8");
+const workflows = readdirSync(join(root, ".github/workflows")).map((name) => [name, read(`.github/workflows/${name}`)]);
+const locks = execFileSync("git", ["ls-files", "*package-lock.json"], { cwd: root, encoding: "utf8" }).trim().split("\n");
+
+for (const [what, places] of [["version", VERSIONS], ["minimum Rust version", RUST_VERSIONS]]) {
+  test(`every place has the same ${what}`, () => {
+    const values = valuesOf(places);
+    const [first] = values.values();
+    assert.match(first, /^\d+\.\d+/);
+    for (const [place, value] of values) assert.equal(value, first, place);
+  });
+}
+
+test("the lock files have that version, too", () => {
+  const [version] = valuesOf(VERSIONS).values();
+  const { packages } = JSON.parse(read("package-lock.json"));
+  assert.equal(packages.js.version, version);
+  assert.equal(packages.site.version, version);
+  for (const lock of ["Cargo.lock", "python/Cargo.lock", "bench/Cargo.lock"]) {
+    const [, locked] = read(lock).match(/^name = "sweep-and-prune"\nversion = "(.*)"/m) ?? [];
+    assert.equal(locked, version, lock);
+  }
+});
+
+test("release notes are the section of the changelog", () => {
+  const changelog = "# Changelog\n\n## 0.2.0 (2026-12-01)\n\n### Added\n\n- This.\n\n## 0.1.0 (2026-11-23)\n\n- That.\n";
+  assert.equal(notes(changelog, "0.2.0"), "### Added\n\n- This.");
+  assert.equal(notes(changelog, "0.1.0"), "- That.");
+  assert.throws(() => notes(changelog, "0.2"), /no heading/);
+  assert.throws(() => notes("## Unreleased (0.2.0)\n", "0.2.0"), /no heading/);
+});
+
+test("each package has the license texts of the repository", () => {
+  for (const name of ["LICENSE-MIT", "LICENSE-APACHE"]) {
+    for (const folder of ["core", "python"]) assert.equal(read(`${folder}/${name}`), read(name), `${folder}/${name}`);
+  }
+});
+
+test("npm packages have licenses that we accept", () => {
+  const accepted = new Set(
+    "MIT ISC Apache-2.0 BSD-2-Clause BSD-3-Clause 0BSD Zlib Unlicense CC0-1.0 BlueOak-1.0.0 Python-2.0".split(" "),
+  );
+  // Data and tools that are used to build and test, and are not part of what we publish.
+  const tools = new Set(["MPL-2.0", "CC-BY-4.0", "CC-BY-3.0", "LGPL-3.0-or-later"]);
+  const refused = [];
+  for (const lock of locks) {
+    for (const [name, { license, link }] of Object.entries(JSON.parse(read(lock)).packages)) {
+      if (name === "" || link || license === undefined) continue;
+      const words = license.replace(/[()]/g, "").split(/ (?:OR|AND) /);
+      if (!words.some((word) => accepted.has(word) || tools.has(word))) refused.push(`${lock}: ${name}: ${license}`);
+    }
+  }
+  assert.deepEqual(refused, []);
+});
+
+for (const [name, text] of workflows) {
+  test(`${name}: actions are fixed to a commit, and say which version that is`, () => {
+    for (const [line] of text.matchAll(/uses:.*/g)) assert.match(line, /uses: [\w.-]+\/[\w./-]+@[0-9a-f]{40} # v\d+\.\d+\.\d+$/);
+  });
+
+  test(`${name}: may only read, except where a job says why`, () => {
+    assert.match(text, /^permissions:\n {2}contents: read\n$/m);
+    for (const [line] of text.matchAll(/^.*: write.*$/gm)) assert.match(line, /^ {6}[\w-]+: write # .+/);
+    assert.doesNotMatch(text, /\bsecrets\./);
+  });
+
+  test(`${name}: every script that it runs exists`, () => {
+    const steps = [...text.matchAll(/run: (?:\|\n)?([^]*?)(?=\n {6}- |\n {8}\w|\n {2}\w|$)/g)].map(([, step]) => step);
+    const commands = steps.flatMap((step) => [...step.matchAll(/(?:^|\s)((?:\.\/|\.ci\/|scripts\/)[\w./-]+)/g)]);
+    for (const [, command] of commands) {
+      if (command.startsWith("./dist")) continue;
+      assert.ok(existsSync(join(root, command)), command);
+      if (!command.endsWith(".mjs")) assert.ok(statSync(join(root, command)).mode & 0o100, `${command} is not executable`);
+    }
+  });
+}
+
+test("one action has one version", () => {
+  const versions = new Map();
+  for (const [, text] of workflows) {
+    for (const [, action, version] of text.matchAll(/uses: ([\w./-]+)@(\S+ # \S+)/g)) {
+      assert.equal(versions.get(action) ?? version, version, action);
+      versions.set(action, version);
+    }
+  }
+  assert.ok(versions.size >= 5);
+});
+
+test("dependabot looks at every lock file and list of requirements", () => {
+  const configured = [...read(".github/dependabot.yml").matchAll(/(?:directories: \[(.*)\]|directory: (.*))/g)].flatMap(
+    ([, several, one]) => (several ?? one).split(", "),
+  );
+  const files = execFileSync("git", ["ls-files", "*package-lock.json", "*Cargo.lock", "*requirements.txt"], { cwd: root, encoding: "utf8" });
+  for (const file of files.trim().split("\n")) assert.ok(configured.includes(join("/", dirname(file)).replace(/\/$/, "") || "/"), file);
+});
