@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { existsSync, readdirSync, readFileSync, statSync } from "node:fs";
-import { dirname, join } from "node:path";
+import { basename, dirname, join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 
@@ -74,6 +74,8 @@ for (const [name, text] of workflows) {
     assert.match(text, /^permissions:\n {2}contents: read\n$/m);
     for (const [line] of text.matchAll(/^.*: write.*$/gm)) assert.match(line, /^ {6}[\w-]+: write # .+/);
     assert.doesNotMatch(text, /\bsecrets\./);
+    const count = (pattern) => text.split(pattern).length;
+    assert.equal(count("uses: actions/checkout@"), count("persist-credentials: false"), "a checkout keeps a token");
   });
 
   test(`${name}: every script that it runs exists`, () => {
@@ -99,9 +101,15 @@ test("one action has one version", () => {
 });
 
 test("dependabot looks at every lock file and list of requirements", () => {
-  const configured = [...read(".github/dependabot.yml").matchAll(/(?:directories: \[(.*)\]|directory: (.*))/g)].flatMap(
-    ([, several, one]) => (several ?? one).split(", "),
-  );
-  const files = execFileSync("git", ["ls-files", "*package-lock.json", "*Cargo.lock", "*requirements.txt"], { cwd: root, encoding: "utf8" });
-  for (const file of files.trim().split("\n")) assert.ok(configured.includes(join("/", dirname(file)).replace(/\/$/, "") || "/"), file);
+  const kinds = { "Cargo.lock": "cargo", "package-lock.json": "npm", "requirements.txt": "pip" };
+  const configured = new Map();
+  for (const update of read(".github/dependabot.yml").split("package-ecosystem: ").slice(1)) {
+    const [, folders] = /director(?:ies|y): \[?(.*?)\]?\n/.exec(update);
+    configured.set(/^\S+/.exec(update)[0], folders.split(", "));
+  }
+  const patterns = Object.keys(kinds).map((name) => `*${name}`);
+  for (const file of execFileSync("git", ["ls-files", ...patterns], { cwd: root, encoding: "utf8" }).trim().split("\n")) {
+    const folder = `/${dirname(file)}`.replace(/\/\.$/, "/");
+    assert.ok(configured.get(kinds[basename(file)]).includes(folder), file);
+  }
 });
