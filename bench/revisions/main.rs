@@ -82,6 +82,11 @@ impl Times {
         median(self.new.iter().zip(&self.old).map(|(new, old)| new / old).collect())
     }
 
+    /// Counts the calls that take long and come seldom, as the rebuilds of a world do, by what they take.
+    fn ratio_of_totals(&self) -> f64 {
+        self.new.iter().sum::<f64>() / self.old.iter().sum::<f64>()
+    }
+
     /// Calls both, the one that is first alternating with `round`, and keeps their times.
     fn push<A, B>(
         &mut self,
@@ -153,7 +158,7 @@ fn find<const D: usize>(
     times
 }
 
-/// Tracks the pairs of a motion. Also how long the new world takes compared with the new finder from scratch.
+/// Tracks the pairs of a motion. Also how long the new world takes in all, compared with the new finder from scratch.
 fn track<const D: usize>(options: &Options, motion: Motion, count: usize) -> (Times, f64) {
     let mut moving = motion.start::<D, f32>(count, SEED).expect("one to three dimensions");
     let (mut old, mut new) = (old::BroadPhase::<D>::new(), new::BroadPhase::<D>::new());
@@ -164,7 +169,7 @@ fn track<const D: usize>(options: &Options, motion: Motion, count: usize) -> (Ti
     old.update();
     new.update();
     let mut last = moving.boxes().to_vec();
-    let (mut times, mut over_scratch) = (Times::default(), Vec::new());
+    let (mut times, mut from_scratch) = (Times::default(), 0.0);
     let start = Instant::now();
     for round in 0..CALLS.1 {
         if round >= WARM_UP + CALLS.0 && start.elapsed().as_secs_f64() > 2.0 * options.seconds {
@@ -198,13 +203,14 @@ fn track<const D: usize>(options: &Options, motion: Motion, count: usize) -> (Ti
         }
         let all = converted(moving.boxes());
         let (scratch, _) = time(|| finder.find(&all).expect("valid boxes").len());
-        over_scratch.push(times.new[times.new.len() - 1] / scratch);
+        from_scratch += scratch;
     }
-    (times, median(over_scratch))
+    let over_scratch = times.new.iter().sum::<f64>() / from_scratch;
+    (times, over_scratch)
 }
 
-/// One line of the report: its name, and both ratios.
-type Line = (String, f64, f64);
+/// One line of the report: its name, and the ratios of minima, of medians and of totals.
+type Line = (String, [f64; 3]);
 
 fn report(
     kind: &str,
@@ -215,13 +221,14 @@ fn report(
     note: &str,
 ) -> Line {
     let name = format!("{kind} {scene} {dimensions}D {boxes}");
-    let (minima, medians) = (times.ratio_of_minima(), times.median_of_ratios());
+    let ratios = [times.ratio_of_minima(), times.median_of_ratios(), times.ratio_of_totals()];
+    let [minima, medians, totals] = ratios;
     println!(
-        "{name:36} minima {minima:.3}  medians {medians:.3}  old {:>9.4} ms, {} calls{note}",
+        "{name:36} minima {minima:.3}  medians {medians:.3}  totals {totals:.3}  old {:>9.4} ms, {} calls{note}",
         1e3 * minimum(&times.old),
         times.old.len(),
     );
-    (name, minima, medians)
+    (name, ratios)
 }
 
 fn compare<const D: usize>(options: &Options, lines: &mut Vec<Line>) {
@@ -276,15 +283,16 @@ fn main() {
             _ => compare::<3>(&options, &mut lines),
         }
     }
-    let mean = |of: fn(&Line) -> f64| {
-        (lines.iter().map(|line| of(line).ln()).sum::<f64>() / lines.len() as f64).exp()
+    let mean = |of: usize| {
+        (lines.iter().map(|(_, ratios)| ratios[of].ln()).sum::<f64>() / lines.len() as f64).exp()
     };
     println!(
-        "geometric mean: minima {:.3}, medians {:.3}",
-        mean(|line| line.1),
-        mean(|line| line.2)
+        "geometric mean: minima {:.3}, medians {:.3}, totals {:.3}",
+        mean(0),
+        mean(1),
+        mean(2)
     );
-    if let Some((name, _, ratio)) = lines.iter().max_by(|a, b| a.2.total_cmp(&b.2)) {
-        println!("slowest: {name}, median {ratio:.3}");
+    if let Some((name, ratios)) = lines.iter().max_by(|(_, a), (_, b)| a[1].total_cmp(&b[1])) {
+        println!("slowest: {name}, median {:.3}", ratios[1]);
     }
 }

@@ -4,7 +4,7 @@ use super::edit::{Entry, Tree};
 use super::node::{FAN, FILL, NONE, Node, finite, size};
 use crate::{Aabb, Scalar};
 
-/// Sample size for measuring how bodies spread.
+/// Sample size for measuring how bodies spread. 16 instead takes 0.97 to 1.01 of the time.
 const SAMPLE: usize = 64;
 
 impl<const D: usize, T: Scalar> Tree<D, T> {

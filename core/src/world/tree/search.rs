@@ -7,10 +7,12 @@ use super::edit::Tree;
 use super::node::{FAN, NONE};
 use crate::{Aabb, Scalar};
 
-/// Random reads are prefetched this many at a time, so that their cache misses overlap.
+/// Random reads are prefetched this many at a time, so that their cache misses overlap. 4 instead takes 1.00
+/// to 1.06 of the time.
 pub const TOGETHER: usize = 16;
 
-/// How many boxes are looked up at a time.
+/// How many boxes are looked up at a time: what they find stays cached. 64 instead takes 0.97 to 1.03 of the
+/// time.
 pub const BATCH: usize = 256;
 
 impl<const D: usize, T: Scalar> Tree<D, T> {
