@@ -15,13 +15,15 @@ pub struct Motion {
     pub lifetime: f64,
 }
 
-// Chosen on the motions of `scenes/` in 3D at 10,000 and 100,000 bodies. Values that were tried and not
-// taken are not on record.
+// Chosen on the motions of `scenes/` in 3D at 10,000 and 100,000 bodies. What was tried since, paired, in 2D
+// and 3D at 1,000 to 100,000 (Intel Xeon, 2.6 GHz), stands beside the constants.
 
 /// How far a fat AABB reaches, in box sizes: if made together with others, on average; if made alone.
+/// In drift 0.4 and 0.5 take 0.96 to 1.03 of the time in all, 0.3 1.00 to 1.10; 0.9 1.12 to 1.24 (medians).
 const REACH: f64 = 0.6;
 const REACH_ALONE: f64 = 1.2;
 /// What moves further than this, in box sizes, jumps: its motion says nothing of the next step.
+/// With 1 drift takes 1.9 to 2.8 of the time.
 const JUMP: f64 = 2.0;
 /// How many updates a fat AABB lasts at most.
 const LONGEST: f64 = 80.0;

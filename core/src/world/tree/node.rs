@@ -11,8 +11,7 @@ use crate::{Aabb, Scalar};
 pub const NONE: u32 = u32::MAX;
 /// Boxes a node holds at most.
 pub const FAN: usize = 16;
-/// Bodies a leaf is built with, which leaves spare capacity. With 8, drift takes 1.03 of the time; with 16
-/// (10,000 bodies) drift takes 1.02 to 1.05 and mostly-still 1.07.
+/// Bodies a leaf is built with, which leaves spare capacity. With 8 or 16, drift takes 1.02 to 1.05.
 pub const FILL: usize = 12;
 /// A leaf with fewer is given up. 6 instead takes 0.98 to 1.01 of the time.
 pub const LEAST: usize = 3;
