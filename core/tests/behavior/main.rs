@@ -7,7 +7,6 @@ mod common;
 mod algorithms;
 mod algorithms_trace;
 mod broad_phase;
-mod broad_phase_model;
 #[cfg(feature = "serde")]
 mod broad_phase_serde;
 mod broad_phase_snapshots;

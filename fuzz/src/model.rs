@@ -1,0 +1,242 @@
+//! What `BroadPhase` should do, by brute force over a map of bodies.
+
+use std::collections::BTreeMap;
+
+use sweep_and_prune::{Aabb, BroadPhase, Cast, Filter, Options, ProxyId, Report, Scalar};
+
+/// Two bodies that overlap, the smaller id first.
+pub type Pair = [ProxyId; 2];
+
+/// What the model knows of a body.
+#[derive(Clone, Debug)]
+pub struct Body<const D: usize, T> {
+    /// Its box as given.
+    pub aabb: Aabb<D, T>,
+    /// The box whose overlaps are reported.
+    pub reported: Aabb<D, T>,
+    /// Its filter.
+    pub filter: Filter,
+    /// Where its sweep ends, if it was swept since the last update.
+    rest: Option<Aabb<D, T>>,
+}
+
+/// A broad phase that is too simple to be wrong: it tests each body against each.
+#[derive(Clone, Debug)]
+pub struct Model<const D: usize, T> {
+    options: Options<T>,
+    /// All bodies by id.
+    pub bodies: BTreeMap<ProxyId, Body<D, T>>,
+    /// The pairs of the last update, sorted.
+    pub pairs: Vec<Pair>,
+}
+
+impl<const D: usize, T: Scalar> Model<D, T> {
+    /// A model without bodies.
+    pub fn new(options: Options<T>) -> Self {
+        Self { options, bodies: BTreeMap::new(), pairs: Vec::new() }
+    }
+
+    /// The model of a world as it describes itself, which must have no swept bodies.
+    pub fn of(world: &BroadPhase<D, T>) -> Self {
+        let body = |id| Body {
+            aabb: world.aabb(id).unwrap(),
+            reported: world.reported_aabb(id).unwrap(),
+            filter: world.filter(id).unwrap(),
+            rest: None,
+        };
+        let bodies = world.ids().map(|id| (id, body(id))).collect();
+        let mut pairs: Vec<_> = world.pairs().collect();
+        pairs.sort_unstable();
+        Self { options: world.options(), bodies, pairs }
+    }
+
+    /// Adds a body, under the id that the world gave it.
+    pub fn insert(&mut self, id: ProxyId, aabb: Aabb<D, T>, filter: Filter) {
+        let reported = fatten(&self.options, &aabb, [T::default(); D]);
+        let body = Body { aabb, reported, filter, rest: None };
+        assert!(self.bodies.insert(id, body).is_none(), "{id:?} was given out twice");
+    }
+
+    /// Removes a body.
+    pub fn remove(&mut self, id: ProxyId) {
+        self.bodies.remove(&id).unwrap();
+    }
+
+    /// Gives a body its new box.
+    pub fn set(&mut self, id: ProxyId, aabb: Aabb<D, T>) {
+        let old = self.bodies[&id].clone();
+        let holds = |axis: usize| {
+            old.reported.min[axis] <= aabb.min[axis] && aabb.max[axis] <= old.reported.max[axis]
+        };
+        let reported = if self.options.report == Report::Fat && (0..D).all(holds) {
+            old.reported
+        } else {
+            let way = std::array::from_fn(|axis| {
+                let way = aabb.min[axis] - old.aabb.min[axis];
+                if way.to_f64().is_finite() { way } else { T::default() }
+            });
+            fatten(&self.options, &aabb, way)
+        };
+        self.bodies.insert(id, Body { aabb, reported, rest: None, ..old });
+    }
+
+    /// Moves a body from one box to another.
+    pub fn set_swept(&mut self, id: ProxyId, from: Aabb<D, T>, to: Aabb<D, T>) {
+        let least = |a: T, b: T| if a < b { a } else { b };
+        let most = |a: T, b: T| if a > b { a } else { b };
+        let min = std::array::from_fn(|axis| least(from.min[axis], to.min[axis]));
+        let max = std::array::from_fn(|axis| most(from.max[axis], to.max[axis]));
+        self.set(id, Aabb::new(min, max));
+        self.bodies.get_mut(&id).unwrap().rest = Some(to);
+    }
+
+    /// Gives a body another filter.
+    pub fn set_filter(&mut self, id: ProxyId, filter: Filter) {
+        self.bodies.get_mut(&id).unwrap().filter = filter;
+    }
+
+    /// The pairs that began and those that ended since the last update, sorted.
+    pub fn update(&mut self) -> (Vec<Pair>, Vec<Pair>) {
+        let bodies: Vec<_> = self.bodies.iter().collect();
+        let mut now = Vec::with_capacity(self.pairs.len());
+        for (index, (a, first)) in bodies.iter().enumerate() {
+            for (b, second) in &bodies[index + 1..] {
+                if first.reported.overlaps(&second.reported) && first.filter.allows(&second.filter)
+                {
+                    now.push([**a, **b]);
+                }
+            }
+        }
+        let (begun, ended) = (missing(&self.pairs, &now), missing(&now, &self.pairs));
+        self.pairs = now;
+        let swept = self.bodies.iter().filter(|(_, body)| body.rest.is_some());
+        for id in swept.map(|(&id, _)| id).collect::<Vec<_>>() {
+            let body = self.bodies.get_mut(&id).unwrap();
+            let to = body.rest.take().unwrap();
+            body.aabb = to;
+            body.reported = fatten(&self.options, &to, [T::default(); D]);
+        }
+        (begun, ended)
+    }
+
+    /// The bodies that overlapped one at the last update, sorted.
+    pub fn pairs_of(&self, id: ProxyId) -> Vec<ProxyId> {
+        let other = |&[a, b]: &Pair| if a == id { Some(b) } else { (b == id).then_some(a) };
+        let mut others: Vec<_> = self.pairs.iter().filter_map(other).collect();
+        others.sort();
+        others
+    }
+
+    /// The ids and boxes of the bodies that queries with a filter see.
+    fn seen<'a>(
+        &'a self,
+        filter: &'a Option<Filter>,
+    ) -> impl Iterator<Item = (ProxyId, &'a Aabb<D, T>)> + 'a {
+        let is_seen = |body: &Body<D, T>| filter.is_none_or(|filter| filter.allows(&body.filter));
+        let seen = self.bodies.iter().filter(move |(_, body)| is_seen(body));
+        seen.map(|(&id, body)| (id, &body.aabb))
+    }
+
+    /// The bodies whose boxes overlap an area, sorted.
+    pub fn overlapping(&self, area: &Aabb<D, T>, filter: &Option<Filter>) -> Vec<ProxyId> {
+        self.seen(filter).filter(|(_, aabb)| aabb.overlaps(area)).map(|(id, _)| id).collect()
+    }
+
+    /// The bodies whose boxes are at most `radius` away from a point, sorted.
+    pub fn within(&self, center: [T; D], radius: T, filter: &Option<Filter>) -> Vec<ProxyId> {
+        let radius = radius.to_f64();
+        // Scaled by the power of two that brings the radius near 1, squares neither overflow nor vanish.
+        let exponent = (radius.to_bits() >> 52) as i32 - 1023;
+        let scale =
+            |length: f64| length * 2f64.powi(-exponent / 2) * 2f64.powi(exponent / 2 - exponent);
+        let is_near = |aabb: &Aabb<D, T>| {
+            let gaps: [f64; D] = std::array::from_fn(|axis| gap(&center, aabb, axis));
+            let square = |length: f64| scale(length) * scale(length);
+            match radius {
+                0.0 => gaps.iter().all(|&gap| gap == 0.0),
+                f64::INFINITY => true,
+                _ => gaps.iter().fold(0.0, |sum, &gap| sum + square(gap)) <= square(radius),
+            }
+        };
+        self.seen(filter).filter(|(_, aabb)| is_near(aabb)).map(|(id, _)| id).collect()
+    }
+
+    /// The `k` bodies nearest to a point and the squares of their distances, sorted by these and then by id.
+    pub fn nearest(&self, point: [T; D], k: usize, filter: &Option<Filter>) -> Vec<(f64, ProxyId)> {
+        let square = |aabb: &Aabb<D, T>| {
+            (0..D).map(|axis| gap(&point, aabb, axis)).fold(0.0, |sum, gap| sum + gap * gap)
+        };
+        let mut all: Vec<_> = self.seen(filter).map(|(id, aabb)| (square(aabb), id)).collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        all.truncate(k);
+        all
+    }
+
+    /// When a cast first touches each body that it hits, sorted by that and then by id.
+    pub fn hits(&self, cast: &Cast<D, T>, filter: &Option<Filter>) -> Vec<(f64, ProxyId)> {
+        let mut hits = Vec::new();
+        'bodies: for (id, aabb) in self.seen(filter) {
+            // The times at which the intervals overlap, axis by axis.
+            let mut times = (0.0f64, cast.limit.to_f64());
+            for axis in 0..D {
+                let speed = cast.direction[axis].to_f64();
+                let until_touch = aabb.min[axis].to_f64() - cast.from.max[axis].to_f64();
+                let until_past = aabb.max[axis].to_f64() - cast.from.min[axis].to_f64();
+                if speed != 0.0 {
+                    let (a, b) = (until_touch / speed, until_past / speed);
+                    times = (times.0.max(a.min(b)), times.1.min(a.max(b)));
+                } else if until_touch > 0.0 || until_past < 0.0 {
+                    continue 'bodies;
+                }
+            }
+            if times.0 <= times.1 {
+                // Not -0.0, which is no other time.
+                hits.push((times.0 + 0.0, id));
+            }
+        }
+        hits.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        hits
+    }
+}
+
+/// The items of a sorted list that are not in another.
+fn missing(from: &[Pair], of: &[Pair]) -> Vec<Pair> {
+    let mut from = from.iter().peekable();
+    let mut missing = Vec::new();
+    for pair in of {
+        while from.next_if(|&other| other < pair).is_some() {}
+        if from.peek() != Some(&pair) {
+            missing.push(*pair);
+        }
+    }
+    missing
+}
+
+/// From a point to a box on one axis.
+fn gap<const D: usize, T: Scalar>(point: &[T; D], aabb: &Aabb<D, T>, axis: usize) -> f64 {
+    let at = point[axis].to_f64();
+    (aabb.min[axis].to_f64() - at).max(at - aabb.max[axis].to_f64()).max(0.0)
+}
+
+/// The box that is reported of a body that moved by `way`.
+#[expect(clippy::needless_range_loop, reason = "four arrays are read at the axis")]
+fn fatten<const D: usize, T: Scalar>(
+    options: &Options<T>,
+    aabb: &Aabb<D, T>,
+    way: [T; D],
+) -> Aabb<D, T> {
+    let mut fat = *aabb;
+    if options.report == Report::Fat {
+        for axis in 0..D {
+            let ahead = way[axis] * options.prediction;
+            fat.min[axis] = aabb.min[axis] - options.margin;
+            fat.max[axis] = aabb.max[axis] + options.margin;
+            if ahead < T::default() {
+                fat.min[axis] = fat.min[axis] + ahead;
+            } else {
+                fat.max[axis] = fat.max[axis] + ahead;
+            }
+        }
+    }
+    fat
+}
