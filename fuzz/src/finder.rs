@@ -188,7 +188,7 @@ impl<const D: usize, T: Scalar> Case<'_, D, T> {
         assert_eq!(case.search(finder).count(), Err(error));
     }
 
-    /// Searches a part of the boxes: those who search all afterwards find larger buffers.
+    /// Searches a part of the boxes: a search of all boxes afterwards finds other buffers.
     fn use_old_buffers(&self, finder: &mut PairFinder<D, T>) {
         let most = self.boxes.len() as u32;
         let mut found = self.search(finder).pairs().unwrap().to_vec();

@@ -84,7 +84,7 @@ pub struct Space {
 }
 
 impl Space {
-    /// A space for about so many boxes with coordinates of a type. Few boxes may be anywhere; many get room, so that
+    /// A space for about so many boxes with coordinates of a type. Few boxes may be anywhere; many lie apart, so that
     /// each overlaps a few others and not all.
     pub fn draw<const D: usize, T: Scalar>(input: &mut Input, boxes: usize) -> Self {
         let (huge, tiny) = if T::BYTES == 4 { (1e37, 1e-44) } else { (1e307, 3e-323) };

@@ -4,7 +4,8 @@
 use std::collections::BTreeSet;
 
 use sweep_and_prune::{
-    Aabb, BroadPhase, Cast, Error, Filter, Options, PairFinder, ProxyId, SnapshotFault, SnapshotInfo,
+    Aabb, BroadPhase, Cast, Error, Filter, Options, PairFinder, ProxyId, SnapshotFault,
+    SnapshotInfo,
 };
 use sweep_and_prune_fuzz::{Model, Pair};
 use sweep_and_prune_scenes::{Motion, Random, Scene};
