@@ -10,7 +10,7 @@ const ids = world.insertMany([
   [40, 80, 240, 280],
   [260, 80, 360, 280],
   [40, 300, 360, 330],
-]).slice();
+]);
 const shapeOf = new Map([...ids].map((id, i) => [id, shapes[i]]));
 const names = (found) => [...found].map((id) => shapeOf.get(id)).join(", ");
 

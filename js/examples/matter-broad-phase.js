@@ -6,7 +6,7 @@ await init();
 
 const bodies = Array.from({ length: 400 }, (_, i) => Matter.Bodies.circle((i % 20) * 19, Math.floor(i / 20) * 19, 10));
 const world = new BroadPhase({ dimensions: 2, precision: "double" });
-const ids = world.insertMany(bodies.map((body) => body.bounds)).slice();
+const ids = world.insertMany(bodies.map((body) => body.bounds));
 const bodyOf = new Map([...ids].map((id, i) => [id, bodies[i]]));
 
 /** The contacts now: matter's narrow phase over the pairs of sweep-and-prune. */

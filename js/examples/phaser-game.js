@@ -28,7 +28,7 @@ class Shooter extends Phaser.Scene {
       bullet.x += 50; // more than its own size: its whole path counts
       this.world.setSwept(id, before, edges(bullet));
     }
-    const begun = this.world.update().begun.slice(); // a copy: the view is valid until the next call
+    const { begun } = this.world.update();
     this.hits += begun.length / 2;
     for (const id of new Set(begun)) { // a set: a bullet that hits two rocks is in two pairs
       this.objectOf.get(id).destroy();

@@ -13,7 +13,7 @@ const coins = [60, 120, 180].map((x) => {
 const sprites = [hero, ...coins];
 
 const world = new BroadPhase({ dimensions: 2 });
-const ids = world.insertMany(sprites.map((sprite) => sprite.getBounds())).slice();
+const ids = world.insertMany(sprites.map((sprite) => sprite.getBounds()));
 const spriteOf = new Map([...ids].map((id, i) => [id, sprites[i]]));
 world.setFilter(ids[0], { category: 1, mask: 2 });
 for (const id of ids.subarray(1)) world.setFilter(id, { category: 2, mask: 1 }); // coins do not pair with coins

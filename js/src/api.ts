@@ -9,4 +9,5 @@ export {
   type FindPairsOptions,
   forEachPair,
   PairFinder,
+  type PairFinderOptions,
 } from "./pair-finder.js";

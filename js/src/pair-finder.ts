@@ -3,12 +3,22 @@ import { type BoxObject, type Boxes, checkBoxes, checkDimensions, type Dimension
 import { describe } from "./describe.js";
 import { checkFits, Core, type Each, type Engine, type Exports, type Passed } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
-import { guard, view } from "./views.js";
+import { checkViews, result, view } from "./views.js";
 
 /** Options of a search. */
 export interface FindPairsOptions {
   /** How many dimensions the boxes have. Boxes that are objects tell it themselves, and need no options. */
   dimensions: Dimensions;
+}
+
+/** Options of a {@link PairFinder}. */
+export interface PairFinderOptions extends FindPairsOptions {
+  /**
+   * Whether `find` and `findBetween` return views of WebAssembly's memory, which save the time of a copy.
+   * A view is valid until the next call of anything in this package: that call may overwrite it, or let
+   * the memory grow, which leaves the view with length 0. False by default.
+   */
+  views?: boolean;
 }
 
 /** Is called with each pair. If it returns `false`, it is not called again. */
@@ -43,8 +53,7 @@ export const finderCore: Core<FinderExports> = new Core("finder_new", "sweep-and
  * `a0, b0, a1, b1, ...`. Each pair is listed once, with the smaller index first, in a deterministic
  * order.
  *
- * Touching boxes overlap. Points, flat boxes and infinite edges are allowed. The result is a copy.
- * To find pairs many times, keep a {@link PairFinder}, which reuses its buffers.
+ * Touching boxes overlap. Points, flat boxes and infinite edges are allowed. To find pairs many times, keep a {@link PairFinder}, which reuses its buffers.
  *
  * Time O(n log n + pairs) on typical inputs, memory O(n + pairs).
  *
@@ -63,7 +72,7 @@ export const finderCore: Core<FinderExports> = new Core("finder_new", "sweep-and
 export function findPairs(boxes: readonly BoxObject[], options?: FindPairsOptions): Uint32Array<ArrayBuffer>;
 export function findPairs(boxes: Boxes, options: FindPairsOptions): Uint32Array<ArrayBuffer>;
 export function findPairs(boxes: Boxes, options?: FindPairsOptions): Uint32Array<ArrayBuffer> {
-  return once([boxes], options, (finder) => copy(finder.find(boxes)));
+  return once([boxes], options, (finder) => finder.find(boxes));
 }
 
 /**
@@ -87,7 +96,7 @@ export function findPairsBetween(
 ): Uint32Array<ArrayBuffer>;
 export function findPairsBetween(a: Boxes, b: Boxes, options: FindPairsOptions): Uint32Array<ArrayBuffer>;
 export function findPairsBetween(a: Boxes, b: Boxes, options?: FindPairsOptions): Uint32Array<ArrayBuffer> {
-  return once([a, b], options, (finder) => copy(finder.findBetween(a, b)));
+  return once([a, b], options, (finder) => finder.findBetween(a, b));
 }
 
 /**
@@ -124,17 +133,9 @@ function once<R>(sets: readonly Boxes[], options: FindPairsOptions | undefined, 
   }
 }
 
-function copy(pairs: Uint32Array): Uint32Array<ArrayBuffer> {
-  try {
-    return new Uint32Array(pairs);
-  } catch {
-    throw new OutOfMemoryError(); // JavaScript could not allocate the copy
-  }
-}
-
 /**
- * Finds pairs many times and keeps its buffers in between: a call that needs no more memory than the
- * ones before allocates nothing.
+ * Finds pairs many times and keeps its memory in between, as much as its largest input and result needed.
+ * With the option `views` a call that needs no more memory than those before it allocates nothing.
  *
  * ```js
  * using finder = new PairFinder({ dimensions: 2 });
@@ -150,37 +151,38 @@ export class PairFinder {
   readonly dimensions: Dimensions;
   readonly #owned: Owned;
   readonly #rows: [Rows?, Rows?] = [];
-  #pairs: Uint32Array | undefined;
+  readonly #isView: boolean;
+  #pairs: Uint32Array<ArrayBuffer> | undefined;
 
   /**
    * A finder with empty buffers.
    *
    * @throws {@link NotInitializedError} before `init()` is done.
-   * @throws `RangeError` if `dimensions` is not 1, 2 or 3.
+   * @throws `RangeError` if `dimensions` is not 1, 2 or 3; `TypeError` if `views` is not a boolean.
    */
-  constructor(options: FindPairsOptions) {
+  constructor(options: PairFinderOptions) {
     this.dimensions = checkDimensions(options?.dimensions);
+    this.#isView = checkViews(options.views);
     this.#owned = { engine: finderCore.engine(), single: 0, double: 0, isBusy: false, isFreed: false };
     forgotten?.register(this, this.#owned, this.#owned);
   }
 
   /**
-   * Finds the pairs of {@link findPairs}. The result is a view of this package's memory, valid until
-   * the next call of anything in this package: that call may overwrite it, or let the memory grow,
-   * which leaves the view with length 0. Copy it (`pairs.slice()`) to keep it.
+   * Finds the pairs of {@link findPairs}. With the option `views` the result is a view, valid until the
+   * next call.
    *
    * @throws As {@link findPairs}, and `TypeError` if the finder was freed. It stays usable.
    */
-  find(boxes: Boxes): Uint32Array {
+  find(boxes: Boxes): Uint32Array<ArrayBuffer> {
     return this.#store(boxes, alone);
   }
 
   /**
-   * Finds the pairs of {@link findPairsBetween}, as a view like that of {@link PairFinder.find}.
+   * Finds the pairs of {@link findPairsBetween}, otherwise as {@link PairFinder.find}.
    *
    * @throws As {@link findPairsBetween}, and `TypeError` if the finder was freed.
    */
-  findBetween(a: Boxes, b: Boxes): Uint32Array {
+  findBetween(a: Boxes, b: Boxes): Uint32Array<ArrayBuffer> {
     return this.#store(a, b);
   }
 
@@ -220,12 +222,12 @@ export class PairFinder {
     return this.#stream(each, a, b);
   }
 
-  #store(a: Boxes, b: Boxes | typeof alone): Uint32Array {
+  #store(a: Boxes, b: Boxes | typeof alone): Uint32Array<ArrayBuffer> {
     const { engine } = this.#owned;
     this.#search(Use.Store, a, b, undefined);
     const { buffer } = engine.exports.memory;
-    this.#pairs = view(Uint32Array, this.#pairs, buffer, engine.detail(0), 2 * engine.detail(1));
-    return guard(engine, this.#pairs);
+    this.#pairs = view<Uint32Array<ArrayBuffer>>(Uint32Array, this.#pairs, buffer, engine.detail(0), 2 * engine.detail(1));
+    return result(engine, this.#pairs, this.#isView);
   }
 
   #count(a: Boxes, b: Boxes | typeof alone): number {

@@ -1,3 +1,6 @@
+import { describe } from "./describe.js";
+import { OutOfMemoryError } from "./errors.js";
+
 /** The arrays that views of memory are. */
 export type Typed = Float32Array | Float64Array | Uint32Array | Uint8Array;
 
@@ -33,8 +36,29 @@ export function unguard(value: unknown): unknown {
   return view;
 }
 
+/**
+ * What a call returns of memory: a copy, which stays valid; or, for an object with the option `views`, the
+ * view.
+ *
+ * @throws {@link OutOfMemoryError} if JavaScript cannot allocate the copy.
+ */
+export function result<T extends Typed>(clock: Clock, view: T, isView: boolean): T {
+  if (isView) return guard(clock, view);
+  try {
+    return new (view.constructor as new (of: T) => T)(view); // faster than `slice`, which fills the memory with zeros first
+  } catch {
+    throw new OutOfMemoryError();
+  }
+}
+
+/** @internal The option `views`, checked. */
+export function checkViews(views: unknown): boolean {
+  if (views !== undefined && typeof views !== "boolean") throw new TypeError(`\`views\` must be true or false, not ${describe(views)}`);
+  return views === true;
+}
+
 /** The view itself; in development mode a proxy of it that throws if it is used when it is stale. */
-export function guard<T extends Typed>(clock: Clock, view: T): T {
+function guard<T extends Typed>(clock: Clock, view: T): T {
   if (!clock.isDevelopment) return view;
   const { calls } = clock;
   const check = (): void => {

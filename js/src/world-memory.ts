@@ -1,7 +1,7 @@
 import { type Boxes, checkBoxes, checkNumbers, type Dimensions, writeRows } from "./boxes.js";
 import { checkFits, type Engine, type Passed } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
-import { guard, view } from "./views.js";
+import { result, view } from "./views.js";
 import { refuseCorners } from "./world-arguments.js";
 import { worldCore, type WorldExports } from "./world-core.js";
 import type { BroadPhaseOptions, Changes, Hit, Numbers } from "./world-types.js";
@@ -15,6 +15,8 @@ export class WorldMemory {
   readonly isDouble: boolean;
   /** How many dimensions the boxes are stored in: at least those that they have. */
   readonly stored: Dimensions;
+  /** Whether arrays that it gives out are views of memory. */
+  readonly isView: boolean;
   readonly #owned: Owned;
   readonly #numbersAt: number;
   #numbers: Float64Array | undefined;
@@ -24,9 +26,10 @@ export class WorldMemory {
   #begun: Float64Array | undefined;
   #ended: Float64Array | undefined;
 
-  private constructor(dimensions: Dimensions, isDouble: boolean, owned: Owned) {
+  private constructor(dimensions: Dimensions, isDouble: boolean, isView: boolean, owned: Owned) {
     this.dimensions = dimensions;
     this.isDouble = isDouble;
+    this.isView = isView;
     // The core has no type for 1D boxes, nor for 2D in double precision: js/wasm/src/broad_phase/stored.rs.
     this.stored = isDouble ? 3 : (Math.max(2, dimensions) as Dimensions);
     this.#owned = owned;
@@ -36,16 +39,16 @@ export class WorldMemory {
 
   /** An empty broad phase. */
   static create(options: Required<BroadPhaseOptions>): WorldMemory {
-    const { dimensions, precision, report, margin, prediction } = options;
+    const { dimensions, precision, report, margin, prediction, views } = options;
     const isDouble = precision === "double";
     const engine = worldCore.engine();
     const world = engine.exports.world_new(dimensions, Number(isDouble), margin, prediction, Number(report === "fat"));
     if (world === 0) throw new RangeError("`margin` or `prediction` does not fit in single precision");
-    return new WorldMemory(dimensions, isDouble, { engine, world });
+    return new WorldMemory(dimensions, isDouble, views, { engine, world });
   }
 
   /** The broad phase of a snapshot. */
-  static restore(bytes: Uint8Array, dimensions: Dimensions): WorldMemory {
+  static restore(bytes: Uint8Array, dimensions: Dimensions, isView: boolean): WorldMemory {
     const engine = worldCore.engine();
     const { exports } = engine;
     checkFits(bytes.length);
@@ -56,7 +59,7 @@ export class WorldMemory {
       if (at === 0) throw new OutOfMemoryError();
       new Uint8Array(exports.memory.buffer, at, bytes.length).set(bytes);
       engine.check(exports.world_restore(owned.world));
-      return new WorldMemory(dimensions, engine.detail(0) !== 0, owned);
+      return new WorldMemory(dimensions, engine.detail(0) !== 0, isView, owned);
     } catch (error) {
       release(owned);
       throw error;
@@ -100,7 +103,7 @@ export class WorldMemory {
     const { engine } = this.#owned;
     const { buffer } = engine.exports.memory;
     this.#out = view(Float64Array, this.#out, buffer, engine.detail(0), engine.detail(1));
-    return guard(engine, this.#out);
+    return result(engine, this.#out, this.isView);
   }
 
   /** Makes a query whose answer has a value for each id, and returns both. */
@@ -114,15 +117,21 @@ export class WorldMemory {
     return Array.from(ids, (id, at) => ({ id, t: values[at]! }));
   }
 
-  /** The changes that the last call reported, as views of memory. */
-  changes(into: Changes): void {
+  /** Updates, and writes what changed. */
+  update(into: Changes): void {
+    this.call((exports, world) => exports.world_update(world));
     const { engine } = this.#owned;
     const { buffer } = engine.exports.memory;
     const [at, total, begun] = [engine.detail(0), engine.detail(1), this.numbers()[0]!];
     this.#begun = view(Float64Array, this.#begun, buffer, at, begun);
     this.#ended = view(Float64Array, this.#ended, buffer, at + 8 * begun, total - begun);
-    into.begun = guard(engine, this.#begun);
-    into.ended = guard(engine, this.#ended);
+    try {
+      into.begun = result(engine, this.#begun, this.isView);
+      into.ended = result(engine, this.#ended, this.isView);
+    } catch (error) {
+      this.free(); // the next update would not report these changes
+      throw error;
+    }
   }
 
   /** A copy of the bytes that the last call reported. */

@@ -30,6 +30,12 @@ export interface BroadPhaseOptions {
   margin?: number;
   /** How many displacements a fat AABB reaches ahead of the body. 0 by default. */
   prediction?: number;
+  /**
+   * Whether arrays of ids are views of WebAssembly's memory, which saves the time of a copy. A view is
+   * valid until the next call of anything in this package: that call may overwrite it, or let the memory
+   * grow, which leaves the view with length 0. False by default.
+   */
+  views?: boolean;
 }
 
 /** What an update found; see `BroadPhase.update`. */

@@ -5,6 +5,7 @@ import { OutOfMemoryError } from "./errors.js";
 import { defaultFilter, type Filter, filterWords, noFilter } from "./filter.js";
 import { checkCount, checkId, checkLength } from "./world-arguments.js";
 import { Query } from "./world-core.js";
+import { checkViews } from "./views.js";
 import { WorldMemory } from "./world-memory.js";
 import type { BroadPhaseOptions, Buffers, Changes, Hit, Neighbor, Numbers, ProxyId } from "./world-types.js";
 
@@ -20,9 +21,8 @@ import type { BroadPhaseOptions, Buffers, Changes, Hit, Neighbor, Numbers, Proxy
  * for (let i = 0; i < begun.length; i += 2) console.log(begun[i], "touches", begun[i + 1]);
  * ```
  *
- * The arrays that it returns are views, valid until the next call of anything in this package. Copy
- * them (`begun.slice()`) to keep them. The same calls give the same results on every machine. A call
- * that throws changes nothing, with one exception: a `BroadPhase` that runs out of memory is freed.
+ * The same calls give the same results on every machine. A call that throws changes nothing, with one
+ * exception: a `BroadPhase` that runs out of memory is freed.
  */
 export class BroadPhase {
   /** How many dimensions the boxes have. */
@@ -30,14 +30,14 @@ export class BroadPhase {
   /** The precision of the coordinates. */
   readonly precision: "single" | "double";
   readonly #memory: WorldMemory;
-  readonly #changes: Changes = { begun: new Float64Array(0), ended: new Float64Array(0) };
+  readonly #changes: Changes = { begun: none, ended: none };
 
   /**
    * An empty broad phase.
    *
    * @throws {@link NotInitializedError} before `init()` is done.
    * @throws `RangeError` for dimensions other than 1, 2 and 3, or a margin or prediction that is
-   *   negative, infinite or NaN.
+   *   negative, infinite or NaN; `TypeError` if `views` is not a boolean.
    */
   constructor(options: BroadPhaseOptions) {
     const given: unknown = options;
@@ -52,11 +52,11 @@ export class BroadPhase {
    *
    * @throws {@link SnapshotError} if the bytes are not a snapshot of boxes with these dimensions.
    */
-  static fromSnapshot(bytes: Uint8Array, options: { dimensions: Dimensions }): BroadPhase {
+  static fromSnapshot(bytes: Uint8Array, options: { dimensions: Dimensions; views?: boolean }): BroadPhase {
     if (!(ArrayBuffer.isView(bytes) && bytes[Symbol.toStringTag] === "Uint8Array")) {
       throw new TypeError(`\`bytes\` must be a Uint8Array, not ${describe(bytes)}`);
     }
-    const memory: unknown = WorldMemory.restore(bytes, checkDimensions(options?.dimensions));
+    const memory: unknown = WorldMemory.restore(bytes, checkDimensions(options?.dimensions), checkViews(options.views));
     return new BroadPhase(memory as BroadPhaseOptions);
   }
 
@@ -118,8 +118,7 @@ export class BroadPhase {
   }
 
   /**
-   * Gives each of many bodies its new box. If an id is given twice, its last box counts. Nothing is
-   * copied if ids and boxes are those of {@link BroadPhase.buffers}.
+   * Gives each of many bodies its new box. If an id is given twice, its last box counts.
    *
    * @throws {@link StaleProxyError} or {@link InvalidBoxError} with the index of the first bad one,
    *   `RangeError` if there are not as many ids as boxes. Then no box has changed.
@@ -139,9 +138,9 @@ export class BroadPhase {
   }
 
   /**
-   * Arrays to write many ids and boxes to, which {@link BroadPhase.setMany} then does not copy:
-   * views of memory, valid until the next call. For 1D boxes, and 2D boxes in double precision,
-   * which are stored in another form, they are ordinary arrays.
+   * Arrays to write many ids and boxes to. With the option `views` they are views of memory, valid until
+   * the next call, and {@link BroadPhase.setMany} does not copy them. Without it, and for 1D boxes and 2D
+   * boxes in double precision, which are stored in another form, they are ordinary arrays.
    *
    * @throws `RangeError` if `count` is not a whole number, {@link OutOfMemoryError}.
    */
@@ -149,7 +148,7 @@ export class BroadPhase {
     this.#memory.exports(); // throws if it was freed
     if (!(Number.isInteger(count) && count >= 0)) throw new RangeError(`\`count\` is ${describe(count)}; it must be a whole number, 0 or more`);
     const width = 2 * this.dimensions;
-    if (this.#memory.stored !== this.dimensions) {
+    if (!this.#memory.isView || this.#memory.stored !== this.dimensions) {
       try {
         const boxes = this.precision === "double" ? new Float64Array(width * count) : new Float32Array(width * count);
         return { ids: new Float64Array(count), boxes };
@@ -246,12 +245,13 @@ export class BroadPhase {
    * many bodies changed and how many neighbors they have. If most bodies move far, it can exceed the
    * time of finding all pairs (see the benchmark).
    *
-   * It returns the same object each time, with views that are valid until the next call.
+   * With the option `views` it returns the same object each time, whose arrays are valid until the next
+   * call.
    */
   update(): Changes {
-    this.#memory.call((exports, world) => exports.world_update(world));
-    this.#memory.changes(this.#changes);
-    return this.#changes;
+    const changes = this.#memory.isView ? this.#changes : { begun: none, ended: none };
+    this.#memory.update(changes);
+    return changes;
   }
 
   /** The pairs that overlapped at the last update: `a0, b0, a1, b1, ...`, sorted by slot. */
@@ -413,6 +413,8 @@ export class BroadPhase {
   }
 }
 
+const none: Float64Array = new Float64Array(0);
+
 /** The box of a call that has only one. */
 const oneBox = { boxes: [["box", 1]] } as const;
 
@@ -420,6 +422,7 @@ const oneBox = { boxes: [["box", 1]] } as const;
 function checkOptions(options: BroadPhaseOptions): Required<BroadPhaseOptions> {
   const dimensions = checkDimensions(options?.dimensions);
   const { precision = "single", report = "exact", margin = 0, prediction = 0 } = options;
+  const views = checkViews(options.views);
   if (precision !== "single" && precision !== "double") {
     throw new RangeError(`\`precision\` must be "single" or "double", not ${describe(precision)}`);
   }
@@ -429,5 +432,5 @@ function checkOptions(options: BroadPhaseOptions): Required<BroadPhaseOptions> {
   for (const [name, value] of [["margin", margin], ["prediction", prediction]] as const) {
     if (!(Number.isFinite(value) && value >= 0)) throw new RangeError(`\`${name}\` is ${describe(value)}; it must be finite, and 0 or more`);
   }
-  return { dimensions, precision, report, margin, prediction };
+  return { dimensions, precision, report, margin, prediction, views };
 }

@@ -220,7 +220,7 @@ test("queries equal brute force", () => {
     const next = random(40 + dimensions);
     const rows = Float32Array.from(boxesSpread(next, 400, dimensions));
     const world = new BroadPhase({ dimensions });
-    const ids = world.insertMany(rows).slice();
+    const ids = world.insertMany(rows);
     const width = 2 * dimensions;
     const at = (/** @type {number} */ i) => Array.from(rows.subarray(i * width, (i + 1) * width));
     /** @param {number[]} point @param {number[]} box */
@@ -259,7 +259,7 @@ test("a restored world continues like the one that was saved", () => {
   for (const precision of precisions) {
     const next = random(50);
     const world = new BroadPhase({ dimensions: 2, precision });
-    const ids = world.insertMany(boxesSpread(next, 200, 2)).slice();
+    const ids = world.insertMany(boxesSpread(next, 200, 2));
     world.update();
     world.removeMany(ids.subarray(0, 20));
     world.set(ids[30] ?? 0, 0, 0, 1, 1);
@@ -271,7 +271,7 @@ test("a restored world continues like the one that was saved", () => {
     const changes = [world, copy].map((each) => {
       each.set(ids[40] ?? 0, 0.25, 0.25, 0.75, 0.75);
       const { begun, ended } = each.update();
-      return [begun.slice(), ended.slice(), each.insert(0, 0, 1, 1)];
+      return [begun, ended, each.insert(0, 0, 1, 1)];
     });
     assert.ok(/** @type {Float64Array} */ (changes[0]?.[0]).length > 0);
     assert.deepEqual(changes[0], changes[1]);
@@ -285,21 +285,6 @@ test("a restored world continues like the one that was saved", () => {
     if (precision === "single") assert.throws(() => BroadPhase.fromSnapshot(bytes, { dimensions: 3 }), /other dimensions: pass `dimensions: 2`/);
     assert.throws(() => BroadPhase.fromSnapshot(/** @type {any} */ ([...bytes]), { dimensions: 2 }), TypeError);
   }
-});
-
-test("a steady state makes no new view", () => {
-  const world = new BroadPhase({ dimensions: 2 });
-  const id = world.insert(0, 0, 1, 1);
-  world.insert(0, 0, 1, 1);
-  world.update();
-  const { begun } = world.update();
-  world.set(id, 0, 0, 1, 2);
-  assert.equal(world.update().begun, begun);
-  const { ids, boxes } = world.buffers(1);
-  ids[0] = id;
-  world.setMany(ids, boxes);
-  assert.equal(world.buffers(1).boxes, boxes);
-  world.free();
 });
 
 test("insert and set take as many numbers as a box has, and nothing else", () => {
@@ -378,7 +363,7 @@ test("a snapshot of another dimension is refused, in each precision", () => {
   for (const from of every) {
     for (const precision of precisions) {
       const world = new BroadPhase({ dimensions: from, precision });
-      const ids = world.insertMany(new Float64Array(8 * from)).slice();
+      const ids = world.insertMany(new Float64Array(8 * from));
       world.update();
       const bytes = world.snapshot();
       for (const to of every) {

@@ -7,7 +7,7 @@ import { BroadPhase, init as initWorlds } from "sweep-and-prune/broad-phase";
 before(() => Promise.all([init({ development: true }), initWorlds({ development: true })]));
 
 test("a view of pairs works until the next call, and then throws", () => {
-  const finder = new PairFinder({ dimensions: 1 });
+  const finder = new PairFinder({ dimensions: 1, views: true });
   const pairs = finder.find([0, 1, 1, 2]);
   assert.deepEqual([...pairs], [0, 1]);
   assert.equal(pairs.length, 2);
@@ -24,7 +24,7 @@ test("a view of pairs works until the next call, and then throws", () => {
 });
 
 test("so do the views of a world", () => {
-  const world = new BroadPhase({ dimensions: 1 });
+  const world = new BroadPhase({ dimensions: 1, views: true });
   const [a, b] = [world.insert(0, 1), world.insert(1, 2)];
   const { begun, ended } = world.update();
   assert.deepEqual([...begun], [a, b]);

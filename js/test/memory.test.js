@@ -38,7 +38,7 @@ test("boxes that do not fit", () => {
 test("pairs that do not fit, again and again", () => {
   // All of them overlap: n(n-1)/2 pairs of 8 bytes are over 2 GiB.
   const boxes = new Float32Array(2 * 24_000);
-  const finders = Array.from({ length: 4 }, () => new PairFinder({ dimensions: 1 }));
+  const finders = Array.from({ length: 4 }, () => new PairFinder({ dimensions: 1, views: true }));
   const stackTop = stackPointer.value;
   for (const finder of finders) {
     assert.throws(() => finder.find(boxes), OutOfMemoryError);
@@ -46,7 +46,7 @@ test("pairs that do not fit, again and again", () => {
     assert.deepEqual([...finder.find(good)], [0, 1]);
   }
   // Each had over a gigabyte when it failed. It is there again for another.
-  const another = new PairFinder({ dimensions: 1 });
+  const another = new PairFinder({ dimensions: 1, views: true });
   assert.equal(another.find(boxes.subarray(0, 2 * 12_000)).length, 12_000 * 11_999);
   for (const finder of [...finders, another]) finder.free();
   assert.equal(findPairs(boxes.subarray(0, 2 * 1000), { dimensions: 1 }).length, 1000 * 999);

@@ -14,7 +14,7 @@ const rows = boxesSpread(random(4), 5_000, 2);
 
 /** How much memory there is now, in bytes. */
 function memory() {
-  const world = new BroadPhase({ dimensions: 2 });
+  const world = new BroadPhase({ dimensions: 2, views: true });
   world.insert(0, 0, 1, 1);
   const { byteLength } = world.ids().buffer;
   world[Symbol.dispose]();
@@ -40,7 +40,7 @@ test("worlds that are never freed are freed once they are garbage", async () => 
 });
 
 test("what no memory could hold is refused, and the world goes on", () => {
-  const world = new BroadPhase({ dimensions: 2 });
+  const world = new BroadPhase({ dimensions: 2, views: true });
   const ids = world.insertMany([0, 0, 1, 1, 1, 1, 2, 2]).slice();
   // The system hands these out without touching them: they cost nothing.
   assert.throws(() => world.insertMany(new Float64Array(2 ** 29)), OutOfMemoryError);

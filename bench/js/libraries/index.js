@@ -37,7 +37,7 @@ export const libraries = [
     dimensions: [2, 3],
     tasks: BOTH,
     alternative: false,
-    how: "`PairFinder.find` on all boxes",
+    how: "`PairFinder.find` on all boxes, with the option `views`",
     module: "pair-finder",
   },
   {
@@ -46,7 +46,7 @@ export const libraries = [
     dimensions: [2, 3],
     tasks: ["track"],
     alternative: false,
-    how: "`BroadPhase.setMany` with all boxes, `update`",
+    how: "`BroadPhase.setMany` with all boxes, `update`, with the option `views`",
     module: "broad-phase",
   },
   {

@@ -27,14 +27,14 @@ addEventListener("message", async ({ data: { scene, boxes, dimensions, by } }) =
 async function finder(dimensions) {
   const { init, PairFinder } = await import("/dist/index.js");
   await init();
-  const finder = new PairFinder({ dimensions });
+  const finder = new PairFinder({ dimensions, views: true });
   return (rows) => finder.find(rows).length / 2;
 }
 
 async function world(first, dimensions) {
   const { init, BroadPhase } = await import("/dist/broad-phase.js");
   await init();
-  const world = new BroadPhase({ dimensions });
+  const world = new BroadPhase({ dimensions, views: true });
   const ids = world.insertMany(first).slice();
   world.update();
   return (rows) => {
