@@ -6,6 +6,7 @@ import gzip
 import importlib
 import io
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -269,9 +270,13 @@ def test_plots_are_drawn(dimensions: int, capsys: pytest.CaptureFixture[str]) ->
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pipes end in another way there")
-def test_a_pipe_that_is_closed_ends_the_program_quietly() -> None:
-    np.save("a.npy", np.zeros((3000, 2)))  # 4.5 million pairs
-    with subprocess.Popen([*SAP, "pairs", "a.npy"], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as program:
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("boxes", [300, 3000])  # 45 thousand pairs, in one chunk, and 4.5 million
+def test_a_pipe_that_is_closed_ends_the_program_quietly(boxes: int, unbuffered: str) -> None:
+    np.save("a.npy", np.zeros((boxes, 2)))
+    environment = {**os.environ, "PYTHONUNBUFFERED": unbuffered}
+    arguments = [*SAP, "pairs", "a.npy"]
+    with subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment) as program:
         assert program.stdout and program.stderr
         assert program.stdout.readline() == b"a,b\n"
         program.stdout.close()

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import csv
 import gzip
+import io
 import json
 import math
 import os
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from itertools import chain
 from pathlib import Path
 from typing import IO, Any, Protocol
@@ -375,7 +376,8 @@ class _ArrowWriter:
 def writer(path: str | None, kind: str, count: int, names: tuple[str, str]) -> Iterator[Writer]:
     """Opens a file for so many pairs, or standard output. A file that could not be completed is removed."""
     if path is None:
-        yield from _closing(sys.stdout.buffer, kind, count, names, True)
+        with _standard_output() as file:
+            yield from _closing(file, kind, count, names, True)
         return
     part = f"{path}.part"
     try:
@@ -387,6 +389,12 @@ def writer(path: str | None, kind: str, count: int, names: tuple[str, str]) -> I
     finally:
         if os.path.exists(part):
             os.remove(part)
+
+
+def _standard_output() -> AbstractContextManager[IO[bytes]]:
+    """Standard output with a buffer. With PYTHONUNBUFFERED it has none, and writes a part of what it is given."""
+    output = sys.stdout.buffer
+    return open(output.fileno(), "wb", closefd=False) if isinstance(output, io.RawIOBase) else nullcontext(output)
 
 
 def _closing(file: IO[bytes], kind: str, count: int, names: tuple[str, str], is_pipe: bool) -> Iterator[Writer]:
