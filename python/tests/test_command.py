@@ -279,6 +279,7 @@ def test_a_pipe_that_is_closed_ends_the_program_quietly(boxes: int, unbuffered: 
     with subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment) as program:
         assert program.stdout and program.stderr
         assert program.stdout.readline() == b"a,b\n"
+        program.stdout.read(10_000)  # so that it is closed in the middle of a write
         program.stdout.close()
         assert program.stderr.read() == b"" and program.wait(60) == 141
 
