@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -13,15 +12,6 @@ import sweep_and_prune as sap
 
 ROOT = Path(__file__).parents[2]
 LINES = [line.split() for line in (ROOT / "scenes/golden.txt").read_text().splitlines() if not line.startswith("#")]
-
-
-@pytest.fixture(scope="session")
-def scenes(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("scenes")
-    manifest = str(ROOT / "python/Cargo.toml")
-    package = ["--manifest-path", manifest, "--package", "sweep-and-prune-golden-boxes", "--profile", "checked"]
-    subprocess.run(["cargo", "run", "--quiet", *package, "--", str(folder)], check=True)
-    return folder
 
 
 def test_every_line_has_its_boxes(scenes: Path) -> None:

@@ -72,7 +72,7 @@ def prepare(
     if not (is_float and is_closed and is_all and not has_margin):
         # The compiled part would not see these boxes, or not by these indices.
         for array, name, own in zip(arrays, names, kept):
-            _refuse_inverted(array, name, own)
+            refuse_inverted(array, name, own)
     if not is_closed:
         # An interval without its ends that begins where it ends is empty, and overlaps nothing.
         empty = [np.asarray((array[:, :half] == array[:, half:]).any(axis=1), bool) for array in arrays]
@@ -190,7 +190,7 @@ def _is_rounded(array: NDArray[Any]) -> bool:
     return array.dtype.itemsize == 8 and array.size > 0 and bool(array.max() > most or array.min() < -most)
 
 
-def _refuse_inverted(array: NDArray[Any], name: str, kept: Rows) -> None:
+def refuse_inverted(array: NDArray[Any], name: str, kept: Rows) -> None:
     half = array.shape[1] // 2
     invalid = ~np.asarray(array[:, :half] <= array[:, half:], bool)
     if invalid.any():

@@ -1,5 +1,6 @@
 //! Writes the boxes behind each line of `scenes/golden.txt` to a folder, one file each, named as
-//! the line begins: rows of little-endian coordinates. For `python/tests/test_golden.py`.
+//! the line begins: rows of little-endian coordinates. For `python/tests/conftest.py`. A second argument is the
+//! number of boxes of each scene; then no motions are written.
 
 use std::env::args_os;
 use std::fs;
@@ -16,15 +17,20 @@ const FRAMES: usize = 20;
 
 fn main() -> io::Result<()> {
     let folder = PathBuf::from(args_os().nth(1).unwrap_or(".".into()));
-    dimension::<1>(&folder)?;
-    dimension::<2>(&folder)?;
-    dimension::<3>(&folder)
+    let count = args_os().nth(2).and_then(|count| count.to_str()?.parse().ok());
+    dimension::<1>(&folder, count)?;
+    dimension::<2>(&folder, count)?;
+    dimension::<3>(&folder, count)
 }
 
-fn dimension<const D: usize>(folder: &Path) -> io::Result<()> {
+fn dimension<const D: usize>(folder: &Path, count: Option<usize>) -> io::Result<()> {
+    let n = count.unwrap_or(N);
     for &scene in Scene::ALL {
-        write(folder, scene.name(), scene.boxes::<D, f32>(N, SEED))?;
-        write(folder, scene.name(), scene.boxes::<D, f64>(N, SEED))?;
+        write(folder, scene.name(), scene.boxes::<D, f32>(n, SEED))?;
+        write(folder, scene.name(), scene.boxes::<D, f64>(n, SEED))?;
+    }
+    if count.is_some() {
+        return Ok(());
     }
     for motion in Motion::ALL {
         write(folder, motion.name(), last_frame::<D, f32>(motion))?;

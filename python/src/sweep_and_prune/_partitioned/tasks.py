@@ -1,0 +1,325 @@
+"""What workers do: scatter a chunk of boxes to cells, split a cell that is too large, join a cell.
+
+A task reads the plan from the folder of the run, and leaves a file that is complete or not there at all. So it can be
+repeated, and a run that was interrupted goes on with the tasks whose files are missing.
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+from collections.abc import Callable, Iterable, Iterator
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._errors import SweepAndPruneError
+from .boxes import Chunk, File, Form, read_chunk
+from .cells import Cells, choose_cells
+from .dataset import DatasetError, pair_file, write_text
+from .search import Boxes, search, touches
+from .spill import gathered, read_groups, scatter
+
+ARGUMENTS = ("boxes",), ("a", "b")
+"""The names of one set and of two."""
+
+PLAN = "_plan.json"
+
+_SAMPLE_PER_CELL = 400
+_ALL_IN_ONE = 0.8
+"""If a cell of the sample has more than this share of the boxes, splitting does not help."""
+
+
+class Plan(NamedTuple):
+    """What a run does; the same when it continues after an interruption."""
+
+    files: list[list[File]]
+    """The files of each set; none for partitions of a collection."""
+    forms: list[Form]
+    chunks: list[Chunk]
+    cells: Cells
+    request: dict[str, Any]
+    """What the user asked for: a run that asks for something else cannot continue this one."""
+
+    @property
+    def sets(self) -> int:
+        """1, or 2 for pairs of a box of one set and a box of another."""
+        return len(self.forms)
+
+    def name(self, argument: int) -> str:
+        """The name of a set."""
+        return ARGUMENTS[self.sets - 1][argument]
+
+    def to_json(self) -> str:
+        """As text."""
+        return json.dumps(self)
+
+    @staticmethod
+    def from_json(text: str) -> Plan:
+        """From text."""
+        files, forms, chunks, cells, request = json.loads(text)
+        return Plan(
+            [[File(*file) for file in of_set] for of_set in files],
+            [Form(*form) for form in forms],
+            [Chunk(*chunk) for chunk in chunks],
+            Cells(*cells),
+            request,
+        )
+
+
+class Node(NamedTuple):
+    """A cell, or the wide boxes of some cells, which are joined among themselves as if they were a cell."""
+
+    name: str
+    level: str
+    """Which files its boxes are in: the empty string for those of the chunks, or else the node that was split."""
+    group: int
+    groups: int
+    low: list[float]
+    high: list[float]
+    counts: list[int]
+    """The number of boxes of each set."""
+    wide: list[tuple[str, int, int]]
+    """The levels, groups and numbers of the wide boxes with which it is joined, too."""
+
+
+class Folders(NamedTuple):
+    """Where a run keeps its files."""
+
+    work: str
+    """The plan and the finished cells."""
+    spill: str
+    """The boxes on their way to the cells."""
+
+    def plan(self) -> Plan:
+        """The plan of the run."""
+        path = Path(self.work) / PLAN
+        return _plan(str(path), path.stat().st_mtime_ns)
+
+    def boxes(self, plan: Plan, level: str, argument: int) -> list[Path]:
+        """The files with the boxes of a set."""
+        if level:
+            return [Path(self.spill) / f"{level}-{argument}.arrow"]
+        return [self.chunk(number) for number, chunk in enumerate(plan.chunks) if chunk.argument == argument]
+
+    def chunk(self, number: int) -> Path:
+        """The file with the boxes of a chunk."""
+        return Path(self.spill) / f"chunk-{number:06}.arrow"
+
+    def split(self, name: str) -> Path:
+        """The file that says how a node was split."""
+        return Path(self.spill) / f"{name}.split.json"
+
+    def pairs(self, name: str) -> Path:
+        """The file with the pairs of a node."""
+        return Path(self.work) / f"{name}.parquet"
+
+
+@lru_cache(maxsize=2)
+def _plan(path: str, _changed: int) -> Plan:
+    return Plan.from_json(Path(path).read_text(encoding="utf-8"))
+
+
+class Joined(NamedTuple):
+    """The result of a cell."""
+
+    name: str
+    pairs: int
+    hash: int
+
+
+def guarded(task: Callable[..., Any], *arguments: Any) -> Any:
+    """Calls a task. An error that would occur each time is a result, so that the task is not repeated."""
+    try:
+        return task(*arguments)
+    except SweepAndPruneError as error:
+        return error
+    except OSError as error:
+        if error.errno in (errno.ENOSPC, errno.EDQUOT):
+            return DatasetError(
+                f"the disk is full ({error}): free some space, or choose another folder by spill, and call again: "
+                "the run continues where it stopped"
+            )
+        raise
+
+
+def scatter_chunk(folders: Folders, number: int, rows: int, partition: Any = None) -> int:
+    """Writes the boxes of a chunk to its spill file, grouped by cell, and returns how many there are."""
+    plan = folders.plan()
+    chunk = plan.chunks[number]
+    form = plan.forms[chunk.argument]
+    return scatter(
+        _chunk_boxes(plan, chunk, rows, partition), plan.cells, folders.chunk(number), form.id_type, _dtype(plan)
+    ).boxes
+
+
+def _dtype(plan: Plan) -> str:
+    return "float64" if any(form.dtype == "float64" for form in plan.forms) else "float32"
+
+
+def _chunk_boxes(plan: Plan, chunk: Chunk, rows: int, partition: Any) -> Iterator[Boxes]:
+    form, name = plan.forms[chunk.argument], plan.name(chunk.argument)
+    if partition is not None:
+        blocks: Iterable[Boxes] = [form.read(partition, f"partition {chunk.source} of {name}", 0, chunk.first, name)]
+    else:
+        blocks = read_chunk(plan.files[chunk.argument][chunk.source], chunk, form, name, rows)
+    for block in blocks:
+        yield Boxes(block.ids, block.rows.astype(_dtype(plan), copy=False))
+
+
+def split_node(folders: Folders, node: Node, wanted: int) -> bool:
+    """Splits a node into at most so many cells, and writes its boxes to them; False if splitting does not help."""
+    plan = folders.plan()
+    low, high = np.array(node.low), np.array(node.high)
+    target = _SAMPLE_PER_CELL * wanted
+    sample = _clipped(_sample(folders, plan, node, max(1, sum(node.counts) // target)), low, high)
+    cells = choose_cells(sample, wanted)
+    _, starts = cells.assign(sample)
+    helps = cells.number > 1 and np.diff(starts).max() <= _ALL_IN_ONE * len(sample)
+    counts = []
+    if helps:
+        for argument, form in enumerate(plan.forms):
+            blocks = read_groups(folders.boxes(plan, node.level, argument), node.group, node.groups)
+            path = folders.boxes(plan, node.name, argument)[0]
+            counts.append(scatter(blocks, cells, path, form.id_type, _dtype(plan)).groups)
+    write_text(folders.split(node.name), json.dumps([cells, counts]))
+    return bool(helps)
+
+
+def _sample(folders: Folders, plan: Plan, node: Node, step: int) -> NDArray[np.float64]:
+    blocks = [
+        boxes.rows[::step]
+        for argument in range(plan.sets)
+        for boxes in read_groups(folders.boxes(plan, node.level, argument), node.group, node.groups)
+    ]
+    return np.concatenate(blocks).astype(np.float64)
+
+
+def _clipped(sample: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Boxes without what is outside of a cell, so that no split is there."""
+    half = sample.shape[1] // 2
+    clipped = sample.copy()
+    np.maximum(clipped[:, :half], low, out=clipped[:, :half])
+    np.minimum(clipped[:, half:], high, out=clipped[:, half:])
+    return clipped
+
+
+def children(folders: Folders, node: Node) -> list[Node] | None:
+    """The nodes of a node that was split: none if splitting did not help, None if it was not split."""
+    try:
+        cells, counts = json.loads(folders.split(node.name).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    if not counts:
+        return []
+    return nodes(Cells(*cells), counts, node.name, np.array(node.low), np.array(node.high), node.wide)
+
+
+def nodes(
+    cells: Cells,
+    counts: list[list[int]],
+    level: str,
+    low: NDArray[np.float64],
+    high: NDArray[np.float64],
+    wide: list[tuple[str, int, int]],
+) -> list[Node]:
+    """The cells of a level and its wide boxes: those in which there may be pairs.
+
+    Args:
+        cells: how space is split.
+        counts: for each set the number of boxes of each cell, and of the wide ones.
+        level: the name of the node that was split, or the empty string.
+        low: the min corner of that node.
+        high: its max corner.
+        wide: the wide boxes of the levels above.
+    """
+    group, groups = cells.number, cells.number + 1
+    wide_counts = [of_set[group] for of_set in counts]
+    lows, highs = cells.regions()
+    prefix = f"{level}." if level else "cell-"
+    own_wide = [*wide, (level, group, groups)] if any(wide_counts) else wide
+    found = [
+        Node(
+            f"{prefix}{cell:05}",
+            level,
+            cell,
+            groups,
+            np.maximum(lows[cell], low).tolist(),
+            np.minimum(highs[cell], high).tolist(),
+            [of_set[cell] for of_set in counts],
+            own_wide,
+        )
+        for cell in range(cells.number)
+    ]
+    found.append(Node(f"{prefix}wide", level, group, groups, low.tolist(), high.tolist(), wide_counts, wide))
+    return [node for node in found if any(node.counts) and (node.wide or all(node.counts))]
+
+
+def join_node(folders: Folders, node: Node, rows: int, is_counted: bool) -> Joined:
+    """Writes the pairs of a node to its file, or only counts them. Takes at most so many boxes into memory at once."""
+    plan = folders.plan()
+    low, high = np.array(node.low), np.array(node.high)
+    is_whole = sum(node.counts) <= rows
+    size = max((rows if is_whole else rows // 2), 1)
+
+    def own(argument: int, skip: int = 0) -> Iterator[Boxes]:
+        blocks = read_groups(folders.boxes(plan, node.level, argument), node.group, node.groups)
+        return _from(gathered(blocks, size), skip)
+
+    def wide(argument: int) -> Iterator[Boxes]:
+        for level, group, groups in node.wide:
+            blocks = read_groups(folders.boxes(plan, level, argument), group, groups)
+            here = (boxes.take(touches(boxes.rows, low, high)) for boxes in blocks)
+            yield from gathered(here, max(rows // 2, 1))
+
+    with _pair_file(folders, plan, node.name, is_counted) as file:
+        if plan.sets == 1:
+            for number, boxes in enumerate(own(0)):
+                search(boxes, None, low, file.write)
+                for other in own(0, number + 1) if not is_whole else ():
+                    search(boxes, other, low, file.write)
+                for other in wide(0):
+                    search(boxes, other, low, file.write)
+        else:
+            for boxes in own(0):
+                for other in own(1):
+                    search(boxes, other, low, file.write)
+                for other in wide(1):
+                    search(boxes, other, low, file.write)
+            for other in own(1):
+                for boxes in wide(0):
+                    search(boxes, other, low, file.write)
+    return Joined(node.name, file.pairs, file.hash)
+
+
+def _from(blocks: Iterator[Boxes], skip: int) -> Iterator[Boxes]:
+    for number, block in enumerate(blocks):
+        if number >= skip:
+            yield block
+
+
+def join_everything(folders: Folders, plan: Plan, name: str, rows: int, is_counted: bool) -> tuple[Joined, list[int]]:
+    """Writes the pairs of all boxes, which fit in memory, without spill files; and returns how many boxes there are."""
+    low = np.full(plan.cells.dimensions, -np.inf)
+    total = sum(chunk.rows for chunk in plan.chunks)
+    sets = []
+    for argument in range(plan.sets):
+        blocks = (
+            block
+            for chunk in plan.chunks
+            if chunk.argument == argument
+            for block in _chunk_boxes(plan, chunk, rows, None)
+        )
+        sets.append(next(gathered(blocks, total + 1), None))
+    with _pair_file(folders, plan, name, is_counted) as file:
+        if sets[0] is not None and (plan.sets == 1 or sets[1] is not None):
+            search(sets[0], sets[1] if plan.sets == 2 else None, low, file.write)
+    return Joined(name, file.pairs, file.hash), [0 if boxes is None else len(boxes.rows) for boxes in sets]
+
+
+def _pair_file(folders: Folders, plan: Plan, name: str, is_counted: bool) -> Any:
+    id_types = plan.forms[0].id_type, plan.forms[-1].id_type
+    return pair_file(None if is_counted else folders.pairs(name), id_types, plan.sets == 1)

@@ -1,0 +1,542 @@
+"""Pairs through files and through Dask are those of the finder, whatever the partitions, interruptions and faults."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from oracle import Array, in_order, pairs_between, random_boxes
+
+import sweep_and_prune as core
+
+pytest.importorskip("distributed")
+import dask.array
+import dask.dataframe
+import pandas
+import pyarrow
+import pyarrow.parquet
+
+import sweep_and_prune.dask as sap
+from sweep_and_prune._partitioned import boxes as boxes_module
+from sweep_and_prune._partitioned import run as run_module
+from sweep_and_prune._partitioned import tasks, workers
+
+# Dask calls pandas in a way that a newer pandas warns of.
+pytestmark = pytest.mark.filterwarnings("ignore:The inplace keyword:DeprecationWarning")
+
+NAMES = {1: ["start", "end"], 2: ["minx", "miny", "maxx", "maxy"], 3: ["x0", "y0", "z0", "x1", "y1", "z1"]}
+BOXES = random_boxes(3000, 2, np.float64)
+PAIRS = in_order(core.find_pairs(BOXES))
+
+
+@pytest.fixture(autouse=True)
+def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture
+def small_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Cells of more than 500 boxes are split, and the in-memory shortcut is never taken."""
+    monkeypatch.setattr(run_module, "_LEAST_ROWS", 500)
+    monkeypatch.setattr(workers, "_for_boxes", lambda memory, limit: 500)
+
+
+def table(boxes: Array, first: int = 0) -> Any:
+    """With an id in each row: descending numbers and text."""
+    columns = dict(zip(NAMES[boxes.shape[1] // 2], boxes.T))
+    number = 10_000 - np.arange(first, first + len(boxes))
+    return pyarrow.table({**columns, "number": number, "name": [f"n{one}" for one in number.tolist()]})
+
+
+def write(name: str, boxes: Array = BOXES, first: int = 0, group: int = 400) -> str:
+    pyarrow.parquet.write_table(table(boxes, first), name, row_group_size=group)
+    return name
+
+
+def found(result: Any) -> Array:
+    """The pairs of a Dask DataFrame, sorted."""
+    frame = result.compute()
+    assert list(frame.columns) == ["a", "b"]
+    return in_order(frame.to_numpy().reshape(-1, 2))
+
+
+def dataset(name: str = "out") -> Array:
+    """The pairs of a finished dataset, sorted; its files and its manifest must agree."""
+    manifest = sap.read_manifest(name)
+    assert sorted(path.name for path in Path(name).glob("*.parquet")) == sorted(one["name"] for one in manifest.files)
+    assert not Path(name + ".unfinished").exists()
+    pairs = pyarrow.parquet.read_table(name) if manifest.files else table(BOXES[:0]).select([0, 1])
+    assert len(pairs) == manifest.pairs == sum(one["pairs"] for one in manifest.files)
+    return in_order(np.column_stack([pairs[0].to_numpy(), pairs[1].to_numpy()]).astype(np.int64).reshape(-1, 2))
+
+
+@pytest.mark.parametrize("cells", [None, 1, 2, 23, 200])
+def test_files_give_the_pairs_of_the_finder(cells: int | None) -> None:
+    write("a.parquet")
+    assert np.array_equal(found(sap.find_pairs("a.parquet", out="out", workers=0, cells=cells)), PAIRS)
+    assert np.array_equal(dataset(), PAIRS)
+    assert sap.count_pairs("a.parquet", workers=0, cells=cells) == len(PAIRS)
+
+
+def test_the_hash_depends_on_the_pairs_alone() -> None:
+    write("a.parquet")
+    hashes = set()
+    for cells, group in ((1, 400), (7, 3000), (100, 37)):
+        write("a.parquet", group=group)
+        sap.find_pairs("a.parquet", out="out", workers=0, cells=cells, overwrite=True)
+        hashes.add(sap.read_manifest("out").hash)
+    assert len(hashes) == 1
+    write("a.parquet", BOXES[::-1])
+    sap.find_pairs("a.parquet", out="out", ids="number", workers=0, cells=5, overwrite=True)
+    hashes.add(sap.read_manifest("out").hash)
+    assert len(hashes) == 2, "other ids are other pairs"
+
+
+@pytest.mark.parametrize("dimensions", [1, 2, 3])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_all_dimensions_and_precisions_one_set_and_two(dimensions: int, dtype: Any) -> None:
+    a, b = random_boxes(700, dimensions, dtype), random_boxes(300, dimensions, dtype, 2)
+    write("a.parquet", a), write("b.parquet", b)
+    assert np.array_equal(found(sap.find_pairs("a.parquet", out="o", workers=0, cells=9)), in_order(core.find_pairs(a)))
+    wanted = pairs_between(a, b)
+    assert np.array_equal(
+        found(sap.find_pairs_between("a.parquet", "b.parquet", out="out", workers=0, cells=9)), wanted
+    )
+    assert np.array_equal(dataset(), wanted)
+    assert sap.count_pairs_between("a.parquet", "b.parquet", workers=0, cells=9) == len(wanted)
+    frames = [dask.dataframe.from_pandas(table(boxes).to_pandas(), npartitions=3) for boxes in (a, b)]
+    assert np.array_equal(found(sap.find_pairs_between(*frames, cells=9)), wanted)
+    assert sap.count_pairs_between(*frames, cells=9) == len(wanted)
+
+
+def test_few_rows_of_memory_split_cells_again_and_join_wide_and_coincident_boxes(
+    small_memory: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("_SAMPLE", "SAMPLE_PER_CELL"):
+        monkeypatch.setattr(run_module, name, 1)
+    boxes = random_boxes(4000, 2, np.float64)
+    boxes[500:530] = [-100, -100, 1000, 1000]
+    boxes[530:2000] = [5, 5, 5, 5]  # no split separates these
+    boxes[2100:2900] = boxes[3100:3900] / 200  # the sample does not know that they are crowded
+    write("a.parquet", boxes, group=1000), write("b.parquet", boxes[::2], group=500)
+    sap.find_pairs("a.parquet", out="out", workers=0, cells=20)
+    assert np.array_equal(dataset(), in_order(core.find_pairs(boxes)))
+    names = {path.name for path in Path("out").iterdir()}
+    assert any(name.count(".") > 1 for name in names), "some cell was split again"
+    sap.find_pairs_between("a.parquet", "b.parquet", out="between", workers=0, cells=20)
+    assert np.array_equal(dataset("between"), in_order(core.find_pairs_between(boxes, boxes[::2])))
+
+
+def test_ids_are_numbers_or_text_of_the_user_and_the_smaller_one_is_first() -> None:
+    write("a.parquet")
+    wanted = in_order(np.sort(10_000 - PAIRS, axis=1))
+    for cells in (1, 11):
+        result = sap.find_pairs("a.parquet", ids="number", out="out", workers=0, cells=cells, overwrite=True)
+        assert np.array_equal(found(result), wanted)
+        result = sap.find_pairs("a.parquet", ids="name", out="out", workers=0, cells=cells, overwrite=True)
+        texts = result.compute().astype(object)
+        assert (texts["a"] < texts["b"]).all()
+        assert sorted(map(sorted, texts.to_numpy().tolist())) == sorted(
+            sorted([f"n{a}", f"n{b}"]) for a, b in wanted.tolist()
+        )
+    frame = dask.dataframe.read_parquet("a.parquet", split_row_groups=True)
+    assert np.array_equal(found(sap.find_pairs(frame, ids="number", cells=11)), wanted)
+    texts = sap.find_pairs(frame, ids="name", cells=11).compute()
+    assert sorted(map(sorted, texts.to_numpy().tolist())) == sorted(
+        sorted([f"n{a}", f"n{b}"]) for a, b in wanted.tolist()
+    )
+    between = sap.find_pairs_between(frame, frame, ids=("number", "name"), cells=11).compute()
+    assert (between["b"] == "n" + between["a"].astype(str)).sum() == len(BOXES)
+
+
+def test_several_files_are_one_set_with_row_numbers_of_64_bits(monkeypatch: pytest.MonkeyPatch) -> None:
+    Path("boxes").mkdir()
+    for number, start in enumerate(range(0, 3000, 1000)):
+        write(f"boxes/{number}.parquet", BOXES[start : start + 1000])
+    write("boxes/_ignored.parquet", BOXES[:10])
+    for paths in ("boxes", "boxes/[0-9].parquet", [f"boxes/{number}.parquet" for number in range(3)]):
+        assert np.array_equal(found(sap.find_pairs(paths, cells=9)), PAIRS)
+    # Row numbers beyond 2^32: as if many more rows came first.
+    chunks = boxes_module.chunks_of_files
+    far = 2**33
+
+    def later(*arguments: Any) -> Any:
+        return [chunk._replace(first=chunk.first + far) for chunk in chunks(*arguments)]
+
+    monkeypatch.setattr(run_module, "chunks_of_files", later)
+    assert np.array_equal(found(sap.find_pairs("boxes", out="out", workers=0, cells=9)), PAIRS + far)
+
+
+def test_empty_inputs_and_partitions_without_rows() -> None:
+    write("empty.parquet", BOXES[:0]), write("a.parquet")
+    for cells in (None, 5):
+        result = sap.find_pairs("empty.parquet", out="out", workers=0, cells=cells, overwrite=True)
+        assert len(result.compute()) == 0 and sap.read_manifest("out").pairs == 0
+        result = sap.find_pairs_between("a.parquet", "empty.parquet", out="out", workers=0, cells=cells, overwrite=True)
+        assert len(result.compute()) == 0
+        assert len(sap.find_pairs_between("empty.parquet", "a.parquet", cells=cells).compute()) == 0
+        assert np.array_equal(found(sap.find_pairs(["empty.parquet", "a.parquet"], cells=cells)), PAIRS)
+    frame = dask.dataframe.from_pandas(table(BOXES).to_pandas(), npartitions=4)
+    frame = dask.dataframe.concat([frame, frame.partitions[0].query("minx < -1")])
+    for cells in (None, 5):
+        assert np.array_equal(found(sap.find_pairs(frame, cells=cells)), PAIRS)
+    assert len(sap.find_pairs(frame.query("minx < -1"), cells=3).compute()) == 0
+
+
+def test_arrays_frames_and_partitions_through_files() -> None:
+    array = dask.array.from_array(BOXES, chunks=(700, 3))
+    frame = dask.dataframe.from_pandas(table(BOXES).to_pandas(), npartitions=5)
+    for boxes in (array, frame):
+        assert np.array_equal(found(sap.find_pairs(boxes, cells=8)), PAIRS)
+        assert sap.count_pairs(boxes, cells=8) == len(PAIRS)
+        sap.find_pairs(boxes, out="out", workers=0, cells=8, overwrite=True)
+        assert np.array_equal(dataset(), PAIRS)
+    chosen = sap.find_pairs(frame, columns=["minx", "maxx"], cells=8)
+    assert np.array_equal(found(chosen), in_order(core.find_pairs(BOXES[:, [0, 2]])))
+
+
+def test_geoparquet_has_a_column_of_boxes_or_geometries() -> None:
+    geopandas, shapely = pytest.importorskip("geopandas"), pytest.importorskip("shapely")
+    frame = geopandas.GeoDataFrame({"n": np.arange(len(BOXES))}, geometry=shapely.box(*BOXES.T))
+    frame.to_parquet("geometries.parquet")
+    nested = pyarrow.table({"n": np.arange(len(BOXES)), "bbox": table(BOXES).select(range(4)).to_struct_array()})
+    pyarrow.parquet.write_table(nested, "nested.parquet")
+    assert np.array_equal(found(sap.find_pairs("geometries.parquet", out="g", workers=0, cells=5)), PAIRS)
+    names = ["xmin", "ymin", "xmax", "ymax"]
+    boxes = pyarrow.StructArray.from_arrays([pyarrow.array(column) for column in BOXES.T], names)
+    pyarrow.parquet.write_table(pyarrow.table({"n": np.arange(len(BOXES)), "bbox": boxes}), "nested.parquet")
+    assert np.array_equal(found(sap.find_pairs("nested.parquet", out="n", workers=0, cells=5)), PAIRS)
+
+
+def test_options_are_those_of_the_finder() -> None:
+    boxes = BOXES[:800].copy()
+    sizes = np.hstack([boxes[:, :2], boxes[:, 2:] - boxes[:, :2]])
+    write("a.parquet", boxes)
+    pyarrow.parquet.write_table(pyarrow.table(dict(zip("xywh", sizes.T))), "s.parquet")
+    missing = boxes.copy()
+    missing[::7, 1] = np.nan
+    write("m.parquet", missing)
+    for path, values, options in (
+        ("a.parquet", boxes, {"closed": "neither"}),
+        ("a.parquet", boxes, {"margin": 0.5}),
+        ("a.parquet", boxes, {"margin": [0.5, 1]}),
+        ("s.parquet", sizes, {"format": "xywh"}),
+        ("m.parquet", missing, {"missing": "skip"}),
+    ):
+        wanted = in_order(core.find_pairs(values, **options))
+        result = sap.find_pairs(path, out="out", workers=0, cells=6, overwrite=True, **options)
+        assert np.array_equal(found(result), wanted), options
+    assert sap.read_manifest("out").boxes == [800 - len(missing[::7])]
+
+
+def test_whole_numbers_are_exact_up_to_2_to_the_53() -> None:
+    boxes = np.array([[0, 2**52], [2**52, 2**52 + 1], [2**52 + 1, 2**53]])
+    write("a.parquet", boxes)
+    assert found(sap.find_pairs("a.parquet", cells=2)).tolist() == [[0, 1], [1, 2]]
+    write("a.parquet", boxes * 3)
+    with pytest.raises(sap.DatasetError, match=r"a\.parquet: coordinates beyond 2\^53 are not exact"):
+        sap.find_pairs("a.parquet", out="out", workers=0)
+
+
+@pytest.mark.parametrize("cells", [1, 7])
+def test_an_invalid_box_is_named_by_its_file_and_row(cells: int) -> None:
+    for number in range(3):
+        boxes = BOXES[1000 * number : 1000 * (number + 1)].copy()
+        if number == 2:
+            boxes[555, 1] = np.nan
+            boxes[777] = [3, 3, 2, 4]
+        write(f"{number}.parquet", boxes, group=100)
+    calls: list[Callable[[], Any]] = [
+        lambda: sap.find_pairs("*.parquet", out="out", workers=0, cells=cells),
+        lambda: sap.find_pairs("*.parquet", cells=cells).compute(),
+    ]
+    for call in calls:
+        with pytest.raises(sap.InvalidRowError) as caught:
+            call()
+        assert str(caught.value) == (
+            f"2.parquet, row 555 (the first is 0): the box has a NaN on axis 1 (min nan, max {BOXES[2555, 3]}): "
+            'remove it or replace it, or pass missing="skip"'
+        )
+        assert (caught.value.index, caught.value.row, caught.value.place) == (2555, 555, "2.parquet")
+    assert not Path("out").exists()
+
+
+def test_missing_and_damaged_files_and_wrong_columns_are_named() -> None:
+    def refused(*arguments: Any, **options: Any) -> str:
+        with pytest.raises(sap.DatasetError) as caught:
+            sap.find_pairs(*arguments, out="out", workers=0, overwrite=True, **options)
+        assert not Path("out").exists()
+        return str(caught.value)
+
+    assert refused("a.parquet") == "a.parquet names no Parquet file: is the path right?"
+    Path("a.parquet").write_bytes(b"PAR1 but not really")
+    assert "a.parquet cannot be read" in refused("a.parquet")
+    write("b.parquet")
+    content = bytearray(Path("b.parquet").read_bytes())
+    content[2000:9000] = b"\xff" * 7000
+    Path("b.parquet").write_bytes(content)
+    assert "b.parquet is damaged after row 0" in refused("b.parquet", cells=5)
+    pyarrow.parquet.write_table(pyarrow.table({"p": [1.0], "q": [2.0]}), "c.parquet")
+    assert "c.parquet has no columns that are known as boxes" in refused("c.parquet")
+    assert "its columns are p, q" in refused("c.parquet", columns=["p", "r"])
+    write("d.parquet"), pyarrow.parquet.write_table(table(BOXES).drop_columns(["maxy"]), "e.parquet")
+    assert "e.parquet has no column 'maxy'" in refused(["d.parquet", "e.parquet"])
+    missing = table(BOXES).set_column(4, "number", pyarrow.array([None, *range(len(BOXES) - 1)], pyarrow.int64()))
+    pyarrow.parquet.write_table(missing, "f.parquet")
+    assert "f.parquet, row 0 (the first is 0): column number has no id" in refused("f.parquet", ids="number")
+    write("g.parquet", random_boxes(10, 3, np.float64))
+    with pytest.raises(sap.DatasetError, match="they must be the same"):
+        sap.find_pairs_between("d.parquet", "g.parquet", cells=2)
+
+
+def test_wrong_arguments_are_refused() -> None:
+    write("a.parquet")
+    with pytest.raises(TypeError, match=r"sweep_and_prune.find_pairs takes arrays"):
+        sap.find_pairs(BOXES)
+    with pytest.raises(ValueError, match="pass out, a folder"):
+        sap.find_pairs("a.parquet", memory_limit="4GB")
+    with pytest.raises(ValueError, match="memory_limit is 100MB"):
+        sap.find_pairs("a.parquet", out="out", memory_limit="100MB", workers=2)
+    with pytest.raises(ValueError, match="cells must be"):
+        sap.find_pairs("a.parquet", cells=0)
+    with pytest.raises(ValueError, match="missing must be"):
+        sap.find_pairs("a.parquet", missing="maybe")
+
+
+class Interrupted(Exception):
+    pass
+
+
+def interrupt(monkeypatch: pytest.MonkeyPatch, after: int) -> None:
+    """Ends the process, as it were, after so many tasks; the first tasks are those that scatter."""
+    calls = 0
+    real = tasks.guarded
+
+    def counted(task: Any, *arguments: Any) -> Any:
+        nonlocal calls
+        calls += 1
+        if calls > after:
+            raise Interrupted
+        return real(task, *arguments)
+
+    monkeypatch.setattr(workers, "guarded", counted)
+
+
+def test_an_interrupted_run_continues_wherever_it_was(monkeypatch: pytest.MonkeyPatch, small_memory: None) -> None:
+    monkeypatch.setattr(run_module, "_CHUNK_ROWS", 700)
+    boxes = BOXES.copy()
+    boxes[:900] /= 10  # so that some cell is split again
+    write("a.parquet", boxes)
+    sap.find_pairs("a.parquet", out="whole", workers=0, cells=6)
+    wanted = sap.read_manifest("whole")
+    assert any(one["name"].count(".") > 1 for one in wanted.files)
+    for after in range(0, 30, 2):
+        with monkeypatch.context() as patch:
+            interrupt(patch, after)
+            try:
+                sap.find_pairs("a.parquet", out="out", workers=0, cells=6)
+            except Interrupted:
+                assert not Path("out").exists() and Path("out.unfinished").exists()
+                with pytest.raises(sap.DatasetError, match="no finished dataset"):
+                    sap.read_manifest("out")
+            else:
+                break
+        done = {path: path.stat().st_mtime_ns for path in Path("out.unfinished").glob("*.parquet")}
+        if after % 4 == 0:
+            Path("out.unfinished/cell-00000.parquet.0.part").write_bytes(b"half of a file")
+            # With more memory, a cell that was split stays split.
+            with monkeypatch.context() as patch:
+                patch.setattr(workers, "_for_boxes", lambda memory, limit: 10**9)
+                sap.find_pairs("a.parquet", out="out", workers=0, cells=6)
+        else:
+            sap.find_pairs("a.parquet", out="out", workers=0, cells=6)
+        manifest = sap.read_manifest("out")
+        assert (manifest.pairs, manifest.hash) == (wanted.pairs, wanted.hash)
+        assert np.array_equal(dataset(), dataset("whole"))
+        assert not list(Path("out").glob("*.part")) and not (Path("out") / "spill").exists()
+        for path, changed in done.items():
+            assert (Path("out") / path.name).stat().st_mtime_ns == changed, "it was not written again"
+        shutil.rmtree("out")
+
+
+def test_a_run_continues_only_with_the_same_boxes_and_options(monkeypatch: pytest.MonkeyPatch) -> None:
+    write("a.parquet")
+    with monkeypatch.context() as patch:
+        interrupt(patch, 3)
+        with pytest.raises(Interrupted):
+            sap.find_pairs("a.parquet", out="out", workers=0, cells=6)
+    with pytest.raises(sap.DatasetError, match="interrupted run of other boxes or other options"):
+        sap.find_pairs("a.parquet", out="out", workers=0, cells=6, margin=1)
+    write("a.parquet", BOXES[::-1])
+    with pytest.raises(sap.DatasetError, match="interrupted run of other boxes or other options"):
+        sap.find_pairs("a.parquet", out="out", workers=0, cells=6)
+    sap.find_pairs("a.parquet", out="out", workers=0, cells=6, overwrite=True)
+    assert np.array_equal(dataset(), in_order(core.find_pairs(BOXES[::-1])))
+    changed = Path("out/_manifest.json").stat().st_mtime_ns
+    sap.find_pairs("a.parquet", out="out", workers=0, cells=6)
+    assert Path("out/_manifest.json").stat().st_mtime_ns == changed, "it was finished"
+    with pytest.raises(sap.DatasetError, match="pairs of other boxes or other options"):
+        sap.find_pairs("a.parquet", out="out", workers=0, cells=7)
+    Path("mine").mkdir()
+    Path("mine/thesis.txt").write_text("all that I have")
+    with pytest.raises(sap.DatasetError, match="exists and is no dataset of pairs"):
+        sap.find_pairs("a.parquet", out="mine", workers=0, overwrite=True)
+    assert Path("mine/thesis.txt").exists()
+
+
+def test_a_damaged_file_of_pairs_is_written_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    write("a.parquet")
+    with monkeypatch.context() as patch:
+        interrupt(patch, 6)
+        with pytest.raises(Interrupted):
+            sap.find_pairs("a.parquet", out="out", workers=0, cells=8)
+    damaged = sorted(Path("out.unfinished").glob("*.parquet"))[0]
+    damaged.write_bytes(damaged.read_bytes()[:-100])
+    sap.find_pairs("a.parquet", out="out", workers=0, cells=8)
+    assert np.array_equal(dataset(), PAIRS)
+
+
+def test_a_full_disk_is_one_error_after_which_the_run_continues(monkeypatch: pytest.MonkeyPatch) -> None:
+    import errno
+
+    write("a.parquet")
+    for module, name in ((tasks, "scatter"), (tasks, "pair_file")):
+        real, calls = getattr(module, name), 0
+
+        def failing(*arguments: Any) -> Any:
+            nonlocal calls
+            calls += 1
+            if calls == (1 if name == "scatter" else 3):
+                raise OSError(errno.ENOSPC, "No space left on device")
+            return real(*arguments)
+
+        with monkeypatch.context() as patch:
+            patch.setattr(module, name, failing)
+            with pytest.raises(sap.DatasetError, match=r"the disk is full .* the run continues where it stopped"):
+                sap.find_pairs("a.parquet", out="out", workers=0, cells=8)
+        assert not Path("out").exists()
+    sap.find_pairs("a.parquet", out="out", workers=0, cells=8)
+    assert np.array_equal(dataset(), PAIRS)
+    usage = shutil.disk_usage(".")._replace(free=1000)
+    monkeypatch.setattr(shutil, "disk_usage", lambda path: usage)
+    with pytest.raises(sap.DatasetError, match=r"the boxes take 0.0 GB there, and 0.0 GB are free"):
+        sap.find_pairs("a.parquet", out="other", workers=0, cells=8)
+
+
+def test_two_runs_at_once_are_refused() -> None:
+    fcntl = pytest.importorskip("fcntl")
+    write("a.parquet")
+    Path("out.unfinished").mkdir()
+    with open("out.unfinished/lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        with pytest.raises(sap.DatasetError, match="is in use by another run"):
+            sap.find_pairs("a.parquet", out="out", workers=0)
+
+
+SCRIPT = """
+import sys
+import sweep_and_prune.dask as sap
+if __name__ == "__main__":
+    sap.find_pairs("a.parquet", out="out", memory_limit="3GB", workers=2, cells=60)
+    print(sap.read_manifest("out").hash)
+"""
+
+
+@pytest.fixture(scope="module")
+def large(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, str]]:
+    """A file of boxes and the hash of their pairs."""
+    folder = tmp_path_factory.mktemp("large")
+    path, boxes = str(folder / "a.parquet"), random_boxes(200_000, 2, np.float64)
+    pyarrow.parquet.write_table(table(boxes).select(range(4)), path, row_group_size=10_000)
+    out = str(folder / "whole")
+    sap.find_pairs(path, out=out)
+    assert sap.read_manifest(out).pairs == core.count_pairs(boxes)
+    yield path, sap.read_manifest(out).hash
+
+
+def children_of(process: int) -> list[int]:
+    """The workers of a process, which it started as processes of Python."""
+    psutil = pytest.importorskip("psutil")
+    return [
+        child.pid
+        for child in psutil.Process(process).children(recursive=True)
+        if "spawn_main" in " ".join(child.cmdline())
+    ]
+
+
+def killed(path: str, delay: float, whole: bool) -> tuple[int, str, str]:
+    """A run whose worker, or which as a whole, is killed so many seconds after the workers have started."""
+    shutil.copy(path, "a.parquet")
+    Path("script.py").write_text(SCRIPT)
+    program = subprocess.Popen(
+        [sys.executable, "script.py"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+    while program.poll() is None and not list(Path().glob("out.unfinished/_plan.json")):
+        time.sleep(0.02)
+    time.sleep(delay)
+    if whole:
+        os.killpg(program.pid, signal.SIGKILL)
+    elif program.poll() is None and children_of(program.pid):
+        os.kill(children_of(program.pid)[0], signal.SIGKILL)
+    out, err = program.communicate(timeout=300)
+    return program.returncode, out.strip(), err
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="processes are found in the way of Linux")
+def test_a_worker_that_is_killed_changes_nothing(large: tuple[str, str]) -> None:
+    path, wanted = large
+    status, printed, said = killed(path, 0.1, False)
+    assert (status, printed) == (0, wanted), said
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="processes are found in the way of Linux")
+def test_a_run_that_is_killed_continues(large: tuple[str, str]) -> None:
+    path, wanted = large
+    status, _, _ = killed(path, 0.3, True)
+    if status != 0:  # it was not too late
+        assert not Path("out").exists()
+    sap.find_pairs("a.parquet", out="out", memory_limit="3GB", workers=0, cells=60)
+    assert sap.read_manifest("out").hash == wanted
+
+
+def test_the_workers_of_an_active_client_are_used(large: tuple[str, str]) -> None:
+    from distributed import Client
+
+    path, wanted = large
+    with Client(n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None):
+        sap.find_pairs(path, out="out", cells=5)
+        assert sap.read_manifest("out").hash == wanted
+        frame = dask.dataframe.read_parquet(path)
+        count = sap.read_manifest("out").pairs
+        assert sap.count_pairs(frame, cells=5) == count == len(sap.find_pairs(path, cells=5))
+        Path("bad.parquet").write_bytes(Path(path).read_bytes()[:-20])
+        with pytest.raises(sap.DatasetError, match=r"bad.parquet cannot be read"):
+            sap.find_pairs("bad.parquet", out="bad")
+
+
+def test_the_manifest_says_what_is_there() -> None:
+    write("a.parquet")
+    sap.find_pairs("a.parquet", out="out", workers=0, cells=4)
+    said = json.loads(Path("out/_manifest.json").read_text())
+    assert (said["pairs"], said["boxes"]) == (len(PAIRS), [3000]) and 1 < said["copies"] < 1.5
+    Path("out/_manifest.json").write_text("{}")
+    with pytest.raises(sap.DatasetError, match=r"_manifest\.json is damaged"):
+        sap.read_manifest("out")
+
+
+def test_progress_goes_from_0_to_1() -> None:
+    write("a.parquet")
+    seen: list[float] = []
+    sap.find_pairs("a.parquet", out="out", workers=0, cells=9, progress=seen.append)
+    assert seen == sorted(seen) and len(seen) > 8 and seen[-1] == 1
+    assert pandas.Series(seen).between(0, 1).all()
