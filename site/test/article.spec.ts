@@ -240,6 +240,8 @@ test.describe("listings", () => {
   test("what is copied is what is tested", async ({ page, context }) => {
     await context.grantPermissions(["clipboard-read", "clipboard-write"]);
     await page.goto("/");
+    // Some listings are folded away.
+    await page.locator("details").evaluateAll((all) => all.forEach((details) => details.setAttribute("open", "")));
     for (const listing of await page.locator("figure.listing").all()) {
       await listing.getByRole("button", { name: "Copy" }).click();
       await expect(listing.getByRole("button", { name: "Copied" })).toBeVisible();

@@ -61,5 +61,5 @@ export class TransitivityCode extends HTMLElement {
 }
 
 function line(one: string, { right }: Interval, other: string, { left }: Interval, holds: boolean): string {
-  return `${one}.right < ${other}.left  // ${Math.round(right)} < ${Math.round(left)}: ${holds ? "true, apart" : "false"}`;
+  return `${one}.right < ${other}.left // ${holds}: ${Math.round(right)} < ${Math.round(left)}`;
 }

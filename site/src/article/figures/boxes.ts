@@ -39,7 +39,7 @@ export function transitivity(): string {
   const gaps = [0, 1].map((at) => {
     const [one, next] = [boxes[at] as Box, boxes[at + 1] as Box];
     return rect({ left: one.right, top: 170, right: next.left, bottom: 186 }, "gap") +
-      text((one.right + next.left) / 2, 202, `${letter(at)} ends before ${letter(at + 1)} begins`, "label small");
+      text((one.right + next.left) / 2, 202, `${letter(at)} ends first`, "label small");
   });
   const [a, , c] = boxes as [Box, Box, Box];
   const whole = line(a.right, 222, c.left, 222, "arrow") + text((a.right + c.left) / 2, 240, "so A ends before C begins: no test needed");

@@ -54,10 +54,10 @@ export function measured(): string {
   const labels = [...curves.entries()]
     .sort(([, a], [, b]) => a.endY - b.endY)
     .map(([at, { endX, endY, name, slope }]) => {
-      below = Math.max(endY, below + 44);
+      below = Math.max(endY, below + 54);
       return line(endX + 3, endY, left + width + 12, below, "leader") +
         text(left + width + 18, below + 1, name, `label curve-name-${at}`, "start") +
-        text(left + width + 18, below + 20, `grows like n^${slope.toFixed(2)}`, "label small", "start");
+        text(left + width + 18, below + 24, `grows like n^${slope.toFixed(2)}`, "label small", "start");
     });
   return svg(
     "measured",
