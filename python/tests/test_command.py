@@ -183,7 +183,7 @@ def test_missing_numbers_are_refused_with_their_line_or_left_out(capsys: pytest.
 @pytest.mark.parametrize(
     ("name", "content", "message"),
     [
-        ("a.csv", "xmin,ymin,xmax,ymax\n0,0,1,1\n0,0,x,1\n", "a.csv, line 3, column xmax: 'x' is no number"),
+        ("a.csv", "xmin,ymin,xmax,ymax\n0,0,1,1\n0,0,x,1\n", "a.csv, line 3, column xmax: 'x' is not a number"),
         ("a.csv", "xmin,ymin,xmax,ymax\n0,0,1,1\n0,0\n", "a.csv, line 3: it has 2 columns, where 4 are expected"),
         ("a.csv", "xmin,ymin,xmax,ymax\n3,0,2,1\n", "a.csv, line 2: the box is inverted on axis 0: min 3.0 is greater"),
         (
@@ -195,11 +195,11 @@ def test_missing_numbers_are_refused_with_their_line_or_left_out(capsys: pytest.
         ("a.csv", "", "a.csv is empty"),
         ("a.bed", "chr1\t5\n", "a.bed, line 1: chrom, start and end are expected"),
         ("a.json", "{", "a.json, line 1: "),
-        ("a.json", "[]", "a.json is no FeatureCollection"),
-        ("a.npy", "", "a.npy is no array of NumPy"),
+        ("a.json", "[]", "a.json is not a FeatureCollection"),
+        ("a.npy", "", "a.npy is not an array of NumPy"),
         ("a.parquet", "nonsense", "a.parquet cannot be read"),
         ("a.feather", "nonsense", "a.feather cannot be read"),
-        ("a.shp", "", "a.shp has a name that does not tell its format"),
+        ("a.shp", "", "a.shp has an unknown ending"),
     ],
 )
 def test_what_is_wrong_with_a_file_is_said(
@@ -219,11 +219,11 @@ def test_what_is_wrong_with_the_arguments_is_said(capsys: pytest.CaptureFixture[
     assert "a.csv has no column 'q'" in refused(capsys, "pairs", "a.csv", "--columns", "xmin,q")
     assert "margin is -1.0" in refused(capsys, "count", "a.npy", "--margin", "-1")
     assert "threads must be from" in refused(capsys, "count", "a.npy", "--threads", "0")
-    assert "does not tell a format" in refused(capsys, "pairs", "a.npy", "-o", "pairs.xyz")
+    assert "has an unknown ending" in refused(capsys, "pairs", "a.npy", "-o", "pairs.xyz")
     assert "cannot be written" in refused(capsys, "pairs", "a.npy", "-o", "no/such/folder.csv")
     assert "one file or two" in refused(capsys, "count", "a.npy", "a.npy", "a.npy")
     Path("r.bed").write_text("chr1\t0\t10\n")
-    assert "a.npy has no groups, the other file has" in refused(capsys, "join", "r.bed", "a.npy")
+    assert "a.npy has no groups, but the other file has" in refused(capsys, "join", "r.bed", "a.npy")
     for arguments in ([], ["pairs"], ["unknown"], ["pairs", "a.npy", "--format", "abc"], ["join", "a.npy"]):
         with pytest.raises(SystemExit) as ended:
             main(arguments)
@@ -319,7 +319,7 @@ def test_too_large_a_file_is_refused_before_it_is_read(monkeypatch: pytest.Monke
     from sweep_and_prune import _tables
 
     monkeypatch.setattr("os.sysconf", lambda name: 1000)
-    with pytest.raises(_tables.FileError, match=r"a\.parquet has 100000000 boxes; to search them takes about 22 GB"):
+    with pytest.raises(_tables.FileError, match=r"a\.parquet has 100000000 boxes; searching them takes about 22 GB"):
         _tables.check_memory("a.parquet", 10**8, 4 * 10**8)
     with pytest.raises(_tables.FileError, match="120 boxes"):
         monkeypatch.setattr("os.sysconf", lambda name: 100)

@@ -86,7 +86,7 @@ def test_misuse_is_refused() -> None:
         ((left, right, "outer"), {}, ValueError, "how must be"),
         ((left, right, "inner", "near"), {}, ValueError, "predicate must be one of"),
         ((left, right, "inner", "within"), {}, ValueError, "needs geometries"),
-        ((left, right), {"by": "gene"}, ValueError, "by names 'gene', which is no column of left"),
+        ((left, right), {"by": "gene"}, ValueError, "by names 'gene', which is not a column of left"),
         ((left, right), {"distance": -1}, ValueError, "margin"),
         ((left, right), {"lsuffix": "", "rsuffix": ""}, ValueError, "lsuffix and rsuffix are empty"),
         ((left.assign(index_right=1), right), {}, ValueError, "'index_right' cannot be a column"),

@@ -162,7 +162,7 @@ def _search(options: argparse.Namespace, sources: list[Source]) -> tuple[list[An
     by = [options.by or source.by for source in sources]
     groups = [source.label(name) for source, name in zip(sources, by) if name is not None]
     if groups and len(groups) != len(sources):
-        raise FileError(f"{sources[by.index(None)].name} has no groups, the other file has: pass --by")
+        raise FileError(f"{sources[by.index(None)].name} has no groups, but the other file has: pass --by")
     closed = {options.closed or source.closed for source in sources}
     if len(closed) > 1:
         raise FileError("the formats of the files differ in whether ends belong to boxes: pass --closed")

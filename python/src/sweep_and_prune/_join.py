@@ -141,7 +141,7 @@ def _groups(left: Any, right: Any, columns: list[str]) -> tuple[Indices, Indices
     for name, frame in (("left", left), ("right", right)):
         absent = [column for column in columns if column not in frame.columns]
         if absent:
-            raise ValueError(f"by names {absent[0]!r}, which is no column of {name}")
+            raise ValueError(f"by names {absent[0]!r}, which is not a column of {name}")
     both = pandas.concat([pandas.DataFrame(frame)[columns] for frame in (left, right)], ignore_index=True)
     numbers = both.groupby(columns, sort=False, dropna=False).ngroup().to_numpy()
     return numbers[: len(left)], numbers[len(left) :]

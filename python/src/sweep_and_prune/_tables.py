@@ -121,7 +121,7 @@ class _Text:
         try:
             return float(cell)
         except ValueError:
-            raise FileError(f"{self.name}, line {self.line(index)}, column {name}: {cell!r} is no number") from None
+            raise FileError(f"{self.name}, line {self.line(index)}, column {name}: {cell!r} is not a number") from None
 
 
 def read(path: str) -> Source:
@@ -144,7 +144,7 @@ def read(path: str) -> Source:
         raise FileError(f"{path} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
         raise FileError(f"{path} is not text in UTF-8") from None
-    raise FileError(f"{path} has a name that does not tell its format: {READABLE} are known")
+    raise FileError(f"{path} has an unknown ending: the known ones are {READABLE}")
 
 
 def _read_text(name: str, file: IO[str], suffix: str) -> Source:
@@ -196,7 +196,7 @@ def _read_numpy(path: str) -> NDArray[Any]:
     try:
         loaded = np.load(path, mmap_mode="r", allow_pickle=False)
     except (ValueError, EOFError, BadZipFile) as error:
-        raise FileError(f"{path} is no array of NumPy: {error}") from None
+        raise FileError(f"{path} is not an array of NumPy: {error}") from None
     if isinstance(loaded, np.ndarray):
         check_memory(path, loaded.shape[0] if loaded.ndim else 0, loaded.size)
         return np.asarray(loaded)
@@ -215,7 +215,7 @@ def _read_geojson(path: str) -> Source:
             raise FileError(f"{path}, line {error.lineno}: {error.msg}") from None
     features = document.get("features") if isinstance(document, dict) else None
     if not isinstance(features, list):
-        raise FileError(f"{path} is no FeatureCollection of GeoJSON")
+        raise FileError(f"{path} is not a FeatureCollection of GeoJSON")
     boxes = np.array([_bounds(feature.get("geometry")) for feature in features]).reshape(-1, 4)
     properties = [feature.get("properties") or {} for feature in features]
     names = sorted({name for row in properties for name in row})
@@ -290,7 +290,7 @@ def check_memory(path: str, rows: int, numbers: int) -> None:
     needed = numbers * 8 * 7
     if needed > memory:
         gigabytes = f"{needed / 1e9:.0f} GB of memory, and this machine has {memory / 1e9:.0f} GB"
-        raise FileError(f"{path} has {rows} boxes; to search them takes about {gigabytes}")
+        raise FileError(f"{path} has {rows} boxes; searching them takes about {gigabytes}")
 
 
 class Writer(Protocol):
@@ -336,7 +336,7 @@ class _NumpyWriter:
             rows = np.stack(pairs, axis=1).astype("<i8", casting="same_kind")
         except TypeError:
             raise FileError(
-                "an array of NumPy holds whole numbers only: leave --id out, or write another format"
+                "an array of NumPy holds whole numbers only: leave out --id, or write another format"
             ) from None
         self._file.write(rows.tobytes())
 
@@ -419,6 +419,6 @@ def kind_of(path: str | None, kind: str | None) -> str:
     known = "arrow" if suffix in _ARROW else suffix[1:]
     if known not in WRITABLE:
         raise FileError(
-            f"{path} has a name that does not tell a format: end it by .csv, .tsv, .npy, .parquet or .arrow"
+            f"{path} has an unknown ending: use .csv, .tsv, .npy, .parquet or .arrow, or pass --to"
         )
     return known
