@@ -418,7 +418,5 @@ def kind_of(path: str | None, kind: str | None) -> str:
     suffix = Path(path).suffix.lower()
     known = "arrow" if suffix in _ARROW else suffix[1:]
     if known not in WRITABLE:
-        raise FileError(
-            f"{path} has an unknown ending: use .csv, .tsv, .npy, .parquet or .arrow, or pass --to"
-        )
+        raise FileError(f"{path} has an unknown ending: use .csv, .tsv, .npy, .parquet or .arrow, or pass --to")
     return known
