@@ -156,7 +156,10 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
             Some(filled) => self.columns(&filled, 0..grid.len(), task, sink),
             None => task.done(1.0),
         });
-        self.columns.push(columns);
+        // Kept for later searches, unless there is no memory even for the list of them.
+        if self.columns.try_reserve(1).is_ok() {
+            self.columns.push(columns);
+        }
         #[cfg(feature = "parallel")]
         if !helpers.is_empty() {
             self.helpers = helpers;
@@ -274,7 +277,9 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
                 self.run(&sets, task.nested(0.5), sink)
             })
         });
-        self.groups.push(groups);
+        if self.groups.try_reserve(1).is_ok() {
+            self.groups.push(groups);
+        }
         result
     }
 

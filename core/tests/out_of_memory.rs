@@ -1,0 +1,244 @@
+//! Memory that runs out at any point of any call: an allocator refuses the first, second, third ... allocation of a call and
+//! all after it.
+//!
+//! A finder on one thread returns an error each time, and its next search is right. Other calls end the program as Rust's
+//! collections do, so each of them is made in a process of its own.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::fmt::Debug;
+use std::ops::ControlFlow;
+use std::process::Command;
+use std::sync::atomic::{AtomicIsize, Ordering};
+
+use sweep_and_prune::algorithms::pairwise;
+use sweep_and_prune::{
+    Aabb, BroadPhase, Error, Filter, PairFinder, ProxyId, count_pairs, find_pairs,
+    find_pairs_between,
+};
+use sweep_and_prune_scenes::{Random, Scene};
+
+/// The system's allocator, which gives as many allocations as are left.
+struct Limited;
+
+static LEFT: AtomicIsize = AtomicIsize::new(isize::MAX);
+
+fn is_refused() -> bool {
+    LEFT.load(Ordering::Relaxed) != isize::MAX && LEFT.fetch_sub(1, Ordering::Relaxed) <= 0
+}
+
+// SAFETY: every call is passed on to the system's allocator as it came, or refused as an allocator may.
+#[allow(unsafe_code, reason = "an allocator can be replaced in no other way")]
+unsafe impl GlobalAlloc for Limited {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        if is_refused() {
+            return std::ptr::null_mut();
+        }
+        // SAFETY: as required of our caller.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: as required of our caller.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        if is_refused() {
+            return std::ptr::null_mut();
+        }
+        // SAFETY: as required of our caller.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Limited = Limited;
+
+/// Makes a call that gets so many allocations. Returns also whether one was refused.
+fn with_allocations<R>(count: usize, call: impl FnOnce() -> R) -> (R, bool) {
+    LEFT.store(count as isize, Ordering::Relaxed);
+    let result = call();
+    (result, LEFT.swap(isize::MAX, Ordering::Relaxed) < 0)
+}
+
+/// Scenes that are cut into columns, split by size, planned again by themselves, or few.
+fn scenes() -> Vec<Vec<Aabb<3>>> {
+    [
+        (Scene::Uniform, 3),
+        (Scene::Uniform, 100),
+        (Scene::Uniform, 3000),
+        (Scene::Clustered, 6000),
+        (Scene::Mixed, 3000),
+        (Scene::Needles, 2000),
+        (Scene::Coincident, 300),
+    ]
+    .map(|(scene, n)| scene.boxes(n, 1).unwrap())
+    .to_vec()
+}
+
+/// Makes a call of a new finder with 0, 1, 2 ... allocations until that are enough. Each time it returns the error (or goes on
+/// without what it cannot keep), and then the finder finds what it should. Returns how many allocations were enough.
+fn fails_cleanly<V: PartialEq + Debug>(
+    boxes: &[Aabb<3>],
+    call: impl Fn(&mut PairFinder<3>) -> Result<V, Error>,
+) -> usize {
+    let expected = find_pairs(boxes).unwrap();
+    let result = call(&mut PairFinder::new()).unwrap();
+    for allocations in 0.. {
+        let mut finder = PairFinder::new();
+        let (found, is_refused) = with_allocations(allocations, || call(&mut finder));
+        match found {
+            Ok(found) => assert_eq!(found, result),
+            Err(error) => assert!(is_refused && error == Error::OutOfMemory, "{error}"),
+        }
+        if !is_refused {
+            return allocations;
+        }
+        assert!(finder.find(boxes).unwrap() == expected, "after {allocations} allocations");
+    }
+    unreachable!()
+}
+
+/// One test, since the allocator refuses all threads.
+#[test]
+#[ignore = "run by the test below, in a process of its own"]
+fn each_search() {
+    let mut allocations = 0;
+    for boxes in scenes() {
+        let (first, second) = boxes.split_at(boxes.len() / 2);
+        // What is returned must not allocate.
+        allocations += fails_cleanly(&boxes, |finder| finder.find(&boxes).map(<[_]>::len));
+        allocations +=
+            fails_cleanly(&boxes, |finder| finder.find_between(first, second).map(<[_]>::len));
+        allocations += fails_cleanly(&boxes, |finder| finder.search(&boxes).count());
+        let go_on = |_done: f64| ControlFlow::Continue(());
+        allocations += fails_cleanly(&boxes, |finder| {
+            finder.search(&boxes).against(second).progress(&go_on).count()
+        });
+        allocations += fails_cleanly(&boxes, |finder| {
+            let mut count = 0;
+            let each = |pairs: &[[u32; 2]]| {
+                count += pairs.len();
+                ControlFlow::<()>::Continue(())
+            };
+            finder.search(&boxes).for_each_chunk(each).map(|_| count)
+        });
+        allocations += fails_cleanly(&boxes, |_| find_pairs(&boxes).map(|pairs| pairs.len()));
+        allocations +=
+            fails_cleanly(&boxes, |_| find_pairs_between(first, second).map(|pairs| pairs.len()));
+        allocations += fails_cleanly(&boxes, |_| count_pairs(&boxes));
+    }
+    println!("each search passed after {allocations} allocations");
+    assert!(allocations > 300, "{allocations}");
+}
+
+/// A world with bodies of all kinds, and the id of one.
+fn world() -> (BroadPhase<2>, Vec<ProxyId>, Random) {
+    let mut random = Random::new(1);
+    let mut world = BroadPhase::new();
+    let boxes: Vec<_> = (0..100).map(|_| draw(&mut random)).collect();
+    let ids = world.insert_many(&boxes, Filter::default()).unwrap();
+    world.update();
+    for &id in &ids[..3] {
+        world.set(id, draw(&mut random)).unwrap();
+    }
+    world.remove(ids[99]).unwrap();
+    world.insert(draw(&mut random)).unwrap();
+    (world, ids, random)
+}
+
+fn draw(random: &mut Random) -> Aabb<2> {
+    let at: [f64; 2] = random.point();
+    Aabb::new(at.map(|at| at as f32), at.map(|at| at as f32 + 0.1))
+}
+
+/// A call by its name, and whether its result is right.
+fn call(name: &str, allocations: usize) -> bool {
+    let (mut world, ids, mut random) = world();
+    let area = draw(&mut random);
+    let boxes: Vec<_> = (0..90).map(|_| draw(&mut random)).collect();
+    let bytes = world.snapshot();
+    let mut copy = None;
+    let mut found = 0;
+    with_allocations(allocations, || match name {
+        "update" => found = world.update().begun().len(),
+        "rebuild" => {
+            world.set_many(&ids[..90], &boxes).unwrap();
+            found = world.update().begun().len();
+        }
+        "insert" => _ = world.insert(area).unwrap(),
+        "insert_many" => _ = world.insert_many(&boxes, Filter::STATIC).unwrap(),
+        "set_swept" => world.set_swept(ids[0], area, area).unwrap(),
+        "set_filter" => world.set_filter(ids[0], Filter::STATIC).unwrap(),
+        "remove_many" => world.remove_many(&ids[5..80]).unwrap(),
+        "queries" => found = world.queries().overlapping(&area).unwrap().len(),
+        "snapshot" => found = world.snapshot().len(),
+        "from_snapshot" => copy = Some(BroadPhase::<2>::from_snapshot(&bytes).unwrap()),
+        "clone" => copy = Some(world.clone()),
+        "threads" => _ = world.pairs().count(),
+        _ => unreachable!(),
+    });
+    let _ = found;
+    let mut world = copy.unwrap_or(world);
+    world.update();
+    let boxes: Vec<_> = world.ids().map(|id| world.aabb(id).unwrap()).collect();
+    let filters: Vec<_> = world.ids().map(|id| world.filter(id).unwrap()).collect();
+    let overlaps = pairwise(&boxes).unwrap();
+    let allowed = |&&[a, b]: &&[u32; 2]| filters[a as usize].allows(&filters[b as usize]);
+    world.pairs().count() == overlaps.iter().filter(allowed).count()
+}
+
+const CALLS: [&str; 11] = [
+    "update",
+    "rebuild",
+    "insert",
+    "insert_many",
+    "set_swept",
+    "set_filter",
+    "remove_many",
+    "queries",
+    "snapshot",
+    "from_snapshot",
+    "clone",
+];
+
+#[test]
+#[ignore = "run by the tests below, in a process of its own"]
+fn one_call() {
+    let [name, allocations] = ["CALL", "ALLOCATIONS"].map(|name| std::env::var(name).unwrap());
+    assert!(call(&name, allocations.parse().unwrap()));
+    println!("the call passed");
+}
+
+/// Runs one of the tests above in a process of its own: whether it passed, and what it printed.
+fn run(test: &str, environment: &[(&str, String)]) -> (std::process::Output, String) {
+    let mut command = Command::new(std::env::current_exe().unwrap());
+    command.args(["--ignored", "--exact", "--nocapture", "--test-threads=1", test]);
+    let out = command.envs(environment.iter().cloned()).output().unwrap();
+    let said = [&out.stdout[..], &out.stderr[..]].concat();
+    (out, String::from_utf8_lossy(&said).into_owned())
+}
+
+#[test]
+fn a_search_without_memory_returns_an_error_and_the_next_one_is_right() {
+    let (out, said) = run("each_search", &[]);
+    assert!(out.status.success() && said.contains("each search passed"), "{said}");
+}
+
+#[test]
+fn a_broad_phase_without_memory_ends_the_program_as_collections_do() {
+    for name in CALLS {
+        let mut refused = 0;
+        loop {
+            let environment = [("CALL", name.into()), ("ALLOCATIONS", refused.to_string())];
+            let (out, said) = run("one_call", &environment);
+            if out.status.success() {
+                assert!(said.contains("the call passed"), "{name}: {said}");
+                break;
+            }
+            assert!(said.contains("memory allocation of "), "{name}, {refused}: {said}");
+            refused += 1;
+        }
+        println!("{name}: {refused} points");
+    }
+}
