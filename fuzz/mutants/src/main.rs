@@ -15,16 +15,18 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use proc_macro2::{Span, TokenStream};
 use quote::ToTokens;
 use syn::spanned::Spanned;
 use syn::visit_mut::{self, VisitMut};
-use syn::{BinOp, Expr, Item, Stmt, UnOp, parse_quote};
+use syn::{Expr, Item, Stmt, UnOp, parse_quote};
 
 /// What is mutated. Kernels of other processors are not compiled here.
 const MUTATED: [&str; 2] = ["pairs", "world"];
 const LEFT_OUT: [&str; 4] = ["neon.rs", "wasm.rs", "model.rs", "memory"];
 /// What is copied.
-const COPIED: [&str; 6] = ["Cargo.lock", "core", "scenes", "fuzz", "rust-toolchain.toml", "README.md"];
+const COPIED: [&str; 6] =
+    ["Cargo.lock", "core", "scenes", "fuzz", "rust-toolchain.toml", "README.md"];
 /// A mutant that takes so much longer does not end.
 const PATIENCE: Duration = Duration::from_secs(240);
 
@@ -45,7 +47,7 @@ struct Mutator<'a> {
 
 impl Mutator<'_> {
     /// The number of a new mutant, unless it does not compile.
-    fn add(&mut self, at: proc_macro2::Span, what: String) -> Option<u32> {
+    fn add(&mut self, at: Span, what: String) -> Option<u32> {
         let id = self.mutants.len();
         self.mutants.push(format!("{}:{}: {what}", self.file, at.start().line));
         (!self.skipped.contains(&id)).then_some(id as u32)
@@ -68,32 +70,34 @@ fn contains_let(expr: &Expr) -> bool {
 }
 
 /// What stands in place of an operator.
-fn replacement(operator: &BinOp) -> Option<BinOp> {
-    Some(match operator {
-        BinOp::Add(_) => parse_quote!(-),
-        BinOp::Sub(_) => parse_quote!(+),
-        BinOp::Mul(_) => parse_quote!(+),
-        BinOp::Div(_) => parse_quote!(*),
-        BinOp::Rem(_) => parse_quote!(+),
-        BinOp::And(_) => parse_quote!(||),
-        BinOp::Or(_) => parse_quote!(&&),
-        BinOp::BitAnd(_) => parse_quote!(|),
-        BinOp::BitOr(_) => parse_quote!(&),
-        BinOp::BitXor(_) => parse_quote!(|),
-        BinOp::Shl(_) => parse_quote!(>>),
-        BinOp::Shr(_) => parse_quote!(<<),
-        BinOp::Eq(_) => parse_quote!(!=),
-        BinOp::Ne(_) => parse_quote!(==),
-        BinOp::Lt(_) => parse_quote!(<=),
-        BinOp::Le(_) => parse_quote!(<),
-        BinOp::Gt(_) => parse_quote!(>=),
-        BinOp::Ge(_) => parse_quote!(>),
-        BinOp::AddAssign(_) => parse_quote!(-=),
-        BinOp::SubAssign(_) => parse_quote!(+=),
-        BinOp::BitAndAssign(_) => parse_quote!(|=),
-        BinOp::BitOrAssign(_) => parse_quote!(&=),
-        _ => return None,
-    })
+fn replacement(operator: &impl ToTokens) -> Option<TokenStream> {
+    const REPLACED: [[&str; 2]; 22] = [
+        ["+", "-"],
+        ["-", "+"],
+        ["*", "+"],
+        ["/", "*"],
+        ["%", "+"],
+        ["&&", "||"],
+        ["||", "&&"],
+        ["&", "|"],
+        ["|", "&"],
+        ["^", "|"],
+        ["<<", ">>"],
+        [">>", "<<"],
+        ["==", "!="],
+        ["!=", "=="],
+        ["<", "<="],
+        ["<=", "<"],
+        [">", ">="],
+        [">=", ">"],
+        ["+=", "-="],
+        ["-=", "+="],
+        ["&=", "|="],
+        ["|=", "&="],
+    ];
+    let operator = operator.to_token_stream().to_string();
+    let [_, other] = REPLACED.iter().find(|[from, _]| *from == operator)?;
+    Some(other.parse().expect("an operator"))
 }
 
 impl VisitMut for Mutator<'_> {
@@ -131,7 +135,7 @@ impl VisitMut for Mutator<'_> {
             Expr::Binary(binary) if !contains_let(&binary.left) && !contains_let(&binary.right) => {
                 let Some(other) = replacement(&binary.op) else { return };
                 let (left, right, op) = (&binary.left, &binary.right, &binary.op);
-                let what = format!("{} instead of {}", other.to_token_stream(), op.to_token_stream());
+                let what = format!("{other} instead of {}", op.to_token_stream());
                 if let Some(id) = self.add(op.span(), what) {
                     *expr = parse_quote!((if crate::mutants::is(#id) { #left #other #right } else { #left #op #right }));
                 }
@@ -143,8 +147,10 @@ impl VisitMut for Mutator<'_> {
                 }
             }
             Expr::If(branch) => {
-                if matches!(*branch.cond, Expr::MethodCall(_) | Expr::Call(_) | Expr::Path(_) | Expr::Field(_))
-                    && let Some(id) = self.add(branch.cond.span(), "condition negated".into())
+                if matches!(
+                    *branch.cond,
+                    Expr::MethodCall(_) | Expr::Call(_) | Expr::Path(_) | Expr::Field(_)
+                ) && let Some(id) = self.add(branch.cond.span(), "condition negated".into())
                 {
                     let condition = &branch.cond;
                     *branch.cond = parse_quote!((#condition) ^ crate::mutants::is(#id));
@@ -172,7 +178,8 @@ impl VisitMut for Mutator<'_> {
 
 /// All Rust files in a folder.
 fn rust_files(folder: &Path) -> Vec<PathBuf> {
-    let mut entries: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut entries: Vec<_> =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     entries.sort();
     let files = entries.into_iter().flat_map(|path| match path.is_dir() {
         true => rust_files(&path),
@@ -224,8 +231,13 @@ fn copy(root: &Path, copy: &Path) {
         true => r#"members = ["core", "scenes", "fuzz"]"#,
         false => line,
     });
-    let manifest: Vec<_> = members.filter(|line| !line.contains("-simulation]") && *line != "undocumented_unsafe_blocks = \"deny\"").collect();
-    fs::write(copy.join("Cargo.toml"), manifest.join("\n").replace("missing_docs = \"deny\"", "")).unwrap();
+    let manifest: Vec<_> = members
+        .filter(|line| {
+            !line.contains("-simulation]") && *line != "undocumented_unsafe_blocks = \"deny\""
+        })
+        .collect();
+    fs::write(copy.join("Cargo.toml"), manifest.join("\n").replace("missing_docs = \"deny\"", ""))
+        .unwrap();
     let lib = copy.join("core/src/lib.rs");
     let text = fs::read_to_string(&lib).unwrap();
     fs::write(lib, text + MUTANTS).unwrap();
@@ -247,13 +259,18 @@ fn build(copy: &Path, arguments: &[&str]) -> Result<String, Vec<usize>> {
     let mut culprits = Vec::new();
     for line in said.lines().filter(|line| line.contains(": error")) {
         let mut parts = line.split(':');
-        let (Some(file), Some(Ok(number))) = (parts.next(), parts.next().map(str::parse::<usize>)) else { continue };
+        let (Some(file), Some(Ok(number))) = (parts.next(), parts.next().map(str::parse::<usize>))
+        else {
+            continue;
+        };
         let Ok(text) = fs::read_to_string(copy.join(file)) else { continue };
         let lines: Vec<_> = text.lines().collect();
         // The mutant begins at or before the place of the error.
         for at in (number.saturating_sub(4)..(number + 1).min(lines.len())).rev() {
             let ids = lines[at].split("mutants::is(").skip(1);
-            culprits.extend(ids.filter_map(|rest| rest.split(['u', ')']).next()?.parse::<usize>().ok()));
+            culprits.extend(
+                ids.filter_map(|rest| rest.split(['u', ')']).next()?.parse::<usize>().ok()),
+            );
             if !culprits.is_empty() && at < number {
                 break;
             }
@@ -299,7 +316,10 @@ fn main() {
         println!("{} mutants, {} of them do not compile", mutants.len(), skipped.len());
         let driver = build(&folder, &["build", "--package", "sweep-and-prune-fuzz"]);
         let tests = driver.and_then(|_| {
-            build(&folder, &["test", "--no-run", "--package", "sweep-and-prune", "--test", "behavior"])
+            build(
+                &folder,
+                &["test", "--no-run", "--package", "sweep-and-prune", "--test", "behavior"],
+            )
         });
         match tests {
             Ok(said) => break (mutants, said),
@@ -311,7 +331,10 @@ fn main() {
     let tests = tests.expect("cargo names the test program").trim_end_matches(')');
     let tests = folder.join("target/checked/deps").join(format!("behavior-{tests}"));
     assert!(DRIVER.iter().all(|arguments| passes(&driver, arguments, usize::MAX, &folder)));
-    assert!(passes(&tests, &[], usize::MAX, &folder.join("core")), "the tests fail without a mutant");
+    assert!(
+        passes(&tests, &[], usize::MAX, &folder.join("core")),
+        "the tests fail without a mutant"
+    );
 
     // SplitMix64, as in `scenes/`.
     let mut state = seed;
@@ -325,7 +348,8 @@ fn main() {
     let mut counts = [0; 3];
     while counts.iter().sum::<usize>() < count && !left.is_empty() {
         let mutant = left.swap_remove((random() % left.len() as u64) as usize);
-        let survives_driver = DRIVER.iter().all(|arguments| passes(&driver, arguments, mutant, &folder));
+        let survives_driver =
+            DRIVER.iter().all(|arguments| passes(&driver, arguments, mutant, &folder));
         let end = match survives_driver && passes(&tests, &[], mutant, &folder.join("core")) {
             true => 2,
             false => usize::from(survives_driver),
@@ -334,5 +358,8 @@ fn main() {
         let how = ["killed by random inputs", "killed by the tests", "SURVIVES"][end];
         println!("{how}: {mutant} {}", mutants[mutant]);
     }
-    println!("{} killed by random inputs, {} by the tests, {} survive", counts[0], counts[1], counts[2]);
+    println!(
+        "{} killed by random inputs, {} by the tests, {} survive",
+        counts[0], counts[1], counts[2]
+    );
 }
