@@ -112,12 +112,13 @@ impl Soak {
         for index in (0..self.bodies.len()).step_by(moving.min(self.bodies.len())) {
             let (id, velocity) = self.bodies[index];
             let mut aabb = self.world.aabb(id).unwrap();
-            for axis in 0..3 {
-                let at = aabb.min[axis] + velocity[axis];
-                let leap = if (0.0..1.0).contains(&at) { velocity[axis] } else { -velocity[axis] };
-                self.bodies[index].1[axis] = leap;
-                aabb.min[axis] += leap;
-                aabb.max[axis] = (aabb.max[axis] + leap).max(aabb.min[axis]);
+            for (axis, velocity) in velocity.into_iter().enumerate() {
+                // It turns around where it leaves the unit cube.
+                let is_inside = (0.0..1.0).contains(&(aabb.min[axis] + velocity));
+                let way = if is_inside { velocity } else { -velocity };
+                self.bodies[index].1[axis] = way;
+                aabb.min[axis] += way;
+                aabb.max[axis] = (aabb.max[axis] + way).max(aabb.min[axis]);
             }
             self.world.set(id, aabb).unwrap();
         }
