@@ -52,7 +52,7 @@ pub(super) struct Driver<const D: usize, T: Scalar> {
     sorter: Sorter<T>,
     sorted: [SortedBoxes<T>; 2],
     placements: Placements,
-    /// Spare columns and groups by size: as many as plans were ever nested.
+    /// Spare columns and groups by size: as many as plans were ever nested, if memory allows.
     columns: Vec<[Columns<D, T>; 2]>,
     groups: Vec<Groups<D, T>>,
     /// The drivers of the other threads.
@@ -156,10 +156,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
             Some(filled) => self.columns(&filled, 0..grid.len(), task, sink),
             None => task.done(1.0),
         });
-        // Kept for later searches, unless there is no memory even for the list of them.
-        if self.columns.try_reserve(1).is_ok() {
-            self.columns.push(columns);
-        }
+        self.columns.try_reserve(1).is_ok().then(|| self.columns.push(columns));
         #[cfg(feature = "parallel")]
         if !helpers.is_empty() {
             self.helpers = helpers;
@@ -277,9 +274,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
                 self.run(&sets, task.nested(0.5), sink)
             })
         });
-        if self.groups.try_reserve(1).is_ok() {
-            self.groups.push(groups);
-        }
+        self.groups.try_reserve(1).is_ok().then(|| self.groups.push(groups));
         result
     }
 

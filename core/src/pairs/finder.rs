@@ -110,10 +110,9 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
     }
 
     /// Uses this many threads of rayon's current pool; 0 counts as 1. [`Search::for_each`],
-    /// [`Search::for_each_chunk`], and sets too small to profit use one.
-    ///
-    /// Pairs wait for those before them. In the first call, this takes as much memory again as the pairs;
-    /// in later calls most are stored in their final place. Each call allocates a few short lists.
+    /// [`Search::for_each_chunk`], and sets too small to profit use one. Pairs wait for those before them.
+    /// In the first call, this takes as much memory again as the pairs; in later calls most are stored in
+    /// their final place. Each call allocates a few short lists, without memory for which the program ends.
     #[cfg(feature = "parallel")]
     #[must_use]
     pub fn threads(mut self, threads: usize) -> Self {

@@ -24,7 +24,7 @@ use crate::{Aabb, Error, Scalar};
 /// hits, and which bodies are nearest.
 ///
 /// The same calls give the same results, bit for bit, on every platform. A call that returns an error
-/// changes nothing.
+/// changes nothing. Where memory runs out the program ends, as it does when a collection cannot grow.
 ///
 /// ```
 /// use sweep_and_prune::{Aabb, BroadPhase};
