@@ -182,9 +182,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             }
             // No update knew it, so none has to report its end, and its slot is free at once: a world
             // that is edited and never updated does not grow.
-            if slots.has(index, flag::IN_TREE) {
-                self.tracking.tree.remove(index);
-            }
+            self.tracking.tree.remove(index);
             slots.release(index, flag::CHANGED | flag::IN_TREE);
         }
         Ok(())

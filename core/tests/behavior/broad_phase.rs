@@ -395,3 +395,21 @@ fn an_id_survives_conversion_to_a_number_and_back() {
     let id = ProxyId::from_bits(bits);
     assert_eq!((id.to_bits(), id.slot()), (bits, 7));
 }
+
+/// Found by `fuzz/` (seed 2001): the tree that queries use held the body, with the box that it had before.
+#[test]
+fn a_new_body_that_is_queried_moved_and_removed_begins_no_pair() {
+    let mut world = BroadPhase::<1>::new();
+    let row: Vec<_> =
+        (0..200).map(|i| Aabb::new([i as f32 * 3.0], [i as f32 * 3.0 + 1.0])).collect();
+    let ids = world.insert_many(&row, Filter::default()).unwrap();
+    world.update();
+    let new = world.insert(Aabb::new([1000.0], [1001.0])).unwrap();
+    let place = Aabb::new([999.0], [1004.0]);
+    assert_eq!(world.queries().overlapping(&place).unwrap(), [new]);
+    world.set(new, Aabb::new([1002.0], [1003.0])).unwrap();
+    world.remove(new).unwrap();
+    world.update();
+    world.set(ids[0], place).unwrap();
+    assert_eq!(world.update().begun().count(), 0);
+}
