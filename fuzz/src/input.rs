@@ -63,10 +63,10 @@ impl<'a> Input<'a> {
         of[self.below(of.len())]
     }
 
-    /// Prints what an operation does, if the input is verbose.
+    /// Prints what an operation does, or the beginning of it if that is long, if the input is verbose.
     pub fn say(&self, text: impl FnOnce() -> String) {
         if self.is_verbose {
-            println!("{}", text());
+            println!("{}", text().chars().take(1000).collect::<String>());
         }
     }
 }

@@ -5,7 +5,8 @@
 //! fuzz TARGET --replay FILE                                              one input, and what it does
 //! ```
 //! The same seed gives the same inputs. Where a target panics, its input is shortened, printed and written to
-//! `fuzz/corpus/TARGET/found-SEED-NUMBER`.
+//! `fuzz/corpus/TARGET/found-SEED-NUMBER`. Where the process is ended instead, its input is left in the folder for
+//! temporary files, as `fuzz-TARGET-PROCESS-THREAD`.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -93,8 +94,9 @@ fn replay(target: &Target, bytes: &[u8]) -> bool {
 }
 
 /// What one thread does.
-#[derive(Default)]
 struct Worker {
+    /// Its input is kept here while it runs.
+    file: PathBuf,
     /// The number of its input, and when it began, in milliseconds.
     input: AtomicU64,
     begun: AtomicU64,
@@ -105,7 +107,13 @@ fn fuzz(target: &Target, options: &Options) -> bool {
     let (next, calls) = (AtomicU64::new(0), AtomicU64::new(0));
     let (end, failed) = (AtomicBool::new(false), AtomicBool::new(false));
     let begun = Instant::now();
-    let workers: Vec<Worker> = (0..options.threads).map(|_| Worker::default()).collect();
+    let file = |thread| format!("fuzz-{}-{}-{thread}", target.name, std::process::id());
+    let worker = |thread| Worker {
+        file: std::env::temp_dir().join(file(thread)),
+        input: AtomicU64::new(0),
+        begun: AtomicU64::new(0),
+    };
+    let workers: Vec<_> = (0..options.threads).map(worker).collect();
     let busy = AtomicU64::new(options.threads as u64);
     thread::scope(|scope| {
         for worker in &workers {
@@ -115,6 +123,8 @@ fn fuzz(target: &Target, options: &Options) -> bool {
                     worker.input.store(number, Ordering::Relaxed);
                     worker.begun.store(begun.elapsed().as_millis() as u64, Ordering::Relaxed);
                     let bytes = random_input(target, options.seed, number);
+                    // Where the process is ended, as by a fault of memory, this is what it was doing.
+                    _ = std::fs::write(&worker.file, &bytes);
                     match run(target, &bytes, false) {
                         Ok(made) => {
                             let all = calls.fetch_add(made, Ordering::Relaxed) + made;
@@ -135,6 +145,7 @@ fn fuzz(target: &Target, options: &Options) -> bool {
                         }
                     }
                 }
+                _ = std::fs::remove_file(&worker.file);
                 busy.fetch_sub(1, Ordering::Relaxed);
             });
         }
