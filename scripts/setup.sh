@@ -190,6 +190,6 @@ setup_cargo_deny() {
   export PATH="$root/.tools/bin:$PATH"
   have cargo-deny && return
   say "Installing cargo-deny into .tools/bin ..."
-  quietly cargo install --quiet --locked --root "$root/.tools" --version 0.19.0 cargo-deny ||
+  quietly cargo install --quiet --locked --root "$root/.tools" --version 0.20.2 cargo-deny ||
     fail "cargo-deny could not be installed: is the network reachable?"
 }
