@@ -287,7 +287,13 @@ def test_a_pipe_that_is_closed_ends_the_program_quietly(boxes: int, unbuffered: 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals there")
 def test_ctrl_c_ends_the_program_and_leaves_no_file() -> None:
     np.save("a.npy", np.zeros((30_000, 2)))  # 450 million pairs
-    program = subprocess.Popen([*SAP, "pairs", "a.npy", "-o", "p.csv"], stderr=subprocess.PIPE, text=True)
+    program = subprocess.Popen(
+        [*SAP, "pairs", "a.npy", "-o", "p.csv"],
+        stderr=subprocess.PIPE,
+        text=True,
+        # A shell starts what runs in the background without this signal, and with it these tests.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
     while not Path("p.csv.part").exists():
         assert program.poll() is None
     program.send_signal(signal.SIGINT)
