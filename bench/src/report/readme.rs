@@ -134,8 +134,15 @@ fn table(record: &Record) -> Result<String> {
         "\nThe times (lower is better) are those of the scene *{scene} {dimensions}D*; the last two \
          columns say how long the fastest alternative of each scene takes, compared with sweep-and-prune: the \
          geometric mean and the minimum over {scenes} scenes in 2D and 3D. One thread, from raw boxes to stored pairs. {}, {} \
-         cores, {}.",
-        record.machine.cpu, record.machine.cores, record.date,
+         cores, {}{}.",
+        record.machine.cpu,
+        record.machine.cores,
+        record.date,
+        if record.machine.load.is_some_and(|load| load > 0.5) {
+            "; other programs were running"
+        } else {
+            ""
+        },
     );
     Ok(text)
 }

@@ -220,18 +220,19 @@ fn roofline(roofline: &Roofline) -> String {
     let peaks: Vec<_> = roofline
         .kernel_tests_per_second
         .iter()
-        .map(|(dimensions, rate)| format!("{:.2} in {dimensions}D", rate / 1e9))
+        .map(|(dimensions, rate)| {
+            format!("{:.2} billion boxes a second in {dimensions}D", rate / 1e9)
+        })
         .collect();
     table(
         "Close to the machine: stage by stage",
         &format!(
-            "The kernel tests at most {} thousand million boxes a second, when all it needs is in \
-             the nearest cache. The limit of a stage is the longer of two times: that of the bytes \
-             that it has to read and write, at the rate at which one thread copies as many \
+            "The kernel tests at most {}, when all that it needs is in the nearest cache. The limit of \
+             a stage is the longer of two times: that of the bytes that it has to read and write, at the rate at which one thread copies as many \
              ({:.1} GB/s if they are far more than the caches hold), and that of its tests. It has \
              to read each box and write it to one column, to read it there, to test each pair \
              once, and to write the pairs. The rest of the time goes to further copies, the \
-             sort and the ordered columns, which stay in the caches, candidates that are no pairs, \
+             sort and the ordered columns, which stay in the caches, candidates that are not pairs, \
              and waiting. Where the \
              output is said to reach 100 %, the writes are hidden behind the sweep.",
             peaks.join(" and "),
