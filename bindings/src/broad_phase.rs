@@ -72,8 +72,11 @@ pub trait AnyBroadPhase<I: Id>: Send {
     /// a pair, and returns how many ids the former are.
     fn update(&mut self, ids: &mut Vec<I>) -> usize;
 
-    /// Appends the ids of the pairs of the last update, two a pair.
+    /// Appends the ids of the pairs of the last update, two a pair, sorted.
     fn pairs(&mut self, ids: &mut Vec<I>);
+
+    /// Appends them in no particular order, which takes less time.
+    fn pairs_unsorted(&self, ids: &mut Vec<I>);
 
     /// Appends the ids of the bodies that overlapped this one at the last update.
     fn pairs_of(&mut self, id: ProxyId, ids: &mut Vec<I>) -> Result<(), Error>;
@@ -207,13 +210,13 @@ impl<const D: usize, T: Scalar, I: Id> AnyBroadPhase<I> for TypedBroadPhase<D, T
     }
 
     fn pairs(&mut self, ids: &mut Vec<I>) {
-        let pair = |[a, b]: [ProxyId; 2]| u128::from(key(a)) << 64 | u128::from(key(b));
-        let mut keys: Vec<_> = self.world.pairs().map(pair).collect();
+        let mut keys = pair_keys(&self.world);
         keys.sort_unstable();
-        ids.reserve(2 * keys.len());
-        for pair in keys {
-            ids.extend([pair >> 64, pair].map(|key| I::from_proxy(id(key as u64))));
-        }
+        append_keys(&keys, ids);
+    }
+
+    fn pairs_unsorted(&self, ids: &mut Vec<I>) {
+        append_keys(&pair_keys(&self.world), ids);
     }
 
     fn pairs_of(&mut self, of: ProxyId, ids: &mut Vec<I>) -> Result<(), Error> {
@@ -268,6 +271,21 @@ fn append<I: Id>(pairs: Pairs<'_>, ids: &mut Vec<I>) {
     ids.reserve(2 * pairs.len());
     for pair in pairs {
         ids.extend(pair.map(I::from_proxy));
+    }
+}
+
+/// The pairs of the last update as numbers of the same order.
+#[inline(never)]
+fn pair_keys<const D: usize, T: Scalar>(world: &BroadPhase<D, T>) -> Vec<u128> {
+    world.pairs().map(|[a, b]| u128::from(key(a)) << 64 | u128::from(key(b))).collect()
+}
+
+/// Appends the ids of [`pair_keys`]. One copy of it serves all dimensions.
+#[inline(never)]
+fn append_keys<I: Id>(keys: &[u128], ids: &mut Vec<I>) {
+    ids.reserve(2 * keys.len());
+    for pair in keys {
+        ids.extend([pair >> 64, *pair].map(|key| I::from_proxy(id(key as u64))));
     }
 }
 

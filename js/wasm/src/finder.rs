@@ -13,23 +13,13 @@ use sweep_and_prune_bindings::{AnyPairFinder, TypedPairFinder};
 
 use crate::status::{Code, report, report_error};
 
-/// What happens to the pairs; `js/src/pair-finder.ts` has the same list.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Use {
-    Store,
-    Count,
-    Stream,
-}
-
 /// Stands for the count of the second set where there is only one.
 const NO_SET: usize = usize::MAX;
 
-/// Pairs are streamed to JavaScript in chunks of at least so many, and less than twice as many.
-const CHUNK: usize = 4096;
-
 /// Takes pairs. One type for every purpose, so that the search is compiled once.
 struct Taker {
-    purpose: Use,
+    /// How many pairs are kept before they are handed to JavaScript; 0 if they are only counted.
+    chunk: usize,
     buffer: Vec<[u32; 2]>,
     count: u64,
 }
@@ -38,22 +28,13 @@ impl Taker {
     #[inline]
     fn take(&mut self, pairs: &[[u32; 2]]) -> ControlFlow<()> {
         self.count += pairs.len() as u64;
-        if self.purpose != Use::Count {
-            self.buffer.extend_from_slice(pairs);
+        if self.chunk == 0 {
+            return Continue(());
         }
-        if self.purpose == Use::Stream && self.buffer.len() >= CHUNK {
-            return self.flush();
+        self.buffer.extend_from_slice(pairs);
+        if self.buffer.len() < self.chunk {
+            return Continue(());
         }
-        Continue(())
-    }
-
-    fn start(&mut self, purpose: Use) {
-        (self.purpose, self.count) = (purpose, 0);
-        self.buffer.clear();
-    }
-
-    /// Hands the pairs in the buffer to JavaScript.
-    fn flush(&mut self) -> ControlFlow<()> {
         let wants_more = hand_over(&self.buffer);
         self.buffer.clear();
         if wants_more { Continue(()) } else { Break(()) }
@@ -85,7 +66,7 @@ extern "C" fn finder_new(dimensions: u32, is_double: bool) -> Option<Box<Finder>
         (3, true) => Box::new(TypedPairFinder::<3, f64>::new(1)),
         _ => return None,
     };
-    let taker = Taker { purpose: Use::Store, buffer: Vec::new(), count: 0 };
+    let taker = Taker { chunk: 0, buffer: Vec::new(), count: 0 };
     Some(Box::new(Finder { finder, taker }))
 }
 
@@ -97,18 +78,15 @@ extern "C" fn finder_rows(finder: Option<&mut Finder>, set: usize, count: usize)
 }
 
 /// Finds the pairs of the first `a` rows of set 0, or those between them and the first `b` of
-/// set 1, if `b` is not 2^32 - 1. Details, by `purpose`:
-/// 0, to store: where the pairs are and how many, valid until the next call with this finder;
-/// 1, to count: how many, the low and the high word;
-/// 2, to stream, through the import `each`: none.
+/// set 1, if `b` is not 2^32 - 1. If `chunk` is 0 it counts them: details are the low and the high
+/// word. Otherwise it hands them to the import `each` as soon as it has `chunk` of them. Details:
+/// where the rest is and how many, valid until the next call with this finder; none if `each`
+/// wanted no more.
 #[unsafe(no_mangle)]
-extern "C" fn finder_find(finder: Option<&mut Finder>, a: usize, b: usize, purpose: u32) -> Code {
+extern "C" fn finder_find(finder: Option<&mut Finder>, a: usize, b: usize, chunk: usize) -> Code {
     let Some(Finder { finder, taker }) = finder else { return report(Code::Internal, [0, 0]) };
-    taker.start(match purpose {
-        0 => Use::Store,
-        1 => Use::Count,
-        _ => Use::Stream,
-    });
+    (taker.chunk, taker.count) = (chunk, 0);
+    taker.buffer.clear();
     let b = (b != NO_SET).then_some(b);
     if let Err(mut error) = finder.for_each_chunk(a, b, &mut |pairs| taker.take(pairs)) {
         // JavaScript counts the boxes of the second set after those of the first.
@@ -117,16 +95,10 @@ extern "C" fn finder_find(finder: Option<&mut Finder>, a: usize, b: usize, purpo
         }
         return report_error(error);
     }
-    match taker.purpose {
-        Use::Store => report(Code::Ok, [taker.buffer.as_ptr().addr(), taker.buffer.len()]),
-        Use::Count => report(Code::Ok, [taker.count as usize, (taker.count >> 32) as usize]),
-        Use::Stream => {
-            // Empty if the callback cancelled the search.
-            if !taker.buffer.is_empty() {
-                let _ = taker.flush();
-            }
-            report(Code::Ok, [0, 0])
-        }
+    if chunk == 0 {
+        report(Code::Ok, [taker.count as usize, (taker.count >> 32) as usize])
+    } else {
+        report(Code::Ok, [taker.buffer.as_ptr().addr(), taker.buffer.len()])
     }
 }
 

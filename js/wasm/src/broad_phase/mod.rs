@@ -192,9 +192,13 @@ extern "C" fn world_update(handle: &mut Handle) -> Code {
 
 /// Details: where the pairs of the last update are, and how many ids.
 #[unsafe(no_mangle)]
-extern "C" fn world_pairs(handle: &mut Handle) -> Code {
+extern "C" fn world_pairs(handle: &mut Handle, sorted: bool) -> Code {
     handle.answer.ids.clear();
-    handle.world.pairs(&mut handle.answer.ids);
+    if sorted {
+        handle.world.pairs(&mut handle.answer.ids);
+    } else {
+        handle.world.pairs_unsorted(&mut handle.answer.ids);
+    }
     handle.answer(Ok(()))
 }
 
@@ -259,7 +263,7 @@ extern "C" fn world_snapshot(handle: &mut Handle) -> Code {
 /// Becomes the broad phase of the snapshot in the bytes. Details: whether it is in double precision.
 #[unsafe(no_mangle)]
 extern "C" fn world_restore(handle: &mut Handle) -> Code {
-    let restored = stored::restore(&handle.bytes, handle.dimensions);
+    let restored = stored::restore(&mut handle.bytes, handle.dimensions);
     handle.bytes = Vec::new();
     match restored {
         Ok(world) => {

@@ -13,7 +13,8 @@ use sweep_and_prune_bindings::{Kind, Settings, TypedBroadPhase};
 
 use super::handle::World;
 
-/// The first bytes of a snapshot that has the user's dimensions next, and then the core's bytes.
+/// The first bytes of a snapshot that has the user's dimensions next, and then the core's bytes. The
+/// last of those, a byte of their checksum, is XORed with the dimensions: so the checksum covers these too.
 const FLAT: [u8; 4] = *b"SaPf";
 
 /// In which type boxes are stored.
@@ -35,9 +36,17 @@ pub(super) fn broad_phase(dimensions: u32, is_double: bool, settings: Settings) 
 pub(super) fn snapshot(world: &World, dimensions: u32) -> Vec<u8> {
     let mut bytes = world.snapshot();
     if world.kind().dimensions != dimensions as usize {
+        cover(&mut bytes, dimensions as u8);
         bytes.splice(0..0, FLAT.into_iter().chain([dimensions as u8]));
     }
     bytes
+}
+
+/// Brings the dimensions into the checksum at the end, or takes them out.
+fn cover(bytes: &mut [u8], dimensions: u8) {
+    if let Some(last) = bytes.last_mut() {
+        *last ^= dimensions;
+    }
 }
 
 /// The broad phase of a snapshot, if its boxes have so many dimensions for the user.
@@ -45,14 +54,18 @@ pub(super) fn snapshot(world: &World, dimensions: u32) -> Vec<u8> {
 /// # Errors
 /// [`Error::InvalidSnapshot`]; for other dimensions, [`SnapshotFault::OtherWorld`] with those of
 /// the user.
-pub(super) fn restore(bytes: &[u8], dimensions: u32) -> Result<World, Error> {
-    let (flat, bytes) = match bytes.strip_prefix(&FLAT) {
-        Some([flat, bytes @ ..]) => (Some(usize::from(*flat)), bytes),
-        Some([]) => return Err(Error::InvalidSnapshot(SnapshotFault::Truncated)),
-        None => (None, bytes),
+pub(super) fn restore(bytes: &mut [u8], dimensions: u32) -> Result<World, Error> {
+    let (flat, bytes) = if bytes.starts_with(&FLAT) {
+        let Some((&mut flat, bytes)) = bytes[FLAT.len()..].split_first_mut() else {
+            return Err(Error::InvalidSnapshot(SnapshotFault::Truncated));
+        };
+        cover(bytes, flat);
+        (Some(flat), bytes)
+    } else {
+        (None, bytes)
     };
     let kind = Kind::of_snapshot(bytes)?;
-    let given = flat.unwrap_or(kind.dimensions);
+    let given = flat.map_or(kind.dimensions, usize::from);
     if given != dimensions as usize || kind != stored(dimensions, kind.is_double) {
         let scalar_bytes = if kind.is_double { 8 } else { 4 };
         let fault = SnapshotFault::OtherWorld { dimensions: given, scalar_bytes };
