@@ -38,11 +38,11 @@ const cores = [
 
 /** The entries, with budgets of what they import in all; of those that carry a core inside, none. */
 const entries = [
-  { name: "index", budget: 6_500 },
+  { name: "index", budget: 7_600 },
   { name: "inline" },
-  { name: "broad-phase", budget: 9_500 },
+  { name: "broad-phase", budget: 11_000 },
   { name: "broad-phase-inline" },
-  { name: "algorithms", budget: 7_500 },
+  { name: "algorithms", budget: 8_500 },
   { name: "algorithms-inline" },
   // With Lit, which it draws its controls by.
   { name: "demo", budget: 40_000 },

@@ -1,4 +1,14 @@
-export type { BoundsBox, Boxes, BoxObject, Corner, Dimensions, EdgesBox, MinMaxBox } from "./boxes.js";
+export type {
+  BoundsBox,
+  Boxes,
+  BoxObject,
+  Corner,
+  Dimensions,
+  EdgesBox,
+  MinMaxBox,
+  SizedBox,
+  TypedNumbers,
+} from "./boxes.js";
 export { InvalidBoxError, NotInitializedError, OutOfMemoryError, SweepAndPruneError } from "./errors.js";
 export type { InitOptions, Started, Wasm } from "./init.js";
 export { type AxisOverlap, type Line, type Place, Player, type PlayerState } from "./player.js";

@@ -4,12 +4,10 @@
  * @module
  */
 import wasm from "../dist/algorithms.wasm";
-import { type InitOptions, start, type Started } from "./init.js";
+import { entry, type InitOptions, type Started } from "./init.js";
 import { algorithmsCore } from "./runner.js";
 
 export * from "./algorithms-api.js";
 
-/** Starts the compiled algorithms. Otherwise it works as `init` of `sweep-and-prune/inline`. */
-export function init(options: InitOptions = {}): Promise<Started> {
-  return start(algorithmsCore, { simd: () => wasm, scalar: () => wasm }, { ...options, simd: false });
-}
+/** Loads and starts the compiled core of this entry point, and those of the others. Otherwise it works as `init` of `sweep-and-prune`. */
+export const init: (options?: InitOptions) => Promise<Started> = entry(algorithmsCore, { scalar: () => wasm });

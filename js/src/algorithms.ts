@@ -4,13 +4,12 @@
  *
  * @module
  */
-import { type InitOptions, start, type Started } from "./init.js";
+import { entry, type InitOptions, type Started } from "./init.js";
 import { algorithmsCore } from "./runner.js";
 
 export * from "./algorithms-api.js";
 
-/** Loads and starts the compiled algorithms. Otherwise it works as `init` of `sweep-and-prune`. */
-export function init(options: InitOptions = {}): Promise<Started> {
-  const wasm = () => new URL("./algorithms.wasm", import.meta.url);
-  return start(algorithmsCore, { simd: wasm, scalar: wasm }, { ...options, simd: false });
-}
+/** Loads and starts the compiled core of this entry point, and those of the others. Otherwise it works as `init` of `sweep-and-prune`. */
+export const init: (options?: InitOptions) => Promise<Started> = entry(algorithmsCore, {
+  scalar: () => new URL("./algorithms.wasm", import.meta.url),
+});

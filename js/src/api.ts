@@ -1,7 +1,18 @@
-export type { BoundsBox, Boxes, BoxObject, Corner, Dimensions, EdgesBox, MinMaxBox } from "./boxes.js";
+export type {
+  BoundsBox,
+  Boxes,
+  BoxObject,
+  Corner,
+  Dimensions,
+  EdgesBox,
+  MinMaxBox,
+  SizedBox,
+  TypedNumbers,
+} from "./boxes.js";
 export { InvalidBoxError, NotInitializedError, OutOfMemoryError, SweepAndPruneError } from "./errors.js";
 export type { InitOptions, Started, Wasm } from "./init.js";
 export {
+  anyPair,
   countPairs,
   type EachPair,
   findPairs,
@@ -10,4 +21,5 @@ export {
   forEachPair,
   PairFinder,
   type PairFinderOptions,
+  type PairsInto,
 } from "./pair-finder.js";

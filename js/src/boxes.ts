@@ -4,6 +4,18 @@ import { unguard } from "./views.js";
 /** 1, 2 or 3. */
 export type Dimensions = 1 | 2 | 3;
 
+/** Numbers in a typed array. Those of whole numbers are copied: of up to 16 bits to single precision, others to double. */
+export type TypedNumbers =
+  | Float32Array
+  | Float64Array
+  | Int8Array
+  | Uint8Array
+  | Uint8ClampedArray
+  | Int16Array
+  | Uint16Array
+  | Int32Array
+  | Uint32Array;
+
 /**
  * Boxes, one row after another: the min corner and then the max corner, so `minX, minY, maxX, maxY`
  * in 2D.
@@ -12,15 +24,16 @@ export type Dimensions = 1 | 2 | 3;
  * precision. Plain arrays, of numbers or of {@link BoxObject | boxes}, are slower: each call reads
  * every number, checks it and copies it to a `Float64Array`.
  */
-export type Boxes = Float32Array | Float64Array | readonly number[] | readonly BoxObject[];
+export type Boxes = TypedNumbers | readonly number[] | readonly BoxObject[];
 
 /**
- * A box in the form of another library: `{ minX, minY, maxX, maxY }` of rbush, with `minZ` and
+ * One box in the form of another library: `{ minX, minY, maxX, maxY }` of rbush, with `minZ` and
  * `maxZ` in 3D; `{ min, max }` of the `Box2` and `Box3` of three.js and the bounds of matter;
- * `{ lowerBound, upperBound }` of cannon and planck; a row of numbers as in box-intersect. Other
- * properties of the object are ignored.
+ * `{ lowerBound, upperBound }` of cannon and planck; `{ x, y, width, height }` of a `DOMRect` or a
+ * sprite, with `z` and `depth` in 3D; a row of numbers as in box-intersect. Other properties of the
+ * object are ignored.
  */
-export type BoxObject = EdgesBox | MinMaxBox | BoundsBox | readonly number[];
+export type BoxObject = EdgesBox | MinMaxBox | BoundsBox | SizedBox | readonly number[] | TypedNumbers;
 
 /** A box by its edges, as in rbush. */
 export interface EdgesBox {
@@ -54,7 +67,23 @@ export interface BoundsBox {
   readonly upperBound: Corner;
 }
 
-/** A corner of a box: as many coordinates as there are dimensions. */
+/** A box by its min corner and its size, as a `DOMRect`. Its max corner is their sum in double precision. */
+export interface SizedBox {
+  /** The smallest x. */
+  readonly x: number;
+  /** The smallest y, in 2D and 3D. */
+  readonly y?: number;
+  /** The smallest z, in 3D. */
+  readonly z?: number;
+  /** The extent in x, 0 or more. */
+  readonly width: number;
+  /** The extent in y. */
+  readonly height?: number;
+  /** The extent in z. */
+  readonly depth?: number;
+}
+
+/** A point, or a corner of a box: as many coordinates as there are dimensions. */
 export interface Corner {
   /** The first coordinate. */
   readonly x: number;
@@ -73,12 +102,10 @@ export function checkDimensions(dimensions: unknown): Dimensions {
 /** @internal How many dimensions boxes have that are objects: those of the first; `undefined` for flat arrays. */
 export function dimensionsOf(boxes: unknown): Dimensions | undefined {
   const first: unknown = Array.isArray(boxes) ? boxes[0] : undefined;
-  if (Array.isArray(first)) return checkDimensions(first.length / 2);
+  if (isRow(first)) return checkDimensions(first.length / 2);
   if (typeof first !== "object" || first === null) return undefined;
-  const form = formOf(first);
-  if (!form) refuseObject(first, "boxes[0]");
-  const has = (axis: number): boolean => read(first, form, 0, axis) !== undefined;
-  return has(2) ? 3 : has(1) ? 2 : has(0) ? 1 : undefined;
+  const form = formOf(first, "boxes[0]");
+  return form.has(first, 2) ? 3 : form.has(first, 1) ? 2 : form.has(first, 0) ? 1 : undefined;
 }
 
 /** @internal The boxes as a typed array of whole rows. Their coordinates are not checked. */
@@ -97,12 +124,38 @@ export function checkBoxes(boxes: unknown, dimensions: Dimensions, name = "boxes
 
 /** @internal Numbers as a typed array. */
 export function checkNumbers(values: unknown, name: string): Float32Array | Float64Array {
-  const numbers = Array.isArray(values) ? fromNumbers(values, name) : unguard(values);
-  if (!isFloatArray(numbers)) {
-    throw new TypeError(`\`${name}\` must be a Float32Array, a Float64Array or a plain array, not ${describe(values)}`);
-  }
+  const numbers = Array.isArray(values) ? fromNumbers(values, name) : floats(unguard(values));
+  if (!numbers) throw new TypeError(`\`${name}\` must be a typed array of numbers or a plain array, not ${describe(values)}`);
   if (numbers.length === 0) refuseDetached(numbers, name);
   return numbers;
+}
+
+/** @internal Whether a value is a box or a point as an object with named coordinates. */
+export function isNamed(value: unknown): value is object {
+  return typeof value === "object" && value !== null && !isRow(value);
+}
+
+/** @internal Writes the corners of a box that is an object, from `at`. They are not checked, apart from their type. */
+export function readBox(box: object, dimensions: Dimensions, name: string, into: Float64Array, at: number): void {
+  const form = formOf(box, name);
+  for (const corner of [0, 1] as const) {
+    for (let axis = 0; axis < dimensions; axis++, at++) {
+      const value = form.read(box, corner, axis);
+      if (typeof value !== "number") {
+        throw new TypeError(`the ${corner ? "max" : "min"} ${"xyz"[axis]} of ${name} must be a number, not ${describe(value)}`);
+      }
+      into[at] = value;
+    }
+  }
+}
+
+/** @internal The coordinates of a point that is an object: `{ x, y, z }`, as many as there are dimensions. */
+export function readPoint(point: object, dimensions: Dimensions, name: string): Float64Array {
+  return Float64Array.from({ length: dimensions }, (_, axis) => {
+    const value = coordinate(point as Corner, axis);
+    if (typeof value === "number") return value;
+    throw new TypeError(`\`${name}.${"xyz"[axis]}\` must be a number, not ${describe(value)}`);
+  });
 }
 
 /**
@@ -137,48 +190,86 @@ function fromNumbers(numbers: readonly unknown[], name: string): Float64Array {
   return rows;
 }
 
-/** The names of a box's two corners, and whether these are objects (`min.x`) or prefixes (`minX`). */
-type Form = readonly [readonly [string, string], nested: boolean];
-
-const forms: readonly Form[] = [
-  [["min", "max"], true],
-  [["lowerBound", "upperBound"], true],
-  [["min", "max"], false],
-];
-
-function formOf(box: object): Form | undefined {
-  return forms.find(([[min], nested]) => (nested ? min : "minX") in box);
+/** A form of boxes that are objects. */
+interface Form {
+  /** A property that only boxes of this form have. */
+  readonly key: string;
+  /** A coordinate of corner 0 or 1; the caller checks that it is a number. */
+  read(box: object, corner: 0 | 1, axis: number): unknown;
+  /** Whether a box has this axis. */
+  has(box: object, axis: number): boolean;
 }
 
-/** A coordinate of corner 0 or 1 of a box; the caller checks that it is a number. */
-function read(box: object, [corners, nested]: Form, corner: 0 | 1, axis: number): unknown {
-  const name = corners[corner];
-  const [from, key] = nested
-    ? [(box as Record<string, unknown>)[name], "xyz"[axis]!]
-    : [box, name + "XYZ"[axis]!];
-  return (from as Record<string, unknown> | null | undefined)?.[key];
+/** Each property by its name, which engines read several times faster than by a computed one. */
+function coordinate(corner: Corner | null | undefined, axis: number): unknown {
+  return axis === 0 ? corner?.x : axis === 1 ? corner?.y : corner?.z;
+}
+
+const minMax: Form = {
+  key: "min",
+  read: (box, corner, axis) => coordinate(corner ? (box as MinMaxBox).max : (box as MinMaxBox).min, axis),
+  has: (box, axis) => minMax.read(box, 0, axis) !== undefined,
+};
+
+const bounds: Form = {
+  key: "lowerBound",
+  read: (box, corner, axis) => coordinate(corner ? (box as BoundsBox).upperBound : (box as BoundsBox).lowerBound, axis),
+  has: (box, axis) => bounds.read(box, 0, axis) !== undefined,
+};
+
+const edges: Form = {
+  key: "minX",
+  read(box, corner, axis) {
+    const { minX, minY, minZ, maxX, maxY, maxZ } = box as EdgesBox;
+    return axis === 0 ? (corner ? maxX : minX) : axis === 1 ? (corner ? maxY : minY) : corner ? maxZ : minZ;
+  },
+  has: (box, axis) => edges.read(box, 0, axis) !== undefined,
+};
+
+const sized: Form = {
+  key: "width",
+  read(box, corner, axis) {
+    const from = coordinate(box as SizedBox, axis);
+    if (!corner || typeof from !== "number") return from;
+    const size: unknown = extent(box as SizedBox, axis);
+    return typeof size === "number" ? from + size : size;
+  },
+  // Not by its `z`: a sprite may have one that is no coordinate.
+  has: (box, axis) => extent(box as SizedBox, axis) !== undefined,
+};
+
+function extent(box: SizedBox, axis: number): number | undefined {
+  return axis === 0 ? box.width : axis === 1 ? box.height : box.depth;
+}
+
+const forms: readonly Form[] = [minMax, bounds, edges, sized];
+
+function formOf(box: object, name: string): Form {
+  return forms.find(({ key }) => key in box) ?? refuseObject(box, name);
+}
+
+function isRow(box: unknown): box is ArrayLike<unknown> {
+  return Array.isArray(box) || (ArrayBuffer.isView(box) && !(box instanceof DataView));
 }
 
 function fromObjects(boxes: readonly unknown[], dimensions: Dimensions, name: string): Float64Array {
-  const rows = new Float64Array(2 * dimensions * boxes.length);
-  let at = 0;
+  const width = 2 * dimensions;
+  const rows = new Float64Array(width * boxes.length);
   for (let index = 0; index < boxes.length; index++) {
     const box = boxes[index];
-    const isRow = Array.isArray(box);
-    const form = typeof box === "object" && box !== null && !isRow ? formOf(box) : undefined;
-    if (!isRow && form === undefined) refuseObject(box, `${name}[${index}]`);
-    if (isRow && box.length !== 2 * dimensions) {
-      throw new RangeError(`${name}[${index}] must hold ${2 * dimensions} numbers, not ${box.length}`);
+    if (isNamed(box)) {
+      readBox(box, dimensions, `${name}[${index}]`, rows, index * width);
+      continue;
     }
-    for (const corner of [0, 1] as const) {
-      for (let axis = 0; axis < dimensions; axis++, at++) {
-        const value: unknown = form ? read(box as object, form, corner, axis) : (box as unknown[])[corner * dimensions + axis];
-        if (typeof value !== "number") {
-          const which = `${corner ? "max" : "min"} ${"xyz"[axis]}`;
-          throw new TypeError(`the ${which} of ${name}[${index}] must be a number, not ${describe(value)}`);
-        }
-        rows[at] = value;
+    if (!isRow(box)) refuseObject(box, `${name}[${index}]`);
+    if (box.length !== width) throw new RangeError(`${name}[${index}] must hold ${width} numbers, not ${box.length}`);
+    for (let at = 0; at < width; at++) {
+      const value = box[at];
+      if (typeof value !== "number") {
+        const which = `${at < dimensions ? "min" : "max"} ${"xyz"[at % dimensions]}`;
+        throw new TypeError(`the ${which} of ${name}[${index}] must be a number, not ${describe(value)}`);
       }
+      rows[index * width + at] = value;
     }
   }
   return rows;
@@ -188,16 +279,33 @@ function fromObjects(boxes: readonly unknown[], dimensions: Dimensions, name: st
 function refuseObject(box: unknown, name: string): never {
   const isObject = typeof box === "object" && box !== null;
   throw new TypeError(
-    `${name} must be { minX, .. }, { min, max }, { lowerBound, upperBound } or a row of numbers, not ` +
+    `${name} must be { minX, .. }, { min, max }, { lowerBound, upperBound }, { x, .., width, .. } or a row of numbers, not ` +
       (isObject ? `an object with ${Object.keys(box).slice(0, 6).join(", ") || "no properties"}` : describe(box)),
   );
 }
 
-/** By its tag, not by `instanceof`, which is false for arrays of another realm (a frame, a test runner). */
-function isFloatArray(value: unknown): value is Float32Array | Float64Array {
-  if (!ArrayBuffer.isView(value)) return false;
-  const tag = (value as Float32Array)[Symbol.toStringTag] as string;
-  return tag === "Float32Array" || tag === "Float64Array";
+/**
+ * A typed array of numbers as one of floats, or `undefined` for another value. By its tag, not by
+ * `instanceof`, which is false for arrays of another realm (a frame, a test runner).
+ */
+function floats(value: unknown): Float32Array | Float64Array | undefined {
+  switch (ArrayBuffer.isView(value) && (value as Float32Array)[Symbol.toStringTag] as string) {
+    case "Float32Array":
+    case "Float64Array":
+      return value as Float32Array | Float64Array;
+    case "Float16Array":
+    case "Int8Array":
+    case "Uint8Array":
+    case "Uint8ClampedArray":
+    case "Int16Array":
+    case "Uint16Array":
+      return new Float32Array(value as Int16Array);
+    case "Int32Array":
+    case "Uint32Array":
+      return new Float64Array(value as Int32Array);
+    default:
+      return undefined;
+  }
 }
 
 /** A detached array looks like an empty one; only its methods throw. */

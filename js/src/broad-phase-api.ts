@@ -1,13 +1,26 @@
-export type { BoundsBox, Boxes, BoxObject, Corner, Dimensions, EdgesBox, MinMaxBox } from "./boxes.js";
+export type {
+  BoundsBox,
+  Boxes,
+  BoxObject,
+  Corner,
+  Dimensions,
+  EdgesBox,
+  MinMaxBox,
+  SizedBox,
+  TypedNumbers,
+} from "./boxes.js";
 export { BroadPhase } from "./world.js";
 export {
+  type Box,
   type BroadPhaseOptions,
   type Buffers,
   type Changes,
   type Hit,
   type Neighbor,
   type Numbers,
+  type Point,
   type ProxyId,
+  type QueryFilter,
   slotOf,
 } from "./world-types.js";
 export {

@@ -6,12 +6,10 @@
  */
 import scalar from "../dist/broad-phase.wasm";
 import simd from "../dist/broad-phase.simd.wasm";
-import { type InitOptions, start, type Started } from "./init.js";
+import { entry, type InitOptions, type Started } from "./init.js";
 import { worldCore } from "./world-core.js";
 
 export * from "./broad-phase-api.js";
 
-/** Starts the compiled core of this entry point. Otherwise it works as `init` of `sweep-and-prune/inline`. */
-export function init(options: InitOptions = {}): Promise<Started> {
-  return start(worldCore, { simd: () => simd, scalar: () => scalar }, options);
-}
+/** Loads and starts the compiled core of this entry point, and those of the others. Otherwise it works as `init` of `sweep-and-prune`. */
+export const init: (options?: InitOptions) => Promise<Started> = entry(worldCore, { simd: () => simd, scalar: () => scalar });

@@ -13,19 +13,13 @@
  *
  * @module
  */
-import { type InitOptions, start, type Started } from "./init.js";
+import { entry, type InitOptions, type Started } from "./init.js";
 import { worldCore } from "./world-core.js";
 
 export * from "./broad-phase-api.js";
 
-/** Loads and starts the compiled core of this entry point. Otherwise it works as `init` of `sweep-and-prune`. */
-export function init(options: InitOptions = {}): Promise<Started> {
-  return start(
-    worldCore,
-    {
-      simd: () => new URL("./broad-phase.simd.wasm", import.meta.url),
-      scalar: () => new URL("./broad-phase.wasm", import.meta.url),
-    },
-    options,
-  );
-}
+/** Loads and starts the compiled core of this entry point, and those of the others. Otherwise it works as `init` of `sweep-and-prune`. */
+export const init: (options?: InitOptions) => Promise<Started> = entry(worldCore, {
+  simd: () => new URL("./broad-phase.simd.wasm", import.meta.url),
+  scalar: () => new URL("./broad-phase.wasm", import.meta.url),
+});

@@ -7,10 +7,15 @@ import {
   SweepAndPruneError,
 } from "./errors.js";
 
+// The types of WebAssembly are not named where declarations show them: not every project has them.
+
+/** A `WebAssembly.Module`. */
+export type Module = object;
+
 /** What every build of js/wasm/ exports. Pointers and counts are signed numbers: `>>> 0` makes them unsigned. */
 export interface Exports {
-  readonly memory: WebAssembly.Memory;
-  readonly __stack_pointer: WebAssembly.Global<"i32">;
+  readonly memory: { readonly buffer: ArrayBuffer };
+  readonly __stack_pointer: { value: number };
   status(): number;
 }
 
@@ -55,14 +60,14 @@ export class Engine<E extends Exports> {
     readonly isDevelopment: boolean,
   ) {}
 
-  static async start<E extends Exports>(module: WebAssembly.Module, known: string, isDevelopment: boolean): Promise<Engine<E>> {
+  static async start<E extends Exports>(module: Module, known: string, isDevelopment: boolean): Promise<Engine<E>> {
     let engine: Engine<E>;
     const imports = {
       fail: (isOutOfMemory: number) => engine.#fail(isOutOfMemory !== 0),
       each: (at: number, count: number) => engine.#each(at >>> 0, count >>> 0),
     };
     // Not `new WebAssembly.Instance`, which some browsers refuse on the main thread.
-    const instance = await WebAssembly.instantiate(module, { sweep_and_prune: imports });
+    const instance = await WebAssembly.instantiate(module as WebAssembly.Module, { sweep_and_prune: imports });
     if (!(known in instance.exports)) throw new TypeError("`wasm` is not the compiled core of this entry");
     engine = new Engine(instance.exports as unknown as E, isDevelopment);
     engine.#stackTop = engine.exports.__stack_pointer.value;
@@ -151,8 +156,13 @@ function invalidBox(index: number, axis: number, { boxes = [] }: Passed): Invali
   return new InvalidBoxError(index, axis);
 }
 
+/** What starting a core needs to know of it. */
+export interface AnyCore {
+  start(module: Module, isDevelopment: boolean): Promise<void>;
+}
+
 /** One of the compiled cores, which is started once. */
-export class Core<E extends Exports> {
+export class Core<E extends Exports> implements AnyCore {
   #engine: Engine<E> | undefined;
 
   /** `known` is the name of an export that only this core has, `entry` that of the package's entry. */
@@ -167,7 +177,7 @@ export class Core<E extends Exports> {
     return this.#engine;
   }
 
-  async start(module: WebAssembly.Module, isDevelopment: boolean): Promise<void> {
+  async start(module: Module, isDevelopment: boolean): Promise<void> {
     this.#engine = await Engine.start<E>(module, this.known, isDevelopment);
   }
 }

@@ -31,7 +31,7 @@ export class NotInitializedError extends SweepAndPruneError {
 
   /** @internal */
   constructor(entry = "sweep-and-prune") {
-    super(`"${entry}" is not initialized: import \`init\` from "${entry}" and \`await init()\` before the first call; each entry point has its own \`init\``);
+    super(`"${entry}" is not initialized: import \`init\` from "${entry}" and \`await init()\` before the first call; one \`init()\` starts all entry points that were imported before it`);
   }
 }
 

@@ -14,25 +14,19 @@
  *
  * @module
  */
-import { type InitOptions, start, type Started } from "./init.js";
+import { entry, type InitOptions, type Started } from "./init.js";
 import { finderCore } from "./pair-finder.js";
 
 export * from "./api.js";
 
 /**
- * Loads and starts the compiled core. Call it once, before anything else. Later and concurrent calls
- * get the promise of the first call, and their options are ignored. After a failure the next call
- * tries again.
+ * Loads and starts the compiled core, and those of the other entry points that the program has
+ * imported. Call it once, before anything else. Later and concurrent calls get the promise of the first
+ * call, and their options are ignored. After a failure the next call tries again.
  *
  * @throws The error of the network, the file system or the compiler.
  */
-export function init(options: InitOptions = {}): Promise<Started> {
-  return start(
-    finderCore,
-    {
-      simd: () => new URL("./sweep-and-prune.simd.wasm", import.meta.url),
-      scalar: () => new URL("./sweep-and-prune.wasm", import.meta.url),
-    },
-    options,
-  );
-}
+export const init: (options?: InitOptions) => Promise<Started> = entry(finderCore, {
+  simd: () => new URL("./sweep-and-prune.simd.wasm", import.meta.url),
+  scalar: () => new URL("./sweep-and-prune.wasm", import.meta.url),
+});

@@ -1,7 +1,10 @@
-import type { Core, Exports } from "./engine.js";
+import type { AnyCore } from "./engine.js";
 
-/** A compiled core: its address, its bytes, its answer from a server, or the module. */
-export type Wasm = string | URL | BufferSource | Response | WebAssembly.Module;
+/**
+ * A compiled core: its address (a string or a `URL`), its bytes (an `ArrayBuffer` or a view of one), a
+ * `Response`, or a `WebAssembly.Module`. Not these types themselves, which not every project has.
+ */
+export type Wasm = string | object;
 
 /** Options of `init`. */
 export interface InitOptions {
@@ -11,9 +14,9 @@ export interface InitOptions {
    */
   simd?: boolean;
   /**
-   * The compiled core, if it is not beside this module: its address, its bytes, the response of
-   * `fetch`, or the compiled module; or a promise of one of these. It must be the build that `simd`
-   * names.
+   * The compiled core of this entry point, if it is not beside its module: its address, its bytes, the
+   * response of `fetch`, or the compiled module; or a promise of one of these. It must be the build that
+   * `simd` names. With it, the other entry points are not started.
    */
   wasm?: Wasm | PromiseLike<Wasm>;
   /**
@@ -29,17 +32,31 @@ export interface Started {
   readonly simd: boolean;
 }
 
-/** Where the two builds are, unless the caller passes one. */
+/** Where the builds of a core are, unless the caller passes one. */
 export interface Sources {
-  simd(): Wasm;
-  scalar(): Wasm;
+  /** The one with vector instructions, if there is one. */
+  simd?: () => Wasm;
+  scalar: () => Wasm;
 }
 
-/** Starts cores: each once, whichever entry asks first. */
-const starting = new Map<unknown, Promise<Started>>();
+/** The cores of the entry points that the program has imported: one `init()` starts them all. */
+const known = new Map<AnyCore, Sources>();
+
+/** The promises of cores: each is started once, whichever entry asks first. */
+const starting = new Map<AnyCore, Promise<Started>>();
+
+/** Makes a core known, and returns the `init` of its entry point. */
+export function entry(core: AnyCore, sources: Sources): (options?: InitOptions) => Promise<Started> {
+  known.set(core, sources);
+  return (options = {}) => {
+    const own = start(core, sources, options);
+    const others = options.wasm === undefined ? [...known].filter(([other]) => other !== core) : [];
+    return others.length === 0 ? own : Promise.all([own, ...others.map((other) => start(...other, options))]).then(() => own);
+  };
+}
 
 /** Starts a core once: later and concurrent calls get the first one's promise. */
-export function start<E extends Exports>(core: Core<E>, sources: Sources, options: InitOptions): Promise<Started> {
+function start(core: AnyCore, sources: Sources, options: InitOptions): Promise<Started> {
   let promise = starting.get(core);
   if (promise === undefined) {
     promise = load(core, sources, options).catch((error: unknown) => {
@@ -51,16 +68,18 @@ export function start<E extends Exports>(core: Core<E>, sources: Sources, option
   return promise;
 }
 
-async function load<E extends Exports>(core: Core<E>, sources: Sources, options: InitOptions): Promise<Started> {
-  const simd = options.simd ?? hasSimd();
-  const module = options.wasm === undefined ? await beside(simd ? sources.simd() : sources.scalar()) : await compile(await options.wasm);
+async function load(core: AnyCore, sources: Sources, options: InitOptions): Promise<Started> {
+  const vector = (options.simd ?? hasSimd()) ? sources.simd : undefined;
+  const module = options.wasm === undefined ? await beside(vector ?? sources.scalar) : await compile(await options.wasm);
   await core.start(module, options.development === true);
-  return { simd };
+  return { simd: vector !== undefined };
 }
 
 /** The core of the package. If it cannot be loaded, the error says what to do. */
-async function beside(wasm: Wasm): Promise<WebAssembly.Module> {
+async function beside(source: () => Wasm): Promise<WebAssembly.Module> {
+  let wasm: Wasm = "the .wasm file";
   try {
+    wasm = source(); // throws where a bundler leaves no address of the module: in a plain script
     return await compile(wasm);
   } catch (error) {
     if (!isAddress(wasm)) throw error;

@@ -6,15 +6,14 @@
  */
 import scalar from "../dist/sweep-and-prune.wasm";
 import simd from "../dist/sweep-and-prune.simd.wasm";
-import { type InitOptions, start, type Started } from "./init.js";
+import { entry, type InitOptions, type Started } from "./init.js";
 import { finderCore } from "./pair-finder.js";
 
 export * from "./api.js";
 
 /**
- * Starts the compiled core. Call it once, before anything else. Later and concurrent calls get the
- * promise of the first call, and their options are ignored.
+ * Starts the compiled core, and those of the other entry points that the program has imported. Call it
+ * once, before anything else. Later and concurrent calls get the promise of the first call, and their
+ * options are ignored.
  */
-export function init(options: InitOptions = {}): Promise<Started> {
-  return start(finderCore, { simd: () => simd, scalar: () => scalar }, options);
-}
+export const init: (options?: InitOptions) => Promise<Started> = entry(finderCore, { simd: () => simd, scalar: () => scalar });

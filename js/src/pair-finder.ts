@@ -3,7 +3,7 @@ import { type BoxObject, type Boxes, checkBoxes, checkDimensions, type Dimension
 import { describe } from "./describe.js";
 import { checkFits, Core, type Each, type Engine, type Exports, type Passed } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
-import { checkViews, result, view } from "./views.js";
+import { allocate, checkViews, copy, guard, view } from "./views.js";
 
 /** Options of a search. */
 export interface FindPairsOptions {
@@ -21,22 +21,32 @@ export interface PairFinderOptions extends FindPairsOptions {
   views?: boolean;
 }
 
-/** Is called with each pair. If it returns `false`, it is not called again. */
+/** Is called with the indices of each pair. If it returns `false`, it is not called again. */
 export type EachPair = (a: number, b: number) => unknown;
+
+/** Where pairs are written: two indices a pair. Its buffer may be shared with workers. */
+export type PairsInto = Uint32Array | Int32Array;
 
 /** What js/wasm/src/finder.rs exports. */
 interface FinderExports extends Exports {
   finder_new(dimensions: number, double: number): number;
   finder_rows(finder: number, set: number, count: number): number;
-  finder_find(finder: number, a: number, b: number, use: Use): number;
+  finder_find(finder: number, a: number, b: number, chunk: Chunk): number;
   finder_free(finder: number): void;
 }
 
-/** What happens to the pairs; js/wasm/src/finder.rs has the same list. */
-const enum Use {
-  Store = 0,
-  Count = 1,
-  Stream = 2,
+/** How many pairs the core collects before it hands them over. */
+const enum Chunk {
+  /** It only counts them. */
+  None = 0,
+  /** The first ones at once: one is enough. */
+  First = 1,
+  /** For a callback: small, so that it stays in the cache. */
+  Small = 4096,
+  /** For a result that is copied: 8 MB, so that few results take more than one. */
+  Large = 2 ** 20,
+  /** All of them: for a view. */
+  All = 2 ** 32 - 1,
 }
 
 /** Instead of the size of the second set, if there is only one set. */
@@ -51,7 +61,8 @@ export const finderCore: Core<FinderExports> = new Core("finder_new", "sweep-and
 /**
  * Finds all pairs of boxes that overlap. The result holds indices of boxes, two a pair:
  * `a0, b0, a1, b1, ...`. Each pair is listed once, with the smaller index first, in a deterministic
- * order.
+ * order. Without options, for boxes that are objects, it holds the pairs of the objects themselves,
+ * `[[a0, b0], [a1, b1], ...]`, in the same order.
  *
  * Touching boxes overlap. Points, flat boxes and infinite edges are allowed. To find pairs many times, keep a {@link PairFinder}, which reuses its buffers.
  *
@@ -69,16 +80,20 @@ export const finderCore: Core<FinderExports> = new Core("finder_new", "sweep-and
  * findPairs(boxes, { dimensions: 2 }); // Uint32Array [0, 2]
  * ```
  */
-export function findPairs(boxes: readonly BoxObject[], options?: FindPairsOptions): Uint32Array<ArrayBuffer>;
+export function findPairs<T extends BoxObject>(items: readonly T[]): [T, T][];
 export function findPairs(boxes: Boxes, options: FindPairsOptions): Uint32Array<ArrayBuffer>;
-export function findPairs(boxes: Boxes, options?: FindPairsOptions): Uint32Array<ArrayBuffer> {
-  return once([boxes], options, (finder) => finder.find(boxes));
+export function findPairs(boxes: Boxes, options?: FindPairsOptions): Uint32Array<ArrayBuffer> | [unknown, unknown][] {
+  const pairs = once([boxes], options, (finder) => finder.find(boxes));
+  return options ? pairs : itemsOf(pairs, boxes, boxes);
 }
 
 /**
  * Finds all pairs of a box of `a` and a box of `b` that overlap: `a0, b0, a1, b1, ...`, the index in
  * `a` first. If one set is in double precision, all boxes are compared in double precision.
  * Otherwise it works as {@link findPairs}.
+ *
+ * It answers thousands of questions of the form "which boxes does this one overlap?" at once, with
+ * the questions in `a`: faster than one by one, and without an index to build first.
  *
  * @throws As {@link findPairs}; an {@link InvalidBoxError} names the set by its `argument`.
  *
@@ -89,14 +104,15 @@ export function findPairs(boxes: Boxes, options?: FindPairsOptions): Uint32Array
  * findPairsBetween(bullets, targets, { dimensions: 2 }); // Uint32Array [1, 0]
  * ```
  */
-export function findPairsBetween(
-  a: readonly BoxObject[],
-  b: readonly BoxObject[],
-  options?: FindPairsOptions,
-): Uint32Array<ArrayBuffer>;
+export function findPairsBetween<A extends BoxObject, B extends BoxObject>(a: readonly A[], b: readonly B[]): [A, B][];
 export function findPairsBetween(a: Boxes, b: Boxes, options: FindPairsOptions): Uint32Array<ArrayBuffer>;
-export function findPairsBetween(a: Boxes, b: Boxes, options?: FindPairsOptions): Uint32Array<ArrayBuffer> {
-  return once([a, b], options, (finder) => finder.findBetween(a, b));
+export function findPairsBetween(
+  a: Boxes,
+  b: Boxes,
+  options?: FindPairsOptions,
+): Uint32Array<ArrayBuffer> | [unknown, unknown][] {
+  const pairs = once([a, b], options, (finder) => finder.findBetween(a, b));
+  return options ? pairs : itemsOf(pairs, a, b);
 }
 
 /**
@@ -111,13 +127,33 @@ export function countPairs(boxes: Boxes, options?: FindPairsOptions): number {
 }
 
 /**
+ * Whether any two boxes overlap. It stops at the first pair that it finds.
+ *
+ * @throws As {@link findPairs}.
+ */
+export function anyPair(boxes: readonly BoxObject[], options?: FindPairsOptions): boolean;
+export function anyPair(boxes: Boxes, options: FindPairsOptions): boolean;
+export function anyPair(boxes: Boxes, options?: FindPairsOptions): boolean {
+  return once([boxes], options, (finder) => finder.any(boxes));
+}
+
+/**
  * Calls `each(a, b)` with every pair that {@link findPairs} would find, in the same order, until
- * `each` returns `false`. Stores only a small buffer of pairs. Returns `false` if `each` did.
+ * `each` returns `false`. Stores only a small buffer of pairs. Returns `false` if `each` did. Without
+ * options, for boxes that are objects, `each` gets the objects themselves.
  *
  * @throws As {@link findPairs}, before the first call of `each`; and what `each` throws.
  */
-export function forEachPair(boxes: Boxes, options: FindPairsOptions, each: EachPair): boolean {
-  return once([boxes], options, (finder) => finder.forEach(boxes, each));
+export function forEachPair<T extends BoxObject>(items: readonly T[], each: (a: T, b: T) => unknown): boolean;
+export function forEachPair(boxes: Boxes, options: FindPairsOptions, each: EachPair): boolean;
+export function forEachPair<T extends BoxObject>(
+  boxes: Boxes,
+  options: FindPairsOptions | ((a: T, b: T) => unknown),
+  each?: EachPair,
+): boolean {
+  if (typeof options !== "function") return once([boxes], options, (finder) => finder.forEach(boxes, each!));
+  const items = boxes as readonly T[];
+  return once([boxes], undefined, (finder) => finder.forEach(boxes, (a, b) => options(items[a]!, items[b]!)));
 }
 
 /** Without options, boxes that are objects tell how many dimensions they have. No boxes have any number. */
@@ -133,9 +169,15 @@ function once<R>(sets: readonly Boxes[], options: FindPairsOptions | undefined, 
   }
 }
 
+/** The pairs of the items that pairs of indices name. */
+function itemsOf(pairs: Uint32Array, a: Boxes, b: Boxes): [unknown, unknown][] {
+  return Array.from({ length: pairs.length / 2 }, (_, pair) => [a[pairs[2 * pair]!], b[pairs[2 * pair + 1]!]]);
+}
+
 /**
- * Finds pairs many times and keeps its memory in between, as much as its largest input and result needed.
- * With the option `views` a call that needs no more memory than those before it allocates nothing.
+ * Finds pairs many times and keeps its memory in between: as much as its largest input needed, and of
+ * pairs at most 16 MB. With the option `views` it also keeps as much as its largest result needed, and a
+ * call that needs no more memory than those before it allocates nothing.
  *
  * ```js
  * using finder = new PairFinder({ dimensions: 2 });
@@ -187,6 +229,50 @@ export class PairFinder {
   }
 
   /**
+   * Writes the pairs of {@link findPairs} to an array of yours, which may be shared with workers, and
+   * returns how many pairs there are. If the array is too short for them, it has the first ones.
+   *
+   * @throws As {@link PairFinder.find}; `TypeError` if `into` is not a `Uint32Array` or `Int32Array`.
+   *
+   * @example
+   * ```js
+   * const into = new Uint32Array(new SharedArrayBuffer(8 * 1000)); // up to 1,000 pairs
+   * const count = finder.findInto(boxes, into);
+   * for (let i = 0; i < 2 * count; i += 2) collide(into[i], into[i + 1]);
+   * ```
+   */
+  findInto(boxes: Boxes, into: PairsInto): number {
+    return this.#write(into, boxes, alone);
+  }
+
+  /**
+   * Writes the pairs of {@link findPairsBetween}, otherwise as {@link PairFinder.findInto}.
+   *
+   * @throws As {@link PairFinder.findBetween} and {@link PairFinder.findInto}.
+   */
+  findBetweenInto(a: Boxes, b: Boxes, into: PairsInto): number {
+    return this.#write(into, a, b);
+  }
+
+  /**
+   * Whether any two boxes overlap. It stops at the first pair that it finds.
+   *
+   * @throws As {@link PairFinder.count}.
+   */
+  any(boxes: Boxes): boolean {
+    return this.#any(boxes, alone);
+  }
+
+  /**
+   * Whether any box of `a` overlaps one of `b`. It stops at the first pair that it finds.
+   *
+   * @throws As {@link PairFinder.findBetween}.
+   */
+  anyBetween(a: Boxes, b: Boxes): boolean {
+    return this.#any(a, b);
+  }
+
+  /**
    * Counts the pairs of {@link findPairs}, without storing them.
    *
    * @throws As {@link countPairs}, and `TypeError` if the finder was freed.
@@ -224,23 +310,61 @@ export class PairFinder {
 
   #store(a: Boxes, b: Boxes | typeof alone): Uint32Array<ArrayBuffer> {
     const { engine } = this.#owned;
-    this.#search(Use.Store, a, b, undefined);
-    const { buffer } = engine.exports.memory;
-    this.#pairs = view<Uint32Array<ArrayBuffer>>(Uint32Array, this.#pairs, buffer, engine.detail(0), 2 * engine.detail(1));
-    return result(engine, this.#pairs, this.#isView);
+    if (this.#isView) {
+      this.#search(Chunk.All, a, b, undefined);
+      return guard(engine, this.#pairs = this.#rest(this.#pairs));
+    }
+    const chunks: Uint32Array<ArrayBuffer>[] = [];
+    this.#search(Chunk.Large, a, b, (at, count) => {
+      chunks.push(copy(new Uint32Array(engine.exports.memory.buffer, at, 2 * count)));
+      return true;
+    });
+    const rest = copy(this.#pairs = this.#rest(this.#pairs));
+    return chunks.length === 0 ? rest : joined([...chunks, rest]);
+  }
+
+  /** A view of the pairs that the core kept at the end of the last search. */
+  #rest(last: Uint32Array<ArrayBuffer> | undefined): Uint32Array<ArrayBuffer> {
+    const { engine } = this.#owned;
+    return view<Uint32Array<ArrayBuffer>>(Uint32Array, last, engine.exports.memory.buffer, engine.detail(0), 2 * engine.detail(1));
+  }
+
+  #write(into: PairsInto, a: Boxes, b: Boxes | typeof alone): number {
+    checkInto(into);
+    const { engine } = this.#owned;
+    let total = 0;
+    const write: Each = (at, count) => {
+      const fitting = Math.max(0, Math.min(2 * count, into.length - 2 * total));
+      if (fitting > 0) into.set(new Uint32Array(engine.exports.memory.buffer, at, fitting), 2 * total);
+      total += count;
+      return true;
+    };
+    this.#search(Chunk.Large, a, b, write);
+    write(engine.detail(0), engine.detail(1));
+    return total;
+  }
+
+  #any(a: Boxes, b: Boxes | typeof alone): boolean {
+    let isAny = false;
+    this.#search(Chunk.First, a, b, () => {
+      isAny = true;
+      return false;
+    });
+    return isAny;
   }
 
   #count(a: Boxes, b: Boxes | typeof alone): number {
     const { engine } = this.#owned;
-    this.#search(Use.Count, a, b, undefined);
+    this.#search(Chunk.None, a, b, undefined);
     return engine.detail(0) + 2 ** 32 * engine.detail(1);
   }
 
   #stream(each: EachPair, a: Boxes, b: Boxes | typeof alone): boolean {
     if (typeof each !== "function") throw new TypeError(`\`each\` must be a function, not ${describe(each)}`);
-    const { engine } = this.#owned;
+    const owned = this.#owned;
+    const { engine } = owned;
     let isComplete = true;
-    this.#search(Use.Stream, a, b, (at, count) => {
+    const stream: Each = (at, count) => {
       const begin = at / 4;
       for (let word = begin; word < begin + 2 * count; word += 2) {
         const words = engine.words();
@@ -248,11 +372,20 @@ export class PairFinder {
         if (!isComplete) break;
       }
       return isComplete;
-    });
+    };
+    this.#search(Chunk.Small, a, b, stream);
+    // The rest: it is in the finder's memory, so the callback must not use this finder.
+    const [at, count] = [engine.detail(0), engine.detail(1)];
+    owned.isBusy = true;
+    try {
+      stream(at, count);
+    } finally {
+      owned.isBusy = false;
+    }
     return isComplete;
   }
 
-  #search(use: Use, a: Boxes, b: Boxes | typeof alone, each: Each | undefined): void {
+  #search(chunk: Chunk, a: Boxes, b: Boxes | typeof alone, each: Each | undefined): void {
     const owned = this.#owned;
     // First of all: this reads objects, and a getter may do anything.
     const first = checkBoxes(a, this.dimensions, b === alone ? "boxes" : "a");
@@ -267,11 +400,11 @@ export class PairFinder {
       const { engine } = owned;
       engine.calls++;
       const finder = (owned[isDouble ? "double" : "single"] ||= engine.exports.finder_new(stored, Number(isDouble)));
-      const countA = this.#write(finder, 0, first, isDouble, stored);
-      const countB = second ? this.#write(finder, 1, second, isDouble, stored) : noSet;
+      const countA = this.#writeRows(finder, 0, first, isDouble, stored);
+      const countB = second ? this.#writeRows(finder, 1, second, isDouble, stored) : noSet;
       const passed: Passed = { boxes: second ? [["a", countA], ["b", countB]] : [["boxes", countA]] };
-      if (each) engine.stream(() => engine.exports.finder_find(finder, countA, countB, use), each, passed);
-      else engine.check(engine.exports.finder_find(finder, countA, countB, use), passed);
+      if (each) engine.stream(() => engine.exports.finder_find(finder, countA, countB, chunk), each, passed);
+      else engine.check(engine.exports.finder_find(finder, countA, countB, chunk), passed);
     } catch (error) {
       // A finder that ran out of memory should not keep what it allocated.
       if (error instanceof OutOfMemoryError) release(owned);
@@ -282,7 +415,7 @@ export class PairFinder {
   }
 
   /** Writes the rows of a set, and returns how many boxes there are. */
-  #write(finder: number, set: 0 | 1, rows: Rows, isDouble: boolean, stored: Dimensions): number {
+  #writeRows(finder: number, set: 0 | 1, rows: Rows, isDouble: boolean, stored: Dimensions): number {
     const { exports } = this.#owned.engine;
     const count = rows.length / (2 * this.dimensions);
     const length = 2 * stored * count;
@@ -318,6 +451,24 @@ export class PairFinder {
 }
 
 type Rows = Float32Array | Float64Array;
+
+/** Throws unless pairs can be written to it. By its tag, not by `instanceof`: it may be of another realm. */
+function checkInto(into: unknown): void {
+  const tag = ArrayBuffer.isView(into) && ((into as Uint32Array)[Symbol.toStringTag] as string);
+  if (tag === "Uint32Array" || tag === "Int32Array") return;
+  throw new TypeError(`\`into\` must be a Uint32Array or an Int32Array, not ${describe(into)}`);
+}
+
+/** Chunks of pairs as one array. */
+function joined(chunks: readonly Uint32Array[]): Uint32Array<ArrayBuffer> {
+  const all = allocate(() => new Uint32Array(chunks.reduce((length, chunk) => length + chunk.length, 0)));
+  let at = 0;
+  for (const chunk of chunks) {
+    all.set(chunk, at);
+    at += chunk.length;
+  }
+  return all;
+}
 
 /** The handles of the core's finders, one for each precision, or 0. */
 interface Owned {

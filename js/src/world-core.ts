@@ -20,7 +20,7 @@ export interface WorldExports extends Exports {
   world_contains(world: number, id: number): number;
   world_remove_many(world: number, count: number): number;
   world_update(world: number): number;
-  world_pairs(world: number): number;
+  world_pairs(world: number, sorted: number): number;
   world_pairs_of(world: number, id: number): number;
   world_ids(world: number): number;
   world_len(world: number): number;

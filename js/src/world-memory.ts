@@ -1,10 +1,10 @@
-import { type Boxes, checkBoxes, checkNumbers, type Dimensions, writeRows } from "./boxes.js";
+import { type Boxes, checkBoxes, checkNumbers, type Dimensions, isNamed, readBox, readPoint, writeRows } from "./boxes.js";
 import { checkFits, type Engine, type Passed } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
 import { result, view } from "./views.js";
 import { refuseCorners } from "./world-arguments.js";
 import { worldCore, type WorldExports } from "./world-core.js";
-import type { BroadPhaseOptions, Changes, Hit, Numbers } from "./world-types.js";
+import type { Box, BroadPhaseOptions, Changes, Hit, Numbers, Point } from "./world-types.js";
 
 /**
  * A broad phase in WebAssembly's memory: calls it, writes its arguments where it reads them, and
@@ -152,8 +152,13 @@ export class WorldMemory {
     return (this.#numbers = view(Float64Array, this.#numbers, buffer, this.#numbersAt, 16));
   }
 
-  /** Writes a box from separate numbers: as many as it has, and nothing else. */
+  /** Writes a box, from one object or from separate numbers: as many as it has, and nothing else. */
   writeBox(a: unknown, b: unknown, c: unknown, d: unknown, e: unknown, f: unknown, more: unknown): void {
+    if (typeof a === "object" && a !== null) {
+      if (b !== undefined) throw new TypeError(`there are more arguments than \`box\``);
+      this.writeCorners(0, a as Box, 2, "box");
+      return;
+    }
     const [numbers, stored] = [this.numbers(), this.stored];
     switch (this.dimensions) {
       case 1:
@@ -186,9 +191,9 @@ export class WorldMemory {
    * Writes one or two corners, with zeros on the axes that the user's boxes do not have. The core
    * checks whether a box is valid; what a `rule` says is checked here.
    */
-  writeCorners(at: number, values: Numbers, corners: number, name: string, rule?: "finite" | "a number"): void {
+  writeCorners(at: number, values: Point | Box, corners: 1 | 2, name: string, rule?: "finite" | "a number"): void {
     const { dimensions } = this;
-    const given = checkNumbers(values, name);
+    const given = isNamed(values) ? readCorners(values, dimensions, corners, name) : checkNumbers(values, name);
     if (given.length !== corners * dimensions) {
       throw new RangeError(`\`${name}\` has ${given.length} numbers; in ${dimensions}D it must have ${corners * dimensions}`);
     }
@@ -252,6 +257,14 @@ export class WorldMemory {
     const isOutside = !ArrayBuffer.isView(numbers) || numbers.buffer !== this.exports().memory.buffer;
     return isOutside || (written && isSame(numbers, written)) ? numbers : (numbers.slice() as unknown as T);
   }
+}
+
+/** The corners of a box that is an object, or the coordinates of a point that is one. */
+function readCorners(value: object, dimensions: Dimensions, corners: 1 | 2, name: string): Float64Array {
+  if (corners === 1) return readPoint(value, dimensions, name);
+  const numbers = new Float64Array(2 * dimensions);
+  readBox(value, dimensions, `\`${name}\``, numbers, 0);
+  return numbers;
 }
 
 /** Whether an array lies where another does. */

@@ -1,4 +1,5 @@
-import type { Dimensions } from "./boxes.js";
+import type { BoxObject, Corner, Dimensions, TypedNumbers } from "./boxes.js";
+import type { Filter } from "./filter.js";
 
 /**
  * The id of a body: a whole number below 2^53. The lower 26 bits are its slot (see {@link slotOf}),
@@ -74,4 +75,13 @@ export interface Neighbor {
 }
 
 /** Ids, or the coordinates of a point, a direction or a box. */
-export type Numbers = readonly number[] | Float32Array | Float64Array;
+export type Numbers = readonly number[] | TypedNumbers;
+
+/** A point or a direction: its coordinates, or an object `{ x, y, z }`. */
+export type Point = Numbers | Corner;
+
+/** Which bodies a query finds: those that may pair with a body of this filter, or those for which a function returns true. */
+export type QueryFilter = Partial<Filter> | ((id: ProxyId) => boolean);
+
+/** One box: its min corner and then its max corner, or an object. */
+export type Box = BoxObject;

@@ -2,12 +2,23 @@
 import { describe } from "./describe.js";
 import { type Boxes, checkBoxes, checkDimensions, checkNumbers, type Dimensions } from "./boxes.js";
 import { OutOfMemoryError } from "./errors.js";
-import { defaultFilter, type Filter, filterWords, noFilter } from "./filter.js";
+import { defaultFilter, type Filter, filterWords, type FilterWords, noFilter } from "./filter.js";
 import { checkCount, checkId, checkLength } from "./world-arguments.js";
 import { Query } from "./world-core.js";
 import { checkViews } from "./views.js";
 import { WorldMemory } from "./world-memory.js";
-import type { BroadPhaseOptions, Buffers, Changes, Hit, Neighbor, Numbers, ProxyId } from "./world-types.js";
+import type {
+  Box,
+  BroadPhaseOptions,
+  Buffers,
+  Changes,
+  Hit,
+  Neighbor,
+  Numbers,
+  Point,
+  ProxyId,
+  QueryFilter,
+} from "./world-types.js";
 
 /**
  * A persistent broad phase: it keeps bodies with boxes, and reports which overlaps began and which
@@ -77,16 +88,17 @@ export class BroadPhase {
   }
 
   /**
-   * Adds a body with this box: its min corner and then its max corner. Its filter is the default one,
-   * until {@link BroadPhase.setFilter}.
+   * Adds a body with this box: an object, an array, or separate numbers, the min corner and then the
+   * max corner. Its filter is the default one, until {@link BroadPhase.setFilter}.
    *
    * @throws {@link InvalidBoxError} if the box is inverted or NaN; `TypeError` if the arguments are
-   *   not as many numbers as a box has.
+   *   not as many numbers as a box has; `RangeError` if an array does not have as many.
    */
+  insert(box: Box): ProxyId;
   insert(minX: number, maxX: number): ProxyId;
   insert(minX: number, minY: number, maxX: number, maxY: number): ProxyId;
   insert(minX: number, minY: number, minZ: number, maxX: number, maxY: number, maxZ: number): ProxyId;
-  insert(a: number, b: number, c?: number, d?: number, e?: number, f?: number, more?: never): ProxyId {
+  insert(a: number | Box, b?: number, c?: number, d?: number, e?: number, f?: number, more?: never): ProxyId {
     this.#memory.writeBox(a, b, c, d, e, f, more);
     this.#memory.call((exports, world) => exports.world_insert(world), oneBox);
     return this.#memory.numbers()[0]!;
@@ -108,10 +120,11 @@ export class BroadPhase {
    *
    * @throws {@link StaleProxyError}; otherwise as {@link BroadPhase.insert}.
    */
+  set(id: ProxyId, box: Box): void;
   set(id: ProxyId, minX: number, maxX: number): void;
   set(id: ProxyId, minX: number, minY: number, maxX: number, maxY: number): void;
   set(id: ProxyId, minX: number, minY: number, minZ: number, maxX: number, maxY: number, maxZ: number): void;
-  set(id: ProxyId, a: number, b: number, c?: number, d?: number, e?: number, f?: number, more?: never): void {
+  set(id: ProxyId, a: number | Box, b?: number, c?: number, d?: number, e?: number, f?: number, more?: never): void {
     checkId(id);
     this.#memory.writeBox(a, b, c, d, e, f, more);
     this.#memory.call((exports, world) => exports.world_set(world, id), { ids: [id], boxes: oneBox.boxes });
@@ -168,7 +181,7 @@ export class BroadPhase {
    *
    * @throws {@link StaleProxyError}; {@link InvalidBoxError} for `from` or `to`.
    */
-  setSwept(id: ProxyId, from: Numbers, to: Numbers): void {
+  setSwept(id: ProxyId, from: Box, to: Box): void {
     checkId(id);
     this.#memory.writeCorners(0, from, 2, "from");
     this.#memory.writeCorners(2 * this.#memory.stored, to, 2, "to");
@@ -214,6 +227,11 @@ export class BroadPhase {
     this.#memory.call((exports, world) => exports.world_remove_many(world, kept.length), { ids: kept });
   }
 
+  /** Removes all bodies. Their ids are stale from now on. The next update reports that their pairs ended. */
+  clear(): void {
+    this.removeMany(this.ids());
+  }
+
   /**
    * The filter of a body.
    *
@@ -254,9 +272,13 @@ export class BroadPhase {
     return changes;
   }
 
-  /** The pairs that overlapped at the last update: `a0, b0, a1, b1, ...`, sorted by slot. */
-  pairs(): Float64Array {
-    return this.#memory.answer((exports, world) => exports.world_pairs(world));
+  /**
+   * The pairs that overlapped at the last update: `a0, b0, a1, b1, ...`, sorted by slot. With
+   * `{ sorted: false }` they are in no particular order, which takes less time.
+   */
+  pairs(options?: { sorted?: boolean }): Float64Array {
+    const isSorted = options?.sorted !== false;
+    return this.#memory.answer((exports, world) => exports.world_pairs(world, Number(isSorted)));
   }
 
   /**
@@ -270,14 +292,15 @@ export class BroadPhase {
   }
 
   /**
-   * The bodies whose boxes, as last set, overlap a box (min corner, max corner), sorted by slot.
+   * The bodies whose boxes, as last set, overlap a box, sorted by slot.
    *
    * In all queries, `filter` is the filter of an imagined body: the query finds the bodies that may
-   * pair with it. Without a filter it finds every body.
+   * pair with it. Or it is a function that gets an id and returns whether the query finds that body. It
+   * is called after the search, so it may call anything. Without a filter a query finds every body.
    *
-   * @throws {@link InvalidBoxError}.
+   * @throws {@link InvalidBoxError}; and what `filter` throws.
    */
-  overlapping(box: Numbers, filter?: Partial<Filter>): Float64Array {
+  overlapping(box: Box, filter?: QueryFilter): Float64Array {
     this.#memory.writeCorners(0, box, 2, "box");
     return this.#ask(Query.Overlapping, filter);
   }
@@ -287,7 +310,7 @@ export class BroadPhase {
    *
    * @throws `RangeError` for a NaN.
    */
-  containing(point: Numbers, filter?: Partial<Filter>): Float64Array {
+  containing(point: Point, filter?: QueryFilter): Float64Array {
     this.#memory.writeCorners(0, point, 1, "point", "a number");
     return this.#ask(Query.Containing, filter);
   }
@@ -297,7 +320,7 @@ export class BroadPhase {
    *
    * @throws `RangeError` if the center is not finite, or the radius negative or NaN.
    */
-  within(center: Numbers, radius: number, filter?: Partial<Filter>): Float64Array {
+  within(center: Point, radius: number, filter?: QueryFilter): Float64Array {
     checkLength(radius, "radius");
     this.#memory.writeCorners(0, center, 1, "center", "finite");
     this.#memory.numbers()[this.#memory.stored] = radius;
@@ -309,14 +332,15 @@ export class BroadPhase {
    * ray ends at `t = limit`. `direction` may have any length: if its length is 1, `t` is a distance.
    * Of several bodies hit at once it is the one with the smallest slot.
    *
-   * The ray is tested against boxes. To find the first hit of what is inside the boxes, test the
-   * results of {@link BroadPhase.rayCastAll}, nearest first.
+   * The ray is tested against boxes. To find the first hit of what is inside the boxes, pass a function
+   * as `filter`, which is called nearest first until it returns true, or test the results of
+   * {@link BroadPhase.rayCastAll}. With a function all hits are searched first.
    *
    * @throws `RangeError` if the origin or the direction is not finite, or the limit negative or NaN.
    */
-  rayCast(origin: Numbers, direction: Numbers, limit: number = Infinity, filter?: Partial<Filter>): Hit | undefined {
+  rayCast(origin: Point, direction: Point, limit: number = Infinity, filter?: QueryFilter): Hit | undefined {
     this.#writeRay(origin, direction, limit);
-    return this.#hits(Query.Cast, filter)[0];
+    return this.#firstHit(filter);
   }
 
   /**
@@ -324,7 +348,7 @@ export class BroadPhase {
    *
    * @throws As {@link BroadPhase.rayCast}.
    */
-  rayCastAll(origin: Numbers, direction: Numbers, limit: number = Infinity, filter?: Partial<Filter>): Hit[] {
+  rayCastAll(origin: Point, direction: Point, limit: number = Infinity, filter?: QueryFilter): Hit[] {
     this.#writeRay(origin, direction, limit);
     return this.#hits(Query.CastAll, filter);
   }
@@ -334,9 +358,9 @@ export class BroadPhase {
    *
    * @throws As {@link BroadPhase.rayCast}, also if the box is inverted.
    */
-  boxCast(box: Numbers, direction: Numbers, limit: number = Infinity, filter?: Partial<Filter>): Hit | undefined {
+  boxCast(box: Box, direction: Point, limit: number = Infinity, filter?: QueryFilter): Hit | undefined {
     this.#writeCast(box, direction, limit);
-    return this.#hits(Query.Cast, filter)[0];
+    return this.#firstHit(filter);
   }
 
   /**
@@ -344,20 +368,35 @@ export class BroadPhase {
    *
    * @throws As {@link BroadPhase.boxCast}.
    */
-  boxCastAll(box: Numbers, direction: Numbers, limit: number = Infinity, filter?: Partial<Filter>): Hit[] {
+  boxCastAll(box: Box, direction: Point, limit: number = Infinity, filter?: QueryFilter): Hit[] {
     this.#writeCast(box, direction, limit);
     return this.#hits(Query.CastAll, filter);
   }
 
   /**
    * The `k` bodies nearest to a point, or all if there are fewer, sorted by distance and then by slot.
+   * None is farther away than `maxDistance`. A function as `filter` is called nearest first, until it
+   * has returned true `k` times.
    *
-   * @throws `RangeError` if the point is not finite, or `k` not a whole number.
+   * @throws `RangeError` if the point is not finite, `k` not a whole number, or the distance negative or NaN.
    */
-  nearest(point: Numbers, k: number = 1, filter?: Partial<Filter>): Neighbor[] {
+  nearest(point: Point, k: number = 1, maxDistance: number = Infinity, filter?: QueryFilter): Neighbor[] {
     checkCount(k, "k");
+    checkLength(maxDistance, "maxDistance");
     this.#memory.writeCorners(0, point, 1, "point", "finite");
-    return this.#hits(Query.Nearest, filter, k).map(({ id, t }) => ({ id, distance: Math.sqrt(t) }));
+    const near = (hits: Hit[]) => hits.map(({ id, t }) => ({ id, distance: Math.sqrt(t) })).filter(({ distance }) => distance <= maxDistance);
+    if (typeof filter !== "function") return near(this.#hits(Query.Nearest, filter, k));
+    // Twice as many each time, since only the search knows who is next.
+    const accepted: Neighbor[] = [];
+    for (let asked = 2 * k, seen = 0; accepted.length < k; asked *= 2) {
+      this.#memory.writeCorners(0, point, 1, "point", "finite");
+      const found = near(this.#hits(Query.Nearest, undefined, Math.min(asked, 2 ** 32 - 1)));
+      for (; seen < found.length && accepted.length < k; seen++) {
+        if (filter(found[seen]!.id)) accepted.push(found[seen]!);
+      }
+      if (found.length < asked) break;
+    }
+    return accepted;
   }
 
   /**
@@ -385,32 +424,43 @@ export class BroadPhase {
     this.free();
   }
 
-  #ask(query: Query, filter: Partial<Filter> | undefined): Float64Array {
-    const words = filter == null ? noFilter : filterWords(filter, defaultFilter);
-    return this.#memory.answer((exports, world) => exports.world_query(world, query, 0, ...words), oneBox);
+  #ask(query: Query, filter: QueryFilter | undefined): Float64Array {
+    const ids = this.#memory.answer((exports, world) => exports.world_query(world, query, 0, ...wordsOf(filter)), oneBox);
+    // With the option `views`, the function could let them become stale.
+    return typeof filter === "function" ? Float64Array.from(ids).filter((id) => filter(id)) : ids;
   }
 
-  #hits(query: Query, filter: Partial<Filter> | undefined, k = 0): Hit[] {
-    const words = filter == null ? noFilter : filterWords(filter, defaultFilter);
-    return this.#memory.hits((exports, world) => exports.world_query(world, query, k, ...words));
+  #hits(query: Query, filter: QueryFilter | undefined, k = 0): Hit[] {
+    const hits = this.#memory.hits((exports, world) => exports.world_query(world, query, k, ...wordsOf(filter)));
+    return typeof filter === "function" ? hits.filter(({ id }) => filter(id)) : hits;
   }
 
-  #writeRay(origin: Numbers, direction: Numbers, limit: number): void {
+  #firstHit(filter: QueryFilter | undefined): Hit | undefined {
+    if (typeof filter !== "function") return this.#hits(Query.Cast, filter)[0];
+    return this.#hits(Query.CastAll, undefined).find(({ id }) => filter(id));
+  }
+
+  #writeRay(origin: Point, direction: Point, limit: number): void {
     this.#memory.writeCorners(0, origin, 1, "origin", "finite");
     this.#memory.writeCorners(this.#memory.stored, origin, 1, "origin", "finite");
     this.#writePath(direction, limit);
   }
 
-  #writeCast(box: Numbers, direction: Numbers, limit: number): void {
+  #writeCast(box: Box, direction: Point, limit: number): void {
     this.#memory.writeCorners(0, box, 2, "box", "finite");
     this.#writePath(direction, limit);
   }
 
-  #writePath(direction: Numbers, limit: number): void {
+  #writePath(direction: Point, limit: number): void {
     checkLength(limit, "limit");
     this.#memory.writeCorners(2 * this.#memory.stored, direction, 1, "direction", "finite");
     this.#memory.numbers()[3 * this.#memory.stored] = limit;
   }
+}
+
+/** The filter of a query as the core takes it: none if it is a function, which is called afterwards. */
+function wordsOf(filter: QueryFilter | undefined): FilterWords {
+  return filter == null || typeof filter === "function" ? noFilter : filterWords(filter, defaultFilter);
 }
 
 const none: Float64Array = new Float64Array(0);

@@ -294,7 +294,7 @@ test("insert and set take as many numbers as a box has, and nothing else", () =>
       const box = [0, 0, 0, 1, 1, 1].slice(3 - dimensions, 3 + dimensions);
       const id = world.insert(...box);
       const before = world.stateHash();
-      const bad = [[...box, 1], box.slice(1), [], [box], ...box.flatMap((_, at) => [null, "1", undefined, 1n].map((odd) => box.with(at, /** @type {any} */ (odd))))];
+      const bad = [[...box, 1], box.slice(1), [], ...box.flatMap((_, at) => [null, "1", undefined, 1n].map((odd) => box.with(at, /** @type {any} */ (odd))))];
       for (const args of bad) {
         assert.throws(() => world.insert(...args), { name: "TypeError", message: new RegExp(`a box in ${dimensions}D is ${2 * dimensions} numbers: min`) });
         assert.throws(() => world.set(id, ...args), { name: "TypeError", message: /a box in .D/ });
@@ -359,6 +359,23 @@ test("buffers that JavaScript cannot allocate are an OutOfMemoryError", () => {
   world.free();
 });
 
+test("a snapshot whose dimensions were changed is refused, whatever it is read as", () => {
+  for (const precision of precisions) {
+    for (const from of every) {
+      const world = new BroadPhase({ dimensions: from, precision });
+      world.insertMany(new Float64Array(8 * from));
+      const bytes = world.snapshot();
+      // Boxes that are stored in more dimensions have theirs in the fifth byte.
+      const isFlat = String.fromCharCode(...bytes.subarray(0, 4)) === "SaPf";
+      assert.equal(isFlat, precision === "double" ? from < 3 : from < 2);
+      for (const claimed of [0, 1, 2, 3, 255].filter((claimed) => claimed !== bytes[isFlat ? 4 : 5])) {
+        const changed = bytes.with(isFlat ? 4 : 5, claimed);
+        for (const to of every) assert.throws(() => BroadPhase.fromSnapshot(changed, { dimensions: to }), SnapshotError, `${from}D as ${to}D`);
+      }
+    }
+  }
+});
+
 test("a snapshot of another dimension is refused, in each precision", () => {
   for (const from of every) {
     for (const precision of precisions) {
@@ -378,4 +395,83 @@ test("a snapshot of another dimension is refused, in each precision", () => {
       }
     }
   }
+});
+
+test("a predicate decides what a query finds, and may call anything", () => {
+  for (const views of [false, true]) {
+    const world = new BroadPhase({ dimensions: 2, views });
+    const next = random(60);
+    const ids = world.insertMany(boxesSpread(next, 500, 2)).slice();
+    const even = (/** @type {number} */ id) => {
+      world.box(id);
+      world.overlapping([0, 0, 1, 1]);
+      world.insert(9, 9, 9, 9);
+      return slotOf(id) % 2 === 0;
+    };
+    /** The even ones of what the same query finds without a predicate. @type {(found: Iterable<any>) => any[]} */
+    const kept = (found) => [...found].filter((hit) => slotOf(hit.id ?? hit) % 2 === 0);
+    for (let round = 0; round < 20; round++) {
+      const [x, y] = [next() * 0.8, next() * 0.8];
+      const area = [x, y, x + 0.2, y + 0.2];
+      assert.deepEqual([...world.overlapping(area, even)], kept(world.overlapping(area)));
+      assert.deepEqual([...world.containing([x, y], even)], kept(world.containing([x, y])));
+      assert.deepEqual([...world.within([x, y], 0.1, even)], kept(world.within([x, y], 0.1)));
+      const all = kept(world.rayCastAll([x, y], [1, 0], 5));
+      assert.deepEqual(world.rayCastAll([x, y], [1, 0], 5, even), all);
+      assert.deepEqual(world.rayCast([x, y], [1, 0], 5, even), all[0]);
+      assert.deepEqual(world.boxCast(area, [1, 0], 5, even), kept(world.boxCastAll(area, [1, 0], 5))[0]);
+      const near = kept(world.nearest([x, y], 500));
+      for (const k of [0, 1, 3, 100, 400]) assert.deepEqual(world.nearest([x, y], k, Infinity, even).filter(({ distance }) => distance < 5), near.slice(0, k));
+    }
+    let calls = 0;
+    world.rayCast([0, 0], [1, 1], 5, () => (calls++, true));
+    assert.equal(calls, 1, "the nearest comes first, and the rest is not asked for");
+    assert.equal(world.nearest([0, 0], 3, Infinity, () => false).length, 0);
+    const error = new Error("from the predicate");
+    assert.throws(() => world.overlapping([0, 0, 1, 1], () => { throw error; }), (thrown) => thrown === error);
+    assert.ok(world.contains(ids[0] ?? NaN));
+    world.free();
+  }
+});
+
+test("nearest finds nothing beyond maxDistance", () => {
+  const world = new BroadPhase({ dimensions: 1 });
+  const [a, b, c] = [world.insert(0, 1), world.insert(3, 4), world.insert(6, 7)];
+  const found = (/** @type {[number?, any?]} */ ...rest) => world.nearest([0.5], 3, ...rest).map(({ id }) => id);
+  assert.deepEqual(found(), [a, b, c]);
+  assert.deepEqual(found(Infinity), [a, b, c]);
+  assert.deepEqual(found(5.5), [a, b, c]);
+  assert.deepEqual(found(5.4), [a, b]);
+  assert.deepEqual(found(2.5, (/** @type {number} */ id) => id !== a), [b]);
+  assert.deepEqual(found(0), [a]);
+  for (const odd of [-1, NaN]) assert.throws(() => found(odd), /^RangeError: `maxDistance` is/);
+  assert.throws(() => found(/** @type {any} */ ({})), /^TypeError: `maxDistance` must be a number/);
+  world.free();
+});
+
+test("clear removes every body, and the next update reports that their pairs ended", () => {
+  const world = new BroadPhase({ dimensions: 2 });
+  const [a, b] = [world.insert(0, 0, 1, 1), world.insert(1, 1, 2, 2)];
+  world.update();
+  world.clear();
+  assert.equal(world.size, 0);
+  assert.throws(() => world.box(a), StaleProxyError);
+  assert.deepEqual([...world.update().ended], [a, b]);
+  world.clear();
+  assert.notEqual(world.insert(0, 0, 1, 1), a);
+  world.free();
+});
+
+test("pairs without an order are the same pairs", () => {
+  const world = new BroadPhase({ dimensions: 2 });
+  world.insertMany(boxesSpread(random(61), 3000, 2));
+  world.update();
+  world.removeMany(world.ids().subarray(0, 100));
+  world.insertMany(boxesSpread(random(62), 1000, 2));
+  world.update();
+  const sorted = world.pairs();
+  assert.ok(sorted.length > 2000);
+  assert.deepEqual(world.pairs({ sorted: true }), sorted);
+  assert.deepEqual(pairsOf(world.pairs({ sorted: false })).sort(), pairsOf(sorted).sort());
+  world.free();
 });

@@ -225,9 +225,9 @@ test("TypeScript, as bundlers and as Node resolve", () => {
 test("the package holds what it should and nothing else", () => {
   const listed = execFileSync("npm", ["pack", "--dry-run", "--ignore-scripts", "--json"], { cwd: here, encoding: "utf8" });
   const files = /** @type {{ path: string }[]} */ (JSON.parse(listed)[0].files).map(({ path }) => path);
-  for (const file of ["package.json", "README.md", "dist/index.js", "dist/index.d.ts", "dist/sweep-and-prune.simd.wasm", "dist/LICENSE-MIT"]) {
+  for (const file of ["package.json", "README.md", "dist/index.js", "dist/index.d.ts", "dist/sweep-and-prune.simd.wasm", "dist/LICENSE-MIT", "docs/games.md"]) {
     assert.ok(files.includes(file), file);
   }
-  const odd = files.filter((path) => !/^(package\.json|README\.md|dist\/(demo\/)?[\w.-]+\.(js|d\.ts|wasm|css)|dist\/LICENSE-\w+)$/.test(path));
+  const odd = files.filter((path) => !/^(package\.json|README\.md|dist\/(demo\/)?[\w.-]+\.(js|d\.ts|wasm|css)|dist\/LICENSE-\w+|docs\/[\w-]+\.md|docs\/picture\.svg)$/.test(path));
   assert.deepEqual(odd, []);
 });

@@ -59,8 +59,8 @@ test("of two sets, the error names the one that is at fault, and the box within 
 });
 
 test("objects that are no boxes are named by what they hold", () => {
-  const boxes = /** @type {any} */ ([{ x: 0, y: 0, width: 1, height: 1 }]);
-  const message = /^TypeError: boxes\[0\] must be { minX, .. }.*, not an object with x, y, width, height/;
+  const boxes = /** @type {any} */ ([{ x: 0, y: 0, radius: 1 }]);
+  const message = /^TypeError: boxes\[0\] must be { minX, .. }.*, not an object with x, y, radius/;
   assert.throws(() => findPairs(boxes), message);
   assert.throws(() => findPairs(boxes, { dimensions: 2 }), message);
 });
@@ -88,8 +88,8 @@ test("boxes of another type are refused", () => {
     "0 1",
     {},
     { length: 2, 0: 0, 1: 1 },
-    new Int32Array(4),
-    new Uint8Array(4),
+    new BigInt64Array(4),
+    new BigUint64Array(4),
     new DataView(new ArrayBuffer(16)),
     new ArrayBuffer(16),
     new Set([0, 1]),

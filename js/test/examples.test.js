@@ -15,7 +15,9 @@ const folder = fileURLToPath(new URL("../examples", import.meta.url));
 const pages = fileURLToPath(new URL("../docs", import.meta.url));
 const examples = readdirSync(folder).filter((name) => name.endsWith(".js"));
 /** Those that need a browser. */
-const inBrowser = ["phaser-game.js", "pixi-game.js"];
+const inBrowser = ["pairs-in-worker.js", "phaser-game.js", "pixi-game.js"];
+/** The workers that they start. */
+const workers = ["pairs-worker.js"];
 
 before(() => {
   const lock = readFileSync(join(folder, "package-lock.json"), "utf8");
@@ -33,7 +35,7 @@ function promised(code) {
   return [...code.matchAll(/console\.log\(.*\);\s*\/\/ (.*)/g)].map(([, said]) => said);
 }
 
-for (const name of examples.filter((name) => !inBrowser.includes(name))) {
+for (const name of examples.filter((name) => ![...inBrowser, ...workers].includes(name))) {
   test(`${name} prints what it says`, () => {
     const expected = promised(readFileSync(join(folder, name), "utf8"));
     assert.ok(expected.length > 0);
@@ -46,15 +48,18 @@ for (const name of inBrowser) {
   test(`${name} prints what it says, in Chromium`, async () => {
     const expected = promised(readFileSync(join(folder, name), "utf8"));
     assert.ok(expected.length > 0);
-    // esbuild does not copy the files that a module names: the inline entry carries them.
-    const alias = { "sweep-and-prune/broad-phase": "sweep-and-prune/broad-phase/inline" };
+    // esbuild does not copy the files that a module names: the inline entries carry them.
+    const alias = { "sweep-and-prune": "sweep-and-prune/inline", "sweep-and-prune/broad-phase": "sweep-and-prune/broad-phase/inline" };
     const { outputFiles } = await esbuild.build({
-      entryPoints: [join(folder, name)], bundle: true, format: "esm", write: false, alias, logLevel: "error",
+      entryPoints: [name, ...workers].map((name) => join(folder, name)), bundle: true, format: "esm", write: false, outdir: "/", alias, logLevel: "error",
     });
+    const files = new Map(outputFiles.map(({ path, contents }) => [path.slice(path.lastIndexOf("/")), contents]));
     const server = createServer((request, response) => {
+      // A page with shared memory.
+      const isolated = { "cross-origin-opener-policy": "same-origin", "cross-origin-embedder-policy": "require-corp" };
       const isPage = request.url === "/";
-      response.writeHead(200, { "content-type": isPage ? "text/html" : "text/javascript" });
-      response.end(isPage ? '<!doctype html><script type="module" src="/app.js"></script>' : outputFiles[0]?.contents);
+      response.writeHead(200, { "content-type": isPage ? "text/html" : "text/javascript", ...isolated });
+      response.end(isPage ? `<!doctype html><script type="module" src="/${name}"></script>` : files.get(request.url ?? ""));
     }).listen(0, "127.0.0.1");
     await once(server, "listening");
     const { port } = /** @type {import("node:net").AddressInfo} */ (server.address());

@@ -2,7 +2,7 @@
 // throws is a named error, or a TypeError or RangeError of this package, and a call that throws changes nothing.
 import assert from "node:assert/strict";
 import { before, test } from "node:test";
-import { countPairs, findPairs, findPairsBetween, forEachPair, init, PairFinder } from "sweep-and-prune";
+import { anyPair, countPairs, findPairs, findPairsBetween, forEachPair, init, PairFinder } from "sweep-and-prune";
 import { events, init as initAlgorithms, Player, Runner } from "sweep-and-prune/algorithms";
 import { BroadPhase, init as initWorlds, slotOf } from "sweep-and-prune/broad-phase";
 
@@ -60,10 +60,11 @@ test("finding pairs", () => {
   misuse("findPairs", findPairs, [rows, options]);
   misuse("findPairsBetween", findPairsBetween, [rows, rows, options]);
   misuse("countPairs", countPairs, [rows, options]);
+  misuse("anyPair", anyPair, [rows, options]);
   misuse("forEachPair", forEachPair, [rows, options, () => true]);
   misuse("new PairFinder", (options) => new PairFinder(options).free(), [options]);
   const finder = /** @type {any} */ (new PairFinder(options));
-  const calls = { find: [rows], findBetween: [rows, rows], count: [rows], countBetween: [rows, rows], forEach: [rows, () => {}], forEachBetween: [rows, rows, () => {}] };
+  const calls = { find: [rows], findBetween: [rows, rows], count: [rows], countBetween: [rows, rows], forEach: [rows, () => {}], forEachBetween: [rows, rows, () => {}], findInto: [rows, new Uint32Array(9)], findBetweenInto: [rows, rows, new Uint32Array(9)], any: [rows], anyBetween: [rows, rows] };
   for (const [name, good] of Object.entries(calls)) {
     misuse(name, (...args) => finder[name](...args), good);
     assert.deepEqual([...finder.find(rows)], [0, 2], `after ${name}`);
@@ -85,9 +86,9 @@ for (const dimensions of /** @type {const} */ ([1, 2, 3])) {
         world.update();
         const calls = {
           ...{ insert: box, insertMany: [[...box, ...box], {}], set: [a, ...box], setMany: [[a, b], [...box, ...box]], setSwept: [a, box, box] },
-          ...{ remove: [c], removeMany: [[c]], setFilter: [a, {}], filter: [a], contains: [a], box: [a], pairsOf: [a], buffers: [2] },
-          ...{ update: [], pairs: [], ids: [], snapshot: [], stateHash: [], overlapping: [box, {}], containing: [point, {}] },
-          ...{ within: [point, 1, {}], nearest: [point, 1, {}], rayCast: [point, direction, 5, {}], rayCastAll: [point, direction, 5, {}] },
+          ...{ remove: [c], removeMany: [[c]], clear: [], setFilter: [a, {}], filter: [a], contains: [a], box: [a], pairsOf: [a], buffers: [2] },
+          ...{ update: [], pairs: [{}], ids: [], snapshot: [], stateHash: [], overlapping: [box, {}], containing: [point, {}] },
+          ...{ within: [point, 1, {}], nearest: [point, 1, 5, {}], rayCast: [point, direction, 5, {}], rayCastAll: [point, direction, 5, {}] },
           ...{ boxCast: [box, direction, 5, {}], boxCastAll: [box, direction, 5, {}] },
         };
         return { world, calls: /** @type {Record<string, unknown[]>} */ (calls) };

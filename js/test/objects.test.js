@@ -1,7 +1,7 @@
 // Boxes in the forms of other libraries give the same pairs as rows of numbers.
 import assert from "node:assert/strict";
 import { before, test } from "node:test";
-import { countPairs, findPairs, findPairsBetween, init, InvalidBoxError, PairFinder } from "sweep-and-prune";
+import { countPairs, findPairs, findPairsBetween, forEachPair, init, InvalidBoxError, PairFinder } from "sweep-and-prune";
 import { BroadPhase, init as initWorlds } from "sweep-and-prune/broad-phase";
 import { boxesAmong, random } from "./support/boxes.js";
 
@@ -18,6 +18,12 @@ const forms = {
   three: (row, d) => ({ min: corner(row.slice(0, d)), max: corner(row.slice(d)) }),
   cannon: (row, d) => ({ lowerBound: corner(row.slice(0, d)), upperBound: corner(row.slice(d)) }),
   "box-intersect": (row) => row,
+  "a typed array": (row) => Float64Array.from(row),
+  // Sums of these coordinates are exact, apart from infinite ones.
+  DOMRect: (row, d) => ({
+    ...corner(row.slice(0, d)),
+    ...Object.fromEntries(row.slice(d).map((at, axis) => [["width", "height", "depth"][axis], at === row[axis] ? 0 : at - (row[axis] ?? 0)])),
+  }),
 };
 
 /** @param {number[]} at */
@@ -30,14 +36,23 @@ for (const [name, make] of Object.entries(forms)) {
     test(`${name} in ${dimensions}D equals rows, with and without options`, () => {
       const next = random(dimensions);
       for (let round = 0; round < 50; round++) {
-        const rows = boxesAmong(next, 1 + Math.floor(next() * 60), dimensions);
+        const rows = boxesAmong(next, 1 + Math.floor(next() * 60), dimensions, name === "DOMRect" ? [-2, -1.5, -1, -0, 0, 0.5, 1, 1.5, 2, 3] : undefined);
         const width = 2 * dimensions;
         const boxes = Array.from({ length: rows.length / width }, (_, i) => make(rows.slice(i * width, (i + 1) * width), dimensions));
         const expected = findPairs(Float64Array.from(rows), { dimensions });
-        assert.deepEqual(findPairs(boxes), expected);
+        // Without options, pairs of the items themselves, in the same order.
+        const items = findPairs(boxes);
+        assert.equal(items.length, expected.length / 2);
+        assert.ok(items.every(([a, b], pair) => a === boxes[expected[2 * pair] ?? NaN] && b === boxes[expected[2 * pair + 1] ?? NaN]));
+        /** @type {unknown[]} */
+        const streamed = [];
+        assert.equal(forEachPair(boxes, (a, b) => void streamed.push([a, b])), true);
+        assert.deepEqual(streamed, items);
         assert.deepEqual(findPairs(boxes, { dimensions }), expected);
         assert.equal(countPairs(boxes), expected.length / 2);
-        assert.deepEqual(findPairsBetween(boxes, [boxes[0]]), findPairsBetween(rows, rows.slice(0, width), { dimensions }));
+        const between = findPairsBetween(rows, rows.slice(0, width), { dimensions });
+        assert.deepEqual(findPairsBetween(boxes, [boxes[0]], { dimensions }), between);
+        assert.deepEqual(findPairsBetween(boxes, [boxes[0]]).flat(), [...between].map((index) => boxes[index]));
       }
     });
   }
@@ -48,14 +63,33 @@ test("fewer dimensions than the objects have: the others are not looked at", () 
     { minX: 0, minY: 0, maxX: 1, maxY: 1, name: "a" },
     { minX: 1, minY: 5, maxX: 2, maxY: 6, name: "b" },
   ];
-  assert.deepEqual([...findPairs(boxes)], []);
+  assert.deepEqual(findPairs(boxes), []);
   assert.deepEqual([...findPairs(boxes, { dimensions: 1 })], [0, 1]);
+  // A sprite's z is its place in the drawing order: without a depth it is no coordinate.
+  const sprites = [{ x: 0, y: 0, z: 1, width: 2, height: 2 }, { x: 2, y: 2, z: 9, width: 1, height: 1 }];
+  assert.deepEqual(findPairs(sprites), [sprites]);
+});
+
+test("typed arrays of whole numbers are taken, each number as it is", () => {
+  const wide = [2 ** 24, 2 ** 24, 2 ** 24 + 1, 2 ** 24 + 1]; // single precision has no 2^24 + 1
+  for (const Type of [Int8Array, Uint8Array, Uint8ClampedArray, Int16Array, Uint16Array, Int32Array, Uint32Array]) {
+    assert.deepEqual([...findPairs(new Type([0, 2, 5, 6, 2, 3]), { dimensions: 1 })], [0, 2], Type.name);
+  }
+  for (const Type of [Int32Array, Uint32Array]) assert.equal(countPairs(new Type(wide), { dimensions: 1 }), 0);
+  const world = new BroadPhase({ dimensions: 1 });
+  const [id = NaN] = world.insertMany(new Uint8Array([1, 2]));
+  world.set(id, new Int16Array([3, 4]));
+  assert.deepEqual(world.box(id), [3, 4]);
+  world.removeMany(new Uint32Array([id]));
+  assert.equal(world.size, 0);
+  assert.throws(() => findPairs(/** @type {any} */ (new BigInt64Array(2)), { dimensions: 1 }), /^TypeError: `boxes` must be a typed array of numbers/);
 });
 
 test("no boxes need no options", () => {
-  assert.deepEqual([...findPairs([])], []);
-  assert.deepEqual([...findPairsBetween([], [{ minX: 0, maxX: 1 }])], []);
-  assert.deepEqual([...findPairsBetween([], [[0, 0, 1, 1]])], []);
+  assert.deepEqual(findPairs([]), []);
+  assert.deepEqual(findPairsBetween([], [{ minX: 0, maxX: 1 }]), []);
+  assert.deepEqual(findPairsBetween([], [[0, 0, 1, 1]]), []);
+  assert.throws(() => forEachPair(/** @type {any} */ ([0, 1]), () => {}), /^RangeError: `options` is missing/);
 });
 
 test("what is missing or of another kind is named", () => {
@@ -105,6 +139,51 @@ test("a world takes them too", () => {
   assert.deepEqual([...world.update().begun], [...ids]);
   world.setMany(ids, [{ min: { x: 5, y: 5 }, max: { x: 6, y: 6 } }, { min: { x: 0, y: 0 }, max: { x: 1, y: 1 } }]);
   assert.deepEqual(world.box(ids[0] ?? NaN), [5, 5, 6, 6]);
+  world.free();
+});
+
+test("a world takes one box and a point in each form", () => {
+  for (const dimensions of /** @type {const} */ ([1, 2, 3])) {
+    for (const precision of /** @type {const} */ (["single", "double"])) {
+      const world = new BroadPhase({ dimensions, precision });
+      const next = random(dimensions);
+      const among = [-2, -1.5, -1, 0, 0.5, 1, 2, 3];
+      for (const make of Object.values(forms)) {
+        const [a, b] = [boxesAmong(next, 1, dimensions, among), boxesAmong(next, 1, dimensions, among)];
+        const id = world.insert(make(a, dimensions));
+        assert.deepEqual(world.box(id), a);
+        world.set(id, make(b, dimensions));
+        assert.deepEqual(world.box(id), b);
+        world.setSwept(id, make(a, dimensions), make(b, dimensions));
+        world.update();
+        assert.deepEqual(world.overlapping(make(b, dimensions)), world.overlapping(b));
+        const [point, direction] = [a.slice(0, dimensions), b.slice(0, dimensions)];
+        const [p, d] = [corner(point), corner(direction)];
+        assert.deepEqual(world.containing(/** @type {any} */ (p)), world.containing(point));
+        assert.deepEqual(world.within(/** @type {any} */ (p), 1), world.within(point, 1));
+        assert.deepEqual(world.nearest(/** @type {any} */ (p), 2), world.nearest(point, 2));
+        assert.deepEqual(world.rayCastAll(/** @type {any} */ (p), /** @type {any} */ (d)), world.rayCastAll(point, direction));
+        assert.deepEqual(world.boxCastAll(make(a, dimensions), /** @type {any} */ (d)), world.boxCastAll(a, direction));
+      }
+      world.free();
+    }
+  }
+  const world = /** @type {any} */ (new BroadPhase({ dimensions: 2 }));
+  const id = world.insert({ x: 0, y: 0, width: 1, height: 1 });
+  const before = world.stateHash();
+  /** @type {[() => unknown, RegExp][]} */
+  const wrong = [
+    [() => world.insert({ x: 0, y: 0, width: 1 }), /^TypeError: the max y of `box` must be a number, not undefined/],
+    [() => world.insert({ x: 0, y: 0, width: 1, height: -1 }), /^InvalidBoxError: box 0 of `box` is inverted or NaN on axis 1/],
+    [() => world.insert({}), /^TypeError: `box` must be { minX, .. }.* not an object with no properties/],
+    [() => world.insert([0, 0, 1]), /^RangeError: `box` has 3 numbers; in 2D it must have 4/],
+    [() => world.insert([0, 0, 1, 1], 2), /^TypeError: there are more arguments than `box`/],
+    [() => world.set(id, { minX: 0, minY: 0, maxX: "1", maxY: 1 }), /^TypeError: the max x of `box` must be a number, not a string/],
+    [() => world.containing({ x: 0 }), /^TypeError: `point.y` must be a number, not undefined/],
+    [() => world.rayCast({ x: 0, y: 0 }, { x: 0, y: Infinity }), /^RangeError: `direction\[1\]` is Infinity/],
+  ];
+  for (const [call, message] of wrong) assert.throws(call, message);
+  assert.equal(world.stateHash(), before);
   world.free();
 });
 

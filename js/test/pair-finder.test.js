@@ -4,8 +4,8 @@ import { before, test } from "node:test";
 import { setTimeout } from "node:timers/promises";
 import { setFlagsFromString } from "node:v8";
 import vm from "node:vm";
-import { findPairs, init, PairFinder } from "sweep-and-prune";
-import { boxesSpread, oracle, random, sorted } from "./support/boxes.js";
+import { anyPair, findPairs, init, PairFinder } from "sweep-and-prune";
+import { boxesAmong, boxesSpread, oracle, random, sorted } from "./support/boxes.js";
 
 before(() => init());
 
@@ -82,6 +82,66 @@ test("what is freed is used again", () => {
   const before = memory();
   for (let i = 0; i < 200; i++) findPairs(rows, { dimensions: 2 });
   assert.equal(memory(), before);
+});
+
+test("many pairs are handed over in chunks: findPairs keeps nothing, a finder little", () => {
+  const before = memory();
+  const finder = new PairFinder({ dimensions: 1 });
+  const all = new Float32Array(2 * 3000); // all overlap: 4,498,500 pairs, 36 MB
+  const expected = 3000 * 2999;
+  assert.equal(findPairs(all, { dimensions: 1 }).length, expected);
+  assert.equal(finder.findBetween(all, all).length, 2 * 3000 * 3000);
+  assert.ok(memory() - before < 25 * 2 ** 20, `${memory() - before} bytes more`);
+  // Across chunks, in the order of streaming.
+  const pairs = finder.find(all);
+  let at = 0;
+  finder.forEach(all, (a, b) => {
+    if (pairs[at] !== a || pairs[at + 1] !== b) assert.fail(`pair ${at / 2}`);
+    at += 2;
+  });
+  assert.equal(at, expected);
+  finder.free();
+});
+
+test("pairs are written to the caller's array, shared or not, as many as fit", () => {
+  const finder = new PairFinder({ dimensions: 1 });
+  const all = new Float32Array(2 * 1700); // more pairs than a chunk holds
+  const expected = finder.find(all);
+  const total = expected.length / 2;
+  assert.ok(total > 2 ** 20);
+  for (const length of [expected.length, expected.length + 3, 2 ** 21, 2 ** 21 + 1, 7, 0]) {
+    for (const into of [new Uint32Array(length), new Int32Array(new SharedArrayBuffer(4 * length))]) {
+      assert.equal(finder.findInto(all, into), total);
+      assert.deepEqual(Uint32Array.from(into.subarray(0, expected.length)), expected.subarray(0, Math.min(length, expected.length)));
+      assert.ok(into.subarray(expected.length).every((word) => word === 0));
+    }
+  }
+  const into = new Uint32Array(4).subarray(1);
+  assert.equal(finder.findBetweenInto([0, 1], [5, 6, 1, 2], into), 1);
+  assert.deepEqual([...into], [0, 1, 0]);
+  for (const odd of [undefined, [], new Float32Array(2), new Uint16Array(2), {}]) {
+    assert.throws(() => finder.findInto(all, /** @type {any} */ (odd)), /^TypeError: `into` must be a Uint32Array or an Int32Array, not/);
+  }
+  finder.free();
+});
+
+test("any stops at the first pair", () => {
+  const finder = new PairFinder({ dimensions: 2 });
+  const next = random(7);
+  for (let round = 0; round < 200; round++) {
+    const dimensions = /** @type {const} */ ([1, 2, 3])[round % 3] ?? 1;
+    const [a, b] = [1, 2].map(() => boxesAmong(next, Math.floor(next() * 5), dimensions));
+    assert.equal(anyPair(a ?? [], { dimensions }), oracle(a ?? [], dimensions).length > 0);
+    if (dimensions !== 2) continue;
+    assert.equal(finder.any(a ?? []), oracle(a ?? [], 2).length > 0);
+    assert.equal(finder.anyBetween(a ?? [], b ?? []), finder.findBetween(a ?? [], b ?? []).length > 0);
+  }
+  assert.equal(anyPair([{ minX: 0, maxX: 1 }, { minX: 1, maxX: 2 }]), true);
+  // All overlap: 20 billion pairs, which take half a minute to count.
+  const began = performance.now();
+  assert.equal(finder.any(new Float32Array(4 * 200_000)), true);
+  assert.ok(performance.now() - began < 5000);
+  finder.free();
 });
 
 test("finders that are never freed are freed once they are garbage", async () => {

@@ -1,12 +1,11 @@
 // What a user writes: every entry that loads a file, in the page and in a module worker. Leaves its
 // result in `globalThis.result`.
 import { findPairs, init } from "sweep-and-prune";
-import { init as initAlgorithms, Runner } from "sweep-and-prune/algorithms";
-import { BroadPhase, init as initWorlds } from "sweep-and-prune/broad-phase";
+import { Runner } from "sweep-and-prune/algorithms";
+import { BroadPhase } from "sweep-and-prune/broad-phase";
 
 async function run() {
   const { simd } = await init();
-  await Promise.all([initWorlds(), initAlgorithms()]);
   const pairs = [...findPairs(new Float32Array([0, 0, 2, 2, 5, 5, 6, 6, 2, 1, 3, 4]), { dimensions: 2 })];
   const world = new BroadPhase({ dimensions: 1 });
   world.insertMany([0, 1, 1, 2]);

@@ -1,5 +1,5 @@
 // What a user's compiler sees.
-import { findPairs, init, InvalidBoxError, type Started } from "sweep-and-prune";
+import { findPairs, forEachPair, init, InvalidBoxError, type Started } from "sweep-and-prune";
 import { Player, Runner } from "sweep-and-prune/algorithms";
 import { BroadPhase, type Changes, type ProxyId } from "sweep-and-prune/broad-phase";
 
@@ -12,9 +12,14 @@ const runner = new Runner({ dimensions: 1, method: "endpoint sweep" });
 const player = new Player(runner);
 // @ts-expect-error there are no four dimensions
 findPairs([], { dimensions: 4 });
-const three: Uint32Array = findPairs([{ min: { x: 0, y: 0, z: 0 }, max: { x: 1, y: 1, z: 1 } }]);
+const three = findPairs([{ min: { x: 0, y: 0, z: 0 }, max: { x: 1, y: 1, z: 1 } }]);
 const items = [{ minX: 0, minY: 0, maxX: 1, maxY: 1, name: "a" }];
-const rbush: Uint32Array = findPairs(items);
+const rbush: Uint32Array = findPairs(items, { dimensions: 2 });
+const named: string[] = findPairs(items).map(([a, b]) => a.name + b.name);
+forEachPair(items, (a, b) => a.name !== b.name);
+world.insert({ x: 0, y: 0, width: 1, height: 1 });
+world.set(id, items[0]!);
+const near: number[] = world.nearest({ x: 0, y: 0 }, 1, 5, (id) => id > 0).map(({ distance }) => distance);
 // @ts-expect-error numbers do not say how many dimensions they have
 findPairs([0, 1]);
-console.log(started, three, rbush, pairs, id, begun, player, InvalidBoxError);
+export default [started, three, rbush, named, near, pairs, id, begun, player, InvalidBoxError];
