@@ -5,17 +5,17 @@ use alloc::vec::Vec;
 use core::cell::RefCell;
 use core::ops::ControlFlow;
 
-use super::lists::Lists;
-use super::math::{check_each, fault_in, gap, is_finite};
 use super::region::Queries;
+use crate::geometry::{check_each, distance_squared, fault_in, is_finite};
+use crate::lists::Lists;
 use crate::world::bodies::ProxyId;
 use crate::{Aabb, Error, Scalar};
 
-/// A body near a point.
+/// A body near a point; or a box, whose id is its index, if it was found in an [`Index`](crate::Index).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Neighbor {
+pub struct Neighbor<I = ProxyId> {
     /// The body.
-    pub id: ProxyId,
+    pub id: I,
     /// The square of the distance from the point to the body's box; 0 if the point is in it.
     pub distance_squared: f64,
 }
@@ -72,11 +72,4 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         }
         Ok(lists)
     }
-}
-
-fn distance_squared<const D: usize, T: Scalar>(point: &[T; D], aabb: &Aabb<D, T>) -> f64 {
-    (0..D).fold(0.0, |sum, axis| {
-        let gap = gap(point, aabb, axis);
-        sum + gap * gap
-    })
 }

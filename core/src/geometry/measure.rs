@@ -1,4 +1,4 @@
-//! Distances, and which queries make sense.
+//! Distances, when a moving box touches another, and which queries make sense.
 //!
 //! Formulas are in `f64` and made of operations that round monotonically, so what contains a body is
 //! never farther than the body.
@@ -37,7 +37,7 @@ pub fn check_each<Q>(queries: &[Q], fault: impl Fn(&Q) -> Fault) -> Result<(), E
 
 /// From a point to a box on one axis.
 #[inline]
-pub fn gap<const D: usize, T: Scalar>(point: &[T; D], aabb: &Aabb<D, T>, axis: usize) -> f64 {
+fn gap<const D: usize, T: Scalar>(point: &[T; D], aabb: &Aabb<D, T>, axis: usize) -> f64 {
     let at = point[axis].to_f64();
     (aabb.min[axis].to_f64() - at).max(at - aabb.max[axis].to_f64()).max(0.0)
 }
@@ -60,4 +60,39 @@ pub fn is_within<const D: usize, T: Scalar>(
         sum + gap * gap
     });
     sum <= (radius * scale) * (radius * scale)
+}
+
+/// The square of the distance from a point to a box; 0 if the point is in it.
+#[inline]
+pub fn distance_squared<const D: usize, T: Scalar>(point: &[T; D], aabb: &Aabb<D, T>) -> f64 {
+    (0..D).fold(0.0, |sum, axis| {
+        let gap = gap(point, aabb, axis);
+        sum + gap * gap
+    })
+}
+
+/// The t at which a box at `from + t * speed` first touches another, if it does from 0 to `limit`.
+#[inline]
+pub fn contact_time<const D: usize, T: Scalar>(
+    from: &Aabb<D, T>,
+    speed: &[f64; D],
+    limit: f64,
+    other: &Aabb<D, T>,
+) -> Option<f64> {
+    let (mut first, mut last) = (0.0f64, limit);
+    for axis in 0..D {
+        let speed = speed[axis];
+        let before = other.min[axis].to_f64() - from.max[axis].to_f64();
+        let behind = other.max[axis].to_f64() - from.min[axis].to_f64();
+        if speed == 0.0 {
+            if before > 0.0 || behind < 0.0 {
+                return None;
+            }
+            continue;
+        }
+        let (enter, leave) = if speed > 0.0 { (before, behind) } else { (behind, before) };
+        first = first.max(enter / speed);
+        last = last.min(leave / speed);
+    }
+    (first <= last).then_some(first)
 }
