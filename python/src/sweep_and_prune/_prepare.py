@@ -158,7 +158,7 @@ def _extended(boxes: NDArray[Any], margin: object) -> NDArray[Any]:
             add = np.asarray(np.timedelta64(margin))
         if add.dtype.kind != "m":
             raise TypeError(f"margin must be a timedelta for times, not {margin!r}")
-        least: Any = np.timedelta64(0)
+        least: Any = np.zeros((), add.dtype)
     else:
         add = as_array(margin, "margin")
         if add.dtype.kind not in "iuf":
