@@ -53,4 +53,4 @@ with TemporaryDirectory() as template:
     pdoc.render.configure(
         docformat="google", search=False, show_source=False, footer_text=footer, template_directory=Path(template)
     )
-    pdoc.pdoc("sweep_and_prune", output_directory=Path(sys.argv[1]))
+    pdoc.pdoc("sweep_and_prune", "sweep_and_prune.dask", output_directory=Path(sys.argv[1]))

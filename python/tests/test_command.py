@@ -330,3 +330,53 @@ def test_too_large_a_file_is_refused_before_it_is_read(monkeypatch: pytest.Monke
     with pytest.raises(_tables.FileError, match="120 boxes"):
         monkeypatch.setattr("os.sysconf", lambda name: 100)
         _tables.read(write("a.npy"))
+
+
+def test_more_boxes_than_fit_in_memory_go_through_files(capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("distributed")
+    a, b = write("a.parquet"), write("b.parquet", random_boxes(80, 2, np.float64, 2))
+    limited = ["--memory-limit", "1GB", "--workers", "0", "--quiet"]
+    assert main(["pairs", a, *limited, "-o", "out"]) == 0
+    import pyarrow.parquet
+
+    assert np.array_equal(in_order(np.stack(pyarrow.parquet.read_table("out").columns, axis=1)), pairs(BOXES))
+    assert main(["pairs", a, *limited, "-o", "out"]) == 0, "it is finished"
+    assert main(["join", a, b, *limited, "-o", "between", "--margin", "1"]) == 0
+    wanted = pairs_between(BOXES + [0, 0, 1, 1], random_boxes(80, 2, np.float64, 2) + [0, 0, 1, 1])
+    found = np.stack(pyarrow.parquet.read_table("between").columns, axis=1)
+    assert np.array_equal(in_order(found), wanted)
+    assert capsys.readouterr() == ("", "")
+    assert main(["count", a, *limited]) == main(["count", a, b, *limited]) == 0
+    assert capsys.readouterr().out.split() == [
+        str(len(pairs(BOXES))),
+        str(len(pairs_between(BOXES, random_boxes(80, 2, np.float64, 2)))),
+    ]
+    assert "other boxes or other options" in refused(capsys, "pairs", a, *limited, "-o", "out", "--margin", "2")
+    assert "-o FOLDER" in refused(capsys, "pairs", a, *limited)
+    assert "leave --by out" in refused(capsys, "pairs", a, *limited, "-o", "out", "--by", "xmin")
+    assert "b.csv cannot be read" in refused(capsys, "count", write("b.csv"), *limited)
+    assert "memory_limit is 1MB" in refused(capsys, "pairs", a, "--memory-limit", "1MB", "--workers", "1", "-o", "new")
+    assert "memory_limit must be" in refused(capsys, "pairs", a, "--memory-limit", "much", "-o", "new")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals there")
+def test_ctrl_c_keeps_what_is_done_and_the_same_command_continues() -> None:
+    pytest.importorskip("distributed")
+    import pyarrow.parquet
+
+    boxes = random_boxes(400_000, 2, np.float64)
+    table = pyarrow.table(dict(zip(NAMES, boxes.T)))
+    pyarrow.parquet.write_table(table, "a.parquet", row_group_size=20_000)
+    command = [*SAP, "pairs", "a.parquet", "-o", "out", "--memory-limit", "400MB", "--workers", "0"]
+    program = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    while not list(Path().glob("out.unfinished/spill/*.json")):
+        assert program.poll() is None
+    program.send_signal(signal.SIGINT)
+    _, said = program.communicate(timeout=60)
+    assert (program.returncode, said.strip()) == (130, "sap: cancelled; the same command continues")
+    assert Path("out.unfinished").exists() and not Path("out").exists()
+    assert subprocess.run(command, capture_output=True).returncode == 0
+    found = np.stack(pyarrow.parquet.read_table("out").columns, axis=1)
+    import sweep_and_prune as sap
+
+    assert np.array_equal(in_order(found), in_order(sap.find_pairs(boxes)))

@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +30,7 @@ import sweep_and_prune.dask as sap
 from sweep_and_prune._partitioned import boxes as boxes_module
 from sweep_and_prune._partitioned import run as run_module
 from sweep_and_prune._partitioned import tasks, workers
+from sweep_and_prune._partitioned.dataset import hash_pairs
 
 # Dask calls pandas in a way that a newer pandas warns of.
 pytestmark = pytest.mark.filterwarnings("ignore:The inplace keyword:DeprecationWarning")
@@ -125,7 +126,8 @@ def test_few_rows_of_memory_split_cells_again_and_join_wide_and_coincident_boxes
     for name in ("_SAMPLE", "SAMPLE_PER_CELL"):
         monkeypatch.setattr(run_module, name, 1)
     boxes = random_boxes(4000, 2, np.float64)
-    boxes[500:530] = [-100, -100, 1000, 1000]
+    boxes[500:515] = [-100, -100, 1000, 1000]
+    boxes[515:530] = [-100, -100, 30, 1000]  # these touch half of the cells
     boxes[530:2000] = [5, 5, 5, 5]  # no split separates these
     boxes[2100:2900] = boxes[3100:3900] / 200  # the sample does not know that they are crowded
     write("a.parquet", boxes, group=1000), write("b.parquet", boxes[::2], group=500)
@@ -135,6 +137,39 @@ def test_few_rows_of_memory_split_cells_again_and_join_wide_and_coincident_boxes
     assert any(name.count(".") > 1 for name in names), "some cell was split again"
     sap.find_pairs_between("a.parquet", "b.parquet", out="between", workers=0, cells=20)
     assert np.array_equal(dataset("between"), in_order(core.find_pairs_between(boxes, boxes[::2])))
+
+
+def test_wide_boxes_of_a_cell_that_is_split_again_meet_those_of_the_whole(
+    small_memory: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("_SAMPLE", "SAMPLE_PER_CELL"):
+        monkeypatch.setattr(run_module, name, 1)
+    random = np.random.default_rng(3)
+    low = random.random((5000, 2)) * 100
+    low[1000:] /= 50
+    boxes = np.hstack([low, low + np.where(np.arange(5000)[:, None] < 1000, 1, 0.01)])
+    boxes[500:520] = [-1, -1, 101, 101]
+    boxes[2000:2020] = [0.5, 0.5, 1.8, 1.8]
+    write("a.parquet", boxes, group=5000)
+    sap.find_pairs("a.parquet", out="out", workers=0, cells=30)
+    assert np.array_equal(dataset(), in_order(core.find_pairs(boxes)))
+    names = [path.name for path in Path("out").glob("cell-*wide.parquet")]
+    assert len(names) > 1, "there are wide boxes at both levels"
+
+
+def test_the_hash_of_pairs_sees_which_ids_pair_and_not_their_order() -> None:
+    ids = np.arange(100_000)
+    whole = hash_pairs(ids, ids[::-1])
+    order = np.random.default_rng(1).permutation(len(ids))
+    assert hash_pairs(ids[order], ids[::-1][order]) == whole
+    assert (hash_pairs(ids[:7], ids[::-1][:7]) + hash_pairs(ids[7:], ids[::-1][7:])) % 2**64 == whole
+    assert hash_pairs(ids[::-1], ids) == whole, "here the same pairs"
+    for other in (np.roll(ids[::-1], 1), np.where(ids == 5, 5, ids[::-1])):
+        assert hash_pairs(ids, other) != whole
+    assert hash_pairs(ids[:2], ids[2:4]) != hash_pairs(ids[:2], ids[[3, 2]])
+    assert hash_pairs(ids[2:4], ids[:2]) != hash_pairs(ids[:2], ids[2:4])
+    text = np.array(["a", "b", "c"], object)
+    assert hash_pairs(text[:2], text[1:]) == hash_pairs(text[[1, 0]], text[[2, 1]]) != hash_pairs(text[:2], text[:2])
 
 
 def test_ids_are_numbers_or_text_of_the_user_and_the_smaller_one_is_first() -> None:
@@ -249,25 +284,24 @@ def test_whole_numbers_are_exact_up_to_2_to_the_53() -> None:
 
 
 @pytest.mark.parametrize("cells", [1, 7])
-def test_an_invalid_box_is_named_by_its_file_and_row(cells: int) -> None:
+def test_an_invalid_box_is_named_by_its_file_and_row(cells: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(run_module, "_CHUNK_ROWS", 300)
+    monkeypatch.setattr(run_module, "_SLAB_ROWS", 70)
     for number in range(3):
         boxes = BOXES[1000 * number : 1000 * (number + 1)].copy()
         if number == 2:
             boxes[555, 1] = np.nan
             boxes[777] = [3, 3, 2, 4]
         write(f"{number}.parquet", boxes, group=100)
-    calls: list[Callable[[], Any]] = [
-        lambda: sap.find_pairs("*.parquet", out="out", workers=0, cells=cells),
-        lambda: sap.find_pairs("*.parquet", cells=cells).compute(),
-    ]
-    for call in calls:
-        with pytest.raises(sap.InvalidRowError) as caught:
-            call()
-        assert str(caught.value) == (
-            f"2.parquet, row 555 (the first is 0): the box has a NaN on axis 1 (min nan, max {BOXES[2555, 3]}): "
-            'remove it or replace it, or pass missing="skip"'
-        )
-        assert (caught.value.index, caught.value.row, caught.value.place) == (2555, 555, "2.parquet")
+    with pytest.raises(sap.InvalidRowError) as caught:
+        sap.find_pairs("*.parquet", out="out", workers=0, cells=cells)
+    assert str(caught.value) == (
+        f"2.parquet, row 555 (the first is 0): the box has a NaN on axis 1 (min nan, max {BOXES[2555, 3]}): "
+        'remove it or replace it, or pass missing="skip"'
+    )
+    assert (caught.value.index, caught.value.row, caught.value.place) == (2555, 555, "2.parquet")
+    with pytest.raises(sap.InvalidRowError, match=r"2\.parquet, row (555|777) "):
+        sap.find_pairs("*.parquet", cells=cells).compute()
     assert not Path("out").exists()
 
 
@@ -340,7 +374,8 @@ def test_an_interrupted_run_continues_wherever_it_was(monkeypatch: pytest.Monkey
     sap.find_pairs("a.parquet", out="whole", workers=0, cells=6)
     wanted = sap.read_manifest("whole")
     assert any(one["name"].count(".") > 1 for one in wanted.files)
-    for after in range(0, 30, 2):
+    interrupted = {"as it was": 0, "with more memory": 0, "without the boxes": 0}
+    for number, after in enumerate(range(0, 32)):
         with monkeypatch.context() as patch:
             interrupt(patch, after)
             try:
@@ -352,21 +387,26 @@ def test_an_interrupted_run_continues_wherever_it_was(monkeypatch: pytest.Monkey
             else:
                 break
         done = {path: path.stat().st_mtime_ns for path in Path("out.unfinished").glob("*.parquet")}
-        if after % 4 == 0:
-            Path("out.unfinished/cell-00000.parquet.0.part").write_bytes(b"half of a file")
-            # With more memory, a cell that was split stays split.
-            with monkeypatch.context() as patch:
+        Path("out.unfinished/cell-00000.parquet.0.part").write_bytes(b"half of a file")
+        way = list(interrupted)[number % 3]
+        interrupted[way] += 1
+        with monkeypatch.context() as patch:
+            # A cell that was split stays split in the same way.
+            if way == "with more memory":
                 patch.setattr(workers, "_for_boxes", lambda memory, limit: 10**9)
-                sap.find_pairs("a.parquet", out="out", workers=0, cells=6)
-        else:
-            sap.find_pairs("a.parquet", out="out", workers=0, cells=6)
+            elif way == "without the boxes":
+                patch.setattr(run_module, "_LEAST_ROWS", 250)
+                shutil.rmtree("out.unfinished/spill", ignore_errors=True)
+            sap.find_pairs("a.parquet", out="out", workers=0, cells=6, spill="." if number % 2 else None)
         manifest = sap.read_manifest("out")
-        assert (manifest.pairs, manifest.hash) == (wanted.pairs, wanted.hash)
+        assert (manifest.pairs, manifest.hash) == (wanted.pairs, wanted.hash), (after, way)
         assert np.array_equal(dataset(), dataset("whole"))
-        assert not list(Path("out").glob("*.part")) and not (Path("out") / "spill").exists()
+        assert {path.suffix for path in Path("out").iterdir()} == {".parquet", ".json"}
+        assert not list(Path().glob("sweep-and-prune-*"))
         for path, changed in done.items():
             assert (Path("out") / path.name).stat().st_mtime_ns == changed, "it was not written again"
         shutil.rmtree("out")
+    assert min(interrupted.values()) > 5
 
 
 def test_a_run_continues_only_with_the_same_boxes_and_options(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -474,37 +514,40 @@ def children_of(process: int) -> list[int]:
     ]
 
 
-def killed(path: str, delay: float, whole: bool) -> tuple[int, str, str]:
-    """A run whose worker, or which as a whole, is killed so many seconds after the workers have started."""
+def started(path: str) -> Any:
+    """A run that has begun to write the boxes."""
     shutil.copy(path, "a.parquet")
     Path("script.py").write_text(SCRIPT)
     program = subprocess.Popen(
         [sys.executable, "script.py"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
     )
-    while program.poll() is None and not list(Path().glob("out.unfinished/_plan.json")):
-        time.sleep(0.02)
-    time.sleep(delay)
-    if whole:
-        os.killpg(program.pid, signal.SIGKILL)
-    elif program.poll() is None and children_of(program.pid):
-        os.kill(children_of(program.pid)[0], signal.SIGKILL)
-    out, err = program.communicate(timeout=300)
-    return program.returncode, out.strip(), err
+    while program.poll() is None and not list(Path().glob("out.unfinished/spill/*.json")):
+        time.sleep(0.01)
+    return program
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="processes are found in the way of Linux")
-def test_a_worker_that_is_killed_changes_nothing(large: tuple[str, str]) -> None:
+def test_workers_that_are_killed_change_nothing(large: tuple[str, str]) -> None:
     path, wanted = large
-    status, printed, said = killed(path, 0.1, False)
-    assert (status, printed) == (0, wanted), said
+    program = started(path)
+    kills = 0
+    while program.poll() is None and kills < 5:
+        for child in children_of(program.pid):
+            os.kill(child, signal.SIGKILL)
+            kills += 1
+        time.sleep(0.5)
+    out, err = program.communicate(timeout=300)
+    assert (program.returncode, out.strip()) == (0, wanted), err
+    assert kills > 1
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="processes are found in the way of Linux")
 def test_a_run_that_is_killed_continues(large: tuple[str, str]) -> None:
     path, wanted = large
-    status, _, _ = killed(path, 0.3, True)
-    if status != 0:  # it was not too late
-        assert not Path("out").exists()
+    program = started(path)
+    os.killpg(program.pid, signal.SIGKILL)
+    program.communicate(timeout=60)
+    assert not Path("out").exists()
     sap.find_pairs("a.parquet", out="out", memory_limit="3GB", workers=0, cells=60)
     assert sap.read_manifest("out").hash == wanted
 

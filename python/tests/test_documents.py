@@ -60,7 +60,7 @@ def test_the_readme_names_no_path_that_the_wheel_lacks() -> None:
 
 def test_the_readme_shows_commands_that_there_are() -> None:
     commands = re.findall(r"^sap (.*)$", README, re.MULTILINE)
-    assert len(commands) == 6
+    assert len(commands) == 7
     for command in commands:
         assert _parser().parse_args(command.split(" > ")[0].split()).files
     project = (PYTHON / "pyproject.toml").read_text()
@@ -175,6 +175,7 @@ def test_the_reference_names_everything_and_loads_nothing_from_elsewhere(tmp_pat
     run(PYTHON / "docs.py", tmp_path)
     page = (tmp_path / "sweep_and_prune.html").read_text()
     assert [name for name in public() if f'id="{name}"' not in page] == []
+    assert 'href="sweep_and_prune/dask.html"' in page and (tmp_path / "sweep_and_prune/dask.html").exists()
     loaded = re.findall(r"""(?:src=|<link[^>]*href=|url\(|@import )["']?([^"')>\s]+)""", page)
     assert [address for address in loaded if not address.startswith(("data:", "#", "./"))] == []
     assert re.search(r"prefers-color-scheme: ?dark", page)

@@ -25,6 +25,7 @@ array([[0, 2]])
 | a question that only needs a number | `count_pairs`, `count_pairs_between` |
 | more pairs than fit in memory, or a search that may stop early | `iter_chunks`, `for_each_chunk` |
 | two data frames: rows whose boxes or geometries overlap | `join` |
+| more boxes than fit in memory, or a cluster | `sweep_and_prune.dask` |
 | any of these every frame | `PairFinder` |
 | bodies that mostly rest; begin and end events; queries and rays | `BroadPhase` |
 """

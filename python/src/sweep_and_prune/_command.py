@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -13,8 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._errors import InvalidBoxError
+from ._errors import InvalidBoxError, SweepAndPruneError
 from ._pairs import count_pairs, count_pairs_between, find_pairs, iter_chunks, iter_chunks_between
+from ._progress import ProgressLine
 from ._tables import READABLE, WRITABLE, FileError, Source, kind_of, read, writer
 
 _EPILOG = f"""files: {READABLE} (and .csv.gz, .tsv.gz, .bed.gz); "-" is CSV from standard input
@@ -27,6 +27,7 @@ examples:
   sap pairs detections.csv --format xywh --by frame -o pairs.parquet
   sap join reads.bed genes.bed --id name
   sap count parcels.parquet --margin 10
+  sap pairs boxes.parquet --memory-limit 4GB -o pairs
   sap stats boxes.npy
   sap plot boxes.csv --pairs -o picture.svg
 
@@ -38,9 +39,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line and returns the exit status."""
     options = _parser().parse_args(arguments)
     try:
-        sources = [read(path) for path in options.files]
-        with _explained(sources):
-            options.run(options, sources)
+        if getattr(options, "memory_limit", None) is not None:
+            _from_disk(options)
+        else:
+            sources = [read(path) for path in options.files]
+            with _explained(sources):
+                options.run(options, sources)
         sys.stdout.flush()
         return 0
     except FileError as error:
@@ -48,7 +52,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except MemoryError:
         return _fail("the pairs do not fit in memory: sap count counts them, sap pairs -o FILE writes them in chunks")
     except KeyboardInterrupt:
-        print("\nsap: cancelled", file=sys.stderr)
+        is_kept = getattr(options, "memory_limit", None) is not None and options.run is _pairs
+        print("\nsap: cancelled" + ("; the same command continues" if is_kept else ""), file=sys.stderr)
         return 130
     except BrokenPipeError:
         # What is left to write must not raise the same error when Python exits.
@@ -88,6 +93,19 @@ def _parser() -> argparse.ArgumentParser:
     group.add_argument("--threads", type=int, default=1, metavar="N", help="-1 for one on each processor")
     group.add_argument("--quiet", action="store_true", help="show no progress")
 
+    disk = argparse.ArgumentParser(add_help=False)
+    group = disk.add_argument_group("more boxes than fit in memory (needs dask)")
+    group.add_argument(
+        "--memory-limit",
+        metavar="SIZE",
+        help="take no more memory than this, such as 4GB: the boxes go through files. Inputs are Parquet files or "
+        "folders of them; -o names a folder of Parquet files. A command that was interrupted continues when it is "
+        "repeated",
+    )
+    group.add_argument("--workers", type=int, metavar="N", help="processes; by default, one for each processor")
+    group.add_argument("--spill", metavar="FOLDER", help="where the boxes go meanwhile; by default, beside the pairs")
+    group.add_argument("--overwrite", action="store_true", help="replace the pairs of other boxes in this folder")
+
     output = argparse.ArgumentParser(add_help=False)
     group = output.add_argument_group("output")
     group.add_argument("-o", "--output", metavar="FILE", help="where to write; standard output by default")
@@ -100,9 +118,9 @@ def _parser() -> argparse.ArgumentParser:
         command.set_defaults(run=run)
         return command
 
-    add("pairs", _pairs, "writes all pairs of overlapping boxes of a file", 1, [boxes, output])
-    add("join", _pairs, "writes all pairs of a box of one file and a box of another", 2, [boxes, output])
-    count = add("count", _count, "counts the pairs of a file, or of two", "+", [boxes])
+    add("pairs", _pairs, "writes all pairs of overlapping boxes of a file", 1, [boxes, output, disk])
+    add("join", _pairs, "writes all pairs of a box of one file and a box of another", 2, [boxes, output, disk])
+    count = add("count", _count, "counts the pairs of a file, or of two", "+", [boxes, disk])
     count.set_defaults(most=2)
     add("stats", _stats, "describes boxes: extents, sizes, and pairs of each box", 1, [boxes])
     plot = add("plot", _plot, "draws boxes (needs matplotlib)", 1, [boxes])
@@ -138,22 +156,9 @@ def _explained(sources: list[Source]) -> Iterator[None]:
         raise FileError(f"{names}: {error}") from None
 
 
-class _Progress:
-    """A line on standard error with the share that is done and the time that is left, if a person may see it."""
-
-    def __init__(self, what: str, is_quiet: bool) -> None:
-        self._what, self._began, self._is_shown = what, time.monotonic(), False
-        self._is_wanted = not is_quiet and sys.stderr.isatty()
-
-    def __call__(self, done: float) -> None:
-        passed = time.monotonic() - self._began
-        if not self._is_wanted or (passed < 0.5 and not self._is_shown):
-            return
-        self._is_shown = done < 1
-        left = f", {passed / done * (1 - done):.0f} s left" if 0 < done < 1 else ""
-        line = f"{self._what}: {100 * done:.0f} %{left}" if done < 1 else ""
-        sys.stderr.write(f"\r{line:<60}" + ("" if done < 1 else "\r"))
-        sys.stderr.flush()
+def _progress(what: str, options: argparse.Namespace) -> ProgressLine:
+    """A line on standard error, if a person may see it."""
+    return ProgressLine(what, None, not options.quiet and sys.stderr.isatty())
 
 
 def _search(options: argparse.Namespace, sources: list[Source]) -> tuple[list[Any], dict[str, Any]]:
@@ -175,7 +180,7 @@ def _search(options: argparse.Namespace, sources: list[Source]) -> tuple[list[An
 
 def _counted(options: argparse.Namespace, sets: list[Any], search: dict[str, Any]) -> int:
     count: Any = count_pairs if len(sets) == 1 else count_pairs_between
-    number: int = count(*sets, threads=options.threads, progress=_Progress("counting", options.quiet), **search)
+    number: int = count(*sets, threads=options.threads, progress=_progress("counting", options), **search)
     return number
 
 
@@ -183,7 +188,7 @@ def _chunks(
     options: argparse.Namespace, sets: list[Any], search: dict[str, Any], count: int, what: str
 ) -> Iterator[NDArray[Any]]:
     """So many pairs, with progress: each chunk counts as done when the next one is asked for."""
-    progress, done = _Progress(what, options.quiet), 0
+    progress, done = _progress(what, options), 0
     # Large, since there is work for each chunk; it takes 16 MB.
     chunks: Any = iter_chunks if len(sets) == 1 else iter_chunks_between
     for chunk in chunks(*sets, size=2**20, **search):
@@ -209,6 +214,44 @@ def _count(options: argparse.Namespace, sources: list[Source]) -> None:
     if len(sources) > options.most:
         raise FileError("count takes one file or two")
     print(_counted(options, *_search(options, sources)))
+
+
+def _from_disk(options: argparse.Namespace) -> None:
+    """Finds or counts pairs of boxes that need not fit in memory."""
+    try:
+        import distributed  # noqa: F401
+
+        from . import dask
+    except ImportError:
+        raise FileError("--memory-limit needs Dask: pip install 'sweep-and-prune[dask]'") from None
+    is_counted = options.run is _count
+    if is_counted and len(options.files) > options.most:
+        raise FileError("count takes one file or two")
+    refused = {"--by": options.by, "--threads": options.threads != 1, "--to": getattr(options, "to", None)}
+    for name in (name for name, value in refused.items() if value):
+        raise FileError(f"--memory-limit and {name} cannot be combined: leave {name} out")
+    search: dict[str, Any] = {
+        "columns": options.columns or None,
+        "format": options.format,
+        "missing": options.missing,
+        "closed": options.closed,
+        "margin": options.margin,
+        "memory_limit": options.memory_limit,
+        "workers": options.workers,
+        "spill": options.spill,
+        "progress": not options.quiet,
+    }
+    files, is_between = options.files, len(options.files) == 2
+    try:
+        if is_counted:
+            print((dask.count_pairs_between if is_between else dask.count_pairs)(*files, **search))
+            return
+        if options.output is None:
+            raise FileError("--memory-limit needs -o FOLDER: the pairs are a folder of Parquet files")
+        find: Any = dask.find_pairs_between if is_between else dask.find_pairs
+        find(*files, ids=options.id, out=options.output, overwrite=options.overwrite, **search)
+    except (SweepAndPruneError, ValueError) as error:
+        raise FileError(str(error)) from None
 
 
 def _stats(options: argparse.Namespace, sources: list[Source]) -> None:

@@ -290,7 +290,8 @@ def check_memory(path: str, rows: int, numbers: int) -> None:
     needed = numbers * 8 * 7
     if needed > memory:
         gigabytes = f"{needed / 1e9:.0f} GB of memory, and this machine has {memory / 1e9:.0f} GB"
-        raise FileError(f"{path} has {rows} boxes; searching them takes about {gigabytes}")
+        way = "; --memory-limit searches them from disk" if path.endswith((".parquet", ".geoparquet")) else ""
+        raise FileError(f"{path} has {rows} boxes; searching them takes about {gigabytes}{way}")
 
 
 class Writer(Protocol):

@@ -102,7 +102,8 @@ def find_pairs(
         A Dask DataFrame with the columns `a` and `b`: the ids of two boxes, the smaller one first, in no order.
 
     Raises:
-        InvalidRowError: for the first box that is inverted or has a NaN; it names the file and the row.
+        InvalidRowError: for the first box that is inverted or has a NaN; it names the file and the row. Without `out`,
+            it is raised when the graph is computed, for one of them.
         DatasetError: if a file is missing, damaged or of another form, the disk is full, workers died too often, or
             `out` contains something else.
         ValueError: for unknown options.

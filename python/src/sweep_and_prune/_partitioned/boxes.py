@@ -341,6 +341,8 @@ def read_chunk(file: File, chunk: Chunk, form: Form, argument: str, rows: int) -
     done = 0
     try:
         with opened(file.path) as parquet:
+            if _stamp(file.path) != file.stamp:
+                raise DatasetError(f"{file.path} has changed since the run began: pass overwrite=True to start again")
             batches = parquet.iter_batches(
                 batch_size=rows, row_groups=chunk.groups, columns=_leaves(form), use_threads=False
             )

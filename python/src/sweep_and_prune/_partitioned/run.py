@@ -26,21 +26,23 @@ from .tasks import (
     Joined,
     Node,
     Plan,
-    children,
     join_everything,
     join_node,
     nodes,
     scatter_chunk,
     split_node,
+    split_of,
 )
 from .workers import Workers, memory_of, started
 
 _CHUNK_ROWS = 2_000_000
 _SLAB_ROWS = 500_000
 CELL_BOXES = 1_000_000
+_MOST_CELLS = 2000
 _SMALL = 3_000_000
 _SAMPLE = 20_000
 _LEAST_ROWS = 1000
+_SPILL = "_spill.txt"
 SAMPLE_PER_CELL = 400
 
 
@@ -239,9 +241,10 @@ def chunks_of(sources: list[Source]) -> list[Chunk]:
 def _planned(sources: list[Source], job: Job, workers: Workers, rows: int, request: dict[str, Any], total: int) -> Plan:
     count = job.cells
     if count is None:
-        # Many more cells than workers, so that none of them waits long for the last cell.
-        of_cell = min(rows * 6 // 10, CELL_BOXES)
-        count = max(-(-total // of_cell), 4 * workers.number)
+        # Many more cells than workers, so that none of them waits long for the last cell. And not too many: each cell
+        # reads a part of each spill file. Cells that are too large for this are split again.
+        of_cell = min(rows * 6 // 10, max(CELL_BOXES, total // _MOST_CELLS))
+        count = min(max(-(-total // of_cell), 4 * workers.number), _MOST_CELLS)
     sample = sample_of(sources, SAMPLE_PER_CELL * count, dimensions_of(sources))
     return Plan(
         [source.files for source in sources],
@@ -275,6 +278,7 @@ def sample_of(sources: list[Source], wanted: int, dimensions: int) -> Floats:
 
 def _steps(plan: Plan, sources: list[Source], job: Job, folders: Folders, workers: Workers, rows: int) -> Manifest:
     Path(folders.spill).mkdir(parents=True, exist_ok=True)
+    _forget_other_spill(folders)
     progress = _Progress(job.progress, sum(chunk.rows for chunk in plan.chunks))
     missing = [number for number in range(len(plan.chunks)) if counts_of(folders.chunk(number)) is None]
     _check_disk(plan, missing, folders)
@@ -325,6 +329,14 @@ def _steps(plan: Plan, sources: list[Source], job: Job, folders: Folders, worker
     return _complete(job, folders, joined, boxes, copies)
 
 
+def _forget_other_spill(folders: Folders) -> None:
+    """Removes the boxes of the interrupted run if they were in another folder."""
+    noted = Path(folders.work) / _SPILL
+    if noted.exists() and noted.read_text(encoding="utf-8") not in ("", folders.spill):
+        shutil.rmtree(noted.read_text(encoding="utf-8"), ignore_errors=True)
+    write_text(noted, folders.spill)
+
+
 def _split(found: list[Node], folders: Folders, workers: Workers, rows: int) -> list[Node]:
     """The nodes with those that are too large replaced by what they are split into."""
     leaves: list[Node] = []
@@ -332,10 +344,15 @@ def _split(found: list[Node], folders: Folders, workers: Workers, rows: int) -> 
         large = []
         following = []
         for node in found:
-            split = children(folders, node)
-            if split:
-                following.extend(split)
-            elif split is None and sum(node.counts) > rows:
+            if summary_of(folders.pairs(node.name)) is not None:
+                leaves.append(node)  # it is joined already, with more memory than there is now
+                continue
+            split = split_of(folders, node)
+            if split is not None and split.children is not None:
+                if split.cells is None:
+                    leaves.append(node)
+                following.extend(split.children)
+            elif split is not None or sum(node.counts) > rows:
                 large.append(node)
             else:
                 leaves.append(node)
@@ -382,7 +399,10 @@ def _named(job: Job, folders: Folders) -> Manifest:
     """Gives a complete dataset its name."""
     assert job.out is not None
     shutil.rmtree(folders.spill, ignore_errors=True)
-    (Path(folders.work) / "lock").unlink(missing_ok=True)
+    for name in ("lock", _SPILL):
+        (Path(folders.work) / name).unlink(missing_ok=True)
+    for path in Path(folders.work).glob("_*.split.json"):
+        path.unlink()
     os.replace(folders.work, job.out)
     return read_manifest(job.out)
 

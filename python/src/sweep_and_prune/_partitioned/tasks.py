@@ -21,7 +21,7 @@ from .boxes import Chunk, File, Form, read_chunk
 from .cells import Cells, choose_cells
 from .dataset import DatasetError, pair_file, write_text
 from .search import Boxes, search, touches
-from .spill import gathered, read_groups, scatter
+from .spill import counts_of, gathered, read_groups, scatter
 
 ARGUMENTS = ("boxes",), ("a", "b")
 """The names of one set and of two."""
@@ -111,7 +111,7 @@ class Folders(NamedTuple):
 
     def split(self, name: str) -> Path:
         """The file that says how a node was split."""
-        return Path(self.spill) / f"{name}.split.json"
+        return Path(self.work) / f"_{name}.split.json"
 
     def pairs(self, name: str) -> Path:
         """The file with the pairs of a node."""
@@ -170,23 +170,35 @@ def _chunk_boxes(plan: Plan, chunk: Chunk, rows: int, partition: Any) -> Iterato
         yield Boxes(block.ids, block.rows.astype(_dtype(plan), copy=False))
 
 
-def split_node(folders: Folders, node: Node, wanted: int) -> bool:
-    """Splits a node into at most so many cells, and writes its boxes to them; False if splitting does not help."""
+def split_node(folders: Folders, node: Node, wanted: int) -> None:
+    """Splits a node into at most so many cells, and writes its boxes to them, unless splitting does not help.
+
+    How it is split is noted first: if this is repeated, the cells are the same, and their finished pairs are kept.
+    """
     plan = folders.plan()
+    noted = split_of(folders, node)
+    if noted is None:
+        cells = _chosen(folders, plan, node, wanted)
+        write_text(folders.split(node.name), json.dumps([cells]))
+    else:
+        cells = noted.cells
+    if cells is None:
+        return
+    for argument, form in enumerate(plan.forms):
+        path = folders.boxes(plan, node.name, argument)[0]
+        if counts_of(path) is None:
+            blocks = read_groups(folders.boxes(plan, node.level, argument), node.group, node.groups)
+            scatter(blocks, cells, path, form.id_type, _dtype(plan))
+
+
+def _chosen(folders: Folders, plan: Plan, node: Node, wanted: int) -> Cells | None:
     low, high = np.array(node.low), np.array(node.high)
-    target = _SAMPLE_PER_CELL * wanted
-    sample = _clipped(_sample(folders, plan, node, max(1, sum(node.counts) // target)), low, high)
+    step = max(1, sum(node.counts) // (_SAMPLE_PER_CELL * wanted))
+    sample = _clipped(_sample(folders, plan, node, step), low, high)
     cells = choose_cells(sample, wanted)
     _, starts = cells.assign(sample)
     helps = cells.number > 1 and np.diff(starts).max() <= _ALL_IN_ONE * len(sample)
-    counts = []
-    if helps:
-        for argument, form in enumerate(plan.forms):
-            blocks = read_groups(folders.boxes(plan, node.level, argument), node.group, node.groups)
-            path = folders.boxes(plan, node.name, argument)[0]
-            counts.append(scatter(blocks, cells, path, form.id_type, _dtype(plan)).groups)
-    write_text(folders.split(node.name), json.dumps([cells, counts]))
-    return bool(helps)
+    return cells if helps else None
 
 
 def _sample(folders: Folders, plan: Plan, node: Node, step: int) -> NDArray[np.float64]:
@@ -207,15 +219,29 @@ def _clipped(sample: NDArray[np.float64], low: NDArray[np.float64], high: NDArra
     return clipped
 
 
-def children(folders: Folders, node: Node) -> list[Node] | None:
-    """The nodes of a node that was split: none if splitting did not help, None if it was not split."""
+class Split(NamedTuple):
+    """How a node was split."""
+
+    cells: Cells | None
+    """None if splitting does not help."""
+    children: list[Node] | None
+    """None if the boxes are not, or no longer, in files of their own."""
+
+
+def split_of(folders: Folders, node: Node) -> Split | None:
+    """How a node was split; None if it was not."""
     try:
-        cells, counts = json.loads(folders.split(node.name).read_text(encoding="utf-8"))
+        (noted,) = json.loads(folders.split(node.name).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
-    if not counts:
-        return []
-    return nodes(Cells(*cells), counts, node.name, np.array(node.low), np.array(node.high), node.wide)
+    if noted is None:
+        return Split(None, [])
+    cells, plan = Cells(*noted), folders.plan()
+    counts = [counts_of(folders.boxes(plan, node.name, argument)[0]) for argument in range(plan.sets)]
+    if None in counts:
+        return Split(cells, None)
+    groups = [one.groups for one in counts if one is not None]
+    return Split(cells, nodes(cells, groups, node.name, np.array(node.low), np.array(node.high), node.wide))
 
 
 def nodes(

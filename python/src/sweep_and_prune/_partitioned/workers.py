@@ -110,7 +110,10 @@ def memory_of(limit: int | str | float | None) -> int:
     if isinstance(limit, str):
         from dask.utils import parse_bytes
 
-        limit = parse_bytes(limit)
+        try:
+            return int(parse_bytes(limit))
+        except ValueError:
+            raise ValueError(f'memory_limit must be a size such as "4GB", not {limit!r}') from None
     return int(limit)
 
 
@@ -122,6 +125,8 @@ def started(limit: int | str | float | None, number: int | None) -> Iterator[Wor
         limit: bytes of memory, or text such as `"4GB"`.
         number: how many workers; 0 for none but this process, None for as many as pay.
     """
+    if number is not None and not (isinstance(number, int) and number >= 0):
+        raise ValueError(f"workers must be a whole number of 0 or more, not {number!r}")
     client = active_client()
     if client is not None and number != 0:
         yield _of_client(client, limit)
