@@ -191,6 +191,11 @@ def test_missing_numbers_are_refused_with_their_line_or_left_out(capsys: pytest.
             "a,b,c\n1,2,3\n",
             "a.csv has no columns that are known as boxes: choose them by --columns; its columns are a, b, c",
         ),
+        (
+            "a.csv",
+            "x,y,width,height\n1,2,3,4\n",
+            "a.csv has no columns that are known as boxes: pass --format xywh; its columns are x, y, width, height",
+        ),
         ("a.csv", "1,2,3\n", "a.csv has no header and 3 columns; boxes have 2, 4 or 6"),
         ("a.csv", "", "a.csv is empty"),
         ("a.bed", "chr1\t5\n", "a.bed, line 1: chrom, start and end are expected"),

@@ -323,6 +323,8 @@ def test_missing_and_damaged_files_and_wrong_columns_are_named() -> None:
     pyarrow.parquet.write_table(pyarrow.table({"p": [1.0], "q": [2.0]}), "c.parquet")
     assert "c.parquet has no columns that are known as boxes" in refused("c.parquet")
     assert "its columns are p, q" in refused("c.parquet", columns=["p", "r"])
+    pyarrow.parquet.write_table(table(BOXES).select([0, 1, 2, 3]).rename_columns([*"xywh"]), "g.parquet")
+    assert 'known as boxes: pass format="xywh"; its columns are x, y, w, h' in refused("g.parquet")
     write("d.parquet"), pyarrow.parquet.write_table(table(BOXES).drop_columns(["maxy"]), "e.parquet")
     assert "e.parquet has no column 'maxy'" in refused(["d.parquet", "e.parquet"])
     missing = table(BOXES).set_column(4, "number", pyarrow.array([None, *range(len(BOXES) - 1)], pyarrow.int64()))

@@ -149,6 +149,28 @@ def test_geometries_are_joined_as_by_geopandas(how: str, predicate: str) -> None
     check_same(left, right[right.geometry.geom_type == "Point"], how, predicate)
 
 
+def test_rectangles_and_points_and_what_looks_like_them() -> None:
+    geopandas, shapely = pytest.importorskip("geopandas"), pytest.importorskip("shapely")
+    random = np.random.default_rng(5)
+    rectangles = shapely.get_coordinates(shapely.box(*random_boxes(200, 2, np.float64, 3).T + 0.0)).reshape(-1, 5, 2)[
+        :, :4
+    ]
+    rectangles = rectangles[(rectangles[:, 0] != rectangles[:, 2]).all(axis=1)]
+    rolled = [np.roll(ring, turn % 4, axis=0)[:: 1 - 2 * (turn % 2)] for turn, ring in enumerate(rectangles)]
+    quads = random.integers(0, 12, (300, 4, 2)).astype(float)
+    near = rectangles[:60].copy()
+    near[np.arange(60), np.arange(60) % 4, np.arange(60) // 4 % 2] += 1  # one corner is elsewhere
+    rings = [ring for ring in [*rolled, *quads, *near] if len(np.unique(ring, axis=0)) > 2]
+    polygons = shapely.polygons(np.stack(rings))
+    polygons = polygons[shapely.is_valid(polygons)]
+    points = shapely.points(random.integers(0, 12, (100, 2)) / 1.0)
+    made = np.concatenate([polygons, points, shapely.boundary(polygons[:50])])
+    left, right = (geopandas.GeoDataFrame({"id": np.arange(len(of))}, geometry=of) for of in (made, made[::-1]))
+    assert check_same(left, right) > 10_000
+    for predicate in ("contains", "within"):
+        assert check_same(left, right, "inner", predicate) > 300
+
+
 def test_distances_names_indices_and_groups_are_those_of_geopandas() -> None:
     left, right = shapes(80, 1), shapes(60, 2)
     for how in ("inner", "left", "right"):

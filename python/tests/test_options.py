@@ -45,6 +45,26 @@ def test_margins_follow_their_definition(dimensions: int, dtype: Any, data: st.D
     between = np.argwhere(within(a, b, rounded, closed))
     assert np.array_equal(in_order(sap.find_pairs_between(a, b, margin=margin, closed=closed)), between)
     assert sap.count_pairs_between(a, b, margin=margin, closed=closed) == len(between)
+    if closed == "both":
+        finder, chunks = sap.PairFinder(dimensions, dtype), []
+        assert np.array_equal(in_order(finder.find(a, margin=margin)), wanted)
+        assert np.array_equal(in_order(finder.find_between(a, b, margin=margin)), between)
+        assert finder.count(a, margin=margin) == len(wanted)
+        assert finder.count_between(a, b, margin=margin) == len(between)
+        finder.for_each_chunk(a, lambda chunk: chunks.append(len(chunk)), margin=margin)
+        assert sum(chunks) == len(wanted)
+        finder.for_each_chunk_between(a, b, lambda chunk: chunks.append(len(chunk)), margin=margin)
+        assert sum(chunks) == len(wanted) + len(between)
+
+
+def test_a_finder_with_a_margin_refuses_what_it_refuses_without() -> None:
+    finder = sap.PairFinder(1)
+    with pytest.raises(sap.InvalidBoxError, match=r"a\[1\] is inverted"):
+        finder.find_between([[0, 1], [3, 2]], [[0, 1]], margin=5)
+    with pytest.raises(sap.InvalidBoxError, match=r"boxes\[0\] has a NaN"):
+        finder.count([[np.nan, 1]], margin=5)
+    with pytest.raises(ValueError, match="margin is -1"):
+        finder.find([[0, 1]], margin=-1)
 
 
 def test_margins_of_integers_and_times_are_exact() -> None:

@@ -137,6 +137,12 @@ def box_columns(columns: list[str], format: str) -> list[str]:
     return [known["bbox"]] if "bbox" in known and len(columns) > 1 else []  # as in GeoParquet
 
 
+def unknown_columns(columns: list[str], otherwise: str, option: str = 'format="{}"') -> str:
+    """What to do about columns that are not recognized: another format if they are known there."""
+    formats = [format for format in _FORMATS if len(box_columns(columns, format)) > 1]
+    return f"pass {option.format(formats[0])}" if formats else otherwise
+
+
 def _from_columns(values: Any, columns: list[str], name: str, format: str) -> NDArray[Any]:
     if hasattr(values, "total_bounds"):
         values = values.bounds
@@ -152,8 +158,8 @@ def _from_columns(values: Any, columns: list[str], name: str, format: str) -> ND
             return nested
     wanted = {"xyxy": "minx, miny, maxx, maxy", "xywh": "x, y, w, h", "cxcywh": "cx, cy, w, h"}[format]
     raise ValueError(
-        f"{name} has no columns that are known as boxes, such as {wanted}: its columns are {', '.join(columns)}. "
-        "Rename them, or pass an array"
+        f"{name} has no columns that are known as boxes, such as {wanted}: its columns are {', '.join(columns)}; "
+        + unknown_columns(columns, "rename them, or pass an array")
     )
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,9 @@ from ._pairs import Progress, find_pairs_between
 _FLIPPED = {"contains": "within", "covers": "covered_by", "within": "contains", "covered_by": "covers"}
 _SYMMETRIC = ("intersects", "touches", "overlaps", "dwithin")
 _PREDICATES = (*_FLIPPED, *_SYMMETRIC, "contains_properly", "crosses")
+
+_OF_POINTS = {"intersects": "intersects_xy", "contains": "contains_xy"}
+"""The predicates that shapely tests faster on coordinates than on points."""
 
 _FEW_POINTS = 5
 """A geometry with so few points gains nothing by being prepared."""
@@ -124,7 +126,7 @@ def join(
             progress=progress,
         )
         found = pairs[:, 0], pairs[:, 1]
-    return _frame(left, right, _in_order(found, len(right)), how, columns, (lsuffix, rsuffix))
+    return _frame(left, right, _in_order(found), how, columns, (lsuffix, rsuffix))
 
 
 def _check_distance(predicate: str, distance: ArrayLike | None) -> None:
@@ -171,25 +173,68 @@ def _of_geometries(
     first, second = pairs[:, 0], pairs[:, 1]
     if len(pairs) == 0:
         return first, second
-    # A prepared geometry is tested faster. Those that have more points are prepared, if they may come first.
     sizes = [shapely.get_num_coordinates(array) for array in geometries]
+    certain = first[:0], second[:0]
+    if predicate == "intersects":
+        # Two that fill their bounds intersect if their bounds do: no test is needed.
+        full = [_fill_their_bounds(*of_set) for of_set in zip(geometries, sizes)]
+        is_certain = full[0][first] & full[1][second]
+        certain = first[is_certain], second[is_certain]
+        first, second = first[~is_certain], second[~is_certain]
+    kept = _tested(geometries, sizes, predicate, distances, (first, second)) if len(first) else (first, second)
+    return np.concatenate([certain[0], kept[0]]), np.concatenate([certain[1], kept[1]])
+
+
+def _fill_their_bounds(geometries: NDArray[Any], sizes: NDArray[Any]) -> NDArray[np.bool_]:
+    """Whether geometries are points, or rectangles along the axes."""
+    import shapely
+
+    types = shapely.get_type_id(geometries)
+    full = np.asarray(types == shapely.GeometryType.POINT)
+    rows = np.flatnonzero((types == shapely.GeometryType.POLYGON) & (sizes == 5))
+    coordinates = shapely.get_coordinates(geometries[rows] if len(rows) < len(full) else geometries)
+    x0, y0, x1, y1, x2, y2, x3, y3, _, _ = np.ascontiguousarray(coordinates.reshape(-1, 10).T)
+    begins_upright = (x0 == x1) & (x2 == x3) & (y1 == y2) & (y3 == y0)
+    begins_flat = (y0 == y1) & (y2 == y3) & (x1 == x2) & (x3 == x0)
+    full[rows] = (begins_upright | begins_flat) & (x0 != x2) & (y0 != y2)
+    return full
+
+
+def _tested(
+    geometries: list[NDArray[Any]],
+    sizes: list[NDArray[Any]],
+    predicate: str,
+    distances: NDArray[np.float64] | None,
+    candidates: tuple[Indices, Indices],
+) -> tuple[Indices, Indices]:
+    """The candidates that fulfill a predicate."""
+    import shapely
+
+    # A prepared geometry is tested faster. Those that have more points are prepared, if they may come first.
     is_flipped = (predicate in _FLIPPED or predicate in _SYMMETRIC) and bool(
-        sizes[1][second].mean() > sizes[0][first].mean()
+        sizes[1][candidates[1]].mean() > sizes[0][candidates[0]].mean()
     )
-    test: Callable[..., NDArray[np.bool_]] = getattr(
-        shapely, _FLIPPED.get(predicate, predicate) if is_flipped else predicate
-    )
+    name = _FLIPPED.get(predicate, predicate) if is_flipped else predicate
     a, b = reversed(geometries) if is_flipped else geometries
-    of_a, of_b = (second, first) if is_flipped else (first, second)
-    used = np.unique(of_a)
-    used = used[(sizes[is_flipped][used] > _FEW_POINTS) & ~shapely.is_prepared(a[used])]
+    # All tests of a geometry follow each other, while it is in the cache.
+    of_a, of_b = _in_order((candidates[is_flipped], candidates[not is_flipped]))
+    is_used = np.zeros(len(a), bool)
+    is_used[of_a] = True
+    used = np.flatnonzero(is_used & (sizes[is_flipped] > _FEW_POINTS))
+    used = used[~shapely.is_prepared(a[used])]
     shapely.prepare(a[used])
     try:
-        arguments = () if distances is None else (distances[first],)
-        kept = test(a[of_a], b[of_b], *arguments)
+        if distances is not None:
+            kept = shapely.dwithin(a[of_a], b[of_b], distances[of_b if is_flipped else of_a])
+        elif name in _OF_POINTS and (shapely.get_type_id(b) == shapely.GeometryType.POINT).all():
+            x, y = shapely.get_x(b), shapely.get_y(b)
+            kept = getattr(shapely, _OF_POINTS[name])(a[of_a], x[of_b], y[of_b])
+        else:
+            kept = getattr(shapely, name)(a[of_a], b[of_b])
     finally:
         shapely.destroy_prepared(a[used])
-    return first[kept], second[kept]
+    found = of_a[kept], of_b[kept]
+    return (found[1], found[0]) if is_flipped else found
 
 
 def _extended(bounds: NDArray[np.float64], distances: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -198,16 +243,13 @@ def _extended(bounds: NDArray[np.float64], distances: NDArray[np.float64]) -> ND
     return np.hstack([bounds[:, :2] - more, bounds[:, 2:] + more])
 
 
-def _in_order(found: tuple[Indices, Indices], count: int) -> tuple[Indices, Indices]:
-    """Pairs sorted by the left row and then by the right one."""
+def _in_order(found: tuple[Indices, Indices]) -> tuple[Indices, Indices]:
+    """Pairs sorted by the first row and then by the second one."""
     first, second = found
-    if len(first) == 0:
-        return found
-    # Sorting one number is several times faster than np.lexsort. 2^32 rows at most: it fits.
-    keys = first.astype(np.uint64) * np.uint64(count) + second.astype(np.uint64)
+    # Sorting one number is several times faster than np.lexsort. There are less than 2^32 rows.
+    keys = first.astype(np.uint64) << np.uint64(32) | second.astype(np.uint64)
     keys.sort()
-    first, second = (part.astype(np.int64) for part in np.divmod(keys, np.uint64(count)))
-    return first, second
+    return (keys >> np.uint64(32)).astype(np.int64), (keys & np.uint64(2**32 - 1)).astype(np.int64)
 
 
 def _frame(

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, DTypeLike
 
 from ._arrays import Floats, Pairs, box_rows, float_dtype, index_dtype, thread_count, whole
 from ._native import Finder
-from ._prepare import Prepared, prepare
+from ._prepare import Prepared, prepare, with_margin
 
 Margin = Union[ArrayLike, timedelta]
 """A distance: a number, one for each axis, or a `timedelta`."""
@@ -456,11 +456,12 @@ class PairFinder:
         """The precision in which boxes are compared."""
         return self._dtype
 
-    def find(self, boxes: ArrayLike, *, progress: Progress | None = None) -> Pairs:
+    def find(self, boxes: ArrayLike, *, margin: Margin = 0, progress: Progress | None = None) -> Pairs:
         """Finds all pairs of boxes that overlap, as `find_pairs` does.
 
         Args:
             boxes: `(n, 2 * dimensions)` numbers.
+            margin: finds boxes within this distance on each axis, too, as in `find_pairs`.
             progress: called with the share of the work that is done, from 0 to 1.
 
         Raises:
@@ -469,15 +470,22 @@ class PairFinder:
         >>> import sweep_and_prune as sap
         >>> sap.PairFinder(dimensions=1).find([[0, 2], [5, 6], [2, 3]])
         array([[0, 2]])
+        >>> sap.PairFinder(dimensions=1).count([[0, 2], [5, 6], [2, 3]], margin=2)
+        2
         """
-        return _done(self._finder.find(self._rows(boxes, "boxes"), None, self._index, _checked(progress)), progress)
+        return _done(
+            self._finder.find(self._rows(boxes, "boxes", margin), None, self._index, _checked(progress)), progress
+        )
 
-    def find_between(self, a: ArrayLike, b: ArrayLike, *, progress: Progress | None = None) -> Pairs:
+    def find_between(
+        self, a: ArrayLike, b: ArrayLike, *, margin: Margin = 0, progress: Progress | None = None
+    ) -> Pairs:
         """Finds all pairs of a box of `a` and a box of `b` that overlap, as `find_pairs_between` does.
 
         Args:
             a: `(n, 2 * dimensions)` numbers.
             b: `(k, 2 * dimensions)` numbers.
+            margin: finds boxes within this distance on each axis, too, as in `find_pairs`.
             progress: called with the share of the work that is done, from 0 to 1.
 
         Raises:
@@ -487,14 +495,15 @@ class PairFinder:
         >>> sap.PairFinder(dimensions=1).find_between([[0, 2], [5, 6]], [[6, 7]])
         array([[1, 0]])
         """
-        rows = self._rows(a, "a"), self._rows(b, "b")
+        rows = self._rows(a, "a", margin), self._rows(b, "b", margin)
         return _done(self._finder.find(*rows, self._index, _checked(progress)), progress)
 
-    def count(self, boxes: ArrayLike, *, progress: Progress | None = None) -> int:
+    def count(self, boxes: ArrayLike, *, margin: Margin = 0, progress: Progress | None = None) -> int:
         """Counts the pairs that `find` finds, without storing them.
 
         Args:
             boxes: `(n, 2 * dimensions)` numbers.
+            margin: finds boxes within this distance on each axis, too, as in `find_pairs`.
             progress: called with the share of the work that is done, from 0 to 1.
 
         Raises:
@@ -504,14 +513,15 @@ class PairFinder:
         >>> sap.PairFinder(dimensions=1).count([[0, 2], [5, 6], [2, 3]])
         1
         """
-        return _done(self._finder.count(self._rows(boxes, "boxes"), None, _checked(progress)), progress)
+        return _done(self._finder.count(self._rows(boxes, "boxes", margin), None, _checked(progress)), progress)
 
-    def count_between(self, a: ArrayLike, b: ArrayLike, *, progress: Progress | None = None) -> int:
+    def count_between(self, a: ArrayLike, b: ArrayLike, *, margin: Margin = 0, progress: Progress | None = None) -> int:
         """Counts the pairs that `find_between` finds, without storing them.
 
         Args:
             a: `(n, 2 * dimensions)` numbers.
             b: `(k, 2 * dimensions)` numbers.
+            margin: finds boxes within this distance on each axis, too, as in `find_pairs`.
             progress: called with the share of the work that is done, from 0 to 1.
 
         Raises:
@@ -521,9 +531,13 @@ class PairFinder:
         >>> sap.PairFinder(dimensions=1).count_between([[0, 2], [5, 6]], [[1, 7]])
         2
         """
-        return _done(self._finder.count(self._rows(a, "a"), self._rows(b, "b"), _checked(progress)), progress)
+        return _done(
+            self._finder.count(self._rows(a, "a", margin), self._rows(b, "b", margin), _checked(progress)), progress
+        )
 
-    def for_each_chunk(self, boxes: ArrayLike, each: Callable[[Pairs], object], *, size: int = _CHUNK) -> bool:
+    def for_each_chunk(
+        self, boxes: ArrayLike, each: Callable[[Pairs], object], *, size: int = _CHUNK, margin: Margin = 0
+    ) -> bool:
         """Calls a function with the pairs that `find` finds, in the same order, one chunk at a time.
 
         Within `each` this finder cannot be used; others can.
@@ -533,6 +547,7 @@ class PairFinder:
             each: takes an array of shape `(m, 2)`. If it returns something false other than `None`, the search
                 stops.
             size: the number of pairs in each chunk but the last, at most 2^24.
+            margin: finds boxes within this distance on each axis, too.
 
         Returns:
             Whether `each` never stopped the search.
@@ -546,10 +561,16 @@ class PairFinder:
         [[0 2]]
         True
         """
-        return self._finder.for_each_chunk(self._rows(boxes, "boxes"), None, *_chunks(each, size), self._index)
+        return self._finder.for_each_chunk(self._rows(boxes, "boxes", margin), None, *_chunks(each, size), self._index)
 
     def for_each_chunk_between(
-        self, a: ArrayLike, b: ArrayLike, each: Callable[[Pairs], object], *, size: int = _CHUNK
+        self,
+        a: ArrayLike,
+        b: ArrayLike,
+        each: Callable[[Pairs], object],
+        *,
+        size: int = _CHUNK,
+        margin: Margin = 0,
     ) -> bool:
         """Calls a function with the pairs that `find_between` finds, in the same order, one chunk at a time.
 
@@ -559,6 +580,7 @@ class PairFinder:
             each: takes an array of shape `(m, 2)`. If it returns something false other than `None`, the search
                 stops.
             size: the number of pairs in each chunk but the last, at most 2^24.
+            margin: finds boxes within this distance on each axis, too.
 
         Returns:
             Whether `each` never stopped the search.
@@ -572,7 +594,7 @@ class PairFinder:
          [0 1]]
         True
         """
-        rows = self._rows(a, "a"), self._rows(b, "b")
+        rows = self._rows(a, "a", margin), self._rows(b, "b", margin)
         return self._finder.for_each_chunk(*rows, *_chunks(each, size), self._index)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -588,8 +610,9 @@ class PairFinder:
         """Shows the arguments with which it was created."""
         return f"PairFinder(dimensions={self._dimensions}, dtype={self._dtype})"
 
-    def _rows(self, boxes: ArrayLike, name: str) -> Floats:
-        return box_rows(boxes, name, self._dtype, self._dimensions)
+    def _rows(self, boxes: ArrayLike, name: str, margin: Margin) -> Floats:
+        rows = box_rows(boxes, name, self._dtype, self._dimensions)
+        return with_margin(rows, name, margin)
 
 
 _index_dtype = index_dtype

@@ -19,7 +19,7 @@ from zipfile import BadZipFile
 import numpy as np
 from numpy.typing import NDArray
 
-from ._inputs import box_columns
+from ._inputs import box_columns, unknown_columns
 
 _MISSING = {"", "na", "n/a", "nan", "null", "none", "."}
 _ARROW = (".arrow", ".feather", ".ipc")
@@ -55,10 +55,8 @@ class Source:
         """The boxes, from columns with these names or else from those that are recognized."""
         if not columns:
             if self.columns and not box_columns(self.columns, format) and not isinstance(self.values, np.ndarray):
-                raise FileError(
-                    f"{self.name} has no columns that are known as boxes: choose them by --columns; "
-                    + _listed(self.columns)
-                )
+                way = unknown_columns(self.columns, "choose them by --columns", "--format {}")
+                raise FileError(f"{self.name} has no columns that are known as boxes: {way}; {_listed(self.columns)}")
             return self.values
         return np.column_stack([np.asarray(self._column(name)) for name in columns])
 

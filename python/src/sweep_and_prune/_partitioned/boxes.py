@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from .._arrays import box_array
 from .._errors import InvalidBoxError
-from .._inputs import box_columns
+from .._inputs import box_columns, unknown_columns
 from .._prepare import prepare, refuse_inverted
 from .dataset import DatasetError
 from .search import Boxes
@@ -265,8 +265,8 @@ def form_of_files(
             kind, names = "geometry", [json.loads(geo)["primary_column"]]
     if not names:
         raise DatasetError(
-            f"{files[0].path} has no columns that are known as boxes: choose them by columns; "
-            f"its columns are {', '.join(schema.names)}"
+            f"{files[0].path} has no columns that are known as boxes: "
+            f"{unknown_columns(schema.names, 'choose them by columns')}; its columns are {', '.join(schema.names)}"
         )
     if len(names) not in (1, 2, 4, 6):
         raise ValueError(f"columns are {len(names)} names; they must be 2, 4 or 6: min corner and then max corner")

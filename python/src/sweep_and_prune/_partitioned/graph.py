@@ -45,7 +45,7 @@ def source_of_collection(collection: Any, columns: Any, ids: str | None, name: s
 def _form_of_frame(meta: Any, columns: Any, ids: str | None, options: dict[str, Any]) -> Form:
     import pyarrow
 
-    from .._inputs import box_columns
+    from .._inputs import box_columns, unknown_columns
 
     names = [str(name) for name in meta.columns]
     kind, chosen = "chosen", list(columns or [])
@@ -55,7 +55,8 @@ def _form_of_frame(meta: Any, columns: Any, ids: str | None, options: dict[str, 
         kind, chosen = "recognized", box_columns(names, options["format"])
     if not chosen:
         raise DatasetError(
-            "boxes has no columns that are known as boxes: choose them by columns; its columns are " + ", ".join(names)
+            f"boxes has no columns that are known as boxes: {unknown_columns(names, 'choose them by columns')}; "
+            f"its columns are {', '.join(names)}"
         )
     for name in chosen + ([ids] if ids is not None else []):
         if name not in names:
