@@ -100,6 +100,7 @@ def test_columns_of_other_dimensions_and_formats() -> None:
     assert same(sap.find_pairs(intervals), pairs(np.stack([x, x + width], 1)))  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"no columns that are known as boxes.*its columns are a, b; rename"):
         sap.find_pairs(Frame(a=x, b=y))  # type: ignore[arg-type]
+    assert sap.count_pairs(np.empty((0, 2, 3))) == 0  # without boxes, too
     with pytest.raises(ValueError, match=r'its columns are x, y, w, h; pass format="xywh"'):
         sap.find_pairs(sized)  # type: ignore[arg-type]
 

@@ -54,7 +54,7 @@ def raw_boxes(values: Any, name: str, format: str = "xyxy") -> NDArray[Any]:
     if array.dtype.kind == "O" and array.ndim == 1:
         array = _from_geometries(array)
     if array.ndim == 3 and array.shape[1] == 2 and 1 <= array.shape[2] <= 3:
-        array = array.reshape(len(array), -1)
+        array = array.reshape(len(array), 2 * array.shape[2])  # -1 is not known without boxes
     return _corners(array, format, name)
 
 

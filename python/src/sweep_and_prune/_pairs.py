@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, DTypeLike
 
 from ._arrays import Floats, Pairs, box_rows, float_dtype, index_dtype, thread_count, whole
 from ._native import Finder
-from ._prepare import Prepared, prepare, with_margin
+from ._prepare import Prepared, prepare
 
 Margin = Union[ArrayLike, timedelta]
 """A distance: a number, one for each axis, or a `timedelta`."""
@@ -612,7 +612,9 @@ class PairFinder:
 
     def _rows(self, boxes: ArrayLike, name: str, margin: Margin) -> Floats:
         rows = box_rows(boxes, name, self._dtype, self._dimensions)
-        return with_margin(rows, name, margin)
+        if type(margin) is int and margin == 0:
+            return rows
+        return prepare({name: rows}, margin=margin).sets[0]
 
 
 _index_dtype = index_dtype

@@ -49,7 +49,7 @@ def prepare(
     checked_format(format)
     if not (isinstance(missing, str) and missing in ("raise", "skip")):
         raise ValueError(f'missing must be "raise" or "skip", not {missing!r}')
-    has_margin = _is_margin(margin)
+    has_margin = not (type(margin) is int and margin == 0)
     is_plain = format == "xyxy" and closed is None and missing == "raise" and by is None and not has_margin
     if is_plain and all(type(boxes) is np.ndarray and boxes.dtype.kind == "f" for boxes in sets.values()):
         rows = [box_rows(boxes, name) for name, boxes in sets.items()]  # the common case, quickly
@@ -91,18 +91,6 @@ def prepare(
         rows = [_with_axis(boxes, code) for boxes, code in zip(rows, codes)]
         groups = None
     return Prepared(rows, kept, groups)
-
-
-def with_margin(rows: Floats, name: str, margin: object) -> Floats:
-    """Boxes in floating point whose plain pairs are those within a margin."""
-    if not _is_margin(margin):
-        return rows
-    refuse_inverted(rows, name, None)
-    return _extended(rows, margin)
-
-
-def _is_margin(margin: object) -> bool:
-    return not (type(margin) is int and margin == 0)
 
 
 def _with_axis(boxes: Floats, code: Any) -> Floats:
