@@ -1,11 +1,19 @@
-// The explanation.
+// The explanation. What stands at its top comes first; the demos come when a reader comes near them.
 
-import "sweep-and-prune/demo";
 import "sweep-and-prune/demo.css";
 import { startArticle } from "./article/article.ts";
-import { FallingBalls } from "./falling/falling-balls.ts";
-import { LibraryTrial } from "./library/library-trial.ts";
+import { HeroBoxes } from "./hero/hero-boxes.ts";
 
-customElements.define("falling-balls", FallingBalls);
-customElements.define("library-trial", LibraryTrial);
+customElements.define("hero-boxes", HeroBoxes);
+
+const near = new IntersectionObserver(
+  (entries) => {
+    if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
+    near.disconnect();
+    void import("./article/demos.ts");
+  },
+  { rootMargin: "300px" },
+);
+for (const element of document.querySelectorAll("sap-demo, falling-balls, library-trial")) near.observe(element);
+
 startArticle();

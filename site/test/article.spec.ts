@@ -281,6 +281,7 @@ test.describe("without scripts", () => {
 
 test("the library's pairs are those of brute force", async ({ page }) => {
   await page.goto("/");
+  await page.locator("library-trial").scrollIntoViewIfNeeded();
   await page.getByRole("button", { name: "Find pairs" }).click();
   await expect(page.locator(".trial-result")).toContainText("the same pairs");
   await page.getByLabel("Random boxes in 3D").fill("15");

@@ -32,7 +32,7 @@ test("keys alone: step, back, play, pause, and a ball moved", async ({ page }) =
   await expect.poll(() => moving.evaluate((element: SapDemo) => element.isPlaying), { message: "space plays" }).toBe(true);
   await page.keyboard.press("Space");
   await expect.poll(() => moving.evaluate((element: SapDemo) => element.isPlaying), { message: "space pauses" }).toBe(false);
-  for (const name of ["Play", "Step back", "Step", "Moment", "Speed", "Reset", "Share or embed"]) {
+  for (const name of ["Play", "Step back", "Step", "Moment", "Speed", "Reset", "New world", "Share or embed"]) {
     await page.keyboard.press("Tab");
     await expect(moving.getByLabel(name, { exact: true })).toBeFocused();
   }

@@ -25,6 +25,9 @@ const PAGES: Readonly<Record<string, { parts: string; rest(page: Page): Promise<
   index: {
     parts: "main > header, .contents, .sections > section",
     rest: async (page) => {
+      // The demos are loaded when a reader comes near the first of them.
+      await page.locator("sap-demo").first().scrollIntoViewIfNeeded();
+      await page.evaluate(() => customElements.whenDefined("sap-demo"));
       await page.locator("sap-demo").evaluateAll((all) => Promise.all(all.map((demo) => (demo as SapDemo).ready)));
       await ballsAwake(page);
     },

@@ -3,16 +3,32 @@ import { PAGES } from "./support/pages.ts";
 
 test.use({ serviceWorkers: "allow" });
 
-test("once visited, every page opens without a network", async ({ page, context }) => {
+test("a page that was visited opens without a network; a first visit stores the article alone", async ({ page, context }) => {
   const failed: string[] = [];
   page.on("requestfailed", (request) => {
     // What is still loading when the page is left is aborted, and that is no failure.
     if (request.failure()?.errorText !== "net::ERR_ABORTED") failed.push(request.url());
   });
-  await page.goto("/");
-  await page.evaluate(() => navigator.serviceWorker.ready);
+  const stored = (): Promise<void> => expect(page.locator("html")).toHaveAttribute("data-stored", "");
+  await page.goto("/race.html");
+  await stored();
+  const bytes = await page.evaluate(async () => {
+    let sum = 0;
+    for (const name of await caches.keys()) {
+      const cache = await caches.open(name);
+      for (const request of await cache.keys()) sum += (await (await cache.match(request))!.arrayBuffer()).byteLength;
+    }
+    return sum;
+  });
+  expect(bytes, "the article and this page").toBeLessThan(3_500_000);
+  // The embedded demo has no frame of a page, and stores nothing.
+  const visited = PAGES.filter((path) => path !== "/embed.html" && path !== "/index.html");
+  for (const path of visited) {
+    await page.goto(path);
+    await stored();
+  }
   await context.setOffline(true);
-  for (const path of [...PAGES, "/", "/falling.html?discs.bodies=50"]) {
+  for (const path of [...visited, "/", "/falling.html?discs.bodies=50"]) {
     await page.goto(path);
     await page.waitForLoadState("load");
     await expect(page.locator("main")).toBeAttached();
@@ -20,6 +36,9 @@ test("once visited, every page opens without a network", async ({ page, context 
   }
   // Not only the text: the library answers.
   await page.goto("/");
+  await page.locator("library-trial").scrollIntoViewIfNeeded();
   await page.getByRole("button", { name: "Find pairs" }).click();
   await expect(page.locator(".trial-result")).toContainText("the same pairs");
+  await page.locator("#d1 sap-demo").scrollIntoViewIfNeeded();
+  await expect.poll(() => page.locator("#d1 sap-demo").evaluate((demo) => (demo as HTMLElement & { balls?: unknown[] }).balls?.length ?? 0)).toBe(5);
 });

@@ -1,3 +1,4 @@
+import { SapComparisonElement } from "./comparison.js";
 import { SapDemoElement } from "./element.js";
 import type { SapDemo as Interface } from "./types.js";
 
@@ -5,6 +6,9 @@ export type { DemoDrag, DemoEvent, DemoEventMap, DemoSort, DemoState, Row } from
 
 /** `<sap-demo>`, beside its attributes. Each of those is a property as well, in camel case. */
 export interface SapDemo extends Interface {}
+
+// Before `<sap-demo>`: a demo looks for the comparison that it stands in.
+if (!customElements.get("sap-comparison")) customElements.define("sap-comparison", SapComparisonElement);
 
 /** The class of `<sap-demo>`. */
 export const SapDemo: {

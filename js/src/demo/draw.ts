@@ -121,7 +121,13 @@ class Painter {
     if (!options.decorations.checks) return;
     this.#context.strokeStyle = this.#theme.overlap;
     this.#context.lineWidth = 2;
-    for (let i = 0; i + 1 < state.overlaps.length; i += 2) this.#between(state.overlaps[i]!, state.overlaps[i + 1]!);
+    for (let i = 0; i + 1 < state.overlaps.length; i += 2) {
+      const [a, b] = [state.overlaps[i]!, state.overlaps[i + 1]!];
+      // Where boxes are shown: dashed if only the boxes overlap.
+      this.#context.setLineDash(options.hasBoxes && !this.#touch(a, b) ? [6, 5] : []);
+      this.#between(a, b);
+    }
+    this.#context.setLineDash([]);
   }
 
   missed(): void {
@@ -225,6 +231,12 @@ class Painter {
       this.#context.lineTo(0, at);
     }
     this.#context.stroke();
+  }
+
+  /** Whether two balls touch, not only their boxes. */
+  #touch(a: number, b: number): boolean {
+    const [[ax, ay], [bx, by]] = [this.#center(a), this.#center(b)];
+    return Math.hypot(ax - bx, ay - by) <= this.#scene.radii[a]! + this.#scene.radii[b]!;
   }
 
   #between(a: number, b: number): void {

@@ -3,12 +3,14 @@ import type { TraceEvent } from "../trace.js";
 import type { DemoEvent, DemoState, Row } from "./types.js";
 import { Canvases } from "./canvas.js";
 import { clock } from "./clock.js";
+import { comparisonOf, type SapComparisonElement } from "./comparison.js";
 import type { Explanation } from "./explain.js";
 import { Hands } from "./hands.js";
 import { press } from "./keys.js";
 import { loadDemos } from "./load.js";
 import { messageOf } from "./option-error.js";
-import { attributes, type Options, readOptions, readStart } from "./options.js";
+import { motionQuery } from "./motion-query.js";
+import { attributes, HEIGHT, hasSeed, newSeed, type Options, readOptions, readStart, WIDTH } from "./options.js";
 import { paint } from "./paint.js";
 import { Guesses, type Question } from "./predict.js";
 import { addProperties } from "./properties.js";
@@ -17,11 +19,14 @@ import { iframeOf, shareUrl } from "./share.js";
 import { Speech } from "./speech.js";
 import { styles } from "./styles.js";
 import { type Theme, ThemeProbe } from "./theme.js";
+import type { Member } from "./together.js";
 import { emit, report } from "./report.js";
 import { type Acts, inside } from "./view.js";
 
 /** Numbers that change more often cannot be read. */
 const COUNTERS_MS = 100;
+/** Steps without a question between two with one, at most. */
+const MOST_SKIPPED = 200;
 
 /** The class of `<sap-demo>`: api.ts says what others may count on. */
 export class SapDemoElement extends LitElement {
@@ -45,6 +50,9 @@ export class SapDemoElement extends LitElement {
   readonly #canvases = new Canvases(() => this.#paint());
   #countersAt = -Infinity;
   #shared: { url: string; code: string } | undefined;
+  /** What it stands in with others that show the same world. */
+  #comparison: SapComparisonElement | undefined;
+  #leave: () => void = () => undefined;
   readonly #speech = new Speech(() => this.renderRoot.querySelector(".live"), () => this.#sentence);
   readonly #hands: Hands = new Hands(this, {
     run: () => this.#run,
@@ -53,8 +61,11 @@ export class SapDemoElement extends LitElement {
       if (isDetected) emit(this, "simulate", this.state);
       emit(this, "sap-drag", drag);
       this.#changed();
+      this.#comparison?.moved();
     },
     chose: () => this.#changed(),
+    place: (...where) => (this.#comparison?.together ?? this.#run!.timeline).placeBall(...where),
+    detectAgain: () => (this.#comparison?.together ?? this.#run!.timeline).detectAgain(),
     say: (text) => (text === undefined ? this.#speech.soon() : this.#speech.now(text)),
   });
   #setReady: () => void = () => undefined;
@@ -71,6 +82,7 @@ export class SapDemoElement extends LitElement {
   // What others call
 
   play(): void {
+    if (this.#comparison) return this.#comparison.play();
     const run = this.#run;
     if (!run || this.#isPlaying) return;
     if (run.options.isStatic && run.timeline.isDetected) run.timeline.rewind();
@@ -80,6 +92,7 @@ export class SapDemoElement extends LitElement {
   }
 
   pause(): void {
+    if (this.#comparison) return this.#comparison.pause();
     if (!this.#isPlaying) return;
     this.#isPlaying = false;
     this.#changed();
@@ -87,6 +100,7 @@ export class SapDemoElement extends LitElement {
   }
 
   step(): void {
+    if (this.#comparison) return this.#comparison.step();
     const run = this.#run;
     if (!run) return;
     const { timeline, options } = run;
@@ -100,6 +114,7 @@ export class SapDemoElement extends LitElement {
   }
 
   back(): void {
+    if (this.#comparison) return this.#comparison.back();
     if (!this.#run) return;
     this.#isPlaying = false;
     this.#run.timeline.back();
@@ -107,6 +122,7 @@ export class SapDemoElement extends LitElement {
   }
 
   seek(k: number): void {
+    if (this.#comparison) return this.#comparison.seek(k);
     if (!this.#run || Number.isNaN(k)) return;
     this.#isPlaying = false;
     this.#run.timeline.seek(k);
@@ -114,9 +130,8 @@ export class SapDemoElement extends LitElement {
   }
 
   reset(): void {
-    const wasPlaying = this.#isPlaying;
-    this.#begin();
-    if (!wasPlaying) this.pause();
+    if (this.#comparison) return this.#comparison.reset();
+    this.#begin(!this.#isPlaying);
     this.#speech.soon();
   }
 
@@ -125,11 +140,15 @@ export class SapDemoElement extends LitElement {
     const start = hasMoved ? 0 : (this.#run?.timeline.tick ?? 0);
     const balls = hasMoved ? JSON.stringify(this.#run!.rows()) : this.getAttribute("balls");
     const page = new URL(this.getAttribute("embed-url") ?? "embed.html", document.baseURI);
-    return shareUrl(page, (name) => this.getAttribute(name), { balls, start });
+    const options = this.#run?.options;
+    const seed = options && hasSeed(options) ? options.world.seed : undefined;
+    return shareUrl(page, (name) => this.getAttribute(name), { balls, start, seed });
   }
 
   embedCode(): string {
-    return iframeOf(this.share(), this.#label, this.getBoundingClientRect().height + 32);
+    const picture = this.renderRoot.querySelector(".picture")?.clientHeight ?? HEIGHT;
+    // As high as where it is widest: a narrower one is lower.
+    return iframeOf(this.share(), this.#label, this.getBoundingClientRect().height - picture + HEIGHT, WIDTH);
   }
 
   get isPlaying(): boolean {
@@ -164,7 +183,9 @@ export class SapDemoElement extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    clock.add(this, { frame: (ms) => this.#frame(ms) });
+    this.#comparison = comparisonOf(this);
+    if (this.#comparison) this.#leave = this.#comparison.join(this, this.#member);
+    else clock.add(this, { frame: (ms) => this.#frame(ms) });
     motionQuery.addEventListener("change", this.#onMotionChange);
     loadDemos().then(
       () => this.isConnected && !this.#run && this.#begin(),
@@ -175,6 +196,7 @@ export class SapDemoElement extends LitElement {
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     clock.remove(this);
+    this.#leave();
     this.#canvases.close();
     motionQuery.removeEventListener("change", this.#onMotionChange);
     this.#speech.stop();
@@ -208,7 +230,7 @@ export class SapDemoElement extends LitElement {
     this.#changed();
   }
 
-  #begin(): void {
+  #begin(isPaused = false): void {
     const options = this.#readOptions();
     if (!options) return;
     let run: Run;
@@ -221,9 +243,11 @@ export class SapDemoElement extends LitElement {
     this.#open(run);
     this.#hands.letGo();
     this.#guesses = new Guesses();
-    const isStill = this.hasAttribute("paused") || options.isStatic || options.predicts || motionQuery.matches;
+    const isStill = isPaused || this.hasAttribute("paused") || options.isStatic || options.predicts || motionQuery.matches;
     if (options.isStatic && !options.predicts) run.timeline.finish();
     this.#isPlaying = !isStill;
+    this.#skipToQuestion();
+    this.#comparison?.begun();
     this.#changed();
     emit(this, "simulate", this.state);
     void this.updateComplete.then(this.#setReady);
@@ -277,6 +301,7 @@ export class SapDemoElement extends LitElement {
   }
 
   readonly #listener = {
+    isHeld: (): boolean => this.#hands.isHolding,
     stopped: (events: readonly TraceEvent[]): void => this.#report(events),
     ticking: (): void => this.#hands.hold(),
     ticked: (): void => emit(this, "simulate", this.state),
@@ -284,7 +309,7 @@ export class SapDemoElement extends LitElement {
 
   /** Requests a new drawing. */
   #changed(): void {
-    if (this.#isPlaying) clock.wake(this);
+    if (this.#isPlaying && !this.#comparison) clock.wake(this);
     this.#update(performance.now());
   }
 
@@ -293,6 +318,34 @@ export class SapDemoElement extends LitElement {
     const { pair } = this.#hands.selection;
     this.#explanation = pair && this.#run?.explain(pair);
     this.requestUpdate();
+  }
+
+  /** What a comparison does with it. */
+  get #member(): Member {
+    const demo = this;
+    return {
+      get run() {
+        return demo.#run;
+      },
+      get isHeld() {
+        return demo.#hands.isHolding;
+      },
+      advance: (ms) => void this.#run?.playback.advance(ms, this.#listener, false),
+      hold: () => this.#hands.hold(),
+      tick: () => this.#run?.playback.tickFreely(this.#listener),
+      stopped: (events) => this.#report(events),
+      setPlaying: (isPlaying) => {
+        this.#isPlaying = isPlaying;
+        if (isPlaying) this.#run?.playback.restart();
+        this.#update(performance.now());
+      },
+      begin: (isPlaying) => this.#begin(!isPlaying),
+      show: () => {
+        this.#paint();
+        const now = performance.now();
+        if (!this.#isPlaying || now - this.#countersAt >= COUNTERS_MS) this.#update(now);
+      },
+    };
   }
 
   // Telling
@@ -325,7 +378,13 @@ export class SapDemoElement extends LitElement {
     const question = this.#question;
     if (!question) return;
     this.step();
+    this.#skipToQuestion();
     this.#guesses.count(question, choice);
+  }
+
+  /** Steps where there is nothing to guess are not worth a press of a button. */
+  #skipToQuestion(): void {
+    for (let steps = 0; steps < MOST_SKIPPED && this.#run?.options.predicts && !this.#question; steps++) this.step();
   }
 
   // Showing
@@ -365,7 +424,7 @@ export class SapDemoElement extends LitElement {
         run,
         wrong: this.#wrong,
         label: this.#label,
-        hasControls: run?.options.hasControls ?? !this.hasAttribute("no-controls"),
+        hasControls: !this.#comparison && (run?.options.hasControls ?? !this.hasAttribute("no-controls")),
         hasCounters: run?.options.hasCounters ?? !this.hasAttribute("no-counters"),
         sentence: this.#sentence,
         explains: this.#explanation !== undefined,
@@ -386,6 +445,12 @@ export class SapDemoElement extends LitElement {
       this.#speed = speed;
       this.#changed();
     },
+    newWorld: () => {
+      const isPaused = !this.#isPlaying;
+      this.setAttribute("seed", newSeed());
+      // The attribute is read in a microtask.
+      if (isPaused) queueMicrotask(() => this.pause());
+    },
     openSharing: () => {
       // As it is now: what is shown to be copied does not change meanwhile.
       this.#shared = { url: this.share(), code: this.embedCode() };
@@ -394,7 +459,5 @@ export class SapDemoElement extends LitElement {
     },
   };
 }
-
-const motionQuery: MediaQueryList = matchMedia("(prefers-reduced-motion: reduce)");
 
 addProperties(SapDemoElement.prototype);

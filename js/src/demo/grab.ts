@@ -12,6 +12,8 @@ export interface Grabbing {
   balls(): Balls | undefined;
   /** Whether balls may be moved, and not only chosen. */
   isDraggable(): boolean;
+  /** Whether the balls move by themselves. */
+  isMoving(): boolean;
   move(ball: number, x: number, y: number): void;
   /** Let go, with the speed that the pointer had, in units a second. */
   release(ball: number, vx: number, vy: number): void;
@@ -19,8 +21,9 @@ export interface Grabbing {
   choose(ball: number | undefined): void;
 }
 
-/** A finger hits a ball from this many CSS pixels away. */
+/** A finger hits a ball from this many CSS pixels away. Among balls that move, it has to leave room to scroll the page. */
 const REACH = 14;
+const REACH_MOVING = 4;
 /** A press that moves less, in CSS pixels, is a choice. */
 const CLICK = 4;
 /** A released ball keeps its mean speed over this many milliseconds. */
@@ -115,7 +118,7 @@ export class Grab {
   /** The ball at a point, the smallest if there are several; or else the nearest within reach. */
   #ballAt(x: number, y: number): number | undefined {
     const { positions, radii } = this.#grabbing.balls() ?? { positions: new Float32Array(), radii: new Float32Array() };
-    const reach = (REACH * WIDTH) / Math.max(this.#picture.clientWidth, 1);
+    const reach = ((this.#grabbing.isMoving() ? REACH_MOVING : REACH) * WIDTH) / Math.max(this.#picture.clientWidth, 1);
     let nearest: number | undefined;
     let least = reach;
     radii.forEach((radius, ball) => {

@@ -12,6 +12,10 @@ export interface Handled {
   moved(drag: DemoDrag, isDetected: boolean): void;
   /** A choice is to be shown. */
   chose(): void;
+  /** Puts a ball elsewhere, with this velocity; also in the demos that show the same world. */
+  place(ball: number, x: number, y: number, vx: number, vy: number): void;
+  /** Runs the detection again where the world stands still. */
+  detectAgain(): void;
   /** Says this at once, or soon what there is to say. */
   say(text?: string): void;
 }
@@ -36,10 +40,13 @@ export class Hands {
       balls: () => this.#handled.run()?.timeline,
       isDraggable: () => this.#handled.run()?.options.isDraggable === true,
       move: (ball, x, y) => this.#move(ball, x, y),
+      isMoving: () => this.#handled.run()?.options.isStatic === false,
       release: (ball, vx, vy) => {
-        if (!this.#demo.isPlaying) return;
-        const { x, y } = this.#handled.run()!.placeOf(ball);
+        const run = this.#handled.run()!;
+        if (run.options.isStatic) return;
+        const { x, y } = run.placeOf(ball);
         this.#place(ball, x, y, vx, vy);
+        if (!this.#demo.isPlaying) this.#handled.detectAgain();
       },
       choose: (ball) => this.#handled.run() && this.#choose(ball),
     });
@@ -49,6 +56,11 @@ export class Hands {
   letGo(): void {
     this.selection.clear();
     this.hasMoved = false;
+  }
+
+  /** Whether a ball is held and moved. */
+  get isHolding(): boolean {
+    return this.#grab?.held !== undefined;
   }
 
   /** Keeps the ball that is held where the hand is, in a world that goes on. */
@@ -89,7 +101,7 @@ export class Hands {
   };
 
   #place(ball: number, x: number, y: number, vx: number, vy: number): void {
-    this.#handled.run()!.timeline.placeBall(ball, x, y, vx, vy);
+    this.#handled.place(ball, x, y, vx, vy);
     this.hasMoved = true;
   }
 
@@ -99,7 +111,7 @@ export class Hands {
     const isStill = !this.#demo.isPlaying;
     if (isStill) {
       this.#place(ball, x, y, 0, 0);
-      run.timeline.detectAgain();
+      this.#handled.detectAgain();
     }
     this.#handled.moved({ ball, ...run.placeOf(ball) }, isStill);
   }

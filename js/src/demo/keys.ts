@@ -48,8 +48,8 @@ export function press(event: KeyboardEvent, { isDraggable }: Options, keyboard: 
 }
 
 /** The keys in words, for screen readers. */
-export function keysOf(options: Options | undefined): string {
-  const keys = ["Space plays or pauses.", "Comma and full stop step back and forward."];
+export function keysOf(options: Options | undefined, canPlay: boolean): string {
+  const keys = canPlay ? ["Space plays or pauses.", "Comma and full stop step back and forward."] : [];
   if (options?.isDraggable || options?.explains) keys.push("B chooses the next ball.");
   if (options?.isDraggable) keys.push("Arrow keys move it.");
   if (options?.explains) keys.push("Enter selects it; select two to see why they were tested or skipped.");

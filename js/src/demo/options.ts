@@ -241,7 +241,7 @@ export function readOptions(attribute: (name: Attribute) => string | null): Opti
     skip: number("skip-interval", get("skip-interval") ?? "0", 0, MOST_SKIPPED),
     speed: number("speed", get("speed") ?? "1", 0.01, 100, false),
     isStatic: has("static"),
-    isDraggable: has("draggable"),
+    isDraggable: get("draggable") !== "false" && !has("predict"),
     labels: readLabels(get("labels")),
     focus,
     isRainbow: has("rainbow"),
@@ -252,6 +252,18 @@ export function readOptions(attribute: (name: Attribute) => string | null): Opti
     hasCounters: !has("no-counters"),
     hasControls: !has("no-controls"),
   };
+}
+
+/** Whether another seed makes another world: random balls, or given ones that get their speed from the seed. */
+export function hasSeed({ world, isStatic }: Options): boolean {
+  const { balls, motion } = world;
+  if (typeof balls === "number") return balls > 0;
+  return !isStatic && motion === "bounce" && balls.some((row) => row.length === 3);
+}
+
+/** A seed by chance, short enough to be read out. */
+export function newSeed(): string {
+  return String(1 + Math.floor(Math.random() * 999_999));
 }
 
 /** Whether a world of the one goes on as a world of the other. */

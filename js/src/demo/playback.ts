@@ -2,7 +2,7 @@ import type { TraceEvent } from "../trace.js";
 import type { Options } from "./options.js";
 import type { Timeline } from "./timeline.js";
 
-const MS_PER_TICK = 1000 / 60;
+export const MS_PER_TICK: number = 1000 / 60;
 /** How long each event of a sort stays highlighted. */
 const SORT_MS = 90;
 /** How fast the sweep line goes, in units of the world a millisecond. */
@@ -15,6 +15,8 @@ const MOST_MS = 6;
 /** What is told while time passes. */
 export interface Listener {
   stopped(events: readonly TraceEvent[]): void;
+  /** Whether a hand holds a ball: then the world does not wait for what would be shown. */
+  isHeld(): boolean;
   /** Before a tick: the last chance to put balls elsewhere. */
   ticking(): void;
   ticked(): void;
@@ -37,13 +39,18 @@ export class Playback {
     this.#spent = 0;
   }
 
-  /** Lets so much time pass. Whether there is more to come. */
-  advance(ms: number, listener: Listener): boolean {
+  /**
+   * Lets so much time pass. Whether there is more to come. Without `mayTick` the world waits at the end of the
+   * detection.
+   */
+  advance(ms: number, listener: Listener, mayTick = true): boolean {
     const timeline = this.#timeline;
     const began = performance.now();
     this.#spent += ms;
+    if (listener.isHeld()) timeline.finish();
     for (let count = 0; count < MOST_AT_ONCE; count++) {
       const isDetected = timeline.isDetected;
+      if (isDetected && !mayTick) break;
       if (isDetected && this.#options.isStatic) return false;
       const needed = isDetected ? MS_PER_TICK : this.#duration();
       if (this.#spent < needed) return true;
@@ -60,6 +67,11 @@ export class Playback {
   /** One tick, and if there is a detection of which nothing is shown, all of it. */
   tick(listener: Listener): void {
     listener.ticking();
+    this.tickFreely(listener);
+  }
+
+  /** As `tick`, where balls that are held have been put in their places. */
+  tickFreely(listener: Listener): void {
     this.#timeline.nextTick();
     if (!this.#timeline.isDetected && this.#timeline.isStopless) this.#timeline.finish();
     listener.ticked();

@@ -86,10 +86,11 @@ export class Run {
     return rowsOf(this.timeline.positions, this.timeline.radii);
   }
 
-  /** The balls with their velocities, rounded: to begin with elsewhere. */
+  /** The balls, rounded: to begin with elsewhere. With their velocities, if the world moves. */
   rows(): number[][] {
-    const velocities = this.timeline.velocities();
     const rounded = (value: number): number => Math.round(value * 100) / 100;
+    if (this.options.isStatic) return this.balls.map((row) => row.map(Number).map(rounded));
+    const velocities = this.timeline.velocities();
     return this.balls.map((row, ball) => [...row.map(Number), velocities[2 * ball]!, velocities[2 * ball + 1]!].map(rounded));
   }
 

@@ -4,17 +4,23 @@ import { type Attribute, attributes } from "./options.js";
 const own = new Set<Attribute>(["aria-label", "start", "balls", "paused", "embed-url"]);
 
 /** The address of a page that shows this demo alone: all that it is stands after the `#`. */
-export function shareUrl(page: URL, get: (name: Attribute) => string | null, now: { balls: string | null; start: number }): string {
+export function shareUrl(page: URL, get: (name: Attribute) => string | null, now: { balls: string | null; start: number; seed: number | undefined }): string {
   const all = new URLSearchParams();
   for (const name of attributes) {
     const value = get(name);
     if (value !== null && !own.has(name)) all.set(name, value);
   }
   if (now.balls !== null) all.set("balls", now.balls);
+  if (now.seed !== undefined) all.set("seed", String(now.seed));
   if (now.start > 0) all.set("start", String(now.start));
   const url = new URL(page);
   url.hash = all.toString();
   return url.href;
+}
+
+/** The address of a page that shows several demos side by side: theirs, with "|" between them, which none contains. */
+export function shareTogether(urls: readonly string[]): string {
+  return urls.map((url, at) => (at === 0 ? url : new URL(url).hash.slice(1))).join("|");
 }
 
 /** The attributes that an address holds, of those that there are. */
@@ -23,13 +29,21 @@ export function readShared(hash: string): [Attribute, string][] {
   return attributes.filter((name) => all.has(name)).map((name) => [name, all.get(name)!]);
 }
 
-/** An iframe of such a page. */
-export function iframeOf(url: string, title: string, height: number): string {
+/** The margins of such a page, and its last line, in CSS pixels. */
+const MARGIN = 32;
+const LAST_LINE = 32;
+
+/**
+ * An iframe of such a page, for demos of this height and at most this width. The script, which a page may leave out,
+ * gives it the height of what is in it: with that a narrow frame has no empty space below.
+ */
+export function iframeOf(url: string, title: string, height: number, width: number): string {
   const text = (value: string): string => value.replaceAll("&", "&amp;").replaceAll('"', "&quot;").replaceAll("<", "&lt;");
   return [
     `<iframe src="${text(url)}"`,
     `  title="${text(title)}"`,
-    `  style="width: 100%; max-width: 632px; height: ${Math.ceil(height)}px; border: 0"`,
+    `  style="width: 100%; max-width: ${width + MARGIN}px; height: ${Math.ceil(height + MARGIN + LAST_LINE)}px; border: 0"`,
     `  loading="lazy"></iframe>`,
+    `<script>addEventListener("message", ({ data, source }) => { for (const frame of document.querySelectorAll("iframe")) if (frame.contentWindow === source && data?.sapDemoHeight) frame.style.height = data.sapDemoHeight + "px"; });</script>`,
   ].join("\n");
 }

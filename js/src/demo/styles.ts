@@ -39,17 +39,16 @@ export const styles: CSSResult = css`
     -webkit-user-select: none;
   }
   /* A canvas is not recolored where the visitor forces colors, so neither is what is behind it. */
-  .picture {
+  .picture,
+  .array {
     forced-color-adjust: none;
+    background: var(--_stage);
   }
-  :host([draggable]) .picture {
+  :host(:not([draggable="false"], [predict])) .picture {
     cursor: grab;
   }
-  :host([draggable]) .picture:active {
+  :host(:not([draggable="false"], [predict])) .picture:active {
     cursor: grabbing;
-  }
-  :host([explain]:not([draggable])) .picture {
-    cursor: pointer;
   }
   .picture canvas,
   .array {
@@ -97,10 +96,12 @@ export const styles: CSSResult = css`
   }
   .counters {
     display: grid;
-    grid-template-columns: repeat(5, 1fr);
-    gap: 4px;
+    grid-auto-flow: column;
+    grid-auto-columns: minmax(min-content, 1fr);
+    gap: 4px 10px;
     margin: 6px 0 0;
-    height: 2.625rem;
+    height: 3.375rem;
+    overflow: hidden;
   }
   .counters div {
     display: flex;
@@ -109,10 +110,9 @@ export const styles: CSSResult = css`
     min-width: 0;
   }
   .counters dt {
-    font-size: 0.6875rem;
+    font-size: 0.75rem;
     line-height: 1.2;
     color: var(--_muted);
-    white-space: nowrap;
   }
   .counters dd {
     margin: 0;
@@ -123,10 +123,14 @@ export const styles: CSSResult = css`
   }
   .controls {
     display: flex;
+    flex-wrap: wrap;
     align-items: center;
     gap: 4px;
     margin-top: 6px;
-    height: 36px;
+    min-height: 36px;
+  }
+  .controls .filler {
+    flex: 1;
   }
   .controls button,
   .controls select,
@@ -159,7 +163,7 @@ export const styles: CSSResult = css`
   }
   .controls input {
     flex: 1;
-    min-width: 32px;
+    min-width: 60px;
     height: 36px;
     margin: 0 2px;
     accent-color: var(--_ink);
@@ -231,25 +235,27 @@ export const styles: CSSResult = css`
   .frame {
     container-type: inline-size;
   }
-  @container (max-width: 22rem) {
-    .counters {
-      grid-template-columns: repeat(5, auto);
-      justify-content: space-between;
+  /* On a phone: two rows, and everything is large enough for a finger. */
+  @container (max-width: 27rem) {
+    .controls button,
+    .controls select {
+      flex: 1 0 44px;
+      height: 44px;
     }
-    .counters dt {
-      font-size: 0.5625rem;
-    }
-    .controls {
-      gap: 2px;
+    .controls input {
+      flex: 1 0 100px;
+      height: 44px;
     }
     .controls select {
-      width: 52px;
-      font-size: 0.8125rem;
+      flex: 2 0 58px;
+    }
+    .counters {
+      gap: 4px 6px;
     }
   }
-  @container (max-width: 17rem) {
-    .controls .secondary {
-      display: none;
+  @container (max-width: 19rem) {
+    .counters dt {
+      letter-spacing: -0.03em;
     }
   }
 `;

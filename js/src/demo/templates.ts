@@ -1,11 +1,11 @@
 import { html, nothing, svg, type TemplateResult } from "lit";
 import type { Guesses, Question } from "./predict.js";
-import type { Counts } from "./run.js";
 
 /** What the controls under the picture show and do. */
 export interface Controls {
   readonly isReady: boolean;
   readonly isPlaying: boolean;
+  /** Whether there is anything to play; if not, nothing that moves through time is shown. */
   readonly canPlay: boolean;
   readonly canGoBack: boolean;
   readonly progress: { readonly at: number; readonly of: number };
@@ -16,6 +16,8 @@ export interface Controls {
   seek(place: number): void;
   setSpeed(speed: number): void;
   reset(): void;
+  /** Begins another world; undefined where there is only one. */
+  readonly newWorld: (() => void) | undefined;
   share(): void;
 }
 
@@ -25,40 +27,32 @@ export function controls(demo: Controls): TemplateResult {
   const { isReady, isPlaying, progress } = demo;
   const of = Math.max(progress.of, 1);
   return html`<div class="controls" part="controls" role="group" aria-label="Controls">
-    ${button(isPlaying ? "Pause" : "Play", isPlaying ? icons.pause : icons.play, isReady && demo.canPlay, () => demo.playOrPause())}
-    ${button("Step back", icons.back, isReady && demo.canGoBack, () => demo.back())}
-    ${button("Step", icons.step, isReady, () => demo.step())}
-    <input
-      type="range"
-      aria-label="Moment"
-      aria-valuetext="${progress.at} of ${progress.of}"
-      min="0"
-      .max=${String(of)}
-      .value=${String(progress.at)}
-      ?disabled=${!isReady}
-      @input=${(event: Event) => demo.seek(Number((event.target as HTMLInputElement).value))}
-    />
-    <select aria-label="Speed" ?disabled=${!isReady} @change=${(event: Event) => demo.setSpeed(Number((event.target as HTMLSelectElement).value))}>
-      ${[...new Set([...speeds, demo.speed])].sort((a, b) => a - b).map((speed) => html`<option value=${speed} ?selected=${speed === demo.speed}>${speed}×</option>`)}
-    </select>
+    ${demo.canPlay
+      ? html`${button(isPlaying ? "Pause" : "Play", isPlaying ? icons.pause : icons.play, isReady, () => demo.playOrPause())}
+          ${button("Step back", icons.back, isReady && demo.canGoBack, () => demo.back())}
+          ${button("Step", icons.step, isReady, () => demo.step())}
+          <input
+            type="range"
+            aria-label="Moment"
+            aria-valuetext="${progress.at} of ${progress.of}"
+            min="0"
+            .max=${String(of)}
+            .value=${String(progress.at)}
+            ?disabled=${!isReady}
+            @input=${(event: Event) => demo.seek(Number((event.target as HTMLInputElement).value))}
+          />
+          <select aria-label="Speed" ?disabled=${!isReady} @change=${(event: Event) => demo.setSpeed(Number((event.target as HTMLSelectElement).value))}>
+            ${[...new Set([...speeds, demo.speed])].sort((a, b) => a - b).map((speed) => html`<option value=${speed} ?selected=${speed === demo.speed}>${speed}×</option>`)}
+          </select>`
+      : html`<span class="filler"></span>`}
     ${button("Reset", icons.reset, isReady, () => demo.reset())}
+    ${demo.newWorld ? button("New world", icons.dice, isReady, demo.newWorld) : nothing}
     ${button("Share or embed", icons.share, isReady, () => demo.share(), "secondary")}
   </div>`;
 }
 
 function button(label: string, icon: TemplateResult, enabled: boolean, click: () => void, kind = ""): TemplateResult {
   return html`<button type="button" class=${kind} aria-label=${label} title=${label} ?disabled=${!enabled} @click=${click}>${icon}</button>`;
-}
-
-/** Numbers with their names, which are short enough for a phone: the tests, or the checks of flags that take their place. */
-export function counters(counts: Counts, hasFlags: boolean): TemplateResult {
-  const { tests, flagChecks, axisOverlaps, pairs, comparisons, swaps } = counts;
-  const first = hasFlags ? { "flag checks": flagChecks } : { tests };
-  return html`<dl class="counters" part="counters">
-    ${Object.entries({ ...first, "axis overlaps": axisOverlaps, pairs, comparisons, swaps }).map(
-      ([name, value]) => html`<div><dt>${name}</dt><dd data-counter=${name.replace(" ", "-")}>${value.toLocaleString("en")}</dd></div>`,
-    )}
-  </dl>`;
 }
 
 /** The guess that is asked for, and how the guesses so far turned out. */
@@ -110,5 +104,6 @@ const icons = {
   step: icon("M2 1.500v13l9-6.500zM11.500 2H14v12h-2.500z"),
   back: icon("M14 1.500v13L5 8zM2 2h2.500v12H2z"),
   reset: icon("M8 2a6 6 0 1 1-5.700 4.100l1.900.6A4 4 0 1 0 8 4v2.500L3.800 3 8-.5z"),
+  dice: icon("M3.500 1h9A2.500 2.500 0 0 1 15 3.500v9a2.500 2.500 0 0 1-2.500 2.500h-9A2.500 2.500 0 0 1 1 12.500v-9A2.500 2.500 0 0 1 3.500 1zm0 1.600a.9.9 0 0 0-.9.9v9c0 .5.4.9.9.9h9c.5 0 .9-.4.9-.9v-9a.9.9 0 0 0-.9-.9zM5.200 4a1.200 1.200 0 1 1 0 2.400 1.200 1.200 0 0 1 0-2.400zM8 6.800a1.200 1.200 0 1 1 0 2.400 1.200 1.200 0 0 1 0-2.400zm2.800 2.800a1.200 1.200 0 1 1 0 2.400 1.200 1.200 0 0 1 0-2.400z"),
   share: icon("M12.500 1a2.500 2.500 0 1 1-2 4L6 7.500v1L10.500 11a2.500 2.500 0 1 1-.8 1.800L5 10.200a2.500 2.500 0 1 1 0-4.400l4.700-2.600A2.500 2.500 0 0 1 12.500 1z"),
 };

@@ -124,6 +124,16 @@ export class Timeline {
     return this.#stops.length === 1;
   }
 
+  /** Which stop of the detection has been reached; -1 before the first. */
+  get stop(): number {
+    return this.#stop;
+  }
+
+  /** Which of the kept ticks is shown, and of each the number of stops: 0 without a detection. */
+  get kept(): { readonly at: number; readonly stops: readonly number[] } {
+    return { at: this.#at, stops: this.#ticks.map(({ stops }) => stops) };
+  }
+
   /** Whether anything has been kept from before. */
   get hasPast(): boolean {
     return this.#at > 0 || this.#stop > -1;
@@ -213,6 +223,11 @@ export class Timeline {
       left -= stops;
     }
     this.#goTo(last, Infinity);
+  }
+
+  /** Goes to a stop of a kept tick that has a detection; beyond its last stop, to that one. */
+  goTo(index: number, stop: number): void {
+    this.#goTo(index, stop);
   }
 
   /** Puts a ball elsewhere, here and now: what was to come is forgotten. */

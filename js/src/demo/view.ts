@@ -1,11 +1,12 @@
 import { html, nothing, type TemplateResult } from "lit";
 import type { SapDemo } from "./types.js";
-import { hasFlags } from "./detection.js";
+import { counters } from "./counters.js";
 import { keysOf } from "./keys.js";
+import { hasSeed } from "./options.js";
 import { heightOfArray } from "./paint.js";
 import type { Guesses, Question } from "./predict.js";
 import { NOTHING_COUNTED, type Run } from "./run.js";
-import { controls, counters, guessing, sharing } from "./templates.js";
+import { controls, guessing, sharing } from "./templates.js";
 
 /** What a demo shows, beside the picture itself. */
 export interface View {
@@ -31,6 +32,7 @@ export interface Acts {
   press(event: KeyboardEvent): void;
   guess(choice: 0 | 1): void;
   setSpeed(speed: number): void;
+  newWorld(): void;
   openSharing(): void;
 }
 
@@ -45,12 +47,12 @@ export function inside(view: View, demo: SapDemo, acts: Acts): TemplateResult {
       <canvas></canvas>
       ${view.wrong ? html`<p class="wrong" role="alert">${view.wrong}</p>` : nothing}
     </div>
-    <p id="keys" class="hidden">${keysOf(options)}</p>
+    <p id="keys" class="hidden">${keysOf(options, canPlay(run))}</p>
     ${run && options?.decorations.array ? array(run) : nothing}
     ${hasControls ? html`<p class="said" part="said" aria-hidden="true" ?data-explains=${view.explains}>${view.sentence}</p>` : nothing}
     ${options?.predicts ? guessing({ ...view, guess: acts.guess }) : nothing}
     <p class="live hidden" role="status" aria-live="polite"></p>
-    ${view.hasCounters ? counters(run?.counts ?? NOTHING_COUNTED, options !== undefined && hasFlags(options.detecting)) : nothing}
+    ${view.hasCounters ? counters(run?.counts ?? NOTHING_COUNTED, options?.detecting) : nothing}
     ${hasControls ? html`${bar(view, demo, acts)} ${view.shared ? sharing(view.shared.url, view.shared.code) : nothing}` : nothing}
     </div>
     <slot name="caption"></slot>
@@ -62,7 +64,7 @@ function bar({ run, speed }: View, demo: SapDemo, acts: Acts): TemplateResult {
   return controls({
     isReady: timeline !== undefined,
     isPlaying: demo.isPlaying,
-    canPlay: !(options?.isStatic && timeline?.isStopless),
+    canPlay: canPlay(run),
     canGoBack: timeline?.hasPast === true,
     progress: timeline?.progress ?? { at: 0, of: 0 },
     speed,
@@ -72,8 +74,14 @@ function bar({ run, speed }: View, demo: SapDemo, acts: Acts): TemplateResult {
     seek: (place) => demo.seek(place),
     setSpeed: acts.setSpeed,
     reset: () => demo.reset(),
+    newWorld: options && hasSeed(options) ? acts.newWorld : undefined,
     share: acts.openSharing,
   });
+}
+
+/** Whether anything moves, or can be stepped through. */
+function canPlay(run: Run | undefined): boolean {
+  return !(run?.options.isStatic && run.timeline.isStopless);
 }
 
 function array({ options, timeline }: Run): TemplateResult {

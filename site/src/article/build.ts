@@ -1,11 +1,13 @@
 // Assembles the article when the site is built: its sections, contents, reading time, listings,
-// legends and drawings. All of it is in the page that is sent, so it can be read without scripts.
+// legends, drawings and posters of the demos. All of it is in the page that is sent, so it can be read without scripts.
 
 import { readFileSync } from "node:fs";
 import type { Plugin } from "vite";
 import { figures } from "./figures/index.ts";
 import { legend } from "./legend.ts";
 import { highlight, listing } from "./listing.ts";
+import { withPosters } from "./poster.ts";
+import { SITE } from "../shell/pages.ts";
 
 /** The files of sections/, in the order in which they are read. */
 const SECTIONS = [
@@ -69,7 +71,8 @@ findPairs(boxes, { dimensions: 2 }); // 0, 2`;
 
 /** Fills in the listings, legends and drawings. */
 function expand(page: string): string {
-  return page
+  return withPosters(page)
+    .replaceAll("%SITE%", SITE)
     .replace("<trial-code></trial-code>", () => highlight(TRIAL, "javascript", "how to call the library"))
     .replace(/<code-listing name="([^"]*)"(?: follows="([^"]*)")?><\/code-listing>/g, (_, name: string, follows?: string) =>
       listing(name, follows),

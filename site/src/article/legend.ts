@@ -20,6 +20,7 @@ const KEYS: Readonly<Record<string, Key>> = {
   test: { swatch: pair("check", 'stroke-width="4"') + rings, says: "tested now" },
   candidate: { swatch: pair("check", 'stroke-width="4"') + rings, says: "candidate: overlaps on x, tested now" },
   found: { swatch: pair("check", 'stroke-width="4"') + rings, says: "just found to overlap on both axes" },
+  apart: { swatch: pair("overlap", 'stroke-width="2" stroke-dasharray="5 4"'), says: "boxes overlap, balls do not touch" },
   overlap: { swatch: pair("overlap", 'stroke-width="2"'), says: "boxes overlap" },
   skip: {
     swatch: `${upright(7, "skip")}${upright(27, "skip")}${pair("skip", 'stroke-width="2" stroke-dasharray="4 3"')}`,

@@ -1,17 +1,34 @@
-// One demo, as the address says after its `#`: what `share()` and `embedCode()` lead to.
+// The demos that the address names after its `#`: what `share()` and `embedCode()` lead to. Several stand side by side.
 
 import { readShared } from "sweep-and-prune/demo";
 
-const main = document.querySelector("main")!;
+const place = document.querySelector("#demos")!;
 
 function show(): void {
+  const demos = location.hash.slice(1).split("|").map(demoOf);
+  const [first] = demos;
+  if (demos.length === 1) return place.replaceChildren(first!);
+  const comparison = document.createElement("sap-comparison");
+  const grid = document.createElement("div");
+  grid.className = "together";
+  grid.append(...demos);
+  comparison.append(grid);
+  place.replaceChildren(comparison);
+}
+
+function demoOf(shared: string): HTMLElement {
   const demo = document.createElement("sap-demo");
-  for (const [name, value] of readShared(location.hash)) demo.setAttribute(name, value);
+  for (const [name, value] of readShared(shared)) demo.setAttribute(name, value);
   // From here too it can be shared, at this very address.
   demo.setAttribute("embed-url", location.href.replace(/#.*/, ""));
-  main.querySelector("sap-demo")?.remove();
-  main.append(demo);
+  return demo;
 }
 
 addEventListener("hashchange", show);
 show();
+
+// The page around the frame gives it this height, if it listens.
+if (parent !== self) {
+  const main = document.querySelector("main")!;
+  new ResizeObserver(() => parent.postMessage({ sapDemoHeight: Math.ceil(main.getBoundingClientRect().height) }, "*")).observe(main);
+}

@@ -140,6 +140,7 @@ export class FallingBalls extends HTMLElement {
     select.addEventListener("change", () => {
       this.#change({ [key]: select.value });
       this.#client?.setMethod(this.#settings);
+      this.#clearCounters();
       this.#describe();
     });
   }
@@ -220,6 +221,7 @@ export class FallingBalls extends HTMLElement {
     const first = this.#frame?.run !== frame.run;
     this.#frame = frame;
     if (first) this.#showBegun();
+    if (!this.#client?.isCurrent(frame)) return this.#requestDraw();
     const { bodies, pairs, comparisons } = frame.measurement;
     // With one body there is nothing to compare, whatever the algorithm.
     if (pairs !== null && bodies > 1) this.#setSorts(Boolean(comparisons));
@@ -268,7 +270,7 @@ export class FallingBalls extends HTMLElement {
     const ended = performance.now();
     this.#drawingTimes.push(ended - started);
     if (this.#drawingTimes.length > WINDOW) this.#drawingTimes.shift();
-    if (!this.#wanted || ended - this.#countersAt >= COUNTER_MS) {
+    if (this.#client?.isCurrent(this.#frame) && (!this.#wanted || ended - this.#countersAt >= COUNTER_MS)) {
       this.#countersAt = ended;
       this.#showCounters(this.#frame);
     }
@@ -276,6 +278,12 @@ export class FallingBalls extends HTMLElement {
   }
 
   // What the visitor reads
+
+  /** No number of one method stands under the name of another. */
+  #clearCounters(): void {
+    this.#stages = [];
+    for (const { key } of COUNTERS) if (key !== "brute-force") this.#counter(key).textContent = "…";
+  }
 
   #showCounters({ step, pace, hash, measurement }: Frame): void {
     this.dataset["step"] = String(step);

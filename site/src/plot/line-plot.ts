@@ -2,6 +2,8 @@
 // milliseconds for, and a live picture has not got.
 
 export interface Line {
+  /** What stands at its end, if there is room. */
+  readonly name?: string;
   readonly color: string;
   /** One value a step; `null` leaves a gap. */
   readonly values: readonly (number | null)[];
@@ -23,18 +25,24 @@ export interface PlotOptions {
 
 const LEFT = 62;
 const RIGHT = 10;
+/** The room for names at the ends of lines, in a plot of at least `NAMED_FROM` pixels. */
+const NAMES = 150;
+const NAMED_FROM = 480;
+const NAME_HEIGHT = 15;
 const TOP = 30;
 const BOTTOM = 34;
 
 /** Draws a plot that fills the canvas, whose size in CSS pixels is given. */
 export function drawLines(canvas: HTMLCanvasElement, width: number, height: number, options: PlotOptions): void {
   const { lines, first, steps, logarithmic, label, ink, muted, grid } = options;
+  const isNamed = width >= NAMED_FROM && lines.some(({ name }) => name !== undefined);
+  const right = isNamed ? NAMES : RIGHT;
   const context = fitted(canvas, width, height);
   context.font = "12px system-ui, sans-serif";
   context.clearRect(0, 0, width, height);
 
   const scale = scaleOf(lines.flatMap(({ values }) => values.filter((value) => value !== null)), logarithmic);
-  const x = (place: number): number => LEFT + (place / Math.max(steps - 1, 1)) * (width - LEFT - RIGHT);
+  const x = (place: number): number => LEFT + (place / Math.max(steps - 1, 1)) * (width - LEFT - right);
   const y = (value: number): number => height - BOTTOM - scale.at(value) * (height - TOP - BOTTOM);
 
   context.strokeStyle = grid;
@@ -44,24 +52,25 @@ export function drawLines(canvas: HTMLCanvasElement, width: number, height: numb
   context.textBaseline = "middle";
   for (const tick of scale.ticks) {
     const level = Math.round(y(tick)) + 0.5;
-    line(context, LEFT, level, width - RIGHT, level);
+    line(context, LEFT, level, width - right, level);
     context.fillText(formatTick(tick), LEFT - 8, level);
   }
   context.textAlign = "center";
   context.textBaseline = "top";
-  const every = niceStep(steps / Math.max(Math.floor((width - LEFT - RIGHT) / 80), 1));
+  const every = niceStep(steps / Math.max(Math.floor((width - LEFT - right) / 80), 1));
   for (let step = Math.ceil(first / every) * every; step < first + steps; step += every) {
     context.fillText(formatTick(step), x(step - first), height - BOTTOM + 8);
   }
   context.textAlign = "right";
-  context.fillText("step", width - RIGHT, height - 13);
+  context.fillText("step", width - right, height - 13);
   context.textAlign = "left";
   context.fillStyle = ink;
   context.fillText(`↑ ${label}${logarithmic ? ", logarithmic" : ""}`, 0, 4);
 
   context.lineJoin = "round";
   context.lineWidth = 2;
-  for (const { color, values } of lines) {
+  const ends: { name: string; color: string; x: number; y: number }[] = [];
+  for (const { name, color, values } of lines) {
     context.strokeStyle = color;
     context.beginPath();
     let pen = false;
@@ -82,6 +91,15 @@ export function drawLines(canvas: HTMLCanvasElement, width: number, height: numb
     context.beginPath();
     context.arc(x(last), y(newest), 3, 0, 2 * Math.PI);
     context.fill();
+    if (isNamed && name !== undefined) ends.push({ name, color, x: x(last) + 8, y: y(newest) });
+  }
+  // From the top down, each at least a line below the one before.
+  context.textBaseline = "middle";
+  let level = -Infinity;
+  for (const end of ends.sort((a, b) => a.y - b.y)) {
+    level = Math.max(end.y, level + NAME_HEIGHT);
+    context.fillStyle = end.color;
+    context.fillText(end.name, end.x, level, width - end.x);
   }
 }
 

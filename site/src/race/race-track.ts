@@ -222,12 +222,19 @@ export class RaceTrack extends HTMLElement {
     this.#frame = undefined;
     this.#view = undefined;
     this.#part("alarm").textContent = "";
-    this.#part("message").textContent = "";
+    // Nothing of the race before stays, however long the first step takes.
+    this.#part("message").textContent = "Working …";
+    this.#part("moment").textContent = "Working …";
+    this.#part("verdict").textContent = "\u00a0";
+    const picture = this.#part<HTMLCanvasElement>("picture");
+    picture.getContext("2d")?.clearRect(0, 0, picture.width, picture.height);
+    delete this.dataset["step"];
     const { scenes, motions } = this.#lists;
     const about = [scenes.find(({ name }) => name === this.#state.scene), motions.find(({ name }) => name === this.#state.motion)];
     this.#part("about").textContent = about.map((item) => item?.description ?? "").join(" ");
     this.#send({ type: "begin", run: ++this.#run, world: this.#world(), runners: runners.map(({ options }) => options) });
     this.#describe();
+    this.#requestShow();
   }
 
   #pace(): void {
@@ -263,11 +270,13 @@ export class RaceTrack extends HTMLElement {
 
   #refuse(reason: string): void {
     this.#part("message").textContent = reason;
+    this.#part("moment").textContent = "Not begun";
     this.dataset["step"] = "refused";
     this.#requestShow();
   }
 
   #add(frame: RaceFrame): void {
+    if (!this.#frame) this.#part("message").textContent = "";
     const wereOut = this.#frame?.lanes.map((lane) => "out" in lane);
     this.#frame = frame;
     this.#record.add(frame);
@@ -313,7 +322,8 @@ export class RaceTrack extends HTMLElement {
     if (!frame) return;
     this.dataset["step"] = String(frame.step);
     this.#part("moment").textContent = `Step ${formatCount(frame.step)}`;
-    this.#part("verdict").textContent = verdict(frame, this.#record);
+    const levels = runners.map(({ options }, place) => ({ name: options.algorithm, ms: frame.lanes[place] && "report" in frame.lanes[place] ? this.#record.level(place, MEASURES[0]) : null }));
+    this.#part("verdict").textContent = verdict(frame, this.#record, levels);
   }
 
   #showLane(lane: number, place: number, result: Lane | undefined): void {
@@ -347,7 +357,8 @@ export class RaceTrack extends HTMLElement {
     const canvas = this.#part<HTMLCanvasElement>("plot");
     const { lanes, ink, muted, grid } = (this.#colors ??= this.#readColors());
     const measure: Measure = MEASURES.find(({ key }) => key === this.#state.plot) ?? MEASURES[0];
-    const lines = this.#runners().map(({ lane }, place) => ({
+    const lines = this.#runners().map(({ lane, options }, place) => ({
+      name: options.algorithm,
       color: lanes[lane - 1] ?? ink,
       values: this.#record.line(place, measure),
     }));

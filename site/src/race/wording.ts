@@ -5,14 +5,32 @@ import type { LANE_COUNTERS } from "./markup.ts";
 import type { Lane, RaceFrame } from "./messages.ts";
 import type { RaceRecord } from "./record.ts";
 
-/** Whether all found the same, so far. */
-export function verdict({ lanes }: RaceFrame, { compared, disagreed }: RaceRecord): string {
+/** The time of an algorithm, if it is still in. */
+interface Level {
+  readonly name: string;
+  readonly ms: number | null;
+}
+
+/** Of fewer steps than this no winner is named. */
+const LEAST_STEPS = 10;
+
+/** Whether all found the same, so far, and which is the fastest. */
+export function verdict({ lanes }: RaceFrame, { compared, disagreed }: RaceRecord, levels: readonly Level[]): string {
   const reports = lanes.flatMap((lane) => ("report" in lane ? [lane.report] : []));
   const [first] = reports;
   if (disagreed) return "The algorithms disagree.";
   if (!first || compared === 0) return "No other algorithm to compare with.";
   const before = compared > 1 ? `, in this step and in all ${formatCount(compared)} so far` : "";
-  return `All ${reports.length} found the same ${formatCount(first.pairs)} pairs${before}.`;
+  const won = compared < LEAST_STEPS ? "" : ` ${winner(levels)}`;
+  return `All ${reports.length} found the same ${formatCount(first.pairs)} pairs${before}.${won}`;
+}
+
+function winner(levels: readonly Level[]): string {
+  const [first, second] = levels.flatMap(({ name, ms }) => (ms === null ? [] : [{ name, ms }])).sort((a, b) => a.ms - b.ms);
+  if (!first || !second) return "";
+  const factor = second.ms / Math.max(first.ms, 1e-3);
+  if (factor < 1.05) return `Fastest: ${first.name} and ${second.name}, about equal.`;
+  return `Fastest: ${first.name}, ${factor < 10 ? factor.toFixed(1) : Math.round(factor)} times as fast as ${second.name}.`;
 }
 
 /** The values of a lane's counters; null for what its algorithm does not count. */

@@ -1,13 +1,13 @@
-// Writes the service worker with the list of everything that was built.
+// Writes the service worker with the list of everything that was built, and of what the article needs.
 
 import { createHash } from "node:crypto";
 import { readdirSync, readFileSync } from "node:fs";
-import type { Plugin } from "vite";
+import type { Plugin, Rolldown } from "vite";
 
 const publicFiles = new URL("../../public/", import.meta.url);
 
-/** What is larger, the engines of the benchmark page, is fetched when it is needed. */
-const LARGE = 1_000_000;
+/** What is larger, the engines of the benchmark page and the drawing in 3D, is not needed for the article. */
+const LARGE = 400_000;
 
 export const offline: Plugin = {
   name: "offline",
@@ -16,24 +16,33 @@ export const offline: Plugin = {
     order: "post",
     handler(_, bundle) {
       const hash = createHash("sha256");
-      const files: string[] = [];
-      for (const output of Object.values(bundle)) {
-        const content = output.type === "chunk" ? output.code : output.source;
-        if (content.length > LARGE) continue;
-        files.push(output.fileName);
-        hash.update(output.fileName).update(content);
-      }
-      // Beside what is built, the single files that are copied as they are; folders of
-      // documentation are too large to fetch unasked.
-      for (const entry of readdirSync(publicFiles, { withFileTypes: true })) {
-        if (!entry.isFile()) continue;
-        files.push(entry.name);
-        hash.update(readFileSync(new URL(entry.name, publicFiles)));
-      }
+      const sizeOf = (output: Rolldown.OutputChunk | Rolldown.OutputAsset): number => (output.type === "chunk" ? output.code : output.source).length;
+      const files = Object.values(bundle).map((output) => output.fileName);
+      for (const output of Object.values(bundle)) hash.update(output.fileName).update(output.type === "chunk" ? output.code : output.source);
+      // Beside what is built, the single files that are copied as they are; folders of documentation are not stored.
+      const copied = readdirSync(publicFiles, { withFileTypes: true }).filter((entry) => entry.isFile());
+      for (const { name } of copied) hash.update(readFileSync(new URL(name, publicFiles)));
+      const article = neededBy("index.html", bundle).filter((name) => sizeOf(bundle[name]!) <= LARGE);
       const source = readFileSync(new URL("./service-worker.js", import.meta.url), "utf8")
         .replace("__NAME__", `pages-${hash.digest("hex").slice(0, 16)}`)
-        .replace("__FILES__", JSON.stringify(files.sort()));
+        .replace("__FILES__", JSON.stringify([...files, ...copied.map(({ name }) => name)].sort()))
+        .replace("__ARTICLE__", JSON.stringify(["index.html", "icon.svg", ...article].sort()));
       this.emitFile({ type: "asset", fileName: "service-worker.js", source });
     },
   },
 };
+
+/** What the scripts and styles of a page load, and what those load; workers and WebAssembly by their names in the code. */
+function neededBy(page: string, bundle: Rolldown.OutputBundle): string[] {
+  const found = new Set<string>();
+  const visit = (name: string): void => {
+    const output = bundle[name];
+    if (!output || found.has(name)) return;
+    found.add(name);
+    const text = typeof (output.type === "chunk" ? output.code : output.source) === "string" ? String(output.type === "chunk" ? output.code : output.source) : "";
+    for (const other of Object.keys(bundle)) if (!other.endsWith(".html") && text.includes(other.replace(/^assets\//, ""))) visit(other);
+  };
+  visit(page);
+  found.delete(page);
+  return [...found];
+}

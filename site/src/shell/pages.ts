@@ -6,6 +6,10 @@ import { readdirSync, readFileSync } from "node:fs";
 import { basename } from "node:path";
 import type { IndexHtmlTransformContext, Plugin } from "vite";
 
+/** Where the site stands: for links that leave it, and for those who link to it. */
+export const SITE = process.env["SITE_URL"] ?? "https://sweep-and-prune.github.io/sweep-and-prune/";
+const REPOSITORY = "https://github.com/sweep-and-prune/sweep-and-prune";
+
 const here = new URL("./", import.meta.url);
 const site = new URL("../../", here);
 
@@ -27,14 +31,43 @@ export function pages(): string[] {
 export const shell: Plugin = {
   name: "shell",
   transformIndexHtml: { order: "pre", handler: frame },
+  generateBundle() {
+    const places = pages().filter((file) => file !== "embed.html").map((file) => `<url><loc>${addressOf(file)}</loc></url>`);
+    const source = `<?xml version="1.0" encoding="UTF-8"?>\n<urlset xmlns="http://www.sitemaps.org/schemas/sitemap/0.9">${places.join("")}</urlset>\n`;
+    this.emitFile({ type: "asset", fileName: "sitemap.xml", source });
+  },
 };
+
+const addressOf = (file: string): string => SITE + (file === "index.html" ? "" : file);
+
+/** What those who link to a page show of it. */
+function preview(page: string, file: string): string {
+  const title = /<title>([^<]*)<\/title>/.exec(page)?.[1] ?? "";
+  const description = /name="description"\s+content="([^"]*)"/.exec(page)?.[1] ?? "";
+  if (title === "" || description === "") throw new Error(`${file} has no title or no description`);
+  if (file === "embed.html") return `<meta name="robots" content="noindex" />`;
+  return `
+    <link rel="canonical" href="${addressOf(file)}" />
+    <meta property="og:type" content="article" />
+    <meta property="og:url" content="${addressOf(file)}" />
+    <meta property="og:title" content="${title}" />
+    <meta property="og:description" content="${description}" />
+    <meta property="og:image" content="${SITE}preview.png" />
+    <meta property="og:image:width" content="1200" />
+    <meta property="og:image:height" content="630" />
+    <meta property="og:image:alt" content="Moving boxes with a sweep line among them; those that overlap are filled" />
+    <meta name="twitter:card" content="summary_large_image" />`;
+}
 
 function frame(page: string, { filename }: IndexHtmlTransformContext): string {
   const bare = /<html[^>]*data-shell="bare"/.test(page);
-  const framed = page.replace(/<head>/, () => `<head>${head()}`);
+  const file = basename(filename);
+  const framed = page
+    .replace(/<head>/, () => `<head>${head()}`)
+    .replace("</head>", () => `${preview(page, file)}\n  </head>`);
   if (bare) return framed;
   return framed
-    .replace(/<body([^>]*)>/, (tag) => `${tag}${header(basename(filename))}`)
+    .replace(/<body([^>]*)>/, (tag) => `${tag}${header(file)}`)
     .replace("</body>", () => `${footer()}</body>`);
 }
 
@@ -78,8 +111,8 @@ function footer(): string {
       <p>
         Based on the article <cite>Sort, sweep, and prune</cite> by Lean and on the lesson about sweep and
         prune in Matthias Müller’s <cite>Ten Minute Physics</cite>. Free software under the MIT or Apache 2.0
-        license, whichever you prefer. These pages load nothing from other hosts, and they work offline
-        after your first visit.
+        license, whichever you prefer: <a href="${REPOSITORY}">source code</a>. By the sweep-and-prune authors, 2026. These pages load nothing from other hosts, and those that you have
+        visited work offline.
       </p>
     </footer>`;
 }

@@ -14,6 +14,7 @@ export class SimulationClient {
   readonly #worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
   readonly #listener: Listener;
   #run = 0;
+  #methods = 0;
   /** The frame last given to the listener, whose buffer is not yet given back. */
   #shown: Frame | undefined;
 
@@ -36,7 +37,13 @@ export class SimulationClient {
 
   /** Goes on with the same world by another algorithm. */
   setMethod(method: Method): void {
+    this.#methods++;
     this.#send({ type: "method", method });
+  }
+
+  /** Whether what a frame has measured belongs to the method that was set last. */
+  isCurrent(frame: Frame): boolean {
+    return frame.methods === this.#methods;
   }
 
   setRunning(running: boolean): void {

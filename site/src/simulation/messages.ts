@@ -83,6 +83,8 @@ export interface Frame {
   readonly type: "frame";
   readonly run: number;
   readonly step: number;
+  /** How many changes of the method this thread has seen: what is measured belongs to the last of them. */
+  readonly methods: number;
   /** Whether steps follow by themselves. */
   readonly running: boolean;
   /** Steps a second, of late; 0 while that is not known. */

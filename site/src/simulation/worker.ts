@@ -33,6 +33,7 @@ const warmedUp = new Set<number>();
 let world: World | undefined;
 let running = false;
 let listPairs = false;
+let methods = 0;
 let due = 0;
 let timer: ReturnType<typeof setTimeout> | undefined;
 
@@ -98,6 +99,7 @@ function show(world: World): void {
       type: "frame",
       run,
       step: simulation.steps,
+      methods,
       running,
       pace: paceOf(world.taken),
       hash: running ? "" : simulation.hash(),
@@ -168,6 +170,7 @@ function receive(message: ToSimulation): void {
       begin(message.run, message.setup, message.laws, message.method);
       break;
     case "method":
+      methods++;
       if (world) {
         world.simulation.setBroadPhase(broadPhaseOf(message.method));
         world.reports.splice(0);

@@ -1,0 +1,8 @@
+// The demos of the article: loaded when a reader comes near the first of them.
+
+import "sweep-and-prune/demo";
+import { FallingBalls } from "../falling/falling-balls.ts";
+import { LibraryTrial } from "../library/library-trial.ts";
+
+customElements.define("falling-balls", FallingBalls);
+customElements.define("library-trial", LibraryTrial);
