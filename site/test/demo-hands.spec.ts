@@ -1,7 +1,7 @@
 // `<sap-demo>` in the hands of a visitor: keys, a mouse, a finger, questions, guesses, what is shared.
 import { expect, test } from "@playwright/test";
 import type { SapDemo } from "sweep-and-prune/demo";
-import { complainOfNothing, counter, open, pairwise, stateOf } from "./support/embedded.ts";
+import { type Attributes, complainOfNothing, counter, open, pairwise, stateOf } from "./support/embedded.ts";
 
 complainOfNothing();
 
@@ -130,6 +130,24 @@ test("a guess is asked for before each event, and counted", async ({ page }) => 
     await expect(group).toContainText(`${right} of ${made} right`);
   }
   expect(right).toBe(10 - (await demo.evaluate((element: SapDemo) => element.pairs.length)));
+});
+
+test("steps without a question are skipped, and a wrong guess is explained; also of a method that stops early", async ({ page }) => {
+  for (const attributes of [{ strategy: "sweep", sort: "insertion", decorations: "edges:array" }, { strategy: "sorted-pairwise" }, { strategy: "swap", decorations: "edges:array", motion: "drift" }] as Attributes[]) {
+    const demo = await open(page, { ...attributes, balls: "5", "skip-interval": "9", predict: "", labels: "A,B,C,D,E" });
+    const group = demo.getByRole("group", { name: "What happens next?" });
+    let wrong = 0;
+    for (let made = 1; made <= 12; made++) {
+      await expect(group.getByRole("button"), `guess ${made} with ${JSON.stringify(attributes)}`).toHaveCount(2);
+      await group.getByRole("button").first().click();
+      const text = (await group.textContent())!;
+      if (text.includes("No:")) {
+        wrong++;
+        expect(text).toMatch(/No: (stay|swap|skipped|tested|are apart|overlap)\. .*(is at -?[\d.]+|<|overlap|Stop|Test)/);
+      }
+    }
+    expect(wrong, "so that the reason is seen").toBeGreaterThan(0);
+  }
 });
 
 test("what is shared opens as it was", async ({ page }) => {

@@ -1,0 +1,62 @@
+// What those who link to a page show of it, what search engines are told, and what there is without scripts.
+import { expect, test } from "@playwright/test";
+import type { SapDemo } from "sweep-and-prune/demo";
+import { PAGES } from "./support/pages.ts";
+
+const LINKED = PAGES.filter((path) => path !== "/embed.html");
+
+test("every page has a title, a description, an address and a picture of its own kind", async ({ page, request }) => {
+  const titles = new Set<string>();
+  const map = await (await request.get("/sitemap.xml")).text();
+  for (const path of LINKED) {
+    const html = await (await request.get(path)).text();
+    await page.setContent(html.replace(/<script[\s\S]*?<\/script>/g, ""));
+    const content = (selector: string): Promise<string | null> => page.locator(selector).getAttribute(selector.startsWith("link") ? "href" : "content");
+    const title = await page.title();
+    expect(titles.has(title), title).toBe(false);
+    titles.add(title);
+    expect(await content('meta[property="og:title"]')).toBe(title);
+    expect(await content('meta[property="og:description"]')).toBe(await content('meta[name="description"]'));
+    const canonical = (await content('link[rel="canonical"]'))!;
+    expect(canonical).toMatch(/^https:\/\//);
+    expect(new URL(canonical).pathname.replace(/\/$/, "/index.html").endsWith(path)).toBe(true);
+    expect(map).toContain(`<loc>${canonical}</loc>`);
+    expect(await content('meta[property="og:image"]')).toMatch(/^https:\/\/.*\/preview\.png$/);
+  }
+  const picture = await (await request.get("/preview.png")).body();
+  expect([picture.readUInt32BE(16), picture.readUInt32BE(20)], "width and height of the picture").toEqual([1200, 630]);
+  expect(picture.length).toBeLessThan(300_000);
+});
+
+test("the drawing in place of a demo is its first picture", async ({ page }) => {
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await page.goto("/");
+  const drawn = await page.locator("sap-demo").evaluateAll((all) => all.map((demo) => [...demo.querySelectorAll("svg.poster circle")].map((circle) => ["cx", "cy", "r"].map((name) => Number(circle.getAttribute(name))))));
+  await page.locator("sap-demo").first().scrollIntoViewIfNeeded();
+  await page.evaluate(() => customElements.whenDefined("sap-demo"));
+  const balls = await page.locator("sap-demo").evaluateAll((all) =>
+    Promise.all((all as SapDemo[]).map(async (demo) => {
+      await demo.ready;
+      return demo.state.tick === 0 ? demo.balls.map((row) => row.map((value) => Math.round(Number(value) * 10) / 10)) : undefined;
+    })),
+  );
+  expect(balls.length).toBeGreaterThan(30);
+  balls.forEach((rows, at) => rows && expect(drawn[at], `demo ${at}`).toEqual(rows));
+  expect(balls.filter((rows) => rows).length).toBeGreaterThan(30);
+});
+
+test.describe("without scripts", () => {
+  test.use({ javaScriptEnabled: false });
+
+  test("each demo has its drawing, and the first picture a photograph of it", async ({ page }) => {
+    await page.goto("/");
+    expect(await page.locator("sap-demo svg.poster").count()).toBe(await page.locator("sap-demo").count());
+    const [poster, place] = [page.locator("#d2 svg.poster"), page.locator("#d2 sap-demo")];
+    const box = (await poster.boundingBox())!;
+    expect(box.width).toBeCloseTo((await place.boundingBox())!.width, 0);
+    expect(box.height).toBeCloseTo((box.width * 2) / 3, 0);
+    await expect(page.locator(".hero-stage img")).toBeVisible();
+    await page.goto("/embed.html#strategy=sweep");
+    await expect(page.getByText("needs JavaScript")).toBeVisible();
+  });
+});
