@@ -3,9 +3,7 @@ import { FallingBalls } from "./falling-balls.ts";
 
 const IDS = ["discs", "spheres"] as const;
 
-test.describe("running", () => {
-  for (const id of IDS) {
-    test("no number of one method stands under the name of another", async ({ page }) => {
+test("no number of one method stands under the name of another", async ({ page }) => {
   await page.goto("/falling.html?discs.bodies=1000");
   const balls = await new FallingBalls(page, "discs").open();
   await expect.poll(() => balls.stepNumber()).toBeGreaterThan(5);
@@ -19,7 +17,9 @@ test.describe("running", () => {
   await expect.poll(() => balls.counter("tests")).toBe("499,500");
 });
 
-test(`${id}: counters move, pause holds them, the world goes on afterwards`, async ({ page }) => {
+test.describe("running", () => {
+  for (const id of IDS) {
+    test(`${id}: counters move, pause holds them, the world goes on afterwards`, async ({ page }) => {
       await page.goto(`/falling.html?${id}.algorithm=sorted+pairwise&${id}.bodies=2000`);
       const balls = await new FallingBalls(page, id).open();
       const seen = new Set<string>();

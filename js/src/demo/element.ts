@@ -92,7 +92,7 @@ export class SapDemoElement extends LitElement {
   }
 
   pause(): void {
-    if (this.#comparison) return this.#comparison.pause();
+    if (this.#comparison) return this.#together((all) => all.pause());
     if (!this.#isPlaying) return;
     this.#isPlaying = false;
     this.#changed();
@@ -100,21 +100,24 @@ export class SapDemoElement extends LitElement {
   }
 
   step(): void {
-    if (this.#comparison) return this.#comparison.step();
+    if (this.#comparison) return this.#together((all) => all.step());
     const run = this.#run;
     if (!run) return;
     const { timeline, options } = run;
     this.#isPlaying = false;
-    if (timeline.isDetected && options.isStatic) timeline.rewind();
-    else if (timeline.isDetected) run.nextDetection(this.#listener);
-    if (!timeline.isDetected) this.#report(timeline.nextStop());
+    const isNew = timeline.isDetected;
+    if (isNew && options.isStatic) timeline.rewind();
+    else if (isNew) run.nextDetection(this.#listener);
     this.#guesses.outcome = "";
+    // The first event of a detection is to be guessed too.
+    if (isNew && options.predicts) this.#skipToQuestion();
+    else if (!timeline.isDetected) this.#report(timeline.nextStop());
     this.#changed();
     this.#speech.soon();
   }
 
   back(): void {
-    if (this.#comparison) return this.#comparison.back();
+    if (this.#comparison) return this.#together((all) => all.back());
     if (!this.#run) return;
     this.#isPlaying = false;
     this.#run.timeline.back();
@@ -122,7 +125,7 @@ export class SapDemoElement extends LitElement {
   }
 
   seek(k: number): void {
-    if (this.#comparison) return this.#comparison.seek(k);
+    if (this.#comparison) return this.#together((all) => all.seek(k));
     if (!this.#run || Number.isNaN(k)) return;
     this.#isPlaying = false;
     this.#run.timeline.seek(k);
@@ -130,7 +133,7 @@ export class SapDemoElement extends LitElement {
   }
 
   reset(): void {
-    if (this.#comparison) return this.#comparison.reset();
+    if (this.#comparison) return this.#together((all) => all.reset());
     this.#begin(!this.#isPlaying);
     this.#speech.soon();
   }
@@ -216,6 +219,12 @@ export class SapDemoElement extends LitElement {
     // Several that change at once are read at once.
     if (!this.#hasChanged) queueMicrotask(() => this.#understand());
     this.#hasChanged = true;
+  }
+
+  /** Lets all demos of the comparison do something; this one, which was asked, says what it shows. */
+  #together(act: (comparison: SapComparisonElement) => void): void {
+    act(this.#comparison!);
+    this.#speech.soon();
   }
 
   /** Reads the attributes again, and keeps the world if they do not change it. */
@@ -382,9 +391,11 @@ export class SapDemoElement extends LitElement {
     this.#guesses.count(question, choice);
   }
 
-  /** Steps where there is nothing to guess are not worth a press of a button. */
+  /** Stops of this detection where there is nothing to guess are not worth a press of a button. */
   #skipToQuestion(): void {
-    for (let steps = 0; steps < MOST_SKIPPED && this.#run?.options.predicts && !this.#question; steps++) this.step();
+    const run = this.#run;
+    if (!run?.options.predicts) return;
+    for (let steps = 0; steps < MOST_SKIPPED && !run.timeline.isDetected && !this.#question; steps++) this.#report(run.timeline.nextStop());
   }
 
   // Showing

@@ -65,7 +65,7 @@ export interface Guessing {
 export function guessing({ question, guesses, guess }: Guessing): TemplateResult {
   const { outcome, right, made } = guesses;
   return html`<div class="guess" part="guess" role="group" aria-label="What happens next?">
-    <p>${outcome} ${question?.text ?? "Nothing to guess here. Press Step."}</p>
+    <p>${outcome} ${question?.text ?? "That was all of this detection. Press Step for the next."}</p>
     <div>
       ${question?.choices.map((text, index) => html`<button type="button" @click=${() => guess(index as 0 | 1)}>${text}</button>`)}
       <span class="score">${made === 0 ? nothing : html`${right} of ${made} right`}</span>
