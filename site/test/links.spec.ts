@@ -1,4 +1,4 @@
-// What those who link to a page show of it, what search engines are told, and what there is without scripts.
+// What a link to a page shows of it elsewhere, what search engines are told, and what there is without scripts.
 import { expect, test } from "@playwright/test";
 import type { SapDemo } from "sweep-and-prune/demo";
 import { PAGES } from "./support/pages.ts";

@@ -6,7 +6,7 @@ import { readdirSync, readFileSync } from "node:fs";
 import { basename } from "node:path";
 import type { IndexHtmlTransformContext, Plugin } from "vite";
 
-/** Where the site stands: for links that leave it, and for those who link to it. */
+/** The address of the published site: for the map of its pages and for previews of links. */
 export const SITE = process.env["SITE_URL"] ?? "https://sweep-and-prune.github.io/sweep-and-prune/";
 const REPOSITORY = "https://github.com/sweep-and-prune/sweep-and-prune";
 
@@ -40,7 +40,7 @@ export const shell: Plugin = {
 
 const addressOf = (file: string): string => SITE + (file === "index.html" ? "" : file);
 
-/** What those who link to a page show of it. */
+/** What a link to a page shows of it elsewhere. */
 function preview(page: string, file: string): string {
   const title = /<title>([^<]*)<\/title>/.exec(page)?.[1] ?? "";
   const description = /name="description"\s+content="([^"]*)"/.exec(page)?.[1] ?? "";
