@@ -1,6 +1,8 @@
 """Writes the API reference of the package to a folder: `python python/docs.py FOLDER`, in the environment of
 `python/requirements.txt`. The pages are static and load nothing from other sites."""
 
+import re
+import shutil
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -36,6 +38,29 @@ def as_written(annotation: object, *_: object) -> object:
     return AsWritten(annotation) if isinstance(annotation, (str, ForwardRef)) else annotation
 
 
+def guide(folder: Path) -> Path:
+    """The pages of docs/guide as a package in this folder, whose docstrings they are: pdoc describes packages."""
+    pages = Path(__file__).parents[1] / "docs/guide"
+    package = folder / "guide"
+    package.mkdir()
+    for page in pages.glob("*.md"):
+        is_first = page.stem == "README"
+        text = page.read_text(encoding="utf-8")
+        text = text.replace("../../python/README.md", f"{'' if is_first else '../'}sweep_and_prune.html")
+        text = re.sub(r"\]\(README\.md\)", "](../guide.html)", text)
+        text = re.sub(
+            r"\]\(([\w-]+)\.md\)",
+            lambda link: f"]({'guide/' if is_first else ''}{link[1].replace('-', '_')}.html)",
+            text,
+        )
+        name = "__init__" if is_first else page.stem.replace("-", "_")
+        code = f'{text!r}\n__docformat__ = "markdown"\n'
+        (package / f"{name}.py").write_text(code, encoding="utf-8")
+    for picture in pages.glob("*.svg"):
+        shutil.copy(picture, package)
+    return package
+
+
 package = Path(__file__).parent / "src/sweep_and_prune"
 sys.path.insert(0, str(package.parent))
 if not list(package.glob("_native*.so")) + list(package.glob("_native*.pyd")):
@@ -45,12 +70,19 @@ if not list(package.glob("_native*.so")) + list(package.glob("_native*.pyd")):
     sys.modules[stand_in.__name__] = stand_in
 
 pdoc.doc.safe_eval_type = as_written  # type: ignore[assignment, attr-defined]
-with TemporaryDirectory() as template:
+with TemporaryDirectory() as template, TemporaryDirectory() as folder:
     highlighting = HtmlFormatter(style="github-dark").get_style_defs(".pdoc-code")
-    css = f"@media (prefers-color-scheme: dark) {{ {DARK} {highlighting} }}"
+    css = f".pdoc img {{ max-width: 100% }} @media (prefers-color-scheme: dark) {{ {DARK} {highlighting} }}"
     (Path(template) / "custom.css").write_text(css, encoding="utf-8")
     footer = "sweep-and-prune for Python"
     pdoc.render.configure(
         docformat="google", search=False, show_source=False, footer_text=footer, template_directory=Path(template)
     )
-    pdoc.pdoc("sweep_and_prune", "sweep_and_prune.dask", output_directory=Path(sys.argv[1]))
+    import sweep_and_prune
+
+    assert sweep_and_prune.__doc__
+    sweep_and_prune.__doc__ += (
+        "\n\nThe [guide](guide.html) begins with your problem: detections, tracks, joins, meshes, clusters ...\n"
+    )
+    modules = "sweep_and_prune", "sweep_and_prune.dask", guide(Path(folder))
+    pdoc.pdoc(*modules, output_directory=Path(sys.argv[1]))

@@ -179,4 +179,10 @@ def test_the_reference_names_everything_and_loads_nothing_from_elsewhere(tmp_pat
     loaded = re.findall(r"""(?:src=|<link[^>]*href=|url\(|@import )["']?([^"')>\s]+)""", page)
     assert [address for address in loaded if not address.startswith(("data:", "#", "./"))] == []
     assert re.search(r"prefers-color-scheme: ?dark", page)
+    assert 'href="guide.html"' in page
+    first, tracks = ((tmp_path / name).read_text() for name in ("guide.html", "guide/tracks.html"))
+    links = [link for link in re.findall(r'href="([^"#:]+)"', first) if not link.endswith(".css")]
+    assert "guide/from_array_to_cluster.html" in links
+    assert [link for link in links if not (tmp_path / link).exists()] == []
+    assert 'src="data:image/svg+xml' in tracks and 'href="game_loop.html"' not in tracks
     assert "boxes: ArrayLike" in re.sub(r"<[^>]*>", "", page).replace("\xa0", " ")

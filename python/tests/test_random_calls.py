@@ -18,6 +18,10 @@ PARTS = 8
 Random = np.random.Generator
 
 
+def one_of(random: Random, options: list[Any]) -> Any:
+    return options[int(random.integers(len(options)))]
+
+
 def some_boxes(random: Random, dimensions: int, dtype: Any) -> Array:
     count = int(random.choice([0, 1, 2, 9, 25, 60]))
     low = random.integers(-2, 9, (count, dimensions)) / 2
@@ -48,7 +52,7 @@ def written(random: Random, boxes: Array, format: str) -> Any:
         forms += [boxes.reshape(len(boxes), 2, half)]
     if boxes.dtype == np.float64 and len(boxes):
         forms += [boxes.tolist()]
-    return forms[random.integers(len(forms))]
+    return one_of(random, forms)
 
 
 def invalid(random: Random, boxes: Array) -> tuple[Array, int]:
@@ -62,7 +66,7 @@ def invalid(random: Random, boxes: Array) -> tuple[Array, int]:
 def search(random: Random) -> None:
     """One call that finds pairs."""
     dimensions = int(random.integers(1, 4))
-    dtype = random.choice([np.float32, np.float64])
+    dtype = one_of(random, [np.float32, np.float64])
     is_between = bool(random.integers(2))
     names = ["a", "b"] if is_between else ["boxes"]
     sets = [some_boxes(random, dimensions, dtype) for _ in names]
@@ -70,9 +74,8 @@ def search(random: Random) -> None:
         at = int(random.integers(len(sets)))
         if len(sets[at]):
             sets[at], index = invalid(random, sets[at])
-            call: Any = random.choice(
-                [sap.find_pairs_between, sap.count_pairs_between] if is_between else [sap.find_pairs]
-            )
+            calls = [sap.find_pairs_between, sap.count_pairs_between] if is_between else [sap.find_pairs]
+            call = one_of(random, calls)
             with pytest.raises(sap.InvalidBoxError) as caught:
                 call(*sets, margin=int(random.integers(2)))
             assert (caught.value.argument, caught.value.index) == (names[at], index)
@@ -101,7 +104,7 @@ def search(random: Random) -> None:
     way = random.integers(5)
     suffix = "_between" if is_between else ""
     if way == 0:
-        index_type = random.choice([np.int64, np.int32, np.uint32, np.uint64])
+        index_type = one_of(random, [np.int64, np.int32, np.uint32, np.uint64])
         threads = int(random.choice([1, 2, -1]))
         found = getattr(sap, "find_pairs" + suffix)(*given, dtype=index_type, threads=threads, **options)
         assert found.dtype == index_type
@@ -131,7 +134,7 @@ class World:
 
     def __init__(self, random: Random) -> None:
         self.random, self.dimensions = random, int(random.integers(1, 4))
-        self.dtype = random.choice([np.float32, np.float64])
+        self.dtype = one_of(random, [np.float32, np.float64])
         self.world = sap.BroadPhase(self.dimensions, self.dtype)
         self.boxes: dict[int, Array] = {}
         self.before: set[tuple[int, int]] = set()

@@ -27,7 +27,7 @@ const languages = [
   },
   {
     name: "python",
-    sources: ["python/src", "python/docs.py"],
+    sources: ["python/src", "python/docs.py", "docs/guide"],
     tool: [python, [join(root, "python/docs.py"), pythonPages]],
     made: pythonPages,
     first: "sweep_and_prune.html",

@@ -1,0 +1,118 @@
+"""Writes RESULTS.md and its plots from the newest results of each kind: `python report.py`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from common import FOLDER, RESULTS
+
+OWN = "sweep-and-prune"
+
+
+def newest(kind: str) -> dict[str, Any] | None:
+    files = sorted(RESULTS.glob(f"{kind}-*.json"), key=lambda path: path.stem[-10:])
+    return json.loads(files[-1].read_text()) if files else None
+
+
+def where(content: dict[str, Any]) -> str:
+    """One paragraph: the machine, the day, the versions."""
+    machine = content["machine"]
+    load = "" if machine["load"] < 0.5 else f"; **other programs were running** (load average {machine['load']:.1f})"
+    versions = ", ".join(f"{name} {version}" for name, version in content["versions"].items())
+    return (
+        f"{machine['cpu']}, {machine['cores']} cores, {machine['memory_bytes'] / 2**30:.0f} GiB, {machine['system']}, "
+        f"{content['date']}, revision {content['revision']}{load}. {versions}."
+    )
+
+
+def seconds(value: float) -> str:
+    for unit, size in (("s", 1), ("ms", 1e-3), ("µs", 1e-6)):
+        if value >= size:
+            return f"{value / size:.3g} {unit}"
+    return f"{value / 1e-9:.3g} ns"
+
+
+def size(value: float | None) -> str:
+    if value is None:
+        return ""
+    return f"{value / 1e9:.2f} GB" if value >= 1e9 else f"{value / 1e6:.0f} MB"
+
+
+def ratios(content: dict[str, Any]) -> list[str]:
+    lines = ["## Ratios in memory", "", where(content), ""]
+    lines += [
+        "Time of each library over that of sweep-and-prune on one thread, in the same round (median; above 1 is slower), "
+        "its own median time, and the most memory beyond its input.",
+        "",
+    ]
+    for case in sorted({case["case"] for case in content["cases"]}):
+        lines += [f"### {case}", "", "| boxes | found | library | ratio | time | memory |", "|--:|--:|---|--:|--:|--:|"]
+        for one in (one for one in content["cases"] if one["case"] == case):
+            for library, result in one["results"].items():
+                lines.append(
+                    f"| {one['boxes']:,} | {one['found']:,} | {library} | {result['ratio']:.2f} "
+                    f"| {seconds(result['median_seconds'])} | {size(result['peak_bytes'])} |"
+                )
+            for library, found in one["wrong"].items():
+                lines.append(f"| {one['boxes']:,} | {one['found']:,} | {library} | finds {found:,}: not timed | | |")
+        lines += ["", f"![{case}]({plot(content, case)})", ""]
+    return lines
+
+
+def plot(content: dict[str, Any], case: str) -> str:
+    """Draws ratios against the number of boxes."""
+    import matplotlib
+
+    matplotlib.use("svg")
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(7, 3.5), layout="constrained")
+    cases = [one for one in content["cases"] if one["case"] == case]
+    for library in dict.fromkeys(name for one in cases for name in one["results"]):
+        points = [(one["boxes"], one["results"][library]["ratio"]) for one in cases if library in one["results"]]
+        axes.plot(*zip(*points), marker="o", label=library)
+    axes.set(xscale="log", yscale="log", xlabel="boxes", ylabel="times as long", title=case)
+    axes.legend(fontsize=8)
+    name = f"plots/{case.replace(', ', '-').replace(' ', '-')}.svg"
+    (FOLDER / "plots").mkdir(exist_ok=True)
+    figure.savefig(FOLDER / name, metadata={"Date": None})
+    plt.close(figure)
+    return name
+
+
+def disk(content: dict[str, Any]) -> list[str]:
+    limit = size(content["limit_bytes"])
+    lines = ["## From Parquet to Parquet", "", where(content), "", f"The limit of memory is {limit}.", ""]
+    header = "| boxes | library | time | processor time | ns a box and pair | memory | written | pairs |"
+    lines += [header, "|--:|---|--:|--:|--:|--:|--:|--:|"]
+    for case in content["cases"]:
+        for library, runs in case["runs"].items():
+            done = [run for run in runs if run["why_not"] is None]
+            if not done:
+                why = runs[-1]["why_not"] if runs else "not run"
+                lines.append(f"| {case['boxes']:,} | {library} | {why} | | | | | |")
+                continue
+            best = min(done, key=lambda run: run["seconds"])
+            work = case["boxes"] + best["pairs"]
+            busy = best.get("processor_seconds")
+            lines.append(
+                f"| {case['boxes']:,} | {library} | {seconds(best['seconds'])} | {seconds(busy) if busy else ''} "
+                f"| {best['seconds'] / work * 1e9:.0f} | {size(max(run['peak_bytes'] for run in done))} "
+                f"| {size(best['written_bytes'])} | {best['pairs']:,} |"
+            )
+    return [*lines, ""]
+
+
+def main() -> None:
+    lines = ["# Results of the Python package", "", "Written by `report.py`; do not edit.", ""]
+    for kind, write in (("ratios", ratios), ("disk", disk)):
+        content = newest(kind)
+        if content is not None:
+            lines += write(content)
+    Path(FOLDER / "RESULTS.md").write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
