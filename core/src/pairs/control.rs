@@ -50,18 +50,20 @@ pub(super) struct Task<'a> {
     pub progress: Option<&'a Progress<'a>>,
     /// The share of the whole work.
     pub share: f64,
-    /// How many plans it is nested in.
+    /// How many plans it is nested in,
     pub depth: u32,
+    /// and how many boxes the last of them had.
+    pub boxes: usize,
 }
 
 impl<'a> Task<'a> {
     pub fn new(pair_order: PairOrder, progress: Option<&'a Progress<'a>>) -> Self {
-        Self { pair_order, progress, share: 1.0, depth: 0 }
+        Self { pair_order, progress, share: 1.0, depth: 0, boxes: usize::MAX }
     }
 
-    /// A task nested in this one, with a share of its work.
-    pub fn nested(self, share: f64) -> Self {
-        Self { depth: self.depth + 1, share: self.share * share, ..self }
+    /// A task nested in this one, with a share of its work, whose plan has so many boxes.
+    pub fn nested(self, share: f64, boxes: usize) -> Self {
+        Self { depth: self.depth + 1, share: self.share * share, boxes, ..self }
     }
 
     /// Adds a share of the task to the progress.

@@ -1,7 +1,7 @@
 //! When boxes that are swept together are so crowded that another plan is made for them.
 
 use super::kernel::SortedBoxes;
-use super::plan::{CANDIDATE, Plan, plan};
+use super::plan::{Among, CANDIDATE, Plan, plan};
 use super::source::Source;
 use crate::Scalar;
 
@@ -24,17 +24,19 @@ const CROWDED: u64 = 96;
 const FEW_PROBES: u64 = 32;
 const MANY_PROBES: u64 = 512;
 /// They are planned again if that costs less than this share of the sweep: the model is not exact.
-const PLAN_PAYS: f64 = 0.6;
+const PLAN_PAYS: f64 = 0.75;
 
 /// A column with more records is planned again before it is sorted.
 pub(super) fn most_records(boxes: usize, columns: usize) -> usize {
     (UNEXPECTED * (boxes / columns)).clamp(WORTH_A_PLAN, LARGE)
 }
 
-/// A plan that costs less than to sweep these boxes, which are sorted, at once.
+/// A plan that costs less than to sweep these boxes, which are sorted on an axis, at once.
 pub(super) fn better_plan<const D: usize, T: Scalar, S: Source<D, T>>(
     sets: &[S],
     sorted: &[SortedBoxes<T>],
+    axis: usize,
+    among: Among,
 ) -> Option<Plan<T>> {
     let boxes: usize = sets.iter().map(|set| set.len()).sum();
     let crowd = CROWDED * boxes as u64;
@@ -45,8 +47,9 @@ pub(super) fn better_plan<const D: usize, T: Scalar, S: Source<D, T>>(
     if candidates <= crowd {
         return None;
     }
-    let planned = plan(sets, true);
-    (planned.cost < PLAN_PAYS * CANDIDATE * candidates as f64).then_some(planned.plan)
+    let planned = plan(sets, among);
+    let is_same = matches!(planned.plan, Plan::Cut(grid) if grid.len() == 1 && grid.sweep == axis);
+    (!is_same && planned.cost < PLAN_PAYS * CANDIDATE * candidates as f64).then_some(planned.plan)
 }
 
 /// Roughly how many candidates a sweep would test.
@@ -55,7 +58,7 @@ pub(super) fn few_candidates<T: Scalar>(sets: &[SortedBoxes<T>]) -> u64 {
 }
 
 /// About how many candidates a sweep would test, from so many probes.
-fn candidates<T: Scalar>(sets: &[SortedBoxes<T>], probes: u64) -> u64 {
+pub(super) fn candidates<T: Scalar>(sets: &[SortedBoxes<T>], probes: u64) -> u64 {
     let last = &sets[sets.len() - 1];
     let one_way = |boxes: &SortedBoxes<T>, against: &SortedBoxes<T>| {
         let left = &against.left[..against.len()];

@@ -35,6 +35,12 @@
 //! resolutions. A column that holds far more boxes than expected, or whose sweep would test far more
 //! candidates, is planned again by itself. Plans are nested at most 12 deep.
 //!
+//! **Groups that need different axes** (`plan/overlaps.rs`). The model supposes that boxes are spread evenly
+//! in the finest cells of the histogram, and each axis independent of the others. Where boxes are crowded,
+//! where a plan seems dear, or where a glance at the sample contradicts the model, the boxes of the sample
+//! are compared with each other on each axis. `hard_scenes.rs` has scenes that were 217 times slower than
+//! uniform boxes before. A column that a plan has not divided is not cut again by the same means.
+//!
 //! **Long columns** are also cut along the sweep axis, into slabs that fit the caches.
 //!
 //! **Few boxes against many**: boxes of the larger set are copied only to columns that hold boxes of the
@@ -73,6 +79,8 @@ mod crowding;
 mod driver;
 mod finder;
 mod grid;
+#[cfg(all(test, feature = "std"))]
+mod hard_scenes;
 mod kernel;
 #[cfg(feature = "parallel")]
 mod parallel;

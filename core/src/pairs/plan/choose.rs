@@ -1,9 +1,11 @@
 //! The choice of a plan: the cheapest cut of space, or a split of the boxes by size if that costs less.
 
-use super::cost::{Cut, RECORD, Shape, cost};
+use super::Among;
+use super::cost::{Cut, RECORD, Search, Shape, chance, cost};
 use super::field::Field;
 use super::float::{greater, greatest, lesser, whole};
-use super::sample::Sample;
+use super::overlaps::{Members, Overlaps, UNKNOWN, is_unexpected};
+use super::sample::{AXES, Sample};
 
 // Which plan is taken decides the order of the pairs, so these limits do not depend on the machine. They were
 // chosen on the scenes of the benchmark, 1,000 to 1,000,000 boxes, on one core of an AMD EPYC (Zen 5).
@@ -15,6 +17,9 @@ const CHEAPER: f64 = 0.95;
 const SPLIT_CHEAPER: f64 = 0.8;
 /// and is not tried if that costs less than so many times what placing and sorting the boxes costs.
 const DEAR: f64 = 3.0;
+/// With fewer boxes, a plan is not compared with what a glance at the sample shows: that takes half a
+/// microsecond.
+const GLANCE_PAYS: f64 = 2048.0;
 /// Columns for each box of the smaller of two sets, at least, where few boxes are searched against
 /// many (100 against 100,000 boxes took 0.58 of the time).
 const SPARSE: f64 = 4.0;
@@ -38,38 +43,53 @@ pub struct SizeSplit {
 
 /// A plan, in the units of the field.
 #[derive(Clone, Copy)]
-pub enum Choice<const D: usize> {
-    Cut(Cut<D>),
+pub enum Choice {
+    Cut(Cut),
     SplitBySize(SizeSplit),
 }
 
-/// The cheapest plan, and its cost.
-pub fn cheapest<const D: usize>(
-    field: &Field<D>,
-    samples: &[&Sample<D>],
-    may_split: bool,
-) -> (Choice<D>, f64) {
+/// The cheapest plan, and its cost. If boxes are crowded, or if it seems dear, it is from a closer look.
+pub fn cheapest(field: &Field, samples: &[&Sample], among: Among) -> (Choice, f64) {
     let shapes = [Shape::new(samples[0], field), Shape::new(samples[samples.len() - 1], field)];
-    let (cut, cost) = cheapest_cut(field, &shapes[..samples.len()]);
+    let all = &shapes[..samples.len()];
+    let boxes: f64 = all.iter().map(|shape| shape.count).sum();
+    let is_dear = |cost| cost > DEAR * RECORD * boxes;
+    if matches!(among, Among::All { is_crowded: false } | Among::Cuts) {
+        let search = Search { field, shapes: all, limits: [UNKNOWN; AXES] };
+        let (cut, cost) = cheapest_cut(&search);
+        let expected = if all.len() == 1 { 2.0 } else { 1.0 } * chance(&search, cut.sweep);
+        let is_expected = boxes < GLANCE_PAYS || !is_unexpected(samples, cut.sweep, expected);
+        if is_expected && !is_dear(cost) {
+            return (Choice::Cut(cut), cost);
+        }
+    }
+    let overlaps = Overlaps::new(samples);
+    let search = closer(field, all, &overlaps);
+    let (cut, cost) =
+        if among == Among::Sweeps { cheapest_sweep(&search) } else { cheapest_cut(&search) };
     let mut best = (Choice::Cut(cut), cost);
-    let boxes: f64 = shapes[..samples.len()].iter().map(|shape| shape.count).sum();
-    if !may_split || cost <= DEAR * RECORD * boxes {
+    let may_split = match among {
+        Among::All { is_crowded } => is_crowded || is_dear(cost),
+        Among::Cuts | Among::Sweeps => false,
+    };
+    if !may_split {
         return best;
     }
     for set in 0..samples.len() {
-        for axis in 0..D {
-            for size in field.quantiles(samples[set], axis) {
+        for axis in 0..field.dimensions {
+            for size in samples[set].quantiles(axis) {
                 let [small, large] = Shape::split(samples[set], field, axis, size);
                 if small.count == 0.0 || large.count == 0.0 {
                     continue;
                 }
                 let limit = SPLIT_CHEAPER * best.1;
                 let cost = if samples.len() == 1 {
-                    cost_up_to(limit, field, &[&[small], &[large], &[small, large]])
+                    let searches: [&[_]; 3] = [&[small], &[large], &[small, large]];
+                    cost_up_to(limit, field, &overlaps, &searches)
                 } else {
                     let [mut with_small, mut with_large] = [shapes; 2];
                     (with_small[set], with_large[set]) = (small, large);
-                    cost_up_to(limit, field, &[&with_small, &with_large])
+                    cost_up_to(limit, field, &overlaps, &[&with_small, &with_large])
                 };
                 if cost < limit {
                     best = (Choice::SplitBySize(SizeSplit { set, axis, size }), cost);
@@ -80,11 +100,18 @@ pub fn cheapest<const D: usize>(
     best
 }
 
+/// A search of some shapes, after a closer look.
+fn closer<'a>(field: &'a Field, shapes: &'a [Shape], overlaps: &Overlaps) -> Search<'a> {
+    let members = |shape: usize| shapes[shape].members;
+    let groups: [Members; 2] = [members(0), members(shapes.len() - 1)];
+    Search { field, shapes, limits: overlaps.limits(&groups[..shapes.len()]) }
+}
+
 /// The cost of several searches, or something not below the limit.
-fn cost_up_to<const D: usize>(limit: f64, field: &Field<D>, searches: &[&[Shape<D>]]) -> f64 {
+fn cost_up_to(limit: f64, field: &Field, overlaps: &Overlaps, searches: &[&[Shape]]) -> f64 {
     let mut cost = 0.0;
     for shapes in searches {
-        cost += cheapest_cut(field, shapes).1;
+        cost += cheapest_cut(&closer(field, shapes, overlaps)).1;
         if cost >= limit {
             break;
         }
@@ -92,25 +119,34 @@ fn cost_up_to<const D: usize>(limit: f64, field: &Field<D>, searches: &[&[Shape<
     cost
 }
 
+/// The cheapest axis to sweep on without a cut, and the cost.
+fn cheapest_sweep(search: &Search<'_>) -> (Cut, f64) {
+    let sweeps = (0..search.field.dimensions).map(Cut::uncut).map(|cut| (cut, cost(search, &cut)));
+    sweeps.reduce(|best, next| if next.1 < best.1 { next } else { best }).expect("there are axes")
+}
+
 /// The cheapest cut, and its cost.
-fn cheapest_cut<const D: usize>(field: &Field<D>, shapes: &[Shape<D>]) -> (Cut<D>, f64) {
+fn cheapest_cut(search: &Search<'_>) -> (Cut, f64) {
+    let Search { field, shapes, .. } = *search;
     let mut best = (Cut::uncut(0), f64::INFINITY);
-    for sweep in 0..D {
-        let (mut cut, mut cost) = refined(field, shapes, Cut::uncut(sweep));
+    for sweep in 0..field.dimensions {
+        let (mut cut, mut cost) = refined(search, Cut::uncut(sweep));
         if let [first, second] = shapes {
             // Of few boxes against many most columns hold none, once there are many more
             // columns than boxes; until then more columns do not pay.
             let fewer = lesser(first.count, second.count);
             let mut sparse = Cut::uncut(sweep);
             while sparse.len() < SPARSE * fewer {
-                for axis in (0..D).filter(|&axis| axis != sweep && field.extent(axis) > 0.0) {
+                for axis in
+                    (0..field.dimensions).filter(|&axis| axis != sweep && field.extent(axis) > 0.0)
+                {
                     sparse.columns[axis] *= 2.0;
                 }
-                if sparse.columns == [1.0; D] {
+                if sparse.columns == [1.0; AXES] {
                     break;
                 }
             }
-            let (sparse, sparse_cost) = refined(field, shapes, sparse);
+            let (sparse, sparse_cost) = refined(search, sparse);
             if sparse_cost < CHEAPER * cost {
                 (cut, cost) = (sparse, sparse_cost);
             }
@@ -131,11 +167,8 @@ fn cheapest_cut<const D: usize>(field: &Field<D>, shapes: &[Shape<D>]) -> (Cut<D
 }
 
 /// A cut made finer step by step, as long as that pays, and its cost.
-fn refined<const D: usize>(
-    field: &Field<D>,
-    shapes: &[Shape<D>],
-    mut cut: Cut<D>,
-) -> (Cut<D>, f64) {
+fn refined(search: &Search<'_>, mut cut: Cut) -> (Cut, f64) {
+    let Search { field, shapes, .. } = *search;
     let mut most_columns = MOST_COLUMNS;
     if let [first, second] = shapes {
         let fewer = lesser(first.count, second.count);
@@ -143,13 +176,15 @@ fn refined<const D: usize>(
         let [for_fewer, for_more] = COLUMNS_PER_BOX;
         most_columns = lesser(for_fewer * fewer + for_more * more, most_columns);
     }
-    let mut cut_cost = cost(field, shapes, &cut);
+    let mut cut_cost = cost(search, &cut);
     while cut.len() < most_columns {
         let mut next = (cut, cut_cost);
-        for axis in (0..D).filter(|&axis| axis != cut.sweep && field.extent(axis) > 0.0) {
+        for axis in
+            (0..field.dimensions).filter(|&axis| axis != cut.sweep && field.extent(axis) > 0.0)
+        {
             let mut finer = cut;
             finer.columns[axis] = whole(cut.columns[axis] * 1.25) + 1.0;
-            let finer_cost = cost(field, shapes, &finer);
+            let finer_cost = cost(search, &finer);
             let limit = if next.1 < cut_cost { CHEAPER * next.1 } else { cut_cost };
             if finer_cost < limit {
                 next = (finer, finer_cost);

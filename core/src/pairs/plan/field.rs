@@ -1,7 +1,7 @@
 //! Where the boxes of the samples are: how far they reach, how they cluster.
 
 use super::float::{floor, greater, lesser};
-use super::sample::{SAMPLE, Sample, sort};
+use super::sample::{AXES, Sample};
 
 /// The cells of an axis are halved one time less than this to see how boxes cluster: at most, with a
 /// full sample.
@@ -10,34 +10,37 @@ const LEVELS: usize = 11;
 const SURE: f64 = 1.0 / 2048.0;
 
 /// Where the boxes are: the same for the boxes up to a size, and for those above, as for all.
-pub struct Field<const D: usize> {
+pub struct Field {
+    pub dimensions: usize,
     /// From where to where, apart from a few outliers.
-    pub low: [f64; D],
-    pub high: [f64; D],
+    pub low: [f64; AXES],
+    pub high: [f64; AXES],
     /// The chance that two boxes begin in the same of 1, 2, 4 .. equal cells.
-    together: [[f64; LEVELS]; D],
+    together: [[f64; LEVELS]; AXES],
     /// How many of them are known: the fewer boxes were drawn, the less the finest cells would tell.
     levels: usize,
     /// The extent over which evenly spread boxes would be as near to each other as these are:
     /// less than `high - low` if they are clustered.
-    pub spread: [f64; D],
+    pub spread: [f64; AXES],
     /// The chance that two boxes begin at the same coordinate.
-    pub ties: [f64; D],
+    pub ties: [f64; AXES],
 }
 
-impl<const D: usize> Field<D> {
-    pub fn new(samples: &[&Sample<D>]) -> Self {
+impl Field {
+    pub fn new(samples: &[&Sample]) -> Self {
         let drawn = samples.iter().map(|sample| sample.len).max().unwrap_or(1);
         let levels = (drawn.next_power_of_two().ilog2() as usize + 3).min(LEVELS);
         let mut field = Field {
+            dimensions: samples[0].dimensions,
             levels,
-            low: [0.0; D],
-            high: [0.0; D],
-            together: [[1.0; LEVELS]; D],
-            spread: [0.0; D],
-            ties: core::array::from_fn(|axis| ties(samples, axis)),
+            low: [0.0; AXES],
+            high: [0.0; AXES],
+            together: [[1.0; LEVELS]; AXES],
+            spread: [0.0; AXES],
+            ties: [0.0; AXES],
         };
-        for axis in 0..D {
+        for axis in 0..field.dimensions {
+            field.ties[axis] = ties(samples, axis);
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
             for sample in samples {
                 let sorted = &sample.sorted[axis][..sample.len];
@@ -70,19 +73,8 @@ impl<const D: usize> Field<D> {
     }
 
     /// The size of a sampled box on an axis, as far as it lies in the field.
-    pub fn size(&self, sample: &Sample<D>, axis: usize, i: usize) -> f64 {
+    pub fn size(&self, sample: &Sample, axis: usize, i: usize) -> f64 {
         self.clip(axis, sample.max[axis][i]) - self.clip(axis, sample.min[axis][i])
-    }
-
-    /// Sizes that the largest half, quarter .. of the sample reach on an axis.
-    pub fn quantiles(&self, sample: &Sample<D>, axis: usize) -> impl Iterator<Item = f64> {
-        let mut sizes = [0.0; SAMPLE];
-        let len = sample.len;
-        for (i, size) in sizes[..len].iter_mut().enumerate() {
-            *size = self.size(sample, axis, i);
-        }
-        sort(&mut sizes[..len]);
-        (1..6).map(move |quantile| sizes[len - 1 - (len >> quantile)])
     }
 
     /// The chance that two boxes begin in the same of so many columns.
@@ -111,8 +103,8 @@ fn snapped(low: f64, high: f64) -> (f64, f64) {
 }
 
 /// The chance that two boxes begin in the same of 1, 2, 4 .. equal cells, from the finest up.
-fn together<const D: usize>(
-    samples: &[&Sample<D>],
+fn together(
+    samples: &[&Sample],
     axis: usize,
     levels: usize,
     low: f64,
@@ -149,7 +141,7 @@ fn together<const D: usize>(
 }
 
 /// The chance that two boxes begin at the same coordinate.
-fn ties<const D: usize>(samples: &[&Sample<D>], axis: usize) -> f64 {
+fn ties(samples: &[&Sample], axis: usize) -> f64 {
     let [first, last] = [samples[0], samples[samples.len() - 1]];
     let mut pairs = 0;
     let mut begin = 0;

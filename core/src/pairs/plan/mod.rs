@@ -5,6 +5,7 @@ mod choose;
 mod cost;
 mod field;
 mod float;
+mod overlaps;
 mod sample;
 
 pub(super) use choose::SizeSplit;
@@ -39,6 +40,17 @@ impl<T: Scalar> Plan<T> {
     }
 }
 
+/// Which plans are considered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Among {
+    /// All. Of boxes that are known to be crowded the sample gets a closer look at once.
+    All { is_crowded: bool },
+    /// Cuts, since plans are nested too deep to split any further.
+    Cuts,
+    /// To sweep crowded boxes at once, on any axis, since the last plan did not divide them.
+    Sweeps,
+}
+
 /// A plan and the nanoseconds that it is expected to take.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Planned<T> {
@@ -49,21 +61,21 @@ pub(super) struct Planned<T> {
 /// Plans for one set (pairs within it) or two (pairs between them).
 pub(super) fn plan<const D: usize, T: Scalar, S: Source<D, T>>(
     sets: &[S],
-    may_split: bool,
+    among: Among,
 ) -> Planned<T> {
     let unit = unit(sets);
-    let first = Sample::<D>::take(sets[0], unit);
+    let first = Sample::take(sets[0], unit);
     let second;
-    let samples: &[&Sample<D>] = if let Some(&source) = sets.get(1) {
-        second = Sample::<D>::take(source, unit);
+    let samples: &[&Sample] = if let Some(&source) = sets.get(1) {
+        second = Sample::take(source, unit);
         &[&first, &second]
     } else {
         &[&first]
     };
     let field = Field::new(samples);
-    let (choice, cost) = cheapest(&field, samples, may_split);
+    let (choice, cost) = cheapest(&field, samples, among);
     let plan = match choice {
-        Choice::Cut(cut) => Plan::Cut(grid(&cut, &field, unit)),
+        Choice::Cut(cut) => Plan::Cut(grid::<D, T>(&cut, &field, unit)),
         Choice::SplitBySize(split) => {
             Plan::SplitBySize(SizeSplit { size: split.size / unit.to_f64(), ..split })
         }
@@ -71,7 +83,7 @@ pub(super) fn plan<const D: usize, T: Scalar, S: Source<D, T>>(
     Planned { plan, cost }
 }
 
-fn grid<const D: usize, T: Scalar>(cut: &Cut<D>, field: &Field<D>, unit: T) -> Grid<T> {
+fn grid<const D: usize, T: Scalar>(cut: &Cut, field: &Field, unit: T) -> Grid<T> {
     let cells = core::array::from_fn(|axis| {
         if cut.columns[axis] > 1.0 {
             let count = lesser(cut.columns[axis], MOST_CELLS);
@@ -102,7 +114,7 @@ mod tests {
 
     /// How many columns are planned.
     fn columns<T: Scalar>(step: f64, size: f64) -> usize {
-        match plan(&[&boxes::<T>(step, size)[..]], true).plan {
+        match plan(&[&boxes::<T>(step, size)[..]], Among::All { is_crowded: false }).plan {
             Plan::Cut(grid) => grid.len(),
             Plan::SplitBySize(_) => 0,
         }
@@ -150,7 +162,11 @@ mod tests {
         };
         for (few, many) in [(200, 200), (1000, 4000)] {
             let sets = [points(few), points(many)];
-            let Plan::Cut(grid) = plan(&[&sets[0][..], &sets[1][..]], true).plan else { continue };
+            let Plan::Cut(grid) =
+                plan(&[&sets[0][..], &sets[1][..]], Among::All { is_crowded: false }).plan
+            else {
+                continue;
+            };
             assert!(grid.len() <= 8 * (few + many), "{few} {many}: {} columns", grid.len());
         }
     }

@@ -12,27 +12,32 @@ const ONE_IN: u64 = 32;
 /// but at least so many.
 const FEWEST: u64 = 24;
 
+/// The most axes. (Plans have as many in all dimensions, so that their code is compiled once.)
+pub const AXES: usize = 3;
+
 /// The boxes that were drawn from a set.
-pub struct Sample<const D: usize> {
+pub struct Sample {
+    pub dimensions: usize,
     /// Boxes in the set.
     pub count: f64,
     /// Boxes in the sample.
     pub len: usize,
     /// Corners by axis, times the unit, clamped to the limit of the coordinate type.
-    pub min: [[f64; SAMPLE]; D],
-    pub max: [[f64; SAMPLE]; D],
+    pub min: [[f64; SAMPLE]; AXES],
+    pub max: [[f64; SAMPLE]; AXES],
     /// The coordinates of `min`, sorted.
-    pub sorted: [[f64; SAMPLE]; D],
+    pub sorted: [[f64; SAMPLE]; AXES],
 }
 
-impl<const D: usize> Sample<D> {
-    pub fn take<T: Scalar, S: Source<D, T>>(source: S, unit: T) -> Self {
+impl Sample {
+    pub fn take<const D: usize, T: Scalar, S: Source<D, T>>(source: S, unit: T) -> Self {
         let mut sample = Self {
+            dimensions: D,
             count: source.len() as f64,
             len: 0,
-            min: [[0.0; SAMPLE]; D],
-            max: [[0.0; SAMPLE]; D],
-            sorted: [[0.0; SAMPLE]; D],
+            min: [[0.0; SAMPLE]; AXES],
+            max: [[0.0; SAMPLE]; AXES],
+            sorted: [[0.0; SAMPLE]; AXES],
         };
         let limit = T::Arithmetic::LIMIT;
         let limited = |at: T| (at.to_f64() * unit.to_f64()).clamp(-limit, limit);
@@ -49,6 +54,27 @@ impl<const D: usize> Sample<D> {
             sort(&mut sorted[..sample.len]);
         }
         sample
+    }
+
+    /// The size of a box on an axis.
+    pub fn size(&self, axis: usize, i: usize) -> f64 {
+        self.max[axis][i] - self.min[axis][i]
+    }
+
+    /// Sizes that the largest half, quarter .. of the boxes exceed on an axis. Of boxes of the same size,
+    /// all or none do.
+    pub fn quantiles(&self, axis: usize) -> impl Iterator<Item = f64> {
+        let mut sizes = [0.0; SAMPLE];
+        let len = self.len;
+        for (i, size) in sizes[..len].iter_mut().enumerate() {
+            *size = self.size(axis, i);
+        }
+        sort(&mut sizes[..len]);
+        (1..6).map(move |quantile| {
+            let size = sizes[len - 1 - (len >> quantile)];
+            let smaller = sizes[..len].partition_point(|&other| other < size);
+            smaller.checked_sub(1).map_or(size, |last| 0.5 * (sizes[last] + size))
+        })
     }
 }
 
