@@ -24,6 +24,7 @@ pytest.importorskip("distributed")
 import psutil
 import pyarrow
 import pyarrow.parquet
+from distributed import Client, LocalCluster
 
 import sweep_and_prune.dask as sap
 from sweep_and_prune._partitioned.dataset import hash_pairs
@@ -55,22 +56,56 @@ def hash_of(boxes: Array) -> str:
     return f"{hash_pairs(pairs[:, 0], pairs[:, 1]):016x}"
 
 
-def test_all_scenes_with_100_000_boxes_and_1_to_200_cells(tmp_path: Path) -> None:
-    checked = 0
-    for path in sorted(write_scenes(tmp_path / "scenes", "100000").iterdir()):
+@pytest.fixture(scope="module")
+def scenes(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[Path, int, str]]:
+    """A file with 100,000 boxes of each scene whose pairs are not too many, their number and their hash."""
+    folder = tmp_path_factory.mktemp("scenes")
+    found = []
+    for path in sorted(write_scenes(folder, "100000").iterdir()):
         _, space, kind = path.name.split()
         boxes = np.fromfile(path, "<f4" if kind == "f32" else "<f8").reshape(-1, 2 * int(space[0]))
         count = core.count_pairs(boxes)
-        if count > MOST_PAIRS:
-            continue
-        checked += 1
-        write("a.parquet", boxes, 20_000)
-        wanted = hash_of(boxes)
-        for cells in (1, 17, 200):
-            sap.find_pairs("a.parquet", out="out", workers=0, cells=cells, overwrite=True)
-            manifest = sap.read_manifest("out")
-            assert (manifest.pairs, manifest.hash) == (count, wanted), (path.name, cells)
-    assert checked > 80
+        if count <= MOST_PAIRS:
+            file = path.with_name(f"{path.name}.parquet")
+            write(str(file), boxes, 20_000)
+            found.append((file, count, hash_of(boxes)))
+        path.unlink()
+    assert len(found) > 80
+    return found
+
+
+@pytest.mark.parametrize("workers", [0, 1, 2, 3, 4])
+def test_all_scenes_with_100_000_boxes_and_1_to_200_cells(scenes: list[tuple[Path, int, str]], workers: int) -> None:
+    some = random.Random(workers)
+    with LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster):
+        for file, count, wanted in scenes:
+            for cells in (1, 17, 200) if workers == 0 else (some.randint(1, 200),):
+                number = 0 if workers == 0 else None
+                sap.find_pairs(str(file), out="out", cells=cells, workers=number, overwrite=True)
+                manifest = sap.read_manifest("out")
+                assert (manifest.pairs, manifest.hash) == (count, wanted), (file.name, cells)
+
+
+def test_a_million_boxes_from_disk_take_at_most_five_times_as_long_as_in_memory() -> None:
+    write("a.parquet", squares(10**6))
+
+    def from_disk() -> None:
+        sap.find_pairs("a.parquet", out="out", overwrite=True, progress=False)
+
+    def in_memory() -> None:
+        table = pyarrow.parquet.read_table("a.parquet")
+        pairs = core.find_pairs(np.column_stack([table[name].to_numpy() for name in NAMES[4]]))
+        pyarrow.parquet.write_table(pyarrow.table({"a": pairs[:, 0], "b": pairs[:, 1]}), "pairs.parquet")
+
+    times: dict[Any, list[float]] = {from_disk: [], in_memory: []}
+    for _ in range(5):
+        for call, of_call in times.items():
+            began = time.perf_counter()
+            call()
+            of_call.append(time.perf_counter() - began)
+    ratio = min(times[from_disk]) / min(times[in_memory])
+    print(f"from disk {ratio:.1f} times as long as in memory, with reading and writing")
+    assert ratio <= 5
 
 
 SCRIPT = """

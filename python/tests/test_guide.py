@@ -9,7 +9,7 @@ from types import ModuleType
 
 import pytest
 
-for module in ("distributed", "matplotlib", "pandas", "pyarrow"):
+for module in ("distributed", "geopandas", "matplotlib", "pandas", "pyarrow", "scipy", "trimesh"):
     pytest.importorskip(module)
 
 PYTHON = Path(__file__).parents[1]

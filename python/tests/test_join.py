@@ -70,6 +70,33 @@ def test_tables_of_intervals(how: str, closed: bool, margin: float, by: bool) ->
     assert ("chrom" in joined.columns) == by and ("chrom_left" in joined.columns) != by
 
 
+@pytest.mark.parametrize("how", ["inner", "left", "right"])
+@pytest.mark.parametrize(
+    "options", [{}, {"by": "chrom"}, {"by": ["chrom", "even"], "closed": "left"}, {"distance": 0.5}]
+)
+def test_frames_of_polars_are_joined_as_those_of_pandas(how: str, options: dict[str, Any]) -> None:
+    polars = pytest.importorskip("polars")
+    left, right = (intervals(count, count).assign(even=lambda frame: frame.index % 2) for count in (60, 50))
+    right.loc[right.index[7], "start"] = np.nan
+    wanted = sap.join(left, right, how, **options)
+    wanted = wanted.drop(columns=[name for name in wanted.columns if name.startswith("index_")])
+    joined = sap.join(polars.from_pandas(left), polars.from_pandas(right), how, **options)
+    assert isinstance(joined, polars.DataFrame) and joined.columns == list(wanted.columns)
+    assert joined.height == len(wanted) > 1
+    for name in joined.columns:
+        found = [None if value is None or value != value else value for value in joined[name].to_list()]
+        assert found == [None if pandas.isna(value) else value for value in wanted[name].tolist()], name
+    with pytest.raises(TypeError, match="not LazyFrame and DataFrame"):
+        sap.join(polars.from_pandas(left).lazy(), polars.from_pandas(right), how)
+    with pytest.raises(TypeError, match="two DataFrames of pandas or polars"):
+        sap.join(polars.from_pandas(left), right)
+    with pytest.raises(ValueError, match="lsuffix and rsuffix are empty"):
+        sap.join(polars.from_pandas(left), polars.from_pandas(right), lsuffix="", rsuffix="")
+    assert sap.join(polars.from_pandas(left[:0]), polars.from_pandas(right), how).height == (
+        50 if how == "right" else 0
+    )
+
+
 def test_frames_without_matches_and_without_rows() -> None:
     left, right = intervals(5, 1), intervals(4, 2)
     right[["start", "end"]] += 1e6

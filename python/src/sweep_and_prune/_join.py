@@ -40,15 +40,16 @@ def join(
     """Joins two data frames: a row for each pair of rows whose boxes or geometries overlap.
 
     For GeoDataFrames the result has the rows, columns and index of `geopandas.sjoin`. Candidates are found by
-    `find_pairs_between`, and shapely tests the exact predicate on them. For data frames of pandas without geometries,
-    the boxes are columns such as `minx, miny, maxx, maxy` or `start, end`.
+    `find_pairs_between`, and shapely tests the exact predicate on them. For data frames of pandas or polars without
+    geometries, the boxes are columns such as `minx, miny, maxx, maxy` or `start, end`. Frames of polars have no index,
+    so the result has the columns of both frames only.
 
     The rows are sorted by the position of the left row and then by that of the right row; with `how="right"` the
     other way around. Rows whose geometry is empty or `None`, or whose box has a NaN, match nothing. Time O(n log n +
-    candidates), memory O(n + candidates). Needs pandas, and geopandas for geometries.
+    candidates), memory O(n + candidates). Needs pandas or polars, and geopandas for geometries.
 
     Args:
-        left: a `DataFrame` or `GeoDataFrame`.
+        left: a `DataFrame` of pandas or polars, or a `GeoDataFrame`.
         right: another of the same kind.
         how: `"inner"` keeps the rows that match. `"left"` and `"right"` keep all rows of that frame, with missing
             values where nothing matches. The index and the geometry are those of the left frame, with `"right"`
@@ -86,12 +87,12 @@ def join(
     0    a            1            9         60
     1    b            1            9         60
     """
+    is_polars = all(_is_polars(frame) for frame in (left, right))
     has_geometries = [hasattr(frame, "total_bounds") and hasattr(frame, "geometry") for frame in (left, right)]
-    if not all(hasattr(frame, "iloc") and getattr(frame, "ndim", 0) == 2 for frame in (left, right)) or (
-        has_geometries[0] != has_geometries[1]
-    ):
+    is_pandas = all(hasattr(frame, "iloc") and getattr(frame, "ndim", 0) == 2 for frame in (left, right))
+    if not (is_polars or is_pandas) or has_geometries[0] != has_geometries[1]:
         kinds = " and ".join(type(frame).__name__ for frame in (left, right))
-        raise TypeError(f"left and right must be two DataFrames of pandas or two GeoDataFrames, not {kinds}")
+        raise TypeError(f"left and right must be two DataFrames of pandas or polars or two GeoDataFrames, not {kinds}")
     if how not in ("inner", "left", "right"):
         raise ValueError(f'how must be "inner", "left" or "right", not {how!r}')
     if predicate not in _PREDICATES:
@@ -100,7 +101,7 @@ def join(
         if not isinstance(suffix, str):
             raise TypeError(f"{name} must be a string, not {suffix!r}")
     columns = [] if by is None else [by] if isinstance(by, str) else list(by)
-    groups = _groups(left, right, columns)
+    groups = _groups(left, right, columns, is_polars)
     if has_geometries[0]:
         _check_distance(predicate, distance)
         if left.crs is not None and right.crs is not None and left.crs != right.crs:
@@ -126,7 +127,13 @@ def join(
             progress=progress,
         )
         found = pairs[:, 0], pairs[:, 1]
-    return _frame(left, right, _in_order(found), how, columns, (lsuffix, rsuffix))
+    of_kind = _frame_of_polars if is_polars else _frame
+    return of_kind(left, right, _in_order(found), how, columns, (lsuffix, rsuffix))
+
+
+def _is_polars(frame: Any) -> bool:
+    """Whether it is a `DataFrame` of polars, and not a lazy one."""
+    return type(frame).__module__.split(".")[0] == "polars" and hasattr(frame, "height")
 
 
 def _check_distance(predicate: str, distance: ArrayLike | None) -> None:
@@ -134,16 +141,22 @@ def _check_distance(predicate: str, distance: ArrayLike | None) -> None:
         raise ValueError('distance must be passed with predicate="dwithin", and only with it')
 
 
-def _groups(left: Any, right: Any, columns: list[str]) -> tuple[Indices, Indices] | None:
+def _groups(left: Any, right: Any, columns: list[str], is_polars: bool) -> tuple[Indices, Indices] | None:
     """A number for the values of each row in some columns."""
     if not columns:
         return None
-    import pandas
-
     for name, frame in (("left", left), ("right", right)):
         absent = [column for column in columns if column not in frame.columns]
         if absent:
             raise ValueError(f"by names {absent[0]!r}, which is not a column of {name}")
+    if is_polars:
+        import polars
+
+        values = polars.concat([frame.select(columns) for frame in (left, right)], how="vertical_relaxed")
+        ranks = values.select(polars.struct(columns).rank("dense")).to_series().to_numpy()
+        return ranks[: len(left)], ranks[len(left) :]
+    import pandas
+
     both = pandas.concat([pandas.DataFrame(frame)[columns] for frame in (left, right)], ignore_index=True)
     numbers = both.groupby(columns, sort=False, dropna=False).ngroup().to_numpy()
     return numbers[: len(left)], numbers[len(left) :]
@@ -302,6 +315,28 @@ def _frame(
     names = [None if old is None else new for old, new in zip(index.names, renamed(kept))]
     joined.index = index.take(rows[kept]).set_names(names)
     return joined
+
+
+def _frame_of_polars(
+    left: Any, right: Any, found: tuple[Indices, Indices], how: str, columns: list[str], suffixes: tuple[str, str]
+) -> Any:
+    """The joined frame; a row that is missing has nulls."""
+    import polars
+
+    rows = list(found)
+    if how != "inner":
+        kept = 1 if how == "right" else 0
+        rows = _with_missing(rows, kept, len((left, right)[kept]))
+    frames = [left, right.drop(columns)]
+    common = set(frames[0].columns) & set(frames[1].columns)
+    if common and not any(suffixes):
+        raise ValueError(f"lsuffix and rsuffix are empty, but both frames have columns {sorted(common)}")
+    taken = []
+    for frame, of_frame, suffix in zip(frames, rows, suffixes):
+        at = polars.Series(of_frame).set(polars.Series(of_frame < 0), None)
+        names = {name: f"{name}_{suffix}" if suffix else name for name in frame.columns if name in common}
+        taken.append(frame.select(polars.all().gather(at)).rename(names))
+    return polars.concat(taken, how="horizontal")
 
 
 def _with_missing(rows: list[Indices], kept: int, count: int) -> list[Indices]:
