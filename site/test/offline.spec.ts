@@ -4,6 +4,7 @@ import { PAGES } from "./support/pages.ts";
 test.use({ serviceWorkers: "allow" });
 
 test("a page that was visited opens without a network; a first visit stores the article alone", async ({ page, context }) => {
+  test.slow(); // every page twice
   const failed: string[] = [];
   page.on("requestfailed", (request) => {
     // What is still loading when the page is left is aborted, and that is no failure.

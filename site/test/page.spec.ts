@@ -26,6 +26,7 @@ for (const path of PAGES) {
     });
 
     test("nothing jumps while it loads and runs", async ({ page }) => {
+      test.slow(); // the whole page at three widths
       for (const width of [1280, 820, 390]) {
         await page.setViewportSize({ width, height: 900 });
         const { sum, what } = await shifts(page, path);
