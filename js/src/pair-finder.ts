@@ -206,7 +206,7 @@ export class PairFinder {
     this.dimensions = checkDimensions(options?.dimensions);
     this.#isView = checkViews(options.views);
     this.#owned = { engine: finderCore.engine(), single: 0, double: 0, isBusy: false, isFreed: false };
-    forgotten?.register(this, this.#owned, this.#owned);
+    forgotten?.register(this, this.#owned);
   }
 
   /**
@@ -440,7 +440,6 @@ export class PairFinder {
     if (this.#owned.isFreed) return;
     if (this.#owned.isBusy) throw new TypeError("this PairFinder is in use: free it after its callback");
     this.#owned.isFreed = true;
-    forgotten?.unregister(this.#owned);
     release(this.#owned);
   }
 

@@ -70,7 +70,7 @@ export class Player {
     this.words = runner.trace();
     const { engine, player } = runner.newPlayer();
     this.#owned = { engine, free: () => engine.exports.player_free(player), handle: player };
-    forgotten?.register(this, this.#owned, this.#owned);
+    forgotten?.register(this, this.#owned);
   }
 
   /** How many events have been played. */
@@ -140,7 +140,6 @@ export class Player {
 
   /** Frees the memory. Freeing it twice is not an error. */
   free(): void {
-    forgotten?.unregister(this.#owned);
     release(this.#owned);
   }
 

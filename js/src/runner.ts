@@ -133,7 +133,7 @@ export class Runner {
       const { engine, runner } = options.#live();
       this.dimensions = options.dimensions;
       this.#owned = own(engine, engine.exports.runner_copy(runner));
-      forgotten?.register(this, this.#owned, this.#owned);
+      forgotten?.register(this, this.#owned);
       return;
     }
     this.dimensions = checkDimensions(options?.dimensions);
@@ -155,7 +155,7 @@ export class Runner {
     this.#choose(1, "sort", sort, 0);
     this.#choose(2, "axis", isFixed ? "fixed axis" : axis, isFixed ? axis : 0);
     engine.exports.runner_start(runner, Number(persistent));
-    forgotten?.register(this, this.#owned, this.#owned);
+    forgotten?.register(this, this.#owned);
   }
 
   /**
@@ -217,7 +217,6 @@ export class Runner {
 
   /** Frees the memory. Freeing it twice is not an error. */
   free(): void {
-    forgotten?.unregister(this.#owned);
     release(this.#owned);
   }
 

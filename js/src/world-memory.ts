@@ -34,7 +34,7 @@ export class WorldMemory {
     this.stored = isDouble ? 3 : (Math.max(2, dimensions) as Dimensions);
     this.#owned = owned;
     this.#numbersAt = owned.engine.exports.world_numbers(owned.world) >>> 0;
-    forgotten?.register(this, owned, owned);
+    forgotten?.register(this, owned);
   }
 
   /** An empty broad phase. */
@@ -68,7 +68,6 @@ export class WorldMemory {
 
   /** Frees the memory. Freeing it twice is not an error. */
   free(): void {
-    forgotten?.unregister(this.#owned);
     release(this.#owned);
   }
 

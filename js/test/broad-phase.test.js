@@ -434,6 +434,42 @@ test("a predicate decides what a query finds, and may call anything", () => {
   }
 });
 
+test("a query without a filter finds every body, whatever its filter", () => {
+  const world = new BroadPhase({ dimensions: 2 });
+  const filters = [{ mask: 0 }, { category: 0 }, { group: -1 }, { isStatic: true }, { category: 0, mask: 0, group: -1 }];
+  const ids = filters.flatMap((filter) => [...world.insertMany([0, 0, 1, 1], filter)]);
+  /** @type {((filter?: any) => Iterable<any>)[]} */
+  const queries = [
+    (filter) => world.overlapping([0, 0, 1, 1], filter),
+    (filter) => world.containing([0.5, 0.5], filter),
+    (filter) => world.within([0.5, 0.5], 1, filter),
+    (filter) => world.nearest([0.5, 0.5], 9, Infinity, filter),
+    (filter) => world.rayCastAll([-1, 0.5], [1, 0], Infinity, filter),
+    (filter) => world.boxCastAll([-1, 0, -1, 1], [1, 0], Infinity, filter),
+  ];
+  for (const query of queries) {
+    const found = (/** @type {any} */ filter) => [...query(filter)].map((hit) => hit.id ?? hit);
+    for (const none of [undefined, null, () => true]) assert.deepEqual(found(none), ids, String(query));
+    assert.deepEqual(found({}), ids.slice(2, 4), String(query));
+  }
+  assert.equal(world.rayCast([-1, 0.5], [1, 0])?.id, ids[0]);
+  assert.equal(world.boxCast([-1, 0, -1, 1], [1, 0])?.id, ids[0]);
+  world.free();
+});
+
+test("without a limit, casts and nearest reach as far as numbers do", () => {
+  const world = new BroadPhase({ dimensions: 1, precision: "double" });
+  const id = world.insert(1e300, 2e300);
+  assert.deepEqual([world.rayCast([0], [1]), world.rayCastAll([0], [1])], [{ id, t: 1e300 }, [{ id, t: 1e300 }]]);
+  assert.deepEqual([world.boxCast([0, 0], [1]), world.boxCastAll([0, 0], [1])], [{ id, t: 1e300 }, [{ id, t: 1e300 }]]);
+  assert.equal(world.rayCast([0], [1], 9e299), undefined);
+  world.set(id, 1e150, 2e150);
+  assert.deepEqual(world.nearest([0]), [{ id, distance: 1e150 }]);
+  world.insert(1e150, 2e150);
+  assert.equal(world.nearest([0]).length, 1, "one by default");
+  world.free();
+});
+
 test("nearest finds nothing beyond maxDistance", () => {
   const world = new BroadPhase({ dimensions: 1 });
   const [a, b, c] = [world.insert(0, 1), world.insert(3, 4), world.insert(6, 7)];

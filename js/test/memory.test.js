@@ -53,6 +53,7 @@ test("pairs that do not fit, again and again", () => {
 });
 
 test("a call nested in a callback that runs out of memory leaves the outer one whole", () => {
+  const stackTop = stackPointer.value;
   const finder = new PairFinder({ dimensions: 2 });
   const boxes = new Float32Array(4 * 300); // all overlap: more pairs than one buffer holds
   const expected = findPairs(boxes, { dimensions: 2 });
@@ -69,5 +70,7 @@ test("a call nested in a callback that runs out of memory leaves the outer one w
     assert.equal(stackPointer.value, stack, "what is called next would overwrite the frames of the outer call");
   });
   assert.deepEqual(streamed, [...expected]);
+  assert.throws(() => inner.find(tooMany), OutOfMemoryError);
+  assert.equal(stackPointer.value, stackTop, "not that of the callback any more");
   for (const one of [finder, inner]) one.free();
 });

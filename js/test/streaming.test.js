@@ -117,6 +117,10 @@ test("what the callback throws comes out, and the finder goes on", () => {
     );
     assert.deepEqual([...finder.find([0, 1, 1, 2])], [0, 1]);
   }
+  // Few pairs are handed over after the search, but within the same call.
+  finder.forEach([0, 1, 1, 2], () => {
+    for (const use of [() => finder.find([0, 1]), () => finder.free()]) assert.throws(use, /^TypeError: this PairFinder is in use/);
+  });
   assert.throws(() => finder.forEach([0, 1], /** @type {any} */ (undefined)), TypeError);
   finder.free();
 });
@@ -141,6 +145,24 @@ test("within a callback other finders work, and this one refuses", () => {
     assert.throws(() => finder.free(), /in use/);
     assert.throws(() => findPairs([1, 0], { dimensions: 1 }), InvalidBoxError);
   });
+  assert.deepEqual(streamed, [...expected]);
+  finder.free();
+});
+
+test("after a nested call that streams, the outer one goes on, chunk after chunk", () => {
+  const finder = new PairFinder({ dimensions: 1 });
+  const all = new Float32Array(2 * 300); // all overlap: eleven chunks of pairs
+  const expected = findPairs(all, { dimensions: 1 });
+  /** @type {number[]} */
+  const streamed = [];
+  let nested = 0;
+  const isComplete = finder.forEach(all, (a, b) => {
+    streamed.push(a, b);
+    if (streamed.length % 9000 !== 2) return;
+    assert.equal(forEachPair(all, { dimensions: 1 }, () => ++nested % 5000 !== 0), false);
+    assert.throws(() => forEachPair(all, { dimensions: 1 }, () => { throw new Error("from within"); }), /from within/);
+  });
+  assert.deepEqual([isComplete, nested], [true, 50_000]);
   assert.deepEqual(streamed, [...expected]);
   finder.free();
 });
