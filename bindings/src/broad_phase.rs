@@ -24,7 +24,7 @@ impl Id for u64 {
 /// A broad phase with the rows that it reads. What a method of the same name promises in
 /// [`BroadPhase`] holds here, errors included; after an error nothing has changed.
 #[allow(clippy::missing_errors_doc, clippy::len_without_is_empty)]
-pub trait AnyBroadPhase<I: Id>: Send {
+pub trait TrackBodies<I: Id>: Send {
     /// The type of its boxes.
     fn kind(&self) -> Kind;
 
@@ -71,7 +71,11 @@ pub trait AnyBroadPhase<I: Id>: Send {
     /// Updates. Appends the ids of the pairs that began and then those of the pairs that ended, two
     /// a pair, and returns how many ids the former are.
     fn update(&mut self, ids: &mut Vec<I>) -> usize;
+}
 
+/// A broad phase that also answers queries, lists its pairs, and is saved and restored.
+#[allow(clippy::missing_errors_doc)]
+pub trait AnyBroadPhase<I: Id>: TrackBodies<I> {
     /// Appends the ids of the pairs of the last update, two a pair, sorted.
     fn pairs(&mut self, ids: &mut Vec<I>);
 
@@ -139,7 +143,7 @@ impl<const D: usize, T: Scalar> TypedBroadPhase<D, T> {
     }
 }
 
-impl<const D: usize, T: Scalar, I: Id> AnyBroadPhase<I> for TypedBroadPhase<D, T> {
+impl<const D: usize, T: Scalar, I: Id> TrackBodies<I> for TypedBroadPhase<D, T> {
     fn kind(&self) -> Kind {
         Kind { dimensions: D, is_double: size_of::<T>() == size_of::<f64>() }
     }
@@ -208,7 +212,9 @@ impl<const D: usize, T: Scalar, I: Id> AnyBroadPhase<I> for TypedBroadPhase<D, T
         append(changes.ended(), ids);
         begun
     }
+}
 
+impl<const D: usize, T: Scalar, I: Id> AnyBroadPhase<I> for TypedBroadPhase<D, T> {
     fn pairs(&mut self, ids: &mut Vec<I>) {
         let mut keys = pair_keys(&self.world);
         keys.sort_unstable();

@@ -5,7 +5,8 @@
 //! |---|---|---|
 //! | [`AnyPairFinder`] | [`TypedPairFinder`] | all bindings: boxes in rows, pairs in chunks |
 //! | [`ArrayPairFinder`] | the same | bindings that copy arrays and report progress |
-//! | [`AnyBroadPhase`] | [`TypedBroadPhase`] | all bindings |
+//! | [`TrackBodies`] | [`TypedBroadPhase`] | all bindings: bodies, and the pairs that begin and end |
+//! | [`AnyBroadPhase`] | the same | bindings that answer queries and save the state |
 //! | [`ArrayBroadPhase`] | the same | bindings that copy arrays |
 //!
 //! There are two traits for each, because everything in a trait object is compiled into a
@@ -28,7 +29,7 @@ mod pair_finder;
 mod queries;
 mod rows;
 
-pub use broad_phase::{AnyBroadPhase, ArrayBroadPhase, Id, TypedBroadPhase};
+pub use broad_phase::{AnyBroadPhase, ArrayBroadPhase, Id, TrackBodies, TypedBroadPhase};
 pub use kind::{Kind, Settings};
 pub use pair_finder::{AnyPairFinder, ArrayPairFinder, Progress, TypedPairFinder};
 pub use queries::{Answer, Query};

@@ -9,6 +9,7 @@ export type {
   SizedBox,
   TypedNumbers,
 } from "./boxes.js";
+export type { Bodies } from "./bodies.js";
 export { BroadPhase } from "./world.js";
 export {
   type Box,

@@ -1,7 +1,7 @@
 import { Core, type Exports } from "./engine.js";
 import type { FilterWords } from "./filter.js";
 
-/** What js/wasm/src/broad_phase/mod.rs exports. */
+/** What js/wasm/src/broad_phase/ exports. The small files, for events only, have no queries, lists of pairs and snapshots. */
 export interface WorldExports extends Exports {
   world_new(dimensions: number, double: number, margin: number, prediction: number, fat: number): number;
   world_free(world: number): void;
@@ -41,4 +41,4 @@ export const enum Query {
 }
 
 /** The core of the persistent broad phase. */
-export const worldCore: Core<WorldExports> = new Core("world_new", "sweep-and-prune/broad-phase");
+export const worldCore: Core<WorldExports> = new Core("world_query", "sweep-and-prune/broad-phase");

@@ -1,5 +1,5 @@
 import { type Boxes, checkBoxes, checkNumbers, type Dimensions, isNamed, readBox, readPoint, writeRows } from "./boxes.js";
-import { checkFits, type Engine, type Passed } from "./engine.js";
+import { checkFits, type Core, type Engine, type Passed } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
 import { result, view } from "./views.js";
 import { refuseCorners } from "./world-arguments.js";
@@ -38,10 +38,10 @@ export class WorldMemory {
   }
 
   /** An empty broad phase. */
-  static create(options: Required<BroadPhaseOptions>): WorldMemory {
+  static create(core: Core<WorldExports>, options: Required<BroadPhaseOptions>): WorldMemory {
     const { dimensions, precision, report, margin, prediction, views } = options;
     const isDouble = precision === "double";
-    const engine = worldCore.engine();
+    const engine = core.engine();
     const world = engine.exports.world_new(dimensions, Number(isDouble), margin, prediction, Number(report === "fat"));
     if (world === 0) throw new RangeError("`margin` or `prediction` does not fit in single precision");
     return new WorldMemory(dimensions, isDouble, views, { engine, world });

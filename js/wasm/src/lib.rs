@@ -14,7 +14,7 @@ extern crate alloc;
 
 #[cfg(feature = "algorithms")]
 mod algorithms;
-#[cfg(feature = "broad-phase")]
+#[cfg(any(feature = "broad-phase", feature = "events-2d", feature = "events-3d"))]
 mod broad_phase;
 #[cfg(feature = "algorithms")]
 mod broken;

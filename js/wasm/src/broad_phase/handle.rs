@@ -4,7 +4,11 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use sweep_and_prune::{Error, ProxyId};
-use sweep_and_prune_bindings::{Answer, AnyBroadPhase, Id};
+#[cfg(feature = "broad-phase")]
+use sweep_and_prune_bindings::AnyBroadPhase as Bodies;
+#[cfg(not(feature = "broad-phase"))]
+use sweep_and_prune_bindings::TrackBodies as Bodies;
+use sweep_and_prune_bindings::{Answer, Id};
 
 use crate::status::{Code, report, report_error};
 
@@ -26,12 +30,13 @@ impl Id for Number {
 }
 
 /// The broad phase behind a handle.
-pub(super) type World = Box<dyn AnyBroadPhase<Number>>;
+pub(super) type World = Box<dyn Bodies<Number>>;
 
 /// What JavaScript holds a pointer to.
 pub(super) struct Handle {
     pub world: World,
     /// How many dimensions the boxes have for the user; they may be stored in more.
+    #[cfg_attr(not(feature = "broad-phase"), allow(dead_code))] // only snapshots need it
     pub dimensions: u32,
     /// The few numbers that go in and out: two boxes and more.
     pub numbers: [f64; 16],
@@ -40,6 +45,7 @@ pub(super) struct Handle {
     pub ids_in: Vec<f64>,
     pub ids: Vec<ProxyId>,
     pub answer: Answer<Number>,
+    #[cfg(feature = "broad-phase")]
     pub bytes: Vec<u8>,
 }
 
@@ -53,6 +59,7 @@ impl Handle {
             ids_in: Vec::new(),
             ids: Vec::new(),
             answer: Answer::default(),
+            #[cfg(feature = "broad-phase")]
             bytes: Vec::new(),
         }
     }

@@ -4,16 +4,19 @@
 //! an array.
 
 mod handle;
+#[cfg(feature = "broad-phase")]
 mod stored;
+mod types;
+#[cfg(feature = "broad-phase")]
+mod whole;
 
 use alloc::boxed::Box;
-use alloc::vec::Vec;
 
 use sweep_and_prune::{Filter, Report};
-use sweep_and_prune_bindings::{Id, Query, Settings};
+use sweep_and_prune_bindings::{Id, Settings};
 
 use crate::status::{Code, report, report_error};
-use handle::{Handle, Number, note};
+use handle::{Handle, Number};
 
 fn filter_of(category: u32, mask: u32, group: i32, is_static: bool) -> Filter {
     Filter::default().category(category).mask(mask).group(group).is_static(is_static)
@@ -31,7 +34,7 @@ extern "C" fn world_new(
 ) -> Option<Box<Handle>> {
     let report = if is_fat { Report::Fat } else { Report::Exact };
     let settings = Settings { margin, prediction, report };
-    let world = stored::broad_phase(dimensions, is_double, settings)?;
+    let world = types::broad_phase(dimensions, is_double, settings)?;
     Some(Box::new(Handle::new(world, dimensions)))
 }
 
@@ -63,17 +66,6 @@ extern "C" fn world_ids_in(handle: &mut Handle, count: usize) -> *mut f64 {
         handle.ids_in.resize(count, 0.0);
     }
     handle.ids_in.as_mut_ptr()
-}
-
-/// Where to write `count` bytes of a snapshot; null if there is no memory for them.
-#[unsafe(no_mangle)]
-extern "C" fn world_bytes(handle: &mut Handle, count: usize) -> *mut u8 {
-    handle.bytes.clear();
-    if handle.bytes.try_reserve(count).is_err() {
-        return core::ptr::null_mut();
-    }
-    handle.bytes.resize(count, 0);
-    handle.bytes.as_mut_ptr()
 }
 
 /// Adds a body whose box is in the numbers; the first of them is then its id.
@@ -190,26 +182,6 @@ extern "C" fn world_update(handle: &mut Handle) -> Code {
     handle.answer(Ok(()))
 }
 
-/// Details: where the pairs of the last update are, and how many ids.
-#[unsafe(no_mangle)]
-extern "C" fn world_pairs(handle: &mut Handle, sorted: bool) -> Code {
-    handle.answer.ids.clear();
-    if sorted {
-        handle.world.pairs(&mut handle.answer.ids);
-    } else {
-        handle.world.pairs_unsorted(&mut handle.answer.ids);
-    }
-    handle.answer(Ok(()))
-}
-
-/// Details: where the ids of the bodies that overlapped this one are, and how many.
-#[unsafe(no_mangle)]
-extern "C" fn world_pairs_of(handle: &mut Handle, id: f64) -> Code {
-    handle.answer.ids.clear();
-    let result = handle.id(id, 0).and_then(|id| handle.world.pairs_of(id, &mut handle.answer.ids));
-    handle.answer(result)
-}
-
 /// Details: where the ids of all bodies are, and how many.
 #[unsafe(no_mangle)]
 extern "C" fn world_ids(handle: &mut Handle) -> Code {
@@ -223,63 +195,4 @@ extern "C" fn world_ids(handle: &mut Handle) -> Code {
 #[unsafe(no_mangle)]
 extern "C" fn world_len(handle: &mut Handle) -> usize {
     handle.world.len()
-}
-
-/// Answers a query, whose numbers are in the numbers. Details: where the ids are that it found, and
-/// how many; the first number is where their values are (t, or squared distances), as many. If
-/// `is_static` is 2 there is no filter.
-#[unsafe(no_mangle)]
-extern "C" fn world_query(
-    handle: &mut Handle,
-    query: u32,
-    k: usize,
-    category: u32,
-    mask: u32,
-    group: i32,
-    is_static: u32,
-) -> Code {
-    let query = match query {
-        0 => Query::Overlapping,
-        1 => Query::Containing,
-        2 => Query::Within,
-        3 => Query::Cast,
-        4 => Query::CastAll,
-        _ => Query::Nearest(k),
-    };
-    let filter = (is_static < 2).then(|| filter_of(category, mask, group, is_static == 1));
-    let numbers = &handle.numbers[..query.width(handle.world.kind().dimensions)];
-    let result = handle.world.query(query, numbers, filter, &mut handle.answer);
-    handle.numbers[0] = handle.answer.values.as_ptr().addr() as f64;
-    handle.answer(result)
-}
-
-/// Details: where the snapshot is, and how many bytes; until the next call.
-#[unsafe(no_mangle)]
-extern "C" fn world_snapshot(handle: &mut Handle) -> Code {
-    handle.bytes = stored::snapshot(&handle.world, handle.dimensions);
-    report(Code::Ok, [handle.bytes.as_ptr().addr(), handle.bytes.len()])
-}
-
-/// Becomes the broad phase of the snapshot in the bytes. Details: whether it is in double precision.
-#[unsafe(no_mangle)]
-extern "C" fn world_restore(handle: &mut Handle) -> Code {
-    let restored = stored::restore(&mut handle.bytes, handle.dimensions);
-    handle.bytes = Vec::new();
-    match restored {
-        Ok(world) => {
-            handle.world = world;
-            let generations = &mut handle.generations;
-            generations.clear();
-            handle.world.for_each_id(&mut |id| note(generations, id));
-            report(Code::Ok, [usize::from(handle.world.kind().is_double), 0])
-        }
-        Err(error) => report_error(error),
-    }
-}
-
-/// Details: the hash of the state, the low and the high word.
-#[unsafe(no_mangle)]
-extern "C" fn world_state_hash(handle: &mut Handle) -> Code {
-    let hash = handle.world.state_hash();
-    report(Code::Ok, [hash as u32 as usize, (hash >> 32) as usize])
 }

@@ -1,17 +1,13 @@
-//! The types of box that the file has, and the bytes of a snapshot of boxes stored otherwise than
-//! the user gives them.
-//!
-//! Each type adds to the download, so there are three. 1D boxes are stored as 2D, and 1D and 2D
-//! boxes in double precision as 3D: they are flat on the axes that are added. The bytes of such a
-//! broad phase do not tell its dimensions, so its snapshot has them in front of these bytes.
+//! The bytes of a snapshot of boxes that are stored in more dimensions than the user gives them. They
+//! do not tell the user's dimensions, so these stand in front of them.
 
-use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use sweep_and_prune::{Error, SnapshotFault};
-use sweep_and_prune_bindings::{Kind, Settings, TypedBroadPhase};
+use sweep_and_prune_bindings::{Kind, Settings};
 
 use super::handle::World;
+use super::types::broad_phase;
 
 /// The first bytes of a snapshot that has the user's dimensions next, and then the core's bytes. The
 /// last of those, a byte of their checksum, is XORed with the dimensions: so the checksum covers these too.
@@ -20,16 +16,6 @@ const FLAT: [u8; 4] = *b"SaPf";
 /// In which type boxes are stored.
 fn stored(dimensions: u32, is_double: bool) -> Kind {
     Kind { dimensions: if is_double { 3 } else { dimensions.max(2) as usize }, is_double }
-}
-
-/// An empty broad phase for boxes of 1 to 3 dimensions; `None` for other ones or bad settings.
-pub(super) fn broad_phase(dimensions: u32, is_double: bool, settings: Settings) -> Option<World> {
-    match (dimensions, is_double) {
-        (1 | 2, false) => Some(Box::new(TypedBroadPhase::<2, f32>::new(settings).ok()?)),
-        (3, false) => Some(Box::new(TypedBroadPhase::<3, f32>::new(settings).ok()?)),
-        (1..=3, true) => Some(Box::new(TypedBroadPhase::<3, f64>::new(settings).ok()?)),
-        _ => None,
-    }
 }
 
 /// The snapshot of a broad phase whose boxes have so many dimensions for the user.

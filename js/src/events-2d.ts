@@ -1,0 +1,16 @@
+/**
+ * A small {@link BroadPhase} for games in 1D and 2D that only need the overlaps that begin and end: half of the
+ * download of `sweep-and-prune/broad-phase`.
+ *
+ * @module
+ */
+import { entry, type InitOptions, type Started } from "./init.js";
+import { eventsCore2D } from "./events-core.js";
+
+export * from "./events-2d-api.js";
+
+/** Loads and starts the compiled core of this entry point, and those of the others. Otherwise it works as `init` of `sweep-and-prune`. */
+export const init: (options?: InitOptions) => Promise<Started> = entry(eventsCore2D, {
+  simd: () => new URL("./events-2d.simd.wasm", import.meta.url),
+  scalar: () => new URL("./events-2d.wasm", import.meta.url),
+});
