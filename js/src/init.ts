@@ -92,7 +92,8 @@ async function beside(source: () => Wasm): Promise<WebAssembly.Module> {
 }
 
 async function compile(wasm: Wasm): Promise<WebAssembly.Module> {
-  if (wasm instanceof WebAssembly.Module) return wasm;
+  // By its tag, not by `instanceof`: Next's edge runtime passes one of another realm.
+  if (Object.prototype.toString.call(wasm) === "[object WebAssembly.Module]") return wasm as WebAssembly.Module;
   if (typeof Response !== "undefined" && wasm instanceof Response) return compileResponse(wasm);
   if (!isAddress(wasm)) return WebAssembly.compile(wasm as BufferSource); // which throws for anything else
   const address = String(wasm);
