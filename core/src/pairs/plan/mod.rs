@@ -64,10 +64,12 @@ pub(super) fn plan<const D: usize, T: Scalar, S: Source<D, T>>(
     among: Among,
 ) -> Planned<T> {
     let unit = unit(sets);
-    let first = Sample::take(sets[0], unit);
-    let second;
+    let mut first = Sample::empty(D);
+    first.draw(sets[0], unit);
+    let mut second;
     let samples: &[&Sample] = if let Some(&source) = sets.get(1) {
-        second = Sample::take(source, unit);
+        second = Sample::empty(D);
+        second.draw(source, unit);
         &[&first, &second]
     } else {
         &[&first]

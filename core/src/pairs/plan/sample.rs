@@ -30,30 +30,35 @@ pub struct Sample {
 }
 
 impl Sample {
-    pub fn take<const D: usize, T: Scalar, S: Source<D, T>>(source: S, unit: T) -> Self {
-        let mut sample = Self {
-            dimensions: D,
-            count: source.len() as f64,
+    pub const fn empty(dimensions: usize) -> Self {
+        Self {
+            dimensions,
+            count: 0.0,
             len: 0,
             min: [[0.0; SAMPLE]; AXES],
             max: [[0.0; SAMPLE]; AXES],
             sorted: [[0.0; SAMPLE]; AXES],
-        };
+        }
+    }
+
+    /// Draws from a set. (Into an empty sample: one that is returned is copied once more.)
+    pub fn draw<const D: usize, T: Scalar, S: Source<D, T>>(&mut self, source: S, unit: T) {
+        self.count = source.len() as f64;
         let limit = T::Arithmetic::LIMIT;
         let limited = |at: T| (at.to_f64() * unit.to_f64()).clamp(-limit, limit);
         for i in drawn(source) {
             let aabb = source.aabb(i);
             for axis in 0..D {
-                sample.min[axis][sample.len] = limited(aabb.min[axis]);
-                sample.max[axis][sample.len] = limited(aabb.max[axis]);
+                self.min[axis][self.len] = limited(aabb.min[axis]);
+                self.max[axis][self.len] = limited(aabb.max[axis]);
             }
-            sample.len += 1;
+            self.len += 1;
         }
-        for (sorted, min) in sample.sorted.iter_mut().zip(&sample.min) {
-            *sorted = *min;
-            sort(&mut sorted[..sample.len]);
+        for (sorted, min) in self.sorted.iter_mut().zip(&self.min).take(D) {
+            let sorted = &mut sorted[..self.len];
+            sorted.copy_from_slice(&min[..self.len]);
+            sort(sorted);
         }
-        sample
     }
 
     /// The size of a box on an axis.
