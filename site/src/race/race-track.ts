@@ -229,6 +229,7 @@ export class RaceTrack extends HTMLElement {
     const picture = this.#part<HTMLCanvasElement>("picture");
     picture.getContext("2d")?.clearRect(0, 0, picture.width, picture.height);
     delete this.dataset["step"];
+    this.#showNumbers(undefined);
     const { scenes, motions } = this.#lists;
     const about = [scenes.find(({ name }) => name === this.#state.scene), motions.find(({ name }) => name === this.#state.motion)];
     this.#part("about").textContent = about.map((item) => item?.description ?? "").join(" ");
