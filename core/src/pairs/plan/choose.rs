@@ -1,6 +1,5 @@
 //! The choice of a plan: the cheapest cut of space, or a split of the boxes by size if that costs less.
 
-use super::Among;
 use super::cost::{Cut, RECORD, Search, Shape, chance, cost};
 use super::field::Field;
 use super::float::{greater, greatest, lesser, whole};
@@ -32,6 +31,17 @@ const COLUMNS_PER_BOX: [f64; 2] = [8.0, 0.125];
 const MOST_COLUMNS: f64 = (1 << 24) as f64;
 /// Records in a slab: they, their keys and the sorted boxes fit the second-level cache.
 const SLAB: f64 = 4096.0;
+
+/// Which plans are considered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Among {
+    /// All. Of boxes that are known to be crowded the sample gets a closer look at once.
+    All { is_crowded: bool },
+    /// Cuts, since plans are nested too deep to split any further.
+    Cuts,
+    /// To sweep crowded boxes at once, on any axis, since the last plan did not divide them.
+    Sweeps,
+}
 
 /// A split of the boxes of one set (0 or 1) by their size on an axis.
 #[derive(Clone, Copy, Debug)]

@@ -8,7 +8,7 @@ mod float;
 mod overlaps;
 mod sample;
 
-pub(super) use choose::SizeSplit;
+pub(super) use choose::{Among, SizeSplit};
 use choose::{Choice, cheapest};
 pub(super) use cost::CANDIDATE;
 use cost::Cut;
@@ -38,17 +38,6 @@ impl<T: Scalar> Plan<T> {
     pub fn divides(&self) -> bool {
         !matches!(self, Plan::Cut(grid) if grid.len() == 1)
     }
-}
-
-/// Which plans are considered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Among {
-    /// All. Of boxes that are known to be crowded the sample gets a closer look at once.
-    All { is_crowded: bool },
-    /// Cuts, since plans are nested too deep to split any further.
-    Cuts,
-    /// To sweep crowded boxes at once, on any axis, since the last plan did not divide them.
-    Sweeps,
 }
 
 /// A plan and the nanoseconds that it is expected to take.
