@@ -14,7 +14,7 @@ places.sort((a, b) => a.rank - b.rank);
 const labels = places.map(({ name, x, y }) => ({ minX: x - 3 * name.length, minY: y - 7, maxX: x + 3 * name.length, maxY: y + 7 }));
 
 const blockers = places.map(() => []);
-const pairs = findPairs(labels);
+const pairs = findPairs(labels, { dimensions: 2 }); // indices
 for (let i = 0; i < pairs.length; i += 2) blockers[pairs[i + 1]].push(pairs[i]); // the smaller index, which is first, is more important
 
 const shown = [];

@@ -26,4 +26,4 @@ for (let i = 0; i < pairs.length; i += 2) {
 }
 
 // findPairs takes a Box3 too: simpler, and slower.
-console.log(findPairs(scene.children.map((mesh) => new Box3().setFromObject(mesh))).join()); // 0,1
+console.log(findPairs(scene.children.map((mesh) => new Box3().setFromObject(mesh)), { dimensions: 3 }).join()); // 0,1
