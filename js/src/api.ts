@@ -1,16 +1,4 @@
-export type {
-  BoundsBox,
-  Boxes,
-  BoxObject,
-  Corner,
-  Dimensions,
-  EdgesBox,
-  MinMaxBox,
-  SizedBox,
-  TypedNumbers,
-} from "./boxes.js";
-export { InvalidBoxError, NotInitializedError, OutOfMemoryError, SweepAndPruneError } from "./errors.js";
-export type { InitOptions, Started, Wasm } from "./init.js";
+export * from "./common-api.js";
 export {
   anyPair,
   countPairs,

@@ -1,14 +1,4 @@
-export type {
-  BoundsBox,
-  Boxes,
-  BoxObject,
-  Corner,
-  Dimensions,
-  EdgesBox,
-  MinMaxBox,
-  SizedBox,
-  TypedNumbers,
-} from "./boxes.js";
+export * from "./common-api.js";
 export type { Bodies } from "./bodies.js";
 export { BroadPhase } from "./world.js";
 export {
@@ -24,13 +14,5 @@ export {
   type QueryFilter,
   slotOf,
 } from "./world-types.js";
-export {
-  InvalidBoxError,
-  NotInitializedError,
-  OutOfMemoryError,
-  SnapshotError,
-  StaleProxyError,
-  SweepAndPruneError,
-} from "./errors.js";
+export { SnapshotError, StaleProxyError } from "./errors.js";
 export type { Filter } from "./filter.js";
-export type { InitOptions, Started, Wasm } from "./init.js";

@@ -1,14 +1,4 @@
-export type {
-  BoundsBox,
-  Boxes,
-  BoxObject,
-  Corner,
-  Dimensions,
-  EdgesBox,
-  MinMaxBox,
-  SizedBox,
-  TypedNumbers,
-} from "./boxes.js";
+export * from "./common-api.js";
 export {
   type Box,
   type BroadPhaseOptions,
@@ -18,7 +8,6 @@ export {
   type ProxyId,
   slotOf,
 } from "./world-types.js";
-export { InvalidBoxError, NotInitializedError, OutOfMemoryError, StaleProxyError, SweepAndPruneError } from "./errors.js";
+export { StaleProxyError } from "./errors.js";
 export type { Filter } from "./filter.js";
-export type { InitOptions, Started, Wasm } from "./init.js";
 export type { Bodies } from "./bodies.js";

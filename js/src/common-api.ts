@@ -1,0 +1,14 @@
+/** What every entry point has. */
+export type {
+  BoundsBox,
+  Boxes,
+  BoxObject,
+  Corner,
+  Dimensions,
+  EdgesBox,
+  MinMaxBox,
+  SizedBox,
+  TypedNumbers,
+} from "./boxes.js";
+export { InvalidBoxError, NotInitializedError, OutOfMemoryError, SweepAndPruneError } from "./errors.js";
+export type { InitOptions, Started, Wasm } from "./init.js";
