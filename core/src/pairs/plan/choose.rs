@@ -3,7 +3,7 @@
 use super::cost::{Cut, RECORD, Search, Shape, chance, cost};
 use super::field::Field;
 use super::float::{greater, greatest, lesser, whole};
-use super::overlaps::{Members, Overlaps, UNKNOWN, is_unexpected};
+use super::overlaps::{Overlaps, UNKNOWN, is_unexpected};
 use super::sample::{AXES, Sample};
 
 // Which plan is taken decides the order of the pairs, so these limits do not depend on the machine. They were
@@ -112,9 +112,9 @@ pub fn cheapest(field: &Field, samples: &[&Sample], among: Among) -> (Choice, f6
 
 /// A search of some shapes, after a closer look.
 fn closer<'a>(field: &'a Field, shapes: &'a [Shape], overlaps: &Overlaps) -> Search<'a> {
-    let members = |shape: usize| shapes[shape].members;
-    let groups: [Members; 2] = [members(0), members(shapes.len() - 1)];
-    Search { field, shapes, limits: overlaps.limits(&groups[..shapes.len()]) }
+    let [first, last] = [&shapes[0], &shapes[shapes.len() - 1]];
+    let limits = overlaps.limits(first.members, last.members, shapes.len() == 1);
+    Search { field, shapes, limits }
 }
 
 /// The cost of several searches, or something not below the limit.

@@ -106,12 +106,11 @@ impl Overlaps {
         overlaps
     }
 
-    /// Between what limits the chance is that two boxes of a group, or one of a group and one of another,
-    /// overlap on each axis.
-    pub fn limits(&self, groups: &[Members]) -> Limits {
-        let [first, last] = [groups[0], groups[groups.len() - 1]];
+    /// Between what limits the chance is that a box of one group and one of another overlap on each axis; or
+    /// two boxes of one group, which is both.
+    pub fn limits(&self, first: Members, last: Members, is_one: bool) -> Limits {
         self.rows.each_ref().map(|rows| {
-            let [pairs, overlaps] = count(rows, first, last, groups.len() == 1);
+            let [pairs, overlaps] = count(rows, first, last, is_one);
             let pairs = greater(pairs, 1.0);
             ((overlaps - CHANCE) / TOLERANCE / pairs, (overlaps + CHANCE) * TOLERANCE / pairs)
         })
