@@ -175,8 +175,12 @@ def _extended(boxes: NDArray[Any], margin: object) -> NDArray[Any]:
         with np.errstate(over="ignore"):
             ends = ends + add.astype(boxes.dtype)
     elif kind in "mM":
-        ends = ends + add
-        if (ends < boxes[:, half:]).any():
+        try:
+            ends = ends + add
+            is_too_large = bool((ends < boxes[:, half:]).any())
+        except OverflowError:  # NumPy 2.5 and later; earlier ones wrap around
+            is_too_large = True
+        if is_too_large:
             raise ValueError(f"margin is {margin}; it must be so small that the ends of the boxes are times of NumPy")
     else:
         # Python's integers do not overflow.
