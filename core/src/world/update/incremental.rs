@@ -21,8 +21,10 @@ use crate::world::tree::{BATCH, TOGETHER};
 
 /// How many candidates ahead boxes are prefetched: measured on drift and mostly-still in 3D at 1,000,000.
 const AHEAD: usize = 24;
-/// Finding the candidates of a body in the list takes as long as testing this many in order:
-/// an estimate, of which no measurement is on record.
+/// Finding the candidates of a body in the list takes as long as testing this many in order. Measured on
+/// drift at 10,000 and 100,000 where only a share of the bodies moves. If others move in each frame (0.05
+/// to 1 %), always testing all takes 1.17 to 1.73 of the time; if the same ones move (up to 10 %), never
+/// doing so takes 1.0 to 1.33. Half as much is the same within 2 %.
 const SELECT: usize = 12;
 
 /// Reports what begins and ends, given which bodies changed, escaped and left.
