@@ -25,6 +25,8 @@ import { type Acts, inside } from "./view.js";
 
 /** Numbers that change more often cannot be read. */
 const COUNTERS_MS = 100;
+/** How high the controls are where they need two rows, in CSS pixels. */
+const CONTROLS_HEIGHT = 98;
 /** Steps without a question between two with one, at most. */
 const MOST_SKIPPED = 200;
 
@@ -150,8 +152,10 @@ export class SapDemoElement extends LitElement {
 
   embedCode(): string {
     const picture = this.renderRoot.querySelector(".picture")?.clientHeight ?? HEIGHT;
+    // Alone it has controls of its own.
+    const controls = this.#comparison ? CONTROLS_HEIGHT : 0;
     // As high as where it is widest: a narrower one is lower.
-    return iframeOf(this.share(), this.#label, this.getBoundingClientRect().height - picture + HEIGHT, WIDTH);
+    return iframeOf(this.share(), this.#label, this.getBoundingClientRect().height - picture + HEIGHT + controls, WIDTH);
   }
 
   get isPlaying(): boolean {
