@@ -4,8 +4,8 @@
 //! cargo run --profile checked --package sweep-and-prune-fuzz --example soak -- [MINUTES] [BODIES] [SEED]
 //! ```
 //! One minute, 3,000 bodies and seed 1 if not said otherwise. Every 200 updates the pairs are compared with brute force, and
-//! with the events so far. A second world is edited and queried but never updated. Once a minute a line says how many
-//! bytes are in use.
+//! with the events so far. A second world is edited and queried but never updated. At the beginning and once a minute a line
+//! says how many bytes are in use, and on Linux how much memory the process has.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::collections::BTreeSet;
@@ -194,6 +194,13 @@ impl Soak {
     }
 }
 
+/// The memory of the process in MiB, where it can be read in the way of Linux.
+fn resident() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    Some(line.trim().strip_suffix(" kB")?.parse::<f64>().ok()? / 1024.0)
+}
+
 fn main() {
     let mut arguments = std::env::args().skip(1);
     let mut argument = |default: f64| {
@@ -213,18 +220,20 @@ fn main() {
             let half = usize::from(begun.elapsed() > time / 4);
             most[half] = most[half].max(IN_USE.load(Ordering::Relaxed));
         }
-        if begun.elapsed().as_secs() / 60 > minutes {
-            minutes += 1;
+        if begun.elapsed().as_secs() / 60 >= minutes {
             let in_use = IN_USE.load(Ordering::Relaxed);
-            println!("{minutes} min: {number} updates, {} pairs, {in_use} bytes", soak.live.len());
+            let (pairs, resident) = (soak.live.len(), resident().unwrap_or_default());
+            println!("{minutes} min: {number} updates, {pairs} pairs, {in_use} bytes, {resident:.1} MiB");
+            minutes += 1;
         }
     }
     soak.check();
     println!(
-        "{number} updates with {} bodies: right. At most {} bytes in use in the first quarter, then {}.",
+        "{number} updates with {} bodies: right. At most {} bytes in use in the first quarter, then {}. {:.1} MiB.",
         soak.bodies.len(),
         most[0],
-        most[1]
+        most[1],
+        resident().unwrap_or_default()
     );
     assert!(most[1] as f64 <= MOST_GROWTH * most[0] as f64, "memory grew");
 }
