@@ -223,7 +223,9 @@ fn main() {
         if begun.elapsed().as_secs() / 60 >= minutes {
             let in_use = IN_USE.load(Ordering::Relaxed);
             let (pairs, resident) = (soak.live.len(), resident().unwrap_or_default());
-            println!("{minutes} min: {number} updates, {pairs} pairs, {in_use} bytes, {resident:.1} MiB");
+            println!(
+                "{minutes} min: {number} updates, {pairs} pairs, {in_use} bytes, {resident:.1} MiB"
+            );
             minutes += 1;
         }
     }
