@@ -97,6 +97,8 @@ test("nothing moves when the script comes, in any form", async () => {
     'decorations="checks,edges:array"',
     'heading="Five balls"',
     "predict",
+    "strip",
+    "static array swap-log",
     'variant="teleport"',
     'variant="one-to-n"',
     'strategy="swap" balls="20" array style="--sap-array-rows: 3"',

@@ -2,7 +2,7 @@ import { Player, type PlayerState } from "../player.js";
 import { Runner, type Step } from "../runner.js";
 import { events, type TraceEvent } from "../trace.js";
 import type { Decorations } from "./decorations.js";
-import type { Detecting } from "./options.js";
+import type { Detecting, Options } from "./options.js";
 
 /** What one run of an algorithm did, event by event: the compiled algorithm's own trace. */
 export class Detection {
@@ -13,6 +13,7 @@ export class Detection {
   readonly length: number;
   #events: TraceEvent[] | undefined;
   #swapped: ReadonlySet<number> | undefined;
+  #isDrivenBySwaps: boolean | undefined;
   /** Whether the trace was too long to be recorded in full: it then cannot be gone through. */
   readonly isTruncated: boolean;
   readonly #player: Player;
@@ -23,20 +24,25 @@ export class Detection {
   readonly missed: readonly (readonly [number, number])[];
   #last: { position: number; state: PlayerState } | undefined;
 
-  /** Runs one step of `runner`, whose trace is trimmed. */
-  constructor(runner: Runner, boxes: Float64Array, oracle?: Oracle) {
+  /** Runs one step of `runner`, whose trace is trimmed. `missedOf` says which pairs are not among those found. */
+  constructor(runner: Runner, boxes: Float64Array, missedOf?: (found: Uint32Array) => Detection["missed"]) {
     this.boxes = boxes;
     this.#before = runner.trimTrace();
     this.step = runner.step(boxes);
     this.isTruncated = runner.isTruncated;
     this.#player = new Player(runner);
     this.length = countEvents(this.#player.words) - this.#before;
-    this.missed = oracle?.missed(boxes, this.step.pairs) ?? [];
+    this.missed = missedOf?.(this.step.pairs) ?? [];
   }
 
   /** Its events, the first the beginning of the step; read when they are first asked for. */
   get events(): readonly TraceEvent[] {
     return (this.#events ??= [...events(this.#player.words)].slice(this.#before));
+  }
+
+  /** Whether its swaps show which overlaps begin and end. A detection that sweeps, or that begins with a sweep, only sorts by them. */
+  get isDrivenBySwaps(): boolean {
+    return (this.#isDrivenBySwaps ??= !this.events.some(({ kind }) => kind === "enter"));
   }
 
   /** The edges that the sort has moved. */
@@ -85,13 +91,18 @@ export class Oracle {
   }
 
   /** The pairs of boxes that overlap and are not among those found. */
-  missed(boxes: Float64Array, found: Uint32Array): [number, number][] {
+  missed(boxes: Float64Array, ...founds: Uint32Array[]): [number, number][] {
     const key = (a: number, b: number): number => Math.min(a, b) * 2 ** 24 + Math.max(a, b);
     const known = new Set<number>();
-    for (let i = 0; i < found.length; i += 2) known.add(key(found[i]!, found[i + 1]!));
-    const { pairs } = this.#runner.step(boxes);
+    for (const found of founds) for (let i = 0; i < found.length; i += 2) known.add(key(found[i]!, found[i + 1]!));
+    const pairs = this.pairs(boxes);
     const all = Array.from({ length: pairs.length / 2 }, (_, i): [number, number] => [pairs[2 * i]!, pairs[2 * i + 1]!]);
     return all.filter((pair) => !known.has(key(...pair)) && (this.#focus === undefined || pair.includes(this.#focus)));
+  }
+
+  /** All pairs of boxes that overlap. */
+  pairs(boxes: Float64Array): Uint32Array {
+    return this.#runner.step(boxes).pairs;
   }
 
   free(): void {
@@ -99,10 +110,10 @@ export class Oracle {
   }
 }
 
-/** The oracle for a method that may miss pairs; none for the others. */
-export function oracleFor({ method, focus }: Detecting): Oracle | undefined {
+/** The oracle for a method that may miss pairs, or for boxes that jump; none for the others. */
+export function oracleFor({ detecting: { method, focus }, swept }: Options): Oracle | undefined {
   if (method === "one-to-n scan") return new Oracle(focus);
-  return method.endsWith("(wrong)") ? new Oracle(undefined) : undefined;
+  return swept === "off" || method.endsWith("(wrong)") ? new Oracle(undefined) : undefined;
 }
 
 /** A runner for what the attributes ask for. */
@@ -119,7 +130,10 @@ export function hasFlags({ method }: Detecting): boolean {
 export function shownKinds({ checks, sweep, array }: Decorations, detecting: Detecting): Set<TraceEvent["kind"]> {
   const kinds = new Set<TraceEvent["kind"]>();
   if (checks) kinds.add(hasFlags(detecting) ? "overlap" : "test").add("prune");
-  if (sweep) kinds.add("enter").add("leave");
+  // Swaps tell the flags that change; a sweep sets all of them again.
+  if (checks && detecting.method === "endpoint sweep on every axis") kinds.add("axis overlap");
+  // Swap-driven methods have no line; where they are told to draw one, it stands at an edge.
+  if (sweep && !detecting.method.startsWith("swap-driven")) kinds.add("enter").add("leave");
   if (array?.isSortShown) kinds.add("compare").add("swap");
   return kinds;
 }
@@ -128,7 +142,11 @@ export function shownKinds({ checks, sweep, array }: Decorations, detecting: Det
 export function stopsOf(detection: Detection, kinds: ReadonlySet<TraceEvent["kind"]>): number[] {
   const stops: number[] = [];
   if (!detection.isTruncated && kinds.size > 0) {
-    detection.events.forEach(({ kind }, index) => kinds.has(kind) && stops.push(index + 1));
+    detection.events.forEach(({ kind }, index, { [index + 1]: next }) => {
+      // The last flag of a pair and the pair are one moment.
+      const isLastFlag = kind === "axis overlap" && next?.kind === "overlap" && kinds.has("overlap");
+      if (kinds.has(kind) && !isLastFlag) stops.push(index + 1);
+    });
   }
   const end = detection.length;
   if (stops.at(-1) !== end) stops.push(end);

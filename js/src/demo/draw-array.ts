@@ -12,6 +12,12 @@ export interface ArrayScene {
   /** The edges that the sort has moved in this detection. */
   readonly moved: ReadonlySet<number>;
   readonly chosen: readonly number[];
+  /** The edge at the sweep line. */
+  readonly lineEdge: number | undefined;
+  /** Whether what a scan finds is not to be seen yet. */
+  readonly isScanHidden: boolean;
+  /** The edges whose swap is flashed. */
+  readonly flashing: ReadonlySet<number>;
 }
 
 /** So many cells stand in a row. */
@@ -44,7 +50,7 @@ interface Place {
 }
 
 function drawOne(context: CanvasRenderingContext2D, edges: number[], scene: ArrayScene, place: Place, theme: Theme): void {
-  const { event, options, labels, chosen, moved, state } = scene;
+  const { event, options, labels, chosen, moved, lineEdge, isScanHidden, flashing } = scene;
   const { decorations, focus, isRainbow } = options;
   const perRow = Math.min(CELLS, Math.max(edges.length, 8));
   const cell = Math.min(46, place.width / perRow);
@@ -52,7 +58,7 @@ function drawOne(context: CanvasRenderingContext2D, edges: number[], scene: Arra
   const comparison = decorations.array?.comparison ?? theme.comparison;
   const swap = decorations.array?.swap ?? theme.swap;
   const compared = event?.kind === "compare" ? [event["a"], event["b"]] : [];
-  const swapped = event?.kind === "swap" ? [event["a"], event["b"]] : [];
+  const swapped = event?.kind === "swap" ? [event["a"], event["b"]] : [...flashing];
   const ends = focus === undefined ? [] : [edges.indexOf(2 * focus), edges.indexOf(2 * focus + 1)];
   const [begin = -1, end = -1] = ends;
   context.textAlign = "center";
@@ -62,8 +68,8 @@ function drawOne(context: CanvasRenderingContext2D, edges: number[], scene: Arra
     const x = (index % perRow) * cell;
     const y = place.top + Math.floor(index / perRow) * CELL_HEIGHT;
     const ball = edge >> 1;
-    const isWithin = decorations.edges?.focus === true && index >= begin && index <= end && begin >= 0;
-    const isAtLine = place.isCurrent && decorations.sweep !== undefined && state.line?.position === index;
+    const isWithin = decorations.edges?.focus === true && !isScanHidden && index >= begin && index <= end && begin >= 0;
+    const isAtLine = place.isCurrent && decorations.sweep !== undefined && lineEdge === edge;
     context.fillStyle = isRainbow ? rainbow(ball, labels.length) : theme.stage;
     if (isWithin) context.fillStyle = theme.inside;
     if (swapped.includes(edge)) context.fillStyle = swap;

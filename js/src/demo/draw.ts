@@ -1,20 +1,27 @@
 import type { PlayerState } from "../player.js";
 import type { TraceEvent } from "../trace.js";
 import type { Decorations } from "./decorations.js";
-import type { Detection } from "./detection.js";
+import { type Detection, hasFlags } from "./detection.js";
 import type { Explanation } from "./explain.js";
-import { HEIGHT, type Options, WIDTH } from "./options.js";
+import { type Options, WIDTH } from "./options.js";
 import { rainbow, type Theme } from "./theme.js";
 
 /** What one picture shows. */
 export interface Scene {
   readonly positions: Float32Array;
   readonly radii: Float32Array;
+  /** Where the balls were at the last two detections. */
+  readonly jump: { readonly from: Float32Array | undefined; readonly to: Float32Array };
   readonly state: PlayerState;
   /** The event at work. */
   readonly event: TraceEvent | undefined;
-  /** Where the sweep line is. */
+  /** Where the sweep line is, and the balls that it touches. */
   readonly lineAt: number | undefined;
+  readonly touched: readonly number[];
+  /** Whether what a scan finds is not to be seen yet. */
+  readonly isScanHidden: boolean;
+  /** The edges whose swap is flashed. */
+  readonly flashing: ReadonlySet<number>;
   readonly options: Options;
   readonly labels: readonly string[];
   /** The balls that the visitor has chosen. */
@@ -27,14 +34,15 @@ export interface Scene {
   readonly gap: Explanation["gap"];
 }
 
-/** Draws the world, 600 x 400, into a context that is scaled to it. */
+/** Draws the world into a context that is scaled to it. */
 export function drawScene(context: CanvasRenderingContext2D, scene: Scene, theme: Theme): void {
-  context.clearRect(0, 0, WIDTH, HEIGHT);
+  context.clearRect(0, 0, WIDTH, scene.options.world.height);
   context.lineJoin = "round";
   context.lineCap = "butt";
   const painter = new Painter(context, scene, theme);
   painter.focusBand();
   painter.edges();
+  painter.jumps();
   painter.balls();
   painter.overlaps();
   painter.missed();
@@ -56,10 +64,41 @@ class Painter {
     this.#theme = theme;
   }
 
+  get #height(): number {
+    return this.#scene.options.world.height;
+  }
+
+  /** The boxes of the last detection and of the one before it (dashed); and those that enclose both, if they are used. */
+  jumps(): void {
+    const { options, jump, radii } = this.#scene;
+    if (!options.swept) return;
+    this.#context.strokeStyle = this.#theme.edge;
+    this.#context.fillStyle = this.#theme.edge;
+    this.#context.lineWidth = 1.5;
+    for (const [ball, radius] of radii.entries()) {
+      if (options.world.walls.includes(ball)) continue;
+      const rect = (positions: Float32Array): [number, number, number, number] => [positions[2 * ball]! - radius, positions[2 * ball + 1]! - radius, 2 * radius, 2 * radius];
+      const to = rect(jump.to);
+      this.#context.strokeRect(...to);
+      if (!jump.from) continue;
+      const from = rect(jump.from);
+      this.#context.setLineDash([4, 3]);
+      this.#context.strokeRect(...from);
+      this.#context.setLineDash([]);
+      if (options.swept !== "on") continue;
+      const [left, top] = [Math.min(from[0], to[0]), Math.min(from[1], to[1])];
+      const size = [Math.abs(from[0] - to[0]) + 2 * radius, Math.abs(from[1] - to[1]) + 2 * radius] as const;
+      this.#context.globalAlpha = 0.2;
+      this.#context.fillRect(left, top, ...size);
+      this.#context.globalAlpha = 1;
+      this.#context.strokeRect(left, top, ...size);
+    }
+  }
+
   balls(): void {
-    const { radii, state, options } = this.#scene;
+    const { radii, touched, options } = this.#scene;
     const { decorations, isRainbow, hasBoxes } = options;
-    const active = new Set(decorations.sweep ? state.active : []);
+    const active = new Set(decorations.sweep ? touched : []);
     const inside = decorations.sweep?.inside ?? this.#theme.inside;
     this.#context.lineWidth = 1.5;
     // Large ones first, so that none is hidden.
@@ -79,11 +118,11 @@ class Painter {
   focusBand(): void {
     const { options, axis } = this.#scene;
     const { decorations, focus } = options;
-    if (!decorations.edges?.focus || focus === undefined) return;
+    if (!decorations.edges?.focus || focus === undefined || this.#scene.isScanHidden) return;
     const [low, high] = this.#interval(focus, axis);
     this.#context.globalAlpha = 0.16;
     this.#context.fillStyle = decorations.edges.inside ?? this.#theme.chosen;
-    if (axis === 0) this.#context.fillRect(low, 0, high - low, HEIGHT);
+    if (axis === 0) this.#context.fillRect(low, 0, high - low, this.#height);
     else this.#context.fillRect(0, low, WIDTH, high - low);
     this.#context.globalAlpha = 1;
   }
@@ -99,16 +138,17 @@ class Painter {
   }
 
   #edgesOn(axis: number, edges: NonNullable<Decorations["edges"]>): void {
-    const { radii, options } = this.#scene;
+    const { radii, options, isScanHidden, flashing } = this.#scene;
     const { focus } = options;
     const outside = (edges.focus ? edges.outside : undefined) ?? this.#theme.edge;
     const inside = (edges.focus ? edges.inside : undefined) ?? this.#theme.chosen;
-    const within = edges.focus && focus !== undefined ? this.#interval(focus, axis) : undefined;
+    const within = edges.focus && focus !== undefined && !isScanHidden ? this.#interval(focus, axis) : undefined;
     for (let ball = 0; ball < radii.length; ball++) {
       for (const [side, at] of this.#interval(ball, axis).entries()) {
         const isInside = within !== undefined && at >= within[0] && at <= within[1];
-        this.#context.strokeStyle = isInside ? inside : outside;
-        this.#context.lineWidth = isInside ? 2 : 1;
+        const isFlashing = flashing.has(2 * ball + side);
+        this.#context.strokeStyle = isFlashing ? this.#theme.swap : isInside ? inside : outside;
+        this.#context.lineWidth = isFlashing ? 5 : isInside ? 2 : 1;
         this.#context.setLineDash(side === 0 ? [] : [4, 3]);
         this.#across(axis, at, this.#center(ball)[1 - axis]!);
       }
@@ -118,7 +158,8 @@ class Painter {
   /** The pairs found so far. */
   overlaps(): void {
     const { options, state } = this.#scene;
-    if (!options.decorations.checks) return;
+    if (this.#scene.isScanHidden || !(options.decorations.checks || options.predicts)) return;
+    if (hasFlags(options.detecting)) this.#flags();
     this.#context.strokeStyle = this.#theme.overlap;
     this.#context.lineWidth = 2;
     for (let i = 0; i + 1 < state.overlaps.length; i += 2) {
@@ -127,6 +168,18 @@ class Painter {
       this.#context.setLineDash(options.hasBoxes && !this.#touch(a, b) ? [6, 5] : []);
       this.#between(a, b);
     }
+    this.#context.setLineDash([]);
+  }
+
+  /** The pairs that overlap on one axis, as far as is known. */
+  #flags(): void {
+    const { overlaps, axisOverlaps } = this.#scene.state;
+    this.#context.strokeStyle = this.#theme.edge;
+    this.#context.lineWidth = 2;
+    this.#context.setLineDash([2, 5]);
+    const pairs = new Set<string>();
+    for (let i = 0; i + 1 < overlaps.length; i += 2) pairs.add(`${overlaps[i]} ${overlaps[i + 1]}`);
+    for (const { a, b } of axisOverlaps) if (!pairs.has(`${a} ${b}`)) this.#between(a, b);
     this.#context.setLineDash([]);
   }
 
@@ -141,7 +194,7 @@ class Painter {
   event(): void {
     const { event, options } = this.#scene;
     const check = options.decorations.checks?.color ?? this.#theme.check;
-    if (event?.kind === "test" || event?.kind === "overlap") {
+    if (event?.kind === "test" || event?.kind === "overlap" || event?.kind === "axis overlap") {
       const [a, b] = [Number(event["a"]), Number(event["b"])];
       this.#context.strokeStyle = check;
       this.#context.lineWidth = 5;
@@ -189,7 +242,7 @@ class Painter {
     this.#context.textAlign = "center";
     this.#context.textBaseline = "middle";
     labels.forEach((label, ball) => {
-      if (ball >= radii.length || label === "") return;
+      if (ball >= radii.length || label === "" || options.world.walls.includes(ball)) return;
       const [x, y] = this.#center(ball);
       const size = Math.max(9, Math.min(radii[ball]! * (label.length > 2 ? 0.7 : 1), 40));
       this.#context.font = `600 ${size}px system-ui, sans-serif`;
@@ -225,7 +278,7 @@ class Painter {
     this.#context.beginPath();
     if (axis === 0) {
       this.#context.moveTo(at, from ?? 0);
-      this.#context.lineTo(at, HEIGHT);
+      this.#context.lineTo(at, this.#height);
     } else {
       this.#context.moveTo(from ?? WIDTH, at);
       this.#context.lineTo(0, at);
@@ -246,8 +299,10 @@ class Painter {
     this.#context.stroke();
   }
 
+  /** The outline of a ball, or of a wall, which is as high as the world. */
   #disc(ball: number, radius: number): void {
     this.#context.beginPath();
+    if (this.#scene.options.world.walls.includes(ball)) return this.#context.rect(this.#center(ball)[0] - radius, 0, 2 * radius, this.#height);
     this.#context.arc(...this.#center(ball), Math.max(radius, 0.5), 0, 2 * Math.PI);
   }
 

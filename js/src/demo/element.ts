@@ -10,7 +10,7 @@ import { press } from "./keys.js";
 import { loadDemos } from "./load.js";
 import { messageOf } from "./option-error.js";
 import { motionQuery } from "./motion-query.js";
-import { attributes, HEIGHT, hasSeed, newSeed, type Options, readOptions, readStart, WIDTH } from "./options.js";
+import { asksOfScan, attributes, HEIGHT, hasSeed, newSeed, type Options, readOptions, readStart, WIDTH } from "./options.js";
 import { paint } from "./paint.js";
 import { Guesses, type Question } from "./predict.js";
 import { addProperties } from "./properties.js";
@@ -18,6 +18,7 @@ import { NOTHING_COUNTED, Run } from "./run.js";
 import { iframeOf, shareUrl } from "./share.js";
 import { Speech } from "./speech.js";
 import { styles } from "./styles.js";
+import { FLASH_MS, SwapLog } from "./swap-log.js";
 import { type Theme, ThemeProbe } from "./theme.js";
 import type { Member } from "./together.js";
 import { emit, report } from "./report.js";
@@ -28,7 +29,7 @@ const COUNTERS_MS = 100;
 /** How high the controls are where they need two rows, in CSS pixels. */
 const CONTROLS_HEIGHT = 98;
 /** Steps without a question between two with one, at most. */
-const MOST_SKIPPED = 200;
+const MOST_SKIPPED = 2000;
 
 /** The class of `<sap-demo>`: api.ts says what others may count on. */
 export class SapDemoElement extends LitElement {
@@ -47,10 +48,12 @@ export class SapDemoElement extends LitElement {
   #hasChanged = false;
   #explanation: Explanation | undefined;
   #guesses = new Guesses();
+  #swapLog = new SwapLog();
   #theme: Theme | undefined;
   readonly #probe: ThemeProbe;
   readonly #canvases = new Canvases(() => this.#paint());
   #countersAt = -Infinity;
+  #saidAt = -Infinity;
   #shared: { url: string; code: string } | undefined;
   /** What it stands in with others that show the same world. */
   #comparison: SapComparisonElement | undefined;
@@ -59,8 +62,12 @@ export class SapDemoElement extends LitElement {
   readonly #hands: Hands = new Hands(this, {
     run: () => this.#run,
     guess: (choice) => this.#guess(choice),
+    took: () => this.#swapLog.restart(),
     moved: (drag, isDetected) => {
-      if (isDetected) emit(this, "simulate", this.state);
+      if (isDetected) {
+        this.#logSwaps();
+        emit(this, "simulate", this.state);
+      }
       emit(this, "sap-drag", drag);
       this.#changed();
       this.#comparison?.moved();
@@ -155,7 +162,8 @@ export class SapDemoElement extends LitElement {
     // Alone it has controls of its own.
     const controls = this.#comparison ? CONTROLS_HEIGHT : 0;
     // As high as where it is widest: a narrower one is lower.
-    return iframeOf(this.share(), this.#label, this.getBoundingClientRect().height - picture + HEIGHT + controls, WIDTH);
+    const height = this.#run?.options.world.height ?? HEIGHT;
+    return iframeOf(this.share(), this.#label, this.getBoundingClientRect().height - picture + height + controls, WIDTH);
   }
 
   get isPlaying(): boolean {
@@ -236,10 +244,13 @@ export class SapDemoElement extends LitElement {
     this.#hasChanged = false;
     const options = this.#readOptions();
     if (!options) return;
+    const asked = this.#run?.options.predicts;
     const run = this.#run?.goOn(options);
     if (!run) return this.#begin();
     this.#open(run);
-    if (!this.#isPlaying) run.timeline.finish();
+    if (options.predicts && !asked) this.#isPlaying = false;
+    if (options.predicts) this.#skipToQuestion();
+    else if (!this.#isPlaying) run.timeline.finish();
     this.#changed();
   }
 
@@ -256,8 +267,9 @@ export class SapDemoElement extends LitElement {
     this.#open(run);
     this.#hands.letGo();
     this.#guesses = new Guesses();
+    this.#swapLog = new SwapLog();
     const isStill = isPaused || this.hasAttribute("paused") || options.isStatic || options.predicts || motionQuery.matches;
-    if (options.isStatic && !options.predicts) run.timeline.finish();
+    if (options.isStatic && (!options.predicts || asksOfScan(options))) run.timeline.finish();
     this.#isPlaying = !isStill;
     this.#skipToQuestion();
     this.#comparison?.begun();
@@ -368,6 +380,14 @@ export class SapDemoElement extends LitElement {
     events.forEach((event, index) => report(this, event, first + index));
   }
 
+  /** Counts, lists and flashes what was swapped while a ball was moved. */
+  #logSwaps(): void {
+    const run = this.#run!;
+    if (!run.options.hasSwapLog) return;
+    const hasSwapped = this.#swapLog.add(run.timeline.detection, run.names, run.options.focus, performance.now());
+    if (hasSwapped) setTimeout(() => this.#paint(), FLASH_MS + 20);
+  }
+
   /** After a jump: what is at work here, and in words. */
   #arrived({ timeline }: Run): void {
     const { event, position } = timeline;
@@ -387,19 +407,29 @@ export class SapDemoElement extends LitElement {
     return this.#isPlaying ? undefined : this.#run?.question;
   }
 
-  #guess(choice: 0 | 1): void {
+  #guess(choice: number): void {
     const question = this.#question;
-    if (!question) return;
-    this.step();
-    this.#skipToQuestion();
+    if (!question || choice >= question.choices.length) return;
+    this.#report(this.#run!.answer());
+    this.#skipToQuestion(true);
     this.#guesses.count(question, choice);
+    this.#changed();
+    this.#speech.soon();
   }
 
-  /** Stops of this detection where there is nothing to guess are not worth a press of a button. */
-  #skipToQuestion(): void {
+  /**
+   * Goes on to where there is something to guess: the rest is not worth a press of a button. After a guess it stays
+   * in this detection, so that its end can be seen.
+   */
+  #skipToQuestion(hasGuessed = false): void {
     const run = this.#run;
     if (!run?.options.predicts) return;
-    for (let steps = 0; steps < MOST_SKIPPED && !run.timeline.isDetected && !this.#question; steps++) this.#report(run.timeline.nextStop());
+    const { timeline } = run;
+    for (let steps = 0; steps < MOST_SKIPPED && !this.#question; steps++) {
+      if (!timeline.isDetected) this.#report(timeline.nextStop());
+      else if (hasGuessed || run.options.isStatic) return;
+      else run.nextDetection(this.#listener);
+    }
   }
 
   // Showing
@@ -411,6 +441,7 @@ export class SapDemoElement extends LitElement {
   #paint(): void {
     const run = this.#run;
     if (!run || !this.hasUpdated) return;
+    this.#say(run);
     this.#theme ??= this.#probe.read();
     paint(this.renderRoot, this.#canvases, {
       timeline: run.timeline,
@@ -420,7 +451,19 @@ export class SapDemoElement extends LitElement {
       explanation: this.#explanation,
       lineAt: run.playback.lineAt(this.#isPlaying),
       theme: this.#theme,
+      isScanHidden: run.isScanHidden,
+      flashing: this.#swapLog.flashing(performance.now()),
     });
+  }
+
+  /** Says in words what the picture shows, with each picture of an event. Ticks pass too fast to be read. */
+  #say(run: Run): void {
+    const said = this.renderRoot.querySelector(".said");
+    const now = performance.now();
+    if (!said || (this.#isPlaying && !run.timeline.event && now - this.#saidAt < COUNTERS_MS)) return;
+    this.#saidAt = now;
+    const sentence = this.#sentence;
+    if (said.textContent !== sentence) said.textContent = sentence;
   }
 
   override firstUpdated(): void {
@@ -441,10 +484,10 @@ export class SapDemoElement extends LitElement {
         label: this.#label,
         hasControls: !this.#comparison && (run?.options.hasControls ?? !this.hasAttribute("no-controls")),
         hasCounters: run?.options.hasCounters ?? !this.hasAttribute("no-counters"),
-        sentence: this.#sentence,
         explains: this.#explanation !== undefined,
         speed: this.#speed ?? run?.options.speed ?? 1,
         guesses: this.#guesses,
+        swapLog: this.#swapLog,
         question: this.#question,
         shared: this.#shared,
       },

@@ -14,6 +14,8 @@ export interface Grabbing {
   isDraggable(): boolean;
   /** Whether the balls move by themselves. */
   isMoving(): boolean;
+  /** A ball is about to be moved. */
+  take(): void;
   move(ball: number, x: number, y: number): void;
   /** Let go, with the speed that the pointer had, in units a second. */
   release(ball: number, vx: number, vy: number): void;
@@ -82,6 +84,7 @@ export class Grab {
     if (!held || event.pointerId !== held.pointer || !this.#grabbing.isDraggable()) return;
     const far = Math.hypot(event.clientX - held.from[0], event.clientY - held.from[1]);
     if (!held.hasMoved && far < CLICK) return;
+    if (!held.hasMoved) this.#grabbing.take();
     held.hasMoved = true;
     const [x, y] = this.#inWorld(event);
     this.#path.push({ x: x + held.dx, y: y + held.dy, at: event.timeStamp });

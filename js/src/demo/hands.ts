@@ -7,7 +7,9 @@ import { Selection } from "./selection.js";
 /** What hands find and do, beside what anybody may call. */
 export interface Handled {
   run(): Run | undefined;
-  guess(choice: 0 | 1): void;
+  guess(choice: number): void;
+  /** A ball was taken, to be moved. */
+  took(): void;
   /** A ball was moved by hand; a static world has run its detection again. */
   moved(drag: DemoDrag, isDetected: boolean): void;
   /** A choice is to be shown. */
@@ -38,7 +40,8 @@ export class Hands {
   reachInto(picture: HTMLElement): void {
     this.#grab = new Grab(picture, {
       balls: () => this.#handled.run()?.timeline,
-      isDraggable: () => this.#handled.run()?.options.isDraggable === true,
+      isDraggable: () => this.#isDraggable,
+      take: () => this.#handled.took(),
       move: (ball, x, y) => this.#move(ball, x, y),
       isMoving: () => this.#handled.run()?.options.isStatic === false,
       release: (ball, vx, vy) => {
@@ -50,6 +53,12 @@ export class Hands {
       },
       choose: (ball) => this.#handled.run() && this.#choose(ball),
     });
+  }
+
+  /** What is asked about stays as it is until it has been guessed. */
+  get #isDraggable(): boolean {
+    const run = this.#handled.run();
+    return run?.options.isDraggable === true && !run.question;
   }
 
   /** Another world: nothing in it is chosen or moved. */
@@ -83,6 +92,7 @@ export class Hands {
       const { names, timeline } = this.#handled.run()!;
       if (timeline.radii.length === 0) return;
       this.selection.moveCursor(by, timeline.radii.length);
+      this.#handled.took();
       this.#handled.chose();
       this.#handled.say(`Ball ${names[this.selection.cursor!]}`);
     },
@@ -90,6 +100,7 @@ export class Hands {
     takeNone: () => this.#choose(undefined),
     push: (dx, dy) => {
       const run = this.#handled.run()!;
+      if (!this.#isDraggable) return;
       const ball = (this.selection.cursor ??= 0);
       if (ball >= run.timeline.radii.length) return;
       this.#demo.pause();

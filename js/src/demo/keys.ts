@@ -16,7 +16,7 @@ export interface Keyboard {
   takeNone(): void;
   /** Moves the ball at the cursor by hand. */
   push(dx: number, dy: number): void;
-  guess(choice: 0 | 1): void;
+  guess(choice: number): void;
 }
 
 /** Does what a key is for, if it is for anything. */
@@ -40,6 +40,7 @@ export function press(event: KeyboardEvent, { isDraggable }: Options, keyboard: 
     ArrowDown: () => keyboard.push(0, by),
     1: () => keyboard.guess(0),
     2: () => keyboard.guess(1),
+    3: () => keyboard.guess(2),
   };
   const action = actions[event.key];
   if (!action) return;
@@ -53,6 +54,6 @@ export function keysOf(options: Options | undefined, canPlay: boolean): string {
   if (options?.isDraggable || options?.explains) keys.push("B chooses the next ball.");
   if (options?.isDraggable) keys.push("Arrow keys move it.");
   if (options?.explains) keys.push("Enter selects it; select two to see why they were tested or skipped.");
-  if (options?.predicts) keys.push("1 and 2 guess.");
+  if (options?.predicts) keys.push("1, 2 and 3 guess.");
   return keys.join(" ");
 }

@@ -9,13 +9,18 @@ export function inWords(value: number): string {
 }
 
 /** What is known beside the event. */
-interface Known {
+export interface Known {
+  /** Rows of min corner and max corner. */
   readonly boxes: Float64Array;
   readonly names: readonly string[];
+  /** Whether a swap of neighbors shows that an overlap begins or ends. Otherwise it only sorts. */
+  readonly swapsTell: boolean;
+  /** The axis that is swept first. */
+  readonly axis: number;
 }
 
 /** The inequality that keeps two boxes apart, with its numbers: A’s right 120 < B’s left 140.5. */
-export function separation({ boxes, names }: Known, axis: number, left: number, right: number): string {
+export function separation({ boxes, names }: Pick<Known, "boxes" | "names">, axis: number, left: number, right: number): string {
   const [high, low] = axis === 0 ? ["right", "left"] : ["bottom", "top"];
   const max = boxes[4 * left + 2 + axis]!;
   const min = boxes[4 * right + axis]!;
@@ -27,7 +32,7 @@ export function separation({ boxes, names }: Known, axis: number, left: number, 
 /** A detection in words, when none of its events is at work. `flagChecks` where flags take the place of tests. */
 export function summary(isDetected: boolean, tick: number | undefined, balls: number, detection: Detection, names: readonly string[], flagChecks?: number): string {
   const when = tick === undefined ? "" : `Tick ${tick}: `;
-  if (!isDetected) return `${when}nothing has been tested yet.`;
+  if (!isDetected) return `${when === "" ? "Nothing" : `${when}nothing`} has been tested yet.`;
   const all = (balls * (balls - 1)) / 2;
   const { counts, pairs } = detection.step;
   const found = pairs.length / 2;
@@ -59,21 +64,25 @@ export function describeEvent(event: TraceEvent, known: Known): string {
       if (a === b) return `${edge(a)} is the pivot: it stays where it is.`;
       return `Compare ${edge(a)} with ${edge(b)}.`;
     case "swap":
-      if (Math.abs(word("i") - word("j")) !== 1) return `Swap ${edge(a)} and ${edge(b)}.`;
+      if (!known.swapsTell || Math.abs(word("i") - word("j")) !== 1) return `Swap ${edge(a)} and ${edge(b)}.`;
       return `Swap ${edge(a)} and ${edge(b)}: ${swapCase(a, b, name)}`;
     case "enter":
       return `The line enters ${name(word("id"))}.`;
     case "leave":
       return `The line leaves ${name(word("id"))}.`;
+    case "axis overlap": {
+      const on = `${name(a)} and ${name(b)} overlap on ${axisNames[word("axis")]}`;
+      return word("axis") === known.axis ? `${on}: the pair gets its first flag.` : `${on}, but not on ${axisNames[known.axis]}: the pair has only one flag.`;
+    }
     case "overlap":
-      return `${name(a)} and ${name(b)} overlap.`;
+      return `${name(a)} and ${name(b)} have both flags: their boxes overlap.`;
     default:
       return "";
   }
 }
 
 /** What a swap of neighbors means. `a` stood before `b`. */
-function swapCase(a: number, b: number, name: (ball: number) => string): string {
+export function swapCase(a: number, b: number, name: (ball: number) => string): string {
   const pair = `${name(a >> 1)} and ${name(b >> 1)}`;
   if (a % 2 === 1 && b % 2 === 0) return `)( becomes (), ${pair} begin to overlap on this axis.`;
   if (a % 2 === 0 && b % 2 === 1) return `() becomes )(, ${pair} cease to overlap on this axis.`;

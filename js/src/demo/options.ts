@@ -6,6 +6,8 @@ import { OptionError } from "./option-error.js";
 /** The world, in its own units. Pictures scale it. */
 export const WIDTH = 600;
 export const HEIGHT = 400;
+/** A world that is only a strip. */
+export const STRIP_HEIGHT = 160;
 
 /** How the world moves from one tick to the next. */
 export type Motion = "bounce" | "drift" | "teleport" | "rest";
@@ -17,6 +19,9 @@ export interface WorldOptions {
   readonly motion: Motion;
   /** Whether balls bounce off each other, not only off walls. */
   readonly bounces: boolean;
+  readonly height: number;
+  /** The balls that stand for walls: their boxes are as high as the world. */
+  readonly walls: readonly number[];
   /** The ball that is thrown about, where one is. */
   readonly focus: number;
 }
@@ -32,6 +37,11 @@ export interface Options {
   /** Ticks of motion between two detections, beside the one that there always is. */
   readonly skip: number;
   readonly speed: number;
+  /**
+   * Whether a detection takes swept boxes, which enclose a ball here and at the last detection. If `off`, it takes
+   * the boxes as they are, and what only the swept ones would find is marked as missed.
+   */
+  readonly swept: "off" | "on" | undefined;
   readonly isStatic: boolean;
   readonly isDraggable: boolean;
   readonly labels: readonly string[] | "emoji" | undefined;
@@ -40,6 +50,8 @@ export interface Options {
   readonly hasBoxes: boolean;
   /** Whether two balls may be chosen, to be told why they were tested or not. */
   readonly explains: boolean;
+  /** Whether the swaps since a ball was taken are counted, flashed and listed. */
+  readonly hasSwapLog: boolean;
   /** Whether each event is asked for before it is shown. */
   readonly predicts: boolean;
   readonly heading: string;
@@ -176,7 +188,11 @@ export const attributes = [
   "focus",
   "explain",
   "predict",
+  "swap-log",
   "motion",
+  "strip",
+  "walls",
+  "swept",
   "variant",
   "start",
   "heading",
@@ -198,6 +214,8 @@ export const booleans: ReadonlySet<Attribute> = new Set<Attribute>([
   "paused",
   "explain",
   "predict",
+  "swap-log",
+  "strip",
   "no-counters",
   "no-controls",
 ]);
@@ -214,7 +232,9 @@ export function readOptions(attribute: (name: Attribute) => string | null): Opti
   const has = (name: Attribute): boolean => get(name) !== null && get(name) !== "false";
   const strategy = choose("strategy", strategies, get("strategy") ?? "sorted-pairwise");
   const axis = get("axis") ?? "x";
-  const balls = readBalls(get("balls") ?? "5");
+  const height = has("strip") ? STRIP_HEIGHT : HEIGHT;
+  const method = variant?.method ?? (axis === "all" ? onAllAxes(strategy.method) : strategy.method);
+  const balls = readBalls(get("balls") ?? "5", height);
   const count = typeof balls === "number" ? balls : balls.length;
   const focus = get("focus") === null ? undefined : number("focus", get("focus")!, 0, MOST_BALLS - 1);
   if (focus !== undefined && focus >= count) {
@@ -226,32 +246,42 @@ export function readOptions(attribute: (name: Attribute) => string | null): Opti
       seed: number("seed", get("seed") ?? "1", 0, Number.MAX_SAFE_INTEGER),
       motion: choose("motion", motions, get("motion") ?? "bounce"),
       bounces: !has("no-bounce"),
+      height,
+      walls: readWalls(get("walls"), count),
       focus: focus ?? 0,
     },
     detecting: {
-      method: variant?.method ?? (axis === "all" ? onAllAxes(strategy.method) : strategy.method),
+      method,
       sort: get("sort") === null ? (strategy.sort ?? "standard library") : choose("sort", sorts, get("sort")!),
       axis: choose("axis", { ...axes, all: 0 }, axis),
       focus: focus ?? 0,
     },
     decorations: readDecorations(get("decorations") ?? "", {
       array: has("array"),
-      checks: has("explain") || has("predict"),
+      // There has to be something to guess.
+      checks: has("explain") || (has("predict") && method !== "one-to-n scan" && !/array|sweep/.test(get("decorations") ?? "")),
     }),
     skip: number("skip-interval", get("skip-interval") ?? "0", 0, MOST_SKIPPED),
     speed: number("speed", get("speed") ?? "1", 0.01, 100, false),
+    swept: get("swept") === null ? undefined : choose("swept", { off: "off", on: "on" } as const, get("swept")!),
     isStatic: has("static"),
-    isDraggable: get("draggable") !== "false" && !has("predict"),
+    isDraggable: get("draggable") !== "false" && (!has("predict") || has("static")),
     labels: readLabels(get("labels")),
     focus,
     isRainbow: has("rainbow"),
     hasBoxes: has("boxes"),
     explains: has("explain"),
+    hasSwapLog: has("swap-log"),
     predicts: has("predict"),
     heading: get("heading") ?? "",
     hasCounters: !has("no-counters"),
     hasControls: !has("no-controls"),
   };
+}
+
+/** Whether a visitor guesses what a scan finds: as a whole, because its steps would tell. */
+export function asksOfScan({ predicts, detecting }: Pick<Options, "predicts" | "detecting">): boolean {
+  return predicts && detecting.method === "one-to-n scan";
 }
 
 /** Whether another seed makes another world: random balls, or given ones that get their speed from the seed. */
@@ -298,7 +328,11 @@ function number(attribute: Attribute, text: string, least: number, most: number,
   return value;
 }
 
-function readBalls(text: string): number | Row[] {
+function readWalls(text: string | null, count: number): number[] {
+  return (text ?? "").split(",").filter((word) => word.trim() !== "").map((word) => number("walls", word, 0, count - 1));
+}
+
+function readBalls(text: string, height: number): number | Row[] {
   if (!text.trim().startsWith("[")) return number("balls", text, 0, MOST_BALLS);
   let rows: unknown;
   try {
@@ -309,15 +343,15 @@ function readBalls(text: string): number | Row[] {
   if (!Array.isArray(rows) || rows.length > MOST_BALLS) {
     throw new OptionError(`balls: the list must have at most ${MOST_BALLS} rows`);
   }
-  return rows.map(checkBall);
+  return rows.map((row, index) => checkBall(row, index, height));
 }
 
-function checkBall(row: unknown, index: number): Row {
+function checkBall(row: unknown, index: number, height: number): Row {
   const isRow = Array.isArray(row) && (row.length === 3 || row.length === 5) && row.every(Number.isFinite);
   if (!isRow) throw new OptionError(`balls: number ${index} must be [x, y, radius] or [x, y, radius, vx, vy], in numbers`);
   const [x, y, radius] = row as unknown as Row;
-  const fits = radius > 0 && x >= radius && x <= WIDTH - radius && y >= radius && y <= HEIGHT - radius;
-  if (!fits) throw new OptionError(`balls: number ${index} must lie inside the ${WIDTH} x ${HEIGHT} world, with a radius above 0`);
+  const fits = radius > 0 && x >= radius && x <= WIDTH - radius && y >= radius && y <= height - radius;
+  if (!fits) throw new OptionError(`balls: number ${index} must lie inside the ${WIDTH} x ${height} world, with a radius above 0`);
   return row as unknown as Row;
 }
 

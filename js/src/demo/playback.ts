@@ -90,7 +90,7 @@ export class Playback {
   #duration(): number {
     const { event } = this.#timeline;
     if (isOfLine(event)) return this.#line().ms;
-    if (event?.kind === "test" || event?.kind === "overlap") return this.#options.decorations.checks?.ms ?? 0;
+    if (event?.kind === "test" || event?.kind === "overlap" || event?.kind === "axis overlap") return this.#options.decorations.checks?.ms ?? 0;
     if (event?.kind === "compare" || event?.kind === "swap") return SORT_MS;
     return 0;
   }

@@ -1,11 +1,12 @@
+import type { TraceEvent } from "../trace.js";
 import type { DemoEvent, DemoState, Row } from "./types.js";
 import { hasFlags, shownKinds } from "./detection.js";
 import { explain, type Explanation } from "./explain.js";
 import { namesOf } from "./names.js";
-import { describeEvent, summary } from "./narrate.js";
-import { isWorldKept, type Options } from "./options.js";
+import { describeEvent, type Known, summary } from "./narrate.js";
+import { asksOfScan, isWorldKept, type Options } from "./options.js";
 import { type Listener, Playback } from "./playback.js";
-import { type Question, questionAt } from "./predict.js";
+import { type Question, questionAt, questionsOfScan } from "./predict.js";
 import { Timeline } from "./timeline.js";
 import { demoEventOf } from "./report.js";
 import { rowsOf } from "./world.js";
@@ -22,6 +23,8 @@ export class Run {
   readonly playback: Playback;
   /** What the balls are called. */
   readonly names: readonly string[];
+  /** How many questions about a scan have been answered. */
+  #answered = 0;
 
   private constructor(options: Options, timeline: Timeline) {
     this.options = options;
@@ -59,6 +62,7 @@ export class Run {
   }
 
   get counts(): Counts {
+    if (this.isScanHidden) return NOTHING_COUNTED;
     const { axisOverlaps, counts } = this.timeline.state;
     const { tests, pairs, comparisons, swaps } = counts;
     // The overlaps are those that there are: also where the algorithm keeps them and tells only of changes.
@@ -77,6 +81,7 @@ export class Run {
   }
 
   get pairs(): [number, number][] {
+    if (this.isScanHidden) return [];
     const { overlaps } = this.timeline.state;
     return Array.from({ length: overlaps.length / 2 }, (_, i) => [overlaps[2 * i]!, overlaps[2 * i + 1]!]);
   }
@@ -104,16 +109,37 @@ export class Run {
     return explain(this.timeline.detection, this.names, ...pair);
   }
 
-  /** What a visitor is to guess before the next step, if that is asked for. */
+  /** What a visitor is to guess before more is shown, if that is asked for. */
   get question(): Question | undefined {
-    return this.options.predicts ? questionAt(this.timeline, this.names) : undefined;
+    const { timeline, options } = this;
+    if (!options.predicts) return undefined;
+    // The first detection of a swap-driven sweep only sorts.
+    if (options.detecting.method.startsWith("swap-driven") && !timeline.detection.isDrivenBySwaps) return undefined;
+    return asksOfScan(options) ? questionsOfScan(timeline, options.detecting.focus, this.#known)[this.#answered] : questionAt(timeline, this.#known);
+  }
+
+  /** Shows what the question was about; the events that were played. */
+  answer(): readonly TraceEvent[] {
+    if (!asksOfScan(this.options)) return this.timeline.nextStop();
+    this.#answered++;
+    return [];
+  }
+
+  /** Whether there is still something to guess about a scan, and so nothing that it did is shown. */
+  get isScanHidden(): boolean {
+    return asksOfScan(this.options) && this.question !== undefined;
+  }
+
+  get #known(): Known {
+    const { detection } = this.timeline;
+    return { boxes: detection.boxes, names: this.names, axis: detection.step.axis, swapsTell: detection.isDrivenBySwaps };
   }
 
   /** Where it stands, in words. */
   get sentence(): string {
     const { event, detection, tick, isDetected, radii } = this.timeline;
-    if (event) return describeEvent(event, { boxes: detection.boxes, names: this.names });
+    if (event) return describeEvent(event, this.#known);
     const when = this.options.isStatic ? undefined : tick;
-    return summary(isDetected, when, radii.length, detection, this.names, this.#flagChecks);
+    return summary(isDetected && !this.isScanHidden, when, radii.length, detection, this.names, this.#flagChecks);
   }
 }

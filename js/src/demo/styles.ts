@@ -38,16 +38,19 @@ export const styles: CSSResult = css`
     user-select: none;
     -webkit-user-select: none;
   }
+  :host([strip]) .picture {
+    aspect-ratio: 600 / 160;
+  }
   /* A canvas is not recolored where the visitor forces colors, so neither is what is behind it. */
   .picture,
   .array {
     forced-color-adjust: none;
     background: var(--_stage);
   }
-  :host(:not([draggable="false"], [predict])) .picture {
+  :host(:not([draggable="false"], [predict]:not([static]))) .picture {
     cursor: grab;
   }
-  :host(:not([draggable="false"], [predict])) .picture:active {
+  :host(:not([draggable="false"], [predict]:not([static]))) .picture:active {
     cursor: grabbing;
   }
   .picture canvas,
@@ -191,6 +194,27 @@ export const styles: CSSResult = css`
   .guess button {
     flex: none;
     min-width: 6rem;
+  }
+  .swap-log {
+    margin-top: 6px;
+    height: 5rem;
+    overflow: hidden;
+    font-size: 0.875rem;
+    line-height: 1.25rem;
+    font-variant-numeric: tabular-nums;
+  }
+  .swap-log :is(p, ol) {
+    margin: 0;
+    padding: 0;
+    list-style: none;
+  }
+  .swap-log p {
+    font-weight: 600;
+  }
+  /* The latest stands first, and is marked by more than its place. */
+  .swap-log li:first-child {
+    color: var(--_swap);
+    font-weight: 600;
   }
   .score {
     margin-left: auto;

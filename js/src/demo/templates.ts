@@ -1,5 +1,6 @@
 import { html, nothing, svg, type TemplateResult } from "lit";
 import type { Guesses, Question } from "./predict.js";
+import type { SwapLog } from "./swap-log.js";
 
 /** What the controls under the picture show and do. */
 export interface Controls {
@@ -59,17 +60,29 @@ function button(label: string, icon: TemplateResult, enabled: boolean, click: ()
 export interface Guessing {
   readonly question: Question | undefined;
   readonly guesses: Guesses;
-  guess(choice: 0 | 1): void;
+  guess(choice: number): void;
+  /** Goes on where nothing is left to guess; undefined where that is all. */
+  readonly next: (() => void) | undefined;
 }
 
-export function guessing({ question, guesses, guess }: Guessing): TemplateResult {
+export function guessing({ question, guesses, guess, next }: Guessing): TemplateResult {
   const { outcome, right, made } = guesses;
   return html`<div class="guess" part="guess" role="group" aria-label="What happens next?">
-    <p>${outcome} ${question?.text ?? "That was all of this detection. Press Step for the next."}</p>
+    <p>${outcome} ${question?.text ?? (next ? "That was all of this detection." : "That was all.")}</p>
     <div>
-      ${question?.choices.map((text, index) => html`<button type="button" @click=${() => guess(index as 0 | 1)}>${text}</button>`)}
+      ${question?.choices.map((text, index) => html`<button type="button" @click=${() => guess(index)}>${text}</button>`)}
+      ${question || !next ? nothing : html`<button type="button" @click=${next}>Next detection</button>`}
       <span class="score">${made === 0 ? nothing : html`${right} of ${made} right`}</span>
     </div>
+  </div>`;
+}
+
+/** What the swaps have shown since a ball was taken. */
+export function swapsSoFar({ swaps, begun, ended, lines }: SwapLog): TemplateResult {
+  const count = (number: number, what: string): string => `${number} ${what}${number === 1 ? "" : "s"}`;
+  return html`<div class="swap-log" part="swap-log">
+    <p>Since the drag began: ${count(swaps, "swap")}, ${count(begun, "overlap")} begun, ${ended} ended.</p>
+    <ol>${lines.map((line) => html`<li>${line}</li>`)}</ol>
   </div>`;
 }
 

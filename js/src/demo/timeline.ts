@@ -3,12 +3,14 @@ import { Runner } from "../runner.js";
 import type { TraceEvent } from "../trace.js";
 import { Detection, newRunner, type Oracle, oracleFor, stopsOf } from "./detection.js";
 import type { Options } from "./options.js";
-import { boxesOf, World } from "./world.js";
+import { boxesOf, sweptBoxes, World } from "./world.js";
 
 /** What is kept of a tick, to come back to it. */
 interface Tick {
   readonly number: number;
   readonly positions: Float32Array;
+  /** Where the balls were at the detection before this tick, if there was one. */
+  readonly last: Float32Array | undefined;
   /** The saved moment of the world. */
   readonly moment: number;
   /** If there is a detection at this tick: the runner as it was before. */
@@ -52,7 +54,7 @@ export class Timeline {
     this.#world = world;
     const most = Math.min(MOST_TICKS, MOST_BALL_TICKS / Math.max(1, world.radii.length));
     this.#most = Math.max(most, LEAST_DETECTIONS * (options.skip + 1));
-    this.#oracle = oracleFor(options.detecting);
+    this.#oracle = oracleFor(options);
     this.#runner = newRunner(options.detecting);
     this.#record(tick, true);
   }
@@ -83,6 +85,14 @@ export class Timeline {
     return this.#world.radii;
   }
 
+  /** Where the balls were at the detection shown and at the one before it. */
+  get jump(): { readonly from: Float32Array | undefined; readonly to: Float32Array } {
+    let at = this.#at;
+    while (at > 0 && !this.#ticks[at]!.before) at--;
+    const { last, positions } = this.#ticks[at]!;
+    return { from: last, to: positions };
+  }
+
   /** The detection of this tick, or of the one before it that had one. */
   get detection(): Detection {
     return this.#detection!;
@@ -104,9 +114,12 @@ export class Timeline {
     return this.detection.stateAt(this.position);
   }
 
-  /** How many events will have been played at the next stop, if there is one here. */
-  get nextPosition(): number | undefined {
-    return this.#stops[this.#stop + 1];
+  /** The event at the next stop, and the one that follows it in the trace; the end of a detection shows none. */
+  get coming(): readonly [next: TraceEvent | undefined, after: TraceEvent | undefined] {
+    const position = this.#stops[this.#stop + 1];
+    if (position === undefined) return [undefined, undefined];
+    const [next, after] = this.detection.events.slice(position - 1, position + 1);
+    return next && this.#kinds.has(next.kind) ? [next, after] : [undefined, undefined];
   }
 
   /** Whether the detection has been gone through, so that the world may move on. */
@@ -259,32 +272,54 @@ export class Timeline {
 
   #record(number: number, isDetecting: boolean): void {
     const positions = this.#world.positions();
+    const last = this.#ticks.length > 0 ? this.jump.to : undefined;
     let before: Runner | undefined;
     let stops = 0;
     if (isDetecting) {
       this.#runner.trimTrace();
       before = new Runner(this.#runner);
-      this.#detect(this.#runner, positions);
+      this.#detect(this.#runner, { positions, last });
       stops = this.#stops.length;
     }
-    this.#ticks.push({ number, positions, moment: this.#world.save(), before, stops });
+    this.#ticks.push({ number, positions, last, moment: this.#world.save(), before, stops });
     if (this.#ticks.length > this.#most) this.#forget(this.#ticks.shift()!);
     this.#at = this.#worldAt = this.#ticks.length - 1;
   }
 
-  #detect(runner: Runner, positions: Float32Array): void {
+  #detect(runner: Runner, tick: Pick<Tick, "positions" | "last">): void {
     this.#detection?.free();
-    this.#detection = new Detection(runner, boxesOf(positions, this.radii), this.#oracle);
+    this.#detection = new Detection(runner, this.#boxesAt(tick), (found) => this.#missedAt(tick, found));
     this.#stops = stopsOf(this.#detection, this.#kinds);
     this.#stop = -1;
   }
 
+  #boxes(positions: Float32Array): Float64Array {
+    return boxesOf(positions, this.radii, this.#options.world);
+  }
+
+  /** What a detection takes. */
+  #boxesAt({ positions, last }: Pick<Tick, "positions" | "last">): Float64Array {
+    const boxes = this.#boxes(positions);
+    return this.#options.swept === "on" && last ? sweptBoxes(this.#boxes(last), boxes) : boxes;
+  }
+
+  /** What it should have found and did not. */
+  #missedAt({ positions, last }: Pick<Tick, "positions" | "last">, found: Uint32Array): Detection["missed"] {
+    const oracle = this.#oracle;
+    const boxes = this.#boxes(positions);
+    if (!oracle || this.#options.swept !== "off") return oracle?.missed(boxes, found) ?? [];
+    if (!last) return [];
+    // What overlapped at the last detection was found there.
+    const before = this.#boxes(last);
+    return oracle.missed(sweptBoxes(before, boxes), found, oracle.pairs(before));
+  }
+
   /** Shows a tick that is kept, at one of its stops. */
   #goTo(index: number, stop: number): void {
-    const { before, positions } = this.#ticks[index]!;
+    const { before, positions, last } = this.#ticks[index]!;
     if (before && index !== this.#at) {
       const runner = new Runner(before);
-      this.#detect(runner, positions);
+      this.#detect(runner, { positions, last });
       runner.free();
     }
     this.#at = index;
@@ -306,7 +341,7 @@ export class Timeline {
     const before = this.#ticks.filter(({ before }) => before).at(-1)!;
     this.#runner.free();
     this.#runner = new Runner(before.before!);
-    this.#runner.step(boxesOf(before.positions, this.radii));
+    this.#runner.step(this.#boxesAt(before));
     for (const tick of later) this.#forget(tick);
   }
 

@@ -6,7 +6,8 @@ import { hasSeed } from "./options.js";
 import { heightOfArray } from "./paint.js";
 import type { Guesses, Question } from "./predict.js";
 import { NOTHING_COUNTED, type Run } from "./run.js";
-import { controls, guessing, sharing } from "./templates.js";
+import type { SwapLog } from "./swap-log.js";
+import { controls, guessing, sharing, swapsSoFar } from "./templates.js";
 
 /** What a demo shows, beside the picture itself. */
 export interface View {
@@ -17,12 +18,12 @@ export interface View {
   readonly label: string;
   readonly hasControls: boolean;
   readonly hasCounters: boolean;
-  readonly sentence: string;
   /** Whether the sentence explains a pair. */
   readonly explains: boolean;
   readonly speed: number;
   readonly guesses: Guesses;
   readonly question: Question | undefined;
+  readonly swapLog: SwapLog;
   /** What there is to copy, once it was asked for. */
   readonly shared: { readonly url: string; readonly code: string } | undefined;
 }
@@ -30,7 +31,7 @@ export interface View {
 /** What is done where a visitor presses, beside what anybody may call. */
 export interface Acts {
   press(event: KeyboardEvent): void;
-  guess(choice: 0 | 1): void;
+  guess(choice: number): void;
   setSpeed(speed: number): void;
   newWorld(): void;
   openSharing(): void;
@@ -49,8 +50,9 @@ export function inside(view: View, demo: SapDemo, acts: Acts): TemplateResult {
     </div>
     <p id="keys" class="hidden">${keysOf(options, canPlay(run))}</p>
     ${run && options?.decorations.array ? array(run) : nothing}
-    ${hasControls ? html`<p class="said" part="said" aria-hidden="true" ?data-explains=${view.explains}>${view.sentence}</p>` : nothing}
-    ${options?.predicts ? guessing({ ...view, guess: acts.guess }) : nothing}
+    ${hasControls ? html`<p class="said" part="said" aria-hidden="true" ?data-explains=${view.explains}></p>` : nothing}
+    ${options?.predicts ? guessing({ ...view, guess: acts.guess, next: options.isStatic ? undefined : () => demo.step() }) : nothing}
+    ${options?.hasSwapLog ? swapsSoFar(view.swapLog) : nothing}
     <p class="live hidden" role="status" aria-live="polite"></p>
     ${view.hasCounters ? counters(run?.counts ?? NOTHING_COUNTED, options?.detecting) : nothing}
     ${hasControls ? html`${bar(view, demo, acts)} ${view.shared ? sharing(view.shared.url, view.shared.code) : nothing}` : nothing}

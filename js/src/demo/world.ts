@@ -1,7 +1,7 @@
 import { Simulation, SimulationError } from "../../../simulation/wasm/simulation.js";
 import type { Row } from "./types.js";
 import { OptionError } from "./option-error.js";
-import { HEIGHT, WIDTH, type WorldOptions } from "./options.js";
+import { WIDTH, type WorldOptions } from "./options.js";
 
 /** Loads the compiled simulation: the file beside the bundle that this module is part of. */
 export function loadWorlds(): Promise<void> {
@@ -73,13 +73,13 @@ export class World {
   }
 }
 
-function start({ balls, seed, motion, bounces }: WorldOptions): Simulation {
+function start({ balls, seed, motion, bounces, height }: WorldOptions): Simulation {
   const isDrifting = motion === "drift";
   const laws = { collisions: bounces, counting: false, ...(isDrifting && { gravity: 0, restitution: 1 }) };
-  const size = { width: WIDTH, height: HEIGHT };
+  const size = { width: WIDTH, height };
   try {
     if (typeof balls === "number" && balls > 0) {
-      return new Simulation({ scene: "bouncing", bodies: balls, size: middleRadius(balls), spread: SPREAD, seed, ...size, ...laws });
+      return new Simulation({ scene: "bouncing", bodies: balls, size: middleRadius(balls, height), spread: SPREAD, seed, ...size, ...laws });
     }
     const rows = typeof balls === "number" ? [] : balls;
     const given = rows.map(([x, y, radius, vx, vy], index) => ({
@@ -97,8 +97,8 @@ function start({ balls, seed, motion, bounces }: WorldOptions): Simulation {
 }
 
 /** So large that the balls fill a fifth of the world, and no larger than looks well. */
-function middleRadius(count: number): number {
-  return Math.min(40, Math.sqrt((0.2 * WIDTH * HEIGHT) / (Math.PI * count)));
+function middleRadius(count: number, height: number): number {
+  return Math.min(height / 10, Math.sqrt((0.2 * WIDTH * height) / (Math.PI * count)));
 }
 
 /** A speed from the seed, the same everywhere: given balls would only fall. */
@@ -107,14 +107,20 @@ function sideways(seed: number, index: number): number {
   return ((mixed / 0xffffff) * 2 - 1) * GIVEN_SPEED;
 }
 
-/** Boxes as rows of min corner and max corner, which is what a runner takes. */
-export function boxesOf(positions: Float32Array, radii: Float32Array): Float64Array {
+/** Boxes as rows of min corner and max corner, which is what a runner takes. Those of walls are as high as the world. */
+export function boxesOf(positions: Float32Array, radii: Float32Array, { walls, height }: WorldOptions): Float64Array {
   const boxes = new Float64Array(positions.length * 2);
   radii.forEach((radius, ball) => {
     const [x, y] = [positions[2 * ball]!, positions[2 * ball + 1]!];
     boxes.set([x - radius, y - radius, x + radius, y + radius], 4 * ball);
   });
+  for (const wall of walls) [boxes[4 * wall + 1], boxes[4 * wall + 3]] = [0, height];
   return boxes;
+}
+
+/** The smallest boxes that enclose the same ones here and there: what each sweeps on its way. */
+export function sweptBoxes(from: Float64Array, to: Float64Array): Float64Array {
+  return to.map((value, at) => (at % 4 < 2 ? Math.min(value, from[at]!) : Math.max(value, from[at]!)));
 }
 
 /** The balls as rows, as the attribute `balls` takes them. */

@@ -25,12 +25,18 @@ function copyable(listing: HTMLElement): void {
   });
 }
 
-/** Each choice is an attribute of a demo. */
+/** Each choice is an attribute of a demo, or of all the demos of a figure. A slider fills its value into a template. */
 function applyChoices(choices: HTMLElement): void {
-  const demo = document.querySelector(`#${choices.dataset["for"]} sap-demo`);
-  choices.addEventListener("change", ({ target }) => {
-    const select = target as HTMLSelectElement;
-    demo?.setAttribute(select.dataset["attribute"] ?? "", select.value);
+  const demos = document.querySelectorAll(`#${choices.dataset["for"]} sap-demo`);
+  choices.addEventListener("input", ({ target }) => {
+    const choice = target as HTMLInputElement | HTMLSelectElement;
+    const { attribute = "", template = "{}", off } = choice.dataset;
+    const isOff = choice instanceof HTMLInputElement && choice.type === "checkbox" && !choice.checked;
+    const value = isOff ? off : template.replace("{}", choice.value);
+    for (const demo of demos) {
+      if (value === undefined) demo.removeAttribute(attribute);
+      else demo.setAttribute(attribute, value);
+    }
   });
 }
 

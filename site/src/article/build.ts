@@ -7,6 +7,7 @@ import { figures } from "./figures/index.ts";
 import { legend } from "./legend.ts";
 import { highlight, listing } from "./listing.ts";
 import { withPosters } from "./poster.ts";
+import { expandStructures } from "../structures/build.ts";
 import { SITE } from "../shell/pages.ts";
 
 /** The files of sections/, in the order in which they are read. */
@@ -71,7 +72,7 @@ findPairs(boxes, { dimensions: 2 }); // 0, 2`;
 
 /** Fills in the listings, legends and drawings. */
 function expand(page: string): string {
-  return withPosters(page)
+  return expandStructures(withPosters(page))
     .replaceAll("%SITE%", SITE)
     .replace("<trial-code></trial-code>", () => highlight(TRIAL, "javascript", "how to call the library"))
     .replace(/<code-listing name="([^"]*)"(?: follows="([^"]*)")?><\/code-listing>/g, (_, name: string, follows?: string) =>

@@ -3,6 +3,8 @@
 import "sweep-and-prune/demo";
 import { FallingBalls } from "../falling/falling-balls.ts";
 import { LibraryTrial } from "../library/library-trial.ts";
+import { ThreeStructures } from "../structures/three-structures.ts";
 
 customElements.define("falling-balls", FallingBalls);
 customElements.define("library-trial", LibraryTrial);
+customElements.define("three-structures", ThreeStructures);

@@ -4,6 +4,8 @@
 /** A swatch, drawn as the demo draws the thing, and what it means. */
 interface Key {
   readonly swatch: string;
+  /** The words for it in the text have this class, `is-...`. */
+  readonly word: string;
   readonly says: string;
 }
 
@@ -14,34 +16,53 @@ const upright = (x: number, color: string, rest = ""): string =>
   `<line x1="${x}" y1="1" x2="${x}" y2="15" stroke="var(--sap-${color})" stroke-width="2.5" ${rest}/>`;
 const cell = (color: string): string =>
   `<rect x="6" y="1.5" width="22" height="13" fill="var(--sap-${color})" stroke="var(--sap-ink)" stroke-width="1.5"/>`;
+const box = (rest: string): string => `<rect x="8" y="2" width="18" height="12" fill="var(--sap-stage)" ${rest}/>`;
 const disc = (rest: string): string => `<circle cx="17" cy="8" r="6.5" ${rest}/>`;
 
 const KEYS: Readonly<Record<string, Key>> = {
-  test: { swatch: pair("check", 'stroke-width="4"') + rings, says: "tested now" },
-  candidate: { swatch: pair("check", 'stroke-width="4"') + rings, says: "candidate: overlaps on x, tested now" },
-  found: { swatch: pair("check", 'stroke-width="4"') + rings, says: "just found to overlap on both axes" },
-  apart: { swatch: pair("overlap", 'stroke-width="2" stroke-dasharray="5 4"'), says: "boxes overlap, balls do not touch" },
-  overlap: { swatch: pair("overlap", 'stroke-width="2"'), says: "boxes overlap" },
+  test: { swatch: pair("check", 'stroke-width="4"') + rings, word: "test", says: "tested now" },
+  candidate: { swatch: pair("check", 'stroke-width="4"') + rings, word: "test", says: "candidate: overlaps on x, tested now" },
+  flagged: { swatch: pair("check", 'stroke-width="4"') + rings, word: "test", says: "gets a flag now" },
+  flag: { swatch: pair("edge", 'stroke-width="2" stroke-dasharray="2 5"'), word: "flag", says: "one flag: overlap on one axis" },
+  found: { swatch: pair("check", 'stroke-width="4"') + rings, word: "test", says: "just found to overlap on both axes" },
+  apart: { swatch: pair("overlap", 'stroke-width="2" stroke-dasharray="5 4"'), word: "overlap", says: "boxes overlap, balls do not touch" },
+  overlap: { swatch: pair("overlap", 'stroke-width="2"'), word: "overlap", says: "boxes overlap" },
   skip: {
     swatch: `${upright(7, "skip")}${upright(27, "skip")}${pair("skip", 'stroke-width="2" stroke-dasharray="4 3"')}`,
+    word: "skip",
     says: "gap: everything after it is skipped",
   },
-  missed: { swatch: pair("sweep", 'stroke-width="4" stroke-dasharray="3 4"'), says: "overlap, missed" },
-  line: { swatch: upright(17, "sweep"), says: "sweep line" },
-  touched: { swatch: disc('fill="var(--sap-inside)" stroke="var(--sap-muted)" stroke-width="1.5"'), says: "touched by the line" },
+  missed: { swatch: pair("sweep", 'stroke-width="4" stroke-dasharray="3 4"'), word: "missed", says: "overlap, missed" },
+  line: { swatch: upright(17, "sweep"), word: "sweep", says: "sweep line" },
+  "right-edge": { swatch: upright(17, "sweep"), word: "sweep", says: "right endpoint of A" },
+  touched: { swatch: disc('fill="var(--sap-inside)" stroke="var(--sap-muted)" stroke-width="1.5"'), word: "touched", says: "touched by the line" },
   edges: {
     swatch: `${upright(11, "edge")}${upright(23, "edge", 'stroke-dasharray="4 3"')}`,
+    word: "edge",
     says: "left edge (solid), right edge (dashed)",
   },
-  compare: { swatch: cell("comparison"), says: "compared" },
-  swap: { swatch: cell("swap"), says: "swapped" },
+  compare: { swatch: cell("comparison"), word: "compare", says: "compared" },
+  swap: { swatch: cell("swap"), word: "swap", says: "swapped" },
+  flash: { swatch: `${upright(8, "swap", 'style="stroke-width:5"')}<rect x="18" y="1.5" width="14" height="13" fill="var(--sap-swap)" stroke="var(--sap-ink)" stroke-width="1.5"/>`, word: "swap", says: "swapped just now" },
   moved: {
     swatch: `<rect x="6" y="1.5" width="22" height="13" fill="var(--sap-stage)" stroke="var(--sap-line)"/><rect x="6" y="11" width="22" height="3.5" fill="var(--sap-swap)"/>`,
+    word: "swap",
     says: "swapped earlier in this sort",
   },
-  focus: { swatch: disc('fill="none" stroke="var(--sap-chosen)" stroke-width="3"'), says: "the ball in question" },
+  frames: {
+    swatch: `<rect x="3" y="3" width="10" height="10" fill="none" stroke="var(--sap-edge)" stroke-width="1.5" stroke-dasharray="3 2"/><rect x="20" y="3" width="10" height="10" fill="none" stroke="var(--sap-edge)" stroke-width="1.5"/>`,
+    word: "edge",
+    says: "box in the frame before (dashed), box in this frame",
+  },
+  swept: { swatch: `<rect x="3" y="3" width="28" height="10" fill="var(--sap-edge)" fill-opacity="0.2" stroke="var(--sap-edge)" stroke-width="1.5"/>`, word: "edge", says: "swept box" },
+  "chosen-box": { swatch: box('stroke="var(--sap-chosen)" stroke-width="3" stroke-dasharray="5 2"'), word: "focus", says: "the box in question" },
+  "tested-box": { swatch: box('stroke="var(--sap-check)" stroke-width="3"'), word: "test", says: "tested against it" },
+  "overlapping-box": { swatch: box('style="fill:color-mix(in oklab, var(--sap-overlap) 55%, var(--sap-stage))" stroke="var(--sap-muted)"'), word: "overlap", says: "overlaps another box" },
+  looked: { swatch: `<rect x="3" y="1" width="28" height="14" fill="var(--sap-edge)" fill-opacity="0.2"/>`, word: "edge", says: "where its partners are looked for" },
+  focus: { swatch: disc('fill="none" stroke="var(--sap-chosen)" stroke-width="3"'), word: "focus", says: "the ball in question" },
   inside: {
     swatch: `${upright(11, "chosen")}${upright(23, "chosen", 'stroke-dasharray="4 3"')}`,
+    word: "focus",
     says: "endpoints inside its interval",
   },
 };
@@ -51,7 +72,7 @@ export function legend(names: string): string {
   const items = names.split(" ").map((name) => {
     const key = KEYS[name];
     if (!key) throw new Error(`there is no color key "${name}", only ${Object.keys(KEYS).join(", ")}`);
-    return `<li><svg viewBox="0 0 34 16" width="34" height="16" aria-hidden="true">${key.swatch}</svg>${key.says}</li>`;
+    return `<li><svg viewBox="0 0 34 16" width="34" height="16" aria-hidden="true">${key.swatch}</svg><span class="is-${key.word}">${key.says}</span></li>`;
   });
   return `<ul class="legend" aria-label="Legend">${items.join("")}</ul>`;
 }

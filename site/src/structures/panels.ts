@@ -1,0 +1,54 @@
+// What the figure of three structures shows: three panels of one world, as html. Written when the site is built, and
+// again whenever a box is moved.
+
+import { type Box, grid, HEIGHT, type Pair, sweep, tree, WIDTH, type Work } from "./structures.ts";
+
+export const structures = [
+  { name: "Sweep", says: "along x", run: sweep },
+  { name: "Grid", says: "cells of equal size", run: grid },
+  { name: "Tree", says: "boxes in boxes", run: tree },
+] as const;
+
+/** The three panels, with what is shown of one box. */
+export function panels(boxes: readonly Box[], chosen: number): string {
+  const works = structures.map(({ run }) => run(boxes));
+  const most = Math.max(...works.map(({ tests }) => tests.length));
+  return structures
+    .map(({ name, says }, at) => {
+      const work = works[at]!;
+      const ofChosen = new Set(partners(work.tests, chosen));
+      const share = (100 * work.tests.length) / most;
+      return `<figure class="structure" data-structure="${name.toLowerCase()}">
+        <p class="structure-name"><strong>${name}</strong> ${says}</p>
+        ${picture(boxes, work, chosen, ofChosen, `${name}: ${boxes.length} boxes; box ${chosen + 1} is tested against ${ofChosen.size} others.`)}
+        <div class="structure-bar" aria-hidden="true"><span style="width:${share.toFixed(1)}%"></span></div>
+        <p class="structure-count"><strong data-part="tests">${work.tests.length}</strong> box tests, and ${work.beside}</p>
+      </figure>`;
+    })
+    .join("");
+}
+
+/** How many pairs there are: all three find the same ones. */
+export function countPairs(boxes: readonly Box[]): number {
+  return sweep(boxes).pairs.length;
+}
+
+function picture(boxes: readonly Box[], work: Work, chosen: number, tested: ReadonlySet<number>, label: string): string {
+  const overlapping = new Set(work.pairs.flat());
+  const shapes = boxes.map((box, id) => {
+    const kinds = ["box", overlapping.has(id) ? "overlaps" : "", tested.has(id) ? "tested" : "", id === chosen ? "chosen" : ""];
+    return rect(box, kinds.filter(Boolean).join(" "));
+  });
+  // The one that is chosen is never hidden.
+  const last = shapes.splice(chosen, 1);
+  return `<svg viewBox="0 0 ${WIDTH} ${HEIGHT}" role="img" aria-label="${label}">${work.partsOf(boxes[chosen]!).map((part) => rect(part, "looked")).join("")}${work.parts.map((part) => rect(part, "part")).join("")}${shapes.join("")}${last.join("")}</svg>`;
+}
+
+function rect({ left, top, right, bottom }: Box, kind: string): string {
+  const round = (value: number): number => Math.round(value * 10) / 10;
+  return `<rect x="${round(left)}" y="${round(top)}" width="${round(right - left)}" height="${round(bottom - top)}" class="${kind}"/>`;
+}
+
+function partners(tests: readonly Pair[], id: number): number[] {
+  return tests.flatMap(([a, b]) => (a === id ? [b] : b === id ? [a] : []));
+}

@@ -1,0 +1,182 @@
+// One world in three structures: what a sweep, a grid and a tree test until they have found all overlapping pairs.
+// The sweep is the library's own, with its trace. The grid and the tree are the plain ones of the textbooks.
+
+import { events, Runner } from "sweep-and-prune/algorithms";
+import { overlaps } from "../listings/overlaps.js";
+
+export const [WIDTH, HEIGHT] = [480, 240];
+
+export interface Box {
+  left: number;
+  top: number;
+  right: number;
+  bottom: number;
+}
+
+export type Pair = readonly [number, number];
+
+/** What a structure did. */
+export interface Work {
+  /** Pairs of boxes handed to the box test, as often as they were. */
+  readonly tests: readonly Pair[];
+  /** Pairs that overlap, each once, smaller index first. */
+  readonly pairs: readonly Pair[];
+  /** What it did beside box tests, in words. */
+  readonly beside: string;
+  /** The parts of space that it has: columns, cells or nodes. */
+  readonly parts: readonly Box[];
+  /** Where it looks for the partners of a box. */
+  partsOf(box: Box): Box[];
+}
+
+/** Sorts by left edge, and tests each box against those that begin before it ends. */
+export function sweep(boxes: readonly Box[]): Work {
+  const runner = new Runner({ dimensions: 2, method: "sorted pairwise", axis: 0, traceWords: 1 << 20 });
+  const { counts } = runner.step(boxes.flatMap(({ left, top, right, bottom }) => [left, top, right, bottom]));
+  const trace = [...events(runner.trace())];
+  runner.free();
+  const pairsOf = (kind: string): Pair[] => trace.flatMap((event) => (event.kind === kind ? [ordered(Number(event["a"]), Number(event["b"]))] : []));
+  return {
+    tests: pairsOf("test"),
+    pairs: pairsOf("overlap"),
+    beside: `${counts.comparisons} comparisons to sort`,
+    parts: [],
+    partsOf: ({ left, right }) => [{ left, right, top: 0, bottom: HEIGHT }],
+  };
+}
+
+/** The cells of a grid, each with the boxes that touch it. */
+export function grid(boxes: readonly Box[], size = 40): Work {
+  const across = Math.ceil(WIDTH / size);
+  const cells = Array.from({ length: across * Math.ceil(HEIGHT / size) }, (): number[] => []);
+  const cellAt = (x: number, y: number): number => Math.floor(y / size) * across + Math.floor(x / size);
+  const cellsOf = ({ left, top, right, bottom }: Box): number[] => {
+    const touched: number[] = [];
+    for (let row = Math.floor(top / size); row <= Math.floor(bottom / size); row++) {
+      for (let column = Math.floor(left / size); column <= Math.floor(right / size); column++) touched.push(row * across + column);
+    }
+    return touched;
+  };
+  let copies = 0;
+  for (const [id, box] of boxes.entries()) {
+    for (const cell of cellsOf(box)) {
+      cells[cell]!.push(id);
+      copies++;
+    }
+  }
+  const tests: Pair[] = [];
+  const pairs: Pair[] = [];
+  for (const [at, ids] of cells.entries()) {
+    for (const [i, a] of ids.entries()) {
+      for (const b of ids.slice(i + 1)) {
+        tests.push([a, b]);
+        const [one, other] = [boxes[a]!, boxes[b]!];
+        // Boxes that share several cells are one pair: that of the cell that holds the corner of their intersection.
+        if (overlaps(one, other) && at === cellAt(Math.max(one.left, other.left), Math.max(one.top, other.top))) pairs.push([a, b]);
+      }
+    }
+  }
+  const boxOf = (cell: number): Box => {
+    const [left, top] = [(cell % across) * size, Math.floor(cell / across) * size];
+    return { left, top, right: left + size, bottom: top + size };
+  };
+  return { tests, pairs, beside: `${copies} entries in cells`, parts: [...cells.keys()].map(boxOf), partsOf: (box) => cellsOf(box).map(boxOf) };
+}
+
+interface Node {
+  readonly box: Box;
+  readonly children: readonly Node[];
+  readonly ids: readonly number[];
+}
+
+/** A node of the tree has at most so many boxes before it is divided. */
+const LEAF = 4;
+
+/** Bounding boxes within bounding boxes: divided at the middle box, along the longer side. */
+export function tree(boxes: readonly Box[]): Work {
+  const root = node(boxes, [...boxes.keys()]);
+  let visits = 0;
+  const visit = (box: Box, { children, ids, box: bounds }: Node, leaf: (ids: readonly number[], bounds: Box) => void): void => {
+    visits++;
+    if (!overlaps(box, bounds)) return;
+    if (children.length === 0) leaf(ids, bounds);
+    for (const child of children) visit(box, child, leaf);
+  };
+  const tests: Pair[] = [];
+  const pairs: Pair[] = [];
+  for (const [id, box] of boxes.entries()) {
+    visit(box, root, (ids) => {
+      for (const other of ids) {
+        if (other <= id) continue;
+        tests.push([id, other]);
+        if (overlaps(box, boxes[other]!)) pairs.push([id, other]);
+      }
+    });
+  }
+  const beside = `${visits} tests of nodes`;
+  const found: Box[] = [];
+  const collect = ({ children, box }: Node): void => (children.length === 0 ? void found.push(box) : children.forEach(collect));
+  collect(root);
+  const partsOf = (box: Box): Box[] => {
+    const looked: Box[] = [];
+    visit(box, root, (_, bounds) => void looked.push(bounds));
+    return looked;
+  };
+  return { tests, pairs, beside, parts: found, partsOf };
+}
+
+function node(boxes: readonly Box[], ids: number[]): Node {
+  const all = ids.map((id) => boxes[id]!);
+  const box = {
+    left: Math.min(...all.map(({ left }) => left)),
+    top: Math.min(...all.map(({ top }) => top)),
+    right: Math.max(...all.map(({ right }) => right)),
+    bottom: Math.max(...all.map(({ bottom }) => bottom)),
+  };
+  if (ids.length <= LEAF) return { box, children: [], ids };
+  const isWide = box.right - box.left >= box.bottom - box.top;
+  const center = (id: number): number => (isWide ? boxes[id]!.left + boxes[id]!.right : boxes[id]!.top + boxes[id]!.bottom);
+  const sorted = ids.toSorted((a, b) => center(a) - center(b));
+  const middle = sorted.length >> 1;
+  return { box, children: [node(boxes, sorted.slice(0, middle)), node(boxes, sorted.slice(middle))], ids: [] };
+}
+
+function ordered(a: number, b: number): Pair {
+  return a < b ? [a, b] : [b, a];
+}
+
+// Worlds
+
+export const worlds = ["even", "long", "one large"] as const;
+export type WorldName = (typeof worlds)[number];
+
+/** The same boxes at each call. */
+export function world(name: WorldName): Box[] {
+  const random = generator(name.length);
+  const between = (low: number, high: number): number => low + (high - low) * random();
+  const boxes = Array.from({ length: 80 }, (): Box => {
+    const size = between(10, 22);
+    const y = name === "long" ? between(100, 140) : between(20, HEIGHT - 20);
+    return moved({ left: 0, top: 0, right: size, bottom: size }, between(20, WIDTH - 20), y);
+  });
+  if (name === "one large") boxes[0] = { left: 60, top: 30, right: 420, bottom: 90 };
+  return boxes;
+}
+
+/** A box with another center, inside the world. */
+export function moved({ left, top, right, bottom }: Box, x: number, y: number): Box {
+  const [width, height] = [right - left, bottom - top];
+  const newLeft = Math.min(Math.max(x - width / 2, 0), WIDTH - width - 0.01);
+  const newTop = Math.min(Math.max(y - height / 2, 0), HEIGHT - height - 0.01);
+  return { left: newLeft, top: newTop, right: newLeft + width, bottom: newTop + height };
+}
+
+function generator(seed: number): () => number {
+  let state = seed;
+  return () => {
+    state = (state + 0x6d2b79f5) | 0;
+    let t = Math.imul(state ^ (state >>> 15), 1 | state);
+    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
+    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
+  };
+}
