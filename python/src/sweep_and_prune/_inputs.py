@@ -35,7 +35,7 @@ def checked_format(format: object) -> str:
 
 def raw_boxes(values: Any, name: str, format: str = "xyxy") -> NDArray[Any]:
     """Boxes as an array, two-dimensional if they are in a form that is known. Other forms are left to the caller."""
-    if type(values) is np.ndarray and values.dtype.kind == "f" and values.ndim == 2 and format == "xyxy":
+    if type(values) is np.ndarray and values.dtype.kind in "iuf" and values.ndim == 2 and format == "xyxy":
         return values  # the common case, without further questions
     if hasattr(values, "closed") and hasattr(values, "left") and hasattr(values, "right"):  # IntervalIndex
         return np.column_stack((np.asarray(values.left), np.asarray(values.right)))
@@ -84,7 +84,7 @@ def as_array(values: Any, name: str) -> NDArray[Any]:
 
 def _column_names(values: Any) -> list[str] | None:
     """The names of the columns of a data frame or a table; None for anything else."""
-    if hasattr(values, "total_bounds") and hasattr(values, "bounds"):  # GeoSeries, GeoDataFrame
+    if hasattr(type(values), "total_bounds") and hasattr(type(values), "bounds"):  # GeoSeries, GeoDataFrame
         return ["minx", "miny", "maxx", "maxy"]
     if isinstance(values, (np.ndarray, list, tuple, dict)):
         return None
@@ -144,7 +144,7 @@ def unknown_columns(columns: list[str], otherwise: str, option: str = 'format="{
 
 
 def _from_columns(values: Any, columns: list[str], name: str, format: str) -> NDArray[Any]:
-    if hasattr(values, "total_bounds"):
+    if hasattr(type(values), "total_bounds"):  # asked of the class: the frame would compute them
         values = values.bounds
     names = box_columns(columns, format)
     if len(names) > 1:

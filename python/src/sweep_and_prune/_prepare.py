@@ -3,6 +3,7 @@ integers beyond 2^53 become plain boxes in floating point that have exactly the 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from datetime import timedelta
 from typing import Any, NamedTuple, Optional
 
@@ -66,23 +67,25 @@ def prepare(
     kept: list[Rows] = [None for _ in arrays]
     if missing == "skip":
         arrays, kept = _leave_out([_is_missing(array) for array in arrays], arrays, kept)
+    are_whole = all(array.dtype.kind in "iu" for array in arrays) and not has_margin
     arrays = _comparable(arrays, names)
-    is_float, half = arrays[0].dtype.kind == "f", arrays[0].shape[1] // 2
+    is_float = arrays[0].dtype.kind == "f"
     is_all = all(rows is None for rows in kept)
-    if not (is_float and is_closed and is_all and not has_margin):
+    # Most often, all intervals have a length: then none is inverted or empty.
+    have_length = not is_closed and all(bool((low < high).all()) for array in arrays for low, high in _sides(array))
+    if not (have_length or (is_float and is_closed and is_all and not has_margin)):
         # The compiled part would not see these boxes, or not by these indices.
         for array, name, own in zip(arrays, names, kept):
             refuse_inverted(array, name, own)
-    if not is_closed:
+    if not (is_closed or have_length):
         # An interval without its ends that begins where it ends is empty, and overlaps nothing.
-        empty = [np.asarray((array[:, :half] == array[:, half:]).any(axis=1), bool) for array in arrays]
-        arrays, kept = _leave_out(empty, arrays, kept)
+        arrays, kept = _leave_out([_is_empty(array) for array in arrays], arrays, kept)
     if has_margin:
         # Two boxes are within a margin if neither begins more than the margin after the other's end.
         arrays = [_extended(array, margin) for array in arrays]
     rows = arrays if is_float else _ranks(arrays)
     if not is_closed:
-        rows = [_without_ends(array) for array in rows]
+        rows = [_without_ends(array, are_whole and is_float) for array in rows]
     groups = None if by is None else _groups(by, sets, kept)
     if groups is not None and rows[0].shape[1] < 6:
         dtype = np.result_type(*rows)
@@ -106,10 +109,15 @@ def _most(array: NDArray[Any]) -> int:
 def _is_missing(array: NDArray[Any]) -> NDArray[np.bool_]:
     """The boxes of which a coordinate is missing."""
     if array.dtype.kind == "f":
-        return np.asarray(np.isnan(array).any(axis=1))
-    if array.dtype.kind in "mM":
-        return np.asarray(np.isnat(array).any(axis=1))
-    return np.zeros(len(array), bool)
+        find: Any = np.isnan
+    elif array.dtype.kind in "mM":
+        find = np.isnat
+    else:
+        return np.zeros(len(array), bool)
+    missing = np.zeros(len(array), bool)
+    for column in array.T:
+        missing |= find(column)
+    return missing
 
 
 def _leave_out(masks: list[NDArray[np.bool_]], arrays: list[Any], kept: list[Rows]) -> tuple[list[Any], list[Rows]]:
@@ -194,22 +202,44 @@ def _is_rounded(array: NDArray[Any]) -> bool:
     return array.dtype.itemsize == 8 and array.size > 0 and bool(array.max() > most or array.min() < -most)
 
 
+def _sides(array: NDArray[Any]) -> Iterator[tuple[NDArray[Any], NDArray[Any]]]:
+    """The min and the max coordinates of each axis. (For rows of one or two numbers, NumPy takes much more time.)"""
+    half = array.shape[1] // 2
+    return ((array[:, axis], array[:, axis + half]) for axis in range(half))
+
+
+def _is_empty(array: NDArray[Any]) -> NDArray[np.bool_]:
+    """The boxes that end where they begin, on some axis."""
+    empty = np.zeros(len(array), bool)
+    for low, high in _sides(array):
+        empty |= low == high
+    return empty
+
+
 def refuse_inverted(array: NDArray[Any], name: str, kept: Rows) -> None:
+    if all(bool((low <= high).all()) for low, high in _sides(array)):
+        return
     half = array.shape[1] // 2
     invalid = ~np.asarray(array[:, :half] <= array[:, half:], bool)
-    if invalid.any():
-        index = int(np.argmax(invalid.any(axis=1)))
-        axis = int(np.argmax(invalid[index]))
-        low, high = array[index, axis], array[index, axis + half]
-        raise InvalidBoxError(index if kept is None else int(kept[index]), axis, name, low, high)
+    index = int(np.argmax(invalid.any(axis=1)))
+    axis = int(np.argmax(invalid[index]))
+    low, high = array[index, axis], array[index, axis + half]
+    raise InvalidBoxError(index if kept is None else int(kept[index]), axis, name, low, high)
 
 
-def _without_ends(boxes: Floats) -> Floats:
-    """Boxes whose max corners are the next smaller numbers: boxes that touched do not overlap then."""
-    half = boxes.shape[1] // 2
+def _without_ends(boxes: Floats, are_whole: bool) -> Floats:
+    """Boxes whose max corners are the next smaller numbers: boxes that touched do not overlap then.
+
+    Among whole numbers these are the next smaller whole ones, which takes a fifth of the time.
+    """
+    if are_whole:  # they were integers, so this is a copy
+        for _, high in _sides(boxes):
+            high -= 1
+        return boxes
+    shrunk = boxes.copy()
     with np.errstate(all="ignore"):
-        before = np.nextafter(boxes[:, half:], boxes.dtype.type(-np.inf))
-    shrunk: Floats = np.hstack([boxes[:, :half], before])
+        for _, high in _sides(shrunk):
+            np.nextafter(high, boxes.dtype.type(-np.inf), out=high)
     return shrunk
 
 
