@@ -9,6 +9,7 @@ import pytest
 from oracle import random_boxes
 
 import sweep_and_prune as sap
+from sweep_and_prune import _join
 
 pandas = pytest.importorskip("pandas")
 
@@ -223,6 +224,34 @@ def test_distances_are_rounded_as_by_shapely() -> None:
     is_within = shapely.dwithin(left.geometry.array, right.geometry.array, distance)
     assert sap.join(left, right, "inner", "dwithin", distance=distance, by="id").id.tolist() == ids[is_within].tolist()
     assert is_within.sum() > 900
+    for distance, number in ((0, 1000), (1e-200, 1000), (1e200, 10**6)):
+        assert len(sap.join(left, left, "inner", "dwithin", distance=distance)) == number, distance
+
+
+def test_blocks_and_threads_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    left, right = shapes(150, 1), shapes(120, 2)
+    twice = left.take([*range(150), *range(150)])  # the same geometries again
+    every: list[dict[str, Any]] = [{"predicate": name} for name in ("intersects", "covers", "within")]
+    for options in [*every, {"predicate": "dwithin", "distance": 0.5}]:
+        wanted = [sap.join(frame, right, **options) for frame in (left, twice)]
+        for block in (1, 7):
+            with monkeypatch.context() as patch:
+                patch.setattr(_join, "_BLOCK", block)
+                for frame, of_frame in zip((left, twice), wanted):
+                    for threads in (1, 3):
+                        pandas.testing.assert_frame_equal(sap.join(frame, right, threads=threads, **options), of_frame)
+
+
+def test_disks_intersect_where_no_vertex_is_within_the_other() -> None:
+    geopandas, shapely = pytest.importorskip("geopandas"), pytest.importorskip("shapely")
+    random = np.random.default_rng(3)
+    disks = shapely.buffer(shapely.points(random.random((400, 2)) * 20), random.random(400) + 0.1, quad_segs=8)
+    bars = shapely.box(*np.sort(random.random((2, 60, 2)) * [20, 0.2], axis=0).transpose(1, 0, 2).reshape(60, 4).T)
+    bars = shapely.segmentize(shapely.transform(bars, lambda at: at + [[0, 9]]), 2.0)
+    rings = shapely.difference(disks[:50], shapely.buffer(shapely.centroid(disks[:50]), 0.3))
+    made = np.concatenate([disks, bars, rings, shapely.boundary(disks[:50])])
+    frame = geopandas.GeoDataFrame({"id": np.arange(len(made))}, geometry=made)
+    assert check_same(frame, frame) > 3000
 
 
 def test_rows_are_sorted() -> None:

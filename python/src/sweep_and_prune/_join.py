@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._arrays import thread_count
 from ._pairs import Progress, find_pairs_between
 
 _FLIPPED = {"contains": "within", "covers": "covered_by", "within": "contains", "covered_by": "covers"}
@@ -18,6 +22,15 @@ _OF_POINTS = {"intersects": "intersects_xy", "contains": "contains_xy"}
 
 _FEW_POINTS = 5
 """A geometry with so few points gains nothing by being prepared."""
+
+_VERTICES = 8
+"""Of a geometry, so many vertices are candidates to be looked up in a polygon."""
+
+_ROUNDING = 1e-9
+"""Squares of distances that differ by less than this share are compared by shapely, which rounds in its own way."""
+
+_BLOCK = 20_000
+"""So many candidates are tested at once: few enough for the cache, and enough for each thread."""
 
 Indices = NDArray[np.int64]
 
@@ -65,7 +78,7 @@ def join(
         rsuffix: the same for right columns, and for the column that has the index of the right frame.
         format: of boxes without geometries: `"xyxy"`, `"xywh"` or `"cxcywh"`.
         closed: of boxes without geometries: `"both"`, `"left"`, `"right"` or `"neither"`.
-        threads: how many `find_pairs_between` uses at most; -1 for one on each processor.
+        threads: how many to use at most, for the search and for the tests of shapely; -1 for one on each processor.
         progress: called with the share of the search for candidates that is done, from 0 to 1.
 
     Returns:
@@ -88,7 +101,7 @@ def join(
     1    b            1            9         60
     """
     is_polars = all(_is_polars(frame) for frame in (left, right))
-    has_geometries = [hasattr(frame, "total_bounds") and hasattr(frame, "geometry") for frame in (left, right)]
+    has_geometries = [_has_geometries(frame) for frame in (left, right)]
     is_pandas = all(hasattr(frame, "iloc") and getattr(frame, "ndim", 0) == 2 for frame in (left, right))
     if not (is_polars or is_pandas) or has_geometries[0] != has_geometries[1]:
         kinds = " and ".join(type(frame).__name__ for frame in (left, right))
@@ -136,6 +149,11 @@ def _is_polars(frame: Any) -> bool:
     return type(frame).__module__.split(".")[0] == "polars" and hasattr(frame, "height")
 
 
+def _has_geometries(frame: Any) -> bool:
+    """Whether it is a `GeoDataFrame`. (Its class is asked, since the frame would compute its bounds.)"""
+    return hasattr(type(frame), "total_bounds") and hasattr(type(frame), "geometry")
+
+
 def _check_distance(predicate: str, distance: ArrayLike | None) -> None:
     if (predicate == "dwithin") != (distance is not None):
         raise ValueError('distance must be passed with predicate="dwithin", and only with it')
@@ -171,10 +189,8 @@ def _of_geometries(
     threads: int | None,
     progress: Progress | None,
 ) -> tuple[Indices, Indices]:
-    import shapely
-
-    geometries = [np.asarray(frame.geometry.array, object) for frame in (left, right)]
-    bounds = [np.asarray(shapely.bounds(array), np.float64).reshape(-1, 4) for array in geometries]
+    sides = [_side(np.asarray(frame.geometry.array, object)) for frame in (left, right)]
+    bounds = [side.bounds for side in sides]
     distances = None
     if distance is not None:
         try:
@@ -186,26 +202,48 @@ def _of_geometries(
     first, second = pairs[:, 0], pairs[:, 1]
     if len(pairs) == 0:
         return first, second
-    sizes = [shapely.get_num_coordinates(array) for array in geometries]
     certain = first[:0], second[:0]
     if predicate == "intersects":
         # Two that fill their bounds intersect if their bounds do: no test is needed.
-        full = [_fill_their_bounds(*of_set) for of_set in zip(geometries, sizes)]
+        full = [_fill_their_bounds(side) for side in sides]
         is_certain = full[0][first] & full[1][second]
         certain = first[is_certain], second[is_certain]
         first, second = first[~is_certain], second[~is_certain]
-    kept = _tested(geometries, sizes, predicate, distances, (first, second)) if len(first) else (first, second)
-    return np.concatenate([certain[0], kept[0]]), np.concatenate([certain[1], kept[1]])
+    if len(first):
+        first, second = _tested(sides, predicate, distances, (first, second), threads)
+    return np.concatenate([certain[0], first]), np.concatenate([certain[1], second])
 
 
-def _fill_their_bounds(geometries: NDArray[Any], sizes: NDArray[Any]) -> NDArray[np.bool_]:
+class _Side(NamedTuple):
+    """The geometries of one frame."""
+
+    shapes: NDArray[Any]
+    bounds: NDArray[np.float64]
+    sizes: NDArray[Any]
+    """The number of vertices of each."""
+    are_points: bool
+    """Whether all of them are points."""
+
+
+def _side(shapes: NDArray[Any]) -> _Side:
+    import shapely
+
+    bounds = np.asarray(shapely.bounds(shapes), np.float64).reshape(-1, 4)
+    are_points = bool((shapely.get_type_id(shapes) == shapely.GeometryType.POINT).all())
+    sizes = np.ones(len(shapes), np.intp) if are_points else shapely.get_num_coordinates(shapes)
+    return _Side(shapes, bounds, sizes, are_points)
+
+
+def _fill_their_bounds(side: _Side) -> NDArray[np.bool_]:
     """Whether geometries are points, or rectangles along the axes."""
     import shapely
 
-    types = shapely.get_type_id(geometries)
+    if side.are_points:
+        return np.ones(len(side.shapes), bool)
+    types = shapely.get_type_id(side.shapes)
     full = np.asarray(types == shapely.GeometryType.POINT)
-    rows = np.flatnonzero((types == shapely.GeometryType.POLYGON) & (sizes == 5))
-    coordinates = shapely.get_coordinates(geometries[rows] if len(rows) < len(full) else geometries)
+    rows = np.flatnonzero((types == shapely.GeometryType.POLYGON) & (side.sizes == 5))
+    coordinates = shapely.get_coordinates(side.shapes[rows] if len(rows) < len(full) else side.shapes)
     x0, y0, x1, y1, x2, y2, x3, y3, _, _ = np.ascontiguousarray(coordinates.reshape(-1, 10).T)
     begins_upright = (x0 == x1) & (x2 == x3) & (y1 == y2) & (y3 == y0)
     begins_flat = (y0 == y1) & (y2 == y3) & (x1 == x2) & (x3 == x0)
@@ -214,40 +252,112 @@ def _fill_their_bounds(geometries: NDArray[Any], sizes: NDArray[Any]) -> NDArray
 
 
 def _tested(
-    geometries: list[NDArray[Any]],
-    sizes: list[NDArray[Any]],
+    sides: list[_Side],
     predicate: str,
     distances: NDArray[np.float64] | None,
     candidates: tuple[Indices, Indices],
+    threads: int | None,
 ) -> tuple[Indices, Indices]:
     """The candidates that fulfill a predicate."""
     import shapely
 
     # A prepared geometry is tested faster. Those that have more points are prepared, if they may come first.
     is_flipped = (predicate in _FLIPPED or predicate in _SYMMETRIC) and bool(
-        sizes[1][candidates[1]].mean() > sizes[0][candidates[0]].mean()
+        sides[1].sizes[candidates[1]].mean() > sides[0].sizes[candidates[0]].mean()
     )
     name = _FLIPPED.get(predicate, predicate) if is_flipped else predicate
-    a, b = reversed(geometries) if is_flipped else geometries
+    side_a, side_b = reversed(sides) if is_flipped else sides
+    a, b = side_a.shapes, side_b.shapes
     # All tests of a geometry follow each other, while it is in the cache.
     of_a, of_b = _in_order((candidates[is_flipped], candidates[not is_flipped]))
     is_used = np.zeros(len(a), bool)
     is_used[of_a] = True
-    used = np.flatnonzero(is_used & (sizes[is_flipped] > _FEW_POINTS))
+    used = np.flatnonzero(is_used & (side_a.sizes > _FEW_POINTS))
     used = used[~shapely.is_prepared(a[used])]
+    if distances is not None:
+        limits = distances[of_b if is_flipped else of_a]
+        both_are_points = side_a.are_points and side_b.are_points
+
+        def test(rows: slice) -> NDArray[np.bool_]:
+            first, second, limit = of_a[rows], of_b[rows], limits[rows]
+            kept, rest = _near(side_a, side_b, first, second, limit) if both_are_points else _none_of(first)
+            kept[rest] = shapely.dwithin(a[first[rest]], b[second[rest]], limit[rest])
+            return kept
+
+    elif name in _OF_POINTS and side_b.are_points:
+        x, y = side_b.bounds[:, 0], side_b.bounds[:, 1]
+
+        def test(rows: slice) -> NDArray[np.bool_]:
+            return np.asarray(getattr(shapely, _OF_POINTS[name])(a[of_a[rows]], x[of_b[rows]], y[of_b[rows]]))
+
+    elif name == "intersects" and (shapely.get_dimensions(a[used]) == 2).any():
+        vertices = _some_vertices(side_b)
+        centers = side_a.bounds.reshape(-1, 2, 2).mean(axis=1)
+
+        def test(rows: slice) -> NDArray[np.bool_]:
+            # Most that intersect have a vertex within the other one, which takes much less time to find out.
+            first, second = of_a[rows], of_b[rows]
+            near = ((vertices[second] - centers[first][:, None]) ** 2).sum(axis=2).argmin(axis=1)
+            kept = np.asarray(shapely.intersects_xy(a[first], *vertices[second, near].T))
+            rest = np.flatnonzero(~kept)
+            kept[rest] = shapely.intersects(a[first[rest]], b[second[rest]])
+            return kept
+
+    else:
+
+        def test(rows: slice) -> NDArray[np.bool_]:
+            return np.asarray(getattr(shapely, name)(a[of_a[rows]], b[of_b[rows]]))
+
     shapely.prepare(a[used])
     try:
-        if distances is not None:
-            kept = shapely.dwithin(a[of_a], b[of_b], distances[of_b if is_flipped else of_a])
-        elif name in _OF_POINTS and (shapely.get_type_id(b) == shapely.GeometryType.POINT).all():
-            x, y = shapely.get_x(b), shapely.get_y(b)
-            kept = getattr(shapely, _OF_POINTS[name])(a[of_a], x[of_b], y[of_b])
-        else:
-            kept = getattr(shapely, name)(a[of_a], b[of_b])
+        kept = _on_threads(test, a[used], of_a, threads)
     finally:
         shapely.destroy_prepared(a[used])
     found = of_a[kept], of_b[kept]
     return (found[1], found[0]) if is_flipped else found
+
+
+def _near(
+    a: _Side, b: _Side, first: Indices, second: Indices, limits: NDArray[np.float64]
+) -> tuple[NDArray[np.bool_], Indices]:
+    """Which points are certainly within a distance, and the rows of those for which rounding may decide."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        squares = ((a.bounds[first, :2] - b.bounds[second, :2]) ** 2) @ np.ones(2)
+        within = limits**2
+        kept = (squares < within * (1 - _ROUNDING)) & (limits > 0)
+        return kept, np.flatnonzero(~kept & ~(squares > within * (1 + _ROUNDING)))
+
+
+def _none_of(first: Indices) -> tuple[NDArray[np.bool_], Indices]:
+    """As `_near`, if nothing is certain."""
+    return np.zeros(len(first), bool), np.arange(len(first))
+
+
+def _some_vertices(side: _Side) -> NDArray[np.float64]:
+    """Some vertices of each geometry, `(n, k, 2)`; NaN for one that has none."""
+    import shapely
+
+    coordinates = np.vstack([shapely.get_coordinates(side.shapes), [[np.nan, np.nan]]])
+    sizes = side.sizes[:, None]
+    rows = np.cumsum(sizes)[:, None] - sizes + sizes * np.arange(_VERTICES) // _VERTICES
+    rows[side.sizes == 0] = -1
+    return np.asarray(coordinates[rows])
+
+
+def _on_threads(
+    test: Callable[[slice], NDArray[np.bool_]], prepared: NDArray[Any], of_a: Indices, threads: int | None
+) -> NDArray[np.bool_]:
+    """The results of a test of all candidates, block by block. Shapely releases the GIL, so that threads pay."""
+    # A block has all tests of its geometries: one that is prepared builds an index at its first test, and two threads
+    # must not do that at once.
+    ends = np.flatnonzero(np.diff(of_a, append=-1)) + 1
+    blocks = np.unique(ends[np.searchsorted(ends, np.append(np.arange(_BLOCK, len(of_a), _BLOCK), len(of_a)))])
+    rows = [slice(start, end) for start, end in zip([0, *blocks[:-1].tolist()], blocks.tolist())]
+    number = min(thread_count(threads), os.cpu_count() or 1, len(rows))
+    if number == 1 or len(set(map(id, prepared))) < len(prepared):
+        return np.concatenate([test(block) for block in rows])
+    with ThreadPoolExecutor(number) as pool:
+        return np.concatenate(list(pool.map(test, rows)))
 
 
 def _extended(bounds: NDArray[np.float64], distances: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -276,7 +386,7 @@ def _frame(
     if how != "inner":
         rows = _with_missing(rows, kept, len((left, right)[kept]))
     frames = [left, right.drop(columns=columns) if columns else right]
-    geometry = frames[kept].geometry.name if hasattr(frames[kept], "total_bounds") else None
+    geometry = frames[kept].geometry.name if _has_geometries(frames[kept]) else None
     if geometry is not None:
         frames[other] = pandas.DataFrame(frames[other]).drop(columns=frames[other].geometry.name)
     # The index of the other frame becomes columns. That of this one has names, too, which must differ from columns.
