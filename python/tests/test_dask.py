@@ -8,8 +8,10 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -509,11 +511,12 @@ def large(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, str]]
 def children_of(process: int) -> list[int]:
     """The workers of a process, which it started as processes of Python."""
     psutil = pytest.importorskip("psutil")
-    return [
-        child.pid
-        for child in psutil.Process(process).children(recursive=True)
-        if "spawn_main" in " ".join(child.cmdline())
-    ]
+    found = []
+    for child in psutil.Process(process).children(recursive=True):
+        with suppress(psutil.Error):  # it has just ended
+            if "spawn_main" in " ".join(child.cmdline()):
+                found.append(child.pid)
+    return found
 
 
 def started(path: str) -> Any:
@@ -541,6 +544,29 @@ def test_workers_that_are_killed_change_nothing(large: tuple[str, str]) -> None:
     out, err = program.communicate(timeout=300)
     assert (program.returncode, out.strip()) == (0, wanted), err
     assert kills > 1
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="processes are found in the way of Linux")
+def test_workers_that_die_while_they_start_are_replaced() -> None:
+    with workers.started("2GB", 1) as of_this_machine:
+        killed: set[int] = set()
+        while len(killed) < 3:  # as soon as they are there
+            for child in set(children_of(os.getpid())) - killed:
+                os.kill(child, signal.SIGKILL)
+                killed.add(child)
+        found: list[int] = []
+        of_this_machine.run(abs, [(-3,), (4,)], found.append)
+        assert sorted(found) == [3, 4]
+
+
+def test_a_client_that_is_closed_is_an_error() -> None:
+    from distributed import Client, LocalCluster
+
+    options: dict[str, Any] = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
+    with LocalCluster(**options) as cluster, Client(cluster, set_as_default=False) as client:
+        threading.Timer(0.5, client.close).start()
+        with pytest.raises(sap.DatasetError, match="the workers of Dask were closed"):
+            workers.Workers(client, 1, 0).run(time.sleep, [(2,)] * 3, print)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="processes are found in the way of Linux")

@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from threading import Event, Thread
 from typing import Any, NamedTuple
 
 from .._errors import SweepAndPruneError
@@ -18,6 +19,10 @@ _WORKER_MEMORY = 190_000_000
 _TASK_MEMORY = 120_000_000
 """What a task takes besides its boxes: pairs that are written, and buffers."""
 _MOST_DEATHS = 10
+_LOST = (
+    "the workers of Dask were closed, or died again and again while they started, maybe for want of memory: pass a "
+    "larger memory_limit or fewer workers, and call again: the run continues where it stopped"
+)
 
 
 class Workers(NamedTuple):
@@ -55,10 +60,10 @@ class Workers(NamedTuple):
             waiting = as_completed(list(futures), loop=self.client.loop, raise_errors=False)
             for future in waiting:
                 number = futures.pop(future)
-                if future.cancelled() or (failed is not None and number > failed[0]):
+                if failed is not None and number > failed[0]:
                     continue
                 try:
-                    result = future.result()
+                    result = future.result() if not future.cancelled() else DatasetError(_LOST)
                 except KilledWorker:
                     result = DatasetError(
                         f"a task ({task.__name__}) failed {_MOST_DEATHS} times because its worker died, maybe for want "
@@ -67,14 +72,17 @@ class Workers(NamedTuple):
                     )
                 if isinstance(result, SweepAndPruneError):
                     failed = number, result
-                    self.client.cancel([other for other, of_other in futures.items() if of_other > number])
+                    self._cancel([other for other, of_other in futures.items() if of_other > number])
                 elif failed is None:
                     done(result)
             if failed is not None:
                 raise failed[1]
         finally:
-            if futures:
-                self.client.cancel(list(futures), force=True)
+            self._cancel(list(futures), force=True)
+
+    def _cancel(self, futures: list[Any], **options: bool) -> None:
+        if futures and self.client.status == "running":
+            self.client.cancel(futures, **options)
 
     def _submitted(self, task: Any, arguments: tuple[Any, ...], number: int) -> Any:
         if any(map(_is_delayed, arguments)):
@@ -169,8 +177,42 @@ def started(limit: int | str | float | None, number: int | None) -> Iterator[Wor
                 silence_logs=50,
             ) as cluster,
             Client(cluster, set_as_default=False) as client,
+            _kept_alive(cluster, client, number),
         ):
             yield Workers(client, number, per_worker)
+
+
+@contextmanager
+def _kept_alive(cluster: Any, client: Any, number: int) -> Iterator[None]:
+    """Starts new workers for those that died while they started, which Dask does not, so that a run would never end."""
+    from distributed import Status
+
+    is_ended = Event()
+    deaths = 0
+
+    def replace() -> None:  # on the thread that has the workers
+        nonlocal deaths
+        for name, nanny in list(cluster.workers.items()):
+            if nanny.status in (Status.closed, Status.failed):
+                del cluster.workers[name]
+                deaths += 1
+        if len(cluster.workers) < number:
+            cluster.scale(number)
+
+    def watch() -> None:
+        while not is_ended.wait(1):
+            cluster.loop.add_callback(replace)
+            if deaths > _MOST_DEATHS * number:
+                client.close()  # so the tasks are lost, and the run ends
+                return
+
+    watcher = Thread(target=watch, daemon=True)
+    watcher.start()
+    try:
+        yield
+    finally:
+        is_ended.set()
+        watcher.join()
 
 
 def _of_client(client: Any, limit: int | str | float | None) -> Workers:
