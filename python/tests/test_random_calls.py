@@ -3,7 +3,11 @@ others. Boxes have few distinct coordinates, all exact in both precisions, so th
 
 from __future__ import annotations
 
+import io
 import os
+from contextlib import redirect_stdout
+from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,10 +15,16 @@ import pytest
 from oracle import Array, in_order
 
 import sweep_and_prune as sap
+from sweep_and_prune._command import main
 
 CALLS = int(os.environ.get("CALLS", 100_000 if "TEST_LONG" in os.environ else 1000))
 SEED = int(os.environ.get("SEED", 1))
 PARTS = 8
+COLUMNS = {
+    1: ["start", "end"],
+    2: ["minx", "miny", "maxx", "maxy"],
+    3: [f"{axis}{end}" for end in "12" for axis in "xyz"],
+}
 Random = np.random.Generator
 
 
@@ -129,6 +139,191 @@ def search(random: Random) -> None:
     assert np.array_equal(in_order(found.astype(np.int64)), pairs), (options, way)
 
 
+def hits(boxes: Array, start: Array, way: Array, limit: float) -> tuple[Array, Array]:
+    """The rows that a moving box hits, by time and then by row, and the times. Exact for ways of powers of two."""
+    half = len(way)
+    low, high = boxes[:, :half] - start[half:], boxes[:, half:] - start[:half]
+    enter, leave = np.zeros(len(boxes)), np.full(len(boxes), float(limit))
+    for axis in range(half):
+        if way[axis] == 0:
+            leave[(low[:, axis] > 0) | (high[:, axis] < 0)] = -1
+        else:
+            first, last = np.sort(np.stack([low[:, axis], high[:, axis]]) / way[axis], axis=0)
+            enter, leave = np.maximum(enter, first), np.minimum(leave, last)
+    rows = np.flatnonzero(enter <= leave)
+    rows = rows[np.lexsort((rows, enter[rows]))]
+    return rows, enter[rows]
+
+
+def squares(boxes: Array, point: Array) -> Array:
+    """The squared distances of boxes from a point."""
+    half = len(point)
+    gaps = np.maximum(np.maximum(boxes[:, :half] - point, point - boxes[:, half:]), 0).astype(float)
+    return np.asarray((gaps**2).sum(axis=1))
+
+
+def index(random: Random) -> None:
+    """Calls of a static index."""
+    dimensions = int(random.integers(1, 4))
+    boxes = some_boxes(random, dimensions, one_of(random, [np.float32, np.float64]))
+    made = sap.Index(boxes)
+    if random.random() < 0.3:
+        made = sap.Index.from_buffer(made.data)
+    areas = some_boxes(random, dimensions, np.float64)
+    wanted = near(areas, boxes, "both", 0)
+    found = made.search_many(areas, threads=int(random.integers(1, 3)))
+    assert np.array_equal(in_order(found.T), np.argwhere(wanted))
+    if len(areas):
+        limit = one_of(random, [None, 0, 1, 5])
+        one = made.search(areas[0], limit=limit).tolist()
+        number = int(wanted[0].sum())
+        assert wanted[0][one].all() and len(set(one)) == len(one) == min(number if limit is None else limit, number)
+    point, way = random.integers(-4, 20, dimensions) / 2, random.choice([-2.0, -1.0, 0.0, 1.0, 2.0], dimensions)
+    distances = squares(boxes, point)
+    order = np.lexsort((np.arange(len(boxes)), distances))[: int(random.integers(0, 9))]
+    nearest = made.neighbors(point, len(order))
+    assert nearest.ids.tolist() == order.tolist()
+    assert np.array_equal(nearest.distances, np.sqrt(distances[order]))
+    start, limit = np.hstack([point, point]), float(random.choice([0, 0.5, 3, np.inf]))
+    rows, times = hits(boxes, start, way, limit)
+    met = made.ray_cast_all(point, way, limit=limit)
+    assert (met.ids.tolist(), met.t.tolist()) == (rows.tolist(), times.tolist())
+    first = made.ray_cast(point, way, limit=limit)
+    assert first == ((rows[0], times[0]) if len(rows) else None)
+    rows, times = hits(boxes, start, way, 1)
+    met = made.segment(point, point + way)
+    assert (met.ids.tolist(), met.t.tolist()) == (rows.tolist(), times.tolist())
+
+
+def two_sets(random: Random, dimensions: int) -> list[Array]:
+    return [some_boxes(random, dimensions, one_of(random, [np.float32, np.float64])) for _ in "ab"]
+
+
+def join(random: Random) -> None:
+    """A join of two data frames with boxes."""
+    if find_spec("pandas") is None:
+        return search(random)
+    import pandas
+
+    dimensions = int(random.integers(1, 4))
+    sets = two_sets(random, dimensions)
+    frames = []
+    for boxes in sets:
+        if len(boxes) and random.random() < 0.2:
+            boxes[random.integers(len(boxes)), random.integers(dimensions)] = np.nan
+        frame = pandas.DataFrame(boxes, columns=COLUMNS[dimensions])
+        frame["kind"] = random.integers(0, 3, len(frame))
+        frame.index = pandas.Index(random.permutation(len(frame)) + 100)
+        frames.append(frame)
+    options: dict[str, Any] = {"how": one_of(random, ["inner", "left", "right"])}
+    closed, margin = "both", 0.0
+    if random.random() < 0.5:
+        options["closed"] = closed = one_of(random, ["both", "left", "right", "neither"])
+    if random.random() < 0.3:
+        options["distance"] = margin = float(random.choice([0.5, 1.0]))
+    wanted = near(sets[0], sets[1], closed, margin)
+    if random.random() < 0.5:
+        options["by"] = "kind"
+        wanted &= frames[0]["kind"].to_numpy()[:, None] == frames[1]["kind"].to_numpy()[None]
+    joined = sap.join(*frames, **options)
+    labels = [frame.index.to_numpy() for frame in frames]
+    kept, other = (1, 0) if options["how"] == "right" else (0, 1)
+    rows = [(a, b) for a, b in np.argwhere(wanted.T if kept else wanted).tolist()]
+    if options["how"] != "inner":
+        rows += [(row, -1) for row in np.flatnonzero(~wanted.any(axis=1 - kept)).tolist()]
+    rows.sort()
+    assert joined.index.tolist() == [labels[kept][row] for row, _ in rows], options
+    found = joined[f"index_{('left', 'right')[other]}"]
+    assert found.fillna(-1).tolist() == [labels[other][row] if row >= 0 else -1 for _, row in rows], options
+
+
+def join_of_geometries(random: Random) -> None:
+    """A join of points, boxes, lines, triangles and disks, which shapely tests."""
+    if find_spec("geopandas") is None:
+        return search(random)
+    import geopandas
+    import shapely
+
+    frames = []
+    for boxes in two_sets(random, 2):
+        boxes = boxes[np.isfinite(boxes).all(axis=1)].astype(float)
+        low, high = boxes[:, :2], boxes[:, 2:]
+        is_thin = (low == high).any(axis=1)
+        made = np.where(is_thin, shapely.points(low), shapely.box(*boxes.T))
+        kinds = random.integers(0, 4, len(boxes))
+        lines = shapely.linestrings(np.stack([low, high + 1], axis=1))
+        third = np.stack([high[:, 0] + 1, low[:, 1]], axis=1)
+        triangles = shapely.polygons(np.stack([low, high + 1, third], axis=1))
+        disks = shapely.buffer(shapely.points(low), 1.25, quad_segs=int(random.integers(1, 9)))
+        for kind, of_kind in ((1, lines), (2, triangles), (3, disks)):
+            made = np.where(kinds == kind, of_kind, made)
+        if len(made):
+            made[random.integers(len(made))] = one_of(random, [None, shapely.Point(), made[0]])
+        frames.append(geopandas.GeoDataFrame({"n": np.arange(len(made))}, geometry=made))
+    names = ["intersects", "contains", "within", "covers", "covered_by", "contains_properly", "crosses", "overlaps"]
+    predicate = one_of(random, [*names, "touches"])
+    left, right = (frame.geometry.array for frame in frames)
+    a, b = np.indices((len(left), len(right))).reshape(2, -1)
+    is_found = np.asarray(getattr(shapely, predicate)(np.asarray(left)[a], np.asarray(right)[b]), bool)
+    joined = sap.join(frames[0], frames[1], predicate=predicate, threads=int(random.integers(1, 4)))
+    found = [joined.index.tolist(), joined["index_right"].tolist()]
+    assert found == [a[is_found].tolist(), b[is_found].tolist()], predicate
+
+
+def command(random: Random, folder: Path) -> None:
+    """A call of the command line."""
+    dimensions = int(random.integers(1, 4))
+    sets = two_sets(random, dimensions)[: int(random.integers(1, 3))]
+    files = [str(folder / f"{number}.npy") for number in range(len(sets))]
+    for file, boxes in zip(files, sets):
+        np.save(file, boxes)
+    closed, margin = str(random.choice(["both", "left", "right", "neither"])), float(random.choice([0.0, 0.5]))
+    wanted = near(sets[0], sets[-1], closed, margin)
+    pairs = np.argwhere(np.triu(wanted, 1) if len(sets) == 1 else wanted)
+    options = ["--closed", closed, "--margin", str(margin), "--quiet"]
+    out = str(folder / "out.npy")
+    assert main(["pairs" if len(sets) == 1 else "join", *files, "-o", out, *options]) == 0
+    assert np.array_equal(in_order(np.load(out)), pairs)
+    with redirect_stdout(io.StringIO()) as said:
+        assert main(["count", *files, *options]) == 0
+    assert said.getvalue() == f"{len(pairs)}\n"
+
+
+def dask(random: Random, folder: Path) -> None:
+    """Pairs of more boxes than fit in memory, as it were."""
+    if find_spec("distributed") is None:
+        return search(random)
+    import dask.array
+    import pyarrow
+    import pyarrow.parquet
+
+    import sweep_and_prune.dask as large
+
+    dimensions = int(random.integers(1, 4))
+    sets = two_sets(random, dimensions)[: int(random.integers(1, 3))]
+    options: dict[str, Any] = {"cells": int(random.integers(1, 9))}
+    closed, margin = "both", 0.0
+    if random.random() < 0.5:
+        options["closed"] = closed = str(random.choice(["both", "left", "right", "neither"]))
+    if random.random() < 0.3:
+        options["margin"] = margin = 0.5
+    if random.random() < 0.5:
+        options |= {"out": folder / "out", "workers": 0, "overwrite": True}
+    given: list[Any] = []
+    for number, boxes in enumerate(sets):
+        if random.random() < 0.5:
+            given.append(dask.array.from_array(boxes, chunks=(int(random.integers(1, 30)), 2 * dimensions)))
+        else:
+            given.append(str(folder / f"{number}.parquet"))
+            table = pyarrow.table(dict(zip(COLUMNS[dimensions], boxes.T)))
+            pyarrow.parquet.write_table(table, given[-1], row_group_size=int(random.integers(1, 30)))
+    wanted = near(sets[0], sets[-1], closed, margin)
+    pairs = np.argwhere(np.triu(wanted, 1) if len(sets) == 1 else wanted)
+    found = (large.find_pairs if len(sets) == 1 else large.find_pairs_between)(*given, **options)
+    with dask.config.set(scheduler="sync"):
+        assert np.array_equal(in_order(found.compute().to_numpy().reshape(-1, 2).astype(np.int64)), pairs), options
+
+
 class World:
     """A persistent broad phase, and what it should contain."""
 
@@ -156,10 +351,34 @@ class World:
     def hit(self, box: Array) -> list[int]:
         return sorted(id for id, own in self.boxes.items() if near(own[None], box[None], "both", 0)[0, 0])
 
+    def look(self) -> None:
+        """Asks what a ray and a moving box hit, and what is nearest."""
+        random, world = self.random, self.world
+        ids = np.array(sorted(self.boxes, key=lambda id: id % 2**32), np.int64)
+        boxes = np.array([self.boxes[id] for id in ids.tolist()]).reshape(-1, 2 * self.dimensions)
+        box, limit = self.box(), float(random.choice([0, 0.5, 3, np.inf]))
+        point, way = box[: self.dimensions], random.choice([-2.0, -1.0, 0.0, 1.0, 2.0], self.dimensions)
+        for start, cast, first, many in (
+            (point, world.ray_cast_all, world.ray_cast, world.ray_cast_many),
+            (box, world.box_cast_all, world.box_cast, world.box_cast_many),
+        ):
+            rows, times = hits(boxes, box if start is box else np.hstack([point, point]), way, limit)
+            found = cast(start, way, limit)
+            assert (found.ids.tolist(), found.t.tolist()) == (ids[rows].tolist(), times.tolist())
+            wanted = (int(ids[rows[0]]), times[0]) if len(rows) else None
+            assert first(start, way, limit) == wanted
+            found = many(start[None], way[None], [limit])
+            assert (found.ids[0], found.t[0]) == (wanted or (-1, np.inf))
+        distances = squares(boxes, point)
+        order = np.lexsort((np.arange(len(ids)), distances))[: int(random.integers(0, 5))]
+        near = world.nearest(point, len(order))
+        assert near.ids.tolist() == ids[order].tolist()
+        assert np.array_equal(near.distances, np.sqrt(distances[order]))
+
     def step(self) -> None:
         """One random call."""
         random, world = self.random, self.world
-        way = int(random.integers(12))
+        way = int(random.integers(14))
         if way == 0:
             box = self.box()
             self.boxes[world.insert(box)] = box
@@ -203,6 +422,8 @@ class World:
             restored = sap.BroadPhase.from_snapshot(world.snapshot())
             assert restored.state_hash() == world.state_hash()
             self.world = restored
+        elif way in (11, 12):
+            self.look()
         else:
             assert len(world) == len(self.boxes) and sorted(world.ids().tolist()) == sorted(self.boxes)
             if self.boxes:
@@ -214,15 +435,27 @@ class World:
                     assert np.array_equal(world.box(id), box)
 
 
+@pytest.mark.filterwarnings("ignore:The inplace keyword:DeprecationWarning")  # Dask calls a newer pandas so
 @pytest.mark.parametrize("part", range(PARTS))
-def test_random_calls_are_right(part: int) -> None:
+def test_random_calls_are_right(part: int, tmp_path: Path) -> None:
     random = np.random.default_rng([SEED, part])
     world, age = World(random), 0
     for call in range(CALLS // PARTS):
         state = random.bit_generator.state
         try:
-            if random.random() < 0.5:
+            kind = random.random()
+            if kind < 0.4:
                 search(random)
+            elif kind < 0.5:
+                index(random)
+            elif kind < 0.58:
+                join(random)
+            elif kind < 0.6:
+                join_of_geometries(random)
+            elif kind < 0.64:
+                command(random, tmp_path)
+            elif kind < 0.65:
+                dask(random, tmp_path)
             else:
                 if age == 300:
                     world, age = World(random), 0
