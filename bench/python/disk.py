@@ -24,7 +24,10 @@ from typing import Any
 import numpy as np
 from common import machine, note, revision, versions, write_results
 
+OWN = "sweep-and-prune"
 LIMIT = 4_000_000_000
+MOST = 10_000_000
+"""The most boxes for which other libraries are tried, and for which everything fits in memory."""
 BLOCK = 2_000_000
 MANIFEST = "_manifest.json"
 NAMES = ("minx", "miny", "maxx", "maxy")
@@ -127,7 +130,7 @@ def dask_geopandas(folder: Path, count: int) -> None:
 
 
 LIBRARIES: dict[str, Callable[[Path, int], None]] = {
-    "sweep-and-prune": own,
+    OWN: own,
     "sweep-and-prune, 2 workers": own_with_workers,
     "sweep-and-prune, in memory": in_memory,
     "SedonaDB": sedona_db,
@@ -195,7 +198,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--sizes", type=int, nargs="+", default=[1_000_000, 10_000_000])
     parser.add_argument("--folder", type=Path, help="where the files go; by default, that of temporary files")
-    parser.add_argument("--seconds", type=float, default=1800, help="the most that a library may take")
+    parser.add_argument("--seconds", type=float, default=1800, help="the most that another library may take")
     parser.add_argument("--only", nargs="+", default=list(LIBRARIES), metavar="LIBRARY")
     parser.add_argument("--rounds", type=int, default=1)
     parser.add_argument("--child", choices=LIBRARIES, help=argparse.SUPPRESS)
@@ -205,19 +208,24 @@ def main() -> None:
         return
     content: dict[str, Any] = {"date": date.today().isoformat(), "machine": machine(), "revision": revision()}
     content |= {"versions": versions(PACKAGES), "limit_bytes": LIMIT, "cases": []}
-    for count in options.sizes:
+    given_up: set[str] = set()
+    for count in sorted(options.sizes):
         with tempfile.TemporaryDirectory(dir=options.folder) as name:
             folder = Path(name)
             write_boxes(folder / "boxes.parquet", count, False)
-            if {"SedonaDB", "dask-geopandas"} & set(options.only):
+            tried = [one for one in options.only if one not in given_up and (count <= MOST or one == OWN)]
+            if {"SedonaDB", "dask-geopandas"} & set(tried):
                 write_boxes(folder / "shapes.parquet", count, True)
             inputs = {path.name: path.stat().st_size for path in folder.glob("*.parquet")}
-            runs: dict[str, list[dict[str, Any]]] = {library: [] for library in options.only}
+            runs: dict[str, list[dict[str, Any]]] = {library: [] for library in tried}
             content["cases"].append({"boxes": count, "input_bytes": inputs, "runs": runs})
             for _ in range(options.rounds):
-                for library in options.only:
-                    result = measured(library, folder, count, options.seconds)
+                for library in [one for one in tried if one not in given_up]:
+                    limit = options.seconds if library != OWN else 10 * options.seconds
+                    result = measured(library, folder, count, limit)
                     runs[library].append(result)
+                    if result["why_not"] is not None:
+                        given_up.add(library)  # larger ones would end in the same way
                     write_results("disk", content)
                     note(f"{count} boxes, {library}: {result}")
                     for path in folder.iterdir():
