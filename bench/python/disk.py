@@ -120,7 +120,7 @@ def dask_geopandas(folder: Path, count: int) -> None:
     import dask_geopandas
     from distributed import Client
 
-    with Client(n_workers=2, threads_per_worker=1, memory_limit=LIMIT // 2, dashboard_address=None):
+    with Client(n_workers=2, threads_per_worker=1, memory_limit=LIMIT // 2, dashboard_address=":0"):
         frame = dask_geopandas.read_parquet(folder / "shapes.parquet", split_row_groups=8)
         # Spatial partitions, so that only those that overlap are joined.
         frame = frame.spatial_shuffle(npartitions=max(frame.npartitions, 4))

@@ -562,7 +562,7 @@ def test_workers_that_die_while_they_start_are_replaced() -> None:
 def test_a_client_that_is_closed_is_an_error() -> None:
     from distributed import Client, LocalCluster
 
-    options: dict[str, Any] = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
+    options: dict[str, Any] = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": ":0"}
     with LocalCluster(**options) as cluster, Client(cluster, set_as_default=False) as client:
         threading.Timer(0.5, client.close).start()
         with pytest.raises(sap.DatasetError, match="the workers of Dask were closed"):
@@ -584,7 +584,7 @@ def test_the_workers_of_an_active_client_are_used(large: tuple[str, str]) -> Non
     from distributed import Client
 
     path, wanted = large
-    with Client(n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None):
+    with Client(n_workers=1, threads_per_worker=2, processes=False, dashboard_address=":0"):
         sap.find_pairs(path, out="out", cells=5)
         assert sap.read_manifest("out").hash == wanted
         frame = dask.dataframe.read_parquet(path)

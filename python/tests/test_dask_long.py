@@ -77,7 +77,7 @@ def scenes(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[Path, int, st
 
 @pytest.mark.parametrize("workers", [0, 1, 2, 3, 4])
 def test_all_scenes_with_100_000_boxes_and_1_to_200_cells(scenes: list[tuple[Path, int, str]], workers: int) -> None:
-    with LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster):
+    with LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=":0") as cluster, Client(cluster):
         for file, count, wanted in scenes:
             # Each scene has each of these once, and each with another number of workers.
             some = random.Random(file.name)

@@ -173,7 +173,7 @@ def started(limit: int | str | float | None, number: int | None) -> Iterator[Wor
                 threads_per_worker=1,
                 processes=True,
                 memory_limit=0,
-                dashboard_address=None,
+                dashboard_address=":0",
                 silence_logs=50,
             ) as cluster,
             Client(cluster, set_as_default=False) as client,
