@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from datetime import timedelta
 from queue import Empty, Queue
-from threading import Thread
+from threading import Thread, local
 from typing import Any, TypeVar, Union
 
 import numpy as np
@@ -23,6 +23,11 @@ Progress = Callable[[float], object]
 
 _CHUNK = 65_536
 _MAX_CHUNK = 2**24
+
+_KEPT_BYTES = 64 * 2**20
+"""A thread keeps the buffers of its last search, if its boxes took at most so much memory: where the system has to give
+memory anew, that takes about as long as the search."""
+_idle = local()
 
 
 def find_pairs(
@@ -75,7 +80,8 @@ def find_pairs(
         ValueError: for another shape, or unknown options.
         TypeError: if the boxes are not numbers.
         MemoryError: if the pairs do not fit in memory. A large `int64` result takes at most 1.2 times its size while
-            it is found (on Linux with glibc), and besides less than five times the size of the boxes.
+            it is found (on Linux with glibc), and besides less than five times the size of the boxes: buffers, which
+            the thread keeps until its next search if the boxes take at most 64 MiB. Repeated calls are faster so.
 
     >>> import sweep_and_prune as sap
     >>> sap.find_pairs([[0, 0, 2, 2], [5, 5, 6, 6], [2, 1, 3, 4]])  # the third touches the first
@@ -624,14 +630,15 @@ _Each = Callable[[Pairs], object]
 
 def _find(prepared: Prepared, threads: int | None, dtype: DTypeLike, progress: Progress | None = None) -> Pairs:
     index = index_dtype(dtype)
-    found = _finder(prepared, threads).find(*_arguments(prepared), index, _checked(progress))
+    found = _search(prepared, threads, lambda finder: finder.find(*_arguments(prepared), index, _checked(progress)))
     return _done(prepared.translate(found), progress)
 
 
 def _count(prepared: Prepared, threads: int | None, progress: Progress | None) -> int:
     if prepared.groups is not None:
         return len(_find(prepared, threads, np.int64, progress))
-    return _done(_finder(prepared, threads).count(*_arguments(prepared), _checked(progress)), progress)
+    count = _search(prepared, threads, lambda finder: finder.count(*_arguments(prepared), _checked(progress)))
+    return _done(count, progress)
 
 
 def _stream(prepared: Prepared, each: _Each, size: int, dtype: DTypeLike) -> bool:
@@ -643,7 +650,11 @@ def _stream(prepared: Prepared, each: _Each, size: int, dtype: DTypeLike) -> boo
         return each(pairs) if len(pairs) else None
 
     is_plain = prepared.groups is None and all(rows is None for rows in prepared.kept)
-    return _finder(prepared, 1).for_each_chunk(*_arguments(prepared), each if is_plain else translated, size, index)
+    return _search(
+        prepared,
+        1,
+        lambda finder: finder.for_each_chunk(*_arguments(prepared), each if is_plain else translated, size, index),
+    )
 
 
 def _iterate(prepared: Prepared, size: int, dtype: DTypeLike) -> Iterator[Pairs]:
@@ -733,6 +744,14 @@ def _two_sets(
     return prepare({"a": a, "b": b}, format, closed, missing, None if by is None else list(by), margin)
 
 
-def _finder(prepared: Prepared, threads: int | None) -> Finder:
+def _search(prepared: Prepared, threads: int | None, call: Callable[[Finder], _Result]) -> _Result:
+    """What a call of a finder returns: of the one that this thread used last, if it is of the same kind."""
     rows = prepared.sets[0]
-    return Finder(rows.shape[1] // 2, rows.dtype.itemsize == 8, thread_count(threads))
+    kind = (rows.shape[1] // 2, rows.dtype.itemsize == 8, thread_count(threads))
+    # Taken out, since what the call calls may search, too.
+    last = vars(_idle).pop("last", None)
+    finder = last[1] if last and last[0] == kind else Finder(*kind)
+    result = call(finder)
+    if sum(rows.nbytes for rows in prepared.sets) <= _KEPT_BYTES:
+        _idle.last = (kind, finder)
+    return result
