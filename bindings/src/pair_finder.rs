@@ -64,6 +64,9 @@ pub trait ArrayPairFinder: AnyPairFinder {
         progress: Progress<'_>,
     ) -> Result<Option<u64>, Error>;
 
+    /// Uses at most so many threads from now on: without the feature `parallel`, one. Keeps what it can of the buffers.
+    fn use_threads(&mut self, threads: usize);
+
     /// Drops what a call that panicked left half done. The rows stay.
     fn reset(&mut self);
 }
@@ -78,18 +81,19 @@ pub struct TypedPairFinder<const D: usize, T: Scalar> {
 impl<const D: usize, T: Scalar> TypedPairFinder<D, T> {
     /// A finder that uses at most so many threads: without the feature `parallel`, one.
     pub fn new(threads: usize) -> Self {
-        Self { finder: fresh(threads), sets: [Rows::new(), Rows::new()], threads }
+        let finder = with_threads(PairFinder::new(), threads);
+        Self { finder, sets: [Rows::new(), Rows::new()], threads }
     }
 }
 
-#[cfg(feature = "parallel")]
-fn fresh<const D: usize, T: Scalar>(threads: usize) -> PairFinder<D, T> {
-    PairFinder::new().threads(threads)
-}
-
-#[cfg(not(feature = "parallel"))]
-fn fresh<const D: usize, T: Scalar>(_: usize) -> PairFinder<D, T> {
-    PairFinder::new()
+fn with_threads<const D: usize, T: Scalar>(
+    finder: PairFinder<D, T>,
+    threads: usize,
+) -> PairFinder<D, T> {
+    #[cfg(feature = "parallel")]
+    return finder.threads(threads);
+    #[cfg(not(feature = "parallel"))]
+    return (finder, threads).0;
 }
 
 /// A search of the first rows of one set, or of two.
@@ -155,7 +159,14 @@ impl<const D: usize, T: Scalar> ArrayPairFinder for TypedPairFinder<D, T> {
         self.finder.take_pairs()
     }
 
+    fn use_threads(&mut self, threads: usize) {
+        if threads != self.threads {
+            self.finder = with_threads(core::mem::take(&mut self.finder), threads);
+            self.threads = threads;
+        }
+    }
+
     fn reset(&mut self) {
-        self.finder = fresh(self.threads);
+        self.finder = with_threads(PairFinder::new(), self.threads);
     }
 }

@@ -39,11 +39,20 @@ impl Sets {
 impl Finder {
     #[new]
     fn new(dimensions: usize, double: bool, threads: usize) -> PyResult<Self> {
-        let threads = if threads > 1 { threads.min(processors()) } else { 1 };
+        let threads = at_most(threads);
         let kind = Kind { dimensions, is_double: double };
         let finder = kind.pair_finder(threads);
         let finder = finder.ok_or_else(|| PyValueError::new_err("dimensions must be 1, 2 or 3"))?;
         Ok(Self(Mutex::new(Search { finder, kind, threads })))
+    }
+
+    /// Uses at most so many threads from now on.
+    fn use_threads(&self, threads: usize) -> PyResult<()> {
+        self.with(|search| {
+            search.threads = at_most(threads);
+            search.finder.use_threads(search.threads);
+            Ok(())
+        })
     }
 
     #[pyo3(signature = (a, b=None, index="int64", progress=None))]
@@ -185,6 +194,11 @@ impl Search {
         self.finder.reset();
         error
     }
+}
+
+/// More threads than can run at once do not help.
+fn at_most(threads: usize) -> usize {
+    if threads > 1 { threads.min(processors()) } else { 1 }
 }
 
 /// Threads store pairs in small chunks, which the allocator of glibc keeps when they are freed.

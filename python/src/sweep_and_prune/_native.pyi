@@ -13,6 +13,7 @@ _Words = tuple[int, int, int, bool]
 @final
 class Finder:
     def __new__(cls, dimensions: int, double: bool, threads: int) -> Finder: ...
+    def use_threads(self, threads: int) -> None: ...
     def find(
         self,
         a: Floats,

@@ -746,11 +746,13 @@ def _two_sets(
 
 def _search(prepared: Prepared, threads: int | None, call: Callable[[Finder], _Result]) -> _Result:
     """What a call of a finder returns: of the one that this thread used last, if it is of the same kind."""
-    rows = prepared.sets[0]
-    kind = (rows.shape[1] // 2, rows.dtype.itemsize == 8, thread_count(threads))
+    rows, count = prepared.sets[0], thread_count(threads)
+    kind = (rows.shape[1] // 2, rows.dtype.itemsize == 8)
     # Taken out, since what the call calls may search, too.
-    last = vars(_idle).pop("last", None)
-    finder = last[1] if last and last[0] == kind else Finder(*kind)
+    last_kind, finder = vars(_idle).pop("last", (None, None))
+    if finder is None or last_kind != kind:
+        finder = Finder(*kind, count)
+    finder.use_threads(count)
     result = call(finder)
     if sum(rows.nbytes for rows in prepared.sets) <= _KEPT_BYTES:
         _idle.last = (kind, finder)
