@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from textwrap import shorten
 from typing import Any
 
 from common import FOLDER, RESULTS
@@ -20,6 +21,7 @@ def where(content: dict[str, Any]) -> str:
     """One paragraph: the machine, the day, the versions."""
     machine = content["machine"]
     load = "" if machine["load"] < 0.5 else f"; **other programs were running** (load average {machine['load']:.1f})"
+    load = content.get("note", load)  # by hand, where the load average of the minute before says nothing
     versions = ", ".join(f"{name} {version}" for name, version in content["versions"].items())
     return (
         f"{machine['cpu']}, {machine['cores']} cores, {machine['memory_bytes'] / 2**30:.0f} GiB, {machine['system']}, "
@@ -67,13 +69,19 @@ def plot(content: dict[str, Any], case: str) -> str:
 
     matplotlib.use("svg")
     import matplotlib.pyplot as plt
+    from matplotlib.ticker import NullLocator
 
     figure, axes = plt.subplots(figsize=(7, 3.5), layout="constrained")
     cases = [one for one in content["cases"] if one["case"] == case]
     for library in dict.fromkeys(name for one in cases for name in one["results"]):
         points = [(one["boxes"], one["results"][library]["ratio"]) for one in cases if library in one["results"]]
         axes.plot(*zip(*points), marker="o", label=library)
-    axes.set(xscale="log", yscale="log", xlabel="boxes", ylabel="times as long", title=case)
+    axes.set(xscale="log", yscale="log", xlabel="boxes", title=case)
+    axes.set_ylabel("times as long as sweep-and-prune\n(lower is faster)")
+    low, high = axes.get_ylim()
+    axes.set_yticks([tick for tick in (0.3, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10, 20, 50, 100, 200) if low <= tick <= high])
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_minor_locator(NullLocator())
     axes.legend(fontsize=8)
     name = f"plots/{case.replace(', ', '-').replace(' ', '-')}.svg"
     (FOLDER / "plots").mkdir(exist_ok=True)
@@ -91,7 +99,7 @@ def disk(content: dict[str, Any]) -> list[str]:
         for library, runs in case["runs"].items():
             done = [run for run in runs if run["why_not"] is None]
             if not done:
-                why = runs[-1]["why_not"] if runs else "not run"
+                why = shorten(runs[-1]["why_not"], 70) if runs else "not run"
                 lines.append(f"| {case['boxes']:,} | {library} | {why} | | | | | |")
                 continue
             best = min(done, key=lambda run: run["seconds"])
