@@ -150,7 +150,7 @@ test("steps without a question are skipped, and a wrong guess is explained; also
       const text = (await group.textContent())!;
       if (text.includes("No:")) {
         wrong++;
-        expect(text).toMatch(/No: (stay|swap|skipped|tested|are apart|overlap|enter a ball|leave one|an overlap ends|nothing)\. .*(is at -?[\d.]+|<|overlap|Stop|Test|The line)/);
+        expect(text).toMatch(/No: (stay|swap|skipped|tested|are apart|overlap|enter a ball|leave one|one ends|nothing)\. .*(is at -?[\d.]+|<|overlap|Stop|Test|The line)/);
       }
     }
     expect(wrong, "so that the reason is seen").toBeGreaterThan(0);

@@ -115,7 +115,7 @@ test("d5 and d16 can be guessed: what is right is what is drawn, and a wrong gue
 
   const d16 = await new Demo(page, "d16", 2).open();
   await page.getByLabel("Guess what each swap tells us").check();
-  const answers = ["an overlap begins", "an overlap ends", "nothing"];
+  const answers = ["one begins", "one ends", "nothing"];
   for (let guess = 0; guess < 3; guess++) {
     const next = group(d16).getByRole("button", { name: "Next detection" });
     if (await next.isVisible()) await next.click();
@@ -191,6 +191,59 @@ test("sweep, grid and tree find the pairs of brute force, and the tests of the s
   await page.mouse.move(picture.x + 10, picture.y + 10, { steps: 4 });
   await page.mouse.up();
   expect((await rows()).some(([x = 9, y = 9]) => x < 3 && y < 3)).toBe(true);
+});
+
+test("the figure of three structures can be embedded, and nothing of it is cut off", async ({ page, baseURL }) => {
+  const snippet = await page.locator(".embed-code textarea").inputValue();
+  for (const width of [320, 1000]) {
+    await page.setViewportSize({ width, height: 900 });
+    await page.goto("/teachers.html");
+    await page.setContent(`<body style="margin:0">${snippet.replace(/https:[^"]*(?=embed)/, `${baseURL}/`)}</body>`);
+    const frame = (await (await page.locator("iframe").elementHandle())!.contentFrame())!;
+    await expect(frame.locator("three-structures svg")).toHaveCount(3);
+    await expect.poll(() => frame.evaluate(() => document.documentElement.scrollHeight - innerHeight)).toBeLessThanOrEqual(0);
+    expect(await frame.evaluate(() => document.documentElement.scrollWidth - innerWidth)).toBeLessThanOrEqual(0);
+    expect(await frame.locator(".box").first().evaluate((box) => getComputedStyle(box).stroke), "its colors are there").not.toBe("none");
+  }
+});
+
+test("broad and narrow phase: the boxes of A and B overlap while their balls do not touch, until A is dragged to B", async ({ page }) => {
+  const demo = await new Demo(page, "broad-narrow").open();
+  const touch = ([ax = 0, ay = 0, ar = 0]: Ball, [bx = 0, by = 0, br = 0]: Ball): boolean => Math.hypot(ax - bx, ay - by) <= ar + br;
+  const found = (): Promise<[number, number][]> => demo.root.evaluate((element) => (element as unknown as { pairs: [number, number][] }).pairs);
+  const onlyBoxes = async (): Promise<string[]> => {
+    const balls = await demo.balls();
+    return (await found()).filter(([a, b]) => !touch(balls[a]!, balls[b]!)).map(String);
+  };
+  expect(await onlyBoxes()).toContain("0,1");
+  const balls = await demo.balls();
+  expect((await found()).length).toBe(pairsOf(balls, (a, b) => on(0)(a, b) && on(1)(a, b)));
+  await demo.drag(0, 30, 30);
+  await expect.poll(onlyBoxes).not.toContain("0,1");
+  expect((await found()).map(String)).toContain("0,1");
+});
+
+test("d14 in play: the sentence is of the comparison or swap that is highlighted, and nothing is compared with itself", async ({ page }) => {
+  const demo = await new Demo(page, "d14").open();
+  await demo.play();
+  const seen = await demo.root.evaluate(async (element) => {
+    const demo = element as unknown as { event: { kind: string; a: number; b: number } | undefined };
+    const said = element.shadowRoot!.querySelector(".said")!;
+    const seen: { kind: string; names: string[]; text: string }[] = [];
+    for (const end = performance.now() + 5000; performance.now() < end; ) {
+      // After all callbacks of the frame, when it is painted.
+      await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
+      const { event } = demo;
+      if (event) seen.push({ kind: event.kind, names: [event.a, event.b].map((ball) => "ABCDEF"[ball]!), text: said.textContent! });
+    }
+    return seen;
+  });
+  expect(seen.length).toBeGreaterThan(20);
+  for (const { kind, names, text } of seen) {
+    for (const name of names) expect(text, `${kind} of ${names.join(" and ")}`).toMatch(new RegExp(`\\(${name}|${name}\\)`));
+    expect(text.startsWith(kind === "swap" ? "Swap" : "Compare") || text.includes("is the pivot"), text).toBe(true);
+    expect(text).not.toMatch(/Compare (\S+) with \1\./);
+  }
 });
 
 test("a side-scroller: along x hardly a test, along y nearly every pair, as the bodies lie", async ({ page }) => {

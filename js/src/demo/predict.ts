@@ -75,8 +75,8 @@ function questionOf(next: TraceEvent, context: Context): Question | undefined {
     case "swap":
       if (!swapsTell) return undefined;
       return {
-        text: `${edge(a)} and ${edge(b)} swap. What does that tell us?`,
-        choices: ["an overlap begins", "an overlap ends", "nothing"],
+        text: `${edge(a)} and ${edge(b)} swap. What does that do to overlaps?`,
+        choices: ["one begins", "one ends", "nothing"],
         answer: a % 2 === b % 2 ? 2 : a % 2 === 1 ? 0 : 1,
         why,
       };

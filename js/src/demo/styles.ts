@@ -178,11 +178,11 @@ export const styles: CSSResult = css`
   }
   .guess {
     margin-top: 6px;
-    height: calc(2.5rem + 42px);
+    height: calc(3.75rem + 42px);
   }
   .guess p {
     margin: 0 0 6px;
-    height: 2.5rem;
+    height: 3.75rem;
     overflow: hidden;
     line-height: 1.25rem;
   }
@@ -194,6 +194,7 @@ export const styles: CSSResult = css`
   .guess button {
     flex: none;
     min-width: 6rem;
+    padding-inline: 0.6rem;
   }
   .swap-log {
     margin-top: 6px;
@@ -275,6 +276,25 @@ export const styles: CSSResult = css`
     }
     .counters {
       gap: 4px 6px;
+    }
+    .guess {
+      height: calc(6.25rem + 76px);
+    }
+    .guess p {
+      height: 6.25rem;
+    }
+    .guess div {
+      flex-wrap: wrap;
+    }
+    .guess button {
+      flex: 1 1 auto;
+      height: 44px;
+      min-width: 5rem;
+    }
+    .score {
+      flex: 1 0 100%;
+      height: 20px;
+      text-align: end;
     }
   }
   @container (max-width: 19rem) {

@@ -42,7 +42,7 @@ export function inside(view: View, demo: SapDemo, acts: Acts): TemplateResult {
   const { run, hasControls } = view;
   const options = run?.options;
   return html`
-    <slot name="heading">${options?.heading ? html`<p class="heading">${options.heading}</p>` : nothing}</slot>
+    <slot name="heading">${options?.heading ? html`<p class="heading" part="heading">${options.heading}</p>` : nothing}</slot>
     <div class="frame">
     <div class="picture" part="picture" role="application" tabindex="0" aria-label=${view.label} aria-describedby="keys" @keydown=${acts.press}>
       <canvas></canvas>

@@ -5,6 +5,7 @@ import { readShared } from "sweep-and-prune/demo";
 const place = document.querySelector("#demos")!;
 
 function show(): void {
+  if (location.hash === "#three-structures") return void import("../structures/alone.ts").then(({ threeStructures }) => place.replaceChildren(threeStructures()));
   const demos = location.hash.slice(1).split("|").map(demoOf);
   const [first] = demos;
   if (demos.length === 1) return place.replaceChildren(first!);

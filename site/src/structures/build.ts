@@ -1,23 +1,24 @@
-// Writes the first picture of `<three-structures>` into the page, so that it is there without scripts too.
+// Writes the first picture of `<three-structures>` into the page, so that it is there without scripts too; and below it
+// how to embed it elsewhere.
 
 import { init } from "sweep-and-prune/algorithms";
-import { countPairs, panels } from "./panels.ts";
-import { world } from "./structures.ts";
+import { SITE } from "../shell/pages.ts";
+import { inside } from "./panels.ts";
 
 await init();
 
+/** As the demos' own: the script, which a page may leave out, gives the frame the height of what is in it. */
+const SNIPPET = `<iframe src="${SITE}embed.html#three-structures"
+  title="The same boxes in a sweep, a grid and a tree"
+  style="width: 100%; max-width: 1000px; height: 1000px; border: 0"
+  loading="lazy"></iframe>
+<script>addEventListener("message", ({ data, source }) => { for (const frame of document.querySelectorAll("iframe")) if (frame.contentWindow === source && data?.sapDemoHeight) frame.style.height = data.sapDemoHeight + "px"; });</script>`;
+
 export function expandStructures(page: string): string {
-  return page.replace("<three-structures></three-structures>", () => {
-    const boxes = world("even");
-    return `<three-structures>
-      <div class="structures" role="group" aria-label="Eighty boxes in a sweep, a grid and a tree. B chooses the next box, the arrow keys move it.">${panels(boxes, 0)}</div>
-      <div class="choices"><label>World
-        <select autocomplete="off" disabled>
-          <option value="even">Boxes of similar size, everywhere</option>
-          <option value="long">A long level</option>
-          <option value="one large">One large box among small ones</option>
-        </select></label></div>
-      <p class="caption">All three find the same <strong data-part="pairs">${countPairs(boxes)}</strong> pairs.</p>
-    </three-structures>`;
-  });
+  const text = SNIPPET.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
+  return page.replace(
+    "<three-structures></three-structures>",
+    () => `<three-structures>${inside()}</three-structures>
+      <details class="ask embed-code"><summary>Embed this figure</summary><textarea readonly rows="6" aria-label="Code to embed this figure">${text}</textarea></details>`,
+  );
 }

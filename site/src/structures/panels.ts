@@ -1,13 +1,27 @@
 // What the figure of three structures shows: three panels of one world, as html. Written when the site is built, and
 // again whenever a box is moved.
 
-import { type Box, grid, HEIGHT, type Pair, sweep, tree, WIDTH, type Work } from "./structures.ts";
+import { type Box, grid, HEIGHT, type Pair, sweep, tree, WIDTH, type Work, world } from "./structures.ts";
 
 export const structures = [
   { name: "Sweep", says: "along x", run: sweep },
   { name: "Grid", says: "cells of equal size", run: grid },
   { name: "Tree", says: "boxes in boxes", run: tree },
 ] as const;
+
+/** All that stands in a `<three-structures>` at first. Its choice can be used once there are scripts. */
+export function inside(): string {
+  const boxes = world("even");
+  return `
+    <div class="structures" role="group" aria-label="Eighty boxes in a sweep, a grid and a tree. B chooses the next box, the arrow keys move it.">${panels(boxes, 0)}</div>
+    <div class="choices"><label>World
+      <select autocomplete="off" disabled>
+        <option value="even">Boxes of similar size, everywhere</option>
+        <option value="long">A long level</option>
+        <option value="one large">One large box among small ones</option>
+      </select></label></div>
+    <p class="caption">All three find the same <strong data-part="pairs">${countPairs(boxes)}</strong> pairs.</p>`;
+}
 
 /** The three panels, with what is shown of one box. */
 export function panels(boxes: readonly Box[], chosen: number): string {

@@ -1,7 +1,7 @@
-// `<three-structures>`: the same boxes in a sweep, a grid and a tree. Its first picture stands in the page already.
+// `<three-structures>`: the same boxes in a sweep, a grid and a tree. In the article its first picture stands in the page already.
 
 import { init } from "sweep-and-prune/algorithms";
-import { countPairs, panels, structures } from "./panels.ts";
+import { countPairs, inside, panels, structures } from "./panels.ts";
 import { type Box, moved, type Pair, WIDTH, world, type WorldName } from "./structures.ts";
 
 /** How far an arrow key moves a box, and with shift. */
@@ -19,6 +19,7 @@ export class ThreeStructures extends HTMLElement {
   }
 
   #start(): void {
+    if (this.children.length === 0) this.innerHTML = inside();
     const choice = this.querySelector("select")!;
     choice.disabled = false;
     choice.addEventListener("change", () => {
