@@ -413,3 +413,40 @@ fn a_new_body_that_is_queried_moved_and_removed_begins_no_pair() {
     world.set(ids[0], place).unwrap();
     assert_eq!(world.update().begun().count(), 0);
 }
+
+/// Far more bodies than in the sequences of `fuzz/`, each added to the tree by itself: its inner nodes split and shrink.
+#[test]
+fn thousands_of_bodies_that_come_and_go_between_queries_are_found() {
+    let mut random = Random::new(8);
+    let mut draw = || {
+        let at: [f64; 2] = random.point();
+        let at = at.map(|at| at as f32);
+        (Aabb::new(at, at.map(|at| at + 0.02)), random.below(1 << 30))
+    };
+    let (mut world, mut bodies) = (BroadPhase::<2>::new(), vec![]);
+    for step in 0..6000 {
+        let (aabb, number) = draw();
+        // They become many, and few again.
+        let inserts = if step < 4000 { 6 } else { 1 };
+        match number % 10 {
+            kind if bodies.is_empty() || kind < inserts => {
+                bodies.push((world.insert(aabb).unwrap(), aabb));
+            }
+            6 | 7 => {
+                let which = number % bodies.len();
+                world.set(bodies[which].0, aabb).unwrap();
+                bodies[which].1 = aabb;
+            }
+            _ => world.remove(bodies.swap_remove(number % bodies.len()).0).unwrap(),
+        }
+        if step == 5000 {
+            world.update();
+        }
+        // The tree learns of each change by itself.
+        let found = world.queries().overlapping(&aabb).unwrap();
+        if step % 20 == 0 {
+            let expected = bodies.iter().filter(|(_, other)| other.overlaps(&aabb));
+            assert_eq!(found, sorted(expected.map(|&(id, _)| id)), "{step}");
+        }
+    }
+}

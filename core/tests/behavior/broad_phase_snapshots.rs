@@ -169,3 +169,31 @@ fn each_contradiction_in_a_forged_snapshot_is_corrupt() {
     let trailing = [good.clone(), vec![0]].concat();
     assert!(read(trailing).is_err(), "bytes after the last slot");
 }
+
+#[test]
+fn a_slot_without_a_body_holds_no_more_than_it_can() {
+    let mut world = BroadPhase::<1>::new();
+    world.insert(Aabb::new([0.0], [1.0])).unwrap();
+    let good = without_checksum(world.snapshot());
+    // Behind the count: what the slot holds, generation 1, and perhaps the box at the last update.
+    let read = |kind: u8, has_box: bool| {
+        let aabb = if has_box { &good[19..27] } else { &[] };
+        let bytes = [&good[..17], &[kind, 1], aabb].concat();
+        BroadPhase::<1>::from_snapshot(&signed(bytes)).map(|_| ())
+    };
+    for (kind, has_box, what) in
+        [(0, false, "free"), (2 | 32, true, "left"), (2 | 4, false, "left while new")]
+    {
+        assert_eq!(read(kind, has_box), Ok(()), "{what}");
+    }
+    let corrupt = Err(Error::InvalidSnapshot(SnapshotFault::Corrupt));
+    // New (4), swept (8), with a filter (16), with a box or a filter at the last update (32, 64).
+    for kind in [4, 8, 16, 32, 64] {
+        assert_eq!(read(kind, false), corrupt, "a free slot with {kind}");
+        assert_eq!(read(kind, true), corrupt, "a free slot with {kind} and a box");
+    }
+    for (kind, has_box) in [(2, false), (2 | 32 | 8, true), (2 | 32 | 64, true), (2 | 4 | 32, true)]
+    {
+        assert_eq!(read(kind, has_box), corrupt, "a slot that was left with {kind}");
+    }
+}
