@@ -6,8 +6,8 @@
 //! ```
 //! All mutants are compiled at once into a copy of the repository, each behind a test of one number that the environment
 //! variable `MUTANT` chooses: one build instead of one for each. Then a random sample of them (200 if not said otherwise) is
-//! run, first by the random driver of `fuzz/` for some seconds, and if that notices nothing by the tests in `TESTS`. A run
-//! that fails, crashes or does not end kills the mutant. The survivors are printed.
+//! run, first by the random driver of `fuzz/` for some seconds, and if that notices nothing by the tests of the core. A run
+//! that fails, crashes or does not end kills the mutant.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -23,18 +23,37 @@ use syn::{Expr, Item, Stmt, UnOp, parse_quote};
 
 /// What is mutated. Kernels of other processors are not compiled here.
 const MUTATED: [&str; 2] = ["pairs", "world"];
-const LEFT_OUT: [&str; 4] = ["neon.rs", "wasm.rs", "model.rs", "memory"];
+const LEFT_OUT: [&str; 4] = ["neon.rs", "wasm.rs", "model.rs", "hard_scenes.rs"];
+/// What decides only how long a search takes: of the mutants here that survive, some are only slower or faster.
+const SPEED: [&str; 5] = ["plan/", "crowding.rs", "schedule.rs", "policy/", "layout.rs"];
 /// What is copied.
-const COPIED: [&str; 6] =
-    ["Cargo.lock", "core", "scenes", "fuzz", "rust-toolchain.toml", "README.md"];
-/// A mutant that takes so much longer does not end.
-const PATIENCE: Duration = Duration::from_secs(240);
+const COPIED: [&str; 8] = [
+    "Cargo.lock",
+    "core",
+    "scenes",
+    "fuzz",
+    "rust-toolchain.toml",
+    "README.md",
+    "LICENSE-MIT",
+    "LICENSE-APACHE",
+];
 
-/// The program that replaces `cargo test` where it is enough, and how it is called.
-const DRIVER: [&[&str]; 3] = [
-    &["broad_phase", "--calls", "300000", "--threads", "1"],
-    &["finder", "--calls", "1500", "--threads", "1"],
-    &["snapshot", "--calls", "150000", "--threads", "1"],
+/// The random driver: a program, and how it is called.
+const DRIVER: &str = "sweep-and-prune-fuzz";
+/// What a mutant has to survive first: random inputs.
+const RANDOM: [(&str, &[&str]); 3] = [
+    (DRIVER, &["broad_phase", "--calls", "100000", "--threads", "1"]),
+    (DRIVER, &["finder", "--calls", "500", "--threads", "1"]),
+    (DRIVER, &["snapshot", "--calls", "50000", "--threads", "1"]),
+];
+/// And then the tests of the core, but for those of the algorithms that the site shows and of the index, which are not
+/// mutated.
+const TESTS: [(&str, &[&str]); 5] = [
+    ("sweep_and_prune", &[]),
+    ("behavior", &["pairs::", "broad_phase", "errors::", "send_sync::"]),
+    ("broad_phase_allocations", &[]),
+    ("pairs_memory", &[]),
+    ("out_of_memory", &[]),
 ];
 
 /// Adds mutants to a file.
@@ -54,6 +73,7 @@ impl Mutator<'_> {
     }
 }
 
+/// Whether something is compiled only for tests, or without optional features.
 fn is_test(attributes: &[syn::Attribute]) -> bool {
     attributes.iter().any(|attribute| {
         let text = attribute.to_token_stream().to_string();
@@ -137,7 +157,7 @@ impl VisitMut for Mutator<'_> {
                 let (left, right, op) = (&binary.left, &binary.right, &binary.op);
                 let what = format!("{other} instead of {}", op.to_token_stream());
                 if let Some(id) = self.add(op.span(), what) {
-                    *expr = parse_quote!((if crate::mutants::is(#id) { #left #other #right } else { #left #op #right }));
+                    *expr = parse_quote!((if crate::mutants::is(#id) { (#left) #other (#right) } else { (#left) #op (#right) }));
                 }
             }
             Expr::Unary(unary) if matches!(unary.op, UnOp::Not(_)) => {
@@ -208,43 +228,57 @@ fn mutate(root: &Path, copy: &Path, skipped: &[usize]) -> Vec<String> {
 const MUTANTS: &str = r#"
 /// The active mutant.
 mod mutants {
-    static ACTIVE: std::sync::LazyLock<u32> = std::sync::LazyLock::new(|| {
-        use std::string::ToString;
-        std::env::var("MUTANT").ok().and_then(|text| text.to_string().parse().ok()).unwrap_or(u32::MAX)
-    });
+    use core::sync::atomic::{AtomicU32, Ordering};
 
-    #[inline]
+    /// 0 before the environment was read, else one more than the number of the mutant.
+    static ACTIVE: AtomicU32 = AtomicU32::new(0);
+
+    #[inline(always)]
     pub fn is(mutant: u32) -> bool {
-        *ACTIVE == mutant
+        let active = ACTIVE.load(Ordering::Relaxed);
+        if active == 0 { read() == mutant + 1 } else { active == mutant + 1 }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn read() -> u32 {
+        let number = std::env::var("MUTANT").ok().and_then(|text| text.parse::<u32>().ok());
+        let active = number.map_or(u32::MAX, |number| number + 1);
+        ACTIVE.store(active, Ordering::Relaxed);
+        active
     }
 }
 "#;
 
-/// Copies the repository.
+/// Copies the repository, as a workspace of what is tested here.
 fn copy(root: &Path, copy: &Path) {
     fs::create_dir_all(copy).unwrap();
     let from_to = COPIED.iter().map(|name| root.join(name)).chain([copy.to_path_buf()]);
     let status = Command::new("cp").arg("-r").args(from_to).status().unwrap();
     assert!(status.success());
     let manifest = fs::read_to_string(root.join("Cargo.toml")).unwrap();
-    let members = manifest.lines().map(|line| match line.starts_with("members") {
-        true => r#"members = ["core", "scenes", "fuzz"]"#,
-        false => line,
+    let sections = manifest.split("\n\n").filter(|section| {
+        !section.contains("lints")
+            && !section.contains("checked.package.sweep-and-prune-simulation")
     });
-    let manifest: Vec<_> = members
-        .filter(|line| {
-            !line.contains("-simulation]") && *line != "undocumented_unsafe_blocks = \"deny\""
+    let lines = sections.flat_map(|section| section.lines().chain([""]));
+    let lines: Vec<_> = lines
+        .map(|line| match line.starts_with("members") {
+            true => r#"members = ["core", "scenes", "fuzz"]"#,
+            false => line,
         })
+        .chain(["[workspace.lints.rust]"])
         .collect();
-    fs::write(copy.join("Cargo.toml"), manifest.join("\n").replace("missing_docs = \"deny\"", ""))
-        .unwrap();
+    // The build takes longer than what is run.
+    let manifest = lines.join("\n").replace("opt-level = 3", "opt-level = 1");
+    fs::write(copy.join("Cargo.toml"), manifest).unwrap();
     let lib = copy.join("core/src/lib.rs");
     let text = fs::read_to_string(&lib).unwrap();
     fs::write(lib, text + MUTANTS).unwrap();
 }
 
-/// Builds programs in the copy. If that fails, the mutants that stand where the compiler reports an error.
-fn build(copy: &Path, arguments: &[&str]) -> Result<String, Vec<usize>> {
+/// Runs cargo in the copy, and returns what it said and whether it succeeded.
+fn cargo(copy: &Path, arguments: &[&str]) -> (String, bool) {
     let out = Command::new("cargo")
         .current_dir(copy)
         .args(arguments)
@@ -252,9 +286,14 @@ fn build(copy: &Path, arguments: &[&str]) -> Result<String, Vec<usize>> {
         .env("RUSTFLAGS", "-Awarnings")
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&out.stderr).into_owned();
-    if out.status.success() {
-        return Ok(said);
+    (String::from_utf8_lossy(&out.stderr).into_owned(), out.status.success())
+}
+
+/// The mutants that stand where the compiler reports an error.
+fn culprits(copy: &Path) -> Vec<usize> {
+    let (said, is_right) = cargo(copy, &["check", "--package", "sweep-and-prune"]);
+    if is_right {
+        return Vec::new();
     }
     let mut culprits = Vec::new();
     for line in said.lines().filter(|line| line.contains(": error")) {
@@ -265,42 +304,88 @@ fn build(copy: &Path, arguments: &[&str]) -> Result<String, Vec<usize>> {
         };
         let Ok(text) = fs::read_to_string(copy.join(file)) else { continue };
         let lines: Vec<_> = text.lines().collect();
-        // The mutant begins at or before the place of the error.
-        for at in (number.saturating_sub(4)..(number + 1).min(lines.len())).rev() {
-            let ids = lines[at].split("mutants::is(").skip(1);
-            culprits.extend(
-                ids.filter_map(|rest| rest.split(['u', ')']).next()?.parse::<usize>().ok()),
-            );
-            if !culprits.is_empty() && at < number {
-                break;
-            }
-        }
+        let ids_in = |line: &&str| -> Vec<usize> {
+            let ids = line.split("mutants::is(").skip(1);
+            ids.filter_map(|rest| rest.split('u').next()?.parse().ok()).collect()
+        };
+        // The mutant begins at or before the place of the error; or it is a statement below without which a borrow lasts.
+        let mut before = lines[number.saturating_sub(5)..number].iter().rev().map(ids_in);
+        let after = lines[number..lines.len().min(number + 5)].iter().flat_map(ids_in);
+        culprits.extend(before.find(|ids| !ids.is_empty()).unwrap_or_else(|| after.collect()));
     }
     assert!(!culprits.is_empty(), "the copy does not build:\n{said}");
-    Err(culprits)
+    culprits
 }
 
-/// Whether a program passes with a mutant.
-fn passes(program: &Path, arguments: &[&str], mutant: usize, folder: &Path) -> bool {
-    let mut child = Command::new(program)
-        .args(arguments)
-        .current_dir(folder)
-        .env("MUTANT", mutant.to_string())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    let begun = Instant::now();
-    loop {
-        if let Some(status) = child.try_wait().unwrap() {
-            return status.success();
+/// Builds programs in the copy, and makes sure that they pass without a mutant.
+fn prepare(copy: &Path, runs: &'static [(&str, &[&str])]) -> Vec<Run> {
+    let names = runs.iter().filter(|run| run.0 != DRIVER).map(|run| run.0);
+    let tests: Vec<_> = names.flat_map(|name| ["--test", name]).skip(2).collect();
+    let (said, is_right) = if tests.is_empty() {
+        cargo(copy, &["build", "--package", DRIVER])
+    } else {
+        let arguments = ["test", "--no-run", "--package", "sweep-and-prune", "--lib"];
+        cargo(copy, &[&arguments[..], &tests].concat())
+    };
+    assert!(is_right, "the copy does not build:\n{said}");
+    let prepared = runs.iter().map(|&(name, arguments)| {
+        // "Executable tests/behavior/main.rs (target/checked/deps/behavior-0123456789abcdef)"
+        let marker = format!("/{name}-");
+        let test = said.lines().find(|line| line.contains(&marker) && !line.contains("fuzz"));
+        let test =
+            test.and_then(|line| Some(line.trim_end().strip_suffix(')')?.rsplit_once('(')?.1));
+        let program = copy.join(test.unwrap_or("target/checked/sweep-and-prune-fuzz"));
+        let mut run = Run { name, program, arguments, folder: copy.join("core"), seconds: 3600 };
+        let begun = Instant::now();
+        assert!(run.passes(None), "{name} fails without a mutant");
+        println!("{name} {arguments:?}: {:.1} s", begun.elapsed().as_secs_f64());
+        run.seconds = 5 + 4 * begun.elapsed().as_secs();
+        run
+    });
+    prepared.collect()
+}
+
+/// A program that runs with each mutant.
+struct Run {
+    name: &'static str,
+    program: PathBuf,
+    arguments: &'static [&'static str],
+    folder: PathBuf,
+    /// How much processor time it may take.
+    seconds: u64,
+}
+
+impl Run {
+    /// Whether it passes with a mutant, if there is one.
+    fn passes(&self, mutant: Option<usize>) -> bool {
+        let mut command = Command::new("sh");
+        // A mutant may neither run nor allocate without end.
+        command
+            .args(["-c", r#"ulimit -t "$0"; ulimit -v 8000000; exec "$@""#])
+            .arg(self.seconds.to_string())
+            .arg(&self.program)
+            .args(self.arguments)
+            .current_dir(&self.folder)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
+        if let Some(mutant) = mutant {
+            command.env("MUTANT", mutant.to_string());
         }
-        if begun.elapsed() > PATIENCE {
-            let _ = child.kill();
-            let _ = child.wait();
-            return false;
+        let mut child = command.spawn().unwrap();
+        let begun = Instant::now();
+        loop {
+            if let Some(status) = child.try_wait().unwrap() {
+                return status.success();
+            }
+            // Threads that wait for each other take no processor time.
+            if begun.elapsed() > 20 * Duration::from_secs(self.seconds) {
+                let _ = child.kill();
+                let _ = child.wait();
+                return false;
+            }
+            sleep(Duration::from_millis(20));
         }
-        sleep(Duration::from_millis(20));
     }
 }
 
@@ -311,30 +396,14 @@ fn main() {
     let folder = root.join("target/mutants");
     copy(root, &folder);
     let mut skipped = Vec::new();
-    let (mutants, tests) = loop {
+    let mutants = loop {
         let mutants = mutate(root, &folder, &skipped);
         println!("{} mutants, {} of them do not compile", mutants.len(), skipped.len());
-        let driver = build(&folder, &["build", "--package", "sweep-and-prune-fuzz"]);
-        let tests = driver.and_then(|_| {
-            build(
-                &folder,
-                &["test", "--no-run", "--package", "sweep-and-prune", "--test", "behavior"],
-            )
-        });
-        match tests {
-            Ok(said) => break (mutants, said),
-            Err(culprits) => skipped.extend(culprits),
+        match &culprits(&folder)[..] {
+            [] => break mutants,
+            more => skipped.extend(more),
         }
     };
-    let driver = folder.join("target/checked/sweep-and-prune-fuzz");
-    let tests = tests.lines().find_map(|line| line.split("behavior-").nth(1));
-    let tests = tests.expect("cargo names the test program").trim_end_matches(')');
-    let tests = folder.join("target/checked/deps").join(format!("behavior-{tests}"));
-    assert!(DRIVER.iter().all(|arguments| passes(&driver, arguments, usize::MAX, &folder)));
-    assert!(
-        passes(&tests, &[], usize::MAX, &folder.join("core")),
-        "the tests fail without a mutant"
-    );
 
     // SplitMix64, as in `scenes/`.
     let mut state = seed;
@@ -345,21 +414,33 @@ fn main() {
         z ^ (z >> 31)
     };
     let mut left: Vec<_> = (0..mutants.len()).filter(|id| !skipped.contains(id)).collect();
-    let mut counts = [0; 3];
-    while counts.iter().sum::<usize>() < count && !left.is_empty() {
-        let mutant = left.swap_remove((random() % left.len() as u64) as usize);
-        let survives_driver =
-            DRIVER.iter().all(|arguments| passes(&driver, arguments, mutant, &folder));
-        let end = match survives_driver && passes(&tests, &[], mutant, &folder.join("core")) {
-            true => 2,
-            false => usize::from(survives_driver),
-        };
-        counts[end] += 1;
-        let how = ["killed by random inputs", "killed by the tests", "SURVIVES"][end];
-        println!("{how}: {mutant} {}", mutants[mutant]);
+    let mut sample = Vec::new();
+    while sample.len() < count && !left.is_empty() {
+        sample.push(left.swap_remove((random() % left.len() as u64) as usize));
     }
-    println!(
-        "{} killed by random inputs, {} by the tests, {} survive",
-        counts[0], counts[1], counts[2]
-    );
+    // Killed by random inputs, killed by the tests, surviving: where results are decided, and where only speed is.
+    let mut counts = [[0; 3]; 2];
+    for (stage, runs) in [&RANDOM[..], &TESTS[..]].into_iter().enumerate() {
+        let runs = prepare(&folder, runs);
+        sample.retain(|&mutant| {
+            let killer = runs.iter().find(|run| !run.passes(Some(mutant)));
+            let is_speed = SPEED.iter().any(|part| mutants[mutant].contains(part));
+            let how = match killer {
+                Some(run) => run.name,
+                None if stage == 0 => "survives random inputs",
+                None if is_speed => "SURVIVES (speed)",
+                None => "SURVIVES",
+            };
+            if killer.is_some() || stage == 1 {
+                counts[usize::from(is_speed)][if killer.is_some() { stage } else { 2 }] += 1;
+            }
+            println!("{how}: {mutant} {}", mutants[mutant]);
+            killer.is_none()
+        });
+    }
+    for (what, [random, tests, survive]) in ["results are", "only speed is"].iter().zip(counts) {
+        println!(
+            "where {what} decided: {random} killed by random inputs, {tests} by the tests, {survive} survive"
+        );
+    }
 }
