@@ -25,8 +25,8 @@ _CHUNK = 65_536
 _MAX_CHUNK = 2**24
 
 _KEPT_BYTES = 64 * 2**20
-"""A thread keeps the buffers of its last search, if its boxes took at most so much memory: where the system has to give
-memory anew, that takes about as long as the search."""
+"""A thread keeps the buffers of its last search, if its boxes took at most so much memory: to get new memory from the
+system takes about as long as the search."""
 _idle = local()
 
 
