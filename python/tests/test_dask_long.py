@@ -38,6 +38,7 @@ pytestmark = [
 
 NAMES = {2: ["start", "end"], 4: ["minx", "miny", "maxx", "maxy"], 6: ["x0", "y0", "z0", "x1", "y1", "z1"]}
 MOST_PAIRS = 5_000_000
+MANY_PAIRS = 500_000
 
 
 @pytest.fixture(autouse=True)
@@ -53,7 +54,7 @@ def write(name: str, boxes: Array, group: int = 2**20) -> None:
 
 
 def hash_of(boxes: Array) -> str:
-    pairs = np.sort(core.find_pairs(boxes, threads=-1), axis=1)
+    pairs = core.find_pairs(boxes, threads=-1)
     return f"{hash_pairs(pairs[:, 0], pairs[:, 1]):016x}"
 
 
@@ -79,9 +80,11 @@ def scenes(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[Path, int, st
 def test_all_scenes_with_100_000_boxes_and_1_to_200_cells(scenes: list[tuple[Path, int, str]], workers: int) -> None:
     with LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=":0") as cluster, Client(cluster):
         for file, count, wanted in scenes:
-            # Each scene has each of these once, and each with another number of workers.
+            # Each scene has each of these once, and each with another number of workers; one with many pairs has one.
             some = random.Random(file.name)
             cells = some.sample([1, 17, 200, some.randint(2, 30), some.randint(30, 199)], 5)[workers]
+            if count > MANY_PAIRS and some.randrange(5) != workers:
+                continue
             sap.find_pairs(str(file), out="out", cells=cells, workers=0 if workers == 0 else None, overwrite=True)
             manifest = sap.read_manifest("out")
             assert (manifest.pairs, manifest.hash) == (count, wanted), (file.name, cells)
