@@ -86,12 +86,15 @@ pub trait AnyBroadPhase<I: Id>: TrackBodies<I> {
     fn pairs_of(&mut self, id: ProxyId, ids: &mut Vec<I>) -> Result<(), Error>;
 
     /// Answers queries of one kind, whose numbers follow each other: see [`Query`]. Without a filter they
-    /// find every body.
+    /// find every body. What [`Queries::unsorted`] speaks of is sorted on demand.
+    ///
+    /// [`Queries::unsorted`]: sweep_and_prune::Queries::unsorted
     fn query(
         &mut self,
         query: Query,
         numbers: &[f64],
         filter: Option<Filter>,
+        is_sorted: bool,
         answer: &mut Answer<I>,
     ) -> Result<(), Error>;
 
@@ -238,9 +241,12 @@ impl<const D: usize, T: Scalar, I: Id> AnyBroadPhase<I> for TypedBroadPhase<D, T
         query: Query,
         numbers: &[f64],
         filter: Option<Filter>,
+        is_sorted: bool,
         answer: &mut Answer<I>,
     ) -> Result<(), Error> {
-        ask(&mut self.world, query, numbers, filter, answer)
+        let queries = self.world.queries();
+        let queries = filter.map_or(queries, |filter| queries.with_filter(filter));
+        ask(if is_sorted { queries } else { queries.unsorted() }, query, numbers, answer)
     }
 
     fn snapshot(&self) -> Vec<u8> {

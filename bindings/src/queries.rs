@@ -2,13 +2,13 @@
 
 use alloc::vec::Vec;
 
-use sweep_and_prune::{BroadPhase, Cast, Error, Filter, ProxyId, Scalar};
+use sweep_and_prune::{Cast, Error, ProxyId, Queries, Scalar};
 
 use crate::Id;
 use crate::rows::{aabb, point};
 
 /// Which bodies a query finds. The numbers of a query in `D` dimensions are as listed here.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Query {
     /// Those that overlap a box: its min corner, its max corner.
     Overlapping,
@@ -22,8 +22,13 @@ pub enum Query {
     Cast,
     /// All that a moving box hits, nearest first. Numbers and values are those of [`Query::Cast`].
     CastAll,
-    /// The so many nearest to a point, nearest first. Values: squared distances.
-    Nearest(usize),
+    /// The `k` nearest to a point, nearest first, that are at most `max_distance` away. Values: squared distances.
+    Nearest {
+        /// How many.
+        k: usize,
+        /// How far away they may be: 0 or more.
+        max_distance: f64,
+    },
 }
 
 impl Query {
@@ -31,7 +36,7 @@ impl Query {
     pub const fn width(self, dimensions: usize) -> usize {
         match self {
             Query::Overlapping => 2 * dimensions,
-            Query::Containing | Query::Nearest(_) => dimensions,
+            Query::Containing | Query::Nearest { .. } => dimensions,
             Query::Within => dimensions + 1,
             Query::Cast | Query::CastAll => 3 * dimensions + 1,
         }
@@ -69,16 +74,13 @@ impl<I: Id> Answer<I> {
 
 /// Answers the queries whose numbers follow each other; what is left over is not read.
 pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
-    world: &mut BroadPhase<D, T>,
+    queries: Queries<'_, D, T>,
     query: Query,
     numbers: &[f64],
-    filter: Option<Filter>,
     answer: &mut Answer<I>,
 ) -> Result<(), Error> {
     answer.clear();
     let rows = Rows { numbers, width: query.width(D) };
-    let queries = world.queries();
-    let queries = filter.map_or(queries, |filter| queries.with_filter(filter));
     let lists = match query {
         Query::Overlapping => queries.overlapping_many(&rows.read(aabb::<D, T, f64>))?,
         Query::Containing => queries.containing_many(&rows.read(point::<D, T, f64>))?,
@@ -107,8 +109,9 @@ pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
             }
             return Ok(());
         }
-        Query::Nearest(k) => {
-            let nearest = queries.nearest_many(&rows.read(point::<D, T, f64>), k)?;
+        Query::Nearest { k, max_distance } => {
+            let points = rows.read(point::<D, T, f64>);
+            let nearest = queries.nearest_many(&points, k, max_distance)?;
             for near in nearest.values() {
                 answer.push(near.id, near.distance_squared);
             }

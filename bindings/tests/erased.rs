@@ -139,7 +139,7 @@ fn broad_phase_gives_what_the_core_gives<const D: usize, T: Scalar>() {
 
     queries_give_what_the_core_gives(&mut core, &mut |query, numbers| {
         let mut answer = Answer { values: vec![7.0], ..Answer::default() };
-        erased.query(query, numbers, None, &mut answer).map(|()| answer)
+        erased.query(query, numbers, None, true, &mut answer).map(|()| answer)
     });
     let stale = [ids[0], ids[310]];
     assert_eq!(
@@ -173,8 +173,9 @@ fn queries_give_what_the_core_gives<const D: usize, T: Scalar>(
         ask(Query::Containing, &flat).unwrap(),
         of(&queries.containing_many(&points).unwrap())
     );
-    let nearest = queries.nearest_many(&points, 3).unwrap();
-    let answer = ask(Query::Nearest(3), &flat).unwrap();
+    let nearest = queries.nearest_many(&points, 3, 2.0).unwrap();
+    assert!(nearest.values().len() < 3 * points.len(), "the distance limits nothing");
+    let answer = ask(Query::Nearest { k: 3, max_distance: 2.0 }, &flat).unwrap();
     assert_eq!(answer.ids, bits(nearest.values().iter().map(|near| near.id)));
     assert!(answer.values.iter().zip(nearest.values()).all(|(a, b)| *a == b.distance_squared));
     assert_eq!(answer.ends, nearest.ends());
@@ -255,7 +256,7 @@ fn queries_without_a_filter_find_bodies_that_pair_with_nothing() {
     world.set_filter(id, Filter::default().mask(0)).unwrap();
     let mut found = |filter| {
         let mut answer = Answer::default();
-        world.query(Query::Overlapping, &aabb, filter, &mut answer).map(|()| answer.ids)
+        world.query(Query::Overlapping, &aabb, filter, true, &mut answer).map(|()| answer.ids)
     };
     assert_eq!(found(None), Ok(vec![id.to_bits()]));
     assert_eq!(found(Some(Filter::ALL)), Ok(vec![]));

@@ -140,7 +140,7 @@ impl Soak {
         let area = self.aabb();
         let queries = self.world.queries();
         queries.overlapping(&area).unwrap();
-        queries.nearest(area.min, 5).unwrap();
+        queries.nearest(area.min, 5, f64::INFINITY).unwrap();
         queries.cast(&Cast::ray(area.min, [0.3, 0.2, 0.1], 1.0)).unwrap();
         let changes = self.world.update();
         changes.ended().for_each(|pair| assert!(self.live.remove(&pair)));

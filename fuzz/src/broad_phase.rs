@@ -336,11 +336,12 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
             }
             _ => {
                 let point: [T; D] = std::array::from_fn(|_| self.space.plain(input));
-                let k = input.pick(&[0, 1, 2, 5, 300]);
-                input.say(|| format!("nearest {point:?} {k} {filter:?}"));
-                let found = Self::queries(world, &filter).nearest(point, k).unwrap();
+                let all = f64::INFINITY;
+                let (k, far) = input.pick(&[(0, 1.0), (1, all), (2, 3.0), (5, 2.0), (300, all)]);
+                input.say(|| format!("nearest {point:?} {k} {far} {filter:?}"));
+                let found = Self::queries(world, &filter).nearest(point, k, far).unwrap();
                 let found: Vec<_> = found.iter().map(|it| (it.distance_squared, it.id)).collect();
-                assert_eq!(found, model.nearest(point, k, &filter));
+                assert_eq!(found, model.nearest(point, k, far, &filter));
             }
         }
     }
@@ -428,10 +429,10 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
             lists(&queries.within_many(&spheres).unwrap()),
             each(&spheres, |&(point, radius)| model.within(point, radius, &filter))
         );
-        let nearest = lists(&queries.nearest_many(&points, 2).unwrap());
+        let nearest = lists(&queries.nearest_many(&points, 2, 3.0).unwrap());
         assert_eq!(
             each(&nearest, |list| each(list, |it| (it.distance_squared, it.id))),
-            each(&points, |&point| model.nearest(point, 2, &filter))
+            each(&points, |&point| model.nearest(point, 2, 3.0, &filter))
         );
         let first = queries.cast_many(&casts).unwrap();
         assert_eq!(

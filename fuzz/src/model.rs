@@ -161,12 +161,20 @@ impl<const D: usize, T: Scalar> Model<D, T> {
         self.seen(filter).filter(|(_, aabb)| is_near(aabb)).map(|(id, _)| id).collect()
     }
 
-    /// The `k` bodies nearest to a point and the squares of their distances, sorted by these and then by id.
-    pub fn nearest(&self, point: [T; D], k: usize, filter: &Option<Filter>) -> Vec<(f64, ProxyId)> {
+    /// The `k` bodies nearest to a point, at most so far away, and the squares of their distances, sorted by these
+    /// and then by id.
+    pub fn nearest(
+        &self,
+        point: [T; D],
+        k: usize,
+        max_distance: f64,
+        filter: &Option<Filter>,
+    ) -> Vec<(f64, ProxyId)> {
         let square = |aabb: &Aabb<D, T>| {
             (0..D).map(|axis| gap(&point, aabb, axis)).fold(0.0, |sum, gap| sum + gap * gap)
         };
         let mut all: Vec<_> = self.seen(filter).map(|(id, aabb)| (square(aabb), id)).collect();
+        all.retain(|&(square, _)| square <= max_distance * max_distance);
         all.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         all.truncate(k);
         all

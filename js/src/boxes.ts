@@ -99,15 +99,6 @@ export function checkDimensions(dimensions: unknown): Dimensions {
   throw new RangeError(`\`dimensions\` must be 1, 2 or 3, not ${describe(dimensions)}`);
 }
 
-/** @internal How many dimensions boxes have that are objects: those of the first; `undefined` for flat arrays. */
-export function dimensionsOf(boxes: unknown): Dimensions | undefined {
-  const first: unknown = Array.isArray(boxes) ? boxes[0] : undefined;
-  if (isRow(first)) return checkDimensions(first.length / 2);
-  if (typeof first !== "object" || first === null) return undefined;
-  const form = formOf(first, "boxes[0]");
-  return form.has(first, 2) ? 3 : form.has(first, 1) ? 2 : form.has(first, 0) ? 1 : undefined;
-}
-
 /** @internal The boxes as a typed array of whole rows. Their coordinates are not checked. */
 export function checkBoxes(boxes: unknown, dimensions: Dimensions, name = "boxes"): Float32Array | Float64Array {
   if (Array.isArray(boxes) && typeof boxes[0] === "object") return fromObjects(boxes, dimensions, name);
@@ -196,8 +187,6 @@ interface Form {
   readonly key: string;
   /** A coordinate of corner 0 or 1; the caller checks that it is a number. */
   read(box: object, corner: 0 | 1, axis: number): unknown;
-  /** Whether a box has this axis. */
-  has(box: object, axis: number): boolean;
 }
 
 /** Each property by its name, which engines read several times faster than by a computed one. */
@@ -208,13 +197,11 @@ function coordinate(corner: Corner | null | undefined, axis: number): unknown {
 const minMax: Form = {
   key: "min",
   read: (box, corner, axis) => coordinate(corner ? (box as MinMaxBox).max : (box as MinMaxBox).min, axis),
-  has: (box, axis) => minMax.read(box, 0, axis) !== undefined,
 };
 
 const bounds: Form = {
   key: "lowerBound",
   read: (box, corner, axis) => coordinate(corner ? (box as BoundsBox).upperBound : (box as BoundsBox).lowerBound, axis),
-  has: (box, axis) => bounds.read(box, 0, axis) !== undefined,
 };
 
 const edges: Form = {
@@ -223,10 +210,10 @@ const edges: Form = {
     const { minX, minY, minZ, maxX, maxY, maxZ } = box as EdgesBox;
     return axis === 0 ? (corner ? maxX : minX) : axis === 1 ? (corner ? maxY : minY) : corner ? maxZ : minZ;
   },
-  has: (box, axis) => edges.read(box, 0, axis) !== undefined,
 };
 
-const sized: Form = {
+/** @internal The form of a `DOMRect`. */
+export const sized: Form = {
   key: "width",
   read(box, corner, axis) {
     const from = coordinate(box as SizedBox, axis);
@@ -234,21 +221,22 @@ const sized: Form = {
     const size: unknown = extent(box as SizedBox, axis);
     return typeof size === "number" ? from + size : size;
   },
-  // Not by its `z`: a sprite may have one that is no coordinate.
-  has: (box, axis) => extent(box as SizedBox, axis) !== undefined,
 };
 
-function extent(box: SizedBox, axis: number): number | undefined {
+/** @internal The size of a box on an axis. */
+export function extent(box: SizedBox, axis: number): number | undefined {
   return axis === 0 ? box.width : axis === 1 ? box.height : box.depth;
 }
 
 const forms: readonly Form[] = [minMax, bounds, edges, sized];
 
-function formOf(box: object, name: string): Form {
+/** @internal The form of a box that is an object. */
+export function formOf(box: object, name: string): Form {
   return forms.find(({ key }) => key in box) ?? refuseObject(box, name);
 }
 
-function isRow(box: unknown): box is ArrayLike<unknown> {
+/** @internal Whether a box is an array of numbers. */
+export function isRow(box: unknown): box is ArrayLike<unknown> {
   return Array.isArray(box) || (ArrayBuffer.isView(box) && !(box instanceof DataView));
 }
 

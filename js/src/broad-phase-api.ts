@@ -13,6 +13,8 @@ export {
   type ProxyId,
   type QueryFilter,
   slotOf,
+  type SortOptions,
 } from "./world-types.js";
-export { SnapshotError, StaleProxyError } from "./errors.js";
+export { StaleProxyError } from "./errors.js";
+export { SnapshotError } from "./snapshot-error.js";
 export type { Filter } from "./filter.js";

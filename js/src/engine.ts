@@ -2,7 +2,6 @@ import {
   InvalidBoxError,
   NotInitializedError,
   OutOfMemoryError,
-  SnapshotError,
   StaleProxyError,
   SweepAndPruneError,
 } from "./errors.js";
@@ -26,7 +25,6 @@ const enum Code {
   OutOfMemory = 2,
   StaleProxy = 4,
   InvalidArgument = 5,
-  InvalidSnapshot = 6,
 }
 
 /** Takes pairs that lie in memory, and returns whether it wants more. */
@@ -47,9 +45,10 @@ export function checkFits(bytes: number): void {
 
 /** A compiled core that was started, and what its calls have in common. */
 export class Engine<E extends Exports> {
-  /** Set during a call of {@link stream}. */
-  #each: Each = () => false;
-  #stackTop = 0;
+  /** Takes the pairs of a search: set while `streamPairs` makes a call. */
+  each: Each = () => false;
+  /** Where the stack began when JavaScript called. */
+  stackTop = 0;
   #statusAt = 0;
   #words = new Uint32Array(0);
   /** How many calls have been made that may overwrite what a view shows; see {@link guard}. */
@@ -64,13 +63,13 @@ export class Engine<E extends Exports> {
     let engine: Engine<E>;
     const imports = {
       fail: (isOutOfMemory: number) => engine.#fail(isOutOfMemory !== 0),
-      each: (at: number, count: number) => engine.#each(at >>> 0, count >>> 0),
+      each: (at: number, count: number) => engine.each(at >>> 0, count >>> 0),
     };
     // Not `new WebAssembly.Instance`, which some browsers refuse on the main thread.
     const instance = await WebAssembly.instantiate(module as WebAssembly.Module, { sweep_and_prune: imports });
     if (!(known in instance.exports)) throw new TypeError("`wasm` is not the compiled core of this entry");
     engine = new Engine(instance.exports as unknown as E, isDevelopment);
-    engine.#stackTop = engine.exports.__stack_pointer.value;
+    engine.stackTop = engine.exports.__stack_pointer.value;
     engine.#statusAt = (engine.exports.status() >>> 0) / 4;
     return engine;
   }
@@ -100,40 +99,8 @@ export class Engine<E extends Exports> {
         throw new StaleProxyError(this.detail(0), passed.ids?.[this.detail(0)] ?? NaN);
       case Code.InvalidArgument:
         throw new RangeError("`box` is inverted, or a coordinate is too large for single precision");
-      case Code.InvalidSnapshot:
-        throw new SnapshotError(this.detail(0), this.detail(1));
       default:
         throw new SweepAndPruneError(`internal error ${code}: please report it`);
-    }
-  }
-
-  /**
-   * Makes a call that hands pairs to `each`. What `each` throws cancels the search, and is thrown
-   * from here, after the call returned: an exception must not skip Rust's frames. Within `each`
-   * other calls are allowed.
-   */
-  stream(call: () => number, each: Each, passed: Passed): void {
-    const outer = this.#each;
-    let thrown: { error: unknown } | undefined;
-    this.#each = (at, count) => {
-      // If a call within `each` fails, the frames of this call must stay where they are.
-      const stackTop = this.#stackTop;
-      this.#stackTop = this.exports.__stack_pointer.value;
-      try {
-        return each(at, count);
-      } catch (error) {
-        thrown = { error };
-        return false;
-      } finally {
-        this.#stackTop = stackTop;
-      }
-    };
-    try {
-      const code = call();
-      if (thrown) throw thrown.error;
-      this.check(code, passed);
-    } finally {
-      this.#each = outer;
     }
   }
 
@@ -142,7 +109,7 @@ export class Engine<E extends Exports> {
    * back to where it was when JavaScript called.
    */
   #fail(isOutOfMemory: boolean): never {
-    this.exports.__stack_pointer.value = this.#stackTop;
+    this.exports.__stack_pointer.value = this.stackTop;
     throw isOutOfMemory ? new OutOfMemoryError() : new SweepAndPruneError("internal error: please report it");
   }
 }

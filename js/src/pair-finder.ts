@@ -1,8 +1,10 @@
 /// <reference lib="esnext.disposable" preserve="true" />
-import { type BoxObject, type Boxes, checkBoxes, checkDimensions, type Dimensions, dimensionsOf, writeRows } from "./boxes.js";
+import { type BoxObject, type Boxes, checkBoxes, checkDimensions, type Dimensions, writeRows } from "./boxes.js";
 import { describe } from "./describe.js";
+import { dimensionsOf } from "./dimensions-of.js";
 import { checkFits, Core, type Each, type Engine, type Exports, type Passed } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
+import { streamPairs } from "./stream.js";
 import { allocate, checkViews, copy, guard, view } from "./views.js";
 
 /** Options of a search. */
@@ -403,7 +405,7 @@ export class PairFinder {
       const countA = this.#writeRows(finder, 0, first, isDouble, stored);
       const countB = second ? this.#writeRows(finder, 1, second, isDouble, stored) : noSet;
       const passed: Passed = { boxes: second ? [["a", countA], ["b", countB]] : [["boxes", countA]] };
-      if (each) engine.stream(() => engine.exports.finder_find(finder, countA, countB, chunk), each, passed);
+      if (each) streamPairs(engine, () => engine.exports.finder_find(finder, countA, countB, chunk), each, passed);
       else engine.check(engine.exports.finder_find(finder, countA, countB, chunk), passed);
     } catch (error) {
       // A finder that ran out of memory should not keep what it allocated.

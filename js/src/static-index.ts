@@ -7,17 +7,17 @@ import {
   checkNumbers,
   type Corner,
   type Dimensions,
-  dimensionsOf,
   isNamed,
   readBox,
   readPoint,
   type TypedNumbers,
 } from "./boxes.js";
 import { describe } from "./describe.js";
+import { dimensionsOf } from "./dimensions-of.js";
 import { checkFits, Core, type Engine, type Exports } from "./engine.js";
 import { OutOfMemoryError, SweepAndPruneError } from "./errors.js";
 import { copy, view } from "./views.js";
-import { checkCount, checkLength } from "./world-arguments.js";
+import { checkCount, checkLength } from "./query-arguments.js";
 
 /** What js/wasm/src/index.rs exports. */
 export interface IndexExports extends Exports {

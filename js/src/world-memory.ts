@@ -3,8 +3,8 @@ import { checkFits, type Core, type Engine, type Passed } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
 import { result, view } from "./views.js";
 import { refuseCorners } from "./world-arguments.js";
-import { worldCore, type WorldExports } from "./world-core.js";
-import type { Box, BroadPhaseOptions, Changes, Hit, Numbers, Point } from "./world-types.js";
+import type { WorldExports } from "./world-core.js";
+import type { Box, BroadPhaseOptions, Changes, Numbers, Point } from "./world-types.js";
 
 /**
  * A broad phase in WebAssembly's memory: calls it, writes its arguments where it reads them, and
@@ -26,7 +26,7 @@ export class WorldMemory {
   #begun: Float64Array | undefined;
   #ended: Float64Array | undefined;
 
-  private constructor(dimensions: Dimensions, isDouble: boolean, isView: boolean, owned: Owned) {
+  constructor(dimensions: Dimensions, isDouble: boolean, isView: boolean, owned: Owned) {
     this.dimensions = dimensions;
     this.isDouble = isDouble;
     this.isView = isView;
@@ -47,23 +47,9 @@ export class WorldMemory {
     return new WorldMemory(dimensions, isDouble, views, { engine, world });
   }
 
-  /** The broad phase of a snapshot. */
-  static restore(bytes: Uint8Array, dimensions: Dimensions, isView: boolean): WorldMemory {
-    const engine = worldCore.engine();
-    const { exports } = engine;
-    checkFits(bytes.length);
-    const owned = { engine, world: exports.world_new(dimensions, 0, 0, 0, 0) };
-    try {
-      engine.calls++;
-      const at = exports.world_bytes(owned.world, bytes.length) >>> 0;
-      if (at === 0) throw new OutOfMemoryError();
-      new Uint8Array(exports.memory.buffer, at, bytes.length).set(bytes);
-      engine.check(exports.world_restore(owned.world));
-      return new WorldMemory(dimensions, engine.detail(0) !== 0, isView, owned);
-    } catch (error) {
-      release(owned);
-      throw error;
-    }
+  /** The started core. */
+  get engine(): Engine<WorldExports> {
+    return this.#owned.engine;
   }
 
   /** Frees the memory. Freeing it twice is not an error. */
@@ -105,17 +91,6 @@ export class WorldMemory {
     return result(engine, this.#out, this.isView);
   }
 
-  /** Makes a query whose answer has a value for each id, and returns both. */
-  hits(call: (exports: WorldExports, world: number) => number): Hit[] {
-    this.call(call);
-    const { engine } = this.#owned;
-    const { buffer } = engine.exports.memory;
-    const count = engine.detail(1);
-    const ids = new Float64Array(buffer, engine.detail(0), count);
-    const values = new Float64Array(buffer, this.numbers()[0]!, count);
-    return Array.from(ids, (id, at) => ({ id, t: values[at]! }));
-  }
-
   /** Updates, and writes what changed. */
   update(into: Changes): void {
     this.call((exports, world) => exports.world_update(world));
@@ -131,18 +106,6 @@ export class WorldMemory {
       this.free(); // the next update would not report these changes
       throw error;
     }
-  }
-
-  /** A copy of the bytes that the last call reported. */
-  bytes(): Uint8Array<ArrayBuffer> {
-    const { engine } = this.#owned;
-    return new Uint8Array(engine.exports.memory.buffer, engine.detail(0), engine.detail(1)).slice();
-  }
-
-  /** The 64 bits that the last call reported. */
-  bits(): bigint {
-    const { engine } = this.#owned;
-    return (BigInt(engine.detail(1)) << 32n) | BigInt(engine.detail(0));
   }
 
   /** The numbers that go in and out, where they are now. */
@@ -272,12 +235,12 @@ function isSame(a: Numbers, b: Float32Array | Float64Array): boolean {
 }
 
 /** The handle of the core's object, or 0 once it is freed. */
-interface Owned {
+export interface Owned {
   readonly engine: Engine<WorldExports>;
   world: number;
 }
 
-function release(owned: Owned): void {
+export function release(owned: Owned): void {
   if (owned.world !== 0) owned.engine.exports.world_free(owned.world);
   owned.world = 0;
 }

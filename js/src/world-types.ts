@@ -83,5 +83,11 @@ export type Point = Numbers | Corner;
 /** Which bodies a query finds: those that may pair with a body of this filter, or those for which a function returns true. */
 export type QueryFilter = Partial<Filter> | ((id: ProxyId) => boolean);
 
+/** How ids are returned. */
+export interface SortOptions {
+  /** Whether they are sorted by slot; true by default. */
+  sorted?: boolean;
+}
+
 /** One box: its min corner and then its max corner, or an object. */
 export type Box = BoxObject;

@@ -1,12 +1,16 @@
 import { describe } from "./describe.js";
 import { Bodies, checkOptions, oneBox } from "./bodies.js";
 import { checkDimensions, type Dimensions } from "./boxes.js";
-import { defaultFilter, filterWords, type FilterWords, noFilter } from "./filter.js";
-import { checkCount, checkId, checkLength } from "./world-arguments.js";
+import { checkFits } from "./engine.js";
+import { OutOfMemoryError } from "./errors.js";
+import { defaultFilter, type Filter, filterWords, type FilterWords, noFilter } from "./filter.js";
+import { checkCount, checkLength } from "./query-arguments.js";
+import { SnapshotError } from "./snapshot-error.js";
+import { checkId } from "./world-arguments.js";
 import { Query, worldCore } from "./world-core.js";
 import { checkViews } from "./views.js";
-import { WorldMemory } from "./world-memory.js";
-import type { Box, BroadPhaseOptions, Hit, Neighbor, Point, ProxyId, QueryFilter } from "./world-types.js";
+import { release, WorldMemory } from "./world-memory.js";
+import type { Box, BroadPhaseOptions, Hit, Neighbor, Point, ProxyId, QueryFilter, SortOptions } from "./world-types.js";
 
 /**
  * A persistent broad phase: it keeps bodies with boxes, and reports which overlaps began and which
@@ -46,7 +50,7 @@ export class BroadPhase extends Bodies {
     if (!(ArrayBuffer.isView(bytes) && bytes[Symbol.toStringTag] === "Uint8Array")) {
       throw new TypeError(`\`bytes\` must be a Uint8Array, not ${describe(bytes)}`);
     }
-    const memory: unknown = WorldMemory.restore(bytes, checkDimensions(options?.dimensions), checkViews(options.views));
+    const memory: unknown = restore(bytes, checkDimensions(options?.dimensions), checkViews(options.views));
     return new BroadPhase(memory as BroadPhaseOptions);
   }
 
@@ -54,7 +58,7 @@ export class BroadPhase extends Bodies {
    * The pairs that overlapped at the last update: `a0, b0, a1, b1, ...`, sorted by slot. With
    * `{ sorted: false }` they are in no particular order, which takes less time.
    */
-  pairs(options?: { sorted?: boolean }): Float64Array {
+  pairs(options?: SortOptions): Float64Array {
     const isSorted = options?.sorted !== false;
     return this.memory.answer((exports, world) => exports.world_pairs(world, Number(isSorted)));
   }
@@ -74,13 +78,14 @@ export class BroadPhase extends Bodies {
    *
    * In all queries, `filter` is the filter of an imagined body: the query finds the bodies that may
    * pair with it. Or it is a function that gets an id and returns whether the query finds that body. It
-   * is called after the search, so it may call anything. Without a filter a query finds every body.
+   * is called after the search, so it may call anything. Without a filter a query finds every body. With
+   * `{ sorted: false }` the bodies are in no particular order, which takes up to half of the time if there are many.
    *
    * @throws {@link InvalidBoxError}; and what `filter` throws.
    */
-  overlapping(box: Box, filter?: QueryFilter): Float64Array {
+  overlapping(box: Box, filter?: QueryFilter, options?: SortOptions): Float64Array {
     this.memory.writeCorners(0, box, 2, "box");
-    return this.#ask(Query.Overlapping, filter);
+    return this.#ask(Query.Overlapping, filter, options);
   }
 
   /**
@@ -88,9 +93,9 @@ export class BroadPhase extends Bodies {
    *
    * @throws `RangeError` for a NaN.
    */
-  containing(point: Point, filter?: QueryFilter): Float64Array {
+  containing(point: Point, filter?: QueryFilter, options?: SortOptions): Float64Array {
     this.memory.writeCorners(0, point, 1, "point", "a number");
-    return this.#ask(Query.Containing, filter);
+    return this.#ask(Query.Containing, filter, options);
   }
 
   /**
@@ -98,11 +103,11 @@ export class BroadPhase extends Bodies {
    *
    * @throws `RangeError` if the center is not finite, or the radius negative or NaN.
    */
-  within(center: Point, radius: number, filter?: QueryFilter): Float64Array {
+  within(center: Point, radius: number, filter?: QueryFilter, options?: SortOptions): Float64Array {
     checkLength(radius, "radius");
     this.memory.writeCorners(0, center, 1, "center", "finite");
     this.memory.numbers()[this.memory.stored] = radius;
-    return this.#ask(Query.Within, filter);
+    return this.#ask(Query.Within, filter, options);
   }
 
   /**
@@ -153,7 +158,7 @@ export class BroadPhase extends Bodies {
 
   /**
    * The `k` bodies nearest to a point, or all if there are fewer, sorted by distance and then by slot.
-   * None is farther away than `maxDistance`. A function as `filter` is called nearest first, until it
+   * None is farther away than `maxDistance`: what is is not searched, so a small one saves time. A function as `filter` is called nearest first, until it
    * has returned true `k` times.
    *
    * @throws `RangeError` if the point is not finite, `k` not a whole number, or the distance negative or NaN.
@@ -161,14 +166,18 @@ export class BroadPhase extends Bodies {
   nearest(point: Point, k: number = 1, maxDistance: number = Infinity, filter?: QueryFilter): Neighbor[] {
     checkCount(k, "k");
     checkLength(maxDistance, "maxDistance");
-    this.memory.writeCorners(0, point, 1, "point", "finite");
-    const near = (hits: Hit[]) => hits.map(({ id, t }) => ({ id, distance: Math.sqrt(t) })).filter(({ distance }) => distance <= maxDistance);
-    if (typeof filter !== "function") return near(this.#hits(Query.Nearest, filter, k));
-    // Twice as many each time, since only the search knows who is next.
+    const search = (wanted: number, only?: Partial<Filter>): Neighbor[] => {
+      this.memory.writeCorners(0, point, 1, "point", "finite");
+      this.memory.numbers()[this.memory.stored] = maxDistance;
+      const found = this.#hits(Query.Nearest, only, Math.min(wanted, 2 ** 32 - 1));
+      // The search compares squares, and finds a little more.
+      return found.map(({ id, t }) => ({ id, distance: Math.sqrt(t) })).filter(({ distance }) => distance <= maxDistance);
+    };
+    if (typeof filter !== "function") return search(k, filter);
+    // Twice as many each time, since only the search knows which is next.
     const accepted: Neighbor[] = [];
     for (let asked = 2 * k, seen = 0; accepted.length < k; asked *= 2) {
-      this.memory.writeCorners(0, point, 1, "point", "finite");
-      const found = near(this.#hits(Query.Nearest, undefined, Math.min(asked, 2 ** 32 - 1)));
+      const found = search(asked);
       for (; seen < found.length && accepted.length < k; seen++) {
         if (filter(found[seen]!.id)) accepted.push(found[seen]!);
       }
@@ -183,23 +192,32 @@ export class BroadPhase extends Bodies {
    */
   snapshot(): Uint8Array<ArrayBuffer> {
     this.memory.call((exports, world) => exports.world_snapshot(world));
-    return this.memory.bytes();
+    const { engine } = this.memory;
+    return new Uint8Array(engine.exports.memory.buffer, engine.detail(0), engine.detail(1)).slice();
   }
 
   /** A 64-bit hash of the whole state, equal for equal states on every machine. */
   stateHash(): bigint {
     this.memory.call((exports, world) => exports.world_state_hash(world));
-    return this.memory.bits();
+    const { engine } = this.memory;
+    return (BigInt(engine.detail(1)) << 32n) | BigInt(engine.detail(0));
   }
 
-  #ask(query: Query, filter: QueryFilter | undefined): Float64Array {
-    const ids = this.memory.answer((exports, world) => exports.world_query(world, query, 0, ...wordsOf(filter)), oneBox);
+  #ask(query: Query, filter: QueryFilter | undefined, options: SortOptions | undefined): Float64Array {
+    const sorted = Number(options?.sorted !== false);
+    const ids = this.memory.answer((exports, world) => exports.world_query(world, query, 0, ...wordsOf(filter), sorted), oneBox);
     // With the option `views`, the function could let them become stale.
     return typeof filter === "function" ? Float64Array.from(ids).filter((id) => filter(id)) : ids;
   }
 
   #hits(query: Query, filter: QueryFilter | undefined, k = 0): Hit[] {
-    const hits = this.memory.hits((exports, world) => exports.world_query(world, query, k, ...wordsOf(filter)));
+    this.memory.call((exports, world) => exports.world_query(world, query, k, ...wordsOf(filter), 1));
+    const { engine } = this.memory;
+    const { buffer } = engine.exports.memory;
+    const count = engine.detail(1);
+    const ids = new Float64Array(buffer, engine.detail(0), count);
+    const values = new Float64Array(buffer, this.memory.numbers()[0]!, count);
+    const hits = Array.from(ids, (id, at) => ({ id, t: values[at]! }));
     return typeof filter === "function" ? hits.filter(({ id }) => filter(id)) : hits;
   }
 
@@ -225,6 +243,30 @@ export class BroadPhase extends Bodies {
     this.memory.numbers()[3 * this.memory.stored] = limit;
   }
 }
+
+/** The broad phase of a snapshot. */
+function restore(bytes: Uint8Array, dimensions: Dimensions, isView: boolean): WorldMemory {
+  const engine = worldCore.engine();
+  const { exports } = engine;
+  checkFits(bytes.length);
+  const owned = { engine, world: exports.world_new(dimensions, 0, 0, 0, 0) };
+  try {
+    engine.calls++;
+    const at = exports.world_bytes(owned.world, bytes.length) >>> 0;
+    if (at === 0) throw new OutOfMemoryError();
+    new Uint8Array(exports.memory.buffer, at, bytes.length).set(bytes);
+    const code = exports.world_restore(owned.world);
+    if (code === invalidSnapshot) throw new SnapshotError(engine.detail(0), engine.detail(1));
+    engine.check(code);
+    return new WorldMemory(dimensions, engine.detail(0) !== 0, isView, owned);
+  } catch (error) {
+    release(owned);
+    throw error;
+  }
+}
+
+/** The code of js/wasm/src/status.rs for bytes that are no snapshot. */
+const invalidSnapshot = 6;
 
 /** The filter of a query as the core takes it: none if it is a function, which is called afterwards. */
 function wordsOf(filter: QueryFilter | undefined): FilterWords {

@@ -482,6 +482,18 @@ test("nearest finds nothing beyond maxDistance", () => {
   assert.deepEqual(found(0), [a]);
   for (const odd of [-1, NaN]) assert.throws(() => found(odd), /^RangeError: `maxDistance` is/);
   assert.throws(() => found(/** @type {any} */ ({})), /^TypeError: `maxDistance` must be a number/);
+  // A distance that was found is not too far, though its square is rounded.
+  const plane = new BroadPhase({ dimensions: 2, precision: "double" });
+  const next = random(71);
+  plane.insertMany(boxesSpread(next, 2000, 2));
+  for (let round = 0; round < 200; round++) {
+    const point = [next(), next()];
+    const all = plane.nearest(point, 5);
+    const farthest = all.at(-1)?.distance ?? NaN;
+    assert.deepEqual(plane.nearest(point, 5, farthest), all);
+    assert.ok(plane.nearest(point, 5, farthest * (1 - 2 ** -52)).every(({ distance }) => distance < farthest));
+  }
+  plane.free();
   world.free();
 });
 
@@ -509,5 +521,22 @@ test("pairs without an order are the same pairs", () => {
   assert.ok(sorted.length > 2000);
   assert.deepEqual(world.pairs({ sorted: true }), sorted);
   assert.deepEqual(pairsOf(world.pairs({ sorted: false })).sort(), pairsOf(sorted).sort());
+  world.free();
+});
+
+test("queries without an order find the same bodies", () => {
+  const world = new BroadPhase({ dimensions: 2 });
+  world.insertMany(boxesSpread(random(63), 3000, 2));
+  const even = (/** @type {number} */ id) => id % 2 === 0;
+  for (const filter of [undefined, { mask: 1 }, even]) {
+    for (const [query, area] of /** @type {const} */ ([["overlapping", [0.2, 0.2, 0.8, 0.8]], ["containing", [0.5, 0.5]], ["within", [0.5, 0.5]]])) {
+      const ask = (/** @type {any} */ options) => /** @type {any} */ (world)[query](area, ...(query === "within" ? [0.4] : []), filter, options);
+      /** @type {Float64Array} */
+      const sorted = ask({ sorted: true });
+      assert.deepEqual(ask(undefined), sorted);
+      assert.deepEqual(ask({ sorted: false }).sort(), sorted);
+      if (query !== "containing") assert.ok(sorted.length > 100 && ask({ sorted: false }).join() !== sorted.join(), `${query} sorts nothing`);
+    }
+  }
   world.free();
 });

@@ -239,7 +239,7 @@ impl World {
 
     /// Ids, their values, and where the ids of each query end. `kind` names a [`Query`]; `queries`
     /// holds its numbers, a row for each query.
-    #[pyo3(signature = (kind, queries, filter, argument, k=0))]
+    #[pyo3(signature = (kind, queries, filter, argument, k=0, max_distance=0.0, sorted=true))]
     fn query<'py>(
         &self,
         kind: &str,
@@ -247,6 +247,8 @@ impl World {
         filter: Option<Words>,
         argument: &str,
         k: usize,
+        max_distance: f64,
+        sorted: bool,
     ) -> PyResult<(Array<'py>, Array<'py>, Array<'py>)> {
         let query = match kind {
             "overlapping" => Query::Overlapping,
@@ -254,7 +256,8 @@ impl World {
             "within" => Query::Within,
             "cast" => Query::Cast,
             "cast_all" => Query::CastAll,
-            "nearest" => Query::Nearest(k),
+            // Slightly farther: Python compares distances, which are rounded roots, and not their squares.
+            "nearest" => Query::Nearest { k, max_distance: max_distance.next_up() },
             _ => return Err(PyValueError::new_err("there is no such query")),
         };
         let (py, queries) = (queries.py(), copy_numbers::<f64>(&queries)?);
@@ -263,7 +266,7 @@ impl World {
             let (mut answer, filter) = (Answer::default(), filter.map(filter_of));
             let count = space.world.len() + queries.len();
             let done =
-                space.run(py, count, |world| world.query(query, queries, filter, &mut answer))?;
+                space.run(py, count, |world| world.query(query, queries, filter, sorted, &mut answer))?;
             done.map_err(|error| raise(py, error, argument, &[]))?;
             Ok((
                 numbers(py, answer.ids.iter().map(|id| id.0))?,

@@ -240,6 +240,29 @@ def test_casts_and_neighbors_equal_brute_force(dtype: Any) -> None:
     assert np.array_equal(world.nearest(points[3], 7).ids, near.ids[3])
     assert world.nearest(points[0], 10**12).ids.shape == (300,) and world.nearest(points[0], 0).ids.shape == (0,)
 
+    for far in (0.0, 2.5, float(near.distances[3, 4]), np.inf):
+        limited = world.nearest_many(points, 7, max_distance=far)
+        within = (near.distances <= far)[:, : limited.ids.shape[1]]
+        assert within.sum() == (near.distances <= far).sum() and (within.any(axis=0)).all()
+        columns = limited.ids.shape[1]
+        assert np.array_equal(limited.ids, np.where(within, near.ids[:, :columns], -1))
+        assert np.array_equal(limited.distances, np.where(within, near.distances[:, :columns], np.inf))
+        assert np.array_equal(world.nearest(points[3], 7, max_distance=far).ids, near.ids[3][near.distances[3] <= far])
+
+    areas = np.concatenate([points, points + 9], axis=1).astype(dtype)
+    for unsorted, in_order in (
+        (world.overlapping_many(areas, sorted=False), world.overlapping_many(areas)),
+        (world.containing_many(points, sorted=False), world.containing_many(points)),
+        (world.within_many(points, 2.5, sorted=False), world.within_many(points, 2.5)),
+    ):
+        assert np.array_equal(unsorted.ends, in_order.ends)
+        assert all(np.array_equal(np.sort(a), b) for a, b in zip(unsorted.each(), in_order.each()))
+    area, point = areas[3], points[3]
+    assert np.array_equal(np.sort(world.overlapping(area, sorted=False)), world.overlapping(area))
+    assert np.array_equal(np.sort(world.containing(point, sorted=False)), world.containing(point))
+    assert np.array_equal(np.sort(world.within(point, 5, sorted=False)), world.within(point, 5))
+    assert not np.array_equal(world.overlapping_many(areas, sorted=False).ids, world.overlapping_many(areas).ids)
+
     found = world.within_many(points, 2.5)
     assert np.array_equal(np.bincount(found.queries(), minlength=50), (distances <= 2.5).sum(axis=1))
     assert np.array_equal(np.argwhere(distances <= 2.5), np.stack([found.queries(), sap.slots_of(found.ids)], 1))
@@ -466,6 +489,8 @@ def test_queries_that_make_no_sense() -> None:
         lambda: world.within([0, 0], -1),
         lambda: world.within([0, 0], nan),
         lambda: world.nearest([0, inf]),
+        lambda: world.nearest([0, 0], max_distance=-1),
+        lambda: world.nearest([0, 0], max_distance=nan),
         lambda: world.ray_cast([0, nan], [1, 1]),
         lambda: world.ray_cast([0, 0], [inf, 1]),
         lambda: world.ray_cast([0, 0], [1, 1], -1),

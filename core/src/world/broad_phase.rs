@@ -208,12 +208,12 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// assert_eq!(queries.overlapping(&Aabb::new([0.0, 0.0], [5.0, 1.0]))?, [wall]);
     /// let hit = queries.cast(&Cast::ray([1.0, 1.0], [1.0, 0.0], 100.0))?.unwrap();
     /// assert_eq!((hit.id, hit.t), (wall, 4.0));
-    /// assert_eq!(queries.nearest([10.0, 1.0], 1)?[0].id, tree);
+    /// assert_eq!(queries.nearest([10.0, 1.0], 1, f64::INFINITY)?[0].id, tree);
     /// # Ok::<(), sweep_and_prune::Error>(())
     /// ```
     pub fn queries(&mut self) -> Queries<'_, D, T> {
         self.tracking.ready_for_queries(&mut self.bodies);
-        Queries { bodies: &self.bodies, tree: &self.tracking.tree, filter: None }
+        Queries { bodies: &self.bodies, tree: &self.tracking.tree, filter: None, is_sorted: true }
     }
 
     /// The whole state as bytes. A world [restored](Self::from_snapshot) from them gives, for the

@@ -264,7 +264,7 @@ fn queries_without_a_filter_find_bodies_that_pair_with_nothing() {
     let queries = world.queries();
     assert_eq!(queries.overlapping(&aabb).unwrap(), ids);
     assert_eq!(queries.containing([0.5, 0.5]).unwrap(), ids);
-    assert_eq!(queries.nearest([9.0, 9.0], 2).unwrap().len(), 2);
+    assert_eq!(queries.nearest([9.0, 9.0], 2, f64::INFINITY).unwrap().len(), 2);
     let ray = Cast::ray([-1.0, 0.5], [1.0, 0.0], 9.0);
     assert_eq!(queries.cast_all(&ray).unwrap().len(), 2);
     assert_eq!(queries.with_filter(Filter::ALL).overlapping(&aabb).unwrap(), []);

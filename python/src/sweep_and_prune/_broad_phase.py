@@ -570,7 +570,7 @@ class BroadPhase:
         """
         return self._world.pairs_of(int(one_id(id)[0]))
 
-    def overlapping(self, box: ArrayLike, filter: Filter | None = None) -> Ids:
+    def overlapping(self, box: ArrayLike, filter: Filter | None = None, *, sorted: bool = True) -> Ids:
         """Finds the bodies whose boxes overlap a box.
 
         All queries see the boxes as last set, whether updated or not. The first query after a change takes longer.
@@ -578,9 +578,10 @@ class BroadPhase:
         Args:
             box: `2 * dimensions` numbers.
             filter: finds only bodies with which a body with this filter may pair; by default, all bodies.
+            sorted: False for ids in no particular order, which takes up to half of the time if there are many.
 
         Returns:
-            `(m,)` ids, sorted by slot.
+            `(m,)` ids, sorted by slot unless `sorted` is False.
 
         Raises:
             InvalidBoxError: if the box is inverted or has a NaN.
@@ -592,14 +593,15 @@ class BroadPhase:
         >>> world.overlapping([1, 3]) == [a]
         array([ True])
         """
-        return self._ask("overlapping", filter, Part("box", self._row(box, "box")))[0]
+        return self._ask("overlapping", filter, Part("box", self._row(box, "box")), sorted=sorted)[0]
 
-    def overlapping_many(self, boxes: ArrayLike, filter: Filter | None = None) -> Lists:
+    def overlapping_many(self, boxes: ArrayLike, filter: Filter | None = None, *, sorted: bool = True) -> Lists:
         """Finds the bodies that overlap each of many boxes.
 
         Args:
             boxes: `(n, 2 * dimensions)` numbers.
             filter: as in `overlapping`.
+            sorted: as in `overlapping`.
 
         Raises:
             InvalidBoxError: for the first box that is inverted or has a NaN.
@@ -611,15 +613,16 @@ class BroadPhase:
         >>> world.overlapping_many([[1, 3], [3, 4], [0, 9]]).ends
         array([1, 1, 3])
         """
-        ids, _, ends = self._ask("overlapping", filter, Part("boxes", self._rows(boxes, "boxes")))
+        ids, _, ends = self._ask("overlapping", filter, Part("boxes", self._rows(boxes, "boxes")), sorted=sorted)
         return Lists(ids, ends)
 
-    def containing(self, point: ArrayLike, filter: Filter | None = None) -> Ids:
+    def containing(self, point: ArrayLike, filter: Filter | None = None, *, sorted: bool = True) -> Ids:
         """Finds the bodies whose boxes contain a point.
 
         Args:
             point: `dimensions` numbers.
             filter: as in `overlapping`.
+            sorted: as in `overlapping`.
 
         Returns:
             `(m,)` ids, sorted by slot.
@@ -634,14 +637,15 @@ class BroadPhase:
         >>> world.containing([2, 1]) == [a]
         array([ True])
         """
-        return self._ask("containing", filter, Part("point", self._point(point, "point"), "not NaN"))[0]
+        return self._ask("containing", filter, Part("point", self._point(point, "point"), "not NaN"), sorted=sorted)[0]
 
-    def containing_many(self, points: ArrayLike, filter: Filter | None = None) -> Lists:
+    def containing_many(self, points: ArrayLike, filter: Filter | None = None, *, sorted: bool = True) -> Lists:
         """Finds the bodies whose boxes contain each of many points.
 
         Args:
             points: `(n, dimensions)` numbers.
             filter: as in `overlapping`.
+            sorted: as in `overlapping`.
 
         Raises:
             InvalidQueryError: for the first point with a NaN.
@@ -653,16 +657,17 @@ class BroadPhase:
         >>> world.containing_many([[0], [1]]).ends
         array([1, 3])
         """
-        ids, _, ends = self._ask("containing", filter, Part("points", self._points(points, "points"), "not NaN"))
+        ids, _, ends = self._ask("containing", filter, Part("points", self._points(points, "points"), "not NaN"), sorted=sorted)
         return Lists(ids, ends)
 
-    def within(self, center: ArrayLike, radius: float, filter: Filter | None = None) -> Ids:
+    def within(self, center: ArrayLike, radius: float, filter: Filter | None = None, *, sorted: bool = True) -> Ids:
         """Finds the bodies whose boxes are at most `radius` away from a point.
 
         Args:
             center: `dimensions` numbers, finite.
             radius: not negative; may be infinite.
             filter: as in `overlapping`.
+            sorted: as in `overlapping`.
 
         Returns:
             `(m,)` ids, sorted by slot.
@@ -678,15 +683,18 @@ class BroadPhase:
         (1, 0)
         """
         point, length = Part("center", self._point(center, "center"), "finite"), self._number(radius, "radius")
-        return self._ask("within", filter, point, length)[0]
+        return self._ask("within", filter, point, length, sorted=sorted)[0]
 
-    def within_many(self, centers: ArrayLike, radii: ArrayLike, filter: Filter | None = None) -> Lists:
+    def within_many(
+        self, centers: ArrayLike, radii: ArrayLike, filter: Filter | None = None, *, sorted: bool = True
+    ) -> Lists:
         """Finds the bodies near each of many points.
 
         Args:
             centers: `(n, dimensions)` numbers.
             radii: `(n,)` numbers, or one for all.
             filter: as in `overlapping`.
+            sorted: as in `overlapping`.
 
         Raises:
             InvalidQueryError: for the first that is invalid, as for a single one.
@@ -700,19 +708,22 @@ class BroadPhase:
         """
         points = self._points(centers, "centers")
         lengths = Part("radii", each(radii, "radii", self._dtype, len(points))[:, None], "0 or more")
-        ids, _, ends = self._ask("within", filter, Part("centers", points, "finite"), lengths)
+        ids, _, ends = self._ask("within", filter, Part("centers", points, "finite"), lengths, sorted=sorted)
         return Lists(ids, ends)
 
-    def nearest(self, point: ArrayLike, k: int = 1, filter: Filter | None = None) -> Neighbors:
+    def nearest(
+        self, point: ArrayLike, k: int = 1, filter: Filter | None = None, *, max_distance: float = np.inf
+    ) -> Neighbors:
         """Finds the `k` bodies nearest to a point, or all if there are fewer, sorted by distance and then by slot.
 
         Args:
             point: `dimensions` numbers, finite.
             k: how many; 0 or more.
             filter: as in `overlapping`.
+            max_distance: bodies farther away are not found, nor searched: a small one saves time.
 
         Raises:
-            InvalidQueryError: if the point is not finite.
+            InvalidQueryError: if the point is not finite, or the distance negative or NaN.
             ValueError, TypeError: for another shape, or anything but numbers.
 
         >>> import sweep_and_prune as sap
@@ -720,22 +731,29 @@ class BroadPhase:
         >>> ids = world.insert_many([[0, 2], [5, 6]])
         >>> world.nearest([3]).distances
         array([1.])
+        >>> world.nearest([3], k=9, max_distance=1.5).ids.tolist() == [ids[0]]
+        True
         """
-        return Neighbors(*(found[0] for found in self._nearest("point", self._point(point, "point"), k, filter)))
+        found = self._nearest("point", self._point(point, "point"), k, filter, max_distance)
+        return Neighbors(found.ids[0], found.distances[0])
 
-    def nearest_many(self, points: ArrayLike, k: int = 1, filter: Filter | None = None) -> Neighbors:
+    def nearest_many(
+        self, points: ArrayLike, k: int = 1, filter: Filter | None = None, *, max_distance: float = np.inf
+    ) -> Neighbors:
         """Finds the `k` bodies nearest to each of many points.
 
         Args:
             points: `(n, dimensions)` numbers.
             k: how many; 0 or more.
             filter: as in `overlapping`.
+            max_distance: as in `nearest`.
 
         Returns:
-            `(n, k)` ids and distances, or fewer columns if there are fewer bodies.
+            `(n, k)` ids and distances, or fewer columns if no point has so many. Points that have fewer than others
+            have the id -1 and an infinite distance for those that they lack.
 
         Raises:
-            InvalidQueryError: for the first point that is not finite.
+            InvalidQueryError: for the first point that is not finite, or if the distance is negative or NaN.
             ValueError, TypeError: for another shape, or anything but numbers.
 
         >>> import sweep_and_prune as sap
@@ -745,7 +763,7 @@ class BroadPhase:
         array([[1., 2.],
                [3., 7.]])
         """
-        return self._nearest("points", self._points(points, "points"), k, filter)
+        return self._nearest("points", self._points(points, "points"), k, filter, max_distance)
 
     def ray_cast(
         self, origin: ArrayLike, direction: ArrayLike, limit: float = np.inf, filter: Filter | None = None
@@ -955,22 +973,35 @@ class BroadPhase:
         return self._world.boxes(ids).astype(self._dtype, copy=False)
 
     def _ask(
-        self, kind: str, filter: Filter | None, *parts: Part, k: int = 0
+        self,
+        kind: str,
+        filter: Filter | None,
+        *parts: Part,
+        k: int = 0,
+        max_distance: float = 0.0,
+        sorted: bool = True,
     ) -> tuple[Ids, NDArray[np.float64], NDArray[np.int64]]:
         """Answers queries whose numbers are in the rows of the parts, side by side."""
         rows = parts[0].rows if len(parts) == 1 else np.concatenate([part.rows for part in parts], axis=1)
         try:
             checked = None if filter is None else words(filter)
-            return self._world.query(kind, _double(rows), checked, parts[0].name, k)
+            return self._world.query(kind, _double(rows), checked, parts[0].name, k, max_distance, bool(sorted))
         except InvalidQueryError as error:
             raise _explained(error.index, parts) from None
 
-    def _nearest(self, name: str, points: Floats, k: int, filter: Filter | None) -> Neighbors:
-        count = min(whole(k, "k", 0, 2**63 - 1), len(self))
-        ids, squares, _ = self._ask("nearest", filter, Part(name, points, "finite"), k=count)
-        # Each point has the same number of neighbors, since all queries see the same bodies.
-        shape = (len(points), len(ids) // len(points) if len(points) else 0)
-        return Neighbors(ids.reshape(shape), np.sqrt(squares).reshape(shape))
+    def _nearest(self, name: str, points: Floats, k: int, filter: Filter | None, max_distance: float) -> Neighbors:
+        count, far = min(whole(k, "k", 0, 2**63 - 1), len(self)), real(max_distance, "max_distance")
+        if not far >= 0:
+            raise InvalidQueryError(0, "max_distance", far, "0 or more")
+        ids, squares, ends = self._ask("nearest", filter, Part(name, points, "finite"), k=count, max_distance=far)
+        distances = np.sqrt(squares)
+        near = distances <= far  # the search compares squares, and finds a little more
+        counts = np.bincount(np.repeat(np.arange(len(ends)), np.diff(ends, prepend=0))[near], minlength=len(ends))
+        # Which places of the result have a neighbor: in each row the first.
+        has = np.arange(counts.max(initial=0)) < counts[:, None]
+        found = Neighbors(np.full(has.shape, -1, np.int64), np.full(has.shape, np.inf))
+        found.ids[has], found.distances[has] = ids[near], distances[near]
+        return found
 
     def _cast(self, start: Part, direction: ArrayLike, limit: float, filter: Filter | None, all: bool) -> Hits:
         way = Part("direction", self._point(direction, "direction"), "finite")

@@ -2,11 +2,11 @@
 
 use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
-use core::cell::RefCell;
+use core::cell::Cell;
 use core::ops::ControlFlow;
 
 use super::region::Queries;
-use crate::geometry::{check_each, distance_squared, fault_in, is_finite};
+use crate::geometry::{check_each, distance_squared, fault_in, is_finite, is_length};
 use crate::lists::Lists;
 use crate::world::bodies::ProxyId;
 use crate::{Aabb, Error, Scalar};
@@ -21,47 +21,41 @@ pub struct Neighbor<I = ProxyId> {
 }
 
 impl<const D: usize, T: Scalar> Queries<'_, D, T> {
-    /// The `k` bodies nearest to a point, or all if there are fewer, sorted by distance and then
-    /// by id.
+    /// The `k` bodies nearest to a point that are at most `max_distance` away, or all of those if there are
+    /// fewer; sorted by distance and then by id. Only the parts of the world that are near enough are searched.
+    ///
+    /// Distances are compared as squares in `f64`: they overflow beyond 1e154, which coordinates of type `f32`
+    /// cannot reach.
     ///
     /// # Errors
-    /// [`Error::InvalidQuery`] if the point is not finite.
-    pub fn nearest(&self, point: [T; D], k: usize) -> Result<Vec<Neighbor>, Error> {
-        self.list(&point, |queries, points| queries.nearest_many(points, k))
+    /// [`Error::InvalidQuery`] if the point is not finite, or the distance is negative or NaN.
+    pub fn nearest(
+        &self,
+        point: [T; D],
+        k: usize,
+        max_distance: f64,
+    ) -> Result<Vec<Neighbor>, Error> {
+        self.list(&point, |queries, points| queries.nearest_many(points, k, max_distance))
     }
 
     /// [`nearest`](Self::nearest) for each of many points.
     ///
     /// # Errors
-    /// [`Error::InvalidQuery`] with the index of the first bad one.
-    pub fn nearest_many(&self, points: &[[T; D]], k: usize) -> Result<Lists<Neighbor>, Error> {
+    /// As [`nearest`](Self::nearest), with the index of the first bad point.
+    pub fn nearest_many(
+        &self,
+        points: &[[T; D]],
+        k: usize,
+        max_distance: f64,
+    ) -> Result<Lists<Neighbor>, Error> {
+        check_each(&[max_distance], |limit| fault_in("max_distance", &[*limit], is_length))?;
         check_each(points, |point| fault_in("point", point, is_finite))?;
         let mut lists = Lists::new();
-        // The k nearest so far, the farthest on top, as bits of the squared distance (which order as the
-        // numbers do, none being negative) and slot.
-        let nearest = RefCell::new(BinaryHeap::new());
+        let mut nearest = BinaryHeap::new();
         for point in points {
-            let bound = |bounds: &Aabb<D, T>| {
-                let (distance, nearest) = (distance_squared(point, bounds), nearest.borrow());
-                let farthest = nearest.peek().filter(|_| nearest.len() == k);
-                farthest.is_none_or(|&(bits, _)| distance.to_bits() <= bits).then_some(distance)
-            };
-            let visit = |index: u32| {
-                if self.sees(index) {
-                    let distance = distance_squared(point, self.bodies.shape(index));
-                    let mut nearest = nearest.borrow_mut();
-                    nearest.push((distance.to_bits(), self.bodies.slots.slot_of[index as usize]));
-                    if nearest.len() > k {
-                        nearest.pop();
-                    }
-                }
-                ControlFlow::Continue(())
-            };
-            if k > 0 {
-                self.tree.search(bound, visit);
-            }
             let start = lists.values.len();
-            lists.values.extend(nearest.borrow_mut().drain().map(|(bits, slot)| Neighbor {
+            self.collect_nearest(point, k, max_distance * max_distance, &mut nearest);
+            lists.values.extend(nearest.drain().map(|(bits, slot)| Neighbor {
                 id: self.bodies.slots.id_of_slot(slot),
                 distance_squared: f64::from_bits(bits),
             }));
@@ -71,5 +65,67 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
             lists.end();
         }
         Ok(lists)
+    }
+
+    /// Fills an empty heap with the `k` nearest bodies whose squared distances are at most `limit`, the farthest
+    /// on top: the bits of the square (which order as squares do, none being negative) and the slot. Returns how
+    /// many bodies it looked at.
+    fn collect_nearest(
+        &self,
+        point: &[T; D],
+        k: usize,
+        limit: f64,
+        nearest: &mut BinaryHeap<(u64, u32)>,
+    ) -> usize {
+        if k == 0 {
+            return 0;
+        }
+        // What is farther away than this does not matter: it is lowered once there are k.
+        let farthest = Cell::new(limit);
+        let mut seen = 0;
+        let bound = |bounds: &Aabb<D, T>| {
+            let distance = distance_squared(point, bounds);
+            (distance <= farthest.get()).then_some(distance)
+        };
+        self.tree.search(bound, |index| {
+            seen += 1;
+            let distance = distance_squared(point, self.bodies.shape(index));
+            if distance <= farthest.get() && self.sees(index) {
+                nearest.push((distance.to_bits(), self.bodies.slots.slot_of[index as usize]));
+                if nearest.len() > k {
+                    nearest.pop();
+                }
+                if let Some(&(bits, _)) = nearest.peek().filter(|_| nearest.len() == k) {
+                    farthest.set(f64::from_bits(bits));
+                }
+            }
+            ControlFlow::Continue(())
+        });
+        seen
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::BroadPhase;
+
+    #[test]
+    fn only_what_is_near_enough_is_searched() {
+        let mut world = BroadPhase::<1>::new();
+        let boxes: Vec<_> = (0..10_000).map(|at| Aabb::new([at as f32], [at as f32])).collect();
+        world.insert_many(&boxes, crate::Filter::default()).unwrap();
+        let queries = world.queries();
+        let seen = |k, max_distance: f64| {
+            let mut nearest = BinaryHeap::new();
+            let seen =
+                queries.collect_nearest(&[5000.0], k, max_distance * max_distance, &mut nearest);
+            (nearest.len(), seen)
+        };
+        assert_eq!(seen(20_000, f64::INFINITY), (10_000, 10_000));
+        let (found, looked_at) = seen(20_000, 50.0);
+        assert!(found == 101 && looked_at < 300, "{found} found among {looked_at}");
+        let (found, looked_at) = seen(3, f64::INFINITY);
+        assert!(found == 3 && looked_at < 100, "{found} found among {looked_at}");
     }
 }

@@ -42,7 +42,7 @@ extern "C" fn world_pairs_of(handle: &mut Handle, id: f64) -> Code {
 
 /// Answers a query, whose numbers are in the numbers. Details: where the ids are that it found, and
 /// how many; the first number is where their values are (t, or squared distances), as many. If
-/// `is_static` is 2 there is no filter.
+/// `is_static` is 2 there is no filter. `is_sorted` is for queries whose answer has no values.
 #[unsafe(no_mangle)]
 extern "C" fn world_query(
     handle: &mut Handle,
@@ -52,18 +52,21 @@ extern "C" fn world_query(
     mask: u32,
     group: i32,
     is_static: u32,
+    is_sorted: bool,
 ) -> Code {
+    let dimensions = handle.world.kind().dimensions;
     let query = match query {
         0 => Query::Overlapping,
         1 => Query::Containing,
         2 => Query::Within,
         3 => Query::Cast,
         4 => Query::CastAll,
-        _ => Query::Nearest(k),
+        // Slightly farther: JavaScript compares distances, which are rounded roots, and not their squares.
+        _ => Query::Nearest { k, max_distance: handle.numbers[dimensions].next_up() },
     };
     let filter = (is_static < 2).then(|| filter_of(category, mask, group, is_static == 1));
-    let numbers = &handle.numbers[..query.width(handle.world.kind().dimensions)];
-    let result = handle.world.query(query, numbers, filter, &mut handle.answer);
+    let numbers = &handle.numbers[..query.width(dimensions)];
+    let result = handle.world.query(query, numbers, filter, is_sorted, &mut handle.answer);
     handle.numbers[0] = handle.answer.values.as_ptr().addr() as f64;
     handle.answer(result)
 }
