@@ -92,7 +92,7 @@ async function beside(source: () => Wasm): Promise<WebAssembly.Module> {
 }
 
 async function compile(wasm: Wasm): Promise<WebAssembly.Module> {
-  // By its tag, not by `instanceof`: it may be of another realm.
+  // By its tag, not by `instanceof`: Next's edge runtime passes one of another realm.
   if (Object.prototype.toString.call(wasm) === "[object WebAssembly.Module]") return wasm as WebAssembly.Module;
   if (typeof Response !== "undefined" && wasm instanceof Response) return compileResponse(wasm);
   if (!isAddress(wasm)) return WebAssembly.compile(wasm as BufferSource); // which throws for anything else

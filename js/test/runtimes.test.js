@@ -42,7 +42,7 @@ for (const [runtime, ...args] of /** @type {const} */ ([["deno", "run", "--allow
   });
 }
 
-test("Next: on the server, and in the page", async () => {
+test("Next: on the server, in its edge runtime, and in the page", async () => {
   const next = join(modules, "next/dist/bin/next");
   rmSync(join(project, ".next"), { recursive: true, force: true });
   const env = { ...process.env, NEXT_TELEMETRY_DISABLED: "1", NODE_ENV: /** @type {const} */ ("production") };
@@ -53,6 +53,7 @@ test("Next: on the server, and in the page", async () => {
   try {
     const address = `http://127.0.0.1:${port}/`;
     assert.match(await textOf(address), /<p id="server">1<!-- --> pair on the server<\/p>/);
+    assert.equal(await textOf(`${address}edge`), '{"pairs":1}');
     assert.deepEqual(await resultOf(browser, address), { simd: true, pairs: [0, 2], begun: 2 });
   } finally {
     await browser.close();
