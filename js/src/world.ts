@@ -79,7 +79,8 @@ export class BroadPhase extends Bodies {
    * In all queries, `filter` is the filter of an imagined body: the query finds the bodies that may
    * pair with it. Or it is a function that gets an id and returns whether the query finds that body. It
    * is called after the search, so it may call anything. Without a filter a query finds every body. With
-   * `{ sorted: false }` the bodies are in no particular order, which takes up to half of the time if there are many.
+   * `{ sorted: false }` the bodies are in no particular order: sorting takes a quarter of the time for 100 bodies, and
+   * half for 10,000.
    *
    * @throws {@link InvalidBoxError}; and what `filter` throws.
    */

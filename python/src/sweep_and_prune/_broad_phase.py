@@ -578,7 +578,7 @@ class BroadPhase:
         Args:
             box: `2 * dimensions` numbers.
             filter: finds only bodies with which a body with this filter may pair; by default, all bodies.
-            sorted: False for ids in no particular order, which takes up to half of the time if there are many.
+            sorted: False for ids in no particular order: sorting takes a quarter of the time for 100, half for 10,000.
 
         Returns:
             `(m,)` ids, sorted by slot unless `sorted` is False.

@@ -29,8 +29,9 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         Self { filter: Some(filter), ..self }
     }
 
-    /// The same queries without sorting what lies in a box, around a point or in a sphere, which takes up to half
-    /// of the time where many bodies are found. What is nearest, or hit, is sorted by distance all the same.
+    /// The same queries, but what overlaps a box, contains a point or is within a sphere is in no particular order.
+    /// Sorting takes a quarter of the time of a query that finds 100 bodies, and half if it finds 10,000. What is
+    /// nearest, or hit, is sorted by distance all the same.
     ///
     /// ```
     /// use sweep_and_prune::{Aabb, BroadPhase};
