@@ -250,13 +250,14 @@ def test_casts_and_neighbors_equal_brute_force(dtype: Any) -> None:
         assert np.array_equal(world.nearest(points[3], 7, max_distance=far).ids, near.ids[3][near.distances[3] <= far])
 
     areas = np.concatenate([points, points + 9], axis=1).astype(dtype)
-    for unsorted, in_order in (
+    for unsorted, sorted_lists in (
         (world.overlapping_many(areas, sorted=False), world.overlapping_many(areas)),
         (world.containing_many(points, sorted=False), world.containing_many(points)),
         (world.within_many(points, 2.5, sorted=False), world.within_many(points, 2.5)),
     ):
-        assert np.array_equal(unsorted.ends, in_order.ends)
-        assert all(np.array_equal(np.sort(a), b) for a, b in zip(unsorted.each(), in_order.each()))
+        assert np.array_equal(unsorted.ends, sorted_lists.ends)
+        for any_order, expected in zip(unsorted.each(), sorted_lists.each()):
+            assert np.array_equal(np.sort(any_order), expected)
     area, point = areas[3], points[3]
     assert np.array_equal(np.sort(world.overlapping(area, sorted=False)), world.overlapping(area))
     assert np.array_equal(np.sort(world.containing(point, sorted=False)), world.containing(point))

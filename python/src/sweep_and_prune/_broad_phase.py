@@ -657,7 +657,9 @@ class BroadPhase:
         >>> world.containing_many([[0], [1]]).ends
         array([1, 3])
         """
-        ids, _, ends = self._ask("containing", filter, Part("points", self._points(points, "points"), "not NaN"), sorted=sorted)
+        ids, _, ends = self._ask(
+            "containing", filter, Part("points", self._points(points, "points"), "not NaN"), sorted=sorted
+        )
         return Lists(ids, ends)
 
     def within(self, center: ArrayLike, radius: float, filter: Filter | None = None, *, sorted: bool = True) -> Ids:
