@@ -173,9 +173,12 @@ fn queries_give_what_the_core_gives<const D: usize, T: Scalar>(
         ask(Query::Containing, &flat).unwrap(),
         of(&queries.containing_many(&points).unwrap())
     );
-    let nearest = queries.nearest_many(&points, 3, 2.0).unwrap();
-    assert!(nearest.values().len() < 3 * points.len(), "the distance limits nothing");
-    let answer = ask(Query::Nearest { k: 3, max_distance: 2.0 }, &flat).unwrap();
+    // So far that the third neighbor of the first point is beyond.
+    let all = queries.nearest_many(&points, 3, f64::INFINITY).unwrap();
+    let max_distance = 0.9 * all[0][2].distance_squared.sqrt();
+    let nearest = queries.nearest_many(&points, 3, max_distance).unwrap();
+    assert!(nearest.values().len() < all.values().len(), "the distance limits nothing");
+    let answer = ask(Query::Nearest { k: 3, max_distance }, &flat).unwrap();
     assert_eq!(answer.ids, bits(nearest.values().iter().map(|near| near.id)));
     assert!(answer.values.iter().zip(nearest.values()).all(|(a, b)| *a == b.distance_squared));
     assert_eq!(answer.ends, nearest.ends());
