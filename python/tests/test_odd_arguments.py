@@ -108,7 +108,7 @@ def sensible(name: str, ids: Any) -> Any:
         **dict.fromkeys(("box", "start", "end"), ROWS[0]),
         **dict.fromkeys(("points", "centers", "origins", "directions"), POINTS),
         **dict.fromkeys(("point", "center", "origin", "direction"), POINTS[0]),
-        **dict.fromkeys(("radius", "radii", "limit", "limits", "margin", "prediction"), 1.0),
+        **dict.fromkeys(("radius", "radii", "limit", "limits", "margin", "prediction", "max_distance"), 1.0),
         **dict.fromkeys(("threads", "k", "size", "index", "axis", "group", "category", "mask"), 1),
         **{"id": int(ids[0]), "ids": ids, "filter": sap.Filter(), "each": lambda chunk: None, "snapshot": b""},
         **{"format": "xyxy", "closed": "both", "missing": "raise", "by": None, "index_dtype": np.int64},
@@ -121,6 +121,7 @@ def sensible(name: str, ids: Any) -> Any:
             "report": "exact",
             "other": sap.Filter(),
             "is_static": False,
+            "sorted": True,
         },
     }
     return values[name]
