@@ -985,6 +985,8 @@ class BroadPhase:
     ) -> tuple[Ids, NDArray[np.float64], NDArray[np.int64]]:
         """Answers queries whose numbers are in the rows of the parts, side by side."""
         rows = parts[0].rows if len(parts) == 1 else np.concatenate([part.rows for part in parts], axis=1)
+        if not isinstance(sorted, (bool, np.bool_)):
+            raise TypeError(f"sorted must be True or False, not a {type(sorted).__name__}")
         try:
             checked = None if filter is None else words(filter)
             return self._world.query(kind, _double(rows), checked, parts[0].name, k, max_distance, bool(sorted))
