@@ -61,7 +61,7 @@ const entries = [
   { name: "algorithms", budget: 8_500 },
   { name: "algorithms-inline" },
   // With Lit, which it draws its controls by.
-  { name: "demo", budget: 45_000 },
+  { name: "demo", budget: 46_000 },
 ];
 
 /** Without and with vector instructions. */

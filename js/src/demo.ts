@@ -7,7 +7,7 @@
 import { SapDemo } from "./demo/api.js";
 import { readShared as read } from "./demo/share.js";
 
-export { type DemoDrag, type DemoEvent, type DemoEventMap, type DemoSort, type DemoState, type Row, SapDemo } from "./demo/api.js";
+export { type DemoDrag, type DemoEvent, type DemoEventMap, type DemoProgram, type DemoSort, type DemoState, type ProgramEvent, type Row, SapDemo } from "./demo/api.js";
 
 /** The attributes that an address from `share()` holds after its `#`, as pairs of name and value. */
 export function readShared(hash: string): [name: string, value: string][] {

@@ -1,6 +1,6 @@
 //! Which broad phase finds the pairs: a choice at run time.
 
-use sweep_and_prune::algorithms::{Counts, Runner, RunnerOptions};
+use sweep_and_prune::algorithms::{Counts, Runner, RunnerOptions, Sort};
 use sweep_and_prune::{Aabb, Error, PairFinder};
 
 /// Who finds the pairs of boxes. The motion is the same, bit for bit, whichever it is.
@@ -29,6 +29,9 @@ impl<const D: usize> Engine<D> {
             BroadPhase::Library => Ok(Engine::Library(Box::default())),
             BroadPhase::Algorithm(options) => {
                 options.axis.choose::<D, f32>(&[])?;
+                // Insertion sort is for what is almost sorted, which the first step is not.
+                let first = if options.persistent { Sort::Standard } else { options.sort };
+                let options = options.first_sort(first);
                 Ok(Engine::Algorithm(Box::new(Runner::new(options))))
             }
         }

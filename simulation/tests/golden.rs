@@ -114,6 +114,21 @@ fn counts_mean_the_same_for_each_algorithm() {
     }
 }
 
+/// A world of 5,000 balls took 12 million comparisons of an insertion sort in its first step.
+#[test]
+fn a_first_step_is_sorted_by_the_library() {
+    let population = Population { bodies: 5_000, size: 0.03, spread: 8.0, seed: 1 };
+    let mut simulation = Simulation::new(&scenes::falling::<2>(population).unwrap()).unwrap();
+    for method in [Method::SortedPairwise, Method::EndpointSweep] {
+        let options = RunnerOptions::new(method).sort(Sort::Insertion).persistent(true);
+        simulation.set_broad_phase(BroadPhase::Algorithm(options)).unwrap();
+        let mut comparisons = || simulation.step(|| 0.0).unwrap().counts.unwrap().comparisons;
+        let (first, second) = (comparisons(), comparisons());
+        assert!(first < 200_000, "{method:?}: {first}");
+        assert!(second < 60_000, "{method:?}: {second}");
+    }
+}
+
 #[test]
 fn refused_axis_changes_nothing() {
     let population = Population { bodies: 10, size: 0.5, spread: 1.0, seed: 5 };

@@ -3,8 +3,8 @@
 // why, and the pages are built without a link to what is not there.
 
 import { spawnSync } from "node:child_process";
-import { cpSync, existsSync, readdirSync, rmSync, statSync } from "node:fs";
-import { dirname, join, resolve } from "node:path";
+import { cpSync, existsSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { dirname, join, relative, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const root = resolve(dirname(fileURLToPath(import.meta.url)), "../..");
@@ -50,4 +50,26 @@ for (const { name, sources, tool, made, first } of languages) {
   rmSync(folder, { recursive: true, force: true });
   if (status === 0) cpSync(made, folder, { recursive: true });
   else console.error(`The documentation for ${name} is left out: ${error?.message ?? `${tool[0]} failed`}.`);
+}
+
+/** What each page of the documentation has in addition: the way back to the site. */
+const BACK = "back-to-the-site";
+
+/**
+ * Adds the way back, once, and mends what makes browsers complain: an icon that is missing, and fonts that rustdoc
+ * preloads and then does not use.
+ */
+function finish(file) {
+  const page = readFileSync(file, "utf8");
+  if (page.includes(BACK)) return;
+  const style = "position:fixed;right:12px;bottom:12px;z-index:999;padding:12px 16px;border-radius:8px;background:#0e6670;color:#fff;font:600 15px/20px system-ui,sans-serif;text-decoration:none";
+  const link = `<a id="${BACK}" href="${relative(dirname(file), join(output, "../api.html"))}" style="${style}">← sweep-and-prune</a>`;
+  const preload = /<script>if\(window\.location\.protocol!=="file:"\)document\.head\.insertAdjacentHTML\("beforeend",.*?<\/script>/s;
+  const icon = /rel="(alternate )?icon"/.test(page) ? "" : `<link rel="icon" href="${relative(dirname(file), join(output, "../icon.svg"))}" type="image/svg+xml">`;
+  // At the end: the first thing that a keyboard reaches stays what the tool has made it.
+  writeFileSync(file, page.replace(preload, "").replace(/<\/head>/i, (end) => icon + end).replace(/<\/body>/i, (end) => link + end));
+}
+
+for (const { parentPath, name } of existsSync(output) ? readdirSync(output, { withFileTypes: true, recursive: true }) : []) {
+  if (name.endsWith(".html")) finish(join(parentPath, name));
 }

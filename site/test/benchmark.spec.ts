@@ -8,11 +8,31 @@ const folder = new URL("../../bench/results/", import.meta.url);
 const newest = readdirSync(folder).filter((name) => name.endsWith(".json")).sort((a, b) => b.slice(-15).localeCompare(a.slice(-15)))[0];
 const kept = newest ? JSON.parse(readFileSync(new URL(newest, folder), "utf8")) : undefined;
 
+test("one sentence and five alternatives come first, everything else is folded", async ({ page }) => {
+  test.skip(!kept, "nothing was kept");
+  await page.goto("/benchmark.html");
+  await expect(page.locator(".lede")).toContainText(/in Rust in [\d.]+ (µs|ms), [\d.]+ times faster than the fastest alternative \(.+\), and in JavaScript in/);
+  await expect(page.locator("details[open]")).toHaveCount(0);
+  await expect(page.locator("#recorded-choice")).toBeHidden();
+  for (const table of await page.locator(".fronts table").all()) {
+    await expect(table.locator("tbody tr"), "sweep-and-prune, five alternatives, and a plain sweep").toHaveCount(7);
+    await expect(table.locator("tbody tr").first()).toContainText("sweep-and-prune");
+  }
+  // What it says is what the file says.
+  const one = kept.cases.find(({ scene, dimensions, boxes }: { scene: string; dimensions: number; boxes: number }) => scene === "uniform" && dimensions === 2 && boxes === 10_000);
+  const time = (name: string): number => one.results.find((entry: { name: string }) => entry.name === name).outcome.Timed.median_ns;
+  const row = page.locator(".fronts table").first().locator("tr").filter({ has: page.getByRole("rowheader", { name: "rstar", exact: true }) });
+  expect(Number((await row.locator("td").last().textContent())!.replace("×", ""))).toBeCloseTo(time("rstar") / time("sweep-and-prune"), 0);
+  // A link to what is folded opens it.
+  await page.getByRole("link", { name: "Measure in your own browser" }).click();
+  await expect(page.getByRole("button", { name: "Run" })).toBeEnabled();
+});
+
 test.describe("the recorded results", () => {
   test.skip(!kept, "nothing was kept");
 
   test.beforeEach(async ({ page }) => {
-    await page.goto("/benchmark.html");
+    await page.goto("/benchmark.html#recorded-heading");
     await expect(page.locator("#plot-time svg").first()).toBeVisible();
   });
 
@@ -76,7 +96,7 @@ test.describe("the recorded results", () => {
 
 /** Chooses few boxes and these alternatives only. */
 async function choose(page: Page, alternatives: readonly string[], sizes = ["1000"]): Promise<void> {
-  await page.goto("/benchmark.html");
+  await page.goto("/benchmark.html#here-heading");
   await expect(page.getByRole("button", { name: "Run" })).toBeEnabled();
   for (const box of await page.locator("#here input[name=size]").all()) await box.setChecked(sizes.includes(await box.inputValue()));
   for (const box of await page.locator("#here input[name=alternative]").all()) await box.setChecked(alternatives.includes(await box.inputValue()));
@@ -90,7 +110,7 @@ test.describe("run it here", () => {
     const heard = complaints(page);
     const elsewhere = requestsElsewhere(page, baseURL ?? "");
     for (const [scene, dimensions] of [["mixed", "2"], ["drift", "3"]] as const) {
-      await page.goto("/benchmark.html");
+      await page.goto("/benchmark.html#here-heading");
       await expect(page.getByRole("button", { name: "Run" })).toBeEnabled();
       await page.locator("#here-scene").selectOption(scene);
       await page.locator("#here-dimensions").selectOption(dimensions);
@@ -100,7 +120,20 @@ test.describe("run it here", () => {
       await page.getByRole("button", { name: "Run" }).click();
       await expect(page.locator("#here-status")).toContainText("Done.", { timeout: 90_000 });
       for (const name of ["sweep-and-prune", ...alternatives]) await expect(row(page, name).locator("td")).toHaveText(/\d (µs|ms)/);
-      await expect(page.locator("#here-status")).toContainText(/alternative, .* times as long/);
+      // The sentence and the table agree on which library is the fastest.
+      const status = (await page.locator("#here-status").textContent())!;
+      const marked = page.locator("#here-table tbody tr").filter({ has: page.locator("td.fastest") });
+      await expect(marked).toHaveCount(1);
+      expect(status).toContain(`${await marked.getByRole("rowheader").textContent()} is the fastest.`);
+      const times = await page.locator("#here-table tbody tr").evaluateAll((rows) => rows.map((row) => {
+        const [, value, unit] = /([\d.]+) (µs|ms)/.exec(row.querySelector("td")!.textContent!) ?? [];
+        return { name: row.querySelector("th")!.textContent!, ns: Number(value) * (unit === "ms" ? 1e6 : 1e3), isMarked: row.querySelector(".fastest") !== null };
+      }));
+      const least = Math.min(...times.map(({ ns }) => ns));
+      expect(times.find(({ isMarked }) => isMarked)!.ns).toBe(least);
+      const others = times.filter(({ name }) => !/^(sweep-and-prune|plain)/.test(name)).sort((a, b) => a.ns - b.ns);
+      expect(status).toMatch(/the fastest alternative, .*, takes [\d.]+ times as long/);
+      expect(others.filter(({ ns }) => ns === others[0]!.ns).map(({ name }) => name)).toContain(/the fastest alternative, (.*?), takes/.exec(status)![1]);
       await expect(page.locator("#plot-here > svg")).toBeVisible();
     }
     expect(await violations(page)).toEqual([]);

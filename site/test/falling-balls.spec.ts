@@ -15,6 +15,30 @@ test("no number of one method stands under the name of another", async ({ page }
   });
   expect(new Set(texts)).toEqual(new Set(["…"]));
   await expect.poll(() => balls.counter("tests")).toBe("499,500");
+
+  // Nor of one world under those of another, which takes its time to begin.
+  const after = await balls.root.getByLabel("Seed").evaluate((seed: HTMLInputElement) => {
+    seed.value = "9";
+    seed.dispatchEvent(new Event("change", { bubbles: true }));
+    const cells = [...seed.closest("falling-balls")!.querySelectorAll(".counter:not([data-counter=brute-force]) dd")];
+    return cells.map((cell) => cell.textContent);
+  });
+  expect(new Set(after)).toEqual(new Set(["…"]));
+  await expect.poll(() => balls.counter("tests")).toBe("499,500");
+});
+
+test("a cold start uses the library's sort: insertion sort would take tens of millions of comparisons", async ({ page }) => {
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await page.goto("/falling.html?discs.bodies=10000");
+  const balls = await new FallingBalls(page, "discs").open();
+  await balls.step(1);
+  expect(await balls.value("comparisons")).toBeLessThan(300_000);
+  await balls.algorithm.selectOption("endpoint sweep");
+  await balls.step(1);
+  expect(await balls.value("comparisons")).toBeLessThan(600_000);
+  await balls.step(1);
+  const [comparisons, swaps] = [await balls.value("comparisons"), await balls.value("swaps")];
+  expect(comparisons, "insertion sort from then on: the swaps, and at most one more for each endpoint").toBeLessThanOrEqual(swaps + 19_999);
 });
 
 test.describe("running", () => {

@@ -16,6 +16,8 @@ const STYLE = `
   * { text-rendering: geometricPrecision !important; text-wrap: wrap !important; }
   /* Moving pictures, and figures that are measured in each run. */
   canvas, sap-demo::part(picture), sap-demo::part(array), .plot > *, #recorded-machine, [data-counter="ms"] dd, [data-counter="drawing"] dd, .trial-result { visibility: hidden !important; }
+  /* editing.spec.ts presses it. */
+  .listing [data-part=edit] { display: none; }
   .benchmark .plot { height: 300px !important; min-height: 0 !important; overflow: hidden; }
   #recorded-choice select { color: transparent !important; }
 `;
@@ -38,6 +40,8 @@ const PAGES: Readonly<Record<string, { parts: string; rest(page: Page): Promise<
   benchmark: {
     parts: "main > *",
     rest: async (page) => {
+      // What is folded is shown too.
+      await page.locator("main > details").evaluateAll((all) => all.forEach((details) => ((details as HTMLDetailsElement).open = true)));
       await expect(page.locator("#here-run")).toBeEnabled();
       await expect(page.locator("#plot-ratio svg").first()).toBeAttached();
     },

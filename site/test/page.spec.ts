@@ -90,13 +90,30 @@ test("every link of every page leads somewhere", async ({ page, request }) => {
 });
 
 test("the documentation of each language that there is can be reached, and is of this library", async ({ page }) => {
+  const heard = complaints(page);
   await page.goto("/api.html");
   for (const [language, said] of [["rust", "find_pairs"], ["javascript", "findPairs"], ["python", "find_pairs_between"]] as const) {
     const link = page.locator(`section[aria-labelledby=${language}]`).getByRole("link", { name: "Documentation of the" });
     const [tab] = await Promise.all([page.waitForEvent("load"), link.click()]);
     await expect(tab.locator("body")).toContainText(said);
-    await page.goto("/api.html");
+    await page.waitForLoadState("networkidle");
+    await page.getByRole("link", { name: "← sweep-and-prune" }).click();
+    await expect(page).toHaveURL(/\/api\.html$/);
   }
+  expect(heard).toEqual([]);
+});
+
+test("what is installed, and each example, can be copied", async ({ page, context }) => {
+  await context.grantPermissions(["clipboard-read", "clipboard-write"]);
+  await page.goto("/api.html");
+  for (const line of ["cargo add sweep-and-prune", "npm install sweep-and-prune", "pip install sweep-and-prune"]) {
+    await page.getByRole("button", { name: `Copy ${line}` }).click();
+    await expect.poll(() => page.evaluate(() => navigator.clipboard.readText())).toBe(`${line}\n`);
+  }
+  const example = page.locator("section[aria-labelledby=python]");
+  await example.getByRole("button", { name: "Copy the example" }).click();
+  const code = await example.locator("code").filter({ hasText: "import numpy" }).textContent();
+  await expect.poll(() => page.evaluate(() => navigator.clipboard.readText())).toBe(`${code}\n`);
 });
 
 test.describe("light and dark", () => {
@@ -137,10 +154,32 @@ test.describe("light and dark", () => {
 test.describe("without scripts", () => {
   test.use({ javaScriptEnabled: false });
 
+  // What each page says and shows where nothing moves.
+  const SAID: Readonly<Record<string, readonly string[]>> = {
+    "/index.html": [".hero-stage img", "sap-demo svg.poster", "text=Ten thousand balls make fifty million pairs"],
+    "/falling.html": ["#discs img.still", "#spheres img.still", "text=49,995,000 tests in each step"],
+    "/race.html": ["race-track img.still", "text=Up to four algorithms find the pairs of the same boxes"],
+    "/playground.html": ["box-playground img.still", "text=Make a world of your own"],
+    "/benchmark.html": [".fronts table", "text=finds all overlapping pairs among 10,000 boxes"],
+    "/api.html": ["text=cargo add sweep-and-prune", "text=pip install sweep-and-prune"],
+    "/teachers.html": ["text=A lesson of 45 minutes"],
+    "/embed.html": ["noscript p"],
+  };
+
   for (const path of PAGES) {
-    test(`${path} still says what it is about`, async ({ page }) => {
+    test(`${path} says what it would show, with its pictures`, async ({ page }) => {
       await page.goto(path);
       await expect(page.locator("main h1")).not.toBeEmpty();
+      for (const what of SAID[path] ?? ["nothing is said about this page in the test"]) {
+        const first = page.locator(what).first();
+        await first.scrollIntoViewIfNeeded();
+        await expect(first, what).toBeVisible();
+        expect((await first.boundingBox())!.height, what).toBeGreaterThan(10);
+      }
+      for (const picture of await page.locator("img.still").all()) {
+        await picture.scrollIntoViewIfNeeded();
+        await expect.poll(() => picture.evaluate((image: HTMLImageElement) => image.naturalWidth)).toBeGreaterThan(300);
+      }
     });
   }
 });

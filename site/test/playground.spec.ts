@@ -2,6 +2,8 @@ import { execFileSync } from "node:child_process";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 import { expect, type Locator, type Page, test } from "@playwright/test";
+import { boxAt } from "../src/playground/hands.ts";
+import { readBoxes } from "../src/playground/import.ts";
 import { complaints, requestsElsewhere, violations } from "./support/pages.ts";
 
 /** Within the repository, where Node finds the package by its name. */
@@ -47,6 +49,68 @@ class Playground {
   }
 }
 
+test("boxes are read from CSV and JSON in the forms in which programs write them, and errors say where", () => {
+  const rows = (text: string): number[][] => {
+    const { dimensions, boxes } = readBoxes(text);
+    return Array.from({ length: boxes.length / (2 * dimensions) }, (_, box) => [...boxes.subarray(2 * dimensions * box, 2 * dimensions * (box + 1))]);
+  };
+  const two = [[0, 1, 2, 3], [-0.5, 1.5, 4, 5]];
+  for (const text of [
+    "0,1,2,3\n-0.5,1.5,4,5",
+    "0 1 2 3\r\n-.5 1.5 4 5\r\n",
+    "# a comment\nmin_x;min_y;max_x;max_y\n0;1;2;3\n\n-0.5;1.5;4;5 # the second",
+    "id\tx\ty\twidth\theight\na\t0\t1\t2\t2\nb\t-0.5\t1.5\t4.5\t3.5",
+    "[[0,1,2,3],[-0.5,1.5,4,5]]",
+    "[[[0,1],[2,3]],[[-0.5,1.5],[4,5]]]",
+    '{"boxes":[{"minX":0,"minY":1,"maxX":2,"maxY":3},{"left":-0.5,"top":5,"right":4,"bottom":1.5}]}',
+    '[{"min":[0,1],"max":[2,3]},{"x":-0.5,"y":1.5,"w":4.5,"h":3.5}]',
+  ]) {
+    expect(rows(text), text).toEqual(two);
+  }
+  expect(readBoxes("0 0 0 1 1 1").dimensions).toBe(3);
+  expect(rows("minx,miny,minz,maxx,maxy,maxz\n1,2,3,4,5,6")).toEqual([[1, 2, 3, 4, 5, 6]]);
+  for (const [text, said] of [
+    ["0,1,2,3\n0,1,2", "Line 2 has 3 numbers"],
+    ["0,1,2,3\n0,x,2,3", 'Line 2: "x" is not a number'],
+    ["[[0,0,1,1],[1,0,0,1]]", "Box 1 ends before it begins on x: min 1, max 0"],
+    ["[[0,0,1,null]]", "Box 0: null is not a number"],
+    ["0,0,1e99,1", "single precision"],
+    ["0 0 1 1\n0 0 0 1 1 1", "Line 2 has 3 dimensions"],
+    ["a,b\n1,2", "Line 2 names no box"],
+    ["", "no boxes in it"],
+    ["[3]", "Box 0 is 3"],
+    ["{}", "array of boxes"],
+    ["[1", "not valid JSON"],
+    ["0 0 1 1\n".repeat(20_001), "20000 at most"],
+  ] as const) {
+    expect(() => readBoxes(text), text.slice(0, 40)).toThrow(said);
+  }
+  expect(boxAt({ dimensions: 2, boxes: Float32Array.of(0, 0, 10, 10, 4, 4, 6, 6) }, { x: 5, y: 5 }, 10), "the smaller one").toBe(1);
+});
+
+test("what is copied while it runs is the step that is shown, and its address leads back to it", async ({ page, context }) => {
+  await context.grantPermissions(["clipboard-read", "clipboard-write"]);
+  const playground = await new Playground(page).open("?boxes=300&motion=fast&format=json");
+  await expect.poll(async () => Number(await playground.root.getAttribute("data-step"))).toBeGreaterThan(5);
+  await playground.root.getByRole("button", { name: "Copy", exact: true }).click();
+  await expect(playground.part("exported")).toHaveText(/Step \d+ copied/);
+  const copied = JSON.parse(await page.evaluate(() => navigator.clipboard.readText()));
+  const shown = async (): Promise<unknown> => ({
+    step: Number(await playground.root.getAttribute("data-step")),
+    pairs: await playground.value("pairs"),
+    beginning: await playground.part("preview").textContent().then((text) => JSON.parse(`${/"boxes": (\[[^]*?\]),\n/.exec(text!)![1]}]`)[0]),
+  });
+  const expected = { step: copied.step, pairs: copied.pairs, beginning: copied.boxes[0] };
+  expect(await shown()).toEqual(expected);
+  expect(new URL(copied.address).searchParams.get("step")).toBe(String(copied.step));
+  await page.waitForTimeout(300);
+  expect(await shown(), "it stays paused there").toEqual(expected);
+  await page.goto("about:blank");
+  await page.goto(copied.address);
+  await expect(playground.root).toHaveAttribute("data-step", String(copied.step));
+  await expect.poll(shown).toEqual(expected);
+});
+
 test("runs, and complains of nothing", async ({ page, baseURL }) => {
   const heard = complaints(page);
   const elsewhere = requestsElsewhere(page, baseURL ?? "");
@@ -88,6 +152,98 @@ test.describe("paused", () => {
       expect(snippet).toContain(`${printed} ${await playground.value("pairs")}\n`);
     });
   }
+
+  test("boxes are dragged, drawn, added, deleted, and that is undone; the address holds them", async ({ page }) => {
+    const heard = complaints(page);
+    const playground = await new Playground(page).open("?motion=still&own=0,0,2,2;5,5,6,6;2,1,3,4");
+    const pairs = (expected: number): Promise<void> => expect.poll(() => playground.value("pairs")).toBe(expected);
+    const rows = async (): Promise<number[][]> => JSON.parse(await playground.download("json")).boxes;
+    await pairs(1);
+    await expect(playground.part("status")).toContainText("3 boxes of your own");
+
+    // The view shows 6 x 6 units, with a little around them.
+    const at = async (x: number, y: number): Promise<[number, number]> => {
+      await playground.part("surface").scrollIntoViewIfNeeded();
+      const surface = (await playground.part("surface").boundingBox())!;
+      const scale = (0.94 * Math.min(surface.width, surface.height)) / 6;
+      return [surface.x + surface.width / 2 + (x - 3) * scale, surface.y + surface.height / 2 - (y - 3) * scale];
+    };
+    const drag = async (from: [number, number], to: [number, number]): Promise<void> => {
+      await page.mouse.move(...(await at(...from)));
+      await page.mouse.down();
+      await page.mouse.move(...(await at(...to)), { steps: 5 });
+      await page.mouse.up();
+    };
+    await drag([5.5, 5.5], [1.8, 1.8]);
+    await pairs(3);
+    const [, moved] = await rows();
+    expect(moved!.map(Math.round)).toEqual([1, 1, 2, 2]);
+    await expect(playground.part("selected")).toContainText("Box 1:");
+
+    await playground.root.getByRole("button", { name: "Draw" }).click();
+    await drag([4, 3], [5, 5]);
+    await pairs(3);
+    expect((await rows())[3]!.map(Math.round)).toEqual([4, 3, 5, 5]);
+    await playground.root.getByRole("button", { name: "Draw" }).click();
+    await playground.root.getByRole("button", { name: "Delete" }).click();
+    await expect.poll(async () => (await rows()).length).toBe(3);
+    await playground.root.getByRole("button", { name: "Undo" }).click();
+    await expect.poll(async () => (await rows()).length).toBe(4);
+
+    // By keys alone: the next box, a step to the left, wider, gone; one more.
+    await playground.part("surface").focus();
+    await page.keyboard.press("b");
+    await expect(playground.part("selected")).toContainText("Box 0: x 0 to 2");
+    await page.keyboard.press("ArrowRight");
+    await page.keyboard.press("Shift+ArrowRight");
+    await expect(playground.part("selected")).toContainText(/x 0\.0\d+ to 2\.1\d/);
+    await page.keyboard.press("Delete");
+    await pairs(1);
+    await page.keyboard.press("n");
+    await expect.poll(async () => (await rows()).length).toBe(4);
+    await page.keyboard.press("Control+z");
+    await expect.poll(async () => (await rows()).length).toBe(3);
+    const kept = await rows();
+    await expect.poll(() => new URL(page.url()).searchParams.get("own")?.split(";").length).toBe(3);
+    await page.reload();
+    await expect.poll(() => playground.value("pairs")).toBe(1);
+    expect(await rows()).toEqual(kept);
+
+    await playground.root.getByRole("button", { name: "Clear" }).click();
+    await expect(playground.part("status")).toContainText("0 boxes of your own");
+    await playground.root.getByLabel("Scene").selectOption("grid");
+    await expect(playground.part("status")).toContainText("500 boxes, grid");
+    expect(heard).toEqual([]);
+  });
+
+  test("boxes are imported from files, from text and by a drop; what was exported comes back bit for bit", async ({ page }) => {
+    const playground = await new Playground(page).open("?boxes=150&scene=mixed&size=3");
+    await playground.step();
+    const pairs = await playground.value("pairs");
+    expect(pairs).toBeGreaterThan(20);
+    for (const format of ["csv", "json"] as const) {
+      const exported = await playground.download(format);
+      await playground.root.getByRole("button", { name: "Clear" }).click();
+      await expect.poll(() => playground.value("pairs")).toBe(0);
+      await playground.part("file").setInputFiles({ name: `boxes.${format}`, mimeType: "text/plain", buffer: Buffer.from(exported) });
+      await expect(playground.part("imported")).toHaveText("150 boxes imported.");
+      await expect.poll(() => playground.value("pairs")).toBe(pairs);
+      const boxes = (text: string): string => text.slice(format === "json" ? text.indexOf('"boxes"') : 0);
+      expect(boxes(await playground.download(format))).toBe(boxes(exported));
+    }
+    await playground.root.getByText("Paste boxes as text").click();
+    await playground.part("pasted").fill("0,0,2,2\n1,1,0,3");
+    await playground.root.getByRole("button", { name: "Use these boxes" }).click();
+    await expect(playground.part("imported")).toHaveText("Line 2 ends before it begins on x: min 1, max 0.");
+    expect(await playground.value("pairs"), "nothing has changed").toBe(pairs);
+    await playground.part("surface").evaluate((surface) => {
+      const dataTransfer = new DataTransfer();
+      dataTransfer.items.add(new File(["0 0 0 1 1 1\n1 1 1 2 2 2\n5 5 5 6 6 6"], "boxes.txt"));
+      surface.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true }));
+    });
+    await expect.poll(() => playground.value("pairs")).toBe(1);
+    await expect(playground.root.getByLabel("Dimensions")).toHaveValue("3");
+  });
 
   test("JSON says everything, to the last bit", async ({ page }) => {
     const playground = await new Playground(page).open("?boxes=200&scene=tiny&seed=9");

@@ -102,7 +102,8 @@ test.describe("paused", () => {
     const swept = await race.value(2, "tests");
     expect(swept).toBeGreaterThan(0);
     expect(swept).toBeLessThan(19_900);
-    expect(await race.value(2, "swaps")).toBeGreaterThan(1_000);
+    // The first step is sorted by the library, not by an insertion sort from scratch.
+    expect(await race.value(2, "comparisons")).toBeLessThan(3_000);
     await race.step();
     // Nothing has moved: the sort looks once at each neighbor and swaps nothing.
     expect(await race.value(2, "comparisons")).toBe(199);

@@ -89,6 +89,9 @@ pub struct RunnerOptions {
     pub method: Method,
     /// How it sorts, if it does.
     pub sort: Sort,
+    /// How it sorts where no earlier order helps: in the first step, in every step unless persistent, and where
+    /// the sweep axis has changed. `None` is as `sort`. Insertion sort needs O(n²) comparisons there.
+    pub first_sort: Option<Sort>,
     /// Along which axis it sweeps, chosen in each step. The persistent swap-driven form starts over
     /// when the axis changes; the begun and ended pairs are correct all the same.
     pub axis: Axis,
@@ -100,13 +103,20 @@ pub struct RunnerOptions {
 impl RunnerOptions {
     /// This method with the standard sort, along the axis of largest variance, from scratch in each step.
     pub const fn new(method: Method) -> Self {
-        Self { method, sort: Sort::Standard, axis: Axis::LargestVariance, persistent: false }
+        let (sort, axis) = (Sort::Standard, Axis::LargestVariance);
+        Self { method, sort, first_sort: None, axis, persistent: false }
     }
 
     /// Sets how it sorts.
     #[must_use]
     pub const fn sort(self, sort: Sort) -> Self {
         Self { sort, ..self }
+    }
+
+    /// Sets how it sorts where no earlier order helps.
+    #[must_use]
+    pub const fn first_sort(self, sort: Sort) -> Self {
+        Self { first_sort: Some(sort), ..self }
     }
 
     /// Sets along which axis it sweeps.
@@ -167,6 +177,8 @@ pub struct Runner<const D: usize, T = f32> {
     next_ids: Vec<u32>,
     added: Vec<u32>,
     removed: Vec<u32>,
+    /// The axis of the last step.
+    last_axis: Option<usize>,
     state: State<D, T>,
     pairs: Vec<[u32; 2]>,
     /// The pairs of the last step, sorted; of the methods that do not keep them themselves.
@@ -219,6 +231,7 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
             next_ids: Vec::new(),
             added: Vec::new(),
             removed: Vec::new(),
+            last_axis: None,
             state: State::new(options.method),
             pairs: Vec::new(),
             last_pairs: Vec::new(),
@@ -288,19 +301,19 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
         // Nothing can fail from here on.
         let RunnerOptions { method, persistent, .. } = self.options;
         observer.step(axis, persistent && method.keeps_axis_overlaps());
-        self.update_ids(axis, observer);
+        let sort = self.update_ids(axis, observer);
         self.pairs.clear();
         self.begun.clear();
         self.ended.clear();
-        self.find(boxes, axis, observer);
+        self.find(boxes, axis, sort, observer);
         if persistent {
             self.report_changes(observer);
         }
         Ok(Step { pairs: &self.pairs, begun: &self.begun, ended: &self.ended, axis })
     }
 
-    /// Brings `ids` up to `next_ids`, and finds which boxes were added and removed.
-    fn update_ids<O: Observer>(&mut self, axis: usize, observer: &mut O) {
+    /// Brings `ids` up to `next_ids`, and finds which boxes were added and removed. Returns how to sort.
+    fn update_ids<O: Observer>(&mut self, axis: usize, observer: &mut O) -> Sort {
         if !self.options.persistent {
             self.state.forget(self.options.method);
             self.ids.clear();
@@ -311,14 +324,24 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
             sweep.turn_to(axis, &self.ids, observer);
             self.ids.clear();
         }
+        let RunnerOptions { sort, first_sort, .. } = self.options;
+        let is_first = self.ids.is_empty() || self.last_axis != Some(axis);
+        self.last_axis = Some(axis);
         difference(&self.next_ids, &self.ids, &mut self.added);
         difference(&self.ids, &self.next_ids, &mut self.removed);
         core::mem::swap(&mut self.ids, &mut self.next_ids);
+        first_sort.filter(|_| is_first).unwrap_or(sort)
     }
 
-    fn find<O: Observer>(&mut self, boxes: &[Aabb<D, T>], axis: usize, observer: &mut O) {
+    fn find<O: Observer>(
+        &mut self,
+        boxes: &[Aabb<D, T>],
+        axis: usize,
+        sort: Sort,
+        observer: &mut O,
+    ) {
         let Self { options, ids, added, removed, state, pairs, .. } = self;
-        let RunnerOptions { method, sort, .. } = *options;
+        let RunnerOptions { method, .. } = *options;
         match state {
             State::Nothing => pairwise_observed(boxes, ids, axis, observer, pairs),
             State::Lefts(lefts) => {

@@ -349,6 +349,41 @@ proptest! {
     }
 }
 
+/// With a first sort, insertion sort never starts from scratch: not in the first step, and not where the axis changes.
+#[test]
+fn a_first_sort_spares_insertion_sort_the_start() {
+    let boxes = Scene::Uniform.boxes::<2, f32>(500, 3).unwrap();
+    // As wide along y as the first are along x.
+    let turned: Vec<Aabb<2>> = boxes
+        .iter()
+        .map(|aabb| Aabb::new([0.1 * aabb.min[1], aabb.min[0]], [0.1 * aabb.max[1], aabb.max[0]]))
+        .collect();
+    let sorting = Method::ALL.into_iter().filter(|method| method.sorts());
+    for method in sorting {
+        let options = RunnerOptions::new(method).sort(Sort::Insertion).persistent(true);
+        let axis = Axis::LongestExtent;
+        let mut runner = Runner::new(options.axis(axis).first_sort(Sort::Standard));
+        let mut counted = |boxes: &[Aabb<2>]| {
+            let mut counts = Counts::default();
+            let pairs = set(runner.step(boxes, &mut counts).unwrap().pairs);
+            assert_eq!(pairs, set(&pairwise(boxes).unwrap()), "{method:?}");
+            counts.comparisons
+        };
+        let on_every_axis = matches!(method, Method::AxisSweeps | Method::AxisSwapSweeps);
+        let wide: Vec<_> = boxes
+            .iter()
+            .map(|aabb| {
+                Aabb::new([aabb.min[0], 0.1 * aabb.min[1]], [aabb.max[0], 0.1 * aabb.max[1]])
+            })
+            .collect();
+        assert!(counted(&wide) < 60_000, "{method:?}: a first step");
+        assert!(counted(&wide) < 2_000, "{method:?}: at rest, by insertion sort");
+        if !on_every_axis {
+            assert!(counted(&turned) < 60_000, "{method:?}: along another axis");
+        }
+    }
+}
+
 #[test]
 fn a_world_at_rest_costs_one_comparison_an_endpoint_and_nothing_else() {
     for scene in [Scene::Grid, Scene::Coincident, Scene::Infinite, Scene::Points, Scene::Uniform] {

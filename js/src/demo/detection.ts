@@ -4,24 +4,43 @@ import { events, type TraceEvent } from "../trace.js";
 import type { Decorations } from "./decorations.js";
 import type { Detecting, Options } from "./options.js";
 
-/** What one run of an algorithm did, event by event: the compiled algorithm's own trace. */
-export class Detection {
+/** What one run of an algorithm did, event by event. */
+export interface Detection {
   /** The boxes it ran over: rows of min corner and max corner. */
   readonly boxes: Float64Array;
   readonly step: Step;
   /** How many events it has. */
   readonly length: number;
+  /** Its events, the first the beginning of the step. */
+  readonly events: readonly TraceEvent[];
+  /** Whether its swaps show which overlaps begin and end. A detection that sweeps, or that begins with a sweep, only sorts by them. */
+  readonly isDrivenBySwaps: boolean;
+  /** The edges that the sort has moved. */
+  readonly swapped: ReadonlySet<number>;
+  /** Whether the trace was too long to be recorded in full: it then cannot be gone through. */
+  readonly isTruncated: boolean;
+  /** The pairs that it should have found and did not. Known where methods miss any. */
+  readonly missed: readonly (readonly [number, number])[];
+  /** How often the flags of a pair were read in the first `position` events. */
+  flagChecksAt(position: number): number;
+  /** The state to draw after this many of its events. */
+  stateAt(position: number): PlayerState;
+  free(): void;
+}
+
+/** The run of a compiled algorithm: its own trace. */
+export class TracedDetection implements Detection {
+  readonly boxes: Float64Array;
+  readonly step: Step;
+  readonly length: number;
   #events: TraceEvent[] | undefined;
   #swapped: ReadonlySet<number> | undefined;
   #isDrivenBySwaps: boolean | undefined;
-  /** Whether the trace was too long to be recorded in full: it then cannot be gone through. */
   readonly isTruncated: boolean;
   readonly #player: Player;
   /** Events of the trace before the first of this step. */
   readonly #before: number;
-
-  /** The pairs that it should have found and did not. Known where methods miss any. */
-  readonly missed: readonly (readonly [number, number])[];
+  readonly missed: Detection["missed"];
   #last: { position: number; state: PlayerState } | undefined;
 
   /** Runs one step of `runner`, whose trace is trimmed. `missedOf` says which pairs are not among those found. */
@@ -35,32 +54,26 @@ export class Detection {
     this.missed = missedOf?.(this.step.pairs) ?? [];
   }
 
-  /** Its events, the first the beginning of the step; read when they are first asked for. */
+  /** Read when they are first asked for. */
   get events(): readonly TraceEvent[] {
     return (this.#events ??= [...events(this.#player.words)].slice(this.#before));
   }
 
-  /** Whether its swaps show which overlaps begin and end. A detection that sweeps, or that begins with a sweep, only sorts by them. */
   get isDrivenBySwaps(): boolean {
     return (this.#isDrivenBySwaps ??= !this.events.some(({ kind }) => kind === "enter"));
   }
 
-  /** The edges that the sort has moved. */
   get swapped(): ReadonlySet<number> {
     return (this.#swapped ??= new Set(this.events.flatMap(({ kind, a, b }) => (kind === "swap" ? [Number(a), Number(b)] : []))));
   }
 
-  /**
-   * How often the flags of a pair were read in the first `position` events:
-   * once for each overlap that was found on an axis, or began there or ended.
-   */
+  /** Once for each overlap that was found on an axis, or began there or ended. */
   flagChecksAt(position: number): number {
     let count = 0;
     for (const { kind } of this.events.slice(0, position)) count += Number(kind === "axis overlap" || kind === "axis apart");
     return count;
   }
 
-  /** The state to draw after this many of its events. */
   stateAt(position: number): PlayerState {
     if (this.#last?.position !== position) {
       this.#player.seek(this.#before + position);

@@ -1,6 +1,6 @@
 import { type CSSResult, LitElement, type TemplateResult } from "lit";
 import type { TraceEvent } from "../trace.js";
-import type { DemoEvent, DemoState, Row } from "./types.js";
+import type { DemoEvent, DemoProgram, DemoState, Row } from "./types.js";
 import { Canvases } from "./canvas.js";
 import { clock } from "./clock.js";
 import { comparisonOf, type SapComparisonElement } from "./comparison.js";
@@ -43,6 +43,7 @@ export class SapDemoElement extends LitElement {
   #run: Run | undefined;
   /** What keeps it from beginning, to be said in its place. */
   #wrong = "";
+  #program: DemoProgram | undefined;
   #isPlaying = false;
   #speed: number | undefined;
   #hasChanged = false;
@@ -190,6 +191,16 @@ export class SapDemoElement extends LitElement {
     return this.#run?.pairs ?? [];
   }
 
+  get program(): DemoProgram | undefined {
+    return this.#program;
+  }
+
+  set program(program: DemoProgram | undefined) {
+    if (this.#program === program) return;
+    this.#program = program;
+    if (this.#run || this.#wrong !== "") this.#understand();
+  }
+
   get chosen(): number[] {
     return [...this.#hands.selection.chosen];
   }
@@ -245,7 +256,13 @@ export class SapDemoElement extends LitElement {
     const options = this.#readOptions();
     if (!options) return;
     const asked = this.#run?.options.predicts;
-    const run = this.#run?.goOn(options);
+    let run: Run | undefined;
+    try {
+      run = this.#run?.goOn(options);
+    } catch (error) {
+      // A program has failed.
+      return this.#refuse(messageOf(error));
+    }
     if (!run) return this.#begin();
     this.#open(run);
     if (options.predicts && !asked) this.#isPlaying = false;
@@ -286,7 +303,7 @@ export class SapDemoElement extends LitElement {
 
   #readOptions(): Options | undefined {
     try {
-      return readOptions((name) => this.getAttribute(name));
+      return readOptions((name) => this.getAttribute(name), this.#program);
     } catch (error) {
       this.#refuse(messageOf(error));
       return undefined;

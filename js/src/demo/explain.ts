@@ -53,7 +53,7 @@ export function explain(detection: Detection, names: readonly string[], a: numbe
 }
 
 /** How two boxes are apart on an axis, if they are. */
-function gapOn(boxes: Float64Array, axis: number, a: number, b: number): Explanation["gap"] {
+export function gapOn(boxes: Float64Array, axis: number, a: number, b: number): Explanation["gap"] {
   const [min, max] = [(ball: number): number => boxes[4 * ball + axis]!, (ball: number): number => boxes[4 * ball + 2 + axis]!];
   if (max(a) < min(b)) return { axis, left: a, right: b };
   if (max(b) < min(a)) return { axis, left: b, right: a };

@@ -1,5 +1,5 @@
 import type { RunnerOptions } from "../runner.js";
-import type { Row } from "./types.js";
+import type { DemoProgram, Row } from "./types.js";
 import { type Decorations, readDecorations } from "./decorations.js";
 import { OptionError } from "./option-error.js";
 
@@ -57,6 +57,8 @@ export interface Options {
   readonly heading: string;
   readonly hasCounters: boolean;
   readonly hasControls: boolean;
+  /** What runs in the place of the compiled algorithm, if anything does. */
+  readonly program: DemoProgram | undefined;
 }
 
 type Strategy = Pick<Detecting, "method"> & Partial<Pick<Detecting, "sort">>;
@@ -225,7 +227,7 @@ export const booleans: ReadonlySet<Attribute> = new Set<Attribute>([
  *
  * @throws {@link OptionError} for the first that cannot be done.
  */
-export function readOptions(attribute: (name: Attribute) => string | null): Options {
+export function readOptions(attribute: (name: Attribute) => string | null, program?: DemoProgram): Options {
   const variantName = attribute("variant");
   const variant = variantName === null ? undefined : choose("variant", variants, variantName);
   const get = (name: Attribute): string | null => attribute(name) ?? variant?.defaults[name] ?? null;
@@ -276,6 +278,7 @@ export function readOptions(attribute: (name: Attribute) => string | null): Opti
     heading: get("heading") ?? "",
     hasCounters: !has("no-counters"),
     hasControls: !has("no-controls"),
+    program,
   };
 }
 

@@ -1,8 +1,9 @@
 import type { PlayerState } from "../player.js";
 import { Runner } from "../runner.js";
 import type { TraceEvent } from "../trace.js";
-import { Detection, newRunner, type Oracle, oracleFor, stopsOf } from "./detection.js";
+import { type Detection, newRunner, Oracle, oracleFor, stopsOf, TracedDetection } from "./detection.js";
 import type { Options } from "./options.js";
+import { ProgramDetection } from "./program.js";
 import { boxesOf, sweptBoxes, World } from "./world.js";
 
 /** What is kept of a tick, to come back to it. */
@@ -54,7 +55,7 @@ export class Timeline {
     this.#world = world;
     const most = Math.min(MOST_TICKS, MOST_BALL_TICKS / Math.max(1, world.radii.length));
     this.#most = Math.max(most, LEAST_DETECTIONS * (options.skip + 1));
-    this.#oracle = oracleFor(options);
+    this.#oracle = options.program ? new Oracle(undefined) : oracleFor(options);
     this.#runner = newRunner(options.detecting);
     this.#record(tick, true);
   }
@@ -287,8 +288,14 @@ export class Timeline {
   }
 
   #detect(runner: Runner, tick: Pick<Tick, "positions" | "last">): void {
+    const { program } = this.#options;
+    const boxes = this.#boxesAt(tick);
+    const missedOf = (found: Uint32Array): Detection["missed"] => this.#missedAt(tick, found);
+    const detection = program
+      ? new ProgramDetection(program, boxes, tick.last && this.#boxes(tick.last), missedOf)
+      : new TracedDetection(runner, boxes, missedOf);
     this.#detection?.free();
-    this.#detection = new Detection(runner, this.#boxesAt(tick), (found) => this.#missedAt(tick, found));
+    this.#detection = detection;
     this.#stops = stopsOf(this.#detection, this.#kinds);
     this.#stop = -1;
   }

@@ -55,6 +55,25 @@ export interface DemoDrag {
   y: number;
 }
 
+/**
+ * One thing that a program did: a comparison of two edges, a swap of two positions in the array, a test or an overlap of
+ * two balls, an overlap on one axis, or that from now on it works on the array of an axis, with its edges in order. An
+ * edge is `2 * ball` for a left end, and one more for a right end.
+ */
+export type ProgramEvent =
+  | { readonly kind: "compare"; readonly a: number; readonly b: number }
+  | { readonly kind: "swap"; readonly i: number; readonly j: number }
+  | { readonly kind: "test" | "overlap"; readonly a: number; readonly b: number }
+  | { readonly kind: "axis overlap"; readonly axis: number; readonly a: number; readonly b: number }
+  | { readonly kind: "array"; readonly axis: number; readonly edges: readonly number[] };
+
+/**
+ * Finds pairs in the place of a compiled algorithm. `boxes` are rows of min corner and max corner, `before` those of the
+ * detection before, if there was one. It must depend on nothing else: to go back in time, a demo runs it again. An
+ * exception is shown in the place of the demo.
+ */
+export type DemoProgram = (boxes: Float64Array, before: Float64Array | undefined) => readonly ProgramEvent[];
+
 /** What the element tells, each event bubbling out of it. */
 export interface DemoEventMap {
   /** It has begun, or has been simulated on: what it shows now. */
@@ -97,6 +116,8 @@ export interface SapDemo extends HTMLElement {
   set balls(value: number | readonly Row[]);
   /** The pairs found so far in this detection. */
   readonly pairs: [number, number][];
+  /** What finds the pairs in the place of `strategy`; the world goes on where it is when that changes. */
+  program: DemoProgram | undefined;
   /** The balls that the visitor has chosen, at most two. */
   readonly chosen: number[];
   /** Resolves when it is loaded and shown; also if it cannot be, which it then says itself. */

@@ -42,6 +42,17 @@ sap.find_pairs(boxes)  # array([[0, 2]])`,
   },
 } as const;
 
+/** What to type in a terminal. */
+const INSTALLATION: Readonly<Record<keyof typeof EXAMPLES, readonly (readonly [says: string, line: string])[]>> = {
+  rust: [["Install with cargo", "cargo add sweep-and-prune"]],
+  js: [["Install with npm", "npm install sweep-and-prune"]],
+  python: [["Install with pip", "pip install sweep-and-prune"]],
+};
+
+/** Code with a button that copies it. */
+const copyable = (code: string, what: string): string =>
+  `<div class="listing">${code}<button type="button" class="small" data-part="copy" aria-label="Copy ${what}">Copy</button></div>`;
+
 /** The first page of each language’s documentation, below public/. */
 const DOCUMENTATION = {
   rust: "api/rust/sweep_and_prune/index.html",
@@ -57,7 +68,8 @@ export const api: Plugin = {
       page
         .replace(/<api-example name="(rust|js|python)"><\/api-example>/g, (_, name: keyof typeof EXAMPLES) => {
           const { language, code } = EXAMPLES[name];
-          return `<div class="listing">${highlight(code, language, `an example in ${language}`)}</div>`;
+          const example = copyable(highlight(code, language, `an example in ${language}`), "the example");
+          return `<div class="examples">${INSTALLATION[name].map(([says, line]) => `<p>${says}</p>${copyable(highlight(line, "shell", `installation for ${says}`), line)}`).join("")}<p>Find pairs</p>${example}</div>`;
         })
         .replace(/<api-link name="(rust|js|python)">(.*?)<\/api-link>/g, (_, name: keyof typeof DOCUMENTATION, text: string) => {
           const path = DOCUMENTATION[name];

@@ -1,27 +1,38 @@
 // What the article does besides its demos: listings that follow them, the code for the three
 // balls, choices that change a demo, and contents that mark the section that is being read.
 
+import type { SapDemo } from "sweep-and-prune/demo";
+import { copyable } from "./copy.ts";
 import { followDemos } from "./follow.ts";
 import { TransitivityCode } from "./transitivity.ts";
 
 export function startArticle(): void {
   customElements.define("transitivity-code", TransitivityCode);
   for (const listing of document.querySelectorAll<HTMLElement>(".listing")) copyable(listing);
+  for (const listing of document.querySelectorAll<HTMLElement>(".listing[data-listing]")) editable(listing);
   followDemos();
   for (const choices of document.querySelectorAll<HTMLElement>(".choices[data-for]")) applyChoices(choices);
   markContents();
 }
 
-function copyable(listing: HTMLElement): void {
-  const button = listing.querySelector("[data-part=copy]");
-  const code = listing.querySelector("code");
-  button?.addEventListener("click", async () => {
-    const copied = await navigator.clipboard.writeText(`${code?.textContent ?? ""}\n`).then(
-      () => "Copied",
-      () => "Not allowed",
-    );
-    button.textContent = copied;
-    setTimeout(() => (button.textContent = "Copy"), 1500);
+/** A listing can be changed, and its demo runs it. The editor is loaded when the first one is. */
+function editable(listing: HTMLElement): void {
+  const button = listing.querySelector<HTMLButtonElement>("[data-part=edit]")!;
+  const demo = document.querySelector<SapDemo>(`#${listing.dataset["follows"]} sap-demo`)!;
+  let end: (() => void) | undefined;
+  button.addEventListener("click", async () => {
+    if (end) {
+      end();
+      end = undefined;
+    } else {
+      button.disabled = true;
+      const [{ edit }] = await Promise.all([import("./edit/editor.ts"), import("./demos.ts")]);
+      await demo.ready;
+      button.disabled = false;
+      end = edit(listing, demo);
+    }
+    button.setAttribute("aria-pressed", String(end !== undefined));
+    button.textContent = end ? "Done" : "Edit";
   });
 }
 

@@ -20,15 +20,19 @@ export function readListing(name: string): { code: string; kinds: string[] } {
   return { code: lines.map((line) => line.replace(TAGS, "")).join("\n"), kinds };
 }
 
+/** The listings that a reader can change, and the demo runs them: those that edit/harness.ts knows how to call. */
+const EDITABLE = new Set(["pairwise", "sorted-pairwise", "sweep", "sweep-and-prune", "sweep-all-axes", "one-to-n", "quicksort", "insertion-sort", "swap-driven", "swap-all-axes"]);
+
 /** The listing of a module, as html; `follows` is the id of the demo whose events highlight its lines. */
 export function listing(name: string, follows: string | undefined): string {
   const { code, kinds } = readListing(name);
+  const edit = follows && EDITABLE.has(name) ? `<button type="button" class="small" data-part="edit" aria-pressed="false">Edit</button>` : "";
   const follow = follows
     ? `<button type="button" class="small" data-part="follow" aria-pressed="true">Follow the demo</button>`
     : "";
   return `
-    <figure class="listing"${follows ? ` data-follows="${follows}"` : ""}>
-      <figcaption><span>${name}.js</span>${follow}<button type="button" class="small" data-part="copy">Copy</button></figcaption>
+    <figure class="listing"${follows ? ` data-follows="${follows}"` : ""}${edit ? ` data-listing="${name}"` : ""}>
+      <figcaption><span>${name}.js</span>${follow}${edit}<button type="button" class="small" data-part="copy">Copy</button></figcaption>
       ${highlight(code, "javascript", `${name}.js`, kinds)}
     </figure>`;
 }

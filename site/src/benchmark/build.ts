@@ -3,6 +3,7 @@
 
 import { readdirSync, readFileSync } from "node:fs";
 import type { Plugin } from "vite";
+import { insertFront } from "./front.ts";
 import type { Case, Outcome, Recorded, Run } from "./results.ts";
 
 const root = new URL("../../../", import.meta.url);
@@ -65,7 +66,8 @@ const rows = (): number =>
 
 export const benchmark: Plugin = {
   name: "benchmark",
-  transformIndexHtml: (page) => page.replace('id="plot-ratio"', `id="plot-ratio" style="--rows: ${rows()}"`),
+  transformIndexHtml: (page) =>
+    insertFront(page, runs()).replace('id="plot-ratio"', `id="plot-ratio" style="--rows: ${rows()}"`),
   resolveId: (id) => (id === MODULE ? `\0${MODULE}` : undefined),
   load: (id) => (id === `\0${MODULE}` ? `export default ${JSON.stringify(runs())}` : undefined),
   generateBundle() {

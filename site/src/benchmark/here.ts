@@ -3,11 +3,12 @@
 import { Scenes } from "../../../bench/js/src/scenes.js";
 import type { Listed } from "../../../bench/js/src/scenes.js";
 import { FINDER, WORLD } from "../../../bench/js/libraries/index.js";
+import runs from "virtual:benchmark-results";
 import scenesUrl from "../generated/bench-scenes.wasm?url";
 import { looksOf } from "./looks.ts";
 import type { Point } from "./plots.ts";
 import { element, fill, select, table } from "./recorded.ts";
-import { type Case, duration, fastestOwn, fastestAlternative, significant, timesOf } from "./results.ts";
+import { type Case, duration, fastest, fastestOwn, fastestAlternative, significant, timesOf } from "./results.ts";
 import { librariesFor, measure } from "./trial-here.ts";
 
 /** The scenes that everybody can be measured on; the others try robustness. */
@@ -111,7 +112,7 @@ export class BenchmarkHere {
         await this.#draw();
       }
       this.#progress.value = 1;
-      this.#status.textContent = `Done. ${verdict(this.#cases.at(-1))}`;
+      this.#status.textContent = `Done. ${verdict(this.#cases.at(-1))}${asRecorded(this.#cases.at(-1), task === "track" ? "worlds" : "cases")}`;
     } catch (error) {
       this.#progress.value = 0;
       this.#status.textContent = stop.signal.aborted ? "Cancelled." : `The measurement failed: ${String(error)}`;
@@ -151,5 +152,16 @@ function verdict(one: Case | undefined): string {
   const alternative = fastestAlternative(one);
   const size = `${one.boxes.toLocaleString("en")} boxes`;
   if (!alternative) return `sweep-and-prune finds the ${one.pairs.toLocaleString("en")} pairs of ${size} in ${duration(own)}.`;
-  return `${size}: sweep-and-prune takes ${duration(own)}. The fastest alternative, ${alternative.name}, takes ${significant(alternative.ratio)} times as long.`;
+  return `${size}: ${fastest(one)} is the fastest. sweep-and-prune takes ${duration(own)}; the fastest alternative, ${alternative.name}, takes ${significant(alternative.ratio)} times as long.`;
+}
+
+/** Whether the recorded run of the same case agrees on which library is the fastest, and which alternative. */
+function asRecorded(one: Case | undefined, task: "cases" | "worlds"): string {
+  const run = runs.find(({ kind }) => kind === "javascript");
+  const kept = one && run?.[task].find(({ scene, dimensions, boxes }) => scene === one.scene && dimensions === one.dimensions && boxes === one.boxes);
+  const [then, now] = [kept && fastestAlternative(kept), one && fastestAlternative(one)];
+  if (!kept || !then || !now || !run) return "";
+  const isSame = fastest(kept) === fastest(one) && then.name === now.name;
+  const said = `${fastest(kept)} is the fastest, ${then.name} the fastest alternative (${significant(then.ratio)} times as long)`;
+  return isSame ? ` The recorded run in Node agrees: ${said}.` : ` In the recorded run in Node, ${said}: another machine, another engine, or a library that was not selected here.`;
 }

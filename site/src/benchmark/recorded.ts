@@ -3,7 +3,7 @@
 import runs from "virtual:benchmark-results";
 import { LibraryList } from "./library-list.ts";
 import { looksOf } from "./looks.ts";
-import { bytes, type Case, count, duration, type Entry, fastestOwn, fastestAlternative, type Run, significant, timesOf } from "./results.ts";
+import { bytes, type Case, count, duration, type Entry, fastest, fastestOwn, fastestAlternative, type Run, significant, timesOf } from "./results.ts";
 import type { Lead, Point } from "./plots.ts";
 
 type Task = "cases" | "worlds";
@@ -132,7 +132,8 @@ export function table(cases: readonly Case[]): HTMLElement[] {
       const own = fastestOwn(one);
       const ratio = entry.alternative && own ? ` (×${significant(times.median_ns / own)})` : "";
       const memory = times.peak_bytes ? `, ${bytes(times.peak_bytes)}` : "";
-      return cell("td", `${duration(times.median_ns)}${ratio}${memory}`);
+      const isFastest = fastest(one) === name;
+      return cell("td", `${duration(times.median_ns)}${ratio}${memory}${isFastest ? ", fastest" : ""}`, undefined, isFastest ? "fastest" : "");
     });
     const line = row([cell("th", name, "row"), ...cells]);
     if (cases.some(({ results }) => results.some((entry) => entry.name === name && !entry.alternative))) line.className = "own";

@@ -65,10 +65,22 @@ export function timesOf({ outcome }: Entry): Times | undefined {
   return "Timed" in outcome ? outcome.Timed : undefined;
 }
 
-/** The fastest setting of sweep-and-prune; in JavaScript the one that JavaScript calls, not native code. */
+/** Settings that no alternative has: more threads, or the same boxes once more; and in JavaScript native code. */
+const NOT_COMPARED = /^native|, (again|fresh|two at once|\d+ threads)$/;
+
+/** The time of sweep-and-prune in ns, under the conditions of the alternatives: one thread, boxes in another order at each call. */
 export function fastestOwn(one: Case): number | undefined {
-  const times = one.results.filter((entry) => !entry.alternative && !/^native/.test(entry.name)).flatMap((entry) => timesOf(entry) ?? []);
+  const times = one.results.filter((entry) => !entry.alternative && !NOT_COMPARED.test(entry.name)).flatMap((entry) => timesOf(entry) ?? []);
   return times.length > 0 ? Math.min(...times.map(({ median_ns }) => median_ns)) : undefined;
+}
+
+/** The name of the fastest library of a case, under the conditions of all: the one that tables mark and sentences name. */
+export function fastest(one: Case): string | undefined {
+  const timed = one.results.filter(({ name }) => !NOT_COMPARED.test(name)).flatMap((entry) => {
+    const times = timesOf(entry);
+    return times ? [{ name: entry.name, ns: times.median_ns }] : [];
+  });
+  return timed.sort((a, b) => a.ns - b.ns)[0]?.name;
 }
 
 /** The fastest alternative and how many times as long as sweep-and-prune it takes. */

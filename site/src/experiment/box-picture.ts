@@ -9,6 +9,8 @@ export interface BoxColors {
   readonly box: string;
   readonly highlighted: string;
   readonly line: string;
+  /** Of the frame around the box that is selected. */
+  readonly selected?: string;
 }
 
 /** What part of the world is shown, and how large. */
@@ -48,6 +50,7 @@ export function drawBoxes(
   dimensions: number,
   pairs: Uint32Array,
   colors: BoxColors,
+  selected?: number,
 ): void {
   const { width, height } = size;
   const context = fitted(canvas, width, height);
@@ -55,6 +58,7 @@ export function drawBoxes(
   const row = 2 * dimensions;
   const highlighted = new Uint8Array(boxes.length / row);
   for (const box of pairs) highlighted[box] = 1;
+  let marked: readonly [number, number, number, number] | undefined;
   const outlined = highlighted.length <= MOST_OUTLINED;
   for (const layer of [0, 1]) {
     context.fillStyle = layer === 0 ? colors.box : colors.highlighted;
@@ -76,6 +80,14 @@ export function drawBoxes(
         context.lineWidth = 1;
         context.strokeRect(l + 0.5, t + 0.5, wide - 1, high - 1);
       }
+      if (box === selected) marked = [l, t, wide, high];
     }
   }
+  if (!marked) return;
+  // Dashed, a little outside: color is not the only sign.
+  context.strokeStyle = colors.selected ?? colors.highlighted;
+  context.lineWidth = 2;
+  context.setLineDash([5, 3]);
+  context.strokeRect(marked[0] - 3, marked[1] - 3, marked[2] + 6, marked[3] + 6);
+  context.setLineDash([]);
 }

@@ -19,6 +19,8 @@ export interface WorldOptions {
   readonly size: number;
   /** The largest factor over the least. */
   readonly spread: number;
+  /** Boxes of the visitor's own, rows of min corner and max corner: then scene, size and spread are not read. */
+  readonly own?: Float32Array;
 }
 
 /** How a runner finds the pairs, by names that `Lists` has. */
@@ -102,16 +104,25 @@ export class Experiment {
     return new Experiment((await WebAssembly.instantiate(await response.arrayBuffer(), { env })).instance);
   }
 
-  /** Makes a world at its first step, and forgets the one before and its runners. */
-  begin(options: WorldOptions): void {
+  /**
+   * Makes a world at its first step, and forgets the one before. With `keep`, own boxes of as many dimensions leave the
+   * runners there: they go on from what they have kept.
+   */
+  begin(options: WorldOptions, keep = false): void {
     const { lists } = this;
     const place = (list: readonly Named[], name: string): number => list.findIndex((item) => item.name === name);
-    const { dimensions, scene, motion, boxes, seed, size, spread } = options;
+    const { dimensions, scene, motion, boxes, seed, size, spread, own } = options;
+    if (own) {
+      const at = this.#call("experiment_rows", own.length);
+      if (at === 0) throw new RangeError("the experiment does not take that many boxes");
+      new Float32Array(this.#memory.buffer, at, own.length).set(own);
+    }
     this.#area().set([dimensions, place(lists.scenes, scene), place(lists.motions, motion), boxes, seed, size, spread]);
-    this.#attempt("experiment_begin");
+    if (own) this.#attempt("experiment_place", Number(keep));
+    else this.#attempt("experiment_begin");
     this.#dimensions = dimensions;
-    this.#boxes = boxes;
-    this.#found = [];
+    this.#boxes = own ? own.length / (2 * dimensions) : boxes;
+    if (!keep) this.#found = [];
   }
 
   advance(): void {

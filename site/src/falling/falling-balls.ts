@@ -4,7 +4,7 @@ import { drawStages } from "../plot/stage-plot.ts";
 import { onThemeChange, readTheme } from "../view/theme.ts";
 import type { View } from "../view/view.ts";
 import { onAwake, whenNear } from "./awake.ts";
-import { COUNTERS, formatCount, type Shown } from "./counters.ts";
+import { bruteForceTests, COUNTERS, formatCount, type Shown } from "./counters.ts";
 import { bindSlider } from "./slider.ts";
 import { LARGEST_SEED, RANGES, readSettings, type Settings, setupOf, writeSettings } from "./settings.ts";
 
@@ -198,7 +198,8 @@ export class FallingBalls extends HTMLElement {
 
   #begin(): void {
     this.#client?.begin(setupOf(this.#settings, this.#dimensions), this.#laws(), this.#settings);
-    this.#stages = [];
+    this.#clearCounters();
+    this.#counter("brute-force").textContent = formatCount(bruteForceTests(this.#settings.bodies));
     this.#describe();
   }
 
@@ -279,7 +280,7 @@ export class FallingBalls extends HTMLElement {
 
   // What the visitor reads
 
-  /** No number of one method stands under the name of another. */
+  /** No number of one method or world stands under the name of another. */
   #clearCounters(): void {
     this.#stages = [];
     for (const { key } of COUNTERS) if (key !== "brute-force") this.#counter(key).textContent = "…";

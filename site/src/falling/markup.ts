@@ -4,7 +4,7 @@
 import { expandPlayground } from "../playground/markup.ts";
 import { expandRace } from "../race/markup.ts";
 import { bruteForceTests, COUNTERS, formatCount } from "./counters.ts";
-import { choice, slider } from "./parts.ts";
+import { choice, slider, still } from "./parts.ts";
 
 interface SimulationOptions {
   readonly id: string;
@@ -35,6 +35,7 @@ function inside({ id, dimensions, bodies }: SimulationOptions): string {
     <div class="panel" role="group" aria-labelledby="${id}-heading">
       <div class="panel-stage">
         ${dimensions === 2 ? discStage() : sphereStage()}
+        ${still(dimensions === 2 ? "discs" : "spheres", `${dimensions === 2 ? "Discs of very different sizes" : "Ten thousand spheres"} that have fallen into a box`)}
         <p class="stage-message" data-part="message">Loading</p>
       </div>
 

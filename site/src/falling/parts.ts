@@ -21,3 +21,7 @@ export const slider = (id: string, part: string, label: string, value: string): 
           <span class="value" data-part="${part}-value" aria-hidden="true">${value}</span>
           <input id="${id}-${part}" data-part="${part}" type="range" autocomplete="off" disabled />
         </div>`;
+
+/** A picture of what would move, where no scripts run; scripts/preview.mjs draws it. */
+export const still = (name: string, says: string): string =>
+  `<noscript><img class="still" src="./still/${name}.jpg" alt="${says}" loading="lazy" /></noscript>`;

@@ -7,9 +7,10 @@ import { bindSlider } from "../falling/slider.ts";
 import type { FromRace, RaceFrame, ToRace } from "../race/messages.ts";
 import { MEASURES, RaceRecord } from "../race/record.ts";
 import { onThemeChange } from "../shell/theme.ts";
-import { type Format, preview, type Snapshot, typeOf, write } from "./export.ts";
+import { type Format, FORMATS, preview, shortest, type Snapshot, write } from "./export.ts";
+import { Hands, type Shown } from "./hands.ts";
+import { readBoxes } from "./import.ts";
 import { COUNTERS } from "./markup.ts";
-import { bindView } from "./view.ts";
 
 /** What the sliders offer. */
 const RANGES = {
@@ -20,12 +21,20 @@ const RANGES = {
 const LARGEST_SEED = 2 ** 32 - 1;
 /** Numbers that change more often than this cannot be read. */
 const SHOW_MS = 150;
+/** The address has own boxes when no hand has moved them for this long. */
+const WRITE_MS = 300;
 const NOT_COUNTED = "not counted by this algorithm";
 
 const DEFAULTS = {
   dimensions: "2", scene: "clustered", motion: "drift", boxes: "500", seed: "1", size: "1", spread: "1",
-  algorithm: "sorted pairwise", sort: "insertion sort", axis: "largest variance", format: "js",
+  algorithm: "sorted pairwise", sort: "insertion sort", axis: "largest variance", format: "js", step: "0", own: "",
 };
+/** More boxes of the visitor's own than this do not fit into an address. */
+const MOST_IN_ADDRESS = 100;
+/** An address leads to this step at most: it has to be computed. */
+const LAST_STEP = 10_000;
+/** What the choice of a scene shows where the boxes are the visitor's own. */
+const OWN = "your own boxes";
 
 type Key = keyof typeof DEFAULTS;
 
@@ -42,6 +51,14 @@ export class BoxPlayground extends HTMLElement {
   #frame: RaceFrame | undefined;
   /** What is shown: all there was at first, or where the visitor went. */
   #view: Window2 | undefined;
+  /** The boxes with which the world begins, if they are the visitor's own. */
+  #own: Float32Array | undefined;
+  #hands!: Hands;
+  #isHeld = false;
+  #writing: ReturnType<typeof setTimeout> | undefined;
+  #whenPaced: () => void = () => undefined;
+  /** Own boxes that wait until those before have been searched. */
+  #isWaiting = false;
   #wanted = !matchMedia("(prefers-reduced-motion: reduce)").matches;
   #awake = false;
   #shownAt = -Infinity;
@@ -65,10 +82,29 @@ export class BoxPlayground extends HTMLElement {
       this.#awake = awake;
       this.#pace();
     }, signal);
-    bindView(this.#part("surface"), () => this.#view, (view) => {
+    const setView = (view: Window2 | undefined): void => {
       this.#view = view;
       this.#requestShow();
+    };
+    const button = (part: string): HTMLButtonElement => this.#part<HTMLButtonElement>(part);
+    this.#hands = new Hands({
+      surface: this.#part("surface"),
+      buttons: { draw: button("draw"), add: button("add"), delete: button("delete"), undo: button("undo"), clear: button("clear") },
+      shown: () => this.#shown,
+      view: () => this.#view,
+      setView,
+      setHeld: (isHeld) => {
+        this.#isHeld = isHeld;
+        this.#pace();
+        this.#showPreview();
+      },
+      setBoxes: (shown) => this.#setOwn(shown),
+      select: (text) => {
+        this.#part("selected").textContent = text;
+        this.#requestShow();
+      },
     });
+    this.#bindImport();
   }
 
   disconnectedCallback(): void {
@@ -105,9 +141,28 @@ export class BoxPlayground extends HTMLElement {
     });
     this.#bindButtons();
     this.#bindExport();
-    for (const control of this.querySelectorAll<HTMLInputElement>(":disabled")) control.disabled = false;
-    this.#begin();
+    for (const control of this.querySelectorAll<HTMLInputElement>(":disabled:not([data-part=delete], [data-part=undo])")) control.disabled = false;
+    this.#readOwn();
+    const step = Math.round(numberWithin(this.#state.step, 0, LAST_STEP, 0));
+    // An address that leads to a step shows that step.
+    if (step > 0) this.#wanted = false;
+    this.#begin(step);
     this.#pace();
+  }
+
+  /** The boxes that the address holds. */
+  #readOwn(): void {
+    if (this.#state.own === "") return;
+    try {
+      const { dimensions, boxes } = readBoxes(this.#state.own.replaceAll(";", "\n"));
+      this.#own = boxes;
+      this.#state.dimensions = String(dimensions);
+      this.#part<HTMLSelectElement>("dimensions").value = this.#state.dimensions;
+      this.#fill();
+    } catch (error) {
+      this.#state.own = "";
+      this.#part("imported").textContent = `The boxes of the address were left out. ${error instanceof Error ? error.message : String(error)}`;
+    }
   }
 
   #bindChoice(key: "dimensions" | "scene" | "motion" | keyof RunnerOptions, names?: readonly string[], before = (): void => {}): void {
@@ -116,6 +171,7 @@ export class BoxPlayground extends HTMLElement {
     if (select.options.length > 0) this.#choose(key);
     select.addEventListener("change", () => {
       this.#state[key] = select.value;
+      if (key === "dimensions" || key === "scene") this.#forgetOwn();
       before();
       this.#change(key, select.value);
     });
@@ -126,9 +182,10 @@ export class BoxPlayground extends HTMLElement {
     const dimensions = Number(this.#state.dimensions);
     const { scenes, axes } = this.#lists;
     const there = scenes.filter(({ dimensions: [least, most] }) => least <= dimensions && dimensions <= most);
-    this.#part("scene").replaceChildren(...there.map(({ name }) => new Option(name)));
+    const isOwn = this.#own !== undefined;
+    this.#part("scene").replaceChildren(...(isOwn ? [new Option(OWN, "")] : []), ...there.map(({ name }) => new Option(name)));
     this.#part("axis").replaceChildren(...axes.slice(0, axes.length - 3 + dimensions).map((name) => new Option(name)));
-    this.#choose("scene");
+    if (!isOwn) this.#choose("scene");
     this.#choose("axis");
   }
 
@@ -150,7 +207,10 @@ export class BoxPlayground extends HTMLElement {
       this.#pace();
       this.#send({ type: "step" });
     });
-    this.#onClick("reset", () => this.#begin());
+    this.#onClick("reset", () => {
+      this.#keep("step", "0");
+      this.#begin();
+    });
     this.#onClick("fit", () => {
       this.#view = undefined;
       this.#requestShow();
@@ -164,29 +224,78 @@ export class BoxPlayground extends HTMLElement {
       this.#keep("format", format.value);
       this.#showPreview();
     });
-    const written = async (): Promise<string> => {
-      const snapshot = this.#snapshot();
-      if (!snapshot) throw new Error("there are no boxes yet");
-      return write(snapshot, this.#format());
+    // The world stops at the step that is taken along: what is shown is what is copied.
+    const snapshot = async (): Promise<Snapshot> => {
+      this.#wanted = false;
+      this.#pace();
+      // The thread may have taken another step meanwhile.
+      await new Promise<void>((resolve) => (this.#whenPaced = resolve));
+      this.#showNow();
+      const taken = this.#snapshot();
+      if (!taken) throw new Error("there are no boxes yet");
+      return taken;
     };
-    const reportDone = (text: string, work: () => Promise<void>): void => {
+    const reportDone = (text: (taken: Snapshot) => string, work: (taken: Snapshot) => Promise<void>): void => {
       const output = this.#part("exported");
-      work().then(
-        () => (output.textContent = text),
+      const done = async (): Promise<string> => {
+        const taken = await snapshot();
+        await work(taken);
+        return text(taken);
+      };
+      done().then(
+        (text) => (output.textContent = text),
         (error: unknown) => (output.textContent = `That did not work: ${error instanceof Error ? error.message : String(error)}`),
       );
     };
-    this.#onClick("copy", () => reportDone("Copied.", async () => navigator.clipboard.writeText(await written())));
-    this.#onClick("share", () => reportDone("Address copied.", () => navigator.clipboard.writeText(location.href)));
+    this.#onClick("copy", () =>
+      reportDone(({ step }) => `Step ${formatCount(step)} copied.`, async (taken) => navigator.clipboard.writeText(await write(taken, this.#format()))),
+    );
+    this.#onClick("share", () =>
+      reportDone(({ step }) => `Address of step ${formatCount(step)} copied.`, async ({ address }) => {
+        if (address === "") throw new Error(`more than ${MOST_IN_ADDRESS} boxes of your own do not fit into an address; download them instead, and import them there`);
+        await navigator.clipboard.writeText(address);
+      }),
+    );
     this.#onClick("download", () =>
-      reportDone("Downloaded.", async () => {
+      reportDone(({ step }) => `Step ${formatCount(step)} downloaded.`, async (taken) => {
+        const { type, file } = FORMATS[this.#format()];
         const link = document.createElement("a");
-        link.href = URL.createObjectURL(new Blob([await written()], { type: typeOf(this.#format()) }));
-        link.download = `boxes.${this.#format() === "js" ? "mjs" : this.#format()}`;
+        link.href = URL.createObjectURL(new Blob([await write(taken, this.#format())], { type }));
+        link.download = file;
         link.click();
         URL.revokeObjectURL(link.href);
       }),
     );
+  }
+
+  /** Boxes come from a file that is chosen or dropped on the picture, or from text. */
+  #bindImport(): void {
+    const file = this.#part<HTMLInputElement>("file");
+    const pasted = this.#part<HTMLTextAreaElement>("pasted");
+    const take = (text: string): void => {
+      const output = this.#part("imported");
+      try {
+        const imported = readBoxes(text);
+        this.#hands.replace(() => imported);
+        this.#view = undefined;
+        output.textContent = `${formatCount(imported.boxes.length / (2 * imported.dimensions))} boxes imported.`;
+      } catch (error) {
+        output.textContent = error instanceof Error ? error.message : String(error);
+      }
+    };
+    const takeFile = (given: File | undefined): void => void given?.text().then(take);
+    this.#onClick("import", () => file.click());
+    file.addEventListener("change", () => {
+      takeFile(file.files?.[0]);
+      file.value = "";
+    });
+    this.#onClick("paste", () => take(pasted.value));
+    const surface = this.#part("surface");
+    surface.addEventListener("dragover", (event) => event.preventDefault());
+    surface.addEventListener("drop", (event) => {
+      event.preventDefault();
+      takeFile(event.dataTransfer?.files[0]);
+    });
   }
 
   #onClick(part: string, act: () => void): void {
@@ -203,8 +312,62 @@ export class BoxPlayground extends HTMLElement {
   }
 
   #change(key: Key, text: string): void {
+    this.#state.step = "0";
     this.#keep(key, text);
     this.#begin();
+  }
+
+  // Boxes of the visitor's own
+
+  /** The boxes that the picture shows; of own ones those that were placed last. */
+  get #shown(): Shown | undefined {
+    const { dimensions } = this.#world();
+    const boxes = this.#isHeld || this.#frame === undefined ? this.#own : this.#frame.boxes;
+    return boxes && { dimensions, boxes };
+  }
+
+  /** These boxes are the world from now on, at its first step. */
+  #setOwn({ dimensions, boxes }: Shown): void {
+    const isAsBefore = this.#own !== undefined && dimensions === this.#world().dimensions;
+    this.#own = boxes;
+    this.#state.dimensions = String(dimensions);
+    this.#state.step = "0";
+    if (!isAsBefore) {
+      this.#part<HTMLSelectElement>("dimensions").value = this.#state.dimensions;
+      this.#fill();
+    }
+    // A browser refuses an address that changes with every move of a hand.
+    clearTimeout(this.#writing);
+    this.#writing = setTimeout(() => this.#keep("own", this.#ownText()), WRITE_MS);
+    // While the thread is busy with the last ones, those between are left out.
+    if (this.#frame === undefined && this.#run > 0 && this.#isHeld) this.#isWaiting = true;
+    else this.#place();
+  }
+
+  #place(): void {
+    this.#isWaiting = false;
+    this.#record = new RaceRecord(1);
+    this.#frame = undefined;
+    this.#send({ type: "begin", run: ++this.#run, world: this.#world(), runners: [this.#method()], keep: true });
+    this.#describe();
+  }
+
+  #forgetOwn(): void {
+    clearTimeout(this.#writing);
+    this.#own = undefined;
+    this.#state.own = "";
+    this.#hands.forget();
+    this.#fill();
+  }
+
+  /** The own boxes, as the address holds them; nothing if there are too many. */
+  #ownText(): string {
+    const { dimensions } = this.#world();
+    const row = 2 * dimensions;
+    const count = (this.#own?.length ?? 0) / row;
+    if (!this.#own || count > MOST_IN_ADDRESS) return "";
+    const boxes = this.#own;
+    return Array.from({ length: count }, (_, box) => Array.from(boxes.subarray(row * box, row * (box + 1)), shortest).join(",")).join(";");
   }
 
   #world(): WorldOptions {
@@ -213,10 +376,11 @@ export class BoxPlayground extends HTMLElement {
       dimensions: dimensions === "3" ? 3 : 2,
       scene,
       motion,
-      boxes: Math.round(numberWithin(boxes, 1, 20_000, Number(DEFAULTS.boxes))),
+      boxes: this.#own ? this.#own.length / (dimensions === "3" ? 6 : 4) : Math.round(numberWithin(boxes, 1, 20_000, Number(DEFAULTS.boxes))),
       seed: Math.round(numberWithin(seed, 0, LARGEST_SEED, 1)),
       size: numberWithin(size, 0.01, 100, 1),
       spread: numberWithin(spread, 1, 1000, 1),
+      ...(this.#own && { own: this.#own }),
     };
   }
 
@@ -229,10 +393,20 @@ export class BoxPlayground extends HTMLElement {
     const [lane] = this.#frame?.lanes ?? [];
     if (!this.#frame || !lane || !("report" in lane)) return undefined;
     const { step, boxes } = this.#frame;
-    return { world: this.#world(), method: this.#method(), step, boxes, pairs: lane.report.pairs, address: location.href };
+    return { world: this.#world(), method: this.#method(), step, boxes, pairs: lane.report.pairs, address: this.#addressOf(step) };
   }
 
-  #begin(): void {
+  /** The address that leads back to a step; none if the boxes do not fit into it. */
+  #addressOf(step: number): string {
+    clearTimeout(this.#writing);
+    this.#keep("own", this.#ownText());
+    const address = new URL(location.href);
+    address.searchParams.delete("step");
+    if (step > 0 && step <= LAST_STEP) address.searchParams.set("step", String(step));
+    return this.#own && this.#state.own === "" ? "" : address.href;
+  }
+
+  #begin(steps = 0): void {
     this.#record = new RaceRecord(1);
     this.#frame = undefined;
     this.#view = undefined;
@@ -240,13 +414,13 @@ export class BoxPlayground extends HTMLElement {
     const { scenes, motions } = this.#lists;
     const about = [scenes.find(({ name }) => name === this.#state.scene), motions.find(({ name }) => name === this.#state.motion)];
     this.#part("about").textContent = about.map((item) => item?.description ?? "").join(" ");
-    this.#send({ type: "begin", run: ++this.#run, world: this.#world(), runners: [this.#method()] });
+    this.#send({ type: "begin", run: ++this.#run, world: this.#world(), runners: [this.#method()], steps });
     this.#describe();
   }
 
   #pace(): void {
     if (!this.#lists) return;
-    this.#send({ type: "pace", running: this.#wanted && this.#awake });
+    this.#send({ type: "pace", running: this.#wanted && this.#awake && !this.#isHeld });
     this.#part("play").textContent = this.#wanted ? "Pause" : "Play";
     this.#describe();
     this.#requestShow();
@@ -272,7 +446,11 @@ export class BoxPlayground extends HTMLElement {
       case "frame":
         this.#frame = message;
         this.#record.add(message);
-        this.#requestShow();
+        if (this.#isWaiting) this.#place();
+        else this.#requestShow();
+        break;
+      case "paced":
+        this.#whenPaced();
         break;
       case "failed":
         this.#say(`That did not work: ${message.message}`);
@@ -294,13 +472,23 @@ export class BoxPlayground extends HTMLElement {
     if (!frame) return;
     this.#draw(frame);
     const now = performance.now();
-    if (!this.#wanted || frame.step === 0 || now - this.#shownAt >= SHOW_MS) {
-      this.#shownAt = now;
-      this.#showCounters(frame);
-      if (!this.#wanted || frame.step === 0) this.#showPreview();
-      if (!this.#wanted) this.#describe();
-    }
+    if (!this.#wanted || frame.step === 0 || now - this.#shownAt >= SHOW_MS) this.#showNumbers(frame, now);
     this.#send({ type: "seen", run: frame.run });
+  }
+
+  /** The numbers and the text to be copied, of the same step as the picture. */
+  #showNumbers(frame: RaceFrame, now: number): void {
+    this.#shownAt = now;
+    this.#showCounters(frame);
+    this.#showPreview();
+    if (!this.#wanted) this.#describe();
+  }
+
+  /** Shows the last step completely, at once. */
+  #showNow(): void {
+    if (!this.#frame) return;
+    this.#draw(this.#frame);
+    this.#showNumbers(this.#frame, performance.now());
   }
 
   #draw({ boxes, pairs }: RaceFrame): void {
@@ -311,9 +499,9 @@ export class BoxPlayground extends HTMLElement {
     if (!this.#colors) {
       const style = getComputedStyle(this);
       const color = (name: string): string => style.getPropertyValue(`--${name}`).trim();
-      this.#colors = { box: color("ramp-1"), highlighted: color("ramp-4"), line: color("stage") };
+      this.#colors = { box: color("ramp-1"), highlighted: color("ramp-4"), line: color("stage"), selected: color("ink") };
     }
-    drawBoxes(canvas, { width, height }, this.#view, boxes, dimensions, pairs, this.#colors);
+    drawBoxes(canvas, { width, height }, this.#view, boxes, dimensions, pairs, this.#colors, this.#hands.selected);
   }
 
   #showCounters({ step, lanes }: RaceFrame): void {
@@ -334,6 +522,7 @@ export class BoxPlayground extends HTMLElement {
     const plain = this.#lists.algorithms.slice(0, 3).includes(algorithm);
     this.#part<HTMLSelectElement>("sort").disabled = plain;
     this.#part<HTMLSelectElement>("axis").disabled = plain || algorithm.endsWith("every axis");
+    for (const part of ["boxes", "size", "spread"]) this.#part<HTMLInputElement>(part).disabled = this.#own !== undefined;
   }
 
   #showPreview(): void {
@@ -346,7 +535,8 @@ export class BoxPlayground extends HTMLElement {
   /** Tells what is going on: seldom enough to be read out. */
   #describe(): void {
     const { boxes, scene, motion } = this.#world();
-    const where = `${formatCount(boxes)} boxes, ${scene}, ${motion}, by ${this.#state.algorithm}.`;
+    const what = this.#own ? `${formatCount(boxes)} boxes of your own` : `${formatCount(boxes)} boxes, ${scene}`;
+    const where = `${what}, ${motion}, by ${this.#state.algorithm}.`;
     const [lane] = this.#frame?.lanes ?? [];
     const found = lane && "report" in lane ? ` ${formatCount(lane.report.pairs)} pairs.` : "";
     this.#say(this.#wanted ? where : `Paused after step ${formatCount(this.#frame?.step ?? 0)}: ${where}${found}`);

@@ -15,10 +15,13 @@ export interface Snapshot {
   readonly address: string;
 }
 
-export type Format = "js" | "rs" | "py" | "json";
+export type Format = "js" | "rs" | "py" | "json" | "csv";
 
 interface Language {
+  /** The media type. */
   readonly type: string;
+  /** The name of the file. */
+  readonly file: string;
   head(snapshot: Snapshot): string;
   row(corners: readonly string[], dimensions: number): string;
   /** Between two rows. */
@@ -27,11 +30,12 @@ interface Language {
 }
 
 const what = ({ world, step, pairs }: Snapshot): string =>
-  `${formatCount(world.boxes)} boxes of the scene "${world.scene}", seed ${world.seed}, step ${step}: ${formatCount(pairs)} pairs.`;
+  `${formatCount(world.boxes)} boxes of ${world.own ? "your own" : `the scene "${world.scene}"`}, seed ${world.seed}, step ${step}: ${formatCount(pairs)} pairs.`;
 
-const LANGUAGES: Record<Format, Language> = {
+export const FORMATS: Readonly<Record<Format, Language>> = {
   js: {
     type: "text/javascript",
+    file: "boxes.mjs",
     head: (snapshot) => `// ${what(snapshot)}
 // npm install sweep-and-prune
 import { findPairs, init } from "sweep-and-prune";
@@ -51,6 +55,7 @@ console.log(pairs.length / 2); // ${pairs}
   },
   rs: {
     type: "text/x-rust",
+    file: "boxes.rs",
     head: (snapshot) => `// ${what(snapshot)}
 // cargo add sweep-and-prune
 use sweep_and_prune::{Aabb, Error, find_pairs};
@@ -77,6 +82,7 @@ static BOXES: [([f32; ${snapshot.world.dimensions}], [f32; ${snapshot.world.dime
   },
   py: {
     type: "text/x-python",
+    file: "boxes.py",
     head: (snapshot) => `# ${what(snapshot)}
 # pip install sweep-and-prune
 import numpy as np
@@ -96,25 +102,33 @@ print(len(pairs))  # ${pairs}
   },
   json: {
     type: "application/json",
+    file: "boxes.json",
     head: ({ world, method, step, pairs, address }) => {
-      const about = JSON.stringify({ address, ...world, boxes: undefined, ...method, step, pairs, count: world.boxes }, null, 2);
+      const { dimensions, scene, motion, seed, size, spread, own } = world;
+      const whose = own ? { motion, seed } : { scene, motion, seed, size, spread };
+      const about = JSON.stringify({ ...(address && { address }), dimensions, ...whose, ...method, step, pairs, count: world.boxes }, null, 2);
       return `${about.slice(0, -2)},\n  "boxes": [\n`;
     },
     row: (corners) => `    [${corners.join(", ")}]`,
     comma: ",",
     tail: () => "\n  ]\n}\n",
   },
+  csv: {
+    type: "text/csv",
+    file: "boxes.csv",
+    head: ({ world }) => `${["min", "max"].flatMap((end) => ["x", "y", "z"].slice(0, world.dimensions).map((axis) => `${end}_${axis}`)).join(",")}\n`,
+    row: (corners) => corners.join(","),
+    comma: "",
+    tail: () => "\n",
+  },
 };
-
-/** The media type of a format. */
-export const typeOf = (format: Format): string => LANGUAGES[format].type;
 
 /** Rows written before the page gets a chance to do something else. */
 const AT_ONCE = 250;
 
 /** All of it. */
 export async function write(snapshot: Snapshot, format: Format): Promise<string> {
-  const language = LANGUAGES[format];
+  const language = FORMATS[format];
   const rows: string[] = [];
   for (let box = 0; box < snapshot.world.boxes; box++) {
     if (box % AT_ONCE === AT_ONCE - 1) await new Promise((resolve) => setTimeout(resolve));
@@ -125,7 +139,7 @@ export async function write(snapshot: Snapshot, format: Format): Promise<string>
 
 /** The beginning and the end of it. */
 export function preview(snapshot: Snapshot, format: Format): string {
-  const language = LANGUAGES[format];
+  const language = FORMATS[format];
   const shown = Math.min(snapshot.world.boxes, 3);
   const rows = Array.from({ length: shown }, (_, box) => row(snapshot, language, box));
   if (shown < snapshot.world.boxes) rows.push(`${format === "js" ? "  " : "    "}... ${formatCount(snapshot.world.boxes - shown)} more`);

@@ -1,6 +1,18 @@
-// Moving about in a picture: by pointer, wheel and keys.
+// Moving about in a picture, or what is in it: by pointer, wheel and keys.
 
 import type { Window2 } from "../experiment/box-picture.ts";
+
+/** A place in the world. */
+export interface Point {
+  readonly x: number;
+  readonly y: number;
+}
+
+/** What a pointer holds, until it lets go. */
+export interface Grip {
+  move(to: Point): void;
+  end(): void;
+}
 
 /** A key moves the view by this share of what is shown. */
 const KEY_STEP = 0.1;
@@ -9,12 +21,15 @@ const KEY_ZOOM = 1.25;
 /**
  * Lets a surface be dragged, pinched and zoomed. `changed` gets the new window, nothing for all
  * there is. The wheel scrolls the page until the surface has been chosen by a click or a key.
+ * Where `grab` gives something to hold, the pointer moves that; `scale` is in CSS pixels a unit.
  */
 export function bindView(
   surface: HTMLElement,
   view: () => Window2 | undefined,
   changed: (view: Window2 | undefined) => void,
+  grab: (at: Point, scale: number) => Grip | undefined,
 ): void {
+  let held: { readonly pointer: number; readonly grip: Grip } | undefined;
   const fingers = new Map<number, { x: number; y: number }>();
   const move = (dx: number, dy: number): void => {
     const now = view();
@@ -33,11 +48,27 @@ export function bindView(
     return [x - left - width / 2, y - top - height / 2];
   };
 
+  const inWorld = (event: { readonly clientX: number; readonly clientY: number }, { x, y, scale }: Window2): Point => {
+    const [fromX, fromY] = fromMiddle({ x: event.clientX, y: event.clientY });
+    return { x: x + fromX / scale, y: y - fromY / scale };
+  };
+
   surface.addEventListener("pointerdown", (event) => {
+    if (held || event.button !== 0) return;
     surface.setPointerCapture(event.pointerId);
+    const now = view();
+    const grip = now && fingers.size === 0 ? grab(inWorld(event, now), now.scale) : undefined;
+    if (grip) {
+      held = { pointer: event.pointerId, grip };
+      return;
+    }
     fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
   });
+  // A finger that holds something does not scroll the page.
+  surface.addEventListener("touchmove", (event) => held && event.preventDefault(), { passive: false });
   surface.addEventListener("pointermove", (event) => {
+    const window = view();
+    if (held?.pointer === event.pointerId && window) return held.grip.move(inWorld(event, window));
     const before = fingers.get(event.pointerId);
     if (!before) return;
     const now = { x: event.clientX, y: event.clientY };
@@ -51,7 +82,13 @@ export function bindView(
     fingers.set(event.pointerId, now);
   });
   for (const end of ["pointerup", "pointercancel"] as const) {
-    surface.addEventListener(end, (event) => fingers.delete(event.pointerId));
+    surface.addEventListener(end, (event) => {
+      fingers.delete(event.pointerId);
+      if (held?.pointer !== event.pointerId) return;
+      const { grip } = held;
+      held = undefined;
+      grip.end();
+    });
   }
   surface.addEventListener(
     "wheel",

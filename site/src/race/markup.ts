@@ -1,7 +1,7 @@
 // The inside of `<race-track>`, written into the page when it is built: the page has its final shape
 // before any script runs. `race-track.ts` finds the parts by their `data-part`.
 
-import { choice, slider } from "../falling/parts.ts";
+import { choice, slider, still } from "../falling/parts.ts";
 import { MEASURES } from "./record.ts";
 
 /** How many algorithms can run side by side. */
@@ -26,6 +26,7 @@ function markup(): string {
     <div class="race" role="group" aria-label="Race">
       <div class="race-stage">
         <canvas data-part="picture" role="img" aria-label="The boxes; those in a pair are highlighted"></canvas>
+        ${still("race", "A thousand boxes; those that overlap another are highlighted")}
         <p class="stage-message" data-part="message">Loading</p>
       </div>
       <div class="race-plot">

@@ -3,7 +3,16 @@
 import type { RunnerOptions, Lists, Report, WorldOptions } from "../experiment/experiment.ts";
 
 export type ToRace =
-  | { readonly type: "begin"; readonly run: number; readonly world: WorldOptions; readonly runners: readonly RunnerOptions[] }
+  | {
+      readonly type: "begin";
+      readonly run: number;
+      readonly world: WorldOptions;
+      readonly runners: readonly RunnerOptions[];
+      /** Steps to take before the first is shown. */
+      readonly steps?: number;
+      /** Whether the same runners go on, with other boxes of the visitor's own. */
+      readonly keep?: boolean;
+    }
   | { readonly type: "pace"; readonly running: boolean }
   | { readonly type: "step" }
   /** The page has shown a frame and can take another. */
@@ -28,4 +37,6 @@ export type FromRace =
   /** Why there can be no race in this world. */
   | { readonly type: "refused"; readonly run: number; readonly reason: string }
   | RaceFrame
+  /** A change of pace was heard: no step that was on its way is still to come. */
+  | { readonly type: "paced" }
   | { readonly type: "failed"; readonly message: string };

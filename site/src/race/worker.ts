@@ -1,7 +1,7 @@
 // The thread of the race: one step of the world, then every runner on the same boxes, one after
 // another, so that none disturbs the clock of another.
 
-import { Experiment, type RunnerOptions, type Report, type WorldOptions } from "../experiment/experiment.ts";
+import { Experiment, type RunnerOptions, type Report } from "../experiment/experiment.ts";
 import { formatCount } from "../falling/counters.ts";
 import type { FromRace, Lane, ToRace } from "./messages.ts";
 
@@ -21,7 +21,7 @@ const BUDGET_IN_ALL_MS = 2000;
 interface Runner {
   readonly options: RunnerOptions;
   /** Its number in the experiment. */
-  readonly number: number;
+  number: number;
   /** Steps over the budget in a row. */
   late: number;
   out: string | undefined;
@@ -29,6 +29,7 @@ interface Runner {
 
 interface Race {
   readonly run: number;
+  readonly dimensions: number;
   readonly runners: Runner[];
   step: number;
   /** Whether the page has not shown the last frame. */
@@ -42,9 +43,12 @@ let timer: ReturnType<typeof setTimeout> | undefined;
 
 const send = (message: FromRace, transfer: Transferable[] = []): void => self.postMessage(message, { transfer });
 
-function begin(experiment: Experiment, run: number, world: WorldOptions, options: readonly RunnerOptions[]): void {
+function begin(experiment: Experiment, { run, world, runners: options, steps = 0, keep = false }: Extract<ToRace, { type: "begin" }>): void {
+  const isKept = keep && race?.dimensions === world.dimensions && race.runners.every(({ out }) => out === undefined);
+  const kept = isKept ? race?.runners : undefined;
   race = undefined;
-  experiment.begin(world);
+  experiment.begin(world, isKept);
+  for (let step = 0; step < steps; step++) experiment.advance();
   const pairs = experiment.countPairs();
   if (pairs > MOST_PAIRS) {
     const reason = `${formatCount(world.boxes)} boxes of this scene make ${formatCount(pairs)} pairs; the limit is ${formatCount(MOST_PAIRS)}. Choose fewer or smaller boxes, or another scene.`;
@@ -52,12 +56,14 @@ function begin(experiment: Experiment, run: number, world: WorldOptions, options
     return;
   }
   let number = 0;
-  const runners = options.map((options): Runner => {
-    const out = refusal(experiment, options);
-    if (out === undefined) experiment.enter(options);
-    return { options, number: out === undefined ? number++ : -1, late: 0, out };
-  });
-  race = { run, runners, step: 0, unseen: false };
+  const runners = kept ?? options.map((options): Runner => ({ options, number: 0, late: 0, out: undefined }));
+  for (const runner of runners) {
+    runner.out = refusal(experiment, runner.options);
+    if (kept || runner.out !== undefined) continue;
+    experiment.enter(runner.options);
+    runner.number = number++;
+  }
+  race = { run, dimensions: world.dimensions, runners, step: steps, unseen: false };
   compete(experiment, race);
 }
 
@@ -123,10 +129,11 @@ function tick(experiment: Experiment): void {
 function receive(experiment: Experiment, message: ToRace): void {
   switch (message.type) {
     case "begin":
-      begin(experiment, message.run, message.world, message.runners);
+      begin(experiment, message);
       break;
     case "pace":
       running = message.running;
+      send({ type: "paced" });
       break;
     case "step":
       advance(experiment);

@@ -41,9 +41,9 @@ export class SimulationClient {
     this.#send({ type: "method", method });
   }
 
-  /** Whether what a frame has measured belongs to the method that was set last. */
+  /** Whether what a frame has measured belongs to the world that began last and the method that was set last. */
   isCurrent(frame: Frame): boolean {
-    return frame.methods === this.#methods;
+    return frame.run === this.#run && frame.methods === this.#methods;
   }
 
   setRunning(running: boolean): void {

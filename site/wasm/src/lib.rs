@@ -15,6 +15,8 @@
 //! | 6 | spread | comparisons, or -1 | |
 //! | 7 | | swaps, or -1 | |
 //!
+//! [`experiment_place`] reads the same numbers, but for the scene, the boxes, the size and the spread.
+//!
 //! There is one world at a time. Searchers are numbered from 0 in the order in which they came;
 //! [`experiment_begin`] forgets them.
 //!
@@ -23,7 +25,7 @@
 // numbers only and dereference no pointer.
 #![allow(unsafe_code)]
 
-mod experiment;
+pub mod experiment;
 pub mod motion;
 pub mod searcher;
 
@@ -49,6 +51,8 @@ pub enum Code {
 }
 
 thread_local! {
+    /// The coordinates of boxes that are given.
+    static ROWS: RefCell<Vec<f32>> = const { RefCell::new(Vec::new()) };
     static EXPERIMENT: RefCell<Option<Box<dyn Experiment>>> = const { RefCell::new(None) };
 }
 
@@ -112,6 +116,34 @@ pub extern "C" fn experiment_begin() -> Code {
         EXPERIMENT.set(made);
     }
     code(done)
+}
+
+/// Where to write the `count` coordinates of given boxes, rows of min corner and max corner; null if there are too many.
+#[unsafe(no_mangle)]
+pub extern "C" fn experiment_rows(count: u32) -> *mut f32 {
+    if f64::from(count) > 6.0 * experiment::MOST_BOXES {
+        return std::ptr::null_mut();
+    }
+    ROWS.with_borrow_mut(|rows| {
+        *rows = vec![0.0; count as usize];
+        rows.as_mut_ptr()
+    })
+}
+
+/// Makes a world of the given boxes, with the dimensions, motion and seed in the area. If `keep` is not 0 and there are as
+/// many dimensions as before, the searchers stay, and go on from what they have kept.
+#[unsafe(no_mangle)]
+pub extern "C" fn experiment_place(keep: u32) -> Code {
+    let area = read_area();
+    let rows = ROWS.take();
+    let kept = with(|experiment| {
+        let is_kept = keep != 0 && experiment.dimensions() == area[0] as usize;
+        is_kept.then(|| experiment.place(&rows, &area))
+    });
+    code(kept.unwrap_or_else(|| {
+        EXPERIMENT.set(Some(experiment::open_given(&rows, &area)?));
+        Some(())
+    }))
 }
 
 /// Moves the world on by one step.

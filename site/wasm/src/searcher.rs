@@ -1,6 +1,6 @@
 //! A searcher finds the pairs: an algorithm, the library's `PairFinder`, or its `BroadPhase`.
 
-use sweep_and_prune::algorithms::{Axis, Counts, Method, Runner, RunnerOptions};
+use sweep_and_prune::algorithms::{Axis, Counts, Method, Runner, RunnerOptions, Sort};
 use sweep_and_prune::{Aabb, BroadPhase, Error, Filter, PairFinder, ProxyId};
 
 /// Which one.
@@ -53,6 +53,9 @@ impl<const D: usize> Searcher<D> {
             Choice::World => Engine::World(Box::default(), Vec::new()),
             Choice::Algorithm(options) => {
                 options.axis.choose::<D, f32>(&[])?;
+                // Insertion sort is for what is almost sorted, which the first step is not.
+                let first = if options.persistent { Sort::Standard } else { options.sort };
+                let options = options.first_sort(first);
                 Engine::Algorithm(Box::new(Runner::new(options)))
             }
         };

@@ -3,6 +3,7 @@
 use sweep_and_prune::Aabb;
 use sweep_and_prune::algorithms::{Axis, Counts, Method, Runner, RunnerOptions, Sort};
 use sweep_and_prune_scenes::Scene;
+use sweep_and_prune_site_wasm::experiment::{Experiment, open_given};
 use sweep_and_prune_site_wasm::motion::{LAWS, Moving, resize};
 use sweep_and_prune_site_wasm::searcher::{Choice, Searcher, forecast};
 
@@ -143,4 +144,43 @@ fn brute_force_has_the_counts_that_an_observer_sees() {
         assert_eq!((tests, axis_overlaps), (observed.tests, observed.axis_overlaps), "{scene:?}");
         assert_eq!((comparisons, swaps), (observed.comparisons, observed.swaps));
     }
+}
+
+/// Boxes that are given take the place of those of the world; the searchers go on from what they have kept.
+#[test]
+fn given_boxes_are_searched_as_they_are() {
+    let area = |dimensions: f64| {
+        std::array::from_fn(|at| [dimensions, 0.0, 0.0, 0.0, 7.0].get(at).copied().unwrap_or(0.0))
+    };
+    let mut rows: Vec<f32> = (0..100)
+        .flat_map(|i| [(i * 37 % 100) as f32, 0.0, (i * 37 % 100) as f32 + 0.5, 1.0])
+        .collect();
+    let mut world = open_given(&rows, &area(2.0)).unwrap();
+    let options = RunnerOptions::new(Method::SortedPairwise).sort(Sort::Insertion);
+    world.enter(Choice::Algorithm(options.axis(Axis::Fixed(0)).persistent(true))).unwrap();
+    let run = |world: &mut dyn Experiment| {
+        let report = world.run(0, true).unwrap();
+        (report.pairs, report.counts.unwrap().comparisons)
+    };
+    let (pairs, first) = run(&mut *world);
+    assert_eq!(pairs, 0);
+    assert!(first < 1_000, "sorted by the library: {first} comparisons");
+
+    // Box 0 is made to reach into another: the order is kept, and looked at once.
+    rows[2] = 1.2;
+    assert_eq!(world.place(&rows, &area(2.0)), Some(()));
+    assert_eq!(run(&mut *world), (1, 99));
+    assert_eq!((world.count_pairs(), world.dimensions()), (Some(1), 2));
+
+    // What is refused changes nothing.
+    let inverted = [2.0, 0.0, 1.0, 1.0];
+    for wrong in [inverted, [0.0, f32::NAN, 1.0, 1.0], [0.0, 0.0, f32::INFINITY, 1.0]] {
+        assert_eq!(world.place(&wrong, &area(2.0)), None);
+        assert!(open_given(&wrong, &area(2.0)).is_none());
+    }
+    assert_eq!(world.place(&[0.0; 5], &area(2.0)), None);
+    assert!(open_given(&[0.0; 8], &area(4.0)).is_none());
+    assert_eq!(run(&mut *world), (1, 99));
+    assert!(open_given(&[0.0, 0.0, 0.0, 1.0, 1.0, 1.0], &area(3.0)).is_some());
+    assert_eq!(open_given(&[], &area(2.0)).unwrap().count_pairs(), Some(0));
 }

@@ -1,0 +1,5 @@
+// The API page: its code can be copied.
+
+import { copyable } from "../article/copy.ts";
+
+for (const listing of document.querySelectorAll<HTMLElement>(".listing")) copyable(listing);
