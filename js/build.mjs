@@ -42,7 +42,6 @@ const cores = [
   // For a game that needs nothing but events: one type of box.
   { name: "events-2d", feature: "events-2d", budget: 70_500, levels: fastForOne },
   { name: "events-3d", feature: "events-3d", budget: 70_500, levels: fastForOne },
-  { name: "spatial-index", feature: "index", budget: 95_000, levels: fast },
   { name: "algorithms", feature: "algorithms", budget: 60_000, levels: small },
 ];
 
@@ -56,8 +55,6 @@ const entries = [
   { name: "events-2d-inline" },
   { name: "events-3d", budget: 9_000 },
   { name: "events-3d-inline" },
-  { name: "spatial-index", budget: 9_500 },
-  { name: "spatial-index-inline" },
   { name: "algorithms", budget: 8_500 },
   { name: "algorithms-inline" },
   // With Lit, which it draws its controls by.

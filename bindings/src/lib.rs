@@ -8,7 +8,6 @@
 //! | [`TrackBodies`] | [`TypedBroadPhase`] | all bindings: bodies, and the pairs that begin and end |
 //! | [`AnyBroadPhase`] | the same | bindings that answer queries and save the state |
 //! | [`ArrayBroadPhase`] | the same | bindings that copy arrays |
-//! | [`AnyIndex`] | [`Index`](sweep_and_prune::Index) | all bindings |
 //!
 //! There are two traits for each, because everything in a trait object is compiled into a
 //! WebAssembly file, whether it is called or not.
@@ -25,14 +24,12 @@
 extern crate alloc;
 
 mod broad_phase;
-mod index;
 mod kind;
 mod pair_finder;
 mod queries;
 mod rows;
 
 pub use broad_phase::{AnyBroadPhase, ArrayBroadPhase, Id, TrackBodies, TypedBroadPhase};
-pub use index::{AnyIndex, AnyIndexBuilder, Found, TypedIndexBuilder};
 pub use kind::{Kind, Settings};
 pub use pair_finder::{AnyPairFinder, ArrayPairFinder, Progress, TypedPairFinder};
 pub use queries::{Answer, Query};

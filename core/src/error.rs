@@ -76,16 +76,13 @@ pub enum Error {
     InvalidQuery {
         /// The index of the first invalid query in the slice that was passed, 0 for a single query.
         index: usize,
-        /// The name of the argument: `point`, `center`, `radius`, `from`, `to`,
-        /// `direction`, `limit` or `max_distance`.
+        /// The name of the argument: `point`, `center`, `radius`, `from`, `direction`, `limit` or `max_distance`.
         argument: &'static str,
         /// Its value, or the coordinate of it that is at fault.
         value: Value,
     },
     /// The bytes are not a snapshot that this world can read.
     InvalidSnapshot(SnapshotFault),
-    /// The bytes are not those of such an index.
-    InvalidIndex(IndexFault),
 }
 
 /// A number that an error reports: a coordinate, a length or an option, as `f64`.
@@ -153,35 +150,6 @@ pub enum SnapshotFault {
     Corrupt,
 }
 
-/// What is wrong with the bytes of an [`Index`](crate::Index).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum IndexFault {
-    /// They do not begin as the bytes of an index do.
-    Foreign,
-    /// They were written by a version that this one cannot read.
-    Version {
-        /// The version that wrote them.
-        found: u8,
-    },
-    /// They are an index of other dimensions or of the other coordinate type.
-    OtherIndex {
-        /// Its dimensions.
-        dimensions: usize,
-        /// The size of its coordinates in bytes: 4 for `f32`, 8 for `f64`.
-        scalar_bytes: usize,
-    },
-    /// They end within the header.
-    Truncated,
-    /// An index of so many boxes has another number of bytes.
-    Length {
-        /// How many bytes there are.
-        found: usize,
-        /// How many boxes the index says that it holds.
-        boxes: u64,
-    },
-}
-
 impl Error {
     /// The greatest number of boxes in one set, 2^32 - 1: pairs hold `u32` indices.
     pub const BOX_LIMIT: usize = u32::MAX as usize;
@@ -231,7 +199,6 @@ impl fmt::Display for Error {
                 write!(f, "`{argument}` of query {index} is {value}, but it {limit}")
             }
             Error::InvalidSnapshot(fault) => fault.fmt(f),
-            Error::InvalidIndex(fault) => fault.fmt(f),
         }
     }
 }
@@ -258,33 +225,6 @@ impl fmt::Display for SnapshotFault {
             }
             SnapshotFault::Corrupt => f.write_str(
                 "the snapshot is corrupt: its parts or its checksum contradict each other",
-            ),
-        }
-    }
-}
-
-impl fmt::Display for IndexFault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            IndexFault::Foreign => f.write_str("these bytes are not those of an index"),
-            IndexFault::Version { found } => write!(
-                f,
-                "the index is of version {found}, which this version of the library cannot read: \
-                 build it again"
-            ),
-            IndexFault::OtherIndex { dimensions, scalar_bytes } => {
-                let bits = 8 * scalar_bytes;
-                write!(
-                    f,
-                    "this is an index of {dimensions} dimensions and f{bits} coordinates: read it as \
-                     `Index<{dimensions}, f{bits}>`"
-                )
-            }
-            IndexFault::Truncated => f.write_str("the index ends within its header"),
-            IndexFault::Length { found, boxes } => write!(
-                f,
-                "an index of {boxes} boxes does not have {found} bytes: some are missing, or there \
-                 are too many"
             ),
         }
     }

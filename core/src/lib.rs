@@ -9,18 +9,14 @@ extern crate std;
 pub mod algorithms;
 mod error;
 mod geometry;
-mod index;
-mod lists;
 mod memory;
 mod pairs;
 mod world;
 
-pub use error::{Error, IndexFault, SnapshotFault, Value};
+pub use error::{Error, SnapshotFault, Value};
 pub use geometry::{Aabb, Scalar, validate};
-pub use index::{Index, IndexBuffer, IndexInfo, SearchBuffer};
-pub use lists::Lists;
 pub use pairs::{Kernel, PairFinder, Search, count_pairs, find_pairs, find_pairs_between};
 pub use world::{
-    BroadPhase, Cast, Changes, Filter, Hit, Neighbor, Options, Pairs, ProxyId, Queries, Report,
-    SnapshotInfo,
+    BroadPhase, Cast, Changes, Filter, Hit, Lists, Neighbor, Options, Pairs, ProxyId, Queries,
+    Report, SnapshotInfo,
 };

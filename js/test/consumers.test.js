@@ -197,8 +197,8 @@ test("Node, and importing it on a server does nothing", () => {
     globalThis.fetch = globalThis.WebAssembly.instantiate = () => { throw new Error("touched") };
     const instantiate = WebAssembly.compile;
     WebAssembly.compile = () => { throw new Error("touched") };
-    const entries = ["", "/broad-phase", "/spatial-index", "/events-2d", "/events-3d", "/algorithms"].flatMap((entry) => [entry, entry + "/inline"]);
-    const files = ["index", "broad-phase", "spatial-index", "events-2d", "events-3d", "algorithms"]; // of the entries that are others in Node
+    const entries = ["", "/broad-phase", "/events-2d", "/events-3d", "/algorithms"].flatMap((entry) => [entry, entry + "/inline"]);
+    const files = ["index", "broad-phase", "events-2d", "events-3d", "algorithms"]; // of the entries that are others in Node
     const loaded = [];
     for (const entry of entries) loaded.push(typeof (await import("sweep-and-prune" + entry)).init);
     for (const file of files) loaded.push(typeof (await import("./node_modules/sweep-and-prune/dist/" + file + ".js")).init);

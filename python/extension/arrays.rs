@@ -14,7 +14,6 @@ use numpy::{
 use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use sweep_and_prune::Lists;
 use sweep_and_prune_bindings::Kind;
 
 use crate::run::call;
@@ -141,23 +140,6 @@ pub fn pairs<'py, V: Element + Copy>(
         let mut into = array.cast::<PyArray2<V>>()?.try_readwrite().map_err(|_| borrowed())?;
         let into = into.as_slice_mut().map_err(|_| borrowed())?.as_chunks_mut().0;
         into.iter_mut().zip(pairs).for_each(|(into, pair)| *into = pair);
-    }
-    Ok(array)
-}
-
-/// A new array of two rows: the query of each result, and the result.
-pub fn results<'py>(py: Python<'py>, lists: &Lists<u32>) -> PyResult<Array<'py>> {
-    let array = empty::<i64>(py, (2, lists.values().len()))?;
-    {
-        let mut into = array.cast::<PyArray2<i64>>()?.try_readwrite().map_err(|_| borrowed())?;
-        let into = into.as_slice_mut().map_err(|_| borrowed())?;
-        let (mut queries, found) = into.split_at_mut(lists.values().len());
-        for (query, list) in lists.iter().enumerate() {
-            let (own, rest) = queries.split_at_mut(list.len());
-            own.fill(query as i64);
-            queries = rest;
-        }
-        found.iter_mut().zip(lists.values()).for_each(|(into, &index)| *into = i64::from(index));
     }
     Ok(array)
 }

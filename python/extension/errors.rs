@@ -19,7 +19,6 @@ pub fn raise(py: Python<'_>, error: Error, argument: &str, ids: &[i64]) -> PyErr
             None => PyRuntimeError::new_err(error.to_string()),
         },
         Error::OutOfMemory => PyMemoryError::new_err(error.to_string()),
-        Error::InvalidIndex(_) => make(py, "IndexDataError", (error.to_string(),)),
         Error::InvalidSnapshot(_) => make(py, "SnapshotError", (error.to_string(),)),
         error => PyValueError::new_err(error.to_string()),
     }

@@ -5,7 +5,6 @@
 mod arrays;
 mod errors;
 mod finder;
-mod index;
 mod run;
 mod world;
 
@@ -14,8 +13,6 @@ mod world;
 mod _native {
     #[pymodule_export]
     use super::finder::Finder;
-    #[pymodule_export]
-    use super::index::Index;
     #[pymodule_export]
     use super::world::World;
 }

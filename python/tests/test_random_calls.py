@@ -162,39 +162,6 @@ def squares(boxes: Array, point: Array) -> Array:
     return np.asarray((gaps**2).sum(axis=1))
 
 
-def index(random: Random) -> None:
-    """Calls of a static index."""
-    dimensions = int(random.integers(1, 4))
-    boxes = some_boxes(random, dimensions, one_of(random, [np.float32, np.float64]))
-    made = sap.Index(boxes)
-    if random.random() < 0.3:
-        made = sap.Index.from_buffer(made.data)
-    areas = some_boxes(random, dimensions, np.float64)
-    wanted = near(areas, boxes, "both", 0)
-    found = made.search_many(areas, threads=int(random.integers(1, 3)))
-    assert np.array_equal(in_order(found.T), np.argwhere(wanted))
-    if len(areas):
-        limit = one_of(random, [None, 0, 1, 5])
-        one = made.search(areas[0], limit=limit).tolist()
-        number = int(wanted[0].sum())
-        assert wanted[0][one].all() and len(set(one)) == len(one) == min(number if limit is None else limit, number)
-    point, way = random.integers(-4, 20, dimensions) / 2, random.choice([-2.0, -1.0, 0.0, 1.0, 2.0], dimensions)
-    distances = squares(boxes, point)
-    order = np.lexsort((np.arange(len(boxes)), distances))[: int(random.integers(0, 9))]
-    nearest = made.neighbors(point, len(order))
-    assert nearest.ids.tolist() == order.tolist()
-    assert np.array_equal(nearest.distances, np.sqrt(distances[order]))
-    start, limit = np.hstack([point, point]), float(random.choice([0, 0.5, 3, np.inf]))
-    rows, times = hits(boxes, start, way, limit)
-    met = made.ray_cast_all(point, way, limit=limit)
-    assert (met.ids.tolist(), met.t.tolist()) == (rows.tolist(), times.tolist())
-    first = made.ray_cast(point, way, limit=limit)
-    assert first == ((rows[0], times[0]) if len(rows) else None)
-    rows, times = hits(boxes, start, way, 1)
-    met = made.segment(point, point + way)
-    assert (met.ids.tolist(), met.t.tolist()) == (rows.tolist(), times.tolist())
-
-
 def two_sets(random: Random, dimensions: int) -> list[Array]:
     return [some_boxes(random, dimensions, one_of(random, [np.float32, np.float64])) for _ in "ab"]
 
@@ -444,10 +411,8 @@ def test_random_calls_are_right(part: int, tmp_path: Path) -> None:
         state = random.bit_generator.state
         try:
             kind = random.random()
-            if kind < 0.4:
+            if kind < 0.5:
                 search(random)
-            elif kind < 0.5:
-                index(random)
             elif kind < 0.58:
                 join(random)
             elif kind < 0.6:

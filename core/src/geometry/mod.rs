@@ -5,7 +5,6 @@ mod arithmetic;
 #[cfg(feature = "bytemuck")]
 mod bytes;
 mod conversions;
-mod measure;
 mod scalar;
 #[cfg(feature = "serde")]
 mod serde;
@@ -13,8 +12,5 @@ mod serde;
 pub(crate) use aabb::check_count;
 pub use aabb::{Aabb, validate};
 pub(crate) use arithmetic::{Arithmetic, Quantizer};
-pub(crate) use measure::{
-    Fault, check_each, contact_time, distance_squared, fault_in, is_finite, is_length, is_within,
-};
 pub(crate) use scalar::Key;
 pub use scalar::Scalar;

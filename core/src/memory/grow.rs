@@ -18,17 +18,6 @@ pub fn grow<V: Copy>(array: &mut Vec<V>, size: usize, value: V) -> Result<(), Tr
     Ok(())
 }
 
-/// An empty array for so many items, on large pages where they are many.
-///
-/// # Errors
-/// If there is not enough memory.
-pub fn reserved<V>(capacity: usize) -> Result<Vec<V>, TryReserveError> {
-    let mut array = Vec::new();
-    array.try_reserve_exact(capacity)?;
-    enlarge_pages(&mut array);
-    Ok(array)
-}
-
 /// Makes an array just so long.
 ///
 /// # Errors

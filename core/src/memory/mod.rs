@@ -8,5 +8,5 @@ mod grow;
 mod pages;
 mod prefetch;
 
-pub use grow::{grow, grow_to, reserve, reserved};
+pub use grow::{grow, grow_to, reserve};
 pub use prefetch::{prefetch, prefetch_item, prefetch_pays, preload};

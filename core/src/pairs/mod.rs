@@ -95,7 +95,4 @@ mod sweep;
 
 pub use finder::{PairFinder, count_pairs, find_pairs, find_pairs_between};
 pub use kernel::Kernel;
-pub(crate) use kernel::{LANES, Lanes, Relation, Work, coordinate};
-#[cfg(feature = "parallel")]
-pub(crate) use parallel::map_on_threads;
 pub use search::Search;

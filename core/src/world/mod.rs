@@ -28,5 +28,5 @@ pub use bodies::{Filter, ProxyId};
 pub use broad_phase::BroadPhase;
 pub use changes::{Changes, Pairs};
 pub use options::{Options, Report};
-pub use queries::{Cast, Hit, Neighbor, Queries};
+pub use queries::{Cast, Hit, Lists, Neighbor, Queries};
 pub use snapshot::SnapshotInfo;

@@ -15,7 +15,6 @@ mod broad_phase_threads;
 mod corrections;
 mod errors;
 mod geometry;
-mod index;
 mod observed;
 mod oracle;
 mod package;

@@ -4,8 +4,8 @@ use sweep_and_prune::algorithms::{
     Axis, Counts, Edge, Endpoint, Event, Method, Player, Runner, RunnerOptions, Sort, Trace,
 };
 use sweep_and_prune::{
-    Aabb, BroadPhase, Cast, Changes, Error, Filter, Hit, Index, IndexFault, Kernel, Lists,
-    Neighbor, Options, PairFinder, Pairs, ProxyId, Queries, Report, SearchBuffer, SnapshotFault,
+    Aabb, BroadPhase, Cast, Changes, Error, Filter, Hit, Kernel, Lists, Neighbor, Options,
+    PairFinder, Pairs, ProxyId, Queries, Report, SnapshotFault,
 };
 
 fn is_send_and_sync<T: Send + Sync>() {}
@@ -19,14 +19,6 @@ fn boxes_errors_and_finders_are_send_and_sync() {
     is_send_and_sync::<Kernel>();
     is_send_and_sync::<PairFinder<2>>();
     is_send_and_sync::<PairFinder<3, f64>>();
-}
-
-#[test]
-fn indexes_are_send_and_sync() {
-    is_send_and_sync::<Index<2>>();
-    is_send_and_sync::<Index<3, f64, &[u8]>>();
-    is_send_and_sync::<SearchBuffer>();
-    is_send_and_sync::<IndexFault>();
 }
 
 #[test]

@@ -20,8 +20,6 @@ mod broad_phase;
 mod broken;
 #[cfg(feature = "finder")]
 mod finder;
-#[cfg(feature = "index")]
-mod index;
 #[cfg(target_arch = "wasm32")]
 mod runtime;
 mod status;

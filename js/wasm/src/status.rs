@@ -2,7 +2,7 @@
 
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-use sweep_and_prune::{Error, IndexFault, SnapshotFault};
+use sweep_and_prune::{Error, SnapshotFault};
 
 /// What a call returns; `js/src/engine.ts` has the same list.
 #[repr(u32)]
@@ -23,9 +23,6 @@ pub enum Code {
     /// Details: what is wrong, as `SnapshotError` in `js/src/errors.ts` lists it, and the version
     /// found.
     InvalidSnapshot = 6,
-    /// Details: what is wrong, as `IndexDataError` in `js/src/static-index.ts` lists it, and the version or the
-    /// dimensions found.
-    InvalidIndex = 7,
 }
 
 /// Atomic only because a static must be: in WebAssembly these are plain loads and stores.
@@ -56,15 +53,6 @@ pub fn report_error(error: Error) -> Code {
                 _ => [4, 0],
             };
             report(Code::InvalidSnapshot, fault)
-        }
-        Error::InvalidIndex(fault) => {
-            let fault = match fault {
-                IndexFault::Foreign => [0, 0],
-                IndexFault::Version { found } => [1, found.into()],
-                IndexFault::OtherIndex { dimensions, .. } => [2, dimensions],
-                _ => [3, 0],
-            };
-            report(Code::InvalidIndex, fault)
         }
         _ => report(Code::Internal, [0, 0]),
     }

@@ -28,14 +28,12 @@ array([[0, 2]])
 | more boxes than fit in memory, or a cluster | `sweep_and_prune.dask` |
 | any of these every frame | `PairFinder` |
 | bodies that mostly rest; begin and end events; queries and rays | `BroadPhase` |
-| boxes that do not move, searched many times | `Index` |
 """
 
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 
 from ._broad_phase import BroadPhase, Changes, Hit, Hits, Lists, Neighbors, slots_of
 from ._errors import (
-    IndexDataError,
     InvalidBoxError,
     InvalidQueryError,
     SnapshotError,
@@ -43,7 +41,6 @@ from ._errors import (
     SweepAndPruneError,
 )
 from ._filter import Filter
-from ._index import Index
 from ._join import join
 from ._pairs import (
     PairFinder,
@@ -79,14 +76,12 @@ __all__ = [  # noqa: RUF022
     "Hit",
     "Hits",
     "Neighbors",
-    "Index",
     "slots_of",
     "SweepAndPruneError",
     "InvalidBoxError",
     "StaleProxyError",
     "InvalidQueryError",
     "SnapshotError",
-    "IndexDataError",
 ]
 
 

@@ -139,18 +139,6 @@ class SnapshotError(SweepAndPruneError, ValueError):
     """
 
 
-class IndexDataError(SweepAndPruneError, ValueError):
-    """Bytes that are not an index.
-
-    >>> import sweep_and_prune as sap
-    >>> try:
-    ...     sap.Index.from_buffer(b"a file of another program")
-    ... except sap.IndexDataError as error:
-    ...     print(error)
-    these bytes are not those of an index
-    """
-
-
 def _place(argument: str, index: int) -> str:
     """An argument for one thing is named by itself, one for many by its element."""
     is_many = argument in ("a", "b", "radii") or (argument.endswith("s") and argument != "radius")

@@ -2,7 +2,6 @@
 
 use core::any::Any;
 
-use super::lanes::{OneByOne, Work};
 #[cfg(target_arch = "aarch64")]
 use super::neon;
 use super::scalar;
@@ -217,47 +216,4 @@ sweep! {
     Neon => neon::Neon<core::arch::aarch64::float64x2_t>;
     #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
     Simd128 => wasm::F64x4;
-}
-
-/// [`Kernel::run`]: compiled for each of these instructions, with its vectors of `f32` and `f64`.
-macro_rules! run {
-    ($($(#[$cfg:meta])* $instructions:ident => $single:ty, $double:ty $(, $feature:literal)?;)*) => {
-        impl Kernel {
-            /// Does `work` with these instructions.
-            #[inline]
-            pub(crate) fn run<W: Work>(self, work: W) -> W::Output {
-                match self.instructions() {
-                    // Vectors are loaded as they lie in memory.
-                    _ if cfg!(target_endian = "big") => work.run(OneByOne),
-                    Instructions::Scalar => work.run(OneByOne),
-                    $($(#[$cfg])* Instructions::$instructions => {
-                        /// # Safety
-                        /// The instructions are present.
-                        $(#[target_feature(enable = $feature)])?
-                        unsafe fn compiled<W: Work>(work: W, lanes: impl super::lanes::Lanes) -> W::Output {
-                            work.run(lanes)
-                        }
-                        // SAFETY: a `Kernel` exists only where its instructions do.
-                        unsafe { compiled(work, super::lanes::Vectors::<$single, $double>::new()) }
-                    })*
-                }
-            }
-        }
-    };
-}
-
-run! {
-    #[cfg(target_arch = "x86_64")]
-    Sse2 => x86::Sse2<core::arch::x86_64::__m128>, x86::Sse2<core::arch::x86_64::__m128d>;
-    #[cfg(target_arch = "x86_64")]
-    Avx2 => x86::Avx2<core::arch::x86_64::__m256>, x86::Avx2<core::arch::x86_64::__m256d>,
-        "avx2,bmi1,popcnt";
-    #[cfg(target_arch = "x86_64")]
-    Avx512 => x86::Avx512<core::arch::x86_64::__m512>, x86::Avx512<core::arch::x86_64::__m512d>,
-        "avx512f,bmi1,popcnt";
-    #[cfg(target_arch = "aarch64")]
-    Neon => neon::Neon<core::arch::aarch64::float32x4_t>,
-        neon::Neon<core::arch::aarch64::float64x2_t>;
-    #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-    Simd128 => wasm::F32x8, wasm::F64x4;
 }

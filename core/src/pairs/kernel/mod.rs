@@ -6,7 +6,6 @@
 #![allow(unsafe_code)]
 
 mod dispatch;
-mod lanes;
 #[cfg(test)]
 mod model;
 #[cfg(target_arch = "aarch64")]
@@ -23,7 +22,6 @@ mod wasm;
 mod x86;
 
 pub use dispatch::Kernel;
-pub use lanes::{LANES, Lanes, Relation, Work, coordinate};
 pub use scan::Cursor;
 pub use scatter::{CountedPlacements, Placement, Slots, assign_slots};
 pub use sorted_boxes::{PAD, SortedBoxes};

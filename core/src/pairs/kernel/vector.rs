@@ -38,25 +38,6 @@ pub(super) unsafe trait Vector<T: Copy>: Copy {
     ) -> usize {
         unreachable!("it does not pack")
     }
-
-    /// Moves those of sixteen values whose bits are set to the front of `to`; the rest of `to` is not
-    /// defined.
-    #[allow(dead_code)] // where there are no vectors
-    #[inline(always)]
-    unsafe fn compress(values: &[u32; 16], bits: u32, to: &mut [u32; 16]) {
-        compress(values, bits, to);
-    }
-}
-
-/// The definition of [`Vector::compress`].
-#[inline(always)]
-pub(super) fn compress(values: &[u32; 16], mut bits: u32, to: &mut [u32; 16]) {
-    let mut count = 0;
-    while bits != 0 {
-        to[count % 16] = values[bits.trailing_zeros() as usize % 16];
-        bits &= bits - 1;
-        count += 1;
-    }
 }
 
 /// The order of the two ids of a pair.

@@ -20,7 +20,7 @@ pub(super) struct Avx512<V>(V);
 macro_rules! vector {
     ($name:ident<$vector:ty>, $lanes:literal, $scalar:ty, $splat:ident, $load:ident,
      $mask:ty, $le:expr, |$and:ident, $a:ident, $b:ident| $and_le:expr, $bits:expr
-     $(, $pack:ident, $ids:ident, $compress:ident)?) => {
+     $(, $pack:ident, $ids:ident)?) => {
         // SAFETY: one load of exactly LANES coordinates; `pack`, where it is, reads LANES
         // ids and bitmaps and writes LANES pairs.
         unsafe impl Vector<$scalar> for $name<$vector> {
@@ -73,12 +73,6 @@ macro_rules! vector {
                     // LANES pairs.
                     unsafe { $pack(Self::bits(hits), $ids(ids), $ids(dedup), probe, out, $lanes) }
                 }
-
-                #[inline(always)]
-                unsafe fn compress(values: &[u32; 16], bits: u32, to: &mut [u32; 16]) {
-                    // SAFETY: the caller has the instructions.
-                    unsafe { $compress(values, bits, to) }
-                }
             )?
         }
     };
@@ -96,25 +90,25 @@ vector! {
     Avx2<__m256>, 8, f32, _mm256_set1_ps, _mm256_loadu_ps,
     __m256, _mm256_cmp_ps::<_CMP_LE_OQ>,
     |mask, a, b| _mm256_and_ps(mask, _mm256_cmp_ps::<_CMP_LE_OQ>(a.0, b.0)),
-    _mm256_movemask_ps, pack, eight_numbers, compress_by_eight
+    _mm256_movemask_ps, pack, eight_numbers
 }
 vector! {
     Avx2<__m256d>, 4, f64, _mm256_set1_pd, _mm256_loadu_pd,
     __m256d, _mm256_cmp_pd::<_CMP_LE_OQ>,
     |mask, a, b| _mm256_and_pd(mask, _mm256_cmp_pd::<_CMP_LE_OQ>(a.0, b.0)),
-    _mm256_movemask_pd, pack, four_numbers, compress_by_eight
+    _mm256_movemask_pd, pack, four_numbers
 }
 vector! {
     Avx512<__m512>, 16, f32, _mm512_set1_ps, _mm512_loadu_ps,
     __mmask16, _mm512_cmp_ps_mask::<_CMP_LE_OQ>,
     |mask, a, b| _mm512_mask_cmp_ps_mask::<_CMP_LE_OQ>(mask, a.0, b.0),
-    u32::from, compress, sixteen_numbers, compress_sixteen
+    u32::from, compress, sixteen_numbers
 }
 vector! {
     Avx512<__m512d>, 8, f64, _mm512_set1_pd, _mm512_loadu_pd,
     __mmask8, _mm512_cmp_pd_mask::<_CMP_LE_OQ>,
     |mask, a, b| _mm512_mask_cmp_pd_mask::<_CMP_LE_OQ>(mask, a.0, b.0),
-    u32::from, compress, eight_of_sixteen, compress_sixteen
+    u32::from, compress, eight_of_sixteen
 }
 
 /// # Safety
@@ -173,26 +167,6 @@ unsafe fn pack(
             _mm256_storeu_si256(out.add(4).cast(), rest);
         }
         reported.count_ones() as usize
-    }
-}
-
-/// See [`Vector::compress`].
-///
-/// # Safety
-/// AVX2.
-#[inline(always)]
-unsafe fn compress_by_eight(values: &[u32; 16], bits: u32, to: &mut [u32; 16]) {
-    let (low, high) = (bits as usize & 0xff, bits as usize >> 8 & 0xff);
-    let (values, to) = (values.as_ptr(), to.as_mut_ptr());
-    // SAFETY: both halves are read, and eight values are written behind at most eight others. AVX2 is the
-    // caller's promise.
-    unsafe {
-        let half = |from: *const u32, mask: usize| {
-            let front = _mm256_cvtepu8_epi32(_mm_loadl_epi64(FRONT[mask].as_ptr().cast()));
-            _mm256_permutevar8x32_epi32(_mm256_loadu_si256(from.cast()), front)
-        };
-        _mm256_storeu_si256(to.cast(), half(values, low));
-        _mm256_storeu_si256(to.add(low.count_ones() as usize).cast(), half(values.add(8), high));
     }
 }
 
@@ -265,19 +239,5 @@ unsafe fn compress(
             _mm512_storeu_si512(out.add(8).cast(), _mm512_permutex2var_epi32(first, high, second));
         }
         reported.count_ones() as usize
-    }
-}
-
-/// See [`Vector::compress`].
-///
-/// # Safety
-/// AVX-512 F.
-#[inline(always)]
-unsafe fn compress_sixteen(values: &[u32; 16], bits: u32, to: &mut [u32; 16]) {
-    // SAFETY: sixteen values are read and written. AVX-512 F is the caller's promise.
-    unsafe {
-        let values = _mm512_loadu_si512(values.as_ptr().cast());
-        let packed = _mm512_maskz_compress_epi32(bits as u16, values);
-        _mm512_storeu_si512(to.as_mut_ptr().cast(), packed);
     }
 }

@@ -8,5 +8,4 @@ mod threads;
 pub(super) use gather::Gather;
 pub(super) use schedule::Schedule;
 pub(super) use sweep::sweep_on_threads;
-pub(crate) use threads::map_on_threads;
 pub(super) use threads::{copy, for_each_on_threads, on_threads};

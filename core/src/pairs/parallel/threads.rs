@@ -3,7 +3,6 @@
 use alloc::vec::Vec;
 use core::hint::spin_loop;
 use core::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::Mutex;
 use std::thread::yield_now;
 
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -54,23 +53,6 @@ pub fn on_threads<W: Send>(
 pub fn for_each_on_threads<W: Send>(mut items: impl Iterator<Item = W>, work: impl Fn(W) + Sync) {
     let first = items.next();
     on_threads(|| first.into_iter().for_each(&work), items, &work);
-}
-
-/// What `work` makes of each item, in the order of the items; each thread takes the next item.
-pub fn map_on_threads<I: Send, V: Send>(
-    threads: usize,
-    items: impl ExactSizeIterator<Item = I> + Send,
-    work: impl Fn(I) -> V + Sync,
-) -> impl Iterator<Item = V> {
-    let mut values: Vec<Option<V>> = (0..items.len()).map(|_| None).collect();
-    let next = Mutex::new(items.zip(&mut values));
-    for_each_on_threads(0..threads, |_| {
-        let take = || next.lock().ok()?.next();
-        while let Some((item, value)) = take() {
-            *value = Some(work(item));
-        }
-    });
-    values.into_iter().flatten()
 }
 
 /// A thread counts as busy until this is dropped.

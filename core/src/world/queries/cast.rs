@@ -5,8 +5,8 @@ use core::cell::Cell;
 use core::cmp::Ordering;
 use core::ops::ControlFlow;
 
+use super::math::{Fault, check_each, fault_in, is_finite, is_length};
 use super::region::Queries;
-use crate::geometry::{Fault, check_each, contact_time, fault_in, is_finite, is_length};
 use crate::world::bodies::ProxyId;
 use crate::{Aabb, Error, Scalar};
 
@@ -35,7 +35,7 @@ impl<const D: usize, T: Scalar> Cast<D, T> {
         Self { from, direction, limit }
     }
 
-    pub(crate) fn fault(&self) -> Fault {
+    fn fault(&self) -> Fault {
         let Self { from, direction, limit } = self;
         let inverted = from.invalid_axis().map(|axis| ("from", from.min[axis].to_f64()));
         fault_in("from", &from.min, is_finite)
@@ -44,14 +44,33 @@ impl<const D: usize, T: Scalar> Cast<D, T> {
             .or(fault_in("direction", direction, is_finite))
             .or(fault_in("limit", &[*limit], is_length))
     }
+
+    /// The t at which it first touches a box, if it does by `limit`.
+    fn touches(&self, other: &Aabb<D, T>, limit: f64) -> Option<f64> {
+        let (mut first, mut last) = (0.0f64, limit);
+        for axis in 0..D {
+            let speed = self.direction[axis].to_f64();
+            let before = other.min[axis].to_f64() - self.from.max[axis].to_f64();
+            let behind = other.max[axis].to_f64() - self.from.min[axis].to_f64();
+            if speed == 0.0 {
+                if before > 0.0 || behind < 0.0 {
+                    return None;
+                }
+                continue;
+            }
+            let (enter, leave) = if speed > 0.0 { (before, behind) } else { (behind, before) };
+            first = first.max(enter / speed);
+            last = last.min(leave / speed);
+        }
+        (first <= last).then_some(first)
+    }
 }
 
-/// A body that a cast hits; or a box, whose id is its index, if the cast is through an
-/// [`Index`](crate::Index).
+/// A body that a cast hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit<I = ProxyId> {
+pub struct Hit {
     /// The body.
-    pub id: I,
+    pub id: ProxyId,
     /// Where the hit is: at `from + t * direction`. 0 if they overlap at the start.
     pub t: f64,
 }
@@ -119,8 +138,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     fn run_cast(&self, cast: &Cast<D, T>, mut visit: impl FnMut(Hit) -> ControlFlow<(), f64>) {
         // The visitor lowers it.
         let limit = Cell::new(cast.limit.to_f64());
-        let speed = cast.direction.map(T::to_f64);
-        let touches = |aabb: &Aabb<D, T>| contact_time(&cast.from, &speed, limit.get(), aabb);
+        let touches = |aabb: &Aabb<D, T>| cast.touches(aabb, limit.get());
         self.tree.search(touches, |index| {
             if let Some(t) = touches(self.bodies.shape(index))
                 && self.sees(index)

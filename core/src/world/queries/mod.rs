@@ -4,9 +4,12 @@
 //! world are skipped, and the same formula for one body.
 
 mod cast;
+mod lists;
+mod math;
 mod nearest;
 mod region;
 
 pub use cast::{Cast, Hit};
+pub use lists::Lists;
 pub use nearest::Neighbor;
 pub use region::Queries;

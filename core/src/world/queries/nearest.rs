@@ -5,17 +5,17 @@ use alloc::vec::Vec;
 use core::cell::Cell;
 use core::ops::ControlFlow;
 
+use super::lists::Lists;
+use super::math::{check_each, distance_squared, fault_in, is_finite, is_length};
 use super::region::Queries;
-use crate::geometry::{check_each, distance_squared, fault_in, is_finite, is_length};
-use crate::lists::Lists;
 use crate::world::bodies::ProxyId;
 use crate::{Aabb, Error, Scalar};
 
-/// A body near a point; or a box, whose id is its index, if it was found in an [`Index`](crate::Index).
+/// A body near a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Neighbor<I = ProxyId> {
+pub struct Neighbor {
     /// The body.
-    pub id: I,
+    pub id: ProxyId,
     /// The square of the distance from the point to the body's box; 0 if the point is in it.
     pub distance_squared: f64,
 }

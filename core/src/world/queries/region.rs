@@ -3,8 +3,8 @@
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
-use crate::geometry::{check_each, fault_in, is_finite, is_length, is_within};
-use crate::lists::Lists;
+use super::lists::Lists;
+use super::math::{check_each, fault_in, is_finite, is_length, is_within};
 use crate::world::bodies::{Bodies, Filter, ProxyId, flag};
 use crate::world::tree::Tree;
 use crate::{Aabb, Error, Scalar};

@@ -1,4 +1,4 @@
-//! Distances, when a moving box touches another, and which queries make sense.
+//! Distances, and which queries make sense.
 //!
 //! Formulas are in `f64` and made of operations that round monotonically, so what contains a body is
 //! never farther than the body.
@@ -69,30 +69,4 @@ pub fn distance_squared<const D: usize, T: Scalar>(point: &[T; D], aabb: &Aabb<D
         let gap = gap(point, aabb, axis);
         sum + gap * gap
     })
-}
-
-/// The t at which a box at `from + t * speed` first touches another, if it does from 0 to `limit`.
-#[inline]
-pub fn contact_time<const D: usize, T: Scalar>(
-    from: &Aabb<D, T>,
-    speed: &[f64; D],
-    limit: f64,
-    other: &Aabb<D, T>,
-) -> Option<f64> {
-    let (mut first, mut last) = (0.0f64, limit);
-    for axis in 0..D {
-        let speed = speed[axis];
-        let before = other.min[axis].to_f64() - from.max[axis].to_f64();
-        let behind = other.max[axis].to_f64() - from.min[axis].to_f64();
-        if speed == 0.0 {
-            if before > 0.0 || behind < 0.0 {
-                return None;
-            }
-            continue;
-        }
-        let (enter, leave) = if speed > 0.0 { (before, behind) } else { (behind, before) };
-        first = first.max(enter / speed);
-        last = last.min(leave / speed);
-    }
-    (first <= last).then_some(first)
 }

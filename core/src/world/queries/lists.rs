@@ -6,17 +6,17 @@ use core::ops::Index;
 /// The results of many queries, a list for each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lists<V> {
-    pub(crate) ends: Vec<usize>,
-    pub(crate) values: Vec<V>,
+    pub(super) ends: Vec<usize>,
+    pub(super) values: Vec<V>,
 }
 
 impl<V> Lists<V> {
-    pub(crate) fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self { ends: Vec::new(), values: Vec::new() }
     }
 
     /// Ends the list of the values that were added since the last one.
-    pub(crate) fn end(&mut self) {
+    pub(super) fn end(&mut self) {
         self.ends.push(self.values.len());
     }
 
