@@ -240,6 +240,7 @@ impl World {
     /// Ids, their values, and where the ids of each query end. `kind` names a [`Query`]; `queries`
     /// holds its numbers, a row for each query.
     #[pyo3(signature = (kind, queries, filter, argument, k=0, max_distance=0.0, sorted=true))]
+    #[allow(clippy::too_many_arguments)] // Python passes them by name
     fn query<'py>(
         &self,
         kind: &str,
