@@ -55,17 +55,50 @@ export interface DemoDrag {
   y: number;
 }
 
-/**
- * One thing that a program did: a comparison of two edges, a swap of two positions in the array, a test or an overlap of
- * two balls, an overlap on one axis, or that from now on it works on the array of an axis, with its edges in order. An
- * edge is `2 * ball` for a left end, and one more for a right end.
- */
+/** One thing that a program did. An edge is `2 * ball` for a left end, and one more for a right end. */
 export type ProgramEvent =
-  | { readonly kind: "compare"; readonly a: number; readonly b: number }
-  | { readonly kind: "swap"; readonly i: number; readonly j: number }
-  | { readonly kind: "test" | "overlap"; readonly a: number; readonly b: number }
-  | { readonly kind: "axis overlap"; readonly axis: number; readonly a: number; readonly b: number }
-  | { readonly kind: "array"; readonly axis: number; readonly edges: readonly number[] };
+  | {
+      /** Two edges were compared. */
+      readonly kind: "compare";
+      /** The first edge. */
+      readonly a: number;
+      /** The second edge. */
+      readonly b: number;
+    }
+  | {
+      /** Two positions of the array were swapped. */
+      readonly kind: "swap";
+      /** The first position. */
+      readonly i: number;
+      /** The second position. */
+      readonly j: number;
+    }
+  | {
+      /** Two balls were tested, or found to overlap. */
+      readonly kind: "test" | "overlap";
+      /** The first ball. */
+      readonly a: number;
+      /** The second ball. */
+      readonly b: number;
+    }
+  | {
+      /** Two balls overlap on one axis. */
+      readonly kind: "axis overlap";
+      /** 0 is x, 1 is y. */
+      readonly axis: number;
+      /** The first ball. */
+      readonly a: number;
+      /** The second ball. */
+      readonly b: number;
+    }
+  | {
+      /** From now on the program works on the array of an axis. */
+      readonly kind: "array";
+      /** 0 is x, 1 is y. */
+      readonly axis: number;
+      /** Its edges, in order. */
+      readonly edges: readonly number[];
+    };
 
 /**
  * Finds pairs in the place of a compiled algorithm. `boxes` are rows of min corner and max corner, `before` those of the
