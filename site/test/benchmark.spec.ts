@@ -40,7 +40,7 @@ test.describe("the recorded results", () => {
     await expect(page.locator("#recorded-machine")).toContainText(kept.machine.cpu);
     await expect(page.locator("#recorded-machine")).toContainText(kept.date);
     const scene = kept.cases.find(({ boxes }: { boxes: number }) => boxes > 100);
-    await page.getByLabel("Scene").first().selectOption(`${scene.scene} ${scene.dimensions}D`);
+    await page.locator("#recorded-scene").selectOption(`${scene.scene} ${scene.dimensions}D`);
     await page.getByText("The numbers of this scene").click();
     const rows = page.locator("#recorded-table tbody tr");
     for (const { name, outcome } of scene.results) {
@@ -49,7 +49,7 @@ test.describe("the recorded results", () => {
       await expect(row.locator("td").first()).toContainText(expected);
     }
     const before = await page.locator("#plot-time > svg").getAttribute("aria-label");
-    await page.getByLabel("Scene").first().selectOption({ index: 1 });
+    await page.locator("#recorded-scene").selectOption({ index: 1 });
     await expect(page.locator("#plot-time > svg")).not.toHaveAttribute("aria-label", before ?? "");
     await expect(page.locator("#plot-ratio > svg")).toHaveAttribute("aria-label", /fastest alternative takes at least [\d.]+ times/);
   });
@@ -75,7 +75,7 @@ test.describe("the recorded results", () => {
 
   test("names do not cover each other, and no two lines look the same", async ({ page }) => {
     for (const scene of await page.locator("#recorded-scene option").evaluateAll((all) => all.map((option) => (option as HTMLOptionElement).value))) {
-      await page.getByLabel("Scene").first().selectOption(scene);
+      await page.locator("#recorded-scene").selectOption(scene);
       await expect(page.locator("#plot-time > svg")).toBeVisible();
       const names = await page.locator("#plot-time > svg g[text-anchor=start] text").evaluateAll((all) => all.map((name) => name.getBoundingClientRect()).map(({ top, bottom }) => ({ top, bottom })));
       expect(names.length, scene).toBeGreaterThan(3);
