@@ -201,6 +201,8 @@ test.describe("paused", () => {
     await pairs(1);
     await page.keyboard.press("n");
     await expect.poll(async () => (await rows()).length).toBe(4);
+    // The download has taken the focus.
+    await playground.part("surface").focus();
     await page.keyboard.press("Control+z");
     await expect.poll(async () => (await rows()).length).toBe(3);
     const kept = await rows();
