@@ -292,7 +292,7 @@ test.describe("paused", () => {
   });
 
   test("the picture moves and zooms by pointer and by keyboard", async ({ page }) => {
-    const playground = await new Playground(page).open();
+    const playground = await new Playground(page).open("?boxes=10");
     const surface = playground.part("surface");
     const picture = (): Promise<string> => playground.part("picture").evaluate((canvas: HTMLCanvasElement) => canvas.toDataURL());
     const all = await picture();
@@ -304,7 +304,8 @@ test.describe("paused", () => {
     await expect.poll(picture).not.toBe(zoomed);
     await page.keyboard.press("0");
     await expect.poll(picture).toBe(all);
-    await surface.hover({ position: { x: 200, y: 200 } });
+    // Where no box is: one would be moved.
+    await surface.hover({ position: { x: 4, y: 4 } });
     await page.mouse.down();
     await page.mouse.move(400, 500, { steps: 3 });
     await page.mouse.up();
