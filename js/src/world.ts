@@ -159,7 +159,8 @@ export class BroadPhase extends Bodies {
 
   /**
    * The `k` bodies nearest to a point, or all if there are fewer, sorted by distance and then by slot.
-   * None is farther away than `maxDistance`: what is is not searched, so a small one saves time. A function as `filter` is called nearest first, until it
+   * None is farther away than `maxDistance`: no farther parts of the world are searched, so a small one saves time. A
+   * function as `filter` is called nearest first, until it
    * has returned true `k` times.
    *
    * @throws `RangeError` if the point is not finite, `k` not a whole number, or the distance negative or NaN.

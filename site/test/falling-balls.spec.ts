@@ -1,4 +1,4 @@
-import { expect, test } from "@playwright/test";
+import { expect, type Locator, test } from "@playwright/test";
 import { FallingBalls } from "./falling-balls.ts";
 
 const IDS = ["discs", "spheres"] as const;
@@ -7,23 +7,21 @@ test("no number of one method stands under the name of another", async ({ page }
   await page.goto("/falling.html?discs.bodies=1000");
   const balls = await new FallingBalls(page, "discs").open();
   await expect.poll(() => balls.stepNumber()).toBeGreaterThan(5);
-  const texts = await balls.algorithm.evaluate((select: HTMLSelectElement) => {
-    select.value = "global pairwise";
-    select.dispatchEvent(new Event("change", { bubbles: true }));
-    const cells = [...select.closest("falling-balls")!.querySelectorAll(".counter:not([data-counter=brute-force]) dd")];
-    return cells.map((cell) => cell.textContent);
-  });
-  expect(new Set(texts)).toEqual(new Set(["…"]));
+  /** What the counters say at once when a choice is changed, before anything could be computed. */
+  const textsAfter = (choice: Locator, value: string): Promise<Set<string | null>> =>
+    choice
+      .evaluate((control: HTMLSelectElement | HTMLInputElement, value) => {
+        control.value = value;
+        control.dispatchEvent(new Event("change", { bubbles: true }));
+        const cells = [...control.closest("falling-balls")!.querySelectorAll(".counter:not([data-counter=brute-force]) dd")];
+        return cells.map((cell) => cell.textContent);
+      }, value)
+      .then((texts) => new Set(texts));
+  expect(await textsAfter(balls.algorithm, "global pairwise")).toEqual(new Set(["…"]));
   await expect.poll(() => balls.counter("tests")).toBe("499,500");
 
   // Nor of one world under those of another, which takes its time to begin.
-  const after = await balls.root.getByLabel("Seed").evaluate((seed: HTMLInputElement) => {
-    seed.value = "9";
-    seed.dispatchEvent(new Event("change", { bubbles: true }));
-    const cells = [...seed.closest("falling-balls")!.querySelectorAll(".counter:not([data-counter=brute-force]) dd")];
-    return cells.map((cell) => cell.textContent);
-  });
-  expect(new Set(after)).toEqual(new Set(["…"]));
+  expect(await textsAfter(balls.root.getByLabel("Seed"), "9")).toEqual(new Set(["…"]));
   await expect.poll(() => balls.counter("tests")).toBe("499,500");
 });
 

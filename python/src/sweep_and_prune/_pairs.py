@@ -752,7 +752,8 @@ def _search(prepared: Prepared, threads: int | None, call: Callable[[Finder], _R
     last_kind, finder = vars(_idle).pop("last", (None, None))
     if finder is None or last_kind != kind:
         finder = Finder(*kind, count)
-    finder.use_threads(count)
+    else:
+        finder.use_threads(count)
     result = call(finder)
     if sum(rows.nbytes for rows in prepared.sets) <= _KEPT_BYTES:
         _idle.last = (kind, finder)
