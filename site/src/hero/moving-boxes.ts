@@ -1,6 +1,8 @@
 // Boxes that drift about a rectangle and bounce off its walls: what the sweep works on. Which of them
 // overlap is not known here; the compiled library finds that.
 
+import { randomFrom } from "../random.ts";
+
 /** Together, the boxes cover this share of the world. */
 const COVERED = 0.13;
 /** Units a second; the world is 100 high. */
@@ -10,17 +12,6 @@ const FASTEST = 60;
 const FRICTION = 0.4;
 
 export const WORLD_HEIGHT = 100;
-
-/** A random number from 0 to 1 after another, the same for the same seed (mulberry32). */
-function randomFrom(seed: number): () => number {
-  let state = seed >>> 0;
-  return () => {
-    state = (state + 0x6d2b79f5) >>> 0;
-    let mixed = Math.imul(state ^ (state >>> 15), state | 1);
-    mixed ^= mixed + Math.imul(mixed ^ (mixed >>> 7), mixed | 61);
-    return ((mixed ^ (mixed >>> 14)) >>> 0) / 2 ** 32;
-  };
-}
 
 export class MovingBoxes {
   /** Rows of min corner and max corner: what a runner takes. */

@@ -3,6 +3,7 @@
 
 import { events, Runner } from "sweep-and-prune/algorithms";
 import { overlaps } from "../listings/overlaps.js";
+import { randomFrom } from "../random.ts";
 
 export const [WIDTH, HEIGHT] = [480, 240];
 
@@ -152,7 +153,7 @@ export type WorldName = (typeof worlds)[number];
 
 /** The same boxes at each call. */
 export function world(name: WorldName): Box[] {
-  const random = generator(name.length);
+  const random = randomFrom(name.length);
   const between = (low: number, high: number): number => low + (high - low) * random();
   const boxes = Array.from({ length: 80 }, (): Box => {
     const size = between(10, 22);
@@ -169,14 +170,4 @@ export function moved({ left, top, right, bottom }: Box, x: number, y: number): 
   const newLeft = Math.min(Math.max(x - width / 2, 0), WIDTH - width - 0.01);
   const newTop = Math.min(Math.max(y - height / 2, 0), HEIGHT - height - 0.01);
   return { left: newLeft, top: newTop, right: newLeft + width, bottom: newTop + height };
-}
-
-function generator(seed: number): () => number {
-  let state = seed;
-  return () => {
-    state = (state + 0x6d2b79f5) | 0;
-    let t = Math.imul(state ^ (state >>> 15), 1 | state);
-    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
-    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
-  };
 }

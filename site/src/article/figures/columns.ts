@@ -1,14 +1,15 @@
 // How the library divides a scene, worked out on a small one: the same rules, the same counts.
 
 import { overlaps } from "../../listings/overlaps.js";
-import { generator, line, rect, svg, text, type Box } from "./svg.ts";
+import { randomFrom } from "../../random.ts";
+import { line, rect, svg, text, type Box } from "./svg.ts";
 
 const SIDE = 330;
 const COLUMNS = 6;
 const HEIGHT = SIDE / COLUMNS;
 
 function scene(): Box[] {
-  const random = generator(7);
+  const random = randomFrom(7);
   return Array.from({ length: 90 }, (_, id) => {
     const [width, height] = [9 + 13 * random(), 9 + 13 * random()];
     const [left, top] = [random() * (SIDE - width), random() * (SIDE - height)];

@@ -26,16 +26,6 @@ export const text = (x: number, y: number, words: string | number, kind = "label
 export const path = (points: readonly (readonly [x: number, y: number])[], kind: string): string =>
   `<path d="M${points.map(([x, y]) => `${round(x)} ${round(y)}`).join("L")}" class="${kind}"/>`;
 
-/** Numbers from 0 to 1, the same at each build. */
-export function generator(seed: number): () => number {
-  return () => {
-    seed = (seed + 0x6d2b79f5) | 0;
-    let t = Math.imul(seed ^ (seed >>> 15), 1 | seed);
-    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
-    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
-  };
-}
-
 /** Letters for the first of boxes. */
 export const letter = (id: number): string => String.fromCharCode(65 + id);
 
