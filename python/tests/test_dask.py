@@ -595,6 +595,17 @@ def test_the_workers_of_an_active_client_are_used(large: tuple[str, str]) -> Non
             sap.find_pairs("bad.parquet", out="bad")
 
 
+def test_the_workers_of_a_client_are_found_while_its_own_thread_asks_for_them() -> None:
+    from dask import config
+    from distributed import Client
+
+    with config.set({"distributed.client.scheduler-info-interval": "1ms"}):
+        with Client(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=":0"):
+            for _ in range(100):
+                with workers.started(None, None) as of_client:
+                    assert of_client.number == 1
+
+
 def test_the_manifest_says_what_is_there() -> None:
     write("a.parquet")
     sap.find_pairs("a.parquet", out="out", workers=0, cells=4)

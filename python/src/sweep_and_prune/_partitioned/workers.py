@@ -216,11 +216,16 @@ def _kept_alive(cluster: Any, client: Any, number: int) -> Iterator[None]:
 
 
 def _of_client(client: Any, limit: int | str | float | None) -> Workers:
-    workers = client.scheduler_info(n_workers=-1)["workers"].values()
-    threads = sum(worker["nthreads"] for worker in workers)
+    def read(dask_scheduler: Any) -> list[tuple[int, int]]:
+        return [(worker.nthreads, worker.memory_limit) for worker in dask_scheduler.workers.values()]
+
+    # Not `scheduler_info`: it returns what the client's thread has stored, which lists no workers if that thread
+    # renewed it just before.
+    workers = client.run_on_scheduler(read)
+    threads = sum(nthreads for nthreads, _ in workers)
     if threads == 0:
         raise DatasetError("the client of Dask has no workers: start some, or close the client")
-    each = min((worker["memory_limit"] or memory_of(None)) // worker["nthreads"] for worker in workers)
+    each = min((memory or memory_of(None)) // nthreads for nthreads, memory in workers)
     if limit is not None:
         each = min(each, memory_of(limit) // threads)
     return Workers(client, threads, _for_boxes(each - _WORKER_MEMORY, limit))
