@@ -42,8 +42,12 @@ def size(value: float | None) -> str:
     return f"{value / 1e9:.2f} GB" if value >= 1e9 else f"{value / 1e6:.0f} MB"
 
 
-def ratios(content: dict[str, Any]) -> list[str]:
-    lines = ["## Ratios in memory", "", where(content), ""]
+def with_torchvision(content: dict[str, Any]) -> list[str]:
+    return ratios(content, "Beside torchvision, in memory", "torchvision-")
+
+
+def ratios(content: dict[str, Any], title: str = "Ratios in memory", prefix: str = "") -> list[str]:
+    lines = [f"## {title}", "", where(content), ""]
     lines += [
         "Time of each library over that of sweep-and-prune on one thread, in the same round (median; above 1 is slower), "
         "its own median time, and the most memory beyond its input.",
@@ -59,11 +63,11 @@ def ratios(content: dict[str, Any]) -> list[str]:
                 )
             for library, found in one["wrong"].items():
                 lines.append(f"| {one['boxes']:,} | {one['found']:,} | {library} | finds {found:,}: not timed | | |")
-        lines += ["", f"![{case}]({plot(content, case)})", ""]
+        lines += ["", f"![{case}]({plot(content, case, prefix)})", ""]
     return lines
 
 
-def plot(content: dict[str, Any], case: str) -> str:
+def plot(content: dict[str, Any], case: str, prefix: str) -> str:
     """Draws ratios against the number of boxes."""
     import matplotlib
 
@@ -83,7 +87,7 @@ def plot(content: dict[str, Any], case: str) -> str:
     axes.yaxis.set_major_formatter("{x:g}")
     axes.yaxis.set_minor_locator(NullLocator())
     axes.legend(fontsize=8)
-    name = f"plots/{case.replace(', ', '-').replace(' ', '-')}.svg"
+    name = f"plots/{prefix}{case.replace(', ', '-').replace(' ', '-')}.svg"
     (FOLDER / "plots").mkdir(exist_ok=True)
     figure.savefig(FOLDER / name, metadata={"Date": None})
     plt.close(figure)
@@ -115,7 +119,7 @@ def disk(content: dict[str, Any]) -> list[str]:
 
 def main() -> None:
     lines = ["# Results of the Python package", "", "Written by `report.py`; do not edit.", ""]
-    for kind, write in (("ratios", ratios), ("disk", disk)):
+    for kind, write in (("ratios", ratios), ("torchvision", with_torchvision), ("disk", disk)):
         content = newest(kind)
         if content is not None:
             lines += write(content)

@@ -18,19 +18,23 @@ scores = random.random(count)
 # Values of `by` may be anything; here, one number stands for an image and a class.
 a, b = sap.find_pairs(boxes, format="xywh", by=image * 3 + label).T
 
-low = np.maximum(boxes[a, :2], boxes[b, :2])
-high = np.minimum((boxes[:, :2] + boxes[:, 2:])[a], (boxes[:, :2] + boxes[:, 2:])[b])
-common = (high - low).prod(axis=1)
-area = boxes[:, 2:].prod(axis=1)
+# Columns are gathered several times as fast as rows.
+x0, y0, width, height = np.ascontiguousarray(boxes.T)
+x1, y1, area = x0 + width, y0 + height, width * height
+common_width = np.minimum(x1[a], x1[b]) - np.maximum(x0[a], x0[b])
+common = common_width * (np.minimum(y1[a], y1[b]) - np.maximum(y0[a], y0[b]))
 iou = common / (area[a] + area[b] - common)
 print(f"{len(a)} pairs overlap, of {count * (count - 1) // 2}; their mean IoU is {iou.mean():.2f}")
 
-# The better detection of a pair suppresses the other, unless a better one has suppressed it.
-swapped = scores[a] < scores[b]
-better, worse = np.where(swapped, b, a), np.where(swapped, a, b)
+# A detection that no better one overlaps stays, and removes those that it overlaps; then the same with what is left.
+near = iou > 0.5
+is_worse = scores[a] < scores[b]
+better, worse = np.where(is_worse, b, a)[near], np.where(is_worse, a, b)[near]
 kept = np.ones(count, bool)
-near = np.flatnonzero(iou > 0.5)
-for pair in near[np.argsort(-scores[better[near]])]:
-    if kept[better[pair]]:
-        kept[worse[pair]] = False
+while len(worse):
+    has_better = np.zeros(count, bool)
+    has_better[worse] = True
+    kept[worse[~has_better[better]]] = False
+    undecided = kept[better] & kept[worse]
+    better, worse = better[undecided], worse[undecided]
 print(f"{kept.sum()} detections are kept, of 2000 objects")
