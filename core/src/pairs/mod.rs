@@ -92,6 +92,8 @@ mod sizes;
 mod sort;
 mod source;
 mod sweep;
+#[cfg(all(test, feature = "std"))]
+pub(crate) mod work;
 
 pub use finder::{PairFinder, count_pairs, find_pairs, find_pairs_between};
 pub use kernel::Kernel;

@@ -23,6 +23,8 @@ mod snapshot;
 mod tracking;
 mod tree;
 mod update;
+#[cfg(all(test, feature = "std"))]
+mod work;
 
 pub use bodies::{Filter, ProxyId};
 pub use broad_phase::BroadPhase;
