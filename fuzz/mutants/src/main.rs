@@ -6,10 +6,14 @@
 //! ```
 //! All mutants are compiled at once into a copy of the repository, each behind a test of one number that the environment
 //! variable `MUTANT` chooses: one build instead of one for each. Then a random sample of them (200 if not said otherwise) is
-//! run, first by the random driver of `fuzz/` for some seconds, and if that notices nothing by the tests of the core. A run
-//! that fails, crashes or does not end kills the mutant.
+//! run, first by the random driver of `fuzz/` for some seconds, and if that notices nothing by the tests of the core, up to
+//! the first that fails. A run that fails, crashes or does not end kills the mutant.
+//!
+//! Each outcome is added to `target/mutants/outcomes.txt` at once, so that nothing is lost if this is stopped: it goes on
+//! where it was. Delete the lines of mutants that shall run again, and the file after a change of the core.
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread::sleep;
@@ -23,9 +27,7 @@ use syn::{Expr, Item, Stmt, UnOp, parse_quote};
 
 /// What is mutated. Kernels of other processors are not compiled here.
 const MUTATED: [&str; 2] = ["pairs", "world"];
-const LEFT_OUT: [&str; 4] = ["neon.rs", "wasm.rs", "model.rs", "hard_scenes.rs"];
-/// What decides only how long a search takes: of the mutants here that survive, some are only slower or faster.
-const SPEED: [&str; 5] = ["plan/", "crowding.rs", "schedule.rs", "policy/", "layout.rs"];
+const LEFT_OUT: [&str; 5] = ["neon.rs", "wasm.rs", "model.rs", "hard_scenes.rs", "work.rs"];
 /// What is copied.
 const COPIED: [&str; 8] = [
     "Cargo.lock",
@@ -40,21 +42,22 @@ const COPIED: [&str; 8] = [
 
 /// The random driver: a program, and how it is called.
 const DRIVER: &str = "sweep-and-prune-fuzz";
-/// What a mutant has to survive first: random inputs.
-const RANDOM: [(&str, &[&str]); 3] = [
+/// What a mutant has to survive: random inputs, and the tests of the core, the fastest first. (Those of the algorithms that
+/// the site shows are left out: these are not mutated.)
+const RUNS: [(&str, &[&str]); 9] = [
+    ("sweep_and_prune", &["--skip", "algorithms::"]),
     (DRIVER, &["broad_phase", "--calls", "100000", "--threads", "1"]),
     (DRIVER, &["finder", "--calls", "500", "--threads", "1"]),
     (DRIVER, &["snapshot", "--calls", "50000", "--threads", "1"]),
-];
-/// And then the tests of the core, but for those of the algorithms that the site shows and of the index, which are not
-/// mutated.
-const TESTS: [(&str, &[&str]); 5] = [
-    ("sweep_and_prune", &[]),
-    ("behavior", &["pairs::", "broad_phase", "errors::", "send_sync::"]),
-    ("broad_phase_allocations", &[]),
     ("pairs_memory", &[]),
     ("out_of_memory", &[]),
+    ("broad_phase_allocations", &[]),
+    ("behavior", &["broad_phase", "errors::"]),
+    ("behavior", &["pairs::", "--skip", "broad_phase"]),
 ];
+
+/// How the outcome of a mutant that does not compile begins.
+const UNCOMPILED: &str = "does not compile: ";
 
 /// Adds mutants to a file.
 struct Mutator<'a> {
@@ -196,30 +199,43 @@ impl VisitMut for Mutator<'_> {
     }
 }
 
-/// All Rust files in a folder.
-fn rust_files(folder: &Path) -> Vec<PathBuf> {
+/// All files in a folder, without what was built there.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    if !folder.is_dir() {
+        return vec![folder.to_path_buf()];
+    }
     let mut entries: Vec<_> =
         fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     entries.sort();
-    let files = entries.into_iter().flat_map(|path| match path.is_dir() {
-        true => rust_files(&path),
-        false => vec![path],
-    });
-    files.filter(|path| path.extension().is_some_and(|extension| extension == "rs")).collect()
+    entries.retain(|path| !path.ends_with("target") && !path.ends_with("mutants"));
+    entries.iter().flat_map(|path| files(path)).collect()
+}
+
+/// Writes a file unless it holds that already: cargo builds again what was written.
+fn write(path: &Path, text: impl AsRef<[u8]>) {
+    if fs::read(path).ok().as_deref() != Some(text.as_ref()) {
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+}
+
+/// Whether a file of the repository is mutated.
+fn is_mutated(name: &Path) -> bool {
+    MUTATED.iter().any(|folder| name.starts_with(Path::new("core/src").join(folder)))
+        && !LEFT_OUT.iter().any(|part| name.ends_with(part))
 }
 
 /// Writes the mutated sources. Returns what each mutant does.
 fn mutate(root: &Path, copy: &Path, skipped: &[usize]) -> Vec<String> {
     let mut mutants = Vec::new();
-    for file in MUTATED.iter().flat_map(|folder| rust_files(&root.join("core/src").join(folder))) {
+    for file in files(&root.join("core/src")) {
         let name = file.strip_prefix(root).unwrap();
-        if LEFT_OUT.iter().any(|part| name.ends_with(part)) {
-            continue;
+        if is_mutated(name) {
+            let mut source = syn::parse_file(&fs::read_to_string(&file).unwrap()).unwrap();
+            let file = name.display().to_string();
+            Mutator { file, mutants: &mut mutants, skipped }.visit_file_mut(&mut source);
+            write(&copy.join(name), prettyplease::unparse(&source));
         }
-        let mut source = syn::parse_file(&fs::read_to_string(&file).unwrap()).unwrap();
-        let file = name.display().to_string();
-        Mutator { file, mutants: &mut mutants, skipped }.visit_file_mut(&mut source);
-        fs::write(copy.join(name), prettyplease::unparse(&source)).unwrap();
     }
     mutants
 }
@@ -252,10 +268,16 @@ mod mutants {
 
 /// Copies the repository, as a workspace of what is tested here.
 fn copy(root: &Path, copy: &Path) {
-    fs::create_dir_all(copy).unwrap();
-    let from_to = COPIED.iter().map(|name| root.join(name)).chain([copy.to_path_buf()]);
-    let status = Command::new("cp").arg("-r").args(from_to).status().unwrap();
-    assert!(status.success());
+    for file in COPIED.iter().flat_map(|name| files(&root.join(name))) {
+        let name = file.strip_prefix(root).unwrap();
+        let mut text = fs::read(&file).unwrap();
+        if name.ends_with("core/src/lib.rs") {
+            text.extend(MUTANTS.bytes());
+        }
+        if !is_mutated(name) {
+            write(&copy.join(name), text);
+        }
+    }
     let manifest = fs::read_to_string(root.join("Cargo.toml")).unwrap();
     let sections = manifest.split("\n\n").filter(|section| {
         !section.contains("lints")
@@ -271,10 +293,7 @@ fn copy(root: &Path, copy: &Path) {
         .collect();
     // The build takes longer than what is run.
     let manifest = lines.join("\n").replace("opt-level = 3", "opt-level = 1");
-    fs::write(copy.join("Cargo.toml"), manifest).unwrap();
-    let lib = copy.join("core/src/lib.rs");
-    let text = fs::read_to_string(&lib).unwrap();
-    fs::write(lib, text + MUTANTS).unwrap();
+    write(&copy.join("Cargo.toml"), manifest);
 }
 
 /// Runs cargo in the copy, and returns what it said and whether it succeeded.
@@ -317,32 +336,26 @@ fn culprits(copy: &Path) -> Vec<usize> {
     culprits
 }
 
-/// Builds programs in the copy, and makes sure that they pass without a mutant.
-fn prepare(copy: &Path, runs: &'static [(&str, &[&str])]) -> Vec<Run> {
-    let names = runs.iter().filter(|run| run.0 != DRIVER).map(|run| run.0);
-    let tests: Vec<_> = names.flat_map(|name| ["--test", name]).skip(2).collect();
-    let (said, is_right) = if tests.is_empty() {
-        cargo(copy, &["build", "--package", DRIVER])
-    } else {
-        let arguments = ["test", "--no-run", "--package", "sweep-and-prune", "--lib"];
-        cargo(copy, &[&arguments[..], &tests].concat())
+/// Builds a program in the copy, and makes sure that it passes without a mutant.
+fn prepare(copy: &Path, (name, arguments): (&'static str, &'static [&'static str])) -> Run {
+    let test = ["test", "--no-run", "--package", "sweep-and-prune"];
+    let (said, is_right) = match name {
+        DRIVER => cargo(copy, &["build", "--package", DRIVER]),
+        "sweep_and_prune" => cargo(copy, &[&test[..], &["--lib"]].concat()),
+        name => cargo(copy, &[&test[..], &["--test", name]].concat()),
     };
     assert!(is_right, "the copy does not build:\n{said}");
-    let prepared = runs.iter().map(|&(name, arguments)| {
-        // "Executable tests/behavior/main.rs (target/checked/deps/behavior-0123456789abcdef)"
-        let marker = format!("/{name}-");
-        let test = said.lines().find(|line| line.contains(&marker) && !line.contains("fuzz"));
-        let test =
-            test.and_then(|line| Some(line.trim_end().strip_suffix(')')?.rsplit_once('(')?.1));
-        let program = copy.join(test.unwrap_or("target/checked/sweep-and-prune-fuzz"));
-        let mut run = Run { name, program, arguments, folder: copy.join("core"), seconds: 3600 };
-        let begun = Instant::now();
-        assert!(run.passes(None), "{name} fails without a mutant");
-        println!("{name} {arguments:?}: {:.1} s", begun.elapsed().as_secs_f64());
-        run.seconds = 5 + 4 * begun.elapsed().as_secs();
-        run
-    });
-    prepared.collect()
+    // "Executable tests/behavior/main.rs (target/checked/deps/behavior-0123456789abcdef)"
+    let marker = format!("/{name}-");
+    let test = said.lines().find(|line| line.contains(&marker));
+    let test = test.and_then(|line| Some(line.trim_end().strip_suffix(')')?.rsplit_once('(')?.1));
+    let program = copy.join(test.unwrap_or("target/checked/sweep-and-prune-fuzz"));
+    let mut run = Run { name, program, arguments, folder: copy.join("core"), seconds: 3600 };
+    let begun = Instant::now();
+    assert_eq!(run.killer(None), None, "{name} fails without a mutant");
+    println!("{name} {arguments:?}: {:.1} s", begun.elapsed().as_secs_f64());
+    run.seconds = 5 + 4 * begun.elapsed().as_secs();
+    run
 }
 
 /// A program that runs with each mutant.
@@ -356,8 +369,9 @@ struct Run {
 }
 
 impl Run {
-    /// Whether it passes with a mutant, if there is one.
-    fn passes(&self, mutant: Option<usize>) -> bool {
+    /// What kills a mutant, if it does not pass: random inputs, a test by its name, a crash, or too long a time.
+    fn killer(&self, mutant: Option<usize>) -> Option<String> {
+        let said = self.folder.with_file_name("said");
         let mut command = Command::new("sh");
         // A mutant may neither run nor allocate without end.
         command
@@ -367,24 +381,40 @@ impl Run {
             .args(self.arguments)
             .current_dir(&self.folder)
             .stdin(Stdio::null())
-            .stdout(Stdio::null())
+            .stdout(fs::File::create(&said).unwrap())
             .stderr(Stdio::null());
+        let is_test = self.name != DRIVER;
+        if is_test {
+            command.args(["--test-threads", "2"]);
+        }
         if let Some(mutant) = mutant {
             command.env("MUTANT", mutant.to_string());
         }
         let mut child = command.spawn().unwrap();
         let begun = Instant::now();
+        let failed = |text: String| {
+            let line = text.lines().find_map(|line| line.strip_suffix(" ... FAILED"));
+            line.filter(|_| is_test).map(|line| line.trim_start_matches("test ").to_string())
+        };
         loop {
-            if let Some(status) = child.try_wait().unwrap() {
-                return status.success();
-            }
+            let ended = child.try_wait().unwrap();
+            let failed = failed(fs::read_to_string(&said).unwrap_or_default());
             // Threads that wait for each other take no processor time.
-            if begun.elapsed() > 20 * Duration::from_secs(self.seconds) {
+            let is_stuck = begun.elapsed() > 20 * Duration::from_secs(self.seconds);
+            if ended.is_none() && (failed.is_some() || is_stuck) {
                 let _ = child.kill();
                 let _ = child.wait();
-                return false;
             }
-            sleep(Duration::from_millis(20));
+            match (ended, failed) {
+                (Some(status), _) if status.success() => return None,
+                (_, Some(test)) => return Some(test),
+                (Some(_), None) if !is_test => {
+                    return Some(format!("random inputs: {}", self.arguments[0]));
+                }
+                (Some(status), None) => return Some(format!("{}: {status}", self.name)),
+                (None, None) if is_stuck => return Some(format!("{}: does not end", self.name)),
+                (None, None) => sleep(Duration::from_millis(20)),
+            }
         }
     }
 }
@@ -395,13 +425,25 @@ fn main() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap();
     let folder = root.join("target/mutants");
     copy(root, &folder);
-    let mut skipped = Vec::new();
+    // The last line about a mutant counts: "killed by ...: 12 core/src/pairs/brute.rs:28: && instead of ||", how many
+    // runs it survives, or that it does not compile.
+    let path = folder.join("outcomes.txt");
+    let known = fs::read_to_string(&path).unwrap_or_default();
+    let mut file = fs::OpenOptions::new().create(true).append(true).open(&path).unwrap();
+    let uncompiled = known.lines().filter_map(|line| line.strip_prefix(UNCOMPILED));
+    let mut skipped: Vec<usize> =
+        uncompiled.filter_map(|name| name.split(' ').next()?.parse().ok()).collect();
     let mutants = loop {
         let mutants = mutate(root, &folder, &skipped);
         println!("{} mutants, {} of them do not compile", mutants.len(), skipped.len());
         match &culprits(&folder)[..] {
             [] => break mutants,
-            more => skipped.extend(more),
+            more => {
+                for &mutant in more {
+                    writeln!(file, "{UNCOMPILED}{mutant} {}", mutants[mutant]).unwrap();
+                }
+                skipped.extend(more);
+            }
         }
     };
 
@@ -418,29 +460,43 @@ fn main() {
     while sample.len() < count && !left.is_empty() {
         sample.push(left.swap_remove((random() % left.len() as u64) as usize));
     }
-    // Killed by random inputs, killed by the tests, surviving: where results are decided, and where only speed is.
-    let mut counts = [[0; 3]; 2];
-    for (stage, runs) in [&RANDOM[..], &TESTS[..]].into_iter().enumerate() {
-        let runs = prepare(&folder, runs);
-        sample.retain(|&mutant| {
-            let killer = runs.iter().find(|run| !run.passes(Some(mutant)));
-            let is_speed = SPEED.iter().any(|part| mutants[mutant].contains(part));
-            let how = match killer {
-                Some(run) => run.name,
-                None if stage == 0 => "survives random inputs",
-                None if is_speed => "SURVIVES (speed)",
-                None => "SURVIVES",
-            };
-            if killer.is_some() || stage == 1 {
-                counts[usize::from(is_speed)][if killer.is_some() { stage } else { 2 }] += 1;
+
+    let name = |mutant: usize| format!(": {mutant} {}", mutants[mutant]);
+    let outcome = |&mutant: &usize| {
+        let line = known.lines().rev().find_map(|line| line.strip_suffix(&name(mutant)));
+        line.unwrap_or("survives 0 runs").to_string()
+    };
+    let mut outcomes: Vec<_> = sample.iter().map(outcome).collect();
+    for (number, &run) in RUNS.iter().enumerate() {
+        let survived = format!("survives {number} runs");
+        let left = || sample.iter().zip(&outcomes).filter(|(_, outcome)| **outcome == survived);
+        println!("{} mutants survive {number} runs", left().count());
+        if left().count() == 0 {
+            continue;
+        }
+        let run = prepare(&folder, run);
+        for (&mutant, outcome) in sample.iter().zip(&mut outcomes) {
+            if *outcome == survived {
+                *outcome = match run.killer(Some(mutant)) {
+                    Some(killer) => format!("killed by {killer}"),
+                    None => format!("survives {} runs", number + 1),
+                };
+                writeln!(file, "{outcome}{}", name(mutant)).unwrap();
             }
-            println!("{how}: {mutant} {}", mutants[mutant]);
-            killer.is_none()
-        });
+        }
     }
-    for (what, [random, tests, survive]) in ["results are", "only speed is"].iter().zip(counts) {
-        println!(
-            "where {what} decided: {random} killed by random inputs, {tests} by the tests, {survive} survive"
-        );
+    let count = |how: &str| outcomes.iter().filter(|outcome| outcome.starts_with(how)).count();
+    let (killed, random) = (count("killed by"), count("killed by random inputs"));
+    println!(
+        "{} mutants: {random} killed by random inputs, {} by the tests, {} survive: {}",
+        outcomes.len(),
+        killed - random,
+        count("survives"),
+        path.display()
+    );
+    for (&mutant, outcome) in sample.iter().zip(&outcomes) {
+        if outcome.starts_with("survives") {
+            println!("SURVIVES{}", name(mutant));
+        }
     }
 }
