@@ -6,6 +6,7 @@ import { insertComplexity } from "./src/complexity/table.ts";
 import { expandFallingBalls } from "./src/falling/markup.ts";
 import { offline } from "./src/shell/offline.ts";
 import { pages, shell } from "./src/shell/pages.ts";
+import { insertTesting } from "./src/testing/build.ts";
 
 /** Writes the inside of each `<falling-balls>` into the page, so that nothing moves when scripts arrive. */
 const fallingBalls: Plugin = {
@@ -19,6 +20,12 @@ const complexity: Plugin = {
   transformIndexHtml: { order: "pre", handler: insertComplexity },
 };
 
+/** Writes docs/testing.md into its page. */
+const testing: Plugin = {
+  name: "testing",
+  transformIndexHtml: { order: "pre", handler: insertTesting },
+};
+
 /** Warnings about the packages of the alternatives are not for this project to fix. */
 const quiet: Rolldown.InputOptions = {
   checks: { pluginTimings: false },
@@ -30,7 +37,7 @@ const quiet: Rolldown.InputOptions = {
 export default defineConfig({
   base: "./",
   appType: "mpa",
-  plugins: [shell, article, api, fallingBalls, complexity, benchmark, offline],
+  plugins: [shell, article, api, fallingBalls, complexity, testing, benchmark, offline],
   worker: { format: "es", plugins: () => [alternatives()], rolldownOptions: quiet },
   build: {
     target: "es2022",

@@ -8,7 +8,7 @@ import type { IndexHtmlTransformContext, Plugin } from "vite";
 
 /** The address of the published site: for the map of its pages and for previews of links. */
 export const SITE = process.env["SITE_URL"] ?? "https://sweep-and-prune.github.io/sweep-and-prune/";
-const REPOSITORY = "https://github.com/sweep-and-prune/sweep-and-prune";
+export const REPOSITORY = "https://github.com/sweep-and-prune/sweep-and-prune";
 
 const here = new URL("./", import.meta.url);
 const site = new URL("../../", here);
@@ -111,7 +111,8 @@ function footer(): string {
       <p>
         Based on the article <cite>Sort, sweep, and prune</cite> by Lean and on the lesson about sweep and
         prune in Matthias Müller’s <cite>Ten Minute Physics</cite>. Free software under the MIT or Apache 2.0
-        license, whichever you prefer: <a href="${REPOSITORY}">source code</a>. By the sweep-and-prune authors, 2026. These pages load nothing from other hosts, and those that you have
+        license, whichever you prefer: <a href="${REPOSITORY}">source code</a>,
+        and <a href="./testing.html">how it is tested</a>. By the sweep-and-prune authors, 2026. These pages load nothing from other hosts, and those that you have
         visited work offline.
       </p>
     </footer>`;
