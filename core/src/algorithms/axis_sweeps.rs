@@ -46,7 +46,7 @@ impl<const D: usize, T: Scalar> AxisSweeps<D, T> {
         Self {
             arrays: core::array::from_fn(|_| EndpointArray::default()),
             touching: Touching::default(),
-            flags: PairMap::new(),
+            flags: PairMap::default(),
         }
     }
 

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 /// A hash table over a dense list: the list holds the pairs, the table where in it each stands.
 /// Expected O(1) to find, add and remove; the list is walked without a hash, in an order that
 /// depends only on the calls made, on every machine.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct PairMap<V> {
     entries: Vec<([u32; 2], V)>,
     /// Open addressing with linear probing: a place in `entries`, or `EMPTY`. Its length is a
@@ -17,11 +17,6 @@ pub struct PairMap<V> {
 const EMPTY: usize = usize::MAX;
 
 impl<V> PairMap<V> {
-    /// No pairs.
-    pub const fn new() -> Self {
-        Self { entries: Vec::new(), table: Vec::new() }
-    }
-
     /// The value of a pair.
     pub fn get_mut(&mut self, pair: [u32; 2]) -> Option<&mut V> {
         let place = self.table[self.find(pair)?];
@@ -126,12 +121,6 @@ impl<V> PairMap<V> {
     }
 }
 
-impl<V> Default for PairMap<V> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,7 +130,7 @@ mod tests {
     proptest! {
         #[test]
         fn it_is_a_map(calls in proptest::collection::vec((0u32..12, 0u32..12, 0u32..3), 0..400)) {
-            let (mut map, mut expected) = (PairMap::new(), BTreeMap::new());
+            let (mut map, mut expected) = (PairMap::default(), BTreeMap::new());
             for (number, (a, b, what)) in calls.into_iter().enumerate() {
                 let pair = [a, b << 28];
                 match what {

@@ -121,13 +121,12 @@ impl PlayerState {
     /// Returns whether what the event adds, removes or swaps was there to be.
     fn apply(&mut self, event: Event<'_>, overwritten: &mut Vec<Overwritten>) -> bool {
         self.count(event, 1);
+        let changed = self.toggle(event, true);
         match event {
-            Event::Compare { .. } | Event::Prune { .. } | Event::Test { .. } => true,
             Event::Step { axis, keeps_axis_overlaps } => {
                 let mut next = PlayerState { axis, ..PlayerState::default() };
                 self.hand_on(&mut next, keeps_axis_overlaps);
                 overwritten.push(Overwritten::Step(Box::new(mem::replace(self, next))));
-                true
             }
             Event::Array { axis, endpoints } => {
                 let arrays = self.arrays.len();
@@ -135,35 +134,24 @@ impl PlayerState {
                 let before = mem::replace(&mut self.arrays[axis], endpoints.iter().collect());
                 let last_axis = mem::replace(&mut self.array_axis, axis);
                 overwritten.push(Overwritten::Array(before, arrays, last_axis));
-                true
             }
-            Event::Swap { positions, .. } => self.swap(positions),
             Event::Visit { position, edge } => {
                 overwritten.push(Overwritten::Line(self.line.replace((position, edge))));
-                true
             }
-            Event::Enter { id } => {
+            Event::Enter { .. } => {
                 overwritten.push(Overwritten::MaxActive(self.counts.max_active));
-                let changed = self.active.insert(id);
-                self.counts.active = self.active.len() as u64;
                 self.counts.max_active = self.counts.max_active.max(self.counts.active);
-                changed
             }
-            Event::Leave { id } => {
-                let changed = self.active.remove(&id);
-                self.counts.active = self.active.len() as u64;
-                changed
-            }
-            Event::AxisOverlap { axis, a, b } => self.axis_overlaps.insert((axis, [a, b])),
-            Event::AxisApart { axis, a, b } => self.axis_overlaps.remove(&(axis, [a, b])),
-            Event::Overlap { a, b } => self.overlaps.insert([a, b]),
-            Event::Begin { a, b } => self.held.insert([a, b]),
-            Event::End { a, b } => self.held.remove(&[a, b]),
+            _ => {}
         }
+        changed
     }
 
     /// Undoes what `apply` did, which returned `changed`.
     fn undo(&mut self, event: Event<'_>, changed: bool, overwritten: &mut Vec<Overwritten>) {
+        if changed {
+            self.toggle(event, false);
+        }
         match event {
             Event::Step { keeps_axis_overlaps, .. } => {
                 if let Some(Overwritten::Step(mut before)) = overwritten.pop() {
@@ -183,40 +171,35 @@ impl PlayerState {
                     self.line = line;
                 }
             }
-            Event::Enter { id } => {
-                if changed {
-                    self.active.remove(&id);
-                }
-                self.counts.active = self.active.len() as u64;
+            Event::Enter { .. } => {
                 if let Some(Overwritten::MaxActive(most)) = overwritten.pop() {
                     self.counts.max_active = most;
                 }
             }
-            Event::Leave { id } if changed => {
-                self.active.insert(id);
-                self.counts.active = self.active.len() as u64;
-            }
-            Event::Swap { positions, .. } if changed => {
-                self.swap(positions);
-            }
-            Event::AxisOverlap { axis, a, b } if changed => {
-                self.axis_overlaps.remove(&(axis, [a, b]));
-            }
-            Event::AxisApart { axis, a, b } if changed => {
-                self.axis_overlaps.insert((axis, [a, b]));
-            }
-            Event::Overlap { a, b } if changed => {
-                self.overlaps.remove(&[a, b]);
-            }
-            Event::Begin { a, b } if changed => {
-                self.held.remove(&[a, b]);
-            }
-            Event::End { a, b } if changed => {
-                self.held.insert([a, b]);
-            }
             _ => {}
         }
         self.count(event, -1);
+    }
+
+    /// Adds, removes or swaps what an event does, or undoes that. Returns whether it was there to be.
+    fn toggle(&mut self, event: Event<'_>, forward: bool) -> bool {
+        fn put<V: Ord>(set: &mut BTreeSet<V>, value: V, is_in: bool) -> bool {
+            if is_in { set.insert(value) } else { set.remove(&value) }
+        }
+        let on_axis = &mut self.axis_overlaps;
+        let changed = match event {
+            Event::Swap { positions, .. } => self.swap(positions),
+            Event::Enter { id } => put(&mut self.active, id, forward),
+            Event::Leave { id } => put(&mut self.active, id, !forward),
+            Event::AxisOverlap { axis, a, b } => put(on_axis, (axis, [a, b]), forward),
+            Event::AxisApart { axis, a, b } => put(on_axis, (axis, [a, b]), !forward),
+            Event::Overlap { a, b } => put(&mut self.overlaps, [a, b], forward),
+            Event::Begin { a, b } => put(&mut self.held, [a, b], forward),
+            Event::End { a, b } => put(&mut self.held, [a, b], !forward),
+            _ => true,
+        };
+        self.counts.active = self.active.len() as u64;
+        changed
     }
 
     /// Moves what outlives a step from this state to another.

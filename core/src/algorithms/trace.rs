@@ -101,7 +101,7 @@ impl Trace {
     }
 
     /// Writes one record, or gives up for good.
-    fn record(&mut self, kind: Kind, payload: impl IntoIterator<Item = Option<u32>>) {
+    fn record(&mut self, kind: u32, payload: impl IntoIterator<Item = Option<u32>>) {
         if self.truncated {
             return;
         }
@@ -117,7 +117,7 @@ impl Trace {
         if length >= 1 << 24 || start + length > self.limit {
             return self.give_up(start);
         }
-        let header = kind as u32 | (length as u32) << 8;
+        let header = kind | (length as u32) << 8;
         self.words[start] = header;
         self.words.push(header);
         self.events += 1;
@@ -135,31 +135,11 @@ impl Default for Trace {
     }
 }
 
-/// What a record is, the low byte of its header.
-#[derive(Clone, Copy)]
-#[repr(u8)]
-enum Kind {
-    Step = 1,
-    Array,
-    Compare,
-    Swap,
-    Visit,
-    Enter,
-    Leave,
-    Prune,
-    Test,
-    AxisOverlap,
-    AxisApart,
-    Overlap,
-    Begin,
-    End,
-}
-
-/// Methods that record their event: its kind and its words.
+/// Methods that record their event: its kind, by the table of [`Trace`], and its words.
 macro_rules! recorded {
-    ($($method:ident($($argument:ident: $type:ty),*) = $kind:ident $words:expr;)*) => {$(
+    ($($method:ident($($argument:ident: $type:ty),*) = $kind:literal $words:expr;)*) => {$(
         fn $method(&mut self, $($argument: $type),*) {
-            self.record(Kind::$kind, $words);
+            self.record($kind, $words);
         }
     )*};
 }
@@ -170,7 +150,7 @@ impl Observer for Trace {
             [edge_word(endpoint.edge), Some((endpoint.at.to_f64() as f32).to_bits())]
         };
         let axis = core::iter::once(word(axis));
-        self.record(Kind::Array, axis.chain(endpoints.iter().flat_map(entry)));
+        self.record(2, axis.chain(endpoints.iter().flat_map(entry)));
     }
 
     fn test(&mut self, a: u32, b: u32, separation: Option<Separation>) {
@@ -178,23 +158,23 @@ impl Observer for Trace {
             Some(found) => (word(found.axis), Some(found.left)),
             None => (Some(NONE), Some(NONE)),
         };
-        self.record(Kind::Test, [Some(a), Some(b), axis, left]);
+        self.record(9, [Some(a), Some(b), axis, left]);
     }
 
     recorded! {
-        step(axis: usize, keeps: bool) = Step [word(axis), Some(u32::from(keeps))];
-        compare(a: Edge, b: Edge) = Compare [edge_word(a), edge_word(b)];
+        step(axis: usize, keeps: bool) = 1 [word(axis), Some(u32::from(keeps))];
+        compare(a: Edge, b: Edge) = 3 [edge_word(a), edge_word(b)];
         swap(at: [usize; 2], a: Edge, b: Edge) =
-            Swap [word(at[0]), word(at[1]), edge_word(a), edge_word(b)];
-        visit(position: usize, edge: Edge) = Visit [word(position), edge_word(edge)];
-        enter(id: u32) = Enter [Some(id)];
-        leave(id: u32) = Leave [Some(id)];
-        prune(apart: Separation) = Prune [word(apart.axis), Some(apart.left), Some(apart.right)];
-        axis_overlap(axis: usize, a: u32, b: u32) = AxisOverlap [word(axis), Some(a), Some(b)];
-        axis_apart(axis: usize, a: u32, b: u32) = AxisApart [word(axis), Some(a), Some(b)];
-        overlap(a: u32, b: u32) = Overlap [Some(a), Some(b)];
-        begin(a: u32, b: u32) = Begin [Some(a), Some(b)];
-        end(a: u32, b: u32) = End [Some(a), Some(b)];
+            4 [word(at[0]), word(at[1]), edge_word(a), edge_word(b)];
+        visit(position: usize, edge: Edge) = 5 [word(position), edge_word(edge)];
+        enter(id: u32) = 6 [Some(id)];
+        leave(id: u32) = 7 [Some(id)];
+        prune(apart: Separation) = 8 [word(apart.axis), Some(apart.left), Some(apart.right)];
+        axis_overlap(axis: usize, a: u32, b: u32) = 10 [word(axis), Some(a), Some(b)];
+        axis_apart(axis: usize, a: u32, b: u32) = 11 [word(axis), Some(a), Some(b)];
+        overlap(a: u32, b: u32) = 12 [Some(a), Some(b)];
+        begin(a: u32, b: u32) = 13 [Some(a), Some(b)];
+        end(a: u32, b: u32) = 14 [Some(a), Some(b)];
     }
 }
 
