@@ -11,6 +11,7 @@ mod error;
 mod geometry;
 mod memory;
 mod pairs;
+mod setters;
 mod world;
 
 pub use error::{Error, SnapshotFault, Value};

@@ -14,6 +14,7 @@ use super::sorts::Sort;
 use super::swap_sweep::SwapSweep;
 use super::touching::Touching;
 use crate::geometry::check_count;
+use crate::setters::setters;
 use crate::{Aabb, Error, Scalar};
 
 /// Which algorithm.
@@ -107,28 +108,12 @@ impl RunnerOptions {
         Self { method, sort, first_sort: None, axis, persistent: false }
     }
 
-    /// Sets how it sorts.
-    #[must_use]
-    pub const fn sort(self, sort: Sort) -> Self {
-        Self { sort, ..self }
-    }
+    setters! { sort: Sort, axis: Axis, persistent: bool }
 
     /// Sets how it sorts where no earlier order helps.
     #[must_use]
     pub const fn first_sort(self, sort: Sort) -> Self {
         Self { first_sort: Some(sort), ..self }
-    }
-
-    /// Sets along which axis it sweeps.
-    #[must_use]
-    pub const fn axis(self, axis: Axis) -> Self {
-        Self { axis, ..self }
-    }
-
-    /// Sets whether each step starts from the state of the last.
-    #[must_use]
-    pub const fn persistent(self, persistent: bool) -> Self {
-        Self { persistent, ..self }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Options: which boxes are reported, and how much larger than bodies fat AABBs are.
 
+use crate::setters::setters;
 use crate::{Aabb, Error, Scalar};
 
 /// Which boxes the reported pairs are those of.
@@ -39,24 +40,8 @@ pub struct Options<T = f32> {
     pub report: Report,
 }
 
-impl<T> Options<T> {
-    /// These options with another [`margin`](Self#structfield.margin).
-    #[must_use]
-    pub fn margin(self, margin: T) -> Self {
-        Self { margin, ..self }
-    }
-
-    /// These options with another [`prediction`](Self#structfield.prediction).
-    #[must_use]
-    pub fn prediction(self, prediction: T) -> Self {
-        Self { prediction, ..self }
-    }
-
-    /// These options with another [`report`](Self#structfield.report).
-    #[must_use]
-    pub fn report(self, report: Report) -> Self {
-        Self { report, ..self }
-    }
+impl<T: Copy> Options<T> {
+    setters! { margin: T, prediction: T, report: Report }
 }
 
 impl<T: Scalar> Options<T> {

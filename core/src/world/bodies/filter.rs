@@ -1,5 +1,7 @@
 //! Which bodies may pair at all.
 
+use crate::setters::setters;
+
 /// Which bodies may pair: category and mask bits, a group, and static against dynamic.
 ///
 /// Two bodies pair if their boxes overlap and
@@ -42,29 +44,7 @@ impl Filter {
     /// category and mask are not 0.
     pub const ALL: Self = Self { category: u32::MAX, mask: u32::MAX, group: 0, is_static: false };
 
-    /// This filter with another [`category`](Self#structfield.category).
-    #[must_use]
-    pub const fn category(self, category: u32) -> Self {
-        Self { category, ..self }
-    }
-
-    /// This filter with another [`mask`](Self#structfield.mask).
-    #[must_use]
-    pub const fn mask(self, mask: u32) -> Self {
-        Self { mask, ..self }
-    }
-
-    /// This filter with another [`group`](Self#structfield.group).
-    #[must_use]
-    pub const fn group(self, group: i32) -> Self {
-        Self { group, ..self }
-    }
-
-    /// This filter with another [`is_static`](Self#structfield.is_static).
-    #[must_use]
-    pub const fn is_static(self, is_static: bool) -> Self {
-        Self { is_static, ..self }
-    }
+    setters! { category: u32, mask: u32, group: i32, is_static: bool }
 
     /// Whether two bodies with these filters may pair. Symmetric.
     #[inline]
