@@ -135,79 +135,25 @@ pub(super) unsafe fn sweep<T: Scalar, V: Vector<T>, const TWO: bool>(
     }
 }
 
-/// [`sweep`] with `K` axes tested beside the sweep axis.
+/// [`sweep`] with `K` axes tested beside the sweep axis. Between two sets the probe is the box that comes
+/// first in sweep order, that of the first set where both begin together.
 ///
 /// # Safety
 /// As [`sweep`].
 #[inline(always)]
 unsafe fn sweep_on<T: Scalar, V: Vector<T>, const TWO: bool, const K: usize>(
-    first: &SortedBoxes<T>,
-    second: &SortedBoxes<T>,
+    a: &SortedBoxes<T>,
+    b: &SortedBoxes<T>,
     pair_order: PairOrder,
     cursor: &mut Cursor,
     out: &mut [[u32; 2]],
 ) -> usize {
-    // SAFETY: the caller's promise.
-    unsafe {
-        if TWO {
-            between::<T, V, K>([first, second], pair_order, cursor, out)
-        } else {
-            within::<T, V, K>(first, cursor, out)
-        }
-    }
-}
-
-/// The pairs of one set.
-///
-/// # Safety
-/// As [`sweep`].
-#[inline(always)]
-unsafe fn within<T: Scalar, V: Vector<T>, const K: usize>(
-    boxes: &SortedBoxes<T>,
-    cursor: &mut Cursor,
-    out: &mut [[u32; 2]],
-) -> usize {
+    let ascending = !TWO || pair_order == PairOrder::Ascending;
     let (mut output, mut notes) = (Output::<V>::new(out), Notes::new());
     loop {
-        while cursor.first < boxes.len() && !cursor.is_at_end() && !output.is_full() {
-            let i = cursor.first;
-            // SAFETY: i < len. The scan begins at i + 1 + ahead <= len: the cursor fits, and later
-            // probes start with ahead = 0.
-            let finished = unsafe {
-                let probe = Probe::<T, V, K>::new(boxes, i, true, false);
-                probe.scan(boxes, i + 1, &mut cursor.ahead, &mut output, &mut notes)
-            };
-            if finished {
-                cursor.first = i + 1;
-                cursor.ahead = 0;
-            }
-        }
-        cursor.done = !output.is_full();
-        // SAFETY: all hits are those of `boxes`.
-        if !unsafe { output.flush([boxes], true, &mut notes) } || cursor.done {
-            return output.written();
-        }
-    }
-}
-
-/// The pairs of one box of each set. The probe is the box that comes first in sweep order, that of the
-/// first set where both begin together.
-///
-/// # Safety
-/// As [`sweep`].
-#[inline(always)]
-unsafe fn between<T: Scalar, V: Vector<T>, const K: usize>(
-    [a, b]: [&SortedBoxes<T>; 2],
-    pair_order: PairOrder,
-    cursor: &mut Cursor,
-    out: &mut [[u32; 2]],
-) -> usize {
-    let ascending = pair_order == PairOrder::Ascending;
-    let (mut output, mut notes) = (Output::<V>::new(out), Notes::new());
-    loop {
-        // Where one set has ended, nothing of it is ahead of the rest of the other.
+        // Where one of two sets has ended, nothing of it is ahead of the rest of the other.
         while cursor.first < a.len()
-            && cursor.second < b.len()
+            && (!TWO || cursor.second < b.len())
             && !cursor.is_at_end()
             && !output.is_full()
         {
@@ -215,7 +161,12 @@ unsafe fn between<T: Scalar, V: Vector<T>, const K: usize>(
             // SAFETY: i and j are positions of boxes. A scan begins at a box or at the sentinels: the
             // cursor fits, and later probes start with ahead = 0.
             let finished = unsafe {
-                if *a.left.get_unchecked(i) <= *b.left.get_unchecked(j) {
+                if !TWO {
+                    let probe = Probe::<T, V, K>::new(a, i, true, false);
+                    let finished = probe.scan(a, i + 1, &mut cursor.ahead, &mut output, &mut notes);
+                    cursor.first = if finished { i + 1 } else { i };
+                    finished
+                } else if *a.left.get_unchecked(i) <= *b.left.get_unchecked(j) {
                     let probe = Probe::<T, V, K>::new(a, i, ascending, false);
                     let finished = probe.scan(b, j, &mut cursor.ahead, &mut output, &mut notes);
                     cursor.first += usize::from(finished);
@@ -232,8 +183,15 @@ unsafe fn between<T: Scalar, V: Vector<T>, const K: usize>(
             }
         }
         cursor.done = !output.is_full();
-        // SAFETY: all hits are those of `a` and `b`.
-        if !unsafe { output.flush([a, b], ascending, &mut notes) } || cursor.done {
+        // SAFETY: all hits are those of `a` and, if there are two sets, of `b`.
+        let has_space = unsafe {
+            if TWO {
+                output.flush([a, b], ascending, &mut notes)
+            } else {
+                output.flush([a], true, &mut notes)
+            }
+        };
+        if !has_space || cursor.done {
             return output.written();
         }
     }
