@@ -2,59 +2,20 @@
 
 use core::arch::aarch64::*;
 
-use super::vector::Vector;
+use super::vector::{Vector, vector};
 
 /// A vector of NEON.
 #[derive(Clone, Copy)]
 pub(super) struct Neon<V>(V);
 
-/// A vector, its mask, the instructions on both, and the weight of each lane in a bitmap.
-macro_rules! vector {
-    ($vector:ty, $lanes:literal, $scalar:ty, $splat:ident, $load:ident,
-     $mask:ty, $le:ident, $and:ident, $sum:ident, $load_mask:ident, $weights:expr) => {
-        // SAFETY: one load of exactly LANES coordinates.
-        unsafe impl Vector<$scalar> for Neon<$vector> {
-            const LANES: usize = $lanes;
-            type Mask = $mask;
-
-            #[inline(always)]
-            unsafe fn splat(value: $scalar) -> Self {
-                // SAFETY: NEON is part of the baseline.
-                Self(unsafe { $splat(value) })
-            }
-
-            #[inline(always)]
-            unsafe fn load(from: *const $scalar) -> Self {
-                // SAFETY: the caller has LANES coordinates at `from`.
-                Self(unsafe { $load(from) })
-            }
-
-            #[inline(always)]
-            unsafe fn le(a: Self, b: Self) -> $mask {
-                // SAFETY: NEON is part of the baseline.
-                unsafe { $le(a.0, b.0) }
-            }
-
-            #[inline(always)]
-            unsafe fn and_le(mask: $mask, a: Self, b: Self) -> $mask {
-                // SAFETY: NEON is part of the baseline.
-                unsafe { $and(mask, $le(a.0, b.0)) }
-            }
-
-            #[inline(always)]
-            unsafe fn bits(mask: $mask) -> u32 {
-                // SAFETY: NEON is part of the baseline; there are LANES weights.
-                unsafe { $sum($and(mask, $load_mask($weights.as_ptr()))) as u32 }
-            }
-        }
-    };
-}
-
+// A bitmap is the sum of the weights of the lanes in a mask: one for each lane.
 vector! {
-    float32x4_t, 4, f32, vdupq_n_f32, vld1q_f32,
-    uint32x4_t, vcleq_f32, vandq_u32, vaddvq_u32, vld1q_u32, [1, 2, 4, 8]
+    Neon<float32x4_t>, 4, f32, vdupq_n_f32, vld1q_f32,
+    uint32x4_t, vcleq_f32, |mask, a, b| vandq_u32(mask, vcleq_f32(a.0, b.0)),
+    |mask| vaddvq_u32(vandq_u32(mask, vld1q_u32([1, 2, 4, 8].as_ptr())))
 }
 vector! {
-    float64x2_t, 2, f64, vdupq_n_f64, vld1q_f64,
-    uint64x2_t, vcleq_f64, vandq_u64, vaddvq_u64, vld1q_u64, [1, 2]
+    Neon<float64x2_t>, 2, f64, vdupq_n_f64, vld1q_f64,
+    uint64x2_t, vcleq_f64, |mask, a, b| vandq_u64(mask, vcleq_f64(a.0, b.0)),
+    |mask| vaddvq_u64(vandq_u64(mask, vld1q_u64([1, 2].as_ptr())))
 }

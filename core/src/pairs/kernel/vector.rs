@@ -40,6 +40,77 @@ pub(super) unsafe trait Vector<T: Copy>: Copy {
     }
 }
 
+/// Implements [`Vector`]: a vector, its lanes, the instructions on it, its mask, and, if it can pack, the
+/// function that packs pairs and how it takes its ids and bitmaps from memory.
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+macro_rules! vector {
+    ($name:ident<$vector:ty>, $lanes:literal, $scalar:ty, $splat:ident, $load:ident,
+     $mask:ty, $le:expr, |$and:ident, $a:ident, $b:ident| $and_le:expr, $bits:expr
+     $(, $pack:ident, |$from:ident| $numbers:expr)?) => {
+        // SAFETY: one load of exactly LANES coordinates; `pack`, where it is, reads LANES
+        // ids and bitmaps and writes LANES pairs.
+        unsafe impl Vector<$scalar> for $name<$vector> {
+            const LANES: usize = $lanes;
+            type Mask = $mask;
+
+            #[inline(always)]
+            unsafe fn splat(value: $scalar) -> Self {
+                // SAFETY: the caller has the instructions.
+                Self(unsafe { $splat(value) })
+            }
+
+            #[inline(always)]
+            unsafe fn load(from: *const $scalar) -> Self {
+                // SAFETY: the caller has the instructions, and LANES coordinates at `from`.
+                Self(unsafe { $load(from) })
+            }
+
+            #[inline(always)]
+            unsafe fn le(a: Self, b: Self) -> $mask {
+                // SAFETY: the caller has the instructions.
+                unsafe { $le(a.0, b.0) }
+            }
+
+            #[inline(always)]
+            unsafe fn and_le($and: $mask, $a: Self, $b: Self) -> $mask {
+                // SAFETY: the caller has the instructions.
+                unsafe { $and_le }
+            }
+
+            #[inline(always)]
+            #[allow(unused_unsafe)] // The masks of AVX-512 are numbers.
+            unsafe fn bits(mask: $mask) -> u32 {
+                // SAFETY: the caller has the instructions.
+                unsafe { $bits(mask) as u32 }
+            }
+
+            $(
+                const PACKS: bool = true;
+
+                #[inline(always)]
+                unsafe fn pack(
+                    hits: $mask,
+                    probe: &Reporter,
+                    ids: *const u32,
+                    dedup: *const u32,
+                    out: *mut [u32; 2],
+                ) -> usize {
+                    // SAFETY: the caller has the instructions, LANES ids and bitmaps, and space for
+                    // LANES pairs.
+                    unsafe {
+                        let ids = { let $from = ids; $numbers };
+                        let dedup = { let $from = dedup; $numbers };
+                        $pack(Self::bits(hits), ids, dedup, probe, out, $lanes)
+                    }
+                }
+            )?
+        }
+    };
+}
+
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+pub(super) use vector;
+
 /// The order of the two ids of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PairOrder {

@@ -2,7 +2,7 @@
 
 use core::arch::x86_64::*;
 
-use super::vector::{Reporter, Vector};
+use super::vector::{Reporter, Vector, vector};
 
 /// A vector of SSE2, part of every x86-64 processor.
 #[derive(Clone, Copy)]
@@ -16,68 +16,6 @@ pub(super) struct Avx2<V>(V);
 #[derive(Clone, Copy)]
 pub(super) struct Avx512<V>(V);
 
-/// A vector, the instructions on it, its mask, and what packs pairs, if it can.
-macro_rules! vector {
-    ($name:ident<$vector:ty>, $lanes:literal, $scalar:ty, $splat:ident, $load:ident,
-     $mask:ty, $le:expr, |$and:ident, $a:ident, $b:ident| $and_le:expr, $bits:expr
-     $(, $pack:ident, $ids:ident)?) => {
-        // SAFETY: one load of exactly LANES coordinates; `pack`, where it is, reads LANES
-        // ids and bitmaps and writes LANES pairs.
-        unsafe impl Vector<$scalar> for $name<$vector> {
-            const LANES: usize = $lanes;
-            type Mask = $mask;
-
-            #[inline(always)]
-            unsafe fn splat(value: $scalar) -> Self {
-                // SAFETY: the caller has the instructions.
-                Self(unsafe { $splat(value) })
-            }
-
-            #[inline(always)]
-            unsafe fn load(from: *const $scalar) -> Self {
-                // SAFETY: the caller has the instructions, and LANES coordinates at `from`.
-                Self(unsafe { $load(from) })
-            }
-
-            #[inline(always)]
-            unsafe fn le(a: Self, b: Self) -> $mask {
-                // SAFETY: the caller has the instructions.
-                unsafe { $le(a.0, b.0) }
-            }
-
-            #[inline(always)]
-            unsafe fn and_le($and: $mask, $a: Self, $b: Self) -> $mask {
-                // SAFETY: the caller has the instructions.
-                unsafe { $and_le }
-            }
-
-            #[inline(always)]
-            #[allow(unused_unsafe)] // The masks of AVX-512 are numbers.
-            unsafe fn bits(mask: $mask) -> u32 {
-                // SAFETY: the caller has the instructions.
-                unsafe { $bits(mask) as u32 }
-            }
-
-            $(
-                const PACKS: bool = true;
-
-                #[inline(always)]
-                unsafe fn pack(
-                    hits: $mask,
-                    probe: &Reporter,
-                    ids: *const u32,
-                    dedup: *const u32,
-                    out: *mut [u32; 2],
-                ) -> usize {
-                    // SAFETY: the caller has the instructions, LANES ids and bitmaps, and space for
-                    // LANES pairs.
-                    unsafe { $pack(Self::bits(hits), $ids(ids), $ids(dedup), probe, out, $lanes) }
-                }
-            )?
-        }
-    };
-}
-
 vector! {
     Sse2<__m128>, 4, f32, _mm_set1_ps, _mm_loadu_ps,
     __m128, _mm_cmple_ps, |mask, a, b| _mm_and_ps(mask, _mm_cmple_ps(a.0, b.0)), _mm_movemask_ps
@@ -90,45 +28,29 @@ vector! {
     Avx2<__m256>, 8, f32, _mm256_set1_ps, _mm256_loadu_ps,
     __m256, _mm256_cmp_ps::<_CMP_LE_OQ>,
     |mask, a, b| _mm256_and_ps(mask, _mm256_cmp_ps::<_CMP_LE_OQ>(a.0, b.0)),
-    _mm256_movemask_ps, pack, eight_numbers
+    _mm256_movemask_ps, pack, |from| _mm256_loadu_si256(from.cast())
 }
 vector! {
     Avx2<__m256d>, 4, f64, _mm256_set1_pd, _mm256_loadu_pd,
     __m256d, _mm256_cmp_pd::<_CMP_LE_OQ>,
     |mask, a, b| _mm256_and_pd(mask, _mm256_cmp_pd::<_CMP_LE_OQ>(a.0, b.0)),
-    _mm256_movemask_pd, pack, four_numbers
+    _mm256_movemask_pd, pack, |from| _mm256_castsi128_si256(_mm_loadu_si128(from.cast()))
 }
 vector! {
     Avx512<__m512>, 16, f32, _mm512_set1_ps, _mm512_loadu_ps,
     __mmask16, _mm512_cmp_ps_mask::<_CMP_LE_OQ>,
     |mask, a, b| _mm512_mask_cmp_ps_mask::<_CMP_LE_OQ>(mask, a.0, b.0),
-    u32::from, compress, sixteen_numbers
+    u32::from, compress, |from| _mm512_loadu_si512(from.cast())
 }
 vector! {
     Avx512<__m512d>, 8, f64, _mm512_set1_pd, _mm512_loadu_pd,
     __mmask8, _mm512_cmp_pd_mask::<_CMP_LE_OQ>,
     |mask, a, b| _mm512_mask_cmp_pd_mask::<_CMP_LE_OQ>(mask, a.0, b.0),
-    u32::from, compress, eight_of_sixteen
-}
-
-/// # Safety
-/// AVX2; eight numbers at `from`.
-#[inline(always)]
-unsafe fn eight_numbers(from: *const u32) -> __m256i {
-    // SAFETY: the caller's promise.
-    unsafe { _mm256_loadu_si256(from.cast()) }
-}
-
-/// # Safety
-/// AVX2; four numbers at `from`. The upper half is undefined.
-#[inline(always)]
-unsafe fn four_numbers(from: *const u32) -> __m256i {
-    // SAFETY: the caller's promise.
-    unsafe { _mm256_castsi128_si256(_mm_loadu_si128(from.cast())) }
+    u32::from, compress, |from| _mm512_castsi256_si512(_mm256_loadu_si256(from.cast()))
 }
 
 /// The pairs of the lanes in `hits`, packed to the front without a branch: what AVX2 has no
-/// instruction for is looked up.
+/// instruction for is looked up. Of the ids and bitmaps only the first `lanes` matter.
 ///
 /// # Safety
 /// AVX2; space for `lanes` (4 or 8) pairs at `out`; no hit beyond `lanes`.
@@ -187,22 +109,6 @@ static FRONT: [[u8; 8]; 256] = {
     }
     table
 };
-
-/// # Safety
-/// AVX-512 F; sixteen numbers at `from`.
-#[inline(always)]
-unsafe fn sixteen_numbers(from: *const u32) -> __m512i {
-    // SAFETY: the caller's promise.
-    unsafe { _mm512_loadu_si512(from.cast()) }
-}
-
-/// # Safety
-/// AVX-512 F; eight numbers at `from`. The upper half is undefined.
-#[inline(always)]
-unsafe fn eight_of_sixteen(from: *const u32) -> __m512i {
-    // SAFETY: the caller's promise.
-    unsafe { _mm512_castsi256_si512(_mm256_loadu_si256(from.cast())) }
-}
 
 /// The pairs of the lanes in `hits`, packed to the front without a branch.
 ///
