@@ -22,7 +22,7 @@ const BRUTE_FORCE_AGAINST_MANY: usize = 32;
 const CHUNK: usize = 4096;
 
 /// Whether each box is tested against each, with nothing sorted.
-pub(super) fn is_brute_force<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[S]) -> bool {
+pub(super) fn is_brute_force<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[&[S]]) -> bool {
     let [first, last] = [sets[0].len(), sets[sets.len() - 1].len()];
     first.max(last) <= BRUTE_FORCE
         || (sets.len() == 2 && first.min(last) <= BRUTE_FORCE_AGAINST_MANY)
@@ -30,7 +30,7 @@ pub(super) fn is_brute_force<const D: usize, T: Scalar, S: Source<D, T>>(sets: &
 
 /// Whether boxes are so few that they are tested one by one.
 #[inline]
-pub(super) fn is_few<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[S]) -> bool {
+pub(super) fn is_few<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[&[S]]) -> bool {
     // With 65,536 boxes the product overflows where `usize` has 32 bits.
     sets[0].len().saturating_mul(sets[sets.len() - 1].len()) <= FEW_TESTS
 }
@@ -38,7 +38,7 @@ pub(super) fn is_few<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[S]) -> 
 /// Tests each box against each, by `sweep`, which sweeps the one or two sets that it is given on all
 /// axes.
 pub(super) fn brute_force<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
-    sets: &[S],
+    sets: &[&[S]],
     task: Task<'_>,
     laid_out: &mut [SortedBoxes<T>; 2],
     sink: &mut O,
@@ -97,7 +97,7 @@ fn find_few_pairs<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>], store: &mut S
 /// Sends the pairs of few valid boxes to the sink, box by box.
 #[inline]
 pub(super) fn send_few<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
-    sets: &[S],
+    sets: &[&[S]],
     pair_order: PairOrder,
     sink: &mut O,
 ) -> Result<(), Stop> {
@@ -106,12 +106,12 @@ pub(super) fn send_few<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
     let mut count = 0;
     for i in 0..first.len() {
         for j in if sets.len() == 1 { i + 1 } else { 0 }..last.len() {
-            if first.aabb(i).overlaps(last.aabb(j)) && first.dedup(i) & last.dedup(j) == 0 {
+            if first[i].aabb().overlaps(last[j].aabb()) && first[i].dedup() & last[j].dedup() == 0 {
                 if count == out.len() {
                     sink.take(count)?;
                     (out, count) = (sink.spare()?, 0);
                 }
-                let (a, b) = (first.id(i), last.id(j));
+                let (a, b) = (first[i].id(i), last[j].id(j));
                 let swap = pair_order == PairOrder::Ascending && b < a;
                 out[count] = if swap { [b, a] } else { [a, b] };
                 count += 1;

@@ -52,7 +52,7 @@ impl<const D: usize, T: Scalar> Columns<D, T> {
     /// A [`Refusal`].
     pub fn fill<S: Source<D, T>>(
         &mut self,
-        source: S,
+        source: &[S],
         grid: &Grid<T>,
         other: Option<&Self>,
         placements: &mut Placements,
@@ -73,7 +73,7 @@ impl<const D: usize, T: Scalar> Columns<D, T> {
     #[cfg(feature = "parallel")]
     pub fn fill_on_threads<S: Source<D, T>>(
         &mut self,
-        source: S,
+        source: &[S],
         grid: &Grid<T>,
         other: Option<&Self>,
         placements: &mut [&mut Placements],
@@ -146,9 +146,10 @@ impl<const D: usize, T: Scalar> Records<D, T> {
 
 /// Writes the records of a source to their slots.
 #[inline(always)]
-fn write<const D: usize, T: Scalar, S: Source<D, T>>(source: S, slots: Slots<'_, Record<D, T>>) {
+fn write<const D: usize, T: Scalar, S: Source<D, T>>(source: &[S], slots: Slots<'_, Record<D, T>>) {
     slots.write(|placement: Placement| {
-        let record = source.record(placement.of as usize);
+        let at = placement.of as usize;
+        let record = source[at].record(at);
         Record { dedup: record.dedup | placement.dedup(), ..record }
     });
 }
@@ -208,9 +209,9 @@ impl<'a, const D: usize, T: Scalar> Filled<'a, D, T> {
 /// Fills the columns with the boxes of one set or two: with those of the larger set only where the
 /// smaller set has boxes.
 pub(super) fn fill<const D: usize, T: Scalar, S: Source<D, T>>(
-    sets: &[S],
+    sets: &[&[S]],
     columns: &mut [Columns<D, T>; 2],
-    mut fill: impl FnMut(S, &mut Columns<D, T>, Option<&Columns<D, T>>) -> Result<(), Refusal>,
+    mut fill: impl FnMut(&[S], &mut Columns<D, T>, Option<&Columns<D, T>>) -> Result<(), Refusal>,
 ) -> Result<(), Refusal> {
     let [first_columns, last_columns] = columns;
     let &[first, last] = sets else {

@@ -33,7 +33,7 @@ pub(super) fn most_records(boxes: usize, columns: usize) -> usize {
 
 /// A plan that costs less than to sweep these boxes, which are sorted on an axis, at once.
 pub(super) fn better_plan<const D: usize, T: Scalar, S: Source<D, T>>(
-    sets: &[S],
+    sets: &[&[S]],
     sorted: &[SortedBoxes<T>],
     axis: usize,
     among: Among,

@@ -96,7 +96,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
     /// [brute force](is_brute_force) must be valid.
     pub fn run<S: Source<D, T>, O: Sink>(
         &mut self,
-        sets: &[S],
+        sets: &[&[S]],
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
@@ -117,7 +117,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
     fn run_plan<S: Source<D, T>, O: Sink>(
         &mut self,
         plan: Plan<T>,
-        sets: &[S],
+        sets: &[&[S]],
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
@@ -131,12 +131,13 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
     /// Sweeps all boxes at once, without copying them to columns.
     fn one_column<S: Source<D, T>, O: Sink>(
         &mut self,
-        sets: &[S],
+        sets: &[&[S]],
         axis: usize,
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
-        let valid = |set: &S| (0..set.len()).fold(true, |valid, i| valid & set.aabb(i).is_valid());
+        let valid =
+            |set: &&[S]| set.iter().fold(true, |valid, each| valid & each.aabb().is_valid());
         // Nested searches have valid boxes.
         if task.depth == 0 && !sets.iter().all(valid) {
             return Err(Stop::Invalid);
@@ -148,7 +149,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
     /// Copies the boxes to the columns of a grid and finds the pairs of each column.
     fn cut<S: Source<D, T>, O: Sink>(
         &mut self,
-        sets: &[S],
+        sets: &[&[S]],
         grid: &Grid<T>,
         task: Task<'_>,
         sink: &mut O,
@@ -188,7 +189,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
     fn refused<S: Source<D, T>, O: Sink>(
         &mut self,
         refusal: Refusal,
-        sets: &[S],
+        sets: &[&[S]],
         grid: &Grid<T>,
         task: Task<'_>,
         sink: &mut O,
@@ -234,7 +235,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
     /// than a better plan would leave.
     fn sort_and_sweep<S: Source<D, T>, O: Sink>(
         &mut self,
-        sets: &[S],
+        sets: &[&[S]],
         axis: usize,
         crowd: usize,
         task: Task<'_>,
@@ -284,7 +285,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
     /// of one set also between them.
     fn split_by_size<S: Source<D, T>, O: Sink>(
         &mut self,
-        sets: &[S],
+        sets: &[&[S]],
         split: SizeSplit,
         task: Task<'_>,
         sink: &mut O,

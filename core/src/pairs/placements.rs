@@ -32,7 +32,7 @@ impl Placements {
     /// A [`Refusal`]; [`Refusal::TooMany`] as soon as there are more than `limit`.
     pub fn list<const D: usize, T: Scalar, S: Source<D, T>>(
         &mut self,
-        source: S,
+        source: &[S],
         boxes: Range<usize>,
         grid: &Grid<T>,
         limit: u64,
@@ -46,7 +46,7 @@ impl Placements {
         let mut len = 0;
         for start in boxes.clone().step_by(BLOCK) {
             let block = BLOCK.min(boxes.end - start);
-            valid &= cells.fill(source.aabbs(start..start + block), grid);
+            valid &= cells.fill(source[start..start + block].iter().map(S::aabb), grid);
             for at in 0..block {
                 if len + 4 > self.all.len() {
                     let size = 2 * self.all.len() + 1024;

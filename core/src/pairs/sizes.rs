@@ -26,7 +26,7 @@ impl<const D: usize, T: Scalar> Groups<D, T> {
     ///
     /// # Errors
     /// [`Stop::Invalid`] or [`Stop::Memory`].
-    pub fn fill<S: Source<D, T>>(&mut self, sets: &[S], split: SizeSplit) -> Result<(), Stop> {
+    pub fn fill<S: Source<D, T>>(&mut self, sets: &[&[S]], split: SizeSplit) -> Result<(), Stop> {
         let Self { small, large, other } = self;
         [&mut *small, &mut *large, &mut *other].into_iter().for_each(Vec::clear);
         let mut valid = true;
@@ -34,8 +34,8 @@ impl<const D: usize, T: Scalar> Groups<D, T> {
             if set != split.set {
                 other.try_reserve(source.len())?;
             }
-            for i in 0..source.len() {
-                let record = source.record(i);
+            for (i, each) in source.iter().enumerate() {
+                let record = each.record(i);
                 valid &= record.aabb.is_valid();
                 let group = if set != split.set {
                     &mut *other
@@ -54,15 +54,13 @@ impl<const D: usize, T: Scalar> Groups<D, T> {
 
 /// A split of the boxes that are wide for a grid from the rest, if there are any of both.
 pub(super) fn wide_boxes<const D: usize, T: Scalar, S: Source<D, T>>(
-    sets: &[S],
+    sets: &[&[S]],
     grid: &Grid<T>,
 ) -> Option<SizeSplit> {
     grid.widths().find_map(|(axis, width)| {
         let size = WIDE * width;
-        let divides = |source: &S| {
-            let wide = |i| extent(source.aabb(i), axis) > size;
-            (0..source.len()).any(wide) && !(0..source.len()).all(wide)
-        };
+        let wide = |each: &S| extent(each.aabb(), axis) > size;
+        let divides = |source: &&[S]| source.iter().any(wide) && !source.iter().all(wide);
         Some(SizeSplit { set: sets.iter().position(divides)?, axis, size })
     })
 }

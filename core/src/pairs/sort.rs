@@ -50,7 +50,7 @@ impl<T: Scalar> Sorter<T> {
     /// Fills `boxes` with those of `source`, by left edge on `axis`, then by position in the source.
     pub fn sort<const D: usize, S: Source<D, T>>(
         &mut self,
-        source: S,
+        source: &[S],
         axis: usize,
         boxes: &mut SortedBoxes<T>,
     ) -> Result<(), TryReserveError> {
@@ -61,7 +61,7 @@ impl<T: Scalar> Sorter<T> {
     /// Fills `boxes` with a range of those of `source`, unsorted, for brute force: with all axes beside
     /// a sweep axis on which all overlap.
     pub fn unsorted<const D: usize, S: Source<D, T>>(
-        source: S,
+        source: &[S],
         range: Range<usize>,
         boxes: &mut SortedBoxes<T>,
     ) -> Result<(), TryReserveError> {
@@ -69,13 +69,13 @@ impl<T: Scalar> Sorter<T> {
         boxes.left[..range.len()].fill(T::default());
         boxes.right[..range.len()].fill(T::default());
         for (at, i) in range.enumerate() {
-            let Aabb { min, max } = source.aabb(i);
+            let Aabb { min, max } = source[i].aabb();
             for axis in 0..D {
                 boxes.min[axis][at] = min[axis];
                 boxes.max[axis][at] = max[axis];
             }
-            boxes.id[at] = source.id(i);
-            boxes.dedup[at] = source.dedup(i);
+            boxes.id[at] = source[i].id(i);
+            boxes.dedup[at] = source[i].dedup();
         }
         Ok(())
     }
@@ -83,7 +83,7 @@ impl<T: Scalar> Sorter<T> {
     /// Fills `boxes` in the order of the keys in `sorted`.
     fn lay_out<const D: usize, S: Source<D, T>>(
         &self,
-        source: S,
+        source: &[S],
         axis: usize,
         boxes: &mut SortedBoxes<T>,
     ) -> Result<(), TryReserveError> {
@@ -99,7 +99,7 @@ impl<T: Scalar> Sorter<T> {
     #[inline(never)]
     fn sort_keys<const D: usize, S: Source<D, T>>(
         &mut self,
-        source: S,
+        source: &[S],
         axis: usize,
     ) -> Result<(), TryReserveError> {
         let len = source.len();
@@ -185,8 +185,8 @@ fn exchange<K: Copy + Ord>(keys: &mut [K]) {
 }
 
 #[inline(always)]
-fn edge<const D: usize, T: Scalar, S: Source<D, T>>(source: S, i: usize, axis: usize) -> T {
-    source.aabb(i).min[axis]
+fn edge<const D: usize, T: Scalar, S: Source<D, T>>(source: &[S], i: usize, axis: usize) -> T {
+    source[i].aabb().min[axis]
 }
 
 /// Insertion sort: linear where each key is near its place.
@@ -208,11 +208,11 @@ fn insertion<K: Copy + Ord>(keys: &mut [K]) {
 fn put<const D: usize, T: Scalar, S: Source<D, T>>(
     boxes: &mut SortedBoxes<T>,
     at: usize,
-    source: S,
+    source: &[S],
     i: usize,
     axis: usize,
 ) {
-    let Aabb { min, max } = source.aabb(i);
+    let Aabb { min, max } = source[i].aabb();
     boxes.left[at] = min[axis];
     boxes.right[at] = max[axis];
     let mut other = axis;
@@ -221,6 +221,6 @@ fn put<const D: usize, T: Scalar, S: Source<D, T>>(
         boxes.min[k][at] = min[other];
         boxes.max[k][at] = max[other];
     }
-    boxes.id[at] = source.id(i);
-    boxes.dedup[at] = source.dedup(i);
+    boxes.id[at] = source[i].id(i);
+    boxes.dedup[at] = source[i].dedup();
 }

@@ -1,7 +1,5 @@
 //! The boxes that a search reads: the caller's, or those of a column of the grid.
 
-use core::ops::Range;
-
 use crate::{Aabb, Scalar};
 
 /// A copy of a box in a column of the grid.
@@ -20,77 +18,48 @@ pub(super) struct Record<const D: usize, T> {
     pub dedup: u32,
 }
 
-/// A set of boxes to search.
-pub(super) trait Source<const D: usize, T>: Copy + Sync {
-    fn len(&self) -> usize;
-    fn aabb(&self, i: usize) -> &Aabb<D, T>;
-    fn id(&self, i: usize) -> u32;
-    fn dedup(&self, i: usize) -> u32;
+/// A box as it stands in a set of boxes to search, which is a slice.
+pub(super) trait Source<const D: usize, T: Scalar>: Copy + Sync {
+    fn aabb(&self) -> &Aabb<D, T>;
 
-    /// The boxes of a range, in order.
-    fn aabbs(&self, range: Range<usize>) -> impl Iterator<Item = &Aabb<D, T>> + Clone
-    where
-        T: 'static;
-
+    /// The caller's index of the box, given its position in the slice.
     #[inline(always)]
-    fn record(&self, i: usize) -> Record<D, T>
-    where
-        T: Copy,
-    {
-        Record { aabb: *self.aabb(i), id: self.id(i), dedup: self.dedup(i) }
-    }
-}
-
-impl<const D: usize, T: Scalar> Source<D, T> for &[Aabb<D, T>] {
-    #[inline(always)]
-    fn len(&self) -> usize {
-        (**self).len()
+    fn id(&self, at: usize) -> u32 {
+        at as u32
     }
 
+    /// The dedup bitmap.
     #[inline(always)]
-    fn aabb(&self, i: usize) -> &Aabb<D, T> {
-        &self[i]
-    }
-
-    #[inline(always)]
-    fn id(&self, i: usize) -> u32 {
-        i as u32
-    }
-
-    #[inline(always)]
-    fn dedup(&self, _: usize) -> u32 {
+    fn dedup(&self) -> u32 {
         0
     }
 
     #[inline(always)]
-    fn aabbs(&self, range: Range<usize>) -> impl Iterator<Item = &Aabb<D, T>> + Clone {
-        self[range].iter()
+    fn record(&self, at: usize) -> Record<D, T> {
+        Record { aabb: *self.aabb(), id: self.id(at), dedup: self.dedup() }
     }
 }
 
-impl<const D: usize, T: Scalar> Source<D, T> for &[Record<D, T>] {
+impl<const D: usize, T: Scalar> Source<D, T> for Aabb<D, T> {
     #[inline(always)]
-    fn len(&self) -> usize {
-        (**self).len()
+    fn aabb(&self) -> &Aabb<D, T> {
+        self
+    }
+}
+
+impl<const D: usize, T: Scalar> Source<D, T> for Record<D, T> {
+    #[inline(always)]
+    fn aabb(&self) -> &Aabb<D, T> {
+        &self.aabb
     }
 
     #[inline(always)]
-    fn aabb(&self, i: usize) -> &Aabb<D, T> {
-        &self[i].aabb
+    fn id(&self, _: usize) -> u32 {
+        self.id
     }
 
     #[inline(always)]
-    fn id(&self, i: usize) -> u32 {
-        self[i].id
-    }
-
-    #[inline(always)]
-    fn dedup(&self, i: usize) -> u32 {
-        self[i].dedup
-    }
-
-    #[inline(always)]
-    fn aabbs(&self, range: Range<usize>) -> impl Iterator<Item = &Aabb<D, T>> + Clone {
-        self[range].iter().map(|record| &record.aabb)
+    fn dedup(&self) -> u32 {
+        self.dedup
     }
 }

@@ -49,7 +49,7 @@ pub(super) struct Planned<T> {
 
 /// Plans for one set (pairs within it) or two (pairs between them).
 pub(super) fn plan<const D: usize, T: Scalar, S: Source<D, T>>(
-    sets: &[S],
+    sets: &[&[S]],
     among: Among,
 ) -> Planned<T> {
     let unit = unit(sets);

@@ -42,12 +42,12 @@ impl Sample {
     }
 
     /// Draws from a set. (Into an empty sample: one that is returned is copied once more.)
-    pub fn draw<const D: usize, T: Scalar, S: Source<D, T>>(&mut self, source: S, unit: T) {
+    pub fn draw<const D: usize, T: Scalar, S: Source<D, T>>(&mut self, source: &[S], unit: T) {
         self.count = source.len() as f64;
         let limit = T::Arithmetic::LIMIT;
         let limited = |at: T| (at.to_f64() * unit.to_f64()).clamp(-limit, limit);
         for i in drawn(source) {
-            let aabb = source.aabb(i);
+            let aabb = source[i].aabb();
             for axis in 0..D {
                 self.min[axis][self.len] = limited(aabb.min[axis]);
                 self.max[axis][self.len] = limited(aabb.max[axis]);
@@ -84,14 +84,14 @@ impl Sample {
 }
 
 /// The [unit](Arithmetic::unit) in which the boxes that are drawn from some sets are planned.
-pub fn unit<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[S]) -> T {
-    let magnitude = |set: &S| greatest(drawn(*set).map(|i| magnitude(set.aabb(i))));
+pub fn unit<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[&[S]]) -> T {
+    let magnitude = |set: &&[S]| greatest(drawn(set).map(|i| magnitude(set[i].aabb())));
     T::Arithmetic::unit(greatest(sets.iter().map(magnitude)))
 }
 
 /// The positions of the boxes in the sample of a set: one at a random place of each of equal chunks.
 /// The randomness is the same in every run.
-fn drawn<const D: usize, T: Scalar, S: Source<D, T>>(source: S) -> impl Iterator<Item = usize> {
+fn drawn<const D: usize, T: Scalar, S: Source<D, T>>(source: &[S]) -> impl Iterator<Item = usize> {
     let count = source.len() as u64; // `usize` has 32 bits in WebAssembly
     let len = (count / ONE_IN).clamp(FEWEST, SAMPLE as u64).min(count);
     let mut random = 0x9E37_79B9_7F4A_7C15u64;
