@@ -104,14 +104,15 @@ pub(super) fn send_few<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
     let [first, last] = [sets[0], sets[sets.len() - 1]];
     let mut out = sink.spare()?;
     let mut count = 0;
-    for i in 0..first.len() {
-        for j in if sets.len() == 1 { i + 1 } else { 0 }..last.len() {
-            if first[i].aabb().overlaps(last[j].aabb()) && first[i].dedup() & last[j].dedup() == 0 {
+    for (i, a) in first.iter().enumerate() {
+        let start = if sets.len() == 1 { i + 1 } else { 0 };
+        for (j, b) in (start..).zip(&last[start..]) {
+            if a.aabb().overlaps(b.aabb()) && a.dedup() & b.dedup() == 0 {
                 if count == out.len() {
                     sink.take(count)?;
                     (out, count) = (sink.spare()?, 0);
                 }
-                let (a, b) = (first[i].id(i), last[j].id(j));
+                let (a, b) = (a.id(i), b.id(j));
                 let swap = pair_order == PairOrder::Ascending && b < a;
                 out[count] = if swap { [b, a] } else { [a, b] };
                 count += 1;

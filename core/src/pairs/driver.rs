@@ -100,7 +100,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
-        if sets.iter().any(|set| set.len() == 0) {
+        if sets.iter().any(|set| set.is_empty()) {
             return Ok(());
         }
         if is_brute_force(sets) {
@@ -241,7 +241,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
-        if sets.iter().any(|set| set.len() == 0) {
+        if sets.iter().any(|set| set.is_empty()) {
             return Ok(());
         }
         let boxes: usize = sets.iter().map(|set| set.len()).sum();

@@ -7,7 +7,7 @@ use super::neon;
 use super::scalar;
 use super::scan::{self, Cursor};
 use super::sorted_boxes::{PAD, SortedBoxes};
-use super::vector::{PairOrder, Vector};
+use super::vector::PairOrder;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 use super::wasm;
 #[cfg(target_arch = "x86_64")]
@@ -123,10 +123,13 @@ impl Kernel {
     ) -> usize {
         assert!(out.len() >= PAD && sets.iter().all(|set| set.is_ready(others)));
         assert!(cursor.fits(sets));
-        let kernel = self.instructions();
-        match sets {
-            [a, b] => sweep::<T, true>(kernel, a, b, others, pair_order, cursor, out),
-            _ => sweep::<T, false>(kernel, &sets[0], &sets[0], others, pair_order, cursor, out),
+        let (first, second) = (&sets[0], sets.get(1));
+        if T::BYTES == 4 {
+            let sets = (typed(first), second.map(typed));
+            single(self.instructions(), sets, others, pair_order, cursor, out)
+        } else {
+            let sets = (typed(first), second.map(typed));
+            double(self.instructions(), sets, others, pair_order, cursor, out)
         }
     }
 }
@@ -137,14 +140,18 @@ fn typed<T: Scalar, U: Scalar>(boxes: &SortedBoxes<T>) -> &SortedBoxes<U> {
     boxes.downcast_ref().unwrap_or_else(|| unreachable!("coordinates are f32 or f64"))
 }
 
-/// The sweep, compiled for each of these instructions with its vectors of `f32` and of `f64` and the
-/// target features that they take.
-macro_rules! kernels {
+/// The sweep over `f32` and that over `f64`: compiled for each of these instructions, with its vectors
+/// of both and the target features that they take.
+macro_rules! sweeps {
     ($($(#[$cfg:meta])* $instructions:ident => $single:ty, $double:ty $(, $feature:literal)?;)*) => {
-        fn sweep<T: Scalar, const TWO: bool>(
+        sweeps!(@single, f32, $($(#[$cfg])* $instructions => $single $(, $feature)?;)*);
+        sweeps!(@double, f64, $($(#[$cfg])* $instructions => $double $(, $feature)?;)*);
+    };
+    (@$sweep:ident, $scalar:ty,
+     $($(#[$cfg:meta])* $instructions:ident => $vector:ty $(, $feature:literal)?;)*) => {
+        fn $sweep(
             instructions: Instructions,
-            first: &SortedBoxes<T>,
-            second: &SortedBoxes<T>,
+            (first, second): (&SortedBoxes<$scalar>, Option<&SortedBoxes<$scalar>>),
             others: usize,
             pair_order: PairOrder,
             cursor: &mut Cursor,
@@ -156,9 +163,9 @@ macro_rules! kernels {
                     /// The instructions are present; the rest is as [`Kernel::sweep`] asserts.
                     $(#[target_feature(enable = $feature)])?
                     #[inline(never)] // One function for all sweeps takes a kilobyte more in WebAssembly.
-                    unsafe fn compiled<T: Scalar, V: Vector<T>, const TWO: bool>(
-                        first: &SortedBoxes<T>,
-                        second: &SortedBoxes<T>,
+                    unsafe fn compiled<const TWO: bool>(
+                        first: &SortedBoxes<$scalar>,
+                        second: &SortedBoxes<$scalar>,
                         others: usize,
                         pair_order: PairOrder,
                         cursor: &mut Cursor,
@@ -166,18 +173,17 @@ macro_rules! kernels {
                     ) -> usize {
                         // SAFETY: the caller's promise.
                         unsafe {
-                            scan::sweep::<T, V, TWO>(first, second, others, pair_order, cursor, out)
+                            scan::sweep::<_, $vector, TWO>(first, second, others, pair_order, cursor, out)
                         }
                     }
                     // SAFETY: a `Kernel` exists only where its instructions do, and its method, the
                     // only caller, has checked the boxes, the cursor and the output.
                     unsafe {
-                        if T::BYTES == 4 {
-                            let (first, second) = (typed(first), typed(second));
-                            compiled::<f32, $single, TWO>(first, second, others, pair_order, cursor, out)
-                        } else {
-                            let (first, second) = (typed(first), typed(second));
-                            compiled::<f64, $double, TWO>(first, second, others, pair_order, cursor, out)
+                        match second {
+                            None => compiled::<false>(first, first, others, pair_order, cursor, out),
+                            Some(second) => {
+                                compiled::<true>(first, second, others, pair_order, cursor, out)
+                            }
                         }
                     }
                 })*
@@ -186,16 +192,16 @@ macro_rules! kernels {
     };
 }
 
-kernels! {
+sweeps! {
     Scalar => scalar::One<f32>, scalar::One<f64>;
     #[cfg(target_arch = "x86_64")]
-    Sse2 => x86::Sse2<core::arch::x86_64::__m128>, x86::Sse2<core::arch::x86_64::__m128d>;
+    Sse2 => x86::Sse2<x86::__m128>, x86::Sse2<x86::__m128d>;
     #[cfg(target_arch = "x86_64")]
-    Avx2 => x86::Avx2<core::arch::x86_64::__m256>, x86::Avx2<core::arch::x86_64::__m256d>, "avx2,bmi1,popcnt";
+    Avx2 => x86::Avx2<x86::__m256>, x86::Avx2<x86::__m256d>, "avx2,bmi1,popcnt";
     #[cfg(target_arch = "x86_64")]
-    Avx512 => x86::Avx512<core::arch::x86_64::__m512>, x86::Avx512<core::arch::x86_64::__m512d>, "avx512f,bmi1,popcnt";
+    Avx512 => x86::Avx512<x86::__m512>, x86::Avx512<x86::__m512d>, "avx512f,bmi1,popcnt";
     #[cfg(target_arch = "aarch64")]
-    Neon => neon::Neon<core::arch::aarch64::float32x4_t>, neon::Neon<core::arch::aarch64::float64x2_t>;
+    Neon => neon::Neon<neon::float32x4_t>, neon::Neon<neon::float64x2_t>;
     #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
     Simd128 => wasm::F32x8, wasm::F64x4;
 }

@@ -1,6 +1,7 @@
 //! NEON, part of every 64-bit ARM processor: 4 `f32` or 2 `f64`.
 
 use core::arch::aarch64::*;
+pub(super) use core::arch::aarch64::{float32x4_t, float64x2_t};
 
 use super::vector::{Vector, vector};
 

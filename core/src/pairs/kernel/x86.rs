@@ -1,6 +1,7 @@
 //! SSE2, AVX2 and AVX-512 for x86-64: 4, 8 and 16 `f32`, or half as many `f64`.
 
 use core::arch::x86_64::*;
+pub(super) use core::arch::x86_64::{__m128, __m128d, __m256, __m256d, __m512, __m512d};
 
 use super::vector::{Reporter, Vector, vector};
 
