@@ -10,11 +10,12 @@ use alloc::vec::Vec;
 use core::iter::once;
 use core::ops::Range;
 
+use super::control::Stop;
 use super::grid::Grid;
 use super::kernel::{CountedPlacements, Placement, Slots, assign_slots};
 #[cfg(feature = "parallel")]
 use super::parallel::for_each_on_threads;
-use super::placements::{Placements, Refusal};
+use super::placements::Placements;
 use super::source::{Record, Source};
 use crate::memory::grow_to;
 use crate::{Aabb, Scalar};
@@ -25,7 +26,7 @@ const RECORDS_PER_BOX: u64 = 4;
 const MORE_RECORDS: u64 = 512;
 
 /// The records of all columns. Those of one column stand in the order of the source.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Columns<const D: usize, T> {
     records: Records<D, T>,
     /// Where each column ends.
@@ -36,27 +37,18 @@ pub(super) struct Columns<const D: usize, T> {
 }
 
 impl<const D: usize, T: Scalar> Columns<D, T> {
-    pub const fn new() -> Self {
-        Self {
-            records: Records { array: Vec::new(), len: 0 },
-            ends: Vec::new(),
-            #[cfg(feature = "parallel")]
-            chunk_ends: Vec::new(),
-        }
-    }
-
     /// Copies the boxes of a source to the columns of a grid. If there is another set, only to
     /// columns that hold boxes of it: elsewhere there are no pairs.
     ///
     /// # Errors
-    /// A [`Refusal`].
+    /// A [`Stop`].
     pub fn fill<S: Source<D, T>>(
         &mut self,
         source: &[S],
         grid: &Grid<T>,
         other: Option<&Self>,
         placements: &mut Placements,
-    ) -> Result<(), Refusal> {
+    ) -> Result<(), Stop> {
         placements.list(source, 0..source.len(), grid, most_records(source.len()))?;
         if let Some(other) = other {
             placements.retain(|column| !other.column(column).is_empty());
@@ -69,7 +61,7 @@ impl<const D: usize, T: Scalar> Columns<D, T> {
     /// As [`fill`](Self::fill), on as many threads as there are `placements`, at least one.
     ///
     /// # Errors
-    /// A [`Refusal`].
+    /// A [`Stop`].
     #[cfg(feature = "parallel")]
     pub fn fill_on_threads<S: Source<D, T>>(
         &mut self,
@@ -77,7 +69,7 @@ impl<const D: usize, T: Scalar> Columns<D, T> {
         grid: &Grid<T>,
         other: Option<&Self>,
         placements: &mut [&mut Placements],
-    ) -> Result<(), Refusal> {
+    ) -> Result<(), Stop> {
         let (chunks, boxes) = (placements.len(), source.len());
         let limit = most_records(boxes);
         self.chunk_ends.resize_with(chunks - 1, Vec::new);
@@ -93,14 +85,14 @@ impl<const D: usize, T: Scalar> Columns<D, T> {
                 Ok((len, placements.count(ends)?))
             }));
         });
-        let refusals = counted.iter().flatten().filter_map(|counted| counted.as_ref().err());
-        if let Some(&refusal) = refusals.min() {
-            return Err(refusal);
+        let stops = counted.iter().flatten().filter_map(|counted| counted.as_ref().err());
+        if let Some(&stop) = stops.min() {
+            return Err(stop);
         }
         let counted = counted.into_iter().flatten().flatten();
         let (lens, mut counted): (Vec<u64>, Vec<_>) = counted.unzip();
         if lens.into_iter().sum::<u64>() > limit {
-            return Err(Refusal::TooMany);
+            return Err(Stop::TooMany);
         }
         let slots = self.records.slots(&mut counted)?;
         for_each_on_threads(slots, |slots| write(source, slots));
@@ -120,7 +112,7 @@ impl<const D: usize, T: Scalar> Columns<D, T> {
 }
 
 /// The records of all columns; behind `len` the array is scratch.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Records<const D: usize, T> {
     array: Vec<Record<D, T>>,
     len: usize,
@@ -211,8 +203,8 @@ impl<'a, const D: usize, T: Scalar> Filled<'a, D, T> {
 pub(super) fn fill<const D: usize, T: Scalar, S: Source<D, T>>(
     sets: &[&[S]],
     columns: &mut [Columns<D, T>; 2],
-    mut fill: impl FnMut(&[S], &mut Columns<D, T>, Option<&Columns<D, T>>) -> Result<(), Refusal>,
-) -> Result<(), Refusal> {
+    mut fill: impl FnMut(&[S], &mut Columns<D, T>, Option<&Columns<D, T>>) -> Result<(), Stop>,
+) -> Result<(), Stop> {
     let [first_columns, last_columns] = columns;
     let &[first, last] = sets else {
         return fill(sets[0], first_columns, None);

@@ -78,13 +78,15 @@ impl<'a> Task<'a> {
     }
 }
 
-/// Why a search stopped early, the most important reason first.
+/// Why a search, or the cut of its boxes, stopped early: the most important reason first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Stop {
     /// A box is inverted or NaN; no pair has been found.
     Invalid,
     /// There is not enough memory.
     Memory,
+    /// A cut would make more records than allowed: it is dropped, and the search goes on without it.
+    TooMany,
     /// The progress callback or the receiver of the pairs ended it.
     Cancelled,
 }

@@ -47,9 +47,9 @@ pub(super) fn better_plan<const D: usize, T: Scalar, S: Source<D, T>>(
     if candidates <= crowd {
         return None;
     }
-    let planned = plan(sets, among);
-    let is_same = matches!(planned.plan, Plan::Cut(grid) if grid.len() == 1 && grid.sweep == axis);
-    (!is_same && planned.cost < PLAN_PAYS * CANDIDATE * candidates as f64).then_some(planned.plan)
+    let (plan, cost) = plan(sets, among);
+    let is_same = matches!(plan, Plan::Cut(grid) if grid.len() == 1 && grid.sweep == axis);
+    (!is_same && cost < PLAN_PAYS * CANDIDATE * candidates as f64).then_some(plan)
 }
 
 /// Roughly how many candidates a sweep would test.

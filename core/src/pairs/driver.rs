@@ -25,7 +25,7 @@ use super::grid::Grid;
 use super::kernel::{Cursor, Kernel, SortedBoxes};
 #[cfg(feature = "parallel")]
 use super::parallel::{Gather, Schedule, on_threads, sweep_on_threads};
-use super::placements::{Placements, Refusal};
+use super::placements::Placements;
 use super::plan::{Among, Plan, SizeSplit, plan};
 use super::sink::Sink;
 use super::sizes::{Groups, wide_boxes};
@@ -80,9 +80,9 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
         const { assert!(1 <= D && D <= 3, "boxes have one, two or three dimensions") };
         Self {
             kernel,
-            sorter: Sorter::new(),
-            sorted: [SortedBoxes::new(), SortedBoxes::new()],
-            placements: Placements::new(),
+            sorter: Sorter::default(),
+            sorted: Default::default(),
+            placements: Placements::default(),
             columns: Vec::new(),
             groups: Vec::new(),
             #[cfg(feature = "parallel")]
@@ -111,7 +111,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
         }
         let may_nest = task.depth < DEPTH;
         let among = if may_nest { Among::All { is_crowded: false } } else { Among::Cuts };
-        self.run_plan(plan(sets, among).plan, sets, task, sink)
+        self.run_plan(plan(sets, among).0, sets, task, sink)
     }
 
     fn run_plan<S: Source<D, T>, O: Sink>(
@@ -155,9 +155,10 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
         sink: &mut O,
     ) -> Result<(), Stop> {
         let boxes = sets.iter().map(|set| set.len()).sum();
-        let mut columns = self.columns.pop().unwrap_or([Columns::new(), Columns::new()]);
+        let mut columns = self.columns.pop().unwrap_or_default();
         #[cfg(feature = "parallel")]
-        let mut helpers = self.take_helpers::<O>(boxes);
+        let mut helpers =
+            if self.uses_threads::<O>(boxes) { take(&mut self.helpers) } else { Vec::new() };
         let filled = fill(sets, &mut columns, |set, columns, other| {
             #[cfg(feature = "parallel")]
             if !helpers.is_empty() {
@@ -168,7 +169,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
             columns.fill(set, grid, other, &mut self.placements)
         });
         let crowd = most_records(boxes, grid.len());
-        let result = filled.map(|()| match Filled::new(&columns[..sets.len()], grid, crowd) {
+        let result = filled.and_then(|()| match Filled::new(&columns[..sets.len()], grid, crowd) {
             #[cfg(feature = "parallel")]
             Some(filled) if !helpers.is_empty() => {
                 self.columns_on_threads(&mut helpers, &filled, task, sink)
@@ -181,24 +182,21 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
         if !helpers.is_empty() {
             self.helpers = helpers;
         }
-        result.unwrap_or_else(|refusal| self.refused(refusal, sets, grid, task, sink))
+        if result == Err(Stop::TooMany) {
+            return self.without_cut(sets, grid, task, sink);
+        }
+        result
     }
 
     /// Follows another plan if a grid would make too many records, of boxes that the sample has
     /// missed: splits the wide ones from the rest, or does not cut.
-    fn refused<S: Source<D, T>, O: Sink>(
+    fn without_cut<S: Source<D, T>, O: Sink>(
         &mut self,
-        refusal: Refusal,
         sets: &[&[S]],
         grid: &Grid<T>,
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
-        match refusal {
-            Refusal::Invalid => return Err(Stop::Invalid),
-            Refusal::Memory => return Err(Stop::Memory),
-            Refusal::TooMany => (),
-        }
         if task.depth < DEPTH
             && let Some(split) = wide_boxes(sets, grid)
         {
@@ -248,9 +246,9 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
         let is_divided = boxes < task.boxes - task.boxes / UNDIVIDED;
         let among = if is_divided { Among::All { is_crowded: true } } else { Among::Sweeps };
         if boxes > crowd && is_divided && task.depth < DEPTH {
-            let planned = plan(sets, among);
-            if planned.plan.divides() {
-                return self.run_plan(planned.plan, sets, task.nested(0.0, boxes), sink);
+            let (plan, _) = plan(sets, among);
+            if plan.divides() {
+                return self.run_plan(plan, sets, task.nested(0.0, boxes), sink);
             }
         }
         for (&set, sorted) in sets.iter().zip(&mut self.sorted) {
@@ -319,11 +317,6 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
 impl<const D: usize, T: Scalar> Driver<D, T> {
     fn uses_threads<O: Sink>(&self, boxes: usize) -> bool {
         O::TAKES_CHUNKS && !self.helpers.is_empty() && boxes >= WORTH_THREADS
-    }
-
-    /// The drivers of the other threads, if these are to help with so many boxes.
-    fn take_helpers<O: Sink>(&mut self, boxes: usize) -> Vec<Self> {
-        if self.uses_threads::<O>(boxes) { take(&mut self.helpers) } else { Vec::new() }
     }
 
     /// The pairs of all columns, found by this thread and the helpers. All of them together search the

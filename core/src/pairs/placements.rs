@@ -4,6 +4,7 @@ use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
 use core::ops::Range;
 
+use super::control::Stop;
 use super::grid::{BLOCK, CellCoordinates, Grid};
 use super::kernel::{CountedPlacements, Placement};
 use super::source::Source;
@@ -11,7 +12,7 @@ use crate::Scalar;
 use crate::memory::{grow, grow_to};
 
 /// The placements of the boxes of a set, or of a chunk of them.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Placements {
     /// In the order of the boxes; behind `len` it is scratch.
     all: Vec<Placement>,
@@ -21,22 +22,18 @@ pub(super) struct Placements {
 }
 
 impl Placements {
-    pub const fn new() -> Self {
-        Self { all: Vec::new(), len: 0, columns: 0 }
-    }
-
     /// Lists the columns that these boxes of the source touch, and returns how many placements there
     /// are.
     ///
     /// # Errors
-    /// A [`Refusal`]; [`Refusal::TooMany`] as soon as there are more than `limit`.
+    /// A [`Stop`]; [`Stop::TooMany`] as soon as there are more than `limit`.
     pub fn list<const D: usize, T: Scalar, S: Source<D, T>>(
         &mut self,
         source: &[S],
         boxes: Range<usize>,
         grid: &Grid<T>,
         limit: u64,
-    ) -> Result<u64, Refusal> {
+    ) -> Result<u64, Stop> {
         self.columns = grid.len();
         let [above, beside, _] = grid.steps();
         let dedup = grid.axes().map(Placement::dedup_bit);
@@ -77,8 +74,8 @@ impl Placements {
         self.len = len;
         match (valid, len as u64 <= limit) {
             (true, true) => Ok(len as u64),
-            (true, false) => Err(Refusal::TooMany),
-            (false, _) => Err(Refusal::Invalid),
+            (true, false) => Err(Stop::TooMany),
+            (false, _) => Err(Stop::Invalid),
         }
     }
 
@@ -93,14 +90,14 @@ impl Placements {
         more: [u32; 3],
         grid: &Grid<T>,
         limit: u64,
-    ) -> Result<usize, Refusal> {
+    ) -> Result<usize, Stop> {
         let steps = grid.steps();
         let dedup = grid.axes().map(Placement::dedup_bit);
         let dedup = |axis: usize, at: u32| if at > 0 { dedup[axis] } else { 0 };
         for i in 0..=more[0] {
             for j in 0..=more[1] {
                 if len as u64 > limit {
-                    return Err(Refusal::TooMany);
+                    return Err(Stop::TooMany);
                 }
                 let end = len + more[2] as usize + 1;
                 if end > self.all.len() {
@@ -138,22 +135,5 @@ impl Placements {
     ) -> Result<CountedPlacements<'a>, TryReserveError> {
         grow(ends, self.columns, 0)?;
         Ok(CountedPlacements::new(&self.all[..self.len], &mut ends[..self.columns]))
-    }
-}
-
-/// Why boxes were not copied to columns, the most important reason first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Refusal {
-    /// A box is inverted or NaN.
-    Invalid,
-    /// There is not enough memory.
-    Memory,
-    /// There would be more records than allowed.
-    TooMany,
-}
-
-impl From<TryReserveError> for Refusal {
-    fn from(_: TryReserveError) -> Self {
-        Refusal::Memory
     }
 }

@@ -249,7 +249,7 @@ fn run_many<const D: usize, T: Scalar, O: Sink>(
 fn error(stop: Stop) -> Error {
     match stop {
         Stop::Memory => Error::OutOfMemory,
-        Stop::Invalid | Stop::Cancelled => Error::Cancelled,
+        Stop::Invalid | Stop::TooMany | Stop::Cancelled => Error::Cancelled,
     }
 }
 

@@ -27,7 +27,7 @@ const CROWDED_INTERVAL: u32 = 16;
 const MOST_INTERVALS: usize = 1 << 16;
 
 /// The buffers of the sort.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Sorter<T: Scalar> {
     keys: Vec<Key<T>>,
     sorted: Vec<Key<T>>,
@@ -37,16 +37,6 @@ pub(super) struct Sorter<T: Scalar> {
 }
 
 impl<T: Scalar> Sorter<T> {
-    pub const fn new() -> Self {
-        Self {
-            keys: Vec::new(),
-            sorted: Vec::new(),
-            lefts: Vec::new(),
-            intervals: Vec::new(),
-            ends: Vec::new(),
-        }
-    }
-
     /// Fills `boxes` with those of `source`, by left edge on `axis`, then by position in the source.
     pub fn sort<const D: usize, S: Source<D, T>>(
         &mut self,
@@ -55,7 +45,22 @@ impl<T: Scalar> Sorter<T> {
         boxes: &mut SortedBoxes<T>,
     ) -> Result<(), TryReserveError> {
         self.sort_keys(source, axis)?;
-        self.lay_out(source, axis, boxes)
+        boxes.reset(source.len(), D - 1)?;
+        for (at, &key) in self.sorted[..source.len()].iter().enumerate() {
+            let i = T::Arithmetic::position(key) as usize;
+            let Aabb { min, max } = source[i].aabb();
+            boxes.left[at] = min[axis];
+            boxes.right[at] = max[axis];
+            let mut other = axis;
+            for k in 0..D - 1 {
+                other = if other + 1 == D { 0 } else { other + 1 };
+                boxes.min[k][at] = min[other];
+                boxes.max[k][at] = max[other];
+            }
+            boxes.id[at] = source[i].id(i);
+            boxes.dedup[at] = source[i].dedup();
+        }
+        Ok(())
     }
 
     /// Fills `boxes` with a range of those of `source`, unsorted, for brute force: with all axes beside
@@ -80,21 +85,6 @@ impl<T: Scalar> Sorter<T> {
         Ok(())
     }
 
-    /// Fills `boxes` in the order of the keys in `sorted`.
-    fn lay_out<const D: usize, S: Source<D, T>>(
-        &self,
-        source: &[S],
-        axis: usize,
-        boxes: &mut SortedBoxes<T>,
-    ) -> Result<(), TryReserveError> {
-        let len = source.len();
-        boxes.reset(len, D - 1)?;
-        for (at, &key) in self.sorted[..len].iter().enumerate() {
-            put(boxes, at, source, T::Arithmetic::position(key) as usize, axis);
-        }
-        Ok(())
-    }
-
     /// Leaves the sorted keys of the boxes in `sorted`.
     #[inline(never)]
     fn sort_keys<const D: usize, S: Source<D, T>>(
@@ -103,10 +93,11 @@ impl<T: Scalar> Sorter<T> {
         axis: usize,
     ) -> Result<(), TryReserveError> {
         let len = source.len();
+        let edge = |i: usize| source[i].aabb().min[axis];
         grow(&mut self.sorted, len, Key::<T>::default())?;
         if len <= INSERTION_ONLY {
             for (i, key) in self.sorted[..len].iter_mut().enumerate() {
-                *key = T::Arithmetic::key(edge(source, i, axis), i as u32);
+                *key = T::Arithmetic::key(edge(i), i as u32);
             }
             insertion(&mut self.sorted[..len]);
             return Ok(());
@@ -114,10 +105,10 @@ impl<T: Scalar> Sorter<T> {
         grow(&mut self.keys, len, Key::<T>::default())?;
         grow(&mut self.lefts, len, T::default())?;
         // The least and the greatest by their keys: whole numbers are compared faster.
-        let mut least = T::Arithmetic::key(edge(source, 0, axis), 0);
+        let mut least = T::Arithmetic::key(edge(0), 0);
         let mut greatest = least;
         for (i, (key, left)) in self.keys.iter_mut().zip(&mut self.lefts[..len]).enumerate() {
-            *left = edge(source, i, axis);
+            *left = edge(i);
             *key = T::Arithmetic::key(*left, i as u32);
             least = least.min(*key);
             greatest = greatest.max(*key);
@@ -184,11 +175,6 @@ fn exchange<K: Copy + Ord>(keys: &mut [K]) {
     }
 }
 
-#[inline(always)]
-fn edge<const D: usize, T: Scalar, S: Source<D, T>>(source: &[S], i: usize, axis: usize) -> T {
-    source[i].aabb().min[axis]
-}
-
 /// Insertion sort: linear where each key is near its place.
 #[inline(never)]
 fn insertion<K: Copy + Ord>(keys: &mut [K]) {
@@ -201,26 +187,4 @@ fn insertion<K: Copy + Ord>(keys: &mut [K]) {
         }
         keys[at] = key;
     }
-}
-
-/// Writes box `i` of the source to position `at`.
-#[inline(always)]
-fn put<const D: usize, T: Scalar, S: Source<D, T>>(
-    boxes: &mut SortedBoxes<T>,
-    at: usize,
-    source: &[S],
-    i: usize,
-    axis: usize,
-) {
-    let Aabb { min, max } = source[i].aabb();
-    boxes.left[at] = min[axis];
-    boxes.right[at] = max[axis];
-    let mut other = axis;
-    for k in 0..D - 1 {
-        other = if other + 1 == D { 0 } else { other + 1 };
-        boxes.min[k][at] = min[other];
-        boxes.max[k][at] = max[other];
-    }
-    boxes.id[at] = source[i].id(i);
-    boxes.dedup[at] = source[i].dedup();
 }

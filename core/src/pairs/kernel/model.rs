@@ -80,7 +80,7 @@ mod tests {
         };
         let mut lefts: Vec<f32> = (0..len).map(|_| random(1 + len as u32 / 3) as f32).collect();
         lefts.sort_by(f32::total_cmp);
-        let mut boxes = SortedBoxes::new();
+        let mut boxes = SortedBoxes::default();
         boxes.reset(len, 2).unwrap();
         for (at, left) in lefts.into_iter().enumerate() {
             boxes.left[at] = left;

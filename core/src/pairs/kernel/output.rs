@@ -42,22 +42,19 @@ impl Notes {
 }
 
 /// Takes hits.
-pub(super) struct Output<'a, V> {
+pub(super) struct Output<'a, T, V> {
     pairs: &'a mut [[u32; 2]],
     written: usize,
     noted: usize,
     /// For so many notes there is space.
     most: usize,
-    vector: PhantomData<V>,
+    vector: PhantomData<(T, V)>,
 }
 
-impl<'a, V> Output<'a, V> {
+impl<'a, T: Copy, V: Vector<T>> Output<'a, T, V> {
     /// For pairs of the vectors `V`, at least one.
     #[inline(always)]
-    pub fn new<T: Copy>(pairs: &'a mut [[u32; 2]]) -> Self
-    where
-        V: Vector<T>,
-    {
+    pub fn new(pairs: &'a mut [[u32; 2]]) -> Self {
         let most = MOST.min(pairs.len() / V::LANES);
         Self { pairs, written: 0, noted: 0, most, vector: PhantomData }
     }
@@ -68,16 +65,14 @@ impl<'a, V> Output<'a, V> {
     /// The instructions of `V` are present, and its lanes are positions of `boxes`; it is not
     /// [full](Self::is_full).
     #[inline(always)]
-    pub unsafe fn take<T: Copy>(
+    pub unsafe fn take(
         &mut self,
         hits: V::Mask,
         probe: &Reporter,
         boxes: &SortedBoxes<T>,
         at: usize,
         notes: &mut Notes,
-    ) where
-        V: Vector<T>,
-    {
+    ) {
         // SAFETY: the caller's promise.
         unsafe {
             if V::PACKS {
@@ -96,10 +91,7 @@ impl<'a, V> Output<'a, V> {
 
     /// Whether it takes no more before a [flush](Self::flush).
     #[inline(always)]
-    pub fn is_full<T: Copy>(&self) -> bool
-    where
-        V: Vector<T>,
-    {
+    pub fn is_full(&self) -> bool {
         if V::PACKS { !self.has_space() } else { self.noted >= self.most }
     }
 
@@ -109,15 +101,12 @@ impl<'a, V> Output<'a, V> {
     /// # Safety
     /// All was taken from these sets.
     #[inline(always)]
-    pub unsafe fn flush<T: Copy, const N: usize>(
+    pub unsafe fn flush<const N: usize>(
         &mut self,
         sets: [&SortedBoxes<T>; N],
         ascending: bool,
         notes: &mut Notes,
-    ) -> bool
-    where
-        V: Vector<T>,
-    {
+    ) -> bool {
         if !V::PACKS {
             // SAFETY: the caller's promise; there is space for `most` vectors full of pairs.
             unsafe {
@@ -131,10 +120,7 @@ impl<'a, V> Output<'a, V> {
     }
 
     #[inline(always)]
-    fn has_space<T: Copy>(&self) -> bool
-    where
-        V: Vector<T>,
-    {
+    fn has_space(&self) -> bool {
         self.written + V::LANES <= self.pairs.len()
     }
 

@@ -149,7 +149,7 @@ unsafe fn sweep_on<T: Scalar, V: Vector<T>, const TWO: bool, const K: usize>(
     out: &mut [[u32; 2]],
 ) -> usize {
     let ascending = !TWO || pair_order == PairOrder::Ascending;
-    let (mut output, mut notes) = (Output::<V>::new(out), Notes::new());
+    let (mut output, mut notes) = (Output::<T, V>::new(out), Notes::new());
     loop {
         // Where one of two sets has ended, nothing of it is ahead of the rest of the other.
         while cursor.first < a.len()
@@ -239,7 +239,7 @@ impl<T: Scalar, V: Vector<T>, const K: usize> Probe<T, V, K> {
         boxes: &SortedBoxes<T>,
         start: usize,
         ahead: &mut usize,
-        output: &mut Output<'_, V>,
+        output: &mut Output<'_, T, V>,
         notes: &mut Notes,
     ) -> bool {
         let mut j = start + *ahead;

@@ -17,7 +17,7 @@ pub const MAX_OTHERS: usize = 3;
 ///
 /// Behind the last box the left edges are NaN, which is `<=` nothing: unlike an infinite
 /// sentinel it also stops the sweep of a box that reaches to infinity.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct SortedBoxes<T> {
     len: usize,
     /// Left and right edges on the sweep axis; the left ones ascend.
@@ -34,18 +34,6 @@ pub struct SortedBoxes<T> {
 }
 
 impl<T: Scalar> SortedBoxes<T> {
-    pub const fn new() -> Self {
-        Self {
-            len: 0,
-            left: Vec::new(),
-            right: Vec::new(),
-            min: [Vec::new(), Vec::new(), Vec::new()],
-            max: [Vec::new(), Vec::new(), Vec::new()],
-            id: Vec::new(),
-            dedup: Vec::new(),
-        }
-    }
-
     pub fn len(&self) -> usize {
         self.len
     }

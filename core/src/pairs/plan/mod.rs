@@ -40,18 +40,12 @@ impl<T: Scalar> Plan<T> {
     }
 }
 
-/// A plan and the nanoseconds that it is expected to take.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Planned<T> {
-    pub plan: Plan<T>,
-    pub cost: f64,
-}
-
-/// Plans for one set (pairs within it) or two (pairs between them).
+/// A plan for one set (pairs within it) or two (pairs between them), and the nanoseconds that it is
+/// expected to take.
 pub(super) fn plan<const D: usize, T: Scalar, S: Source<D, T>>(
     sets: &[&[S]],
     among: Among,
-) -> Planned<T> {
+) -> (Plan<T>, f64) {
     let unit = unit(sets);
     let mut first = Sample::empty(D);
     first.draw(sets[0], unit);
@@ -71,7 +65,7 @@ pub(super) fn plan<const D: usize, T: Scalar, S: Source<D, T>>(
             Plan::SplitBySize(SizeSplit { size: split.size / unit.to_f64(), ..split })
         }
     };
-    Planned { plan, cost }
+    (plan, cost)
 }
 
 fn grid<const D: usize, T: Scalar>(cut: &Cut, field: &Field, unit: T) -> Grid<T> {
@@ -105,7 +99,7 @@ mod tests {
 
     /// How many columns are planned.
     fn columns<T: Scalar>(step: f64, size: f64) -> usize {
-        match plan(&[&boxes::<T>(step, size)[..]], Among::All { is_crowded: false }).plan {
+        match plan(&[&boxes::<T>(step, size)[..]], Among::All { is_crowded: false }).0 {
             Plan::Cut(grid) => grid.len(),
             Plan::SplitBySize(_) => 0,
         }
@@ -154,7 +148,7 @@ mod tests {
         for (few, many) in [(200, 200), (1000, 4000)] {
             let sets = [points(few), points(many)];
             let Plan::Cut(grid) =
-                plan(&[&sets[0][..], &sets[1][..]], Among::All { is_crowded: false }).plan
+                plan(&[&sets[0][..], &sets[1][..]], Among::All { is_crowded: false }).0
             else {
                 continue;
             };
