@@ -80,22 +80,3 @@ pub fn displacement<const D: usize, T: Scalar>(from: &Aabb<D, T>, to: &Aabb<D, T
         if way < T::INFINITY && way > T::NEG_INFINITY { way } else { T::default() }
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_fat_aabb_reaches_ahead_and_contains_its_body_at_the_edge_of_the_range() {
-        let options = Options { margin: 1.0f32, prediction: 2.0, report: Report::Fat };
-        let body = Aabb::new([0.0, 0.0], [1.0, 1.0]);
-        let fat = options.fatten(&body, [3.0, -3.0]);
-        assert_eq!(fat, Aabb::new([-1.0, -7.0], [8.0, 2.0]));
-
-        let inf = f32::INFINITY;
-        let far = Aabb::new([f32::MIN, inf], [f32::MAX, inf]);
-        let from = Aabb::new([f32::MAX, -inf], [f32::MAX, inf]);
-        let fat = options.fatten(&far, displacement(&from, &far));
-        assert!(fat.is_valid() && fat.contains(&far));
-    }
-}

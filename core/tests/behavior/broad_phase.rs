@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use sweep_and_prune::{
-    Aabb, BroadPhase, Cast, Error, Filter, Options, PairFinder, ProxyId, SnapshotFault,
+    Aabb, BroadPhase, Cast, Error, Filter, Options, PairFinder, ProxyId, Report, SnapshotFault,
     SnapshotInfo,
 };
 use sweep_and_prune_fuzz::{Model, Pair};
@@ -291,6 +291,24 @@ fn negative_infinite_and_nan_margins_are_refused() {
             assert_eq!(world.map(|_| ()), Err(Error::InvalidOption { option, value }));
         }
     }
+}
+
+#[test]
+fn a_fat_aabb_reaches_ahead_and_contains_its_body_at_the_edge_of_the_range() {
+    let options = Options::default().margin(1.0f32).prediction(2.0).report(Report::Fat);
+    let moved = |from, to| {
+        let mut world = BroadPhase::with_options(options).unwrap();
+        let id = world.insert(from).unwrap();
+        world.set(id, to).unwrap();
+        world.reported_aabb(id).unwrap()
+    };
+    let fat = moved(Aabb::new([-3.0, 3.0], [-2.0, 4.0]), Aabb::new([0.0, 0.0], [1.0, 1.0]));
+    assert_eq!(fat, Aabb::new([-1.0, -7.0], [8.0, 2.0]));
+
+    let inf = f32::INFINITY;
+    let far = Aabb::new([f32::MIN, inf], [f32::MAX, inf]);
+    let fat = moved(Aabb::new([f32::MAX, -inf], [f32::MAX, inf]), far);
+    assert!(fat.is_valid() && fat.contains(&far));
 }
 
 #[test]

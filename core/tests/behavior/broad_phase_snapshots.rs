@@ -197,3 +197,37 @@ fn a_slot_without_a_body_holds_no_more_than_it_can() {
         assert_eq!(read(kind, has_box), corrupt, "a slot that was left with {kind}");
     }
 }
+
+#[test]
+fn a_slot_whose_generations_are_used_up_is_not_given_out_again() {
+    let mut world = BroadPhase::<1>::new();
+    let aabb = Aabb::new([0.0], [1.0]);
+    world.insert(aabb).unwrap();
+    let good = without_checksum(world.snapshot());
+    // Generation 2^32 - 2 instead of 1, as LEB128.
+    let bytes = [&good[..18], &[0xfe, 0xff, 0xff, 0xff, 0x0f], &good[19..]].concat();
+    let mut world = BroadPhase::<1>::from_snapshot(&signed(bytes)).unwrap();
+    let mut replace = || {
+        let old = world.ids().next().unwrap();
+        world.remove(old).unwrap();
+        world.update();
+        let id = world.insert(aabb).unwrap();
+        (id.slot(), id.generation())
+    };
+    assert_eq!(replace(), (0, u32::MAX));
+    assert_eq!(replace(), (1, 1));
+}
+
+#[test]
+fn hashes_are_the_same_everywhere_and_see_every_byte() {
+    let world = busy_world::<2, f32>(Report::Exact, &mut Random::new(7));
+    let bytes = world.snapshot();
+    assert_eq!(world.state_hash(), hash(&bytes));
+    assert_eq!(signed(without_checksum(bytes.clone())), bytes);
+    assert_eq!(hash(b""), 0xc431_3cd5_ef5c_15ac);
+    assert_eq!(hash(b"sweep and prune"), 0x0ae1_0d84_643b_0920);
+    let zeros = [0; 64];
+    for length in 0..zeros.len() {
+        assert_ne!(hash(&zeros[..length]), hash(&zeros[..length + 1]));
+    }
+}

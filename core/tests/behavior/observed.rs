@@ -200,6 +200,60 @@ fn true_on_random_boxes<const D: usize, T: Scalar>() {
 }
 in_all_dimensions!(what_is_told_is_true_on_random_boxes, true_on_random_boxes);
 
+/// Repeats the reported swaps on a copy of the array, which is then that of the sweep.
+#[derive(Default)]
+struct Mirror(Vec<Edge>);
+
+impl Observer for Mirror {
+    fn array<T: Scalar>(&mut self, _: usize, endpoints: &[Endpoint<T>]) {
+        self.0 = edges(endpoints);
+    }
+
+    fn swap(&mut self, positions: [usize; 2], a: Edge, b: Edge) {
+        assert_eq!(positions.map(|position| self.0[position]), [a, b]);
+        self.0.swap(positions[0], positions[1]);
+    }
+
+    fn visit(&mut self, position: usize, edge: Edge) {
+        assert_eq!(self.0[position], edge);
+    }
+}
+
+/// The sweep over endpoints sorts all of them; that by swaps sorts those of new boxes behind the old ones,
+/// and merges them in.
+#[test]
+fn every_sort_gives_the_same_order_and_reports_its_swaps() {
+    let intervals = proptest::collection::vec((-3i8..4, 0i8..3), 0..100);
+    proptest!(|(intervals in intervals, old in 0usize..20)| {
+        let aabb = |&(min, size): &(i8, i8)| Aabb::new([f32::from(min)], [f32::from(min + size)]);
+        let boxes: Vec<_> = intervals.iter().map(aabb).collect();
+        let rights = boxes.iter().zip(0..).map(|(aabb, id)| Endpoint::right(aabb.max[0], id));
+        let mut in_order: Vec<_> = lefts(&boxes, 0).into_iter().chain(rights).collect();
+        in_order.sort_by(Endpoint::order);
+        for (method, old) in [(Method::EndpointSweep, 0), (Method::SwapSweep, old.min(boxes.len()))] {
+            for sort in Sort::ALL {
+                let mut runner = runner(method, sort, 0);
+                runner.step(&boxes[..old], &mut ()).unwrap();
+                let (mut unobserved, mut mirror) = (runner.clone(), Mirror::default());
+                let pairs = runner.step(&boxes, &mut mirror).unwrap().pairs;
+                assert_eq!(mirror.0, edges(&in_order), "{method:?} {sort:?}");
+                assert_eq!(unobserved.step(&boxes, &mut ()).unwrap().pairs, pairs, "{method:?} {sort:?}");
+            }
+        }
+    });
+}
+
+#[test]
+fn timsort_takes_a_sorted_and_a_reversed_array_in_one_pass() {
+    let up: Vec<_> = (0..1000).map(|i| Aabb::new([i as f32], [i as f32])).collect();
+    let down: Vec<_> = up.iter().rev().copied().collect();
+    for boxes in [up, down] {
+        let mut counts = Counts::default();
+        runner(Method::SortedPairwise, Sort::Timsort, 0).step(&boxes, &mut counts).unwrap();
+        assert_eq!(counts.comparisons, 999);
+    }
+}
+
 fn counts_of(scene: Scene, n: usize, sort: Sort) -> Counts {
     let boxes = scene.boxes::<2, f64>(n, 1).unwrap();
     let mut counts = Counts::default();

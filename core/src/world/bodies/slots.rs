@@ -168,21 +168,3 @@ impl Slots {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_slot_whose_generations_are_used_up_is_not_given_out_again() {
-        let mut slots = Slots::default();
-        assert_eq!(slots.take(), 0);
-        slots.generations[0] = u32::MAX - 1;
-        slots.retire(0);
-        slots.release(0, 0);
-        assert_eq!((slots.take(), slots.generations[0]), (0, u32::MAX));
-        slots.retire(0);
-        slots.release(0, 0);
-        assert_eq!((slots.take(), slots.len()), (1, 2));
-    }
-}
