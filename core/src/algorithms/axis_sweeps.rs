@@ -64,9 +64,7 @@ impl<const D: usize, T: Scalar> AxisSweeps<D, T> {
         flags.clear();
         for (already, axis) in (first_axis..D).chain(0..first_axis).enumerate() {
             let array = &mut self.arrays[axis];
-            array.refresh(boxes, axis);
-            observer.array(axis, &array.endpoints);
-            sort.sort(&mut array.endpoints, observer);
+            array.sort(boxes, axis, sort, observer);
             sweep(&array.endpoints, &mut self.touching, observer, |observer, a, b| {
                 let pair = pair(a, b);
                 observer.axis_overlap(axis, pair[0], pair[1]);

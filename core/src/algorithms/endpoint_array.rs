@@ -7,7 +7,9 @@
 
 use alloc::vec::Vec;
 
-use super::endpoint::{Endpoint, Side};
+use super::endpoint::{Edge, Endpoint, Side};
+use super::observer::Observer;
+use super::sorts::Sort;
 use crate::{Aabb, Scalar};
 
 /// Endpoints on one axis, in the order of the last sort.
@@ -18,16 +20,10 @@ pub struct EndpointArray<T> {
 }
 
 impl<T: Scalar> EndpointArray<T> {
-    /// Appends both endpoints of each box, without coordinates.
-    pub fn append(&mut self, ids: &[u32]) {
-        let both =
-            |&id: &u32| [Endpoint::left(T::default(), id), Endpoint::right(T::default(), id)];
-        self.endpoints.extend(ids.iter().flat_map(both));
-    }
-
-    /// Appends the left endpoint of each box, without coordinates.
-    pub fn append_lefts(&mut self, ids: &[u32]) {
-        self.endpoints.extend(ids.iter().map(|&id| Endpoint::left(T::default(), id)));
+    /// Appends the endpoints of each box on these sides, without coordinates.
+    pub fn append(&mut self, ids: &[u32], sides: &[Side]) {
+        let edges = ids.iter().flat_map(|&id| sides.iter().map(move |&side| Edge { side, id }));
+        self.endpoints.extend(edges.map(|edge| Endpoint { at: T::default(), edge }));
     }
 
     /// Drops the endpoints of these boxes, `ids` ascending. O(n log k), the rest stays in order.
@@ -37,13 +33,21 @@ impl<T: Scalar> EndpointArray<T> {
         }
     }
 
-    /// Refreshes every coordinate from the boxes.
-    pub fn refresh<const D: usize>(&mut self, boxes: &[Aabb<D, T>], axis: usize) {
-        self.refresh_from(0, boxes, axis);
+    /// Refreshes every coordinate from the boxes, and sorts.
+    pub fn sort<const D: usize, O: Observer>(
+        &mut self,
+        boxes: &[Aabb<D, T>],
+        axis: usize,
+        sort: Sort,
+        observer: &mut O,
+    ) {
+        self.refresh(0, boxes, axis);
+        observer.array(axis, &self.endpoints);
+        sort.sort(&mut self.endpoints, observer);
     }
 
     /// Refreshes the coordinates of `endpoints[from..]` from the boxes.
-    pub fn refresh_from<const D: usize>(&mut self, from: usize, boxes: &[Aabb<D, T>], axis: usize) {
+    pub fn refresh<const D: usize>(&mut self, from: usize, boxes: &[Aabb<D, T>], axis: usize) {
         for endpoint in &mut self.endpoints[from..] {
             let aabb = &boxes[endpoint.edge.id as usize];
             endpoint.at = match endpoint.edge.side {

@@ -24,24 +24,19 @@ use alloc::vec::Vec;
 use super::endpoint::{Edge, Endpoint, Side};
 use super::endpoint_array::EndpointArray;
 use super::observer::{Observer, test_beside};
-use super::sorts::Sort;
 use super::touching::Touching;
 use crate::{Aabb, Scalar};
 
-/// Appends all overlapping pairs of the boxes in `array`, in the order in which the sweep along
+/// Appends all overlapping pairs of the boxes in `array`, which is sorted, in the order in which the sweep along
 /// `axis` finds them.
 pub(super) fn endpoint_sweep<const D: usize, T: Scalar, O: Observer>(
     boxes: &[Aabb<D, T>],
-    array: &mut EndpointArray<T>,
+    array: &EndpointArray<T>,
     touching: &mut Touching,
     axis: usize,
-    sort: Sort,
     observer: &mut O,
     pairs: &mut Vec<[u32; 2]>,
 ) {
-    array.refresh(boxes, axis);
-    observer.array(axis, &array.endpoints);
-    sort.sort(&mut array.endpoints, observer);
     sweep(&array.endpoints, touching, observer, |observer, a, b| {
         test_beside(boxes, [a, b], axis, observer, pairs);
     });

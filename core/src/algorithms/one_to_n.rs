@@ -22,23 +22,18 @@ use alloc::vec::Vec;
 use super::endpoint::{Edge, Endpoint, Side};
 use super::endpoint_array::EndpointArray;
 use super::observer::{Observer, test_beside};
-use super::sorts::Sort;
 use crate::{Aabb, Scalar};
 
-/// Appends the pairs of box `focus` that the scan finds. Without such a box in `array` there are
-/// none.
+/// Appends the pairs of box `focus` that the scan of `array`, which is sorted, finds. Without such a box
+/// in it there are none.
 pub(super) fn one_to_n<const D: usize, T: Scalar, O: Observer>(
     boxes: &[Aabb<D, T>],
-    array: &mut EndpointArray<T>,
+    array: &EndpointArray<T>,
     focus: u32,
     axis: usize,
-    sort: Sort,
     observer: &mut O,
     pairs: &mut Vec<[u32; 2]>,
 ) {
-    array.refresh(boxes, axis);
-    observer.array(axis, &array.endpoints);
-    sort.sort(&mut array.endpoints, observer);
     let begin = Edge { side: Side::Left, id: focus };
     let Some(first) = array.endpoints.iter().position(|endpoint| endpoint.edge == begin) else {
         return;

@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use super::axis::Axis;
 use super::axis_sweeps::AxisSweeps;
+use super::endpoint::Side;
 use super::endpoint_array::EndpointArray;
 use super::endpoint_sweep::endpoint_sweep;
 use super::observer::Observer;
@@ -74,11 +75,6 @@ impl Method {
     /// sort the boxes that are added; insertion sort always sorts those that move.
     pub const fn sorts(self) -> bool {
         !matches!(self, Method::Pairwise)
-    }
-
-    /// Whether it keeps overlaps from step to step, when persistent.
-    const fn keeps_axis_overlaps(self) -> bool {
-        matches!(self, Method::SwapSweep | Method::AxisSwapSweeps)
     }
 }
 
@@ -175,8 +171,7 @@ pub struct Runner<const D: usize, T = f32> {
 /// What a method works on.
 #[derive(Clone, Debug)]
 enum State<const D: usize, T> {
-    Nothing,
-    Lefts(EndpointArray<T>),
+    /// Of all methods that sweep at most one axis from scratch. Global pairwise leaves it empty.
     Endpoints(EndpointArray<T>, Touching),
     Axes(AxisSweeps<D, T>),
     Swaps(SwapSweep<T>),
@@ -185,22 +180,17 @@ enum State<const D: usize, T> {
 impl<const D: usize, T: Scalar> State<D, T> {
     fn new(method: Method) -> Self {
         match method {
-            Method::Pairwise => State::Nothing,
-            Method::SortedPairwise => State::Lefts(EndpointArray::default()),
-            Method::OneToN(_) | Method::EndpointSweep => {
-                State::Endpoints(EndpointArray::default(), Touching::default())
-            }
             Method::AxisSweeps => State::Axes(AxisSweeps::new()),
             Method::SwapSweep => State::Swaps(SwapSweep::on_axis(0)),
             Method::AxisSwapSweeps => State::Swaps(SwapSweep::on_every_axis(D)),
+            _ => State::Endpoints(EndpointArray::default(), Touching::default()),
         }
     }
 
     /// Starts again from no boxes, in the same memory where that is simple.
     fn forget(&mut self, method: Method) {
         match self {
-            State::Nothing => {}
-            State::Lefts(array) | State::Endpoints(array, _) => array.endpoints.clear(),
+            State::Endpoints(array, _) => array.endpoints.clear(),
             State::Axes(sweeps) => sweeps.arrays.iter_mut().for_each(|a| a.endpoints.clear()),
             State::Swaps(_) => *self = Self::new(method),
         }
@@ -234,8 +224,6 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
     /// it keeps; not the pairs that it hands out, which are the same for all.
     pub fn bytes(&self) -> usize {
         match &self.state {
-            State::Nothing => 0,
-            State::Lefts(lefts) => lefts.bytes(),
             State::Endpoints(array, touching) => array.bytes() + touching.bytes(),
             State::Axes(sweeps) => sweeps.bytes(),
             State::Swaps(sweep) => sweep.bytes(),
@@ -284,8 +272,8 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
         }
         let axis = self.options.axis.choose_among(boxes, &self.next_ids)?;
         // Nothing can fail from here on.
-        let RunnerOptions { method, persistent, .. } = self.options;
-        observer.step(axis, persistent && method.keeps_axis_overlaps());
+        let persistent = self.options.persistent;
+        observer.step(axis, persistent && matches!(self.state, State::Swaps(_)));
         let sort = self.update_ids(axis, observer);
         self.pairs.clear();
         self.begun.clear();
@@ -328,25 +316,24 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
         let Self { options, ids, added, removed, state, pairs, .. } = self;
         let RunnerOptions { method, .. } = *options;
         match state {
-            State::Nothing => pairwise_observed(boxes, ids, axis, observer, pairs),
-            State::Lefts(lefts) => {
-                lefts.remove(removed);
-                lefts.append_lefts(added);
-                sorted_pairwise(boxes, lefts, axis, sort, observer, pairs);
+            State::Endpoints(..) if method == Method::Pairwise => {
+                pairwise_observed(boxes, ids, axis, observer, pairs);
             }
             State::Endpoints(array, touching) => {
                 array.remove(removed);
-                array.append(added);
-                if let Method::OneToN(focus) = method {
-                    one_to_n(boxes, array, focus, axis, sort, observer, pairs);
-                } else {
-                    endpoint_sweep(boxes, array, touching, axis, sort, observer, pairs);
+                let only_lefts = method == Method::SortedPairwise;
+                array.append(added, if only_lefts { &[Side::Left] } else { &Side::BOTH });
+                array.sort(boxes, axis, sort, observer);
+                match method {
+                    Method::SortedPairwise => sorted_pairwise(boxes, array, axis, observer, pairs),
+                    Method::OneToN(id) => one_to_n(boxes, array, id, axis, observer, pairs),
+                    _ => endpoint_sweep(boxes, array, touching, axis, observer, pairs),
                 }
             }
             State::Axes(sweeps) => {
                 for array in &mut sweeps.arrays {
                     array.remove(removed);
-                    array.append(added);
+                    array.append(added, &Side::BOTH);
                 }
                 sweeps.find(boxes, axis, sort, observer, pairs);
             }

@@ -21,22 +21,17 @@ use alloc::vec::Vec;
 
 use super::endpoint_array::EndpointArray;
 use super::observer::{Observer, Separation, test_beside};
-use super::sorts::Sort;
 use crate::{Aabb, Scalar};
 
-/// Appends all overlapping pairs of the boxes in `lefts`, which holds their left endpoints, in
+/// Appends all overlapping pairs of the boxes in `lefts`, which holds their left endpoints, sorted, in
 /// the order in which the sweep along `axis` finds them.
 pub(crate) fn sorted_pairwise<const D: usize, T: Scalar, O: Observer>(
     boxes: &[Aabb<D, T>],
-    lefts: &mut EndpointArray<T>,
+    lefts: &EndpointArray<T>,
     axis: usize,
-    sort: Sort,
     observer: &mut O,
     pairs: &mut Vec<[u32; 2]>,
 ) {
-    lefts.refresh(boxes, axis);
-    observer.array(axis, &lefts.endpoints);
-    sort.sort(&mut lefts.endpoints, observer);
     for (i, left) in lefts.endpoints.iter().enumerate() {
         let a = left.edge.id;
         let right = boxes[a as usize].max[axis];

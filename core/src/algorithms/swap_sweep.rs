@@ -111,7 +111,7 @@ impl<T: Scalar> SwapSweep<T> {
         observer: &mut O,
     ) {
         for (axis, array) in &mut self.sweeps {
-            array.refresh(boxes, *axis);
+            array.refresh(0, boxes, *axis);
             observer.array(*axis, &array.endpoints);
             let mut swaps = SwapObserver { axis: *axis, overlaps: &mut self.overlaps, observer };
             Sort::Insertion.sort(&mut array.endpoints, &mut swaps);
@@ -133,8 +133,8 @@ impl<T: Scalar> SwapSweep<T> {
         for k in 0..self.sweeps.len() {
             let (axis, array) = &mut self.sweeps[k];
             let old = array.endpoints.len();
-            array.append(ids);
-            array.refresh_from(old, boxes, *axis);
+            array.append(ids, &Side::BOTH);
+            array.refresh(old, boxes, *axis);
             observer.array(*axis, &array.endpoints);
             sort.sort_tail(&mut array.endpoints, old, observer);
             let len = array.endpoints.len();

@@ -97,23 +97,18 @@ arithmetic!(f64, u64, i64, u128, 1e300, 1e-280, 120);
 mod tests {
     use super::*;
 
-    fn key<T>(coordinate: T, position: u32) -> <Ieee754 as Arithmetic<T>>::Key
-    where
-        Ieee754: Arithmetic<T>,
-    {
-        Ieee754::key(coordinate, position)
-    }
-
     #[test]
     fn keys_sort_as_coordinates_do() {
         let ascending =
             [f32::NEG_INFINITY, -1e30, -1.0, -1e-40, 0.0, 1e-40, 1.0, 1e30, f32::INFINITY];
         for pair in ascending.windows(2) {
-            assert!(key(pair[0], 9) < key(pair[1], 0));
-            assert!(key(f64::from(pair[0]), 9) < key(f64::from(pair[1]), 0));
+            assert!(Ieee754::key(pair[0], 9) < Ieee754::key(pair[1], 0));
+            let [low, high] = [pair[0], pair[1]].map(f64::from);
+            assert!(Ieee754::key(low, 9) < Ieee754::key(high, 0));
         }
-        assert_eq!(key(-0.0f32, 3), key(0.0f32, 3));
-        assert_eq!(<Ieee754 as Arithmetic<f64>>::position(key(-7.0f64, u32::MAX)), u32::MAX);
+        assert_eq!(Ieee754::key(-0.0f32, 3), Ieee754::key(0.0f32, 3));
+        let key = Ieee754::key(-7.0f64, u32::MAX);
+        assert_eq!(<Ieee754 as Arithmetic<f64>>::position(key), u32::MAX);
     }
 
     #[test]

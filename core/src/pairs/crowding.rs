@@ -21,7 +21,7 @@ const WORTH_PROBING: usize = 512;
 /// sort the box.)
 const CROWDED: u64 = 96;
 /// How many probes show that boxes are not crowded, and how many decide that they are planned again.
-const FEW_PROBES: u64 = 32;
+pub(super) const FEW_PROBES: u64 = 32;
 const MANY_PROBES: u64 = 512;
 /// They are planned again if that costs less than this share of the sweep: the model is not exact.
 const PLAN_PAYS: f64 = 0.75;
@@ -40,7 +40,7 @@ pub(super) fn better_plan<const D: usize, T: Scalar, S: Source<D, T>>(
 ) -> Option<Plan<T>> {
     let boxes: usize = sets.iter().map(|set| set.len()).sum();
     let crowd = CROWDED * boxes as u64;
-    if boxes < WORTH_PROBING || few_candidates(sorted) <= crowd {
+    if boxes < WORTH_PROBING || candidates(sorted, FEW_PROBES) <= crowd {
         return None;
     }
     let candidates = candidates(sorted, MANY_PROBES);
@@ -50,11 +50,6 @@ pub(super) fn better_plan<const D: usize, T: Scalar, S: Source<D, T>>(
     let (plan, cost) = plan(sets, among);
     let is_same = matches!(plan, Plan::Cut(grid) if grid.len() == 1 && grid.sweep == axis);
     (!is_same && cost < PLAN_PAYS * CANDIDATE * candidates as f64).then_some(plan)
-}
-
-/// Roughly how many candidates a sweep would test.
-pub(super) fn few_candidates<T: Scalar>(sets: &[SortedBoxes<T>]) -> u64 {
-    candidates(sets, FEW_PROBES)
 }
 
 /// About how many candidates a sweep would test, from so many probes.

@@ -19,7 +19,7 @@ use super::brute::{brute_force, is_brute_force};
 use super::columns::{Columns, Filled, fill};
 use super::control::{Stop, Task};
 #[cfg(feature = "parallel")]
-use super::crowding::few_candidates;
+use super::crowding::{FEW_PROBES, candidates};
 use super::crowding::{better_plan, most_records};
 use super::grid::Grid;
 use super::kernel::{Cursor, Kernel, SortedBoxes};
@@ -62,17 +62,9 @@ pub(super) struct Driver<const D: usize, T: Scalar> {
     /// The drivers of the other threads.
     #[cfg(feature = "parallel")]
     pub helpers: Vec<Self>,
-    /// What this thread has done so far.
+    /// How many boxes this thread has sorted, and about how many candidates it has tested.
     #[cfg(test)]
-    pub work: Work,
-}
-
-/// The work of a search: boxes sorted, and candidates tested, about.
-#[cfg(test)]
-#[derive(Debug, Default)]
-pub(super) struct Work {
-    pub sorted: usize,
-    pub candidates: u64,
+    pub work: [u64; 2],
 }
 
 impl<const D: usize, T: Scalar> Driver<D, T> {
@@ -88,7 +80,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
             #[cfg(feature = "parallel")]
             helpers: Vec::new(),
             #[cfg(test)]
-            work: Work::default(),
+            work: [0; 2],
         }
     }
 
@@ -257,7 +249,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
         let sorted = &self.sorted[..sets.len()];
         #[cfg(test)]
         {
-            self.work.sorted += boxes;
+            self.work[0] += boxes as u64;
         }
         if task.depth < DEPTH
             && let Some(plan) = better_plan(sets, sorted, axis, among)
@@ -266,14 +258,14 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
         }
         #[cfg(test)]
         {
-            self.work.candidates += super::crowding::candidates(sorted, 512);
+            self.work[1] += super::crowding::candidates(sorted, 512);
         }
         if !O::SWEEPS {
             return Ok(());
         }
         let sweep = self.sweep(D - 1, task);
         #[cfg(feature = "parallel")]
-        if self.uses_threads::<O>(boxes) && few_candidates(sorted) >= MANY_CANDIDATES {
+        if self.uses_threads::<O>(boxes) && candidates(sorted, FEW_PROBES) >= MANY_CANDIDATES {
             return sweep_on_threads(sweep, sorted, 1 + self.helpers.len(), sink);
         }
         sweep.run(sorted, Cursor::default(), sink)
@@ -308,8 +300,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
     }
 
     fn sweep<'a>(&self, others: usize, task: Task<'a>) -> Sweep<'a> {
-        let Task { pair_order, progress, .. } = task;
-        Sweep { kernel: self.kernel, others, pair_order, progress }
+        Sweep { kernel: self.kernel, others, task }
     }
 }
 

@@ -4,7 +4,7 @@
 use alloc::vec::Vec;
 
 use super::control::Task;
-use super::driver::{Driver, Work};
+use super::driver::Driver;
 use super::kernel::{Kernel, PairOrder};
 use super::sink::Unswept;
 use crate::{Aabb, Scalar};
@@ -32,16 +32,16 @@ fn boxes<const D: usize, T: Scalar>(groups: &[Group<D>]) -> [Vec<Aabb<D, T>>; 2]
 /// A search sorts each box less than 5 times, and has less than 150 candidates for it.
 fn takes_little_work<const D: usize, T: Scalar>(groups: &[Group<D>]) {
     let sets = boxes::<D, T>(groups);
-    let count = sets[0].len() + sets[1].len();
+    let count = (sets[0].len() + sets[1].len()) as u64;
     let used = if sets[1].is_empty() { 1 } else { 2 };
     let slices = sets.each_ref().map(|set| &set[..]);
     let mut driver = Driver::new(Kernel::best());
     let order = if used == 1 { PairOrder::Ascending } else { PairOrder::BySet };
     let task = Task::new(order, None);
     driver.run(&slices[..used], task, &mut Unswept).expect("the boxes are valid");
-    let Work { sorted, candidates } = driver.work;
+    let [sorted, candidates] = driver.work;
     assert!(sorted < 5 * count, "{sorted} of {count} boxes sorted");
-    assert!(candidates < 150 * count as u64, "{candidates} candidates of {count} boxes");
+    assert!(candidates < 150 * count, "{candidates} candidates of {count} boxes");
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use core::ops::ControlFlow;
 
-use super::control::{Progress, Stop};
-use super::kernel::{Cursor, Kernel, PairOrder, SortedBoxes};
+use super::control::{Progress, Stop, Task};
+use super::kernel::{Cursor, Kernel, SortedBoxes};
 use super::sink::Sink;
 use crate::Scalar;
 
@@ -13,8 +13,7 @@ pub(super) struct Sweep<'a> {
     pub kernel: Kernel,
     /// How many axes are tested beside the sweep axis.
     pub others: usize,
-    pub pair_order: PairOrder,
-    pub progress: Option<&'a Progress<'a>>,
+    pub task: Task<'a>,
 }
 
 impl Sweep<'_> {
@@ -28,12 +27,13 @@ impl Sweep<'_> {
     ) -> Result<(), Stop> {
         loop {
             let out = sink.spare()?;
-            let count = self.kernel.sweep(sets, self.others, self.pair_order, &mut cursor, out);
+            let count =
+                self.kernel.sweep(sets, self.others, self.task.pair_order, &mut cursor, out);
             sink.take(count)?;
             if cursor.is_done() {
                 return Ok(());
             }
-            if self.progress.map(Progress::report) == Some(ControlFlow::Break(())) {
+            if self.task.progress.map(Progress::report) == Some(ControlFlow::Break(())) {
                 return Err(Stop::Cancelled);
             }
         }

@@ -40,11 +40,9 @@ pub struct Options<T = f32> {
     pub report: Report,
 }
 
-impl<T: Copy> Options<T> {
-    setters! { margin: T, prediction: T, report: Report }
-}
-
 impl<T: Scalar> Options<T> {
+    setters! { margin: T, prediction: T, report: Report }
+
     pub(crate) fn check(&self) -> Result<(), Error> {
         for (option, value) in [("margin", self.margin), ("prediction", self.prediction)] {
             if !(value >= T::default() && value < T::INFINITY) {

@@ -77,7 +77,10 @@ impl<'a, C: Chunk> Gather<'a, C> {
 
     /// An empty chunk.
     fn chunk(&self) -> C {
-        self.state.lock().ok().and_then(|mut state| state.chunk()).unwrap_or_default()
+        let Ok(mut state) = self.state.lock() else { return C::default() };
+        let chunk = state.spare.pop();
+        state.unused = state.unused.min(state.spare.len());
+        chunk.unwrap_or_default()
     }
 
     /// Takes chunks of a job, the last ones if it is complete then, and copies all pairs to their
@@ -125,12 +128,6 @@ impl<'a, C: Chunk> Gather<'a, C> {
 }
 
 impl<'a, C: Chunk> State<'a, C> {
-    fn chunk(&mut self) -> Option<C> {
-        let chunk = self.spare.pop();
-        self.unused = self.unused.min(self.spare.len());
-        chunk
-    }
-
     /// The next chunk and where its pairs go, if it is there and there is spare capacity.
     fn next(&mut self) -> Option<(&'a mut [[u32; 2]], C)> {
         loop {
