@@ -15,11 +15,6 @@ pub enum Side {
     Right = 1,
 }
 
-impl Side {
-    /// Both sides.
-    pub(super) const BOTH: [Side; 2] = [Side::Left, Side::Right];
-}
-
 /// One side of one box: the name of an endpoint, without its coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Edge {

@@ -322,7 +322,9 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
             State::Endpoints(array, touching) => {
                 array.remove(removed);
                 let only_lefts = method == Method::SortedPairwise;
-                array.append(added, if only_lefts { &[Side::Left] } else { &Side::BOTH });
+                let sides: &[_] =
+                    if only_lefts { &[Side::Left] } else { &[Side::Left, Side::Right] };
+                array.append(added, sides);
                 array.sort(boxes, axis, sort, observer);
                 match method {
                     Method::SortedPairwise => sorted_pairwise(boxes, array, axis, observer, pairs),
@@ -333,7 +335,7 @@ impl<const D: usize, T: Scalar> Runner<D, T> {
             State::Axes(sweeps) => {
                 for array in &mut sweeps.arrays {
                     array.remove(removed);
-                    array.append(added, &Side::BOTH);
+                    array.append(added, &[Side::Left, Side::Right]);
                 }
                 sweeps.find(boxes, axis, sort, observer, pairs);
             }

@@ -133,7 +133,7 @@ impl<T: Scalar> SwapSweep<T> {
         for k in 0..self.sweeps.len() {
             let (axis, array) = &mut self.sweeps[k];
             let old = array.endpoints.len();
-            array.append(ids, &Side::BOTH);
+            array.append(ids, &[Side::Left, Side::Right]);
             array.refresh(old, boxes, *axis);
             observer.array(*axis, &array.endpoints);
             sort.sort_tail(&mut array.endpoints, old, observer);

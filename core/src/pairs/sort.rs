@@ -38,6 +38,7 @@ pub(super) struct Sorter<T: Scalar> {
 
 impl<T: Scalar> Sorter<T> {
     /// Fills `boxes` with those of `source`, by left edge on `axis`, then by position in the source.
+    #[inline(never)] // It is the same for all sinks.
     pub fn sort<const D: usize, S: Source<D, T>>(
         &mut self,
         source: &[S],
