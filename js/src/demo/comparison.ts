@@ -7,7 +7,8 @@ import { type Counts } from "./run.js";
 import { styles } from "./styles.js";
 import { controls, sharing } from "./templates.js";
 import { type Member, Together } from "./together.js";
-import { iframeOf, shareTogether } from "./share.js";
+import { shareTogether } from "./share.js";
+import { iframeOf } from "./snippet.js";
 import type { SapDemo } from "./types.js";
 
 /** An embedded comparison is at most this wide, in CSS pixels. */
@@ -246,7 +247,7 @@ export class SapComparisonElement extends LitElement {
   #bars(): TemplateResult {
     const { tick, of } = this.#totals ?? { tick: undefined, of: [] };
     const most = Math.max(1, ...of.map(({ work }) => work.count));
-    const says = tick === undefined ? "The totals of a detection stand here when it is done." : `The last finished detection, at tick ${tick}:`;
+    const says = tick === undefined ? "The totals appear after a detection." : `The last finished detection, at tick ${tick}:`;
     const headings = of.length > 0 ? of : this.#entries.map(() => undefined);
     return html`<div class="totals" part="totals">
       <p>${says}</p>

@@ -15,7 +15,8 @@ import { paint } from "./paint.js";
 import { Guesses, type Question } from "./predict.js";
 import { addProperties } from "./properties.js";
 import { NOTHING_COUNTED, Run } from "./run.js";
-import { iframeOf, shareUrl } from "./share.js";
+import { shareUrl } from "./share.js";
+import { iframeOf } from "./snippet.js";
 import { Speech } from "./speech.js";
 import { styles } from "./styles.js";
 import { FLASH_MS, SwapLog } from "./swap-log.js";
@@ -26,7 +27,7 @@ import { type Acts, inside } from "./view.js";
 
 /** Numbers that change more often cannot be read. */
 const COUNTERS_MS = 100;
-/** How high the controls are where they need two rows, in CSS pixels. */
+/** How high the controls are where they need two rows, in CSS pixels: --sap-two-rows in demo.css. */
 const CONTROLS_HEIGHT = 98;
 /** Steps without a question between two with one, at most. */
 const MOST_SKIPPED = 2000;

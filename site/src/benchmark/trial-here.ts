@@ -4,6 +4,7 @@ import { type Library, libraries, FINDER, WORLD } from "../../../bench/js/librar
 import { library as bruteForce, REFERENCE_LIMIT } from "../../../bench/js/src/reference.js";
 import type { Answer, Ready, Start, Time } from "./messages.ts";
 import type { Case, Entry } from "./results.ts";
+import { messageOf } from "../message-of.ts";
 
 /** A worker that does not answer for this long (ms) is stopped. */
 const LIMIT = 10_000;
@@ -69,7 +70,7 @@ async function measureOne(
     } catch (error) {
       signal.throwIfAborted();
       if (error instanceof TooLong) slow.set(library.name, Infinity);
-      drop(library, error instanceof Error ? error.message : String(error));
+      drop(library, messageOf(error));
       return undefined;
     }
   };

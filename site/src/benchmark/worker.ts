@@ -8,6 +8,7 @@ import { Scenes } from "../../../bench/js/src/scenes.js";
 import { Trial } from "../../../bench/js/src/trial.js";
 import scenesUrl from "../generated/bench-scenes.wasm?url";
 import type { Answer, Start, Time } from "./messages.ts";
+import { messageOf } from "../message-of.ts";
 
 // What box-intersect's pool of arrays looks for, written when everybody used browserify.
 Object.assign(globalThis, { global: globalThis });
@@ -37,6 +38,6 @@ addEventListener("message", async ({ data }: MessageEvent<Start | Time>) => {
     // Clocks of browsers are coarse: calls are timed together.
     else answer({ time: trial?.time(1, data.calls)[0] ?? NaN });
   } catch (error) {
-    answer({ failed: error instanceof Error ? error.message : String(error) });
+    answer({ failed: messageOf(error) });
   }
 });

@@ -7,6 +7,7 @@ import { onAwake, whenNear } from "./awake.ts";
 import { bruteForceTests, COUNTERS, formatCount, type Shown } from "./counters.ts";
 import { bindSlider } from "./slider.ts";
 import { LARGEST_SEED, RANGES, readSettings, type Settings, setupOf, writeSettings } from "./settings.ts";
+import { messageOf } from "../message-of.ts";
 
 /** Numbers that change more often than this cannot be read. */
 const COUNTER_MS = 120;
@@ -74,7 +75,7 @@ export class FallingBalls extends HTMLElement {
         signal.addEventListener("abort", () => resized.disconnect());
         this.#showBegun();
       },
-      (error: unknown) => this.#message(`There is no picture: ${error instanceof Error ? error.message : String(error)}`),
+      (error: unknown) => this.#message(`There is no picture: ${messageOf(error)}`),
     );
     onAwake(this, (awake) => {
       this.#awake = awake;

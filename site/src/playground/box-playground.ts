@@ -11,6 +11,7 @@ import { type Format, FORMATS, preview, shortest, type Snapshot, write } from ".
 import { Hands, type Shown } from "./hands.ts";
 import { readBoxes } from "./import.ts";
 import { COUNTERS } from "./markup.ts";
+import { messageOf } from "../message-of.ts";
 
 /** What the sliders offer. */
 const RANGES = {
@@ -161,7 +162,7 @@ export class BoxPlayground extends HTMLElement {
       this.#fill();
     } catch (error) {
       this.#state.own = "";
-      this.#part("imported").textContent = `The boxes of the address were left out. ${error instanceof Error ? error.message : String(error)}`;
+      this.#part("imported").textContent = `The boxes of the address were left out. ${messageOf(error)}`;
     }
   }
 
@@ -244,7 +245,7 @@ export class BoxPlayground extends HTMLElement {
       };
       done().then(
         (text) => (output.textContent = text),
-        (error: unknown) => (output.textContent = `That did not work: ${error instanceof Error ? error.message : String(error)}`),
+        (error: unknown) => (output.textContent = `That did not work: ${messageOf(error)}`),
       );
     };
     this.#onClick("copy", () =>
@@ -280,7 +281,7 @@ export class BoxPlayground extends HTMLElement {
         this.#view = undefined;
         output.textContent = `${formatCount(imported.boxes.length / (2 * imported.dimensions))} boxes imported.`;
       } catch (error) {
-        output.textContent = error instanceof Error ? error.message : String(error);
+        output.textContent = messageOf(error);
       }
     };
     const takeFile = (given: File | undefined): void => void given?.text().then(take);

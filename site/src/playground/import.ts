@@ -1,5 +1,7 @@
 // Boxes of the visitor's own, as text: CSV or JSON, in the forms in which programs write boxes.
 
+import { messageOf } from "../message-of.ts";
+
 /** Boxes that were read. */
 export interface Imported {
   readonly dimensions: 2 | 3;
@@ -58,7 +60,7 @@ function jsonRows(text: string): Row[] {
   try {
     parsed = JSON.parse(text);
   } catch (error) {
-    throw new Error(`This is not valid JSON: ${error instanceof Error ? error.message : String(error)}`);
+    throw new Error(`This is not valid JSON: ${messageOf(error)}`);
   }
   const list = Array.isArray(parsed) ? parsed : (parsed as { boxes?: unknown }).boxes;
   if (!Array.isArray(list)) throw new Error("The JSON has to be an array of boxes, or an object with such an array named boxes.");

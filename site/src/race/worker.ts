@@ -4,6 +4,7 @@
 import { Experiment, type RunnerOptions, type Report } from "../experiment/experiment.ts";
 import { formatCount } from "../falling/counters.ts";
 import type { FromRace, Lane, ToRace } from "./messages.ts";
+import { messageOf } from "../message-of.ts";
 
 /** More steps per second would be too fast to watch. */
 const STEP_MS = 50;
@@ -151,7 +152,7 @@ function guarded(work: () => void): void {
     work();
   } catch (error) {
     running = false;
-    send({ type: "failed", message: error instanceof Error ? error.message : String(error) });
+    send({ type: "failed", message: messageOf(error) });
   }
 }
 

@@ -6,6 +6,7 @@ import scalarWasm from "../generated/simulation.wasm?url";
 import simdWasm from "../generated/simulation.simd.wasm?url";
 import { AXIS_NAMES, type FromSimulation, type Laws, type Measurement, type Method, type Setup, type ToSimulation } from "./messages.ts";
 import { hasSimd } from "./simd.ts";
+import { messageOf } from "../message-of.ts";
 
 const STEP_MS = 1000 / 60;
 /** Positions are sent in this many buffers: one that the page shows, one on its way. */
@@ -208,7 +209,7 @@ function guarded(work: () => void): void {
     work();
   } catch (error) {
     running = false;
-    send({ type: "failed", message: error instanceof Error ? error.message : String(error) });
+    send({ type: "failed", message: messageOf(error) });
   }
 }
 

@@ -2,17 +2,13 @@
 // how to embed it elsewhere.
 
 import { init } from "sweep-and-prune/algorithms";
+import { iframeOf } from "../../../js/src/demo/snippet.ts";
 import { SITE } from "../shell/pages.ts";
 import { inside } from "./panels.ts";
 
 await init();
 
-/** As the demos' own: the script, which a page may leave out, gives the frame the height of what is in it. */
-const SNIPPET = `<iframe src="${SITE}embed.html#three-structures"
-  title="The same boxes in a sweep, a grid and a tree"
-  style="width: 100%; max-width: 1000px; height: 1000px; border: 0"
-  loading="lazy"></iframe>
-<script>addEventListener("message", ({ data, source }) => { for (const frame of document.querySelectorAll("iframe")) if (frame.contentWindow === source && data?.sapDemoHeight) frame.style.height = data.sapDemoHeight + "px"; });</script>`;
+const SNIPPET = iframeOf(`${SITE}embed.html#three-structures`, "The same boxes in a sweep, a grid and a tree", 936, 968);
 
 export function expandStructures(page: string): string {
   const text = SNIPPET.replaceAll("&", "&amp;").replaceAll("<", "&lt;");

@@ -2,6 +2,7 @@
 
 import { javascriptLanguage } from "@codemirror/lang-javascript";
 import type { Compile } from "./harness.ts";
+import { messageOf } from "../../message-of.ts";
 
 /** Loops and calls in one run, at most. */
 const MOST = 200_000;
@@ -58,7 +59,7 @@ function guarded(code: string): string {
 /** An error of the code with its line: of the syntax as the parser finds it, of a run as the engine tells it. */
 export function faultOf(error: unknown, code: string): Fault {
   if (error instanceof Fault) return error;
-  const message = error instanceof Error ? error.message : String(error);
+  const message = messageOf(error);
   return new Fault(message, error instanceof SyntaxError ? syntaxLine(code) : runLine(error));
 }
 
