@@ -3,7 +3,7 @@ import { expect, test } from "@playwright/test";
 // The parts of the site that do not move and do not hang on the fonts of the machine: the shapes of
 // the figures, their words hidden. Anything else would fail on the next machine.
 
-const FIGURES = ["all-pairs", "box-test", "transitivity", "endpoint-array", "sweep-line", "swap-cases", "mini-sweep", "columns", "lanes", "measured"];
+const FIGURES = ["all-pairs", "box-test", "transitivity", "endpoint-array", "sweep-line", "swap-cases", "mini-sweep", "columns", "lanes", "measured", "measured-narrow"];
 
 for (const colorScheme of ["light", "dark"] as const) {
   test(`figures in ${colorScheme} look as they did`, async ({ page }) => {
@@ -19,7 +19,9 @@ for (const colorScheme of ["light", "dark"] as const) {
         const shown = document.createElement("div");
         shown.id = "shown";
         shown.style.cssText = "position: fixed; inset: 0; z-index: 10; padding: 10px; background: var(--paper)";
-        shown.append(svg.cloneNode(true));
+        const copy = svg.cloneNode(true) as SVGElement;
+        copy.style.display = "block";
+        shown.append(copy);
         document.body.append(shown);
       });
       await expect(page.locator("#shown svg")).toHaveScreenshot(`${name}-${colorScheme}.png`, { maxDiffPixelRatio: 0.01 });

@@ -297,7 +297,18 @@ export const styles: CSSResult = css`
       text-align: end;
     }
   }
+  /* On a phone each counter is as wide as its name, with the rest between them: equal columns would let names collide. */
+  @media (max-width: 29rem) {
+    .counters {
+      grid-auto-columns: minmax(min-content, max-content);
+      justify-content: space-between;
+      gap: 4px 12px;
+    }
+  }
   @container (max-width: 19rem) {
+    .counters {
+      gap: 4px 8px;
+    }
     .counters dt {
       letter-spacing: -0.03em;
     }

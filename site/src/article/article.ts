@@ -51,8 +51,9 @@ function applyChoices(choices: HTMLElement): void {
   });
 }
 
-/** Marks the section that is being read in the contents. */
+/** Marks the section that is being read in the contents, and names it at the top where they are out of sight. */
 function markContents(): void {
+  const here = document.querySelector<HTMLElement>(".here")!;
   const links = new Map(
     [...document.querySelectorAll<HTMLAnchorElement>(".contents a")].map((link) => [link.hash.slice(1), link]),
   );
@@ -68,6 +69,10 @@ function markContents(): void {
         if (id === current) link.setAttribute("aria-current", "true");
         else link.removeAttribute("aria-current");
       }
+      here.hidden = current === undefined;
+      if (current === undefined) return;
+      const place = [...links.keys()].indexOf(current) + 1;
+      here.firstElementChild!.textContent = `${place} of ${links.size}: ${links.get(current)!.textContent}`;
     },
     // The section in the upper third of the window counts as being read.
     { rootMargin: "-10% 0px -66% 0px" },
