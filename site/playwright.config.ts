@@ -20,8 +20,8 @@ const folder = process.env["SITE_TEST_DIST"];
 /** The built pages in the system's Chromium, which draws in software: no graphics card is needed. */
 export default defineConfig({
   testDir: "test",
-  // Times hold on a machine that does nothing else: `./test --long` takes them.
-  testIgnore: process.env["TEST_LONG"] ? [] : ["responsiveness.spec.ts"],
+  // Times hold on a machine that does nothing else, and memory is measured for minutes: `./test --long` does both.
+  testIgnore: process.env["TEST_LONG"] ? [] : ["responsiveness.spec.ts", "memory.spec.ts"],
   outputDir: "test-results",
   // One reference for every machine: what is compared has no fonts in it.
   snapshotPathTemplate: "{testDir}/{testFileName}-snapshots/{arg}{ext}",
