@@ -1,21 +1,6 @@
 import { readFileSync } from "node:fs";
 import { expect, test } from "@playwright/test";
 import { Demo } from "./support/demo.ts";
-import { complaints } from "./support/pages.ts";
-
-test("every demo of the article starts, without a complaint", async ({ page }) => {
-  const heard = complaints(page);
-  await page.goto("/");
-  const demos = page.locator("sap-demo");
-  const count = await demos.count();
-  expect(count).toBeGreaterThan(30);
-  for (let at = 0; at < count; at++) {
-    const demo = demos.nth(at);
-    await demo.scrollIntoViewIfNeeded();
-    await expect.poll(() => demo.evaluate((element) => (element as unknown as { balls: unknown[] }).balls.length)).toBeGreaterThan(0);
-  }
-  expect(heard).toEqual([]);
-});
 
 test.describe("does what its caption says", () => {
   test.beforeEach(({ page }) => page.goto("/"));
@@ -271,6 +256,24 @@ test("the contents lead to every section and say where one is", async ({ page })
   }
 });
 
+test("on a phone, a line at the top names the section that is being read, and leads back to the contents", async ({ page }) => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  await page.goto("/");
+  const here = page.locator(".here");
+  await expect(here).toBeHidden();
+  await page.getByRole("navigation", { name: "Contents" }).getByRole("link").nth(5).click();
+  const heading = page.locator("#sweep h2");
+  await expect(here).toHaveText(/^6 of 15: .* Contents$/);
+  await expect(here).toContainText((await heading.textContent())!.replace("#", ""));
+  await expect(here).toBeInViewport();
+  const { y, height } = (await here.boundingBox())!;
+  expect(y).toBeCloseTo(0, 0);
+  expect((await heading.boundingBox())!.y, "the heading is not covered").toBeGreaterThanOrEqual(y + height);
+  await here.click();
+  await expect(page.locator("#contents-heading")).toBeInViewport();
+  await expect(here).toBeHidden();
+});
+
 test.describe("without scripts", () => {
   test.use({ javaScriptEnabled: false });
 
@@ -278,7 +281,7 @@ test.describe("without scripts", () => {
     await page.goto("/");
     await expect(page.locator("main section h2")).toHaveCount(15);
     await expect(page.locator("figure.listing pre .line").first()).toBeVisible();
-    await expect(page.locator("svg.figure")).toHaveCount(10);
+    await expect(page.locator("svg.figure")).toHaveCount(11);
     await expect(page.locator("#cost table").first()).toBeVisible();
   });
 });

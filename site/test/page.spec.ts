@@ -1,59 +1,61 @@
 import { gzipSync } from "node:zlib";
 import { expect, test } from "@playwright/test";
-import { complaints, PAGES, requestsElsewhere, scrolledThrough, shifts, violations } from "./support/pages.ts";
+import { complaints, cutOff, overflow, PAGES, requestsElsewhere, scrolledThrough, tabbedThrough, tooSmall, violations, watchShifts } from "./support/pages.ts";
 
 // What holds on every page of the site, whichever there are.
 
+/** What is most often asked of a color, and what else may differ between light and dark. */
+const COLOR_RULES = ["color-contrast", "link-in-text-block"];
+
 for (const path of PAGES) {
   test.describe(path, () => {
-    test("loads and runs without a complaint or a request to another host", async ({ page, baseURL }) => {
+    test("is light, loads and runs at any width without a complaint or a request to another host, and nothing jumps or is cut off", async ({ page, baseURL }) => {
+      test.slow(); // the whole page at three widths
       const heard = complaints(page);
       const elsewhere = requestsElsewhere(page, baseURL ?? "");
-      await page.goto(path);
-      await scrolledThrough(page);
-      expect(heard).toEqual([]);
-      expect(elsewhere).toEqual([]);
-    });
-
-    test("is light before it is scrolled", async ({ page }) => {
       let bytes = 0;
       page.on("response", async (response) => {
         bytes += gzipSync(await response.body().catch(() => Buffer.alloc(0))).length;
       });
-      await page.goto(path);
-      await page.waitForLoadState("networkidle");
-      expect(bytes, "gzipped").toBeLessThan(path === "/index.html" ? 250_000 : 300_000);
-    });
-
-    test("nothing jumps while it loads and runs", async ({ page }) => {
-      test.slow(); // the whole page at three widths
       for (const width of [1280, 820, 390]) {
         await page.setViewportSize({ width, height: 900 });
-        const { sum, what } = await shifts(page, path);
+        await page.goto("about:blank");
+        await page.goto(path);
+        const shifts = await watchShifts(page);
+        if (width === 1280) {
+          await page.waitForLoadState("networkidle");
+          expect(bytes, "gzipped, before it is scrolled").toBeLessThan(path === "/index.html" ? 250_000 : 300_000);
+        }
+        await scrolledThrough(page);
+        const { sum, what } = await shifts();
         expect(sum, `at ${width} pixels:${what}`).toBeLessThan(0.005);
+        expect(await overflow(page), `at ${width} pixels`).toBeLessThanOrEqual(0);
       }
+      expect(await tooSmall(page), "for a finger, or for the eyes").toEqual([]);
+      await page.setViewportSize({ width: 320, height: 900 });
+      await expect.poll(() => overflow(page), { message: "at 320 pixels" }).toBeLessThanOrEqual(0);
+      expect(await cutOff(page), "at 320 pixels").toEqual([]);
+      // A window of 1280 by 900 pixels that is zoomed to 200 % has room for 640 by 450.
+      await page.setViewportSize({ width: 640, height: 450 });
+      await expect.poll(() => overflow(page), { message: "zoomed to 200 %" }).toBeLessThanOrEqual(0);
+      expect(await cutOff(page), "zoomed to 200 %").toEqual([]);
+      expect(heard).toEqual([]);
+      expect(elsewhere).toEqual([]);
     });
 
-    test("fits phones, tablets and desktops", async ({ page }) => {
-      for (const width of [320, 390, 820, 1280]) {
-        await page.setViewportSize({ width, height: 844 });
-        await page.goto(path);
-        await scrolledThrough(page);
-        const over = await page.evaluate(
-          () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
-        );
-        expect(over, `at ${width} pixels`).toBeLessThanOrEqual(0);
-      }
+    test("axe finds nothing in light and dark; Tab reaches every control, and the focus is visible", async ({ page }) => {
+      test.slow(); // hundreds of controls in the article
+      await page.emulateMedia({ colorScheme: "light", reducedMotion: "reduce" });
+      await page.goto(path);
+      await scrolledThrough(page);
+      expect(await violations(page), "light").toEqual([]);
+      await page.emulateMedia({ colorScheme: "dark", reducedMotion: "reduce" });
+      expect(await violations(page, COLOR_RULES), "dark").toEqual([]);
+      const { reached, unseen, missed } = await tabbedThrough(page);
+      expect(reached, "controls").toBeGreaterThan(path === "/embed.html" ? 1 : 9);
+      expect(unseen, "without a visible focus").toEqual([]);
+      expect(missed, "never reached").toEqual([]);
     });
-
-    for (const colorScheme of ["light", "dark"] as const) {
-      test(`axe finds nothing in ${colorScheme}`, async ({ page }) => {
-        await page.emulateMedia({ colorScheme, reducedMotion: "reduce" });
-        await page.goto(path);
-        await scrolledThrough(page);
-        expect(await violations(page)).toEqual([]);
-      });
-    }
   });
 }
 

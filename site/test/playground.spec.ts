@@ -4,7 +4,7 @@ import { fileURLToPath } from "node:url";
 import { expect, type Locator, type Page, test } from "@playwright/test";
 import { boxAt } from "../src/playground/hands.ts";
 import { readBoxes } from "../src/playground/import.ts";
-import { complaints, requestsElsewhere, violations } from "./support/pages.ts";
+import { complaints, requestsElsewhere } from "./support/pages.ts";
 
 /** Within the repository, where Node finds the package by its name. */
 const written = fileURLToPath(new URL("../test-results/snippets/", import.meta.url));
@@ -313,16 +313,6 @@ test.describe("paused", () => {
     await playground.root.getByRole("button", { name: "Show all" }).click();
     await expect.poll(picture).toBe(all);
   });
-
-  for (const colorScheme of ["light", "dark"] as const) {
-    test(`axe finds nothing in ${colorScheme}, and it fits a phone`, async ({ page }) => {
-      await page.emulateMedia({ colorScheme });
-      await page.setViewportSize({ width: colorScheme === "dark" ? 390 : 1280, height: 844 });
-      await new Playground(page).open("?boxes=100");
-      expect(await violations(page)).toEqual([]);
-      expect(await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth)).toBeLessThanOrEqual(0);
-    });
-  }
 });
 
 /** How many of these rows overlap, by definition. */
