@@ -69,6 +69,23 @@ test("every folder at the top has its line in ARCHITECTURE.md", () => {
   assert.deepEqual(unnamed, []);
 });
 
+// Cargo would not run them, and would not say so.
+test("a library or program with `test = false` in its Cargo.toml has no unit tests", () => {
+  for (const manifest of [...tracked].filter((path) => path.endsWith("Cargo.toml") && existsSync(join(root, path)))) {
+    const sections = read(manifest).split(/^(?=\[)/m);
+    for (const section of sections.filter((text) => /^\[+(lib|bin)\]+\n/.test(text) && /^test = false$/m.test(text))) {
+      const value = (key) => section.match(new RegExp(`^${key} = "(.*)"$`, "m"))?.[1];
+      const isLibrary = section.startsWith("[lib]");
+      const path = join(dirname(manifest), value("path") ?? (isLibrary ? "src/lib.rs" : `src/bin/${value("name")}.rs`));
+      // A program of several files is not among them.
+      const files = isLibrary ? [...tracked].filter((file) => file.startsWith(`${dirname(path)}/`)) : [path];
+      assert.ok(files.includes(path), `${manifest}: ${path}`);
+      const tested = files.filter((file) => file.endsWith(".rs") && /#\[(cfg\()?test\b|\bproptest!/.test(read(file)));
+      assert.deepEqual(tested, [], `${manifest} has \`test = false\``);
+    }
+  }
+});
+
 test("the README's JavaScript example prints what it says", async () => {
   const example = /```js\n(.*?)```/s.exec(read("README.md"))?.[1];
   assert.ok(example, "the README has no JavaScript example");
