@@ -8,7 +8,7 @@ use std::string::String;
 use std::vec::Vec;
 
 use super::control::Task;
-use super::driver::{Driver, Work};
+use super::driver::Driver;
 use super::kernel::{Kernel, PairOrder};
 use super::sink::Store;
 use crate::{Aabb, Scalar};
@@ -48,7 +48,7 @@ fn search<const D: usize, T: Scalar>(report: &mut String, name: &str, sets: &[&[
     let order = if sets.len() == 1 { PairOrder::Ascending } else { PairOrder::BySet };
     let mut store = Store::default();
     driver.run(sets, Task::new(order, None), &mut store).expect("the boxes are valid");
-    let Work { sorted, candidates } = driver.work;
+    let [sorted, candidates] = driver.work;
     let (pairs, hash) = (store.pairs().len(), hash(store.pairs()));
     let counts = sets.iter().map(|set| set.len()).collect::<Vec<_>>();
     writeln!(
