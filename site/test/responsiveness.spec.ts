@@ -180,24 +180,22 @@ test("throttled six times, a frame of four demos takes at most 16 ms of script, 
     const { metrics } = await session.send("Performance.getMetrics");
     return PARTS.map((part) => 1000 * (metrics.find(({ name }) => name === part)?.value ?? Number.NaN));
   };
-  const windows: { parts: number[]; frames: number }[] = [];
-  for (let second = 0; second < 5; second++) {
+  const windows: { parts: number[]; ms: number }[] = [];
+  const FRAMES = 60;
+  // What is done ten times a second counts in each frame where frames take that long: a busy machine gives greater figures.
+  for (let window = 0; window < 4; window++) {
     const before = await spent();
-    const frames = await page.evaluate(async () => {
-      const end = performance.now() + 1000;
-      let frames = 0;
-      while (performance.now() < end) {
-        await new Promise(requestAnimationFrame);
-        frames++;
-      }
-      return frames;
-    });
+    const ms = await page.evaluate(async (frames) => {
+      const began = performance.now();
+      for (let frame = 0; frame < frames; frame++) await new Promise(requestAnimationFrame);
+      return performance.now() - began;
+    }, FRAMES);
     const after = await spent();
-    windows.push({ parts: after.map((value, part) => (value - before[part]!) / frames), frames });
+    windows.push({ parts: after.map((value, part) => (value - before[part]!) / FRAMES), ms: ms / FRAMES });
   }
   await browser.close();
   const sum = ({ parts }: { parts: number[] }): number => parts.reduce((all, part) => all + part, 0);
   const best = windows.reduce((a, b) => (sum(a) < sum(b) ? a : b));
-  console.log(`four demos, throttled six times: ${windows.map((one) => sum(one).toFixed(1)).join(", ")} ms a frame (best: script, layout, style ${best.parts.map((part) => part.toFixed(1)).join(", ")}; ${best.frames} frames)`);
+  console.log(`four demos, throttled six times: ${windows.map((one) => sum(one).toFixed(1)).join(", ")} ms a frame (best: script, layout, style ${best.parts.map((part) => part.toFixed(1)).join(", ")}; one frame in ${best.ms.toFixed(0)} ms)`);
   expect(sum(best)).toBeLessThan(16);
 });
