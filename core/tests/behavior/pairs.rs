@@ -432,6 +432,26 @@ fn refuses_bad_boxes<const D: usize, T: Scalar>() {
 }
 in_all_dimensions!(invalid_boxes_are_refused_by_index, refuses_bad_boxes);
 
+/// Among boxes that are cut into columns, one that is invalid on the sweep axis alone, or on an axis that is cut.
+fn refuses_one_bad_axis<const D: usize, T: Scalar>() {
+    let mut boxes: Boxes<D, T> = some(3000, 0.01);
+    let good = boxes[1234];
+    for axis in 0..D {
+        let [min, max] = [good.max[axis], good.min[axis]];
+        for [min, max] in [[min, max], [T::from_f64(f64::NAN), max], [min, T::from_f64(f64::NAN)]] {
+            (boxes[1234].min[axis], boxes[1234].max[axis]) = (min, max);
+            let error = validate(&boxes).unwrap_err();
+            for (_, mut finder) in finders::<D, T>() {
+                assert_eq!(finder.find(&boxes), Err(error));
+                assert_eq!(finder.search(&boxes).count(), Err(error));
+                assert_eq!(finder.find_between(&boxes, &boxes[..900]), Err(error));
+            }
+        }
+        boxes[1234] = good;
+    }
+}
+in_all_dimensions!(a_box_that_is_invalid_on_one_axis_alone_is_refused, refuses_one_bad_axis);
+
 #[test]
 fn an_invalid_box_of_two_sets_is_named_by_its_set_and_its_index_there() {
     let (good, bad) = (Aabb::new([0.0f32], [1.0]), Aabb::new([1.0f32], [0.0]));
