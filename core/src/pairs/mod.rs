@@ -93,7 +93,7 @@ mod sort;
 mod source;
 mod sweep;
 #[cfg(all(test, feature = "std"))]
-#[path = "../../tests/work/finder.rs"]
+#[path = "../../tests/recorded/finder.rs"]
 pub(crate) mod work;
 
 pub use finder::{PairFinder, count_pairs, find_pairs, find_pairs_between};

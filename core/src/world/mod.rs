@@ -24,7 +24,7 @@ mod tracking;
 mod tree;
 mod update;
 #[cfg(all(test, feature = "std"))]
-#[path = "../../tests/work/broad_phase.rs"]
+#[path = "../../tests/recorded/broad_phase.rs"]
 mod work;
 
 pub use bodies::{Filter, ProxyId};

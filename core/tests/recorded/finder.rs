@@ -1,5 +1,5 @@
 //! The work of searches: how many boxes are sorted (each once for each column that it touches), how many candidates
-//! are tested, and in which order pairs are found, which follows from the plan. `core/tests/work/finder.txt` records
+//! are tested, and in which order pairs are found, which follows from the plan. `core/tests/recorded/finder.txt` records
 //! these for every scene, so that a plan only changes on purpose: they depend on neither processor, kernel nor threads.
 
 use std::fmt::Write;
@@ -18,10 +18,10 @@ use sweep_and_prune_scenes::Scene;
 const MANY_PAIRS: [&str; 9] =
     ["nested", "coincident", "flat", "needles", "needles-x", "giants", "slab", "beams", "infinite"];
 
-/// Compares with what is recorded in `core/tests/work/`. With the environment variable `RECORD` set, records it.
+/// Compares with what is recorded in `core/tests/recorded/`. With the environment variable `RECORD` set, records it.
 #[track_caller]
 pub(crate) fn compare_with_record(name: &str, now: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/work").join(name);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/recorded").join(name);
     if std::env::var_os("RECORD").is_some() {
         std::fs::write(&path, now).expect("the record can be written");
     }

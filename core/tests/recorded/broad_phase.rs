@@ -1,7 +1,7 @@
 //! The work of updates: how often a broad phase finds all pairs from scratch, finds all candidates, looks up the bodies
 //! that left their fat AABBs, or only tests candidates; how many candidates there are, and how many bodies sleep; and a
 //! hash of what it keeps from update to update (fat AABBs, candidates, tree, order in memory, policies).
-//! `core/tests/work/broad_phase.txt` records these for every motion, so that they only change on purpose.
+//! `core/tests/recorded/broad_phase.txt` records these for every motion, so that they only change on purpose.
 
 use std::fmt::Write;
 use std::format;
