@@ -15,5 +15,7 @@ const near = new IntersectionObserver(
   { rootMargin: "300px" },
 );
 for (const element of document.querySelectorAll("sap-demo, falling-balls, library-trial")) near.observe(element);
+// A link into the article: its demos are fetched before the page is laid out.
+if (document.getElementById(location.hash.slice(1))?.querySelector("sap-demo")) void import("./article/demos.ts");
 
 startArticle();

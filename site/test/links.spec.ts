@@ -47,6 +47,30 @@ test("the drawing in place of a demo is its first picture", async ({ page }) => 
   expect(balls.filter((rows) => rows).length).toBeGreaterThan(30);
 });
 
+test("a link to a demo begins that demo first, then the others one after another", async ({ page }) => {
+  // The order in which they begin, and how many begin in one task.
+  await page.addInitScript(() => {
+    const began = ((globalThis as unknown as { began: { of: Element; task: number }[] }).began = []) as { of: Element; task: number }[];
+    let task = 0;
+    addEventListener("simulate", ({ target }) => {
+      if (!began.some(({ of }) => of === target)) began.push({ of: target as Element, task });
+      setTimeout(() => task++);
+    });
+  });
+  await page.goto("/#d17");
+  await page.evaluate(() => customElements.whenDefined("sap-demo"));
+  await page.locator("sap-demo").evaluateAll((all) => Promise.all((all as SapDemo[]).map(({ ready }) => ready)));
+  const { first, tasks } = await page.evaluate(() => {
+    const { began } = globalThis as unknown as { began: { of: Element; task: number }[] };
+    return { first: began[0]!.of.closest("[id]")!.id, tasks: new Set(began.map(({ task }) => task)).size };
+  });
+  expect(first).not.toBe("d1");
+  const nearest = await page.evaluate((id) => Math.abs(document.getElementById(id)!.getBoundingClientRect().top), first);
+  expect(nearest, `${first} is in view`).toBeLessThan(1000);
+  // Those of a comparison begin together, and so do those in view.
+  expect(tasks).toBeGreaterThan(20);
+});
+
 test.describe("without scripts", () => {
   test.use({ javaScriptEnabled: false });
 

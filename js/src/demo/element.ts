@@ -23,6 +23,7 @@ import { FLASH_MS, SwapLog } from "./swap-log.js";
 import { type Theme, ThemeProbe } from "./theme.js";
 import type { Member } from "./together.js";
 import { emit, report } from "./report.js";
+import { turnOf } from "./turns.js";
 import { type Acts, inside } from "./view.js";
 
 /** Numbers that change more often cannot be read. */
@@ -214,7 +215,7 @@ export class SapDemoElement extends LitElement {
     if (this.#comparison) this.#leave = this.#comparison.join(this, this.#member);
     else clock.add(this, { frame: (ms) => this.#frame(ms) });
     motionQuery.addEventListener("change", this.#onMotionChange);
-    loadDemos().then(
+    loadDemos().then(() => turnOf(this.#comparison ?? this)).then(
       () => this.isConnected && !this.#run && this.#begin(),
       (error: unknown) => this.#refuse(`This demo could not be loaded: ${error instanceof Error ? error.message : String(error)}`),
     );
