@@ -44,10 +44,13 @@ export class SapComparisonElement extends LitElement {
       .totals {
         margin: 10px 0 0;
       }
+      .totals p,
+      .totals div {
+        contain: strict;
+      }
       .totals p {
         margin: 0 0 4px;
         height: 1.375rem;
-        overflow: hidden;
         font-size: 0.875rem;
         color: var(--_muted);
         font-variant-numeric: tabular-nums;

@@ -8,6 +8,13 @@ export const styles: CSSResult = css`
     position: relative;
     max-width: var(--sap-width, 600px);
   }
+  /* What changes several times a second has a fixed size, so that the browser lays out nothing else then. */
+  .said,
+  .counters,
+  .swap-log,
+  .controls input {
+    contain: strict;
+  }
   /* Not of the host: what a page puts into it looks as the page says. */
   [part],
   .heading {
