@@ -1,4 +1,4 @@
-import { chromium, expect, type Page, test } from "@playwright/test";
+import { type CDPSession, chromium, expect, type Page, test } from "@playwright/test";
 import { FallingBalls } from "./falling-balls.ts";
 
 // Drawing ten thousand spheres in software takes the graphics process hundreds of milliseconds,
@@ -123,39 +123,51 @@ for (const path of ["/#d6a", "/#d13a", "/#swaps", "/falling.html", "/race.html",
   });
 }
 
-/** How long a fixed script takes in the page, in ms: what this machine, throttled as it is, has to give now. */
-const calibrate = (page: Page): Promise<number> =>
-  page.evaluate(() => {
-    const times = Array.from({ length: 5 }, () => {
-      const began = performance.now();
-      let sum = 0;
-      for (let i = 0; i < 3e6; i++) sum = (sum + Math.imul(i, 0x9e3779b1)) | 0;
-      return performance.now() - began + (sum === 1 ? 1 : 0);
-    });
-    return Math.min(...times);
+/**
+ * How much longer the page's thread takes than it would on a machine that does nothing else: the clock's time of a fixed
+ * script, over the time for which the thread had a processor.
+ */
+async function slowness(page: Page, session: CDPSession): Promise<number> {
+  const threadMs = async (): Promise<number> => {
+    const { metrics } = await session.send("Performance.getMetrics");
+    return 1000 * (metrics.find(({ name }) => name === "TaskDuration")?.value ?? Number.NaN);
+  };
+  const before = await threadMs();
+  const ms = await page.evaluate(() => {
+    const began = performance.now();
+    let sum = 0;
+    for (let i = 0; i < 2e7; i++) sum = (sum + Math.imul(i, 0x9e3779b1)) | 0;
+    return performance.now() - began + (sum === 1 ? 1 : 0);
   });
-/** What it took throttled six times on the machine of the recorded benchmark while nothing else ran, in ms. */
-const QUIET_CALIBRATION = 25;
+  return Math.max(1, ms / ((await threadMs()) - before));
+}
 
-for (const path of ["/", "/#d2", "/embed.html#strategy=pairwise&balls=5&decorations=checks"]) {
+for (const path of ["/", "/#d2", "/#d13a", "/embed.html#strategy=pairwise&balls=5&decorations=checks"]) {
   test(`${path}, throttled six times: the first demo works within 4 s`, async ({ baseURL, launchOptions }) => {
-    const browser = await chromium.launch({ executablePath: launchOptions.executablePath!, args: ["--no-sandbox"] });
-    const page = await browser.newPage({ baseURL: baseURL!, viewport: { width: 1280, height: 900 }, serviceWorkers: "block" });
-    const session = await page.context().newCDPSession(page);
-    await session.send("Emulation.setCPUThrottlingRate", { rate: 6 });
-    const began = Date.now();
-    await page.goto(path, { waitUntil: "commit" });
-    // It works: it has been drawn, moves, and can be paused.
-    await page.waitForFunction(() => {
-      const hero = document.querySelector("hero-boxes[data-ready]");
-      const demos = [...document.querySelectorAll<HTMLElement & { state?: { tick: number } }>("sap-demo")];
-      return (hero && location.hash === "") || demos.some((demo) => (demo.state?.tick ?? 0) > 0 || (demo.state as { events?: number } | undefined)?.events! > 1);
-    }, undefined, { polling: 50 });
-    const took = Date.now() - began;
-    const slower = Math.max(1, (await calibrate(page)) / QUIET_CALIBRATION);
-    console.log(`${path}, throttled six times: the first demo works after ${took} ms; the machine was ${slower.toFixed(1)} times as slow as a quiet one`);
-    await browser.close();
-    expect(took / slower).toBeLessThan(4000);
+    const trials: { ms: number; slower: number }[] = [];
+    for (let trial = 0; trial < 3; trial++) {
+      const browser = await chromium.launch({ executablePath: launchOptions.executablePath!, args: ["--no-sandbox"] });
+      const page = await browser.newPage({ baseURL: baseURL!, viewport: { width: 1280, height: 900 }, serviceWorkers: "block" });
+      const session = await page.context().newCDPSession(page);
+      await session.send("Performance.enable", { timeDomain: "threadTicks" });
+      await session.send("Emulation.setCPUThrottlingRate", { rate: 6 });
+      const began = Date.now();
+      await page.goto(path, { waitUntil: "commit" });
+      // It works: it has been drawn, moves, and can be paused. Where the address names a demo, it is that one.
+      await page.waitForFunction(() => {
+        type Demo = HTMLElement & { state?: { tick: number; events: number } };
+        if (document.querySelector("hero-boxes[data-ready]") && location.hash === "") return true;
+        const named = document.getElementById(location.hash.slice(1)) ?? document;
+        const demo = named.querySelector<Demo>("sap-demo");
+        return (demo?.state?.tick ?? 0) > 0 || (demo?.state?.events ?? 0) > 1;
+      }, undefined, { polling: 50 });
+      const ms = Date.now() - began;
+      trials.push({ ms, slower: await slowness(page, session) });
+      await browser.close();
+    }
+    // Only what other programs took is subtracted, and on a machine that does nothing else that is nothing.
+    console.log(`${path}, throttled six times: the first demo works after ${trials.map(({ ms, slower }) => `${ms} ms (the thread waited: ${slower.toFixed(2)} times as long)`).join(", ")}`);
+    expect(Math.min(...trials.map(({ ms, slower }) => ms / slower))).toBeLessThan(4000);
   });
 }
 
@@ -195,7 +207,8 @@ test("throttled six times, a frame of four demos takes at most 16 ms of script, 
   }
   await browser.close();
   const sum = ({ parts }: { parts: number[] }): number => parts.reduce((all, part) => all + part, 0);
-  const best = windows.reduce((a, b) => (sum(a) < sum(b) ? a : b));
-  console.log(`four demos, throttled six times: ${windows.map((one) => sum(one).toFixed(1)).join(", ")} ms a frame (best: script, layout, style ${best.parts.map((part) => part.toFixed(1)).join(", ")}; one frame in ${best.ms.toFixed(0)} ms)`);
-  expect(sum(best)).toBeLessThan(16);
+  const [best, second] = windows.sort((a, b) => sum(a) - sum(b));
+  console.log(`four demos, throttled six times: ${windows.map((one) => sum(one).toFixed(1)).join(", ")} ms a frame (best: script, layout, style ${best!.parts.map((part) => part.toFixed(1)).join(", ")}; one frame in ${best!.ms.toFixed(0)} ms)`);
+  // Two of the four windows: one alone may be luck.
+  expect(sum(second!)).toBeLessThan(16);
 });
