@@ -18,13 +18,14 @@ export interface Exports {
   status(): number;
 }
 
-/** The codes that js/wasm/src/status.rs gives. */
-const enum Code {
+/** The codes that js/wasm/src/status.rs gives. Any other is an internal error. */
+export const enum Code {
   Ok = 0,
   InvalidBox = 1,
   OutOfMemory = 2,
   StaleProxy = 4,
   InvalidArgument = 5,
+  InvalidSnapshot = 6,
 }
 
 /** Takes pairs that lie in memory, and returns whether it wants more. */

@@ -1,7 +1,7 @@
 import { describe } from "./describe.js";
 import { Bodies, checkOptions, oneBox } from "./bodies.js";
 import { checkDimensions, type Dimensions } from "./boxes.js";
-import { checkFits } from "./engine.js";
+import { checkFits, Code } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
 import { defaultFilter, type Filter, filterWords, type FilterWords, noFilter } from "./filter.js";
 import { checkCount, checkLength } from "./query-arguments.js";
@@ -258,7 +258,7 @@ function restore(bytes: Uint8Array, dimensions: Dimensions, isView: boolean): Wo
     if (at === 0) throw new OutOfMemoryError();
     new Uint8Array(exports.memory.buffer, at, bytes.length).set(bytes);
     const code = exports.world_restore(owned.world);
-    if (code === invalidSnapshot) throw new SnapshotError(engine.detail(0), engine.detail(1));
+    if (code === Code.InvalidSnapshot) throw new SnapshotError(engine.detail(0), engine.detail(1));
     engine.check(code);
     return new WorldMemory(dimensions, engine.detail(0) !== 0, isView, owned);
   } catch (error) {
@@ -266,9 +266,6 @@ function restore(bytes: Uint8Array, dimensions: Dimensions, isView: boolean): Wo
     throw error;
   }
 }
-
-/** The code of js/wasm/src/status.rs for bytes that are no snapshot. */
-const invalidSnapshot = 6;
 
 /** The filter of a query as the core takes it: none if it is a function, which is called afterwards. */
 function wordsOf(filter: QueryFilter | undefined): FilterWords {

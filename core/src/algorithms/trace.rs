@@ -101,7 +101,7 @@ impl Trace {
     }
 
     /// Writes one record, or gives up for good.
-    fn record(&mut self, kind: u32, payload: impl IntoIterator<Item = Option<u32>>) {
+    fn record(&mut self, kind: Kind, payload: impl IntoIterator<Item = Option<u32>>) {
         if self.truncated {
             return;
         }
@@ -117,7 +117,7 @@ impl Trace {
         if length >= 1 << 24 || start + length > self.limit {
             return self.give_up(start);
         }
-        let header = kind | (length as u32) << 8;
+        let header = kind as u32 | (length as u32) << 8;
         self.words[start] = header;
         self.words.push(header);
         self.events += 1;
@@ -135,11 +135,36 @@ impl Default for Trace {
     }
 }
 
-/// Methods that record their event: its kind, by the table of [`Trace`], and its words.
+macro_rules! kinds {
+    ($($kind:ident = $number:literal,)*) => {
+        /// What a record is, the low byte of its header: the numbers of the table of [`Trace`].
+        #[derive(Clone, Copy)]
+        enum Kind {
+            $($kind = $number,)*
+        }
+
+        impl Kind {
+            fn of(header: u32) -> Option<Self> {
+                match header & 0xff {
+                    $($number => Some(Self::$kind),)*
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+kinds! {
+    Step = 1, Array = 2, Compare = 3, Swap = 4, Visit = 5, Enter = 6, Leave = 7,
+    Prune = 8, Test = 9, AxisOverlap = 10, AxisApart = 11, Overlap = 12,
+    Begin = 13, End = 14,
+}
+
+/// Methods that record their event: its kind and its words.
 macro_rules! recorded {
-    ($($method:ident($($argument:ident: $type:ty),*) = $kind:literal $words:expr;)*) => {$(
+    ($($method:ident($($argument:ident: $type:ty),*) = $kind:ident $words:expr;)*) => {$(
         fn $method(&mut self, $($argument: $type),*) {
-            self.record($kind, $words);
+            self.record(Kind::$kind, $words);
         }
     )*};
 }
@@ -150,7 +175,7 @@ impl Observer for Trace {
             [edge_word(endpoint.edge), Some((endpoint.at.to_f64() as f32).to_bits())]
         };
         let axis = core::iter::once(word(axis));
-        self.record(2, axis.chain(endpoints.iter().flat_map(entry)));
+        self.record(Kind::Array, axis.chain(endpoints.iter().flat_map(entry)));
     }
 
     fn test(&mut self, a: u32, b: u32, separation: Option<Separation>) {
@@ -158,23 +183,23 @@ impl Observer for Trace {
             Some(found) => (word(found.axis), Some(found.left)),
             None => (Some(NONE), Some(NONE)),
         };
-        self.record(9, [Some(a), Some(b), axis, left]);
+        self.record(Kind::Test, [Some(a), Some(b), axis, left]);
     }
 
     recorded! {
-        step(axis: usize, keeps: bool) = 1 [word(axis), Some(u32::from(keeps))];
-        compare(a: Edge, b: Edge) = 3 [edge_word(a), edge_word(b)];
+        step(axis: usize, keeps: bool) = Step [word(axis), Some(u32::from(keeps))];
+        compare(a: Edge, b: Edge) = Compare [edge_word(a), edge_word(b)];
         swap(at: [usize; 2], a: Edge, b: Edge) =
-            4 [word(at[0]), word(at[1]), edge_word(a), edge_word(b)];
-        visit(position: usize, edge: Edge) = 5 [word(position), edge_word(edge)];
-        enter(id: u32) = 6 [Some(id)];
-        leave(id: u32) = 7 [Some(id)];
-        prune(apart: Separation) = 8 [word(apart.axis), Some(apart.left), Some(apart.right)];
-        axis_overlap(axis: usize, a: u32, b: u32) = 10 [word(axis), Some(a), Some(b)];
-        axis_apart(axis: usize, a: u32, b: u32) = 11 [word(axis), Some(a), Some(b)];
-        overlap(a: u32, b: u32) = 12 [Some(a), Some(b)];
-        begin(a: u32, b: u32) = 13 [Some(a), Some(b)];
-        end(a: u32, b: u32) = 14 [Some(a), Some(b)];
+            Swap [word(at[0]), word(at[1]), edge_word(a), edge_word(b)];
+        visit(position: usize, edge: Edge) = Visit [word(position), edge_word(edge)];
+        enter(id: u32) = Enter [Some(id)];
+        leave(id: u32) = Leave [Some(id)];
+        prune(apart: Separation) = Prune [word(apart.axis), Some(apart.left), Some(apart.right)];
+        axis_overlap(axis: usize, a: u32, b: u32) = AxisOverlap [word(axis), Some(a), Some(b)];
+        axis_apart(axis: usize, a: u32, b: u32) = AxisApart [word(axis), Some(a), Some(b)];
+        overlap(a: u32, b: u32) = Overlap [Some(a), Some(b)];
+        begin(a: u32, b: u32) = Begin [Some(a), Some(b)];
+        end(a: u32, b: u32) = End [Some(a), Some(b)];
     }
 }
 
@@ -241,36 +266,36 @@ impl<'a> Event<'a> {
     fn decode(record: &'a [u32]) -> Option<Self> {
         let (&header, words) = record.split_first()?;
         let (_, words) = words.split_last()?;
-        Some(match ((header & 0xff) as u8, words) {
-            (1, &[axis, keeps]) => {
+        Some(match (Kind::of(header)?, words) {
+            (Kind::Step, &[axis, keeps]) => {
                 Event::Step { axis: axis as usize, keeps_axis_overlaps: keeps != 0 }
             }
-            (2, [axis, entries @ ..]) => {
+            (Kind::Array, [axis, entries @ ..]) => {
                 Event::Array { axis: *axis as usize, endpoints: TracedArray(entries) }
             }
-            (3, &[a, b]) => Event::Compare { a: edge_of(a), b: edge_of(b) },
-            (4, &[i, j, a, b]) => {
+            (Kind::Compare, &[a, b]) => Event::Compare { a: edge_of(a), b: edge_of(b) },
+            (Kind::Swap, &[i, j, a, b]) => {
                 Event::Swap { positions: [i as usize, j as usize], a: edge_of(a), b: edge_of(b) }
             }
-            (5, &[position, edge]) => {
+            (Kind::Visit, &[position, edge]) => {
                 Event::Visit { position: position as usize, edge: edge_of(edge) }
             }
-            (6, &[id]) => Event::Enter { id },
-            (7, &[id]) => Event::Leave { id },
-            (8, &[axis, left, right]) => {
+            (Kind::Enter, &[id]) => Event::Enter { id },
+            (Kind::Leave, &[id]) => Event::Leave { id },
+            (Kind::Prune, &[axis, left, right]) => {
                 Event::Prune { separation: Separation { axis: axis as usize, left, right } }
             }
-            (9, &[a, b, NONE, NONE]) => Event::Test { a, b, separation: None },
-            (9, &[a, b, axis, left]) => {
+            (Kind::Test, &[a, b, NONE, NONE]) => Event::Test { a, b, separation: None },
+            (Kind::Test, &[a, b, axis, left]) => {
                 let right = if left == a { b } else { a };
                 let separation = Some(Separation { axis: axis as usize, left, right });
                 Event::Test { a, b, separation }
             }
-            (10, &[axis, a, b]) => Event::AxisOverlap { axis: axis as usize, a, b },
-            (11, &[axis, a, b]) => Event::AxisApart { axis: axis as usize, a, b },
-            (12, &[a, b]) => Event::Overlap { a, b },
-            (13, &[a, b]) => Event::Begin { a, b },
-            (14, &[a, b]) => Event::End { a, b },
+            (Kind::AxisOverlap, &[axis, a, b]) => Event::AxisOverlap { axis: axis as usize, a, b },
+            (Kind::AxisApart, &[axis, a, b]) => Event::AxisApart { axis: axis as usize, a, b },
+            (Kind::Overlap, &[a, b]) => Event::Overlap { a, b },
+            (Kind::Begin, &[a, b]) => Event::Begin { a, b },
+            (Kind::End, &[a, b]) => Event::End { a, b },
             _ => return None,
         })
     }
