@@ -4,7 +4,7 @@ use sweep_and_prune::algorithms::{Axis, Method, RunnerOptions, Sort};
 use sweep_and_prune_simulation::scenes::{self, Population};
 use sweep_and_prune_simulation::{BroadPhase, Setup, Simulation};
 
-const GOLDEN: &str = include_str!("../golden.txt");
+const GOLDEN: &str = include_str!("../../golden.txt");
 
 /// The hash after `steps` steps, with one broad phase or another.
 fn hash<const D: usize>(setup: &Setup<D>, steps: u32, choice: BroadPhase) -> u64 {
