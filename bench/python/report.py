@@ -72,21 +72,28 @@ def plot(content: dict[str, Any], case: str, prefix: str) -> str:
     import matplotlib
 
     matplotlib.use("svg")
+    # The same results give the same file.
+    matplotlib.rcParams["svg.hashsalt"] = "sweep-and-prune"
     import matplotlib.pyplot as plt
     from matplotlib.ticker import NullLocator
 
-    figure, axes = plt.subplots(figsize=(7, 3.5), layout="constrained")
+    figure, axes = plt.subplots(figsize=(8, 3.5), layout="constrained")
     cases = [one for one in content["cases"] if one["case"] == case]
     for library in dict.fromkeys(name for one in cases for name in one["results"]):
         points = [(one["boxes"], one["results"][library]["ratio"]) for one in cases if library in one["results"]]
         axes.plot(*zip(*points), marker="o", label=library)
-    axes.set(xscale="log", yscale="log", xlabel="boxes", title=case)
+    title = f"{case}: {prefix.rstrip('-')}" if prefix else case
+    axes.set(xscale="log", yscale="log", xlabel="boxes", title=title)
     axes.set_ylabel("times as long as sweep-and-prune\n(lower is faster)")
     low, high = axes.get_ylim()
-    axes.set_yticks([tick for tick in (0.3, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10, 20, 50, 100, 200) if low <= tick <= high])
+    # Over a wide range there is no room for all of them.
+    wide, narrow = (0.1, 0.5, 1, 5, 10, 50, 100, 500), (0.3, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10, 20, 50, 100, 200)
+    ticks = wide if high / low > 100 else narrow
+    axes.set_yticks([tick for tick in ticks if low <= tick <= high])
     axes.yaxis.set_major_formatter("{x:g}")
     axes.yaxis.set_minor_locator(NullLocator())
-    axes.legend(fontsize=8)
+    # Beside the curves, which it would hide.
+    figure.legend(fontsize=8, loc="outside right upper")
     name = f"plots/{prefix}{case.replace(', ', '-').replace(' ', '-')}.svg"
     (FOLDER / "plots").mkdir(exist_ok=True)
     figure.savefig(FOLDER / name, metadata={"Date": None})
