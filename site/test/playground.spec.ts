@@ -3,6 +3,7 @@ import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 import { expect, type Locator, type Page, test } from "@playwright/test";
 import { boxAt } from "../src/playground/hands.ts";
+import { shortest } from "../src/playground/export.ts";
 import { readBoxes } from "../src/playground/import.ts";
 import { complaints, requestsElsewhere } from "./support/pages.ts";
 
@@ -86,6 +87,21 @@ test("boxes are read from CSV and JSON in the forms in which programs write them
     expect(() => readBoxes(text), text.slice(0, 40)).toThrow(said);
   }
   expect(boxAt({ dimensions: 2, boxes: Float32Array.of(0, 0, 10, 10, 4, 4, 6, 6) }, { x: 5, y: 5 }, 10), "the smaller one").toBe(1);
+});
+
+test("coordinates are written with the fewest digits that are read back as the same bits", () => {
+  const bits = new Uint32Array(1);
+  const float = new Float32Array(bits.buffer);
+  const wrong: string[] = [];
+  for (let at = 0; at < 20_000; at++) {
+    bits[0] = Math.imul(at, 0x9e3779b1);
+    const value = float[0]!;
+    if (!Number.isFinite(value)) continue;
+    const text = shortest(value);
+    if (!Object.is(Math.fround(Number(text)), value)) wrong.push(`${value} as ${text}`);
+  }
+  expect(wrong).toEqual([]);
+  expect([0.1, 1 / 3, -0, 16777216].map(Math.fround).map(shortest)).toEqual(["0.1", "0.33333334", "-0.0", "16777216"]);
 });
 
 test("what is copied while it runs is the step that is shown, and its address leads back to it", async ({ page, context }) => {
@@ -247,7 +263,7 @@ test.describe("paused", () => {
     await expect(playground.root.getByLabel("Dimensions")).toHaveValue("3");
   });
 
-  test("JSON says everything, to the last bit", async ({ page }) => {
+  test("JSON says everything", async ({ page }) => {
     const playground = await new Playground(page).open("?boxes=200&scene=tiny&seed=9");
     const json = JSON.parse(await playground.download("json"));
     expect(json).toMatchObject({ scene: "tiny", seed: 9, step: 0, dimensions: 2, count: 200, algorithm: "sorted pairwise" });
