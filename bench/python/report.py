@@ -86,7 +86,7 @@ def plot(content: dict[str, Any], case: str, prefix: str) -> str:
     axes.set(xscale="log", yscale="log", xlabel="boxes", title=title)
     axes.set_ylabel("times as long as sweep-and-prune\n(lower is faster)")
     low, high = axes.get_ylim()
-    # Over a wide range there is no room for all of them.
+    # Over a wide range, more labels would collide.
     wide, narrow = (0.1, 0.5, 1, 5, 10, 50, 100, 500), (0.3, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10, 20, 50, 100, 200)
     ticks = wide if high / low > 100 else narrow
     axes.set_yticks([tick for tick in ticks if low <= tick <= high])
