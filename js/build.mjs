@@ -1,6 +1,6 @@
 // Builds js/dist/: the compiled core twice, without and with vector instructions, the modules,
 // their declarations. Fails if a build is not what its name says, or over its size budget.
-import { spawnSync } from "node:child_process";
+import { spawn } from "node:child_process";
 import { copyFileSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { homedir } from "node:os";
@@ -70,10 +70,22 @@ const builds = [
 const started = Date.now();
 mkdirSync(dist, { recursive: true });
 const tools = await wabt();
-for (const core of cores) {
+const [scalar, vector] = builds;
+// Two at a time: the compiler's last pass, over the whole program, takes one processor.
+await Promise.all([
+  buildCores(cores, scalar),
   // The algorithms have no vector instructions.
-  for (const build of core.name === "algorithms" ? builds.slice(0, 1) : builds) {
-    const compiled = compileCore(core, build);
+  buildCores(cores.filter(({ name }) => name !== "algorithms"), vector).then(buildSimulation),
+]);
+await buildModules();
+await buildDeclarations();
+copyFileSync(join(here, "src/demo/demo.css"), join(dist, "demo.css"));
+for (const licence of ["LICENSE-MIT", "LICENSE-APACHE"]) copyFileSync(join(root, licence), join(dist, licence));
+removeStale();
+
+async function buildCores(cores, build) {
+  for (const core of cores) {
+    const compiled = await compileCore(core, build);
     const bytes = core.levels.isOptimizedAgain ? optimizeAgain(compiled, build.simd) : compiled;
     const path = join(dist, core.name + build.suffix);
     // What lies there has passed; reading instructions takes ten seconds, which no second start should.
@@ -82,17 +94,11 @@ for (const core of cores) {
     writeFileSync(path, bytes);
   }
 }
-buildSimulation();
-await buildModules();
-buildDeclarations();
-copyFileSync(join(here, "src/demo/demo.css"), join(dist, "demo.css"));
-for (const licence of ["LICENSE-MIT", "LICENSE-APACHE"]) copyFileSync(join(root, licence), join(dist, licence));
-removeStale();
 
 /** The balls of the demos. */
-function buildSimulation() {
+async function buildSimulation() {
   const crate = "sweep-and-prune-simulation-wasm";
-  const bytes = compile(crate, ["--package", crate], { directory: "wasm-demo", flags: [], levels: small });
+  const bytes = await compile(crate, ["--package", crate], { directory: "wasm-demo", flags: [], levels: small });
   checkCore({ name: "simulation" }, { suffix: ".wasm", simd: false }, bytes);
   report("simulation.wasm", [bytes], 125_000);
   writeFileSync(join(dist, "simulation.wasm"), bytes);
@@ -121,12 +127,12 @@ function optimizeAgain(compiled, simd) {
 }
 
 /** Compiles a crate to WebAssembly, into a target folder of its own. */
-function compile(crate, what, { directory, flags, levels }) {
+async function compile(crate, what, { directory, flags, levels }) {
   const profile = ["--profile", "wasm", "--target", "wasm32-unknown-unknown"];
   // Paths of this machine do not belong in the package.
   const all = [...flags, ...levels.flags, `--remap-path-prefix=${registry}=registry`].join("\x1f");
   const inner = ["--config", `profile.wasm.package.sweep-and-prune.opt-level=${JSON.stringify(levels.core)}`];
-  run(
+  await run(
     "cargo",
     ["build", "--quiet", ...inner, ...what, ...profile, "--target-dir", join(target, directory)],
     { ...process.env, CARGO_ENCODED_RUSTFLAGS: all, CARGO_PROFILE_WASM_OPT_LEVEL: String(levels.all) },
@@ -180,16 +186,17 @@ function withImports(outputs, path, found = new Set()) {
   return found;
 }
 
-function buildDeclarations() {
+async function buildDeclarations() {
   const typescript = join(createRequire(import.meta.url).resolve("typescript/package.json"), "..");
-  run(process.execPath, [join(typescript, "bin/tsc"), "--project", here], process.env);
+  await run(process.execPath, [join(typescript, "bin/tsc"), "--project", here], process.env);
 }
 
 /** Runs a command that says itself what is wrong; then the build ends. */
-function run(command, args, env) {
-  const { status, error } = spawnSync(command, args, { cwd: root, stdio: "inherit", env });
-  if (error) console.error(`cannot start ${command}: ${error.message}`);
-  if (status !== 0) process.exit(status ?? 1);
+async function run(command, args, env) {
+  const child = spawn(command, args, { cwd: root, stdio: "inherit", env });
+  child.on("error", ({ message }) => console.error(`cannot start ${command}: ${message}`));
+  const [status] = await new Promise((resolve) => child.on("close", (...ended) => resolve(ended)));
+  if (status !== 0) process.exit(status > 0 ? status : 1);
 }
 
 /** Removes the files that an earlier build left and this one did not write. (Of a folder whose files
