@@ -27,7 +27,9 @@ export default defineConfig({
   snapshotPathTemplate: "{testDir}/{testFileName}-snapshots/{arg}{ext}",
   timeout: 120_000,
   expect: { timeout: 30_000 },
-  workers: 1,
+  // Two tests at a time, also of one file: most of them wait. With those of time and memory, one after the other.
+  fullyParallel: true,
+  workers: process.env["TEST_LONG"] ? 1 : 2,
   forbidOnly: Boolean(process.env["CI"]),
   reporter: "list",
   use: {

@@ -65,6 +65,7 @@ test.use({ deviceScaleFactor: 0.5, contextOptions: { reducedMotion: "reduce" } }
 for (const [name, { parts, rest }] of Object.entries(PAGES)) {
   for (const [device, width] of Object.entries(WIDTHS)) {
     test(`${name} on a ${device} looks as it did`, async ({ page }) => {
+      test.slow(); // dozens of pictures of the article
       await page.setViewportSize({ width, height: 1000 });
       await page.goto(`/${name}.html`);
       await page.addStyleTag({ content: STYLE });
