@@ -51,5 +51,6 @@ export function highlight(code: string, lang: Language, label: string, kinds: re
       if (kind.includes("added")) node.properties["data-added"] = "";
     },
   };
-  return highlighter.codeToHtml(code, { lang, theme: "css-variables", transformers: [marks] });
+  // Without a limit of time, or a line loses its colors if the machine is busy during the build.
+  return highlighter.codeToHtml(code, { lang, theme: "css-variables", transformers: [marks], tokenizeTimeLimit: 0 });
 }
