@@ -99,6 +99,12 @@ impl<const D: usize, T: Scalar> Columns<D, T> {
         Ok(())
     }
 
+    /// How many records all columns have.
+    #[cfg(test)]
+    pub fn len(&self) -> usize {
+        self.records.len
+    }
+
     /// How many records the columns before this one have.
     #[inline]
     fn before(&self, column: usize) -> usize {

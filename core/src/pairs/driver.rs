@@ -55,16 +55,17 @@ pub(super) struct Driver<const D: usize, T: Scalar> {
     pub kernel: Kernel,
     sorter: Sorter<T>,
     sorted: [SortedBoxes<T>; 2],
-    placements: Placements,
+    pub placements: Placements,
     /// Spare columns and groups by size: as many as plans were ever nested, if memory allows.
     columns: Vec<[Columns<D, T>; 2]>,
     groups: Vec<Groups<D, T>>,
     /// The drivers of the other threads.
     #[cfg(feature = "parallel")]
     pub helpers: Vec<Self>,
-    /// How many boxes this thread has sorted, and about how many candidates it has tested.
+    /// How many boxes this thread has sorted, about how many candidates it has tested, and how many copies of boxes it
+    /// has made.
     #[cfg(test)]
-    pub work: [u64; 2],
+    pub work: [u64; 3],
 }
 
 impl<const D: usize, T: Scalar> Driver<D, T> {
@@ -80,7 +81,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
             #[cfg(feature = "parallel")]
             helpers: Vec::new(),
             #[cfg(test)]
-            work: [0; 2],
+            work: [0; 3],
         }
     }
 
@@ -160,6 +161,10 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
             }
             columns.fill(set, grid, other, &mut self.placements)
         });
+        #[cfg(test)]
+        {
+            self.work[2] += columns.iter().map(Columns::len).sum::<usize>() as u64;
+        }
         let crowd = most_records(boxes, grid.len());
         let result = filled.and_then(|()| match Filled::new(&columns[..sets.len()], grid, crowd) {
             #[cfg(feature = "parallel")]

@@ -468,3 +468,24 @@ fn thousands_of_bodies_that_come_and_go_between_queries_are_found() {
         }
     }
 }
+
+#[test]
+fn changes_are_empty_only_if_nothing_began_and_nothing_ended() {
+    let mut world = BroadPhase::<1>::new();
+    let [a, _] = [0.0, 5.0].map(|at| world.insert(Aabb::new([at], [at + 1.0])).unwrap());
+    assert!(world.update().is_empty());
+    world.set(a, Aabb::new([5.0], [6.0])).unwrap();
+    assert!(!world.update().is_empty(), "a pair began");
+    assert!(world.update().is_empty());
+    world.set(a, Aabb::new([0.0], [1.0])).unwrap();
+    assert!(!world.update().is_empty(), "a pair ended");
+}
+
+#[test]
+fn a_hit_at_the_start_is_at_zero_and_not_at_minus_zero() {
+    let mut world = BroadPhase::<1>::new();
+    world.insert(Aabb::new([0.0], [1.0])).unwrap();
+    let back = Cast::ray([1.0f32], [-1.0], 9.0);
+    let hit = world.queries().cast(&back).unwrap().unwrap();
+    assert_eq!(hit.t.to_bits(), 0.0f64.to_bits());
+}

@@ -93,3 +93,19 @@ fn messages_about_limits_say_what_to_do() {
          `BroadPhase<2, f64>`"
     );
 }
+
+#[test]
+fn every_kind_of_cast_checks_its_argument() {
+    let mut world = BroadPhase::<1>::new();
+    world.insert(Aabb::new([0.0], [1.0])).unwrap();
+    let queries = world.queries();
+    let good = Cast::ray([0.0f32], [1.0], 1.0);
+    let bad = Cast::ray([0.0f32], [f32::NAN], 1.0);
+    let expected =
+        |index: usize| format!("`direction` of query {index} is NaN, but it may not be NaN");
+    assert_eq!(message(queries.cast(&bad)), expected(0));
+    assert_eq!(message(queries.cast_many(&[good, bad])), expected(1));
+    assert_eq!(message(queries.cast_all(&bad)), expected(0));
+    let visit = |_| unreachable!("a cast that is refused hits nothing");
+    assert_eq!(message(queries.cast_with(&bad, visit)), expected(0));
+}

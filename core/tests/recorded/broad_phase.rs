@@ -9,7 +9,7 @@ use std::string::String;
 use std::vec::Vec;
 
 use super::tracking::{Tracking, TreeState};
-use super::{BroadPhase, Filter};
+use super::{BroadPhase, Filter, ProxyId};
 use crate::pairs::work::compare_with_record;
 use crate::{Aabb, Scalar};
 use sweep_and_prune_scenes::{Motion, hash};
@@ -116,4 +116,139 @@ fn updates_do_the_work_that_is_recorded() {
         }
     }
     compare_with_record("broad_phase.txt", &report);
+}
+
+/// A box of size 1 at a place, and a world of so many of them, ten apart, after an update.
+fn at(place: usize) -> Aabb<2> {
+    let place = 10.0 * place as f32;
+    Aabb::new([place, 0.0], [place + 1.0, 1.0])
+}
+
+fn world_of(count: usize) -> (BroadPhase<2>, Vec<ProxyId>) {
+    let mut world = BroadPhase::<2>::new();
+    let boxes: Vec<_> = (0..count).map(at).collect();
+    let ids = world.insert_many(&boxes, Filter::default()).expect("the boxes are valid");
+    world.update();
+    (world, ids)
+}
+
+#[test]
+fn if_more_than_a_quarter_changes_the_update_finds_out_which() {
+    for (moved, is_left_to_the_update) in [(25, false), (26, true)] {
+        let (mut world, ids) = world_of(100);
+        let boxes: Vec<_> = (0..moved).map(|index| at(index + 1000)).collect();
+        world.set_many(&ids[..moved], &boxes).expect("the bodies are there");
+        assert_eq!(world.bodies.any_unlisted, is_left_to_the_update, "{moved}");
+        assert_eq!(world.bodies.changed.len(), if is_left_to_the_update { 0 } else { 25 });
+    }
+}
+
+#[test]
+fn a_removed_body_is_not_listed_as_changed() {
+    let (mut world, ids) = world_of(100);
+    let boxes: Vec<_> = (0..100).map(|index| at(index + 1000)).collect();
+    world.set_many(&ids, &boxes).expect("the bodies are there");
+    world.remove(ids[3]).expect("the body is there");
+    world.queries();
+    assert_eq!(world.bodies.changed.len(), 99);
+}
+
+#[test]
+fn a_new_body_in_a_listed_slot_and_a_body_that_moves_twice_are_listed_once() {
+    let (mut world, ids) = world_of(100);
+    for place in [100, 200] {
+        world.set(ids[0], at(place)).expect("the body is there");
+    }
+    assert_eq!(world.bodies.changed.len(), 1);
+    for _ in 0..3 {
+        let id = world.insert(at(300)).expect("the box is valid");
+        world.remove(id).expect("the body is there");
+    }
+    assert_eq!(world.bodies.changed.len(), 2);
+}
+
+#[test]
+fn the_list_of_changes_is_compacted_when_it_is_twice_as_long_as_the_bodies() {
+    let (mut world, ids) = world_of(100);
+    let mut longest = 0;
+    for call in 0..1000 {
+        world.set(ids[call % 100], at(call + 1000)).expect("the body is there");
+        world.queries();
+        longest = longest.max(world.bodies.changed.len());
+    }
+    assert_eq!(longest, 200);
+}
+
+#[test]
+fn the_tree_is_built_again_if_more_than_half_of_the_bodies_jumped() {
+    for (moved, expected) in [(50, TreeState::Old), (51, TreeState::Unbuilt)] {
+        let (mut world, ids) = world_of(100);
+        world.queries();
+        for &id in &ids[..moved] {
+            world.set(id, at(1000 + id.slot() as usize)).expect("the body is there");
+        }
+        world.tracking.note_new_fat(&world.bodies);
+        assert_eq!(world.tracking.tree_state, expected, "{moved}");
+    }
+}
+
+#[test]
+fn a_way_of_exactly_twice_the_size_is_a_jump() {
+    let at = |place: f32| Aabb::new([0.0, place], [1.0, place + 1.0]);
+    let mut policy = super::policy::Motion::default();
+    policy.sample([(&at(0.0), &at(0.5))].into_iter());
+    for (way, expected) in [(1.75, false), (2.0, true), (2.25, true)] {
+        for way in [way, -way] {
+            assert_eq!(policy.is_jump(&at(0.0), &at(way)), expected, "{way}");
+        }
+    }
+}
+
+#[test]
+fn lists_of_128_pairs_or_more_are_sorted_by_counting() {
+    for (count, counts) in [(127, false), (128, true)] {
+        let mut pairs: Vec<_> = (0..count).map(|at| [count - at, at]).collect();
+        let mut sorter = super::candidates::PairSorter::default();
+        let used = allocation_counter::measure(|| sorter.sort(&mut pairs, 1000)).bytes_max;
+        // A counter for each of 1024 values.
+        assert_eq!(used > 4096, counts, "{count}: {used}");
+    }
+}
+
+#[test]
+fn lists_reserve_what_motion_adds_and_no_more() {
+    [Motion::Drift, Motion::MostlyStill].into_iter().for_each(check_reserved);
+}
+
+fn check_reserved(motion: Motion) {
+    let mut moving = motion.start::<3, f32>(BODIES, 1).expect("1 to 3 dimensions");
+    let mut frame = || -> Vec<_> {
+        moving.advance();
+        moving.boxes().iter().map(|aabb| Aabb::<3>::new(aabb.min, aabb.max)).collect()
+    };
+    let mut world = BroadPhase::<3>::new();
+    let ids = world.insert_many(&frame(), Filter::default()).expect("the boxes are valid");
+    for _ in 0..UPDATES {
+        world.set_many(&ids, &frame()).expect("the bodies are there");
+        world.update();
+    }
+    let Tracking { candidates, scratch, .. } = &world.tracking;
+    let pairs = candidates.pairs.capacity();
+    let reserved = [candidates.live.capacity(), scratch.positions.capacity()];
+    assert!(reserved[0] < pairs + pairs / 2, "{reserved:?} for {pairs} pairs");
+    assert!(reserved[1] < pairs, "{reserved:?} for {pairs} pairs");
+    if motion == Motion::MostlyStill {
+        return;
+    }
+    // What a batch of lookups usually finds: 256 boxes, 4 leaves of 16 bodies each.
+    assert!(scratch.found.capacity() >= 256 * 4 * 16 && scratch.leaves.capacity() >= 256 * 4 * 16);
+}
+
+#[test]
+fn a_snapshot_is_written_to_memory_that_is_reserved_at_once() {
+    let (world, _) = world_of(1000);
+    let mut bytes = Vec::new();
+    let allocations = allocation_counter::measure(|| bytes = world.snapshot());
+    assert_eq!(allocations.count_total, 1);
+    assert!(bytes.capacity() < bytes.len() + 100, "{} of {}", bytes.len(), bytes.capacity());
 }

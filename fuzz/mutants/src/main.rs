@@ -3,11 +3,12 @@
 //!
 //! ```text
 //! cargo run --manifest-path fuzz/mutants/Cargo.toml -- [COUNT] [SEED]
+//! cargo run --manifest-path fuzz/mutants/Cargo.toml -- "pairs/brute.rs:28: && instead of ||"...
 //! ```
 //! All mutants are compiled at once into a copy of the repository, each behind a test of one number that the environment
 //! variable `MUTANT` chooses: one build instead of one for each. Then a random sample of them (200 if not said otherwise) is
-//! run, first by the random driver of `fuzz/` for some seconds, and if that notices nothing by the tests of the core, up to
-//! the first that fails. A run that fails, crashes or does not end kills the mutant.
+//! run, or those whose names end as an argument says: with the unit tests, random inputs and the other tests of the core, up
+//! to the first that fails. A run that fails, crashes or does not end kills the mutant.
 //!
 //! Each outcome is added to `target/mutants/outcomes.txt` at once, so that nothing is lost if this is stopped: it goes on
 //! where it was. Delete the lines of mutants that shall run again, and the file after a change of the core.
@@ -49,11 +50,11 @@ const RUNS: [(&str, &[&str]); 9] = [
     (DRIVER, &["broad_phase", "--calls", "100000", "--threads", "1"]),
     (DRIVER, &["finder", "--calls", "500", "--threads", "1"]),
     (DRIVER, &["snapshot", "--calls", "50000", "--threads", "1"]),
-    ("pairs_memory", &[]),
-    ("out_of_memory", &[]),
-    ("broad_phase_allocations", &[]),
     ("behavior", &["broad_phase", "errors::"]),
     ("behavior", &["pairs::", "--skip", "broad_phase"]),
+    ("broad_phase_allocations", &[]),
+    ("out_of_memory", &[]),
+    ("pairs_memory", &[]),
 ];
 
 /// How the outcome of a mutant that does not compile begins.
@@ -420,8 +421,9 @@ impl Run {
 }
 
 fn main() {
-    let mut arguments = std::env::args().skip(1).map(|text| text.parse::<u64>().expect("numbers"));
-    let (count, seed) = (arguments.next().unwrap_or(200) as usize, arguments.next().unwrap_or(1));
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let numbers: Vec<u64> = arguments.iter().filter_map(|text| text.parse().ok()).collect();
+    let (count, seed) = (numbers.first().unwrap_or(&200), *numbers.get(1).unwrap_or(&1));
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap();
     let folder = root.join("target/mutants");
     copy(root, &folder);
@@ -457,8 +459,13 @@ fn main() {
     };
     let mut left: Vec<_> = (0..mutants.len()).filter(|id| !skipped.contains(id)).collect();
     let mut sample = Vec::new();
-    while sample.len() < count && !left.is_empty() {
-        sample.push(left.swap_remove((random() % left.len() as u64) as usize));
+    if numbers.len() < arguments.len() {
+        sample = left;
+        sample.retain(|&id| arguments.iter().any(|name| mutants[id].ends_with(name)));
+    } else {
+        while sample.len() < *count as usize && !left.is_empty() {
+            sample.push(left.swap_remove((random() % left.len() as u64) as usize));
+        }
     }
 
     let name = |mutant: usize| format!(": {mutant} {}", mutants[mutant]);

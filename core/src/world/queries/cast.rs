@@ -59,7 +59,9 @@ impl<const D: usize, T: Scalar> Cast<D, T> {
                 continue;
             }
             let (enter, leave) = if speed > 0.0 { (before, behind) } else { (behind, before) };
-            first = first.max(enter / speed);
+            // Not by `max`: of 0.0 and -0.0 that may give either.
+            let enter = enter / speed;
+            first = if enter > first { enter } else { first };
             last = last.min(leave / speed);
         }
         (first <= last).then_some(first)
