@@ -78,7 +78,7 @@ function markup(): string {
         </div>
         ${slider("playground", "boxes", "Boxes", "500")}
         ${slider("playground", "size", "Size", "× 1")}
-        ${slider("playground", "spread", "Largest : smallest", "× 1")}
+        ${slider("playground", "spread", "Largest : smallest", "1 : 1")}
       </div>
     </div>
     <section class="export" aria-labelledby="export-heading">
