@@ -14,6 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
+from names import name_of
 from oracle import FLOATS, in_order, pairs, random_boxes
 
 import sweep_and_prune as sap
@@ -112,7 +113,7 @@ WRONG: list[Any] = [
 ]
 
 
-@pytest.mark.parametrize("wrong", WRONG, ids=lambda wrong: repr(wrong)[:40])
+@pytest.mark.parametrize("wrong", WRONG, ids=name_of)
 def test_what_is_no_boxes_is_refused(wrong: Any) -> None:
     right = [[0.0, 0.0, 1.0, 1.0]]
     world = sap.BroadPhase(2)

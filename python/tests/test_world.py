@@ -11,6 +11,7 @@ import pytest
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, precondition, rule
+from names import name_of
 from oracle import COORDINATES, FLOATS, in_order, overlaps, random_boxes
 
 import sweep_and_prune as sap
@@ -360,7 +361,7 @@ def test_damaged_snapshots_are_refused() -> None:
 WRONG_IDS: list[Any] = [None, 1.5, "1", [1], np.zeros(2), object()]
 
 
-@pytest.mark.parametrize("wrong", WRONG_IDS, ids=repr)
+@pytest.mark.parametrize("wrong", WRONG_IDS, ids=name_of)
 def test_what_is_no_id_is_refused(wrong: Any) -> None:
     world = sap.BroadPhase(1)
     for call in (
@@ -378,7 +379,7 @@ def test_what_is_no_id_is_refused(wrong: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    "wrong", [None, 5, "ids", [1.5], [[1]], ["a"], [None], np.zeros(2), [object()], [1, 2.5]], ids=repr
+    "wrong", [None, 5, "ids", [1.5], [[1]], ["a"], [None], np.zeros(2), [object()], [1, 2.5]], ids=name_of
 )
 def test_what_are_no_ids_is_refused(wrong: Any) -> None:
     world = sap.BroadPhase(1)
@@ -433,7 +434,7 @@ def test_ids_of_every_kind_of_whole_number() -> None:
         sap.Filter(group=2**31),
         sap.Filter(group=None),  # type: ignore[arg-type]
     ],
-    ids=repr,
+    ids=name_of,
 )
 def test_what_is_no_filter_is_refused(wrong: Any) -> None:
     world = sap.BroadPhase(1)
@@ -473,7 +474,7 @@ def test_bits_of_filters_may_be_written_as_signed_numbers() -> None:
         {"margin": 1e300, "dtype": np.float32},
         {"prediction": [1]},
     ],
-    ids=repr,
+    ids=name_of,
 )
 def test_options_that_make_no_sense(options: Any) -> None:
     with pytest.raises((TypeError, ValueError)):
