@@ -145,10 +145,12 @@ impl<const D: usize, T: Scalar> Model<D, T> {
     /// The bodies whose boxes are at most `radius` away from a point, sorted.
     pub fn within(&self, center: [T; D], radius: T, filter: &Option<Filter>) -> Vec<ProxyId> {
         let radius = radius.to_f64();
-        // Scaled by the power of two that brings the radius near 1, squares neither overflow nor vanish.
+        // Scaled by the power of two that brings the radius near 1, squares neither overflow nor vanish. (Of bits: `powi`
+        // may round, and under Miri it does.)
         let exponent = (radius.to_bits() >> 52) as i32 - 1023;
-        let scale =
-            |length: f64| length * 2f64.powi(-exponent / 2) * 2f64.powi(exponent / 2 - exponent);
+        let power_of_two = |exponent: i32| f64::from_bits(((1023 + exponent) as u64) << 52);
+        let scales = [-exponent / 2, exponent / 2 - exponent].map(power_of_two);
+        let scale = |length: f64| length * scales[0] * scales[1];
         let is_near = |aabb: &Aabb<D, T>| {
             let gaps: [f64; D] = std::array::from_fn(|axis| gap(&center, aabb, axis));
             let square = |length: f64| scale(length) * scale(length);
