@@ -1,6 +1,6 @@
 //! The choice of a plan: the cheapest cut of space, or a split of the boxes by size if that costs less.
 
-use super::cost::{Cut, RECORD, Search, Shape, chance, cost};
+use super::cost::{Cut, RECORD, Search, Shape, chance, cost, together};
 use super::field::Field;
 use super::float::{greater, greatest, lesser, whole};
 use super::overlaps::{Overlaps, UNKNOWN, is_unexpected};
@@ -17,7 +17,7 @@ const SPLIT_CHEAPER: f64 = 0.8;
 /// and is not tried if that costs less than so many times what placing and sorting the boxes costs.
 const DEAR: f64 = 3.0;
 /// With fewer boxes, a plan is not compared with what a glance at the sample shows: that takes half a
-/// microsecond.
+/// microsecond an axis.
 const GLANCE_PAYS: f64 = 2048.0;
 /// Columns for each box of the smaller of two sets, at least, where few boxes are searched against
 /// many (100 against 100,000 boxes took 0.58 of the time).
@@ -67,8 +67,13 @@ pub fn cheapest(field: &Field, samples: &[&Sample], among: Among) -> (Choice, f6
     if matches!(among, Among::All { is_crowded: false } | Among::Cuts) {
         let search = Search { field, shapes: all, limits: [UNKNOWN; AXES] };
         let (cut, cost) = cheapest_cut(&search);
-        let expected = if all.len() == 1 { 2.0 } else { 1.0 } * chance(&search, cut.sweep);
-        let is_expected = boxes < GLANCE_PAYS || !is_unexpected(samples, cut.sweep, expected);
+        // The chance to overlap on the sweep axis, and on the others to share a column.
+        let expected = |axis| match axis == cut.sweep {
+            true => (3 - all.len()) as f64 * chance(&search, axis),
+            false => together(field, &shapes, &cut, axis),
+        };
+        let is_unexpected = |axis| is_unexpected(samples, axis, expected(axis));
+        let is_expected = boxes < GLANCE_PAYS || !(0..field.dimensions).any(is_unexpected);
         if is_expected && !is_dear(cost) {
             return (Choice::Cut(cut), cost);
         }

@@ -60,11 +60,15 @@ impl Shape {
     pub fn records(&self, field: &Field, cut: &Cut) -> f64 {
         let mut records = self.count;
         for axis in 0..field.dimensions {
-            if cut.columns[axis] > 1.0 {
-                records *= 1.0 + self.mean[axis] / field.extent(axis) * cut.columns[axis];
-            }
+            records *= self.touched(field, cut, axis);
         }
         records
+    }
+
+    /// How many columns a box touches on an axis, on average.
+    fn touched(&self, field: &Field, cut: &Cut, axis: usize) -> f64 {
+        let columns = cut.columns[axis];
+        if columns > 1.0 { 1.0 + self.mean[axis] / field.extent(axis) * columns } else { 1.0 }
     }
 }
 
@@ -106,6 +110,12 @@ pub fn chance(Search { field, shapes, .. }: &Search<'_>, axis: usize) -> f64 {
         };
     }
     lesser(chance, 1.0)
+}
+
+/// The chance that two boxes share a column on an axis, if where they are does not depend on their sizes.
+pub fn together(field: &Field, shapes: &[Shape; 2], cut: &Cut, axis: usize) -> f64 {
+    let touched = shapes.each_ref().map(|shape| shape.touched(field, cut, axis));
+    field.together(axis, cut.columns[axis]) * touched[0] * touched[1]
 }
 
 /// The nanoseconds that a search is expected to take with a cut.

@@ -76,7 +76,8 @@ const GLANCE: usize = 24;
 const UNEXPECTED: f64 = 3.0;
 const MORE: f64 = 8.0;
 
-/// Whether many more boxes overlap on an axis than a chance of two boxes lets expect.
+/// Whether many more boxes overlap on an axis than a chance of two boxes lets expect: to overlap if it is the sweep axis,
+/// else to share a column, as boxes that overlap do.
 pub fn is_unexpected(samples: &[&Sample], axis: usize, chance: f64) -> bool {
     let [first, last] = [samples[0], samples[samples.len() - 1]];
     let rows = compare(edges(first, axis), edges(last, axis), GLANCE);
