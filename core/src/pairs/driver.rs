@@ -23,8 +23,9 @@ use super::crowding::{FEW_PROBES, candidates};
 use super::crowding::{better_plan, most_records};
 use super::grid::Grid;
 use super::kernel::{Cursor, Kernel, SortedBoxes};
+use super::lookup::{MOST_SORTED, Table};
 #[cfg(feature = "parallel")]
-use super::parallel::{Gather, Schedule, on_threads, sweep_on_threads};
+use super::parallel::{Gather, Schedule, jobs_on_threads, on_threads, sweep_on_threads};
 use super::placements::Placements;
 use super::plan::{Among, Plan, SizeSplit, plan};
 use super::sink::Sink;
@@ -48,6 +49,9 @@ const WORTH_THREADS: usize = 4096;
 /// With fewer candidates threads do not pay to sweep a single column.
 #[cfg(feature = "parallel")]
 const MANY_CANDIDATES: u64 = 1 << 20;
+/// A thread looks up so many boxes at a time, so that their pairs stay in its cache.
+#[cfg(feature = "parallel")]
+const AT_A_TIME: usize = 4096;
 
 /// The buffers of one thread, kept between calls.
 #[derive(Debug)]
@@ -55,6 +59,7 @@ pub(super) struct Driver<const D: usize, T: Scalar> {
     pub kernel: Kernel,
     sorter: Sorter<T>,
     sorted: [SortedBoxes<T>; 2],
+    table: Table,
     pub placements: Placements,
     /// Spare columns and groups by size: as many as plans were ever nested, if memory allows.
     columns: Vec<[Columns<D, T>; 2]>,
@@ -75,6 +80,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
             kernel,
             sorter: Sorter::default(),
             sorted: Default::default(),
+            table: Table::default(),
             placements: Placements::default(),
             columns: Vec::new(),
             groups: Vec::new(),
@@ -102,9 +108,44 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
                 if O::SWEEPS { sweep.run(sets, Cursor::default(), sink) } else { Ok(()) }
             });
         }
+        if D == 1 && task.depth == 0 && sets.len() == 2 && self.look_up(sets, task, sink)? {
+            return Ok(());
+        }
         let may_nest = task.depth < DEPTH;
         let among = if may_nest { Among::All { is_crowded: false } } else { Among::Cuts };
         self.run_plan(plan(sets, among).0, sets, task, sink)
+    }
+
+    /// Has the boxes of the larger of two sets on a line look up those of the smaller one. False, with nothing
+    /// sent, if it is better to sweep.
+    fn look_up<S: Source<D, T>, O: Sink>(
+        &mut self,
+        sets: &[&[S]],
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<bool, Stop> {
+        let swap = sets[0].len() <= sets[1].len();
+        let [smaller, larger] = if swap { [sets[0], sets[1]] } else { [sets[1], sets[0]] };
+        if smaller.len() > MOST_SORTED || !O::SWEEPS {
+            return Ok(false);
+        }
+        if !sets.iter().all(is_valid) {
+            return Err(Stop::Invalid);
+        }
+        self.sorter.sort(smaller, 0, &mut self.sorted[0])?;
+        #[cfg(feature = "parallel")]
+        let uses_threads = self.uses_threads::<O>(smaller.len() + larger.len());
+        let Some(lookup) = self.table.fill(&self.sorted[0], larger)? else { return Ok(false) };
+        #[cfg(feature = "parallel")]
+        if uses_threads {
+            let range = |job| job * AT_A_TIME..larger.len().min((job + 1) * AT_A_TIME);
+            let (jobs, threads) = (larger.len().div_ceil(AT_A_TIME), 1 + self.helpers.len());
+            jobs_on_threads(jobs, threads, sink, |job, sink| {
+                lookup.run(larger, range(job), swap, task, sink)
+            })?;
+            return Ok(true);
+        }
+        lookup.run(larger, 0..larger.len(), swap, task, sink).map(|()| true)
     }
 
     fn run_plan<S: Source<D, T>, O: Sink>(
@@ -129,10 +170,8 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
-        let valid =
-            |set: &&[S]| set.iter().fold(true, |valid, each| valid & each.aabb().is_valid());
         // Nested searches have valid boxes.
-        if task.depth == 0 && !sets.iter().all(valid) {
+        if task.depth == 0 && !sets.iter().all(is_valid) {
             return Err(Stop::Invalid);
         }
         self.sort_and_sweep(sets, axis, usize::MAX, task, sink)?;
@@ -307,6 +346,11 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
     fn sweep<'a>(&self, others: usize, task: Task<'a>) -> Sweep<'a> {
         Sweep { kernel: self.kernel, others, task }
     }
+}
+
+/// Whether all boxes of a set are valid. No branch depends on a box.
+fn is_valid<const D: usize, T: Scalar, S: Source<D, T>>(set: &&[S]) -> bool {
+    set.iter().fold(true, |valid, each| valid & each.aabb().is_valid())
 }
 
 #[cfg(feature = "parallel")]

@@ -43,6 +43,9 @@
 //!
 //! **Long columns** are also cut along the sweep axis, into slabs that fit the caches.
 //!
+//! **Two sets on a line** (`lookup.rs`): the smaller one is sorted, and boxes of the larger one look up those that
+//! they overlap, unless many of those overlap each other.
+//!
 //! **Few boxes against many**: boxes of the larger set are copied only to columns that hold boxes of the
 //! smaller one. The number of columns is limited by the number of boxes, since empty ones cost time too.
 //!
@@ -83,6 +86,7 @@ mod grid;
 #[path = "../../tests/recorded/hard_scenes.rs"]
 mod hard_scenes;
 mod kernel;
+mod lookup;
 #[cfg(feature = "parallel")]
 mod parallel;
 mod placements;

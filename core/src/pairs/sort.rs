@@ -119,15 +119,10 @@ impl<T: Scalar> Sorter<T> {
 
     /// Leaves `keys`, of `lefts`, sorted in `sorted`; given are the least and the greatest of them.
     fn spread(&mut self, len: usize, ends: [Key<T>; 2]) -> Result<(), TryReserveError> {
-        let ends = ends.map(|key| self.lefts[T::Arithmetic::position(key) as usize].to_f64());
-        let unit = T::Arithmetic::unit(greater(ends[0].abs(), ends[1].abs()));
-        let [low, high] = ends
-            .map(|end| (end * unit.to_f64()).clamp(-T::Arithmetic::LIMIT, T::Arithmetic::LIMIT));
+        let ends = ends.map(|key| self.lefts[T::Arithmetic::position(key) as usize]);
         let count = len.next_power_of_two().min(MOST_INTERVALS);
-        let last = (count - 1) as f64;
-        let [origin, scale, last] = [low, last / (high - low), last].map(T::from_f64);
+        let quantizer = intervals(ends, count);
         grow(&mut self.intervals, len, 0)?;
-        let quantizer = Quantizer { unit, origin, scale, last };
         for (interval, left) in self.intervals.iter_mut().zip(&self.lefts[..len]) {
             *interval = T::Arithmetic::cell(*left, &quantizer);
         }
@@ -160,6 +155,17 @@ impl<T: Scalar> Sorter<T> {
         insertion(&mut self.sorted[..len]);
         Ok(())
     }
+}
+
+/// Cuts the line between two coordinates into so many equal intervals.
+pub(super) fn intervals<T: Scalar>(ends: [T; 2], count: usize) -> Quantizer<T> {
+    let ends = ends.map(T::to_f64);
+    let unit = T::Arithmetic::unit(greater(ends[0].abs(), ends[1].abs()));
+    let [low, high] =
+        ends.map(|end| (end * unit.to_f64()).clamp(-T::Arithmetic::LIMIT, T::Arithmetic::LIMIT));
+    let last = (count - 1) as f64;
+    let [origin, scale, last] = [low, last / (high - low), last].map(T::from_f64);
+    Quantizer { unit, origin, scale, last }
 }
 
 /// One pass of exchanges between neighbors, without a branch, which would be unpredictable: most keys

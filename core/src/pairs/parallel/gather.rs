@@ -9,8 +9,24 @@ use core::mem::take;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock};
 
+use super::threads::on_threads;
 use crate::pairs::control::Stop;
 use crate::pairs::sink::{Chunk, Gathered, Sink};
+
+/// Does so many jobs on so many threads, at least two, and sends their pairs to the sink in order.
+pub fn jobs_on_threads<O: Sink>(
+    jobs: usize,
+    threads: usize,
+    sink: &mut O,
+    find: impl Fn(usize, &mut Job<'_, '_, O::Chunk>) -> Result<(), Stop> + Sync,
+) -> Result<(), Stop> {
+    let all: Vec<_> = (0..jobs).collect();
+    let gather = Gather::new(sink, jobs);
+    let do_all = || gather.do_all(&all, &find);
+    on_threads(do_all, 1..threads, |_| do_all());
+    let found = gather.end()?;
+    sink.join(found)
+}
 
 /// The pairs found so far, and where they go.
 #[derive(Debug)]

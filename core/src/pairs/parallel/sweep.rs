@@ -1,9 +1,6 @@
 //! A single sweep on several threads.
 
-use alloc::vec::Vec;
-
-use super::gather::Gather;
-use super::threads::on_threads;
+use super::gather::jobs_on_threads;
 use crate::Scalar;
 use crate::pairs::control::Stop;
 use crate::pairs::kernel::{Cursor, SortedBoxes};
@@ -21,10 +18,5 @@ pub fn sweep_on_threads<T: Scalar, O: Sink>(
     sink: &mut O,
 ) -> Result<(), Stop> {
     let chunks = Cursor::chunks(sorted, PROBES);
-    let jobs: Vec<_> = (0..chunks.len()).collect();
-    let gather = Gather::new(sink, chunks.len());
-    let do_all = || gather.do_all(&jobs, |job, sink| sweep.run(sorted, chunks[job], sink));
-    on_threads(do_all, 1..threads, |_| do_all());
-    let found = gather.end()?;
-    sink.join(found)
+    jobs_on_threads(chunks.len(), threads, sink, |job, sink| sweep.run(sorted, chunks[job], sink))
 }

@@ -1,0 +1,145 @@
+//! Pairs between two sets on a line: the smaller set is sorted, and each box of the larger one looks up where
+//! those begin that it may overlap. So the larger set is neither copied nor sorted, which is most of the work of
+//! a sweep.
+//!
+//! The table divides the line into cells. A cell has the first sorted box that reaches it or anything to its
+//! right. From there on boxes are tested until one begins behind the box that looks them up: all that begin
+//! within that box are pairs, so only those before it can be tested in vain.
+
+use alloc::collections::TryReserveError;
+use alloc::vec::Vec;
+use core::ops::{ControlFlow, Range};
+
+use super::control::{Progress, Stop, Task};
+use super::grid::BLOCK;
+use super::kernel::{PAD, SortedBoxes};
+use super::sink::Sink;
+use super::sort::intervals;
+use super::source::Source;
+use crate::Scalar;
+use crate::geometry::{Arithmetic, Quantizer};
+use crate::memory::grow;
+
+/// The most boxes in the smaller set: they and the table stay in the caches.
+pub(super) const MOST_SORTED: usize = 1 << 18;
+/// Sorted boxes that are tested in vain: at most so many for any box, and on average so many for the boxes of a
+/// sample of this size. Otherwise all boxes are swept.
+const MOST_IN_VAIN: usize = 1024;
+const FEW_IN_VAIN: usize = 16;
+const SAMPLE: usize = 64;
+/// Sorted boxes that are tested at a time, without a branch; as many stand behind the last of them.
+const STEP: usize = 4;
+const _: () = assert!(STEP <= PAD);
+
+/// Where to begin among the sorted boxes, for each cell of the line.
+#[derive(Debug, Default)]
+pub(super) struct Table {
+    first: Vec<u32>,
+}
+
+/// The sorted boxes and their table.
+pub(super) struct Lookup<'a, T> {
+    boxes: &'a SortedBoxes<T>,
+    first: &'a [u32],
+    quantizer: Quantizer<T>,
+}
+
+impl Table {
+    /// For sorted boxes, at least one, which boxes of a larger set look up. None if too many would be tested in
+    /// vain.
+    pub fn fill<'a, const D: usize, T: Scalar, S: Source<D, T>>(
+        &'a mut self,
+        boxes: &'a SortedBoxes<T>,
+        larger: &[S],
+    ) -> Result<Option<Lookup<'a, T>>, TryReserveError> {
+        let (left, right) = (&boxes.left[..boxes.len()], &boxes.right[..boxes.len()]);
+        let end = right.iter().fold(right[0], |end, &right| if right > end { right } else { end });
+        let cells = 2 * left.len().next_power_of_two();
+        let quantizer = intervals([left[0], end], cells);
+        grow(&mut self.first, cells, 0)?;
+        let first = &mut self.first[..cells];
+        let cell = |at: T| T::Arithmetic::cell(at, &quantizer) as usize;
+        // Cells up to this one have their first box.
+        let (mut done, mut in_vain) = (0, 0);
+        for (i, (&left, &right)) in left.iter().zip(right).enumerate() {
+            let reached = cell(right) + 1;
+            if reached > done {
+                first[done..reached].fill(i as u32);
+                done = reached;
+            }
+            in_vain = in_vain.max(i - first[cell(left)] as usize);
+        }
+        first[done..].fill(left.len() as u32);
+        if in_vain > MOST_IN_VAIN {
+            return Ok(None);
+        }
+        let before = |at: T| left.partition_point(|&left| left < at);
+        let in_vain = |each: &S| {
+            let at = each.aabb().min[0];
+            before(at).saturating_sub(first[cell(at)] as usize)
+        };
+        let sample = larger.iter().step_by(larger.len().div_ceil(SAMPLE));
+        let few = FEW_IN_VAIN * sample.len();
+        let is_crowded = sample.map(in_vain).sum::<usize>() > few;
+        Ok((!is_crowded).then_some(Lookup { boxes, first, quantizer }))
+    }
+}
+
+impl<T: Scalar> Lookup<'_, T> {
+    /// Sends the pairs of a range of the larger set with the sorted boxes to the sink. `swap`: the sorted ones are
+    /// the first set.
+    pub fn run<const D: usize, S: Source<D, T>, O: Sink>(
+        &self,
+        larger: &[S],
+        range: Range<usize>,
+        swap: bool,
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<(), Stop> {
+        let [left, right] = [&self.boxes.left, &self.boxes.right].map(|edges| &edges[..]);
+        let mut first = [0; BLOCK];
+        let (mut out, mut count) = (sink.spare()?, 0);
+        for start in range.clone().step_by(BLOCK) {
+            let block = &larger[start..range.end.min(start + BLOCK)];
+            for (first, each) in first.iter_mut().zip(block) {
+                let at = each.aabb().min[0];
+                *first = self.first[T::Arithmetic::cell(at, &self.quantizer) as usize];
+            }
+            for (id, (each, &first)) in (start as u32..).zip(block.iter().zip(&first)) {
+                let aabb = each.aabb();
+                let mut at = first as usize;
+                loop {
+                    if out.len() - count < STEP {
+                        sink.take(count)?;
+                        if task.progress.map(Progress::report) == Some(ControlFlow::Break(())) {
+                            return Err(Stop::Cancelled);
+                        }
+                        (out, count) = (sink.spare()?, 0);
+                    }
+                    let step = at..at + STEP;
+                    let to = &mut out[count..count + STEP];
+                    let mut found = 0;
+                    for ((&left, &right), &other) in left[step.clone()]
+                        .iter()
+                        .zip(&right[step.clone()])
+                        .zip(&self.boxes.id[step])
+                    {
+                        to[found] = if swap { [other, id] } else { [id, other] };
+                        // Not `&&`: which of them overlap is unpredictable.
+                        found += usize::from((left <= aabb.max[0]) & (aabb.min[0] <= right));
+                    }
+                    count += found;
+                    at += STEP;
+                    // Behind the last box the left edges are NaN.
+                    if !(left[at - 1] <= aabb.max[0]) {
+                        break;
+                    }
+                }
+            }
+            if task.progress.is_some() {
+                task.done(block.len() as f64 / larger.len() as f64)?;
+            }
+        }
+        sink.take(count)
+    }
+}
