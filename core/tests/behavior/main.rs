@@ -15,6 +15,7 @@ mod broad_phase_threads;
 mod corrections;
 mod errors;
 mod geometry;
+mod lookups;
 mod observed;
 mod oracle;
 mod package;

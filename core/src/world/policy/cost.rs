@@ -81,49 +81,5 @@ impl Policy {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const BODIES: usize = 1000;
-
-    /// How many of 1000 updates skip tracking, where fat AABBs are larger than bodies or not, and last so
-    /// many updates, of which each but the first looks up this many bodies.
-    fn skipped(is_fat: bool, lifetime: usize, escaped: usize) -> usize {
-        let (mut policy, mut age) = (Policy::default(), 0);
-        let mut skips = || {
-            if policy.skips_tracking(BODIES, BODIES) {
-                return true;
-            }
-            let gives_up = age == 0 && policy.note_rebuild(BODIES, is_fat, false);
-            if age > 0 {
-                policy.note_incremental(escaped);
-            }
-            age = if gives_up { 0 } else { (age + 1) % lifetime };
-            gives_up
-        };
-        (0..1000).filter(|_| skips()).count()
-    }
-
-    #[test]
-    fn tracking_is_skipped_where_it_costs_more_and_tried_less_and_less_often() {
-        assert_eq!(skipped(true, 12, 1), 0);
-        assert!(skipped(false, 1, 0) > 980);
-        let tracked = 1000 - skipped(true, 2, BODIES / LOOK_UP);
-        assert!((10..50).contains(&tracked), "{tracked}");
-    }
-
-    #[test]
-    fn a_world_that_comes_to_rest_is_tracked_at_once() {
-        let mut policy = Policy::default();
-        assert!(policy.note_rebuild(BODIES, false, false));
-        assert!(policy.skips_tracking(BODIES, BODIES));
-        assert!(!policy.skips_tracking(1, BODIES) && !policy.skips_tracking(BODIES, BODIES));
-    }
-
-    #[test]
-    fn new_bodies_are_tracked_as_soon_as_they_move() {
-        let mut policy = Policy::default();
-        assert!(!policy.note_rebuild(BODIES, false, true));
-        assert!(!policy.note_rebuild(BODIES, true, false));
-    }
-}
+#[path = "../../../tests/recorded/policy_cost.rs"]
+mod tests;

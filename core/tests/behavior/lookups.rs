@@ -1,0 +1,139 @@
+//! Two sets on a line, where boxes of the larger one look up those of the smaller one: the pairs of brute force.
+
+use std::ops::ControlFlow;
+
+use proptest::prelude::*;
+use sweep_and_prune::{Aabb, Error, PairFinder, Scalar};
+
+use crate::common::valid_box;
+
+fn pairwise<T: Scalar>(a: &[Aabb<1, T>], b: &[Aabb<1, T>]) -> Vec<[u32; 2]> {
+    let partners = |i: usize| {
+        let all = (0..b.len()).filter(move |&j| a[i].overlaps(&b[j]));
+        all.map(move |j| [i as u32, j as u32])
+    };
+    (0..a.len()).flat_map(partners).collect()
+}
+
+/// All ways to receive the pairs, with either set first.
+fn check<T: Scalar>(a: &[Aabb<1, T>], b: &[Aabb<1, T>]) {
+    for (a, b) in [(a, b), (b, a)] {
+        let mut finder = PairFinder::new();
+        let found = finder.find_between(a, b).unwrap().to_vec();
+        let mut sorted = found.clone();
+        sorted.sort_unstable();
+        assert!(sorted == pairwise(a, b), "{} {}", a.len(), b.len());
+        assert_eq!(finder.search(a).against(b).count(), Ok(found.len() as u64));
+        let mut streamed = Vec::new();
+        let take = |pairs: &[[u32; 2]]| {
+            streamed.extend_from_slice(pairs);
+            ControlFlow::<()>::Continue(())
+        };
+        assert!(finder.search(a).against(b).for_each_chunk(take).unwrap().is_continue());
+        assert!(streamed == found);
+        #[cfg(feature = "parallel")]
+        assert!(PairFinder::new().threads(3).find_between(a, b).unwrap() == found);
+    }
+}
+
+/// Numbers from 0 to 1, always the same.
+fn random() -> impl FnMut() -> f64 {
+    let mut state = 1u64;
+    move || {
+        state = state.wrapping_mul(0x5851_F42D_4C95_7F2D).wrapping_add(1);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// Intervals of about this length, anywhere from 0 to 1.
+fn intervals(count: usize, length: f64, mut random: impl FnMut() -> f64) -> Vec<Aabb<1, f64>> {
+    let interval = |_| {
+        let start = random();
+        Aabb::new([start], [start + length * random()])
+    };
+    (0..count).map(interval).collect()
+}
+
+/// Short intervals between whole numbers: many touch, begin together or have no length, and few of each set overlap.
+fn whole_intervals() -> impl Strategy<Value = Vec<Aabb<1, f32>>> {
+    let interval = (-500i16..500, 0i16..4);
+    let aabb = |(start, length)| Aabb::new([f32::from(start)], [f32::from(start + length)]);
+    prop::collection::vec(interval.prop_map(aabb), 129..400)
+}
+
+proptest! {
+    #[test]
+    fn ties_and_infinities_are_found(
+        a in prop::collection::vec(valid_box::<1, f64>(), 33..200),
+        b in prop::collection::vec(valid_box::<1, f64>(), 129..400),
+    ) {
+        check(&a, &b);
+    }
+
+    #[test]
+    fn touching_intervals_are_found(a in whole_intervals(), b in whole_intervals()) {
+        check(&a, &b);
+    }
+}
+
+/// From none for most to all for one, and so many that buffers are handed on while one looks them up.
+#[test]
+fn intervals_of_all_lengths_are_found() {
+    let mut random = random();
+    for length in [0.0, 0.001, 0.01, 0.1, 1.0] {
+        let few = intervals(500, 0.002, &mut random);
+        let many = intervals(1500, length, &mut random);
+        check(&few, &many);
+        check(&intervals(500, length, &mut random), &many);
+    }
+    let mut many = intervals(129, 0.001, &mut random);
+    many.push(Aabb::new([f64::NEG_INFINITY], [f64::INFINITY]));
+    check(&intervals(10_000, 0.0001, &mut random), &many);
+    many.extend(intervals(12_000, 0.0001, &mut random));
+    check(&intervals(10_000, 0.0001, &mut random), &many);
+}
+
+/// Enough to look up on threads.
+#[test]
+#[cfg(feature = "parallel")]
+fn threads_find_the_same_in_the_same_order() {
+    let mut random = random();
+    let (a, b) = (intervals(3000, 0.0005, &mut random), intervals(70_001, 0.00005, &mut random));
+    for (a, b) in [(&a, &b), (&b, &a)] {
+        let one = PairFinder::new().find_between(a, b).unwrap().to_vec();
+        assert!(one.len() > 50_000);
+        for threads in [2, 5] {
+            assert!(PairFinder::new().threads(threads).find_between(a, b).unwrap() == one);
+        }
+    }
+}
+
+#[test]
+fn an_invalid_interval_is_named_before_any_pair() {
+    let mut random = random();
+    let (few, many) = (intervals(200, 0.01, &mut random), intervals(900, 0.01, &mut random));
+    for set in 0..2 {
+        for (min, max) in [(2.0, 1.0), (f64::NAN, 1.0), (1.0, f64::NAN)] {
+            let mut sets = [few.clone(), many.clone()];
+            sets[set][177] = Aabb::new([min], [max]);
+            let each = |_: [u32; 2]| -> ControlFlow<()> { panic!("a pair was sent") };
+            let result = PairFinder::new().search(&sets[0]).against(&sets[1]).for_each(each);
+            let is_named =
+                matches!(result, Err(Error::InvalidBox { set: s, index: 177, .. }) if s == set);
+            assert!(is_named, "{result:?}");
+        }
+    }
+}
+
+#[test]
+fn lookups_can_be_cancelled() {
+    let mut random = random();
+    let (few, many) = (intervals(2000, 0.001, &mut random), intervals(9000, 0.001, &mut random));
+    let mut finder = PairFinder::new();
+    let report =
+        |done: f64| if done > 0.4 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let result = finder.search(&few).against(&many).progress(&report).count();
+    assert_eq!(result, Err(Error::Cancelled));
+    let found = finder.find_between(&few, &many).unwrap().len();
+    assert_eq!(found, pairwise(&few, &many).len());
+}
