@@ -5,6 +5,7 @@
 mod arrays;
 mod errors;
 mod finder;
+mod order;
 mod run;
 mod world;
 
@@ -13,6 +14,8 @@ mod world;
 mod _native {
     #[pymodule_export]
     use super::finder::Finder;
+    #[pymodule_export]
+    use super::order::in_order;
     #[pymodule_export]
     use super::world::World;
 }

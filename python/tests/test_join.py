@@ -10,6 +10,7 @@ from oracle import random_boxes
 
 import sweep_and_prune as sap
 from sweep_and_prune import _join
+from sweep_and_prune._native import in_order
 
 pandas = pytest.importorskip("pandas")
 
@@ -255,6 +256,24 @@ def test_disks_intersect_where_no_vertex_is_within_the_other() -> None:
     made = np.concatenate([disks, bars, rings, shapely.boundary(disks[:50])])
     frame = geopandas.GeoDataFrame({"id": np.arange(len(made))}, geometry=made)
     assert check_same(frame, frame) > 3000
+
+
+@pytest.mark.parametrize(
+    ("pairs", "rows", "others"), [(0, 3, 3), (1, 1, 1), (500, 7, 2**32), (500, 400, 3), (20, 20, 20)]
+)
+def test_pairs_are_put_in_order(pairs: int, rows: int, others: int) -> None:
+    random = np.random.default_rng(pairs)
+    first, second = random.integers(0, rows, pairs), random.integers(0, others, pairs)
+    wanted = np.lexsort((second, first))
+    both = np.column_stack([first, second])  # its columns are not contiguous
+    for given in ((first, second), (both[:, 0], both[:, 1]), (first[wanted], second[wanted])):
+        found = in_order(*given, rows)
+        assert [column.dtype for column in found] == [np.int64, np.int64]
+        assert np.array_equal(found, [first[wanted], second[wanted]])
+    if pairs > 1:
+        for bad in ((first, second, int(first.max())), (first - rows, second, rows), (first, second - others, rows)):
+            with pytest.raises(IndexError):
+                in_order(bad[0][::-1], bad[1][::-1], bad[2])
 
 
 def test_rows_are_sorted() -> None:

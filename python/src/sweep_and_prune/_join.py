@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import thread_count
+from ._native import in_order
 from ._pairs import Progress, find_pairs_between
 
 _FLIPPED = {"contains": "within", "covers": "covered_by", "within": "contains", "covered_by": "covers"}
@@ -141,7 +142,7 @@ def join(
         )
         found = pairs[:, 0], pairs[:, 1]
     of_kind = _frame_of_polars if is_polars else _frame
-    return of_kind(left, right, _in_order(found), how, columns, (lsuffix, rsuffix))
+    return of_kind(left, right, in_order(*found, len(left)), how, columns, (lsuffix, rsuffix))
 
 
 def _is_polars(frame: Any) -> bool:
@@ -269,18 +270,20 @@ def _tested(
     side_a, side_b = reversed(sides) if is_flipped else sides
     a, b = side_a.shapes, side_b.shapes
     # All tests of a geometry follow each other, while it is in the cache.
-    of_a, of_b = _in_order((candidates[is_flipped], candidates[not is_flipped]))
+    of_a, of_b = in_order(candidates[is_flipped], candidates[not is_flipped], len(a))
     is_used = np.zeros(len(a), bool)
     is_used[of_a] = True
     used = np.flatnonzero(is_used & (side_a.sizes > _FEW_POINTS))
     used = used[~shapely.is_prepared(a[used])]
     if distances is not None:
         limits = distances[of_b if is_flipped else of_a]
-        both_are_points = side_a.are_points and side_b.are_points
+        are_points = side_a.are_points and side_b.are_points
+        # Complex numbers, since NumPy gathers them several times as fast as rows of two numbers.
+        points = [side.bounds[:, :2].copy().view(np.complex128)[:, 0] for side in (side_a, side_b)]
 
         def test(rows: slice) -> NDArray[np.bool_]:
             first, second, limit = of_a[rows], of_b[rows], limits[rows]
-            kept, rest = _near(side_a, side_b, first, second, limit) if both_are_points else _none_of(first)
+            kept, rest = _near(points[0][first], points[1][second], limit) if are_points else _none_of(first)
             kept[rest] = shapely.dwithin(a[first[rest]], b[second[rest]], limit[rest])
             return kept
 
@@ -318,11 +321,12 @@ def _tested(
 
 
 def _near(
-    a: _Side, b: _Side, first: Indices, second: Indices, limits: NDArray[np.float64]
+    a: NDArray[np.complex128], b: NDArray[np.complex128], limits: NDArray[np.float64]
 ) -> tuple[NDArray[np.bool_], Indices]:
     """Which points are certainly within a distance, and the rows of those for which rounding may decide."""
     with np.errstate(over="ignore", invalid="ignore"):
-        squares = ((a.bounds[first, :2] - b.bounds[second, :2]) ** 2) @ np.ones(2)
+        apart = a - b
+        squares = apart.real**2 + apart.imag**2
         within = limits**2
         kept = (squares < within * (1 - _ROUNDING)) & (limits > 0)
         return kept, np.flatnonzero(~kept & ~(squares > within * (1 + _ROUNDING)))
@@ -350,7 +354,7 @@ def _on_threads(
     """The results of a test of all candidates, block by block. Shapely releases the GIL, so that threads pay."""
     # A block has all tests of its geometries: one that is prepared builds an index at its first test, and two threads
     # must not do that at once.
-    ends = np.flatnonzero(np.diff(of_a, append=-1)) + 1
+    ends = np.append(np.flatnonzero(of_a[1:] != of_a[:-1]) + 1, len(of_a))
     blocks = np.unique(ends[np.searchsorted(ends, np.append(np.arange(_BLOCK, len(of_a), _BLOCK), len(of_a)))])
     rows = [slice(start, end) for start, end in zip([0, *blocks[:-1].tolist()], blocks.tolist())]
     number = min(thread_count(threads), os.cpu_count() or 1, len(rows))
@@ -364,15 +368,6 @@ def _extended(bounds: NDArray[np.float64], distances: NDArray[np.float64]) -> ND
     """Bounds that reach so far, and a little farther: the exact test follows."""
     more = (distances + 4 * np.finfo(float).eps * (np.abs(bounds).max(axis=1, initial=0) + distances))[:, None]
     return np.hstack([bounds[:, :2] - more, bounds[:, 2:] + more])
-
-
-def _in_order(found: tuple[Indices, Indices]) -> tuple[Indices, Indices]:
-    """Pairs sorted by the first row and then by the second one."""
-    first, second = found
-    # Sorting one number is several times faster than np.lexsort. There are less than 2^32 rows.
-    keys = first.astype(np.uint64) << np.uint64(32) | second.astype(np.uint64)
-    keys.sort()
-    return (keys >> np.uint64(32)).astype(np.int64), (keys & np.uint64(2**32 - 1)).astype(np.int64)
 
 
 def _frame(

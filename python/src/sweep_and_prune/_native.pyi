@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from ._arrays import Floats, Ids, Pairs
 
-__all__ = ["Finder", "World"]
+__all__ = ["Finder", "World", "in_order"]
 
 _Words = tuple[int, int, int, bool]
 
@@ -58,3 +58,7 @@ class World:
     ) -> tuple[Ids, NDArray[np.float64], NDArray[np.int64]]: ...
     def snapshot(self) -> bytes: ...
     def state_hash(self) -> int: ...
+
+def in_order(
+    first: NDArray[np.int64], second: NDArray[np.int64], rows: int
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]: ...
