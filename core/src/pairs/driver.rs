@@ -52,10 +52,10 @@ const MANY_CANDIDATES: u64 = 1 << 20;
 /// A thread looks up so many boxes at a time, so that their pairs stay in its cache.
 #[cfg(feature = "parallel")]
 const AT_A_TIME: usize = 4096;
-/// With fewer of them threads do not pay. (On two cores two threads take 1.4 to 2 times as long at 10,000, and
-/// as long at 100,000.)
+/// With fewer of them threads do not pay. (On two cores two threads take 1.4 to 2 times as long at 10,000, 1.0 to 1.5
+/// times at 100,000, and 0.8 to 0.9 at 200,000.)
 #[cfg(feature = "parallel")]
-const MANY_LOOKUPS: usize = 1 << 16;
+const MANY_LOOKUPS: usize = 1 << 17;
 
 /// The buffers of one thread, kept between calls.
 #[derive(Debug)]

@@ -98,7 +98,7 @@ fn intervals_of_all_lengths_are_found() {
 #[cfg(feature = "parallel")]
 fn threads_find_the_same_in_the_same_order() {
     let mut random = random();
-    let (a, b) = (intervals(3000, 0.0005, &mut random), intervals(70_001, 0.00005, &mut random));
+    let (a, b) = (intervals(3000, 0.0005, &mut random), intervals(140_001, 0.00005, &mut random));
     for (a, b) in [(&a, &b), (&b, &a)] {
         let one = PairFinder::new().find_between(a, b).unwrap().to_vec();
         assert!(one.len() > 50_000);
