@@ -7,6 +7,7 @@ import importlib
 import io
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -226,38 +227,42 @@ def test_what_is_wrong_with_the_arguments_is_said(capsys: pytest.CaptureFixture[
     assert "threads must be from" in refused(capsys, "count", "a.npy", "--threads", "0")
     assert "has an unknown ending" in refused(capsys, "pairs", "a.npy", "-o", "pairs.xyz")
     assert "cannot be written" in refused(capsys, "pairs", "a.npy", "-o", "no/such/folder.csv")
-    assert "one file or two" in refused(capsys, "count", "a.npy", "a.npy", "a.npy")
     Path("r.bed").write_text("chr1\t0\t10\n")
     assert "a.npy has no groups, but the other file has" in refused(capsys, "join", "r.bed", "a.npy")
-    for arguments in ([], ["pairs"], ["unknown"], ["pairs", "a.npy", "--format", "abc"], ["join", "a.npy"]):
-        with pytest.raises(SystemExit) as ended:
-            main(arguments)
-        assert ended.value.code == 2
+    for arguments in (
+        [],
+        ["pairs"],
+        ["unknown"],
+        ["pairs", "a.npy", "--format", "abc"],
+        ["join", "a.npy"],
+        ["count", *3 * ["a.npy"]],
+    ):
+        assert main(arguments) == 2, arguments
     capsys.readouterr()
 
 
 def test_help_and_version_are_there(capsys: pytest.CaptureFixture[str]) -> None:
     for command in ([], ["pairs"], ["join"], ["count"], ["stats"], ["plot"]):
-        with pytest.raises(SystemExit) as ended:
-            main([*command, "--help"])
-        assert ended.value.code == 0
-    assert "examples:" in capsys.readouterr().out
-    with pytest.raises(SystemExit):
-        main(["--version"])
+        assert main([*command, "--help"]) == 0
+    assert "Examples:" in capsys.readouterr().out
+    assert main(["--version"]) == 0
     assert capsys.readouterr().out.startswith("sap ")
 
 
 def test_stats_describe_the_boxes(capsys: pytest.CaptureFixture[str]) -> None:
     np.save("a.npy", np.array([[0.0, 2, 1, 3], [1, 2, 5, 9], [np.nan, 0, 0, 0], [20, 20, 21, 21]]))
     assert main(["stats", "a.npy", "--missing", "skip"]) == 0
-    assert capsys.readouterr().out.splitlines() == [
+    lines = [" ".join(line.split()) for line in capsys.readouterr().out.splitlines()]
+    assert lines == [
         "4 boxes in 2D, 1 pairs",
         "1 boxes with missing numbers",
-        "x: from 0 to 21; sizes 1 to 4, median 1",
-        "y: from 2 to 21; sizes 1 to 7, median 1",
+        "axis from to smallest size median largest",
+        "x 0 21 1 1 4",
+        "y 2 21 1 1 7",
         "pairs of each box: 0.50 on average, 1 at most",
-        "0 | ######################################## 2",
-        "1 | ######################################## 2",
+        "pairs boxes",
+        f"0 2 {'━' * 40}",
+        f"1 2 {'━' * 40}",
     ]
     np.save("a.npy", np.zeros((0, 4)))
     assert main(["stats", "a.npy"]) == 0
@@ -312,7 +317,7 @@ def test_a_terminal_shows_progress_with_the_time_that_is_left() -> None:
     import os
     import pty
 
-    np.save("a.npy", np.zeros((2500, 2)))  # 3 million pairs
+    np.save("a.npy", np.zeros((4000, 2)))  # 8 million pairs
     terminal, end = pty.openpty()
     program = subprocess.Popen([*SAP, "pairs", "a.npy", "-o", "p.csv"], stderr=end)
     os.close(end)
@@ -323,7 +328,7 @@ def test_a_terminal_shows_progress_with_the_time_that_is_left() -> None:
     except OSError:  # the other end is closed
         pass
     assert program.wait(60) == 0
-    assert b"writing: " in shown and b" s left" in shown and shown.endswith(b"\r")
+    assert re.search(rb"writing .*\d%.*\d:\d\d:\d\d.* left", shown)
 
 
 def test_too_large_a_file_is_refused_before_it_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -331,7 +336,11 @@ def test_too_large_a_file_is_refused_before_it_is_read(monkeypatch: pytest.Monke
 
     monkeypatch.setattr("os.sysconf", lambda name: 1000)
     with pytest.raises(_tables.FileError, match=r"a\.parquet has 100000000 boxes; searching them takes about 22 GB"):
-        _tables.check_memory("a.parquet", 10**8, 4 * 10**8)
+        _tables.check_memory("a.parquet", "100000000 boxes", 4 * 10**8 * _tables._BYTES)
+    for name, contents in (("a.csv", "0.0 GB of boxes"), ("a.csv.gz", "0.0 GB of boxes")):
+        with pytest.raises(_tables.FileError, match=contents):
+            monkeypatch.setattr("os.sysconf", lambda name: 100)
+            _tables.read(write(name))
     with pytest.raises(_tables.FileError, match="120 boxes"):
         monkeypatch.setattr("os.sysconf", lambda name: 100)
         _tables.read(write("a.npy"))

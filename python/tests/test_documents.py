@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 import sweep_and_prune as sap
-from sweep_and_prune._command import _parser
+from sweep_and_prune._command import sap as command_line
 
 PYTHON = Path(__file__).parents[1]
 README = (PYTHON / "README.md").read_text()
@@ -62,9 +62,24 @@ def test_the_readme_shows_commands_that_there_are() -> None:
     commands = re.findall(r"^sap (.*)$", README, re.MULTILINE)
     assert len(commands) == 7
     for command in commands:
-        assert _parser().parse_args(command.split(" > ")[0].split()).files
+        name, *arguments = command.split(" > ")[0].split()
+        command_line.commands[name].make_context(name, arguments)  # refuses what it does not know
     project = (PYTHON / "pyproject.toml").read_text()
     assert 'sap = "sweep_and_prune._command:main"' in project
+
+
+def test_importing_the_library_loads_little_besides() -> None:
+    program = "import sys, numpy; before = {*sys.modules}; import sweep_and_prune; print(*{*sys.modules} - before)"
+    loaded = {name.split(".")[0] for name in run("-c", program).split()}
+    # They take longer than the rest of the import.
+    assert "sweep_and_prune" in loaded and not loaded & {
+        "click",
+        "rich",
+        "logging",
+        "concurrent",
+        "importlib",
+        "pandas",
+    }
 
 
 @pytest.mark.parametrize("name", sorted(path.name for path in (PYTHON / "examples").glob("*.py")))

@@ -2,27 +2,31 @@
 
 from __future__ import annotations
 
-import argparse
 import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, TypeVar
 
+import click
 import numpy as np
 from numpy.typing import NDArray
 
 from ._errors import InvalidBoxError, SweepAndPruneError
 from ._pairs import count_pairs, count_pairs_between, find_pairs, iter_chunks, iter_chunks_between
-from ._progress import ProgressLine
+from ._progress import ProgressBar
 from ._tables import READABLE, WRITABLE, FileError, Source, kind_of, read, writer
 
-_EPILOG = f"""files: {READABLE} (and .csv.gz, .tsv.gz, .bed.gz); "-" is CSV from standard input
+_EPILOG = f"""\b
+Files: {READABLE}
+(and .csv.gz, .tsv.gz, .bed.gz); "-" is CSV from standard input.
 
 Boxes are rows of numbers, min corner and then max corner, or columns with names such as minx, miny, maxx, maxy;
 xmin ..; x1 ..; left, top, right, bottom; start, end. Rows are numbered from 0.
 
-examples:
+\b
+Examples:
   sap pairs boxes.csv > pairs.csv
   sap pairs detections.csv --format xywh --by frame -o pairs.parquet
   sap join reads.bed genes.bed --id name
@@ -31,123 +35,167 @@ examples:
   sap stats boxes.npy
   sap plot boxes.csv --pairs -o picture.svg
 
-exit status: 0 if all went well, 1 for an error in the data or a file, 2 for wrong arguments, 130 after Ctrl-C, 141 if
+Exit status: 0 if all went well, 1 for an error in the data or a file, 2 for wrong arguments, 130 after Ctrl-C, 141 if
 the program that reads the output ended."""
+
+Options = SimpleNamespace
+"""The options and arguments of a command."""
+_Function = TypeVar("_Function", bound=Callable[..., None])
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line and returns the exit status."""
-    options = _parser().parse_args(arguments)
     try:
-        if getattr(options, "memory_limit", None) is not None:
-            _from_disk(options)
-        else:
-            sources = [read(path) for path in options.files]
-            with _explained(sources):
-                options.run(options, sources)
-        sys.stdout.flush()
-        return 0
-    except FileError as error:
-        return _fail(str(error))
-    except MemoryError:
-        return _fail("the pairs do not fit in memory: sap count counts them, sap pairs -o FILE writes them in chunks")
-    except KeyboardInterrupt:
-        is_kept = getattr(options, "memory_limit", None) is not None and options.run is _pairs
-        print("\nsap: cancelled" + ("; the same command continues" if is_kept else ""), file=sys.stderr)
-        return 130
-    except BrokenPipeError:
-        # What is left to write must not raise the same error when Python exits.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 141
+        sap.main(arguments, prog_name="sap")
+    except SystemExit as ended:
+        return ended.code if isinstance(ended.code, int) else 0
+    return 0
 
 
-def _fail(message: str) -> int:
-    print(f"sap: {message}", file=sys.stderr)
-    return 1
+class _Sap(click.Group):
+    """Ends with the exit status that the documentation names, where click has another one."""
+
+    def invoke(self, context: click.Context) -> None:
+        """Runs a command."""
+        try:
+            super().invoke(context)
+            sys.stdout.flush()
+        except MemoryError:
+            raise FileError(
+                "the pairs do not fit in memory: sap count counts them, sap pairs -o FILE writes them in chunks"
+            ) from None
+        except BrokenPipeError:
+            # What is left to write must not raise the same error when Python exits.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            context.exit(141)
+        except KeyboardInterrupt as interrupt:
+            click.echo(f"\nsap: {str(interrupt) or 'cancelled'}", err=True)
+            context.exit(130)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="sap",
-        description="Finds overlapping boxes in files.",
-        epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
-    commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
+@click.group(
+    cls=_Sap, epilog=_EPILOG, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 120}
+)
+@click.version_option(package_name="sweep-and-prune", message="sap %(version)s")
+def sap() -> None:
+    """Finds overlapping boxes in files."""
 
-    boxes = argparse.ArgumentParser(add_help=False)
-    group = boxes.add_argument_group("boxes")
-    group.add_argument("--columns", type=_names, default=[], metavar="A,B,..", help="the columns of the boxes")
-    group.add_argument(
-        "--format", choices=("xyxy", "xywh", "cxcywh"), default="xyxy", help="corners, or a corner or center and a size"
-    )
-    group.add_argument("--missing", choices=("raise", "skip"), default="raise", help="what to do with missing numbers")
-    group.add_argument(
-        "--closed", choices=("both", "left", "right", "neither"), help="which ends belong to a box (.bed: left)"
-    )
-    group.add_argument("--by", metavar="COLUMN", help="only boxes with equal values pair (.bed: chrom)")
-    group.add_argument(
-        "--margin", "--distance", type=float, default=0, metavar="D", help="boxes within this distance pair, too"
-    )
-    group.add_argument("--threads", type=int, default=1, metavar="N", help="-1 for one on each processor")
-    group.add_argument("--quiet", action="store_true", help="show no progress")
 
-    disk = argparse.ArgumentParser(add_help=False)
-    group = disk.add_argument_group("more boxes than fit in memory (needs dask)")
-    group.add_argument(
+def _together(*options: Callable[[_Function], _Function]) -> Callable[[_Function], _Function]:
+    """Several options that commands share."""
+
+    def add(function: _Function) -> _Function:
+        for option in reversed(options):
+            function = option(function)
+        return function
+
+    return add
+
+
+def _names(context: click.Context, parameter: click.Parameter, text: str | None) -> list[str]:
+    return [name.strip() for name in text.split(",")] if text else []
+
+
+_FORMATS = click.Choice(["xyxy", "xywh", "cxcywh"])
+_CLOSED = click.Choice(["both", "left", "right", "neither"])
+_boxes = _together(
+    click.option("--columns", metavar="A,B,..", callback=_names, help="The columns of the boxes."),
+    click.option("--format", type=_FORMATS, default="xyxy", help="Corners, or a corner or center and a size."),
+    click.option(
+        "--missing", type=click.Choice(["raise", "skip"]), default="raise", help="What to do with missing numbers."
+    ),
+    click.option("--closed", type=_CLOSED, help="Which ends belong to a box (.bed: left)."),
+    click.option("--by", metavar="COLUMN", help="Only boxes with equal values pair (.bed: chrom)."),
+    click.option(
+        "--margin", "--distance", "margin", type=float, default=0, help="Boxes within this distance pair, too."
+    ),
+    click.option("--threads", type=int, default=1, metavar="N", help="-1 for one on each processor."),
+    click.option("--quiet", is_flag=True, help="Show no progress."),
+)
+_output = _together(
+    click.option("-o", "--output", metavar="FILE", help="Where to write; standard output by default."),
+    click.option("--to", type=click.Choice(WRITABLE), help="The format; by default the file's name tells it, or csv."),
+    click.option("--id", metavar="COLUMN", help="Write these values instead of the numbers of rows."),
+)
+_disk = _together(
+    click.option(
         "--memory-limit",
         metavar="SIZE",
-        help="take no more memory than this, such as 4GB: the boxes go through files. Inputs are Parquet files or "
-        "folders of them; -o names a folder of Parquet files. A command that was interrupted continues when it is "
-        "repeated",
-    )
-    group.add_argument("--workers", type=int, metavar="N", help="processes; by default, one for each processor")
-    group.add_argument("--spill", metavar="FOLDER", help="where the boxes go meanwhile; by default, beside the pairs")
-    group.add_argument("--overwrite", action="store_true", help="replace the pairs of other boxes in this folder")
-
-    output = argparse.ArgumentParser(add_help=False)
-    group = output.add_argument_group("output")
-    group.add_argument("-o", "--output", metavar="FILE", help="where to write; standard output by default")
-    group.add_argument("--to", choices=WRITABLE, help="the format; by default the file's name tells it, or csv")
-    group.add_argument("--id", metavar="COLUMN", help="write these values instead of the numbers of rows")
-
-    def add(name: str, run: Any, help: str, files: str | int, parents: list[argparse.ArgumentParser]) -> Any:
-        command = commands.add_parser(name, help=help, description=help + ".", parents=parents)
-        command.add_argument("files", nargs=files, metavar="FILE", help=f"{READABLE}, or - for standard input")
-        command.set_defaults(run=run)
-        return command
-
-    add("pairs", _pairs, "writes all pairs of overlapping boxes of a file", 1, [boxes, output, disk])
-    add("join", _pairs, "writes all pairs of a box of one file and a box of another", 2, [boxes, output, disk])
-    count = add("count", _count, "counts the pairs of a file, or of two", "+", [boxes, disk])
-    count.set_defaults(most=2)
-    add("stats", _stats, "describes boxes: extents, sizes, and pairs of each box", 1, [boxes])
-    plot = add("plot", _plot, "draws boxes (needs matplotlib)", 1, [boxes])
-    plot.add_argument("-o", "--output", required=True, metavar="FILE", help=".svg, .png or .pdf")
-    plot.add_argument("--pairs", action="store_true", help="connects the centers of overlapping boxes")
-    return parser
+        help="Take no more memory than this, such as 4GB: the boxes go through files (needs dask). Inputs are Parquet "
+        "files or folders of them; -o names a folder of Parquet files. A command that was interrupted continues when "
+        "it is repeated.",
+    ),
+    click.option("--workers", type=int, metavar="N", help="With --memory-limit: processes; one for each processor."),
+    click.option("--spill", metavar="FOLDER", help="With --memory-limit: where boxes go meanwhile; beside the pairs."),
+    click.option("--overwrite", is_flag=True, help="With --memory-limit: replace the pairs of other boxes."),
+)
 
 
-class _Version(argparse.Action):
-    """Looks up the version only if it is asked for."""
-
-    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        from . import __version__
-
-        print(f"sap {__version__}")
-        parser.exit()
+def _file(name: str) -> Callable[[_Function], _Function]:
+    return click.argument(name, type=click.Path(allow_dash=True))
 
 
-def _names(text: str) -> list[str]:
-    return [name.strip() for name in text.split(",")]
+@sap.command()
+@_file("file")
+@_together(_boxes, _output, _disk)
+def pairs(file: str, **options: Any) -> None:
+    """Writes all pairs of overlapping boxes of a file."""
+    _write_pairs(Options(files=[file], **options))
+
+
+@sap.command()
+@_file("a")
+@_file("b")
+@_together(_boxes, _output, _disk)
+def join(a: str, b: str, **options: Any) -> None:
+    """Writes all pairs of a box of one file and a box of another."""
+    _write_pairs(Options(files=[a, b], **options))
+
+
+@sap.command()
+@_file("a")
+@click.argument("b", type=click.Path(allow_dash=True), required=False)
+@_together(_boxes, _disk)
+def count(a: str, b: str | None, **options: Any) -> None:
+    """Counts the pairs of a file, or of two."""
+    given = Options(files=[a] if b is None else [a, b], **options)
+    if given.memory_limit is not None:
+        with _from_disk(given, to=None) as (dask, search):
+            counted = dask.count_pairs if b is None else dask.count_pairs_between
+            click.echo(counted(*given.files, **search))
+    else:
+        with _opened(given) as sources:
+            click.echo(_counted(given, *_search(given, sources)))
+
+
+@sap.command()
+@_file("file")
+@_boxes
+def stats(file: str, **options: Any) -> None:
+    """Describes boxes: extents, sizes, and pairs of each box."""
+    given = Options(files=[file], **options)
+    with _opened(given) as sources:
+        _describe(given, sources)
+
+
+@sap.command()
+@_file("file")
+@_boxes
+@click.option("-o", "--output", metavar="FILE", required=True, help=".svg, .png or .pdf.")
+@click.option("--pairs", is_flag=True, help="Connect the centers of overlapping boxes.")
+def plot(file: str, **options: Any) -> None:
+    """Draws boxes (needs matplotlib)."""
+    given = Options(files=[file], **options)
+    with _opened(given) as sources:
+        _draw(given, sources)
 
 
 @contextmanager
-def _explained(sources: list[Source]) -> Iterator[None]:
-    """Errors of the search, with the place in the file."""
+def _opened(options: Options) -> Iterator[list[Source]]:
+    """The files. Errors of the search are raised with the place in the file."""
+    sources = [read(path) for path in options.files]
     try:
-        yield
+        yield sources
     except InvalidBoxError as error:
         source = sources[1] if error.argument == "b" else sources[0]
         raise FileError(f"{source.place(error.index)}: the box {str(error).split(' ', 1)[1]}") from None
@@ -156,12 +204,12 @@ def _explained(sources: list[Source]) -> Iterator[None]:
         raise FileError(f"{names}: {error}") from None
 
 
-def _progress(what: str, options: argparse.Namespace) -> ProgressLine:
-    """A line on standard error, if a person may see it."""
-    return ProgressLine(what, None, not options.quiet and sys.stderr.isatty())
+def _progress(what: str, options: Options) -> ProgressBar:
+    """A bar on standard error, if a person may see it."""
+    return ProgressBar(what, None, not options.quiet and sys.stderr.isatty())
 
 
-def _search(options: argparse.Namespace, sources: list[Source]) -> tuple[list[Any], dict[str, Any]]:
+def _search(options: Options, sources: list[Source]) -> tuple[list[Any], dict[str, Any]]:
     """The sets of boxes and the options of the search."""
     sets = [source.boxes(options.columns, options.format) for source in sources]
     by = [options.by or source.by for source in sources]
@@ -178,125 +226,135 @@ def _search(options: argparse.Namespace, sources: list[Source]) -> tuple[list[An
     return sets, search
 
 
-def _counted(options: argparse.Namespace, sets: list[Any], search: dict[str, Any]) -> int:
-    count: Any = count_pairs if len(sets) == 1 else count_pairs_between
-    number: int = count(*sets, threads=options.threads, progress=_progress("counting", options), **search)
+def _counted(options: Options, sets: list[Any], search: dict[str, Any]) -> int:
+    counted: Any = count_pairs if len(sets) == 1 else count_pairs_between
+    with _progress("counting", options) as progress:
+        number: int = counted(*sets, threads=options.threads, progress=progress, **search)
     return number
 
 
 def _chunks(
-    options: argparse.Namespace, sets: list[Any], search: dict[str, Any], count: int, what: str
+    options: Options, sets: list[Any], search: dict[str, Any], number: int, what: str
 ) -> Iterator[NDArray[Any]]:
     """So many pairs, with progress: each chunk counts as done when the next one is asked for."""
-    progress, done = _progress(what, options), 0
     # Large, since there is work for each chunk; it takes 16 MB.
     chunks: Any = iter_chunks if len(sets) == 1 else iter_chunks_between
-    for chunk in chunks(*sets, size=2**20, **search):
-        yield chunk
-        done += len(chunk)
-        progress(done / count)
+    with _progress(what, options) as progress:
+        done = 0
+        for chunk in chunks(*sets, size=2**20, **search):
+            yield chunk
+            done += len(chunk)
+            progress(done / number)
 
 
-def _pairs(options: argparse.Namespace, sources: list[Source]) -> None:
+def _write_pairs(options: Options) -> None:
+    if options.memory_limit is not None:
+        with _from_disk(options, to=options.to) as (dask, search):
+            if options.output is None:
+                raise FileError("--memory-limit needs -o FOLDER: the pairs are a folder of Parquet files")
+            find = dask.find_pairs if len(options.files) == 1 else dask.find_pairs_between
+            try:
+                find(*options.files, ids=options.id, out=options.output, overwrite=options.overwrite, **search)
+            except KeyboardInterrupt:
+                raise KeyboardInterrupt("cancelled; the same command continues") from None
+        return
     kind = kind_of(options.output, options.to)
-    labels = [source.label(options.id) for source in sources] if options.id else None
-    sets, search = _search(options, sources)
-    count = _counted(options, sets, search)
-    with writer(options.output, kind, count, ("a", "b")) as file:
-        for chunk in _chunks(options, sets, search, count, "writing"):
-            columns = [chunk[:, 0], chunk[:, 1]]
-            if labels:
-                columns = [labels[0][columns[0]], labels[-1][columns[1]]]
-            file.write(columns)
+    with _opened(options) as sources:
+        labels = [source.label(options.id) for source in sources] if options.id else None
+        sets, search = _search(options, sources)
+        number = _counted(options, sets, search)
+        with writer(options.output, kind, number, ("a", "b")) as file:
+            for chunk in _chunks(options, sets, search, number, "writing"):
+                columns = [chunk[:, 0], chunk[:, 1]]
+                if labels:
+                    columns = [labels[0][columns[0]], labels[-1][columns[1]]]
+                file.write(columns)
 
 
-def _count(options: argparse.Namespace, sources: list[Source]) -> None:
-    if len(sources) > options.most:
-        raise FileError("count takes one file or two")
-    print(_counted(options, *_search(options, sources)))
-
-
-def _from_disk(options: argparse.Namespace) -> None:
-    """Finds or counts pairs of boxes that need not fit in memory."""
+@contextmanager
+def _from_disk(options: Options, to: str | None) -> Iterator[tuple[Any, dict[str, Any]]]:
+    """What finds pairs of boxes that need not fit in memory, and the options for it."""
     try:
         import distributed  # noqa: F401
 
         from . import dask
     except ImportError:
         raise FileError("--memory-limit needs Dask: pip install 'sweep-and-prune[dask]'") from None
-    is_counted = options.run is _count
-    if is_counted and len(options.files) > options.most:
-        raise FileError("count takes one file or two")
-    refused = {"--by": options.by, "--threads": options.threads != 1, "--to": getattr(options, "to", None)}
+    refused = {"--by": options.by, "--threads": options.threads != 1, "--to": to}
     for name in (name for name, value in refused.items() if value):
         raise FileError(f"--memory-limit and {name} cannot be combined: leave {name} out")
-    search: dict[str, Any] = {
+    search = {
         "columns": options.columns or None,
-        "format": options.format,
-        "missing": options.missing,
-        "closed": options.closed,
-        "margin": options.margin,
-        "memory_limit": options.memory_limit,
-        "workers": options.workers,
-        "spill": options.spill,
         "progress": not options.quiet,
+        **{
+            name: getattr(options, name)
+            for name in ("format", "missing", "closed", "margin", "memory_limit", "workers", "spill")
+        },
     }
-    files, is_between = options.files, len(options.files) == 2
     try:
-        if is_counted:
-            print((dask.count_pairs_between if is_between else dask.count_pairs)(*files, **search))
-            return
-        if options.output is None:
-            raise FileError("--memory-limit needs -o FOLDER: the pairs are a folder of Parquet files")
-        find: Any = dask.find_pairs_between if is_between else dask.find_pairs
-        find(*files, ids=options.id, out=options.output, overwrite=options.overwrite, **search)
+        yield dask, search
     except (SweepAndPruneError, ValueError) as error:
         raise FileError(str(error)) from None
 
 
-def _stats(options: argparse.Namespace, sources: list[Source]) -> None:
+def _describe(options: Options, sources: list[Source]) -> None:
+    from rich.console import Console
+
     sets, search = _search(options, sources)
     boxes = _corners(sets[0], options)
     of_each = np.zeros(len(boxes), np.int64)
-    count = _counted(options, sets, search)
-    for chunk in _chunks(options, sets, search, count, "describing"):
+    number = _counted(options, sets, search)
+    for chunk in _chunks(options, sets, search, number, "describing"):
         of_each += np.bincount(chunk.ravel(), minlength=len(boxes))
     half = boxes.shape[1] // 2
-    print(f"{len(boxes)} boxes in {half}D, {count} pairs")
+    console = Console(highlight=False)
+    console.print(f"{len(boxes):,} boxes in {half}D, {number:,} pairs")
     known = boxes[~np.isnan(boxes).any(axis=1)]
     if len(known) < len(boxes):
-        print(f"{len(boxes) - len(known)} boxes with missing numbers")
+        console.print(f"{len(boxes) - len(known):,} boxes with missing numbers")
     if len(known) == 0:
         return
-    sizes = known[:, half:] - known[:, :half]
+    rows = []
     for axis in range(half):
-        least, middle, most = sizes[:, axis].min(), np.median(sizes[:, axis]), sizes[:, axis].max()
-        print(
-            f"{'xyz'[axis]}: from {known[:, axis].min():g} to {known[:, axis + half].max():g}; "
-            f"sizes {least:g} to {most:g}, median {middle:g}"
-        )
-    print(f"pairs of each box: {of_each.mean():.2f} on average, {of_each.max()} at most")
-    for line in _histogram(of_each):
-        print(line)
+        low, high = known[:, axis], known[:, axis + half]
+        sizes = high - low
+        of_axis = [low.min(), high.max(), sizes.min(), np.median(sizes), sizes.max()]
+        rows.append(["xyz"[axis], *(f"{value:g}" for value in of_axis)])
+    console.print(_table(["axis", "from", "to", "smallest size", "median", "largest"], rows))
+    console.print(f"pairs of each box: {of_each.mean():.2f} on average, {of_each.max():,} at most")
+    console.print(_table(["pairs", "boxes", ""], _histogram(of_each)))
 
 
-def _corners(boxes: Any, options: argparse.Namespace) -> NDArray[np.float64]:
+def _table(names: list[str], rows: Iterable[list[Any]]) -> Any:
+    from rich.table import Table
+
+    table = Table(box=None)
+    for name in names:
+        table.add_column(name, justify="right", no_wrap=True)
+    for row in rows:
+        table.add_row(*row)
+    return table
+
+
+def _histogram(numbers: NDArray[np.int64], most: int = 10, width: int = 40) -> Iterator[list[Any]]:
+    """Rows that show how many boxes have how many pairs."""
+    from rich.progress_bar import ProgressBar
+
+    step = max(1, -(-(int(numbers.max()) + 1) // most))
+    boxes_of_row = np.bincount(numbers // step).tolist()
+    for row, boxes in enumerate(boxes_of_row):
+        low = row * step
+        name = f"{low:,}" if step == 1 else f"{low:,} to {low + step - 1:,}"
+        yield [name, f"{boxes:,}", ProgressBar(total=max(boxes_of_row), completed=boxes, width=width)]
+
+
+def _corners(boxes: Any, options: Options) -> NDArray[np.float64]:
     from ._arrays import box_array
 
     return box_array(boxes, "boxes", 0, options.format).astype(np.float64)
 
 
-def _histogram(numbers: NDArray[np.int64], rows: int = 10, width: int = 40) -> Iterator[str]:
-    """Lines that show how many boxes have how many pairs."""
-    step = max(1, -(-(int(numbers.max()) + 1) // rows))
-    counts = np.bincount(numbers // step)
-    names = [f"{low}" if step == 1 else f"{low} to {low + step - 1}" for low in range(0, step * len(counts), step)]
-    for name, count in zip(names, counts.tolist()):
-        bar = "#" * max(round(width * count / int(counts.max())), 1 if count else 0)
-        yield f"{name:>{max(map(len, names))}} | {bar} {count}"
-
-
-def _plot(options: argparse.Namespace, sources: list[Source]) -> None:
+def _draw(options: Options, sources: list[Source]) -> None:
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.collections import LineCollection, PolyCollection

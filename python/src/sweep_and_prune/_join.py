@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -360,6 +359,8 @@ def _on_threads(
     number = min(thread_count(threads), os.cpu_count() or 1, len(rows))
     if number == 1 or len(set(map(id, prepared))) < len(prepared):
         return np.concatenate([test(block) for block in rows])
+    from concurrent.futures import ThreadPoolExecutor  # here, since it takes half of the import of this package
+
     with ThreadPoolExecutor(number) as pool:
         return np.concatenate(list(pool.map(test, rows)))
 

@@ -1,40 +1,63 @@
-"""A line on a terminal that shows how far a search is."""
+"""A bar on a terminal that shows how far a search is."""
 
 from __future__ import annotations
 
-import sys
 import time
 from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
 
 
-class ProgressLine:
+class ProgressBar:
     """Shows the share that is done and the time that is left on standard error, once half a second has passed."""
 
     def __init__(self, what: str, also: Callable[[float], object] | None, is_wanted: bool) -> None:
         """`also` is called, too."""
         self._what, self._also, self._is_wanted = what, also, is_wanted
-        self._began, self._is_shown = time.monotonic(), False
+        self._began = time.monotonic()
+        self._bar: Progress | None = None
 
     def __call__(self, done: float) -> None:
         """Shows the share that is done, from 0 to 1."""
         if self._also is not None:
             self._also(done)
-        passed = time.monotonic() - self._began
-        if not self._is_wanted or (passed < 0.5 and not self._is_shown):
-            return
-        left = f", {passed / done * (1 - done):.0f} s left" if 0 < done < 1 else ""
-        self._show(f"{self._what}: {100 * done:.0f} %{left}" if done < 1 else "")
+        if done >= 1:
+            self.close()
+        elif self._bar is not None:
+            self._bar.update(self._bar.task_ids[0], completed=done)
+        elif self._is_wanted and time.monotonic() - self._began >= 0.5:
+            self._bar = _started(self._what, done)
 
-    def _show(self, line: str) -> None:
-        self._is_shown = bool(line)
-        sys.stderr.write(f"\r{line:<60}" + ("" if line else "\r"))
-        sys.stderr.flush()
+    def close(self) -> None:
+        """Removes the bar."""
+        if self._bar is not None:
+            self._bar.stop()
+            self._bar = None
 
-    def __enter__(self) -> ProgressLine:
+    def __enter__(self) -> ProgressBar:
         """Begins."""
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Removes the line, also after an error."""
-        if self._is_shown:
-            self._show("")
+        """Removes the bar, also after an error."""
+        self.close()
+
+
+def _started(what: str, done: float) -> Progress:
+    # Here, since a program that shows no bar need not load it.
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TimeRemainingColumn(),
+        TextColumn("left"),
+    )
+    bar = Progress(*columns, console=Console(stderr=True), transient=True)
+    bar.update(bar.add_task(what, total=1), completed=done)
+    bar.start()
+    return bar

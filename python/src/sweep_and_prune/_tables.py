@@ -9,6 +9,7 @@ import json
 import math
 import os
 import sys
+from array import array
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from itertools import chain
@@ -16,19 +17,29 @@ from pathlib import Path
 from typing import IO, Any, Protocol
 from zipfile import BadZipFile
 
+import click
 import numpy as np
 from numpy.typing import NDArray
 
 from ._inputs import box_columns, unknown_columns
 
 _MISSING = {"", "na", "n/a", "nan", "null", "none", "."}
+_BED = ["chrom", "start", "end", "name", "score", "strand"]
 _ARROW = (".arrow", ".feather", ".ipc")
 READABLE = ".csv, .tsv, .bed, .npy, .npz, .geojson, .json, .parquet, .arrow, .feather"
+_BYTES = 8 * 7
+"""Of memory for each number: the table, the boxes, and what the search keeps."""
+_BYTES_OF_TEXT = 11
+"""Of memory for each byte of text (measured: 400 MB for a million boxes in 36 MB)."""
 WRITABLE = ("csv", "tsv", "npy", "parquet", "arrow")
 
 
-class FileError(Exception):
+class FileError(click.ClickException):
     """What is wrong with a file, for people."""
+
+    def show(self, file: IO[Any] | None = None) -> None:
+        """Prints it."""
+        click.echo(f"sap: {self.message}", file or sys.stderr)
 
 
 class Source:
@@ -85,13 +96,9 @@ def _listed(columns: list[str]) -> str:
 class _Text:
     """A table of text, whose columns become numbers when they are used."""
 
-    def __init__(self, name: str, columns: list[str], rows: list[list[str]], lines: list[int]) -> None:
-        self.name, self.columns, self._lines = name, columns, lines
-        width = len(columns)
-        for row, line in zip(rows, lines):
-            if len(row) < width:
-                raise FileError(f"{name}, line {line}: it has {len(row)} columns, where {width} are expected")
-        self._cells = dict(zip(columns, zip(*rows))) if rows else {column: () for column in columns}
+    def __init__(self, name: str, columns: list[str], cells: list[str], lines: Sequence[int]) -> None:
+        """`cells` are those of all rows, one row after the other."""
+        self.name, self.columns, self._cells, self._lines = name, columns, cells, lines
 
     def __len__(self) -> int:
         return len(self._lines)
@@ -100,9 +107,9 @@ class _Text:
         return self._lines[index]
 
     def text(self, name: str) -> Sequence[str]:
-        if name not in self._cells:
+        if name not in self.columns:
             raise FileError(f"{self.name} has no column {name!r}; {_listed(self.columns)}")
-        return self._cells[name]
+        return self._cells[self.columns.index(name) :: len(self.columns)]
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         cells = self.text(name)
@@ -129,6 +136,9 @@ def read(path: str) -> Source:
     suffix = Path(path.removesuffix(".gz")).suffix.lower()
     try:
         if suffix in (".csv", ".tsv", ".txt", ".bed"):
+            # Of what is compressed, a box takes about a third.
+            size = os.path.getsize(path) * (3 if path.endswith(".gz") else 1)
+            check_memory(path, f"{size / 1e9:.1f} GB of boxes", size * _BYTES_OF_TEXT)
             opened: Any = gzip.open if path.endswith(".gz") else open
             with opened(path, "rt", encoding="utf-8-sig", newline="") as file:
                 return _read_text(path, file, suffix)
@@ -147,39 +157,57 @@ def read(path: str) -> Source:
 
 def _read_text(name: str, file: IO[str], suffix: str) -> Source:
     delimiter, text = "\t", iter(file)
+    is_bed = suffix == ".bed"
     if suffix not in (".tsv", ".bed"):
         first = next(text, "")
         delimiter = max(",;\t", key=first.count)
         text = chain([first] if first else [], text)
-    rows, lines = [], []
     reader = csv.reader(text, delimiter=delimiter)
+    rows = (row for row in reader if row and not (is_bed and _is_comment(row)))
+    # All cells are in one list: with a list for each row, reading takes twice as long.
+    cells: list[str] = []
+    lines = array("Q")
     try:
-        for row in reader:
-            if not row or (suffix == ".bed" and row[0].split(" ")[0].startswith(("#", "track", "browser"))):
-                continue
-            rows.append(row)
+        first_row = next(rows, [])
+        is_bare = not is_bed and all(map(_is_number, first_row))
+        if is_bed:
+            columns = _BED[: len(first_row) or 3]
+        else:
+            columns = _bare_columns(name, first_row) if is_bare else [cell.strip() for cell in first_row]
+        for row in chain([first_row] if first_row and (is_bed or is_bare) else [], rows):
+            if is_bed and len(row) < 3:
+                raise FileError(f"{name}, line {reader.line_num}: chrom, start and end are expected, separated by tabs")
+            if is_bed:  # only these three are in each row
+                row += [""] * (len(columns) - len(row))
+            if len(row) < len(columns):
+                raise FileError(
+                    f"{name}, line {reader.line_num}: it has {len(row)} columns, where {len(columns)} are expected"
+                )
+            cells += row[: len(columns)]
             lines.append(reader.line_num)
     except csv.Error as error:
         raise FileError(f"{name}, line {reader.line_num}: {error}") from None
-    if suffix == ".bed":
-        known = ["chrom", "start", "end", "name", "score", "strand"]
-        width = min(map(len, rows), default=3)
-        if width < 3:
-            line = next(line for row, line in zip(rows, lines) if len(row) < 3)
-            raise FileError(f"{name}, line {line}: chrom, start and end are expected, separated by tabs")
-        source = Source(name, _Text(name, known[:width], rows, lines))
+    table = _Text(name, columns, cells, lines)
+    if is_bed:
+        source = Source(name, table)
         source.closed, source.by = "left", "chrom"
         return source
-    if not rows:
+    return Source(name, np.column_stack([table[column] for column in columns]) if is_bare else table)
+
+
+def _is_comment(row: list[str]) -> bool:
+    """Whether a row of a BED file has no interval."""
+    return row[0].split(" ")[0].startswith(("#", "track", "browser"))
+
+
+def _bare_columns(name: str, row: list[str]) -> list[str]:
+    """Names for the columns of a file without a header, whose first row this is."""
+    if not row:
         raise FileError(f"{name} is empty")
-    if all(_is_number(cell) for cell in rows[0]):
-        width = len(rows[0])
-        if width not in (2, 4, 6):
-            raise FileError(f"{name} has no header and {width} columns; boxes have 2, 4 or 6")
-        columns = {2: "min0 max0", 4: "min0 min1 max0 max1", 6: "min0 min1 min2 max0 max1 max2"}[width].split()
-        table = _Text(name, columns, rows, lines)
-        return Source(name, np.column_stack([table[column] for column in columns]))
-    return Source(name, _Text(name, [cell.strip() for cell in rows[0]], rows[1:], lines[1:]))
+    corners = {2: "min0 max0", 4: "min0 min1 max0 max1", 6: "min0 min1 min2 max0 max1 max2"}
+    if len(row) not in corners:
+        raise FileError(f"{name} has no header and {len(row)} columns; boxes have 2, 4 or 6")
+    return corners[len(row)].split()
 
 
 def _is_number(cell: str) -> bool:
@@ -196,7 +224,7 @@ def _read_numpy(path: str) -> NDArray[Any]:
     except (ValueError, EOFError, BadZipFile) as error:
         raise FileError(f"{path} is not an array of NumPy: {error}") from None
     if isinstance(loaded, np.ndarray):
-        check_memory(path, loaded.shape[0] if loaded.ndim else 0, loaded.size)
+        check_memory(path, f"{loaded.shape[0] if loaded.ndim else 0} boxes", loaded.size * _BYTES)
         return np.asarray(loaded)
     names = loaded.files
     if "boxes" not in names and len(names) != 1:
@@ -253,7 +281,7 @@ def _read_arrow(path: str, suffix: str) -> Source:
             import pyarrow.parquet
 
             rows = pyarrow.parquet.ParquetFile(path).metadata.num_rows
-            check_memory(path, rows, 4 * rows)
+            check_memory(path, f"{rows} boxes", 4 * rows * _BYTES)
             table = pyarrow.parquet.read_table(path)
     except arrow.ArrowInvalid as error:
         raise FileError(f"{path} cannot be read: {error}") from None
@@ -278,18 +306,17 @@ def _pyarrow(path: str) -> Any:
     return pyarrow
 
 
-def check_memory(path: str, rows: int, numbers: int) -> None:
-    """Refuses a file with so many boxes and numbers if they cannot be searched in this machine's memory."""
+def check_memory(path: str, contents: str, needed: int) -> None:
+    """Refuses a file whose boxes cannot be searched in this machine's memory, of which they need so many bytes."""
     try:
         memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, ValueError, OSError):
         return
-    # The table, the boxes, and what the search keeps.
-    needed = numbers * 8 * 7
     if needed > memory:
         gigabytes = f"{needed / 1e9:.0f} GB of memory, and this machine has {memory / 1e9:.0f} GB"
-        way = "; --memory-limit searches them from disk" if path.endswith((".parquet", ".geoparquet")) else ""
-        raise FileError(f"{path} has {rows} boxes; searching them takes about {gigabytes}{way}")
+        is_parquet = path.endswith((".parquet", ".geoparquet"))
+        way = "--memory-limit searches them" if is_parquet else "a Parquet file can be searched"
+        raise FileError(f"{path} has {contents}; searching them takes about {gigabytes}; {way} from disk")
 
 
 class Writer(Protocol):

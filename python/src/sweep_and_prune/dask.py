@@ -27,7 +27,7 @@ from ._partitioned.boxes import InvalidRowError
 from ._partitioned.dataset import DatasetError, Manifest, read_manifest
 from ._partitioned.run import Job, Source, run, source_of_files
 from ._partitioned.workers import active_client
-from ._progress import ProgressLine
+from ._progress import ProgressBar
 
 __all__ = [
     "DatasetError",
@@ -96,7 +96,7 @@ def find_pairs(
             the boxes themselves, uncompressed.
         cells: how many cells at most; by default, one for each million boxes, or more if memory is short.
         overwrite: replaces a finished dataset or an interrupted run of other boxes.
-        progress: `True` shows a line on a terminal; a function is called with the share of the work that is done.
+        progress: `True` shows a bar on a terminal; a function is called with the share of the work that is done.
 
     Returns:
         A Dask DataFrame with the columns `a` and `b`: the ids of two boxes, the smaller one first, in no order.
@@ -344,8 +344,8 @@ def _counted(
         return run(sources, Job(None, memory_limit, workers, _folder(spill), False, _cells(cells), report)).pairs
 
 
-def _shown(progress: Progress, what: str) -> ProgressLine:
-    return ProgressLine(what, progress if callable(progress) else None, bool(progress) and sys.stderr.isatty())
+def _shown(progress: Progress, what: str) -> ProgressBar:
+    return ProgressBar(what, progress if callable(progress) else None, bool(progress) and sys.stderr.isatty())
 
 
 def _folder(spill: str | os.PathLike[str] | None) -> Path | None:
