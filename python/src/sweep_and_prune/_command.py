@@ -233,18 +233,15 @@ def _counted(options: Options, sets: list[Any], search: dict[str, Any]) -> int:
     return number
 
 
-def _chunks(
-    options: Options, sets: list[Any], search: dict[str, Any], number: int, what: str
-) -> Iterator[NDArray[Any]]:
+def _chunks(sets: list[Any], search: dict[str, Any], number: int, progress: ProgressBar) -> Iterator[NDArray[Any]]:
     """So many pairs, with progress: each chunk counts as done when the next one is asked for."""
     # Large, since there is work for each chunk; it takes 16 MB.
     chunks: Any = iter_chunks if len(sets) == 1 else iter_chunks_between
-    with _progress(what, options) as progress:
-        done = 0
-        for chunk in chunks(*sets, size=2**20, **search):
-            yield chunk
-            done += len(chunk)
-            progress(done / number)
+    done = 0
+    for chunk in chunks(*sets, size=2**20, **search):
+        yield chunk
+        done += len(chunk)
+        progress(done / number)
 
 
 def _write_pairs(options: Options) -> None:
@@ -263,8 +260,9 @@ def _write_pairs(options: Options) -> None:
         labels = [source.label(options.id) for source in sources] if options.id else None
         sets, search = _search(options, sources)
         number = _counted(options, sets, search)
-        with writer(options.output, kind, number, ("a", "b")) as file:
-            for chunk in _chunks(options, sets, search, number, "writing"):
+        names = ("a", "b")
+        with writer(options.output, kind, number, names) as file, _progress("writing", options) as progress:
+            for chunk in _chunks(sets, search, number, progress):
                 columns = [chunk[:, 0], chunk[:, 1]]
                 if labels:
                     columns = [labels[0][columns[0]], labels[-1][columns[1]]]
@@ -304,8 +302,9 @@ def _describe(options: Options, sources: list[Source]) -> None:
     boxes = _corners(sets[0], options)
     of_each = np.zeros(len(boxes), np.int64)
     number = _counted(options, sets, search)
-    for chunk in _chunks(options, sets, search, number, "describing"):
-        of_each += np.bincount(chunk.ravel(), minlength=len(boxes))
+    with _progress("describing", options) as progress:
+        for chunk in _chunks(sets, search, number, progress):
+            of_each += np.bincount(chunk.ravel(), minlength=len(boxes))
     half = boxes.shape[1] // 2
     console = Console(highlight=False)
     console.print(f"{len(boxes):,} boxes in {half}D, {number:,} pairs")
