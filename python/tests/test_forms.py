@@ -76,7 +76,7 @@ class Frame:
 @pytest.mark.parametrize(
     "names",
     ["minx miny maxx maxy", "xmin ymin xmax ymax", "x_min y_min x_max y_max", "x1 y1 x2 y2", "x0 y0 x1 y1"]
-    + ["left top right bottom", "Left Bottom Right Top", "MinX MinY MaxX MaxY"],
+    + ["left top right bottom", "Left Bottom Right Top", "MinX MinY MaxX MaxY", "west south east north"],
 )
 def test_columns_are_recognized_by_their_names(names: str) -> None:
     named = dict(zip(names.split(), BOXES.T))
@@ -85,6 +85,9 @@ def test_columns_are_recognized_by_their_names(names: str) -> None:
         assert same(sap.find_pairs(frame))  # type: ignore[arg-type]
         assert same(sap.PairFinder(2).find(frame))  # type: ignore[arg-type]
         assert len(sap.BroadPhase(2).insert_many(frame)) == 60  # type: ignore[arg-type]
+        assert same(sap.find_pairs(frame.data))  # type: ignore[arg-type]
+    rows = np.array([tuple(box) for box in BOXES], [(name, float) for name in names.split()])
+    assert same(sap.find_pairs(rows)) and same(sap.find_pairs(rows.view(np.recarray)))
 
 
 def test_columns_of_other_dimensions_and_formats() -> None:
@@ -98,6 +101,8 @@ def test_columns_of_other_dimensions_and_formats() -> None:
     assert same(sap.find_pairs(placed, format="xywh"))  # type: ignore[arg-type]
     intervals = Frame(chrom=["a"] * 60, start=x, end=x + width)
     assert same(sap.find_pairs(intervals), pairs(np.stack([x, x + width], 1)))  # type: ignore[arg-type]
+    of_ucsc = {"chromStart": x, "chromEnd": x + width}
+    assert same(sap.find_pairs(of_ucsc), pairs(np.stack([x, x + width], 1)))  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"no columns that are known as boxes.*its columns are a, b; rename"):
         sap.find_pairs(Frame(a=x, b=y))  # type: ignore[arg-type]
     assert sap.count_pairs(np.empty((0, 2, 3))) == 0  # without boxes, too
@@ -137,6 +142,16 @@ def test_a_tuple_of_two_arrays_is_not_read_as_boxes() -> None:
     with pytest.raises(ValueError, match=r"np\.column_stack"):
         sap.find_pairs((starts, ends))
     assert len(sap.find_pairs(np.column_stack((starts, ends)))) == 0
+    pandas = pytest.importorskip("pandas")
+    for pair in ((pandas.Series(starts), pandas.Series(ends)), [pandas.Series(starts), pandas.Series(ends)]):
+        with pytest.raises(ValueError, match=r"np\.column_stack"):
+            sap.find_pairs(pair)
+
+
+@pytest.mark.parametrize("values", [None, 5, (box for box in BOXES), object()])
+def test_what_is_no_array_is_refused(values: Any) -> None:
+    with pytest.raises(TypeError, match="boxes must be an array with a row for each box, not a "):
+        sap.find_pairs(values)
 
 
 small = st.lists(st.tuples(st.integers(-3, 3), st.integers(0, 3)), min_size=1, max_size=25)
@@ -238,6 +253,33 @@ def test_frames_of_pandas() -> None:
     index = pandas.IntervalIndex.from_arrays([0, 1, 3], [1, 3, 4])  # closed on the right
     assert len(sap.find_pairs(index)) == 0
     assert sap.find_pairs(index.set_closed("both")).tolist() == [[0, 1], [1, 2]]
+    for form in (index.array, pandas.Series(index)):
+        assert len(sap.find_pairs(form)) == 0 and len(sap.find_pairs(form, closed="both")) == 2
+
+
+def refuses_to_round(form: Any) -> bool:
+    with pytest.raises(ValueError, match=r"has integers beyond 2\^53, which floating point rounds"):
+        sap.find_pairs(form, missing="skip")
+    return True
+
+
+LARGE: Any = [2**60, 2**60 + 1]  # equal in floating point
+
+
+def test_integers_of_pandas_are_not_rounded_because_others_are_missing() -> None:
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.DataFrame({name: pandas.array([*LARGE, None], "Int64") for name in ("start", "end")})
+    assert refuses_to_round(frame) and refuses_to_round(frame.astype(object))
+    assert len(sap.find_pairs(frame[:2])) == 0
+
+
+def test_integers_of_arrow_are_not_rounded_because_others_are_missing() -> None:
+    arrow = pytest.importorskip("pyarrow")
+    table = arrow.table({"start": [*LARGE, None], "end": [*LARGE, None]})
+    rows = [[number, number] for number in LARGE]
+    fixed = arrow.array([*rows, None], arrow.list_(arrow.int64(), 2))
+    assert refuses_to_round(table) and refuses_to_round(table.to_struct_array()) and refuses_to_round(fixed)
+    assert len(sap.find_pairs(table[:2])) == len(sap.find_pairs(fixed[:2])) == 0
 
 
 def test_geometries_of_shapely() -> None:
@@ -249,6 +291,15 @@ def test_geometries_of_shapely() -> None:
     with pytest.raises(sap.InvalidBoxError):
         sap.find_pairs(shapes)
     assert same(sap.find_pairs(shapes, missing="skip"), PAIRS[~np.isin(PAIRS, [3]).any(axis=1)])
+
+
+def test_series_and_frames_of_geometries() -> None:
+    shapely, pandas = pytest.importorskip("shapely"), pytest.importorskip("pandas")
+    shapes = shapely.box(*BOXES.T)
+    assert same(sap.find_pairs(pandas.Series(shapes)))
+    series = pytest.importorskip("geopandas").GeoSeries(shapes)
+    for form in (series, series.array, series.to_frame("shape").set_geometry("shape")):
+        assert same(sap.find_pairs(form))
 
 
 def test_tables_of_arrow() -> None:
@@ -287,6 +338,8 @@ def test_frames_of_polars() -> None:
     frame = polars.DataFrame(dict(zip(["xmin", "ymin", "xmax", "ymax"], BOXES.T)))
     assert same(sap.find_pairs(frame))
     assert same(sap.find_pairs(frame.to_struct("box")))
+    with pytest.raises(TypeError, match=r"boxes is a LazyFrame, .* collect\(\)"):
+        sap.find_pairs(frame.lazy())
     assert same(sap.find_pairs(polars.Series(BOXES.tolist(), dtype=polars.Array(polars.Float64, 4))))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ._errors import StaleProxyError
-from ._inputs import as_array, raw_boxes
+from ._inputs import as_array, intervals, raw_boxes
 
 Floats = Union[NDArray[np.float32], NDArray[np.float64]]
 """Coordinates, in single or in double precision."""
@@ -49,7 +49,7 @@ def index_dtype(dtype: DTypeLike) -> str:
 def checked_closed(closed: object, *sets: Any) -> bool:
     """Whether intervals contain both their ends. An IntervalIndex says so itself, unless the argument is given."""
     if closed is None:
-        own = {getattr(boxes, "closed", "both") for boxes in sets}
+        own = {getattr(intervals(boxes), "closed", "both") for boxes in sets}
         closed = own.pop() if len(own) == 1 else own
     if not (isinstance(closed, str) and closed in ("both", "left", "right", "neither")):
         raise ValueError(f'closed must be "both", "left", "right" or "neither", not {closed!r}')

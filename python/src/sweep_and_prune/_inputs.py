@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import warnings
 from typing import Any
@@ -20,7 +21,8 @@ def _spellings(format: str) -> list[tuple[list[str], list[str]]]:
             ([pattern.format(axis) for axis in _AXES], [other.format(axis) for axis in _AXES])
             for pattern, other in (("min{}", "max{}"), ("{}min", "{}max"), ("{}1", "{}2"), ("{}0", "{}1"))
         ]
-        return [*found, (["left", "top"], ["right", "bottom"]), (["start"], ["end"])]
+        found += [(["left", "top"], ["right", "bottom"]), (["west", "south"], ["east", "north"])]
+        return [*found, (["start"], ["end"]), (["chromstart"], ["chromend"])]
     sizes = (["w", "h", "d"], ["width", "height", "depth"])
     starts = (["x", "y", "z"], ["left", "top"]) if format == "xywh" else (["cx", "cy", "cz"], ["x", "y", "z"])
     return [(start, size) for start in starts for size in sizes]
@@ -37,25 +39,47 @@ def raw_boxes(values: Any, name: str, format: str = "xyxy") -> NDArray[Any]:
     """Boxes as an array, two-dimensional if they are in a form that is known. Other forms are left to the caller."""
     if type(values) is np.ndarray and values.dtype.kind in "iuf" and values.ndim == 2 and format == "xyxy":
         return values  # the common case, without further questions
-    if hasattr(values, "closed") and hasattr(values, "left") and hasattr(values, "right"):  # IntervalIndex
-        return np.column_stack((np.asarray(values.left), np.asarray(values.right)))
+    ends = intervals(values)
+    if ends is not None:
+        return np.column_stack((np.asarray(ends.left), np.asarray(ends.right)))
+    if hasattr(values, "collect"):  # polars' LazyFrame and its like
+        raise TypeError(f"{name} is a {type(values).__name__}, which has no rows yet: pass what its collect() returns")
     columns = _column_names(values)
     if columns is not None:
         return _corners(_from_columns(values, columns, name, format), format, name)
-    if isinstance(values, tuple) and len(values) == 2 and all(isinstance(part, np.ndarray) for part in values):
+    if _is_pair_of_arrays(values):
         raise ValueError(
-            f"{name} must be one array with a row for each box, not a tuple of two arrays: "
+            f"{name} must be one array with a row for each box, not a {type(values).__name__} of two arrays: "
             "pass np.column_stack((starts, ends)) for intervals, np.stack(rows) for rows"
         )
     nested = _from_arrow(values, name, format)
     if nested is not None:
         return _corners(nested, format, name)
     array = as_array(values, name)
+    if array.ndim == 0:
+        raise TypeError(f"{name} must be an array with a row for each box, not a {type(values).__name__}")
     if array.dtype.kind == "O" and array.ndim == 1:
         array = _from_geometries(array)
     if array.ndim == 3 and array.shape[1] == 2 and 1 <= array.shape[2] <= 3:
         array = array.reshape(len(array), 2 * array.shape[2])  # -1 is not known without boxes
     return _corners(array, format, name)
+
+
+def intervals(values: Any) -> Any:
+    """An `IntervalIndex` or `IntervalArray`, also that of a Series; None for anything else."""
+    for found in (values, getattr(values, "array", None)):
+        if all(hasattr(type(found), part) for part in ("closed", "left", "right")):
+            return found
+    return None
+
+
+def _is_pair_of_arrays(values: Any) -> bool:
+    """Whether it is probably all starts and all ends. (A list of two arrays of NumPy is two rows.)"""
+    if not (isinstance(values, (tuple, list)) and len(values) == 2):
+        return False
+    of_column = ("__arrow_c_array__", "__arrow_c_stream__", "iloc")
+    are_columns = all(any(hasattr(part, name) for name in of_column) for part in values)
+    return are_columns or (isinstance(values, tuple) and all(hasattr(part, "__array__") for part in values))
 
 
 def as_array(values: Any, name: str) -> NDArray[Any]:
@@ -86,7 +110,11 @@ def _column_names(values: Any) -> list[str] | None:
     """The names of the columns of a data frame or a table; None for anything else."""
     if hasattr(type(values), "total_bounds") and hasattr(type(values), "bounds"):  # GeoSeries, GeoDataFrame
         return ["minx", "miny", "maxx", "maxy"]
-    if isinstance(values, (np.ndarray, list, tuple, dict)):
+    if isinstance(values, np.ndarray):
+        return None if values.dtype.names is None else list(values.dtype.names)
+    if isinstance(values, dict):
+        return [*map(str, values)]
+    if isinstance(values, (list, tuple)):
         return None
     for attribute in ("column_names", "columns"):  # pyarrow; pandas, polars
         names = getattr(values, attribute, None)
@@ -106,7 +134,10 @@ def _from_arrow(values: Any, name: str, format: str) -> NDArray[Any] | None:
         import pyarrow
     except ImportError:
         return None
-    array = pyarrow.array(values) if hasattr(values, "__arrow_c_array__") else pyarrow.chunked_array(values)
+    try:
+        array = pyarrow.array(values) if hasattr(values, "__arrow_c_array__") else pyarrow.chunked_array(values)
+    except pyarrow.ArrowException:  # such as a Series of objects
+        return None
     if isinstance(array, pyarrow.ChunkedArray):
         array = array.combine_chunks()
         if isinstance(array, pyarrow.ChunkedArray):  # of no chunks
@@ -123,6 +154,7 @@ def _from_arrow(values: Any, name: str, format: str) -> NDArray[Any] | None:
     rows: NDArray[Any] = flat.reshape(len(array), width)
     if array.null_count:
         rows = rows.astype(np.float64 if rows.dtype.kind != "f" else rows.dtype)
+        _refuse_rounding(rows, str(array.type.value_type), name)
         rows[array.is_null().to_numpy(zero_copy_only=False)] = np.nan
     return rows
 
@@ -146,9 +178,11 @@ def unknown_columns(columns: list[str], otherwise: str, option: str = 'format="{
 def _from_columns(values: Any, columns: list[str], name: str, format: str) -> NDArray[Any]:
     if hasattr(type(values), "total_bounds"):  # asked of the class: the frame would compute them
         values = values.bounds
+        if isinstance(values, np.ndarray):  # those of an array of geometries
+            return values
     names = box_columns(columns, format)
     if len(names) > 1:
-        table = np.column_stack([_column(values[column]) for column in names])
+        table = np.column_stack([_column(values[column], column) for column in names])
         if format == "xyxy" and len(names) == 4 and names[1].lower() == "top":  # the y axis may point up or down
             table[:, [1, 3]] = np.sort(table[:, [1, 3]], axis=1)
         return table
@@ -163,8 +197,9 @@ def _from_columns(values: Any, columns: list[str], name: str, format: str) -> ND
     )
 
 
-def _column(values: Any) -> NDArray[Any]:
+def _column(values: Any, column: str) -> NDArray[Any]:
     array: NDArray[Any] = np.asarray(values)
+    _refuse_rounding(array, str(getattr(values, "dtype", getattr(values, "type", ""))), f"column {column}")
     if array.dtype.kind == "O":  # nullable integers of pandas
         if hasattr(values, "to_numpy"):
             try:
@@ -173,6 +208,20 @@ def _column(values: Any) -> NDArray[Any]:
                 pass
         return np.array([np.nan if value is None else value for value in array.tolist()], np.float64)
     return array
+
+
+def _refuse_rounding(array: NDArray[Any], dtype: str, what: str) -> None:
+    """Refuses integers that floating point has rounded or will round, since values are missing among them."""
+    if array.dtype.kind == "O":
+        greatest: float = max((abs(value) for value in array.tolist() if isinstance(value, int)), default=0)
+    elif array.dtype.kind == "f" and re.match(r"u?int\d", dtype.lower()) and array.size:
+        greatest = np.abs(array).max(initial=0, where=~np.isnan(array))
+    else:
+        return
+    if greatest > 2**53:
+        raise ValueError(
+            f"{what} has integers beyond 2^53, which floating point rounds: pass int64 without missing values"
+        )
 
 
 def _from_geometries(array: NDArray[Any]) -> NDArray[Any]:
