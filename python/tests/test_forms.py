@@ -217,6 +217,21 @@ def test_groups_never_pair_with_each_other(dimensions: int, dtype: Any) -> None:
         sap.find_pairs(boxes, by=by[:-1])
 
 
+def test_groups_may_be_a_column_of_the_boxes() -> None:
+    labels = np.array(list("abc"))[np.arange(60) % 3]
+    named = dict(zip(("xmin", "ymin", "xmax", "ymax"), BOXES.T), kind=labels)
+    wanted, between = sap.find_pairs(BOXES, by=labels), sap.find_pairs_between(BOXES, BOXES, by=(labels, labels))
+    for form in (Frame(**named), named):
+        boxes: Any = form
+        assert np.array_equal(sap.find_pairs(boxes, by="kind"), wanted)
+        assert np.array_equal(sap.find_pairs_between(boxes, boxes, by="kind"), between)
+        assert sap.count_pairs_between(boxes, BOXES, by=("kind", labels)) == len(between)
+        with pytest.raises(ValueError, match="by is 'class', but the columns of a are xmin, ymin, xmax, ymax, kind"):
+            sap.find_pairs_between(boxes, boxes, by="class")
+    with pytest.raises(ValueError, match="by is 'kind', but boxes has no named columns"):
+        sap.find_pairs(BOXES, by="kind")
+
+
 def test_groups_may_be_of_any_type() -> None:
     boxes = np.zeros((6, 2))
     for by, wanted in (
@@ -298,8 +313,10 @@ def test_series_and_frames_of_geometries() -> None:
     shapes = shapely.box(*BOXES.T)
     assert same(sap.find_pairs(pandas.Series(shapes)))
     series = pytest.importorskip("geopandas").GeoSeries(shapes)
-    for form in (series, series.array, series.to_frame("shape").set_geometry("shape")):
+    frame = series.to_frame("shape").set_geometry("shape").assign(kind=np.arange(60) % 2)
+    for form in (series, series.array, frame):
         assert same(sap.find_pairs(form))
+    assert np.array_equal(sap.find_pairs(frame, by="kind"), sap.find_pairs(BOXES, by=np.arange(60) % 2))
 
 
 def test_tables_of_arrow() -> None:

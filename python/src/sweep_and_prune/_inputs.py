@@ -126,6 +126,16 @@ def _column_names(values: Any) -> list[str] | None:
     return None
 
 
+def named_column(values: Any, column: str, name: str) -> Any:
+    """A column of a data frame, a table, a dict or a structured array."""
+    is_geometric = hasattr(type(values), "total_bounds")  # its own columns count, not those of its bounds
+    columns = list(getattr(values, "columns", ())) if is_geometric else _column_names(values)
+    if column not in (columns or ()):
+        own = f"the columns of {name} are {', '.join(map(str, columns))}" if columns else f"{name} has no named columns"
+        raise ValueError(f"by is {column!r}, but {own}")
+    return values[column]
+
+
 def _from_arrow(values: Any, name: str, format: str) -> NDArray[Any] | None:
     """Boxes of an Arrow array of lists of fixed size or of structs; None for anything else."""
     if not (hasattr(values, "__arrow_c_array__") or hasattr(values, "__arrow_c_stream__")):

@@ -65,7 +65,7 @@ def find_pairs(
             `"neither"` (touching boxes do not overlap, and empty boxes overlap nothing). By default, an
             `IntervalIndex` decides.
         missing: `"raise"` refuses a box with a NaN, `"skip"` leaves it out: it has no pairs.
-        by: `(n,)` values of any type: only boxes with equal values pair.
+        by: `(n,)` values of any type, or the name of a column of a data frame: only boxes with equal values pair.
         margin: finds boxes within this distance of each other on each axis, too. One number for all axes, or D of
             them; a `timedelta` for times. On each axis `min <= other max + margin` holds for both boxes, where the
             sum is rounded to the precision of the boxes.
@@ -106,7 +106,7 @@ def find_pairs_between(
     format: str = "xyxy",
     closed: str | None = None,
     missing: str = "raise",
-    by: tuple[ArrayLike, ArrayLike] | None = None,
+    by: tuple[ArrayLike, ArrayLike] | str | None = None,
     margin: Margin = 0,
     progress: Progress | None = None,
 ) -> Pairs:
@@ -123,7 +123,8 @@ def find_pairs_between(
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
-        by: a pair of arrays, `(n,)` and `(k,)`: only boxes with equal values pair.
+        by: a pair of arrays, `(n,)` and `(k,)`, or the name of a column of both data frames: only boxes with equal
+            values pair.
         margin: finds boxes within this distance on each axis, too.
         progress: called with the share of the work that is done, from 0 to 1.
 
@@ -167,7 +168,7 @@ def count_pairs(
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
-        by: `(n,)` values: only boxes with equal values pair.
+        by: `(n,)` values, or the name of a column: only boxes with equal values pair.
         margin: counts boxes within this distance on each axis, too.
         progress: called with the share of the work that is done, from 0 to 1.
 
@@ -191,7 +192,7 @@ def count_pairs_between(
     format: str = "xyxy",
     closed: str | None = None,
     missing: str = "raise",
-    by: tuple[ArrayLike, ArrayLike] | None = None,
+    by: tuple[ArrayLike, ArrayLike] | str | None = None,
     margin: Margin = 0,
     progress: Progress | None = None,
 ) -> int:
@@ -204,7 +205,7 @@ def count_pairs_between(
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
-        by: a pair of arrays: only boxes with equal values pair.
+        by: a pair of arrays, or the name of a column: only boxes with equal values pair.
         margin: counts boxes within this distance on each axis, too.
         progress: called with the share of the work that is done, from 0 to 1.
 
@@ -246,7 +247,7 @@ def for_each_chunk(
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
-        by: `(n,)` values: only boxes with equal values pair.
+        by: `(n,)` values, or the name of a column: only boxes with equal values pair.
         margin: finds boxes within this distance on each axis, too.
 
     Returns:
@@ -280,7 +281,7 @@ def for_each_chunk_between(
     format: str = "xyxy",
     closed: str | None = None,
     missing: str = "raise",
-    by: tuple[ArrayLike, ArrayLike] | None = None,
+    by: tuple[ArrayLike, ArrayLike] | str | None = None,
     margin: Margin = 0,
 ) -> bool:
     """Calls a function with all pairs that `find_pairs_between` finds, in the same order, one chunk at a time.
@@ -296,7 +297,7 @@ def for_each_chunk_between(
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
-        by: a pair of arrays: only boxes with equal values pair.
+        by: a pair of arrays, or the name of a column: only boxes with equal values pair.
         margin: finds boxes within this distance on each axis, too.
 
     Returns:
@@ -339,7 +340,7 @@ def iter_chunks(
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
-        by: `(n,)` values: only boxes with equal values pair.
+        by: `(n,)` values, or the name of a column: only boxes with equal values pair.
         margin: finds boxes within this distance on each axis, too.
 
     Returns:
@@ -369,7 +370,7 @@ def iter_chunks_between(
     format: str = "xyxy",
     closed: str | None = None,
     missing: str = "raise",
-    by: tuple[ArrayLike, ArrayLike] | None = None,
+    by: tuple[ArrayLike, ArrayLike] | str | None = None,
     margin: Margin = 0,
 ) -> Iterator[Pairs]:
     """Iterates over all pairs that `find_pairs_between` finds, in the same order, one chunk at a time.
@@ -384,7 +385,7 @@ def iter_chunks_between(
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
-        by: a pair of arrays: only boxes with equal values pair.
+        by: a pair of arrays, or the name of a column: only boxes with equal values pair.
         margin: finds boxes within this distance on each axis, too.
 
     Returns:
@@ -736,11 +737,13 @@ def _two_sets(
     format: str,
     closed: str | None,
     missing: str,
-    by: tuple[ArrayLike, ArrayLike] | None,
+    by: tuple[ArrayLike, ArrayLike] | str | None,
     margin: Margin,
 ) -> Prepared:
+    if isinstance(by, str):
+        by = (by, by)
     if by is not None and not (isinstance(by, (tuple, list)) and len(by) == 2):
-        raise ValueError("by must be a pair of arrays: one for a, one for b")
+        raise ValueError("by must be a pair of arrays, one for a and one for b, or the name of a column of both")
     return prepare({"a": a, "b": b}, format, closed, missing, None if by is None else list(by), margin)
 
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import Floats, box_array, box_rows, checked_closed, numbers, same_width
 from ._errors import InvalidBoxError
-from ._inputs import as_array, checked_format
+from ._inputs import as_array, checked_format, named_column
 
 Rows = Optional[NDArray[np.int64]]
 
@@ -65,6 +65,7 @@ def prepare(
     if len(arrays) == 2:
         arrays = list(same_width(*arrays))
     kept: list[Rows] = [None for _ in arrays]
+    counts = [len(array) for array in arrays]
     if missing == "skip":
         arrays, kept = _leave_out([_is_missing(array) for array in arrays], arrays, kept)
     are_whole = all(array.dtype.kind in "iu" for array in arrays) and not has_margin
@@ -86,7 +87,7 @@ def prepare(
     rows = arrays if is_float else _ranks(arrays)
     if not is_closed:
         rows = [_without_ends(array, are_whole and is_float) for array in rows]
-    groups = None if by is None else _groups(by, sets, kept)
+    groups = None if by is None else _groups(by, sets, counts, kept)
     if groups is not None and rows[0].shape[1] < 6:
         dtype = np.result_type(*rows)
         dtype = np.dtype(np.float64) if max(map(_most, groups)) >= 2**24 else dtype
@@ -243,14 +244,15 @@ def _without_ends(boxes: Floats, are_whole: bool) -> Floats:
     return shrunk
 
 
-def _groups(by: list[ArrayLike], sets: dict[str, Any], kept: list[Rows]) -> list[NDArray[np.int64]]:
+def _groups(by: list[ArrayLike], sets: dict[str, Any], counts: list[int], kept: list[Rows]) -> list[NDArray[np.int64]]:
     """A number for the group of each box that is kept."""
-    columns = [as_array(values, "by") for values in by]
-    for column, (name, boxes) in zip(columns, sets.items()):
-        if column.shape != (len(boxes),):
-            raise ValueError(
-                f"by must have one value for each box of {name}: shape ({len(boxes)},), not {column.shape}"
-            )
+    named = [
+        named_column(sets[name], values, name) if isinstance(values, str) else values for name, values in zip(sets, by)
+    ]
+    columns = [as_array(values, "by") for values in named]
+    for column, name, count in zip(columns, sets, counts):
+        if column.shape != (count,):
+            raise ValueError(f"by must have one value for each box of {name}: shape ({count},), not {column.shape}")
     codes = _codes(columns)
     split = np.split(codes, np.cumsum([len(column) for column in columns])[:-1])
     return [group if rows is None else group[rows] for group, rows in zip(split, kept)]
