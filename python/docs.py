@@ -1,5 +1,6 @@
 """Writes the API reference of the package to a folder: `python python/docs.py FOLDER`, in the environment of
-`python/requirements.txt`. The pages are static and load nothing from other sites."""
+`python/requirements.txt`. The pages are static and load nothing from other sites. The guide has a notebook beside each
+page."""
 
 import re
 import shutil
@@ -9,9 +10,11 @@ from tempfile import TemporaryDirectory
 from types import ModuleType
 from typing import ForwardRef
 
+import jupytext
 import pdoc
 import pdoc.doc
 import pdoc.render
+from notebooks import GUIDE, notebook, pages
 from pygments.formatters import HtmlFormatter  # type: ignore[import-untyped]
 
 DARK = """
@@ -40,12 +43,14 @@ def as_written(annotation: object, *_: object) -> object:
 
 def guide(folder: Path) -> Path:
     """The pages of docs/guide as a package in this folder, whose docstrings they are: pdoc describes packages."""
-    pages = Path(__file__).parents[1] / "docs/guide"
     package = folder / "guide"
     package.mkdir()
-    for page in pages.glob("*.md"):
+    for page in pages():
         is_first = page.stem == "README"
         text = page.read_text(encoding="utf-8")
+        if not is_first:
+            title, rest = text.split("\n", 1)
+            text = f"{title}\n\n[As a notebook]({page.stem}.ipynb)\n{rest}"
         text = text.replace("../../python/README.md", f"{'' if is_first else '../'}sweep_and_prune.html")
         text = re.sub(r"\]\(README\.md\)", "](../guide.html)", text)
         text = re.sub(
@@ -56,9 +61,16 @@ def guide(folder: Path) -> Path:
         name = "__init__" if is_first else page.stem.replace("-", "_")
         code = f'{text!r}\n__docformat__ = "markdown"\n'
         (package / f"{name}.py").write_text(code, encoding="utf-8")
-    for picture in pages.glob("*.svg"):
+    for picture in GUIDE.glob("*.svg"):
         shutil.copy(picture, package)
     return package
+
+
+def write_notebooks(folder: Path) -> None:
+    """Each page of the guide as a notebook, beside the page."""
+    for page in pages():
+        if page.stem != "README":
+            jupytext.write(notebook(page), folder / f"{page.stem}.ipynb")
 
 
 package = Path(__file__).parent / "src/sweep_and_prune"
@@ -86,3 +98,4 @@ with TemporaryDirectory() as template, TemporaryDirectory() as folder:
     )
     modules = "sweep_and_prune", "sweep_and_prune.dask", guide(Path(folder))
     pdoc.pdoc(*modules, output_directory=Path(sys.argv[1]))
+    write_notebooks(Path(sys.argv[1]) / "guide")

@@ -6,6 +6,7 @@ from __future__ import annotations
 import doctest
 import importlib.util
 import inspect
+import json
 import pkgutil
 import re
 import subprocess
@@ -199,5 +200,7 @@ def test_the_reference_names_everything_and_loads_nothing_from_elsewhere(tmp_pat
     links = [link for link in re.findall(r'href="([^"#:]+)"', first) if not link.endswith(".css")]
     assert "guide/from_array_to_cluster.html" in links
     assert [link for link in links if not (tmp_path / link).exists()] == []
+    assert 'href="tracks.ipynb"' in tracks
+    assert json.loads((tmp_path / "guide/tracks.ipynb").read_text())["cells"][1]["cell_type"] == "code"
     assert 'src="data:image/svg+xml' in tracks and 'href="game_loop.html"' not in tracks
     assert "boxes: ArrayLike" in re.sub(r"<[^>]*>", "", page).replace("\xa0", " ")

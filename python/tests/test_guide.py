@@ -1,4 +1,4 @@
-"""The guide's code runs, prints what it says, and draws its pictures."""
+"""The guide's notebooks run, print what they say, and draw their pictures."""
 
 from __future__ import annotations
 
@@ -9,30 +9,31 @@ from types import ModuleType
 
 import pytest
 
-for module in ("distributed", "geopandas", "matplotlib", "pandas", "pyarrow", "scipy", "trimesh"):
+OF_NOTEBOOKS = ("ipykernel", "jupytext", "nbclient")
+for module in (*OF_NOTEBOOKS, "distributed", "geopandas", "matplotlib", "pandas", "pyarrow", "scipy", "trimesh"):
     pytest.importorskip(module)
 
 PYTHON = Path(__file__).parents[1]
 
 
-def guide() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("guide", PYTHON / "guide.py")
+def notebooks() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("notebooks", PYTHON / "notebooks.py")
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
 
 
-GUIDE = guide()
+GUIDE = notebooks()
 
 
 @pytest.mark.parametrize("page", GUIDE.pages(), ids=lambda page: page.stem)
 def test_a_page_prints_what_it_says_and_draws_its_pictures(page: Path, tmp_path: Path) -> None:
-    expected = GUIDE.said(GUIDE.program(page))
+    expected = GUIDE.said(page)
     assert expected or page.stem == "README"
     assert GUIDE.run(page, tmp_path) == expected
     for name in GUIDE.pictures(page):
         drawn, kept = (folder / name for folder in (tmp_path, GUIDE.GUIDE))
         # The bytes depend on the version of matplotlib; texts and sizes do not.
         texts = [re.findall(r"<text.*?>(.*?)</text>", path.read_text(encoding="utf-8")) for path in (drawn, kept)]
-        assert texts[0] == texts[1], f"{name} is not what the page draws: run python python/guide.py"
+        assert texts[0] == texts[1], f"{name} is not what the page draws: run python python/notebooks.py"

@@ -1,6 +1,6 @@
-"""Runs the guide of the Python package and draws its pictures: `python python/guide.py` writes them to docs/guide.
+"""Runs the guide of the Python package and draws its pictures: `python python/notebooks.py` writes them to docs/guide.
 
-The code of a page runs as one program, in an empty folder. What it prints has to be what its comments say. A picture
+Each page is also a notebook, which runs in an empty folder. What it prints has to be what its comments say. A picture
 is a file that the code saves, or that this script draws.
 """
 
@@ -8,15 +8,13 @@ from __future__ import annotations
 
 import re
 import shutil
-import subprocess
-import sys
 import tempfile
 from pathlib import Path
 from typing import Any
 
+import jupytext
+import nbclient
 import numpy as np
-
-from sweep_and_prune._partitioned.cells import choose_cells
 
 GUIDE = Path(__file__).parents[1] / "docs/guide"
 STYLE = """
@@ -44,14 +42,22 @@ def pages() -> list[Path]:
     return sorted(GUIDE.glob("*.md"))
 
 
-def program(page: Path) -> str:
+def notebook(page: Path) -> Any:
+    """A page as a notebook, without the pictures that its code draws."""
+    text = re.sub(r"^!\[[^\]]*\]\([\w-]+\.svg\)\n", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    made = jupytext.reads(text, fmt="md")
+    made.metadata["kernelspec"] = {"name": "python3", "display_name": "Python 3", "language": "python"}
+    return made
+
+
+def code(page: Path) -> str:
     """The code of a page."""
-    return "\n".join(re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL))
+    return "\n".join(cell.source for cell in notebook(page).cells if cell.cell_type == "code")
 
 
-def said(code: str) -> list[str]:
+def said(page: Path) -> list[str]:
     """What the comments say that the code prints."""
-    return re.findall(r"^\s*print\(.*\)\s+# (.*)$", code, re.MULTILINE)
+    return re.findall(r"^\s*print\(.*\)\s+# (.*)$", code(page), re.MULTILINE)
 
 
 def pictures(page: Path) -> list[str]:
@@ -61,14 +67,13 @@ def pictures(page: Path) -> list[str]:
 def run(page: Path, folder: Path) -> list[str]:
     """Runs a page in a folder, where its pictures appear, and returns the lines that it prints."""
     (folder / "matplotlibrc").write_text(STYLE, encoding="utf-8")
-    guard = "if __name__ == '__main__':\n" + re.sub(r"^(?=.)", "    ", program(page), flags=re.MULTILINE)
-    (folder / "page.py").write_text(guard, encoding="utf-8")
-    done = subprocess.run([sys.executable, "page.py"], cwd=folder, capture_output=True, text=True)
-    if done.returncode:
-        raise RuntimeError(f"{page.name}: {done.stdout}{done.stderr}")
+    executed = notebook(page)
+    nbclient.NotebookClient(executed, timeout=600, resources={"metadata": {"path": str(folder)}}).execute()
+    outputs = [output for cell in executed.cells for output in cell.get("outputs", [])]
+    printed = "".join(output.text for output in outputs if output.output_type == "stream" and output.name == "stdout")
     if page.stem == "from-array-to-cluster":
         draw_cells(folder)
-    return done.stdout.splitlines()
+    return printed.splitlines()
 
 
 def draw_cells(folder: Path) -> None:
@@ -76,6 +81,8 @@ def draw_cells(folder: Path) -> None:
     import matplotlib
     import matplotlib.pyplot as plt
     from matplotlib.patches import Rectangle
+
+    from sweep_and_prune._partitioned.cells import choose_cells
 
     matplotlib.rc_file(folder / "matplotlibrc")
     random = np.random.default_rng(6)
@@ -131,8 +138,8 @@ def main() -> None:
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             printed = run(page, folder)
-            if printed != said(program(page)):
-                raise SystemExit(f"{page.name} says {said(program(page))}, but its code prints {printed}")
+            if printed != said(page):
+                raise SystemExit(f"{page.name} says {said(page)}, but its code prints {printed}")
             for picture in pictures(page):
                 shutil.copy(folder / picture, GUIDE / picture)
         print(f"{page.name}: {len(printed)} lines, {len(pictures(page))} pictures")
