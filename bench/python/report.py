@@ -1,4 +1,4 @@
-"""Writes RESULTS.md and its plots from the newest results of each kind: `python report.py`."""
+"""Writes RESULTS.md and its plots from the newest results of each kind and machine: `python report.py`."""
 
 from __future__ import annotations
 
@@ -12,9 +12,16 @@ from common import FOLDER, RESULTS
 OWN = "sweep-and-prune"
 
 
-def newest(kind: str) -> dict[str, Any] | None:
-    files = sorted(RESULTS.glob(f"{kind}-*.json"), key=lambda path: path.stem[-10:])
-    return json.loads(files[-1].read_text()) if files else None
+DATE = len("-2026-11-24")
+
+
+def newest(kind: str) -> dict[str, dict[str, Any]]:
+    """The newest results of a kind by the name of the machine, the newest first."""
+    files = sorted(RESULTS.glob(f"{kind}-*.json"), key=lambda path: path.stem[-DATE:], reverse=True)
+    found: dict[str, dict[str, Any]] = {}
+    for file in files:
+        found.setdefault(file.stem[len(kind) + 1 : -DATE], json.loads(file.read_text()))
+    return found
 
 
 def where(content: dict[str, Any]) -> str:
@@ -42,12 +49,12 @@ def size(value: float | None) -> str:
     return f"{value / 1e9:.2f} GB" if value >= 1e9 else f"{value / 1e6:.0f} MB"
 
 
-def with_torchvision(content: dict[str, Any]) -> list[str]:
-    return ratios(content, "Beside torchvision, in memory", "torchvision-")
+def with_torchvision(content: dict[str, Any], machine: str) -> list[str]:
+    return ratios(content, machine, "Beside torchvision, in memory", "torchvision-")
 
 
-def ratios(content: dict[str, Any], title: str = "Ratios in memory", prefix: str = "") -> list[str]:
-    lines = [f"## {title}", "", where(content), ""]
+def ratios(content: dict[str, Any], machine: str, title: str = "In memory", prefix: str = "") -> list[str]:
+    lines = [f"## {title}: {content['machine']['cpu']}", "", where(content), ""]
     lines += [
         "Time of each library over that of sweep-and-prune on one thread, in the same round (median; above 1 is slower), "
         "its own median time, and the most memory beyond its input.",
@@ -63,11 +70,11 @@ def ratios(content: dict[str, Any], title: str = "Ratios in memory", prefix: str
                 )
             for library, found in one["wrong"].items():
                 lines.append(f"| {one['boxes']:,} | {one['found']:,} | {library} | finds {found:,}: not timed | | |")
-        lines += ["", f"![{case}]({plot(content, case, prefix)})", ""]
+        lines += ["", f"![{case}]({plot(content, case, prefix, machine)})", ""]
     return lines
 
 
-def plot(content: dict[str, Any], case: str, prefix: str) -> str:
+def plot(content: dict[str, Any], case: str, prefix: str, machine: str) -> str:
     """Draws ratios against the number of boxes."""
     import matplotlib
 
@@ -94,16 +101,16 @@ def plot(content: dict[str, Any], case: str, prefix: str) -> str:
     axes.yaxis.set_minor_locator(NullLocator())
     # Beside the curves, which it would hide.
     figure.legend(fontsize=8, loc="outside right upper")
-    name = f"plots/{prefix}{case.replace(', ', '-').replace(' ', '-')}.svg"
-    (FOLDER / "plots").mkdir(exist_ok=True)
+    name = f"plots/{machine}/{prefix}{case.replace(', ', '-').replace(' ', '-')}.svg"
+    (FOLDER / name).parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(FOLDER / name, metadata={"Date": None})
     plt.close(figure)
     return name
 
 
-def disk(content: dict[str, Any]) -> list[str]:
+def disk(content: dict[str, Any], _: str) -> list[str]:
     limit = size(content["limit_bytes"])
-    lines = ["## From Parquet to Parquet", "", where(content), "", f"The limit of memory is {limit}.", ""]
+    lines = [f"## From Parquet to Parquet: {content['machine']['cpu']}", "", where(content), "", f"The limit of memory is {limit}.", ""]
     header = "| boxes | library | time | processor time | ns a box and pair | memory | written | pairs |"
     lines += [header, "|--:|---|--:|--:|--:|--:|--:|--:|"]
     for case in content["cases"]:
@@ -127,9 +134,8 @@ def disk(content: dict[str, Any]) -> list[str]:
 def main() -> None:
     lines = ["# Results of the Python package", "", "Written by `report.py`; do not edit.", ""]
     for kind, write in (("ratios", ratios), ("torchvision", with_torchvision), ("disk", disk)):
-        content = newest(kind)
-        if content is not None:
-            lines += write(content)
+        for machine, content in newest(kind).items():
+            lines += write(content, machine)
     Path(FOLDER / "RESULTS.md").write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
 
 
