@@ -54,9 +54,8 @@ def test_the_readme_has_examples() -> None:
 
 
 def test_the_readme_names_no_path_that_the_wheel_lacks() -> None:
-    """Only bench.py is named, as a file of the repository."""
     assert re.findall(r"`[\w./]*/[\w./]+`", README.replace("`./test python`", "")) == []
-    assert set(re.findall(r"`(\w+\.py)`", README)) == {"bench.py"}
+    assert re.findall(r"`(\w+\.py)`", README) == []
 
 
 def test_the_readme_shows_commands_that_there_are() -> None:
