@@ -87,7 +87,7 @@ setup_rust() {
   libraries=$(RUSTUP_AUTO_INSTALL=0 rustc --print target-libdir --target wasm32-unknown-unknown 2>/dev/null) || true
   if ! { [ -d "$libraries" ] && RUSTUP_AUTO_INSTALL=0 cargo fmt --version && RUSTUP_AUTO_INSTALL=0 cargo clippy --version; } >/dev/null 2>&1; then
     say "Installing the Rust toolchain of rust-toolchain.toml ..."
-    quietly rustup toolchain install ||
+    quietly rustup toolchain install --no-self-update ||
       fail "The Rust toolchain of rust-toolchain.toml could not be installed: is the network reachable?"
   fi
 }
