@@ -66,7 +66,7 @@ def write(name: str, boxes: Array = BOXES) -> str:
         with gzip.open(name, "wt") as file:
             file.write(csv_of(boxes))
     elif name.endswith((".csv", ".tsv", ".txt")):
-        delimiter = {"tsv": "\t", "txt": ";"}.get(name[-3:], ",")
+        delimiter = "  " if "spaces" in name else {"tsv": "\t", "txt": ";"}.get(name[-3:], ",")
         Path(name).write_text(csv_of(boxes, delimiter, None if name.startswith("bare") else NAMES))
     elif name.endswith("json"):
         features = [
@@ -86,7 +86,8 @@ def write(name: str, boxes: Array = BOXES) -> str:
     return name
 
 
-FILES = "a.csv a.tsv a.txt bare.csv a.csv.gz a.npy a.npz a.geojson a.json a.parquet nested.parquet a.feather a.arrow"
+FILES = "a.csv a.tsv a.txt bare.csv bare.spaces.txt a.csv.gz a.npy a.npz a.geojson a.json a.parquet nested.parquet"
+FILES += " a.feather a.arrow"
 
 
 @pytest.mark.parametrize("name", FILES.split())
@@ -161,6 +162,12 @@ def test_options_are_those_of_find_pairs() -> None:
     wanted = wanted[frame[wanted[:, 0]] == frame[wanted[:, 1]]]
     chosen = ["--columns", "x,y,width,height", "--format", "xywh"]
     assert np.array_equal(numbers(run("pairs", "a.csv", *chosen, "--by", "frame")), wanted)
+    both = [*chosen, "--by", "frame, kind"]
+    Path("a.csv").write_text(
+        "\n".join(["frame,x,y,width,height,kind", *(f"{row},{n % 3}" for n, row in enumerate(rows))])
+    )
+    kind = np.arange(120) % 3
+    assert np.array_equal(numbers(run("pairs", "a.csv", *both)), wanted[kind[wanted[:, 0]] == kind[wanted[:, 1]]])
     only_x = np.column_stack([BOXES[:, 0], BOXES[:, 2]])
     assert run("count", "a.csv", "--columns", "x,width", "--format", "xywh") == f"{len(pairs(only_x))}\n"
 
@@ -177,7 +184,8 @@ def test_standard_input_is_read() -> None:
 
 def test_missing_numbers_are_refused_with_their_line_or_left_out(capsys: pytest.CaptureFixture[str]) -> None:
     Path("a.csv").write_text("xmin,ymin,xmax,ymax\n0,0,1,1\n\n0,NA,2,2\n0,0,3,3\n")
-    assert refused(capsys, "pairs", "a.csv").startswith("sap: a.csv, line 4: the box has a NaN on axis 1")
+    assert refused(capsys, "pairs", "a.csv").startswith("sap: a.csv, line 4, column ymin: the box has a NaN on axis 1")
+    assert "remove it, or pass --missing skip" in refused(capsys, "pairs", "a.csv", "--columns", "ymin,xmax")
     assert run("pairs", "a.csv", "--missing", "skip") == "a,b\n0,2\n"
 
 
@@ -186,7 +194,11 @@ def test_missing_numbers_are_refused_with_their_line_or_left_out(capsys: pytest.
     [
         ("a.csv", "xmin,ymin,xmax,ymax\n0,0,1,1\n0,0,x,1\n", "a.csv, line 3, column xmax: 'x' is not a number"),
         ("a.csv", "xmin,ymin,xmax,ymax\n0,0,1,1\n0,0\n", "a.csv, line 3: it has 2 columns, where 4 are expected"),
-        ("a.csv", "xmin,ymin,xmax,ymax\n3,0,2,1\n", "a.csv, line 2: the box is inverted on axis 0: min 3.0 is greater"),
+        (
+            "a.csv",
+            "xmin,ymin,xmax,ymax\n3,0,2,1\n",
+            "a.csv, line 2, columns xmin and xmax: the box is inverted on axis 0: ",
+        ),
         (
             "a.csv",
             "a,b,c\n1,2,3\n",

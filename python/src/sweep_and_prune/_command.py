@@ -105,7 +105,12 @@ _boxes = _together(
         "--missing", type=click.Choice(["raise", "skip"]), default="raise", help="What to do with missing numbers."
     ),
     click.option("--closed", type=_CLOSED, help="Which ends belong to a box (.bed: left)."),
-    click.option("--by", metavar="COLUMN", help="Only boxes with equal values pair (.bed: chrom)."),
+    click.option(
+        "--by",
+        metavar="A,B,..",
+        callback=_names,
+        help="Only boxes with equal values in these columns pair (.bed: chrom).",
+    ),
     click.option(
         "--margin", "--distance", "margin", type=float, default=0, help="Boxes within this distance pair, too."
     ),
@@ -198,10 +203,23 @@ def _opened(options: Options) -> Iterator[list[Source]]:
         yield sources
     except InvalidBoxError as error:
         source = sources[1] if error.argument == "b" else sources[0]
-        raise FileError(f"{source.place(error.index)}: the box {str(error).split(' ', 1)[1]}") from None
+        place = source.place(error.index) + _columns_at_fault(error, source, options)
+        what = str(error).split(" ", 1)[1].replace("remove it or replace it", "remove it, or pass --missing skip")
+        raise FileError(f"{place}: the box {what}") from None
     except (ValueError, TypeError) as error:
         names = " and ".join(source.name for source in sources)
         raise FileError(f"{names}: {error}") from None
+
+
+def _columns_at_fault(error: InvalidBoxError, source: Source, options: Options) -> str:
+    """The names of the columns that make a box invalid, if there are names."""
+    names = options.columns or source.box_columns(options.format)
+    if len(names) < 2:
+        return ""
+    first, second = names[error.axis], names[error.axis + len(names) // 2]
+    if np.isnan(error.minimum) or np.isnan(error.maximum):
+        return f", column {first if np.isnan(error.minimum) else second}"
+    return f", columns {first} and {second}"
 
 
 def _progress(what: str, options: Options) -> ProgressBar:
@@ -213,9 +231,9 @@ def _search(options: Options, sources: list[Source]) -> tuple[list[Any], dict[st
     """The sets of boxes and the options of the search."""
     sets = [source.boxes(options.columns, options.format) for source in sources]
     by = [options.by or source.by for source in sources]
-    groups = [source.label(name) for source, name in zip(sources, by) if name is not None]
+    groups = [source.groups(names) for source, names in zip(sources, by) if names]
     if groups and len(groups) != len(sources):
-        raise FileError(f"{sources[by.index(None)].name} has no groups, but the other file has: pass --by")
+        raise FileError(f"{sources[by.index([])].name} has no groups, but the other file has: pass --by")
     closed = {options.closed or source.closed for source in sources}
     if len(closed) > 1:
         raise FileError("the formats of the files differ in whether ends belong to boxes: pass --closed")
@@ -383,6 +401,6 @@ def _draw(options: Options, sources: list[Source]) -> None:
         axes.set_aspect("equal")
     axes.set_title(f"{len(boxes)} boxes" + (f", {len(pairs)} pairs" if options.pairs else ""))
     try:
-        figure.savefig(options.output)
+        figure.savefig(options.output, bbox_inches="tight")
     except (OSError, ValueError) as error:
         raise FileError(f"{options.output} cannot be written: {error}") from None

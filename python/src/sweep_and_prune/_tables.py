@@ -47,8 +47,8 @@ class Source:
 
     closed: str | None = None
     """What the format says about the ends of boxes."""
-    by: str | None = None
-    """The column that the format groups by."""
+    by: Sequence[str] = []
+    """The columns that the format groups by."""
 
     def __init__(self, name: str, values: Any, labels: dict[str, Any] | None = None) -> None:
         self.name, self.values, self.labels = name, values, labels or {}
@@ -65,11 +65,24 @@ class Source:
     def boxes(self, columns: Sequence[str], format: str) -> Any:
         """The boxes, from columns with these names or else from those that are recognized."""
         if not columns:
-            if self.columns and not box_columns(self.columns, format) and not isinstance(self.values, np.ndarray):
+            if self.columns and not self.box_columns(format) and not isinstance(self.values, np.ndarray):
                 way = unknown_columns(self.columns, "choose them by --columns", "--format {}")
                 raise FileError(f"{self.name} has no columns that are known as boxes: {way}; {_listed(self.columns)}")
             return self.values
         return np.column_stack([np.asarray(self._column(name)) for name in columns])
+
+    def box_columns(self, format: str) -> list[str]:
+        """The columns that are recognized as boxes."""
+        return [] if isinstance(self.values, np.ndarray) else box_columns(self.columns, format)
+
+    def groups(self, names: Sequence[str]) -> NDArray[Any]:
+        """The values of one column, or tuples of those of several."""
+        columns = [self.label(name) for name in names]
+        if len(columns) == 1:
+            return columns[0]
+        tuples = np.empty(len(self), object)
+        tuples[:] = list(zip(*(column.tolist() for column in columns)))
+        return tuples
 
     def label(self, name: str) -> NDArray[Any]:
         """A column of any type."""
@@ -161,8 +174,10 @@ def _read_text(name: str, file: IO[str], suffix: str) -> Source:
     if suffix not in (".tsv", ".bed"):
         first = next(text, "")
         delimiter = max(",;\t", key=first.count)
+        if delimiter not in first and " " in first.strip():
+            delimiter = " "
         text = chain([first] if first else [], text)
-    reader = csv.reader(text, delimiter=delimiter)
+    reader = csv.reader(text, delimiter=delimiter, skipinitialspace=True)
     rows = (row for row in reader if row and not (is_bed and _is_comment(row)))
     # All cells are in one list: with a list for each row, reading takes twice as long.
     cells: list[str] = []
@@ -190,7 +205,7 @@ def _read_text(name: str, file: IO[str], suffix: str) -> Source:
     table = _Text(name, columns, cells, lines)
     if is_bed:
         source = Source(name, table)
-        source.closed, source.by = "left", "chrom"
+        source.closed, source.by = "left", ["chrom"]
         return source
     return Source(name, np.column_stack([table[column] for column in columns]) if is_bare else table)
 
