@@ -94,7 +94,9 @@ def peak(name):
         return next(int(line.split()[1]) * 1024 for line in status if line.startswith(name))
 
 boxes = np.zeros((4400, 4))  # 10 million pairs
-sap.find_pairs(boxes[:2000], threads=2)  # starts the threads
+with_gap, with_point, in_space, group = boxes.copy(), boxes + [0, 0, 1, 1], np.zeros((4400, 6)), np.zeros(4400)
+with_gap[0], with_point[0], group[0] = np.nan, 0, 1
+sap.find_pairs(np.zeros((5000, 4))[::50].repeat(50, 0) + np.arange(5000)[:, None], threads=2)  # starts the threads
 finder, threads = sap.PairFinder(2, threads=int(sys.argv[2])), int(sys.argv[2])
 with open("/proc/self/clear_refs", "w") as file:
     file.write("5")  # the peak is what there is now
@@ -103,6 +105,9 @@ calls = {
     "find": lambda: sap.find_pairs(boxes, threads=threads),
     "finder": lambda: finder.find(boxes),
     "between": lambda: sap.find_pairs_between(boxes[:2200], boxes, threads=threads),
+    "skip": lambda: sap.find_pairs(with_gap, threads=threads, missing="skip"),
+    "open": lambda: sap.find_pairs(with_point, threads=threads, closed="left"),
+    "by": lambda: sap.find_pairs(in_space, threads=threads, by=group),
 }
 found = calls[sys.argv[1]]()
 print((peak("VmHWM") - before) / found.nbytes)
@@ -111,7 +116,7 @@ print((peak("VmHWM") - before) / found.nbytes)
 
 @pytest.mark.skipif(sys.platform != "linux", reason="memory is read in the way of Linux")
 @pytest.mark.parametrize("threads", ["1", "2"])
-@pytest.mark.parametrize("call", ["find", "finder", "between"])
+@pytest.mark.parametrize("call", ["find", "finder", "between", "skip", "open", "by"])
 def test_a_large_result_takes_little_more_memory_than_its_own(call: str, threads: str) -> None:
     done = subprocess.run([sys.executable, "-c", PEAK, call, threads], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

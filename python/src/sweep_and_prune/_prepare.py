@@ -14,6 +14,9 @@ from ._arrays import Floats, box_array, box_rows, checked_closed, numbers, same_
 from ._errors import InvalidBoxError
 from ._inputs import as_array, checked_format, named_column
 
+_BLOCK = 2**18
+"""So many pairs are translated at once: a second array of all of them would take as much memory as the result."""
+
 Rows = Optional[NDArray[np.int64]]
 
 
@@ -27,15 +30,25 @@ class Prepared(NamedTuple):
     """Groups that have to be compared after the search, because there is no axis left for them."""
 
     def translate(self, pairs: NDArray[Any]) -> NDArray[Any]:
-        """The pairs in rows of what the user passed."""
-        if self.groups is not None:
-            first, second = self.groups[0], self.groups[-1]
-            pairs = pairs[first[pairs[:, 0]] == second[pairs[:, 1]]]
-        if all(rows is None for rows in self.kept):
-            return pairs
-        columns = zip((self.kept[0], self.kept[-1]), pairs.T)
-        translated = [column if rows is None else rows[column] for rows, column in columns]
-        return np.stack(translated, axis=1).astype(pairs.dtype, copy=False)
+        """The pairs in rows of what the user passed, in the memory of `pairs`, which is written to and shortened."""
+        if self.groups is not None or any(rows is not None for rows in self.kept):
+            left = self._translate_in_place(pairs)
+            if left < len(pairs):
+                pairs.resize((left, 2), refcheck=False)
+        return pairs
+
+    def _translate_in_place(self, pairs: NDArray[Any]) -> int:
+        """Writes the translated pairs over the first ones, and returns their number."""
+        left = 0
+        for start in range(0, len(pairs), _BLOCK):
+            block = pairs[start : start + _BLOCK]
+            if self.groups is not None:
+                block = block[self.groups[0][block[:, 0]] == self.groups[-1][block[:, 1]]]
+            into = pairs[left : left + len(block)]
+            for column, rows in enumerate((self.kept[0], self.kept[-1])):
+                into[:, column] = block[:, column] if rows is None else rows[block[:, column]]
+            left += len(block)
+        return left
 
 
 def prepare(
