@@ -102,11 +102,20 @@ def test_every_format_is_read(name: str, capsys: pytest.CaptureFixture[str]) -> 
 
 def test_geometries_of_geoparquet_are_read(capsys: pytest.CaptureFixture[str]) -> None:
     geopandas, shapely = pytest.importorskip("geopandas"), pytest.importorskip("shapely")
-    geopandas.GeoDataFrame({"n": range(120)}, geometry=shapely.box(*BOXES.T)).to_parquet("a.parquet")
-    assert main(["count", "a.parquet"]) == 0
-    assert capsys.readouterr().out == f"{len(pairs(BOXES))}\n"
-    assert main(["pairs", "a.parquet", "--id", "n", "-o", "pairs.csv"]) == 0
-    assert np.array_equal(numbers(Path("pairs.csv").read_text()), pairs(BOXES))
+    frame = geopandas.GeoDataFrame({"n": range(120)}, geometry=shapely.box(*BOXES.T))
+    for options in ({}, {"geometry_encoding": "geoarrow"}, {"write_covering_bbox": True}):
+        frame.to_parquet("a.parquet", **options)
+        assert main(["count", "a.parquet"]) == 0
+        assert capsys.readouterr().out == f"{len(pairs(BOXES))}\n"
+        assert main(["pairs", "a.parquet", "--id", "n", "-o", "pairs.csv"]) == 0
+        assert np.array_equal(numbers(Path("pairs.csv").read_text()), pairs(BOXES))
+
+
+def test_times_are_intervals() -> None:
+    arrow = pytest.importorskip("pyarrow")
+    times = {name: arrow.array(column, arrow.timestamp("ns")) for name, column in (("start", [0, 5]), ("end", [5, 9]))}
+    importlib.import_module("pyarrow.parquet").write_table(arrow.table(times), "a.parquet")
+    assert run("count", "a.parquet") == "1\n" and run("count", "a.parquet", "--closed", "left") == "0\n"
 
 
 @pytest.mark.parametrize("name", ["p.csv", "p.tsv", "p.npy", "p.parquet", "p.arrow", "p.feather"])
@@ -214,6 +223,13 @@ def test_missing_numbers_are_refused_with_their_line_or_left_out(capsys: pytest.
         ("a.bed", "chr1\t5\n", "a.bed, line 1: chrom, start and end are expected"),
         ("a.json", "{", "a.json, line 1: "),
         ("a.json", "[]", "a.json is not a FeatureCollection"),
+        ("a.json", '{"features": [null]}', "a.json, feature 0 (the first is 0) is not valid GeoJSON"),
+        (
+            "a.json",
+            '{"features": [{}, {"geometry": {"coordinates": ["ab"]}}]}',
+            "a.json, feature 1 (the first is 0) is not",
+        ),
+        ("a.csv", "xmin,xmax,ymin\n0,1,0\n", "a.csv has no columns that are known as boxes: choose them by --columns"),
         ("a.npy", "", "a.npy is not an array of NumPy"),
         ("a.parquet", "nonsense", "a.parquet cannot be read"),
         ("a.feather", "nonsense", "a.feather cannot be read"),

@@ -103,6 +103,10 @@ def test_columns_of_other_dimensions_and_formats() -> None:
     assert same(sap.find_pairs(intervals), pairs(np.stack([x, x + width], 1)))  # type: ignore[arg-type]
     of_ucsc = {"chromStart": x, "chromEnd": x + width}
     assert same(sap.find_pairs(of_ucsc), pairs(np.stack([x, x + width], 1)))  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="no columns that are known as boxes"):
+        sap.find_pairs(Frame(xmin=x, xmax=x, ymin=y))  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="column start must have numbers, not text"):
+        sap.find_pairs(Frame(start=np.array(["0", 1], object), end=np.array([2, 3])))  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"no columns that are known as boxes.*its columns are a, b; rename"):
         sap.find_pairs(Frame(a=x, b=y))  # type: ignore[arg-type]
     assert sap.count_pairs(np.empty((0, 2, 3))) == 0  # without boxes, too

@@ -173,8 +173,9 @@ def box_columns(columns: list[str], format: str) -> list[str]:
     """The columns that are recognized as boxes: min corner and then max corner, or one column of nested boxes."""
     known = {column.lower().replace("_", ""): column for column in columns}
     for first, second in _spellings(format):
-        count = sum(1 for pair in zip(first, second) if pair[0] in known and pair[1] in known)
-        if count and all(part in known for part in first[:count] + second[:count]):
+        ends = [(part in known) + (other in known) for part, other in zip(first, second)]
+        count = ends.count(2)
+        if count and ends == [2] * count + [0] * (len(ends) - count):  # no axis has one end only
             return [known[part] for part in first[:count] + second[:count]]
     return [known["bbox"]] if "bbox" in known and len(columns) > 1 else []  # as in GeoParquet
 
@@ -211,6 +212,8 @@ def _column(values: Any, column: str) -> NDArray[Any]:
     array: NDArray[Any] = np.asarray(values)
     _refuse_rounding(array, str(getattr(values, "dtype", getattr(values, "type", ""))), f"column {column}")
     if array.dtype.kind == "O":  # nullable integers of pandas
+        if any(isinstance(value, str) for value in array.tolist()):
+            raise TypeError(f"column {column} must have numbers, not text")
         if hasattr(values, "to_numpy"):
             try:
                 return np.asarray(values.to_numpy(dtype=np.float64, na_value=np.nan))

@@ -63,7 +63,7 @@ def prepare(
     checked_format(format)
     if not (isinstance(missing, str) and missing in ("raise", "skip")):
         raise ValueError(f'missing must be "raise" or "skip", not {missing!r}')
-    has_margin = not (type(margin) is int and margin == 0)
+    has_margin = not (type(margin) in (int, float) and margin == 0)
     is_plain = format == "xyxy" and closed is None and missing == "raise" and by is None and not has_margin
     if is_plain and all(type(boxes) is np.ndarray and boxes.dtype.kind == "f" for boxes in sets.values()):
         rows = [box_rows(boxes, name) for name, boxes in sets.items()]  # the common case, quickly

@@ -257,7 +257,13 @@ def _read_geojson(path: str) -> Source:
     features = document.get("features") if isinstance(document, dict) else None
     if not isinstance(features, list):
         raise FileError(f"{path} is not a FeatureCollection of GeoJSON")
-    boxes = np.array([_bounds(feature.get("geometry")) for feature in features]).reshape(-1, 4)
+    bounds = []
+    for index, feature in enumerate(features):
+        try:
+            bounds.append(_bounds(feature.get("geometry")))
+        except (AttributeError, IndexError, TypeError, ValueError):
+            raise FileError(f"{path}, feature {index} (the first is 0) is not valid GeoJSON") from None
+    boxes = np.array(bounds, np.float64).reshape(-1, 4)
     properties = [feature.get("properties") or {} for feature in features]
     names = sorted({name for row in properties for name in row})
     labels = {name: np.array([row.get(name) for row in properties], object) for name in names}
@@ -279,6 +285,8 @@ def _points(geometry: Any) -> Iterator[tuple[float, float]]:
     waiting = [geometry.get("coordinates") or []]
     while waiting:
         item = waiting.pop()
+        if not isinstance(item, list):
+            raise TypeError("coordinates are lists")
         if item and isinstance(item[0], (int, float)):
             yield item[0], item[1]
         else:
@@ -303,13 +311,13 @@ def _read_arrow(path: str, suffix: str) -> Source:
     geo = (table.schema.metadata or {}).get(b"geo")
     if geo is not None and "bbox" not in table.column_names:
         try:
-            import shapely
+            import geopandas
         except ImportError:
-            raise FileError(f"{path} has geometries, for which shapely must be installed") from None
+            raise FileError(f"{path} has geometries: pip install 'sweep-and-prune[join]'") from None
         column = json.loads(geo)["primary_column"]
-        shapes = shapely.from_wkb(np.asarray(table[column], object))
+        shapes = geopandas.GeoDataFrame.from_arrow(table.select([column])).geometry
         others = {name: np.asarray(table[name]) for name in table.column_names if name != column}
-        return Source(path, np.asarray(shapely.bounds(shapes)).reshape(-1, 4), others)
+        return Source(path, shapes.bounds.to_numpy(), others)
     return Source(path, table)
 
 
