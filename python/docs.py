@@ -78,7 +78,7 @@ sys.path.insert(0, str(package.parent))
 if not list(package.glob("_native*.so")) + list(package.glob("_native*.pyd")):
     # Everything public is written in Python, so the compiled part is not needed to describe it.
     stand_in = ModuleType("sweep_and_prune._native")
-    stand_in.Finder = stand_in.World = object  # type: ignore[attr-defined]
+    stand_in.__getattr__ = lambda name: object  # type: ignore[method-assign]
     sys.modules[stand_in.__name__] = stand_in
 
 pdoc.doc.safe_eval_type = as_written  # type: ignore[assignment, attr-defined]

@@ -258,9 +258,11 @@ def test_disks_intersect_where_no_vertex_is_within_the_other() -> None:
     assert check_same(frame, frame) > 3000
 
 
-@pytest.mark.parametrize(
-    ("pairs", "rows", "others"), [(0, 3, 3), (1, 1, 1), (500, 7, 2**32), (500, 400, 3), (20, 20, 20)]
-)
+ORDERS = [(0, 3, 3), (1, 1, 1), (500, 7, 2**32), (500, 400, 3), (20, 20, 20)]
+ORDERS += [(9000, 5000, 9), (3000, 2**20, 2**20), (3000, 2**26 - 1, 4)]  # with several rows in a bucket
+
+
+@pytest.mark.parametrize(("pairs", "rows", "others"), ORDERS)
 def test_pairs_are_put_in_order(pairs: int, rows: int, others: int) -> None:
     random = np.random.default_rng(pairs)
     first, second = random.integers(0, rows, pairs), random.integers(0, others, pairs)
