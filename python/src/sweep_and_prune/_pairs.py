@@ -55,9 +55,10 @@ def find_pairs(
     Args:
         boxes: `(n, 2 * D)` numbers, D from 1 to 3: in each row the min corner and then the max corner, such as
             min x, min y, max x, max y. `float32` is compared in single precision; everything else as `float64`,
-            but integers beyond 2^53 and `datetime64` exactly. Also accepted: `(n, 2, D)`; data frames and Arrow
-            tables with columns such as `minx, miny, maxx, maxy`, `xmin ..`, `x1 ..`, `left ..` or `start, end`;
-            arrays and series of shapely geometries (their bounds); an `IntervalIndex`; tensors.
+            but integers beyond 2^53 and `datetime64` exactly. Also accepted: `(n, 2, D)`; data frames, Arrow
+            tables, dicts and structured arrays with columns such as `minx, miny, maxx, maxy`, `xmin ..`, `x1 ..`,
+            `left ..` or `start, end`; arrays and series of shapely geometries (their bounds); an `IntervalIndex` or a
+            series of intervals; tensors.
         threads: how many to use at most, from 4,096 boxes on; -1 for one on each processor.
         dtype: the type of the indices: `int64`, `int32`, `uint32` or `uint64`.
         format: `"xyxy"`: min corner, max corner. `"xywh"`: min corner, size. `"cxcywh"`: center, size.
