@@ -10,7 +10,7 @@ use sweep_and_prune_bindings::{ArrayPairFinder, Kind};
 
 use crate::arrays::{Array, Index, MANY, copy_boxes};
 use crate::errors::{busy, raise};
-use crate::run::{attach, call, processors, run};
+use crate::run::{attach, call_back, processors, run};
 
 /// A pair finder, which one call uses at a time.
 #[pyclass(frozen, module = "sweep_and_prune._native")]
@@ -168,7 +168,7 @@ fn raise_for(py: Python<'_>, error: Error, sets: Sets) -> PyErr {
 
 /// Calls `each` with a chunk, and returns whether it wants another one.
 fn wants_more<'py>(each: &Array<'py>, chunk: Array<'py>) -> PyResult<bool> {
-    let answer = call(each, (chunk,))?;
+    let answer = call_back(each, (chunk,))?;
     each.py().check_signals()?;
     Ok(answer.is_none() || answer.is_truthy()?)
 }

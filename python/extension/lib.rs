@@ -4,6 +4,7 @@
 
 mod arrays;
 mod errors;
+mod exit;
 mod finder;
 mod order;
 mod run;
@@ -12,10 +13,19 @@ mod world;
 /// What `sweep_and_prune/_native.pyi` describes.
 #[pyo3::pymodule]
 mod _native {
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use super::exit::stop_threads;
     #[pymodule_export]
     use super::finder::Finder;
     #[pymodule_export]
     use super::order::in_order;
     #[pymodule_export]
     use super::world::World;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        super::exit::register(module)
+    }
 }

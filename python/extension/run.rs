@@ -18,6 +18,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use crate::exit;
+
 /// Fewer boxes than this take less time than releasing the GIL and waiting to acquire it again.
 pub const FEW: usize = 1024;
 
@@ -45,6 +47,7 @@ pub fn run<R: Send>(
     report: Option<&Py<PyAny>>,
     work: impl FnOnce(Progress<'_>) -> R + Send,
 ) -> PyResult<R> {
+    let _back = exit::enter(py);
     let work = |progress: Progress<'_>| catch_unwind(AssertUnwindSafe(|| work(progress)));
     let watch = Watch::new(report);
     let done = if boxes < FEW {
@@ -58,24 +61,51 @@ pub fn run<R: Send>(
     done.map_err(|panic| panicked(&*panic))
 }
 
-/// Calls a Python function. This crate calls no Python function in another way.
+/// A tuple of arguments.
+pub trait Arguments<'py>:
+    IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error: Into<PyErr>>
+{
+}
+
+impl<'py, T> Arguments<'py> for T where
+    T: IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error: Into<PyErr>>
+{
+}
+
+/// Calls a Python function that is not the user's. This crate calls Python functions in this way and by [`call_back`].
+///
+/// # Errors
+/// What the function raises.
+pub fn call<'py>(
+    function: &Bound<'py, PyAny>,
+    arguments: impl Arguments<'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let _back = exit::enter(function.py());
+    call_object(function, arguments)
+}
+
+/// Calls a Python function of the user, which may take long.
+///
+/// # Errors
+/// What the function raises.
+pub fn call_back<'py>(
+    function: &Bound<'py, PyAny>,
+    arguments: impl Arguments<'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let _back = exit::enter_callback();
+    call_object(function, arguments)
+}
+
+/// Calls a Python function so that the thread may be ended meanwhile.
 ///
 /// While the interpreter shuts down, Python up to 3.13 ends other threads by `pthread_exit` when they
 /// run Python code. That unwinds the stack, which aborts the process if Rust frames without cleanup
 /// are on it. This function catches the unwinding and lets the thread sleep until the process ends,
 /// as Python 3.14 does.
-///
-/// # Errors
-/// What the function raises.
 #[allow(unsafe_code)]
-pub fn call<'py>(
+fn call_object<'py>(
     function: &Bound<'py, PyAny>,
-    arguments: impl IntoPyObject<
-        'py,
-        Target = PyTuple,
-        Output = Bound<'py, PyTuple>,
-        Error: Into<PyErr>,
-    >,
+    arguments: impl Arguments<'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
     type Plain = unsafe extern "C" fn(*mut PyObject, *mut PyObject) -> *mut PyObject;
     type Unwinding = unsafe extern "C-unwind" fn(*mut PyObject, *mut PyObject) -> *mut PyObject;
@@ -84,11 +114,11 @@ pub fn call<'py>(
     // SAFETY: the two types differ only in that the second tells the compiler that the call may
     // unwind, so that it runs `guard`'s destructor then. The black box keeps the compiler from
     // recognizing the function, which is declared as one that never unwinds.
-    let call_object: Unwinding =
+    let unwinding: Unwinding =
         black_box(unsafe { std::mem::transmute::<Plain, Unwinding>(PyObject_CallObject) });
     let guard = SleepForever;
     // SAFETY: both are live objects, the second is a tuple, and the GIL is held.
-    let result = unsafe { call_object(function.as_ptr(), arguments.as_ptr()) };
+    let result = unsafe { unwinding(function.as_ptr(), arguments.as_ptr()) };
     std::mem::forget(guard);
     // SAFETY: the call returned a new reference, or null with an exception set.
     unsafe { Bound::from_owned_ptr_or_err(py, result) }
@@ -99,19 +129,14 @@ struct SleepForever;
 
 impl Drop for SleepForever {
     fn drop(&mut self) {
-        sleep_forever()
-    }
-}
-
-fn sleep_forever() -> ! {
-    loop {
-        std::thread::sleep(Duration::from_secs(3600));
+        exit::stop()
     }
 }
 
 /// Acquires the GIL. If the interpreter has shut down, the thread sleeps until the process ends.
 pub fn attach<R>(work: impl FnOnce(Python<'_>) -> R) -> R {
-    Python::try_attach(work).unwrap_or_else(|| sleep_forever())
+    exit::stop_if_exiting();
+    Python::try_attach(work).unwrap_or_else(|| exit::stop())
 }
 
 /// Runs work on a pool while the calling thread watches: Python delivers signals only to its main
@@ -199,7 +224,7 @@ impl<'a> Watch<'a> {
         if state.1.is_none() {
             let checked = attach(|py| {
                 py.check_signals()?;
-                self.report.map_or(Ok(()), |report| call(report.bind(py), (done,)).map(drop))
+                self.report.map_or(Ok(()), |report| call_back(report.bind(py), (done,)).map(drop))
             });
             *state = (Instant::now(), checked.err());
         }

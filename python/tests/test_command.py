@@ -50,6 +50,12 @@ def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
     return captured.err
 
 
+def with_ctrl_c(command: list[str]) -> subprocess.Popen[str]:
+    """Starts a program that Ctrl-C ends: a shell starts what runs in the background, these tests too, without it."""
+    default = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)  # noqa: E731
+    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=default)
+
+
 def numbers(text: str) -> Array:
     lines = text.splitlines()
     assert lines[0] == "a,b"
@@ -325,13 +331,7 @@ def test_a_pipe_that_is_closed_ends_the_program_quietly(boxes: int, unbuffered: 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals there")
 def test_ctrl_c_ends_the_program_and_leaves_no_file() -> None:
     np.save("a.npy", np.zeros((30_000, 2)))  # 450 million pairs
-    program = subprocess.Popen(
-        [*SAP, "pairs", "a.npy", "-o", "p.csv"],
-        stderr=subprocess.PIPE,
-        text=True,
-        # A shell starts what runs in the background without this signal, and with it these tests.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
-    )
+    program = with_ctrl_c([*SAP, "pairs", "a.npy", "-o", "p.csv"])
     while not Path("p.csv.part").exists():
         assert program.poll() is None
     program.send_signal(signal.SIGINT)
@@ -410,7 +410,7 @@ def test_ctrl_c_keeps_what_is_done_and_the_same_command_continues() -> None:
     table = pyarrow.table(dict(zip(NAMES, boxes.T)))
     pyarrow.parquet.write_table(table, "a.parquet", row_group_size=20_000)
     command = [*SAP, "pairs", "a.parquet", "-o", "out", "--memory-limit", "400MB", "--workers", "0"]
-    program = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    program = with_ctrl_c(command)
     while not list(Path().glob("out.unfinished/spill/*.json")):
         assert program.poll() is None
     program.send_signal(signal.SIGINT)

@@ -52,3 +52,39 @@ def test_the_interpreter_exits_while_daemon_threads_search(work: str) -> None:
     for _ in range(6 if work == "callback" else 2):
         done = subprocess.run([sys.executable, "-c", PROGRAM, work], capture_output=True, text=True, timeout=120)
         assert (done.returncode, done.stderr) == (0, "")
+
+
+AT_EXIT = """
+import atexit, threading, time
+import numpy as np
+
+def after_the_package():
+    time.sleep(0.1)
+    before = calls
+    time.sleep(0.2)
+    print(calls - before, len(sap.find_pairs([[0, 1], [1, 2]])))
+
+atexit.register(after_the_package)  # the last one that is registered is called first
+import sweep_and_prune as sap
+
+calls = 0
+boxes = np.zeros((2000, 2))
+chunks = sap.iter_chunks(boxes, size=3)  # its thread waits for ever
+next(chunks)
+
+def work():
+    global calls
+    finder, small = sap.PairFinder(1), np.zeros((2, 2))
+    while True:
+        finder.find(small)
+        calls += 1
+
+threading.Thread(target=work, daemon=True).start()
+while calls < 100:
+    time.sleep(0.001)
+"""
+
+
+def test_when_the_interpreter_exits_other_threads_stop_and_its_own_goes_on() -> None:
+    done = subprocess.run([sys.executable, "-c", AT_EXIT], capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "0 1\n", "")

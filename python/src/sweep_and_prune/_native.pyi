@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from ._arrays import Floats, Ids, Pairs
 
-__all__ = ["Finder", "World", "in_order"]
+__all__ = ["Finder", "World", "in_order", "stop_threads"]
 
 _Words = tuple[int, int, int, bool]
 
@@ -62,3 +62,4 @@ class World:
 def in_order(
     first: NDArray[np.int64], second: NDArray[np.int64], rows: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]: ...
+def stop_threads() -> None: ...
