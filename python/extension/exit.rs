@@ -36,7 +36,7 @@ thread_local! {
 
 /// Threads that search look every 20 ms whether they have to stop; a busy machine may let them wait for much longer.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// A callback may wait for ever, for example for somebody to take its chunk.
+/// A callback may wait for ever, for example until its chunk is taken.
 const PATIENCE_WITH_CALLBACKS: Duration = Duration::from_millis(50);
 
 /// Marks the thread as being where it was before when this is dropped.
