@@ -74,7 +74,10 @@ class _Sap(click.Group):
 
 
 @click.group(
-    cls=_Sap, epilog=_EPILOG, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 120}
+    cls=_Sap,
+    epilog=_EPILOG,
+    no_args_is_help=False,  # versions of click differ in what that is
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 120},
 )
 @click.version_option(package_name="sweep-and-prune", message="sap %(version)s")
 def sap() -> None:
