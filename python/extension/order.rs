@@ -31,17 +31,16 @@ pub fn in_order<'py>(
     let mut pairs = filled([0; 2], a.len().min(b.len()))?;
     let shift = (usize::BITS - rows.leading_zeros()).saturating_sub(BUCKET_BITS);
     let mut bucket_ends = filled(0, (rows >> shift) + 1)?;
+    let placed =
+        run(py, a.len(), 1, None, |_| to_buckets(a, b, rows, shift, &mut bucket_ends, &mut pairs))?;
+    placed.ok_or_else(|| PyIndexError::new_err("a row is out of range"))?;
     let mut row_ends = filled(0, 1 << shift)?;
-    let sorted = run(py, a.len(), 1, None, |_| {
-        to_buckets(a, b, rows, shift, &mut bucket_ends, &mut pairs)?;
-        let (mut begin, mut partners) = (0, Vec::new());
-        for &end in &bucket_ends {
-            sort_bucket(&mut pairs[begin..end], &mut row_ends, &mut partners);
-            begin = end;
-        }
-        Some(())
+    let begins = [0].into_iter().chain(bucket_ends.iter().copied());
+    let buckets = begins.zip(&bucket_ends).map(|(begin, &end)| begin..end);
+    let mut partners = filled(0, buckets.clone().map(|bucket| bucket.len()).max().unwrap_or(0))?;
+    run(py, a.len(), 1, None, |_| {
+        buckets.for_each(|bucket| sort_bucket(&mut pairs[bucket], &mut row_ends, &mut partners));
     })?;
-    sorted.ok_or_else(|| PyIndexError::new_err("a row is out of range"))?;
     let column = |side: usize| numbers(py, pairs.iter().map(move |pair| i64::from(pair[side])));
     Ok((column(0)?, column(1)?))
 }
@@ -68,8 +67,8 @@ fn to_buckets(
     Some(())
 }
 
-/// Sorts the pairs of a bucket. `ends` is as long as a bucket has rows, and `partners` is memory to use.
-fn sort_bucket(bucket: &mut [[u32; 2]], ends: &mut [usize], partners: &mut Vec<u32>) {
+/// Sorts the pairs of a bucket. `ends` is as long as a bucket has rows, and `partners` at least as long as it has pairs.
+fn sort_bucket(bucket: &mut [[u32; 2]], ends: &mut [usize], partners: &mut [u32]) {
     let Some(&[some_row, _]) = bucket.first() else { return };
     let mask = ends.len() as u32 - 1; // a power of two
     let first_row = some_row & !mask;
@@ -78,7 +77,6 @@ fn sort_bucket(bucket: &mut [[u32; 2]], ends: &mut [usize], partners: &mut Vec<u
         ends[(row & mask) as usize] += 1;
     }
     to_places(ends);
-    partners.resize(partners.len().max(bucket.len()), 0);
     for &[row, partner] in &*bucket {
         let place = &mut ends[(row & mask) as usize];
         partners[*place] = partner;
