@@ -146,7 +146,7 @@ def test_killing_a_worker_at_ten_random_moments_gives_the_same_hash() -> None:
     wanted = hash_of(boxes)
     moments = random.Random(1)
     kills = 0
-    for _ in range(10):
+    while kills < 10:  # a fast machine finishes some runs before the first moment
         process = start("2GB", "2")
         while not Path("out.unfinished/_plan.json").exists() and process.poll() is None:
             time.sleep(0.01)
@@ -160,7 +160,6 @@ def test_killing_a_worker_at_ten_random_moments_gives_the_same_hash() -> None:
                     kills += 1
         assert process.wait() == 0
         assert sap.read_manifest("out").hash == wanted
-    assert kills >= 10
 
 
 def test_a_run_that_is_killed_as_a_whole_ten_times_ends_with_the_same_hash() -> None:
