@@ -278,7 +278,8 @@ def _tested(
         limits = distances[of_b if is_flipped else of_a]
         are_points = side_a.are_points and side_b.are_points
         # Complex numbers, since NumPy gathers them several times as fast as rows of two numbers.
-        points = [side.bounds[:, :2].copy().view(np.complex128)[:, 0] for side in (side_a, side_b)]
+        of_points = (side_a, side_b) if are_points else ()
+        points = [side.bounds[:, :2].copy().view(np.complex128)[:, 0] for side in of_points]
 
         def test(rows: slice) -> NDArray[np.bool_]:
             first, second, limit = of_a[rows], of_b[rows], limits[rows]

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, DTypeLike
 
 from ._arrays import Floats, Pairs, box_rows, float_dtype, index_dtype, thread_count, whole
 from ._native import Finder
-from ._prepare import Prepared, prepare
+from ._prepare import Prepared, is_zero, prepare
 
 Margin = Union[ArrayLike, timedelta]
 """A distance: a number, one for each axis, or a `timedelta`."""
@@ -620,7 +620,7 @@ class PairFinder:
 
     def _rows(self, boxes: ArrayLike, name: str, margin: Margin) -> Floats:
         rows = box_rows(boxes, name, self._dtype, self._dimensions)
-        if type(margin) is int and margin == 0:
+        if is_zero(margin):
             return rows
         return prepare({name: rows}, margin=margin).sets[0]
 

@@ -63,7 +63,7 @@ def prepare(
     checked_format(format)
     if not (isinstance(missing, str) and missing in ("raise", "skip")):
         raise ValueError(f'missing must be "raise" or "skip", not {missing!r}')
-    has_margin = not (type(margin) in (int, float) and margin == 0)
+    has_margin = not is_zero(margin)
     is_plain = format == "xyxy" and closed is None and missing == "raise" and by is None and not has_margin
     if is_plain and all(type(boxes) is np.ndarray and boxes.dtype.kind == "f" for boxes in sets.values()):
         rows = [box_rows(boxes, name) for name, boxes in sets.items()]  # the common case, quickly
@@ -108,6 +108,11 @@ def prepare(
         rows = [_with_axis(boxes, code) for boxes, code in zip(rows, codes)]
         groups = None
     return Prepared(rows, kept, groups)
+
+
+def is_zero(margin: object) -> bool:
+    """Whether there is no margin, which is so for times, too."""
+    return type(margin) in (int, float) and margin == 0
 
 
 def _with_axis(boxes: Floats, code: Any) -> Floats:
