@@ -22,8 +22,8 @@ let server;
 let base = "";
 /** What stands between the body's tags. */
 let body = "";
-/** How long scripts take to come, in milliseconds. */
-let delay = 0;
+/** Scripts come once this is fulfilled. */
+let scripts = Promise.resolve();
 
 before(async () => {
   const installed = join(project, "node_modules/sweep-and-prune");
@@ -40,7 +40,8 @@ before(async () => {
         response.writeHead(404).end();
       }
     };
-    setTimeout(send, type.includes("javascript") ? delay : 0);
+    if (type.includes("javascript")) scripts.then(send);
+    else send();
   }).listen(0, "127.0.0.1");
   await once(server, "listening");
   const address = /** @type {import("node:net").AddressInfo} */ (server.address());
@@ -104,23 +105,23 @@ test("nothing moves when the script comes, in any form", async () => {
     'strategy="swap" balls="20" array style="--sap-array-rows: 3"',
   ];
   body = forms.map((form) => `<sap-demo ${form} paused><p slot="caption" style="margin: 0">A caption</p></sap-demo>`).join("");
-  delay = 700;
   const { page, complaints } = await open();
   for (const width of [1200, 390]) {
     await page.setViewportSize({ width, height: 800 });
+    let release = () => {};
+    scripts = new Promise((resolve) => (release = resolve));
     await page.goto(base, { waitUntil: "commit" });
-    await page.waitForSelector("sap-demo:last-of-type", { state: "attached" });
-    await page.waitForTimeout(200);
+    await page.waitForFunction("document.readyState === 'interactive' && document.styleSheets.length === 1");
     const heights = "[...document.querySelectorAll('sap-demo')].map((demo) => demo.getBoundingClientRect().height)";
     assert.equal(await page.evaluate("customElements.get('sap-demo')"), undefined, "not yet there");
     const before = /** @type {number[]} */ (await page.evaluate(heights));
+    release();
     await page.evaluate("customElements.whenDefined('sap-demo').then(() => Promise.all([...document.querySelectorAll('sap-demo')].map(({ ready }) => ready)))");
     const then = /** @type {number[]} */ (await page.evaluate(heights));
     for (const [index, form] of forms.entries()) {
       assert.ok(Math.abs((then[index] ?? 0) - (before[index] ?? 0)) <= 1, `${form} at ${width}: ${before[index]} became ${then[index]}`);
     }
   }
-  delay = 0;
   assert.deepEqual(complaints, []);
   await page.close();
 });
