@@ -77,7 +77,7 @@ pub trait TrackBodies<I: Id>: Send {
 #[allow(clippy::missing_errors_doc)]
 pub trait AnyBroadPhase<I: Id>: TrackBodies<I> {
     /// Appends the ids of the pairs of the last update, two a pair, sorted.
-    fn pairs(&mut self, ids: &mut Vec<I>);
+    fn pairs(&self, ids: &mut Vec<I>);
 
     /// Appends them in no particular order, which takes less time.
     fn pairs_unsorted(&self, ids: &mut Vec<I>);
@@ -218,21 +218,17 @@ impl<const D: usize, T: Scalar, I: Id> TrackBodies<I> for TypedBroadPhase<D, T> 
 }
 
 impl<const D: usize, T: Scalar, I: Id> AnyBroadPhase<I> for TypedBroadPhase<D, T> {
-    fn pairs(&mut self, ids: &mut Vec<I>) {
-        let mut keys = pair_keys(&self.world);
-        keys.sort_unstable();
-        append_keys(&keys, ids);
+    fn pairs(&self, ids: &mut Vec<I>) {
+        ids.extend(self.world.pairs().flatten().map(I::from_proxy));
     }
 
     fn pairs_unsorted(&self, ids: &mut Vec<I>) {
-        append_keys(&pair_keys(&self.world), ids);
+        ids.extend(self.world.pairs_unsorted().flatten().map(I::from_proxy));
     }
 
-    fn pairs_of(&mut self, of: ProxyId, ids: &mut Vec<I>) -> Result<(), Error> {
+    fn pairs_of(&mut self, id: ProxyId, ids: &mut Vec<I>) -> Result<(), Error> {
         self.world.queries(); // which makes the tree that `pairs_of` searches
-        let mut keys: Vec<_> = self.world.pairs_of(of)?.map(key).collect();
-        keys.sort_unstable();
-        ids.extend(keys.into_iter().map(|key| I::from_proxy(id(key))));
+        ids.extend(self.world.pairs_of(id)?.map(I::from_proxy));
         Ok(())
     }
 
@@ -284,30 +280,4 @@ fn append<I: Id>(pairs: Pairs<'_>, ids: &mut Vec<I>) {
     for pair in pairs {
         ids.extend(pair.map(I::from_proxy));
     }
-}
-
-/// The pairs of the last update as numbers of the same order.
-#[inline(never)]
-fn pair_keys<const D: usize, T: Scalar>(world: &BroadPhase<D, T>) -> Vec<u128> {
-    world.pairs().map(|[a, b]| u128::from(key(a)) << 64 | u128::from(key(b))).collect()
-}
-
-/// Appends the ids of [`pair_keys`]. One copy of it serves all dimensions.
-#[inline(never)]
-fn append_keys<I: Id>(keys: &[u128], ids: &mut Vec<I>) {
-    ids.reserve(2 * keys.len());
-    for pair in keys {
-        ids.extend([pair >> 64, *pair].map(|key| I::from_proxy(id(key as u64))));
-    }
-}
-
-/// The id as a number of the same order, slot above generation. Numbers are sorted by code that the finder
-/// contains anyway, which keeps the .wasm file small.
-fn key(id: ProxyId) -> u64 {
-    id.to_bits().rotate_left(32)
-}
-
-/// The id of a [`key`].
-fn id(key: u64) -> ProxyId {
-    ProxyId::from_bits(key.rotate_left(32))
 }

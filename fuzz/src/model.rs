@@ -182,31 +182,118 @@ impl<const D: usize, T: Scalar> Model<D, T> {
         all
     }
 
-    /// When a cast first touches each body that it hits, sorted by that and then by id.
-    pub fn hits(&self, cast: &Cast<D, T>, filter: &Option<Filter>) -> Vec<(f64, ProxyId)> {
+    /// What a cast hits, sorted by t and then by id.
+    pub fn hits(&self, cast: &Cast<D, T>, filter: &Option<Filter>) -> Vec<ModelHit<D>> {
         let mut hits = Vec::new();
-        'bodies: for (id, aabb) in self.seen(filter) {
-            // The times at which the intervals overlap, axis by axis.
-            let mut times = (0.0f64, cast.limit.to_f64());
-            for axis in 0..D {
-                let speed = cast.direction[axis].to_f64();
-                let until_touch = aabb.min[axis].to_f64() - cast.from.max[axis].to_f64();
-                let until_past = aabb.max[axis].to_f64() - cast.from.min[axis].to_f64();
-                if speed != 0.0 {
-                    let (a, b) = (until_touch / speed, until_past / speed);
-                    times = (times.0.max(a.min(b)), times.1.min(a.max(b)));
-                } else if until_touch > 0.0 || until_past < 0.0 {
-                    continue 'bodies;
-                }
+        for (id, aabb) in self.seen(filter) {
+            let axes: [_; D] = std::array::from_fn(|axis| Approach {
+                speed: cast.direction[axis].to_f64(),
+                until_touch: aabb.min[axis].to_f64() - cast.from.max[axis].to_f64(),
+                until_past: aabb.max[axis].to_f64() - cast.from.min[axis].to_f64(),
+            });
+            let limit = cast.limit.to_f64();
+            let (mut first, mut last) = (0.0f64, limit);
+            for (from, to) in axes.iter().map(Approach::touching) {
+                (first, last) = (first.max(from), last.min(to));
             }
-            if times.0 <= times.1 {
+            if first <= last {
+                let face = face(&axes);
+                let mut normal = [0.0; D];
+                face.into_iter().for_each(|(axis, side)| normal[axis] = side);
+                let starts_inside = face.is_none();
+                let is_entered = is_entered(&axes, limit);
                 // Not -0.0, which is no other time.
-                hits.push((times.0 + 0.0, id));
+                hits.push(ModelHit { t: first + 0.0, id, normal, starts_inside, is_entered });
             }
         }
-        hits.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        hits.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.id.cmp(&b.id)));
         hits
     }
+}
+
+/// What a cast hits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModelHit<const D: usize> {
+    pub t: f64,
+    pub id: ProxyId,
+    pub normal: [f64; D],
+    pub starts_inside: bool,
+    /// Whether a cast that ignores what it touches hits it too.
+    pub is_entered: bool,
+}
+
+/// How a cast approaches a box on one axis.
+struct Approach {
+    speed: f64,
+    until_touch: f64,
+    until_past: f64,
+}
+
+impl Approach {
+    /// From which t to which the intervals touch; the first is later if they never do.
+    fn touching(&self) -> (f64, f64) {
+        let never = (f64::INFINITY, f64::NEG_INFINITY);
+        match (self.until_touch, self.until_past) {
+            (touch, past) if self.speed != 0.0 => {
+                let (a, b) = (touch / self.speed, past / self.speed);
+                (a.min(b), a.max(b))
+            }
+            (touch, past) if touch > 0.0 || past < 0.0 => never,
+            _ => (never.1, never.0),
+        }
+    }
+
+    /// Whether the insides meet for ever where nothing moves.
+    fn is_inside(&self) -> bool {
+        self.until_touch < 0.0 && self.until_past > 0.0 || self.until_touch == self.until_past
+    }
+}
+
+/// The face that is touched first, and which way it looks; none if the insides overlap at the start.
+fn face<const D: usize>(axes: &[Approach; D]) -> Option<(usize, f64)> {
+    let towards = |axis: &Approach| axis.speed != 0.0 && axis.touching().0 >= 0.0;
+    let latest = axes.iter().filter(|axis| towards(axis)).map(|axis| axis.touching().0);
+    if let Some(latest) = latest.reduce(f64::max) {
+        let is_it = |axis: &Approach| towards(axis) && axis.touching().0 == latest;
+        let axis = axes.iter().position(is_it).unwrap();
+        return Some((axis, if axes[axis].speed > 0.0 { -1.0 } else { 1.0 }));
+    }
+    for (at, axis) in axes.iter().enumerate() {
+        if axis.until_touch == 0.0 {
+            return Some((at, -1.0));
+        }
+        if axis.until_past == 0.0 {
+            return Some((at, 1.0));
+        }
+    }
+    None
+}
+
+/// Whether the insides of a cast and a box meet at any t up to a limit, tried at each t at which anything changes and
+/// between each two of them. On an axis where both are flat they meet if they touch.
+fn is_entered<const D: usize>(axes: &[Approach; D], limit: f64) -> bool {
+    let mut times = vec![0.0, limit];
+    for axis in axes.iter().filter(|axis| axis.speed != 0.0) {
+        let (from, to) = axis.touching();
+        times.extend([from, to].map(|time| time + 0.0));
+    }
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    // Moments are numbered: even ones are `times`, odd ones are between them.
+    let moment = |time: f64| 2 * times.iter().position(|&other| other == time).unwrap();
+    (moment(0.0)..=moment(limit)).any(|now| {
+        axes.iter().all(|axis| {
+            let (from, to) = axis.touching();
+            match axis {
+                Approach { speed: 0.0, .. } => axis.is_inside(),
+                // Nothing is entered at infinity.
+                _ if axis.until_touch == axis.until_past => {
+                    now == moment(from) && from < f64::INFINITY
+                }
+                _ => moment(from) < now && now < moment(to),
+            }
+        })
+    })
 }
 
 /// The items of a sorted list that are not in another.

@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 
 use super::bodies::{Bodies, Filter, ProxyId, flag};
+use super::candidates::PairSorter;
 use super::changes::{Changes, Events};
 #[cfg(feature = "parallel")]
 use super::finder::Finder;
@@ -154,11 +155,31 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         Changes { slots: &self.bodies.slots, events: &self.events }
     }
 
-    /// The pairs that overlapped at the last update, each once, its smaller id first.
+    /// The pairs that overlapped at the last update, each once, its smaller id first, sorted. A restored
+    /// world gives the same.
     ///
-    /// Their order is the same for the same calls, but not specified: a restored world may give another.
-    /// Iterating over all takes O(pairs) time and does not allocate.
-    pub fn pairs(&self) -> impl Iterator<Item = [ProxyId; 2]> + '_ {
+    /// Takes O(pairs) time and memory; [`pairs_unsorted`](Self::pairs_unsorted) takes less.
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, BroadPhase};
+    ///
+    /// let mut world = BroadPhase::<1>::new();
+    /// let ids = world.insert_many(&[Aabb::new([0.0], [1.0]); 3], Default::default())?;
+    /// world.update();
+    /// assert!(world.pairs().eq([[ids[0], ids[1]], [ids[0], ids[2]], [ids[1], ids[2]]]));
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
+    pub fn pairs(&self) -> impl ExactSizeIterator<Item = [ProxyId; 2]> + '_ {
+        let slots = &self.bodies.slots;
+        let mut pairs: Vec<_> = self.tracking.candidates.live_pairs(slots).collect();
+        slots.to_slots(&mut pairs);
+        PairSorter::default().sort(&mut pairs, slots.len());
+        pairs.into_iter().map(|pair| pair.map(|slot| slots.id_of_slot(slot)))
+    }
+
+    /// The pairs of [`pairs`](Self::pairs) in an order that is the same for the same calls, but not
+    /// specified: a restored world may give another. Takes O(pairs) time and does not allocate.
+    pub fn pairs_unsorted(&self) -> impl Iterator<Item = [ProxyId; 2]> + '_ {
         let slots = &self.bodies.slots;
         self.tracking.candidates.live_pairs(slots).map(|pair| {
             let [a, b] = pair.map(|index| slots.id(index));
@@ -166,33 +187,39 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         })
     }
 
-    /// The bodies that overlapped this one at the last update, in no specified order. Does not allocate.
+    /// The bodies that overlapped this one at the last update, sorted.
     ///
     /// Takes O(log n) time and that of its neighbors if the tree is up to date, as it is after
-    /// [`queries`](Self::queries) until the next update; otherwise O(pairs) time.
+    /// [`queries`](Self::queries) until the next update; otherwise O(pairs) time. For many bodies iterate over
+    /// [`pairs`](Self::pairs) once.
     ///
     /// # Errors
     /// [`Error::StaleProxy`].
-    pub fn pairs_of(&self, id: ProxyId) -> Result<impl Iterator<Item = ProxyId> + '_, Error> {
+    pub fn pairs_of(&self, id: ProxyId) -> Result<impl ExactSizeIterator<Item = ProxyId>, Error> {
         let Self { bodies, tracking, .. } = self;
         let slots = &bodies.slots;
         let index = slots.check(id, 0)?;
-        let area = bodies.previous[index as usize];
-        let is_known = !slots.has(index, flag::NEW);
-        let has_tree = matches!(tracking.tree_state, TreeState::Fresh { .. });
-        let near = (is_known && has_tree).then(|| tracking.tree.overlapping(area));
-        let near = near.into_iter().flatten().filter(move |&other| {
-            other != index
-                && slots.has(other, flag::LIVE | flag::LEAVING)
-                && bodies.was_live([index, other])
-        });
-        let listed = (is_known && !has_tree).then(|| tracking.candidates.live_pairs(slots));
-        let listed = listed.into_iter().flatten().filter_map(move |[a, b]| match index {
-            _ if a == index => Some(b),
-            _ if b == index => Some(a),
-            _ => None,
-        });
-        Ok(near.chain(listed).map(|other| slots.id(other)))
+        let mut others = Vec::new();
+        if slots.has(index, flag::NEW) {
+            // No update knew it.
+        } else if matches!(tracking.tree_state, TreeState::Fresh { .. }) {
+            let near = tracking.tree.overlapping(bodies.previous[index as usize]);
+            others.extend(near.filter(|&other| {
+                other != index
+                    && slots.has(other, flag::LIVE | flag::LEAVING)
+                    && bodies.was_live([index, other])
+            }));
+        } else {
+            let listed = tracking.candidates.live_pairs(slots);
+            others.extend(listed.filter_map(|[a, b]| match index {
+                _ if a == index => Some(b),
+                _ if b == index => Some(a),
+                _ => None,
+            }));
+        }
+        let mut others: Vec<_> = others.into_iter().map(|other| slots.id(other)).collect();
+        others.sort_unstable();
+        Ok(others.into_iter())
     }
 
     /// Prepares for queries, which takes time if bodies changed since it last did, and answers them.
@@ -213,7 +240,8 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// ```
     pub fn queries(&mut self) -> Queries<'_, D, T> {
         self.tracking.ready_for_queries(&mut self.bodies);
-        Queries { bodies: &self.bodies, tree: &self.tracking.tree, filter: None, is_sorted: true }
+        let Self { bodies, tracking, .. } = &*self;
+        Queries { bodies, tree: &tracking.tree, filter: None, excluded: &[], is_sorted: true }
     }
 
     /// The whole state as bytes. A world [restored](Self::from_snapshot) from them gives, for the

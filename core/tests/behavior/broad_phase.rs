@@ -4,8 +4,8 @@
 use std::collections::BTreeSet;
 
 use sweep_and_prune::{
-    Aabb, BroadPhase, Cast, Error, Filter, Options, PairFinder, ProxyId, Report, SnapshotFault,
-    SnapshotInfo,
+    Aabb, BroadPhase, Cast, Error, Filter, Hit, Options, PairFinder, ProxyId, Report,
+    SnapshotFault, SnapshotInfo,
 };
 use sweep_and_prune_fuzz::{Model, Pair};
 use sweep_and_prune_scenes::{Motion, Random, Scene};
@@ -488,4 +488,71 @@ fn a_hit_at_the_start_is_at_zero_and_not_at_minus_zero() {
     let back = Cast::ray([1.0f32], [-1.0], 9.0);
     let hit = world.queries().cast(&back).unwrap().unwrap();
     assert_eq!(hit.t.to_bits(), 0.0f64.to_bits());
+}
+
+/// A character stands on a floor of tiles beside a wall.
+#[test]
+fn a_cast_that_ignores_what_it_touches_walks_jumps_and_falls() {
+    let mut world = BroadPhase::<2>::new();
+    let tiles: Vec<_> =
+        (0..9).map(|at| Aabb::new([at as f32, -1.0], [at as f32 + 1.0, 0.0])).collect();
+    let tiles = world.insert_many(&tiles, Filter::default()).unwrap();
+    let wall = world.insert(Aabb::new([6.0, 0.0], [7.0, 9.0])).unwrap();
+    let hero = Aabb::new([2.25, 0.0], [3.0, 2.0]);
+    let queries = world.queries();
+    let hit = |way| queries.cast(&Cast::aabb(hero, way, 100.0).ignore_touching()).unwrap();
+    let touched = |way| queries.cast(&Cast::aabb(hero, way, 100.0)).unwrap().unwrap();
+
+    for way in [[0.0, 1.0], [1.0, 0.0], [-1.0, 0.0], [0.0, -1.0], [0.3, 0.2]] {
+        let Hit { id, t, normal, starts_inside, .. } = touched(way);
+        assert_eq!((id, t, normal, starts_inside), (tiles[2], 0.0, [0.0, 1.0], false), "{way:?}");
+    }
+    assert_eq!(hit([0.0, 1.0]), None);
+    assert_eq!(hit([-1.0, 0.0]), None);
+    let walks = hit([0.5, 0.0]).unwrap();
+    assert_eq!((walks.id, walks.t, walks.normal), (wall, 6.0, [-1.0, 0.0]));
+    let falls = hit([0.0, -1.0]).unwrap();
+    assert_eq!((falls.id, falls.t, falls.normal), (tiles[2], 0.0, [0.0, 1.0]));
+    // Up to the wall and no further: it touches the wall, and does not enter it.
+    let up_to = |limit| queries.cast(&Cast::aabb(hero, [1.0, 0.0], limit).ignore_touching());
+    assert_eq!(up_to(3.0).unwrap(), None);
+    assert_eq!(up_to(3.1).unwrap().map(|hit| hit.id), Some(wall));
+    // Inside a body it is hit at once, with no face.
+    let stuck = Cast::aabb(Aabb::new([5.5, 1.0], [6.5, 2.0]), [0.0, 1.0], 100.0).ignore_touching();
+    let stuck = queries.cast(&stuck).unwrap().unwrap();
+    assert_eq!(
+        (stuck.id, stuck.t, stuck.normal, stuck.starts_inside),
+        (wall, 0.0, [0.0, 0.0], true)
+    );
+}
+
+/// A wall without thickness stops a ray all the same.
+#[test]
+fn a_ray_that_ignores_what_it_touches_is_stopped_by_a_flat_wall() {
+    let mut world = BroadPhase::<2>::new();
+    let flat = world.insert(Aabb::new([5.0, 0.0], [5.0, 9.0])).unwrap();
+    let queries = world.queries();
+    let hit = |origin, way| queries.cast(&Cast::ray(origin, way, 100.0).ignore_touching()).unwrap();
+    let stopped = hit([1.0, 1.0], [1.0, 0.0]).unwrap();
+    assert_eq!((stopped.id, stopped.t, stopped.normal), (flat, 4.0, [-1.0, 0.0]));
+    let back = hit([9.0, 1.0], [-2.0, 0.0]).unwrap();
+    assert_eq!((back.t, back.normal), (2.0, [1.0, 0.0]));
+    // It grazes the end of the wall.
+    assert_eq!(hit([1.0, 9.0], [1.0, 0.0]), None);
+}
+
+#[test]
+fn queries_do_not_find_what_they_exclude() {
+    let mut world = BroadPhase::<1>::new();
+    let boxes: Vec<_> = (0..4).map(|at| Aabb::new([at as f32], [at as f32 + 1.0])).collect();
+    let ids = world.insert_many(&boxes, Filter::default()).unwrap();
+    let stale = ids[3];
+    world.remove(stale).unwrap();
+    let reused = world.insert(boxes[3]).unwrap();
+    let without = [ids[0], ids[2], stale];
+    let queries = world.queries().excluding(&without);
+    assert_eq!(queries.overlapping(&Aabb::new([-9.0], [9.0])).unwrap(), [ids[1], reused]);
+    assert_eq!(queries.nearest([0.0], 1, f64::INFINITY).unwrap()[0].id, ids[1]);
+    let hits = queries.cast_all(&Cast::ray([0.5], [1.0], 9.0)).unwrap();
+    assert_eq!(hits.iter().map(|hit| hit.id).collect::<Vec<_>>(), [ids[1], reused]);
 }

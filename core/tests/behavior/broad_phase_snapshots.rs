@@ -231,3 +231,25 @@ fn hashes_are_the_same_everywhere_and_see_every_byte() {
         assert_ne!(hash(&zeros[..length]), hash(&zeros[..length + 1]));
     }
 }
+
+/// Three bodies are enough for a restored world to keep its pairs in another order.
+#[test]
+fn pairs_of_a_restored_world_are_in_the_same_order() {
+    let mut world = BroadPhase::<1>::new();
+    let at = |from: f32, to: f32| Aabb::new([from], [to]);
+    let ids = world
+        .insert_many(&[at(0.0, 9.0), at(20.0, 21.0), at(5.0, 6.0)], Filter::default())
+        .unwrap();
+    world.update();
+    world.set(ids[1], at(3.0, 30.0)).unwrap();
+    world.update();
+    let restored = BroadPhase::<1>::from_snapshot(&world.snapshot()).unwrap();
+    let pairs = [[0, 1], [0, 2], [1, 2]].map(|pair| pair.map(|body: usize| ids[body]));
+    assert!(world.pairs().eq(pairs), "{:?}", world.pairs().collect::<Vec<_>>());
+    assert!(restored.pairs().eq(pairs));
+    for (body, others) in [(0, [1, 2]), (1, [0, 2]), (2, [0, 1])] {
+        let others = others.map(|other: usize| ids[other]);
+        assert!(world.pairs_of(ids[body]).unwrap().eq(others));
+        assert!(restored.pairs_of(ids[body]).unwrap().eq(others));
+    }
+}

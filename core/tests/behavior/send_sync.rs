@@ -33,7 +33,7 @@ fn worlds_and_what_they_return_are_send_and_sync() {
     is_send_and_sync::<Queries<'static, 2>>();
     is_send_and_sync::<Lists<ProxyId>>();
     is_send_and_sync::<Cast<2>>();
-    is_send_and_sync::<Hit>();
+    is_send_and_sync::<Hit<3, f64>>();
     is_send_and_sync::<Neighbor>();
     is_send_and_sync::<Report>();
 }

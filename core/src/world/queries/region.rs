@@ -19,10 +19,32 @@ pub struct Queries<'w, const D: usize, T: Scalar = f32> {
     pub(in crate::world) bodies: &'w Bodies<D, T>,
     pub(in crate::world) tree: &'w Tree<D, T>,
     pub(in crate::world) filter: Option<Filter>,
+    pub(in crate::world) excluded: &'w [ProxyId],
     pub(in crate::world) is_sorted: bool,
 }
 
-impl<const D: usize, T: Scalar> Queries<'_, D, T> {
+impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
+    /// The same queries, which do not find these bodies: what asks, and what it carries. Each body that is found
+    /// is compared with all of them. A stale id excludes nothing.
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, BroadPhase, Cast};
+    ///
+    /// let mut world = BroadPhase::<1>::new();
+    /// let hero = world.insert(Aabb::new([0.0], [1.0]))?;
+    /// let wall = world.insert(Aabb::new([5.0], [6.0]))?;
+    /// let look = Cast::ray([0.5], [1.0], 100.0);
+    /// let hit = world.queries().excluding(&[hero]).cast(&look)?;
+    /// assert_eq!(hit.unwrap().id, wall);
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
+    pub fn excluding<'q>(self, ids: &'q [ProxyId]) -> Queries<'q, D, T>
+    where
+        'w: 'q,
+    {
+        Queries { excluded: ids, ..self }
+    }
+
     /// The same queries with a filter: they find what a body with this filter may pair with. Without one
     /// they find every body; with [`Filter::ALL`] none whose category or mask is 0.
     pub fn with_filter(self, filter: Filter) -> Self {
@@ -173,5 +195,6 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     pub(super) fn sees(&self, index: u32) -> bool {
         self.bodies.slots.has(index, flag::LIVE)
             && self.filter.is_none_or(|filter| filter.allows(&self.bodies.filters[index as usize]))
+            && !(self.excluded.iter()).any(|&id| id == self.bodies.slots.id(index))
     }
 }
