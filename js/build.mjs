@@ -168,7 +168,7 @@ async function buildModules() {
     // Names stay, for stack traces that can be read.
     minifySyntax: true,
     minifyWhitespace: true,
-    loader: { ".wasm": "binary" },
+    loader: { ".wasm": "base64" },
     metafile: true,
   });
   for (const { name, budget = Infinity } of entries) {

@@ -6,6 +6,7 @@
  */
 import scalar from "../dist/sweep-and-prune.wasm";
 import simd from "../dist/sweep-and-prune.simd.wasm";
+import { bytesOf } from "./base64.js";
 import { entry, type InitOptions, type Started } from "./init.js";
 import { finderCore } from "./pair-finder.js";
 
@@ -16,4 +17,4 @@ export * from "./api.js";
  * once, before anything else. Later and concurrent calls get the promise of the first call, and their
  * options are ignored.
  */
-export const init: (options?: InitOptions) => Promise<Started> = entry(finderCore, { simd: () => simd, scalar: () => scalar });
+export const init: (options?: InitOptions) => Promise<Started> = entry(finderCore, { simd: () => bytesOf(simd), scalar: () => bytesOf(scalar) });

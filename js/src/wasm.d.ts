@@ -1,5 +1,5 @@
-/** A compiled core, whose bytes the build puts in the module. */
+/** A compiled core, whose bytes the build puts in the module as base64. */
 declare module "*.wasm" {
-  const bytes: Uint8Array<ArrayBuffer>;
-  export default bytes;
+  const base64: string;
+  export default base64;
 }
