@@ -1,19 +1,15 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 import { describe } from "./describe.js";
-import { type Boxes, checkBoxes, checkDimensions, checkNumbers, type Dimensions } from "./boxes.js";
-import { OutOfMemoryError } from "./errors.js";
+import { type Boxes, checkDimensions, checkNumbers, type Dimensions } from "./boxes.js";
 import { defaultFilter, type Filter, filterWords } from "./filter.js";
-import { checkViews } from "./views.js";
-import { checkId } from "./world-arguments.js";
+import { lengthOf } from "./typed.js";
+import { allocate, checkViews } from "./views.js";
+import { checkId, readCorners } from "./world-arguments.js";
 import type { WorldMemory } from "./world-memory.js";
 import type { Box, BroadPhaseOptions, Buffers, Changes, Numbers, ProxyId } from "./world-types.js";
 
 /** Bodies with boxes: which overlaps began and which ended. What every entry point with a `BroadPhase` has. */
 export abstract class Bodies {
-  /** How many dimensions the boxes have. */
-  readonly dimensions: Dimensions;
-  /** The precision of the coordinates. */
-  readonly precision: "single" | "double";
   /** @internal */
   protected readonly memory: WorldMemory;
   readonly #changes: Changes = { begun: none, ended: none };
@@ -21,8 +17,16 @@ export abstract class Bodies {
   /** @internal */
   protected constructor(memory: WorldMemory) {
     this.memory = memory;
-    this.dimensions = memory.dimensions;
-    this.precision = memory.isDouble ? "double" : "single";
+  }
+
+  /** How many dimensions the boxes have. */
+  get dimensions(): Dimensions {
+    return this.memory.dimensions;
+  }
+
+  /** The precision of the coordinates. */
+  get precision(): "single" | "double" {
+    return this.memory.isDouble ? "double" : "single";
   }
 
   /** How many bodies there are. */
@@ -91,17 +95,13 @@ export abstract class Bodies {
    *   `RangeError` if there are not as many ids as boxes. Then no box has changed.
    */
   setMany(ids: Numbers, boxes: Boxes): void {
-    const rows = checkBoxes(boxes, this.dimensions);
-    const names = checkNumbers(ids, "ids");
-    if (names.length * 2 * this.dimensions !== rows.length) {
-      throw new RangeError(`\`ids\` has ${names.length} ids and \`boxes\` ${rows.length / (2 * this.dimensions)} boxes; there must be as many`);
-    }
     // Writing the boxes may let the memory grow, which leaves views of it empty.
-    const kept = this.memory.keepIds(names);
-    this.memory.writeRows(rows);
+    const kept = this.memory.keepIds(checkNumbers(ids, "ids"));
+    const count = this.memory.writeRows(boxes);
+    const idCount = lengthOf(kept);
+    if (idCount !== count) throw new RangeError(`\`ids\` has ${idCount} ids and \`boxes\` ${count} boxes; there must be as many`);
     this.memory.writeIds(kept);
-    const passed = { ids: kept };
-    this.memory.call((exports, world) => exports.world_set_many(world, kept.length), passed);
+    this.memory.call((exports, world) => exports.world_set_many(world, count), { ids: kept });
   }
 
   /**
@@ -112,16 +112,12 @@ export abstract class Bodies {
    * @throws `RangeError` if `count` is not a whole number, {@link OutOfMemoryError}.
    */
   buffers(count: number): Buffers {
-    this.memory.exports(); // throws if it was freed
+    this.memory.checkUsable();
     if (!(Number.isInteger(count) && count >= 0)) throw new RangeError(`\`count\` is ${describe(count)}; it must be a whole number, 0 or more`);
     const width = 2 * this.dimensions;
     if (!this.memory.isView || this.memory.stored !== this.dimensions) {
-      try {
-        const boxes = this.precision === "double" ? new Float64Array(width * count) : new Float32Array(width * count);
-        return { ids: new Float64Array(count), boxes };
-      } catch {
-        throw new OutOfMemoryError();
-      }
+      const Floats = this.memory.isDouble ? Float64Array : Float32Array;
+      return allocate(() => ({ ids: new Float64Array(count), boxes: new Floats(width * count) }));
     }
     this.memory.rowsFor(count);
     const ids = this.memory.idsFor(count);
@@ -137,10 +133,10 @@ export abstract class Bodies {
    */
   setSwept(id: ProxyId, from: Box, to: Box): void {
     checkId(id);
-    this.memory.writeCorners(0, from, 2, "from");
-    this.memory.writeCorners(2 * this.memory.stored, to, 2, "to");
-    const passed = { ids: [id], boxes: [["from", 1], ["to", 1]] } as const;
-    this.memory.call((exports, world) => exports.world_set_swept(world, id), passed);
+    const [begin, end] = [readCorners(from, this.dimensions, "from"), readCorners(to, this.dimensions, "to")];
+    this.memory.write(0, begin);
+    this.memory.write(2 * this.memory.stored, end);
+    this.memory.call((exports, world) => exports.world_set_swept(world, id), { ids: [id], boxes: [["from", 1], ["to", 1]] });
   }
 
   /**
@@ -164,21 +160,21 @@ export abstract class Bodies {
    * @throws {@link StaleProxyError}.
    */
   remove(id: ProxyId): void {
-    const ids = [checkId(id)];
-    this.memory.writeIds(ids);
-    this.memory.call((exports, world) => exports.world_remove_many(world, 1), { ids });
+    checkId(id);
+    this.memory.idsFor(1)[0] = id;
+    this.memory.call((exports, world) => exports.world_remove_many(world, 1), { ids: [id] });
   }
 
   /**
-   * Removes many bodies.
+   * Removes bodies.
    *
-   * @throws {@link StaleProxyError} with the index of the first id that is stale, or that is given
+   * @throws {@link StaleProxyError} with the index of the first bad one, also of one that is given
    *   twice. Then no body was removed.
    */
   removeMany(ids: Numbers): void {
     const kept = this.memory.keepIds(checkNumbers(ids, "ids"));
     this.memory.writeIds(kept);
-    this.memory.call((exports, world) => exports.world_remove_many(world, kept.length), { ids: kept });
+    this.memory.call((exports, world) => exports.world_remove_many(world, lengthOf(kept)), { ids: kept });
   }
 
   /** Removes all bodies. Their ids are stale from now on. The next update reports that their pairs ended. */

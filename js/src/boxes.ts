@@ -1,5 +1,6 @@
 import { describe } from "./describe.js";
-import { unguard } from "./views.js";
+import { lengthOf, tagOf } from "./typed.js";
+import { allocate, unguard } from "./views.js";
 
 /** 1, 2 or 3. */
 export type Dimensions = 1 | 2 | 3;
@@ -103,21 +104,21 @@ export function checkDimensions(dimensions: unknown): Dimensions {
 export function checkBoxes(boxes: unknown, dimensions: Dimensions, name = "boxes"): Float32Array | Float64Array {
   if (Array.isArray(boxes) && typeof boxes[0] === "object") return fromObjects(boxes, dimensions, name);
   const rows = checkNumbers(boxes, name);
-  const width = 2 * dimensions;
-  if (rows.length % width !== 0) {
+  const [length, width] = [lengthOf(rows), 2 * dimensions];
+  if (length % width !== 0) {
     throw new RangeError(
-      `${name} holds ${rows.length} numbers, which is not a multiple of ${width}: ` +
+      `${name} holds ${length} numbers, which is not a multiple of ${width}: ` +
         `a box in ${dimensions}D is the ${dimensions} of its min corner and the ${dimensions} of its max corner`,
     );
   }
   return rows;
 }
 
-/** @internal Numbers as a typed array. */
+/** @internal Numbers as a typed array. Its own properties may be overridden: see typed.ts. */
 export function checkNumbers(values: unknown, name: string): Float32Array | Float64Array {
   const numbers = Array.isArray(values) ? fromNumbers(values, name) : floats(unguard(values));
   if (!numbers) throw new TypeError(`\`${name}\` must be a typed array of numbers or a plain array, not ${describe(values)}`);
-  if (numbers.length === 0) refuseDetached(numbers, name);
+  if (lengthOf(numbers) === 0) refuseDetached(numbers, name);
   return numbers;
 }
 
@@ -140,13 +141,11 @@ export function readBox(box: object, dimensions: Dimensions, name: string, into:
   }
 }
 
-/** @internal The coordinates of a point that is an object: `{ x, y, z }`, as many as there are dimensions. */
-export function readPoint(point: object, dimensions: Dimensions, name: string): Float64Array {
-  return Float64Array.from({ length: dimensions }, (_, axis) => {
-    const value = coordinate(point as Corner, axis);
-    if (typeof value === "number") return value;
-    throw new TypeError(`\`${name}.${"xyz"[axis]}\` must be a number, not ${describe(value)}`);
-  });
+/** The length of an array, which a proxy may give as anything. */
+function checkedLength(array: readonly unknown[], name: string): number {
+  const { length } = array;
+  if (!(Number.isInteger(length) && length >= 0)) throw new TypeError(`\`${name}.length\` is ${describe(length)}`);
+  return length;
 }
 
 /**
@@ -163,7 +162,7 @@ export function writeRows(
     into.set(rows);
     return;
   }
-  for (let from = 0, to = 0; from < rows.length; from += 2 * dimensions, to += 2 * stored) {
+  for (let from = 0, to = 0; to < into.length; from += 2 * dimensions, to += 2 * stored) {
     for (let axis = 0; axis < stored; axis++) {
       into[to + axis] = axis < dimensions ? rows[from + axis]! : 0;
       into[to + stored + axis] = axis < dimensions ? rows[from + dimensions + axis]! : 0;
@@ -172,13 +171,19 @@ export function writeRows(
 }
 
 function fromNumbers(numbers: readonly unknown[], name: string): Float64Array {
-  const rows = new Float64Array(numbers.length);
-  for (let at = 0; at < rows.length; at++) {
-    const value = numbers[at];
-    if (typeof value !== "number") throw new TypeError(`${name}[${at}] must be a number, not ${describe(value)}`);
-    rows[at] = value;
-  }
+  const length = checkedLength(numbers, name);
+  const rows = allocate(() => new Float64Array(length));
+  copyNumbers(numbers, length, name, rows, 0);
   return rows;
+}
+
+/** @internal Copies values that are to be numbers. */
+export function copyNumbers(values: ArrayLike<unknown>, length: number, name: string, into: Float64Array, to: number): void {
+  for (let at = 0; at < length; at++) {
+    const value = values[at];
+    if (typeof value !== "number") throw new TypeError(`${name}[${at}] must be a number, not ${describe(value)}`);
+    into[to + at] = value;
+  }
 }
 
 /** A form of boxes that are objects. */
@@ -189,8 +194,8 @@ interface Form {
   read(box: object, corner: 0 | 1, axis: number): unknown;
 }
 
-/** Each property by its name, which engines read several times faster than by a computed one. */
-function coordinate(corner: Corner | null | undefined, axis: number): unknown {
+/** @internal Each property by its name, which engines read several times faster than by a computed one. */
+export function coordinate(corner: Corner | null | undefined, axis: number): unknown {
   return axis === 0 ? corner?.x : axis === 1 ? corner?.y : corner?.z;
 }
 
@@ -237,28 +242,28 @@ export function formOf(box: object, name: string): Form {
 
 /** @internal Whether a box is an array of numbers. */
 export function isRow(box: unknown): box is ArrayLike<unknown> {
-  return Array.isArray(box) || (ArrayBuffer.isView(box) && !(box instanceof DataView));
+  return Array.isArray(box) || tagOf(box) !== undefined;
+}
+
+/** @internal How many numbers an array has: a typed array by itself, see typed.ts. */
+export function rowLength(row: ArrayLike<unknown>): unknown {
+  return Array.isArray(row) ? row.length : lengthOf(row);
 }
 
 function fromObjects(boxes: readonly unknown[], dimensions: Dimensions, name: string): Float64Array {
   const width = 2 * dimensions;
-  const rows = new Float64Array(width * boxes.length);
-  for (let index = 0; index < boxes.length; index++) {
+  const count = checkedLength(boxes, name);
+  const rows = allocate(() => new Float64Array(width * count));
+  for (let index = 0; index < count; index++) {
     const box = boxes[index];
     if (isNamed(box)) {
       readBox(box, dimensions, `${name}[${index}]`, rows, index * width);
       continue;
     }
     if (!isRow(box)) refuseObject(box, `${name}[${index}]`);
-    if (box.length !== width) throw new RangeError(`${name}[${index}] must hold ${width} numbers, not ${box.length}`);
-    for (let at = 0; at < width; at++) {
-      const value = box[at];
-      if (typeof value !== "number") {
-        const which = `${at < dimensions ? "min" : "max"} ${"xyz"[at % dimensions]}`;
-        throw new TypeError(`the ${which} of ${name}[${index}] must be a number, not ${describe(value)}`);
-      }
-      rows[index * width + at] = value;
-    }
+    const length = rowLength(box);
+    if (length !== width) throw new RangeError(`${name}[${index}] must hold ${width} numbers, not ${describe(length)}`);
+    copyNumbers(box, width, `${name}[${index}]`, rows, index * width);
   }
   return rows;
 }
@@ -277,7 +282,7 @@ function refuseObject(box: unknown, name: string): never {
  * `instanceof`, which is false for arrays of another realm (a frame, a test runner).
  */
 function floats(value: unknown): Float32Array | Float64Array | undefined {
-  switch (ArrayBuffer.isView(value) && (value as Float32Array)[Symbol.toStringTag] as string) {
+  switch (tagOf(value)) {
     case "Float32Array":
     case "Float64Array":
       return value as Float32Array | Float64Array;
@@ -296,10 +301,12 @@ function floats(value: unknown): Float32Array | Float64Array | undefined {
   }
 }
 
+const { indexOf } = Float64Array.prototype;
+
 /** A detached array looks like an empty one; only its methods throw. */
 function refuseDetached(rows: Float32Array | Float64Array, name: string): void {
   try {
-    rows.indexOf(0);
+    indexOf.call(rows, 0);
   } catch {
     throw new TypeError(`the buffer of ${name} is detached: it was transferred, or its memory grew`);
   }

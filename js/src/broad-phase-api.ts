@@ -15,6 +15,6 @@ export {
   slotOf,
   type SortOptions,
 } from "./world-types.js";
-export { StaleProxyError } from "./errors.js";
+export { StaleProxyError } from "./stale-proxy-error.js";
 export { SnapshotError } from "./snapshot-error.js";
 export type { Filter } from "./filter.js";

@@ -10,5 +10,5 @@ export type {
   SizedBox,
   TypedNumbers,
 } from "./boxes.js";
-export { InvalidBoxError, NotInitializedError, OutOfMemoryError, SweepAndPruneError } from "./errors.js";
+export { InterruptedError, InvalidBoxError, NotInitializedError, OutOfMemoryError, SweepAndPruneError } from "./errors.js";
 export type { InitOptions, Started, Wasm } from "./init.js";

@@ -1,5 +1,11 @@
 /** @internal What a value is, for an error message. */
 export function describe(value: unknown): string {
-  if (value === null || typeof value !== "object") return typeof value === "string" ? "a string" : String(value);
-  return `a ${value.constructor?.name ?? "object"}`;
+  if (typeof value === "string") return "a string";
+  if (value === null || (typeof value !== "object" && typeof value !== "function")) return String(value);
+  try {
+    const { name } = value.constructor;
+    return `a ${typeof name === "string" && name ? name : "object"}`;
+  } catch {
+    return "an object"; // a getter threw
+  }
 }

@@ -1,10 +1,4 @@
-import {
-  InvalidBoxError,
-  NotInitializedError,
-  OutOfMemoryError,
-  StaleProxyError,
-  SweepAndPruneError,
-} from "./errors.js";
+import { InvalidBoxError, NotInitializedError, OutOfMemoryError, SweepAndPruneError } from "./errors.js";
 
 // The types of WebAssembly are not named where declarations show them: not every project has them.
 
@@ -48,8 +42,10 @@ export function checkFits(bytes: number): void {
 export class Engine<E extends Exports> {
   /** Takes the pairs of a search: set while `streamPairs` makes a call. */
   each: Each = () => false;
-  /** Where the stack began when JavaScript called. */
+  /** Where Rust's stack ends for the calls that are made now: at its top, or, within a callback, below the frames of the outer call. */
   stackTop = 0;
+  /** Whether a call threw, so that the stack pointer has yet to be put back; also while a call is under way. */
+  isStackLeft = false;
   #statusAt = 0;
   #words = new Uint32Array(0);
   /** How many calls have been made that may overwrite what a view shows; see {@link guard}. */
@@ -75,6 +71,18 @@ export class Engine<E extends Exports> {
     return engine;
   }
 
+  /**
+   * Makes a call of the core. A call that throws skips Rust's frames, so the next one first puts the stack pointer back.
+   * It throws if an import does, and where the engine's own stack runs out, in any function.
+   */
+  call<R>(call: (exports: E, at: number) => R, at = 0): R {
+    if (this.isStackLeft) this.exports.__stack_pointer.value = this.stackTop;
+    this.isStackLeft = true;
+    const result = call(this.exports, at);
+    this.isStackLeft = false;
+    return result;
+  }
+
   /** All of memory as words. Call it again after each call of the core, which may let the memory grow. */
   words(): Uint32Array {
     // Growing the memory detaches the view, which leaves it with length 0.
@@ -87,7 +95,7 @@ export class Engine<E extends Exports> {
     return this.words()[this.#statusAt + word]!;
   }
 
-  /** Throws the error of a code other than `Ok`. */
+  /** Throws the error of a code other than `Ok`: of those that every core has. */
   check(code: number, passed: Passed = {}): void {
     switch (code) {
       case Code.Ok:
@@ -96,21 +104,13 @@ export class Engine<E extends Exports> {
         throw invalidBox(this.detail(0), this.detail(1), passed);
       case Code.OutOfMemory:
         throw new OutOfMemoryError();
-      case Code.StaleProxy:
-        throw new StaleProxyError(this.detail(0), passed.ids?.[this.detail(0)] ?? NaN);
-      case Code.InvalidArgument:
-        throw new RangeError("`box` is inverted, or a coordinate is too large for single precision");
       default:
         throw new SweepAndPruneError(`internal error ${code}: please report it`);
     }
   }
 
-  /**
-   * Rust calls this when it cannot continue. Throwing skips its frames, so the stack pointer is put
-   * back to where it was when JavaScript called.
-   */
+  /** Rust calls this when it cannot continue. Throwing skips its frames: see {@link call}. */
   #fail(isOutOfMemory: boolean): never {
-    this.exports.__stack_pointer.value = this.stackTop;
     throw isOutOfMemory ? new OutOfMemoryError() : new SweepAndPruneError("internal error: please report it");
   }
 }

@@ -45,17 +45,17 @@ export class OutOfMemoryError extends SweepAndPruneError {
   }
 }
 
-/** The id of a body that was removed, or an id that never had a body. An id of another `BroadPhase` may go unnoticed. */
-export class StaleProxyError extends SweepAndPruneError {
+/**
+ * An earlier call with this object ended halfway, so that its state is lost: the engine had no stack left.
+ * Free it, and make another one. (Nearly always such a call ends before anything has changed; then no later call
+ * throws this.)
+ */
+export class InterruptedError extends SweepAndPruneError {
   /** The name of this class. */
-  override name = "StaleProxyError";
+  override name = "InterruptedError";
 
-  constructor(
-    /** The position of the id among those that were passed; 0 for a single one. */
-    readonly index: number,
-    /** The id. */
-    readonly id: number,
-  ) {
-    super(`the id at index ${index} (${id}) is stale: its body was removed, or it never had one here`);
+  /** @internal */
+  constructor(what: string) {
+    super(`an earlier call of this ${what} ended halfway, as the stack ran out: its state is lost; free it, and make another one`);
   }
 }

@@ -8,6 +8,6 @@ export {
   type ProxyId,
   slotOf,
 } from "./world-types.js";
-export { StaleProxyError } from "./errors.js";
+export { StaleProxyError } from "./stale-proxy-error.js";
 export type { Filter } from "./filter.js";
 export type { Bodies } from "./bodies.js";

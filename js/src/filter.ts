@@ -26,9 +26,6 @@ export interface Filter {
 /** The filter of a body by default. */
 export const defaultFilter: Filter = { category: 1, mask: 2 ** 32 - 1, group: 0, isStatic: false };
 
-/** What the core takes for no filter: a query without one finds every body. */
-export const noFilter: FilterWords = [0, 0, 0, 2];
-
 /** A filter as the core takes it, checked. `others` gives what is left out. */
 export function filterWords(filter: Partial<Filter>, others: Filter): FilterWords {
   if (typeof filter !== "object" || filter === null) throw new TypeError(`\`filter\` must be an object, not ${describe(filter)}`);
@@ -39,5 +36,6 @@ export function filterWords(filter: Partial<Filter>, others: Filter): FilterWord
       throw new RangeError(`\`${name}\` of the filter is ${describe(bits)}; it must be a whole number of 32 bits`);
     }
   }
-  return [category, mask, group, Number(isStatic)];
+  if (typeof isStatic !== "boolean") throw new TypeError(`\`isStatic\` of the filter must be true or false, not ${describe(isStatic)}`);
+  return [category, mask, group, isStatic ? 1 : 0];
 }

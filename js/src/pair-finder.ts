@@ -3,8 +3,10 @@ import { type BoxObject, type Boxes, checkBoxes, checkDimensions, type Dimension
 import { describe } from "./describe.js";
 import { dimensionsOf } from "./dimensions-of.js";
 import { checkFits, Core, type Each, type Engine, type Exports, type Passed } from "./engine.js";
-import { OutOfMemoryError } from "./errors.js";
+import { InterruptedError, OutOfMemoryError } from "./errors.js";
+import { forgotten, Handle } from "./handle.js";
 import { streamPairs } from "./stream.js";
+import { lengthOf, tagOf } from "./typed.js";
 import { allocate, checkViews, copy, guard, view } from "./views.js";
 
 /** Options of a search. */
@@ -191,8 +193,7 @@ function itemsOf(pairs: Uint32Array, a: Boxes, b: Boxes): [unknown, unknown][] {
  * to it is gone.
  */
 export class PairFinder {
-  /** How many dimensions the boxes have. */
-  readonly dimensions: Dimensions;
+  readonly #dimensions: Dimensions;
   readonly #owned: Owned;
   readonly #rows: [Rows?, Rows?] = [];
   readonly #isView: boolean;
@@ -205,10 +206,15 @@ export class PairFinder {
    * @throws `RangeError` if `dimensions` is not 1, 2 or 3; `TypeError` if `views` is not a boolean.
    */
   constructor(options: PairFinderOptions) {
-    this.dimensions = checkDimensions(options?.dimensions);
+    this.#dimensions = checkDimensions(options?.dimensions);
     this.#isView = checkViews(options.views);
-    this.#owned = { engine: finderCore.engine(), single: 0, double: 0, isBusy: false, isFreed: false };
+    this.#owned = new Owned(finderCore.engine());
     forgotten?.register(this, this.#owned);
+  }
+
+  /** How many dimensions the boxes have. */
+  get dimensions(): Dimensions {
+    return this.#dimensions;
   }
 
   /**
@@ -336,8 +342,8 @@ export class PairFinder {
     const { engine } = this.#owned;
     let total = 0;
     const write: Each = (at, count) => {
-      const fitting = Math.max(0, Math.min(2 * count, into.length - 2 * total));
-      if (fitting > 0) into.set(new Uint32Array(engine.exports.memory.buffer, at, fitting), 2 * total);
+      const fitting = Math.max(0, Math.min(2 * count, lengthOf(into) - 2 * total));
+      if (fitting > 0) set.call(into, new Uint32Array(engine.exports.memory.buffer, at, fitting), 2 * total);
       total += count;
       return true;
     };
@@ -390,47 +396,53 @@ export class PairFinder {
   #search(chunk: Chunk, a: Boxes, b: Boxes | typeof alone, each: Each | undefined): void {
     const owned = this.#owned;
     // First of all: this reads objects, and a getter may do anything.
-    const first = checkBoxes(a, this.dimensions, b === alone ? "boxes" : "a");
-    const second = b === alone ? undefined : checkBoxes(b, this.dimensions, "b");
-    if (owned.isFreed) throw new TypeError("this PairFinder was freed");
-    if (owned.isBusy) throw new TypeError("this PairFinder is in use: within its callback, use another one");
-    const isDouble = (first.BYTES_PER_ELEMENT | (second?.BYTES_PER_ELEMENT ?? 0)) >= 8;
+    const first = checkBoxes(a, this.#dimensions, b === alone ? "boxes" : "a");
+    const second = b === alone ? undefined : checkBoxes(b, this.#dimensions, "b");
+    // Reading the second may have changed the buffer of the first.
+    if (second) checkBoxes(first, this.#dimensions, "a");
+    owned.checkUsable();
+    const isDouble = tagOf(first) === "Float64Array" || tagOf(second) === "Float64Array";
     // The core has no type for 1D boxes, nor for 2D in double precision: see js/wasm/src/finder.rs.
-    const stored = isDouble ? 3 : (Math.max(2, this.dimensions) as Dimensions);
+    const stored = isDouble ? 3 : (Math.max(2, this.#dimensions) as Dimensions);
     owned.isBusy = true;
     try {
       const { engine } = owned;
       engine.calls++;
-      const finder = (owned[isDouble ? "double" : "single"] ||= engine.exports.finder_new(stored, Number(isDouble)));
-      const countA = this.#writeRows(finder, 0, first, isDouble, stored);
-      const countB = second ? this.#writeRows(finder, 1, second, isDouble, stored) : noSet;
+      const finder = owned.finder(isDouble, stored);
+      // Writing one set may let the memory grow, which detaches an array of it.
+      const [countA, countB] = [this.#countOf(first), second ? this.#countOf(second) : noSet];
+      this.#writeRows(finder, 0, first, countA, isDouble, stored);
+      if (second) this.#writeRows(finder, 1, second, countB, isDouble, stored);
       const passed: Passed = { boxes: second ? [["a", countA], ["b", countB]] : [["boxes", countA]] };
-      if (each) streamPairs(engine, () => engine.exports.finder_find(finder, countA, countB, chunk), each, passed);
-      else engine.check(engine.exports.finder_find(finder, countA, countB, chunk), passed);
+      const find = () => finder.call((exports, at) => exports.finder_find(at, countA, countB, chunk));
+      if (each) streamPairs(engine, find, each, passed);
+      else engine.check(find(), passed);
     } catch (error) {
-      // A finder that ran out of memory should not keep what it allocated.
-      if (error instanceof OutOfMemoryError) release(owned);
+      // A finder that ran out of memory should not keep what it allocated; nor can one be used whose call ended halfway.
+      if (error instanceof OutOfMemoryError) owned.release("discard");
+      else if (error instanceof InterruptedError) owned.release("free");
       throw error;
     } finally {
       owned.isBusy = false;
     }
   }
 
-  /** Writes the rows of a set, and returns how many boxes there are. */
-  #writeRows(finder: number, set: 0 | 1, rows: Rows, isDouble: boolean, stored: Dimensions): number {
-    const { exports } = this.#owned.engine;
-    const count = rows.length / (2 * this.dimensions);
+  #countOf(rows: Rows): number {
+    return lengthOf(rows) / (2 * this.#dimensions);
+  }
+
+  /** Writes the rows of a set. */
+  #writeRows(finder: Handle<FinderExports>, set: 0 | 1, rows: Rows, count: number, isDouble: boolean, stored: Dimensions): void {
     const length = 2 * stored * count;
     checkFits(length * (isDouble ? 8 : 4));
-    const at = exports.finder_rows(finder, set, count) >>> 0;
+    const at = finder.call((exports, at) => exports.finder_rows(at, set, count)) >>> 0;
     if (at === 0) throw new OutOfMemoryError();
-    const { buffer } = exports.memory;
+    const { buffer } = finder.engine.exports.memory;
     const into = isDouble
       ? view(Float64Array, this.#rows[set], buffer, at, length)
       : view(Float32Array, this.#rows[set], buffer, at, length);
     this.#rows[set] = into;
-    writeRows(rows, this.dimensions, into, stored);
-    return count;
+    writeRows(rows, this.#dimensions, into, stored);
   }
 
   /**
@@ -439,10 +451,8 @@ export class PairFinder {
    * @throws `TypeError` within the callback of its own `forEach`.
    */
   free(): void {
-    if (this.#owned.isFreed) return;
-    if (this.#owned.isBusy) throw new TypeError("this PairFinder is in use: free it after its callback");
-    this.#owned.isFreed = true;
-    release(this.#owned);
+    if (!this.#owned.isFreed) this.#owned.checkUsable();
+    this.#owned.free();
   }
 
   /** As {@link PairFinder.free}, for `using`. */
@@ -453,9 +463,11 @@ export class PairFinder {
 
 type Rows = Float32Array | Float64Array;
 
+const { set } = Uint32Array.prototype;
+
 /** Throws unless pairs can be written to it. By its tag, not by `instanceof`: it may be of another realm. */
 function checkInto(into: unknown): void {
-  const tag = ArrayBuffer.isView(into) && ((into as Uint32Array)[Symbol.toStringTag] as string);
+  const tag = tagOf(into);
   if (tag === "Uint32Array" || tag === "Int32Array") return;
   throw new TypeError(`\`into\` must be a Uint32Array or an Int32Array, not ${describe(into)}`);
 }
@@ -471,23 +483,39 @@ function joined(chunks: readonly Uint32Array[]): Uint32Array<ArrayBuffer> {
   return all;
 }
 
-/** The handles of the core's finders, one for each precision, or 0. */
-interface Owned {
-  readonly engine: Engine<FinderExports>;
-  single: number;
-  double: number;
-  /** Whether a call is running: then Rust uses the handle, and only a callback can call us. */
-  isBusy: boolean;
-  isFreed: boolean;
-}
+/** The core's finders, one for each precision, made when they are needed. */
+class Owned {
+  #single: Handle<FinderExports> | undefined;
+  #double: Handle<FinderExports> | undefined;
+  /** Whether a call is running: then only a callback can call us. */
+  isBusy = false;
+  isFreed = false;
 
-function release(owned: Owned): void {
-  const { finder_free } = owned.engine.exports;
-  if (owned.single !== 0) finder_free(owned.single);
-  if (owned.double !== 0) finder_free(owned.double);
-  owned.single = owned.double = 0;
-}
+  constructor(readonly engine: Engine<FinderExports>) {}
 
-/** Frees the handles of finders that were garbage collected. */
-const forgotten =
-  typeof FinalizationRegistry === "undefined" ? undefined : new FinalizationRegistry<Owned>(release);
+  checkUsable(): void {
+    if (this.isFreed) throw new TypeError("this PairFinder was freed");
+    if (this.isBusy) throw new TypeError("this PairFinder is in use: its callback can only use others");
+  }
+
+  finder(isDouble: boolean, stored: Dimensions): Handle<FinderExports> {
+    return isDouble ? (this.#double ??= this.#new(1, stored)) : (this.#single ??= this.#new(0, stored));
+  }
+
+  #new(isDouble: 0 | 1, stored: Dimensions): Handle<FinderExports> {
+    const at = this.engine.call((exports) => exports.finder_new(stored, isDouble));
+    return new Handle(this.engine, at, "PairFinder", (exports, at) => exports.finder_free(at));
+  }
+
+  free(): void {
+    this.isFreed = true;
+    this.release("free");
+  }
+
+  /** Frees the core's finders. Later calls make new ones. */
+  release(how: "free" | "discard"): void {
+    this.#single?.[how]();
+    this.#double?.[how]();
+    this.#single = this.#double = undefined;
+  }
+}

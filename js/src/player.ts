@@ -1,7 +1,8 @@
 /// <reference lib="esnext.disposable" preserve="true" />
-import type { Engine } from "./engine.js";
+import { describe } from "./describe.js";
+import { forgotten, type Handle } from "./handle.js";
 import { eventAt, lengthBefore, type TraceEvent } from "./trace.js";
-import { type AlgorithmsExports, type Counts, forgotten, type Owned, readCounts, release, Runner } from "./runner.js";
+import { type AlgorithmsExports, type Counts, readCounts, Runner } from "./runner.js";
 
 /** A place in an array: the edge there, and its coordinate. */
 export interface Place {
@@ -55,7 +56,7 @@ export interface PlayerState {
 export class Player {
   /** The words that are played. */
   readonly words: Uint32Array<ArrayBuffer>;
-  readonly #owned: Owned;
+  readonly #handle: Handle<AlgorithmsExports>;
   #position = 0;
   /** Where in the words the next event begins. */
   #at = 0;
@@ -68,9 +69,8 @@ export class Player {
   constructor(runner: Runner) {
     if (!(runner instanceof Runner)) throw new TypeError("a Player needs a Runner");
     this.words = runner.trace();
-    const { engine, player } = runner.newPlayer();
-    this.#owned = { engine, free: () => engine.exports.player_free(player), handle: player };
-    forgotten?.register(this, this.#owned);
+    this.#handle = runner.newPlayer();
+    forgotten?.register(this, this.#handle);
   }
 
   /** How many events have been played. */
@@ -100,18 +100,17 @@ export class Player {
   /** Plays or undoes until `position` events have been played, at most all of them. */
   seek(position: number): void {
     if (!(Number.isInteger(position) && position >= 0)) {
-      throw new RangeError(`position must be a whole number, not ${String(position)}`);
+      throw new RangeError(`\`position\` is ${describe(position)}; it must be a whole number, 0 or more`);
     }
-    const { engine, player } = this.#live();
-    const reached = engine.exports.player_seek(player, Math.min(position, 2 ** 32 - 1)) >>> 0;
+    const reached = this.#handle.call((exports, player) => exports.player_seek(player, Math.min(position, 2 ** 32 - 1))) >>> 0;
     for (; this.#position < reached; this.#position++) this.#at += this.words[this.#at]! >>> 8;
     for (; this.#position > reached; this.#position--) this.#at -= lengthBefore(this.words, this.#at);
   }
 
   /** What is to be drawn: objects of your own. */
   state(): PlayerState {
-    const { engine, player } = this.#live();
-    engine.check(engine.exports.player_state(player));
+    const { engine } = this.#handle;
+    engine.check(this.#handle.call((exports, player) => exports.player_state(player)));
     const numbers = new Float64Array(engine.exports.memory.buffer, engine.detail(0), engine.detail(1));
     const [axis = 0, arrayAxis = 0, position = -1, edge = -1] = numbers;
     let at = 14;
@@ -140,18 +139,12 @@ export class Player {
 
   /** Frees the memory. Freeing it twice is not an error. */
   free(): void {
-    release(this.#owned);
+    this.#handle.free();
   }
 
   /** As {@link Player.free}, for `using`. */
   [Symbol.dispose](): void {
     this.free();
-  }
-
-  #live(): { engine: Engine<AlgorithmsExports>; player: number } {
-    const { engine, handle } = this.#owned;
-    if (handle === 0) throw new TypeError("this Player was freed");
-    return { engine, player: handle };
   }
 }
 

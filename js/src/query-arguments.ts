@@ -1,4 +1,6 @@
+import { coordinate, type Corner, type Dimensions, isNamed } from "./boxes.js";
 import { describe } from "./describe.js";
+import { readRow } from "./world-arguments.js";
 
 /** @internal A length that may be infinite. */
 export function checkLength(value: unknown, name: string): number {
@@ -13,4 +15,25 @@ export function checkCount(value: unknown, name: string): number {
     throw new RangeError(`\`${name}\` is ${describe(value)}; it must be a whole number from 0 to 2^32 - 1`);
   }
   return value as number;
+}
+
+/** @internal A point: an array, or an object `{ x, y, z }`, with as many coordinates as there are dimensions. */
+export function readPoint(point: unknown, dimensions: Dimensions, name: string): Float64Array {
+  if (!isNamed(point)) return readRow(point, dimensions, 1, name);
+  const numbers = new Float64Array(dimensions);
+  for (let axis = 0; axis < dimensions; axis++) {
+    const value = coordinate(point as Corner, axis);
+    if (typeof value !== "number") throw new TypeError(`\`${name}.${"xyz"[axis]}\` must be a number, not ${describe(value)}`);
+    numbers[axis] = value;
+  }
+  return numbers;
+}
+
+/** @internal Throws unless all numbers are as the rule says. */
+export function checkRule(numbers: Float64Array, name: string, rule: "finite" | "a number"): Float64Array {
+  for (let at = 0; at < numbers.length; at++) {
+    const x = numbers[at]!;
+    if (rule === "finite" ? !Number.isFinite(x) : Number.isNaN(x)) throw new RangeError(`\`${name}[${at}]\` is ${x}; it must be ${rule}`);
+  }
+  return numbers;
 }

@@ -1,7 +1,10 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 import { type Boxes, checkBoxes, checkDimensions, type Dimensions } from "./boxes.js";
+import { describe } from "./describe.js";
 import { checkFits, Core, type Engine, type Exports } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
+import { forgotten, Handle } from "./handle.js";
+import { lengthOf } from "./typed.js";
 
 /** What js/wasm/src/algorithms.rs exports. */
 export interface AlgorithmsExports extends Exports {
@@ -10,7 +13,7 @@ export interface AlgorithmsExports extends Exports {
   runner_free(runner: number): void;
   runner_text(runner: number, length: number): number;
   runner_choose(runner: number, part: number, index: number): number;
-  runner_start(runner: number, persistent: number): void;
+  runner_start(runner: number, isPersistent: number): number;
   runner_rows(runner: number, count: number): number;
   runner_step(runner: number, count: number): number;
   runner_list(runner: number, which: number): number;
@@ -117,9 +120,8 @@ export interface Step {
  * ```
  */
 export class Runner {
-  /** How many dimensions the boxes have. */
-  readonly dimensions: Dimensions;
-  readonly #owned: Owned;
+  readonly #dimensions: Dimensions;
+  readonly #handle: Handle<AlgorithmsExports>;
 
   /**
    * A new runner; or a copy of another runner, with the same state and trace, which continues as that
@@ -130,32 +132,39 @@ export class Runner {
    */
   constructor(options: RunnerOptions | Runner) {
     if (options instanceof Runner) {
-      const { engine, runner } = options.#live();
-      this.dimensions = options.dimensions;
-      this.#owned = own(engine, engine.exports.runner_copy(runner));
-      forgotten?.register(this, this.#owned);
+      this.#dimensions = options.#dimensions;
+      this.#handle = own(options.#handle.engine, options.#handle.call((exports, runner) => exports.runner_copy(runner)));
+      forgotten?.register(this, this.#handle);
       return;
     }
-    this.dimensions = checkDimensions(options?.dimensions);
+    this.#dimensions = checkDimensions(options?.dimensions);
     const { method, sort = "standard library", axis = "largest variance", persistent = false } = options;
     const { focus = 0, traceWords = 0 } = options;
     for (const [name, value] of [["focus", focus], ["traceWords", traceWords]] as const) {
       if (!(Number.isInteger(value) && value >= 0 && value < 2 ** 32)) {
-        throw new RangeError(`${name} must be a whole number, not ${String(value)}`);
+        throw new RangeError(`\`${name}\` is ${describe(value)}; it must be a whole number from 0 to 2^32 - 1`);
       }
     }
+    if (typeof persistent !== "boolean") throw new TypeError(`\`persistent\` must be true or false, not ${describe(persistent)}`);
     const isFixed = typeof axis === "number";
-    if (isFixed && !(Number.isInteger(axis) && axis >= 0 && axis < this.dimensions)) {
-      throw new RangeError(`axis ${axis} does not exist in ${this.dimensions} dimensions`);
+    if (isFixed && !(Number.isInteger(axis) && axis >= 0 && axis < this.#dimensions)) {
+      throw new RangeError(`axis ${axis} does not exist in ${this.#dimensions} dimensions`);
     }
+    checkName("method", method, [...methods, ...wrongMethods]);
+    checkName("sort", sort, sorts);
+    if (!isFixed) checkName("axis", axis, axes);
     const engine = algorithmsCore.engine();
-    const runner = engine.exports.runner_new(this.dimensions, traceWords);
-    this.#owned = own(engine, runner);
-    this.#choose(0, "method", method, focus);
-    this.#choose(1, "sort", sort, 0);
-    this.#choose(2, "axis", isFixed ? "fixed axis" : axis, isFixed ? axis : 0);
-    engine.exports.runner_start(runner, Number(persistent));
-    forgotten?.register(this, this.#owned);
+    this.#handle = own(engine, engine.call((exports) => exports.runner_new(this.#dimensions, traceWords)));
+    forgotten?.register(this, this.#handle);
+    this.#choose(0, method, focus);
+    this.#choose(1, sort, 0);
+    this.#choose(2, isFixed ? "fixed axis" : axis, isFixed ? axis : 0);
+    engine.check(this.#handle.call((exports, runner) => exports.runner_start(runner, persistent ? 1 : 0)));
+  }
+
+  /** How many dimensions the boxes have. */
+  get dimensions(): Dimensions {
+    return this.#dimensions;
   }
 
   /**
@@ -165,16 +174,17 @@ export class Runner {
    * @throws {@link InvalidBoxError}; then nothing has changed.
    */
   step(boxes: Boxes): Step {
-    const { engine, runner } = this.#live();
-    const { exports } = engine;
-    const rows = checkBoxes(boxes, this.dimensions);
-    const count = rows.length / (2 * this.dimensions);
-    checkFits(8 * rows.length);
-    const at = exports.runner_rows(runner, count) >>> 0;
+    const rows = checkBoxes(boxes, this.#dimensions);
+    const length = lengthOf(rows);
+    const count = length / (2 * this.#dimensions);
+    checkFits(8 * length);
+    const handle = this.#handle;
+    const { engine } = handle;
+    const at = handle.call((exports, runner) => exports.runner_rows(runner, count)) >>> 0;
     if (at === 0) throw new OutOfMemoryError();
-    new Float64Array(exports.memory.buffer, at, rows.length).set(rows);
-    engine.check(exports.runner_step(runner, count));
-    const numbers = new Float64Array(exports.memory.buffer, engine.detail(0), engine.detail(1));
+    new Float64Array(engine.exports.memory.buffer, at, length).set(rows);
+    engine.check(handle.call((exports, runner) => exports.runner_step(runner, count)));
+    const numbers = new Float64Array(engine.exports.memory.buffer, engine.detail(0), engine.detail(1));
     const [axis = 0, bytes = 0] = numbers;
     const counts = readCounts(numbers, 2);
     return { pairs: this.#list(0), begun: this.#list(1), ended: this.#list(2), axis, counts, bytes };
@@ -187,14 +197,12 @@ export class Runner {
 
   /** Whether something was not recorded because of the limit. */
   get isTruncated(): boolean {
-    const { engine, runner } = this.#live();
-    return engine.exports.runner_is_truncated(runner) !== 0;
+    return this.#handle.call((exports, runner) => exports.runner_is_truncated(runner)) !== 0;
   }
 
   /** Clears the recording. */
   clearTrace(): void {
-    const { engine, runner } = this.#live();
-    engine.exports.runner_clear_trace(runner);
+    this.#handle.call((exports, runner) => exports.runner_clear_trace(runner));
   }
 
   /**
@@ -205,19 +213,18 @@ export class Runner {
    * @returns how many events remain.
    */
   trimTrace(): number {
-    const { engine, runner } = this.#live();
-    return engine.exports.runner_trim_trace(runner) >>> 0;
+    return this.#handle.call((exports, runner) => exports.runner_trim_trace(runner)) >>> 0;
   }
 
   /** @internal The handle of a player of what was recorded. */
-  newPlayer(): { engine: Engine<AlgorithmsExports>; player: number } {
-    const { engine, runner } = this.#live();
-    return { engine, player: engine.exports.player_new(runner) };
+  newPlayer(): Handle<AlgorithmsExports> {
+    const player = this.#handle.call((exports, runner) => exports.player_new(runner));
+    return new Handle(this.#handle.engine, player, "Player", (exports, player) => exports.player_free(player));
   }
 
   /** Frees the memory. Freeing it twice is not an error. */
   free(): void {
-    release(this.#owned);
+    this.#handle.free();
   }
 
   /** As {@link Runner.free}, for `using`. */
@@ -225,26 +232,17 @@ export class Runner {
     this.free();
   }
 
-  #live(): { engine: Engine<AlgorithmsExports>; runner: number } {
-    const { engine, handle } = this.#owned;
-    if (handle === 0) throw new TypeError("this Runner was freed");
-    return { engine, runner: handle };
-  }
-
-  #choose(part: number, kind: string, name: string, index: number): void {
-    const { engine, runner } = this.#live();
-    const text = new TextEncoder().encode(String(name));
-    const at = engine.exports.runner_text(runner, text.length) >>> 0;
+  #choose(part: number, name: string, index: number): void {
+    const { engine } = this.#handle;
+    const text = new TextEncoder().encode(name);
+    const at = this.#handle.call((exports, runner) => exports.runner_text(runner, text.length)) >>> 0;
     new Uint8Array(engine.exports.memory.buffer, at, text.length).set(text);
-    if (engine.exports.runner_choose(runner, part, index) === 0) {
-      this.free();
-      throw new RangeError(`there is no ${kind} named "${String(name)}"`);
-    }
+    this.#handle.call((exports, runner) => exports.runner_choose(runner, part, index));
   }
 
   #list(which: number): Uint32Array<ArrayBuffer> {
-    const { engine, runner } = this.#live();
-    engine.check(engine.exports.runner_list(runner, which));
+    const { engine } = this.#handle;
+    engine.check(this.#handle.call((exports, runner) => exports.runner_list(runner, which)));
     return new Uint32Array(engine.exports.memory.buffer, engine.detail(0), engine.detail(1)).slice();
   }
 }
@@ -256,23 +254,12 @@ export function readCounts(numbers: Float64Array, from: number): Counts {
   return { comparisons, swaps, tests, axisOverlaps, axisEnds, pairs, begun, ended, active, maxActive };
 }
 
-/** @internal What lies on the other side, and how to free it: a handle, or 0 once it is freed. */
-export interface Owned {
-  readonly engine: Engine<AlgorithmsExports>;
-  readonly free: () => void;
-  handle: number;
+function own(engine: Engine<AlgorithmsExports>, runner: number): Handle<AlgorithmsExports> {
+  return new Handle(engine, runner, "Runner", (exports, runner) => exports.runner_free(runner));
 }
 
-function own(engine: Engine<AlgorithmsExports>, runner: number): Owned {
-  return { engine, free: () => engine.exports.runner_free(runner), handle: runner };
+function checkName(kind: string, name: unknown, names: readonly string[]): void {
+  if (typeof name !== "string" || !names.includes(name)) {
+    throw new RangeError(`there is no ${kind} named ${typeof name === "string" ? `"${name}"` : describe(name)}`);
+  }
 }
-
-/** @internal */
-export function release(owned: Owned): void {
-  if (owned.handle !== 0) owned.free();
-  owned.handle = 0;
-}
-
-/** @internal Frees the handles of objects that were garbage collected. */
-export const forgotten: FinalizationRegistry<Owned> | undefined =
-  typeof FinalizationRegistry === "undefined" ? undefined : new FinalizationRegistry<Owned>(release);

@@ -1,14 +1,20 @@
-import { type Boxes, checkBoxes, checkNumbers, type Dimensions, isNamed, readBox, readPoint, writeRows } from "./boxes.js";
-import { checkFits, type Core, type Engine, type Passed } from "./engine.js";
+import { type Boxes, checkBoxes, type Dimensions, writeRows } from "./boxes.js";
+import { checkFits, Code, type Core, type Engine, type Passed } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
+import { forgotten, Handle } from "./handle.js";
+import { StaleProxyError } from "./stale-proxy-error.js";
+import { bufferOf, lengthOf } from "./typed.js";
 import { result, view } from "./views.js";
-import { refuseCorners } from "./world-arguments.js";
+import { readCorners, refuseCorners } from "./world-arguments.js";
 import type { WorldExports } from "./world-core.js";
-import type { Box, BroadPhaseOptions, Changes, Numbers, Point } from "./world-types.js";
+import type { BroadPhaseOptions, Changes } from "./world-types.js";
 
 /**
  * A broad phase in WebAssembly's memory: calls it, writes its arguments where it reads them, and
  * makes views of its answers.
+ *
+ * A method of a broad phase first reads and checks all its arguments, which may run any code of the user: that calls
+ * this broad phase, or frees it. Then it writes them, and makes its call.
  */
 export class WorldMemory {
   readonly dimensions: Dimensions;
@@ -17,7 +23,7 @@ export class WorldMemory {
   readonly stored: Dimensions;
   /** Whether arrays that it gives out are views of memory. */
   readonly isView: boolean;
-  readonly #owned: Owned;
+  readonly #handle: Handle<WorldExports>;
   readonly #numbersAt: number;
   #numbers: Float64Array | undefined;
   #rows: Float32Array | Float64Array | undefined;
@@ -26,58 +32,58 @@ export class WorldMemory {
   #begun: Float64Array | undefined;
   #ended: Float64Array | undefined;
 
-  constructor(dimensions: Dimensions, isDouble: boolean, isView: boolean, owned: Owned) {
+  constructor(dimensions: Dimensions, isDouble: boolean, isView: boolean, handle: Handle<WorldExports>) {
     this.dimensions = dimensions;
     this.isDouble = isDouble;
     this.isView = isView;
     // The core has no type for 1D boxes, nor for 2D in double precision: js/wasm/src/broad_phase/stored.rs.
     this.stored = isDouble ? 3 : (Math.max(2, dimensions) as Dimensions);
-    this.#owned = owned;
-    this.#numbersAt = owned.engine.exports.world_numbers(owned.world) >>> 0;
-    forgotten?.register(this, owned);
+    this.#handle = handle;
+    this.#numbersAt = handle.call((exports, world) => exports.world_numbers(world)) >>> 0;
+    forgotten?.register(this, handle);
   }
 
   /** An empty broad phase. */
   static create(core: Core<WorldExports>, options: Required<BroadPhaseOptions>): WorldMemory {
     const { dimensions, precision, report, margin, prediction, views } = options;
     const isDouble = precision === "double";
-    const engine = core.engine();
-    const world = engine.exports.world_new(dimensions, Number(isDouble), margin, prediction, Number(report === "fat"));
-    if (world === 0) throw new RangeError("`margin` or `prediction` does not fit in single precision");
-    return new WorldMemory(dimensions, isDouble, views, { engine, world });
+    const handle = newWorld(core.engine(), dimensions, isDouble, margin, prediction, report === "fat");
+    return new WorldMemory(dimensions, isDouble, views, handle);
   }
 
   /** The started core. */
   get engine(): Engine<WorldExports> {
-    return this.#owned.engine;
+    return this.#handle.engine;
   }
 
   /** Frees the memory. Freeing it twice is not an error. */
   free(): void {
-    release(this.#owned);
+    this.#handle.free();
   }
 
-  /** The exports, unless this was freed. */
-  exports(): WorldExports {
-    if (this.#owned.world === 0) throw new TypeError("this BroadPhase was freed");
-    return this.#owned.engine.exports;
+  /** Throws if no call can be made, because this was freed. */
+  checkUsable(): void {
+    this.#handle.checkUsable();
   }
 
   /** Makes a call that cannot fail and overwrites no view. */
   ask(ask: (exports: WorldExports, world: number) => number): number {
-    return ask(this.exports(), this.#owned.world);
+    return this.#handle.call(ask);
   }
 
   /** Makes a call and throws its error. */
   call(call: (exports: WorldExports, world: number) => number, passed?: Passed): void {
-    const owned = this.#owned;
-    const exports = this.exports();
-    owned.engine.calls++;
+    const handle = this.#handle;
+    const { engine } = handle;
+    engine.calls++;
     try {
-      owned.engine.check(call(exports, owned.world), passed);
+      const code = handle.call(call);
+      if (code === Code.StaleProxy) throw new StaleProxyError(engine.detail(0), passed?.ids?.[engine.detail(0)] ?? NaN);
+      if (code === Code.InvalidArgument) throw new RangeError("`box` is inverted, or a coordinate is too large for single precision");
+      engine.check(code, passed);
     } catch (error) {
       // The call stopped halfway, so the state cannot be used any more.
-      if (error instanceof OutOfMemoryError) this.free();
+      if (error instanceof OutOfMemoryError) this.#handle.discard();
       throw error;
     }
   }
@@ -85,7 +91,7 @@ export class WorldMemory {
   /** Makes a call and returns the ids that it reports. */
   answer(call: (exports: WorldExports, world: number) => number, passed?: Passed): Float64Array {
     this.call(call, passed);
-    const { engine } = this.#owned;
+    const { engine } = this;
     const { buffer } = engine.exports.memory;
     this.#out = view(Float64Array, this.#out, buffer, engine.detail(0), engine.detail(1));
     return result(engine, this.#out, this.isView);
@@ -94,12 +100,12 @@ export class WorldMemory {
   /** Updates, and writes what changed. */
   update(into: Changes): void {
     this.call((exports, world) => exports.world_update(world));
-    const { engine } = this.#owned;
-    const { buffer } = engine.exports.memory;
-    const [at, total, begun] = [engine.detail(0), engine.detail(1), this.numbers()[0]!];
-    this.#begun = view(Float64Array, this.#begun, buffer, at, begun);
-    this.#ended = view(Float64Array, this.#ended, buffer, at + 8 * begun, total - begun);
     try {
+      const { engine } = this;
+      const { buffer } = engine.exports.memory;
+      const [at, total, begun] = [engine.detail(0), engine.detail(1), this.numbers()[0]!];
+      this.#begun = view(Float64Array, this.#begun, buffer, at, begun);
+      this.#ended = view(Float64Array, this.#ended, buffer, at + 8 * begun, total - begun);
       into.begun = result(engine, this.#begun, this.isView);
       into.ended = result(engine, this.#ended, this.isView);
     } catch (error) {
@@ -110,7 +116,8 @@ export class WorldMemory {
 
   /** The numbers that go in and out, where they are now. */
   numbers(): Float64Array {
-    const { buffer } = this.exports().memory;
+    this.#handle.checkUsable();
+    const { buffer } = this.engine.exports.memory;
     return (this.#numbers = view(Float64Array, this.#numbers, buffer, this.#numbersAt, 16));
   }
 
@@ -118,7 +125,7 @@ export class WorldMemory {
   writeBox(a: unknown, b: unknown, c: unknown, d: unknown, e: unknown, f: unknown, more: unknown): void {
     if (typeof a === "object" && a !== null) {
       if (b !== undefined) throw new TypeError(`there are more arguments than \`box\``);
-      this.writeCorners(0, a as Box, 2, "box");
+      this.write(0, readCorners(a, this.dimensions, "box"));
       return;
     }
     const [numbers, stored] = [this.numbers(), this.stored];
@@ -149,34 +156,22 @@ export class WorldMemory {
     if (this.stored === 3) numbers[at + 2] = z;
   }
 
-  /**
-   * Writes one or two corners, with zeros on the axes that the user's boxes do not have. The core
-   * checks whether a box is valid; what a `rule` says is checked here.
-   */
-  writeCorners(at: number, values: Point | Box, corners: 1 | 2, name: string, rule?: "finite" | "a number"): void {
-    const { dimensions } = this;
-    const given = isNamed(values) ? readCorners(values, dimensions, corners, name) : checkNumbers(values, name);
-    if (given.length !== corners * dimensions) {
-      throw new RangeError(`\`${name}\` has ${given.length} numbers; in ${dimensions}D it must have ${corners * dimensions}`);
-    }
-    const wrong = rule ? given.findIndex((x) => (rule === "finite" ? !Number.isFinite(x) : Number.isNaN(x))) : -1;
-    if (wrong >= 0) throw new RangeError(`\`${name}[${wrong}]\` is ${given[wrong]}; it must be ${rule}`);
+  /** Writes corners that were read, with zeros on the axes that the user's boxes do not have. */
+  write(at: number, given: Float64Array): void {
+    const { dimensions, stored } = this;
     const numbers = this.numbers();
-    for (let corner = 0; corner < corners; corner++) {
-      for (let axis = 0; axis < this.stored; axis++) {
-        numbers[at + corner * this.stored + axis] = axis < dimensions ? given[corner * dimensions + axis]! : 0;
-      }
+    for (let from = 0; from < given.length; from += dimensions, at += stored) {
+      for (let axis = 0; axis < stored; axis++) numbers[at + axis] = axis < dimensions ? given[from + axis]! : 0;
     }
   }
 
   /** Rows in memory for `count` boxes. */
   rowsFor(count: number): Float32Array | Float64Array {
-    const exports = this.exports();
     const length = 2 * this.stored * count;
     checkFits(length * (this.isDouble ? 8 : 4));
-    const at = exports.world_rows(this.#owned.world, count) >>> 0;
+    const at = this.#handle.call((exports, world) => exports.world_rows(world, count)) >>> 0;
     if (at === 0) throw new OutOfMemoryError();
-    const { buffer } = exports.memory;
+    const { buffer } = this.engine.exports.memory;
     return (this.#rows =
       this.isDouble
         ? view(Float64Array, this.#rows, buffer, at, length)
@@ -186,65 +181,51 @@ export class WorldMemory {
   /** Writes boxes to the rows, unless they are already there, and returns how many there are. */
   writeRows(boxes: Boxes): number {
     const rows = checkBoxes(boxes, this.dimensions);
-    const count = rows.length / (2 * this.dimensions);
+    const count = lengthOf(rows) / (2 * this.dimensions);
     const kept = this.#keep(rows, this.#rows);
     const into = this.rowsFor(count);
-    if (!isSame(kept, into)) writeRows(kept, this.dimensions, into, this.stored);
+    if (kept !== into) writeRows(kept, this.dimensions, into, this.stored);
     return count;
   }
 
   /** The array of memory for `count` ids. */
   idsFor(count: number): Float64Array {
-    const exports = this.exports();
     checkFits(count * 8);
-    const at = exports.world_ids_in(this.#owned.world, count) >>> 0;
+    const at = this.#handle.call((exports, world) => exports.world_ids_in(world, count)) >>> 0;
     if (at === 0) throw new OutOfMemoryError();
-    return (this.#ids = view(Float64Array, this.#ids, exports.memory.buffer, at, count));
+    return (this.#ids = view(Float64Array, this.#ids, this.engine.exports.memory.buffer, at, count));
   }
 
-  /** Writes ids to their array, unless they are already there. */
-  writeIds(ids: Numbers): void {
-    const kept = this.keepIds(ids);
-    const into = this.idsFor(kept.length);
-    if (!isSame(kept, into)) into.set(kept);
+  /** Writes ids that were kept to their array, unless they are already there. */
+  writeIds(kept: Floats): void {
+    const into = this.idsFor(lengthOf(kept));
+    if (kept !== into) into.set(kept);
   }
 
   /** The ids, copied if writing other arguments first could move them. */
-  keepIds(ids: Numbers): Numbers {
+  keepIds(ids: Floats): Floats {
     return this.#keep(ids, this.#ids);
   }
 
-  /** The numbers, copied if they lie in memory that may grow, unless they lie where the core will read them. */
-  #keep<T extends Numbers>(numbers: T, written: Float32Array | Float64Array | undefined): T {
-    const isOutside = !ArrayBuffer.isView(numbers) || numbers.buffer !== this.exports().memory.buffer;
-    return isOutside || (written && isSame(numbers, written)) ? numbers : (numbers.slice() as unknown as T);
+  /** The numbers, copied if they lie in memory that may grow, unless they are the array that the core will read. */
+  #keep(numbers: Floats, written: Floats | undefined): Floats {
+    const isOutside = bufferOf(numbers) !== this.engine.exports.memory.buffer;
+    return isOutside || numbers === written ? numbers : new Float64Array(numbers);
   }
 }
 
-/** The corners of a box that is an object, or the coordinates of a point that is one. */
-function readCorners(value: object, dimensions: Dimensions, corners: 1 | 2, name: string): Float64Array {
-  if (corners === 1) return readPoint(value, dimensions, name);
-  const numbers = new Float64Array(2 * dimensions);
-  readBox(value, dimensions, `\`${name}\``, numbers, 0);
-  return numbers;
-}
+type Floats = Float32Array | Float64Array;
 
-/** Whether an array lies where another does. */
-function isSame(a: Numbers, b: Float32Array | Float64Array): boolean {
-  return ArrayBuffer.isView(a) && a.buffer === b.buffer && a.byteOffset === b.byteOffset;
+/** An empty broad phase of the core. */
+export function newWorld(
+  engine: Engine<WorldExports>,
+  dimensions: Dimensions,
+  isDouble: boolean,
+  margin = 0,
+  prediction = 0,
+  isFat = false,
+): Handle<WorldExports> {
+  const at = engine.call((exports) => exports.world_new(dimensions, isDouble ? 1 : 0, margin, prediction, isFat ? 1 : 0));
+  if (at === 0) throw new RangeError("`margin` or `prediction` does not fit in single precision");
+  return new Handle(engine, at, "BroadPhase", (exports, world) => exports.world_free(world));
 }
-
-/** The handle of the core's object, or 0 once it is freed. */
-export interface Owned {
-  readonly engine: Engine<WorldExports>;
-  world: number;
-}
-
-export function release(owned: Owned): void {
-  if (owned.world !== 0) owned.engine.exports.world_free(owned.world);
-  owned.world = 0;
-}
-
-/** Frees the handles of objects that were garbage collected. */
-const forgotten =
-  typeof FinalizationRegistry === "undefined" ? undefined : new FinalizationRegistry<Owned>(release);

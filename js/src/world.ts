@@ -3,13 +3,14 @@ import { Bodies, checkOptions, oneBox } from "./bodies.js";
 import { checkDimensions, type Dimensions } from "./boxes.js";
 import { checkFits, Code } from "./engine.js";
 import { OutOfMemoryError } from "./errors.js";
-import { defaultFilter, type Filter, filterWords, type FilterWords, noFilter } from "./filter.js";
-import { checkCount, checkLength } from "./query-arguments.js";
+import { defaultFilter, filterWords, type FilterWords } from "./filter.js";
+import { checkCount, checkLength, checkRule, readPoint } from "./query-arguments.js";
 import { SnapshotError } from "./snapshot-error.js";
-import { checkId } from "./world-arguments.js";
+import { checkId, readCorners } from "./world-arguments.js";
 import { Query, worldCore } from "./world-core.js";
+import { lengthOf, tagOf } from "./typed.js";
 import { checkViews } from "./views.js";
-import { release, WorldMemory } from "./world-memory.js";
+import { newWorld, WorldMemory } from "./world-memory.js";
 import type { Box, BroadPhaseOptions, Hit, Neighbor, Point, ProxyId, QueryFilter, SortOptions } from "./world-types.js";
 
 /**
@@ -47,9 +48,7 @@ export class BroadPhase extends Bodies {
    * @throws {@link SnapshotError} if the bytes are not a snapshot of boxes with these dimensions.
    */
   static fromSnapshot(bytes: Uint8Array, options: { dimensions: Dimensions; views?: boolean }): BroadPhase {
-    if (!(ArrayBuffer.isView(bytes) && bytes[Symbol.toStringTag] === "Uint8Array")) {
-      throw new TypeError(`\`bytes\` must be a Uint8Array, not ${describe(bytes)}`);
-    }
+    if (tagOf(bytes) !== "Uint8Array") throw new TypeError(`\`bytes\` must be a Uint8Array, not ${describe(bytes)}`);
     const memory: unknown = restore(bytes, checkDimensions(options?.dimensions), checkViews(options.views));
     return new BroadPhase(memory as BroadPhaseOptions);
   }
@@ -60,7 +59,7 @@ export class BroadPhase extends Bodies {
    */
   pairs(options?: SortOptions): Float64Array {
     const isSorted = options?.sorted !== false;
-    return this.memory.answer((exports, world) => exports.world_pairs(world, Number(isSorted)));
+    return this.memory.answer((exports, world) => exports.world_pairs(world, isSorted ? 1 : 0));
   }
 
   /**
@@ -85,8 +84,7 @@ export class BroadPhase extends Bodies {
    * @throws {@link InvalidBoxError}; and what `filter` throws.
    */
   overlapping(box: Box, filter?: QueryFilter, options?: SortOptions): Float64Array {
-    this.memory.writeCorners(0, box, 2, "box");
-    return this.#ask(Query.Overlapping, filter, options);
+    return this.#ask(Query.Overlapping, readCorners(box, this.dimensions, "box"), 0, filter, options);
   }
 
   /**
@@ -95,8 +93,7 @@ export class BroadPhase extends Bodies {
    * @throws `RangeError` for a NaN.
    */
   containing(point: Point, filter?: QueryFilter, options?: SortOptions): Float64Array {
-    this.memory.writeCorners(0, point, 1, "point", "a number");
-    return this.#ask(Query.Containing, filter, options);
+    return this.#ask(Query.Containing, this.#readPoint(point, "point", "a number"), 0, filter, options);
   }
 
   /**
@@ -106,9 +103,7 @@ export class BroadPhase extends Bodies {
    */
   within(center: Point, radius: number, filter?: QueryFilter, options?: SortOptions): Float64Array {
     checkLength(radius, "radius");
-    this.memory.writeCorners(0, center, 1, "center", "finite");
-    this.memory.numbers()[this.memory.stored] = radius;
-    return this.#ask(Query.Within, filter, options);
+    return this.#ask(Query.Within, this.#readPoint(center, "center"), radius, filter, options);
   }
 
   /**
@@ -123,8 +118,7 @@ export class BroadPhase extends Bodies {
    * @throws `RangeError` if the origin or the direction is not finite, or the limit negative or NaN.
    */
   rayCast(origin: Point, direction: Point, limit: number = Infinity, filter?: QueryFilter): Hit | undefined {
-    this.#writeRay(origin, direction, limit);
-    return this.#firstHit(filter);
+    return this.#firstHit(this.#readRay(origin, direction, limit), filter);
   }
 
   /**
@@ -133,8 +127,7 @@ export class BroadPhase extends Bodies {
    * @throws As {@link BroadPhase.rayCast}.
    */
   rayCastAll(origin: Point, direction: Point, limit: number = Infinity, filter?: QueryFilter): Hit[] {
-    this.#writeRay(origin, direction, limit);
-    return this.#hits(Query.CastAll, filter);
+    return this.#allHits(this.#readRay(origin, direction, limit), filter);
   }
 
   /**
@@ -143,8 +136,7 @@ export class BroadPhase extends Bodies {
    * @throws As {@link BroadPhase.rayCast}, also if the box is inverted.
    */
   boxCast(box: Box, direction: Point, limit: number = Infinity, filter?: QueryFilter): Hit | undefined {
-    this.#writeCast(box, direction, limit);
-    return this.#firstHit(filter);
+    return this.#firstHit(this.#readCast(box, direction, limit), filter);
   }
 
   /**
@@ -153,8 +145,7 @@ export class BroadPhase extends Bodies {
    * @throws As {@link BroadPhase.boxCast}.
    */
   boxCastAll(box: Box, direction: Point, limit: number = Infinity, filter?: QueryFilter): Hit[] {
-    this.#writeCast(box, direction, limit);
-    return this.#hits(Query.CastAll, filter);
+    return this.#allHits(this.#readCast(box, direction, limit), filter);
   }
 
   /**
@@ -168,22 +159,26 @@ export class BroadPhase extends Bodies {
   nearest(point: Point, k: number = 1, maxDistance: number = Infinity, filter?: QueryFilter): Neighbor[] {
     checkCount(k, "k");
     checkLength(maxDistance, "maxDistance");
-    const search = (wanted: number, only?: Partial<Filter>): Neighbor[] => {
-      this.memory.writeCorners(0, point, 1, "point", "finite");
-      this.memory.numbers()[this.memory.stored] = maxDistance;
-      const found = this.#hits(Query.Nearest, only, Math.min(wanted, 2 ** 32 - 1));
+    const from = this.#readPoint(point, "point");
+    const words = wordsOf(filter);
+    const search = (wanted: number): Neighbor[] => {
+      const found = this.#hits(Query.Nearest, () => this.#writeSphere(from, maxDistance), words, Math.min(wanted, 2 ** 32 - 1));
       // The search compares squares, and finds a little more.
       return found.map(({ id, t }) => ({ id, distance: Math.sqrt(t) })).filter(({ distance }) => distance <= maxDistance);
     };
-    if (typeof filter !== "function") return search(k, filter);
-    // Twice as many each time, since only the search knows which is next.
+    if (typeof filter !== "function") return search(k);
+    // Twice as many each time, since only the search knows which is next. The function may change the world, too.
     const accepted: Neighbor[] = [];
-    for (let asked = 2 * k, seen = 0; accepted.length < k; asked *= 2) {
-      const found = search(asked);
-      for (; seen < found.length && accepted.length < k; seen++) {
-        if (filter(found[seen]!.id)) accepted.push(found[seen]!);
+    const asked = new Set<ProxyId>();
+    const most = this.size;
+    for (let wanted = 2 * k; accepted.length < k; wanted *= 2) {
+      for (const neighbor of search(wanted)) {
+        if (accepted.length === k) break;
+        if (asked.has(neighbor.id)) continue;
+        asked.add(neighbor.id);
+        if (filter(neighbor.id)) accepted.push(neighbor);
       }
-      if (found.length < asked) break;
+      if (wanted >= most) break;
     }
     return accepted;
   }
@@ -205,67 +200,105 @@ export class BroadPhase extends Bodies {
     return (BigInt(engine.detail(1)) << 32n) | BigInt(engine.detail(0));
   }
 
-  #ask(query: Query, filter: QueryFilter | undefined, options: SortOptions | undefined): Float64Array {
-    const sorted = Number(options?.sorted !== false);
-    const ids = this.memory.answer((exports, world) => exports.world_query(world, query, 0, ...wordsOf(filter), sorted), oneBox);
+  #ask(query: Query, corners: Float64Array, radius: number, filter: QueryFilter | undefined, options: SortOptions | undefined): Float64Array {
+    const [category, mask, group, isStatic] = wordsOf(filter);
+    const isSorted = options?.sorted !== false ? 1 : 0;
+    if (query === Query.Within) this.#writeSphere(corners, radius);
+    else this.memory.write(0, corners);
+    const ids = this.memory.answer((exports, world) => exports.world_query(world, query, 0, category, mask, group, isStatic, isSorted), oneBox);
     // With the option `views`, the function could let them become stale.
     return typeof filter === "function" ? Float64Array.from(ids).filter((id) => filter(id)) : ids;
   }
 
-  #hits(query: Query, filter: QueryFilter | undefined, k = 0): Hit[] {
-    this.memory.call((exports, world) => exports.world_query(world, query, k, ...wordsOf(filter), 1));
+  /** Makes a query whose numbers `write` writes. */
+  #hits(query: Query, write: () => void, [category, mask, group, isStatic]: FilterWords, k = 0): Hit[] {
+    write();
+    this.memory.call((exports, world) => exports.world_query(world, query, k, category, mask, group, isStatic, 1));
     const { engine } = this.memory;
     const { buffer } = engine.exports.memory;
     const count = engine.detail(1);
     const ids = new Float64Array(buffer, engine.detail(0), count);
     const values = new Float64Array(buffer, this.memory.numbers()[0]!, count);
-    const hits = Array.from(ids, (id, at) => ({ id, t: values[at]! }));
+    return Array.from(ids, (id, at) => ({ id, t: values[at]! }));
+  }
+
+  #allHits(path: Path, filter: QueryFilter | undefined): Hit[] {
+    const words = wordsOf(filter);
+    const hits = this.#hits(Query.CastAll, () => this.#writePath(path), words);
     return typeof filter === "function" ? hits.filter(({ id }) => filter(id)) : hits;
   }
 
-  #firstHit(filter: QueryFilter | undefined): Hit | undefined {
-    if (typeof filter !== "function") return this.#hits(Query.Cast, filter)[0];
-    return this.#hits(Query.CastAll, undefined).find(({ id }) => filter(id));
+  #firstHit(path: Path, filter: QueryFilter | undefined): Hit | undefined {
+    const words = wordsOf(filter);
+    const isFunction = typeof filter === "function";
+    const hits = this.#hits(isFunction ? Query.CastAll : Query.Cast, () => this.#writePath(path), words);
+    return isFunction ? hits.find(({ id }) => filter(id)) : hits[0];
   }
 
-  #writeRay(origin: Point, direction: Point, limit: number): void {
-    this.memory.writeCorners(0, origin, 1, "origin", "finite");
-    this.memory.writeCorners(this.memory.stored, origin, 1, "origin", "finite");
-    this.#writePath(direction, limit);
+  #readRay(origin: Point, direction: Point, limit: number): Path {
+    const start = this.#readPoint(origin, "origin");
+    const box = new Float64Array(2 * start.length);
+    box.set(start);
+    box.set(start, start.length);
+    return this.#readPath(box, direction, limit);
   }
 
-  #writeCast(box: Box, direction: Point, limit: number): void {
-    this.memory.writeCorners(0, box, 2, "box", "finite");
-    this.#writePath(direction, limit);
+  #readCast(box: Box, direction: Point, limit: number): Path {
+    return this.#readPath(checkRule(readCorners(box, this.dimensions, "box"), "box", "finite"), direction, limit);
   }
 
-  #writePath(direction: Point, limit: number): void {
+  #readPath(box: Float64Array, direction: Point, limit: number): Path {
     checkLength(limit, "limit");
-    this.memory.writeCorners(2 * this.memory.stored, direction, 1, "direction", "finite");
-    this.memory.numbers()[3 * this.memory.stored] = limit;
+    return { box, direction: this.#readPoint(direction, "direction"), limit };
   }
+
+  #writePath({ box, direction, limit }: Path): void {
+    const { stored } = this.memory;
+    this.memory.write(0, box);
+    this.memory.write(2 * stored, direction);
+    this.memory.numbers()[3 * stored] = limit;
+  }
+
+  #readPoint(point: Point, name: string, rule: "finite" | "a number" = "finite"): Float64Array {
+    return checkRule(readPoint(point, this.dimensions, name), name, rule);
+  }
+
+  #writeSphere(center: Float64Array, radius: number): void {
+    this.memory.write(0, center);
+    this.memory.numbers()[this.memory.stored] = radius;
+  }
+}
+
+/** A moving box. */
+interface Path {
+  readonly box: Float64Array;
+  readonly direction: Float64Array;
+  readonly limit: number;
 }
 
 /** The broad phase of a snapshot. */
 function restore(bytes: Uint8Array, dimensions: Dimensions, isView: boolean): WorldMemory {
   const engine = worldCore.engine();
-  const { exports } = engine;
-  checkFits(bytes.length);
-  const owned = { engine, world: exports.world_new(dimensions, 0, 0, 0, 0) };
+  const length = lengthOf(bytes);
+  checkFits(length);
+  const handle = newWorld(engine, dimensions, false);
   try {
     engine.calls++;
-    const at = exports.world_bytes(owned.world, bytes.length) >>> 0;
+    const at = handle.call((exports, world) => exports.world_bytes(world, length)) >>> 0;
     if (at === 0) throw new OutOfMemoryError();
-    new Uint8Array(exports.memory.buffer, at, bytes.length).set(bytes);
-    const code = exports.world_restore(owned.world);
+    new Uint8Array(engine.exports.memory.buffer, at, length).set(bytes);
+    const code = handle.call((exports, world) => exports.world_restore(world));
     if (code === Code.InvalidSnapshot) throw new SnapshotError(engine.detail(0), engine.detail(1));
     engine.check(code);
-    return new WorldMemory(dimensions, engine.detail(0) !== 0, isView, owned);
+    return new WorldMemory(dimensions, engine.detail(0) !== 0, isView, handle);
   } catch (error) {
-    release(owned);
+    handle.free();
     throw error;
   }
 }
+
+/** What the core takes for no filter: a query without one finds every body. */
+const noFilter: FilterWords = [0, 0, 0, 2];
 
 /** The filter of a query as the core takes it: none if it is a function, which is called afterwards. */
 function wordsOf(filter: QueryFilter | undefined): FilterWords {

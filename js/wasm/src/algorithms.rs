@@ -11,6 +11,7 @@ use sweep_and_prune::algorithms::{
 use sweep_and_prune::{Aabb, Error};
 
 use crate::broken::{Wrong, WrongRunner};
+use crate::call::{self, Running, run, stack, truth};
 use crate::status::{Code, report, report_error};
 
 /// A runner of any dimensions, with the rows that it reads.
@@ -94,7 +95,9 @@ impl<const D: usize> Steps for Typed<D> {
 }
 
 /// What JavaScript holds a pointer to.
+#[repr(C)]
 struct Handle {
+    running: Running,
     dimensions: u32,
     text: Vec<u8>,
     /// None until it is started.
@@ -111,11 +114,19 @@ struct Handle {
     numbers: [f64; 12],
 }
 
+impl call::Handle for Handle {
+    fn running(&mut self) -> &mut Running {
+        &mut self.running
+    }
+}
+
 /// A new runner, to be chosen and started; records up to so many words of trace.
 #[unsafe(no_mangle)]
 extern "C" fn runner_new(dimensions: u32, trace_words: usize) -> Option<Box<Handle>> {
+    stack::check(stack::LARGE);
     (1..=3).contains(&dimensions).then(|| {
         Box::new(Handle {
+            running: Running::default(),
             dimensions,
             text: Vec::new(),
             steps: None,
@@ -133,7 +144,9 @@ extern "C" fn runner_new(dimensions: u32, trace_words: usize) -> Option<Box<Hand
 /// A copy of a runner, which goes on as the runner would, to be freed as well.
 #[unsafe(no_mangle)]
 extern "C" fn runner_copy(handle: &Handle) -> Box<Handle> {
+    stack::check(stack::LARGE);
     Box::new(Handle {
+        running: Running::default(),
         text: Vec::new(),
         steps: handle.steps.as_ref().map(|steps| steps.copy()),
         observer: handle.observer.clone(),
@@ -145,21 +158,27 @@ extern "C" fn runner_copy(handle: &Handle) -> Box<Handle> {
 /// Frees a runner and all that it holds.
 #[unsafe(no_mangle)]
 extern "C" fn runner_free(handle: Option<Box<Handle>>) {
-    drop(handle);
+    call::free(handle);
 }
 
 /// Where to write a name of so many bytes.
 #[unsafe(no_mangle)]
 extern "C" fn runner_text(handle: &mut Handle, length: usize) -> *mut u8 {
-    handle.text.clear();
-    handle.text.resize(length, 0);
-    handle.text.as_mut_ptr()
+    run(handle, stack::SMALL, |handle| {
+        handle.text.clear();
+        handle.text.resize(length, 0);
+        handle.text.as_mut_ptr()
+    })
 }
 
 /// Chooses the method (0), the sort (1) or the axis (2) of the name in the text. Whether there is
 /// one. `index` is the box of the one-to-n scan, or the fixed axis.
 #[unsafe(no_mangle)]
 extern "C" fn runner_choose(handle: &mut Handle, part: u32, index: u32) -> bool {
+    run(handle, stack::SMALL, |handle| choose(handle, part, index))
+}
+
+fn choose(handle: &mut Handle, part: u32, index: u32) -> bool {
     let Ok(name) = core::str::from_utf8(&handle.text) else { return false };
     match part {
         0 if Wrong::from_name(name).is_some() => {
@@ -173,37 +192,49 @@ extern "C" fn runner_choose(handle: &mut Handle, part: u32, index: u32) -> bool 
             };
         }),
         1 => Sort::from_name(name).map(|sort| handle.sort = sort),
-        _ => Axis::from_name(name).map(|axis| {
+        2 => Axis::from_name(name).map(|axis| {
             handle.axis = match axis {
                 Axis::Fixed(_) => Axis::Fixed(index as usize),
                 axis => axis,
             };
         }),
+        _ => None,
     }
     .is_some()
 }
 
 /// Starts it as chosen.
 #[unsafe(no_mangle)]
-extern "C" fn runner_start(handle: &mut Handle, persistent: bool) {
-    let Handle { method, wrong, sort, axis, .. } = *handle;
-    let options = RunnerOptions::new(method).sort(sort).axis(axis).persistent(persistent);
-    handle.steps = Some(match handle.dimensions {
-        1 => Typed::<1>::boxed(options, wrong),
-        2 => Typed::<2>::boxed(options, wrong),
-        _ => Typed::<3>::boxed(options, wrong),
-    });
+extern "C" fn runner_start(handle: &mut Handle, is_persistent: u32) -> Code {
+    let Some(is_persistent) = truth(is_persistent) else { return report(Code::Internal, [0, 0]) };
+    run(handle, stack::LARGE, |handle| {
+        let Handle { method, wrong, sort, axis, .. } = *handle;
+        let options = RunnerOptions::new(method).sort(sort).axis(axis).persistent(is_persistent);
+        handle.steps = Some(match handle.dimensions {
+            1 => Typed::<1>::boxed(options, wrong),
+            2 => Typed::<2>::boxed(options, wrong),
+            _ => Typed::<3>::boxed(options, wrong),
+        });
+        report(Code::Ok, [0, 0])
+    })
 }
 
 /// Where to write `count` rows of boxes; null if there is no memory for them.
 #[unsafe(no_mangle)]
 extern "C" fn runner_rows(handle: &mut Handle, count: usize) -> *mut f64 {
-    handle.steps.as_mut().and_then(|steps| steps.rows(count)).unwrap_or(core::ptr::null_mut())
+    let rows = run(handle, stack::SMALL, |handle| {
+        handle.steps.as_mut().and_then(|steps| steps.rows(count))
+    });
+    rows.unwrap_or(core::ptr::null_mut())
 }
 
 /// Runs one step over the first `count` rows. Details: where the numbers are.
 #[unsafe(no_mangle)]
 extern "C" fn runner_step(handle: &mut Handle, count: usize) -> Code {
+    run(handle, stack::LARGE, |handle| step(handle, count))
+}
+
+fn step(handle: &mut Handle, count: usize) -> Code {
     let Handle { steps: Some(steps), observer, lists, numbers, .. } = handle else {
         return report(Code::Internal, [0, 0]);
     };
@@ -266,14 +297,17 @@ extern "C" fn runner_is_truncated(handle: &mut Handle) -> bool {
 /// Forgets the trace.
 #[unsafe(no_mangle)]
 extern "C" fn runner_clear_trace(handle: &mut Handle) {
-    handle.observer.1.clear();
+    run(handle, stack::LARGE, |handle| handle.observer.1.clear());
 }
 
 /// Forgets the trace but for what the next step goes on from (the arrays, the axis overlaps and
 /// the pairs held), which is recorded as the only events so far; how many those are.
 #[unsafe(no_mangle)]
 extern "C" fn runner_trim_trace(handle: &mut Handle) -> usize {
-    let trace = &mut handle.observer.1;
+    run(handle, stack::LARGE, |handle| trim(&mut handle.observer.1))
+}
+
+fn trim(trace: &mut Trace) -> usize {
     let mut player = Player::new(trace.clone());
     player.seek(trace.len());
     trace.clear();
@@ -291,28 +325,40 @@ extern "C" fn runner_trim_trace(handle: &mut Handle) -> usize {
 }
 
 /// What JavaScript holds a pointer to.
+#[repr(C)]
 struct Playing {
+    running: Running,
     player: Player,
     state: Vec<f64>,
+}
+
+impl call::Handle for Playing {
+    fn running(&mut self) -> &mut Running {
+        &mut self.running
+    }
 }
 
 /// A player of what a runner has recorded, to be freed by [`player_free`].
 #[unsafe(no_mangle)]
 extern "C" fn player_new(handle: &mut Handle) -> Box<Playing> {
-    Box::new(Playing { player: Player::new(handle.observer.1.clone()), state: Vec::new() })
+    stack::check(stack::LARGE);
+    let player = Player::new(handle.observer.1.clone());
+    Box::new(Playing { running: Running::default(), player, state: Vec::new() })
 }
 
 /// Frees a player and all that it holds.
 #[unsafe(no_mangle)]
 extern "C" fn player_free(playing: Option<Box<Playing>>) {
-    drop(playing);
+    call::free(playing);
 }
 
 /// Plays or undoes until so many events have been played, or all there are; how many those are.
 #[unsafe(no_mangle)]
 extern "C" fn player_seek(playing: &mut Playing, position: usize) -> usize {
-    playing.player.seek(position);
-    playing.player.position()
+    run(playing, stack::LARGE, |playing| {
+        playing.player.seek(position);
+        playing.player.position()
+    })
 }
 
 /// Details: where the state is, and how many numbers. These are the axis, the axis of the current
@@ -321,6 +367,10 @@ extern "C" fn player_seek(playing: &mut Playing, position: usize) -> usize {
 /// axis the endpoints (edge, at). `js/src/player.ts` reads them.
 #[unsafe(no_mangle)]
 extern "C" fn player_state(playing: &mut Playing) -> Code {
+    run(playing, stack::LARGE, write_state)
+}
+
+fn write_state(playing: &mut Playing) -> Code {
     let state = playing.player.state();
     let out = &mut playing.state;
     out.clear();

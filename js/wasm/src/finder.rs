@@ -11,6 +11,7 @@ use core::ops::ControlFlow::{self, Break, Continue};
 use sweep_and_prune::Error;
 use sweep_and_prune_bindings::{AnyPairFinder, TypedPairFinder};
 
+use crate::call::{self, Running, stack, truth};
 use crate::status::{Code, report, report_error};
 
 /// Stands for the count of the second set where there is only one.
@@ -43,7 +44,7 @@ impl Taker {
 
 #[cfg(target_arch = "wasm32")]
 fn hand_over(pairs: &[[u32; 2]]) -> bool {
-    crate::runtime::each(pairs.as_ptr(), pairs.len())
+    crate::runtime::each(pairs.as_ptr(), pairs.len()) != 0
 }
 
 #[cfg(not(target_arch = "wasm32"))]
@@ -52,29 +53,41 @@ fn hand_over(_: &[[u32; 2]]) -> bool {
 }
 
 /// What JavaScript holds a pointer to.
+#[repr(C)]
 struct Finder {
+    running: Running,
     finder: Box<dyn AnyPairFinder>,
     taker: Taker,
 }
 
+impl call::Handle for Finder {
+    fn running(&mut self) -> &mut Running {
+        &mut self.running
+    }
+}
+
 /// A new finder, to be freed by [`finder_free`]; null if there is none for such boxes.
 #[unsafe(no_mangle)]
-extern "C" fn finder_new(dimensions: u32, is_double: bool) -> Option<Box<Finder>> {
-    let finder: Box<dyn AnyPairFinder> = match (dimensions, is_double) {
+extern "C" fn finder_new(dimensions: u32, is_double: u32) -> Option<Box<Finder>> {
+    stack::check(stack::SMALL);
+    let finder: Box<dyn AnyPairFinder> = match (dimensions, truth(is_double)?) {
         (2, false) => Box::new(TypedPairFinder::<2, f32>::new(1)),
         (3, false) => Box::new(TypedPairFinder::<3, f32>::new(1)),
         (3, true) => Box::new(TypedPairFinder::<3, f64>::new(1)),
         _ => return None,
     };
     let taker = Taker { chunk: 0, buffer: Vec::new(), count: 0 };
-    Some(Box::new(Finder { finder, taker }))
+    Some(Box::new(Finder { running: Running::default(), finder, taker }))
 }
 
 /// Where to write `count` rows of boxes of set 0 or 1, valid until the next call with this finder;
 /// null if there is no memory for them.
 #[unsafe(no_mangle)]
 extern "C" fn finder_rows(finder: Option<&mut Finder>, set: usize, count: usize) -> *mut u8 {
-    finder.and_then(|handle| handle.finder.rows(set, count)).unwrap_or(core::ptr::null_mut())
+    let rows = finder.and_then(|handle| {
+        call::run(handle, stack::SMALL, |handle| handle.finder.rows(set, count))
+    });
+    rows.unwrap_or(core::ptr::null_mut())
 }
 
 /// Finds the pairs of the first `a` rows of set 0, or those between them and the first `b` of
@@ -84,7 +97,11 @@ extern "C" fn finder_rows(finder: Option<&mut Finder>, set: usize, count: usize)
 /// wanted no more.
 #[unsafe(no_mangle)]
 extern "C" fn finder_find(finder: Option<&mut Finder>, a: usize, b: usize, chunk: usize) -> Code {
-    let Some(Finder { finder, taker }) = finder else { return report(Code::Internal, [0, 0]) };
+    let Some(handle) = finder else { return report(Code::Internal, [0, 0]) };
+    call::run(handle, stack::LARGE, |handle| find(handle, a, b, chunk))
+}
+
+fn find(Finder { finder, taker, .. }: &mut Finder, a: usize, b: usize, chunk: usize) -> Code {
     (taker.chunk, taker.count) = (chunk, 0);
     taker.buffer.clear();
     let b = (b != NO_SET).then_some(b);
@@ -105,5 +122,5 @@ extern "C" fn finder_find(finder: Option<&mut Finder>, a: usize, b: usize, chunk
 /// Frees a finder and all that it holds.
 #[unsafe(no_mangle)]
 extern "C" fn finder_free(finder: Option<Box<Finder>>) {
-    drop(finder);
+    call::free(finder);
 }

@@ -7,7 +7,8 @@
 #![cfg_attr(target_arch = "wasm32", no_std)]
 // SAFETY of the exports: each has a name that no other symbol has, and is called by `js/src/`
 // alone, which keeps handles private, passes none after it was freed, and while a call with one
-// is under way (which calls back) passes none but others. Counts are checked here, where memory depends on them.
+// is under way (which calls back) passes none but others. Counts are checked here, where memory depends on them, and
+// so are truth values, which come as numbers.
 #![allow(unsafe_code)]
 
 extern crate alloc;
@@ -18,6 +19,7 @@ mod algorithms;
 mod broad_phase;
 #[cfg(feature = "algorithms")]
 mod broken;
+mod call;
 #[cfg(feature = "finder")]
 mod finder;
 #[cfg(target_arch = "wasm32")]

@@ -9,18 +9,20 @@ use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use dlmalloc::GlobalDlmalloc;
 
+use crate::call::stack;
+
 #[link(wasm_import_module = "sweep_and_prune")]
 unsafe extern "C" {
     /// Throws: `OutOfMemoryError`, or an internal error.
     safe fn fail(is_out_of_memory: bool) -> !;
 
-    /// Hands so many pairs to the callback of the call under way; whether it wants more. Never
+    /// Hands `count` pairs to the callback of the call under way; 0 if it wants no more. Never
     /// throws: what the callback throws is thrown when the call has returned.
     #[cfg(feature = "finder")]
-    pub safe fn each(pairs: *const [u32; 2], count: usize) -> bool;
+    pub safe fn each(pairs: *const [u32; 2], count: usize) -> u32;
 }
 
-/// The allocator, which notes whether its last allocation failed.
+/// The allocator, which notes whether its last allocation failed, and begins only if it can end.
 struct Noting;
 
 static LAST_FAILED: AtomicBool = AtomicBool::new(false);
@@ -34,21 +36,25 @@ fn note(pointer: *mut u8) -> *mut u8 {
 // allocator, and returns what that returned.
 unsafe impl GlobalAlloc for Noting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        stack::check(stack::ALLOCATOR);
         // SAFETY: as above.
         note(unsafe { GlobalDlmalloc.alloc(layout) })
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        stack::check(stack::ALLOCATOR);
         // SAFETY: as above.
         note(unsafe { GlobalDlmalloc.alloc_zeroed(layout) })
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        stack::check(stack::ALLOCATOR);
         // SAFETY: as above.
         note(unsafe { GlobalDlmalloc.realloc(pointer, layout, size) })
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        stack::check(stack::ALLOCATOR);
         // SAFETY: as above.
         unsafe { GlobalDlmalloc.dealloc(pointer, layout) }
     }

@@ -10,6 +10,7 @@ use sweep_and_prune_bindings::AnyBroadPhase as Bodies;
 use sweep_and_prune_bindings::TrackBodies as Bodies;
 use sweep_and_prune_bindings::{Answer, Id};
 
+use crate::call::{self, Running};
 use crate::status::{Code, report, report_error};
 
 /// Bits of an id that are its slot. Each body takes more than 64 bytes, so 4 GiB hold fewer.
@@ -33,7 +34,9 @@ impl Id for Number {
 pub(super) type World = Box<dyn Bodies<Number>>;
 
 /// What JavaScript holds a pointer to.
+#[repr(C)]
 pub(super) struct Handle {
+    running: Running,
     pub world: World,
     /// How many dimensions the boxes have for the user; they may be stored in more.
     #[cfg_attr(not(feature = "broad-phase"), allow(dead_code))] // only snapshots need it
@@ -49,9 +52,16 @@ pub(super) struct Handle {
     pub bytes: Vec<u8>,
 }
 
+impl call::Handle for Handle {
+    fn running(&mut self) -> &mut Running {
+        &mut self.running
+    }
+}
+
 impl Handle {
     pub fn new(world: World, dimensions: u32) -> Self {
         Self {
+            running: Running::default(),
             world,
             dimensions,
             numbers: [0.0; 16],

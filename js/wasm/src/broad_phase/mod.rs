@@ -15,11 +15,14 @@ use alloc::boxed::Box;
 use sweep_and_prune::{Filter, Report};
 use sweep_and_prune_bindings::{Id, Settings};
 
+use crate::call::{self, run, stack, truth};
 use crate::status::{Code, report, report_error};
 use handle::{Handle, Number};
 
-fn filter_of(category: u32, mask: u32, group: i32, is_static: bool) -> Filter {
-    Filter::default().category(category).mask(mask).group(group).is_static(is_static)
+/// A filter from its numbers; `None` if `is_static` is no truth value.
+fn filter_of(category: u32, mask: u32, group: i32, is_static: u32) -> Option<Filter> {
+    let filter = Filter::default().category(category).mask(mask).group(group);
+    truth(is_static).map(|is_static| filter.is_static(is_static))
 }
 
 /// A new broad phase, to be freed by [`world_free`]; null for dimensions other than 1 to 3, or a
@@ -27,21 +30,22 @@ fn filter_of(category: u32, mask: u32, group: i32, is_static: bool) -> Filter {
 #[unsafe(no_mangle)]
 extern "C" fn world_new(
     dimensions: u32,
-    is_double: bool,
+    is_double: u32,
     margin: f64,
     prediction: f64,
-    is_fat: bool,
+    is_fat: u32,
 ) -> Option<Box<Handle>> {
-    let report = if is_fat { Report::Fat } else { Report::Exact };
+    stack::check(stack::SMALL);
+    let report = if truth(is_fat)? { Report::Fat } else { Report::Exact };
     let settings = Settings { margin, prediction, report };
-    let world = types::broad_phase(dimensions, is_double, settings)?;
+    let world = types::broad_phase(dimensions, truth(is_double)?, settings)?;
     Some(Box::new(Handle::new(world, dimensions)))
 }
 
 /// Frees a broad phase and all that it holds.
 #[unsafe(no_mangle)]
 extern "C" fn world_free(handle: Option<Box<Handle>>) {
-    drop(handle);
+    call::free(handle);
 }
 
 /// Where the 16 numbers are, until the broad phase is freed.
@@ -53,32 +57,34 @@ extern "C" fn world_numbers(handle: &mut Handle) -> *mut f64 {
 /// Where to write `count` rows of boxes; null if there is no memory for them.
 #[unsafe(no_mangle)]
 extern "C" fn world_rows(handle: &mut Handle, count: usize) -> *mut u8 {
-    handle.world.rows(count).unwrap_or(core::ptr::null_mut())
+    run(handle, stack::SMALL, |handle| handle.world.rows(count).unwrap_or(core::ptr::null_mut()))
 }
 
 /// Where to write `count` ids; null if there is no memory for them.
 #[unsafe(no_mangle)]
 extern "C" fn world_ids_in(handle: &mut Handle, count: usize) -> *mut f64 {
-    if let Some(more) = count.checked_sub(handle.ids_in.len()) {
-        if handle.ids_in.try_reserve(more).is_err() {
-            return core::ptr::null_mut();
+    run(handle, stack::SMALL, |handle| {
+        if let Some(more) = count.checked_sub(handle.ids_in.len()) {
+            if handle.ids_in.try_reserve(more).is_err() {
+                return core::ptr::null_mut();
+            }
+            handle.ids_in.resize(count, 0.0);
         }
-        handle.ids_in.resize(count, 0.0);
-    }
-    handle.ids_in.as_mut_ptr()
+        handle.ids_in.as_mut_ptr()
+    })
 }
 
 /// Adds a body whose box is in the numbers; the first of them is then its id.
 #[unsafe(no_mangle)]
 extern "C" fn world_insert(handle: &mut Handle) -> Code {
-    match handle.world.insert(&handle.numbers) {
+    run(handle, stack::SMALL, |handle| match handle.world.insert(&handle.numbers) {
         Ok(id) => {
             handle.note(id);
             handle.numbers[0] = Number::from_proxy(id).0;
             report(Code::Ok, [0, 0])
         }
         Err(error) => report_error(error),
-    }
+    })
 }
 
 /// Adds a body for each of the first `count` rows. Details: where their ids are, and how many.
@@ -89,39 +95,49 @@ extern "C" fn world_insert_many(
     category: u32,
     mask: u32,
     group: i32,
-    is_static: bool,
+    is_static: u32,
 ) -> Code {
-    handle.answer.ids.clear();
-    let filter = filter_of(category, mask, group, is_static);
-    let result = handle.world.insert_many(count, filter).map(|ids| {
-        for id in ids {
-            handle.note(id);
-            handle.answer.ids.push(Number::from_proxy(id));
-        }
-    });
-    handle.answer(result)
+    run(handle, stack::SMALL, |handle| {
+        handle.answer.ids.clear();
+        let Some(filter) = filter_of(category, mask, group, is_static) else {
+            return report(Code::Internal, [0, 0]);
+        };
+        let result = handle.world.insert_many(count, filter).map(|ids| {
+            for id in ids {
+                handle.note(id);
+                handle.answer.ids.push(Number::from_proxy(id));
+            }
+        });
+        handle.answer(result)
+    })
 }
 
 /// Gives a body the box in the numbers.
 #[unsafe(no_mangle)]
 extern "C" fn world_set(handle: &mut Handle, id: f64) -> Code {
-    let result = handle.id(id, 0).and_then(|id| handle.world.set(id, &handle.numbers));
-    handle.answer(result)
+    run(handle, stack::SMALL, |handle| {
+        let result = handle.id(id, 0).and_then(|id| handle.world.set(id, &handle.numbers));
+        handle.answer(result)
+    })
 }
 
 /// Gives the bodies of the first `count` ids the boxes in the rows.
 #[unsafe(no_mangle)]
 extern "C" fn world_set_many(handle: &mut Handle, count: usize) -> Code {
-    let result = handle.read_ids(count).and_then(|()| handle.world.set_many(&handle.ids));
-    handle.answer(result)
+    run(handle, stack::SMALL, |handle| {
+        let result = handle.read_ids(count).and_then(|()| handle.world.set_many(&handle.ids));
+        handle.answer(result)
+    })
 }
 
 /// Moves a body from the first box in the numbers to the second.
 #[unsafe(no_mangle)]
 extern "C" fn world_set_swept(handle: &mut Handle, id: f64) -> Code {
-    let (from, to) = handle.numbers.split_at(handle.width());
-    let result = handle.id(id, 0).and_then(|id| handle.world.set_swept(id, from, to));
-    handle.answer(result)
+    run(handle, stack::SMALL, |handle| {
+        let (from, to) = handle.numbers.split_at(handle.width());
+        let result = handle.id(id, 0).and_then(|id| handle.world.set_swept(id, from, to));
+        handle.answer(result)
+    })
 }
 
 /// Changes the filter of a body.
@@ -132,32 +148,40 @@ extern "C" fn world_set_filter(
     category: u32,
     mask: u32,
     group: i32,
-    is_static: bool,
+    is_static: u32,
 ) -> Code {
-    let filter = filter_of(category, mask, group, is_static);
-    let result = handle.id(id, 0).and_then(|id| handle.world.set_filter(id, filter));
-    handle.answer(result)
+    run(handle, stack::SMALL, |handle| {
+        let Some(filter) = filter_of(category, mask, group, is_static) else {
+            return report(Code::Internal, [0, 0]);
+        };
+        let result = handle.id(id, 0).and_then(|id| handle.world.set_filter(id, filter));
+        handle.answer(result)
+    })
 }
 
 /// Leaves the filter of a body in the first four numbers.
 #[unsafe(no_mangle)]
 extern "C" fn world_filter(handle: &mut Handle, id: f64) -> Code {
-    let result = handle.id(id, 0).and_then(|id| handle.world.filter(id)).map(|filter| {
-        handle.numbers[0] = f64::from(filter.category);
-        handle.numbers[1] = f64::from(filter.mask);
-        handle.numbers[2] = f64::from(filter.group);
-        handle.numbers[3] = f64::from(u8::from(filter.is_static));
-    });
-    handle.answer(result)
+    run(handle, stack::SMALL, |handle| {
+        let result = handle.id(id, 0).and_then(|id| handle.world.filter(id)).map(|filter| {
+            handle.numbers[0] = f64::from(filter.category);
+            handle.numbers[1] = f64::from(filter.mask);
+            handle.numbers[2] = f64::from(filter.group);
+            handle.numbers[3] = f64::from(u8::from(filter.is_static));
+        });
+        handle.answer(result)
+    })
 }
 
 /// Leaves the box of a body in the numbers.
 #[unsafe(no_mangle)]
 extern "C" fn world_box(handle: &mut Handle, id: f64) -> Code {
-    let width = handle.width();
-    let result =
-        handle.id(id, 0).and_then(|id| handle.world.corners(id, &mut handle.numbers[..width]));
-    handle.answer(result)
+    run(handle, stack::SMALL, |handle| {
+        let width = handle.width();
+        let result =
+            handle.id(id, 0).and_then(|id| handle.world.corners(id, &mut handle.numbers[..width]));
+        handle.answer(result)
+    })
 }
 
 /// Whether a body is here.
@@ -169,26 +193,32 @@ extern "C" fn world_contains(handle: &mut Handle, id: f64) -> bool {
 /// Removes the bodies of the first `count` ids.
 #[unsafe(no_mangle)]
 extern "C" fn world_remove_many(handle: &mut Handle, count: usize) -> Code {
-    let result = handle.read_ids(count).and_then(|()| handle.world.remove_many(&handle.ids));
-    handle.answer(result)
+    run(handle, stack::SMALL, |handle| {
+        let result = handle.read_ids(count).and_then(|()| handle.world.remove_many(&handle.ids));
+        handle.answer(result)
+    })
 }
 
 /// Details: where the ids are and how many: two for each pair that began, and then two for each pair
 /// that ended. The first number is how many ids the former are.
 #[unsafe(no_mangle)]
 extern "C" fn world_update(handle: &mut Handle) -> Code {
-    handle.answer.ids.clear();
-    handle.numbers[0] = handle.world.update(&mut handle.answer.ids) as f64;
-    handle.answer(Ok(()))
+    run(handle, stack::LARGE, |handle| {
+        handle.answer.ids.clear();
+        handle.numbers[0] = handle.world.update(&mut handle.answer.ids) as f64;
+        handle.answer(Ok(()))
+    })
 }
 
 /// Details: where the ids of all bodies are, and how many.
 #[unsafe(no_mangle)]
 extern "C" fn world_ids(handle: &mut Handle) -> Code {
-    handle.answer.ids.clear();
-    let ids = &mut handle.answer.ids;
-    handle.world.for_each_id(&mut |id| ids.push(Number::from_proxy(id)));
-    handle.answer(Ok(()))
+    run(handle, stack::SMALL, |handle| {
+        handle.answer.ids.clear();
+        let ids = &mut handle.answer.ids;
+        handle.world.for_each_id(&mut |id| ids.push(Number::from_proxy(id)));
+        handle.answer(Ok(()))
+    })
 }
 
 /// How many bodies there are.

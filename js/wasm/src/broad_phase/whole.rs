@@ -7,37 +7,46 @@ use sweep_and_prune_bindings::Query;
 use super::filter_of;
 use super::handle::{Handle, note};
 use super::stored;
+use crate::call::{run, stack, truth};
 use crate::status::{Code, report, report_error};
 
 /// Where to write `count` bytes of a snapshot; null if there is no memory for them.
 #[unsafe(no_mangle)]
 extern "C" fn world_bytes(handle: &mut Handle, count: usize) -> *mut u8 {
-    handle.bytes.clear();
-    if handle.bytes.try_reserve(count).is_err() {
-        return core::ptr::null_mut();
-    }
-    handle.bytes.resize(count, 0);
-    handle.bytes.as_mut_ptr()
+    run(handle, stack::SMALL, |handle| {
+        handle.bytes.clear();
+        if handle.bytes.try_reserve(count).is_err() {
+            return core::ptr::null_mut();
+        }
+        handle.bytes.resize(count, 0);
+        handle.bytes.as_mut_ptr()
+    })
 }
 
 /// Details: where the pairs of the last update are, and how many ids.
 #[unsafe(no_mangle)]
-extern "C" fn world_pairs(handle: &mut Handle, sorted: bool) -> Code {
-    handle.answer.ids.clear();
-    if sorted {
-        handle.world.pairs(&mut handle.answer.ids);
-    } else {
-        handle.world.pairs_unsorted(&mut handle.answer.ids);
-    }
-    handle.answer(Ok(()))
+extern "C" fn world_pairs(handle: &mut Handle, is_sorted: u32) -> Code {
+    let Some(is_sorted) = truth(is_sorted) else { return report(Code::Internal, [0, 0]) };
+    run(handle, stack::LARGE, |handle| {
+        handle.answer.ids.clear();
+        if is_sorted {
+            handle.world.pairs(&mut handle.answer.ids);
+        } else {
+            handle.world.pairs_unsorted(&mut handle.answer.ids);
+        }
+        handle.answer(Ok(()))
+    })
 }
 
 /// Details: where the ids of the bodies that overlapped this one are, and how many.
 #[unsafe(no_mangle)]
 extern "C" fn world_pairs_of(handle: &mut Handle, id: f64) -> Code {
-    handle.answer.ids.clear();
-    let result = handle.id(id, 0).and_then(|id| handle.world.pairs_of(id, &mut handle.answer.ids));
-    handle.answer(result)
+    run(handle, stack::LARGE, |handle| {
+        handle.answer.ids.clear();
+        let result =
+            handle.id(id, 0).and_then(|id| handle.world.pairs_of(id, &mut handle.answer.ids));
+        handle.answer(result)
+    })
 }
 
 /// Answers a query, whose numbers are in the numbers. Details: where the ids are that it found, and
@@ -52,8 +61,16 @@ extern "C" fn world_query(
     mask: u32,
     group: i32,
     is_static: u32,
-    is_sorted: bool,
+    is_sorted: u32,
 ) -> Code {
+    let internal = || report(Code::Internal, [0, 0]);
+    let filter = match is_static {
+        2 => None,
+        _ => match filter_of(category, mask, group, is_static) {
+            Some(filter) => Some(filter),
+            None => return internal(),
+        },
+    };
     let dimensions = handle.world.kind().dimensions;
     let query = match query {
         0 => Query::Overlapping,
@@ -62,42 +79,51 @@ extern "C" fn world_query(
         3 => Query::Cast,
         4 => Query::CastAll,
         // Slightly farther: JavaScript compares distances, which are rounded roots, and not their squares.
-        _ => Query::Nearest { k, max_distance: handle.numbers[dimensions].next_up() },
+        5 => Query::Nearest { k, max_distance: handle.numbers[dimensions].next_up() },
+        _ => return internal(),
     };
-    let filter = (is_static < 2).then(|| filter_of(category, mask, group, is_static == 1));
-    let numbers = &handle.numbers[..query.width(dimensions)];
-    let result = handle.world.query(query, numbers, filter, is_sorted, &mut handle.answer);
-    handle.numbers[0] = handle.answer.values.as_ptr().addr() as f64;
-    handle.answer(result)
+    let Some(is_sorted) = truth(is_sorted) else { return internal() };
+    run(handle, stack::LARGE, |handle| {
+        let numbers = &handle.numbers[..query.width(dimensions)];
+        let result = handle.world.query(query, numbers, filter, is_sorted, &mut handle.answer);
+        handle.numbers[0] = handle.answer.values.as_ptr().addr() as f64;
+        handle.answer(result)
+    })
 }
 
 /// Details: where the snapshot is, and how many bytes; until the next call.
 #[unsafe(no_mangle)]
 extern "C" fn world_snapshot(handle: &mut Handle) -> Code {
-    handle.bytes = stored::snapshot(&handle.world, handle.dimensions);
-    report(Code::Ok, [handle.bytes.as_ptr().addr(), handle.bytes.len()])
+    run(handle, stack::LARGE, |handle| {
+        handle.bytes = stored::snapshot(&handle.world, handle.dimensions);
+        report(Code::Ok, [handle.bytes.as_ptr().addr(), handle.bytes.len()])
+    })
 }
 
 /// Becomes the broad phase of the snapshot in the bytes. Details: whether it is in double precision.
 #[unsafe(no_mangle)]
 extern "C" fn world_restore(handle: &mut Handle) -> Code {
-    let restored = stored::restore(&mut handle.bytes, handle.dimensions);
-    handle.bytes = Vec::new();
-    match restored {
-        Ok(world) => {
-            handle.world = world;
-            let generations = &mut handle.generations;
-            generations.clear();
-            handle.world.for_each_id(&mut |id| note(generations, id));
-            report(Code::Ok, [usize::from(handle.world.kind().is_double), 0])
+    run(handle, stack::LARGE, |handle| {
+        let restored = stored::restore(&mut handle.bytes, handle.dimensions);
+        handle.bytes = Vec::new();
+        match restored {
+            Ok(world) => {
+                handle.world = world;
+                let generations = &mut handle.generations;
+                generations.clear();
+                handle.world.for_each_id(&mut |id| note(generations, id));
+                report(Code::Ok, [usize::from(handle.world.kind().is_double), 0])
+            }
+            Err(error) => report_error(error),
         }
-        Err(error) => report_error(error),
-    }
+    })
 }
 
 /// Details: the hash of the state, the low and the high word.
 #[unsafe(no_mangle)]
 extern "C" fn world_state_hash(handle: &mut Handle) -> Code {
-    let hash = handle.world.state_hash();
-    report(Code::Ok, [hash as u32 as usize, (hash >> 32) as usize])
+    run(handle, stack::LARGE, |handle| {
+        let hash = handle.world.state_hash();
+        report(Code::Ok, [hash as u32 as usize, (hash >> 32) as usize])
+    })
 }
