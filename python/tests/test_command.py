@@ -335,7 +335,7 @@ def test_ctrl_c_ends_the_program_and_leaves_no_file() -> None:
     while not Path("p.csv.part").exists():
         assert program.poll() is None
     program.send_signal(signal.SIGINT)
-    _, said = program.communicate(timeout=60)
+    _, said = program.communicate(timeout=600)
     assert (program.returncode, said.strip()) == (130, "sap: cancelled")
     assert [path.name for path in Path().iterdir()] == ["a.npy"]
 
@@ -414,7 +414,7 @@ def test_ctrl_c_keeps_what_is_done_and_the_same_command_continues() -> None:
     while not list(Path().glob("out.unfinished/spill/*.json")):
         assert program.poll() is None
     program.send_signal(signal.SIGINT)
-    _, said = program.communicate(timeout=60)
+    _, said = program.communicate(timeout=600)
     assert (program.returncode, said.strip()) == (130, "sap: cancelled; the same command continues")
     assert Path("out.unfinished").exists() and not Path("out").exists()
     assert subprocess.run(command, capture_output=True).returncode == 0

@@ -574,7 +574,7 @@ def test_a_run_that_is_killed_continues(large: tuple[str, str]) -> None:
     path, wanted = large
     program = started(path)
     os.killpg(program.pid, signal.SIGKILL)
-    program.communicate(timeout=60)
+    program.communicate(timeout=600)
     assert not Path("out").exists()
     sap.find_pairs("a.parquet", out="out", memory_limit="3GB", workers=0, cells=60)
     assert sap.read_manifest("out").hash == wanted

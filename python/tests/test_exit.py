@@ -50,7 +50,7 @@ time.sleep(0.05)
 @pytest.mark.parametrize("work", ["callback", "iterate", "find", "world", "error"])
 def test_the_interpreter_exits_while_daemon_threads_search(work: str) -> None:
     for _ in range(6 if work == "callback" else 2):
-        done = subprocess.run([sys.executable, "-c", PROGRAM, work], capture_output=True, text=True, timeout=120)
+        done = subprocess.run([sys.executable, "-c", PROGRAM, work], capture_output=True, text=True, timeout=600)
         assert (done.returncode, done.stderr) == (0, "")
 
 
@@ -86,5 +86,5 @@ while calls < 100:
 
 
 def test_when_the_interpreter_exits_other_threads_stop_and_its_own_goes_on() -> None:
-    done = subprocess.run([sys.executable, "-c", AT_EXIT], capture_output=True, text=True, timeout=120)
+    done = subprocess.run([sys.executable, "-c", AT_EXIT], capture_output=True, text=True, timeout=600)
     assert (done.returncode, done.stdout, done.stderr) == (0, "0 1\n", "")

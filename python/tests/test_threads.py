@@ -5,10 +5,10 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -22,26 +22,30 @@ import sweep_and_prune as sap
 def test_others_go_on_while_a_search_runs(threads: int) -> None:
     boxes = random_boxes(1_000_000, 3, np.float32)
     finder = sap.PairFinder(3, np.float32, threads=threads)
-    finder.count(boxes)
-    searches: list[float] = []
+    searching, stop = threading.Event(), threading.Event()
+    steps = 0
 
-    def search() -> None:
-        for _ in range(5):
-            began = time.monotonic()
-            finder.count(boxes)
-            searches.append(time.monotonic() - began)
+    def step() -> None:
+        nonlocal steps
+        while not stop.is_set():
+            steps += searching.is_set()
+            time.sleep(0)  # lets others have the GIL
 
-    thread = threading.Thread(target=search)
+    thread = threading.Thread(target=step)
     thread.start()
-    steps, last = [], time.monotonic()
-    while thread.is_alive():
-        time.sleep(0.001)
-        now = time.monotonic()
-        steps.append(now - last)
-        last = now
+    most = 0
+    for _ in range(100):
+        steps = 0
+        searching.set()
+        finder.count(boxes)
+        searching.clear()
+        most = max(most, steps)
+        # If no other thread could run during a search, it would make a step or two before and after it.
+        if most > 20:
+            break
+    stop.set()
     thread.join()
-    # If no other thread could run, each step would take as long as a search.
-    assert np.median(steps) < min(searches) / 2
+    assert most > 20
 
 
 def test_one_call_at_a_time() -> None:
@@ -85,9 +89,10 @@ def test_writing_to_the_boxes_during_a_search_gives_some_pairs_or_an_error(dtype
     writer.start()
     finder = sap.PairFinder(3, dtype, threads=threads)
     seen: set[int] = set()
-    end = time.monotonic() + 2
     try:
-        while time.monotonic() < end:
+        for turn in range(10_000):
+            if turn >= 200 and len(seen) > 2:
+                break
             try:
                 found = finder.find(boxes) if len(seen) % 2 else finder.find_between(boxes, boxes[:1000])
                 assert found.size == 0 or found.max() < len(boxes)
@@ -106,53 +111,52 @@ class Cancelled(Exception):
     pass
 
 
-@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there are no such timers here")
-@pytest.mark.parametrize("threads", [1, 2])
-def test_a_signal_ends_a_long_search(threads: int) -> None:
-    # Each takes many times as long as it takes to see a signal, 20 ms: beams across each other many
-    # tests and not so many pairs, boxes in a heap 800 million pairs, too many to store.
-    random = np.random.default_rng(1)
-    centers, half = random.random((120_000, 3)), np.full((120_000, 3), 1e-3)
-    np.fill_diagonal(half, 1, wrap=True)
-    beams = np.hstack([centers - half, centers + half]).astype(np.float32)
-    many = np.hstack([np.zeros((40_000, 3)), random.random((40_000, 3)) + 1]).astype(np.float32)
-    finder = sap.PairFinder(3, np.float32, threads=threads)
-    calls: list[Callable[[], Any]] = [
-        lambda: finder.find(beams),
-        lambda: finder.find_between(beams[:60_000], beams),
-        lambda: finder.count(many),
-        lambda: finder.count_between(many[::5], many),
-        lambda: sap.find_pairs(beams, threads=threads),
-        lambda: sap.count_pairs(many, threads=threads),
-    ]
+# Each search takes many minutes, and some find more pairs than fit into memory: beams across each other many tests,
+# boxes in a heap 2,000 billion pairs. So they end in time only if the signal ends them.
+LONG_SEARCH = """
+import signal, sys
+import numpy as np
+import sweep_and_prune as sap
 
-    def handler(number: int, frame: Any) -> None:
-        raise Cancelled
+class Cancelled(Exception):
+    pass
 
-    before = signal.signal(signal.SIGALRM, handler)
+def handler(number, frame):
+    raise Cancelled
 
-    def cost(call: Callable[[], Any]) -> float:
-        began = time.process_time()
-        assert call() is not None
-        return time.process_time() - began
-
-    def cost_until_the_signal(call: Callable[[], Any]) -> float:
-        began = time.process_time()
-        with pytest.raises(Cancelled):
-            signal.setitimer(signal.ITIMER_REAL, 0.005)
-            call()
-        return time.process_time() - began
-
+random = np.random.default_rng(1)
+centers, half = random.random((2_000_000, 3)), np.full((2_000_000, 3), 1e-3)
+half[np.arange(2_000_000), np.arange(2_000_000) % 3] = 1
+beams = np.hstack([centers - half, centers + half]).astype(np.float32)
+many = np.hstack([np.zeros((2_000_000, 3)), random.random((2_000_000, 3)) + 1]).astype(np.float32)
+threads = int(sys.argv[1])
+finder = sap.PairFinder(3, np.float32, threads=threads)
+calls = [
+    lambda: finder.count(beams),
+    lambda: finder.count_between(beams[:1_000_000], beams),
+    lambda: finder.count(many),
+    lambda: finder.count_between(many[::5], many),
+    lambda: finder.find(many[:100_000]),
+    lambda: sap.find_pairs(beams[:200_000], threads=threads),
+    lambda: sap.count_pairs(many, threads=threads),
+]
+signal.signal(signal.SIGALRM, handler)
+for call in calls:
     try:
-        for number, call in enumerate(calls):
-            whole = min(cost(call), cost(call))
-            # A busy machine may keep one search from seeing its signal in time; not ten.
-            costs = [cost_until_the_signal(call) for _ in range(10)]
-            assert min(costs) < 0.7 * whole, (number, whole, costs)
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
-    assert finder.count(many[:100]) == 4950
+        signal.setitimer(signal.ITIMER_REAL, 0.5)
+        call()
+        print("it ended by itself")
+    except Cancelled:
+        print("cancelled")
+print(finder.count(many[:100]))
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there are no such timers here")
+@pytest.mark.parametrize("threads", ["1", "2"])
+def test_a_signal_ends_a_long_search(threads: str) -> None:
+    done = subprocess.run([sys.executable, "-c", LONG_SEARCH, threads], capture_output=True, text=True, timeout=1200)
+    assert (done.stdout.split("\n"), done.stderr) == (["cancelled"] * 7 + ["4950", ""], "")
 
 
 @pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there are no such timers here")
@@ -185,7 +189,7 @@ def test_a_forked_process_has_threads_of_its_own() -> None:
     results = fork.Queue()
     child = fork.Process(target=count_in_child, args=(results, boxes))
     child.start()
-    assert results.get(timeout=60) == wanted
-    child.join(timeout=60)
+    assert results.get(timeout=600) == wanted
+    child.join(timeout=600)
     assert child.exitcode == 0 and child.pid != os.getpid()
     assert sap.count_pairs(boxes, threads=2) == wanted

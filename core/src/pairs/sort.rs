@@ -114,10 +114,13 @@ impl<T: Scalar> Sorter<T> {
             least = least.min(*key);
             greatest = greatest.max(*key);
         }
-        self.spread(len, [least, greatest])
+        self.spread(len, [least, greatest])?;
+        exchange(&mut self.sorted[..len]);
+        insertion(&mut self.sorted[..len]);
+        Ok(())
     }
 
-    /// Leaves `keys`, of `lefts`, sorted in `sorted`; given are the least and the greatest of them.
+    /// Leaves `keys`, of `lefts`, in `sorted`, each near its place; given are the least and the greatest of them.
     fn spread(&mut self, len: usize, ends: [Key<T>; 2]) -> Result<(), TryReserveError> {
         let ends = ends.map(|key| self.lefts[T::Arithmetic::position(key) as usize]);
         let count = len.next_power_of_two().min(MOST_INTERVALS);
@@ -151,8 +154,6 @@ impl<T: Scalar> Sorter<T> {
                 begin = end;
             }
         }
-        exchange(&mut self.sorted[..len]);
-        insertion(&mut self.sorted[..len]);
         Ok(())
     }
 }
@@ -193,5 +194,34 @@ fn insertion<K: Copy + Ord>(keys: &mut [K]) {
             at -= 1;
         }
         keys[at] = key;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn key<T: Scalar>(left: T, position: u32) -> Key<T> {
+        T::Arithmetic::key(left, position)
+    }
+
+    /// One far key puts all others into one interval: inserted one by one each would move past a quarter of them.
+    #[test]
+    fn keys_are_spread_to_near_their_places_also_beside_one_far_away() {
+        for far in [1.0, 1e6, 1e30, f64::MAX, f64::INFINITY] {
+            let place = |index: u64| (index.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 11) as f64;
+            let lefts = (0..10_000).map(place).chain([far]).collect::<Vec<_>>();
+            let keys = (0..).zip(&lefts);
+            let keys: Vec<_> = keys.map(|(i, &left)| key(left, i)).collect();
+            let len = keys.len();
+            let mut sorted = keys.clone();
+            sorted.sort_unstable();
+            let nothing = std::vec![Key::<f64>::default(); len];
+            let mut sorter = Sorter { keys, lefts, sorted: nothing, ..Sorter::default() };
+            sorter.spread(len, [sorted[0], sorted[len - 1]]).expect("memory");
+            let distance = |(at, key)| sorted.binary_search(key).expect("it is there").abs_diff(at);
+            let farthest = sorter.sorted.iter().enumerate().map(distance).max();
+            assert!(farthest < Some(CROWDED_INTERVAL as usize), "{far}: {farthest:?}");
+        }
     }
 }

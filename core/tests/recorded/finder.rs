@@ -6,7 +6,6 @@ use std::fmt::Write;
 use std::format;
 use std::path::Path;
 use std::string::String;
-use std::time::Instant;
 use std::vec::Vec;
 
 use super::control::Task;
@@ -203,23 +202,6 @@ fn chunks_of_a_sweep_of_two_sets_hold_all_pairs() {
     for cursor in Cursor::chunks(&sets, 1).into_iter().skip(600) {
         assert!(sweep(&short, cursor).is_empty());
     }
-}
-
-/// One far box puts all others into one interval: sorted by insertion they would take a thousand times as long.
-#[test]
-fn boxes_beside_one_far_away_are_sorted_nearly_as_fast_as_others() {
-    let seconds = |far: f64| {
-        let place = |index: u64| (index.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 11) as f64;
-        let mut boxes: Vec<_> =
-            (0..100_000).map(|at| Aabb::new([place(at)], [place(at)])).collect();
-        boxes.push(Aabb::new([far], [far]));
-        let mut sorted = SortedBoxes::<f64>::default();
-        let begun = Instant::now();
-        Sorter::default().sort(&boxes, 0, &mut sorted).expect("memory");
-        begun.elapsed().as_secs_f64()
-    };
-    let [near, far] = [1.0, 1e30].map(seconds);
-    assert!(far < 50.0 * near + 0.1, "{near} and {far} s");
 }
 
 #[cfg(feature = "parallel")]
