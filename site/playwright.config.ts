@@ -25,8 +25,9 @@ export default defineConfig({
   outputDir: "test-results",
   // One reference for every machine: what is compared has no fonts in it.
   snapshotPathTemplate: "{testDir}/{testFileName}-snapshots/{arg}{ext}",
-  timeout: 120_000,
-  expect: { timeout: 30_000 },
+  // Only what hangs is ended: a busy machine is slow.
+  timeout: 600_000,
+  expect: { timeout: 120_000 },
   // Two tests at a time, also of one file: most of them wait. With those of time and memory, one after the other.
   fullyParallel: true,
   workers: process.env["TEST_LONG"] ? 1 : 2,
@@ -55,5 +56,6 @@ export default defineConfig({
     command: `npx vite preview --strictPort --port ${port}${folder ? ` --outDir ${folder}` : ""}`,
     port,
     reuseExistingServer: false,
+    timeout: 600_000,
   },
 });

@@ -26,7 +26,7 @@ export const WORDS = [
   { not: "door", but: "API, binding, FFI boundary", pattern: /\bdoors?\b/i },
   { not: "fat box", but: "fattened AABB, fat AABB", pattern: /fat[ _]?box/i },
   { not: "least corner, greatest corner", but: "min corner, max corner", pattern: /\b(least|greatest)[ _]corner/i },
-  { not: "seat, wear", but: "dense index, locality decay", pattern: /seat(s|ed|ing)?(?![a-z])|(?<![a-z])wear(?![a-z])/i },
+  { not: "seat, wear", but: "dense index, locality decay", pattern: /(?<!pau)seat(s|ed|ing)?(?![a-z])|(?<![a-z])wear(?![a-z])/i },
   { not: "loner", but: "unpaired body", pattern: /(?<![a-z])loner/i },
   {
     not: "called from memory, warm",

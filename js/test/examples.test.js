@@ -71,7 +71,7 @@ for (const name of inBrowser) {
       // A browser short of memory or of time warns by itself, of a WebGL context that was lost, say.
       page.on("console", (message) => message.type() === "warning" || printed.push(message.text()));
       page.on("pageerror", (error) => printed.push(String(error)));
-      const done = page.waitForEvent("console", { predicate: () => printed.length >= expected.length, timeout: 30_000 });
+      const done = page.waitForEvent("console", { predicate: () => printed.length >= expected.length, timeout: 600_000 });
       await page.goto(`http://127.0.0.1:${port}/`);
       await done;
       assert.deepEqual(printed.filter((line) => !line.includes("favicon") && !line.includes("404")), expected);

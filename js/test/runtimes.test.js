@@ -67,7 +67,7 @@ test("Next: on the server, in its edge runtime, and in the page", async () => {
  * @param {string} address
  */
 async function textOf(address) {
-  for (const end = Date.now() + 60_000; ; await setTimeout(100)) {
+  for (const end = Date.now() + 600_000; ; await setTimeout(100)) {
     try {
       return await (await fetch(address)).text();
     } catch (error) {

@@ -118,7 +118,7 @@ test.describe("run it here", () => {
       const alternatives = await page.locator("#here input[name=alternative]:checked").evaluateAll((all) => all.map((box) => (box as HTMLInputElement).value));
       expect(alternatives.length).toBeGreaterThan(3);
       await page.getByRole("button", { name: "Run" }).click();
-      await expect(page.locator("#here-status")).toContainText("Done.", { timeout: 90_000 });
+      await expect(page.locator("#here-status")).toContainText("Done.", { timeout: 600_000 });
       for (const name of ["sweep-and-prune", ...alternatives]) await expect(row(page, name).locator("td")).toHaveText(/\d (µs|ms)/);
       // The sentence and the table agree on which library is the fastest.
       const status = (await page.locator("#here-status").textContent())!;
@@ -150,7 +150,7 @@ test.describe("run it here", () => {
     );
     await choose(page, ["flatbush", "rbush"]);
     await page.getByRole("button", { name: "Run" }).click();
-    await expect(page.locator("#here-status")).toContainText("Done.", { timeout: 60_000 });
+    await expect(page.locator("#here-status")).toContainText("Done.", { timeout: 600_000 });
     await expect(row(page, "flatbush").locator("td")).toHaveText("wrong pairs, 1 of them");
     await expect(row(page, "rbush").locator("td")).toHaveText(/\d (µs|ms)/);
   });
@@ -168,7 +168,7 @@ test.describe("run it here", () => {
 
     await choose(page, []);
     await page.getByRole("button", { name: "Run" }).click();
-    await expect(page.locator("#here-status")).toContainText("Done.", { timeout: 60_000 });
+    await expect(page.locator("#here-status")).toContainText("Done.", { timeout: 600_000 });
   });
 
   test("says so if nothing is chosen", async ({ page }) => {

@@ -2,6 +2,7 @@
 import { expect, test } from "@playwright/test";
 import type { SapDemo } from "sweep-and-prune/demo";
 import { type Attributes, complainOfNothing, counter, open, pairwise, stateOf } from "./support/embedded.ts";
+import { frames } from "./support/frames.ts";
 
 complainOfNothing();
 
@@ -40,7 +41,7 @@ test("keys alone: step, back, play, pause, and a ball moved", async ({ page }) =
   await expect.poll(async () => (await stateOf(moving)).tick).toBeGreaterThan(5);
   await moving.getByRole("button", { name: "Pause" }).press("Enter");
   const { tick } = await stateOf(moving);
-  await page.waitForTimeout(300);
+  await frames(page, 20);
   expect((await stateOf(moving)).tick).toBe(tick);
   await moving.evaluate((element: SapDemo) => {
     element.removeAttribute("paused");
@@ -84,7 +85,7 @@ test("a finger drags a ball without scrolling, and scrolls where there is none",
     await client.send("Input.dispatchTouchEvent", { type: "touchStart", ...at(y) });
     for (let share = 1; share <= 10; share++) {
       await client.send("Input.dispatchTouchEvent", { type: "touchMove", ...at(y + (dy * share) / 10) });
-      await page.waitForTimeout(20);
+      await frames(page, 1);
     }
     await client.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
   };

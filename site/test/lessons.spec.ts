@@ -72,7 +72,11 @@ test("a sweep on every axis shows each flag as it is set", async ({ page }) => {
 
 test("d17: swaps are counted since the drag began, flashed, and told as overlaps that begin and end", async ({ page }) => {
   await page.emulateMedia({ colorScheme: "light" });
+  // From here on, the page's time passes when this test says so.
+  await page.clock.install({ time: 0 });
+  await page.reload();
   const demo = await new Demo(page, "d17").open();
+  await page.clock.pauseAt(3_600_000);
   const log = demo.root.locator("[part=swap-log]");
   const flashes = (): Promise<boolean> =>
     demo.root.locator("canvas.array").evaluate((canvas: HTMLCanvasElement) => {
@@ -83,11 +87,13 @@ test("d17: swaps are counted since the drag began, flashed, and told as overlaps
     });
   expect(await flashes()).toBe(false);
   await demo.drag(0, 160);
-  await expect.poll(flashes).toBe(true);
+  await page.clock.runFor(50);
+  expect(await flashes()).toBe(true);
   // Its right endpoint goes from 170 to 330: past the left ones of B (215) and C (285), and the right one of B (285).
   await expect(log).toContainText("Since the drag began: 3 swaps, 2 overlaps begun, 0 ended.");
   await expect(log.locator("li")).toHaveText(["A begins to overlap C", "A begins to overlap B"]);
-  await expect.poll(flashes, "only for a moment").toBe(false);
+  await page.clock.runFor(2000);
+  expect(await flashes(), "only for a moment").toBe(false);
   await demo.drag(0, -160);
   await expect(log).toContainText("Since the drag began: 3 swaps, 0 overlaps begun, 2 ended.");
   await expect(log.locator("li")).toHaveText(["A ceases to overlap B", "A ceases to overlap C"]);
@@ -230,7 +236,7 @@ test("d14 in play: the sentence is of the comparison or swap that is highlighted
     const demo = element as unknown as { event: { kind: string; a: number; b: number } | undefined };
     const said = element.shadowRoot!.querySelector(".said")!;
     const seen: { kind: string; names: string[]; text: string }[] = [];
-    for (const end = performance.now() + 20_000; performance.now() < end && seen.length < 100; ) {
+    while (seen.length < 100) {
       // After all callbacks of the frame, when it is painted.
       await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
       const { event } = demo;
@@ -238,7 +244,7 @@ test("d14 in play: the sentence is of the comparison or swap that is highlighted
     }
     return seen;
   });
-  expect(seen.length).toBeGreaterThan(20);
+  expect(new Set(seen.map(({ text }) => text)).size).toBeGreaterThan(3);
   for (const { kind, names, text } of seen) {
     for (const name of names) expect(text, `${kind} of ${names.join(" and ")}`).toMatch(new RegExp(`\\(${name}|${name}\\)`));
     expect(text.startsWith(kind === "swap" ? "Swap" : "Compare") || text.includes("is the pivot"), text).toBe(true);

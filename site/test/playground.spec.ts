@@ -5,6 +5,7 @@ import { expect, type Locator, type Page, test } from "@playwright/test";
 import { boxAt } from "../src/playground/hands.ts";
 import { shortest } from "../src/playground/export.ts";
 import { readBoxes } from "../src/playground/import.ts";
+import { frames } from "./support/frames.ts";
 import { complaints, requestsElsewhere } from "./support/pages.ts";
 
 /** Within the repository, where Node finds the package by its name. */
@@ -119,7 +120,7 @@ test("what is copied while it runs is the step that is shown, and its address le
   const expected = { step: copied.step, pairs: copied.pairs, beginning: copied.boxes[0] };
   expect(await shown()).toEqual(expected);
   expect(new URL(copied.address).searchParams.get("step")).toBe(String(copied.step));
-  await page.waitForTimeout(300);
+  await frames(page, 20);
   expect(await shown(), "it stays paused there").toEqual(expected);
   await page.goto("about:blank");
   await page.goto(copied.address);

@@ -1,5 +1,7 @@
 import { type CDPSession, chromium, expect, type Page, test } from "@playwright/test";
+import type { SapDemo } from "sweep-and-prune/demo";
 import { FallingBalls } from "./falling-balls.ts";
+import { open } from "./support/embedded.ts";
 
 // Drawing ten thousand spheres in software takes the graphics process hundreds of milliseconds,
 // so pictures a second say nothing here. What counts is the thread of the page, and the step.
@@ -71,7 +73,7 @@ for (const { name, args } of [{ name: "nothing drawn", args: ["--disable-3d-apis
 test("100,000 spheres by the library: the page answers", async ({ page }) => {
   await page.goto("/falling.html?spheres.bodies=100000");
   const balls = await new FallingBalls(page, "spheres").open();
-  await expect.poll(() => balls.stepNumber(), { timeout: 60_000 }).toBeGreaterThan(1);
+  await expect.poll(() => balls.stepNumber(), { timeout: 600_000 }).toBeGreaterThan(1);
   expect(await balls.value("pairs")).toBeGreaterThan(10_000);
   const answered = await balls.play.evaluate((button: HTMLElement) => {
     const clicked = performance.now();
@@ -211,4 +213,46 @@ test("throttled six times, a frame of four demos takes at most 16 ms of script, 
   console.log(`four demos, throttled six times: ${windows.map((one) => sum(one).toFixed(1)).join(", ")} ms a frame (best: script, layout, style ${best!.parts.map((part) => part.toFixed(1)).join(", ")}; one frame in ${best!.ms.toFixed(0)} ms)`);
   // Two of the four windows: one alone may be luck.
   expect(sum(second!)).toBeLessThan(16);
+});
+
+test("script a frame with six demos on the screen", async ({ baseURL, launchOptions }) => {
+  // Without the emulated graphics card that the spheres need: it takes a second for six canvases.
+  const browser = await chromium.launch({ executablePath: launchOptions.executablePath!, args: ["--no-sandbox"] });
+  const page = await browser.newPage({ baseURL: baseURL!, viewport: { width: 1300, height: 1700 } });
+  const demo = await open(page, { strategy: "pairwise", balls: "20", "skip-interval": "4", decorations: "checks:#4c8:30" });
+  const mean = await demo.evaluate(async (first: SapDemo) => {
+    const main = document.querySelector("main")!;
+    main.style.cssText = "display:grid;grid-template-columns:1fr 1fr;gap:10px";
+    const more = [
+      { strategy: "sweep", balls: "20", decorations: "sweep,edges:array" },
+      { strategy: "swap", balls: "25", rainbow: "", labels: "emoji" },
+      { strategy: "sorted-pairwise", balls: "50" },
+      { strategy: "swap-all-axes", balls: "25", decorations: "checks,edges:array" },
+      { strategy: "sorted-pairwise", balls: "200" },
+    ].map((attributes) => {
+      const element = document.createElement("sap-demo");
+      for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value!);
+      main.append(element);
+      return element;
+    });
+    await Promise.all(more.map(({ ready }) => ready));
+    // What the demos' own callbacks take, all within one frame of the clock they share.
+    const request = window.requestAnimationFrame.bind(window);
+    const times: number[] = [];
+    window.requestAnimationFrame = (callback) =>
+      request((now) => {
+        const began = performance.now();
+        callback(now);
+        times.push(performance.now() - began);
+      });
+    for (let frame = 0; frame < 150; frame++) await new Promise(request);
+    window.requestAnimationFrame = request;
+    times.sort((a, b) => a - b);
+    return { median: times[times.length >> 1]!, frames: times.length, ticks: [first, ...more].map(({ state }) => state.tick) };
+  });
+  await browser.close();
+  console.log(`script a frame: median ${mean.median.toFixed(2)} ms in ${mean.frames} frames`);
+  expect(mean.frames).toBeGreaterThan(100);
+  // The aim is 8 ms; what fails, on a machine busy with other things too, is a whole frame.
+  expect(mean.median).toBeLessThan(16);
 });

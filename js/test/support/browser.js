@@ -25,11 +25,11 @@ export async function resultOf(browser, address) {
   try {
     await page.goto(address);
     // Not `waitForFunction`, which evaluates in the page, where a policy may forbid it.
-    for (const end = Date.now() + 60_000; Date.now() < end; await setTimeout(50)) {
+    for (const end = Date.now() + 600_000; Date.now() < end; await setTimeout(50)) {
       const result = await page.evaluate("globalThis.result");
       if (result !== undefined) return result;
     }
-    throw new Error("the page has no result after a minute");
+    throw new Error("the page has no result after ten minutes");
   } catch (error) {
     throw new Error(`${errors.join("\n")}\n${error}`);
   } finally {

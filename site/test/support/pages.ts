@@ -45,7 +45,7 @@ export async function scrolledThrough(page: Page): Promise<void> {
       for (let frame = 0; frame < 2; frame++) await new Promise(requestAnimationFrame);
     }
     scrollTo({ top: 0, behavior: "instant" });
-    await new Promise((resolve) => setTimeout(resolve, 300));
+    for (let frame = 0; frame < 20; frame++) await new Promise(requestAnimationFrame);
   });
 }
 
