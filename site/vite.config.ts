@@ -3,15 +3,16 @@ import { api } from "./src/api/build.ts";
 import { article } from "./src/article/build.ts";
 import { benchmark, alternatives } from "./src/benchmark/build.ts";
 import { insertComplexity } from "./src/complexity/table.ts";
-import { expandFallingBalls } from "./src/falling/markup.ts";
+import { expandPlayground } from "./src/playground/markup.ts";
 import { offline } from "./src/shell/offline.ts";
 import { pages, shell } from "./src/shell/pages.ts";
+import { expandFallingBalls } from "./src/simulation/markup.ts";
 import { insertTesting } from "./src/testing/build.ts";
 
-/** Writes the inside of each `<falling-balls>` into the page, so that nothing moves when scripts arrive. */
-const fallingBalls: Plugin = {
-  name: "falling-balls",
-  transformIndexHtml: { order: "pre", handler: expandFallingBalls },
+/** Writes the inside of `<falling-balls>` and `<box-playground>` into the page, so that nothing moves when scripts arrive. */
+const panels: Plugin = {
+  name: "panels",
+  transformIndexHtml: { order: "pre", handler: (page) => expandPlayground(expandFallingBalls(page)) },
 };
 
 /** Writes the measured complexity table into the page. */
@@ -37,7 +38,7 @@ const quiet: Rolldown.InputOptions = {
 export default defineConfig({
   base: "./",
   appType: "mpa",
-  plugins: [shell, article, api, fallingBalls, complexity, testing, benchmark, offline],
+  plugins: [shell, article, api, panels, complexity, testing, benchmark, offline],
   worker: { format: "es", plugins: () => [alternatives()], rolldownOptions: quiet },
   build: {
     target: "es2022",

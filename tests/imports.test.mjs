@@ -1,4 +1,4 @@
-// No file imports a file that imports it, directly or indirectly: in core/src, js/src and bench/src.
+// No file imports a file that imports it, directly or indirectly: in core/src, js/src, bench/src and site/src.
 //
 // What counts as an import of file B by file A:
 //
@@ -19,7 +19,7 @@
 //
 // `node tests/imports.mjs` prints the cycles; with `--all`, also what each file imports.
 import assert from "node:assert/strict";
-import { mkdtempSync, mkdirSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join, relative } from "node:path";
 import { test } from "node:test";
@@ -55,6 +55,45 @@ for (const folder of FOLDERS) {
     );
   });
 }
+
+/** Imports of a file in the folder of one page by a file in the folder of another: `[from, to]`. */
+function importsAcrossPages(graph, source, pages) {
+  const pageOf = (file) => pages.find((page) => relative(source, file).startsWith(`${page}/`));
+  return [...graph].flatMap(([file, imports]) =>
+    [...imports.keys()].filter((to) => pageOf(file) && pageOf(to) && pageOf(to) !== pageOf(file)).map((to) => [relative(source, file), relative(source, to)]),
+  );
+}
+
+test("the folder of a page of the site imports no folder of another page", () => {
+  const site = join(root, "site");
+  // A page's folder is the one that has the script its HTML loads. The scripts of index.html stand in article/.
+  const pages = new Set(["article"]);
+  for (const file of readdirSync(site).filter((file) => file.endsWith(".html"))) {
+    for (const [, folder] of readFileSync(join(site, file), "utf8").matchAll(/src="\.\/src\/([^/"]+)\/[^"]*\.ts"/g)) pages.add(folder);
+  }
+  assert.ok(pages.size > 5 && pages.has("playground") && pages.has("falling"), [...pages].join(", "));
+  assert.deepEqual(importsAcrossPages(importsOf("site/src"), join(site, "src"), [...pages]), []);
+  const made = new Map([["/s/a/x.ts", new Map([["/s/b/y.ts", new Set()], ["/s/shared/z.ts", new Set()], ["/s/a/w.ts", new Set()]])]]);
+  assert.deepEqual(importsAcrossPages(made, "/s", ["a", "b"]), [["a/x.ts", "b/y.ts"]]);
+});
+
+/** Which folder imports which; a file beside the folders stands for itself. */
+function foldersOf(graph, source) {
+  const folder = (file) => relative(source, file).split("/")[0];
+  const folders = new Map([...graph.keys()].map((file) => [folder(file), new Map()]));
+  for (const [file, imports] of graph) {
+    for (const to of imports.keys()) if (folder(to) !== folder(file)) folders.get(folder(file)).set(folder(to), new Set());
+  }
+  return folders;
+}
+
+test("no folder of the site imports a folder that imports it, directly or indirectly", () => {
+  const folders = foldersOf(importsOf("site/src"), join(root, "site/src"));
+  assert.ok(folders.size > 15 && folders.get("playground").has("experiment"), [...folders.keys()].join(", "));
+  assert.deepEqual(cyclicGroups(folders), []);
+  const made = new Map([["/s/a/x.ts", new Map([["/s/b/y.ts", new Set()]])], ["/s/b/y.ts", new Map()], ["/s/b/z.ts", new Map([["/s/a/w.ts", new Set()]])], ["/s/a/w.ts", new Map()]]);
+  assert.deepEqual([cyclicGroups(made), cyclicGroups(foldersOf(made, "/s"))], [[], [["a", "b"]]]);
+});
 
 /** The groups of cyclic files of a small made-up crate or package. */
 function groupsOf(files, read) {

@@ -54,14 +54,13 @@ try {
   for (const [path, element, file, steps] of [
     ["falling.html", "#discs", "discs", 24],
     ["falling.html", "#spheres", "spheres", 40],
-    ["race.html", "race-track", "race", 2],
     ["playground.html", "box-playground", "playground", 2],
   ]) {
     await page.setViewportSize({ width: 1280, height: 900 });
     await page.emulateMedia({ colorScheme: "light", reducedMotion: "reduce" });
     await page.goto(new URL(path, server.resolvedUrls.local[0]).href);
     const world = page.locator(element);
-    const picture = world.locator(".panel-stage, .race-stage");
+    const picture = world.locator(".panel-stage");
     await picture.scrollIntoViewIfNeeded();
     const button = world.locator("[data-part=step]");
     for (let step = 0; step < steps; step++) {

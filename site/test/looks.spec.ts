@@ -35,7 +35,6 @@ const PAGES: Readonly<Record<string, { parts: string; rest(page: Page): Promise<
     },
   },
   falling: { parts: "main > *", rest: ballsAwake },
-  race: { parts: "main > *", rest: (page) => expect(page.locator("race-track")).toHaveAttribute("data-step", "0") },
   playground: { parts: "main > *", rest: (page) => expect(page.locator("box-playground")).toHaveAttribute("data-step", "0") },
   benchmark: {
     parts: "main > *",

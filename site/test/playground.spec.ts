@@ -133,11 +133,29 @@ test("runs, and complains of nothing", async ({ page, baseURL }) => {
   const elsewhere = requestsElsewhere(page, baseURL ?? "");
   const playground = await new Playground(page).open();
   await expect.poll(async () => Number(await playground.root.getAttribute("data-step"))).toBeGreaterThan(10);
-  for (const key of ["ms", "pairs", "tests", "axisOverlaps", "comparisons", "swaps"]) {
+  for (const key of ["ms", "pairs", "tests", "axis-overlaps", "comparisons", "swaps"]) {
     await expect.poll(() => playground.value(key), { message: key }).toBeGreaterThan(0);
   }
   expect(heard).toEqual([]);
   expect(elsewhere).toEqual([]);
+});
+
+test("boxes that are imported or drawn stand still until Play", async ({ page }) => {
+  const playground = await new Playground(page).open("?motion=fast");
+  const play = playground.part("play");
+  await expect(play).toHaveText("Pause");
+  await playground.part("file").setInputFiles({ name: "a.csv", mimeType: "text/plain", buffer: Buffer.from("0,0,2,2\n5,5,6,6\n2,1,3,4") });
+  await expect(play).toHaveText("Play");
+  await expect.poll(() => playground.value("pairs")).toBe(1);
+  expect(await playground.root.getAttribute("data-step")).toBe("0");
+  await play.click();
+  await expect.poll(async () => Number(await playground.root.getAttribute("data-step"))).toBeGreaterThan(2);
+  await playground.root.getByRole("button", { name: "Add a box" }).click();
+  await expect(play).toHaveText("Play");
+  await expect(playground.root).toHaveAttribute("data-step", "0");
+  await playground.open("?motion=fast&own=0,0,2,2;5,5,6,6");
+  await expect(play).toHaveText("Play");
+  await expect(playground.root).toHaveAttribute("data-step", "0");
 });
 
 test.describe("paused", () => {
@@ -283,7 +301,8 @@ test.describe("paused", () => {
       expect(pairs).toBeGreaterThan(0);
       for (const algorithm of await playground.root.getByLabel("Algorithm").locator("option").allTextContents()) {
         await playground.root.getByLabel("Algorithm").selectOption(algorithm);
-        await expect(playground.part("status")).toContainText(`by ${algorithm}. `);
+        // What the one before found is cleared at once.
+        await expect(playground.part("status")).toContainText(`by ${algorithm}. ${pairs.toLocaleString("en")} pairs`);
         expect(await playground.value("pairs"), algorithm).toBe(pairs);
       }
     }
@@ -293,7 +312,7 @@ test.describe("paused", () => {
     const playground = await new Playground(page).open();
     expect(new URL(page.url()).search).toBe("");
     const pairs = await playground.value("pairs");
-    await playground.root.getByRole("slider", { name: "Size" }).fill("6");
+    await playground.root.getByRole("slider", { name: "Size", exact: true }).fill("6");
     await expect.poll(() => playground.value("pairs")).toBeGreaterThan(2 * pairs);
     await playground.root.getByRole("slider", { name: "Boxes" }).fill("7");
     await playground.root.getByLabel("Scene").selectOption("grid");

@@ -1,6 +1,7 @@
 import { expect, type Locator, type Page, test } from "@playwright/test";
+import { fastest } from "../src/playground/verdict.ts";
 import { settled } from "./support/frames.ts";
-import { complaints, requestsElsewhere } from "./support/pages.ts";
+import { complaints, RACE, requestsElsewhere } from "./support/pages.ts";
 
 const still = { contextOptions: { reducedMotion: "reduce" } } as const;
 
@@ -10,18 +11,19 @@ class Race {
   readonly play: Locator;
 
   constructor(readonly page: Page) {
-    this.root = page.locator("race-track");
+    this.root = page.locator("box-playground");
     this.play = this.root.locator('[data-part="play"]');
   }
 
   async open(query = ""): Promise<this> {
     await this.page.goto(`/race.html${query}`);
+    await this.page.waitForURL(/playground\.html/);
     await expect(this.root).toHaveAttribute("data-step", /./);
     return this;
   }
 
   lane(number: number): Locator {
-    return this.root.getByRole("group", { name: `Lane ${number}` });
+    return this.root.getByRole("group", { name: `Algorithm ${number}` });
   }
 
   async value(lane: number, key: string): Promise<number> {
@@ -39,24 +41,38 @@ class Race {
 test("runs, compares every step, plots, and complains of nothing", async ({ page, baseURL }) => {
   const heard = complaints(page);
   const elsewhere = requestsElsewhere(page, baseURL ?? "");
-  const race = await new Race(page).open();
+  const race = new Race(page);
+  await page.goto(RACE);
   await expect.poll(async () => Number(await race.root.getAttribute("data-step"))).toBeGreaterThan(10);
   await expect(race.root.locator('[data-part="verdict"]')).toContainText(/All 4 found the same [\d,]+ pairs, in this step and in all \d+ so far/);
   await expect(race.root.locator('[data-part="alarm"]')).toBeEmpty();
-  const plot = race.root.locator('[data-part="plot"]');
+  const plot = race.root.locator('[data-part="lines"]');
   const before = await plot.screenshot();
-  await race.root.getByLabel("Plot").selectOption("tests");
+  await race.root.getByLabel("Plot", { exact: true }).selectOption("tests");
   await expect.poll(async () => before.equals(await plot.screenshot())).toBe(false);
   await race.play.click();
-  await expect(race.root.getByRole("status")).toContainText("Paused");
+  await expect(race.root.locator('[data-part="status"]')).toContainText("Paused");
   await settled(page, () => race.root.getAttribute("data-step"), "no step after the one that was on its way");
   expect(heard).toEqual([]);
   expect(elsewhere).toEqual([]);
 });
 
-test("another race clears what the one before showed, and names the fastest after some steps", async ({ page }) => {
+test("the fastest is named by 60 measured steps, in each half of them, and by no less than a tick of the clock", () => {
+  const steps = (ms: (step: number) => number): number[] => Array.from({ length: 60 }, (_, step) => ms(step));
+  const said = (a: number[], b: number[]): string => fastest([{ name: "A", times: a }, { name: "B", times: b }]);
+  const tick = (step: number): number => (step % 10 === 0 ? 0.1 : 0);
+  expect(said(steps(() => 6).slice(1), steps(() => 1))).toBe("Measuring the time: 59 of 60 steps.");
+  expect(said(steps((step) => 6 + tick(step)), steps(() => 1))).toBe("Fastest: B, 6.0 times as fast as A.");
+  expect(said(steps((step) => 1 + tick(step)), steps((step) => 1.02 + tick(step + 1)))).toBe("Fastest: A and B, about equal.");
+  // A clock that ticks ten times a millisecond shows mostly 0: not "60,000 times as fast".
+  expect(said(steps(() => 6.2), steps(tick))).toBe("Fastest: B, at least 62 times as fast as A.");
+  expect(said(steps((step) => tick(step + 5)), steps(tick))).toContain("both faster than the clock");
+  expect(said(steps((step) => (step < 30 ? 1 : 3) + tick(step)), steps((step) => (step < 30 ? 2 : 1)))).toBe("No algorithm is the fastest all the time.");
+});
+
+test("other boxes clear what the one before showed, and names the fastest after some steps", async ({ page }) => {
   const race = await new Race(page).open();
-  await expect(race.root.locator('[data-part="verdict"]')).toContainText(/Fastest: [a-z -]+, ([\d.]+ times as fast as [a-z -]+|and [a-z -]+, about equal)/);
+  await expect(race.root.locator('[data-part="verdict"]')).toContainText(/Fastest: |No algorithm is the fastest|faster than the clock/);
   const shown = await race.root.evaluate((track) => {
     const seed = track.querySelector<HTMLInputElement>('[data-part="seed"]')!;
     seed.value = "7";
@@ -82,7 +98,7 @@ test("a runner that finds other pairs is told of loudly", async ({ page }) => {
     } as typeof listen;
   });
   const race = await new Race(page).open("?boxes=100");
-  await expect(race.root.getByRole("alert")).toHaveText(/In step 3, lane 3 found other pairs/);
+  await expect(race.root.getByRole("alert")).toHaveText(/In step 3, algorithm 3 found other pairs/);
   await expect(race.root.locator('[data-part="verdict"]')).toHaveText("The algorithms disagree.");
   // Hundreds of steps a second go by: it must stand still to be seen at its beginning.
   await race.root.getByRole("button", { name: "Pause" }).click();
@@ -116,13 +132,13 @@ test.describe("paused", () => {
 
   test("every algorithm and the library agree in every motion", async ({ page }) => {
     const race = await new Race(page).open("?boxes=200");
-    const algorithms = await race.lane(3).getByLabel("Algorithm").locator("option").allTextContents();
-    expect(algorithms.length).toBe(9);
+    const algorithms = await race.lane(3).getByLabel("Algorithm", { exact: true }).locator("option").allTextContents();
+    expect(algorithms.length).toBe(8);
     for (const motion of await race.root.getByLabel("Motion").locator("option").allTextContents()) {
       await race.root.getByLabel("Motion").selectOption(motion);
       for (const [second, third] of [["endpoint sweep", "broad phase"], ["endpoint sweep on every axis", "swap-driven sweep on every axis"]]) {
-        await race.lane(2).getByLabel("Algorithm").selectOption(second ?? "");
-        await race.lane(3).getByLabel("Algorithm").selectOption(third ?? "");
+        await race.lane(2).getByLabel("Algorithm", { exact: true }).selectOption(second ?? "");
+        await race.lane(3).getByLabel("Algorithm", { exact: true }).selectOption(third ?? "");
         await expect(race.root).toHaveAttribute("data-step", "0");
         for (let step = 0; step < 3; step++) await race.step();
         await expect(race.root.locator('[data-part="verdict"]')).toContainText("All 4 found the same");
@@ -130,30 +146,42 @@ test.describe("paused", () => {
     }
   });
 
-  test("the address keeps the algorithm of each lane, and nothing else", async ({ page }) => {
-    const race = await new Race(page).open();
+  test("the address keeps each algorithm, and nothing else; one that is removed leaves no gap", async ({ page }) => {
+    const race = new Race(page);
+    await page.goto("/playground.html");
+    await expect(race.root).toHaveAttribute("data-step", "0");
     expect(new URL(page.url()).search).toBe("");
-    await race.root.getByLabel("Scene").selectOption("tower");
-    await race.root.getByLabel("Motion").selectOption("teleport");
-    await race.lane(2).getByLabel("Algorithm").selectOption("endpoint sweep");
+    await expect(race.root.locator('[data-part="lines"]')).toBeHidden();
+    for (const added of ["find pairs", "swap-driven sweep", "global pairwise"]) {
+      await race.root.getByRole("button", { name: "Add an algorithm" }).click();
+      await expect(race.root.getByLabel("Algorithm", { exact: true }).last()).toHaveValue(added);
+      await expect(race.root.getByLabel("Algorithm", { exact: true }).last()).toBeFocused();
+    }
+    await expect(race.root.getByRole("button", { name: "Add an algorithm" })).toBeHidden();
+    await race.root.getByRole("button", { name: "Remove algorithm 2" }).click();
     await race.lane(2).getByLabel("Sort").selectOption("Timsort");
     await race.lane(2).getByLabel("Sweep axis").selectOption("y");
-    await race.lane(4).getByLabel("Algorithm").selectOption("none");
-    const kept = { scene: "tower", motion: "teleport", "2": "endpoint sweep", "2.sort": "Timsort", "2.axis": "y", "4": "none" };
+    const kept = { "2": "swap-driven sweep", "2.sort": "Timsort", "2.axis": "y", "3": "global pairwise" };
     expect(Object.fromEntries(new URL(page.url()).searchParams)).toEqual(kept);
     await page.reload();
-    await expect(race.root).toHaveAttribute("data-step", "0");
     await expect(race.root.locator('[data-part="verdict"]')).toContainText("All 3 found the same");
     await expect(race.lane(2).getByLabel("Sort")).toHaveValue("Timsort");
-    await race.open("?boxes=-7&scene=nowhere&1=magic&dimensions=9&seed=x&plot=none");
-    expect(await race.value(1, "tests")).toBe(499_500);
+  });
+
+  test("an old address of the race leads to the same race", async ({ page }) => {
+    const race = await new Race(page).open("?boxes=200&scene=tower&1=endpoint+sweep&1.sort=Timsort&3=none");
+    await expect(race.root.locator('[data-part="verdict"]')).toContainText("All 3 found the same");
+    await expect(race.lane(1).getByLabel("Algorithm", { exact: true })).toHaveValue("endpoint sweep");
+    await expect(race.lane(1).getByLabel("Sort")).toHaveValue("Timsort");
+    await expect(race.lane(3).getByLabel("Algorithm", { exact: true })).toHaveValue("find pairs");
+    await expect(race.root.getByLabel("Scene")).toHaveValue("tower");
   });
 
   test("too many pairs, or too much to keep, is refused in words", async ({ page }) => {
     const race = await new Race(page).open("?scene=coincident&boxes=20000");
     await expect(race.root.locator('[data-part="message"]')).toContainText("199,990,000 pairs; the limit is 2,000,000");
     await race.open("?scene=tower&boxes=20000&2.axis=y&3.axis=x&1=find+pairs");
-    await expect(race.lane(3).locator('[data-part="out"]')).toContainText("would have to keep 199,");
+    await expect(race.lane(3).locator('.lane-out')).toContainText("would have to keep 199,");
     await expect(race.root.locator('[data-part="verdict"]')).toContainText("found the same");
   });
 
@@ -187,6 +215,6 @@ test("20,000 boxes and brute force leave the page responsive; what is too slow i
   console.log(`race, 20,000 boxes: longest gap of the page's thread ${longest.toFixed(0)} ms`);
   expect(longest).toBeLessThan(400);
   const brute = await race.value(1, "tests");
-  const out = await race.lane(1).locator('[data-part="out"]').textContent();
+  const out = await race.lane(1).locator('.lane-out').textContent();
   expect(brute === 199_990_000 || /^Stopped: .*the limit is/.test(out ?? "")).toBe(true);
 });

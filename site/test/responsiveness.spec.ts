@@ -86,7 +86,7 @@ test("100,000 spheres by the library: the page answers", async ({ page }) => {
 
 // Where nothing is drawn in 3D, Chromium draws on the processor: the emulated graphics card that the
 // spheres need takes a second for what a real one does at once, and there would be no frames to count.
-for (const path of ["/#d6a", "/#d13a", "/#swaps", "/falling.html", "/race.html", "/playground.html", "/playground.html?boxes=5000&motion=fast"]) {
+for (const path of ["/#d6a", "/#d13a", "/#swaps", "/falling.html", "/playground.html", "/playground.html?boxes=5000&motion=fast"]) {
   test(`${path}: script a frame`, async ({ baseURL, launchOptions }) => {
     const browser = await chromium.launch({ executablePath: launchOptions.executablePath!, args: ["--no-sandbox"] });
     const page = await browser.newPage({ baseURL: baseURL!, viewport: { width: 1280, height: 900 } });

@@ -2,7 +2,7 @@
 
 import { existsSync } from "node:fs";
 import type { Plugin } from "vite";
-import { highlight } from "../article/listing.ts";
+import { highlight } from "../code/listing.ts";
 
 const EXAMPLES = {
   rust: {

@@ -2,7 +2,7 @@
 // balls, choices that change a demo, and contents that mark the section that is being read.
 
 import type { SapDemo } from "sweep-and-prune/demo";
-import { copyable } from "./copy.ts";
+import { copyable } from "../code/copy.ts";
 import { followDemos } from "./follow.ts";
 import { TransitivityCode } from "./transitivity.ts";
 

@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import type { Plugin } from "vite";
 import { figures } from "./figures/index.ts";
 import { legend } from "./legend.ts";
-import { highlight, listing } from "./listing.ts";
+import { highlight, listing } from "../code/listing.ts";
 import { withPosters } from "./poster.ts";
 import { expandStructures } from "../structures/build.ts";
 import { SITE } from "../shell/pages.ts";

@@ -3,7 +3,7 @@
 
 import scalarWasm from "../generated/experiment.wasm?url";
 import simdWasm from "../generated/experiment.simd.wasm?url";
-import { hasSimd } from "../simulation/simd.ts";
+import { hasSimd } from "../simd.ts";
 
 /** The axes by name. */
 export const AXIS_NAMES: readonly string[] = ["x", "y", "z"];

@@ -1,3 +1,3 @@
-import { FallingBalls } from "./falling-balls.ts";
+import { FallingBalls } from "../simulation/falling-balls.ts";
 
 customElements.define("falling-balls", FallingBalls);

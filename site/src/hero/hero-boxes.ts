@@ -1,6 +1,7 @@
 import { init, Runner } from "sweep-and-prune/algorithms";
-import { onAwake } from "../falling/awake.ts";
-import { bruteForceTests, formatCount } from "../falling/counters.ts";
+import { showLoadFailure } from "../load-failed.ts";
+import { onAwake } from "../panel/awake.ts";
+import { bruteForceTests, formatCount } from "../panel/counters.ts";
 import { onThemeChange } from "../shell/theme.ts";
 import { drawBoxes, type HeroColors } from "./draw-boxes.ts";
 import { MovingBoxes, WORLD_HEIGHT } from "./moving-boxes.ts";
@@ -52,7 +53,7 @@ export class HeroBoxes extends HTMLElement {
 
   connectedCallback(): void {
     this.#left = new AbortController();
-    void init().then(() => this.#start(), (error: unknown) => (this.#part("count").textContent = String(error)));
+    void init().then(() => this.#start(), (error: unknown) => showLoadFailure(this.#part("message"), error));
   }
 
   disconnectedCallback(): void {

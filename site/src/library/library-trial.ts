@@ -1,5 +1,5 @@
 import { findPairs, init } from "sweep-and-prune";
-import { bruteForceTests, formatCount } from "../falling/counters.ts";
+import { bruteForceTests, formatCount } from "../panel/counters.ts";
 
 /** The numbers of boxes that the slider offers; more would block the page for too long. */
 const BOXES = [10, 20, 50, 100, 200, 500, 1_000, 2_000, 5_000, 10_000, 20_000, 50_000, 100_000, 200_000, 500_000, 1_000_000];

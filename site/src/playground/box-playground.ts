@@ -1,17 +1,21 @@
 import { numberWithin, readAddress, writeAddress } from "../experiment/address.ts";
 import { type BoxColors, drawBoxes, type Window2, windowOf } from "../experiment/box-picture.ts";
-import type { RunnerOptions, Lists, WorldOptions } from "../experiment/experiment.ts";
-import { onAwake } from "../falling/awake.ts";
-import { formatCount } from "../falling/counters.ts";
-import { bindSlider } from "../falling/slider.ts";
-import type { FromRace, RaceFrame, ToRace } from "../race/messages.ts";
-import { MEASURES, RaceRecord } from "../race/record.ts";
+import type { Lists, RunnerOptions, WorldOptions } from "../experiment/experiment.ts";
+import type { ExperimentFrame, FromExperiment, ToExperiment } from "../experiment/messages.ts";
+import { ExperimentRecord, MEASURES, SHOWN } from "../experiment/record.ts";
+import { showLoadFailure } from "../load-failed.ts";
+import { messageOf } from "../message-of.ts";
+import { formatCount } from "../panel/counters.ts";
+import { PanelElement } from "../panel/panel-element.ts";
+import { LARGEST_SEED } from "../panel/parts.ts";
+import { drawLines } from "../plot/line-plot.ts";
 import { onThemeChange } from "../shell/theme.ts";
 import { type Format, FORMATS, preview, shortest, type Snapshot, write } from "./export.ts";
 import { Hands, type Shown } from "./hands.ts";
 import { readBoxes } from "./import.ts";
-import { COUNTERS } from "./markup.ts";
-import { messageOf } from "../message-of.ts";
+import { keysOf, Lanes, MOST_LANES } from "./lanes.ts";
+import { laneMarkup } from "./markup.ts";
+import { verdict } from "./verdict.ts";
 
 /** What the sliders offer. */
 const RANGES = {
@@ -19,16 +23,22 @@ const RANGES = {
   size: [0.1, 0.2, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10],
   spread: [1, 2, 4, 8, 16, 32, 64, 100],
 } as const;
-const LARGEST_SEED = 2 ** 32 - 1;
 /** Numbers that change more often than this cannot be read. */
 const SHOW_MS = 150;
 /** The address has own boxes when no hand has moved them for this long. */
 const WRITE_MS = 300;
-const NOT_COUNTED = "not counted by this algorithm";
+
+/** No further algorithm. */
+const NONE = "none";
+const FURTHER = { sort: "insertion sort", axis: "largest variance" };
 
 const DEFAULTS = {
   dimensions: "2", scene: "clustered", motion: "drift", boxes: "500", seed: "1", size: "1", spread: "1",
-  algorithm: "sorted pairwise", sort: "insertion sort", axis: "largest variance", format: "js", step: "0", own: "",
+  algorithm: "sorted pairwise", ...FURTHER,
+  "2": NONE, "2.sort": FURTHER.sort, "2.axis": FURTHER.axis,
+  "3": NONE, "3.sort": FURTHER.sort, "3.axis": FURTHER.axis,
+  "4": NONE, "4.sort": FURTHER.sort, "4.axis": FURTHER.axis,
+  plot: "ms", log: "yes", format: "js", step: "0", own: "",
 };
 /** More boxes of the visitor's own than this do not fit into an address. */
 const MOST_IN_ADDRESS = 100;
@@ -39,17 +49,26 @@ const OWN = "your own boxes";
 
 type Key = keyof typeof DEFAULTS;
 
+interface Colors {
+  readonly boxes: BoxColors;
+  readonly lanes: readonly string[];
+  readonly ink: string;
+  readonly muted: string;
+  readonly grid: string;
+}
+
 /**
- * `<box-playground>`: a world of boxes of the visitor's own, one algorithm at work on it, and the
- * way to take it home. It is a race with one runner: its thread is that of the race.
+ * `<box-playground>`: a world of boxes, up to four algorithms at work on it in lockstep, on a thread of their own,
+ * and the way to take it home. Its inside is written by `markup.ts`.
  */
-export class BoxPlayground extends HTMLElement {
-  readonly #worker = new Worker(new URL("../race/worker.ts", import.meta.url), { type: "module" });
-  #lists!: Lists;
+export class BoxPlayground extends PanelElement {
+  readonly #worker = new Worker(new URL("../experiment/worker.ts", import.meta.url), { type: "module" });
+  #lists: Lists | undefined;
+  #lanes!: Lanes;
   #state = readAddress<Key>(DEFAULTS);
   #run = 0;
-  #record = new RaceRecord(1);
-  #frame: RaceFrame | undefined;
+  #record = new ExperimentRecord(0);
+  #frame: ExperimentFrame | undefined;
   /** What is shown: all there was at first, or where the visitor went. */
   #view: Window2 | undefined;
   /** The boxes with which the world begins, if they are the visitor's own. */
@@ -60,56 +79,51 @@ export class BoxPlayground extends HTMLElement {
   #whenPaced: () => void = () => undefined;
   /** Own boxes that wait until those before have been searched. */
   #isWaiting = false;
-  #wanted = !matchMedia("(prefers-reduced-motion: reduce)").matches;
-  #awake = false;
   #shownAt = -Infinity;
-  #asked = false;
-  #colors: BoxColors | undefined;
-  #left = new AbortController();
+  #colors: Colors | undefined;
 
-  connectedCallback(): void {
-    this.#worker.addEventListener("message", ({ data }: MessageEvent<FromRace>) => this.#receive(data));
-    this.#worker.addEventListener("error", ({ message }) => this.#say(message));
-    const { signal } = this.#left;
+  protected start(): void {
+    // The algorithms of the address have their places at once: nothing jumps when their names are known.
+    const lanes = 1 + [2, 3, 4].filter((lane) => this.#state[keysOf(lane).algorithm as Key] !== NONE).length;
+    if (lanes > 1) this.named("lanes").innerHTML = Array.from({ length: lanes }, (_, at) => laneMarkup(at + 1)).join("");
+    this.#worker.addEventListener("message", ({ data }: MessageEvent<FromExperiment>) => this.#receive(data));
+    this.#worker.addEventListener("error", ({ message }) => this.#fail(message ?? "its script"));
     onThemeChange(() => {
       this.#colors = undefined;
-      this.#requestShow();
-    }, signal);
-    new ResizeObserver(() => {
+      this.requestShow();
+    }, this.signal);
+    this.onResize(["picture", "lines"], () => {
       this.#view = undefined;
-      this.#requestShow();
-    }).observe(this.#part("picture"));
-    onAwake(this, (awake) => {
-      this.#awake = awake;
-      this.#pace();
-    }, signal);
+      this.requestShow();
+    });
+    this.followAwake();
     const setView = (view: Window2 | undefined): void => {
       this.#view = view;
-      this.#requestShow();
+      this.requestShow();
     };
-    const button = (part: string): HTMLButtonElement => this.#part<HTMLButtonElement>(part);
+    const button = (part: string): HTMLButtonElement => this.named<HTMLButtonElement>(part);
     this.#hands = new Hands({
-      surface: this.#part("surface"),
+      surface: this.named("surface"),
       buttons: { draw: button("draw"), add: button("add"), delete: button("delete"), undo: button("undo"), clear: button("clear") },
       shown: () => this.#shown,
       view: () => this.#view,
       setView,
       setHeld: (isHeld) => {
         this.#isHeld = isHeld;
-        this.#pace();
+        this.pace();
         this.#showPreview();
       },
       setBoxes: (shown) => this.#setOwn(shown),
       select: (text) => {
-        this.#part("selected").textContent = text;
-        this.#requestShow();
+        this.named("selected").textContent = text;
+        this.requestShow();
       },
     });
     this.#bindImport();
   }
 
-  disconnectedCallback(): void {
-    this.#left.abort();
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
     this.#worker.terminate();
   }
 
@@ -120,35 +134,29 @@ export class BoxPlayground extends HTMLElement {
     this.#bindChoice("dimensions", undefined, () => this.#fill());
     this.#bindChoice("scene");
     this.#bindChoice("motion", lists.motions.map(({ name }) => name));
-    this.#bindChoice("algorithm", lists.algorithms);
-    this.#bindChoice("sort", lists.sorts);
-    this.#bindChoice("axis");
-    this.#fill();
+    this.#lanes = new Lanes(this.named("lanes"), lists, (lanes) => this.#setLanes(lanes));
+    this.#fill(this.#lanesOfAddress(lists));
+    this.onClick("add-algorithm", () => this.#lanes.add(this.#world().dimensions));
+    this.#bindPlot();
     for (const key of ["boxes", "size", "spread"] as const) {
-      bindSlider({
-        slider: this.#part<HTMLInputElement>(key),
-        output: this.#part(`${key}-value`),
-        values: RANGES[key],
-        value: this.#world()[key],
-        format: key === "boxes" ? formatCount : (value) => (key === "size" ? `× ${value}` : `${value} : 1`),
-        changed: (value) => this.#change(key, String(value)),
-      });
+      this.bindSlider(
+        key,
+        RANGES[key],
+        this.#world()[key],
+        key === "boxes" ? formatCount : (value) => (key === "size" ? `× ${value}` : `${value} : 1`),
+        (value) => this.#change(key, String(value)),
+      );
     }
-    const seed = this.#part<HTMLInputElement>("seed");
-    seed.value = String(this.#world().seed);
-    seed.addEventListener("change", () => {
-      seed.value = String(numberWithin(String(Math.round(seed.valueAsNumber)), 0, LARGEST_SEED, 1));
-      this.#change("seed", seed.value);
-    });
+    this.bindSeed(this.#world().seed, (seed) => this.#change("seed", String(seed)));
     this.#bindButtons();
     this.#bindExport();
-    for (const control of this.querySelectorAll<HTMLInputElement>(":disabled:not([data-part=delete], [data-part=undo])")) control.disabled = false;
+    for (const control of this.querySelectorAll<HTMLInputElement>(":disabled:not([data-part=delete], [data-part=undo], .lane *)")) control.disabled = false;
     this.#readOwn();
     const step = Math.round(numberWithin(this.#state.step, 0, LAST_STEP, 0));
-    // An address that leads to a step shows that step.
-    if (step > 0) this.#wanted = false;
+    // An address that leads to a step shows that step, and own boxes stand still until Play.
+    if (step > 0 || this.#own) this.wanted = false;
     this.#begin(step);
-    this.#pace();
+    this.pace();
   }
 
   /** The boxes that the address holds. */
@@ -158,16 +166,16 @@ export class BoxPlayground extends HTMLElement {
       const { dimensions, boxes } = readBoxes(this.#state.own.replaceAll(";", "\n"));
       this.#own = boxes;
       this.#state.dimensions = String(dimensions);
-      this.#part<HTMLSelectElement>("dimensions").value = this.#state.dimensions;
+      this.named<HTMLSelectElement>("dimensions").value = this.#state.dimensions;
       this.#fill();
     } catch (error) {
       this.#state.own = "";
-      this.#part("imported").textContent = `The boxes of the address were left out. ${messageOf(error)}`;
+      this.named("imported").textContent = `The boxes of the address were left out. ${messageOf(error)}`;
     }
   }
 
-  #bindChoice(key: "dimensions" | "scene" | "motion" | keyof RunnerOptions, names?: readonly string[], before = (): void => {}): void {
-    const select = this.#part<HTMLSelectElement>(key);
+  #bindChoice(key: "dimensions" | "scene" | "motion", names?: readonly string[], before = (): void => {}): void {
+    const select = this.named<HTMLSelectElement>(key);
     if (names) select.replaceChildren(...names.map((name) => new Option(name)));
     if (select.options.length > 0) this.#choose(key);
     select.addEventListener("change", () => {
@@ -179,56 +187,91 @@ export class BoxPlayground extends HTMLElement {
   }
 
   /** The scenes and the axes that exist in the chosen dimensions. */
-  #fill(): void {
-    const dimensions = Number(this.#state.dimensions);
-    const { scenes, axes } = this.#lists;
-    const there = scenes.filter(({ dimensions: [least, most] }) => least <= dimensions && dimensions <= most);
+  #fill(lanes = this.#lanes.all): void {
+    const { dimensions } = this.#world();
+    const there = (this.#lists?.scenes ?? []).filter(({ dimensions: [least, most] }) => least <= dimensions && dimensions <= most);
     const isOwn = this.#own !== undefined;
-    this.#part("scene").replaceChildren(...(isOwn ? [new Option(OWN, "")] : []), ...there.map(({ name }) => new Option(name)));
-    this.#part("axis").replaceChildren(...axes.slice(0, axes.length - 3 + dimensions).map((name) => new Option(name)));
+    this.named("scene").replaceChildren(...(isOwn ? [new Option(OWN, "")] : []), ...there.map(({ name }) => new Option(name)));
     if (!isOwn) this.#choose("scene");
-    this.#choose("axis");
+    this.#lanes.set(lanes, dimensions);
+    this.#keepLanes(this.#lanes.all);
+  }
+
+  /** The algorithms that the address names: the first always, the others where there are such. */
+  #lanesOfAddress({ algorithms, sorts, axes }: Lists): RunnerOptions[] {
+    const known = (key: string, names: readonly string[]): string => {
+      const name = this.#state[key as Key];
+      return names.includes(name) ? name : DEFAULTS[key as Key];
+    };
+    const all = Array.from({ length: MOST_LANES }, (_, at): RunnerOptions => {
+      const { algorithm, sort, axis } = keysOf(at + 1);
+      return { algorithm: known(algorithm, algorithms), sort: known(sort, sorts), axis: known(axis, axes) };
+    });
+    return all.filter(({ algorithm }) => algorithm !== NONE);
+  }
+
+  #keepLanes(lanes: readonly RunnerOptions[]): void {
+    for (let lane = 1; lane <= MOST_LANES; lane++) {
+      const keys = keysOf(lane);
+      const { algorithm, sort, axis } = lanes[lane - 1] ?? { algorithm: NONE, ...FURTHER };
+      Object.assign(this.#state, { [keys.algorithm]: algorithm, [keys.sort]: sort, [keys.axis]: axis });
+    }
+    this.named("add-algorithm").hidden = lanes.length === MOST_LANES;
+    // The script in the head of the page has done so before the first picture.
+    document.documentElement.classList.toggle("races", lanes.length > 1);
+    this.#colors = undefined;
+  }
+
+  #setLanes(lanes: readonly RunnerOptions[]): void {
+    this.#keepLanes(lanes);
+    this.#change("step", "0");
+  }
+
+  #bindPlot(): void {
+    this.#choose("plot");
+    const plot = this.named<HTMLSelectElement>("plot");
+    const log = this.named<HTMLInputElement>("log");
+    log.checked = this.#state.log !== "no";
+    const keep = (key: "plot" | "log", text: string): void => {
+      this.#keep(key, text);
+      this.#drawPlot();
+    };
+    plot.addEventListener("change", () => keep("plot", plot.value));
+    log.addEventListener("change", () => keep("log", log.checked ? "yes" : "no"));
   }
 
   /** Shows what the state says, or the default where there is no such thing, or the first. */
   #choose(key: Key): void {
-    const select = this.#part<HTMLSelectElement>(key);
+    const select = this.named<HTMLSelectElement>(key);
     const names = [...select.options].map(({ value }) => value);
     const name = [this.#state[key], DEFAULTS[key], names[0] ?? ""].find((name) => names.includes(name)) ?? "";
     select.value = this.#state[key] = name;
   }
 
   #bindButtons(): void {
-    this.#onClick("play", () => {
-      this.#wanted = !this.#wanted;
-      this.#pace();
-    });
-    this.#onClick("step", () => {
-      this.#wanted = false;
-      this.#pace();
-      this.#send({ type: "step" });
-    });
-    this.#onClick("reset", () => {
-      this.#keep("step", "0");
-      this.#begin();
-    });
-    this.#onClick("fit", () => {
+    this.bindTransport(
+      () => this.#send({ type: "step" }),
+      () => {
+        this.#keep("step", "0");
+        this.#begin();
+      },
+    );
+    this.onClick("fit", () => {
       this.#view = undefined;
-      this.#requestShow();
+      this.requestShow();
     });
   }
 
   #bindExport(): void {
     this.#choose("format");
-    const format = this.#part<HTMLSelectElement>("format");
+    const format = this.named<HTMLSelectElement>("format");
     format.addEventListener("change", () => {
       this.#keep("format", format.value);
       this.#showPreview();
     });
     // The world stops at the step that is taken along: what is shown is what is copied.
     const snapshot = async (): Promise<Snapshot> => {
-      this.#wanted = false;
-      this.#pace();
+      this.setWanted(false);
       // The thread may have taken another step meanwhile.
       await new Promise<void>((resolve) => (this.#whenPaced = resolve));
       this.#showNow();
@@ -237,7 +280,7 @@ export class BoxPlayground extends HTMLElement {
       return taken;
     };
     const reportDone = (text: (taken: Snapshot) => string, work: (taken: Snapshot) => Promise<void>): void => {
-      const output = this.#part("exported");
+      const output = this.named("exported");
       const done = async (): Promise<string> => {
         const taken = await snapshot();
         await work(taken);
@@ -248,16 +291,16 @@ export class BoxPlayground extends HTMLElement {
         (error: unknown) => (output.textContent = `That did not work: ${messageOf(error)}`),
       );
     };
-    this.#onClick("copy", () =>
+    this.onClick("copy", () =>
       reportDone(({ step }) => `Step ${formatCount(step)} copied.`, async (taken) => navigator.clipboard.writeText(await write(taken, this.#format()))),
     );
-    this.#onClick("share", () =>
+    this.onClick("share", () =>
       reportDone(({ step }) => `Address of step ${formatCount(step)} copied.`, async ({ address }) => {
         if (address === "") throw new Error(`more than ${MOST_IN_ADDRESS} boxes of your own do not fit into an address; download them instead, and import them there`);
         await navigator.clipboard.writeText(address);
       }),
     );
-    this.#onClick("download", () =>
+    this.onClick("download", () =>
       reportDone(({ step }) => `Step ${formatCount(step)} downloaded.`, async (taken) => {
         const { type, file } = FORMATS[this.#format()];
         const link = document.createElement("a");
@@ -271,10 +314,10 @@ export class BoxPlayground extends HTMLElement {
 
   /** Boxes come from a file that is chosen or dropped on the picture, or from text. */
   #bindImport(): void {
-    const file = this.#part<HTMLInputElement>("file");
-    const pasted = this.#part<HTMLTextAreaElement>("pasted");
+    const file = this.named<HTMLInputElement>("file");
+    const pasted = this.named<HTMLTextAreaElement>("pasted");
     const take = (text: string): void => {
-      const output = this.#part("imported");
+      const output = this.named("imported");
       try {
         const imported = readBoxes(text);
         this.#hands.replace(() => imported);
@@ -285,22 +328,18 @@ export class BoxPlayground extends HTMLElement {
       }
     };
     const takeFile = (given: File | undefined): void => void given?.text().then(take);
-    this.#onClick("import", () => file.click());
+    this.onClick("import", () => file.click());
     file.addEventListener("change", () => {
       takeFile(file.files?.[0]);
       file.value = "";
     });
-    this.#onClick("paste", () => take(pasted.value));
-    const surface = this.#part("surface");
+    this.onClick("paste", () => take(pasted.value));
+    const surface = this.named("surface");
     surface.addEventListener("dragover", (event) => event.preventDefault());
     surface.addEventListener("drop", (event) => {
       event.preventDefault();
       takeFile(event.dataTransfer?.files[0]);
     });
-  }
-
-  #onClick(part: string, act: () => void): void {
-    this.#part(part).addEventListener("click", act);
   }
 
   #format(): Format {
@@ -329,12 +368,14 @@ export class BoxPlayground extends HTMLElement {
 
   /** These boxes are the world from now on, at its first step. */
   #setOwn({ dimensions, boxes }: Shown): void {
+    // What is placed by hand or by a file stands still until Play.
+    if (this.wanted) this.setWanted(false);
     const isAsBefore = this.#own !== undefined && dimensions === this.#world().dimensions;
     this.#own = boxes;
     this.#state.dimensions = String(dimensions);
     this.#state.step = "0";
     if (!isAsBefore) {
-      this.#part<HTMLSelectElement>("dimensions").value = this.#state.dimensions;
+      this.named<HTMLSelectElement>("dimensions").value = this.#state.dimensions;
       this.#fill();
     }
     // A browser refuses an address that changes with every move of a hand.
@@ -347,9 +388,9 @@ export class BoxPlayground extends HTMLElement {
 
   #place(): void {
     this.#isWaiting = false;
-    this.#record = new RaceRecord(1);
+    this.#record = new ExperimentRecord(this.#lanes.all.length);
     this.#frame = undefined;
-    this.#send({ type: "begin", run: ++this.#run, world: this.#world(), runners: [this.#method()], keep: true });
+    this.#send({ type: "begin", run: ++this.#run, world: this.#world(), runners: this.#lanes.all, keep: true });
     this.#describe();
   }
 
@@ -385,16 +426,11 @@ export class BoxPlayground extends HTMLElement {
     };
   }
 
-  #method(): RunnerOptions {
-    const { algorithm, sort, axis } = this.#state;
-    return { algorithm, sort, axis };
-  }
-
   #snapshot(): Snapshot | undefined {
     const [lane] = this.#frame?.lanes ?? [];
     if (!this.#frame || !lane || !("report" in lane)) return undefined;
     const { step, boxes } = this.#frame;
-    return { world: this.#world(), method: this.#method(), step, boxes, pairs: lane.report.pairs, address: this.#addressOf(step) };
+    return { world: this.#world(), method: this.#lanes.all[0]!, step, boxes, pairs: lane.report.pairs, address: this.#addressOf(step) };
   }
 
   /** The address that leads back to a step; none if the boxes do not fit into it. */
@@ -408,81 +444,99 @@ export class BoxPlayground extends HTMLElement {
   }
 
   #begin(steps = 0): void {
-    this.#record = new RaceRecord(1);
+    const lanes = this.#lanes.all;
+    this.#record = new ExperimentRecord(lanes.length);
     this.#frame = undefined;
     this.#view = undefined;
-    this.#part("message").textContent = "";
-    const { scenes, motions } = this.#lists;
+    // Nothing of the boxes before stays, however long the first step takes.
+    this.message("Working …");
+    this.named("moment").textContent = "Working …";
+    this.named("alarm").textContent = "";
+    this.named("verdict").textContent = "";
+    this.#lanes.show(undefined, []);
+    const picture = this.named<HTMLCanvasElement>("picture");
+    picture.getContext("2d")?.clearRect(0, 0, picture.width, picture.height);
+    delete this.dataset["step"];
+    const { scenes = [], motions = [] } = this.#lists ?? {};
     const about = [scenes.find(({ name }) => name === this.#state.scene), motions.find(({ name }) => name === this.#state.motion)];
-    this.#part("about").textContent = about.map((item) => item?.description ?? "").join(" ");
-    this.#send({ type: "begin", run: ++this.#run, world: this.#world(), runners: [this.#method()], steps });
+    this.named("about").textContent = about.map((item) => item?.description ?? "").join(" ");
+    this.#send({ type: "begin", run: ++this.#run, world: this.#world(), runners: lanes, steps });
     this.#describe();
   }
 
-  #pace(): void {
+  protected pace(): void {
     if (!this.#lists) return;
-    this.#send({ type: "pace", running: this.#wanted && this.#awake && !this.#isHeld });
-    this.#part("play").textContent = this.#wanted ? "Pause" : "Play";
+    this.#send({ type: "pace", running: this.wanted && this.awake && !this.#isHeld });
+    this.showTransport();
     this.#describe();
-    this.#requestShow();
+    this.requestShow();
   }
 
-  #send(message: ToRace): void {
+  #send(message: ToExperiment): void {
     this.#worker.postMessage(message);
   }
 
   // What comes from the thread
 
-  #receive(message: FromRace): void {
+  #receive(message: FromExperiment): void {
     if ("run" in message && message.run !== this.#run) return;
     switch (message.type) {
       case "ready":
         this.#setUp(message.lists);
         break;
       case "refused":
-        this.#part("message").textContent = message.reason;
+        this.message(message.reason);
+        this.named("moment").textContent = "Not begun";
         this.dataset["step"] = "refused";
-        this.#requestShow();
+        this.requestShow();
         break;
       case "frame":
-        this.#frame = message;
-        this.#record.add(message);
+        this.#add(message);
         if (this.#isWaiting) this.#place();
-        else this.#requestShow();
+        else this.requestShow();
         break;
       case "paced":
         this.#whenPaced();
         break;
       case "failed":
-        this.#say(`That did not work: ${message.message}`);
+        this.#fail(message.message);
         break;
     }
   }
 
-  #requestShow(): void {
-    if (this.#asked) return;
-    this.#asked = true;
-    requestAnimationFrame(() => {
-      this.#asked = false;
-      this.#show();
-    });
+  #fail(why: string): void {
+    if (this.#lists) this.say(`That did not work: ${why}`);
+    else showLoadFailure(this.named("message"), why);
   }
 
-  #show(): void {
+  #add(frame: ExperimentFrame): void {
+    const wereOut = this.#frame?.lanes.map((lane) => "out" in lane);
+    this.#frame = frame;
+    this.#record.add(frame);
+    const { disagreed } = this.#record;
+    if (disagreed) {
+      const lanes = disagreed.lanes.map((at) => `algorithm ${at + 1}`).join(" and ");
+      this.named("alarm").textContent = `In step ${formatCount(disagreed.step)}, ${lanes} found other pairs than the first one. One of them is wrong.`;
+    }
+    if (frame.lanes.some((lane, at) => "out" in lane && wereOut?.[at] === false)) this.#describe();
+  }
+
+  protected show(): void {
     const frame = this.#frame;
     if (!frame) return;
     this.#draw(frame);
     const now = performance.now();
-    if (!this.#wanted || frame.step === 0 || now - this.#shownAt >= SHOW_MS) this.#showNumbers(frame, now);
+    if (!this.wanted || frame.step === 0 || now - this.#shownAt >= SHOW_MS) this.#showNumbers(frame, now);
     this.#send({ type: "seen", run: frame.run });
   }
 
   /** The numbers and the text to be copied, of the same step as the picture. */
-  #showNumbers(frame: RaceFrame, now: number): void {
+  #showNumbers(frame: ExperimentFrame, now: number): void {
     this.#shownAt = now;
     this.#showCounters(frame);
+    this.#drawPlot();
     this.#showPreview();
-    if (!this.#wanted) this.#describe();
+    if (!this.wanted) this.#describe();
   }
 
   /** Shows the last step completely, at once. */
@@ -492,43 +546,47 @@ export class BoxPlayground extends HTMLElement {
     this.#showNumbers(this.#frame, performance.now());
   }
 
-  #draw({ boxes, pairs }: RaceFrame): void {
-    const canvas = this.#part<HTMLCanvasElement>("picture");
+  #draw({ boxes, pairs }: ExperimentFrame): void {
+    const canvas = this.named<HTMLCanvasElement>("picture");
     const { clientWidth: width, clientHeight: height } = canvas;
     const { dimensions } = this.#world();
     this.#view ??= windowOf(boxes, dimensions, width, height);
-    if (!this.#colors) {
-      const style = getComputedStyle(this);
-      const color = (name: string): string => style.getPropertyValue(`--${name}`).trim();
-      this.#colors = { box: color("ramp-1"), highlighted: color("ramp-4"), line: color("stage"), selected: color("ink") };
-    }
-    drawBoxes(canvas, { width, height }, this.#view, boxes, dimensions, pairs, this.#colors, this.#hands.selected);
+    this.#colors ??= this.#readColors();
+    drawBoxes(canvas, { width, height }, this.#view, boxes, dimensions, pairs, this.#colors.boxes, this.#hands.selected);
   }
 
-  #showCounters({ step, lanes }: RaceFrame): void {
-    const [lane] = lanes;
-    const report = lane && "report" in lane ? lane.report : undefined;
-    const ms = this.#record.level(0, MEASURES[0]);
+  #readColors(): Colors {
+    const lanes = [...this.querySelectorAll("legend")].map((legend) => getComputedStyle(legend).borderTopColor);
+    const boxes = { box: this.color("ramp-1"), highlighted: this.color("ramp-4"), line: this.color("stage"), selected: this.color("ink") };
+    return { boxes, lanes, ink: this.color("ink"), muted: this.color("muted"), grid: this.color("line") };
+  }
+
+  #drawPlot(): void {
+    const canvas = this.named<HTMLCanvasElement>("lines");
+    // A plot of one algorithm is not shown.
+    if (canvas.clientWidth === 0) return;
+    const { lanes, ink, muted, grid } = (this.#colors ??= this.#readColors());
+    const measure = MEASURES.find(({ key }) => key === this.#state.plot) ?? MEASURES[0];
+    const lines = this.#lanes.all.map(({ algorithm }, at) => ({ name: algorithm, color: lanes[at] ?? ink, values: this.#record.line(at, measure) }));
+    drawLines(canvas, canvas.clientWidth, canvas.clientHeight, {
+      lines, first: this.#record.first, steps: SHOWN, logarithmic: this.#state.log !== "no", label: measure.unit, ink, muted, grid,
+    });
+  }
+
+  #showCounters(frame: ExperimentFrame): void {
+    const { step, lanes } = frame;
+    const names = this.#lanes.all.map(({ algorithm }) => algorithm);
     this.dataset["step"] = String(step);
-    this.#part("moment").textContent = `Step ${formatCount(step)}`;
-    this.#part("message").textContent = lane && "out" in lane ? lane.out : "";
-    for (const { key } of COUNTERS) {
-      const value = key === "ms" ? ms : (report?.[key] ?? null);
-      const cell = this.#find(`[data-counter="${key}"] dd`);
-      cell.textContent = value === null ? "–" : key === "ms" ? `${value.toFixed(value < 100 ? 2 : 0)} ms` : formatCount(value);
-      cell.title = value === null && report ? NOT_COUNTED : "";
-    }
-    // A choice that would change nothing is not offered.
-    const { algorithm } = this.#state;
-    const plain = this.#lists.algorithms.slice(0, 3).includes(algorithm);
-    this.#part<HTMLSelectElement>("sort").disabled = plain;
-    this.#part<HTMLSelectElement>("axis").disabled = plain || algorithm.endsWith("every axis");
-    for (const part of ["boxes", "size", "spread"]) this.#part<HTMLInputElement>(part).disabled = this.#own !== undefined;
+    this.named("moment").textContent = `Step ${formatCount(step)}`;
+    this.message("");
+    this.#lanes.show(lanes, names.map((_, at) => this.#record.level(at, MEASURES[0])));
+    this.named("verdict").textContent = names.length > 1 ? verdict(frame, this.#record, names) : "";
+    for (const part of ["boxes", "size", "spread"]) this.named<HTMLInputElement>(part).disabled = this.#own !== undefined;
   }
 
   #showPreview(): void {
     const snapshot = this.#snapshot();
-    const code = this.#part("preview");
+    const code = this.named("preview");
     const text = snapshot ? preview(snapshot, this.#format()) : " ";
     if (code.textContent !== text) code.textContent = text;
   }
@@ -537,24 +595,10 @@ export class BoxPlayground extends HTMLElement {
   #describe(): void {
     const { boxes, scene, motion } = this.#world();
     const what = this.#own ? `${formatCount(boxes)} boxes of your own` : `${formatCount(boxes)} boxes, ${scene}`;
-    const where = `${what}, ${motion}, by ${this.#state.algorithm}.`;
-    const [lane] = this.#frame?.lanes ?? [];
+    const names = this.#lanes.all.map(({ algorithm }) => algorithm);
+    const where = `${what}, ${motion}, by ${names.join(", ")}.`;
+    const lane = this.#frame?.lanes.find((lane) => "report" in lane);
     const found = lane && "report" in lane ? ` ${formatCount(lane.report.pairs)} pairs.` : "";
-    this.#say(this.#wanted ? where : `Paused after step ${formatCount(this.#frame?.step ?? 0)}: ${where}${found}`);
-  }
-
-  #say(text: string): void {
-    const status = this.#part("status");
-    if (status.textContent !== text) status.textContent = text;
-  }
-
-  #part<E extends HTMLElement = HTMLElement>(name: string): E {
-    return this.#find<E>(`[data-part="${name}"]`);
-  }
-
-  #find<E extends HTMLElement = HTMLElement>(selector: string): E {
-    const found = this.querySelector<E>(selector);
-    if (!found) throw new Error(`<box-playground> has no ${selector}`);
-    return found;
+    this.say(this.wanted ? where : `Paused after step ${formatCount(this.#frame?.step ?? 0)}: ${where}${found}`);
   }
 }

@@ -1,7 +1,7 @@
 // A world as it stands, written down: every coordinate in the fewest digits that give the same bits.
 
 import type { RunnerOptions, WorldOptions } from "../experiment/experiment.ts";
-import { formatCount } from "../falling/counters.ts";
+import { formatCount } from "../panel/counters.ts";
 
 /** What is written down. */
 export interface Snapshot {

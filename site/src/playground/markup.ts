@@ -1,27 +1,31 @@
 // The inside of `<box-playground>`, written into the page when it is built. `box-playground.ts`
 // finds the parts by their `data-part`.
 
-import { choice, slider, still } from "../falling/parts.ts";
+import type { Report } from "../experiment/experiment.ts";
+import { MEASURES } from "../experiment/record.ts";
+import { type Counter, counterRows, WORK } from "../panel/counters.ts";
+import { choice, seedField, slider, still, transport } from "../panel/parts.ts";
 
-/** The counters. */
-export const COUNTERS = [
-  { key: "ms", label: "Time", meaning: "from boxes to the list of all pairs; mean of the middle half of the last 60 steps" },
-  { key: "pairs", label: "Pairs", meaning: "pairs whose boxes overlap on every axis" },
-  { key: "tests", label: "Tests", meaning: "pairs of boxes handed to the box test; 0 for a sweep on every axis, which checks flags instead" },
-  { key: "axisOverlaps", label: "Axis overlaps", meaning: "pairs whose intervals overlap on the swept axis; for a sweep on every axis, summed over the axes" },
-  { key: "comparisons", label: "Sort comparisons", meaning: "how often the sort compared two endpoints" },
-  { key: "swaps", label: "Sort swaps", meaning: "how often the sort swapped two endpoints" },
-] as const;
+interface Shown extends Report {
+  /** The mean of the last steps. */
+  readonly level: number | null;
+}
+
+export const COUNTERS: readonly Counter<Shown>[] = [
+  {
+    key: "ms",
+    label: "Time",
+    meaning: "from boxes to the list of all pairs; mean of the middle half of the last 60 steps",
+    read: ({ level }) => (level === null ? null : `${level.toFixed(level < 100 ? 2 : 0)} ms`),
+  },
+  ...WORK,
+];
 
 export function expandPlayground(page: string): string {
   return page.replace("<box-playground></box-playground>", () => `<box-playground>${markup()}</box-playground>`);
 }
 
 function markup(): string {
-  const rows = COUNTERS.map(
-    ({ key, label, meaning }) =>
-      `<div class="counter" data-counter="${key}"><dt title="${meaning}">${label}</dt><dd>–</dd></div>`,
-  );
   return `
     <div class="panel" role="group" aria-label="Playground">
       <div class="panel-stage">
@@ -31,13 +35,20 @@ function markup(): string {
         ${still("playground", "Five hundred boxes in clusters; those that overlap another are highlighted")}
         <p class="stage-message" data-part="message">Loading</p>
       </div>
-      <div class="panel-transport">
-        <button type="button" class="primary" data-part="play" disabled>Pause</button>
-        <button type="button" data-part="step" disabled>Step</button>
-        <button type="button" data-part="reset" disabled>Reset</button>
-        <button type="button" data-part="fit" disabled>Show all</button>
-        <p class="moment" data-part="moment">Step 0</p>
-        <p class="status" role="status" data-part="status"></p>
+      <div class="panel-plot">
+        <canvas data-part="lines" role="img" aria-label="The cost of each search, step by step; the numbers are below"></canvas>
+        <div class="plot-choice">
+          ${choice("playground", "plot", "Plot", MEASURES.map(({ key, label }) => [key, label]))}
+          <label class="switch"><input type="checkbox" data-part="log" autocomplete="off" disabled /> <span>Logarithmic</span></label>
+        </div>
+        <p class="verdict" data-part="verdict"></p>
+      </div>
+      ${transport(`<button type="button" data-part="fit" disabled>Show all</button>`)}
+      <div class="panel-lanes">
+        <div class="lanes" data-part="lanes">${laneMarkup(1)}</div>
+        <p class="alarm" role="alert" data-part="alarm"></p>
+        <button type="button" data-part="add-algorithm" disabled>Add an algorithm</button>
+        <a class="button" href="./falling.html#spheres">10,000 spheres in 3D</a>
       </div>
       <div class="panel-tools" role="group" aria-label="Change the boxes">
         <button type="button" data-part="draw" aria-pressed="false" disabled>Draw</button>
@@ -59,26 +70,15 @@ function markup(): string {
           <button type="button" data-part="paste" disabled>Use these boxes</button>
         </details>
       </div>
-      <div class="panel-side">
-        <div class="panel-method">
-          ${choice("playground", "algorithm", "Algorithm")}
-          ${choice("playground", "sort", "Sort")}
-          ${choice("playground", "axis", "Sweep axis")}
-        </div>
-        <section><h2 class="small">This step</h2><dl>${rows.join("")}</dl></section>
-        <p class="about" data-part="about">&nbsp;</p>
-      </div>
       <div class="panel-world">
         ${choice("playground", "scene", "Scene")}
         ${choice("playground", "motion", "Motion")}
         ${choice("playground", "dimensions", "Dimensions", [["2", "2D"], ["3", "3D, viewed along z"]])}
-        <div class="field">
-          <label for="playground-seed">Seed</label>
-          <input id="playground-seed" data-part="seed" type="number" inputmode="numeric" min="0" max="4294967295" step="1" value="1" autocomplete="off" disabled />
-        </div>
+        ${seedField("playground")}
         ${slider("playground", "boxes", "Boxes", "500")}
         ${slider("playground", "size", "Size", "× 1")}
-        ${slider("playground", "spread", "Largest : smallest", "1 : 1")}
+        ${slider("playground", "spread", "Size ratio", "1 : 1")}
+        <p class="about" data-part="about">&nbsp;</p>
       </div>
     </div>
     <section class="export" aria-labelledby="export-heading">
@@ -97,3 +97,14 @@ function markup(): string {
       <pre tabindex="0" aria-label="Preview of the export: its beginning and its end"><code data-part="preview"> </code></pre>
     </section>`;
 }
+
+/** One algorithm: its choices, its counters, and how to leave it out if it is not the only one. */
+export const laneMarkup = (lane: number): string => `
+    <fieldset class="lane" data-lane="${lane}">
+      <legend>Algorithm ${lane}${lane > 1 ? ` <button type="button" aria-label="Remove algorithm ${lane}">Remove</button>` : ""}</legend>
+      ${choice(`lane-${lane}`, "algorithm", "Algorithm")}
+      ${choice(`lane-${lane}`, "sort", "Sort")}
+      ${choice(`lane-${lane}`, "axis", "Sweep axis")}
+      <dl>${counterRows(COUNTERS)}</dl>
+      <p class="lane-out"></p>
+    </fieldset>`;

@@ -17,11 +17,13 @@ const site = new URL("../../", here);
 const NAVIGATION: readonly (readonly [file: string, name: string])[] = [
   ["index.html", "Article"],
   ["falling.html", "Falling balls"],
-  ["race.html", "Race"],
   ["playground.html", "Playground"],
   ["benchmark.html", "Benchmark"],
   ["api.html", "API"],
 ];
+
+/** What search engines need not know: the frame of an embedded demo, and an old address that leads to the playground. */
+const UNLISTED: readonly string[] = ["embed.html", "race.html"];
 
 /** Every page there is: each html file of the site's folder. */
 export function pages(): string[] {
@@ -32,7 +34,7 @@ export const shell: Plugin = {
   name: "shell",
   transformIndexHtml: { order: "pre", handler: frame },
   generateBundle() {
-    const places = pages().filter((file) => file !== "embed.html").map((file) => `<url><loc>${addressOf(file)}</loc></url>`);
+    const places = pages().filter((file) => !UNLISTED.includes(file)).map((file) => `<url><loc>${addressOf(file)}</loc></url>`);
     const source = `<?xml version="1.0" encoding="UTF-8"?>\n<urlset xmlns="http://www.sitemaps.org/schemas/sitemap/0.9">${places.join("")}</urlset>\n`;
     this.emitFile({ type: "asset", fileName: "sitemap.xml", source });
   },
@@ -45,7 +47,7 @@ function preview(page: string, file: string): string {
   const title = /<title>([^<]*)<\/title>/.exec(page)?.[1] ?? "";
   const description = /name="description"\s+content="([^"]*)"/.exec(page)?.[1] ?? "";
   if (title === "" || description === "") throw new Error(`${file} has no title or no description`);
-  if (file === "embed.html") return `<meta name="robots" content="noindex" />`;
+  if (UNLISTED.includes(file)) return `<meta name="robots" content="noindex" />`;
   return `
     <link rel="canonical" href="${addressOf(file)}" />
     <meta property="og:type" content="article" />

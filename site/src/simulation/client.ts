@@ -21,7 +21,7 @@ export class SimulationClient {
   constructor(listener: Listener) {
     this.#listener = listener;
     this.#worker.addEventListener("message", ({ data }: MessageEvent<FromSimulation>) => this.#receive(data));
-    this.#worker.addEventListener("error", ({ message }) => listener.failed(message));
+    this.#worker.addEventListener("error", ({ message }) => listener.failed(message ?? "its script"));
   }
 
   /** Drops the world there is, if any, and begins another. */

@@ -5,7 +5,7 @@ import { type BroadPhaseOptions, Simulation, type StepReport } from "../../../si
 import scalarWasm from "../generated/simulation.wasm?url";
 import simdWasm from "../generated/simulation.simd.wasm?url";
 import { AXIS_NAMES, type FromSimulation, type Laws, type Measurement, type Method, type Setup, type ToSimulation } from "./messages.ts";
-import { hasSimd } from "./simd.ts";
+import { hasSimd } from "../simd.ts";
 import { messageOf } from "../message-of.ts";
 
 const STEP_MS = 1000 / 60;
@@ -221,7 +221,7 @@ const loaded = Simulation.load(new URL(simd ? simdWasm : scalarWasm, self.locati
     send({ type: "ready", choices: { algorithms, sorts, axes }, simd });
   },
   (error: unknown) => {
-    send({ type: "failed", message: `The simulation could not be loaded: ${String(error)}` });
+    send({ type: "failed", message: messageOf(error) });
     throw error;
   },
 );

@@ -8,6 +8,9 @@ export const PAGES: readonly string[] = readdirSync(new URL("../../", import.met
   .filter((file) => file.endsWith(".html"))
   .map((file) => `/${file}`);
 
+/** Where race.html leads: four algorithms in the playground. */
+export const RACE = "/playground.html?scene=uniform&boxes=1000&algorithm=global+pairwise&2=sorted+pairwise&3=swap-driven+sweep&4=find+pairs";
+
 /** Everything that a browser complains about, from now on. */
 export function complaints(page: Page): string[] {
   const all: string[] = [];

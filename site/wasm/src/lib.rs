@@ -1,4 +1,4 @@
-//! The race and the playground run on this: scenes in motion, and the searchers that find their pairs.
+//! The playground runs on this: scenes in motion, and the searchers that find their pairs.
 //! Plain `extern "C"` functions over linear memory, called by `src/experiment/experiment.ts`.
 //!
 //! # Layout

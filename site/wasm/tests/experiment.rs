@@ -1,4 +1,4 @@
-//! The race is fair only if all see the same boxes and find the same pairs.
+//! The comparison is fair only if all algorithms see the same boxes and find the same pairs.
 
 use sweep_and_prune::Aabb;
 use sweep_and_prune::algorithms::{Axis, Counts, Method, Runner, RunnerOptions, Sort};

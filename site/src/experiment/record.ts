@@ -1,7 +1,7 @@
-// What has happened in a race so far.
+// What has happened in an experiment so far.
 
-import type { Report } from "../experiment/experiment.ts";
-import type { Lane, RaceFrame } from "./messages.ts";
+import type { Report } from "./experiment.ts";
+import type { Lane, ExperimentFrame } from "./messages.ts";
 
 /** What can be plotted. */
 export const MEASURES = [
@@ -25,7 +25,7 @@ export const WINDOW = 60;
 const SMOOTH = 16;
 
 /** The reports of the last steps, by lane, and whether all agreed on the pairs in every one. */
-export class RaceRecord {
+export class ExperimentRecord {
   /** The step of the first report kept. */
   first = 0;
   readonly lanes: (Report | undefined)[][];
@@ -38,7 +38,7 @@ export class RaceRecord {
     this.lanes = Array.from({ length: lanes }, () => []);
   }
 
-  add({ step, lanes }: RaceFrame): void {
+  add({ step, lanes }: ExperimentFrame): void {
     lanes.forEach((lane, place) => this.lanes[place]?.push("report" in lane ? lane.report : undefined));
     const kept = this.lanes[0]?.length ?? 0;
     if (kept > SHOWN) this.lanes.forEach((reports) => reports.shift());
@@ -48,11 +48,16 @@ export class RaceRecord {
     if (odd.length > 0) this.disagreed ??= { step, lanes: odd };
   }
 
-  /** The middle mean of the last steps, the very first step of the race left out; `null` if there is none. */
-  level(lane: number, measure: Measure): number | null {
+  /** The values of the last steps, the very first step left out unless it is the only one. */
+  last(lane: number, measure: Measure): number[] {
     const all = this.lanes[lane] ?? [];
     const steps = this.first === 0 && all.length > 1 ? all.slice(1) : all;
-    return middleMean(steps.slice(-WINDOW).map((report) => report && measure.read(report)));
+    return steps.slice(-WINDOW).flatMap((report) => (report && measure.read(report)) ?? []);
+  }
+
+  /** The middle mean of the last steps; `null` if there is none. */
+  level(lane: number, measure: Measure): number | null {
+    return middleMean(this.last(lane, measure));
   }
 
   /** What is plotted, a value a step: times smoothed over some steps, counts as they are. */

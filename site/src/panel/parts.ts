@@ -1,5 +1,8 @@
 // Parts that more than one page is made of, as they are written when the site is built.
 
+/** The largest seed of a world. */
+export const LARGEST_SEED = 2 ** 32 - 1;
+
 /** A choice with a label; its options, value and text, may come later by script. */
 export const choice = (
   id: string,
@@ -21,6 +24,24 @@ export const slider = (id: string, part: string, label: string, value: string): 
           <span class="value" data-part="${part}-value" aria-hidden="true">${value}</span>
           <input id="${id}-${part}" data-part="${part}" type="range" autocomplete="off" disabled />
         </div>`;
+
+/** The number that makes one world of many. */
+export const seedField = (id: string): string =>
+  `<div class="field">
+          <label for="${id}-seed">Seed</label>
+          <input id="${id}-seed" data-part="seed" type="number" inputmode="numeric" min="0" max="${LARGEST_SEED}" step="1" value="1" autocomplete="off" disabled />
+        </div>`;
+
+/** Play, Step, Reset, and what goes on in words. */
+export const transport = (more = ""): string =>
+  `<div class="panel-transport">
+        <button type="button" class="primary" data-part="play" disabled>Pause</button>
+        <button type="button" data-part="step" disabled>Step</button>
+        <button type="button" data-part="reset" disabled>Reset</button>
+        ${more}
+        <p class="moment" data-part="moment">Step 0</p>
+        <p class="status" role="status" data-part="status"></p>
+      </div>`;
 
 /** A picture of what would move, where no scripts run; scripts/preview.mjs draws it. */
 export const still = (name: string, says: string): string =>

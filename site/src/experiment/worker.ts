@@ -1,9 +1,9 @@
-// The thread of the race: one step of the world, then every runner on the same boxes, one after
+// The thread of an experiment: one step of the world, then every runner on the same boxes, one after
 // another, so that none disturbs the clock of another.
 
-import { Experiment, type RunnerOptions, type Report } from "../experiment/experiment.ts";
-import { formatCount } from "../falling/counters.ts";
-import type { FromRace, Lane, ToRace } from "./messages.ts";
+import { Experiment, type RunnerOptions, type Report } from "./experiment.ts";
+import { formatCount } from "../panel/counters.ts";
+import type { FromExperiment, Lane, ToExperiment } from "./messages.ts";
 import { messageOf } from "../message-of.ts";
 
 /** More steps per second would be too fast to watch. */
@@ -28,7 +28,7 @@ interface Runner {
   out: string | undefined;
 }
 
-interface Race {
+interface Session {
   readonly run: number;
   readonly dimensions: number;
   readonly runners: Runner[];
@@ -37,17 +37,17 @@ interface Race {
   unseen: boolean;
 }
 
-let race: Race | undefined;
+let session: Session | undefined;
 let running = false;
 let due = 0;
 let timer: ReturnType<typeof setTimeout> | undefined;
 
-const send = (message: FromRace, transfer: Transferable[] = []): void => self.postMessage(message, { transfer });
+const send = (message: FromExperiment, transfer: Transferable[] = []): void => self.postMessage(message, { transfer });
 
-function begin(experiment: Experiment, { run, world, runners: options, steps = 0, keep = false }: Extract<ToRace, { type: "begin" }>): void {
-  const isKept = keep && race?.dimensions === world.dimensions && race.runners.every(({ out }) => out === undefined);
-  const kept = isKept ? race?.runners : undefined;
-  race = undefined;
+function begin(experiment: Experiment, { run, world, runners: options, steps = 0, keep = false }: Extract<ToExperiment, { type: "begin" }>): void {
+  const isKept = keep && session?.dimensions === world.dimensions && session.runners.every(({ out }) => out === undefined);
+  const kept = isKept ? session?.runners : undefined;
+  session = undefined;
   experiment.begin(world, isKept);
   for (let step = 0; step < steps; step++) experiment.advance();
   const pairs = experiment.countPairs();
@@ -64,8 +64,8 @@ function begin(experiment: Experiment, { run, world, runners: options, steps = 0
     experiment.enter(runner.options);
     runner.number = number++;
   }
-  race = { run, dimensions: world.dimensions, runners, step: steps, unseen: false };
-  compete(experiment, race);
+  session = { run, dimensions: world.dimensions, runners, step: steps, unseen: false };
+  compete(experiment, session);
 }
 
 /** Why a runner cannot even begin, if it cannot. */
@@ -77,8 +77,8 @@ function refusal(experiment: Experiment, options: RunnerOptions): string | undef
 }
 
 /** Lets every runner that is in find the pairs, each step another one first. */
-function compete(experiment: Experiment, race: Race): void {
-  const { runners, step } = race;
+function compete(experiment: Experiment, session: Session): void {
+  const { runners, step } = session;
   const reports = new Map<Runner, Report>();
   runners.forEach((_, place) => {
     const runner = runners[(place + step) % runners.length];
@@ -103,21 +103,21 @@ function compete(experiment: Experiment, race: Race): void {
   const first = runners.find((runner) => reports.has(runner));
   const pairs = first ? experiment.pairs(first.number).slice() : new Uint32Array(0);
   const boxes = experiment.boxes.slice();
-  race.unseen = true;
-  send({ type: "frame", run: race.run, step, boxes, pairs, lanes }, [boxes.buffer, pairs.buffer]);
+  session.unseen = true;
+  send({ type: "frame", run: session.run, step, boxes, pairs, lanes }, [boxes.buffer, pairs.buffer]);
 }
 
 function advance(experiment: Experiment): void {
-  if (!race) return;
+  if (!session) return;
   experiment.advance();
-  race.step++;
-  compete(experiment, race);
+  session.step++;
+  compete(experiment, session);
 }
 
 /** One step if it is time and the page has shown the last, then back to the queue of messages. */
 function tick(experiment: Experiment): void {
   timer = undefined;
-  if (!running || !race || race.unseen) return;
+  if (!running || !session || session.unseen) return;
   const now = performance.now();
   if (now < due) {
     timer = setTimeout(() => tick(experiment), due - now);
@@ -127,7 +127,7 @@ function tick(experiment: Experiment): void {
   guarded(() => advance(experiment));
 }
 
-function receive(experiment: Experiment, message: ToRace): void {
+function receive(experiment: Experiment, message: ToExperiment): void {
   switch (message.type) {
     case "begin":
       begin(experiment, message);
@@ -140,13 +140,13 @@ function receive(experiment: Experiment, message: ToRace): void {
       advance(experiment);
       break;
     case "seen":
-      if (race && message.run === race.run) race.unseen = false;
+      if (session && message.run === session.run) session.unseen = false;
       break;
   }
   timer ??= setTimeout(() => tick(experiment));
 }
 
-/** An error is told to the page, and stops the race. */
+/** An error is told to the page, and stops the session. */
 function guarded(work: () => void): void {
   try {
     work();
@@ -163,10 +163,10 @@ const loaded = Experiment.load().then(
     return experiment;
   },
   (error: unknown) => {
-    send({ type: "failed", message: String(error) });
+    send({ type: "failed", message: messageOf(error) });
     throw error;
   },
 );
-self.addEventListener("message", ({ data }: MessageEvent<ToRace>) => {
+self.addEventListener("message", ({ data }: MessageEvent<ToExperiment>) => {
   void loaded.then((experiment) => guarded(() => receive(experiment, data)), () => undefined);
 });

@@ -1,13 +1,15 @@
-import { SimulationClient } from "../simulation/client.ts";
-import { AXIS_NAMES, type Begun, type Choices, type Frame, type Laws, type Method } from "../simulation/messages.ts";
 import { drawStages } from "../plot/stage-plot.ts";
+import { whenNear } from "../panel/awake.ts";
+import { bruteForceTests, formatCount, showCounters } from "../panel/counters.ts";
+import { PanelElement } from "../panel/panel-element.ts";
+import { showLoadFailure } from "../load-failed.ts";
+import { messageOf } from "../message-of.ts";
 import { onThemeChange, readTheme } from "../view/theme.ts";
 import type { View } from "../view/view.ts";
-import { onAwake, whenNear } from "./awake.ts";
-import { bruteForceTests, COUNTERS, formatCount, type Shown } from "./counters.ts";
-import { bindSlider } from "./slider.ts";
-import { LARGEST_SEED, RANGES, readSettings, type Settings, setupOf, writeSettings } from "./settings.ts";
-import { messageOf } from "../message-of.ts";
+import { SimulationClient } from "./client.ts";
+import { type Shown, TIME_COUNTERS, WORK_COUNTERS } from "./counters.ts";
+import { AXIS_NAMES, type Begun, type Choices, type Frame, type Laws, type Method } from "./messages.ts";
+import { RANGES, readSettings, type Settings, setupOf, writeSettings } from "./settings.ts";
 
 /** Numbers that change more often than this cannot be read. */
 const COUNTER_MS = 120;
@@ -16,6 +18,7 @@ const NOT_COUNTED = "not counted by this algorithm";
 const WINDOW = 30;
 /** The plot of the stages shows this many moments, one for each change of the counters. */
 const MOMENTS = 80;
+const COUNTERS = [...WORK_COUNTERS, ...TIME_COUNTERS];
 /** The stages of a picture in their order: the names of their custom properties too. */
 const STAGES = ["broad-phase", "narrow-phase", "solving", "drawing"] as const;
 
@@ -26,7 +29,7 @@ type NumberKey = "bodies" | "size" | "spread" | keyof Laws;
  * finds which of them may touch, and what that costs. Its inside is written by `markup.ts`. While
  * it cannot be seen it sleeps; where the visitor wants less motion it begins paused.
  */
-export class FallingBalls extends HTMLElement {
+export class FallingBalls extends PanelElement {
   readonly #dimensions = this.getAttribute("dimensions") === "2" ? 2 : 3;
   readonly #mostBodies = Number(this.getAttribute("most"));
   #defaults!: Settings;
@@ -35,63 +38,55 @@ export class FallingBalls extends HTMLElement {
   #view: View | undefined;
   #begun: Begun | undefined;
   #frame: Frame | undefined;
-  #wanted = !matchMedia("(prefers-reduced-motion: reduce)").matches;
-  #awake = false;
   #ready = false;
-  #drawn = false;
   #countersAt = -Infinity;
   #drawingTimes: number[] = [];
   /** Milliseconds by stage, at the last moments. */
   #stages: number[][] = [];
-  #left = new AbortController();
 
-  connectedCallback(): void {
-    this.#left = new AbortController();
-    void whenNear(this, this.#left.signal).then(() => this.#start());
+  protected start(): void {
+    void whenNear(this, this.signal).then(() => this.#open());
   }
 
-  disconnectedCallback(): void {
-    this.#left.abort();
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
     this.#client?.close();
   }
 
-  #start(): void {
-    const { signal } = this.#left;
+  #open(): void {
     this.#client = new SimulationClient({
       ready: (choices) => this.#setUp(choices),
       begun: (world) => (this.#begun = world),
       frame: (frame) => this.#receive(frame),
-      failed: (message) => this.#say(message),
+      failed: (message) => {
+        if (this.#ready) this.say(message);
+        else showLoadFailure(this.named("message"), message);
+      },
     });
     this.#openView().then(
       (view) => {
         this.#view = view;
         onThemeChange(() => {
           view.setTheme(readTheme());
-          this.#requestDraw();
-        }, signal);
-        const resized = new ResizeObserver(() => this.#fit());
-        resized.observe(this.#part("canvas"));
-        signal.addEventListener("abort", () => resized.disconnect());
+          this.requestShow();
+        }, this.signal);
+        this.onResize(["canvas"], () => this.#fit());
         this.#showBegun();
       },
-      (error: unknown) => this.#message(`There is no picture: ${messageOf(error)}`),
+      (error: unknown) => this.message(`There is no picture: ${messageOf(error)}`),
     );
-    onAwake(this, (awake) => {
-      this.#awake = awake;
-      this.#updateRunning();
-    }, signal);
+    this.followAwake();
   }
 
   async #openView(): Promise<View> {
-    const canvas = this.#part<HTMLCanvasElement>("canvas");
+    const canvas = this.named<HTMLCanvasElement>("canvas");
     if (this.#dimensions === 2) {
       const { DiscView } = await import("../view/disc-view.ts");
       return new DiscView(canvas, readTheme());
     }
     const { SphereView } = await import("../view/sphere-view.ts");
     try {
-      return new SphereView(canvas, this.#part("orbit"), readTheme(), () => this.#requestDraw());
+      return new SphereView(canvas, this.named("orbit"), readTheme(), () => this.requestShow());
     } catch (cause) {
       throw new Error("drawing the spheres needs WebGL, which this browser does not offer. The simulation runs anyway, and the numbers are correct.", { cause });
     }
@@ -123,18 +118,23 @@ export class FallingBalls extends HTMLElement {
     this.#bindSize("size", RANGES.size, (size) => `${size}%`);
     this.#bindSize("spread", RANGES.spread, (spread) => `${spread} : 1`);
     const setLaws = (): void => this.#client?.setLaws(this.#laws());
-    this.#bindSlider("gravity", RANGES.gravity, (gravity) => `${gravity} m/s²`, setLaws);
-    this.#bindSlider("substeps", RANGES.substeps, String, setLaws);
-    this.#bindSeed();
-    this.#bindButtons();
+    this.#bindSetting("gravity", RANGES.gravity, (gravity) => `${gravity} m/s²`, setLaws);
+    this.#bindSetting("substeps", RANGES.substeps, String, setLaws);
+    this.bindSeed(this.#settings.seed, (seed) => {
+      this.#change({ seed });
+      this.#begin();
+    });
+    this.bindTransport(() => this.#client?.step(), () => this.#begin());
+    const lines = this.querySelector<HTMLInputElement>('[data-part="lines"]');
+    lines?.addEventListener("change", () => this.#client?.listPairs(lines.checked));
     for (const control of this.querySelectorAll<HTMLInputElement>(":disabled")) control.disabled = false;
     this.#ready = true;
     this.#begin();
-    this.#updateRunning();
+    this.pace();
   }
 
   #bindChoice(key: keyof Method, names: readonly string[]): void {
-    const select = this.#part<HTMLSelectElement>(key);
+    const select = this.named<HTMLSelectElement>(key);
     select.replaceChildren(...names.map((name) => new Option(name)));
     if (!names.includes(this.#settings[key])) this.#settings = { ...this.#settings, [key]: this.#defaults[key] };
     select.value = this.#settings[key];
@@ -148,48 +148,14 @@ export class FallingBalls extends HTMLElement {
 
   /** A slider that begins a new world. */
   #bindSize(key: "bodies" | "size" | "spread", values: readonly number[], format: (value: number) => string): void {
-    this.#bindSlider(key, values, format, () => this.#begin());
+    this.#bindSetting(key, values, format, () => this.#begin());
   }
 
-  #bindSlider(key: NumberKey, values: readonly number[], format: (value: number) => string, changed: () => void): void {
-    bindSlider({
-      slider: this.#part<HTMLInputElement>(key),
-      output: this.#part(`${key}-value`),
-      values,
-      value: this.#settings[key],
-      format,
-      changed: (value) => {
-        this.#change({ [key]: value });
-        changed();
-      },
+  #bindSetting(key: NumberKey, values: readonly number[], format: (value: number) => string, changed: () => void): void {
+    this.bindSlider(key, values, this.#settings[key], format, (value) => {
+      this.#change({ [key]: value });
+      changed();
     });
-  }
-
-  #bindSeed(): void {
-    const input = this.#part<HTMLInputElement>("seed");
-    input.value = String(this.#settings.seed);
-    input.addEventListener("change", () => {
-      const seed = Math.min(Math.max(Math.round(input.valueAsNumber || 0), 0), LARGEST_SEED);
-      input.value = String(seed);
-      this.#change({ seed });
-      this.#begin();
-    });
-  }
-
-  #bindButtons(): void {
-    const onClick = (part: string, act: () => void): void => this.#part(part).addEventListener("click", act);
-    onClick("play", () => {
-      this.#wanted = !this.#wanted;
-      this.#updateRunning();
-    });
-    onClick("step", () => {
-      this.#wanted = false;
-      this.#updateRunning();
-      this.#client?.step();
-    });
-    onClick("reset", () => this.#begin());
-    const lines = this.querySelector<HTMLInputElement>('[data-part="lines"]');
-    lines?.addEventListener("change", () => this.#client?.listPairs(lines.checked));
   }
 
   #change(settings: Partial<Settings>): void {
@@ -209,12 +175,12 @@ export class FallingBalls extends HTMLElement {
     return { gravity, substeps };
   }
 
-  #updateRunning(): void {
+  protected pace(): void {
     if (!this.#ready) return;
-    this.#client?.setRunning(this.#wanted && this.#awake);
-    this.#part("play").textContent = this.#wanted ? "Pause" : "Play";
+    this.#client?.setRunning(this.wanted && this.awake);
+    this.showTransport();
     this.#describe();
-    if (this.#awake) this.#requestDraw();
+    this.requestShow();
   }
 
   // What comes from the simulation
@@ -223,16 +189,16 @@ export class FallingBalls extends HTMLElement {
     const first = this.#frame?.run !== frame.run;
     this.#frame = frame;
     if (first) this.#showBegun();
-    if (!this.#client?.isCurrent(frame)) return this.#requestDraw();
+    if (!this.#client?.isCurrent(frame)) return this.requestShow();
     const { bodies, pairs, comparisons } = frame.measurement;
     // With one body there is nothing to compare, whatever the algorithm.
     if (pairs !== null && bodies > 1) this.#setSorts(Boolean(comparisons));
-    this.#requestDraw();
+    this.requestShow();
   }
 
   /** A choice of sort means something only where the algorithm sorts and tells so. */
   #setSorts(sorts: boolean): void {
-    const select = this.#part<HTMLSelectElement>("sort");
+    const select = this.named<HTMLSelectElement>("sort");
     if (select.disabled !== sorts) return;
     select.disabled = !sorts;
     this.#describe();
@@ -247,36 +213,31 @@ export class FallingBalls extends HTMLElement {
     const tints = radii.map((_, body) => ((positions[this.#dimensions * body + 1] ?? 0) - floor) / (ceiling - floor));
     this.#view.begin({ min, max }, radii, tints);
     this.#fit();
-    this.#message("");
+    this.message("");
   }
 
   #fit(): void {
-    const { clientWidth, clientHeight } = this.#part("canvas");
+    const { clientWidth, clientHeight } = this.named("canvas");
     this.#view?.resize(clientWidth, clientHeight);
-    this.#draw();
+    this.show();
   }
 
-  #requestDraw(): void {
-    if (this.#drawn || !this.#awake) return;
-    this.#drawn = true;
-    requestAnimationFrame(() => {
-      this.#drawn = false;
-      this.#draw();
-    });
+  protected override requestShow(): void {
+    if (this.awake) super.requestShow();
   }
 
-  #draw(): void {
+  protected show(): void {
     if (!this.#frame) return;
     const started = performance.now();
     this.#view?.draw(this.#frame);
     const ended = performance.now();
     this.#drawingTimes.push(ended - started);
     if (this.#drawingTimes.length > WINDOW) this.#drawingTimes.shift();
-    if (this.#client?.isCurrent(this.#frame) && (!this.#wanted || ended - this.#countersAt >= COUNTER_MS)) {
+    if (this.#client?.isCurrent(this.#frame) && (!this.wanted || ended - this.#countersAt >= COUNTER_MS)) {
       this.#countersAt = ended;
       this.#showCounters(this.#frame);
     }
-    if (!this.#wanted) this.#describe();
+    if (!this.wanted) this.#describe();
   }
 
   // What the visitor reads
@@ -290,15 +251,10 @@ export class FallingBalls extends HTMLElement {
   #showCounters({ step, pace, hash, measurement }: Frame): void {
     this.dataset["step"] = String(step);
     if (hash) this.dataset["hash"] = hash;
-    const often = this.#wanted && pace > 0 ? `, ${pace.toFixed(pace < 10 ? 1 : 0)} a second` : "";
-    this.#part("moment").textContent = `Step ${formatCount(step)}${often}`;
+    const often = this.wanted && pace > 0 ? `, ${pace.toFixed(pace < 10 ? 1 : 0)} a second` : "";
+    this.named("moment").textContent = `Step ${formatCount(step)}${often}`;
     const drawing = this.#drawingTimes.reduce((sum, time) => sum + time, 0) / this.#drawingTimes.length;
-    for (const { key, read } of COUNTERS) {
-      const cell = this.#counter(key);
-      const text = read({ ...measurement, drawing });
-      if (cell.textContent !== (text ?? "–")) cell.textContent = text ?? "–";
-      cell.title = text !== null ? "" : measurement.pairs === null ? "no step yet" : NOT_COUNTED;
-    }
+    showCounters(this, COUNTERS, { ...measurement, drawing }, measurement.pairs === null ? "no step yet" : NOT_COUNTED);
     this.#showStages({ ...measurement, drawing });
   }
 
@@ -306,14 +262,12 @@ export class FallingBalls extends HTMLElement {
   #showStages({ broadPhase, narrowPhase, solving, drawing }: Shown): void {
     if (broadPhase !== null) this.#stages.push([broadPhase, narrowPhase ?? 0, solving ?? 0, drawing]);
     if (this.#stages.length > MOMENTS) this.#stages.shift();
-    const style = getComputedStyle(this);
-    const color = (name: string): string => style.getPropertyValue(`--${name}`).trim();
-    drawStages(this.#part<HTMLCanvasElement>("stages"), {
+    drawStages(this.named<HTMLCanvasElement>("stages"), {
       moments: this.#stages,
       room: MOMENTS,
-      colors: STAGES.map((stage) => getComputedStyle(this.#find(`[data-counter="${stage}"] dt`), "::before").backgroundColor),
-      ink: color("ink"),
-      muted: color("muted"),
+      colors: STAGES.map((stage) => getComputedStyle(this.find(`[data-counter="${stage}"] dt`), "::before").backgroundColor),
+      ink: this.color("ink"),
+      muted: this.color("muted"),
     });
   }
 
@@ -322,41 +276,22 @@ export class FallingBalls extends HTMLElement {
     const { bodies, algorithm, sort } = this.#settings;
     const noun = this.#dimensions === 2 ? "disc" : "sphere";
     const who = `${formatCount(bodies)} ${noun}${bodies === 1 ? "" : "s"}`;
-    const by = this.#part<HTMLSelectElement>("sort").disabled ? algorithm : `${algorithm}, ${sort}`;
+    const by = this.named<HTMLSelectElement>("sort").disabled ? algorithm : `${algorithm}, ${sort}`;
     const frame = this.#frame?.run === this.#begun?.run ? this.#frame : undefined;
-    if (this.#wanted) {
-      this.#say(`${who}, ${by}.`);
+    if (this.wanted) {
+      this.say(`${who}, ${by}.`);
     } else if (frame?.running) {
-      this.#say("Finishing this step.");
+      this.say("Finishing this step.");
     } else if (frame && frame.measurement.pairs !== null) {
       const { tests, pairs } = frame.measurement;
       const found = `${tests === null ? "" : `${formatCount(tests)} tests found `}${formatCount(pairs)} pairs`;
-      this.#say(`Paused after step ${formatCount(frame.step)}: ${found}. State ${frame.hash}.`);
+      this.say(`Paused after step ${formatCount(frame.step)}: ${found}. State ${frame.hash}.`);
     } else {
-      this.#say(`Paused: ${who}, ${by}.`);
+      this.say(`Paused: ${who}, ${by}.`);
     }
   }
 
-  #say(text: string): void {
-    const status = this.#part("status");
-    if (status.textContent !== text) status.textContent = text;
-  }
-
-  #message(text: string): void {
-    this.#part("message").textContent = text;
-  }
-
   #counter(key: string): HTMLElement {
-    return this.#find(`[data-counter="${key}"] dd`);
-  }
-
-  #part<E extends HTMLElement = HTMLElement>(name: string): E {
-    return this.#find<E>(`[data-part="${name}"]`);
-  }
-
-  #find<E extends HTMLElement = HTMLElement>(selector: string): E {
-    const found = this.querySelector<E>(selector);
-    if (!found) throw new Error(`<falling-balls> has no ${selector}`);
-    return found;
+    return this.find(`[data-counter="${key}"] dd`);
   }
 }

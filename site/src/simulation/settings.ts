@@ -1,4 +1,5 @@
-import type { Laws, Method, Setup } from "../simulation/messages.ts";
+import { LARGEST_SEED } from "../panel/parts.ts";
+import type { Laws, Method, Setup } from "./messages.ts";
 
 /** Everything that a visitor can choose for falling balls; the address keeps it. */
 export interface Settings extends Method, Laws {
@@ -18,8 +19,6 @@ export const RANGES = {
   gravity: [-9.81, 0, 1.62, 3.7, 9.81, 20, 50],
   substeps: [1, 2, 3, 4, 6, 8, 12, 16],
 } as const;
-
-export const LARGEST_SEED = 2 ** 32 - 1;
 
 /** What the bodies of 100% fill together: an area in 2D, a volume in 3D. The box is 10 wide. */
 const FILLED = { 2: 32, 3: 335 } as const;

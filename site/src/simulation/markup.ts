@@ -1,10 +1,9 @@
 // The inside of a `<falling-balls>`, written into the page when it is built: the page has its final
 // shape before any script runs. `falling-balls.ts` finds the parts by their `data-part`.
 
-import { expandPlayground } from "../playground/markup.ts";
-import { expandRace } from "../race/markup.ts";
-import { bruteForceTests, COUNTERS, formatCount } from "./counters.ts";
-import { choice, slider, still } from "./parts.ts";
+import { bruteForceTests, counterRows, formatCount } from "../panel/counters.ts";
+import { choice, seedField, slider, still, transport } from "../panel/parts.ts";
+import { TIME_COUNTERS, WORK_COUNTERS } from "./counters.ts";
 
 interface SimulationOptions {
   readonly id: string;
@@ -13,9 +12,9 @@ interface SimulationOptions {
   readonly bodies: number;
 }
 
-/** Fills every empty `<falling-balls …></falling-balls>` of a page, and the race and the playground. */
+/** Fills every empty `<falling-balls …></falling-balls>` of a page. */
 export function expandFallingBalls(page: string): string {
-  return expandPlayground(expandRace(page)).replace(/<falling-balls([^>]*)><\/falling-balls>/g, (_, attributes: string) => {
+  return page.replace(/<falling-balls([^>]*)><\/falling-balls>/g, (_, attributes: string) => {
     const attribute = (name: string): string => {
       const value = new RegExp(`\\b${name}="([^"]*)"`).exec(attributes)?.[1];
       if (value === undefined) throw new Error(`<falling-balls${attributes}> has no ${name}`);
@@ -39,13 +38,7 @@ function inside({ id, dimensions, bodies }: SimulationOptions): string {
         <p class="stage-message" data-part="message">Loading</p>
       </div>
 
-      <div class="panel-transport">
-        <button type="button" class="primary" data-part="play" disabled>Pause</button>
-        <button type="button" data-part="step" disabled>Step</button>
-        <button type="button" data-part="reset" disabled>Reset</button>
-        <p class="moment" data-part="moment">Step 0</p>
-        <p class="status" role="status" data-part="status"></p>
-      </div>
+      ${transport()}
 
       <div class="panel-side">
         <div class="panel-method">
@@ -54,8 +47,8 @@ function inside({ id, dimensions, bodies }: SimulationOptions): string {
           ${choice(id, "axis", "Sweep axis")}
         </div>
         <div class="panel-counters">
-          ${counterList("work", "Work of one step", bodies)}
-          ${counterList("time", "Time of one step", bodies)}
+          <section><h3>Work of one step</h3><dl>${counterRows(WORK_COUNTERS, (key) => (key === "brute-force" ? formatCount(bruteForceTests(bodies)) : "–"))}</dl></section>
+          <section><h3>Time of one step</h3><dl>${counterRows(TIME_COUNTERS)}</dl></section>
           <canvas class="panel-stages" data-part="stages" role="img" aria-label="Time per stage over the last pictures, stacked; the numbers are next to it"></canvas>
         </div>
       </div>
@@ -63,11 +56,8 @@ function inside({ id, dimensions, bodies }: SimulationOptions): string {
       <div class="panel-world">
         ${slider(id, "bodies", dimensions === 2 ? "Discs" : "Spheres", formatCount(bodies))}
         ${slider(id, "size", "Size", "100%")}
-        ${slider(id, "spread", "Largest : smallest", "1 : 1")}
-        <div class="field">
-          <label for="${id}-seed">Seed</label>
-          <input id="${id}-seed" data-part="seed" type="number" inputmode="numeric" min="0" max="4294967295" step="1" value="1" autocomplete="off" disabled />
-        </div>
+        ${slider(id, "spread", "Size ratio", "1 : 1")}
+        ${seedField(id)}
         ${slider(id, "gravity", "Gravity", "9.81 m/s²")}
         ${slider(id, "substeps", "Substeps", dimensions === 2 ? "8" : "4")}
         ${dimensions === 2 ? linesSwitch() : ""}
@@ -85,13 +75,3 @@ const sphereStage = (): string =>
 
 const linesSwitch = (): string =>
   `<label class="switch"><input type="checkbox" data-part="lines" autocomplete="off" disabled /> <span>Draw a line for each pair</span></label>`;
-
-function counterList(group: "work" | "time", title: string, bodies: number): string {
-  const rows = COUNTERS.filter((counter) => counter.group === group).map(
-    ({ key, label, meaning }) =>
-      `<div class="counter" data-counter="${key}"><dt title="${meaning}">${label}</dt><dd>${
-        key === "brute-force" ? formatCount(bruteForceTests(bodies)) : "–"
-      }</dd></div>`,
-  );
-  return `<section><h3 data-part="${group}-title">${title}</h3><dl>${rows.join("")}</dl></section>`;
-}

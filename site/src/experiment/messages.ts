@@ -1,8 +1,8 @@
-// What the page of the race and its thread say to each other.
+// What the page of an experiment and its thread say to each other.
 
-import type { RunnerOptions, Lists, Report, WorldOptions } from "../experiment/experiment.ts";
+import type { RunnerOptions, Lists, Report, WorldOptions } from "./experiment.ts";
 
-export type ToRace =
+export type ToExperiment =
   | {
       readonly type: "begin";
       readonly run: number;
@@ -21,9 +21,9 @@ export type ToRace =
 /** A runner in one step: what it did, or why it is out. */
 export type Lane = { readonly report: Report } | { readonly out: string };
 
-export interface RaceFrame {
+export interface ExperimentFrame {
   readonly type: "frame";
-  /** The number that the page gave this race; what an earlier one still sends is stale. */
+  /** The number that the page gave this experiment; what an earlier one still sends is stale. */
   readonly run: number;
   readonly step: number;
   readonly boxes: Float32Array;
@@ -32,11 +32,11 @@ export interface RaceFrame {
   readonly lanes: readonly Lane[];
 }
 
-export type FromRace =
+export type FromExperiment =
   | { readonly type: "ready"; readonly lists: Lists }
-  /** Why there can be no race in this world. */
+  /** Why this world is too much. */
   | { readonly type: "refused"; readonly run: number; readonly reason: string }
-  | RaceFrame
+  | ExperimentFrame
   /** A change of pace was heard: no step that was on its way is still to come. */
   | { readonly type: "paced" }
   | { readonly type: "failed"; readonly message: string };

@@ -1,0 +1,122 @@
+import { onAwake } from "./awake.ts";
+import { LARGEST_SEED } from "./parts.ts";
+import { bindSlider } from "./slider.ts";
+
+/**
+ * What all elements that play share: parts that the built page holds, Play, Step and Reset, and a picture that
+ * is drawn at most once a frame. Where the visitor wants less motion it begins paused.
+ */
+export abstract class PanelElement extends HTMLElement {
+  /** Whether the visitor wants it to run. */
+  protected wanted = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+  /** Whether it can be seen. */
+  protected awake = false;
+  #left = new AbortController();
+  #asked = false;
+
+  /** Aborted when the element leaves the page. */
+  protected get signal(): AbortSignal {
+    return this.#left.signal;
+  }
+
+  connectedCallback(): void {
+    this.#left = new AbortController();
+    this.start();
+  }
+
+  disconnectedCallback(): void {
+    this.#left.abort();
+  }
+
+  protected abstract start(): void;
+  /** Tells the thread whether to run. */
+  protected abstract pace(): void;
+  /** Draws what is known now. */
+  protected abstract show(): void;
+
+  // Controls
+
+  protected followAwake(): void {
+    onAwake(this, (awake) => {
+      this.awake = awake;
+      this.pace();
+    }, this.signal);
+  }
+
+  protected onResize(parts: readonly string[], resized: () => void): void {
+    const observer = new ResizeObserver(resized);
+    for (const part of parts) observer.observe(this.named(part));
+    this.signal.addEventListener("abort", () => observer.disconnect());
+  }
+
+  protected onClick(part: string, act: () => void): void {
+    this.named(part).addEventListener("click", act);
+  }
+
+  protected bindTransport(step: () => void, reset: () => void): void {
+    this.onClick("play", () => this.setWanted(!this.wanted));
+    this.onClick("step", () => {
+      this.setWanted(false);
+      step();
+    });
+    this.onClick("reset", reset);
+  }
+
+  protected setWanted(wanted: boolean): void {
+    this.wanted = wanted;
+    this.pace();
+  }
+
+  protected showTransport(): void {
+    this.named("play").textContent = this.wanted ? "Pause" : "Play";
+  }
+
+  protected bindSlider(part: string, values: readonly number[], value: number, format: (value: number) => string, changed: (value: number) => void): void {
+    bindSlider({ slider: this.named<HTMLInputElement>(part), output: this.named(`${part}-value`), values, value, format, changed });
+  }
+
+  protected bindSeed(seed: number, changed: (seed: number) => void): void {
+    const input = this.named<HTMLInputElement>("seed");
+    input.value = String(seed);
+    input.addEventListener("change", () => {
+      const seed = Math.min(Math.max(Math.round(input.valueAsNumber || 0), 0), LARGEST_SEED);
+      input.value = String(seed);
+      changed(seed);
+    });
+  }
+
+  // What the visitor sees and reads
+
+  protected requestShow(): void {
+    if (this.#asked) return;
+    this.#asked = true;
+    requestAnimationFrame(() => {
+      this.#asked = false;
+      this.show();
+    });
+  }
+
+  /** A color of the style sheet, by its custom property. */
+  protected color(name: string): string {
+    return getComputedStyle(this).getPropertyValue(`--${name}`).trim();
+  }
+
+  protected say(text: string): void {
+    const status = this.named("status");
+    if (status.textContent !== text) status.textContent = text;
+  }
+
+  protected message(text: string): void {
+    this.named("message").textContent = text;
+  }
+
+  protected named<E extends HTMLElement = HTMLElement>(name: string): E {
+    return this.find<E>(`[data-part="${name}"]`);
+  }
+
+  protected find<E extends HTMLElement = HTMLElement>(selector: string): E {
+    const found = this.querySelector<E>(selector);
+    if (!found) throw new Error(`<${this.localName}> has no ${selector}`);
+    return found;
+  }
+}

@@ -1,3 +1,0 @@
-import { RaceTrack } from "./race-track.ts";
-
-customElements.define("race-track", RaceTrack);
