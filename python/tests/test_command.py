@@ -332,7 +332,7 @@ def test_a_pipe_that_is_closed_ends_the_program_quietly(boxes: int, unbuffered: 
 def test_ctrl_c_ends_the_program_and_leaves_no_file() -> None:
     np.save("a.npy", np.zeros((30_000, 2)))  # 450 million pairs
     program = with_ctrl_c([*SAP, "pairs", "a.npy", "-o", "p.csv"])
-    while not Path("p.csv.part").exists():
+    while not list(Path().glob(".sap-*.part")):
         assert program.poll() is None
     program.send_signal(signal.SIGINT)
     _, said = program.communicate(timeout=600)
@@ -422,3 +422,106 @@ def test_ctrl_c_keeps_what_is_done_and_the_same_command_continues() -> None:
     import sweep_and_prune as sap
 
     assert np.array_equal(in_order(found), in_order(sap.find_pairs(boxes)))
+
+
+def test_the_output_takes_the_place_of_no_other_file(capsys: pytest.CaptureFixture[str]) -> None:
+    write("a.npy")
+    Path("p.csv.part").write_text("mine")
+    assert main(["pairs", "a.npy", "-o", "p.csv"]) == 0
+    assert Path("p.csv.part").read_text() == "mine"
+    assert sorted(path.name for path in Path().iterdir()) == ["a.npy", "p.csv", "p.csv.part"]
+    before = Path("a.npy").read_bytes()
+    Path("link.npy").symlink_to("a.npy")
+    assert "choose another file by -o" in refused(capsys, "pairs", "a.npy", "-o", "link.npy")
+    assert "choose another file by -o" in refused(capsys, "pairs", "link.npy", "-o", "a.npy")
+    assert "a name cannot contain a zero byte" in refused(capsys, "pairs", "a.npy", "-o", "p\0.csv")
+    Path("folder.csv").mkdir()
+    assert "folder.csv cannot be written" in refused(capsys, "pairs", "a.npy", "-o", "folder.csv")
+    assert "no/p.csv cannot be written: No such file" in refused(capsys, "pairs", "a.npy", "-o", "no/p.csv")
+    assert Path("a.npy").read_bytes() == before and not list(Path().glob(".sap-*"))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="files have other modes there")
+def test_a_file_that_is_replaced_keeps_its_mode_its_links_and_its_other_names(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    write("a.npy")
+    umask = os.umask(0o027)
+    try:
+        assert main(["pairs", "a.npy", "-o", "new.csv"]) == 0
+    finally:
+        os.umask(umask)
+    assert Path("new.csv").stat().st_mode & 0o7777 == 0o640
+    wanted = Path("new.csv").read_bytes()
+    Path("folder").mkdir()
+    for mode in (0o600, 0o664, 0o755):
+        target = Path(f"folder/p{mode}.csv")
+        target.write_text("old")
+        target.chmod(mode)
+        Path("link.csv").symlink_to(target)
+        assert main(["pairs", "a.npy", "-o", "link.csv"]) == 0
+        assert Path("link.csv").is_symlink() and not target.is_symlink()
+        assert (target.read_bytes(), target.stat().st_mode & 0o7777) == (wanted, mode)
+        Path("link.csv").unlink()
+    Path("dangling.csv").symlink_to("folder/later.csv")
+    assert main(["pairs", "a.npy", "-o", "dangling.csv"]) == 0
+    assert Path("dangling.csv").is_symlink() and Path("folder/later.csv").read_bytes() == wanted
+    Path("one.csv").write_text("old")
+    os.link("one.csv", "two.csv")
+    assert main(["pairs", "a.npy", "-o", "one.csv"]) == 0
+    assert Path("two.csv").read_bytes() == wanted and Path("one.csv").stat().st_nlink == 2
+    Path("circle.csv").symlink_to("circle.csv")
+    assert "circle.csv cannot be written" in refused(capsys, "pairs", "a.npy", "-o", "circle.csv")
+    assert not list(Path().rglob(".sap-*"))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such files there")
+def test_devices_pipes_and_descriptors_are_written_to_directly() -> None:
+    write("a.npy")
+    wanted = run("pairs", "a.npy")
+    os.mkfifo("pipe.csv")
+    reader = subprocess.Popen(["cat", "pipe.csv"], stdout=subprocess.PIPE, text=True)
+    assert main(["pairs", "a.npy", "-o", "pipe.csv"]) == 0
+    assert reader.communicate(timeout=60)[0] == wanted and Path("pipe.csv").is_fifo()
+    # A terminal stands for every device: root could replace it by a file.
+    terminal, device = os.openpty()
+    name = os.ttyname(device)
+    before = os.stat(name)
+    Path("device.csv").symlink_to(name)
+    assert main(["pairs", "a.npy", "-o", "device.csv"]) == 0
+    assert os.path.samestat(before, os.stat(name)) and os.read(terminal, 3) == b"a,b"
+    assert main(["pairs", "a.npy", "-o", "/dev/null", "--to", "arrow"]) == 0
+    assert Path("/dev/null").is_char_device()
+    with open("both.csv", "w") as file:
+        print("above", file=file, flush=True)
+        subprocess.run([*SAP, "pairs", "a.npy", "-o", "/dev/stdout", "--to", "csv"], stdout=file, check=True)
+    assert Path("both.csv").read_text() == "above\n" + wanted
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes end in another way there")
+def test_a_named_pipe_whose_reader_ends_ends_the_program_quietly() -> None:
+    np.save("a.npy", np.zeros((3000, 2)))  # 4.5 million pairs
+    os.mkfifo("pipe.csv")
+    program = subprocess.Popen([*SAP, "pairs", "a.npy", "-o", "pipe.csv"], stderr=subprocess.PIPE)
+    with open("pipe.csv", "rb") as reader:
+        assert reader.readline() == b"a,b\n"
+    assert program.communicate(timeout=60)[1] == b"" and program.returncode == 141
+
+
+def test_runs_at_the_same_time_do_not_disturb_each_other() -> None:
+    write("a.npy")
+    wanted = run("pairs", "a.npy")
+    command = [*SAP, "pairs", "a.npy", "-o", "p.csv"]
+    programs = [subprocess.Popen(command, stderr=subprocess.PIPE) for _ in range(8)]
+    assert [(program.communicate()[1], program.returncode) for program in programs] == [(b"", 0)] * 8
+    assert Path("p.csv").read_text() == wanted and len(list(Path().iterdir())) == 2
+
+
+def test_a_picture_that_cannot_be_drawn_leaves_the_old_one(capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("matplotlib")
+    write("a.npy")
+    for name in ("a.nonsense", "picture", "picture.png"):
+        Path(name).write_text("mine")
+    assert "a.nonsense cannot be written" in refused(capsys, "plot", "a.npy", "-o", "a.nonsense")
+    assert "picture has no ending" in refused(capsys, "plot", "a.npy", "-o", "picture")
+    assert [Path(name).read_text() for name in ("a.nonsense", "picture", "picture.png")] == ["mine"] * 3

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -14,9 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._errors import InvalidBoxError, SweepAndPruneError
+from ._output import output_file
 from ._pairs import count_pairs, count_pairs_between, find_pairs, iter_chunks, iter_chunks_between
 from ._progress import ProgressBar
-from ._tables import READABLE, WRITABLE, FileError, Source, kind_of, read, writer
+from ._tables import READABLE, WRITABLE, FileError, Source, kind_of, printable, read, writer
 
 _EPILOG = f"""\b
 Files: {READABLE}
@@ -201,6 +203,9 @@ def plot(file: str, **options: Any) -> None:
 @contextmanager
 def _opened(options: Options) -> Iterator[list[Source]]:
     """The files. Errors of the search are raised with the place in the file."""
+    for path in options.files:
+        if _is_same_file(path, getattr(options, "output", None)):
+            raise FileError(f"{path} has the boxes, which the output would replace: choose another file by -o")
     sources = [read(path) for path in options.files]
     try:
         yield sources
@@ -212,6 +217,13 @@ def _opened(options: Options) -> Iterator[list[Source]]:
     except (ValueError, TypeError) as error:
         names = " and ".join(source.name for source in sources)
         raise FileError(f"{names}: {error}") from None
+
+
+def _is_same_file(read: str, written: str | None) -> bool:
+    try:
+        return written is not None and os.path.isfile(written) and os.path.samefile(read, written)
+    except (OSError, ValueError):  # one of them is not there, or its name is not possible
+        return False
 
 
 def _columns_at_fault(error: InvalidBoxError, source: Source, options: Options) -> str:
@@ -403,7 +415,20 @@ def _draw(options: Options, sources: list[Source]) -> None:
     if half > 1:
         axes.set_aspect("equal")
     axes.set_title(f"{len(boxes)} boxes" + (f", {len(pairs)} pairs" if options.pairs else ""))
+    _write_figure(figure, options.output)
+
+
+def _write_figure(figure: Any, path: str) -> None:
+    kind = os.path.splitext(path)[1][1:].lower()
+    if not kind:
+        raise FileError(f"{printable(path)} has no ending: use .svg, .png or .pdf")
+    drawn = io.BytesIO()  # so that nothing is written before it is known that all can be
     try:
-        figure.savefig(options.output, bbox_inches="tight")
+        figure.savefig(drawn, format=kind, bbox_inches="tight")
+        with output_file(path) as (file, _):
+            file.write(drawn.getbuffer())
+    except BrokenPipeError:
+        raise
     except (OSError, ValueError) as error:
-        raise FileError(f"{options.output} cannot be written: {error}") from None
+        said = error.strerror if isinstance(error, OSError) and error.strerror else error
+        raise FileError(f"{printable(path)} cannot be written: {said}") from None

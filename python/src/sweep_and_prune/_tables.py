@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._inputs import box_columns, unknown_columns
+from ._output import output_file
 
 _MISSING = {"", "na", "n/a", "nan", "null", "none", "."}
 _BED = ["chrom", "start", "end", "name", "score", "strand"]
@@ -40,6 +41,11 @@ class FileError(click.ClickException):
     def show(self, file: IO[Any] | None = None) -> None:
         """Prints it."""
         click.echo(f"sap: {self.message}", file or sys.stderr)
+
+
+def printable(path: str) -> str:
+    """A path as a message shows it, on one line."""
+    return path if path.isprintable() else repr(path)
 
 
 class Source:
@@ -428,16 +434,13 @@ def writer(path: str | None, kind: str, count: int, names: tuple[str, str]) -> I
         with _standard_output() as file:
             yield from _closing(file, kind, count, names, True)
         return
-    part = f"{path}.part"
     try:
-        with open(part, "wb") as file:
-            yield from _closing(file, kind, count, names, False)
-        os.replace(part, path)
+        with output_file(path) as (file, is_stream):
+            yield from _closing(file, kind, count, names, is_stream)
+    except BrokenPipeError:
+        raise  # the program that reads a named pipe ended
     except OSError as error:
-        raise FileError(f"{path} cannot be written: {error.strerror or error}") from None
-    finally:
-        if os.path.exists(part):
-            os.remove(part)
+        raise FileError(f"{printable(path)} cannot be written: {error.strerror or error}") from None
 
 
 def _standard_output() -> AbstractContextManager[IO[bytes]]:

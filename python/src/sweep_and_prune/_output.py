@@ -1,0 +1,93 @@
+"""Writes a file of the command line: it appears when it is complete, and takes nothing from anybody else."""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+import stat
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import IO
+
+_MOST_LINKS = 40
+
+
+@contextmanager
+def output_file(path: str) -> Iterator[tuple[IO[bytes], bool]]:
+    """Opens what `path` names for writing. Also tells whether it is a stream, whose beginning may not be its own.
+
+    A regular file is written under a name that nobody else has, in the same folder. At the end it replaces the file of
+    this name, whose mode it keeps, or it is removed after an error. Symbolic links are followed. Everything else that
+    can be written to (a device, a named pipe, a descriptor such as `/dev/stdout`) is written directly.
+
+    Raises:
+        OSError: if it cannot be written.
+    """
+    if "\0" in path:
+        raise OSError(errno.EINVAL, "a name cannot contain a zero byte", path)
+    target = _target(path)
+    if isinstance(target, int):
+        with open(target, "wb", closefd=False) as file:
+            yield file, True
+        return
+    before = _status(target)
+    if before is not None and not stat.S_ISREG(before.st_mode):
+        with open(target, "wb") as file:  # for a folder, this is the error
+            yield file, True
+        return
+    if before is not None and not os.access(target, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), target)
+    part = os.path.join(os.path.dirname(target), f".sap-{uuid.uuid4().hex}.part")
+    mode = 0o666 if before is None else stat.S_IMODE(before.st_mode) & 0o777
+    descriptor = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), mode)
+    try:
+        with open(descriptor, "wb") as file:
+            yield file, False
+        if before is None or _takes_the_place(part, before):
+            os.replace(part, target)
+        else:
+            shutil.copyfile(part, target)
+    finally:
+        with suppress(FileNotFoundError):
+            os.remove(part)
+
+
+def _target(path: str) -> str | int:
+    """What `path` names, without symbolic links; a descriptor of this process as its number."""
+    for _ in range(_MOST_LINKS):
+        folder, name = os.path.realpath(os.path.dirname(path)), os.path.basename(path)
+        if name.isdigit() and folder in ("/dev/fd", f"/proc/{os.getpid()}/fd"):
+            return int(name)
+        path = os.path.join(folder, name)
+        if not os.path.islink(path):
+            return path
+        path = os.path.join(folder, os.readlink(path))
+    raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), path)
+
+
+def _status(path: str) -> os.stat_result | None:
+    try:
+        return os.stat(path)
+    except FileNotFoundError:
+        return None
+
+
+def _takes_the_place(part: str, before: os.stat_result) -> bool:
+    """Gives a new file the owner and the mode of the one that it replaces.
+
+    Returns:
+        False if this is impossible, or if the old file has other names, which would keep the old content. Then the new
+        content is copied into the old file.
+    """
+    if before.st_nlink > 1:
+        return False
+    own = os.stat(part)
+    if (own.st_uid, own.st_gid) != (before.st_uid, before.st_gid):
+        try:
+            os.chown(part, before.st_uid, before.st_gid)
+        except (OSError, AttributeError):
+            return False
+    os.chmod(part, stat.S_IMODE(before.st_mode))
+    return True
