@@ -11,13 +11,13 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from oracle import Array, in_order, pairs_between, random_boxes
+from disk import BOXES, PAIRS, Interrupted, children_of, dataset, found, interrupt, table, write
+from oracle import in_order, pairs_between, random_boxes
 
 import sweep_and_prune as core
 
@@ -37,10 +37,6 @@ from sweep_and_prune._partitioned.dataset import hash_pairs
 # Dask calls pandas in a way that a newer pandas warns of.
 pytestmark = pytest.mark.filterwarnings("ignore:The inplace keyword:DeprecationWarning")
 
-NAMES = {1: ["start", "end"], 2: ["minx", "miny", "maxx", "maxy"], 3: ["x0", "y0", "z0", "x1", "y1", "z1"]}
-BOXES = random_boxes(3000, 2, np.float64)
-PAIRS = in_order(core.find_pairs(BOXES))
-
 
 @pytest.fixture(autouse=True)
 def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -52,35 +48,6 @@ def small_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cells of more than 500 boxes are split, and the in-memory shortcut is never taken."""
     monkeypatch.setattr(run_module, "_LEAST_ROWS", 500)
     monkeypatch.setattr(workers, "_for_boxes", lambda memory, limit: 500)
-
-
-def table(boxes: Array, first: int = 0) -> Any:
-    """With an id in each row: descending numbers and text."""
-    columns = dict(zip(NAMES[boxes.shape[1] // 2], boxes.T))
-    number = 10_000 - np.arange(first, first + len(boxes))
-    return pyarrow.table({**columns, "number": number, "name": [f"n{one}" for one in number.tolist()]})
-
-
-def write(name: str, boxes: Array = BOXES, first: int = 0, group: int = 400) -> str:
-    pyarrow.parquet.write_table(table(boxes, first), name, row_group_size=group)
-    return name
-
-
-def found(result: Any) -> Array:
-    """The pairs of a Dask DataFrame, sorted."""
-    frame = result.compute()
-    assert list(frame.columns) == ["a", "b"]
-    return in_order(frame.to_numpy().reshape(-1, 2))
-
-
-def dataset(name: str = "out") -> Array:
-    """The pairs of a finished dataset, sorted; its files and its manifest must agree."""
-    manifest = sap.read_manifest(name)
-    assert sorted(path.name for path in Path(name).glob("*.parquet")) == sorted(one["name"] for one in manifest.files)
-    assert not Path(name + ".unfinished").exists()
-    pairs = pyarrow.parquet.read_table(name) if manifest.files else table(BOXES[:0]).select([0, 1])
-    assert len(pairs) == manifest.pairs == sum(one["pairs"] for one in manifest.files)
-    return in_order(np.column_stack([pairs[0].to_numpy(), pairs[1].to_numpy()]).astype(np.int64).reshape(-1, 2))
 
 
 @pytest.mark.parametrize("cells", [None, 1, 2, 23, 200])
@@ -351,25 +318,6 @@ def test_wrong_arguments_are_refused() -> None:
         sap.find_pairs("a.parquet", missing="maybe")
 
 
-class Interrupted(Exception):
-    pass
-
-
-def interrupt(monkeypatch: pytest.MonkeyPatch, after: int) -> None:
-    """Ends the process, as it were, after so many tasks; the first tasks are those that scatter."""
-    calls = 0
-    real = tasks.guarded
-
-    def counted(task: Any, *arguments: Any) -> Any:
-        nonlocal calls
-        calls += 1
-        if calls > after:
-            raise Interrupted
-        return real(task, *arguments)
-
-    monkeypatch.setattr(workers, "guarded", counted)
-
-
 def test_an_interrupted_run_continues_wherever_it_was(monkeypatch: pytest.MonkeyPatch, small_memory: None) -> None:
     monkeypatch.setattr(run_module, "_CHUNK_ROWS", 700)
     boxes = BOXES.copy()
@@ -391,7 +339,7 @@ def test_an_interrupted_run_continues_wherever_it_was(monkeypatch: pytest.Monkey
             else:
                 break
         done = {path: path.stat().st_mtime_ns for path in Path("out.unfinished").glob("*.parquet")}
-        Path("out.unfinished/cell-00000.parquet.0.part").write_bytes(b"half of a file")
+        Path(f"out.unfinished/cell-00000.parquet.{'0' * 32}.part").write_bytes(b"half of a file")
         way = list(interrupted)[number % 3]
         interrupted[way] += 1
         with monkeypatch.context() as patch:
@@ -508,17 +456,6 @@ def large(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, str]]
     yield path, sap.read_manifest(out).hash
 
 
-def children_of(process: int) -> list[int]:
-    """The workers of a process, which it started as processes of Python."""
-    psutil = pytest.importorskip("psutil")
-    found = []
-    for child in psutil.Process(process).children(recursive=True):
-        with suppress(psutil.Error):  # it has just ended
-            if "spawn_main" in " ".join(child.cmdline()):
-                found.append(child.pid)
-    return found
-
-
 def started(path: str) -> Any:
     """A run that has begun to write the boxes."""
     shutil.copy(path, "a.parquet")
@@ -548,12 +485,18 @@ def test_workers_that_are_killed_change_nothing(large: tuple[str, str]) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="processes are found in the way of Linux")
 def test_workers_that_die_while_they_start_are_replaced() -> None:
-    with workers.started("2GB", 1) as of_this_machine:
-        killed: set[int] = set()
+    killed: set[int] = set()
+
+    def kill() -> None:
         while len(killed) < 3:  # as soon as they are there
             for child in set(children_of(os.getpid())) - killed:
                 os.kill(child, signal.SIGKILL)
                 killed.add(child)
+
+    killer = threading.Thread(target=kill, daemon=True)
+    killer.start()
+    with workers.started("2GB", 1) as of_this_machine:
+        killer.join()
         found: list[int] = []
         of_this_machine.run(abs, [(-3,), (4,)], found.append)
         assert sorted(found) == [3, 4]

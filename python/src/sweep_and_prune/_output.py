@@ -1,4 +1,4 @@
-"""Writes a file of the command line: it appears when it is complete, and takes nothing from anybody else."""
+"""Writes a file of the command line: it appears when it is complete, and replaces nothing else."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _MOST_LINKS = 40
 def output_file(path: str) -> Iterator[tuple[IO[bytes], bool]]:
     """Opens what `path` names for writing. Also tells whether it is a stream, whose beginning may not be its own.
 
-    A regular file is written under a name that nobody else has, in the same folder. At the end it replaces the file of
-    this name, whose mode it keeps, or it is removed after an error. Symbolic links are followed. Everything else that
-    can be written to (a device, a named pipe, a descriptor such as `/dev/stdout`) is written directly.
+    A regular file is written under a name that no other file has, in the same folder. At the end it replaces the file
+    that `path` names, whose mode it keeps, or it is removed after an error. Symbolic links are followed. Everything
+    else that can be written to (a device, a named pipe, a descriptor such as `/dev/stdout`) is written directly.
 
     Raises:
         OSError: if it cannot be written.

@@ -25,6 +25,7 @@ from typing import Any, Union
 from ._inputs import checked_format
 from ._partitioned.boxes import InvalidRowError
 from ._partitioned.dataset import DatasetError, Manifest, read_manifest
+from ._partitioned.files import checked_path
 from ._partitioned.run import Job, Source, run, source_of_files
 from ._partitioned.workers import active_client
 from ._progress import ProgressBar
@@ -79,7 +80,8 @@ def find_pairs(
         boxes: a Dask DataFrame, a Dask array of shape `(n, 2 * D)`, or Parquet files: a path, a pattern such as
             `"boxes-*.parquet"`, a folder, an address such as `"s3://bucket/boxes"`, or several of these. GeoParquet
             is known, too: its column `bbox`, or the bounds of its geometries.
-        out: a folder for the pairs. Until they are complete, it is called `out` + `".unfinished"`.
+        out: a folder for the pairs. Until they are complete, it is called `out` + `".unfinished"`. Neither folder may
+            have files of anything else: that is an error, and nothing is changed.
         ids: a column with an id for each box, whole numbers or text, each only once; by default, boxes are numbered
             from 0 in the order of files and rows.
         columns: the columns of the boxes, min corner and then max corner; by default, those with known names, such as
@@ -95,7 +97,7 @@ def find_pairs(
         spill: a folder for the boxes on their way to the cells; by default, within `out`. They take as much space as
             the boxes themselves, uncompressed.
         cells: how many cells at most; by default, one for each million boxes, or more if memory is short.
-        overwrite: replaces a finished dataset or an interrupted run of other boxes.
+        overwrite: replaces a finished dataset, once the new one is complete, or an interrupted run of other boxes.
         progress: `True` shows a bar on a terminal; a function is called with the share of the work that is done.
 
     Returns:
@@ -115,7 +117,7 @@ def find_pairs(
        a  b
     0  0  2
     """
-    sources = _sources([boxes], [ids], columns, format, closed, missing, margin, ["boxes"])
+    sources = _sources([boxes], [ids], columns, format, closed, missing, margin, ["boxes"], out)
     return _found(sources, out, memory_limit, workers, spill, cells, overwrite, progress)
 
 
@@ -155,7 +157,7 @@ def find_pairs_between(
         workers: how many local workers; 0 for none but this process.
         spill: a folder for the boxes on their way to the cells.
         cells: how many cells at most.
-        overwrite: replaces a finished dataset or an interrupted run of other boxes.
+        overwrite: replaces a finished dataset, once the new one is complete, or an interrupted run of other boxes.
         progress: `True`, or a function of the share of the work that is done.
 
     Returns:
@@ -173,7 +175,7 @@ def find_pairs_between(
     0  1  0
     """
     both = list(ids) if isinstance(ids, tuple) else [ids, ids]
-    sources = _sources([a, b], both, columns, format, closed, missing, margin, ["a", "b"])
+    sources = _sources([a, b], both, columns, format, closed, missing, margin, ["a", "b"], out)
     return _found(sources, out, memory_limit, workers, spill, cells, overwrite, progress)
 
 
@@ -214,7 +216,7 @@ def count_pairs(
     >>> sap.count_pairs(dask.array.zeros((1000, 6), chunks=(100, 6)))
     499500
     """
-    sources = _sources([boxes], [None], columns, format, closed, missing, margin, ["boxes"])
+    sources = _sources([boxes], [None], columns, format, closed, missing, margin, ["boxes"], None)
     return _counted(sources, memory_limit, workers, spill, cells, progress)
 
 
@@ -258,7 +260,7 @@ def count_pairs_between(
     >>> sap.count_pairs_between(a, b, margin=1)
     200
     """
-    sources = _sources([a, b], [None, None], columns, format, closed, missing, margin, ["a", "b"])
+    sources = _sources([a, b], [None, None], columns, format, closed, missing, margin, ["a", "b"], None)
     return _counted(sources, memory_limit, workers, spill, cells, progress)
 
 
@@ -271,21 +273,27 @@ def _sources(
     missing: str,
     margin: Any,
     names: list[str],
+    out: str | os.PathLike[str] | None,
 ) -> list[Source]:
+    place = None if out is None else checked_path(out, "out")
     checked_format(format)
     if missing not in ("raise", "skip"):
         raise ValueError(f'missing must be "raise" or "skip", not {missing!r}')
     if closed not in (None, "both", "left", "right", "neither"):
         raise ValueError(f'closed must be "both", "left", "right" or "neither", not {closed!r}')
+    if isinstance(columns, (str, bytes)):
+        raise TypeError(f"columns must be a list of names, such as [{columns!r}, ..], not the text {columns!r}")
     margins = [float(one) for one in margin] if hasattr(margin, "__len__") else float(margin)
     options = {"format": format, "closed": closed, "missing": missing, "margin": margins or 0}
     return [
-        _source(boxes, list(columns) if columns else None, of_set, name, options)
+        _source(boxes, list(columns) if columns else None, of_set, name, options, place)
         for boxes, of_set, name in zip(sets, ids, names)
     ]
 
 
-def _source(boxes: Any, columns: list[str] | None, ids: str | None, name: str, options: dict[str, Any]) -> Source:
+def _source(
+    boxes: Any, columns: list[str] | None, ids: str | None, name: str, options: dict[str, Any], out: Path | None
+) -> Source:
     if hasattr(boxes, "to_delayed"):
         from ._partitioned.graph import source_of_collection
 
@@ -298,7 +306,10 @@ def _source(boxes: Any, columns: list[str] | None, ids: str | None, name: str, o
             f"{name} must be a Dask DataFrame, a Dask array or paths of Parquet files, not a {type(boxes).__name__}; "
             "sweep_and_prune.find_pairs takes arrays and data frames in memory"
         )
-    return source_of_files(boxes, columns, ids, options)
+    paths = [checked_path(path, name) for path in ([boxes] if is_path else boxes)]
+    if not paths:
+        raise ValueError(f"{name} is an empty list: pass the path of one Parquet file or more")
+    return source_of_files(boxes, columns, ids, options, out)
 
 
 def _found(
@@ -349,7 +360,7 @@ def _shown(progress: Progress, what: str) -> ProgressBar:
 
 
 def _folder(spill: str | os.PathLike[str] | None) -> Path | None:
-    return None if spill is None else Path(spill)
+    return None if spill is None else checked_path(spill, "spill")
 
 
 def _cells(cells: int | None) -> int | None:

@@ -174,8 +174,7 @@ def list_files(paths: Any) -> list[File]:
     Raises:
         DatasetError: if a file is missing or damaged.
     """
-    given = [paths] if isinstance(paths, (str, os.PathLike)) else list(paths)
-    found = [name for path in given for name in _expanded(os.fspath(path))]
+    found = [name for path in _given(paths) for name in _expanded(path)]
     files = []
     for name in found:
         with opened(name) as file:
@@ -183,6 +182,15 @@ def list_files(paths: Any) -> list[File]:
             rows = [metadata.row_group(group).num_rows for group in range(metadata.num_row_groups)]
         files.append(File(name, rows, _stamp(name)))
     return files
+
+
+def _given(paths: Any) -> list[str]:
+    return [os.fspath(path) for path in ([paths] if isinstance(paths, (str, os.PathLike)) else paths)]
+
+
+def folders_of(paths: Any) -> list[str]:
+    """Those of the paths that name a folder on this machine."""
+    return [path for path in _given(paths) if "://" not in path and os.path.isdir(path)]
 
 
 def _expanded(path: str) -> list[str]:
@@ -194,9 +202,9 @@ def _expanded(path: str) -> list[str]:
             return [path]
         scheme = path.split("://", 1)[0]
         infos = system.get_file_info(FileSelector(inside, recursive=True))
-        names = sorted(f"{scheme}://{info.path}" for info in infos if _is_data(info.path, inside))
+        names = sorted(f"{scheme}://{info.path}" for info in infos if is_data(info.path, inside))
     elif os.path.isdir(path):
-        names = sorted(str(name) for name in Path(path).rglob("*") if _is_data(str(name), path))
+        names = sorted(str(name) for name in Path(path).rglob("*") if is_data(str(name), path))
     elif os.path.exists(path):
         return [path]
     else:
@@ -206,7 +214,8 @@ def _expanded(path: str) -> list[str]:
     return names
 
 
-def _is_data(name: str, folder: str) -> bool:
+def is_data(name: str, folder: str) -> bool:
+    """Whether a file is one of those that are read if this folder is named."""
     parts = Path(os.path.relpath(name, folder)).parts
     return name.endswith((".parquet", ".geoparquet", ".pq")) and not any(part[0] in "._" for part in parts)
 

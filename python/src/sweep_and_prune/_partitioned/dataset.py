@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import os
-import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._errors import SweepAndPruneError
+from .files import checked_path, part_of, read_sealed, write_sealed
 
 MANIFEST = "_manifest.json"
 """Readers of Parquet datasets pass over names that begin with an underscore."""
@@ -52,14 +51,20 @@ def read_manifest(path: str | os.PathLike[str]) -> Manifest:
     Raises:
         DatasetError: if there is no finished dataset.
     """
+    file = checked_path(path, "path") / MANIFEST
     try:
-        return Manifest(**json.loads((Path(path) / MANIFEST).read_text(encoding="utf-8")))
+        return Manifest(**read_sealed(file))
     except OSError:
         raise DatasetError(
             f"{os.fspath(path)} is no finished dataset of pairs: it has no {MANIFEST}; call find_pairs with this out"
         ) from None
     except (ValueError, TypeError) as error:
-        raise DatasetError(f"{Path(path) / MANIFEST} is damaged: {error}; remove the dataset and start again") from None
+        raise DatasetError(f"{file} is damaged: {error}; remove the dataset and start again") from None
+
+
+def write_manifest(folder: Path, manifest: Manifest) -> None:
+    """Writes the manifest of a dataset of pairs, whose files are complete."""
+    write_sealed(folder / MANIFEST, manifest._asdict(), indent=1)
 
 
 def hash_pairs(first: NDArray[Any], second: NDArray[Any]) -> int:
@@ -103,7 +108,7 @@ class PairFile:
 
         self._arrow = pyarrow
         self._types = [getattr(pyarrow, name)() for name in id_types]
-        self._part = path.with_name(f"{path.name}.{uuid.uuid4().hex}.part")
+        self._part = part_of(path)
         schema = pyarrow.schema([("a", self._types[0]), ("b", self._types[1])])
         self._writer = pyarrow.parquet.ParquetWriter(
             self._part,
@@ -173,32 +178,32 @@ def pair_file(path: Path | None, id_types: tuple[str, str], one_set: bool) -> It
         raise
 
 
-def summary_of(path: Path) -> tuple[int, str] | None:
+def summary_of(path: Path) -> tuple[int, int] | None:
     """The number and the hash of the pairs of a complete file; None if it is not complete."""
     import pyarrow
     import pyarrow.parquet
 
     try:
         metadata = pyarrow.parquet.read_metadata(path).metadata or {}
-        return int(metadata[b"pairs"]), metadata[b"hash"].decode()
-    except (OSError, pyarrow.ArrowInvalid, KeyError, ValueError):
+        return int(metadata[b"pairs"]), int(metadata[b"hash"], 16)
+    except (OSError, pyarrow.ArrowException, KeyError, ValueError):
         return None
 
 
-def write_text(path: Path, text: str) -> None:
-    """Writes a file so that it is there as a whole or not at all, even after a loss of power."""
-    part = path.with_name(f"{path.name}.{uuid.uuid4().hex}.part")
-    with open(part, "w", encoding="utf-8") as file:
-        file.write(text)
-        file.flush()
-        os.fsync(file.fileno())
-    os.replace(part, path)
+def has_its_pairs(path: Path, id_types: tuple[str, str]) -> bool:
+    """Whether a file of pairs is complete and not damaged: it is read as a whole."""
+    import pyarrow
+    import pyarrow.parquet
 
-
-def sync(path: Path) -> None:
-    """Waits until a file is on the disk."""
-    descriptor = os.open(path, os.O_RDONLY)
+    schema = pyarrow.schema([(name, getattr(pyarrow, kind)()) for name, kind in zip("ab", id_types)])
+    pairs = total = 0
     try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
+        with pyarrow.parquet.ParquetFile(path, page_checksum_verification=True) as file:
+            if not file.schema_arrow.equals(schema, check_metadata=False):
+                return False
+            for batch in file.iter_batches(batch_size=_BUFFER, use_threads=False):
+                pairs += len(batch)
+                total += hash_pairs(*(column.to_numpy(zero_copy_only=False) for column in batch.columns))
+    except Exception:  # whatever a damaged file leads to
+        return False
+    return summary_of(path) == (pairs, total & _WORD)

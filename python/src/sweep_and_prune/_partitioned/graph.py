@@ -11,9 +11,9 @@ from .._arrays import Floats
 from .boxes import Chunk, Form, id_type_of, read_chunk
 from .cells import Cells, choose_cells
 from .dataset import DatasetError
+from .plan import ARGUMENTS
 from .run import CELL_BOXES, SAMPLE_PER_CELL, Source, chunks_of, dimensions_of, sample_of
 from .search import Boxes, in_order, search, touches
-from .tasks import ARGUMENTS
 
 _SAMPLE_OF_PARTITION = 20_000
 

@@ -2,37 +2,49 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
 import shutil
 import tempfile
+import uuid
 from collections.abc import Callable
-from contextlib import contextmanager
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from .._arrays import Floats
-from .boxes import Chunk, File, Form, chunks_of_files, form_of_files, list_files, sample_file
+from .._errors import SweepAndPruneError
+from .boxes import Chunk, File, Form, chunks_of_files, folders_of, form_of_files, is_data, list_files, sample_file
 from .cells import Cells, choose_cells
-from .dataset import MANIFEST, DatasetError, Manifest, read_manifest, summary_of, sync, write_text
-from .spill import counts_of
-from .tasks import (
-    ARGUMENTS,
-    PLAN,
-    Folders,
-    Joined,
-    Node,
-    Plan,
-    join_everything,
-    join_node,
-    nodes,
-    scatter_chunk,
-    split_node,
-    split_of,
+from .dataset import (
+    MANIFEST,
+    DatasetError,
+    Manifest,
+    has_its_pairs,
+    read_manifest,
+    summary_of,
+    write_manifest,
 )
+from .files import read_sealed, sync
+from .folder import (
+    Folders,
+    claimed,
+    finish,
+    has_results,
+    is_empty,
+    nodes_of,
+    refuse_others_in_dataset,
+    remove_replaced,
+    spill_of,
+    spilled_nodes_of,
+    start_over,
+    use_spill,
+    work_of,
+)
+from .plan import ARGUMENTS, PLAN, Plan
+from .spill import counts_of
+from .tasks import Joined, Node, check_file, join_everything, join_node, nodes, scatter_chunk, split_node, split_of
 from .workers import Workers, memory_of, started
 
 _CHUNK_ROWS = 2_000_000
@@ -42,7 +54,6 @@ _MOST_CELLS = 2000
 _SMALL = 3_000_000
 _SAMPLE = 20_000
 _LEAST_ROWS = 1000
-_SPILL = "_spill.txt"
 SAMPLE_PER_CELL = 400
 
 
@@ -68,35 +79,61 @@ class Job(NamedTuple):
     progress: Callable[[float], object]
 
 
-def source_of_files(paths: Any, columns: list[str] | None, ids: str | None, options: dict[str, Any]) -> Source:
-    """The boxes of Parquet files."""
+def source_of_files(
+    paths: Any, columns: list[str] | None, ids: str | None, options: dict[str, Any], out: Path | None
+) -> Source:
+    """The boxes of Parquet files, whose pairs will be in `out`."""
     files = list_files(paths)
-    return Source(files, [], [sum(file.rows) for file in files], form_of_files(files, columns, ids, options), None)
+    if out is not None:
+        _refuse_own_files(paths, files, out)
+    form = form_of_files(files, columns, ids, options)
+    return Source(files, [], [sum(file.rows) for file in files], form, None)
 
 
 def run(sources: list[Source], job: Job) -> Manifest:
     """Finds all pairs; without `out`, only counts them."""
-    if job.out is None:
-        with tempfile.TemporaryDirectory(prefix="sweep-and-prune-", dir=job.spill) as folder:
-            return _run(sources, job, Folders(folder, str(Path(folder) / "spill")))
-    request = _request(sources, job)
-    if os.path.lexists(job.out):
-        finished = _finished(job, sources, request)
-        if finished is not None:
-            return finished
-    work = job.out.with_name(job.out.name + ".unfinished")
-    spill = work / "spill"
-    if job.spill is not None:
-        name = hashlib.sha256(str(job.out.absolute()).encode()).hexdigest()[:16]
-        spill = job.spill / f"sweep-and-prune-{name}"
     try:
-        work.mkdir(parents=True, exist_ok=True)
-        with _locked(work / "lock"):
-            return _run(sources, job, Folders(str(work), str(spill)))
+        if job.out is None:
+            with tempfile.TemporaryDirectory(prefix="sweep-and-prune-", dir=job.spill) as folder:
+                return _run(sources, job._replace(spill=None), Path(folder), None)
+        job = job._replace(out=_place(job.out))
+        assert job.out is not None
+        work = work_of(job.out)
+        if os.path.lexists(job.out):
+            finished = _finished(job, job.out, sources)
+            if finished is not None:
+                return finished
+        with claimed(work) as plan:
+            return _run(sources, job, work, plan)
     except OSError as error:
-        if isinstance(error, DatasetError) or error.errno is None:
+        if isinstance(error, SweepAndPruneError) or error.errno is None:
             raise
-        raise DatasetError(f"{work}: {error.strerror}; the run can be continued by the same call") from error
+        place = job.spill if job.out is None else work_of(job.out)
+        ending = "" if job.out is None else "; the run can be continued by the same call"
+        raise DatasetError(f"{place or 'the folder for temporary files'}: {error.strerror}{ending}") from error
+
+
+def _place(out: Path) -> Path:
+    """The folder that `out` names, through symbolic links."""
+    place = Path(os.path.realpath(out)) if out.is_symlink() or out.name in ("", "..") else out
+    if not place.name:
+        raise ValueError(f"out is {os.fspath(out)!r}: it must be the name of a folder for the pairs")
+    return place
+
+
+def _refuse_own_files(paths: Any, files: list[File], out: Path) -> None:
+    """Raises an error if the files of boxes are files of pairs of this call, now or when it is repeated."""
+    place = _place(out)
+    own = {Path(os.path.realpath(folder)) for folder in (place, work_of(place))}
+    for folder in folders_of(paths):
+        if is_data(os.path.realpath(place / "x.parquet"), os.path.realpath(folder)):
+            raise ValueError(
+                f"out ({out}) is in {folder}, whose files are the boxes: the pairs would be read as boxes, too; choose "
+                "an out elsewhere"
+            )
+    for path in (file.path for file in files if "://" not in file.path):
+        if not own.isdisjoint(Path(os.path.realpath(path)).parents):
+            raise ValueError(f"{path} has boxes and is in out ({out}): choose another out")
 
 
 def _request(sources: list[Source], job: Job) -> dict[str, Any]:
@@ -112,96 +149,135 @@ def _is_same(plan: Plan, sources: list[Source], request: dict[str, Any]) -> bool
     )
 
 
-def _finished(job: Job, sources: list[Source], request: dict[str, Any]) -> Manifest | None:
-    """The manifest of a finished run of the same boxes; removes that of others if they may be overwritten."""
-    assert job.out is not None
-    is_dataset = (job.out / MANIFEST).exists()
-    if not is_dataset:
-        if job.out.is_dir() and not any(job.out.iterdir()):
-            job.out.rmdir()
-            return None
-        raise DatasetError(f"{job.out} exists and is no dataset of pairs: remove it, or choose another out")
-    manifest = read_manifest(job.out)
+def _finished(job: Job, out: Path, sources: list[Source]) -> Manifest | None:
+    """The manifest of a finished run of the same boxes; None if the run has to begin, to replace what is there."""
+    if is_empty(out):
+        return None
+    if not (out / MANIFEST).exists():
+        raise DatasetError(f"{out} exists and is no dataset of pairs: rename it, or choose another out")
+    manifest = read_manifest(out)
     if job.overwrite:
-        shutil.rmtree(job.out)
+        refuse_others_in_dataset(out, manifest)
+        remove_replaced(out)
         return None
     try:
-        if _is_same(Plan.from_json((job.out / PLAN).read_text(encoding="utf-8")), sources, request):
-            return manifest
-    except (OSError, ValueError, TypeError):
-        pass
-    raise DatasetError(
-        f"{job.out} has the pairs of other boxes or other options: choose another out, or pass overwrite=True"
-    )
+        plan = Plan.read(out)
+    except (OSError, ValueError) as error:
+        raise DatasetError(
+            f"{out / PLAN} is missing or damaged ({error}): choose another out, or pass overwrite=True"
+        ) from None
+    if not _is_same(plan, sources, _request(sources, job)):
+        raise DatasetError(
+            f"{out} has the pairs of other boxes or other options: choose another out, or pass overwrite=True"
+        )
+    _check_dataset(out, manifest)
+    remove_replaced(out)
+    return manifest
 
 
-@contextmanager
-def _locked(path: Path) -> Any:
-    try:
-        import fcntl
-    except ImportError:  # there are no such locks on Windows
-        yield
-        return
-    with open(path, "w") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise DatasetError(f"{path.parent} is in use by another run: wait for it, or choose another out") from None
-        yield
+def _check_dataset(out: Path, manifest: Manifest) -> None:
+    for one in manifest.files:
+        if summary_of(out / one["name"]) != (one["pairs"], int(one["hash"], 16)):
+            raise DatasetError(f"{out / one['name']} is missing or damaged: choose another out, or pass overwrite=True")
 
 
-def _run(sources: list[Source], job: Job, folders: Folders) -> Manifest:
+def _run(sources: list[Source], job: Job, work: Path, interrupted: Plan | None) -> Manifest:
     total = sum(sum(source.rows) for source in sources)
     request = _request(sources, job)
-    plan = _continued(sources, request, job, folders)
-    plan_file = Path(folders.work) / PLAN
-    if plan is not None and (Path(folders.work) / MANIFEST).exists():
-        return _named(job, folders)
+    plan = _continued(sources, request, job, work, interrupted)
+    if plan is not None and job.out is not None and _is_complete(work, plan):
+        return finish(plan, work, job.out)
     is_small = total <= _SMALL and job.cells is None and not any(source.partitions for source in sources)
-    if plan is None and is_small and job.workers is None and _fits(sources, total, job):
-        plan = Plan(
-            [source.files for source in sources],
-            [source.form for source in sources],
-            chunks_of(sources),
-            Cells(dimensions_of(sources), [], [], [], []),
-            request,
-        )
-        joined, boxes = join_everything(folders, plan, "everything", max(total, 1), job.out is None)
-        job.progress(1.0)
-        write_text(plan_file, plan.to_json())
-        return _complete(job, folders, [joined], boxes, 1.0)
+    if is_small and job.workers is None and (plan is None or plan.cells.number == 1) and _fits(sources, total, job):
+        if plan is not None:
+            start_over(plan, work)
+        whole = Cells(dimensions_of(sources), [], [], [], [])
+        return _in_memory(_plan(sources, whole, request), job, work, max(total, 1))
     with started(job.memory_limit, job.workers) as workers:
         rows = max(workers.memory // _bytes_of_box(sources), _LEAST_ROWS)
+        is_continued = plan is not None
         if plan is None:
             plan = _planned(sources, job, workers, rows, request, total)
-            write_text(plan_file, plan.to_json())
+            plan.write(work)
+        spill = spill_of(plan, work, job.spill)
+        use_spill(plan, work, spill)
+        folders = Folders(str(work), str(spill))
+        if is_continued:
+            _check_files(folders, workers)
         return _steps(plan, sources, job, folders, workers, rows)
 
 
-def _continued(sources: list[Source], request: dict[str, Any], job: Job, folders: Folders) -> Plan | None:
+def _in_memory(plan: Plan, job: Job, work: Path, rows: int) -> Manifest:
+    """Finds the pairs of few boxes at once; after an error there is nothing to continue."""
+    plan.write(work)
+    try:
+        folders = Folders(str(work), str(work))
+        joined, boxes = join_everything(folders, plan, "everything", rows, job.out is None)
+        job.progress(1.0)
+    except Exception:
+        start_over(plan, work)
+        raise
+    return _complete(job, plan, work, [joined], boxes, 1.0)
+
+
+def _continued(
+    sources: list[Source], request: dict[str, Any], job: Job, work: Path, interrupted: Plan | None
+) -> Plan | None:
     """The plan of a run that was interrupted; None if it has to start again."""
-    work, plan = Path(folders.work), None
-    if (work / PLAN).exists():
-        try:
-            plan = Plan.from_json((work / PLAN).read_text(encoding="utf-8"))
-        except (ValueError, TypeError):
-            pass
-        if plan is not None and _is_same(plan, sources, request):
-            for part in [*work.glob("*.part"), *Path(folders.spill).glob("*.part")]:
-                part.unlink(missing_ok=True)
-            return plan
-        if not job.overwrite:
-            raise DatasetError(
-                f"{folders.work} is an interrupted run of other boxes or other options: repeat that call to continue "
-                "it, choose another out, or pass overwrite=True to start again"
-            )
-    # Without its plan, nothing tells what the other files are.
-    shutil.rmtree(folders.spill, ignore_errors=True)
-    for path in work.iterdir():
-        if path.name == "lock":
-            continue
-        shutil.rmtree(path) if path.is_dir() else path.unlink()
+    if interrupted is None or _is_same(interrupted, sources, request):
+        return interrupted
+    if not job.overwrite and has_results(interrupted, work):
+        raise DatasetError(
+            f"{work} is an interrupted run of other boxes or other options: repeat that call to continue it, choose "
+            "another out, or pass overwrite=True to start again"
+        )
+    start_over(interrupted, work)
     return None
+
+
+def _is_complete(work: Path, plan: Plan) -> bool:
+    """Whether an interrupted run has only to name its dataset. If a file is damaged, it has to find pairs again."""
+    if not (work / MANIFEST).exists():
+        return False
+    with suppress(DatasetError):
+        manifest = read_manifest(work)
+        if all(
+            summary_of(work / one["name"]) == (one["pairs"], int(one["hash"], 16))
+            and has_its_pairs(work / one["name"], plan.id_types)
+            for one in manifest.files
+        ):
+            return True
+    (work / MANIFEST).unlink()
+    return False
+
+
+def _check_files(folders: Folders, workers: Workers) -> None:
+    """Removes damaged files of an interrupted run, and those of a cell of which it is not known how it was split."""
+    of_nodes, spilled = nodes_of(Path(folders.work)), spilled_nodes_of(Path(folders.spill))
+    split = set()
+    for name, path in of_nodes:
+        if path == folders.split(name):
+            try:
+                noted = read_sealed(path)["cells"]
+            except (OSError, ValueError):
+                path.unlink()
+                continue
+            if noted is not None:
+                split.add(name)
+    for name, path in of_nodes:
+        if not split.issuperset(_split_into(name)):
+            path.unlink(missing_ok=True)
+    for name, path in spilled:
+        if name and not split.issuperset([*_split_into(name), name]):
+            path.unlink()
+    paths = [path for _, path in (*of_nodes, *spilled) if path.suffix != ".json" and path.exists()]
+    workers.run(check_file, [(folders, path) for path in paths], lambda _: None)
+
+
+def _split_into(name: str) -> list[str]:
+    """The cells that were split so that there is a cell of this name."""
+    parts = name.split(".")
+    return [".".join(parts[:number]) for number in range(1, len(parts))]
 
 
 def _fits(sources: list[Source], total: int, job: Job) -> bool:
@@ -246,13 +322,12 @@ def _planned(sources: list[Source], job: Job, workers: Workers, rows: int, reque
         of_cell = min(rows * 6 // 10, max(CELL_BOXES, total // _MOST_CELLS))
         count = min(max(-(-total // of_cell), 4 * workers.number), _MOST_CELLS)
     sample = sample_of(sources, SAMPLE_PER_CELL * count, dimensions_of(sources))
-    return Plan(
-        [source.files for source in sources],
-        [source.form for source in sources],
-        chunks_of(sources),
-        choose_cells(sample, count),
-        request,
-    )
+    return _plan(sources, choose_cells(sample, count), request)
+
+
+def _plan(sources: list[Source], cells: Cells, request: dict[str, Any]) -> Plan:
+    files, forms = [source.files for source in sources], [source.form for source in sources]
+    return Plan(files, forms, chunks_of(sources), cells, request, uuid.uuid4().hex)
 
 
 def sample_of(sources: list[Source], wanted: int, dimensions: int) -> Floats:
@@ -277,8 +352,6 @@ def sample_of(sources: list[Source], wanted: int, dimensions: int) -> Floats:
 
 
 def _steps(plan: Plan, sources: list[Source], job: Job, folders: Folders, workers: Workers, rows: int) -> Manifest:
-    Path(folders.spill).mkdir(parents=True, exist_ok=True)
-    _forget_other_spill(folders)
     progress = _Progress(job.progress, sum(chunk.rows for chunk in plan.chunks))
     missing = [number for number in range(len(plan.chunks)) if counts_of(folders.chunk(number)) is None]
     _check_disk(plan, missing, folders)
@@ -312,7 +385,7 @@ def _steps(plan: Plan, sources: list[Source], job: Job, folders: Folders, worker
         if summary is None:
             waiting.append(node)
         else:
-            joined.append(Joined(node.name, summary[0], int(summary[1], 16)))
+            joined.append(Joined(node.name, *summary))
             progress.joined(node.name)
 
     def done(result: Joined) -> None:
@@ -326,15 +399,7 @@ def _steps(plan: Plan, sources: list[Source], job: Job, folders: Folders, worker
         joined.append(join_everything(folders, plan._replace(chunks=[]), "nothing", 1, job.out is None)[0])
     job.progress(1.0)
     copies = float(totals.sum()) / max(sum(boxes), 1)
-    return _complete(job, folders, joined, boxes, copies)
-
-
-def _forget_other_spill(folders: Folders) -> None:
-    """Removes the boxes of the interrupted run if they were in another folder."""
-    noted = Path(folders.work) / _SPILL
-    if noted.exists() and noted.read_text(encoding="utf-8") not in ("", folders.spill):
-        shutil.rmtree(noted.read_text(encoding="utf-8"), ignore_errors=True)
-    write_text(noted, folders.spill)
+    return _complete(job, plan, Path(folders.work), joined, boxes, copies)
 
 
 def _split(found: list[Node], folders: Folders, workers: Workers, rows: int) -> list[Node]:
@@ -377,7 +442,7 @@ def _check_disk(plan: Plan, missing: list[int], folders: Folders) -> None:
         )
 
 
-def _complete(job: Job, folders: Folders, joined: list[Joined], boxes: list[int], copies: float) -> Manifest:
+def _complete(job: Job, plan: Plan, work: Path, joined: list[Joined], boxes: list[int], copies: float) -> Manifest:
     """Writes the manifest and gives the dataset its name."""
     joined = sorted(joined)
     files = [
@@ -390,21 +455,9 @@ def _complete(job: Job, folders: Folders, joined: list[Joined], boxes: list[int]
     if job.out is None:
         return manifest
     for one in files:
-        sync(Path(folders.work) / str(one["name"]))
-    write_text(Path(folders.work) / MANIFEST, json.dumps(manifest._asdict(), indent=1))
-    return _named(job, folders)
-
-
-def _named(job: Job, folders: Folders) -> Manifest:
-    """Gives a complete dataset its name."""
-    assert job.out is not None
-    shutil.rmtree(folders.spill, ignore_errors=True)
-    for name in ("lock", _SPILL):
-        (Path(folders.work) / name).unlink(missing_ok=True)
-    for path in Path(folders.work).glob("_*.split.json"):
-        path.unlink()
-    os.replace(folders.work, job.out)
-    return read_manifest(job.out)
+        sync(work / str(one["name"]))
+    write_manifest(work, manifest)
+    return finish(plan, work, job.out)
 
 
 class _Progress:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import os
-import uuid
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -12,7 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .cells import Cells
-from .dataset import write_text
+from .dataset import DatasetError
+from .files import digest_of, part_of, read_sealed, write_sealed
 from .search import Boxes
 
 
@@ -23,6 +22,8 @@ class Counts(NamedTuple):
     """The number of boxes, each once."""
     groups: list[int]
     """The number of boxes of each cell, and of the wide ones."""
+    digest: str
+    """A checksum of the file."""
 
 
 def scatter(blocks: Iterable[Boxes], cells: Cells, path: Path, id_type: str, dtype: str) -> Counts:
@@ -38,7 +39,7 @@ def scatter(blocks: Iterable[Boxes], cells: Cells, path: Path, id_type: str, dty
     box_type = pyarrow.list_(number, 2 * half)
     id_kind = getattr(pyarrow, id_type)()
     schema = pyarrow.schema([("id", id_kind), ("box", box_type)])
-    part = path.with_name(f"{path.name}.{uuid.uuid4().hex}.part")
+    part = part_of(path)
     groups = np.zeros(cells.number + 1, np.int64)
     boxes = 0
     try:
@@ -55,12 +56,13 @@ def scatter(blocks: Iterable[Boxes], cells: Cells, path: Path, id_type: str, dty
                         pyarrow.FixedSizeListArray.from_arrays(flat, type=box_type),
                     ]
                     writer.write_batch(pyarrow.record_batch(columns, schema=schema))
+        digest = digest_of(part)
         os.replace(part, path)
     except BaseException:
         part.unlink(missing_ok=True)
         raise
-    counts = Counts(boxes, groups.tolist())
-    write_text(_counts_path(path), json.dumps(counts._asdict()))
+    counts = Counts(boxes, groups.tolist(), digest)
+    write_sealed(_counts_path(path), counts._asdict())
     return counts
 
 
@@ -71,21 +73,42 @@ def _counts_path(path: Path) -> Path:
 def counts_of(path: Path) -> Counts | None:
     """What a spill file contains; None if it is not complete."""
     try:
-        return Counts(**json.loads(_counts_path(path).read_text(encoding="utf-8")))
+        return Counts(**read_sealed(_counts_path(path)))
     except (OSError, ValueError, TypeError):
         return None
 
 
+def forget_if_damaged(path: Path) -> None:
+    """Removes a spill file and its counts if they do not match, so that they are written again."""
+    counts = counts_of(path)
+    try:
+        if counts is not None and digest_of(path) == counts.digest:
+            return
+    except OSError:
+        pass
+    for damaged in (_counts_path(path), path):
+        damaged.unlink(missing_ok=True)
+
+
 def read_groups(paths: Iterable[Path], group: int, groups: int) -> Iterator[Boxes]:
     """The boxes of a group, block by block."""
+    for path in paths:
+        yield from _read_group(path, group, groups)
+
+
+def _read_group(path: Path, group: int, groups: int) -> Iterator[Boxes]:
     import pyarrow
 
-    for path in paths:
+    try:
         with pyarrow.OSFile(str(path), "rb") as source, pyarrow.ipc.open_file(source) as reader:
             for batch in range(group, reader.num_record_batches, groups):
                 table = reader.get_batch(batch)
                 if len(table):
                     yield _boxes(table)
+    except FileNotFoundError:
+        raise DatasetError(f"{path} is missing: something removed it; call again, and it is written again") from None
+    except (pyarrow.ArrowException, OSError) as error:
+        raise DatasetError(f"{path} cannot be read: {error}; call again, and it is written again") from None
 
 
 def _boxes(table: Any) -> Boxes:

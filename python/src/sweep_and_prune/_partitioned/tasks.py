@@ -7,9 +7,7 @@ repeated, and a run that was interrupted goes on with the tasks whose files are 
 from __future__ import annotations
 
 import errno
-import json
 from collections.abc import Callable, Iterable, Iterator
-from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,57 +15,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._errors import SweepAndPruneError
-from .boxes import Chunk, File, Form, read_chunk
+from .boxes import Chunk, read_chunk
 from .cells import Cells, choose_cells
-from .dataset import DatasetError, pair_file, write_text
+from .dataset import DatasetError, has_its_pairs, pair_file
+from .files import read_sealed, write_sealed
+from .folder import Folders
+from .plan import Plan
 from .search import Boxes, search, touches
-from .spill import counts_of, gathered, read_groups, scatter
-
-ARGUMENTS = ("boxes",), ("a", "b")
-"""The names of one set and of two."""
-
-PLAN = "_plan.json"
+from .spill import counts_of, forget_if_damaged, gathered, read_groups, scatter
 
 _SAMPLE_PER_CELL = 400
 _ALL_IN_ONE = 0.8
 """If a cell of the sample has more than this share of the boxes, splitting does not help."""
-
-
-class Plan(NamedTuple):
-    """What a run does; the same when it continues after an interruption."""
-
-    files: list[list[File]]
-    """The files of each set; none for partitions of a collection."""
-    forms: list[Form]
-    chunks: list[Chunk]
-    cells: Cells
-    request: dict[str, Any]
-    """What the user asked for: a run that asks for something else cannot continue this one."""
-
-    @property
-    def sets(self) -> int:
-        """1, or 2 for pairs of a box of one set and a box of another."""
-        return len(self.forms)
-
-    def name(self, argument: int) -> str:
-        """The name of a set."""
-        return ARGUMENTS[self.sets - 1][argument]
-
-    def to_json(self) -> str:
-        """As text."""
-        return json.dumps(self)
-
-    @staticmethod
-    def from_json(text: str) -> Plan:
-        """From text."""
-        files, forms, chunks, cells, request = json.loads(text)
-        return Plan(
-            [[File(*file) for file in of_set] for of_set in files],
-            [Form(*form) for form in forms],
-            [Chunk(*chunk) for chunk in chunks],
-            Cells(*cells),
-            request,
-        )
 
 
 class Node(NamedTuple):
@@ -84,43 +43,6 @@ class Node(NamedTuple):
     """The number of boxes of each set."""
     wide: list[tuple[str, int, int]]
     """The levels, groups and numbers of the wide boxes with which it is joined, too."""
-
-
-class Folders(NamedTuple):
-    """Where a run keeps its files."""
-
-    work: str
-    """The plan and the finished cells."""
-    spill: str
-    """The boxes on their way to the cells."""
-
-    def plan(self) -> Plan:
-        """The plan of the run."""
-        path = Path(self.work) / PLAN
-        return _plan(str(path), path.stat().st_mtime_ns)
-
-    def boxes(self, plan: Plan, level: str, argument: int) -> list[Path]:
-        """The files with the boxes of a set."""
-        if level:
-            return [Path(self.spill) / f"{level}-{argument}.arrow"]
-        return [self.chunk(number) for number, chunk in enumerate(plan.chunks) if chunk.argument == argument]
-
-    def chunk(self, number: int) -> Path:
-        """The file with the boxes of a chunk."""
-        return Path(self.spill) / f"chunk-{number:06}.arrow"
-
-    def split(self, name: str) -> Path:
-        """The file that says how a node was split."""
-        return Path(self.work) / f"_{name}.split.json"
-
-    def pairs(self, name: str) -> Path:
-        """The file with the pairs of a node."""
-        return Path(self.work) / f"{name}.parquet"
-
-
-@lru_cache(maxsize=2)
-def _plan(path: str, _changed: int) -> Plan:
-    return Plan.from_json(Path(path).read_text(encoding="utf-8"))
 
 
 class Joined(NamedTuple):
@@ -170,6 +92,14 @@ def _chunk_boxes(plan: Plan, chunk: Chunk, rows: int, partition: Any) -> Iterato
         yield Boxes(block.ids, block.rows.astype(_dtype(plan), copy=False))
 
 
+def check_file(folders: Folders, path: Path) -> None:
+    """Removes a finished file of an interrupted run if it is damaged, so that it is written again."""
+    if path.suffix == ".arrow":
+        forget_if_damaged(path)
+    elif not has_its_pairs(path, folders.plan().id_types):
+        path.unlink(missing_ok=True)
+
+
 def split_node(folders: Folders, node: Node, wanted: int) -> None:
     """Splits a node into at most so many cells, and writes its boxes to them, unless splitting does not help.
 
@@ -179,7 +109,7 @@ def split_node(folders: Folders, node: Node, wanted: int) -> None:
     noted = split_of(folders, node)
     if noted is None:
         cells = _chosen(folders, plan, node, wanted)
-        write_text(folders.split(node.name), json.dumps([cells]))
+        write_sealed(folders.split(node.name), {"cells": cells})
     else:
         cells = noted.cells
     if cells is None:
@@ -231,7 +161,7 @@ class Split(NamedTuple):
 def split_of(folders: Folders, node: Node) -> Split | None:
     """How a node was split; None if it was not."""
     try:
-        (noted,) = json.loads(folders.split(node.name).read_text(encoding="utf-8"))
+        noted = read_sealed(folders.split(node.name))["cells"]
     except (OSError, ValueError):
         return None
     if noted is None:
@@ -347,5 +277,4 @@ def join_everything(folders: Folders, plan: Plan, name: str, rows: int, is_count
 
 
 def _pair_file(folders: Folders, plan: Plan, name: str, is_counted: bool) -> Any:
-    id_types = plan.forms[0].id_type, plan.forms[-1].id_type
-    return pair_file(None if is_counted else folders.pairs(name), id_types, plan.sets == 1)
+    return pair_file(None if is_counted else folders.pairs(name), plan.id_types, plan.sets == 1)

@@ -6,7 +6,7 @@ import multiprocessing
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from threading import Event, Thread
 from typing import Any, NamedTuple
 
@@ -168,8 +168,9 @@ def started(limit: int | str | float | None, number: int | None) -> Iterator[Wor
     }
     with dask.config.set(settings):
         with (
+            # Without workers at first: Dask itself fails if one of them dies while it starts.
             LocalCluster(
-                n_workers=number,
+                n_workers=0,
                 threads_per_worker=1,
                 processes=True,
                 memory_limit=0,
@@ -184,22 +185,27 @@ def started(limit: int | str | float | None, number: int | None) -> Iterator[Wor
 
 @contextmanager
 def _kept_alive(cluster: Any, client: Any, number: int) -> Iterator[None]:
-    """Starts new workers for those that died while they started, which Dask does not, so that a run would never end."""
+    """Starts workers, and new ones for those that died while they started, which Dask does not replace."""
     from distributed import Status
 
     is_ended = Event()
     deaths = 0
 
-    def replace() -> None:  # on the thread that has the workers
+    async def replace() -> None:  # on the thread that has the workers
         nonlocal deaths
         for name, nanny in list(cluster.workers.items()):
             if nanny.status in (Status.closed, Status.failed):
                 del cluster.workers[name]
                 deaths += 1
-        if len(cluster.workers) < number:
-            cluster.scale(number)
+        if len(cluster.workers) < number and cluster.status == Status.running:
+            while len(cluster.worker_spec) < number:
+                cluster.worker_spec.update(cluster.new_worker_spec())
+            # One that dies while it starts is an error here. It is counted at the next call.
+            with suppress(Exception):
+                await cluster
 
     def watch() -> None:
+        cluster.loop.add_callback(replace)
         while not is_ended.wait(1):
             cluster.loop.add_callback(replace)
             if deaths > _MOST_DEATHS * number:
