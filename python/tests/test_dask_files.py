@@ -21,7 +21,7 @@ import sweep_and_prune as core
 pytest.importorskip("distributed")
 
 import sweep_and_prune.dask as sap
-from sweep_and_prune._partitioned import files, workers
+from sweep_and_prune._partitioned import files, tasks, workers
 from sweep_and_prune._partitioned import run as run_module
 
 pytestmark = pytest.mark.filterwarnings("ignore:The inplace keyword:DeprecationWarning")
@@ -248,6 +248,26 @@ def kill(patch: pytest.MonkeyPatch, after: int) -> Callable[[], int]:
     return lambda: changes
 
 
+def test_boxes_that_are_written_are_not_written_again(monkeypatch: pytest.MonkeyPatch, small_memory: None) -> None:
+    write("a.parquet")
+    tasks_of: list[list[int]] = []
+    real = workers.Workers.run
+
+    def noted(self: Any, task: Any, arguments: Any, done: Any) -> None:
+        if task is tasks.scatter_chunk:
+            tasks_of.append([number for _, number, *_ in arguments])
+        real(self, task, arguments, done)
+
+    monkeypatch.setattr(workers.Workers, "run", noted)
+    for spill in (None, "scratch"):
+        options = {"spill": spill}
+        interrupted(monkeypatch, 3, cells=6, **options)
+        find(cells=6, **options)
+        assert tasks_of == [[*range(7)], [3, 4, 5, 6]]
+        tasks_of.clear()
+        shutil.rmtree("out")
+
+
 @pytest.mark.parametrize("is_overwriting", [False, True])
 def test_a_run_continues_after_each_change_on_disk(
     monkeypatch: pytest.MonkeyPatch, small_memory: None, is_overwriting: bool
@@ -279,6 +299,17 @@ def test_a_run_continues_after_each_change_on_disk(
     assert complete > 50
 
 
+def damage(path: Path, some: random.Random) -> None:
+    """Flips a bit, or else removes the file or the second half of it."""
+    what = "flip" if path.name == "_plan.json" else some.choice(["flip", "flip", "remove", "cut"])
+    if what == "flip":
+        flipped(path, some)
+    elif what == "remove":
+        path.unlink()
+    else:
+        path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+
+
 def flipped(path: Path, some: random.Random) -> None:
     content = bytearray(path.read_bytes())
     content[some.randrange(len(content))] ^= 1 << some.randrange(8)
@@ -301,7 +332,7 @@ def halves(monkeypatch: pytest.MonkeyPatch, small_memory: None) -> Iterator[list
     yield found
 
 
-def test_a_flipped_bit_in_any_file_of_a_run_gives_the_same_pairs_or_one_error(halves: list[Path]) -> None:
+def test_damage_to_any_file_of_a_run_gives_the_same_pairs_or_one_error(halves: list[Path]) -> None:
     wanted = find(cells=6)
     expected = dataset()
     shutil.rmtree("out")
@@ -314,7 +345,7 @@ def test_a_flipped_bit_in_any_file_of_a_run_gives_the_same_pairs_or_one_error(ha
                 if not path.stat().st_size:
                     continue
                 shutil.copytree(half, "out.unfinished")
-                flipped(Path("out.unfinished") / name, some)
+                damage(Path("out.unfinished") / name, some)
                 damaged = tree("out.unfinished")
                 try:
                     found = find(cells=6)

@@ -224,7 +224,7 @@ def spill_of(plan: Plan, work: Path, chosen: Path | None) -> Path:
 
 def use_spill(plan: Plan, work: Path, spill: Path) -> None:
     """Makes the folder of the spill files and notes where it is. Removes those of the interrupted run elsewhere."""
-    if _noted_spill(work) not in (None, spill):
+    if _noted_spill(work) not in (None, spill.absolute()):
         _remove_spill(plan, work)
     write_sealed(work / _SPILL, {"folder": str(spill.absolute())})
     spill.mkdir(parents=True, exist_ok=True)
@@ -271,12 +271,13 @@ def nodes_of(work: Path) -> list[tuple[str, Path]]:
 
 
 def spilled_nodes_of(spill: Path) -> list[tuple[str, Path]]:
-    """The files with boxes, and the cell whose boxes they are; the empty string for those of a chunk."""
+    """The files with boxes, there or not, of which there are counts; and the cell that they were split from, or ""."""
     found = []
-    for path in spill.glob("*.arrow"):
-        match = re.fullmatch(rf"({_NODE})-[01]\.arrow", path.name)
-        found.append((match[1] if match is not None else "", path))
-    return [(name, path) for name, path in found if _SPILLED.fullmatch(path.name)]
+    for path in spill.glob("*.json"):
+        if _SPILLED.fullmatch(path.name):
+            match = re.fullmatch(rf"({_NODE})-[01]", path.stem)
+            found.append((match[1] if match is not None else "", path.with_suffix(".arrow")))
+    return found
 
 
 def finish(plan: Plan, work: Path, out: Path) -> Manifest:

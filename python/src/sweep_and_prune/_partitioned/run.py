@@ -43,7 +43,7 @@ from .folder import (
     work_of,
 )
 from .plan import ARGUMENTS, PLAN, Plan
-from .spill import counts_of
+from .spill import counts_of, forget
 from .tasks import Joined, Node, check_file, join_everything, join_node, nodes, scatter_chunk, split_node, split_of
 from .workers import Workers, memory_of, started
 
@@ -269,9 +269,9 @@ def _check_files(folders: Folders, workers: Workers) -> None:
             path.unlink(missing_ok=True)
     for name, path in spilled:
         if name and not split.issuperset([*_split_into(name), name]):
-            path.unlink()
-    paths = [path for _, path in (*of_nodes, *spilled) if path.suffix != ".json" and path.exists()]
-    workers.run(check_file, [(folders, path) for path in paths], lambda _: None)
+            forget(path)
+    pairs = [path for _, path in of_nodes if path.suffix == ".parquet" and path.exists()]
+    workers.run(check_file, [(folders, path) for path in (*pairs, *(path for _, path in spilled))], lambda _: None)
 
 
 def _split_into(name: str) -> list[str]:

@@ -86,8 +86,13 @@ def forget_if_damaged(path: Path) -> None:
             return
     except OSError:
         pass
-    for damaged in (_counts_path(path), path):
-        damaged.unlink(missing_ok=True)
+    forget(path)
+
+
+def forget(path: Path) -> None:
+    """Removes a spill file and its counts."""
+    for one in (_counts_path(path), path):
+        one.unlink(missing_ok=True)
 
 
 def read_groups(paths: Iterable[Path], group: int, groups: int) -> Iterator[Boxes]:

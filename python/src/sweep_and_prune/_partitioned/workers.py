@@ -202,7 +202,7 @@ def _kept_alive(cluster: Any, client: Any, number: int) -> Iterator[None]:
                 cluster.worker_spec.update(cluster.new_worker_spec())
             # One that dies while it starts is an error here. It is counted at the next call.
             with suppress(Exception):
-                await cluster
+                await cluster._correct_state()  # `await cluster` would print the error
 
     def watch() -> None:
         cluster.loop.add_callback(replace)
