@@ -189,8 +189,11 @@ impl Record {
     /// Replaces the file, whole or not at all.
     pub fn write(&self, path: &Path) -> Result<()> {
         let text = serde_json::to_string_pretty(self)? + "\n";
-        let part = path.with_extension("part");
-        std::fs::write(&part, text).with_context(|| format!("writing {}", part.display()))?;
+        // A name that no other process writes to; if a file has it, that is an error.
+        let part = path.with_extension(format!("{}.part", std::process::id()));
+        std::fs::File::create_new(&part)
+            .and_then(|mut file| std::io::Write::write_all(&mut file, text.as_bytes()))
+            .with_context(|| format!("writing {}", part.display()))?;
         std::fs::rename(&part, path).with_context(|| format!("writing {}", path.display()))
     }
 }
