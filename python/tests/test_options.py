@@ -86,8 +86,7 @@ def test_margins_of_integers_and_times_are_exact() -> None:
             sap.find_pairs(times, margin=wrong)
     with pytest.raises(ValueError, match="0 or more"):
         sap.find_pairs(times, margin=timedelta(-1))
-    with pytest.raises(ValueError, match="must be so small that"):
-        sap.find_pairs(times, margin=np.timedelta64(2**63 - 1, "ns"))
+    assert len(sap.find_pairs(times, margin=np.timedelta64(2**63 - 1, "ns"))) == 3
 
 
 @pytest.mark.parametrize("margin", [-1, np.nan, np.inf, [1, -1], "1", None, [1, 2, 3], [[1, 2]], timedelta(1), 1j])

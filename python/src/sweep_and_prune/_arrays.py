@@ -9,8 +9,9 @@ from typing import Any, Union
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from ._columns import as_array
 from ._errors import StaleProxyError
-from ._inputs import as_array, intervals, raw_boxes
+from ._inputs import Raw, intervals, raw_boxes
 
 Floats = Union[NDArray[np.float32], NDArray[np.float64]]
 """Coordinates, in single or in double precision."""
@@ -108,12 +109,19 @@ def box_rows(
     format: str = "xyxy",
 ) -> Floats:
     """Boxes as rows, of so many dimensions unless that is 0."""
-    return numbers(box_array(boxes, name, dimensions, format), name, dtype)
+    array = read_boxes(boxes, name, dimensions, format).array
+    if array.dtype.kind == "O":  # numbers of Python, which are converted as all others are
+        try:
+            array = array.astype(np.float64)
+        except OverflowError:
+            raise ValueError(f"{name} has numbers that are too large for float64") from None
+    return numbers(array, name, dtype)
 
 
-def box_array(boxes: ArrayLike, name: str, dimensions: int = 0, format: str = "xyxy") -> NDArray[Any]:
+def read_boxes(boxes: ArrayLike, name: str, dimensions: int = 0, format: str = "xyxy") -> Raw:
     """Boxes as rows, in the type in which they were passed."""
-    array = raw_boxes(boxes, name, format)
+    raw = raw_boxes(boxes, name, format)
+    array = raw.array
     if array.ndim == 1 and array.size == 0:
         array = array.reshape(0, 2 * (dimensions or 1))
     is_wide = array.ndim == 2 and (_WIDTHS.get(array.shape[1]) in ((dimensions,) if dimensions else (1, 2, 3)))
@@ -122,7 +130,7 @@ def box_array(boxes: ArrayLike, name: str, dimensions: int = 0, format: str = "x
         raise ValueError(f"{name} must be of shape {wanted}, min corner and then max corner, not {array.shape}")
     if len(array) > _MAX_BOXES:
         raise ValueError(f"{name} are {len(array)} boxes, more than the limit of {_MAX_BOXES}")
-    return array
+    return raw._replace(array=array)
 
 
 def same_width(first: NDArray[Any], second: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:

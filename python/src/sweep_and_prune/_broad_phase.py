@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ._arrays import Floats, Ids, box_rows, each, float_dtype, id_array, one_id, real, row, rows, whole
+from ._columns import as_array
 from ._errors import InvalidQueryError, StaleProxyError
 from ._filter import Filter, words
-from ._inputs import as_array
 from ._native import World
 
 

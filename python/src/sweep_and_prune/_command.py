@@ -14,6 +14,7 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
+from ._columns import Column
 from ._errors import InvalidBoxError, SweepAndPruneError
 from ._output import output_file
 from ._pairs import count_pairs, count_pairs_between, find_pairs, iter_chunks, iter_chunks_between
@@ -246,17 +247,29 @@ def _search(options: Options, sources: list[Source]) -> tuple[list[Any], dict[st
     """The sets of boxes and the options of the search."""
     sets = [source.boxes(options.columns, options.format) for source in sources]
     by = [options.by or source.by for source in sources]
-    groups = [source.groups(names) for source, names in zip(sources, by) if names]
-    if groups and len(groups) != len(sources):
+    if any(by) and not all(by):
         raise FileError(f"{sources[by.index([])].name} has no groups, but the other file has: pass --by")
+    groups = _groups(sources, by)
     closed = {options.closed or source.closed for source in sources}
     if len(closed) > 1:
         raise FileError("the formats of the files differ in whether ends belong to boxes: pass --closed")
     search: dict[str, Any] = {"format": options.format, "missing": options.missing, "closed": closed.pop()}
     search["margin"] = options.margin
-    if groups:
+    if any(by):
         search["by"] = groups[0] if len(groups) == 1 else tuple(groups)
     return sets, search
+
+
+def _groups(sources: list[Source], by: Sequence[Sequence[str]]) -> list[list[Column]]:
+    """The columns to group by, of each file."""
+    groups = [[source.group(name) for name in names] for source, names in zip(sources, by)]
+    for at, columns in enumerate(zip(*groups)):
+        kinds = [column.kinds() for column in columns]
+        if {"text"} in kinds and {"numbers"} in kinds:  # in a file of text, numbers are text, too
+            side = kinds.index({"text"})
+            if sources[side].is_text:
+                groups[side][at] = sources[side].group_of_numbers(by[side][at])
+    return groups
 
 
 def _counted(options: Options, sets: list[Any], search: dict[str, Any]) -> int:
@@ -381,9 +394,9 @@ def _histogram(numbers: NDArray[np.int64], most: int = 10, width: int = 40) -> I
 
 
 def _corners(boxes: Any, options: Options) -> NDArray[np.float64]:
-    from ._arrays import box_array
+    from ._arrays import box_rows
 
-    return box_array(boxes, "boxes", 0, options.format).astype(np.float64)
+    return box_rows(boxes, "boxes", np.dtype(np.float64), 0, options.format).astype(np.float64, copy=False)
 
 
 def _draw(options: Options, sources: list[Source]) -> None:

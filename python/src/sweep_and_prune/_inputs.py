@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import re
 import sys
-import warnings
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from ._columns import Column, arrow_array, as_array, exact_numbers, is_rounded, read_column, side_by_side
 
 _AXES = "xyz"
 _FORMATS = ("xyxy", "xywh", "cxcywh")
@@ -35,18 +36,30 @@ def checked_format(format: object) -> str:
     return format
 
 
-def raw_boxes(values: Any, name: str, format: str = "xyxy") -> NDArray[Any]:
-    """Boxes as an array, two-dimensional if they are in a form that is known. Other forms are left to the caller."""
+class Raw(NamedTuple):
+    """Boxes in the type in which the user has them."""
+
+    array: NDArray[Any]
+    """Two-dimensional if the form is known; of Python's own numbers if no other type has them exactly."""
+    is_zoned: bool = False
+    """Whether they are times with a time zone, in UTC here."""
+
+
+def raw_boxes(values: Any, name: str, format: str = "xyxy") -> Raw:
+    """Boxes as an array. Forms that are not known are left to the caller."""
     if type(values) is np.ndarray and values.dtype.kind in "iuf" and values.ndim == 2 and format == "xyxy":
-        return values  # the common case, without further questions
+        return Raw(values)  # the common case, without further questions
+    if isinstance(values, Raw):  # columns of a file, which have been read already
+        return _corners(values, format, name)
     ends = intervals(values)
     if ends is not None:
-        return np.column_stack((np.asarray(ends.left), np.asarray(ends.right)))
+        columns = [read_column(side, name) for side in (ends.left, ends.right)]
+        return Raw(*side_by_side(columns, ["left", "right"], name))
     if hasattr(values, "collect"):  # polars' LazyFrame and its like
         raise TypeError(f"{name} is a {type(values).__name__}, which has no rows yet: pass what its collect() returns")
-    columns = _column_names(values)
-    if columns is not None:
-        return _corners(_from_columns(values, columns, name, format), format, name)
+    names = _column_names(values)
+    if names is not None:
+        return _corners(_from_columns(values, names, name, format), format, name)
     if _is_pair_of_arrays(values):
         raise ValueError(
             f"{name} must be one array with a row for each box, not a {type(values).__name__} of two arrays: "
@@ -56,13 +69,20 @@ def raw_boxes(values: Any, name: str, format: str = "xyxy") -> NDArray[Any]:
     if nested is not None:
         return _corners(nested, format, name)
     array = as_array(values, name)
+    if isinstance(values, (list, tuple)):
+        exact = exact_numbers(values, array)
+        is_ours, array = exact is not array, exact
+    else:
+        is_ours = False
     if array.ndim == 0:
         raise TypeError(f"{name} must be an array with a row for each box, not a {type(values).__name__}")
     if array.dtype.kind == "O" and array.ndim == 1:
         array = _from_geometries(array)
+    if array.dtype.kind == "O" and not is_ours and (array.ndim > 1 or array.size == 0):
+        raise TypeError(f"{name} must be numbers, not of dtype object: convert them to one type of numbers")
     if array.ndim == 3 and array.shape[1] == 2 and 1 <= array.shape[2] <= 3:
         array = array.reshape(len(array), 2 * array.shape[2])  # -1 is not known without boxes
-    return _corners(array, format, name)
+    return _corners(Raw(array), format, name)
 
 
 def intervals(values: Any) -> Any:
@@ -80,30 +100,6 @@ def _is_pair_of_arrays(values: Any) -> bool:
     of_column = ("__arrow_c_array__", "__arrow_c_stream__", "iloc")
     are_columns = all(any(hasattr(part, name) for name in of_column) for part in values)
     return are_columns or (isinstance(values, tuple) and all(hasattr(part, "__array__") for part in values))
-
-
-def as_array(values: Any, name: str) -> NDArray[Any]:
-    """Anything array-like as an array. Tensors are detached and brought to the CPU; masked values are refused."""
-    if type(values) is np.ndarray:
-        return values
-    if isinstance(values, np.ma.MaskedArray):
-        if np.ma.getmaskarray(values).any():
-            if values.dtype.kind != "f":
-                raise ValueError(
-                    f'{name} has masked values: pass values.astype(float) and missing="skip", or drop them'
-                )
-            return np.asarray(values.filled(np.nan))
-        return values.data
-    if hasattr(values, "detach") and hasattr(values, "cpu"):
-        values = values.detach().cpu()
-    elif hasattr(values, "__dlpack__") and not hasattr(values, "__array__") and hasattr(np, "from_dlpack"):
-        return np.from_dlpack(values)
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")  # NumPy up to 1.23 only warns of rows of different lengths
-            return np.asarray(values)
-    except Warning as warning:
-        raise ValueError(f"{name} must be an array: {warning}") from None
 
 
 def _column_names(values: Any) -> list[str] | None:
@@ -126,58 +122,75 @@ def _column_names(values: Any) -> list[str] | None:
     return None
 
 
-def named_column(values: Any, column: str, name: str) -> Any:
-    """A column of a data frame, a table, a dict or a structured array."""
-    is_geometric = hasattr(type(values), "total_bounds")  # its own columns count, not those of its bounds
-    columns = list(getattr(values, "columns", ())) if is_geometric else _column_names(values)
-    if column not in (columns or ()):
-        own = f"the columns of {name} are {', '.join(map(str, columns))}" if columns else f"{name} has no named columns"
-        raise ValueError(f"by is {column!r}, but {own}")
-    return values[column]
+def has_columns(values: Any) -> bool:
+    """Whether it is a data frame, a table, a dict or a structured array, whose columns have names."""
+    return bool(_own_columns(values))
 
 
-def _from_arrow(values: Any, name: str, format: str) -> NDArray[Any] | None:
+def _own_columns(values: Any) -> list[str]:
+    if hasattr(type(values), "total_bounds"):  # the columns of a GeoDataFrame, not those of its bounds
+        return [*map(str, getattr(values, "columns", ()))]
+    return _column_names(values) or []
+
+
+def named_column(values: Any, column: str, name: str) -> Column:
+    """A column of a data frame, a table, a dict or a structured array, which `by` names."""
+    columns = _own_columns(values)
+    if columns.count(column) != 1:
+        fault = f"{name} has several columns of that name: rename or drop one" if column in columns else ""
+        own = f"the columns of {name} are {', '.join(columns)}" if columns else f"{name} has no named columns"
+        raise ValueError(f"by is {column!r}, but {fault or own}")
+    return read_column(values[column], f"column {column}")
+
+
+def _from_arrow(values: Any, name: str, format: str) -> Raw | None:
     """Boxes of an Arrow array of lists of fixed size or of structs; None for anything else."""
-    if not (hasattr(values, "__arrow_c_array__") or hasattr(values, "__arrow_c_stream__")):
+    array = arrow_array(values)
+    if array is None:
         return None
-    try:
-        import pyarrow
-    except ImportError:
-        return None
-    try:
-        array = pyarrow.array(values) if hasattr(values, "__arrow_c_array__") else pyarrow.chunked_array(values)
-    except pyarrow.ArrowException:  # such as a Series of objects
-        return None
-    if isinstance(array, pyarrow.ChunkedArray):
-        array = array.combine_chunks()
-        if isinstance(array, pyarrow.ChunkedArray):  # of no chunks
-            array = pyarrow.concat_arrays([*array.chunks, pyarrow.array([], array.type)])
-    if isinstance(array, pyarrow.ExtensionArray):  # such as geoarrow.box
-        array = array.storage
+    import pyarrow
+
     if pyarrow.types.is_struct(array.type):
         fields = [field.name for field in array.type]
         return _from_columns(dict(zip(fields, array.flatten())), fields, name, format)
     if not pyarrow.types.is_fixed_size_list(array.type):
         return None
     width = array.type.list_size
-    flat = array.values.slice(array.offset * width, len(array) * width).to_numpy(zero_copy_only=False)
-    rows: NDArray[Any] = flat.reshape(len(array), width)
-    if array.null_count:
-        rows = rows.astype(np.float64 if rows.dtype.kind != "f" else rows.dtype)
-        _refuse_rounding(rows, str(array.type.value_type), name)
-        rows[array.is_null().to_numpy(zero_copy_only=False)] = np.nan
-    return rows
+    flat = array.values.slice(array.offset * width, len(array) * width)
+    if array.null_count:  # the items of a list that is null are not null themselves
+        import pyarrow.compute
+
+        flat = pyarrow.compute.if_else(
+            pyarrow.array(np.repeat(array.is_null().to_numpy(zero_copy_only=False), width)), None, flat
+        )
+    column = read_column(flat, name)
+    parts = [
+        Column(column.values[axis::width], None if column.missing is None else column.missing[axis::width])
+        for axis in range(width)
+    ]
+    names = [f"{axis} of {name}" for axis in range(width)]
+    return Raw(*side_by_side([part._replace(is_zoned=column.is_zoned) for part in parts], names, name))
 
 
-def box_columns(columns: list[str], format: str) -> list[str]:
+def box_columns(columns: Sequence[str], format: str) -> list[str]:
     """The columns that are recognized as boxes: min corner and then max corner, or one column of nested boxes."""
-    known = {column.lower().replace("_", ""): column for column in columns}
+    known: dict[str, list[str]] = {}
+    for column in columns:
+        known.setdefault(column.lower().replace("_", ""), []).append(column)
     for first, second in _spellings(format):
         ends = [(part in known) + (other in known) for part, other in zip(first, second)]
         count = ends.count(2)
         if count and ends == [2] * count + [0] * (len(ends) - count):  # no axis has one end only
-            return [known[part] for part in first[:count] + second[:count]]
-    return [known["bbox"]] if "bbox" in known and len(columns) > 1 else []  # as in GeoParquet
+            return [_only(known[part]) for part in first[:count] + second[:count]]
+    return [_only(known["bbox"])] if "bbox" in known and len(columns) > 1 else []  # as in GeoParquet
+
+
+def _only(names: list[str]) -> str:
+    if len(names) > 1:
+        raise ValueError(
+            f"the columns {' and '.join(names)} are both the same coordinate of the boxes: rename or drop all but one"
+        )
+    return names[0]
 
 
 def unknown_columns(columns: list[str], otherwise: str, option: str = 'format="{}"') -> str:
@@ -186,17 +199,17 @@ def unknown_columns(columns: list[str], otherwise: str, option: str = 'format="{
     return f"pass {option.format(formats[0])}" if formats else otherwise
 
 
-def _from_columns(values: Any, columns: list[str], name: str, format: str) -> NDArray[Any]:
+def _from_columns(values: Any, columns: list[str], name: str, format: str) -> Raw:
     if hasattr(type(values), "total_bounds"):  # asked of the class: the frame would compute them
         values = values.bounds
         if isinstance(values, np.ndarray):  # those of an array of geometries
-            return values
+            return Raw(values)
     names = box_columns(columns, format)
     if len(names) > 1:
-        table = np.column_stack([_column(values[column], column) for column in names])
+        raw = Raw(*side_by_side([read_column(values[column], f"column {column}") for column in names], names, name))
         if format == "xyxy" and len(names) == 4 and names[1].lower() == "top":  # the y axis may point up or down
-            table[:, [1, 3]] = np.sort(table[:, [1, 3]], axis=1)
-        return table
+            raw.array[:, [1, 3]] = np.sort(raw.array[:, [1, 3]], axis=1)
+        return raw
     if names:
         nested = _from_arrow(values[names[0]], name, format)
         if nested is not None:
@@ -208,35 +221,6 @@ def _from_columns(values: Any, columns: list[str], name: str, format: str) -> ND
     )
 
 
-def _column(values: Any, column: str) -> NDArray[Any]:
-    array: NDArray[Any] = np.asarray(values)
-    _refuse_rounding(array, str(getattr(values, "dtype", getattr(values, "type", ""))), f"column {column}")
-    if array.dtype.kind == "O":  # nullable integers of pandas
-        if any(isinstance(value, str) for value in array.tolist()):
-            raise TypeError(f"column {column} must have numbers, not text")
-        if hasattr(values, "to_numpy"):
-            try:
-                return np.asarray(values.to_numpy(dtype=np.float64, na_value=np.nan))
-            except TypeError:
-                pass
-        return np.array([np.nan if value is None else value for value in array.tolist()], np.float64)
-    return array
-
-
-def _refuse_rounding(array: NDArray[Any], dtype: str, what: str) -> None:
-    """Refuses integers that floating point has rounded or will round, since values are missing among them."""
-    if array.dtype.kind == "O":
-        greatest: float = max((abs(value) for value in array.tolist() if isinstance(value, int)), default=0)
-    elif array.dtype.kind == "f" and re.match(r"u?int\d", dtype.lower()) and array.size:
-        greatest = np.abs(array).max(initial=0, where=~np.isnan(array))
-    else:
-        return
-    if greatest > 2**53:
-        raise ValueError(
-            f"{what} has integers beyond 2^53, which floating point rounds: pass int64 without missing values"
-        )
-
-
 def _from_geometries(array: NDArray[Any]) -> NDArray[Any]:
     """The bounds of geometries of shapely; those that are empty or None have bounds of NaN."""
     shapely = sys.modules.get("shapely")
@@ -246,14 +230,25 @@ def _from_geometries(array: NDArray[Any]) -> NDArray[Any]:
     return np.asarray(shapely.bounds(array)) if are_geometries.all() and len(array) else array
 
 
-def _corners(array: NDArray[Any], format: str, name: str) -> NDArray[Any]:
+def _corners(raw: Raw, format: str, name: str) -> Raw:
+    """The corners of boxes that are given by a size. Integers are added exactly."""
+    array = raw.array
     if format == "xyxy" or array.ndim != 2 or array.shape[1] % 2:
-        return array
-    if array.dtype.kind not in "iuf":
+        return raw
+    if array.dtype.kind not in "iufO":
         raise TypeError(f"{name} must be numbers, not of dtype {array.dtype}")
-    if array.dtype.kind != "f":
-        array = array.astype(np.float64)
     half = array.shape[1] // 2
+    if format == "xywh" and array.dtype.kind != "f":
+        array = array.astype(object if array.dtype.kind == "O" or is_rounded(array) else np.int64)
+        low, size = array[:, :half], array[:, half:]
+        corners = np.hstack([low, low + size])
+        return Raw(corners if corners.dtype.kind == "O" or is_rounded(corners) else corners.astype(np.float64))
+    if array.dtype.kind == "O" or is_rounded(array):
+        raise ValueError(
+            f'{name} has numbers beyond 2^53, whose halves floating point rounds: pass corners instead of "{format}"'
+        )
+    if array.dtype.kind != "f" or array.dtype.itemsize == 2:  # half precision would round, and overflow
+        array = array.astype(np.float64)
     start, size = array[:, :half], array[:, half:]
     low = start if format == "xywh" else start - size / 2
-    return np.hstack([low, low + size])
+    return Raw(np.hstack([low, low + size]))

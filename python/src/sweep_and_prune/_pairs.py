@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from datetime import timedelta
 from queue import Empty, Queue
@@ -18,6 +18,8 @@ from ._prepare import Prepared, is_zero, prepare
 
 Margin = Union[ArrayLike, timedelta]
 """A distance: a number, one for each axis, or a `timedelta`."""
+Groups = Union[ArrayLike, Sequence[object]]
+"""What boxes are grouped by: a value for each box, or the names of columns."""
 Progress = Callable[[float], object]
 """A function of the share of the work that is done, from 0 to 1."""
 
@@ -38,7 +40,7 @@ def find_pairs(
     format: str = "xyxy",
     closed: str | None = None,
     missing: str = "raise",
-    by: ArrayLike | None = None,
+    by: Groups | None = None,
     margin: Margin = 0,
     progress: Progress | None = None,
 ) -> Pairs:
@@ -107,7 +109,7 @@ def find_pairs_between(
     format: str = "xyxy",
     closed: str | None = None,
     missing: str = "raise",
-    by: tuple[ArrayLike, ArrayLike] | str | None = None,
+    by: Groups | tuple[Groups, Groups] | None = None,
     margin: Margin = 0,
     progress: Progress | None = None,
 ) -> Pairs:
@@ -155,7 +157,7 @@ def count_pairs(
     format: str = "xyxy",
     closed: str | None = None,
     missing: str = "raise",
-    by: ArrayLike | None = None,
+    by: Groups | None = None,
     margin: Margin = 0,
     progress: Progress | None = None,
 ) -> int:
@@ -193,7 +195,7 @@ def count_pairs_between(
     format: str = "xyxy",
     closed: str | None = None,
     missing: str = "raise",
-    by: tuple[ArrayLike, ArrayLike] | str | None = None,
+    by: Groups | tuple[Groups, Groups] | None = None,
     margin: Margin = 0,
     progress: Progress | None = None,
 ) -> int:
@@ -230,7 +232,7 @@ def for_each_chunk(
     format: str = "xyxy",
     closed: str | None = None,
     missing: str = "raise",
-    by: ArrayLike | None = None,
+    by: Groups | None = None,
     margin: Margin = 0,
 ) -> bool:
     """Calls a function with all pairs that `find_pairs` finds, in the same order, one chunk at a time.
@@ -282,7 +284,7 @@ def for_each_chunk_between(
     format: str = "xyxy",
     closed: str | None = None,
     missing: str = "raise",
-    by: tuple[ArrayLike, ArrayLike] | str | None = None,
+    by: Groups | tuple[Groups, Groups] | None = None,
     margin: Margin = 0,
 ) -> bool:
     """Calls a function with all pairs that `find_pairs_between` finds, in the same order, one chunk at a time.
@@ -325,7 +327,7 @@ def iter_chunks(
     format: str = "xyxy",
     closed: str | None = None,
     missing: str = "raise",
-    by: ArrayLike | None = None,
+    by: Groups | None = None,
     margin: Margin = 0,
 ) -> Iterator[Pairs]:
     """Iterates over all pairs that `find_pairs` finds, in the same order, one chunk at a time.
@@ -371,7 +373,7 @@ def iter_chunks_between(
     format: str = "xyxy",
     closed: str | None = None,
     missing: str = "raise",
-    by: tuple[ArrayLike, ArrayLike] | str | None = None,
+    by: Groups | tuple[Groups, Groups] | None = None,
     margin: Margin = 0,
 ) -> Iterator[Pairs]:
     """Iterates over all pairs that `find_pairs_between` finds, in the same order, one chunk at a time.
@@ -727,7 +729,7 @@ def _arguments(prepared: Prepared) -> tuple[Floats, Floats | None]:
 
 
 def _one_set(
-    boxes: ArrayLike, format: str, closed: str | None, missing: str, by: ArrayLike | None, margin: Margin
+    boxes: ArrayLike, format: str, closed: str | None, missing: str, by: Groups | None, margin: Margin
 ) -> Prepared:
     return prepare({"boxes": boxes}, format, closed, missing, None if by is None else [by], margin)
 
@@ -738,13 +740,15 @@ def _two_sets(
     format: str,
     closed: str | None,
     missing: str,
-    by: tuple[ArrayLike, ArrayLike] | str | None,
+    by: Groups | tuple[Groups, Groups] | None,
     margin: Margin,
 ) -> Prepared:
-    if isinstance(by, str):
-        by = (by, by)
+    if isinstance(by, str) or (isinstance(by, list) and by and all(type(one) is str for one in by)):
+        by = (by, by)  # columns of both
     if by is not None and not (isinstance(by, (tuple, list)) and len(by) == 2):
-        raise ValueError("by must be a pair of arrays, one for a and one for b, or the name of a column of both")
+        raise ValueError(
+            "by must be a pair of arrays, one for a and one for b, or the name of a column of both, or a list of names"
+        )
     return prepare({"a": a, "b": b}, format, closed, missing, None if by is None else list(by), margin)
 
 

@@ -3,16 +3,18 @@ integers beyond 2^53 become plain boxes in floating point that have exactly the 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-from datetime import timedelta
+from fractions import Fraction
 from typing import Any, NamedTuple, Optional
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import Floats, box_array, box_rows, checked_closed, numbers, same_width
+from ._arrays import Floats, box_rows, checked_closed, numbers, read_boxes, same_width
+from ._columns import Column, as_array, group_codes, in_one_unit, in_simple_unit, is_rounded, one_type, read_column
 from ._errors import InvalidBoxError
-from ._inputs import as_array, checked_format, named_column
+from ._inputs import Raw, checked_format, has_columns, named_column
 
 _BLOCK = 2**18
 """So many pairs are translated at once: a second array of all of them would take as much memory as the result."""
@@ -56,7 +58,7 @@ def prepare(
     format: str = "xyxy",
     closed: str | None = None,
     missing: str = "raise",
-    by: list[ArrayLike] | None = None,
+    by: list[Any] | None = None,
     margin: object = 0,
 ) -> Prepared:
     """Brings sets of boxes, by the names of their arguments, into the form that is searched."""
@@ -74,19 +76,25 @@ def prepare(
         return Prepared(rows, [None for _ in rows], None)
     is_closed = checked_closed(closed, *sets.values())
     names = list(sets)
-    arrays = [box_array(values, name, 0, format) for name, values in sets.items()]
+    raw = [read_boxes(values, name, 0, format) for name, values in sets.items()]
+    arrays = _one_kind(raw, names)
     if len(arrays) == 2:
+        _refuse_other_coordinates(*sets.values())
         arrays = list(same_width(*arrays))
+    of_group = None if by is None else _groups(by, sets, [len(array) for array in arrays])
     kept: list[Rows] = [None for _ in arrays]
-    counts = [len(array) for array in arrays]
     if missing == "skip":
         arrays, kept = _leave_out([_is_missing(array) for array in arrays], arrays, kept)
+    are_grouped = of_group is None or all(bool((group >= 0).all()) for group in of_group)
     are_whole = all(array.dtype.kind in "iu" for array in arrays) and not has_margin
-    arrays = _comparable(arrays, names)
+    are_times = arrays[0].dtype.kind in "mM"
+    if not are_times:
+        arrays = _comparable(arrays, names)
     is_float = arrays[0].dtype.kind == "f"
-    is_all = all(rows is None for rows in kept)
+    is_all = all(rows is None for rows in kept) and are_grouped
     # Most often, all intervals have a length: then none is inverted or empty.
-    have_length = not is_closed and all(bool((low < high).all()) for array in arrays for low, high in _sides(array))
+    with np.errstate(invalid="ignore"):
+        have_length = not is_closed and all(bool((low < high).all()) for array in arrays for low, high in _sides(array))
     if not (have_length or (is_float and is_closed and is_all and not has_margin)):
         # The compiled part would not see these boxes, or not by these indices.
         for array, name, own in zip(arrays, names, kept):
@@ -94,19 +102,26 @@ def prepare(
     if not (is_closed or have_length):
         # An interval without its ends that begins where it ends is empty, and overlaps nothing.
         arrays, kept = _leave_out([_is_empty(array) for array in arrays], arrays, kept)
+    if of_group is not None and not are_grouped:
+        # A box without a group pairs with none.
+        lost = [(group if own is None else group[own]) < 0 for group, own in zip(of_group, kept)]
+        arrays, kept = _leave_out(lost, arrays, kept)
     if has_margin:
         # Two boxes are within a margin if neither begins more than the margin after the other's end.
-        arrays = [_extended(array, margin) for array in arrays]
+        arrays = _extended(arrays, margin)
+    elif are_times:
+        arrays = _counts(in_one_unit(arrays))
     rows = arrays if is_float else _ranks(arrays)
     if not is_closed:
         rows = [_without_ends(array, are_whole and is_float) for array in rows]
-    groups = None if by is None else _groups(by, sets, counts, kept)
-    if groups is not None and rows[0].shape[1] < 6:
+    if of_group is None:
+        return Prepared(rows, kept, None)
+    groups = [group if own is None else group[own] for group, own in zip(of_group, kept)]
+    if rows[0].shape[1] < 6:
         dtype = np.result_type(*rows)
         dtype = np.dtype(np.float64) if max(map(_most, groups)) >= 2**24 else dtype
-        codes = [group.astype(dtype)[:, None] for group in groups]
-        rows = [_with_axis(boxes, code) for boxes, code in zip(rows, codes)]
-        groups = None
+        rows = [_with_axis(boxes, group.astype(dtype)[:, None]) for boxes, group in zip(rows, groups)]
+        return Prepared(rows, kept, None)
     return Prepared(rows, kept, groups)
 
 
@@ -127,15 +142,10 @@ def _most(array: NDArray[Any]) -> int:
 
 def _is_missing(array: NDArray[Any]) -> NDArray[np.bool_]:
     """The boxes of which a coordinate is missing."""
-    if array.dtype.kind == "f":
-        find: Any = np.isnan
-    elif array.dtype.kind in "mM":
-        find = np.isnat
-    else:
-        return np.zeros(len(array), bool)
     missing = np.zeros(len(array), bool)
-    for column in array.T:
-        missing |= find(column)
+    if array.dtype.kind not in "iu":
+        for column in array.T:
+            missing |= np.asarray(column != column, bool)  # so are NaN and NaT
     return missing
 
 
@@ -151,18 +161,51 @@ def _leave_out(masks: list[NDArray[np.bool_]], arrays: list[Any], kept: list[Row
     return result, rows
 
 
+def _one_kind(raw: list[Raw], names: list[str]) -> list[NDArray[Any]]:
+    """Boxes whose coordinates can be compared: all of them numbers, durations, or times with or without a zone."""
+    filled = [one for one in raw if len(one.array)]
+    for one, name in zip(raw, names):
+        if one.array.dtype.kind not in "iufOmM":
+            raise TypeError(f"{name} must be numbers, not of dtype {one.array.dtype}")
+    if len({_kind(one) for one in filled}) > 1:
+        first, second = map(_kind, raw)
+        raise TypeError(f"{names[0]} has {first} and {names[1]} has {second}, which do not compare: convert one")
+    dtype = filled[0].array.dtype if filled else np.dtype(np.float64)  # the type of a set without boxes does not matter
+    arrays = [one.array if len(one.array) else np.empty(one.array.shape, dtype) for one in raw]
+    return [in_simple_unit(one, name) for one, name in zip(arrays, names)] if dtype.kind in "mM" else arrays
+
+
+def _kind(raw: Raw) -> str:
+    kind = {"M": "times", "m": "durations"}.get(raw.array.dtype.kind, "numbers")
+    return f"{kind} with a time zone" if raw.is_zoned else kind
+
+
+def _refuse_other_coordinates(a: Any, b: Any) -> None:
+    """Refuses geometries of which each set has a coordinate reference system of its own."""
+    systems = [_crs(values) for values in (a, b)]
+    if None not in systems and systems[0] != systems[1]:
+        first, second = (system.to_string() for system in systems)
+        raise ValueError(
+            f"a and b have different coordinate reference systems, {first} and {second}: pass b.to_crs(a.crs)"
+        )
+
+
+def _crs(values: Any) -> Any:
+    return getattr(values, "crs", None) if hasattr(type(values), "total_bounds") else None
+
+
 def _comparable(arrays: list[NDArray[Any]], names: list[str]) -> list[NDArray[Any]]:
-    """Coordinates of one type: times, integers if floating point would round them, or floating point."""
-    kinds = {array.dtype.kind for array in arrays}
-    if kinds <= {"m"} or kinds <= {"M"}:
-        return arrays
-    if kinds <= {"i", "u"} and any(_is_rounded(array) for array in arrays):
-        is_mixed = any(array.dtype.kind == "u" for array in arrays) and len({array.dtype for array in arrays}) > 1
-        # No integer type of NumPy holds both signed and unsigned ones.
-        return [array.astype(object) for array in arrays] if is_mixed else arrays
+    """Coordinates of one type: floating point, or exact numbers if floating point would round them."""
+    if any(array.dtype.kind == "O" or is_rounded(array) for array in arrays):
+        return one_type(arrays)
     rows = [numbers(array, name) for array, name in zip(arrays, names)]
     # If one set is in double precision, both are compared so.
     return [array.astype(np.result_type(*rows), copy=False) for array in rows]
+
+
+def _counts(times: list[NDArray[Any]]) -> list[NDArray[Any]]:
+    """Times as integers, in the unit that they have."""
+    return [array if array.dtype.kind == "O" else array.astype(np.int64) for array in times]
 
 
 def _ranks(arrays: list[NDArray[Any]]) -> list[Floats]:
@@ -176,49 +219,59 @@ def _ranks(arrays: list[NDArray[Any]]) -> list[Floats]:
     return list(np.split(ranks, ends))
 
 
-def _extended(boxes: NDArray[Any], margin: object) -> NDArray[Any]:
-    """Boxes whose max corners are moved by a margin, one for all axes or one for each."""
-    half, kind = boxes.shape[1] // 2, boxes.dtype.kind
-    if kind in "mM":
-        add = np.asarray(margin.to_timedelta64() if hasattr(margin, "to_timedelta64") else margin)
-        if add.dtype.kind == "O" and add.shape == () and isinstance(margin, timedelta):
-            add = np.asarray(np.timedelta64(margin))
-        if add.dtype.kind != "m":
-            raise TypeError(f"margin must be a timedelta for times, not {margin!r}")
-        least: Any = np.zeros((), add.dtype)
+def _extended(arrays: list[NDArray[Any]], margin: object) -> list[NDArray[Any]]:
+    """Comparable boxes whose max corners are moved by a margin, one for all axes or one for each."""
+    half = arrays[0].shape[1] // 2
+    if arrays[0].dtype.kind in "mM":
+        *arrays, add = _counts(in_one_unit([*arrays, _duration(margin)]))
     else:
         add = as_array(margin, "margin")
         if add.dtype.kind not in "iuf":
             raise TypeError(f"margin must be a number, not {margin!r}")
-        least = 0
-        if kind != "f" and not (np.asarray(add) == np.floor(add)).all():
+        add = add.astype(np.float64) if add.dtype.kind == "f" else add
+        if not np.isfinite(add).all():
+            raise ValueError(f"margin is {margin}; it must be finite and 0 or more")
+        if arrays[0].dtype.kind in "iu" and not (add == np.floor(add)).all():
             raise ValueError(f"margin is {margin}; it must be a whole number for integers beyond 2^53")
     if add.shape not in ((), (half,)):
         raise ValueError(f"margin must be a number or {half} of them, one for each axis, not of shape {add.shape}")
-    if not (add >= least).all() or (add.dtype.kind == "f" and np.isinf(add).any()):
+    if (add < 0).any():
         raise ValueError(f"margin is {margin}; it must be finite and 0 or more")
-    ends: Any = boxes[:, half:]
-    if kind == "f":
+    return [np.hstack([boxes[:, :half], _sum(boxes[:, half:], add)]) for boxes in arrays]
+
+
+def _duration(margin: object) -> NDArray[Any]:
+    """A margin for times, or one for each axis."""
+    is_single = np.ndim(margin) == 0  # type: ignore[arg-type]
+    column = read_column([margin] if is_single else margin, "margin")
+    if column.missing is not None:
+        raise ValueError(f"margin is {margin}; it must be finite and 0 or more")
+    if column.kinds() != {"durations"}:
+        raise TypeError(f"margin must be a timedelta for times, not {margin!r}")
+    return column.values[0] if is_single else column.values
+
+
+def _sum(ends: NDArray[Any], add: NDArray[Any]) -> NDArray[Any]:
+    """Ends that are moved: rounded once in floating point, exact elsewhere."""
+    if ends.dtype.kind == "f":
         with np.errstate(over="ignore"):
-            ends = ends + add.astype(boxes.dtype)
-    elif kind in "mM":
-        try:
-            ends = ends + add
-            is_too_large = bool((ends < boxes[:, half:]).any())
-        except OverflowError:  # NumPy 2.5 and later; earlier ones wrap around
-            is_too_large = True
-        if is_too_large:
-            raise ValueError(f"margin is {margin}; it must be so small that the ends of the boxes are times of NumPy")
-    else:
-        # Python's integers do not overflow.
-        ends = ends.astype(object) + np.array([int(one) for one in np.broadcast_to(add, half)], object)
-        return np.hstack([boxes[:, :half].astype(object), ends])
-    return np.hstack([boxes[:, :half], ends])
-
-
-def _is_rounded(array: NDArray[Any]) -> bool:
-    most = 2**53
-    return array.dtype.itemsize == 8 and array.size > 0 and bool(array.max() > most or array.min() < -most)
+            rounded = add.astype(ends.dtype)
+            if np.isinf(rounded).any():  # the sum may be finite, or still infinitely low
+                return np.asarray((ends.astype(np.float64) + add).astype(ends.dtype))
+            return np.asarray(ends + rounded)
+    whole = np.broadcast_to(add, ends.shape[1]).tolist()
+    if ends.dtype.kind == "O":
+        sums = np.empty(ends.shape, object)
+        for axis, number in enumerate(map(Fraction, whole)):
+            sums[:, axis] = [
+                end if end in (math.inf, -math.inf) else Fraction(end) + number for end in ends[:, axis].tolist()
+            ]
+        return sums
+    whole = [int(number) for number in whole]
+    most = np.iinfo(ends.dtype).max
+    if all(int(column.max(initial=0)) + number <= most for column, number in zip(ends.T, whole)):
+        return np.asarray(ends + np.array(whole, ends.dtype))
+    return np.asarray(ends.astype(object) + np.array(whole, object))  # Python's integers do not overflow
 
 
 def _sides(array: NDArray[Any]) -> Iterator[tuple[NDArray[Any], NDArray[Any]]]:
@@ -236,10 +289,11 @@ def _is_empty(array: NDArray[Any]) -> NDArray[np.bool_]:
 
 
 def refuse_inverted(array: NDArray[Any], name: str, kept: Rows) -> None:
-    if all(bool((low <= high).all()) for low, high in _sides(array)):
-        return
     half = array.shape[1] // 2
-    invalid = ~np.asarray(array[:, :half] <= array[:, half:], bool)
+    with np.errstate(invalid="ignore"):  # Python's numbers may have a NaN among them
+        if all(bool((low <= high).all()) for low, high in _sides(array)):
+            return
+        invalid = ~np.asarray(array[:, :half] <= array[:, half:], bool)
     index = int(np.argmax(invalid.any(axis=1)))
     axis = int(np.argmax(invalid[index]))
     low, high = array[index, axis], array[index, axis + half]
@@ -262,31 +316,25 @@ def _without_ends(boxes: Floats, are_whole: bool) -> Floats:
     return shrunk
 
 
-def _groups(by: list[ArrayLike], sets: dict[str, Any], counts: list[int], kept: list[Rows]) -> list[NDArray[np.int64]]:
-    """A number for the group of each box that is kept."""
-    named = [
-        named_column(sets[name], values, name) if isinstance(values, str) else values for name, values in zip(sets, by)
-    ]
-    columns = [as_array(values, "by") for values in named]
-    for column, name, count in zip(columns, sets, counts):
-        if column.shape != (count,):
-            raise ValueError(f"by must have one value for each box of {name}: shape ({count},), not {column.shape}")
-    codes = _codes(columns)
-    split = np.split(codes, np.cumsum([len(column) for column in columns])[:-1])
-    return [group if rows is None else group[rows] for group, rows in zip(split, kept)]
+def _groups(by: list[Any], sets: dict[str, Any], counts: list[int]) -> list[NDArray[np.int64]]:
+    """A number for the group of each box, -1 for none."""
+    sides = [_group_columns(of_set, boxes, name) for of_set, (name, boxes) in zip(by, sets.items())]
+    if len({len(columns) for columns in sides}) > 1:
+        raise ValueError(f"by must have as many columns for a as for b, not {' and '.join(map(str, map(len, sides)))}")
+    for columns, name, count in zip(sides, sets, counts):
+        for column in columns:
+            if len(column.values) != count:
+                has = len(column.values)
+                raise ValueError(f"by must have one value for each box of {name}: shape ({count},), not ({has},)")
+    return group_codes(sides, list(sets))
 
 
-def _codes(columns: list[NDArray[Any]]) -> NDArray[np.int64]:
-    """A number for each value, the same for equal ones."""
-    kinds = {column.dtype.kind for column in columns}
-    if kinds <= set("biuf") or (len(kinds) == 1 and kinds <= set("mM")):
-        return np.unique(np.concatenate(columns), return_inverse=True)[1].reshape(-1).astype(np.int64)
-    # Text and other objects: looking them up is several times faster than sorting them, and they need no order.
-    values = [
-        value if type(value) is not float or value == value else None for column in columns for value in column.tolist()
-    ]
-    known: dict[Any, int] = {}
-    try:
-        return np.fromiter((known.setdefault(value, len(known)) for value in values), np.int64, len(values))
-    except TypeError:
-        raise TypeError("by must have values that can be compared, such as numbers or text") from None
+def _group_columns(by: Any, boxes: Any, name: str) -> list[Column]:
+    """The columns that make the groups of a set: those that are named, or values for each box."""
+    if isinstance(by, str):
+        return [named_column(boxes, by, name)]
+    if isinstance(by, list) and by and all(isinstance(one, Column) for one in by):
+        return by  # those of a file, which have been read already
+    if isinstance(by, (list, tuple)) and by and all(type(one) is str for one in by) and has_columns(boxes):
+        return [named_column(boxes, one, name) for one in by]
+    return [read_column(by, "by")]

@@ -11,7 +11,7 @@ import os
 import sys
 from array import array
 from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from itertools import chain
 from pathlib import Path
 from typing import IO, Any, Protocol
@@ -21,7 +21,8 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
-from ._inputs import box_columns, unknown_columns
+from ._columns import EXACT, Column, read_column, side_by_side
+from ._inputs import Raw, box_columns, unknown_columns
 from ._output import output_file
 
 _MISSING = {"", "na", "n/a", "nan", "null", "none", "."}
@@ -55,12 +56,14 @@ class Source:
     """What the format says about the ends of boxes."""
     by: Sequence[str] = []
     """The columns that the format groups by."""
+    is_bare = False
+    """Whether the columns have no names in the file: the boxes are all of them."""
 
     def __init__(self, name: str, values: Any, labels: dict[str, Any] | None = None) -> None:
         self.name, self.values, self.labels = name, values, labels or {}
 
     def __len__(self) -> int:
-        return len(self.values)
+        return len(self.values.array if isinstance(self.values, Raw) else self.values)
 
     @property
     def columns(self) -> list[str]:
@@ -70,35 +73,60 @@ class Source:
 
     def boxes(self, columns: Sequence[str], format: str) -> Any:
         """The boxes, from columns with these names or else from those that are recognized."""
+        if not columns and self.is_bare:
+            columns = self.columns
         if not columns:
-            if self.columns and not self.box_columns(format) and not isinstance(self.values, np.ndarray):
+            if self.columns and not self.box_columns(format) and not self._are_boxes:
                 way = unknown_columns(self.columns, "choose them by --columns", "--format {}")
                 raise FileError(f"{self.name} has no columns that are known as boxes: {way}; {_listed(self.columns)}")
             return self.values
-        return np.column_stack([np.asarray(self._column(name)) for name in columns])
+        read = [read_column(self._column(name), f"column {name}") for name in columns]
+        return Raw(*side_by_side(read, columns, self.name))
+
+    @property
+    def is_text(self) -> bool:
+        """Whether its values were text."""
+        return isinstance(self.values, _Text)
+
+    @property
+    def _are_boxes(self) -> bool:
+        return isinstance(self.values, (np.ndarray, Raw))
 
     def box_columns(self, format: str) -> list[str]:
         """The columns that are recognized as boxes."""
-        return [] if isinstance(self.values, np.ndarray) else box_columns(self.columns, format)
+        if self.is_bare:
+            return self.columns
+        return [] if self._are_boxes else box_columns(self.columns, format)
 
-    def groups(self, names: Sequence[str]) -> NDArray[Any]:
-        """The values of one column, or tuples of those of several."""
-        columns = [self.label(name) for name in names]
-        if len(columns) == 1:
-            return columns[0]
-        tuples = np.empty(len(self), object)
-        tuples[:] = list(zip(*(column.tolist() for column in columns)))
-        return tuples
+    def group(self, name: str) -> Column:
+        """The values of a column to group by; those of a file of text are text, and what is empty is missing."""
+        if isinstance(self.values, _Text):
+            cells = np.array(self.values.text(name), object)
+            missing = cells == ""
+            return Column(cells, missing if missing.any() else None, name=f"column {name}")
+        return read_column(self._labels(name), f"column {name}")
+
+    def group_of_numbers(self, name: str) -> Column:
+        """The same, if the values of the other file are numbers."""
+        return read_column(self._column(name), f"column {name}")
 
     def label(self, name: str) -> NDArray[Any]:
-        """A column of any type."""
+        """A column of any type, as it is written."""
         if isinstance(self.values, _Text):
             return np.array(self.values.text(name), object)
-        return np.asarray(self.labels[name] if name in self.labels else self._column(name))
+        values = self._labels(name)
+        if getattr(values, "null_count", 0):  # as an array of NumPy, integers would become floating point
+            values = values.to_pylist()
+        return np.asarray(values, object if isinstance(values, list) else None)
+
+    def _labels(self, name: str) -> Any:
+        return self.labels[name] if name in self.labels else self._column(name)
 
     def _column(self, name: str) -> Any:
-        if name not in self.columns or not hasattr(self.values, "columns"):
-            raise FileError(f"{self.name} has no column {name!r}; {_listed(self.columns)}")
+        number = self.columns.count(name)
+        if number != 1 or not hasattr(self.values, "columns"):
+            fault = f"{number} columns {name!r}: rename all but one" if number > 1 else f"no column {name!r}"
+            raise FileError(f"{self.name} has {fault}; {_listed(self.columns)}")
         return self.values[name]
 
     def place(self, index: int) -> str:
@@ -126,26 +154,48 @@ class _Text:
         return self._lines[index]
 
     def text(self, name: str) -> Sequence[str]:
-        if name not in self.columns:
-            raise FileError(f"{self.name} has no column {name!r}; {_listed(self.columns)}")
+        number = self.columns.count(name)
+        if number != 1:
+            fault = f"{number} columns {name!r}: rename all but one" if number > 1 else f"no column {name!r}"
+            raise FileError(f"{self.name} has {fault}; {_listed(self.columns)}")
         return self._cells[self.columns.index(name) :: len(self.columns)]
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         cells = self.text(name)
-        for dtype in (np.int64, np.float64):
-            try:
-                return np.array(list(map(int if dtype is np.int64 else float, cells)), dtype)
-            except (ValueError, OverflowError):
-                pass
-        return np.array([self._number(cell, name, index) for index, cell in enumerate(cells)])
+        if _is_plain("".join(cells)):
+            with suppress(ValueError, OverflowError):
+                return np.array(list(map(int, cells)), np.int64)
+            with suppress(ValueError):
+                floats = np.array(list(map(float, cells)))
+                if not (np.abs(floats) >= EXACT).any():
+                    return floats
+        numbers = [self._number(cell, name, index) for index, cell in enumerate(cells)]
+        has_large = any(type(number) is int and abs(number) > EXACT for number in numbers)
+        return np.array(numbers, object if has_large else np.float64)
 
     def _number(self, cell: str, name: str, index: int) -> float:
         if cell.strip().lower() in _MISSING:
             return math.nan
-        try:
-            return float(cell)
-        except ValueError:
-            raise FileError(f"{self.name}, line {self.line(index)}, column {name}: {cell!r} is not a number") from None
+        number = _number(cell)
+        if number is None or (number in (math.inf, -math.inf) and "inf" not in cell.lower()):
+            what = "is not a number" if number is None else "is too large a number"
+            shown = cell if len(cell) <= 60 else f"{cell[:57]}..."
+            raise FileError(f"{self.name}, line {self.line(index)}, column {name}: {shown!r} {what}")
+        return number
+
+
+def _is_plain(text: str) -> bool:
+    """Whether Python reads numbers as others do: not as in 1_000, nor with digits of other scripts."""
+    return "_" not in text and text.isascii()
+
+
+def _number(cell: str) -> float | None:
+    """A number as it is written, or None if it is none."""
+    if _is_plain(cell):
+        for kind in (int, float):
+            with suppress(ValueError):
+                return kind(cell)
+    return None
 
 
 def read(path: str) -> Source:
@@ -183,14 +233,25 @@ def _read_text(name: str, file: IO[str], suffix: str) -> Source:
         if delimiter not in first and " " in first.strip():
             delimiter = " "
         text = chain([first] if first else [], text)
-    reader = csv.reader(text, delimiter=delimiter, skipinitialspace=True)
-    rows = (row for row in reader if row and not (is_bed and _is_comment(row)))
+    # BED has no quotes: one in a name is a part of it.
+    quotes: Any = {"quoting": csv.QUOTE_NONE} if is_bed else {"strict": True}
+    reader = csv.reader(text, delimiter=delimiter, skipinitialspace=True, **quotes)
+    begun = 1
+
+    def rows_of_file() -> Iterator[list[str]]:
+        nonlocal begun
+        for row in reader:
+            begun = reader.line_num + 1
+            if row and not (is_bed and _is_comment(row)):
+                yield row
+
+    rows = rows_of_file()
     # All cells are in one list: with a list for each row, reading takes twice as long.
     cells: list[str] = []
     lines = array("Q")
     try:
         first_row = next(rows, [])
-        is_bare = not is_bed and all(map(_is_number, first_row))
+        is_bare = not is_bed and all(_number(cell) is not None for cell in first_row)
         if is_bed:
             columns = _BED[: len(first_row) or 3]
         else:
@@ -200,20 +261,29 @@ def _read_text(name: str, file: IO[str], suffix: str) -> Source:
                 raise FileError(f"{name}, line {reader.line_num}: chrom, start and end are expected, separated by tabs")
             if is_bed:  # only these three are in each row
                 row += [""] * (len(columns) - len(row))
-            if len(row) < len(columns):
+            if len(row) < len(columns) or (not is_bed and any(row[len(columns) :])):
                 raise FileError(
                     f"{name}, line {reader.line_num}: it has {len(row)} columns, where {len(columns)} are expected"
                 )
             cells += row[: len(columns)]
             lines.append(reader.line_num)
     except csv.Error as error:
-        raise FileError(f"{name}, line {reader.line_num}: {error}") from None
+        raise FileError(f"{name}, line {begun}: {_fault(error)}") from None
     table = _Text(name, columns, cells, lines)
     if is_bed:
         source = Source(name, table)
         source.closed, source.by = "left", ["chrom"]
         return source
-    return Source(name, np.column_stack([table[column] for column in columns]) if is_bare else table)
+    source = Source(name, table)
+    source.is_bare = is_bare
+    return source
+
+
+def _fault(error: csv.Error) -> str:
+    """What is wrong with a row of a file of text."""
+    if "unexpected end" in str(error) or "field larger" in str(error):
+        return "a quote opens in this row and is not closed"
+    return f"it has a quote in the wrong place ({error})" if "expected after" in str(error) else str(error)
 
 
 def _is_comment(row: list[str]) -> bool:
@@ -229,14 +299,6 @@ def _bare_columns(name: str, row: list[str]) -> list[str]:
     if len(row) not in corners:
         raise FileError(f"{name} has no header and {len(row)} columns; boxes have 2, 4 or 6")
     return corners[len(row)].split()
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True
 
 
 def _read_numpy(path: str) -> NDArray[Any]:
@@ -269,10 +331,14 @@ def _read_geojson(path: str) -> Source:
             bounds.append(_bounds(feature.get("geometry")))
         except (AttributeError, IndexError, TypeError, ValueError):
             raise FileError(f"{path}, feature {index} (the first is 0) is not valid GeoJSON") from None
-    boxes = np.array(bounds, np.float64).reshape(-1, 4)
+    names = ["minx", "miny", "maxx", "maxy"]
+    ends = [read_column([of_shape[end] for of_shape in bounds], name) for end, name in enumerate(names)]
+    boxes = Raw(*side_by_side(ends, names, path))
     properties = [feature.get("properties") or {} for feature in features]
-    names = sorted({name for row in properties for name in row})
-    labels = {name: np.array([row.get(name) for row in properties], object) for name in names}
+    labels = {
+        name: np.array([row.get(name) for row in properties], object)
+        for name in sorted({name for row in properties for name in row})
+    }
     labels.setdefault("id", np.array([feature.get("id") for feature in features], object))
     return Source(path, boxes, labels)
 
@@ -282,6 +348,8 @@ def _bounds(geometry: Any) -> tuple[float, float, float, float]:
     if not points:
         return (math.nan,) * 4
     x, y = zip(*points)
+    if any(type(number) is bool or number != number for number in chain(x, y)):
+        raise ValueError("coordinates are numbers")
     return min(x), min(y), max(x), max(y)
 
 
@@ -309,9 +377,10 @@ def _read_arrow(path: str, suffix: str) -> Source:
         else:
             import pyarrow.parquet
 
-            rows = pyarrow.parquet.ParquetFile(path).metadata.num_rows
+            parquet = pyarrow.parquet.ParquetFile(path)
+            rows = parquet.metadata.num_rows
             check_memory(path, f"{rows} boxes", 4 * rows * _BYTES)
-            table = pyarrow.parquet.read_table(path)
+            table = parquet.read()
     except arrow.ArrowInvalid as error:
         raise FileError(f"{path} cannot be read: {error}") from None
     geo = (table.schema.metadata or {}).get(b"geo")
@@ -322,7 +391,7 @@ def _read_arrow(path: str, suffix: str) -> Source:
             raise FileError(f"{path} has geometries: pip install 'sweep-and-prune[join]'") from None
         column = json.loads(geo)["primary_column"]
         shapes = geopandas.GeoDataFrame.from_arrow(table.select([column])).geometry
-        others = {name: np.asarray(table[name]) for name in table.column_names if name != column}
+        others = {name: table[name] for name in table.column_names if name != column}
         return Source(path, shapes.bounds.to_numpy(), others)
     return Source(path, table)
 

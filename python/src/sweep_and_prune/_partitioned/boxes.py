@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._arrays import box_array
+from .._arrays import read_boxes
+from .._columns import is_rounded, read_column, side_by_side
 from .._errors import InvalidBoxError
 from .._inputs import box_columns, unknown_columns
 from .._prepare import prepare, refuse_inverted
@@ -20,7 +21,6 @@ from .dataset import DatasetError
 from .search import Boxes
 
 _READ_BUFFER = 2**20
-_EXACT = 2**53
 
 
 class InvalidRowError(InvalidBoxError):
@@ -82,23 +82,12 @@ class Form(NamedTuple):
             first_index: its number in the whole set.
             argument: the name of the set.
         """
-        if self.kind == "chosen":
-            values: Any = np.column_stack([np.asarray(table[name]) for name in self.columns])
-        elif self.kind == "nested":
-            values = table[self.columns[0]]
-        elif self.kind == "geometry":
-            import shapely
-
-            shapes = table[self.columns[0]]
-            shapes = (
-                shapely.from_wkb(np.asarray(shapes, object)) if not hasattr(shapes, "bounds") else np.asarray(shapes)
-            )
-            values = np.asarray(shapely.bounds(shapes), np.float64).reshape(-1, 4)
-        else:
-            values = table
-        array = box_array(values, argument, 0, self.format)
-        if array.dtype.kind in "iu":
-            if array.dtype.itemsize == 8 and array.size and (array.max() > _EXACT or array.min() < -_EXACT):
+        try:
+            array = self._boxes(table, argument)
+        except TypeError as error:
+            raise DatasetError(f"{place}: {error}") from None
+        if array.dtype.kind in "iuO":
+            if array.dtype.kind == "O" or is_rounded(array):
                 raise DatasetError(
                     f"{place}: coordinates beyond 2^53 are not exact as float64; subtract an offset first"
                 )
@@ -124,6 +113,25 @@ class Form(NamedTuple):
             return Boxes((np.arange(len(rows)) if kept is None else kept) + np.int64(first_index), rows)
         ids = self._ids(table, place, first_row)
         return Boxes(ids if kept is None else ids[kept], rows)
+
+    def _boxes(self, table: Any, argument: str) -> NDArray[Any]:
+        """The boxes of a table or an array, in the type that they have there."""
+        if self.kind == "chosen":
+            columns = [read_column(table[name], f"column {name}") for name in self.columns]
+            values, _ = side_by_side(columns, self.columns, argument)
+        elif self.kind == "nested":
+            values = table[self.columns[0]]
+        elif self.kind == "geometry":
+            import shapely
+
+            shapes = table[self.columns[0]]
+            shapes = (
+                shapely.from_wkb(np.asarray(shapes, object)) if not hasattr(shapes, "bounds") else np.asarray(shapes)
+            )
+            values = np.asarray(shapely.bounds(shapes), np.float64).reshape(-1, 4)
+        else:
+            values = table
+        return read_boxes(values, argument, 0, self.format).array
 
     def _ids(self, table: Any, place: str, first_row: int) -> NDArray[Any]:
         column = table[self.ids]
@@ -284,8 +292,10 @@ def form_of_files(
     id_types = set()
     for file, other in zip(files, schemas):
         for name in names + ([ids] if ids is not None else []):
-            if name not in other.names:
-                raise DatasetError(f"{file.path} has no column {name!r}; its columns are {', '.join(other.names)}")
+            number = other.names.count(name)
+            if number != 1:
+                fault = f"{number} columns {name!r}: rename all but one" if number else f"no column {name!r}"
+                raise DatasetError(f"{file.path} has {fault}; its columns are {', '.join(other.names)}")
         for name in names:
             of_name = other.field(name).type
             parts = [field.type for field in of_name] if pyarrow.types.is_struct(of_name) else [of_name]
