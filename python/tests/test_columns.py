@@ -258,6 +258,31 @@ def test_two_columns_for_one_coordinate_are_refused() -> None:
         sap.find_pairs(pandas.concat([twice, twice["kind"]], axis=1), by="kind")
 
 
+def test_groups_of_joins_are_exact_and_missing_ones_match_nothing() -> None:
+    pandas = pytest.importorskip("pandas")
+    rows = {"start": [0, 0], "end": [1, 1]}
+    frames = [pandas.DataFrame({**rows, "kind": [2**63 - 1, 1]}).astype({"kind": kind}) for kind in ("int64", "uint64")]
+    assert len(sap.join(*frames, by="kind")) == 2
+    frames[1]["kind"] = np.array([2**63, 1], np.uint64)  # as floating point, 2^63 - 1 is 2^63
+    assert sap.join(*frames, by="kind").index.tolist() == [1]
+    gaps = [pandas.DataFrame({**rows, "kind": ["a", None]}) for _ in "lr"]
+    assert sap.join(*gaps, by="kind").index.tolist() == [0]
+    assert sap.join(*gaps, how="left", by="kind")["index_right"].isna().tolist() == [False, True]
+    with pytest.raises(TypeError, match="column kind has numbers in left, but text in right"):
+        sap.join(frames[0], gaps[0], by="kind")
+    polars = pytest.importorskip("polars")
+    of_polars = [polars.from_pandas(frame) for frame in frames]
+    assert len(sap.join(*of_polars, by="kind")) == 1
+    assert len(sap.join(*(polars.from_pandas(frame) for frame in gaps), by="kind")) == 1
+    enums = [
+        polars.DataFrame({**rows, "kind": polars.Series(["a", "b"], dtype=polars.Enum(list(names)))})
+        for names in ("abc", "bad")
+    ]
+    assert len(sap.join(*enums, by="kind")) == 2
+    with pytest.raises(TypeError, match="column kind has numbers in left, but text in right"):
+        sap.join(of_polars[0], enums[0], by="kind")
+
+
 # Files.
 
 

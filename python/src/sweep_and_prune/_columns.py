@@ -121,7 +121,7 @@ def exact_numbers(values: Any, array: NDArray[Any]) -> NDArray[Any]:
 
 
 def arrow_array(values: Any) -> Any:
-    """An array of pyarrow, in one piece, with what an extension type stores; None for anything else."""
+    """An array of pyarrow that is not chunked, with what an extension type stores; None for anything else."""
     if not (hasattr(values, "__arrow_c_array__") or hasattr(values, "__arrow_c_stream__")):
         return None
     try:

@@ -71,14 +71,14 @@ def raw_boxes(values: Any, name: str, format: str = "xyxy") -> Raw:
     array = as_array(values, name)
     if isinstance(values, (list, tuple)):
         exact = exact_numbers(values, array)
-        is_ours, array = exact is not array, exact
+        is_exact, array = exact is not array, exact
     else:
-        is_ours = False
+        is_exact = False
     if array.ndim == 0:
         raise TypeError(f"{name} must be an array with a row for each box, not a {type(values).__name__}")
     if array.dtype.kind == "O" and array.ndim == 1:
         array = _from_geometries(array)
-    if array.dtype.kind == "O" and not is_ours and (array.ndim > 1 or array.size == 0):
+    if array.dtype.kind == "O" and not is_exact and (array.ndim > 1 or array.size == 0):
         raise TypeError(f"{name} must be numbers, not of dtype object: convert them to one type of numbers")
     if array.ndim == 3 and array.shape[1] == 2 and 1 <= array.shape[2] <= 3:
         array = array.reshape(len(array), 2 * array.shape[2])  # -1 is not known without boxes

@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import thread_count
+from ._columns import group_codes
+from ._inputs import named_column
 from ._native import in_order
 from ._pairs import Progress, find_pairs_between
 
@@ -33,6 +35,7 @@ _BLOCK = 20_000
 """So many candidates are tested at once: few enough for the cache, and enough for each thread."""
 
 Indices = NDArray[np.int64]
+Groups = NDArray[np.float64]
 
 
 def join(
@@ -73,7 +76,7 @@ def join(
         distance: with `"dwithin"`: the largest distance, in the units of the coordinates; a number, or one for each
             left row. With boxes it is the `margin` of `find_pairs_between`.
         by: names of columns that both frames have: only rows with equal values match, and the result has these
-            columns once. (`geopandas.sjoin` calls this `on_attribute`.)
+            columns once. A missing value equals none. (`geopandas.sjoin` calls this `on_attribute`.)
         lsuffix: what is added, after `_`, to names of left columns that the right frame has too.
         rsuffix: the same for right columns, and for the column that has the index of the right frame.
         format: of boxes without geometries: `"xyxy"`, `"xywh"` or `"cxcywh"`.
@@ -114,7 +117,7 @@ def join(
         if not isinstance(suffix, str):
             raise TypeError(f"{name} must be a string, not {suffix!r}")
     columns = [] if by is None else [by] if isinstance(by, str) else list(by)
-    groups = _groups(left, right, columns, is_polars)
+    groups = _groups(left, right, columns)
     if has_geometries[0]:
         _check_distance(predicate, distance)
         if left.crs is not None and right.crs is not None and left.crs != right.crs:
@@ -159,25 +162,19 @@ def _check_distance(predicate: str, distance: ArrayLike | None) -> None:
         raise ValueError('distance must be passed with predicate="dwithin", and only with it')
 
 
-def _groups(left: Any, right: Any, columns: list[str], is_polars: bool) -> tuple[Indices, Indices] | None:
+def _groups(left: Any, right: Any, columns: list[str]) -> tuple[Groups, Groups] | None:
     """A number for the values of each row in some columns."""
     if not columns:
         return None
-    for name, frame in (("left", left), ("right", right)):
+    named = ("left", left), ("right", right)
+    for name, frame in named:
         absent = [column for column in columns if column not in frame.columns]
         if absent:
             raise ValueError(f"by names {absent[0]!r}, which is not a column of {name}")
-    if is_polars:
-        import polars
-
-        values = polars.concat([frame.select(columns) for frame in (left, right)], how="vertical_relaxed")
-        ranks = values.select(polars.struct(columns).rank("dense")).to_series().to_numpy()
-        return ranks[: len(left)], ranks[len(left) :]
-    import pandas
-
-    both = pandas.concat([pandas.DataFrame(frame)[columns] for frame in (left, right)], ignore_index=True)
-    numbers = both.groupby(columns, sort=False, dropna=False).ngroup().to_numpy()
-    return numbers[: len(left)], numbers[len(left) :]
+    sides = [[named_column(frame, column, name) for column in columns] for name, frame in named]
+    left_codes, right_codes = group_codes(sides, ["left", "right"])
+    # A row whose value is missing matches none.
+    return np.where(left_codes < 0, np.nan, left_codes), np.where(right_codes < 0, np.nan, right_codes)
 
 
 def _of_geometries(
@@ -185,7 +182,7 @@ def _of_geometries(
     right: Any,
     predicate: str,
     distance: ArrayLike | None,
-    groups: tuple[Indices, Indices] | None,
+    groups: tuple[Groups, Groups] | None,
     threads: int | None,
     progress: Progress | None,
 ) -> tuple[Indices, Indices]:

@@ -68,7 +68,8 @@ def find_pairs(
             `"neither"` (touching boxes do not overlap, and empty boxes overlap nothing). By default, an
             `IntervalIndex` decides.
         missing: `"raise"` refuses a box with a NaN, `"skip"` leaves it out: it has no pairs.
-        by: `(n,)` values of any type, or the name of a column of a data frame: only boxes with equal values pair.
+        by: only boxes with equal values pair: `(n,)` values of any type; or of a data frame the name of a column, or a
+            list of names. A box whose value is missing pairs with none.
         margin: finds boxes within this distance of each other on each axis, too. One number for all axes, or D of
             them; a `timedelta` for times. On each axis `min <= other max + margin` holds for both boxes, where the
             sum is rounded to the precision of the boxes.
@@ -126,8 +127,8 @@ def find_pairs_between(
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
-        by: a pair of arrays, `(n,)` and `(k,)`, or the name of a column of both data frames: only boxes with equal
-            values pair.
+        by: only boxes with equal values pair: a pair of arrays, `(n,)` and `(k,)`; or of data frames the name of a
+            column of both, or a list of names, or a pair of these. A box whose value is missing pairs with none.
         margin: finds boxes within this distance on each axis, too.
         progress: called with the share of the work that is done, from 0 to 1.
 
