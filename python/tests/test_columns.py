@@ -267,7 +267,7 @@ def test_groups_of_joins_are_exact_and_missing_ones_match_nothing() -> None:
     assert sap.join(*frames, by="kind").index.tolist() == [1]
     gaps = [pandas.DataFrame({**rows, "kind": ["a", None]}) for _ in "lr"]
     assert sap.join(*gaps, by="kind").index.tolist() == [0]
-    assert sap.join(*gaps, how="left", by="kind")["index_right"].isna().tolist() == [False, True]
+    assert sap.join(gaps[0], gaps[1], "left", by="kind")["index_right"].isna().tolist() == [False, True]
     with pytest.raises(TypeError, match="column kind has numbers in left, but text in right"):
         sap.join(frames[0], gaps[0], by="kind")
     polars = pytest.importorskip("polars")
