@@ -136,7 +136,7 @@ def kill_all(case: Case, wanted: str) -> str:
 
 def fill_disk(case: Case, wanted: str) -> str:
     """No file may become larger than a limit; `test_dask_long.py` fills a disk that is really small."""
-    size = int(10 ** case.some.uniform(2, 5.7))
+    size = int(10 ** case.some.uniform(2, 6.5))
     status, said = case.ended(case.start(case.some.choice([0, 1]), size))
     assert said == wanted if status == 0 else ("the disk is full" in said or "too large" in said), said
     assert case.out.exists() == (status == 0)
