@@ -167,6 +167,41 @@ def test_times_of_different_units_do_not_wrap_around() -> None:
     assert sap.count_pairs_between(table, table) == 1
 
 
+def test_times_with_a_zone_are_exact_in_every_unit() -> None:
+    pandas = pytest.importorskip("pandas")
+    steps = pandas.date_range("2020-01-01", periods=5, freq="100ns", tz="Europe/Berlin")
+    close = pandas.DataFrame({"start": steps, "end": steps + pandas.Timedelta(99, "ns")})
+    assert sap.count_pairs(close) == 0 and len(sap.join(close, close)) == 5
+    assert sap.count_pairs(close, margin=pandas.Timedelta(1, "ns")) == 4
+    days = pandas.DataFrame({"start": pandas.to_datetime(["2020-01-01", "2020-01-05"], utc=True)})
+    days["end"] = days["start"] + pandas.Timedelta(1, "D")
+    for unit in ("s", "ms", "us", "ns"):
+        other = days.astype(dict.fromkeys(("start", "end"), f"datetime64[{unit}, Asia/Tokyo]"))
+        assert between(days, other) == [[0, 0], [1, 1]] and len(sap.join(days, other)) == 2
+        mixed = days.assign(start=other["start"])
+        assert between(mixed, other) == [[0, 0], [1, 1]]
+    naive = days.apply(lambda column: column.dt.tz_localize(None))
+    with pytest.raises(TypeError, match="a has times with a time zone and b has times, which do not compare"):
+        sap.find_pairs_between(days, naive)
+    index = pandas.IntervalIndex.from_arrays(days["start"], days["end"], closed="left")
+    assert between(index, days, closed="both") == [[0, 0], [1, 1]]
+    dates: Any = {
+        "start": [dt.date(2020, 1, 1), dt.date(2020, 1, 5)],
+        "end": [dt.date(2020, 1, 2), dt.date(2020, 1, 6)],
+    }
+    assert between(dates, naive) == [[0, 0], [1, 1]]
+
+
+def test_geometries_of_different_coordinates_are_refused() -> None:
+    geopandas = pytest.importorskip("geopandas")
+    a = geopandas.GeoSeries.from_xy([0], [0], crs=4326)
+    with pytest.raises(
+        ValueError, match="a and b have different coordinate reference systems, EPSG:4326 and EPSG:3857"
+    ):
+        sap.find_pairs_between(a, a.to_crs(3857))
+    assert sap.count_pairs_between(a, a) == sap.count_pairs_between(a, geopandas.GeoSeries.from_xy([0], [0])) == 1
+
+
 def test_durations_are_boxes_and_months_are_not() -> None:
     hours = np.array([[0, 1], [2, 3]], "m8[h]")
     assert sap.count_pairs(hours) == 0
