@@ -89,6 +89,19 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
         Ok(buffers.store.pairs())
     }
 
+    /// Finds the pairs as [`pairs`](Self::pairs) does, or gives up as soon as it has found more than so
+    /// many, but for a buffer on each thread; then there are none.
+    pub(crate) fn pairs_up_to(self, most: usize) -> Result<Option<&'f [[u32; 2]]>, Error> {
+        let Self { buffers, boxes, against, .. } = self;
+        buffers.store.most = most;
+        let result = store(buffers, boxes, against, None);
+        buffers.store.most = usize::MAX;
+        match result {
+            Err(Error::Cancelled) => Ok(None),
+            result => result.map(|()| Some(buffers.store.pairs())),
+        }
+    }
+
     /// Counts the pairs without storing them.
     ///
     /// # Errors

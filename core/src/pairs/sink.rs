@@ -40,6 +40,12 @@ pub(super) trait Sink {
     /// [`Stop::Cancelled`], to end the search.
     fn take(&mut self, count: usize) -> Result<(), Stop>;
 
+    /// How many pairs it wants at most. A few more may be found.
+    #[cfg(feature = "parallel")]
+    fn most(&self) -> usize {
+        usize::MAX
+    }
+
     /// Whether it takes chunks: not if the pairs must come in order, one by one.
     #[cfg(feature = "parallel")]
     const TAKES_CHUNKS: bool = true;
@@ -97,13 +103,27 @@ pub(super) struct Gathered<C> {
 }
 
 /// Stores pairs. The buffer is longer than what it holds, and only grows.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Store {
     buffer: Vec<[u32; 2]>,
     len: usize,
+    /// With more pairs, the search ends.
+    pub most: usize,
     /// Chunks of earlier calls, kept for their buffers.
     #[cfg(feature = "parallel")]
     spare: Vec<Store>,
+}
+
+impl Default for Store {
+    fn default() -> Self {
+        Self {
+            buffer: Vec::new(),
+            len: 0,
+            most: usize::MAX,
+            #[cfg(feature = "parallel")]
+            spare: Vec::new(),
+        }
+    }
 }
 
 impl Store {
@@ -140,6 +160,9 @@ impl Sink for Store {
 
     #[inline]
     fn spare(&mut self) -> Result<&mut [[u32; 2]], Stop> {
+        if self.len > self.most {
+            return Err(Stop::Cancelled);
+        }
         if self.buffer.len() - self.len < PAD {
             let size = 2 * self.buffer.len() + 4 * PAD;
             grow_to(&mut self.buffer, size, [0; 2])?;
@@ -152,6 +175,11 @@ impl Sink for Store {
     fn take(&mut self, count: usize) -> Result<(), Stop> {
         self.len += count;
         Ok(())
+    }
+
+    #[cfg(feature = "parallel")]
+    fn most(&self) -> usize {
+        self.most.saturating_sub(self.len)
     }
 
     #[cfg(feature = "parallel")]

@@ -16,6 +16,8 @@ pub struct Finder<const D: usize, T: Scalar> {
     boxes: Vec<Aabb<D, T>>,
     indices: Vec<u32>,
     pairs: Vec<[u32; 2]>,
+    /// How many pairs the last search found, before filters.
+    pub found: usize,
 }
 
 impl<const D: usize, T: Scalar> Finder<D, T> {
@@ -28,7 +30,7 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
 
     /// The pairs of overlapping boxes of a table, as indices, of bodies that have one of the flags of
     /// `any` and none of `none`, as far as `allows` does. The boxes are valid. Pairs of two bodies that are
-    /// and were static are not even searched.
+    /// and were static are not even searched. `None` if there are more than `most`, before filters.
     #[inline(never)]
     pub fn find(
         &mut self,
@@ -36,12 +38,15 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         bodies: &Bodies<D, T>,
         [any, none]: [u16; 2],
         allows: &dyn Fn([u32; 2]) -> bool,
-    ) -> &[[u32; 2]] {
+        most: usize,
+    ) -> Option<&[[u32; 2]]> {
         let Self { finder, boxes, indices, pairs, .. } = self;
         let flags = &bodies.slots.flags;
         let takes_part = |flags: u16| (flags & any != 0) & (flags & none == 0);
         if !bodies.any_filter && flags.iter().all(|&flags| takes_part(flags)) {
-            return found(finder.find(table));
+            let pairs = found(finder.search(table).pairs_up_to(most))?;
+            self.found = pairs.len();
+            return Some(pairs);
         }
         let all = || (0..flags.len() as u32).filter(|&index| takes_part(flags[index as usize]));
         let is_static = |&index: &u32| {
@@ -56,15 +61,18 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         let (movable_boxes, static_boxes) = boxes.split_at(movable);
         let (movable, fixed) = indices.split_at(movable);
         pairs.clear();
-        let found_pairs = found(finder.find(movable_boxes));
-        pairs.extend(found_pairs.iter().map(|pair| pair.map(|at| movable[at as usize])));
-        let found_pairs = found(finder.find_between(movable_boxes, static_boxes));
-        pairs.extend(found_pairs.iter().map(|&[a, b]| {
+        let within = found(finder.search(movable_boxes).pairs_up_to(most))?;
+        self.found = within.len();
+        pairs.extend(within.iter().map(|pair| pair.map(|at| movable[at as usize])));
+        let between = finder.search(movable_boxes).against(static_boxes);
+        let between = found(between.pairs_up_to(most.saturating_sub(self.found)))?;
+        self.found += between.len();
+        pairs.extend(between.iter().map(|&[a, b]| {
             let (a, b) = (movable[a as usize], fixed[b as usize]);
             [a.min(b), a.max(b)]
         }));
         pairs.retain(|&pair| allows(pair));
-        pairs
+        Some(pairs)
     }
 }
 
@@ -77,6 +85,6 @@ impl<const D: usize, T: Scalar> Clone for Finder<D, T> {
 
 /// What the finder found. Its boxes are valid, so it fails only if memory is exhausted. A broad phase
 /// that lacks pairs would be wrong, so then the program ends, as when a collection cannot grow.
-fn found(result: Result<&[[u32; 2]], Error>) -> &[[u32; 2]] {
+fn found<P>(result: Result<P, Error>) -> P {
     result.unwrap_or_else(|_| handle_alloc_error(Layout::new::<[u32; 2]>()))
 }

@@ -45,6 +45,8 @@ struct State<'a, C> {
     /// Spare capacity for them and for those behind.
     free: &'a mut [[u32; 2]],
     written: usize,
+    /// How many more pairs are wanted.
+    wanted: usize,
     /// Empty chunks: the last was used last, and may be in a cache.
     spare: Vec<C>,
     /// How many of them were never needed.
@@ -63,8 +65,8 @@ impl<'a, C: Chunk> Gather<'a, C> {
     pub fn new<O: Sink<Chunk = C>>(sink: &'a mut O, jobs: usize) -> Self {
         let found = || Found { chunks: VecDeque::new(), is_complete: false };
         let (spare, jobs) = (sink.spare_chunks(), repeat_with(found).take(jobs).collect());
-        let unused = spare.len();
-        let state = State { jobs, next: 0, free: sink.free(), written: 0, spare, unused };
+        let (unused, wanted) = (spare.len(), sink.most());
+        let state = State { jobs, next: 0, free: sink.free(), written: 0, wanted, spare, unused };
         Self { state: Mutex::new(state), begun: AtomicUsize::new(0), failed: OnceLock::new() }
     }
 
@@ -112,7 +114,11 @@ impl<'a, C: Chunk> Gather<'a, C> {
         while let Ok(mut state) = self.state.lock() {
             if let Some(chunks) = chunks.take() {
                 state.jobs[job].chunks.try_reserve(chunks.size_hint().0)?;
-                state.jobs[job].chunks.extend(chunks);
+                for chunk in chunks {
+                    let wanted = state.wanted.checked_sub(chunk.pairs().len());
+                    state.wanted = wanted.ok_or(Stop::Cancelled)?;
+                    state.jobs[job].chunks.push_back(chunk);
+                }
                 state.jobs[job].is_complete = is_complete;
             }
             state.spare.extend(copied.take());
@@ -191,6 +197,10 @@ impl<C: Chunk> Sink for Job<'_, '_, C> {
     #[inline]
     fn take(&mut self, count: usize) -> Result<(), Stop> {
         self.chunk.take(count)
+    }
+
+    fn most(&self) -> usize {
+        self.gather.state.lock().map_or(usize::MAX, |state| state.wanted)
     }
 
     fn spare_chunks(&mut self) -> Vec<C> {

@@ -8,6 +8,7 @@
 use alloc::vec::Vec;
 
 use super::sort::PairSorter;
+use crate::memory::reserve;
 use crate::world::bodies::{Slots, flag};
 
 #[derive(Clone, Debug, Default)]
@@ -44,6 +45,13 @@ impl Candidates {
             self.pairs.append(&mut self.sorted);
             self.live.resize(self.pairs.len(), true);
         }
+    }
+
+    /// Makes these pairs the candidates, not yet flagged.
+    pub fn replace(&mut self, pairs: &[[u32; 2]]) {
+        self.clear();
+        reserve(&mut self.pairs, pairs.len());
+        self.pairs.extend_from_slice(pairs);
     }
 
     /// Drops all candidates of the unsorted lists.

@@ -36,23 +36,78 @@ pub fn refit_pays(growth: f64, searches: usize, bodies: usize) -> bool {
     (growth - 1.0) * (searches * LARGE_LEAVES) as f64 <= bodies as f64
 }
 
+/// How many candidates there may be for each body and for each pair of boxes that overlap. In drift and teleport of
+/// `scenes/` there are 2.0 to 2.7 for each pair. With more of them fat AABBs do not pay, and could take time and
+/// memory without a limit.
+const MOST_CANDIDATES: [f64; 2] = [0.5, 3.0];
+/// How many leaves and bodies of the tree an update may read, for each body and for each pair of boxes that overlap.
+const MOST_READS: [f64; 2] = [1.0, 1.0];
+
 /// What tracking cost since all fat AABBs were made, and whether to skip it.
 #[derive(Clone, Debug, Default)]
 pub struct Policy {
+    /// How many pairs of boxes overlap, before filters: as many as the last search for all of them found, or
+    /// as all fat AABBs had since then, if they were fewer.
+    overlaps: usize,
     cost: usize,
     updates: usize,
     /// For how many more updates tracking is skipped.
     skipped: usize,
-    /// For how many it is skipped next time, within the limits.
+    /// For how many more updates no new fat AABB is larger than its body.
+    tight: usize,
+    /// For how many it is so next time, within the limits.
     next_skipped: usize,
 }
 
 impl Policy {
+    /// How many candidates so many bodies may have, before filters.
+    pub fn most_candidates(&self, bodies: usize) -> usize {
+        self.limit(bodies, MOST_CANDIDATES)
+    }
+
+    /// How many leaves and bodies of the tree an update may read.
+    pub fn most_reads(&self, bodies: usize) -> usize {
+        self.limit(bodies, MOST_READS)
+    }
+
+    fn limit(&self, bodies: usize, [by_body, by_pair]: [f64; 2]) -> usize {
+        (by_body * bodies as f64 + by_pair * self.overlaps as f64) as usize
+    }
+
+    /// Notes that so many pairs of boxes overlap.
+    pub fn note_overlaps(&mut self, count: usize) {
+        self.overlaps = count;
+    }
+
+    /// Notes that so many pairs of fat AABBs overlap: not more of the boxes do.
+    pub fn note_candidates(&mut self, count: usize) {
+        self.overlaps = self.overlaps.min(count);
+    }
+
     /// Whether this update skips tracking, given that this many of so many bodies changed.
     pub fn skips_tracking(&mut self, changed: usize, bodies: usize) -> bool {
         let skips = self.skipped > 0 && rebuild_pays(changed, bodies);
         self.skipped = if skips { self.skipped - 1 } else { 0 };
+        self.tight = self.tight.saturating_sub(1);
         skips
+    }
+
+    /// Whether new fat AABBs must not be larger than their bodies.
+    pub fn is_tight(&self) -> bool {
+        self.tight > 0
+    }
+
+    /// Notes that fat AABBs have too many candidates.
+    pub fn note_excess(&mut self) {
+        self.skip();
+        self.tight = self.skipped;
+    }
+
+    /// Skips tracking from now on.
+    fn skip(&mut self) {
+        (self.cost, self.updates) = (0, 0);
+        self.skipped = self.next_skipped.clamp(SKIPPED[0], SKIPPED[1]);
+        self.next_skipped = 2 * self.skipped;
     }
 
     /// Notes an update that looked up this many bodies.
@@ -67,10 +122,12 @@ impl Policy {
     pub fn note_rebuild(&mut self, bodies: usize, is_fat: bool, is_new: bool) -> bool {
         let (cost, updates) = (self.cost, self.updates);
         (self.cost, self.updates) = if is_fat { (REBUILD * bodies, 1) } else { (0, 0) };
+        if self.skipped > 0 {
+            // Its fat AABBs had too many candidates.
+            return true;
+        }
         if !is_fat && !is_new || cost > updates.saturating_mul(bodies) {
-            (self.cost, self.updates) = (0, 0);
-            self.skipped = self.next_skipped.clamp(SKIPPED[0], SKIPPED[1]);
-            self.next_skipped = 2 * self.skipped;
+            self.skip();
             return true;
         }
         if updates > 0 {

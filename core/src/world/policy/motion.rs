@@ -9,7 +9,7 @@ use crate::{Aabb, Scalar};
 /// fat AABBs that last equally long, so that all are replaced at once, by the finder.
 #[derive(Clone, Debug, Default)]
 pub struct Motion {
-    /// The mean longest side of the sample.
+    /// The median of the longest sides of the sample: one huge body says nothing of the others.
     size: f64,
     /// How many updates fat AABBs that are made together last.
     pub lifetime: f64,
@@ -33,8 +33,6 @@ const LANDED: f64 = 0.4;
 const SLACK: f64 = 0.125;
 /// How many bodies are sampled.
 const SAMPLE: usize = 512;
-/// Larger sides are left out of the mean: their sum would overflow.
-const LARGEST: f64 = f64::MAX / (2 * SAMPLE) as f64;
 
 impl Motion {
     /// Samples the motion of bodies: their boxes at the last update and now.
@@ -43,17 +41,19 @@ impl Motion {
         moves: impl ExactSizeIterator<Item = (&'a Aabb<D, T>, &'a Aabb<D, T>)>,
     ) {
         let stride = moves.len().div_ceil(SAMPLE).max(1);
-        let (mut size, mut way, mut count) = (0.0, 0.0, 0.0);
+        // The longest sides, and how far the bodies moved, of those that moved without a jump.
+        let (mut sizes, mut ways, mut count) = ([0.0; SAMPLE], [0.0; SAMPLE], 0);
         for (before, now) in moves.step_by(stride) {
             let (moved, side) = (displacement(before, now), longest_side(now));
-            if moved > 0.0 && moved < JUMP * side && side < LARGEST {
-                (size, way, count) = (size + side, way + moved, count + 1.0);
+            if moved > 0.0 && moved < JUMP * side && side < f64::INFINITY {
+                (sizes[count], ways[count]) = (side, moved);
+                count += 1;
             }
         }
         self.lifetime = 0.0;
-        if count > 0.0 {
-            self.size = size / count;
-            self.lifetime = (REACH * size / way).min(LONGEST);
+        if count > 0 {
+            self.size = median(&mut sizes[..count]);
+            self.lifetime = (REACH * self.size / median(&mut ways[..count])).min(LONGEST);
         }
     }
 
@@ -150,6 +150,12 @@ fn fatten<const D: usize, T: Scalar>(
         fat.max[axis] = now.max[axis] + slack + up;
     }
     fat
+}
+
+/// The median of at least one number. Reorders them.
+fn median(numbers: &mut [f64]) -> f64 {
+    let middle = numbers.len() / 2;
+    *numbers.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 /// The greatest displacement of a side of a box on an axis.

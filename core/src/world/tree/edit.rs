@@ -5,11 +5,10 @@ use alloc::vec::Vec;
 use super::node::{FAN, LEAST, NONE, Node, split};
 use crate::{Aabb, Scalar};
 
-/// A body that is to be put into a leaf. What is read again and again is kept here.
+/// A body that is to be put into a leaf. What is read again and again is kept here, in few bytes.
 #[derive(Clone, Copy, Debug)]
-pub struct Entry<const D: usize> {
-    pub center: [f64; D],
-    pub class: u32,
+pub struct Entry<const D: usize, T> {
+    pub center: [T; D],
     pub body: u32,
 }
 
@@ -24,7 +23,7 @@ pub struct Tree<const D: usize, T> {
     /// How many bodies it holds.
     pub count: usize,
     /// A buffer for building.
-    pub(super) entries: Vec<Entry<D>>,
+    pub(super) entries: Vec<Entry<D, T>>,
     /// The size of the leaves as built, and the number of bodies then.
     pub(super) built: (f64, usize),
 }

@@ -20,13 +20,16 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
     /// position of the box in `queries` and a body.
     ///
     /// It first lists the leaves that any box overlaps and then reads these in turn: so they can be
-    /// prefetched, several at once.
+    /// prefetched, several at once. `most` is how many leaves and bodies may still be listed, and becomes
+    /// less; returns false, with some of the bodies missing, if that is not enough.
+    #[must_use]
     pub fn overlapping_many(
         &self,
         queries: &[(u32, Aabb<D, T>)],
         scratch: &mut Vec<[u32; 2]>,
         found: &mut Vec<[u32; 2]>,
-    ) {
+        most: &mut usize,
+    ) -> bool {
         scratch.clear();
         found.clear();
         // Spare capacity, so that steady motion does not allocate.
@@ -34,12 +37,19 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         scratch.reserve(spare);
         found.reserve(spare);
         if self.root == NONE {
-            return;
+            return true;
         }
         for (index, (_, area)) in queries.iter().enumerate() {
             self.leaves_in(self.root, index as u32, area, scratch);
+            if scratch.len() > *most {
+                return false;
+            }
         }
+        *most -= scratch.len();
         for leaves in scratch.chunks(TOGETHER) {
+            if found.len() > *most {
+                return false;
+            }
             leaves.iter().for_each(|&[_, leaf]| self.nodes[leaf as usize].prefetch());
             for &[index, leaf] in leaves {
                 let node = &self.nodes[leaf as usize];
@@ -50,6 +60,8 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
                 }
             }
         }
+        *most = most.saturating_sub(found.len());
+        true
     }
 
     /// Lists the leaves whose bounds overlap `area`.

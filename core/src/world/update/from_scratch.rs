@@ -29,9 +29,11 @@ pub fn from_scratch<const D: usize, T: Scalar>(
         bodies.slots.lower(index, flag::CHANGED | flag::IN_TREE);
     }
     let allows = |pair| bodies.allows(pair);
-    let pairs = finder.find(&bodies.boxes, bodies, [flag::LIVE, 0], &allows);
+    let all = finder.find(&bodies.boxes, bodies, [flag::LIVE, 0], &allows, usize::MAX);
+    let pairs = all.unwrap_or_default();
     sorter.sort_into(pairs, &mut candidates.sorted, bodies.slots.len());
     sorter.differences(before, &candidates.sorted, &mut events.ended, &mut events.begun);
+    tracking.policy.note_overlaps(tracking.finder.found);
     tracking.is_fat_stale = true;
     if has_tree {
         tracking.fat.clone_from(&bodies.boxes);

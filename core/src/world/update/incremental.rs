@@ -27,13 +27,14 @@ const AHEAD: usize = 24;
 /// doing so takes 1.0 to 1.33. Half as much is the same within 2 %.
 const SELECT: usize = 12;
 
-/// Reports what begins and ends, given which bodies changed, escaped and left.
+/// Reports what begins and ends, given which bodies changed, escaped and left. Returns false where there would be
+/// too many candidates, or too much of the tree to read; then some events and candidates are wrong.
 #[inline(never)]
 pub fn incremental<const D: usize, T: Scalar>(
     bodies: &mut Bodies<D, T>,
     tracking: &mut Tracking<D, T>,
     events: &mut Events,
-) {
+) -> bool {
     let Scratch { escaped, queries, .. } = &mut tracking.scratch;
     let lost = escaped.iter().chain(&bodies.leaving);
     let sleepers = lost.filter(|&&index| bodies.slots.has(index, flag::ASLEEP));
@@ -45,18 +46,20 @@ pub fn incremental<const D: usize, T: Scalar>(
         tracking.ready_tree(bodies);
     }
     let extends = !wakes && tracking.can_extend(bodies);
+    let mut most = tracking.policy.most_reads(bodies.slots.live);
     tracking.scratch.mark(bodies, true);
-    if wakes {
-        tracking.wake(bodies, &mut events.ended);
+    let mut is_right = !wakes || tracking.wake(bodies, &mut events.ended, &mut most);
+    if is_right {
+        if !bodies.changed.is_empty() || !bodies.leaving.is_empty() {
+            tracking.test_candidates(bodies, events, !extends);
+        }
+        let jumped = tracking.move_in_tree(bodies, extends);
+        layout::note_jumps(&mut tracking.locality_decay, jumped);
+        is_right = tracking.add_candidates(bodies, &mut events.begun, extends, most);
     }
-    if !bodies.changed.is_empty() || !bodies.leaving.is_empty() {
-        tracking.test_candidates(bodies, events, !extends);
-    }
-    let jumped = tracking.move_in_tree(bodies, extends);
-    layout::note_jumps(&mut tracking.locality_decay, jumped);
-    tracking.add_candidates(bodies, &mut events.begun, extends);
     tracking.scratch.mark(bodies, false);
     tracking.policy.note_incremental(escaped);
+    is_right
 }
 
 impl<const D: usize, T: Scalar> Tracking<D, T> {
@@ -73,12 +76,20 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     }
 
     /// Wakes the marked bodies, of which `queries` lists those asleep, and lists what ends between one of
-    /// them and a body that was asleep too: such pairs are not among the candidates.
+    /// them and a body that was asleep too: such pairs are not among the candidates. Returns false, with no body
+    /// awake, if they are not found in so many steps.
     #[inline(never)]
-    fn wake(&mut self, bodies: &mut Bodies<D, T>, ended: &mut Vec<[u32; 2]>) {
+    fn wake(
+        &mut self,
+        bodies: &mut Bodies<D, T>,
+        ended: &mut Vec<[u32; 2]>,
+        most: &mut usize,
+    ) -> bool {
         let Scratch { queries, leaves, found, is_escaped, escaped, .. } = &mut self.scratch;
         for batch in queries.chunks(BATCH) {
-            self.tree.overlapping_many(batch, leaves, found);
+            if !self.tree.overlapping_many(batch, leaves, found, most) {
+                return false;
+            }
             let pairs = found.iter().map(|&[query, other]| [batch[query as usize].0, other]);
             ended.extend(pairs.filter(|&[index, other]| {
                 bodies.slots.has(other, flag::ASLEEP)
@@ -92,6 +103,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         for &index in escaped.iter().chain(&bodies.leaving) {
             bodies.slots.lower(index, flag::ASLEEP);
         }
+        true
     }
 
     /// Tests the candidates of the bodies that changed, and if `drops` lists the positions of those of
@@ -131,7 +143,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     #[inline(never)]
     fn move_in_tree(&mut self, bodies: &Bodies<D, T>, extends: bool) -> usize {
         let mut jumped = 0;
-        let Self { tree, fat, motion, scratch: Scratch { escaped, queries, .. }, .. } = self;
+        let Self { tree, fat, motion, policy, scratch: Scratch { escaped, queries, .. }, .. } =
+            self;
         for &index in &bodies.leaving {
             tree.remove(index);
         }
@@ -144,7 +157,11 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
                 let is_new = bodies.slots.has(index, flag::NEW);
                 let before = if is_new { &bodies.boxes[row] } else { &bodies.previous[row] };
                 jumped += usize::from(motion.is_jump(before, &bodies.boxes[row]));
-                let ahead = motion.alone(index, before, &bodies.boxes[row], &bodies.options);
+                let ahead = if policy.is_tight() {
+                    bodies.boxes[row]
+                } else {
+                    motion.alone(index, before, &bodies.boxes[row], &bodies.options)
+                };
                 let aabb = if extends { fat[row].union(&ahead) } else { ahead };
                 queries.push((index, aabb));
                 tree.set(index, &aabb);
@@ -154,15 +171,27 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     }
 
     /// Gives the bodies that are looked up their new fat AABBs, and adds their candidates: if `extends`,
-    /// those that are not candidates yet.
+    /// those that are not candidates yet. Returns false if there are too many, or if they are not found in so many
+    /// steps.
     #[inline(never)]
-    fn add_candidates(&mut self, bodies: &Bodies<D, T>, begun: &mut Vec<[u32; 2]>, extends: bool) {
+    fn add_candidates(
+        &mut self,
+        bodies: &Bodies<D, T>,
+        begun: &mut Vec<[u32; 2]>,
+        extends: bool,
+        mut most: usize,
+    ) -> bool {
+        let limit = self.policy.most_candidates(bodies.slots.live);
         let Self { tree, fat, candidates, scratch, .. } = self;
         let Scratch { queries, leaves, found, is_escaped, dropped, .. } = scratch;
         candidates.reserve();
         let mut free = dropped.iter();
         for batch in queries.chunks(BATCH) {
-            tree.overlapping_many(batch, leaves, found);
+            let is_found = tree.overlapping_many(batch, leaves, found, &mut most);
+            if !is_found || candidates.pairs.len() > limit {
+                dropped.clear();
+                return false;
+            }
             for found in found.chunks(TOGETHER) {
                 for &[_, other] in found {
                     black_box(fat[other as usize].min[0]);
@@ -206,6 +235,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         for (index, aabb) in &*queries {
             fat[*index as usize] = *aabb;
         }
+        true
     }
 }
 

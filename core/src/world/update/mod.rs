@@ -19,6 +19,8 @@ mod from_scratch;
 mod incremental;
 mod rebuild;
 mod search_tree;
+#[cfg(test)]
+mod tests;
 
 pub use rebuild::restore;
 
@@ -46,8 +48,8 @@ pub fn update<const D: usize, T: Scalar>(
         let moves = tracking.scratch.escaped.len() + bodies.leaving.len();
         if rebuild_pays(moves, bodies.slots.live) {
             order = rebuild::rebuild(bodies, tracking, events);
-        } else {
-            incremental::incremental(bodies, tracking, events);
+        } else if !incremental::incremental(bodies, tracking, events) {
+            order = rebuild::rebuild_spoiled(bodies, tracking, events);
         }
         for pairs in [&mut events.begun, &mut events.ended] {
             bodies.slots.to_slots(pairs);

@@ -3,12 +3,28 @@
 use alloc::vec::Vec;
 
 use crate::Scalar;
-use crate::memory::{preload, reserve};
+use crate::memory::preload;
 use crate::world::bodies::{Bodies, flag};
 use crate::world::candidates::push_wanted;
 use crate::world::changes::Events;
 use crate::world::layout::{self, Reorder};
-use crate::world::tracking::Tracking;
+use crate::world::tracking::{Tracking, TreeState};
+
+/// Replaces an update that would have too many candidates, and has spoiled some of them: those of the last
+/// update are found again.
+#[inline(never)]
+pub fn rebuild_spoiled<const D: usize, T: Scalar>(
+    bodies: &mut Bodies<D, T>,
+    tracking: &mut Tracking<D, T>,
+    events: &mut Events,
+) -> Reorder {
+    events.begun.clear();
+    events.ended.clear();
+    tracking.tree_state = TreeState::Unbuilt;
+    tracking.policy.note_excess();
+    tracking.find_previous(bodies);
+    rebuild(bodies, tracking, events)
+}
 
 /// Reports what begins and ends, given which bodies changed, escaped and left. Returns how to reorder
 /// storage.
@@ -26,8 +42,11 @@ pub fn rebuild<const D: usize, T: Scalar>(
 
     tracking.list_ended(bodies, are_same, &mut events.ended);
     tracking.wake_all(bodies);
-    let is_fat = tracking.fatten_all(bodies);
-    tracking.find_candidates(bodies);
+    let is_fat = tracking.fatten_all(bodies) && tracking.find_candidates(bodies);
+    if !is_fat {
+        tracking.fat.copy_from_slice(&bodies.boxes);
+        tracking.find_overlaps(bodies);
+    }
     tracking.list_begun(bodies, are_same && new == 0, &mut events.begun);
     tracking.note_new_fat(bodies);
 
@@ -79,22 +98,23 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         }
     }
 
-    /// Gives all bodies new fat AABBs; that of a body that rests is its box. Returns whether any is
-    /// larger.
+    /// Gives all bodies new fat AABBs, unless none would be larger than its body; that of a body that rests is
+    /// its box. Returns whether it did.
     #[inline(never)]
     fn fatten_all(&mut self, bodies: &Bodies<D, T>) -> bool {
-        let Self { fat, motion, .. } = self;
+        let Self { fat, motion, policy, .. } = self;
         let Bodies { slots, boxes, previous, options, changed, .. } = bodies;
         motion.sample(changed.iter().map(|&index| {
             // What had the slot of a new body before does not count as motion.
             let before = if slots.has(index, flag::NEW) { boxes } else { previous };
             (&before[index as usize], &boxes[index as usize])
         }));
-        fat.copy_from_slice(boxes);
         // Where few bodies move they should not all leave their fat AABBs at once.
         let are_few = !bodies.scans_all(changed.len());
-        let is_fat = are_few || motion.lifetime >= 2.0 || options.margin > T::default();
+        let is_fat = !policy.is_tight()
+            && (are_few || motion.lifetime >= 2.0 || options.margin > T::default());
         if is_fat {
+            fat.copy_from_slice(boxes);
             for &index in changed.iter().filter(|&&index| !slots.has(index, flag::NEW)) {
                 let (before, now) = (&previous[index as usize], &boxes[index as usize]);
                 fat[index as usize] = if are_few {
@@ -107,29 +127,46 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         is_fat
     }
 
-    /// Replaces the candidates by the pairs of fat AABBs.
-    fn find_candidates(&mut self, bodies: &Bodies<D, T>) {
-        let Self { fat, candidates, finder, .. } = self;
-        let pairs = finder.find(fat, bodies, [flag::LIVE, 0], &|pair| bodies.allows(pair));
-        candidates.clear();
-        reserve(&mut candidates.pairs, pairs.len());
-        candidates.pairs.extend_from_slice(pairs);
+    /// Replaces the candidates by the pairs of fat AABBs, unless there are too many. Returns whether it did.
+    fn find_candidates(&mut self, bodies: &Bodies<D, T>) -> bool {
+        let Self { fat, candidates, finder, policy, .. } = self;
+        let most = policy.most_candidates(bodies.slots.live);
+        let allows = |pair| bodies.allows(pair);
+        let Some(pairs) = finder.find(fat, bodies, [flag::LIVE, 0], &allows, most) else {
+            policy.note_excess();
+            return false;
+        };
+        candidates.replace(pairs);
+        policy.note_candidates(finder.found);
+        true
+    }
+
+    /// Replaces the candidates by the pairs of boxes.
+    fn find_overlaps(&mut self, bodies: &Bodies<D, T>) {
+        let Self { candidates, finder, policy, .. } = self;
+        let allows = |pair| bodies.allows(pair);
+        let pairs = finder.find(&bodies.boxes, bodies, [flag::LIVE, 0], &allows, usize::MAX);
+        candidates.replace(pairs.unwrap_or_default());
+        policy.note_overlaps(finder.found);
+    }
+
+    /// Replaces the candidates by the pairs of the last update, and the fat AABBs by the boxes that bodies had
+    /// then.
+    fn find_previous(&mut self, bodies: &Bodies<D, T>) {
+        let Self { fat, candidates, finder, policy, .. } = self;
+        fat.clone_from(&bodies.previous);
+        let known = [flag::LIVE | flag::LEAVING, flag::NEW];
+        let allowed = |[a, b]: [u32; 2]| bodies.old_filter(a).allows(bodies.old_filter(b));
+        let pairs = finder.find(fat, bodies, known, &allowed, usize::MAX);
+        candidates.replace(pairs.unwrap_or_default());
+        candidates.live.resize(candidates.pairs.len(), true);
+        policy.note_overlaps(finder.found);
     }
 }
 
 /// The tracking state of bodies that were read from a snapshot.
 pub fn restore<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Tracking<D, T> {
     let mut tracking = Tracking::default();
-    let Tracking { fat, candidates, finder, .. } = &mut tracking;
-    fat.extend((0..).zip(&bodies.previous).map(|(index, previous)| {
-        let aabb = &bodies.boxes[index as usize];
-        if bodies.slots.has(index, flag::LIVE) { previous.union(aabb) } else { *previous }
-    }));
-    let known = [flag::LIVE | flag::LEAVING, flag::NEW];
-    let pairs = finder.find(fat, bodies, known, &|[a, b]| {
-        bodies.allows([a, b]) || bodies.old_filter(a).allows(bodies.old_filter(b))
-    });
-    candidates.pairs.extend_from_slice(pairs);
-    candidates.live.extend(pairs.iter().map(|&pair| bodies.was_live(pair)));
+    tracking.find_previous(bodies);
     tracking
 }

@@ -1,0 +1,129 @@
+//! What an update may cost, whatever moves how: candidates are counted, and events compared with all pairs.
+
+use alloc::vec::Vec;
+use std::collections::BTreeSet;
+
+use crate::{Aabb, BroadPhase, ProxyId, find_pairs};
+
+/// A world, its bodies, and the pairs of the last update.
+struct World<const D: usize> {
+    world: BroadPhase<D, f32>,
+    ids: Vec<ProxyId>,
+    boxes: Vec<Aabb<D, f32>>,
+    pairs: BTreeSet<[u32; 2]>,
+}
+
+impl<const D: usize> World<D> {
+    fn new(boxes: Vec<Aabb<D, f32>>) -> Self {
+        let mut world = BroadPhase::new();
+        let ids = boxes.iter().map(|&aabb| world.insert(aabb).unwrap()).collect();
+        let mut world = Self { world, ids, boxes, pairs: BTreeSet::new() };
+        world.update();
+        world
+    }
+
+    /// Moves each body by what `way` says of its position in the list, and updates. Returns the number of
+    /// candidates.
+    fn step(&mut self, way: impl Fn(usize) -> [f32; D]) -> usize {
+        for (at, (aabb, &id)) in self.boxes.iter_mut().zip(&self.ids).enumerate() {
+            let way = way(at);
+            if way != [0.0; D] {
+                for (axis, way) in way.into_iter().enumerate() {
+                    aabb.min[axis] += way;
+                    aabb.max[axis] += way;
+                }
+                self.world.set(id, *aabb).unwrap();
+            }
+        }
+        self.update()
+    }
+
+    /// Updates, and checks the events. Returns the number of candidates.
+    fn update(&mut self) -> usize {
+        let changes = self.world.update();
+        let found = find_pairs(&self.boxes).unwrap().into_iter();
+        let pairs: BTreeSet<_> = found.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        assert!(changes.begun().slots().iter().eq(pairs.difference(&self.pairs)));
+        assert!(changes.ended().slots().iter().eq(self.pairs.difference(&pairs)));
+        self.pairs = pairs;
+        self.world.tracking.candidates.pairs.len()
+    }
+}
+
+/// A number from 0 to 1 that looks random.
+fn noise(at: usize) -> f32 {
+    (at.wrapping_mul(0x9E37_79B9) as u32 >> 8) as f32 / (1 << 24) as f32
+}
+
+/// A box of these sides somewhere in a square or cube of this side.
+fn somewhere<const D: usize>(at: usize, within: f32, sides: [f32; D]) -> Aabb<D, f32> {
+    let min = core::array::from_fn(|axis| within * noise(7 + at * D + axis));
+    Aabb::new(min, core::array::from_fn(|axis| min[axis] + sides[axis]))
+}
+
+#[test]
+fn one_huge_body_that_moves_does_not_enlarge_the_others() {
+    let count = 2_000;
+    let mut boxes: Vec<_> =
+        (0..count).map(|at| 2.0 * at as f32).map(|at| Aabb::new([at], [at + 1.0])).collect();
+    boxes.push(Aabb::new([20_000.0], [30_000.0]));
+    let mut world = World::new(boxes);
+    for _ in 0..12 {
+        let candidates = world.step(|_| [0.125]);
+        assert!(candidates <= count, "{candidates}");
+    }
+    assert!(!world.world.tracking.policy.is_tight());
+
+    let mut boxes: Vec<_> = (0..count).map(|at| somewhere(at, 15.0, [1.0; 3])).collect();
+    boxes.push(Aabb::new([1e3; 3], [1e6; 3]));
+    let mut world = World::new(boxes);
+    for frame in 0..12 {
+        let candidates = world.step(|at| [0.1 * (noise(at) - 0.5), 0.05, 0.0]);
+        assert!(candidates <= 4 * (count + world.pairs.len()), "{frame}: {candidates}");
+    }
+    assert!(!world.world.tracking.policy.is_tight());
+}
+
+#[test]
+fn a_restored_world_whose_bodies_jumped_has_the_candidates_of_its_last_update() {
+    let count = 3_000;
+    let mut world = World::new((0..count).map(|at| somewhere(at, 100.0, [1.0; 2])).collect());
+    for (at, (aabb, &id)) in world.boxes.iter_mut().zip(&world.ids).enumerate() {
+        *aabb = somewhere(count + at, 100.0, [1.0; 2]);
+        world.world.set(id, *aabb).unwrap();
+    }
+    world.world = BroadPhase::from_snapshot(&world.world.snapshot()).unwrap();
+    assert_eq!(world.world.tracking.candidates.pairs.len(), world.pairs.len());
+    world.update();
+}
+
+#[test]
+fn fat_aabbs_that_would_overlap_everything_are_not_made() {
+    // Long and thin, and slow for their length: fat AABBs that last would be 600 times as thick.
+    let count = 2_000;
+    let thin = |at| somewhere(at, 10.0, [1.0, 0.001]);
+    let mut world = World::new((0..count).map(thin).collect());
+    let mut most = 0;
+    for _ in 0..24 {
+        most = most.max(world.step(|at| [0.0, 0.02 * noise(at)]));
+    }
+    assert!(world.world.tracking.policy.is_tight());
+    assert!(most <= 2 * count, "{most}");
+}
+
+#[test]
+fn a_few_bodies_that_would_have_too_many_candidates_cost_no_more_than_a_new_search() {
+    // All rest but ten, and each of these is given a fat AABB that half of the others overlap.
+    let count = 2_000;
+    let mut boxes: Vec<_> = (0..count).map(|at| somewhere(at, 10.0, [0.001; 2])).collect();
+    boxes.extend((0..10).map(|at| somewhere(count + at, 1.0, [20.0, 0.0001])));
+    let mut world = World::new(boxes);
+    let mut was_tight = false;
+    for frame in 0..24 {
+        let way = if frame % 2 == 0 { 0.5 } else { 0.6 };
+        let candidates = world.step(|at| [0.0, if at < count { 0.0 } else { way }]);
+        was_tight |= world.world.tracking.policy.is_tight();
+        assert!(candidates <= 2 * count + 4 * world.pairs.len(), "{frame}: {candidates}");
+    }
+    assert!(was_tight);
+}
