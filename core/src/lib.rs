@@ -11,6 +11,7 @@ mod error;
 mod geometry;
 mod memory;
 mod pairs;
+mod sampling;
 mod setters;
 mod world;
 

@@ -35,6 +35,9 @@ struct Group {
     places: usize,
     /// The share of the boxes in the second set.
     second: f64,
+    /// Whether its boxes come in turn with those of the groups before it, and not after them: a pattern that a sample
+    /// may not see.
+    alternates: bool,
 }
 
 /// From 1e-6 to 1, or 0.
@@ -53,6 +56,7 @@ impl Group {
             decades: if random.below(2) == 0 { 0.0 } else { 3.0 * side },
             places: [0, 0, 2, 30][random.below(4)],
             second: [0.5, 0.0, 1.0, 0.02][random.below(4)],
+            alternates: random.below(2) == 0,
         }
     }
 
@@ -66,10 +70,21 @@ impl Group {
             4 => self.size[axis] *= 0.5 + random.unit(),
             5 => self.spread[axis] *= 0.5 + random.unit(),
             6 => (self.decades, self.places) = (other.decades, other.places),
-            _ => self.second = other.second,
+            _ => (self.second, self.alternates) = (other.second, other.alternates),
         }
         self.boxes = self.boxes.min(20_000);
     }
+}
+
+/// One of each in turn, and then the rest of the longer list.
+fn in_turn<B>(first: Vec<B>, second: Vec<B>) -> Vec<B> {
+    let (mut first, mut second) = (first.into_iter(), second.into_iter());
+    let pair = || Some([first.next(), second.next()]);
+    std::iter::from_fn(pair)
+        .take_while(|pair| pair.iter().any(Option::is_some))
+        .flatten()
+        .flatten()
+        .collect()
 }
 
 /// The boxes of a scene, of both sets.
@@ -77,6 +92,7 @@ fn boxes<const D: usize, T: Scalar>(scene: &[Group]) -> [Vec<Aabb<D, T>>; 2] {
     let mut sets = [vec![], vec![]];
     let mut random = Random::new(5);
     for group in scene {
+        let mut added = [vec![], vec![]];
         for _ in 0..group.boxes {
             let scale = 10f64.powf(-group.decades * random.unit());
             let mut aabb = Aabb::new([T::default(); D], [T::default(); D]);
@@ -89,7 +105,14 @@ fn boxes<const D: usize, T: Scalar>(scene: &[Group]) -> [Vec<Aabb<D, T>>; 2] {
                 aabb.min[axis] = T::from_f64(min);
                 aabb.max[axis] = T::from_f64(min + group.size[axis] * scale);
             }
-            sets[usize::from(random.unit() < group.second)].push(aabb);
+            added[usize::from(random.unit() < group.second)].push(aabb);
+        }
+        for (set, added) in sets.iter_mut().zip(added) {
+            if group.alternates {
+                *set = in_turn(std::mem::take(set), added);
+            } else {
+                set.extend(added);
+            }
         }
     }
     sets
@@ -134,6 +157,7 @@ fn uniform<const D: usize, T: Scalar>(count: usize, has_two_sets: bool, times: u
         decades: 0.0,
         places: 0,
         second: 0.5,
+        alternates: false,
     };
     cost(&boxes::<D, T>(&[group]), has_two_sets, times).expect("uniform boxes have few pairs")
 }

@@ -18,6 +18,7 @@ use super::sort::intervals;
 use super::source::Source;
 use crate::geometry::{Arithmetic, Quantizer};
 use crate::memory::grow;
+use crate::sampling::positions;
 use crate::{Aabb, Scalar};
 
 // Chosen on uniform intervals and on clusters, 1,100 to 2,250,000, one core of an AMD EPYC (Zen 4). At one to ten,
@@ -49,7 +50,7 @@ pub(super) fn may_pay<const D: usize, T: Scalar, S: Source<D, T>>(
     if len > CACHED.max(larger.len() / MANY_TIMES).min(MOST_SORTED) {
         return false;
     }
-    let sample = || smaller.iter().step_by(len.div_ceil(SAMPLE)).map(S::aabb);
+    let sample = || positions(len, SAMPLE).map(|at| smaller[at].aabb());
     let overlaps = |a: &Aabb<D, T>| sample().filter(|b| a.overlaps(b)).count();
     let (overlaps, drawn) = (sample().map(overlaps).sum::<usize>(), sample().len());
     // Half of the boxes that overlap a box begin before it. Each overlaps itself, too.
@@ -99,11 +100,11 @@ impl Table {
             return Ok(None);
         }
         let before = |at: T| left.partition_point(|&left| left < at);
-        let in_vain = |each: &S| {
-            let at = each.aabb().min[0];
+        let in_vain = |position: usize| {
+            let at = larger[position].aabb().min[0];
             before(at).saturating_sub(first[cell(at)] as usize)
         };
-        let sample = larger.iter().step_by(larger.len().div_ceil(SAMPLE));
+        let sample = positions(larger.len(), SAMPLE);
         let few = FEW_IN_VAIN * sample.len();
         let is_crowded = sample.map(in_vain).sum::<usize>() > few;
         Ok((!is_crowded).then_some(Lookup { boxes, first, quantizer }))
@@ -162,5 +163,55 @@ impl<T: Scalar> Lookup<'_, T> {
             }
         }
         sink.take(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use super::super::sort::Sorter;
+    use super::*;
+
+    /// Whether boxes look up those of a smaller set.
+    fn pays(smaller: &[Aabb<1>], larger: &[Aabb<1>]) -> bool {
+        let mut sorted = SortedBoxes::default();
+        Sorter::default().sort(smaller, 0, &mut sorted).unwrap();
+        may_pay(smaller, larger) && Table::default().fill(&sorted, larger).unwrap().is_some()
+    }
+
+    #[test]
+    fn no_pattern_in_the_order_of_the_larger_set_hides_what_is_tested_in_vain() {
+        // Boxes at the end test all points behind the long one in vain, boxes before it nothing.
+        let points = (0..1000).map(|at| Aabb::new([at as f32], [at as f32]));
+        let smaller: Vec<_> = points.chain([Aabb::new([0.0], [2000.0])]).collect();
+        let easy = Aabb::new([-2.0], [-1.0]);
+        let hard = Aabb::new([1500.0], [1501.0]);
+        assert!(pays(&smaller, &[easy; 20_000]));
+        assert!(!pays(&smaller, &[hard; 20_000]));
+        for period in (2..400).chain([1000, 1024, 5000]) {
+            for easy_at in [0, 1, period / 2] {
+                let at = |i| if i % period == easy_at { easy } else { hard };
+                let larger: Vec<_> = (0..20_000).map(at).collect();
+                assert!(
+                    !pays(&smaller, &larger),
+                    "every {period}th, the {easy_at}th first, is easy"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn no_pattern_in_the_order_of_the_smaller_set_hides_that_its_boxes_overlap() {
+        let apart = |i| Aabb::new([-2.0 * i as f32], [1.0 - 2.0 * i as f32]);
+        let together = |i| Aabb::new([i as f32], [10_000.0 + i as f32]);
+        let larger = [Aabb::new([0.0], [1.0]); 20_000];
+        for period in (2..100).chain([1000]) {
+            for apart_at in [0, 1, period / 2] {
+                let at = |i| if i % period == apart_at { apart(i) } else { together(i) };
+                let smaller: Vec<_> = (0..4000).map(at).collect();
+                assert!(!may_pay(&smaller, &larger), "every {period}th, the {apart_at}th first");
+            }
+        }
     }
 }

@@ -196,7 +196,8 @@ fn the_tree_is_built_again_if_more_than_half_of_the_bodies_jumped() {
 fn a_way_of_exactly_twice_the_size_is_a_jump() {
     let at = |place: f32| Aabb::new([0.0, place], [1.0, place + 1.0]);
     let mut policy = super::policy::Motion::default();
-    policy.sample([(&at(0.0), &at(0.5))].into_iter());
+    let (before, now) = (at(0.0), at(0.5));
+    policy.sample(1, |_| (&before, &now));
     for (way, expected) in [(1.75, false), (2.0, true), (2.25, true)] {
         for way in [way, -way] {
             assert_eq!(policy.is_jump(&at(0.0), &at(way)), expected, "{way}");

@@ -3,14 +3,15 @@
 use super::float::greatest;
 use crate::geometry::Arithmetic;
 use crate::pairs::source::Source;
+use crate::sampling::positions;
 use crate::{Aabb, Scalar};
 
 /// The most boxes in a sample.
 pub const SAMPLE: usize = 256;
 /// One box in so many is drawn,
-const ONE_IN: u64 = 32;
+const ONE_IN: usize = 32;
 /// but at least so many.
-const FEWEST: u64 = 24;
+const FEWEST: usize = 24;
 
 /// The most axes. (Plans have as many in all dimensions, so that their code is compiled once.)
 pub const AXES: usize = 3;
@@ -89,17 +90,9 @@ pub fn unit<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[&[S]]) -> T {
     T::Arithmetic::unit(greatest(sets.iter().map(magnitude)))
 }
 
-/// The positions of the boxes in the sample of a set: one at a random place of each of equal chunks.
-/// The randomness is the same in every run.
+/// The positions of the boxes in the sample of a set.
 fn drawn<const D: usize, T: Scalar, S: Source<D, T>>(source: &[S]) -> impl Iterator<Item = usize> {
-    let count = source.len() as u64; // `usize` has 32 bits in WebAssembly
-    let len = (count / ONE_IN).clamp(FEWEST, SAMPLE as u64).min(count);
-    let mut random = 0x9E37_79B9_7F4A_7C15u64;
-    (0..len).map(move |i| {
-        random = random.wrapping_mul(0x5851_F42D_4C95_7F2D).wrapping_add(1);
-        let (from, to) = (i * count / len, (i + 1) * count / len);
-        (from + (random >> 33) % (to - from)) as usize
-    })
+    positions(source.len(), (source.len() / ONE_IN).clamp(FEWEST, SAMPLE))
 }
 
 /// The greatest absolute coordinate that is finite.

@@ -1,5 +1,6 @@
 //! How far ahead fat AABBs reach.
 
+use crate::sampling::positions;
 use crate::world::options::Options;
 use crate::{Aabb, Scalar};
 
@@ -35,15 +36,15 @@ const SLACK: f64 = 0.125;
 const SAMPLE: usize = 512;
 
 impl Motion {
-    /// Samples the motion of bodies: their boxes at the last update and now.
+    /// Samples the motion of so many bodies: their boxes at the last update and now.
     pub fn sample<'a, const D: usize, T: Scalar>(
         &mut self,
-        moves: impl ExactSizeIterator<Item = (&'a Aabb<D, T>, &'a Aabb<D, T>)>,
+        bodies: usize,
+        motion: impl Fn(usize) -> (&'a Aabb<D, T>, &'a Aabb<D, T>),
     ) {
-        let stride = moves.len().div_ceil(SAMPLE).max(1);
         // The longest sides, and how far the bodies moved, of those that moved without a jump.
         let (mut sizes, mut ways, mut count) = ([0.0; SAMPLE], [0.0; SAMPLE], 0);
-        for (before, now) in moves.step_by(stride) {
+        for (before, now) in positions(bodies, SAMPLE).map(motion) {
             let (moved, side) = (displacement(before, now), longest_side(now));
             if moved > 0.0 && moved < JUMP * side && side < f64::INFINITY {
                 (sizes[count], ways[count]) = (side, moved);
@@ -188,7 +189,7 @@ mod tests {
                     assert!(fat.contains(&now), "{before:?} {now:?} {steps} {fat:?}");
                 }
                 let mut motion = Motion::default();
-                motion.sample([(&before, &now)].into_iter());
+                motion.sample(1, |_| (&before, &now));
                 assert!(motion.alone(7, &before, &now, &options).contains(&now));
                 assert!(motion.together(&before, &now, &options).contains(&now));
             }

@@ -104,11 +104,12 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     fn fatten_all(&mut self, bodies: &Bodies<D, T>) -> bool {
         let Self { fat, motion, policy, .. } = self;
         let Bodies { slots, boxes, previous, options, changed, .. } = bodies;
-        motion.sample(changed.iter().map(|&index| {
+        motion.sample(changed.len(), |at| {
+            let index = changed[at];
             // What had the slot of a new body before does not count as motion.
             let before = if slots.has(index, flag::NEW) { boxes } else { previous };
             (&before[index as usize], &boxes[index as usize])
-        }));
+        });
         // Where few bodies move they should not all leave their fat AABBs at once.
         let are_few = !bodies.scans_all(changed.len());
         let is_fat = !policy.is_tight()
