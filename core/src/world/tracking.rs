@@ -57,6 +57,10 @@ pub struct Scratch<const D: usize, T: Scalar> {
     /// Positions of candidates to test, and of dropped ones.
     pub positions: Vec<usize>,
     pub dropped: Vec<usize>,
+    /// The bodies that an update wakes.
+    pub woken: Vec<u32>,
+    /// New candidates, and whether each is live.
+    pub added: Vec<([u32; 2], bool)>,
     /// Boxes to look up, by index, and what the tree finds.
     pub queries: Vec<(u32, Aabb<D, T>)>,
     pub leaves: Vec<[u32; 2]>,

@@ -16,7 +16,7 @@ use crate::world::candidates::{Candidates, push_wanted};
 use crate::world::changes::Events;
 use crate::world::layout;
 use crate::world::policy::LOOK_UP;
-use crate::world::tracking::{Scratch, Tracking};
+use crate::world::tracking::{Scratch, Tracking, TreeState};
 use crate::world::tree::{BATCH, TOGETHER};
 
 /// How many candidates ahead boxes are prefetched: measured on drift and mostly-still in 3D at 1,000,000.
@@ -27,38 +27,42 @@ const AHEAD: usize = 24;
 /// doing so takes 1.0 to 1.33. Half as much is the same within 2 %.
 const SELECT: usize = 12;
 
-/// Reports what begins and ends, given which bodies changed, escaped and left. Returns false where there would be
-/// too many candidates, or too much of the tree to read; then some events and candidates are wrong.
+/// Reports what begins and ends, given which bodies changed, escaped and left. Returns false, with nothing reported
+/// and the candidates as before, where there would be too many of them, or too much of the tree to read.
 #[inline(never)]
 pub fn incremental<const D: usize, T: Scalar>(
     bodies: &mut Bodies<D, T>,
     tracking: &mut Tracking<D, T>,
     events: &mut Events,
 ) -> bool {
-    let Scratch { escaped, queries, .. } = &mut tracking.scratch;
+    let Scratch { escaped, woken, .. } = &mut tracking.scratch;
     let lost = escaped.iter().chain(&bodies.leaving);
-    let sleepers = lost.filter(|&&index| bodies.slots.has(index, flag::ASLEEP));
-    queries.clear();
-    queries.extend(sleepers.map(|&index| (index, bodies.previous[index as usize])));
-    let (escaped, wakes) = (escaped.len(), !queries.is_empty());
+    woken.clear();
+    woken.extend(lost.filter(|&&index| bodies.slots.has(index, flag::ASLEEP)));
+    let (escaped, wakes) = (escaped.len(), !woken.is_empty());
     if escaped > 0 || wakes {
         tracking.tree_uses += escaped;
         tracking.ready_tree(bodies);
     }
     let extends = !wakes && tracking.can_extend(bodies);
     let mut most = tracking.policy.most_reads(bodies.slots.live);
+    tracking.policy.note_incremental(escaped);
     tracking.scratch.mark(bodies, true);
     let mut is_right = !wakes || tracking.wake(bodies, &mut events.ended, &mut most);
+    if is_right {
+        let jumped = tracking.move_in_tree(bodies, extends);
+        layout::note_jumps(&mut tracking.locality_decay, jumped);
+        is_right = tracking.find_added(bodies, &mut events.begun, extends, most);
+    }
     if is_right {
         if !bodies.changed.is_empty() || !bodies.leaving.is_empty() {
             tracking.test_candidates(bodies, events, !extends);
         }
-        let jumped = tracking.move_in_tree(bodies, extends);
-        layout::note_jumps(&mut tracking.locality_decay, jumped);
-        is_right = tracking.add_candidates(bodies, &mut events.begun, extends, most);
+        tracking.add_candidates();
+    } else {
+        tracking.give_up(bodies, events);
     }
     tracking.scratch.mark(bodies, false);
-    tracking.policy.note_incremental(escaped);
     is_right
 }
 
@@ -75,9 +79,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             })
     }
 
-    /// Wakes the marked bodies, of which `queries` lists those asleep, and lists what ends between one of
-    /// them and a body that was asleep too: such pairs are not among the candidates. Returns false, with no body
-    /// awake, if they are not found in so many steps.
+    /// Wakes the marked bodies, and lists what ends between one of them and a body that was asleep too: such pairs are
+    /// not among the candidates. Returns false, with no body awake, if they are not found in so many steps.
     #[inline(never)]
     fn wake(
         &mut self,
@@ -85,9 +88,12 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         ended: &mut Vec<[u32; 2]>,
         most: &mut usize,
     ) -> bool {
-        let Scratch { queries, leaves, found, is_escaped, escaped, .. } = &mut self.scratch;
+        let Scratch { queries, woken, leaves, found, is_escaped, .. } = &mut self.scratch;
+        queries.clear();
+        queries.extend(woken.iter().map(|&index| (index, bodies.previous[index as usize])));
         for batch in queries.chunks(BATCH) {
             if !self.tree.overlapping_many(batch, leaves, found, most) {
+                woken.clear();
                 return false;
             }
             let pairs = found.iter().map(|&[query, other]| [batch[query as usize].0, other]);
@@ -98,12 +104,23 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
                     && !bodies.is_live([index, other])
             }));
         }
-        self.sleep.count -= queries.len();
-        self.sleep.woke += queries.len();
-        for &index in escaped.iter().chain(&bodies.leaving) {
-            bodies.slots.lower(index, flag::ASLEEP);
-        }
+        self.sleep.count -= woken.len();
+        self.sleep.woke += woken.len();
+        woken.iter().for_each(|&index| bodies.slots.lower(index, flag::ASLEEP));
         true
+    }
+
+    /// Lets the bodies sleep on that were woken, and forgets what would have been reported.
+    fn give_up(&mut self, bodies: &mut Bodies<D, T>, events: &mut Events) {
+        events.begun.clear();
+        events.ended.clear();
+        let Self { sleep, scratch: Scratch { woken, .. }, tree_state, policy, .. } = self;
+        sleep.count += woken.len();
+        sleep.woke -= woken.len();
+        woken.iter().for_each(|&index| bodies.slots.raise(index, flag::ASLEEP));
+        // It holds some of the fat AABBs that were not made.
+        *tree_state = TreeState::Unbuilt;
+        policy.note_excess();
     }
 
     /// Tests the candidates of the bodies that changed, and if `drops` lists the positions of those of
@@ -170,11 +187,10 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         jumped
     }
 
-    /// Gives the bodies that are looked up their new fat AABBs, and adds their candidates: if `extends`,
-    /// those that are not candidates yet. Returns false if there are too many, or if they are not found in so many
-    /// steps.
+    /// Finds the candidates of the bodies that are looked up: if `extends`, those that are not candidates yet. Returns
+    /// false if there are too many, or if they are not found in so many steps.
     #[inline(never)]
-    fn add_candidates(
+    fn find_added(
         &mut self,
         bodies: &Bodies<D, T>,
         begun: &mut Vec<[u32; 2]>,
@@ -183,13 +199,12 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     ) -> bool {
         let limit = self.policy.most_candidates(bodies.slots.live);
         let Self { tree, fat, candidates, scratch, .. } = self;
-        let Scratch { queries, leaves, found, is_escaped, dropped, .. } = scratch;
-        candidates.reserve();
-        let mut free = dropped.iter();
+        let Scratch { queries, leaves, found, is_escaped, added, .. } = scratch;
+        added.clear();
+        added.reserve(candidates.pairs.capacity() / 4);
         for batch in queries.chunks(BATCH) {
             let is_found = tree.overlapping_many(batch, leaves, found, &mut most);
-            if !is_found || candidates.pairs.len() > limit {
-                dropped.clear();
+            if !is_found || candidates.pairs.len() + added.len() > limit {
                 return false;
             }
             for found in found.chunks(TOGETHER) {
@@ -222,7 +237,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
                     };
                     let pair = [other.min(index), other.max(index)];
                     let is_live = bodies.boxes[first].overlaps_branch_free(now);
-                    candidates.put(free.next(), pair, is_live);
+                    added.push((pair, is_live));
                     let was_near = || bodies.previous[first].overlaps_branch_free(before);
                     if is_live && !(was_near() && bodies.was_allowed(pair)) {
                         begun.push(pair);
@@ -230,12 +245,22 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
                 }
             }
         }
+        true
+    }
+
+    /// Adds the candidates that were found, in place of dropped ones first, and gives the bodies that were looked up
+    /// their new fat AABBs.
+    #[inline(never)]
+    fn add_candidates(&mut self) {
+        let Self { fat, candidates, scratch: Scratch { queries, dropped, added, .. }, .. } = self;
+        candidates.reserve();
+        let mut free = dropped.iter();
+        added.drain(..).for_each(|(pair, is_live)| candidates.put(free.next(), pair, is_live));
         candidates.remove(free.as_slice());
         dropped.clear();
         for (index, aabb) in &*queries {
             fat[*index as usize] = *aabb;
         }
-        true
     }
 }
 

@@ -49,7 +49,7 @@ pub fn update<const D: usize, T: Scalar>(
         if rebuild_pays(moves, bodies.slots.live) {
             order = rebuild::rebuild(bodies, tracking, events);
         } else if !incremental::incremental(bodies, tracking, events) {
-            order = rebuild::rebuild_spoiled(bodies, tracking, events);
+            order = rebuild::rebuild(bodies, tracking, events);
         }
         for pairs in [&mut events.begun, &mut events.ended] {
             bodies.slots.to_slots(pairs);

@@ -8,23 +8,7 @@ use crate::world::bodies::{Bodies, flag};
 use crate::world::candidates::push_wanted;
 use crate::world::changes::Events;
 use crate::world::layout::{self, Reorder};
-use crate::world::tracking::{Tracking, TreeState};
-
-/// Replaces an update that would have too many candidates, and has spoiled some of them: those of the last
-/// update are found again.
-#[inline(never)]
-pub fn rebuild_spoiled<const D: usize, T: Scalar>(
-    bodies: &mut Bodies<D, T>,
-    tracking: &mut Tracking<D, T>,
-    events: &mut Events,
-) -> Reorder {
-    events.begun.clear();
-    events.ended.clear();
-    tracking.tree_state = TreeState::Unbuilt;
-    tracking.policy.note_excess();
-    tracking.find_previous(bodies);
-    rebuild(bodies, tracking, events)
-}
+use crate::world::tracking::Tracking;
 
 /// Reports what begins and ends, given which bodies changed, escaped and left. Returns how to reorder
 /// storage.
@@ -150,24 +134,18 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         candidates.replace(pairs.unwrap_or_default());
         policy.note_overlaps(finder.found);
     }
-
-    /// Replaces the candidates by the pairs of the last update, and the fat AABBs by the boxes that bodies had
-    /// then.
-    fn find_previous(&mut self, bodies: &Bodies<D, T>) {
-        let Self { fat, candidates, finder, policy, .. } = self;
-        fat.clone_from(&bodies.previous);
-        let known = [flag::LIVE | flag::LEAVING, flag::NEW];
-        let allowed = |[a, b]: [u32; 2]| bodies.old_filter(a).allows(bodies.old_filter(b));
-        let pairs = finder.find(fat, bodies, known, &allowed, usize::MAX);
-        candidates.replace(pairs.unwrap_or_default());
-        candidates.live.resize(candidates.pairs.len(), true);
-        policy.note_overlaps(finder.found);
-    }
 }
 
-/// The tracking state of bodies that were read from a snapshot.
+/// The tracking state of bodies that were read from a snapshot: the candidates are the pairs of the last update, and the
+/// fat AABBs the boxes that bodies had then.
 pub fn restore<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Tracking<D, T> {
-    let mut tracking = Tracking::default();
-    tracking.find_previous(bodies);
+    let mut tracking = Tracking { fat: bodies.previous.clone(), ..Tracking::default() };
+    let Tracking { fat, candidates, finder, policy, .. } = &mut tracking;
+    let known = [flag::LIVE | flag::LEAVING, flag::NEW];
+    let allowed = |[a, b]: [u32; 2]| bodies.old_filter(a).allows(bodies.old_filter(b));
+    let pairs = finder.find(fat, bodies, known, &allowed, usize::MAX);
+    candidates.replace(pairs.unwrap_or_default());
+    candidates.live.resize(candidates.pairs.len(), true);
+    policy.note_overlaps(finder.found);
     tracking
 }
