@@ -328,18 +328,6 @@ def test_a_pipe_that_is_closed_ends_the_program_quietly(boxes: int, unbuffered: 
         assert program.stderr.read() == b"" and program.wait(60) == 141
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals there")
-def test_ctrl_c_ends_the_program_and_leaves_no_file() -> None:
-    np.save("a.npy", np.zeros((30_000, 2)))  # 450 million pairs
-    program = with_ctrl_c([*SAP, "pairs", "a.npy", "-o", "p.csv"])
-    while not list(Path().glob(".sap-*.part")):
-        assert program.poll() is None
-    program.send_signal(signal.SIGINT)
-    _, said = program.communicate(timeout=600)
-    assert (program.returncode, said.strip()) == (130, "sap: cancelled")
-    assert [path.name for path in Path().iterdir()] == ["a.npy"]
-
-
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such terminals there")
 def test_a_terminal_shows_progress_with_the_time_that_is_left() -> None:
     import os

@@ -2,7 +2,7 @@
 
 import sys
 
-from ._command import main
+from ._command import program
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(program())

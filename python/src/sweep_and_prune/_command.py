@@ -19,6 +19,7 @@ from ._errors import InvalidBoxError, SweepAndPruneError
 from ._output import output_file
 from ._pairs import count_pairs, count_pairs_between, find_pairs, iter_chunks, iter_chunks_between
 from ._progress import ProgressBar
+from ._signals import end_at_once, end_by_signals, remove_unfinished, signal_status
 from ._tables import READABLE, WRITABLE, FileError, Source, kind_of, printable, read, writer
 
 _EPILOG = f"""\b
@@ -38,12 +39,28 @@ Examples:
   sap stats boxes.npy
   sap plot boxes.csv --pairs -o picture.svg
 
-Exit status: 0 if all went well, 1 for an error in the data or a file, 2 for wrong arguments, 130 after Ctrl-C, 141 if
-the program that reads the output ended."""
+Exit status: 0 if all went well, 1 for an error in the data or a file, 2 for wrong arguments, 130 after Ctrl-C, 143
+after SIGTERM, 129 after SIGHUP, 141 if the program that reads the output ended."""
 
 Options = SimpleNamespace
 """The options and arguments of a command."""
 _Function = TypeVar("_Function", bound=Callable[..., None])
+_Result = TypeVar("_Result")
+
+
+def program() -> int:
+    """Runs the command line as a program, which signals end."""
+    try:
+        try:
+            end_by_signals()
+            ended = main()
+        finally:
+            end_at_once()
+            remove_unfinished()
+    except KeyboardInterrupt:
+        remove_unfinished()
+        ended = 130  # also where the signal came before `end_by_signals`
+    return signal_status() or ended
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -58,22 +75,31 @@ def main(arguments: Sequence[str] | None = None) -> int:
 class _Sap(click.Group):
     """Ends with the exit status that the documentation names, where click has another one."""
 
+    def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
+        """Reads the arguments before the command, and shows the help."""
+        return _guarded(context, lambda: super(_Sap, self).parse_args(context, args))
+
     def invoke(self, context: click.Context) -> None:
         """Runs a command."""
-        try:
-            super().invoke(context)
-            sys.stdout.flush()
-        except MemoryError:
-            raise FileError(
-                "the pairs do not fit in memory: sap count counts them, sap pairs -o FILE writes them in chunks"
-            ) from None
-        except BrokenPipeError:
-            # What is left to write must not raise the same error when Python exits.
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            context.exit(141)
-        except KeyboardInterrupt as interrupt:
-            click.echo(f"\nsap: {str(interrupt) or 'cancelled'}", err=True)
-            context.exit(130)
+        _guarded(context, lambda: super(_Sap, self).invoke(context))
+
+
+def _guarded(context: click.Context, act: Callable[[], _Result]) -> _Result:
+    try:
+        result = act()
+        sys.stdout.flush()
+        return result
+    except MemoryError:
+        raise FileError(
+            "the pairs do not fit in memory: sap count counts them, sap pairs -o FILE writes them in chunks"
+        ) from None
+    except BrokenPipeError:
+        # What is left to write must not raise the same error when Python exits.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        context.exit(141)
+    except KeyboardInterrupt as interrupt:
+        click.echo(f"\nsap: {str(interrupt) or 'cancelled'}", err=True)
+        context.exit(130)
 
 
 @click.group(

@@ -8,8 +8,10 @@ import shutil
 import stat
 import uuid
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from typing import IO
+
+from ._signals import remove_at_end, remove_unfinished
 
 _MOST_LINKS = 40
 
@@ -41,17 +43,17 @@ def output_file(path: str) -> Iterator[tuple[IO[bytes], bool]]:
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), target)
     part = os.path.join(os.path.dirname(target), f".sap-{uuid.uuid4().hex}.part")
     mode = 0o666 if before is None else stat.S_IMODE(before.st_mode) & 0o777
-    descriptor = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), mode)
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+    remove_at_end(part)
     try:
-        with open(descriptor, "wb") as file:
+        with open(part, "wb", opener=lambda name, _: os.open(name, flags, mode)) as file:
             yield file, False
         if before is None or _takes_the_place(part, before):
             os.replace(part, target)
         else:
             shutil.copyfile(part, target)
     finally:
-        with suppress(FileNotFoundError):
-            os.remove(part)
+        remove_unfinished()
 
 
 def _target(path: str) -> str | int:
