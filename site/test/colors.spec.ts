@@ -50,6 +50,70 @@ test("words for what a demo shows have its color, another mark beside it, and st
   }
 });
 
+test("what a sentence names has its name in the picture, from left to right where the text says so", async ({ page }) => {
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await page.goto("/");
+  await page.locator("sap-demo").first().scrollIntoViewIfNeeded();
+  await page.evaluate(() => customElements.whenDefined("sap-demo"));
+  const demos = await page.locator("sap-demo:not([labels=emoji])").evaluateAll(async (all) => {
+    const told: { of: string; labels: string[]; names: string[]; order: string[] }[] = [];
+    for (const demo of all as (HTMLElement & { ready: Promise<void>; balls: number[][]; step(): void; reset(): void })[]) {
+      await demo.ready;
+      const labels = demo.getAttribute("labels")?.split(",") ?? [];
+      const leftOf = (ball: number): number => demo.balls[ball]![0]! - demo.balls[ball]![2]!;
+      const order = labels.map((_, ball) => ball).sort((a, b) => leftOf(a) - leftOf(b)).map((ball) => labels[ball]!);
+      const names = new Set<string>();
+      for (let step = 0; step < 60; step++) {
+        // Painted, with its sentence, in the next frame.
+        if (step % 6 === 0) await new Promise(requestAnimationFrame);
+        for (const [, name] of (demo.shadowRoot!.querySelector(".said")?.textContent ?? "").matchAll(/(?<![A-Za-z])([A-Z])(?![a-z])/g)) names.add(name!);
+        if (!demo.hasAttribute("static")) demo.step();
+      }
+      demo.reset();
+      told.push({ of: `${demo.closest("figure")?.id} ${demo.getAttribute("aria-label")}`, labels, names: [...names], order });
+    }
+    return told;
+  });
+  expect(demos.length).toBeGreaterThan(30);
+  for (const { of, labels, names } of demos) expect(names.filter((name) => !labels.includes(name)), of).toEqual([]);
+  expect(demos.filter(({ names }) => names.length > 1).length, "sentences with names").toBeGreaterThan(12);
+  // "Let us always call the leftmost ball A."
+  for (const start of ["d5 ", "d9 ", "d10 ", "d11 ", "every-axis-demo ", "d14 ", "d15 ", "d18 ", "d12 "]) {
+    const { labels, order } = demos.find(({ of }) => of.startsWith(start))!;
+    expect(order, start).toEqual([...labels].sort());
+  }
+});
+
+for (const colorScheme of ["light", "dark"] as const) {
+  test(`${colorScheme}: a sweep line and an overlap look the same in figures, words, the first picture and the playground`, async ({ page }) => {
+    await page.emulateMedia({ colorScheme, reducedMotion: "reduce" });
+    await page.goto("/");
+    const colors = await page.evaluate(() => {
+      const of = (selector: string, property: "stroke" | "color" | "fill"): string => getComputedStyle(document.querySelector(selector)!)[property];
+      return {
+        sweep: [of(".figure .sweep", "stroke"), of("[data-figure=mini-sweep] .sweep", "stroke"), of("hero-boxes .is-sweep", "color"), of(".sections .is-sweep", "color")],
+        overlap: [of("[data-figure=columns] .hit", "stroke"), of("[data-figure=mini-sweep] .hit", "fill"), of("hero-boxes .is-overlap", "color"), of(".sections .is-overlap", "color")],
+      };
+    });
+    expect(new Set(colors.sweep).size, colors.sweep.join()).toBe(1);
+    expect(new Set(colors.overlap).size, colors.overlap.join()).toBe(1);
+    // Two boxes that overlap, and one that overlaps nothing.
+    await page.goto("/playground.html?own=0,0,4,4;3,3,7,7;8,0,10,2&motion=still");
+    await expect(page.locator("box-playground")).toHaveAttribute("data-step", "0");
+    const painted = await page.locator("[data-part=picture]").evaluate((canvas: HTMLCanvasElement) => {
+      const { width, height } = canvas;
+      const scale = 0.94 * Math.min(width / 10, height / 7);
+      const { data } = canvas.getContext("2d")!.getImageData(0, 0, width, height);
+      return [[1, 1], [6, 6], [9, 1]].map(([x = 0, y = 0]) => {
+        const at = 4 * (Math.round(height / 2 - (y - 3.5) * scale) * width + Math.round(width / 2 + (x - 5) * scale));
+        return `rgb(${[...data.slice(at, at + 3)].join(", ")})`;
+      });
+    });
+    expect(painted.slice(0, 2)).toEqual([colors.overlap[0], colors.overlap[0]]);
+    expect(painted[2]).not.toBe(colors.overlap[0]);
+  });
+}
+
 /** Drawn as thin lines, rings and cells: 3 to 1 is what WCAG asks of graphics. */
 const LINES = ["ink", "muted", "check", "overlap", "skip", "sweep", "edge", "comparison", "swap", "chosen"];
 

@@ -106,13 +106,14 @@ test("d17: swaps are counted since the drag began, flashed, and told as overlaps
 
 test("d5 and d16 can be guessed: what is right is what is drawn, and a wrong guess is explained", async ({ page }) => {
   const d5 = await new Demo(page, "d5").open();
+  const names = (await d5.root.getAttribute("labels"))!.split(",");
   await page.locator("#d5").getByLabel("Guess each step").check();
   for (let guess = 0; guess < 4; guess++) {
     const next = group(d5).getByRole("button", { name: "Next detection" });
     if (await next.isVisible()) await next.click();
     const [, a = "", b = ""] = /for (\w) comes (\w)/.exec((await group(d5).textContent())!)!;
     const balls = await d5.balls();
-    const [one, two] = [a, b].map((name) => balls["ABCDE".indexOf(name)]!) as [Ball, Ball];
+    const [one, two] = [a, b].map((name) => balls[names.indexOf(name)]!) as [Ball, Ball];
     await group(d5).getByRole("button", { name: on(0)(one, two) ? "tested" : "skipped" }).click();
     await expect(group(d5)).toContainText("Right.");
   }

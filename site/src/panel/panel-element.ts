@@ -96,9 +96,14 @@ export abstract class PanelElement extends HTMLElement {
     });
   }
 
-  /** A color of the style sheet, by its custom property. */
+  /** A color of the style sheet, by its custom property, as a canvas takes it. */
   protected color(name: string): string {
-    return getComputedStyle(this).getPropertyValue(`--${name}`).trim();
+    const probe = document.createElement("i");
+    probe.style.color = `var(--${name})`;
+    this.append(probe);
+    const { color } = getComputedStyle(probe);
+    probe.remove();
+    return color;
   }
 
   protected say(text: string): void {

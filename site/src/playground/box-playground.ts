@@ -557,7 +557,7 @@ export class BoxPlayground extends PanelElement {
 
   #readColors(): Colors {
     const lanes = [...this.querySelectorAll("legend")].map((legend) => getComputedStyle(legend).borderTopColor);
-    const boxes = { box: this.color("ramp-1"), highlighted: this.color("ramp-4"), line: this.color("stage"), selected: this.color("ink") };
+    const boxes = { box: this.color("box"), highlighted: this.color("sap-overlap"), line: this.color("stage"), selected: this.color("sap-chosen") };
     return { boxes, lanes, ink: this.color("ink"), muted: this.color("muted"), grid: this.color("line") };
   }
 

@@ -1,6 +1,5 @@
 // `<three-structures>` on a page of its own: what the address `embed.html#three-structures` shows.
 
-import "../article/demo-colors.css";
 import "./structures.css";
 import { ThreeStructures } from "./three-structures.ts";
 

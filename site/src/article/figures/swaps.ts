@@ -3,10 +3,10 @@
 import { letter, line, rect, svg, text } from "./svg.ts";
 
 const CASES = [
-  { before: ")A  (B", after: "(B  )A", one: [10, 60], two: [75, 125], moved: [40, 90], says: "an overlap begins" },
-  { before: "(A  )B", after: ")B  (A", one: [60, 110], two: [15, 80], moved: [92, 142], says: "an overlap ends" },
+  { before: "A)  (B", after: "(B  A)", one: [10, 60], two: [75, 125], moved: [40, 90], says: "an overlap begins" },
+  { before: "(A  B)", after: "B)  (A", one: [60, 110], two: [15, 80], moved: [92, 142], says: "an overlap ends" },
   { before: "(A  (B", after: "(B  (A", one: [15, 125], two: [35, 105], moved: [50, 140], says: "nothing changes" },
-  { before: ")A  )B", after: ")B  )A", one: [44, 96], two: [35, 105], moved: [62, 114], says: "nothing changes" },
+  { before: "A)  B)", after: "B)  A)", one: [44, 96], two: [35, 105], moved: [62, 114], says: "nothing changes" },
 ] as const;
 
 /** The four cases: before, after, and what follows. A moves right. */
