@@ -6,7 +6,6 @@ from __future__ import annotations
 import datetime as dt
 import itertools
 import json
-import os
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
@@ -19,21 +18,38 @@ from oracle import in_order
 import sweep_and_prune as sap
 from sweep_and_prune._command import main
 
-TABLES = int(os.environ.get("TABLES", 20_000 if "TEST_LONG" in os.environ else 400))
-SEED = int(os.environ.get("SEED", 1))
 LARGE = 2**53
-
-
-def overlap(a: Any, b: Any, margin: Any = 0) -> bool:
-    """Whether two intervals of Python's own numbers or times overlap; None is missing, and overlaps nothing."""
-    if any(end is None for end in (*a, *b)):
-        return False
-    return bool(a[0] <= b[1] + margin and b[0] <= a[1] + margin)
 
 
 def between(a: Any, b: Any, **options: Any) -> list[list[int]]:
     found: list[list[int]] = in_order(sap.find_pairs_between(a, b, **options)).tolist()
     return found
+
+
+def test_a_set_without_values_goes_with_every_kind() -> None:
+    days = np.array([["2020-01-01", "2020-01-02"]], "M8[D]")
+    missing: Any = {"start": [None], "end": [None]}
+    for other in (days, days.astype("M8[ns]") - np.datetime64("2020", "ns"), np.array([[0, 2**60]]), [[0.5, 1.0]]):
+        assert between(missing, other, missing="skip") == between(other, missing, missing="skip") == []
+        with pytest.raises(sap.InvalidBoxError, match=r"b\[0\] has a NaN"):
+            sap.find_pairs_between(other, missing)
+    margins: list[Any] = [np.timedelta64(1, "s"), [dt.timedelta(1)], 1]
+    for margin in margins:
+        assert sap.count_pairs(missing, missing="skip", margin=margin) == sap.count_pairs([], margin=margin) == 0
+    none_of_all = np.full((2, 2), "NaT", "M8[s]")
+    assert between(none_of_all, days, missing="skip", margin=np.timedelta64(1, "s")) == []
+
+
+def test_margins_beyond_every_integer_of_numpy_are_exact() -> None:
+    far = [[0, 1], [2**70 + 1, 2**70 + 1]]
+    for margin, wanted in ((2**70, 1), (2**70 - 1, 0), ([2**70], 1), (2**64, 0), (2**200, 1)):
+        assert sap.count_pairs(far, margin=margin) == wanted
+    low = np.array([[-(2**63), -(2**63)], [2**63 - 1, 2**63 - 1]])
+    for margin, wanted in ((2**64 - 1, 1), (2**64 - 2, 0), (2**65, 1)):
+        assert sap.count_pairs(low, margin=margin) == wanted
+    assert sap.count_pairs([[0.0, 1.0], [1e30, 1e30]], margin=10**30) == 1
+    with pytest.raises(ValueError, match="margin is an integer of 16610 bits; it must be at most"):
+        sap.find_pairs([[0.0, 1.0]], margin=10**5000)
 
 
 # Groups.

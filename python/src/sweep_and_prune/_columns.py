@@ -409,6 +409,12 @@ def side_by_side(columns: Sequence[Column], names: Sequence[str], what: str) -> 
     for word, name in known:
         if word != known[0][0]:
             raise TypeError(f"column {known[0][1]} has {known[0][0]}, but column {name} has {word}: convert one")
+    if not known:
+        # Times that are all missing are times; a column of objects may be anything.
+        of_times = [column for column in columns if column.values.dtype.kind in "mM"]
+        if of_times:
+            nothing = np.full((len(columns[0].values), len(columns)), "NaT", of_times[0].values.dtype)
+            return nothing, any(column.is_zoned for column in of_times)
     if not known or known[0][0] == "numbers":
         return np.stack(one_type([_with_nan(column) for column in columns]), axis=1), False
     dtype = next(column.values.dtype for column, kind in zip(columns, kinds) if kind)

@@ -259,8 +259,9 @@ def _columns_at_fault(error: InvalidBoxError, source: Source, options: Options) 
     if len(names) < 2:
         return ""
     first, second = names[error.axis], names[error.axis + len(names) // 2]
-    if np.isnan(error.minimum) or np.isnan(error.maximum):
-        return f", column {first if np.isnan(error.minimum) else second}"
+    is_nan = [end != end for end in (error.minimum, error.maximum)]  # NumPy asks no large integer of Python
+    if any(is_nan):
+        return f", column {first if is_nan[0] else second}"
     return f", columns {first} and {second}"
 
 

@@ -12,7 +12,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import Floats, box_rows, checked_closed, numbers, read_boxes, same_width
-from ._columns import Column, as_array, group_codes, in_one_unit, in_simple_unit, is_rounded, one_type, read_column
+from ._columns import (
+    Column,
+    as_array,
+    exact_numbers,
+    group_codes,
+    in_one_unit,
+    in_simple_unit,
+    is_rounded,
+    one_type,
+    read_column,
+)
 from ._errors import InvalidBoxError
 from ._inputs import Raw, checked_format, has_columns, named_column
 
@@ -85,6 +95,8 @@ def prepare(
     kept: list[Rows] = [None for _ in arrays]
     if missing == "skip":
         arrays, kept = _leave_out([_is_missing(array) for array in arrays], arrays, kept)
+    if has_margin and not any(map(len, arrays)) and _is_duration(margin):
+        arrays = [array.astype("m8[s]") for array in arrays]  # nothing else tells that these would be times
     are_grouped = of_group is None or all(bool((group >= 0).all()) for group in of_group)
     are_whole = all(array.dtype.kind in "iu" for array in arrays) and not has_margin
     are_times = arrays[0].dtype.kind in "mM"
@@ -163,16 +175,31 @@ def _leave_out(masks: list[NDArray[np.bool_]], arrays: list[Any], kept: list[Row
 
 def _one_kind(raw: list[Raw], names: list[str]) -> list[NDArray[Any]]:
     """Boxes whose coordinates can be compared: all of them numbers, durations, or times with or without a zone."""
-    filled = [one for one in raw if len(one.array)]
+    are_one = len({_kind(one) for one in raw}) == 1
+    has_values = [bool(len(one.array)) if are_one else _has_value(one.array) for one in raw]
+    filled = [one for one, has in zip(raw, has_values) if has]
     for one, name in zip(raw, names):
         if one.array.dtype.kind not in "iufOmM":
             raise TypeError(f"{name} must be numbers, not of dtype {one.array.dtype}")
     if len({_kind(one) for one in filled}) > 1:
         first, second = map(_kind, raw)
         raise TypeError(f"{names[0]} has {first} and {names[1]} has {second}, which do not compare: convert one")
-    dtype = filled[0].array.dtype if filled else np.dtype(np.float64)  # the type of a set without boxes does not matter
-    arrays = [one.array if len(one.array) else np.empty(one.array.shape, dtype) for one in raw]
+    # The type of a set without values does not matter.
+    dtype = filled[0].array.dtype if filled else np.dtype(np.float64)
+    arrays = [one.array if has else _nothing(one.array.shape, dtype) for one, has in zip(raw, has_values)]
     return [in_simple_unit(one, name) for one, name in zip(arrays, names)] if dtype.kind in "mM" else arrays
+
+
+def _nothing(shape: tuple[int, ...], dtype: np.dtype[Any]) -> NDArray[Any]:
+    """Boxes of which all coordinates are missing."""
+    if dtype.kind in "mM":
+        return np.full(shape, "NaT", dtype)
+    return np.full(shape, np.nan, dtype if dtype.kind not in "iu" or shape[0] == 0 else np.float64)
+
+
+def _has_value(array: NDArray[Any]) -> bool:
+    """Whether something is neither NaN nor NaT."""
+    return bool((array == array).any())
 
 
 def _kind(raw: Raw) -> str:
@@ -225,19 +252,40 @@ def _extended(arrays: list[NDArray[Any]], margin: object) -> list[NDArray[Any]]:
     if arrays[0].dtype.kind in "mM":
         *arrays, add = _counts(in_one_unit([*arrays, _duration(margin)]))
     else:
-        add = as_array(margin, "margin")
-        if add.dtype.kind not in "iuf":
+        add = exact_numbers(margin, as_array(margin, "margin"))
+        if add.dtype.kind not in "iuf" and not _are_integers(add):
             raise TypeError(f"margin must be a number, not {margin!r}")
+        if add.dtype.kind == "O" and arrays[0].dtype.kind == "f":
+            try:
+                add = add.astype(np.float64)
+            except OverflowError:
+                raise ValueError(f"margin is {_shortened(margin)}; it must be at most 1.8e308") from None
         add = add.astype(np.float64) if add.dtype.kind == "f" else add
-        if not np.isfinite(add).all():
+        if add.dtype.kind == "f" and not np.isfinite(add).all():
             raise ValueError(f"margin is {margin}; it must be finite and 0 or more")
-        if arrays[0].dtype.kind in "iu" and not (add == np.floor(add)).all():
+        if arrays[0].dtype.kind in "iu" and add.dtype.kind == "f" and not (add == np.floor(add)).all():
             raise ValueError(f"margin is {margin}; it must be a whole number for integers beyond 2^53")
     if add.shape not in ((), (half,)):
         raise ValueError(f"margin must be a number or {half} of them, one for each axis, not of shape {add.shape}")
     if (add < 0).any():
         raise ValueError(f"margin is {margin}; it must be finite and 0 or more")
     return [np.hstack([boxes[:, :half], _sum(boxes[:, half:], add)]) for boxes in arrays]
+
+
+def _are_integers(array: NDArray[Any]) -> bool:
+    """Whether these are integers of Python that no type of NumPy has."""
+    return array.dtype.kind == "O" and set(map(type, array.ravel().tolist())) == {int}
+
+
+def _shortened(value: object) -> str:
+    # Python refuses to write integers with more than some thousand digits.
+    text = f"an integer of {value.bit_length()} bits" if isinstance(value, int) else repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _is_duration(margin: object) -> bool:
+    column = read_column([margin] if np.ndim(margin) == 0 else margin, "margin")  # type: ignore[arg-type]
+    return column.kinds() == {"durations"}
 
 
 def _duration(margin: object) -> NDArray[Any]:

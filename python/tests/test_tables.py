@@ -1,0 +1,272 @@
+"""Random tables of every library and dtype, different ones on the two sides, against an oracle that compares Python's
+own numbers and times: 400 calls, or 20,000 with TEST_LONG. `TABLES` and `SEED` choose others."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import os
+from contextlib import redirect_stderr, redirect_stdout
+from fractions import Fraction
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import numpy as np
+from tables import LIBRARIES, NANOSECONDS, Column, a_column, a_table, some_center, some_value, ticks
+
+import sweep_and_prune as sap
+from sweep_and_prune._command import main
+
+TABLES = int(os.environ.get("TABLES", 20_000 if "TEST_LONG" in os.environ else 400))
+SEED = int(os.environ.get("SEED", 1))
+NAMES = {1: ["start", "end"], 2: ["minx", "miny", "maxx", "maxy"]}
+WORDS = ["a", "a\0", "b", "1", "1.0", "nan", ""]
+
+
+class Table:
+    """A table of a library, and what it holds."""
+
+    def __init__(self, random: Random, what: str, center: Any, dimensions: int, groups: list[str]) -> None:
+        # NumPy has no times with a zone.
+        self.library = random.choice(LIBRARIES if what != "zoned" and "zoned" not in groups else LIBRARIES[1:])
+        self.what = what
+        count = random.choice([0, 1, 2, 4, 7])
+        self.boxes: dict[str, Column] = {}
+        names, half = NAMES[dimensions], dimensions
+        for axis in range(half):
+            ends = [[some_value(random, what, center) for _ in "lh"] for _ in range(count)]
+            if random.random() < 0.95:
+                ends = [sorted(pair) for pair in ends]
+            for end in (0, 1):
+                wanted = [None if random.random() < 0.05 else pair[end] for pair in ends]
+                while (column := a_column(random, self.library, what, wanted)) is None:
+                    wanted = [some_value(random, what, 0) for _ in wanted]
+                self.boxes[names[axis + end * half]] = column
+        self.boxes = {name: self.boxes[name] for name in names}
+        self.groups: dict[str, Column] = {}
+        for number, sort in enumerate(groups):
+            base = some_center(random, sort) if sort != "text" and sort != "truth" else None
+            pool = WORDS if sort == "text" else [True, False] if sort == "truth" else near(random, sort, base)
+            while (
+                column := a_column(
+                    random,
+                    self.library,
+                    sort,
+                    [None if random.random() < 0.1 else random.choice(pool) for _ in range(count)],
+                )
+            ) is None:
+                pool = near(random, sort, 0) if sort not in ("text", "truth") else pool
+            self.groups[f"group{number}"] = column
+        self.count = count
+        self.given = a_table(self.library, {**self.boxes, **self.groups})
+
+    def box(self, row: int) -> list[Any]:
+        return [column.values[row] for column in self.boxes.values()]
+
+    def group(self, row: int) -> list[Any]:
+        return [column.values[row] for column in self.groups.values()]
+
+    def __repr__(self) -> str:
+        columns = {**self.boxes, **self.groups}.items()
+        return f"{self.library}: " + "; ".join(f"{name} {column.kind.name} {column.values}" for name, column in columns)
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether all coordinates are integers."""
+        return not any(one.kind.is_float for one in self.boxes.values()) and not any(
+            isinstance(value, float) or getattr(value, "denominator", 1) > 1
+            for one in self.boxes.values()
+            for value in one.values
+        )
+
+
+def near(random: Random, sort: str, base: Any) -> list[Any]:
+    """Values that are nearly equal."""
+    if sort == "numbers":
+        return [base, base + 1, base - 1, base + Fraction(1, 2)]
+    return [base, base + 2**64, base + 1, base + NANOSECONDS["s"], base % NANOSECONDS["D"]]
+
+
+def is_inverted(box: list[Any]) -> bool:
+    half = len(box) // 2
+    return any(low > high for low, high in zip(box[:half], box[half:]))
+
+
+def pair_up(a: list[Any], b: list[Any], closed: str, margin: Any, rounded: Any) -> bool:
+    """Whether two boxes pair, by definition. `rounded` is what a sum becomes."""
+    half = len(a) // 2
+    for one in (a, b):
+        if closed != "both" and any(low == high for low, high in zip(one[:half], one[half:])):
+            return False
+    for axis in range(half):
+        for first, second in ((a, b), (b, a)):
+            low, high = first[axis], second[axis + half]
+            if margin != 0:
+                high = rounded(high, margin)
+            if low > high or (low == high and closed != "both"):
+                return False
+    return True
+
+
+def exact_sum(end: Any, margin: Any) -> Any:
+    return end if isinstance(end, float) else end + margin
+
+
+def sum_of(dtype: Any) -> Any:
+    def add(end: Any, margin: Any) -> Any:
+        if isinstance(end, float):
+            return end
+        with np.errstate(over="ignore"):
+            number = float(dtype(float(end + margin)))
+        return number if abs(number) == math.inf else Fraction(number)
+
+    return add
+
+
+def a_margin(random: Random, what: str, exact: bool) -> tuple[Any, Any]:
+    """A margin as it is passed, and what it is."""
+    if random.random() < 0.5:
+        return 0, 0
+    if what == "numbers":
+        given = random.choice([1, 2, 2**53 + 1, 2**70]) if exact else random.choice([1, 0.5, 2, 3.0, 1e39, 1e300])
+        return given, Fraction(given)
+    unit: Any = random.choice(["ns", "us", "s", "D"])
+    count = random.choice([1, 2, 5])
+    return np.timedelta64(count, unit), count * NANOSECONDS[unit]
+
+
+def wanted_of(a: Table, b: Table, closed: str, margin: Any, is_single: bool, rounded: Any) -> Any:
+    """The pairs, or the error."""
+    present = [[row for row in range(one.count) if None not in one.box(row)] for one in (a, b)]
+    if any(is_inverted(one.box(row)) for one, rows in zip((a, b), present) for row in rows):
+        return sap.InvalidBoxError
+    found = set()
+    for i in present[0]:
+        for j in present[1]:
+            if is_single and j <= i:
+                continue
+            left, right = a.group(i), b.group(j)
+            if None not in left and None not in right and left == right:
+                if pair_up(a.box(i), b.box(j), closed, margin, rounded):
+                    found.add((i, j))
+    return found
+
+
+def table_call(random: Random) -> None:
+    """One call with tables."""
+    what = random.choice(["numbers", "numbers", "numbers", "times", "zoned", "durations"])
+    dimensions = random.choice([1, 1, 2])
+    groups = random.choice(
+        [[], [], ["numbers"], ["text"], ["times"], ["zoned"], ["truth"], ["numbers", "text"], ["numbers", "numbers"]]
+    )
+    center = some_center(random, what)
+    is_single = random.random() < 0.4
+    a = Table(random, what, center, dimensions, groups)
+    b = a if is_single else Table(random, what, center, dimensions, groups)
+    exact = what != "numbers" or (a.is_exact and b.is_exact)
+    margin, amount = a_margin(random, what, exact)
+    closed = random.choice(["both", "both", "left", "right", "neither"])
+    options: dict[str, Any] = {"closed": closed, "missing": "skip", "margin": margin}
+    if groups:
+        options["by"] = [*a.groups] if len(groups) > 1 or random.random() < 0.5 else "group0"
+    columns = [column.kind for one in (a, b) for column in one.boxes.values()]
+    sums = (
+        [exact_sum]
+        if exact
+        else [sum_of(np.float32)]
+        if all(one.is_single for one in columns)
+        else [exact_sum, sum_of(float), sum_of(np.float32)]
+    )
+    allowed = [wanted_of(a, b, closed, amount, is_single, rounded) for rounded in sums]
+    said = f"\na: {a!r}\nb: {b!r}\n{options} wanted {allowed}"
+    try:
+        pairs = sap.find_pairs(a.given, **options) if is_single else sap.find_pairs_between(a.given, b.given, **options)
+    except sap.InvalidBoxError:
+        assert sap.InvalidBoxError in allowed, said
+        return
+    except ValueError as error:
+        if "which none" in str(error) or "none of them holds" in str(error):
+            # The columns of a table become one array.
+            assert any(no_unit_holds(one) for one in (a, b)), said
+            return
+        if "it must be a whole number for integers beyond 2^53" in str(error):
+            assert margin == 0.5 and any(one.count == 0 or one.is_exact for one in (a, b)), said
+            return
+        raise AssertionError(f"{error}{said}") from error
+    except Exception as error:
+        raise AssertionError(f"{type(error)} {error}{said}") from error
+    found = {(i, j) for i, j in pairs.tolist()}
+    assert len(found) == len(pairs) and found in allowed, f"{sorted(found)}{said}"
+    joinable = a.library == b.library and a.library in ("pandas", "polars") and not is_single
+    if joinable and allowed[0] is not sap.InvalidBoxError:
+        distance = None if margin == 0 else margin
+        joined = sap.join(a.given, b.given, by=options.get("by"), closed=closed, distance=distance)
+        assert len(joined) == len(found), f"join: {len(joined)} rows, not {sorted(found)}{said}"
+
+
+def text_call(random: Random, path: Path) -> None:
+    """One file of text, which is read exactly, or refused if it could be misread."""
+    center = some_center(random, "numbers")
+    rows: list[list[str]] = []
+    boxes = []
+    for _ in range(random.choice([1, 2, 5])):
+        ends = sorted(some_value(random, "numbers", center) for _ in "lh")
+        if random.random() < 0.5:
+            ends = [one if isinstance(one, float) else Fraction(round(one)) for one in ends]
+        cells = [str(one) if isinstance(one, float) or one.denominator == 1 else repr(float(one)) for one in ends]
+        boxes.append(
+            [
+                float(one) if "inf" in one else Fraction(int(one) if one.lstrip("-").isdigit() else float(one))
+                for one in cells
+            ]
+        )
+        rows.append([*cells, random.choice(["a", "5,5", "two\nlines", 'say "x"', ""])])
+    is_wrong = any(low > high for low, high in boxes)
+    names = ["minx", "maxx", "name"]
+    quoting: Any = random.choice([csv.QUOTE_MINIMAL, csv.QUOTE_ALL])
+    damage = random.choice(["none", "none", "quote", "cells", "digits", "names"])
+    row = random.choice(rows)
+    if damage == "cells":
+        row += ["more"]
+    elif damage == "digits":
+        row[0] = random.choice(["1_0", "\u0661", "0x10", "1e999"])
+    elif damage == "names":
+        names[2] = random.choice(["Min_X", "minx", "MAXX"])
+    text = io.StringIO()
+    writer = csv.writer(text, quoting=quoting, lineterminator=random.choice(["\n", "\r\n"]))
+    writer.writerows([names, *rows])
+    written = text.getvalue()
+    if damage == "quote":
+        at = written.index("\n") + 1
+        written = written[:at] + '0,1,"' + written[at:].replace('"', "")
+    path.write_text(written, encoding="utf-8", newline="")
+    wanted = sum(pair_up(a, b, "both", 0, None) for i, a in enumerate(boxes) for b in boxes[:i])
+    with redirect_stdout(io.StringIO()) as output, redirect_stderr(io.StringIO()) as errors:
+        status = main(["count", str(path)])
+    found = (status, output.getvalue(), errors.getvalue().count("\n"))
+    said = f"{found} {errors.getvalue()[:300]}, wanted {wanted} ({damage}):\n{written[:500]}"
+    assert found == ((0, f"{wanted}\n", 0) if damage == "none" and not is_wrong else (1, "", 1)), said
+
+
+def no_unit_holds(table: Table) -> bool:
+    """Whether the finest unit of a table's columns does not have all of its times."""
+    values = [value for column in table.boxes.values() for value in column.values if value is not None]
+    return any(ticks("ns")(value) is None for value in values)
+
+
+def test_tables_of_every_library_pair_as_their_values_do() -> None:
+    for seed in range(SEED, SEED + TABLES):
+        try:
+            table_call(Random(seed))
+        except AssertionError as error:
+            raise AssertionError(f"SEED={seed} TABLES=1: {error}") from error
+
+
+def test_files_of_text_pair_as_their_values_do(tmp_path: Path) -> None:
+    for seed in range(SEED, SEED + TABLES):
+        try:
+            text_call(Random(seed), tmp_path / "a.csv")
+        except AssertionError as error:
+            raise AssertionError(f"SEED={seed} TABLES=1: {error}") from error
