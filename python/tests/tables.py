@@ -426,6 +426,7 @@ def kinds_of(library: str, what: str) -> list[Kind]:
             "durations": durations_of,
             "text": words_of,
             "truth": truths_of,
+            "mixed": words_of,
         }[what]
         KINDS[library, what] = make(library)
     return KINDS[library, what]
@@ -455,10 +456,12 @@ def some_center(random: Random, what: str) -> Any:
     return random.choice([*(days * NANOSECONDS["D"] for days in YEARS), 2**64, 2**63])
 
 
-def a_column(random: Random, library: str, what: str, wanted: list[Value]) -> Column | None:
-    """A column of a drawn kind that holds these values, or the nearest ones."""
+def a_column(random: Random, library: str, what: str, wanted: list[Value], single: bool = False) -> Column | None:
+    """A column of a drawn kind (perhaps only of single precision) that holds these values, or the nearest ones."""
     fitting = []
     for kind in kinds_of(library, what):
+        if single and not kind.is_single:
+            continue
         held = [None if one is None else kind.hold(one) for one in wanted]
         if [one is None for one in held] == [one is None for one in wanted] and (
             kind.has_missing or None not in wanted

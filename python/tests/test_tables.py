@@ -23,14 +23,25 @@ TABLES = int(os.environ.get("TABLES", 20_000 if "TEST_LONG" in os.environ else 4
 SEED = int(os.environ.get("SEED", 1))
 NAMES = {1: ["start", "end"], 2: ["minx", "miny", "maxx", "maxy"]}
 WORDS = ["a", "a\0", "b", "1", "1.0", "nan", ""]
+POOLS: dict[str, list[Any]] = {
+    "text": WORDS,
+    "truth": [True, False],
+    "mixed": [1, "1", b"1", "1\0", Fraction(1, 2), "0.5", (1, "1"), (1, 1)],
+}
+"""Values of groups; of the other kinds they depend on a center."""
 
 
 class Table:
     """A table of a library, and what it holds."""
 
-    def __init__(self, random: Random, what: str, center: Any, dimensions: int, groups: list[str]) -> None:
+    def __init__(
+        self, random: Random, what: str, center: Any, dimensions: int, groups: list[str], single: bool
+    ) -> None:
         # NumPy has no times with a zone.
-        self.library = random.choice(LIBRARIES if what != "zoned" and "zoned" not in groups else LIBRARIES[1:])
+        of_zones = [name for name in LIBRARIES if name != "numpy"]
+        self.library = random.choice(of_zones if "zoned" in (what, *groups) else LIBRARIES)
+        if (single and self.library == "lists") or groups == ["mixed"]:
+            self.library = "numpy" if single else "lists"
         self.what = what
         count = random.choice([0, 1, 2, 4, 7])
         self.boxes: dict[str, Column] = {}
@@ -39,16 +50,17 @@ class Table:
             ends = [[some_value(random, what, center) for _ in "lh"] for _ in range(count)]
             if random.random() < 0.95:
                 ends = [sorted(pair) for pair in ends]
+            if what == "numbers" and random.random() < 0.1:
+                ends = [random.choice([pair, [-math.inf] * 2, [math.inf] * 2]) for pair in ends]
             for end in (0, 1):
                 wanted = [None if random.random() < 0.05 else pair[end] for pair in ends]
-                while (column := a_column(random, self.library, what, wanted)) is None:
+                while (column := a_column(random, self.library, what, wanted, single)) is None:
                     wanted = [some_value(random, what, 0) for _ in wanted]
                 self.boxes[names[axis + end * half]] = column
         self.boxes = {name: self.boxes[name] for name in names}
         self.groups: dict[str, Column] = {}
         for number, sort in enumerate(groups):
-            base = some_center(random, sort) if sort != "text" and sort != "truth" else None
-            pool = WORDS if sort == "text" else [True, False] if sort == "truth" else near(random, sort, base)
+            pool = POOLS[sort] if sort in POOLS else near(sort, some_center(random, sort))
             while (
                 column := a_column(
                     random,
@@ -57,7 +69,7 @@ class Table:
                     [None if random.random() < 0.1 else random.choice(pool) for _ in range(count)],
                 )
             ) is None:
-                pool = near(random, sort, 0) if sort not in ("text", "truth") else pool
+                pool = near(sort, 0) if sort not in POOLS else pool
             self.groups[f"group{number}"] = column
         self.count = count
         self.given = a_table(self.library, {**self.boxes, **self.groups})
@@ -82,7 +94,7 @@ class Table:
         )
 
 
-def near(random: Random, sort: str, base: Any) -> list[Any]:
+def near(sort: str, base: Any) -> list[Any]:
     """Values that are nearly equal."""
     if sort == "numbers":
         return [base, base + 1, base - 1, base + Fraction(1, 2)]
@@ -163,8 +175,11 @@ def table_call(random: Random) -> None:
     )
     center = some_center(random, what)
     is_single = random.random() < 0.4
-    a = Table(random, what, center, dimensions, groups)
-    b = a if is_single else Table(random, what, center, dimensions, groups)
+    single = what == "numbers" and "zoned" not in groups and random.random() < 0.15
+    if is_single and not single and random.random() < 0.1:
+        groups = ["mixed"]
+    a = Table(random, what, center, dimensions, groups, single)
+    b = a if is_single else Table(random, what, center, dimensions, groups, single)
     exact = what != "numbers" or (a.is_exact and b.is_exact)
     margin, amount = a_margin(random, what, exact)
     closed = random.choice(["both", "both", "left", "right", "neither"])
@@ -234,6 +249,8 @@ def text_call(random: Random, path: Path) -> None:
         row[0] = random.choice(["1_0", "\u0661", "0x10", "1e999"])
     elif damage == "names":
         names[2] = random.choice(["Min_X", "minx", "MAXX"])
+        for one in rows:
+            one[2] = one[names[2] == "MAXX"]  # what would be a coordinate, too
     text = io.StringIO()
     writer = csv.writer(text, quoting=quoting, lineterminator=random.choice(["\n", "\r\n"]))
     writer.writerows([names, *rows])
