@@ -46,9 +46,9 @@ pub fn update<const D: usize, T: Scalar>(
     } else if changed > 0 {
         collect::collect_escaped(bodies, tracking);
         let moves = tracking.scratch.escaped.len() + bodies.leaving.len();
-        if rebuild_pays(moves, bodies.slots.live) {
-            order = rebuild::rebuild(bodies, tracking, events);
-        } else if !incremental::incremental(bodies, tracking, events) {
+        if rebuild_pays(moves, bodies.slots.live)
+            || !incremental::incremental(bodies, tracking, events)
+        {
             order = rebuild::rebuild(bodies, tracking, events);
         }
         for pairs in [&mut events.begun, &mut events.ended] {
