@@ -1,4 +1,4 @@
-// Every state of a demo can be told from the ground and from the others, also where the visitor forces colors.
+// Every state of a demo can be shown from the ground and from the others, also where the visitor forces colors.
 import { expect, test } from "@playwright/test";
 
 test("words for what a demo shows have its color, another mark beside it, and stand in the legend", async ({ page }) => {
@@ -46,7 +46,7 @@ test("words for what a demo shows have its color, another mark beside it, and st
     expect(found.wrong).toEqual([]);
     expect(found.bare, "demos without a legend").toEqual([]);
     const lines = found.marks.filter(([kind]) => ["is-test", "is-overlap", "is-skip", "is-missed", "is-swap"].includes(kind)).map(([, mark]) => mark);
-    expect(new Set(lines).size, "told apart without color").toBe(5);
+    expect(new Set(lines).size, "shown apart without color").toBe(5);
   }
 });
 
@@ -56,7 +56,7 @@ test("what a sentence names has its name in the picture, from left to right wher
   await page.locator("sap-demo").first().scrollIntoViewIfNeeded();
   await page.evaluate(() => customElements.whenDefined("sap-demo"));
   const demos = await page.locator("sap-demo:not([labels=emoji])").evaluateAll(async (all) => {
-    const told: { of: string; labels: string[]; names: string[]; order: string[] }[] = [];
+    const shown: { of: string; labels: string[]; names: string[]; order: string[] }[] = [];
     for (const demo of all as (HTMLElement & { ready: Promise<void>; balls: number[][]; step(): void; reset(): void })[]) {
       await demo.ready;
       const labels = demo.getAttribute("labels")?.split(",") ?? [];
@@ -70,9 +70,9 @@ test("what a sentence names has its name in the picture, from left to right wher
         if (!demo.hasAttribute("static")) demo.step();
       }
       demo.reset();
-      told.push({ of: `${demo.closest("figure")?.id} ${demo.getAttribute("aria-label")}`, labels, names: [...names], order });
+      shown.push({ of: `${demo.closest("figure")?.id} ${demo.getAttribute("aria-label")}`, labels, names: [...names], order });
     }
-    return told;
+    return shown;
   });
   expect(demos.length).toBeGreaterThan(30);
   for (const { of, labels, names } of demos) expect(names.filter((name) => !labels.includes(name)), of).toEqual([]);
