@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import SimpleNamespace
 from typing import Any, TypeVar
 
@@ -84,8 +85,29 @@ class _Sap(click.Group):
         _guarded(context, lambda: super(_Sap, self).invoke(context))
 
 
+class _Closed(io.RawIOBase):
+    """Standard output that was closed before the program began: only what is written to it is an error."""
+
+    def writable(self) -> bool:
+        """Says so, since a text file asks."""
+        return True
+
+    def write(self, _: Any) -> int:
+        """Fails."""
+        raise OSError(errno.EBADF, "it is closed")
+
+
+def _forget_output() -> None:
+    """What is left to write must not raise the same error when Python exits."""
+    with suppress(OSError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    sys.stdout = open(os.devnull, "w")
+
+
 def _guarded(context: click.Context, act: Callable[[], _Result]) -> _Result:
     try:
+        if sys.stdout is None:
+            sys.stdout = io.TextIOWrapper(io.BufferedWriter(_Closed()))
         result = act()
         sys.stdout.flush()
         return result
@@ -94,9 +116,12 @@ def _guarded(context: click.Context, act: Callable[[], _Result]) -> _Result:
             "the pairs do not fit in memory: sap count counts them, sap pairs -o FILE writes them in chunks"
         ) from None
     except BrokenPipeError:
-        # What is left to write must not raise the same error when Python exits.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _forget_output()
         context.exit(141)
+    except OSError as error:
+        _forget_output()
+        name = "standard output" if error.filename is None else printable(str(error.filename))
+        raise FileError(f"{name} cannot be written: {error.strerror or error}") from None
     except KeyboardInterrupt as interrupt:
         click.echo(f"\nsap: {str(interrupt) or 'cancelled'}", err=True)
         context.exit(130)

@@ -36,12 +36,19 @@ _BYTES_OF_TEXT = 11
 WRITABLE = ("csv", "tsv", "npy", "parquet", "arrow")
 
 
+_MOST_SAID = 500
+_MOST_LISTED = 20
+
+
 class FileError(click.ClickException):
     """What is wrong with a file, for people."""
 
     def show(self, file: IO[Any] | None = None) -> None:
-        """Prints it."""
-        click.echo(f"sap: {self.message}", file or sys.stderr)
+        """Prints it, on one line that is not too long to read."""
+        said = " ".join(self.message.split("\n"))
+        if len(said) > _MOST_SAID:  # a name may be long; what is wrong is at the end
+            said = f"{said[: _MOST_SAID // 2]} ... {said[-_MOST_SAID // 2 :]}"
+        click.echo(f"sap: {said}", file or sys.stderr)
 
 
 def printable(path: str) -> str:
@@ -137,7 +144,8 @@ class Source:
 
 
 def _listed(columns: list[str]) -> str:
-    return f"its columns are {', '.join(columns)}" if columns else "it has no columns with names"
+    more = f" and {len(columns) - _MOST_LISTED:,} more" if len(columns) > _MOST_LISTED else ""
+    return f"its columns are {', '.join(columns[:_MOST_LISTED])}{more}" if columns else "it has no columns with names"
 
 
 class _Text:
@@ -201,7 +209,7 @@ def _number(cell: str) -> float | None:
 def read(path: str) -> Source:
     """Reads a file; its name tells the format, and `-` is CSV from standard input."""
     if path == "-":
-        return _read_text("standard input", sys.stdin, "")
+        return _read_standard_input()
     suffix = Path(path.removesuffix(".gz")).suffix.lower()
     try:
         if suffix in (".csv", ".tsv", ".txt", ".bed"):
@@ -221,7 +229,23 @@ def read(path: str) -> Source:
         raise FileError(f"{path} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
         raise FileError(f"{path} is not text in UTF-8") from None
+    except (FileError, MemoryError):
+        raise
+    except Exception as error:  # what readers of other formats raise for damaged files is not documented
+        raise FileError(f"{path} cannot be read, it seems damaged: {error}") from None
     raise FileError(f"{path} has an unknown ending: the known ones are {READABLE}")
+
+
+def _read_standard_input() -> Source:
+    if sys.stdin is None:
+        raise FileError("standard input is closed")
+    try:
+        with open(sys.stdin.fileno(), encoding="utf-8-sig", newline="", closefd=False) as file:
+            return _read_text("standard input", file, "")
+    except OSError as error:
+        raise FileError(f"standard input cannot be read: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise FileError("standard input is not text in UTF-8") from None
 
 
 def _read_text(name: str, file: IO[str], suffix: str) -> Source:
@@ -303,17 +327,23 @@ def _bare_columns(name: str, row: list[str]) -> list[str]:
 
 def _read_numpy(path: str) -> NDArray[Any]:
     try:
+        with open(path, "rb") as file:  # NumPy leaves a damaged archive open that it opened
+            if file.read(2) == b"PK":
+                file.seek(0)
+                with np.load(file, allow_pickle=False) as arrays:
+                    return _boxes_of_archive(path, arrays)
         loaded = np.load(path, mmap_mode="r", allow_pickle=False)
     except (ValueError, EOFError, BadZipFile) as error:
         raise FileError(f"{path} is not an array of NumPy: {error}") from None
-    if isinstance(loaded, np.ndarray):
-        check_memory(path, f"{loaded.shape[0] if loaded.ndim else 0} boxes", loaded.size * _BYTES)
-        return np.asarray(loaded)
-    names = loaded.files
+    check_memory(path, f"{loaded.shape[0] if loaded.ndim else 0} boxes", loaded.size * _BYTES)
+    return np.asarray(loaded)
+
+
+def _boxes_of_archive(path: str, arrays: Any) -> NDArray[Any]:
+    names = arrays.files
     if "boxes" not in names and len(names) != 1:
         raise FileError(f"{path} has the arrays {', '.join(names)}: one of them must be called boxes")
-    array: NDArray[Any] = loaded["boxes" if "boxes" in names else names[0]]
-    return array
+    return np.asarray(arrays["boxes" if "boxes" in names else names[0]])
 
 
 def _read_geojson(path: str) -> Source:
@@ -390,10 +420,25 @@ def _read_arrow(path: str, suffix: str) -> Source:
         except ImportError:
             raise FileError(f"{path} has geometries: pip install 'sweep-and-prune[join]'") from None
         column = json.loads(geo)["primary_column"]
-        shapes = geopandas.GeoDataFrame.from_arrow(table.select([column])).geometry
         others = {name: table[name] for name in table.column_names if name != column}
+        if arrow.types.is_binary(table[column].type) and b"ARROW:extension:name" not in (
+            table.schema.field(column).metadata or {}
+        ):
+            # A plain file, such as those of DuckDB, says in `geo` alone that this is well-known binary.
+            return Source(path, _bounds_of_binary(path, table[column]), others)
+        shapes = geopandas.GeoDataFrame.from_arrow(table.select([column])).geometry
         return Source(path, shapes.bounds.to_numpy(), others)
     return Source(path, table)
+
+
+def _bounds_of_binary(path: str, column: Any) -> NDArray[Any]:
+    import shapely
+
+    values = np.array(column.to_pylist(), object)
+    try:
+        return np.asarray(shapely.bounds(shapely.from_wkb(values)))
+    except shapely.errors.ShapelyError as error:
+        raise FileError(f"{path} has a geometry that is not valid: {error}") from None
 
 
 def _pyarrow(path: str) -> Any:
