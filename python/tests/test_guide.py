@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import importlib.util
 import re
+import warnings
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 
@@ -37,3 +39,16 @@ def test_a_page_prints_what_it_says_and_draws_its_pictures(page: Path, tmp_path:
         # The bytes depend on the version of matplotlib; texts and sizes do not.
         texts = [re.findall(r"<text.*?>(.*?)</text>", path.read_text(encoding="utf-8")) for path in (drawn, kept)]
         assert texts[0] == texts[1], f"{name} is not what the page draws: run python python/notebooks.py"
+
+
+def test_the_suppression_works_in_half_precision() -> None:
+    page = (GUIDE.GUIDE / "detections.md").read_text(encoding="utf-8")
+    blocks = [block for block in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "matplotlib" not in block]
+    # Ten times as large: 800 by 800 are more than half precision has.
+    blocks.insert(1, "boxes = (boxes * 10).astype(np.float16)\n")
+    names: dict[str, Any] = {}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        exec("\n".join(blocks), names)
+    assert names["boxes"].dtype == "float16" and not (names["iou"] != names["iou"]).any()
+    assert 2000 < names["kept"].sum() < 2100
