@@ -52,6 +52,11 @@ def test_margins_beyond_every_integer_of_numpy_are_exact() -> None:
         sap.find_pairs([[0.0, 1.0]], margin=10**5000)
 
 
+def test_margins_are_added_to_large_decimals_exactly() -> None:
+    table: Any = {"start": [Decimal(LARGE), Decimal(LARGE + 4)], "end": [Decimal(LARGE + 2), Decimal(LARGE + 6)]}
+    assert sap.count_pairs(table, margin=1) == 0 and sap.count_pairs(table, margin=2) == 1
+
+
 # Groups.
 
 

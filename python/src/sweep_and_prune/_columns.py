@@ -269,8 +269,10 @@ def _exact_numbers(items: list[Any]) -> Column | None:
         floats = np.array([float(item) for item in items])
     except OverflowError:
         return Column(_objects(items))
-    # Comparing Python's numbers of different types is exact.
-    return Column(floats if floats.tolist() == items else _objects(items))
+    # Comparing Python's numbers of different types is exact. Sums with exact types must not be rounded, either.
+    are_exact = not any(issubclass(kind, (float, np.floating)) for kind in kinds)
+    is_rounded = floats.tolist() != items or (are_exact and bool((np.abs(floats) >= EXACT).any()))
+    return Column(_objects(items) if is_rounded else floats)
 
 
 def _is_number(kind: type) -> bool:
