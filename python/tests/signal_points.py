@@ -18,14 +18,18 @@ from typing import Any
 import numpy as np
 
 import sweep_and_prune._command as command
+from sweep_and_prune import _signals
 
 NAMES = ["a.npy", "p.csv"]
 PLACES = sys.argv[4:]
 
 
-def signals_are_taken() -> bool:
-    """Whether the program has done so. Before, Python ends as it always does."""
-    return signal.getsignal(signal.SIGHUP) not in (signal.SIG_DFL, None)
+def is_taken(number: int) -> bool:
+    """Whether the program handles a signal. Before, Python ends as it always does.
+
+    (It asks for this signal, since others may be ignored: under nohup, SIGHUP is.)
+    """
+    return signal.getsignal(number) is _signals._end
 
 
 def run(number: int, points: list[int]) -> int:
@@ -37,7 +41,7 @@ def run(number: int, points: list[int]) -> int:
         if not any(place in frame.f_code.co_filename for place in PLACES):
             return None
         frame.f_trace_opcodes = True
-        if event == "opcode" and signals_are_taken():
+        if event == "opcode" and is_taken(number):
             passed += 1
             if passed in points:
                 os.kill(os.getpid(), number)

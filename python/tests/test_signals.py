@@ -26,16 +26,24 @@ OUTPUT = ["sweep_and_prune/_output.py", "sweep_and_prune/_signals.py"]
 PACKAGE = ["sweep_and_prune/", "contextlib.py"]
 
 
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+@pytest.mark.parametrize(
+    ("name", "ignored"), [("SIGINT", None), ("SIGTERM", None), ("SIGHUP", None), ("SIGTERM", "SIGHUP")]
+)
 @pytest.mark.parametrize("second", [0, 1, 15])
-def test_a_signal_at_any_instruction_leaves_no_file_that_is_not_complete(name: str, second: int) -> None:
+def test_a_signal_at_any_instruction_leaves_no_file_that_is_not_complete(
+    name: str, ignored: str | None, second: int
+) -> None:
+    def ignore() -> None:  # as nohup does
+        if ignored is not None:
+            signal.signal(getattr(signal, ignored), signal.SIG_IGN)
+
     is_long = "TEST_LONG" in os.environ
     for places, stride, least in (
         (OUTPUT, 1 if is_long or name == "SIGINT" else 7, 200),
         (PACKAGE, 1 if is_long else 101, 3000),
     ):
         command = [sys.executable, POINTS, name, str(stride), str(second), *places]
-        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        done = subprocess.run(command, capture_output=True, text=True, check=True, preexec_fn=ignore)
         points, *wrong = done.stdout.splitlines()
         assert wrong == []
         assert int(points) > least / stride

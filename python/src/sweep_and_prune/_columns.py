@@ -111,7 +111,9 @@ def as_array(values: Any, name: str) -> NDArray[Any]:
 
 def exact_numbers(values: Any, array: NDArray[Any]) -> NDArray[Any]:
     """The integers and fractions of nested lists, if NumPy rounds them or has no type for them; else its `array`."""
-    if array.dtype.kind == "O" or (array.dtype.kind == "f" and bool((np.abs(array) >= EXACT).any())):
+    # (NumPy rounds integers to double precision only, and warns where half precision is compared with large ones.)
+    is_double = array.dtype.kind == "f" and array.dtype.itemsize >= 8
+    if array.dtype.kind == "O" or (is_double and bool((np.abs(array) >= EXACT).any())):
         objects = np.array(values, object)
         items = objects.ravel().tolist()
         if all(issubclass(one, (int, float, np.integer, np.floating)) for one in set(map(type, items)) - {bool}):
