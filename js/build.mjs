@@ -67,6 +67,16 @@ const builds = [
   { suffix: ".simd.wasm", directory: "wasm-simd", flags: ["-Ctarget-feature=+simd128"], simd: true },
 ];
 
+/** Styles of elements without their comments and indentation. */
+const leanStyles = {
+  name: "lean styles",
+  setup: ({ onLoad }) =>
+    onLoad({ filter: /src.demo.(styles|comparison)\.ts$/ }, ({ path }) => ({
+      contents: readFileSync(path, "utf8").replace(/css`[^`]*`/g, (css) => css.replace(/\/\*.*?\*\//gs, "").replace(/\s+/g, " ")),
+      loader: "ts",
+    })),
+};
+
 const started = Date.now();
 mkdirSync(dist, { recursive: true });
 const tools = await wabt();
@@ -169,6 +179,7 @@ async function buildModules() {
     minifySyntax: true,
     minifyWhitespace: true,
     loader: { ".wasm": "base64" },
+    plugins: [leanStyles],
     metafile: true,
   });
   for (const { name, budget = Infinity } of entries) {

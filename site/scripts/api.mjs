@@ -70,6 +70,11 @@ function finish(file) {
   writeFileSync(file, page.replace(preload, "").replace(/<\/head>/i, (end) => icon + end).replace(/<\/body>/i, (end) => link + end));
 }
 
+// The folder of the crate's documentation has no page of its own: it leads to the first one.
+if (existsSync(join(output, "rust"))) {
+  writeFileSync(join(output, "rust/index.html"), `<!doctype html><html lang="en"><title>sweep_and_prune</title><meta http-equiv="refresh" content="0; url=sweep_and_prune/index.html"><body><a href="sweep_and_prune/index.html">Documentation of the crate</a></body></html>\n`);
+}
+
 for (const { parentPath, name } of existsSync(output) ? readdirSync(output, { withFileTypes: true, recursive: true }) : []) {
   if (name.endsWith(".html")) finish(join(parentPath, name));
 }

@@ -3,19 +3,34 @@
 import "sweep-and-prune/demo.css";
 import { startArticle } from "./article/article.ts";
 import { HeroBoxes } from "./hero/hero-boxes.ts";
+import { showLoadFailure } from "./load-failed.ts";
 
 customElements.define("hero-boxes", HeroBoxes);
+
+/** The script of the demos; where it does not load, each of them says so. */
+let isLoading = false;
+function loadDemos(): void {
+  if (isLoading) return;
+  isLoading = true;
+  import("./article/demos.ts").catch((error: unknown) => {
+    for (const demo of document.querySelectorAll("sap-demo")) {
+      const says = document.createElement("p");
+      showLoadFailure(says, error);
+      demo.after(says);
+    }
+  });
+}
 
 const near = new IntersectionObserver(
   (entries) => {
     if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
     near.disconnect();
-    void import("./article/demos.ts");
+    loadDemos();
   },
   { rootMargin: "300px" },
 );
 for (const element of document.querySelectorAll("sap-demo, falling-balls, library-trial")) near.observe(element);
 // A link into the article: its demos are fetched before the page is laid out.
-if (document.getElementById(location.hash.slice(1))?.querySelector("sap-demo")) void import("./article/demos.ts");
+if (document.getElementById(location.hash.slice(1))?.querySelector("sap-demo")) loadDemos();
 
 startArticle();

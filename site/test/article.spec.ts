@@ -151,6 +151,27 @@ test.describe("does what its caption says", () => {
   });
 });
 
+test("the side-scroller: one or two tests a row along x in every frame, nearly all of 190 pairs along y", async ({ page }) => {
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await page.goto("/#side-scroller");
+  const counts = await page.locator("#side-scroller").evaluate(async (comparison) => {
+    const demos = [...comparison.querySelectorAll("sap-demo")] as (HTMLElement & { ready: Promise<void>; step(): void; state: { tests: number; tick: number } })[];
+    await Promise.all(demos.map(({ ready }) => ready));
+    const counts: number[][] = [];
+    let [tick, last] = [0, demos.map(({ state }) => state.tests)];
+    while (counts.length < 60) {
+      demos[0]!.step();
+      if (demos[0]!.state.tick !== tick) counts.push(last);
+      tick = demos[0]!.state.tick;
+      last = demos.map(({ state }) => state.tests);
+    }
+    return counts;
+  });
+  expect(Math.min(...counts.map(([x]) => x!))).toBeGreaterThan(0);
+  expect(Math.max(...counts.map(([x]) => x!))).toBeLessThanOrEqual(40);
+  expect(Math.min(...counts.map(([, y]) => y!))).toBeGreaterThan(150);
+});
+
 test.describe("mistakes are shown to be mistakes", () => {
   test.beforeEach(({ page }) => page.goto("/"));
 

@@ -45,6 +45,21 @@ for (const [id, methods] of [["d6", 2], ["d13", 3]] as const) {
   });
 }
 
+test("the bars of the first detection grow with it", async ({ page }) => {
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await page.goto("/#d6");
+  const comparison = page.locator("#d6");
+  await comparison.scrollIntoViewIfNeeded();
+  await expect(button(comparison, "Step")).toBeEnabled();
+  for (let step = 0; step < 3; step++) await button(comparison, "Step").click();
+  await expect(comparison.locator(".totals")).toContainText("The first detection, so far:");
+  const tests = (await statesOf(comparison)).map(({ tests }) => tests);
+  expect(tests[0]).toBe(3);
+  await expect(comparison.locator(".totals b")).toHaveText(tests.map((count) => new RegExp(`^${count} tests`)));
+  const widths = await comparison.locator(".totals i").evaluateAll((all) => all.map((bar) => bar.getBoundingClientRect().width));
+  expect(Math.min(...widths)).toBeGreaterThan(50);
+});
+
 test("one set of controls: step, back, the slider, reset and a new world act on all", async ({ page }) => {
   const comparison = await open(page, "d13");
   await expect(comparison.getByRole("group", { name: "Controls" })).toHaveCount(1);

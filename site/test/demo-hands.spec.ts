@@ -16,6 +16,7 @@ test("keys alone: step, back, play, pause, and a ball moved", async ({ page }) =
   for (let count = 0; count < 4; count++) await page.keyboard.press("Shift+ArrowLeft");
   expect(await demo.evaluate((element: SapDemo) => element.balls[1]![0])).toBe(before - 100);
   expect(await counter(demo, "tests")).toBe("1");
+  await expect(demo.locator('[role="status"]'), "it says where the ball is").toContainText("B is at 200, 150.");
   await page.keyboard.press(",");
   await expect.poll(() => demo.evaluate((element: SapDemo) => element.event?.kind)).toBeDefined();
   await expect(demo.locator('[role="status"]')).not.toBeEmpty();
@@ -155,6 +156,32 @@ test("steps without a question are skipped, and a wrong guess is explained; also
       }
     }
     expect(wrong, "so that the reason is seen").toBeGreaterThan(0);
+  }
+});
+
+test("what is shared paused opens paused, at the same stop", async ({ page }) => {
+  const shown = (demo: SapDemo): unknown => [demo.state, demo.event?.kind, demo.isPlaying, demo.shadowRoot?.querySelector(".said")?.textContent];
+  for (const attributes of [
+    { strategy: "pairwise", balls: "6", "skip-interval": "4", decorations: "checks" },
+    { strategy: "swap", balls: "5", "skip-interval": "2", decorations: "checks, edges:array" },
+    { strategy: "sorted-pairwise", balls: "[[150,250,50],[180,150,55],[450,275,60]]", static: "", decorations: "checks" },
+  ] as Attributes[]) {
+    for (const steps of [0, 1, 31]) {
+      const demo = await open(page, attributes);
+      await demo.evaluate((element: SapDemo, steps) => {
+        element.pause();
+        element.reset();
+        for (let step = 0; step < steps; step++) element.step();
+      }, steps);
+      await frames(page, 2);
+      const before = await demo.evaluate(shown);
+      const url = await demo.evaluate((element: SapDemo) => element.share());
+      await page.goto("about:blank");
+      await page.goto(url);
+      await demo.evaluate((element: SapDemo) => element.ready);
+      await frames(page, 5);
+      expect(await demo.evaluate(shown), url).toEqual(before);
+    }
   }
 });
 

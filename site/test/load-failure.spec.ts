@@ -22,6 +22,32 @@ for (const [path, place] of Object.entries(PLACES)) {
   });
 }
 
+test("a demo that did not load says so without advice for its makers, and comes when it is tried again", async ({ page }) => {
+  await page.route(/simulation[^/]*\.wasm/, (route) => route.abort());
+  await page.goto("/#d2");
+  const demo = page.locator("#d2 sap-demo");
+  await expect(demo.getByRole("alert")).toHaveText("This demo did not load. Is there a connection?");
+  await page.unroute(/simulation[^/]*\.wasm/);
+  await demo.getByRole("button", { name: "Try again" }).click();
+  await expect(demo.getByRole("alert")).toHaveCount(0);
+  await expect(demo.getByRole("button", { name: "Step", exact: true })).toBeEnabled();
+});
+
+test("where the script of the demos does not load, each demo says so", async ({ page }) => {
+  await page.route(/\/demos-[^/]*\.js/, (route) => route.abort());
+  await page.goto("/#d2");
+  await expect(page.locator("#d2 .load-failure")).toContainText("A file of this page did not load");
+  await expect(page.locator("#d2").getByRole("button", { name: "Try again" })).toBeVisible();
+});
+
+test("where the library does not load, the trial says so", async ({ page }) => {
+  await page.route(/sweep-and-prune[^/]*\.wasm/, (route) => route.abort());
+  await page.goto("/");
+  await page.locator("library-trial").scrollIntoViewIfNeeded();
+  await page.getByRole("button", { name: "Find pairs" }).click();
+  await expect(page.locator(".trial-result")).toContainText("A file of this page did not load");
+});
+
 test("without WebAssembly, each page says so", async ({ baseURL }) => {
   const { executablePath, args = [] } = config.use!.launchOptions!;
   const browser = await chromium.launch({ executablePath: executablePath!, args: [...args, "--js-flags=--jitless"] });

@@ -105,6 +105,17 @@ test("the documentation of each language that there is can be reached, and is of
   expect(heard).toEqual([]);
 });
 
+test("the guide, and the folder of the crate's documentation, can be reached", async ({ page }) => {
+  await page.goto("/api.html");
+  await page.getByRole("link", { name: "Guide: detections" }).click();
+  await expect(page).toHaveURL(/guide\.html$/);
+  await page.goto("/");
+  await page.locator("footer").getByRole("link", { name: "guide" }).click();
+  await expect(page.locator("body")).toContainText("detections");
+  await page.goto("/api/rust/");
+  await expect(page).toHaveURL(/sweep_and_prune\/index\.html$/);
+});
+
 test("what is installed, and each example, can be copied", async ({ page, context }) => {
   await context.grantPermissions(["clipboard-read", "clipboard-write"]);
   await page.goto("/api.html");

@@ -3,7 +3,6 @@ import { clock } from "./clock.js";
 import { workOf } from "./counters.js";
 import { reducesMotion } from "./motion-query.js";
 import { hasSeed, newSeed } from "./options.js";
-import { type Counts } from "./run.js";
 import { styles } from "./styles.js";
 import { controls, sharing } from "./templates.js";
 import { type Member, Together } from "./together.js";
@@ -26,7 +25,6 @@ interface Entry {
 interface Total {
   readonly heading: string;
   readonly work: { readonly count: number; readonly name: string };
-  readonly counts: Counts;
 }
 
 /**
@@ -211,11 +209,15 @@ export class SapComparisonElement extends LitElement {
   #keepTotals(): void {
     if (!this.#isReady || !this.#together.isDetected || this.#totals?.tick === this.#together.tick) return;
     if (!this.#entries[0]!.member.run!.timeline.hasDetection) return;
-    const of = this.#entries.map(({ demo, member: { run } }) => {
+    this.#totals = { tick: this.#together.tick, of: this.#soFar() };
+  }
+
+  /** What each method has done in this detection. */
+  #soFar(): Total[] {
+    return this.#entries.map(({ demo, member: { run } }) => {
       const { counts, options } = run!;
-      return { heading: options.heading || demo.getAttribute("strategy") || "", counts, work: workOf(options.detecting, counts) };
+      return { heading: options.heading || demo.getAttribute("strategy") || "", work: workOf(options.detecting, counts) };
     });
-    this.#totals = { tick: this.#together.tick, of };
   }
 
   override render(): TemplateResult {
@@ -248,16 +250,16 @@ export class SapComparisonElement extends LitElement {
   }
 
   #bars(): TemplateResult {
-    const { tick, of } = this.#totals ?? { tick: undefined, of: [] };
+    const { tick, of } = this.#totals ?? { tick: undefined, of: this.#isReady ? this.#soFar() : [] };
     const most = Math.max(1, ...of.map(({ work }) => work.count));
-    const says = tick === undefined ? "The totals appear after a detection." : `The last finished detection, at tick ${tick}:`;
+    const says = tick === undefined ? "The first detection, so far:" : `The last finished detection, at tick ${tick}:`;
     const headings = of.length > 0 ? of : this.#entries.map(() => undefined);
     return html`<div class="totals" part="totals">
       <p>${says}</p>
       ${headings.map((total) => {
         if (!total) return html`<div></div>`;
         const { count, name } = total.work;
-        return html`<div data-total=${count}><span>${total.heading}</span><i style="width:${(100 * count) / most}%"></i><b>${count.toLocaleString("en")} ${name}</b></div>`;
+        return html`<div data-total=${tick === undefined ? nothing : count}><span>${total.heading}</span><i style="width:${(100 * count) / most}%"></i><b>${count.toLocaleString("en")} ${name}</b></div>`;
       })}
     </div>`;
   }

@@ -9,8 +9,8 @@ const names = {
   flagChecks: "flag checks",
   axisOverlaps: "axis overlaps",
   pairs: "pairs",
-  comparisons: "sort comparisons",
-  swaps: "sort swaps",
+  comparisons: "comparisons",
+  swaps: "swaps",
 } as const satisfies Record<keyof Counts, string>;
 
 /** The counters that apply to a method: flags take the place of tests, and some methods sweep or sort nothing. */
@@ -41,7 +41,7 @@ export function workOf(detecting: Detecting, counts: Counts): { readonly count: 
 export function counters(counts: Counts, detecting: Detecting | undefined): TemplateResult {
   return html`<dl class="counters" part="counters">
     ${(detecting ? countersOf(detecting) : []).map(
-      (key) => html`<div><dt>${names[key]}</dt><dd data-counter=${names[key].replace("sort ", "").replace(" ", "-")}>${counts[key].toLocaleString("en")}</dd></div>`,
+      (key) => html`<div><dt>${names[key]}</dt><dd data-counter=${names[key].replace(" ", "-")}>${counts[key].toLocaleString("en")}</dd></div>`,
     )}
   </dl>`;
 }

@@ -10,7 +10,7 @@ import { press } from "./keys.js";
 import { loadDemos } from "./load.js";
 import { messageOf } from "./option-error.js";
 import { motionQuery } from "./motion-query.js";
-import { asksOfScan, attributes, HEIGHT, hasSeed, newSeed, type Options, readOptions, readStart, WIDTH } from "./options.js";
+import { asksOfScan, attributes, HEIGHT, hasSeed, newSeed, type Options, readOptions, readStart, readStop, WIDTH } from "./options.js";
 import { paint } from "./paint.js";
 import { Guesses, type Question } from "./predict.js";
 import { addProperties } from "./properties.js";
@@ -45,6 +45,8 @@ export class SapDemoElement extends LitElement {
   #run: Run | undefined;
   /** What keeps it from beginning, to be said in its place. */
   #wrong = "";
+  /** Whether its files did not load. */
+  #hasFailed = false;
   #program: DemoProgram | undefined;
   #isPlaying = false;
   #speed: number | undefined;
@@ -78,7 +80,8 @@ export class SapDemoElement extends LitElement {
     chose: () => this.#changed(),
     place: (...where) => (this.#comparison?.together ?? this.#run!.timeline).placeBall(...where),
     detectAgain: () => (this.#comparison?.together ?? this.#run!.timeline).detectAgain(),
-    say: (text) => (text === undefined ? this.#speech.soon() : this.#speech.now(text)),
+    say: (text) => this.#speech.now(text),
+    saySoon: (first) => this.#speech.soon(first),
   });
   #setReady: () => void = () => undefined;
   readonly ready: Promise<void> = new Promise((resolve) => (this.#setReady = resolve));
@@ -157,7 +160,16 @@ export class SapDemoElement extends LitElement {
     const page = new URL(this.getAttribute("embed-url") ?? "embed.html", document.baseURI);
     const options = this.#run?.options;
     const seed = options && hasSeed(options) ? options.world.seed : undefined;
-    return shareUrl(page, (name) => this.getAttribute(name), { balls, start, seed });
+    return shareUrl(page, (name) => this.getAttribute(name), { balls, start, seed, ...this.#still });
+  }
+
+  /** Whether it is paused, and at which stop. */
+  get #still(): { isPaused: boolean; stop: number | undefined } {
+    const { timeline, options } = this.#run ?? {};
+    if (!timeline || this.#isPlaying || options!.predicts) return { isPaused: false, stop: undefined };
+    // A detection that is over has no stop to come back to, and a world that does not move begins with it over.
+    const isAtStop = timeline.hasDetection && !(options!.isStatic && timeline.isDetected);
+    return { isPaused: !options!.isStatic, stop: isAtStop ? timeline.stop : undefined };
   }
 
   embedCode(): string {
@@ -215,9 +227,18 @@ export class SapDemoElement extends LitElement {
     if (this.#comparison) this.#leave = this.#comparison.join(this, this.#member);
     else clock.add(this, { frame: (ms) => this.#frame(ms) });
     motionQuery.addEventListener("change", this.#onMotionChange);
+    this.#load();
+  }
+
+  #load(): void {
     loadDemos().then(() => turnOf(this.#comparison ?? this)).then(
       () => this.isConnected && !this.#run && this.#begin(),
-      (error: unknown) => this.#refuse(`This demo could not be loaded: ${error instanceof Error ? error.message : String(error)}`),
+      (error: unknown) => {
+        // For the makers of the page. Readers are told what they can do.
+        console.error(error);
+        this.#hasFailed = true;
+        this.#refuse(typeof WebAssembly === "undefined" ? "This demo needs WebAssembly." : "This demo did not load. Is there a connection?");
+      },
     );
   }
 
@@ -277,7 +298,9 @@ export class SapDemoElement extends LitElement {
     const options = this.#readOptions();
     if (!options) return;
     let run: Run;
+    let stop: number | undefined;
     try {
+      stop = readStop(this.getAttribute("stop"));
       run = Run.begin(options, readStart(this.getAttribute("start")));
     } catch (error) {
       return this.#refuse(messageOf(error));
@@ -289,6 +312,7 @@ export class SapDemoElement extends LitElement {
     this.#swapLog = new SwapLog();
     const isStill = isPaused || this.hasAttribute("paused") || options.isStatic || options.predicts || motionQuery.matches;
     if (options.isStatic && (!options.predicts || asksOfScan(options))) run.timeline.finish();
+    if (stop !== undefined) run.timeline.showStop(stop);
     this.#isPlaying = !isStill;
     this.#skipToQuestion();
     this.#comparison?.begun();
@@ -299,6 +323,7 @@ export class SapDemoElement extends LitElement {
 
   #open(run: Run): void {
     this.#wrong = "";
+    this.#hasFailed = false;
     this.#run = run;
     this.#speed = undefined;
   }
@@ -500,6 +525,7 @@ export class SapDemoElement extends LitElement {
       {
         run,
         wrong: this.#wrong,
+        hasFailed: this.#hasFailed,
         label: this.#label,
         hasControls: !this.#comparison && (run?.options.hasControls ?? !this.hasAttribute("no-controls")),
         hasCounters: run?.options.hasCounters ?? !this.hasAttribute("no-counters"),
@@ -518,6 +544,7 @@ export class SapDemoElement extends LitElement {
   readonly #acts: Acts = {
     press: (event) => this.#run && press(event, this.#run.options, this.#hands.keyboard),
     guess: (choice) => this.#guess(choice),
+    load: () => this.#load(),
     setSpeed: (speed) => {
       this.#speed = speed;
       this.#changed();

@@ -1,6 +1,7 @@
 import type { DemoDrag, SapDemo } from "./types.js";
 import { Grab } from "./grab.js";
 import type { Keyboard } from "./keys.js";
+import { inWords } from "./narrate.js";
 import type { Run } from "./run.js";
 import { Selection } from "./selection.js";
 
@@ -18,8 +19,10 @@ export interface Handled {
   place(ball: number, x: number, y: number, vx: number, vy: number): void;
   /** Runs the detection again where the world stands still. */
   detectAgain(): void;
-  /** Says this at once, or soon what there is to say. */
-  say(text?: string): void;
+  /** Says this at once. */
+  say(text: string): void;
+  /** Says soon what there is to say, after this. */
+  saySoon(first?: string): void;
 }
 
 /** The hands of a visitor, by pointer and by keys: which balls they choose, and where they put them. */
@@ -106,7 +109,8 @@ export class Hands {
       this.#demo.pause();
       const { x, y } = run.placeOf(ball);
       this.#move(ball, x + dx, y + dy);
-      this.#handled.say();
+      const place = run.placeOf(ball);
+      this.#handled.saySoon(`${run.names[ball]} is at ${inWords(place.x)}, ${inWords(place.y)}.`);
     },
     guess: (choice) => this.#handled.guess(choice),
   };
@@ -134,6 +138,6 @@ export class Hands {
       if (this.selection.pair) this.#demo.pause();
     }
     this.#handled.chose();
-    if (this.selection.pair) this.#handled.say();
+    if (this.selection.pair) this.#handled.saySoon();
   }
 }

@@ -197,6 +197,7 @@ export const attributes = [
   "swept",
   "variant",
   "start",
+  "stop",
   "heading",
   "no-counters",
   "no-controls",
@@ -307,6 +308,11 @@ export function isWorldKept(before: Options, after: Options): boolean {
 /** How many ticks to run before anything is shown. */
 export function readStart(text: string | null): number {
   return text === null ? 0 : number("start", text, 0, MOST_TICKS);
+}
+
+/** Which stop of the first detection to show; -1 is its beginning. */
+export function readStop(text: string | null): number | undefined {
+  return text === null ? undefined : number("stop", text, -1, Number.MAX_SAFE_INTEGER);
 }
 
 function choose<V>(attribute: Attribute, choices: Readonly<Record<string, V>>, name: string): V {

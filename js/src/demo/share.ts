@@ -1,10 +1,21 @@
 import { type Attribute, attributes } from "./options.js";
 
 /** What of a page's own a copy elsewhere does without. */
-const own = new Set<Attribute>(["aria-label", "start", "balls", "paused", "embed-url"]);
+const own = new Set<Attribute>(["aria-label", "start", "stop", "balls", "paused", "embed-url"]);
+
+/** Where a demo is, beside its attributes. */
+interface Now {
+  readonly balls: string | null;
+  /** Its tick. */
+  readonly start: number;
+  /** The stop that it shows, where it stands at one. */
+  readonly stop: number | undefined;
+  readonly isPaused: boolean;
+  readonly seed: number | undefined;
+}
 
 /** The address of a page that shows this demo alone: all that it is stands after the `#`. */
-export function shareUrl(page: URL, get: (name: Attribute) => string | null, now: { balls: string | null; start: number; seed: number | undefined }): string {
+export function shareUrl(page: URL, get: (name: Attribute) => string | null, now: Now): string {
   const all = new URLSearchParams();
   for (const name of attributes) {
     const value = get(name);
@@ -13,6 +24,8 @@ export function shareUrl(page: URL, get: (name: Attribute) => string | null, now
   if (now.balls !== null) all.set("balls", now.balls);
   if (now.seed !== undefined) all.set("seed", String(now.seed));
   if (now.start > 0) all.set("start", String(now.start));
+  if (now.stop !== undefined) all.set("stop", String(now.stop));
+  if (now.isPaused) all.set("paused", "");
   const url = new URL(page);
   url.hash = all.toString();
   return url.href;

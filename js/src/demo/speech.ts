@@ -13,13 +13,13 @@ export class Speech {
     this.#sentence = sentence;
   }
 
-  /** Says the sentence as it will be then. */
-  soon(): void {
+  /** Says the sentence as it will be then, after this. */
+  soon(first = ""): void {
     clearTimeout(this.#timer);
     const wait = Math.max(100, this.#spokenAt + SPEECH_MS - performance.now());
     this.#timer = setTimeout(() => {
       this.#spokenAt = performance.now();
-      this.now(this.#sentence());
+      this.now(`${first} ${this.#sentence()}`.trim());
     }, wait);
   }
 

@@ -80,8 +80,23 @@ export const styles: CSSResult = css`
     place-content: center;
     margin: 0;
     padding: 1rem;
+    gap: 0.75rem;
     text-align: center;
     background: var(--_stage);
+  }
+  .wrong p {
+    margin: 0;
+  }
+  .wrong button {
+    justify-self: center;
+    height: 44px;
+    padding-inline: 1rem;
+    border: 1px solid var(--_line);
+    border-radius: 6px;
+    background: transparent;
+    color: inherit;
+    font: inherit;
+    cursor: pointer;
   }
   .said {
     margin: 6px 0 0;
@@ -122,6 +137,7 @@ export const styles: CSSResult = css`
   .counters dt {
     font-size: 0.75rem;
     line-height: 1.2;
+    white-space: nowrap;
     color: var(--_muted);
   }
   .counters dd {
@@ -281,8 +297,11 @@ export const styles: CSSResult = css`
     .controls select {
       flex: 2 0 58px;
     }
+    /* Each counter is as wide as its name, with the rest between them: equal columns would let names collide. */
     .counters {
-      gap: 4px 6px;
+      grid-auto-columns: minmax(min-content, max-content);
+      justify-content: space-between;
+      gap: 4px 8px;
     }
     .guess {
       height: calc(6.25rem + 76px);
@@ -304,19 +323,9 @@ export const styles: CSSResult = css`
       text-align: end;
     }
   }
-  /* On a phone each counter is as wide as its name, with the rest between them: equal columns would let names collide. */
-  @media (max-width: 29rem) {
-    .counters {
-      grid-auto-columns: minmax(min-content, max-content);
-      justify-content: space-between;
-      gap: 4px 12px;
-    }
-  }
   @container (max-width: 19rem) {
-    .counters {
-      gap: 4px 8px;
-    }
     .counters dt {
+      white-space: normal;
       letter-spacing: -0.03em;
     }
   }

@@ -70,7 +70,10 @@ export class Timeline {
     const world = new World(options.world);
     for (let tick = 1; tick <= first; tick++) world.tick(tick % interval === 0);
     const timeline = new Timeline(options, kinds, world, first);
-    while (timeline.tick < ticks) timeline.nextTick();
+    while (timeline.tick < ticks) {
+      timeline.finish();
+      timeline.nextTick();
+    }
     return timeline;
   }
 
@@ -188,6 +191,11 @@ export class Timeline {
   /** To the end of this detection, at once. */
   finish(): void {
     this.#stop = this.#stops.length - 1;
+  }
+
+  /** To a stop of this detection; beyond the last, to that one. */
+  showStop(stop: number): void {
+    this.#stop = Math.min(stop, this.#stops.length - 1);
   }
 
   /** Back to before the first event of this detection. */

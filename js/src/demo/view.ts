@@ -15,6 +15,8 @@ export interface View {
   readonly run: Run | undefined;
   /** What keeps it from beginning, in words. */
   readonly wrong: string;
+  /** Whether that is that its files did not load. */
+  readonly hasFailed: boolean;
   readonly label: string;
   readonly hasControls: boolean;
   readonly hasCounters: boolean;
@@ -32,6 +34,8 @@ export interface View {
 export interface Acts {
   press(event: KeyboardEvent): void;
   guess(choice: number): void;
+  /** Tries once more to load what it needs. */
+  load(): void;
   setSpeed(speed: number): void;
   newWorld(): void;
   openSharing(): void;
@@ -46,7 +50,7 @@ export function inside(view: View, demo: SapDemo, acts: Acts): TemplateResult {
     <div class="frame">
     <div class="picture" part="picture" role="application" tabindex="0" aria-label=${view.label} aria-describedby="keys" @keydown=${acts.press}>
       <canvas></canvas>
-      ${view.wrong ? html`<p class="wrong" role="alert">${view.wrong}</p>` : nothing}
+      ${view.wrong ? html`<div class="wrong"><p role="alert">${view.wrong}</p>${view.hasFailed ? html`<button type="button" @click=${acts.load}>Try again</button>` : nothing}</div>` : nothing}
     </div>
     <p id="keys" class="hidden">${keysOf(options, canPlay(run))}</p>
     ${run && options?.decorations.array ? array(run) : nothing}

@@ -58,6 +58,7 @@ const DOCUMENTATION = {
   rust: "api/rust/sweep_and_prune/index.html",
   js: "api/js/index.html",
   python: "api/python/sweep_and_prune.html",
+  guide: "api/python/guide.html",
 } as const;
 
 export const api: Plugin = {
@@ -71,7 +72,7 @@ export const api: Plugin = {
           const example = copyable(highlight(code, language, `an example in ${language}`), "the example");
           return `<div class="examples">${INSTALLATION[name].map(([says, line]) => `<p>${says}</p>${copyable(highlight(line, "shell", `installation for ${says}`), line)}`).join("")}<p>Find pairs</p>${example}</div>`;
         })
-        .replace(/<api-link name="(rust|js|python)">(.*?)<\/api-link>/g, (_, name: keyof typeof DOCUMENTATION, text: string) => {
+        .replace(/<api-link name="(rust|js|python|guide)">(.*?)<\/api-link>/g, (_, name: keyof typeof DOCUMENTATION, text: string) => {
           const path = DOCUMENTATION[name];
           const exists = existsSync(new URL(`../../public/${path}`, import.meta.url));
           return exists ? `<p><a href="./${path}">${text}</a></p>` : "";

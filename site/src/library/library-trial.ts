@@ -1,4 +1,5 @@
 import { findPairs, init } from "sweep-and-prune";
+import { showLoadFailure } from "../load-failed.ts";
 import { bruteForceTests, formatCount } from "../panel/counters.ts";
 
 /** The numbers of boxes that the slider offers; more would block the page for too long. */
@@ -30,14 +31,18 @@ export class LibraryTrial extends HTMLElement {
     slider.addEventListener("input", showCount);
     slider.disabled = button.disabled = false;
     button.addEventListener("click", async () => {
-      result.textContent = await trial(boxes()).catch((error: unknown) => `The search failed: ${String(error)}`);
+      try {
+        await init();
+      } catch (error) {
+        return showLoadFailure(result, error);
+      }
+      result.textContent = await trial(boxes());
     });
   }
 }
 
 /** Runs the library, and brute force where it is quick enough, on `n` random boxes; says what came out. */
 async function trial(n: number): Promise<string> {
-  await init();
   const boxes = randomBoxes(n);
   findPairs(boxes, { dimensions: 3 }); // once without timing, so that the code is compiled
   const started = performance.now();

@@ -2,7 +2,7 @@
 // the navigation, the footer. A page is `<title>`, its own style and scripts, and `<main id="main">`.
 // `<html data-shell="bare">` asks for the head alone (a demo inside someone else's page).
 
-import { readdirSync, readFileSync } from "node:fs";
+import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { basename } from "node:path";
 import type { IndexHtmlTransformContext, Plugin } from "vite";
 
@@ -21,6 +21,9 @@ const NAVIGATION: readonly (readonly [file: string, name: string])[] = [
   ["benchmark.html", "Benchmark"],
   ["api.html", "API"],
 ];
+
+/** The way to the guide, where it was built. */
+const GUIDE = existsSync(new URL("public/api/python/guide.html", site)) ? ` There is a <a href="./api/python/guide.html">guide</a> for Python that begins with your problem.` : "";
 
 /** What search engines need not know: the frame of an embedded demo, and an old address that leads to the playground. */
 const UNLISTED: readonly string[] = ["embed.html", "race.html"];
@@ -114,7 +117,7 @@ function footer(): string {
         Based on the article <cite>Sort, sweep, and prune</cite> by Lean and on the lesson about sweep and
         prune in Matthias Müller’s <cite>Ten Minute Physics</cite>. Free software under the MIT or Apache 2.0
         license, whichever you prefer: <a href="${REPOSITORY}">source code</a>,
-        and <a href="./testing.html">how it is tested</a>. By the sweep-and-prune authors, 2026. These pages load nothing from other hosts, and those that you have
+        and <a href="./testing.html">how it is tested</a>.${GUIDE} By the sweep-and-prune authors, 2026. These pages load nothing from other hosts, and those that you have
         visited work offline.
       </p>
     </footer>`;
