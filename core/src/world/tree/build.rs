@@ -4,10 +4,13 @@ use alloc::vec::Vec;
 
 use super::edit::{Entry, Tree};
 use super::node::{FAN, FILL, NONE, Node, finite, size};
+use crate::sampling::positions;
 use crate::{Aabb, Scalar};
 
 /// Sample size for measuring how bodies spread. 64 instead takes 0.99 to 1.03 of the time.
 const SAMPLE: usize = 16;
+/// Sample size for measuring how large they are.
+const SAMPLE_OF_SIDES: usize = 512;
 
 impl<const D: usize, T: Scalar> Tree<D, T> {
     /// Builds the tree from scratch of these bodies. O(n log n) time.
@@ -33,7 +36,9 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
                 continue;
             }
             let leaves = (end - start).div_ceil(FILL);
-            let (root, bounds) = self.build_node(&mut entries[start..end], boxes, leaves);
+            let entries = &mut entries[start..end];
+            let sides = mean_sides(entries, boxes);
+            let (root, bounds) = self.build_node(entries, boxes, &sides, leaves);
             roots.push(root, &bounds);
             start = end;
         }
@@ -51,6 +56,7 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         &mut self,
         entries: &mut [Entry<D, T>],
         boxes: &[Aabb<D, T>],
+        sides: &[f64; D],
         leaves: usize,
     ) -> (u32, Aabb<D, T>) {
         if leaves <= 1 {
@@ -69,7 +75,7 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         }
         let mut inner = Node::new(false);
         inner.has_leaves = capacity == 1;
-        self.build_children(entries, boxes, leaves, capacity, &mut inner);
+        self.build_children(entries, boxes, sides, leaves, capacity, &mut inner);
         (self.add_inner(inner), inner.bounds())
     }
 
@@ -78,24 +84,25 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         &mut self,
         entries: &mut [Entry<D, T>],
         boxes: &[Aabb<D, T>],
+        sides: &[f64; D],
         leaves: usize,
         capacity: usize,
         inner: &mut Node<D, T>,
     ) {
         let count = leaves.div_ceil(capacity);
         if count <= 1 {
-            let (child, bounds) = self.build_node(entries, boxes, leaves);
+            let (child, bounds) = self.build_node(entries, boxes, sides, leaves);
             inner.push(child, &bounds);
             return;
         }
         let left = (leaves * (count / 2)).div_ceil(count);
         // The product of two counts, which 32 bits do not hold.
         let middle = (entries.len() as u64 * left as u64 / leaves as u64) as usize;
-        let axis = widest_axis(entries, boxes);
+        let axis = widest_axis(entries, sides);
         entries.select_nth_unstable_by(middle, |a, b| a.center[axis].order(b.center[axis]));
         let (low, high) = entries.split_at_mut(middle);
-        self.build_children(low, boxes, left, capacity, inner);
-        self.build_children(high, boxes, leaves - left, capacity, inner);
+        self.build_children(low, boxes, sides, left, capacity, inner);
+        self.build_children(high, boxes, sides, leaves - left, capacity, inner);
     }
 
     /// Takes over new boxes of all bodies. Returns how many times as large as when built the
@@ -165,19 +172,35 @@ fn size_class<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> usize {
     2047 / 3 - exponent / 3
 }
 
+/// The mean side on each axis, by a sample.
+fn mean_sides<const D: usize, T: Scalar>(
+    entries: &[Entry<D, T>],
+    boxes: &[Aabb<D, T>],
+) -> [f64; D] {
+    let mut sides = [0.0; D];
+    for at in positions(entries.len(), SAMPLE_OF_SIDES) {
+        let aabb = &boxes[entries[at].body as usize];
+        for (axis, side) in sides.iter_mut().enumerate() {
+            *side += finite(aabb.max[axis]) - finite(aabb.min[axis]);
+        }
+    }
+    sides.map(|side| side / entries.len().min(SAMPLE_OF_SIDES) as f64)
+}
+
 /// The axis on which the centers spread most for the size of the boxes, by a sample.
-fn widest_axis<const D: usize, T: Scalar>(entries: &[Entry<D, T>], boxes: &[Aabb<D, T>]) -> usize {
+fn widest_axis<const D: usize, T: Scalar>(entries: &[Entry<D, T>], sides: &[f64; D]) -> usize {
+    let (mut low, mut high) = ([T::INFINITY; D], [T::NEG_INFINITY; D]);
+    for entry in entries.iter().step_by(entries.len().div_ceil(SAMPLE)) {
+        for axis in 0..D {
+            let center = entry.center[axis];
+            low[axis] = if center < low[axis] { center } else { low[axis] };
+            high[axis] = if center > high[axis] { center } else { high[axis] };
+        }
+    }
     let mut best = (0, -1.0, 0.0);
     for axis in 0..D {
-        let (mut low, mut high, mut width) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
-        for entry in entries.iter().step_by(entries.len().div_ceil(SAMPLE)) {
-            let aabb = &boxes[entry.body as usize];
-            low = low.min(entry.center[axis].to_f64());
-            high = high.max(entry.center[axis].to_f64());
-            width += finite(aabb.max[axis]) - finite(aabb.min[axis]);
-        }
-        let spread = high - low;
-        let ratio = if spread > 0.0 { spread / width } else { 0.0 };
+        let spread = high[axis].to_f64() - low[axis].to_f64();
+        let ratio = if spread > 0.0 { spread / sides[axis] } else { 0.0 };
         if ratio > best.1 || ratio == best.1 && spread > best.2 {
             best = (axis, ratio, spread);
         }
