@@ -392,7 +392,7 @@ def test_integers_of_text_are_exact(
         ('name,xmin,xmax\n"b,0,1\n' + "c,0,1\n" * 40_000, "a.csv, line 2: a quote opens in this row and is not closed"),
         ('name,xmin,xmax\n"b,0,1\nc,0,1\n"d",0,1\n', "a.csv, line 2: it has a quote in the wrong place"),
         ("xmin,xmax\n0,1\n0,1,2\n", "a.csv, line 3: it has 3 columns, where 2 are expected"),
-        ("0,1\n0,1,2\n", "a.csv, line 2: it has 3 columns, where 2 are expected"),
+        ("0,2\n0,1,2\n", "a.csv, line 2: it has 3 columns, where 2 are expected"),
         ("xmin,xmax,Xmin\n0,1,0\n", "a.csv: the columns xmin and Xmin are both the same coordinate"),
         ("xmin,xmax,xmin\n0,1,0\n", "a.csv: the columns xmin and xmin are both the same coordinate"),
     ],
@@ -407,7 +407,7 @@ def test_text_that_could_be_misread_is_refused(
 def test_text_that_cannot_be_misread_is_taken(in_a_folder: None, capsys: pytest.CaptureFixture[str]) -> None:
     Path("a.csv").write_text('name,xmin,xmax\n"a\nb, c",0,1,\n5" pipe, 1 ,+2, \n')
     assert counted(capsys, "a.csv") == 1
-    Path("a.txt").write_text("0 1\n1 2 \n")
+    Path("a.txt").write_text("0 2\n1 2 \n")
     assert counted(capsys, "a.txt") == 1
     Path("a.csv").write_text("xmin,xmax,kind,kind\n0,1,a,b\n0,1,a,a\n")
     assert counted(capsys, "a.csv") == 1
@@ -424,14 +424,20 @@ def test_bed_has_no_quotes(in_a_folder: None, capsys: pytest.CaptureFixture[str]
 
 def test_groups_of_files_are_those_of_tables(in_a_folder: None, capsys: pytest.CaptureFixture[str]) -> None:
     Path("a.csv").write_text("start,end,kind,side\n0,1,1,+\n0,1,,+\n0,1,,+\n0,1,1.0,+\n")
-    assert counted(capsys, "a.csv", "--by", "kind") == 0, "text is compared as text, and what is empty is no group"
-    assert counted(capsys, "a.csv", "--by", "kind,side") == 0
+    assert counted(capsys, "a.csv", "--by", "kind") == 1, "numbers are numbers, and what is empty is no group"
+    assert counted(capsys, "a.csv", "--by", "kind,side") == 1
     assert counted(capsys, "a.csv", "--by", "side") == 6
     arrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
     table = arrow.table({"start": [0, 0], "end": [1, 1], "kind": [1, 2**53 + 1], "side": ["+", None]})
     parquet.write_table(table, "b.parquet")
     assert counted(capsys, "a.csv", "b.parquet", "--by", "kind") == 2, "numbers are compared as numbers"
     assert counted(capsys, "b.parquet", "a.csv", "--by", "kind,side") == 2
+    Path("d.csv").write_text("start,end,kind\n0,1,01\n0,1,1\n0,1,1e0\n0,1,x\n")
+    assert counted(capsys, "d.csv", "--by", "kind") == 0, "what may be a name is text"
+    said = refused(capsys, "a.csv", "d.csv", "--by", "kind")
+    assert (
+        said == "sap: a.csv has '1.0' in column kind, and d.csv has text there: write the values alike in both files\n"
+    )
     Path("c.csv").write_text(f"start,end,kind,side\n0,1,{2**53},+\n0,1,{2**53 + 1},+\n")
     assert counted(capsys, "b.parquet", "c.csv", "--by", "kind") == 1
     Path("a.csv").write_text("start,end,kind,side\n0,1,1,+\n0,1,x,+\n")

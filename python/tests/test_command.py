@@ -239,7 +239,7 @@ def test_missing_numbers_are_refused_with_their_line_or_left_out(capsys: pytest.
         ("a.npy", "", "a.npy is not an array of NumPy"),
         ("a.parquet", "nonsense", "a.parquet cannot be read"),
         ("a.feather", "nonsense", "a.feather cannot be read"),
-        ("a.shp", "", "a.shp has an unknown ending"),
+        ("a.xyz", "", "a.xyz has an unknown ending"),
     ],
 )
 def test_what_is_wrong_with_a_file_is_said(
@@ -349,15 +349,16 @@ def test_a_terminal_shows_progress_with_the_time_that_is_left() -> None:
 
 def test_too_large_a_file_is_refused_before_it_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
     from sweep_and_prune import _tables
+    from sweep_and_prune._file_error import FileError
 
     monkeypatch.setattr("os.sysconf", lambda name: 1000)
-    with pytest.raises(_tables.FileError, match=r"a\.parquet has 100000000 boxes; searching them takes about 22 GB"):
+    with pytest.raises(FileError, match=r"a\.parquet has 100000000 boxes; searching them takes about 22 GB"):
         _tables.check_memory("a.parquet", "100000000 boxes", 4 * 10**8 * _tables._BYTES)
     for name, contents in (("a.csv", "0.0 GB of boxes"), ("a.csv.gz", "0.0 GB of boxes")):
-        with pytest.raises(_tables.FileError, match=contents):
+        with pytest.raises(FileError, match=contents):
             monkeypatch.setattr("os.sysconf", lambda name: 100)
             _tables.read(write(name))
-    with pytest.raises(_tables.FileError, match="120 boxes"):
+    with pytest.raises(FileError, match="120 boxes"):
         monkeypatch.setattr("os.sysconf", lambda name: 100)
         _tables.read(write("a.npy"))
 

@@ -15,17 +15,20 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _crs
 from ._columns import Column
 from ._errors import InvalidBoxError, SweepAndPruneError
+from ._file_error import FileError, printable
 from ._output import output_file
 from ._pairs import count_pairs, count_pairs_between, find_pairs, iter_chunks, iter_chunks_between
 from ._progress import ProgressBar
 from ._signals import end_at_once, end_by_signals, remove_unfinished, signal_status
-from ._tables import READABLE, WRITABLE, FileError, Source, kind_of, printable, read, writer
+from ._tables import FORMATS, READABLE, Source, read
+from ._writers import WRITABLE, kind_of, writer
 
 _EPILOG = f"""\b
 Files: {READABLE}
-(and .csv.gz, .tsv.gz, .bed.gz); "-" is CSV from standard input.
+(and text with .gz or .bgz); "-" is standard input: CSV, or what --from names.
 
 Boxes are rows of numbers, min corner and then max corner, or columns with names such as minx, miny, maxx, maxy;
 xmin ..; x1 ..; left, top, right, bottom; start, end. Rows are numbered from 0.
@@ -156,7 +159,13 @@ def _names(context: click.Context, parameter: click.Parameter, text: str | None)
 _FORMATS = click.Choice(["xyxy", "xywh", "cxcywh"])
 _CLOSED = click.Choice(["both", "left", "right", "neither"])
 _boxes = _together(
-    click.option("--columns", metavar="A,B,..", callback=_names, help="The columns of the boxes."),
+    click.option(
+        "--columns", metavar="A,B,..", callback=_names, help="The columns of the boxes, by name, or by number from 1."
+    ),
+    click.option("--from", "from_", type=click.Choice(FORMATS), help="What standard input is."),
+    click.option(
+        "--header/--no-header", default=None, help="Whether the first row of text names its columns; else numbers do."
+    ),
     click.option("--format", type=_FORMATS, default="xyxy", help="Corners, or a corner or center and a size."),
     click.option(
         "--missing", type=click.Choice(["raise", "skip"]), default="raise", help="What to do with missing numbers."
@@ -178,6 +187,12 @@ _output = _together(
     click.option("-o", "--output", metavar="FILE", help="Where to write; standard output by default."),
     click.option("--to", type=click.Choice(WRITABLE), help="The format; by default the file's name tells it, or csv."),
     click.option("--id", metavar="COLUMN", help="Write these values instead of the numbers of rows."),
+)
+_sides = _together(
+    click.option("--left-columns", metavar="A,B,..", callback=_names, help="The columns of the boxes of file A."),
+    click.option("--right-columns", metavar="A,B,..", callback=_names, help="The columns of the boxes of file B."),
+    click.option("--left-by", metavar="A,B,..", callback=_names, help="The columns to group file A by."),
+    click.option("--right-by", metavar="A,B,..", callback=_names, help="The columns to group file B by."),
 )
 _disk = _together(
     click.option(
@@ -208,7 +223,7 @@ def pairs(file: str, **options: Any) -> None:
 @sap.command()
 @_file("a")
 @_file("b")
-@_together(_boxes, _output, _disk)
+@_together(_boxes, _sides, _output, _disk)
 def join(a: str, b: str, **options: Any) -> None:
     """Writes all pairs of a box of one file and a box of another."""
     _write_pairs(Options(files=[a, b], **options))
@@ -217,7 +232,7 @@ def join(a: str, b: str, **options: Any) -> None:
 @sap.command()
 @_file("a")
 @click.argument("b", type=click.Path(allow_dash=True), required=False)
-@_together(_boxes, _disk)
+@_together(_boxes, _sides, _disk)
 def count(a: str, b: str | None, **options: Any) -> None:
     """Counts the pairs of a file, or of two."""
     given = Options(files=[a] if b is None else [a, b], **options)
@@ -258,7 +273,9 @@ def _opened(options: Options) -> Iterator[list[Source]]:
     for path in options.files:
         if _is_same_file(path, getattr(options, "output", None)):
             raise FileError(f"{path} has the boxes, which the output would replace: choose another file by -o")
-    sources = [read(path) for path in options.files]
+    if options.files.count("-") > 1:
+        raise FileError("standard input can be read once: pass one file by its name")
+    sources = [read(path, options.from_, options.header) for path in options.files]
     try:
         yield sources
     except InvalidBoxError as error:
@@ -280,7 +297,7 @@ def _is_same_file(read: str, written: str | None) -> bool:
 
 def _columns_at_fault(error: InvalidBoxError, source: Source, options: Options) -> str:
     """The names of the columns that make a box invalid, if there are names."""
-    names = options.columns or source.box_columns(options.format)
+    names = _of_sides(options, "columns")[error.argument == "b"] or source.box_columns(options.format)
     if len(names) < 2:
         return ""
     first, second = names[error.axis], names[error.axis + len(names) // 2]
@@ -297,31 +314,78 @@ def _progress(what: str, options: Options) -> ProgressBar:
 
 def _search(options: Options, sources: list[Source]) -> tuple[list[Any], dict[str, Any]]:
     """The sets of boxes and the options of the search."""
-    sets = [source.boxes(options.columns, options.format) for source in sources]
-    by = [options.by or source.by for source in sources]
+    columns = _of_sides(options, "columns")
+    if options.format != "xyxy" and all(source.are_corners for source in sources) and not any(columns):
+        raise FileError(f"{sources[0].name} is of a format that says where boxes begin and end: leave out --format")
+    sets = [source.boxes(of_side, options.format) for source, of_side in zip(sources, columns)]
+    by = [of_side or source.by for source, of_side in zip(sources, _of_sides(options, "by"))]
     if any(by) and not all(by):
         raise FileError(f"{sources[by.index([])].name} has no groups, but the other file has: pass --by")
+    if len({len(of_side) for of_side in by}) > 1:
+        raise FileError("--left-by and --right-by must name as many columns")
+    apart = _crs.difference(*(source.crs for source in sources)) if len(sources) == 2 else None
+    if apart is not None:
+        raise FileError(
+            f"{sources[0].name} and {sources[1].name} have different coordinate reference systems, {apart[0]} and "
+            f"{apart[1]}: convert one of them"
+        )
     groups = _groups(sources, by)
     closed = {options.closed or source.closed for source in sources}
     if len(closed) > 1:
         raise FileError("the formats of the files differ in whether ends belong to boxes: pass --closed")
-    search: dict[str, Any] = {"format": options.format, "missing": options.missing, "closed": closed.pop()}
+    search: dict[str, Any] = {"missing": options.missing, "closed": closed.pop()}
     search["margin"] = options.margin
     if any(by):
         search["by"] = groups[0] if len(groups) == 1 else tuple(groups)
     return sets, search
 
 
+def _of_sides(options: Options, name: str) -> list[list[str]]:
+    """What an option says for each of two files, by itself or by those for one side."""
+    both = getattr(options, name)
+    sides = [getattr(options, f"{side}_{name}", []) for side in ("left", "right")]
+    if both and any(sides):
+        raise FileError(f"pass --{name}, or --left-{name} and --right-{name}")
+    return [side or both for side in sides]
+
+
 def _groups(sources: list[Source], by: Sequence[Sequence[str]]) -> list[list[Column]]:
-    """The columns to group by, of each file."""
+    """The columns to group by, of each file.
+
+    In a file of text, numbers are text, too: they are numbers if all values of the column are, and also those of the
+    other file.
+    """
     groups = [[source.group(name) for name in names] for source, names in zip(sources, by)]
     for at, columns in enumerate(zip(*groups)):
         kinds = [column.kinds() for column in columns]
-        if {"text"} in kinds and {"numbers"} in kinds:  # in a file of text, numbers are text, too
+        texts = [source.text for source in sources]
+        plain = [
+            kind == {"numbers"} if text is None else text.are_plain_numbers(names[at])
+            for text, kind, names in zip(texts, kinds, by)
+        ]
+        if all(plain):
+            for side, text in enumerate(texts):
+                if text is not None:
+                    groups[side][at] = sources[side].group_of_numbers(by[side][at])
+        elif {"text"} in kinds and {"numbers"} in kinds:
             side = kinds.index({"text"})
-            if sources[side].is_text:
+            if texts[side] is not None:  # of which not all are plain: this refuses those that are none
                 groups[side][at] = sources[side].group_of_numbers(by[side][at])
+        elif any(plain):
+            _refuse_fractions(sources, by, plain.index(True), at)
     return groups
+
+
+def _refuse_fractions(sources: list[Source], by: Sequence[Sequence[str]], side: int, at: int) -> None:
+    """Refuses numbers such as 1.0 where the other file has text, since 1 may be meant."""
+    text, name = sources[side].text, by[side][at]
+    if text is not None and sources[1 - side].group(by[1 - side][at]).kinds():
+        fraction = next((cell for cell in text.text(name) if "." in cell), None)
+        if fraction is not None:
+            raise FileError(
+                f"{sources[side].name} has {fraction!r} in column {name}, and {sources[1 - side].name} has text there: "
+                "write the values alike in both files"
+            )
 
 
 def _counted(options: Options, sets: list[Any], search: dict[str, Any]) -> int:
@@ -397,7 +461,7 @@ def _describe(options: Options, sources: list[Source]) -> None:
     from rich.console import Console
 
     sets, search = _search(options, sources)
-    boxes = _corners(sets[0], options)
+    boxes = _corners(sets[0])
     of_each = np.zeros(len(boxes), np.int64)
     number = _counted(options, sets, search)
     with _progress("describing", options) as progress:
@@ -445,10 +509,10 @@ def _histogram(numbers: NDArray[np.int64], most: int = 10, width: int = 40) -> I
         yield [name, f"{boxes:,}", ProgressBar(total=max(boxes_of_row), completed=boxes, width=width)]
 
 
-def _corners(boxes: Any, options: Options) -> NDArray[np.float64]:
+def _corners(boxes: Any) -> NDArray[np.float64]:
     from ._arrays import box_rows
 
-    return box_rows(boxes, "boxes", np.dtype(np.float64), 0, options.format).astype(np.float64, copy=False)
+    return box_rows(boxes, "boxes", np.dtype(np.float64), 0).astype(np.float64, copy=False)
 
 
 def _draw(options: Options, sources: list[Source]) -> None:
@@ -459,7 +523,7 @@ def _draw(options: Options, sources: list[Source]) -> None:
     except ImportError:
         raise FileError("plot needs matplotlib: pip install 'sweep-and-prune[plot]'") from None
     sets, search = _search(options, sources)
-    boxes = _corners(sets[0], options)
+    boxes = _corners(sets[0])
     pairs = find_pairs(sets[0], threads=options.threads, **search) if options.pairs else np.empty((0, 2), np.int64)
     half = boxes.shape[1] // 2
     if half == 1:  # each on a line of its own

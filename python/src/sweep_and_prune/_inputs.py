@@ -12,7 +12,10 @@ from numpy.typing import NDArray
 from ._columns import Column, arrow_array, as_array, exact_numbers, is_rounded, read_column, side_by_side
 
 _AXES = "xyz"
-_FORMATS = ("xyxy", "xywh", "cxcywh")
+FORMATS = ("xyxy", "xywh", "cxcywh")
+_INTERVALS = [("start", "end"), ("chromstart", "chromend"), ("start", "stop"), ("begin", "end")]
+_INTERVALS += [("starttime", "endtime"), ("startdate", "enddate")]
+_MOST_LISTED = 20
 
 
 def _spellings(format: str) -> list[tuple[list[str], list[str]]]:
@@ -23,7 +26,7 @@ def _spellings(format: str) -> list[tuple[list[str], list[str]]]:
             for pattern, other in (("min{}", "max{}"), ("{}min", "{}max"), ("{}1", "{}2"), ("{}0", "{}1"))
         ]
         found += [(["left", "top"], ["right", "bottom"]), (["west", "south"], ["east", "north"])]
-        return [*found, (["start"], ["end"]), (["chromstart"], ["chromend"])]
+        return [*found, *(([start], [end]) for start, end in _INTERVALS)]
     sizes = (["w", "h", "d"], ["width", "height", "depth"])
     starts = (["x", "y", "z"], ["left", "top"]) if format == "xywh" else (["cx", "cy", "cz"], ["x", "y", "z"])
     return [(start, size) for start in starts for size in sizes]
@@ -31,7 +34,7 @@ def _spellings(format: str) -> list[tuple[list[str], list[str]]]:
 
 def checked_format(format: object) -> str:
     """The name of a format of boxes, or a `ValueError`."""
-    if not (isinstance(format, str) and format in _FORMATS):
+    if not (isinstance(format, str) and format in FORMATS):
         raise ValueError(f'format must be "xyxy", "xywh" or "cxcywh", not {format!r}')
     return format
 
@@ -83,6 +86,15 @@ def raw_boxes(values: Any, name: str, format: str = "xyxy") -> Raw:
     if array.ndim == 3 and array.shape[1] == 2 and 1 <= array.shape[2] <= 3:
         array = array.reshape(len(array), 2 * array.shape[2])  # -1 is not known without boxes
     return _corners(Raw(array), format, name)
+
+
+def listed(columns: Sequence[object], whose: str = "") -> str:
+    """The names of a table's columns for a message, not all of them if they are many."""
+    if len(columns) == 0:
+        return f"{whose or 'it'} has no named columns"
+    shown = [name if len(name) <= 60 else f"{name[:57]}..." for name in map(str, columns[:_MOST_LISTED])]
+    more = f" and {len(columns) - _MOST_LISTED:,} more" if len(columns) > _MOST_LISTED else ""
+    return f"{f'the columns of {whose}' if whose else 'its columns'} are {', '.join(shown)}{more}"
 
 
 def intervals(values: Any) -> Any:
@@ -138,8 +150,7 @@ def named_column(values: Any, column: str, name: str) -> Column:
     columns = _own_columns(values)
     if columns.count(column) != 1:
         fault = f"{name} has several columns of that name: rename or drop one" if column in columns else ""
-        own = f"the columns of {name} are {', '.join(columns)}" if columns else f"{name} has no named columns"
-        raise ValueError(f"by is {column!r}, but {fault or own}")
+        raise ValueError(f"by is {column!r}, but {fault or listed(columns, name)}")
     return read_column(values[column], f"column {column}")
 
 
@@ -181,8 +192,17 @@ def box_columns(columns: Sequence[str], format: str) -> list[str]:
         ends = [(part in known) + (other in known) for part, other in zip(first, second)]
         count = ends.count(2)
         if count and ends == [2] * count + [0] * (len(ends) - count):  # no axis has one end only
+            if (first[0], second[0]) in _INTERVALS:
+                _refuse_other_intervals(known)
             return [_only(known[part]) for part in first[:count] + second[:count]]
     return [_only(known["bbox"])] if "bbox" in known and len(columns) > 1 else []  # as in GeoParquet
+
+
+def _refuse_other_intervals(known: dict[str, list[str]]) -> None:
+    found = [(start, end) for start, end in _INTERVALS if start in known and end in known]
+    if len(found) > 1:
+        named = [f"{known[start][0]}, {known[end][0]}" for start, end in found]
+        raise ValueError(f"the columns {' and '.join(named)} are both known as intervals: choose two of them")
 
 
 def _only(names: list[str]) -> str:
@@ -195,7 +215,7 @@ def _only(names: list[str]) -> str:
 
 def unknown_columns(columns: list[str], otherwise: str, option: str = 'format="{}"') -> str:
     """What to do about columns that are not recognized: another format if they are known there."""
-    formats = [format for format in _FORMATS if len(box_columns(columns, format)) > 1]
+    formats = [format for format in FORMATS if len(box_columns(columns, format)) > 1]
     return f"pass {option.format(formats[0])}" if formats else otherwise
 
 
@@ -216,7 +236,7 @@ def _from_columns(values: Any, columns: list[str], name: str, format: str) -> Ra
             return nested
     wanted = {"xyxy": "minx, miny, maxx, maxy", "xywh": "x, y, w, h", "cxcywh": "cx, cy, w, h"}[format]
     raise ValueError(
-        f"{name} has no columns that are known as boxes, such as {wanted}: its columns are {', '.join(columns)}; "
+        f"{name} has no columns that are known as boxes, such as {wanted}: {listed(columns)}; "
         + unknown_columns(columns, "rename them, or pass an array")
     )
 

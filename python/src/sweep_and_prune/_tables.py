@@ -1,59 +1,50 @@
-"""Reads boxes from files and writes pairs to files, for the command line."""
+"""Reads boxes from files, for the command line."""
 
 from __future__ import annotations
 
-import csv
 import gzip
 import io
 import json
 import math
 import os
 import sys
-from array import array
 from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from itertools import chain
 from pathlib import Path
-from typing import IO, Any, Protocol
+from typing import Any, Union
 from zipfile import BadZipFile
 
-import click
 import numpy as np
 from numpy.typing import NDArray
 
-from ._columns import EXACT, Column, read_column, side_by_side
-from ._inputs import Raw, box_columns, unknown_columns
-from ._output import output_file
+from . import _crs
+from ._columns import Column, read_column, side_by_side
+from ._file_error import FileError
+from ._inputs import Raw, box_columns, listed, raw_boxes, unknown_columns
+from ._text import GENOMIC, Text, corners_of_bare, read_genomic, read_table
+from ._writers import ARROW_ENDINGS, pyarrow_for
 
-_MISSING = {"", "na", "n/a", "nan", "null", "none", "."}
-_BED = ["chrom", "start", "end", "name", "score", "strand"]
-_ARROW = (".arrow", ".feather", ".ipc")
-READABLE = ".csv, .tsv, .bed, .npy, .npz, .geojson, .json, .parquet, .arrow, .feather"
+_KINDS = {
+    **{".csv": "csv", ".txt": "csv", ".tsv": "tsv", ".npy": "npy", ".npz": "npy"},
+    **{".bed": "bed", ".narrowpeak": "narrowpeak", ".broadpeak": "broadpeak", ".bedgraph": "bedgraph"},
+    **{".bdg": "bedgraph", ".gtf": "gtf", ".gff": "gff3", ".gff3": "gff3", ".vcf": "vcf"},
+    **dict.fromkeys((".json", ".geojson", ".geojsonl", ".geojsons", ".ndjson", ".jsonl", ".topojson"), "json"),
+    **{".parquet": "parquet", ".geoparquet": "parquet", **dict.fromkeys(ARROW_ENDINGS, "arrow")},
+    **{".shp": "gis", ".gpkg": "gis", ".fgb": "gis"},
+}
+FORMATS = tuple(kind for kind in dict.fromkeys(_KINDS.values()) if kind != "gis")
+"""The formats that `--from` names."""
+_OF_TEXT = ("csv", "tsv", *GENOMIC)
+READABLE = (
+    ".csv, .tsv, .bed, .narrowPeak, .broadPeak, .bedGraph, .gtf, .gff3, .vcf, .npy, .npz, .json, .geojson, .geojsonl, "
+    ".parquet, .arrow, .feather, .shp, .gpkg, .fgb"
+)
 _BYTES = 8 * 7
 """Of memory for each number: the table, the boxes, and what the search keeps."""
 _BYTES_OF_TEXT = 11
 """Of memory for each byte of text (measured: 400 MB for a million boxes in 36 MB)."""
-WRITABLE = ("csv", "tsv", "npy", "parquet", "arrow")
 
-
-_MOST_SAID = 500
-_MOST_LISTED = 20
-
-
-class FileError(click.ClickException):
-    """What is wrong with a file, for people."""
-
-    def show(self, file: IO[Any] | None = None) -> None:
-        """Prints it, on one line that is not too long to read."""
-        said = " ".join(self.message.split("\n"))
-        if len(said) > _MOST_SAID:  # a name may be long; what is wrong is at the end
-            said = f"{said[: _MOST_SAID // 2]} ... {said[-_MOST_SAID // 2 :]}"
-        click.echo(f"sap: {said}", file or sys.stderr)
-
-
-def printable(path: str) -> str:
-    """A path as a message shows it, on one line."""
-    return path if path.isprintable() else repr(path)
+_File = Union[str, io.BytesIO]
 
 
 class Source:
@@ -64,7 +55,11 @@ class Source:
     by: Sequence[str] = []
     """The columns that the format groups by."""
     is_bare = False
-    """Whether the columns have no names in the file: the boxes are all of them."""
+    """Whether the columns have no names in the file."""
+    are_corners = False
+    """Whether the format says where boxes begin and end, so that no other one can be chosen."""
+    crs: Any = None
+    """The coordinate reference system, if it is known."""
 
     def __init__(self, name: str, values: Any, labels: dict[str, Any] | None = None) -> None:
         self.name, self.values, self.labels = name, values, labels or {}
@@ -79,21 +74,23 @@ class Source:
         return [*map(str, names), *self.labels]
 
     def boxes(self, columns: Sequence[str], format: str) -> Any:
-        """The boxes, from columns with these names or else from those that are recognized."""
+        """The corners of boxes, from columns with these names or else from those that are recognized."""
+        if not columns and self.are_corners:
+            format = "xyxy"
         if not columns and self.is_bare:
-            columns = self.columns
+            columns = corners_of_bare(self.values)
         if not columns:
             if self.columns and not self.box_columns(format) and not self._are_boxes:
                 way = unknown_columns(self.columns, "choose them by --columns", "--format {}")
-                raise FileError(f"{self.name} has no columns that are known as boxes: {way}; {_listed(self.columns)}")
-            return self.values
+                raise FileError(f"{self.name} has no columns that are known as boxes: {way}; {listed(self.columns)}")
+            return raw_boxes(self.values, "boxes", format)
         read = [read_column(self._column(name), f"column {name}") for name in columns]
-        return Raw(*side_by_side(read, columns, self.name))
+        return raw_boxes(Raw(*side_by_side(read, columns, self.name)), "boxes", format)
 
     @property
-    def is_text(self) -> bool:
-        """Whether its values were text."""
-        return isinstance(self.values, _Text)
+    def text(self) -> Text | None:
+        """The table of text, if it was one."""
+        return self.values if isinstance(self.values, Text) else None
 
     @property
     def _are_boxes(self) -> bool:
@@ -107,7 +104,7 @@ class Source:
 
     def group(self, name: str) -> Column:
         """The values of a column to group by; those of a file of text are text, and what is empty is missing."""
-        if isinstance(self.values, _Text):
+        if isinstance(self.values, Text):
             cells = np.array(self.values.text(name), object)
             missing = cells == ""
             return Column(cells, missing if missing.any() else None, name=f"column {name}")
@@ -119,7 +116,7 @@ class Source:
 
     def label(self, name: str) -> NDArray[Any]:
         """A column of any type, as it is written."""
-        if isinstance(self.values, _Text):
+        if isinstance(self.values, Text):
             return np.array(self.values.text(name), object)
         values = self._labels(name)
         if getattr(values, "null_count", 0):  # as an array of NumPy, integers would become floating point
@@ -131,211 +128,101 @@ class Source:
 
     def _column(self, name: str) -> Any:
         number = self.columns.count(name)
-        if number != 1 or not hasattr(self.values, "columns"):
+        is_attribute = number == 0 and self.text is not None and self.text.format is not None
+        if not is_attribute and (number != 1 or not hasattr(self.values, "columns")):
             fault = f"{number} columns {name!r}: rename all but one" if number > 1 else f"no column {name!r}"
-            raise FileError(f"{self.name} has {fault}; {_listed(self.columns)}")
+            raise FileError(f"{self.name} has {fault}; {listed(self.columns)}")
         return self.values[name]
 
     def place(self, index: int) -> str:
         """Where a row is."""
-        if isinstance(self.values, _Text):
+        if isinstance(self.values, Text):
             return f"{self.name}, line {self.values.line(index)}"
         return f"{self.name}, row {index} (the first is 0)"
 
 
-def _listed(columns: list[str]) -> str:
-    more = f" and {len(columns) - _MOST_LISTED:,} more" if len(columns) > _MOST_LISTED else ""
-    return f"its columns are {', '.join(columns[:_MOST_LISTED])}{more}" if columns else "it has no columns with names"
+def read(path: str, kind: str | None = None, header: bool | None = None) -> Source:
+    """Reads a file, or standard input if it is `-`.
 
-
-class _Text:
-    """A table of text, whose columns become numbers when they are used."""
-
-    def __init__(self, name: str, columns: list[str], cells: list[str], lines: Sequence[int]) -> None:
-        """`cells` are those of all rows, one row after the other."""
-        self.name, self.columns, self._cells, self._lines = name, columns, cells, lines
-
-    def __len__(self) -> int:
-        return len(self._lines)
-
-    def line(self, index: int) -> int:
-        return self._lines[index]
-
-    def text(self, name: str) -> Sequence[str]:
-        number = self.columns.count(name)
-        if number != 1:
-            fault = f"{number} columns {name!r}: rename all but one" if number > 1 else f"no column {name!r}"
-            raise FileError(f"{self.name} has {fault}; {_listed(self.columns)}")
-        return self._cells[self.columns.index(name) :: len(self.columns)]
-
-    def __getitem__(self, name: str) -> NDArray[Any]:
-        cells = self.text(name)
-        if _is_plain("".join(cells)):
-            with suppress(ValueError, OverflowError):
-                return np.array(list(map(int, cells)), np.int64)
-            with suppress(ValueError):
-                floats = np.array(list(map(float, cells)))
-                if not (np.abs(floats) >= EXACT).any():
-                    return floats
-        numbers = [self._number(cell, name, index) for index, cell in enumerate(cells)]
-        has_large = any(type(number) is int and abs(number) > EXACT for number in numbers)
-        return np.array(numbers, object if has_large else np.float64)
-
-    def _number(self, cell: str, name: str, index: int) -> float:
-        if cell.strip().lower() in _MISSING:
-            return math.nan
-        number = _number(cell)
-        if number is None or (number in (math.inf, -math.inf) and "inf" not in cell.lower()):
-            what = "is not a number" if number is None else "is too large a number"
-            shown = cell if len(cell) <= 60 else f"{cell[:57]}..."
-            raise FileError(f"{self.name}, line {self.line(index)}, column {name}: {shown!r} {what}")
-        return number
-
-
-def _is_plain(text: str) -> bool:
-    """Whether Python reads numbers as others do: not as in 1_000, nor with digits of other scripts."""
-    return "_" not in text and text.isascii()
-
-
-def _number(cell: str) -> float | None:
-    """A number as it is written, or None if it is none."""
-    if _is_plain(cell):
-        for kind in (int, float):
-            with suppress(ValueError):
-                return kind(cell)
-    return None
-
-
-def read(path: str) -> Source:
-    """Reads a file; its name tells the format, and `-` is CSV from standard input."""
-    if path == "-":
-        return _read_standard_input()
-    suffix = Path(path.removesuffix(".gz")).suffix.lower()
+    Args:
+        path: the name of the file.
+        kind: one of `FORMATS`: what standard input is, by default CSV, and a file whose name does not tell.
+        header: whether the first row of a table of text names its columns; None to find out.
+    """
+    name = "standard input" if path == "-" else path
+    known = None if path == "-" else _KINDS.get(Path(_unpacked(path)).suffix.lower())
+    kind = known or kind or ("csv" if path == "-" else None)
+    if kind is None:
+        raise FileError(f"{path} has an unknown ending: the known ones are {READABLE}; or pass --from")
     try:
-        if suffix in (".csv", ".tsv", ".txt", ".bed"):
-            # Of what is compressed, a box takes about a third.
-            size = os.path.getsize(path) * (3 if path.endswith(".gz") else 1)
-            check_memory(path, f"{size / 1e9:.1f} GB of boxes", size * _BYTES_OF_TEXT)
-            opened: Any = gzip.open if path.endswith(".gz") else open
-            with opened(path, "rt", encoding="utf-8-sig", newline="") as file:
-                return _read_text(path, file, suffix)
-        if suffix in (".npy", ".npz"):
-            return Source(path, _read_numpy(path))
-        if suffix in (".geojson", ".json"):
-            return _read_geojson(path)
-        if suffix in (".parquet", ".geoparquet", *_ARROW):
-            return _read_arrow(path, suffix)
+        if path == "-":
+            if sys.stdin is None:
+                raise FileError("standard input is closed")
+            opened: Any = sys.stdin.fileno()
+            if kind in _OF_TEXT:
+                with open(opened, encoding="utf-8-sig", newline="", closefd=False) as file:
+                    return _read_text(name, file, kind, header)
+            with open(opened, "rb", closefd=False) as file:
+                return _read_binary(name, io.BytesIO(file.read()), kind)
+        if kind not in _OF_TEXT:
+            return _read_binary(name, path, kind)
+        is_packed = _unpacked(path) != path
+        # Of what is compressed, a box takes about a third.
+        size = os.path.getsize(path) * (3 if is_packed else 1)
+        check_memory(path, f"{size / 1e9:.1f} GB of boxes", size * _BYTES_OF_TEXT)
+        with (gzip.open if is_packed else open)(path, "rt", encoding="utf-8-sig", newline="") as file:
+            return _read_text(name, file, kind, header)
     except OSError as error:
-        raise FileError(f"{path} cannot be read: {error.strerror or error}") from None
+        raise FileError(f"{name} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
-        raise FileError(f"{path} is not text in UTF-8") from None
+        raise FileError(f"{name} is not text in UTF-8") from None
     except (FileError, MemoryError):
         raise
     except Exception as error:  # what readers of other formats raise for damaged files is not documented
-        raise FileError(f"{path} cannot be read, it seems damaged: {error}") from None
-    raise FileError(f"{path} has an unknown ending: the known ones are {READABLE}")
+        raise FileError(f"{name} cannot be read, it seems damaged: {error}") from None
 
 
-def _read_standard_input() -> Source:
-    if sys.stdin is None:
-        raise FileError("standard input is closed")
-    try:
-        with open(sys.stdin.fileno(), encoding="utf-8-sig", newline="", closefd=False) as file:
-            return _read_text("standard input", file, "")
-    except OSError as error:
-        raise FileError(f"standard input cannot be read: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise FileError("standard input is not text in UTF-8") from None
+def _unpacked(path: str) -> str:
+    """The name without the ending of a compressed file."""
+    return path.removesuffix(".gz").removesuffix(".bgz")
 
 
-def _read_text(name: str, file: IO[str], suffix: str) -> Source:
-    delimiter, text = "\t", iter(file)
-    is_bed = suffix == ".bed"
-    if suffix not in (".tsv", ".bed"):
-        first = next(text, "")
-        delimiter = max(",;\t", key=first.count)
-        if delimiter not in first and " " in first.strip():
-            delimiter = " "
-        text = chain([first] if first else [], text)
-    # BED has no quotes: one in a name is a part of it.
-    quotes: Any = {"quoting": csv.QUOTE_NONE} if is_bed else {"strict": True}
-    reader = csv.reader(text, delimiter=delimiter, skipinitialspace=True, **quotes)
-    begun = 1
-
-    def rows_of_file() -> Iterator[list[str]]:
-        nonlocal begun
-        for row in reader:
-            begun = reader.line_num + 1
-            if row and not (is_bed and _is_comment(row)):
-                yield row
-
-    rows = rows_of_file()
-    # All cells are in one list: with a list for each row, reading takes twice as long.
-    cells: list[str] = []
-    lines = array("Q")
-    try:
-        first_row = next(rows, [])
-        is_bare = not is_bed and all(_number(cell) is not None for cell in first_row)
-        if is_bed:
-            columns = _BED[: len(first_row) or 3]
-        else:
-            columns = _bare_columns(name, first_row) if is_bare else [cell.strip() for cell in first_row]
-        for row in chain([first_row] if first_row and (is_bed or is_bare) else [], rows):
-            if is_bed and len(row) < 3:
-                raise FileError(f"{name}, line {reader.line_num}: chrom, start and end are expected, separated by tabs")
-            if is_bed:  # only these three are in each row
-                row += [""] * (len(columns) - len(row))
-            if len(row) < len(columns) or (not is_bed and any(row[len(columns) :])):
-                raise FileError(
-                    f"{name}, line {reader.line_num}: it has {len(row)} columns, where {len(columns)} are expected"
-                )
-            cells += row[: len(columns)]
-            lines.append(reader.line_num)
-    except csv.Error as error:
-        raise FileError(f"{name}, line {begun}: {_fault(error)}") from None
-    table = _Text(name, columns, cells, lines)
-    if is_bed:
-        source = Source(name, table)
-        source.closed, source.by = "left", ["chrom"]
+def _read_text(name: str, file: Any, kind: str, header: bool | None) -> Source:
+    if kind in GENOMIC:
+        source = Source(name, read_genomic(name, file, kind))
+        source.closed, source.by, source.are_corners = "left", ["chrom"], True
         return source
+    table, is_bare = read_table(name, file, "\t" if kind == "tsv" else "", header)
     source = Source(name, table)
     source.is_bare = is_bare
     return source
 
 
-def _fault(error: csv.Error) -> str:
-    """What is wrong with a row of a file of text."""
-    if "unexpected end" in str(error) or "field larger" in str(error):
-        return "a quote opens in this row and is not closed"
-    return f"it has a quote in the wrong place ({error})" if "expected after" in str(error) else str(error)
+def _read_binary(name: str, file: _File, kind: str) -> Source:
+    if kind == "npy":
+        return Source(name, _read_numpy(name, file))
+    if kind == "json":
+        return _read_json(name, file)
+    if kind == "gis":
+        return _read_gis(name, file)
+    return _read_arrow(name, file, kind)
 
 
-def _is_comment(row: list[str]) -> bool:
-    """Whether a row of a BED file has no interval."""
-    return row[0].split(" ")[0].startswith(("#", "track", "browser"))
-
-
-def _bare_columns(name: str, row: list[str]) -> list[str]:
-    """Names for the columns of a file without a header, whose first row this is."""
-    if not row:
-        raise FileError(f"{name} is empty")
-    corners = {2: "min0 max0", 4: "min0 min1 max0 max1", 6: "min0 min1 min2 max0 max1 max2"}
-    if len(row) not in corners:
-        raise FileError(f"{name} has no header and {len(row)} columns; boxes have 2, 4 or 6")
-    return corners[len(row)].split()
-
-
-def _read_numpy(path: str) -> NDArray[Any]:
+def _read_numpy(name: str, file: _File) -> NDArray[Any]:
     try:
-        with open(path, "rb") as file:  # NumPy leaves a damaged archive open that it opened
-            if file.read(2) == b"PK":
-                file.seek(0)
-                with np.load(file, allow_pickle=False) as arrays:
-                    return _boxes_of_archive(path, arrays)
-        loaded = np.load(path, mmap_mode="r", allow_pickle=False)
+        opened = open(file, "rb") if isinstance(file, str) else file
+        with opened:  # NumPy leaves a damaged archive open that it opened
+            if opened.read(2) == b"PK":
+                opened.seek(0)
+                with np.load(opened, allow_pickle=False) as arrays:
+                    return _boxes_of_archive(name, arrays)
+            if not isinstance(file, str):
+                opened.seek(0)
+                return np.asarray(np.load(opened, allow_pickle=False))
+        loaded = np.load(file, mmap_mode="r", allow_pickle=False)
     except (ValueError, EOFError, BadZipFile) as error:
-        raise FileError(f"{path} is not an array of NumPy: {error}") from None
-    check_memory(path, f"{loaded.shape[0] if loaded.ndim else 0} boxes", loaded.size * _BYTES)
+        raise FileError(f"{name} is not an array of NumPy: {error}") from None
+    check_memory(name, f"{loaded.shape[0] if loaded.ndim else 0} boxes", loaded.size * _BYTES)
     return np.asarray(loaded)
 
 
@@ -346,31 +233,98 @@ def _boxes_of_archive(path: str, arrays: Any) -> NDArray[Any]:
     return np.asarray(arrays["boxes" if "boxes" in names else names[0]])
 
 
-def _read_geojson(path: str) -> Source:
-    with open(path, encoding="utf-8") as file:
-        try:
-            document = json.load(file)
-        except json.JSONDecodeError as error:
-            raise FileError(f"{path}, line {error.lineno}: {error.msg}") from None
-    features = document.get("features") if isinstance(document, dict) else None
-    if not isinstance(features, list):
-        raise FileError(f"{path} is not a FeatureCollection of GeoJSON")
+def _read_json(name: str, file: _File) -> Source:
+    """GeoJSON: a collection, a feature, a geometry, or one of these on each line; or COCO's detections."""
+    with open(file, "rb") if isinstance(file, str) else file as opened:
+        text = opened.read().decode("utf-8-sig")
+    document = _document(name, text)
+    if isinstance(document, dict) and document.get("type") == "Topology":
+        raise FileError(f"{name} is TopoJSON: convert it to GeoJSON first, as by ogr2ogr or mapshaper")
+    is_coco = isinstance(document, dict) and isinstance(document.get("annotations"), list)
+    if is_coco or (isinstance(document, list) and document and _has_box(document[0])):
+        return _read_coco(name, document["annotations"] if is_coco else document)
+    features = _features(document)
+    if features is None:
+        raise FileError(f"{name} is not a FeatureCollection of GeoJSON, nor annotations of COCO")
     bounds = []
     for index, feature in enumerate(features):
         try:
             bounds.append(_bounds(feature.get("geometry")))
         except (AttributeError, IndexError, TypeError, ValueError):
-            raise FileError(f"{path}, feature {index} (the first is 0) is not valid GeoJSON") from None
+            raise FileError(f"{name}, feature {index} (the first is 0) is not valid GeoJSON") from None
     names = ["minx", "miny", "maxx", "maxy"]
     ends = [read_column([of_shape[end] for of_shape in bounds], name) for end, name in enumerate(names)]
-    boxes = Raw(*side_by_side(ends, names, path))
-    properties = [feature.get("properties") or {} for feature in features]
-    labels = {
-        name: np.array([row.get(name) for row in properties], object)
-        for name in sorted({name for row in properties for name in row})
-    }
+    boxes = Raw(*side_by_side(ends, names, name))
+    labels = _labels_of([feature.get("properties") or {} for feature in features])
     labels.setdefault("id", np.array([feature.get("id") for feature in features], object))
-    return Source(path, boxes, labels)
+    source = Source(name, boxes, labels)
+    source.are_corners = True
+    source.crs = _crs.of_geojson(document) if isinstance(document, dict) else _crs.LONGITUDE_LATITUDE
+    return source
+
+
+def _document(name: str, text: str) -> Any:
+    """What a file of JSON has; a list if each line is a document."""
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError as error:
+        lines = [(at, line.strip("\x1e \t\r")) for at, line in enumerate(text.split("\n"), 1)]
+        given = [(at, line) for at, line in lines if line]
+        if error.msg != "Extra data" and not text.startswith("\x1e"):
+            raise FileError(f"{name}, line {error.lineno}: {error.msg}") from None
+    documents = []
+    for at, line in given:
+        try:
+            documents.append(json.loads(line))
+        except json.JSONDecodeError as error:
+            raise FileError(f"{name}, line {at}: {error.msg}") from None
+    return documents
+
+
+def _features(document: Any) -> list[Any] | None:
+    """The features of GeoJSON; None if it is something else."""
+    if isinstance(document, list):
+        found = [_features(one) for one in document]
+        return None if None in found or not found else [feature for of_line in found for feature in of_line or []]
+    if not isinstance(document, dict):
+        return None
+    if isinstance(document.get("features"), list):
+        features: list[Any] = document["features"]
+        return features
+    if document.get("type") == "Feature":
+        return [document]
+    return [{"geometry": document}] if {"coordinates", "geometries"} & set(document) else None
+
+
+def _labels_of(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """The values of each name in any of the rows."""
+    return {name: _objects([row.get(name) for row in rows]) for name in sorted({key for row in rows for key in row})}
+
+
+def _objects(values: list[Any]) -> NDArray[Any]:
+    array = np.empty(len(values), object)
+    for at, value in enumerate(values):  # an assignment of all would look into those that are lists
+        array[at] = json.dumps(value) if isinstance(value, (list, dict)) else value
+    return array
+
+
+def _has_box(item: Any) -> bool:
+    return isinstance(item, dict) and "bbox" in item and "image_id" in item
+
+
+def _read_coco(name: str, annotations: list[Any]) -> Source:
+    """Detections of COCO, whose boxes are a corner and a size. They pair within their image."""
+    for index, item in enumerate(annotations):
+        box = item.get("bbox") if _has_box(item) else None
+        if not (isinstance(box, list) and len(box) == 4 and all(type(one) in (int, float) for one in box)):
+            raise FileError(f"{name}, annotation {index} (the first is 0) has no image_id and bbox of 4 numbers")
+    names = ["x", "y", "width", "height"]
+    ends = [read_column([item["bbox"][end] for item in annotations], name) for end, name in enumerate(names)]
+    boxes = raw_boxes(Raw(*side_by_side(ends, names, name)), name, "xywh")
+    kept = [{key: item[key] for key in item if key not in ("segmentation", "bbox")} for item in annotations]
+    source = Source(name, boxes, _labels_of(kept))
+    source.by, source.are_corners = ["image_id"], True
+    return source
 
 
 def _bounds(geometry: Any) -> tuple[float, float, float, float]:
@@ -397,38 +351,67 @@ def _points(geometry: Any) -> Iterator[tuple[float, float]]:
             waiting.extend(item)
 
 
-def _read_arrow(path: str, suffix: str) -> Source:
-    arrow = _pyarrow(path)
+def _read_gis(name: str, file: _File) -> Source:
+    """A shapefile, a GeoPackage or a FlatGeobuf: the bounds of its geometries."""
     try:
-        if suffix in _ARROW:
+        import geopandas
+    except ImportError:
+        raise FileError(f"{name} needs geopandas: pip install 'sweep-and-prune[join]'") from None
+    frame = geopandas.read_file(file)
+    if not hasattr(frame, "total_bounds"):
+        raise FileError(f"{name} has no geometries")
+    shapes = frame.geometry
+    others = {str(column): frame[column] for column in frame.columns if column != shapes.name}
+    return _of_geometries(name, shapes.bounds.to_numpy(), others, shapes.crs)
+
+
+def _of_geometries(name: str, bounds: NDArray[Any], labels: dict[str, Any], crs: Any) -> Source:
+    source = Source(name, bounds, labels)
+    source.are_corners, source.crs = True, crs
+    return source
+
+
+def _read_arrow(name: str, file: _File, kind: str) -> Source:
+    arrow = pyarrow_for(name)
+    try:
+        if kind == "arrow":
             import pyarrow.feather
 
-            table = pyarrow.feather.read_table(path)
+            try:
+                table = pyarrow.feather.read_table(file)
+            except arrow.ArrowInvalid:
+                if isinstance(file, str):
+                    raise
+                file.seek(0)  # a stream, as a pipe has
+                table = arrow.ipc.open_stream(file).read_all()
         else:
             import pyarrow.parquet
 
-            parquet = pyarrow.parquet.ParquetFile(path)
+            parquet = pyarrow.parquet.ParquetFile(file)
             rows = parquet.metadata.num_rows
-            check_memory(path, f"{rows} boxes", 4 * rows * _BYTES)
+            check_memory(name, f"{rows} boxes", 4 * rows * _BYTES)
             table = parquet.read()
     except arrow.ArrowInvalid as error:
-        raise FileError(f"{path} cannot be read: {error}") from None
+        raise FileError(f"{name} cannot be read: {error}") from None
     geo = (table.schema.metadata or {}).get(b"geo")
+    crs = _crs.of_geoparquet(table.schema.metadata)
     if geo is not None and "bbox" not in table.column_names:
         try:
             import geopandas
         except ImportError:
-            raise FileError(f"{path} has geometries: pip install 'sweep-and-prune[join]'") from None
+            raise FileError(f"{name} has geometries: pip install 'sweep-and-prune[join]'") from None
         column = json.loads(geo)["primary_column"]
-        others = {name: table[name] for name in table.column_names if name != column}
+        others = {one: table[one] for one in table.column_names if one != column}
         if arrow.types.is_binary(table[column].type) and b"ARROW:extension:name" not in (
             table.schema.field(column).metadata or {}
         ):
             # A plain file, such as those of DuckDB, says in `geo` alone that this is well-known binary.
-            return Source(path, _bounds_of_binary(path, table[column]), others)
+            return _of_geometries(name, _bounds_of_binary(name, table[column]), others, crs)
         shapes = geopandas.GeoDataFrame.from_arrow(table.select([column])).geometry
-        return Source(path, shapes.bounds.to_numpy(), others)
-    return Source(path, table)
+        return _of_geometries(name, shapes.bounds.to_numpy(), others, crs)
+    source = Source(name, table)
+    source.crs = crs
+    return source
 
 
 def _bounds_of_binary(path: str, column: Any) -> NDArray[Any]:
@@ -439,14 +422,6 @@ def _bounds_of_binary(path: str, column: Any) -> NDArray[Any]:
         return np.asarray(shapely.bounds(shapely.from_wkb(values)))
     except shapely.errors.ShapelyError as error:
         raise FileError(f"{path} has a geometry that is not valid: {error}") from None
-
-
-def _pyarrow(path: str) -> Any:
-    try:
-        import pyarrow
-    except ImportError:
-        raise FileError(f"{path} needs pyarrow: pip install 'sweep-and-prune[files]'") from None
-    return pyarrow
 
 
 def check_memory(path: str, contents: str, needed: int) -> None:
@@ -460,129 +435,3 @@ def check_memory(path: str, contents: str, needed: int) -> None:
         is_parquet = path.endswith((".parquet", ".geoparquet"))
         way = "--memory-limit searches them" if is_parquet else "a Parquet file can be searched"
         raise FileError(f"{path} has {contents}; searching them takes about {gigabytes}; {way} from disk")
-
-
-class Writer(Protocol):
-    """Takes pairs, chunk by chunk."""
-
-    def write(self, pairs: Sequence[NDArray[Any]]) -> None: ...
-    def close(self) -> None: ...
-
-
-class _TextWriter:
-    def __init__(self, file: IO[bytes], delimiter: str, names: tuple[str, str]) -> None:
-        self._file, self._delimiter = file, delimiter
-        self._file.write(f"{names[0]}{delimiter}{names[1]}\n".encode())
-
-    def write(self, pairs: Sequence[NDArray[Any]]) -> None:
-        a, b = (column.tolist() for column in pairs)
-        delimiter = self._delimiter
-        if pairs[0].dtype.kind in "iu" and pairs[1].dtype.kind in "iu":
-            lines = [f"{i}{delimiter}{j}\n" for i, j in zip(a, b)]
-        else:
-            lines = [f"{_quoted(i, delimiter)}{delimiter}{_quoted(j, delimiter)}\n" for i, j in zip(a, b)]
-        self._file.write("".join(lines).encode())
-
-    def close(self) -> None:
-        self._file.flush()
-
-
-def _quoted(value: object, delimiter: str) -> str:
-    text = "" if value is None else str(value)
-    if delimiter in text or '"' in text or "\n" in text or "\r" in text:
-        return '"' + text.replace('"', '""') + '"'
-    return text
-
-
-class _NumpyWriter:
-    def __init__(self, file: IO[bytes], count: int) -> None:
-        self._file = file
-        header = {"descr": "<i8", "fortran_order": False, "shape": (count, 2)}
-        np.lib.format.write_array_header_1_0(file, header)
-
-    def write(self, pairs: Sequence[NDArray[Any]]) -> None:
-        try:
-            rows = np.stack(pairs, axis=1).astype("<i8", casting="same_kind")
-        except TypeError:
-            raise FileError(
-                "an array of NumPy holds whole numbers only: leave out --id, or write another format"
-            ) from None
-        self._file.write(rows.tobytes())
-
-    def close(self) -> None:
-        self._file.flush()
-
-
-class _ArrowWriter:
-    def __init__(self, file: IO[bytes], kind: str, names: tuple[str, str], is_pipe: bool) -> None:
-        self._arrow = _pyarrow(f"--to {kind}")
-        self._file, self._kind, self._names, self._is_pipe = file, kind, names, is_pipe
-        self._writer: Any = None
-
-    def write(self, pairs: Sequence[NDArray[Any]]) -> None:
-        table = self._arrow.table([self._arrow.array(column) for column in pairs], names=list(self._names))
-        if self._writer is None:
-            self._writer = self._open(table.schema)
-        self._writer.write_table(table.cast(self._writer.schema if self._kind == "parquet" else table.schema))
-
-    def _open(self, schema: Any) -> Any:
-        if self._kind == "parquet":
-            import pyarrow.parquet
-
-            return pyarrow.parquet.ParquetWriter(self._file, schema)
-        # A file of Arrow needs to seek; a pipe takes a stream.
-        opened = self._arrow.ipc.new_stream if self._is_pipe else self._arrow.ipc.new_file
-        return opened(self._file, schema)
-
-    def close(self) -> None:
-        if self._writer is None:
-            integer = self._arrow.int64()
-            self._writer = self._open(self._arrow.schema([(name, integer) for name in self._names]))
-        self._writer.close()
-
-
-@contextmanager
-def writer(path: str | None, kind: str, count: int, names: tuple[str, str]) -> Iterator[Writer]:
-    """Opens a file for so many pairs, or standard output. A file that could not be completed is removed."""
-    if path is None:
-        with _standard_output() as file:
-            yield from _closing(file, kind, count, names, True)
-        return
-    try:
-        with output_file(path) as (file, is_stream):
-            yield from _closing(file, kind, count, names, is_stream)
-    except BrokenPipeError:
-        raise  # the program that reads a named pipe ended
-    except OSError as error:
-        raise FileError(f"{printable(path)} cannot be written: {error.strerror or error}") from None
-
-
-def _standard_output() -> AbstractContextManager[IO[bytes]]:
-    """Standard output with a buffer. With PYTHONUNBUFFERED it has none, and writes a part of what it is given."""
-    output = sys.stdout.buffer
-    return open(output.fileno(), "wb", closefd=False) if isinstance(output, io.RawIOBase) else nullcontext(output)
-
-
-def _closing(file: IO[bytes], kind: str, count: int, names: tuple[str, str], is_pipe: bool) -> Iterator[Writer]:
-    made: Writer
-    if kind == "npy":
-        made = _NumpyWriter(file, count)
-    elif kind in ("csv", "tsv"):
-        made = _TextWriter(file, "," if kind == "csv" else "\t", names)
-    else:
-        made = _ArrowWriter(file, kind, names, is_pipe)
-    yield made
-    made.close()
-
-
-def kind_of(path: str | None, kind: str | None) -> str:
-    """The format to write: as told, or as the name of the file tells, or CSV."""
-    if kind is not None:
-        return kind
-    if path is None:
-        return "csv"
-    suffix = Path(path).suffix.lower()
-    known = "arrow" if suffix in _ARROW else suffix[1:]
-    if known not in WRITABLE:
-        raise FileError(f"{path} has an unknown ending: use .csv, .tsv, .npy, .parquet or .arrow, or pass --to")
-    return known

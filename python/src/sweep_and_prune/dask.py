@@ -22,6 +22,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Union
 
+from ._crs import difference
 from ._inputs import checked_format
 from ._partitioned.boxes import InvalidRowError
 from ._partitioned.dataset import DatasetError, Manifest, read_manifest
@@ -285,10 +286,16 @@ def _sources(
         raise TypeError(f"columns must be a list of names, such as [{columns!r}, ..], not the text {columns!r}")
     margins = [float(one) for one in margin] if hasattr(margin, "__len__") else float(margin)
     options = {"format": format, "closed": closed, "missing": missing, "margin": margins or 0}
-    return [
+    sources = [
         _source(boxes, list(columns) if columns else None, of_set, name, options, place)
         for boxes, of_set, name in zip(sets, ids, names)
     ]
+    apart = difference(*(source.crs for source in sources)) if len(sources) == 2 else None
+    if apart is not None:
+        raise ValueError(
+            f"a and b have different coordinate reference systems, {apart[0]} and {apart[1]}: convert one of them"
+        )
+    return sources
 
 
 def _source(

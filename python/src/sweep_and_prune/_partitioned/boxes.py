@@ -12,10 +12,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _crs
 from .._arrays import read_boxes
 from .._columns import is_rounded, read_column, side_by_side
 from .._errors import InvalidBoxError
-from .._inputs import box_columns, unknown_columns
+from .._inputs import box_columns, listed, unknown_columns
 from .._prepare import prepare, refuse_inverted
 from .dataset import DatasetError
 from .search import Boxes
@@ -265,8 +266,8 @@ def form_of_files(
     columns: Sequence[str] | None,
     ids: str | None,
     options: dict[str, Any],
-) -> Form:
-    """How boxes are read from files: which columns, and in which precision."""
+) -> tuple[Form, Any]:
+    """How boxes are read from files (which columns, and in which precision), and their coordinate reference system."""
     import pyarrow
 
     schemas = []
@@ -283,7 +284,7 @@ def form_of_files(
     if not names:
         raise DatasetError(
             f"{files[0].path} has no columns that are known as boxes: "
-            f"{unknown_columns(schema.names, 'choose them by columns')}; its columns are {', '.join(schema.names)}"
+            f"{unknown_columns(schema.names, 'choose them by columns')}; {listed(schema.names)}"
         )
     if len(names) not in (1, 2, 4, 6):
         raise ValueError(f"columns are {len(names)} names; they must be 2, 4 or 6: min corner and then max corner")
@@ -295,7 +296,7 @@ def form_of_files(
             number = other.names.count(name)
             if number != 1:
                 fault = f"{number} columns {name!r}: rename all but one" if number else f"no column {name!r}"
-                raise DatasetError(f"{file.path} has {fault}; its columns are {', '.join(other.names)}")
+                raise DatasetError(f"{file.path} has {fault}; {listed(other.names)}")
         for name in names:
             of_name = other.field(name).type
             parts = [field.type for field in of_name] if pyarrow.types.is_struct(of_name) else [of_name]
@@ -304,7 +305,7 @@ def form_of_files(
             id_types.add(id_type_of(other.field(ids).type, f"{file.path}: column {ids}"))
     if len(id_types) > 1:
         raise DatasetError(f"column {ids} is of different types in the files: {', '.join(sorted(id_types))}")
-    return Form(
+    form = Form(
         columns=names,
         kind=kind,
         ids=ids,
@@ -312,6 +313,19 @@ def form_of_files(
         dtype="float32" if is_single else "float64",
         **options,
     )
+    return form, _crs_of(files, [_crs.of_geoparquet(one.metadata) for one in schemas])
+
+
+def _crs_of(files: Sequence[File], systems: list[Any]) -> Any:
+    known = [(file.path, crs) for file, crs in zip(files, systems) if crs is not None]
+    for path, crs in known:
+        apart = _crs.difference(known[0][1], crs)
+        if apart is not None:
+            raise DatasetError(
+                f"{known[0][0]} and {path} have different coordinate reference systems, {apart[0]} and {apart[1]}: "
+                "convert one of them"
+            )
+    return known[0][1] if known else None
 
 
 def id_type_of(kind: Any, where: str) -> str:

@@ -39,13 +39,15 @@ def source_of_collection(collection: Any, columns: Any, ids: str | None, name: s
     summaries = dask.compute([dask.delayed(_summary, pure=False)(one, lenient, name) for one in partitions])[0]
     samples = [sample for _, sample in summaries if len(sample)]
     sample = np.concatenate(samples) if samples else None
-    return Source([], partitions, [rows for rows, _ in summaries], form, sample)
+    meta = getattr(collection, "_meta", None)
+    crs = getattr(meta, "crs", None) if form.kind == "geometry" else None
+    return Source([], partitions, [rows for rows, _ in summaries], form, sample, crs)
 
 
 def _form_of_frame(meta: Any, columns: Any, ids: str | None, options: dict[str, Any]) -> Form:
     import pyarrow
 
-    from .._inputs import box_columns, unknown_columns
+    from .._inputs import box_columns, listed, unknown_columns
 
     names = [str(name) for name in meta.columns]
     kind, chosen = "chosen", list(columns or [])
@@ -56,11 +58,11 @@ def _form_of_frame(meta: Any, columns: Any, ids: str | None, options: dict[str, 
     if not chosen:
         raise DatasetError(
             f"boxes has no columns that are known as boxes: {unknown_columns(names, 'choose them by columns')}; "
-            f"its columns are {', '.join(names)}"
+            f"{listed(names)}"
         )
     for name in chosen + ([ids] if ids is not None else []):
         if name not in names:
-            raise DatasetError(f"boxes has no column {name!r}; its columns are {', '.join(names)}")
+            raise DatasetError(f"boxes has no column {name!r}; {listed(names)}")
     is_single = kind != "geometry" and all(meta[name].dtype == np.float32 for name in chosen)
     id_type = "int64"
     if ids is not None:

@@ -65,6 +65,8 @@ class Source(NamedTuple):
     rows: list[int]
     form: Form
     sample: Floats | None
+    crs: Any = None
+    """The coordinate reference system, if it is known."""
 
 
 class Job(NamedTuple):
@@ -86,8 +88,8 @@ def source_of_files(
     files = list_files(paths)
     if out is not None:
         _refuse_own_files(paths, files, out)
-    form = form_of_files(files, columns, ids, options)
-    return Source(files, [], [sum(file.rows) for file in files], form, None)
+    form, crs = form_of_files(files, columns, ids, options)
+    return Source(files, [], [sum(file.rows) for file in files], form, None, crs)
 
 
 def run(sources: list[Source], job: Job) -> Manifest:

@@ -1,0 +1,155 @@
+"""Writes rows of results to files, for the command line."""
+
+from __future__ import annotations
+
+import io
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from pathlib import Path
+from typing import IO, Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._file_error import FileError, printable
+from ._output import output_file
+
+WRITABLE = ("csv", "tsv", "npy", "parquet", "arrow")
+ARROW_ENDINGS = (".arrow", ".feather", ".ipc")
+
+
+class Writer(Protocol):
+    """Takes columns of results, chunk by chunk."""
+
+    def write(self, columns: Sequence[NDArray[Any]]) -> None: ...
+    def close(self) -> None: ...
+
+
+class _TextWriter:
+    def __init__(self, file: IO[bytes], delimiter: str, names: Sequence[str]) -> None:
+        self._file, self._delimiter = file, delimiter
+        self._file.write((delimiter.join(_quoted(name, delimiter) for name in names) + "\n").encode())
+
+    def write(self, columns: Sequence[NDArray[Any]]) -> None:
+        delimiter = self._delimiter
+        lists = [column.tolist() for column in columns]
+        if len(lists) == 2 and all(column.dtype.kind in "iu" for column in columns):
+            lines = [f"{i}{delimiter}{j}\n" for i, j in zip(*lists)]
+        else:
+            lines = [delimiter.join([_quoted(cell, delimiter) for cell in row]) + "\n" for row in zip(*lists)]
+        self._file.write("".join(lines).encode())
+
+    def close(self) -> None:
+        self._file.flush()
+
+
+def _quoted(value: object, delimiter: str) -> str:
+    text = "" if value is None or value != value else str(value)
+    if delimiter in text or '"' in text or "\n" in text or "\r" in text:
+        return '"' + text.replace('"', '""') + '"'
+    return text
+
+
+class _NumpyWriter:
+    def __init__(self, file: IO[bytes], count: int, width: int) -> None:
+        self._file = file
+        header = {"descr": "<i8", "fortran_order": False, "shape": (count, width)}
+        np.lib.format.write_array_header_1_0(file, header)
+
+    def write(self, columns: Sequence[NDArray[Any]]) -> None:
+        if any(column.dtype.kind not in "iu" for column in columns):
+            raise FileError("an array of NumPy holds whole numbers only: write another format, or leave out --id")
+        rows = np.stack(columns, axis=1).astype("<i8", casting="same_kind")
+        self._file.write(rows.tobytes())
+
+    def close(self) -> None:
+        self._file.flush()
+
+
+class _ArrowWriter:
+    def __init__(self, file: IO[bytes], kind: str, names: Sequence[str], is_pipe: bool) -> None:
+        self._arrow = pyarrow_for(f"--to {kind}")
+        self._file, self._kind, self._names, self._is_pipe = file, kind, names, is_pipe
+        self._writer: Any = None
+
+    def write(self, columns: Sequence[NDArray[Any]]) -> None:
+        try:
+            arrays = [self._arrow.array(column) for column in columns]
+        except self._arrow.ArrowException as error:
+            raise FileError(f"--to {self._kind} cannot hold a column: {error}; write csv") from None
+        table = self._arrow.table(arrays, names=list(self._names))
+        if self._writer is None:
+            self._writer = self._open(table.schema)
+        self._writer.write_table(table.cast(self._writer.schema if self._kind == "parquet" else table.schema))
+
+    def _open(self, schema: Any) -> Any:
+        if self._kind == "parquet":
+            import pyarrow.parquet
+
+            return pyarrow.parquet.ParquetWriter(self._file, schema)
+        # A file of Arrow needs to seek; a pipe takes a stream.
+        opened = self._arrow.ipc.new_stream if self._is_pipe else self._arrow.ipc.new_file
+        return opened(self._file, schema)
+
+    def close(self) -> None:
+        if self._writer is None:
+            integer = self._arrow.int64()
+            self._writer = self._open(self._arrow.schema([(name, integer) for name in self._names]))
+        self._writer.close()
+
+
+def pyarrow_for(what: str) -> Any:
+    """The library, or an error that says what needs it."""
+    try:
+        import pyarrow
+    except ImportError:
+        raise FileError(f"{what} needs pyarrow: pip install 'sweep-and-prune[files]'") from None
+    return pyarrow
+
+
+@contextmanager
+def writer(path: str | None, kind: str, count: int, names: Sequence[str]) -> Iterator[Writer]:
+    """Opens a file for this many rows, or standard output. A file that could not be completed is removed."""
+    if path is None:
+        with _standard_output() as file:
+            yield from _closing(file, kind, count, names, True)
+        return
+    try:
+        with output_file(path) as (file, is_stream):
+            yield from _closing(file, kind, count, names, is_stream)
+    except BrokenPipeError:
+        raise  # the program that reads a named pipe ended
+    except OSError as error:
+        raise FileError(f"{printable(path)} cannot be written: {error.strerror or error}") from None
+
+
+def _standard_output() -> AbstractContextManager[IO[bytes]]:
+    """Standard output with a buffer. With PYTHONUNBUFFERED it has none, and writes a part of what it is given."""
+    output = sys.stdout.buffer
+    return open(output.fileno(), "wb", closefd=False) if isinstance(output, io.RawIOBase) else nullcontext(output)
+
+
+def _closing(file: IO[bytes], kind: str, count: int, names: Sequence[str], is_pipe: bool) -> Iterator[Writer]:
+    made: Writer
+    if kind == "npy":
+        made = _NumpyWriter(file, count, len(names))
+    elif kind in ("csv", "tsv"):
+        made = _TextWriter(file, "," if kind == "csv" else "\t", names)
+    else:
+        made = _ArrowWriter(file, kind, names, is_pipe)
+    yield made
+    made.close()
+
+
+def kind_of(path: str | None, kind: str | None) -> str:
+    """The format to write: as told, or as the name of the file tells, or CSV."""
+    if kind is not None:
+        return kind
+    if path is None:
+        return "csv"
+    suffix = Path(path).suffix.lower()
+    known = "arrow" if suffix in ARROW_ENDINGS else suffix[1:]
+    if known not in WRITABLE:
+        raise FileError(f"{path} has an unknown ending: use .csv, .tsv, .npy, .parquet or .arrow, or pass --to")
+    return known

@@ -1,0 +1,342 @@
+"""Files as people have them: each gives the boxes that its format says, or one line that says what is wrong."""
+
+from __future__ import annotations
+
+import gzip
+import importlib
+import io
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sweep_and_prune._command import main
+from sweep_and_prune._tables import read
+
+SAP = [sys.executable, "-m", "sweep_and_prune"]
+
+
+@pytest.fixture(autouse=True)
+def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def boxes_of(name: str, *columns: str, format: str = "xyxy", **options: Any) -> list[list[float]]:
+    found: list[list[float]] = read(name, **options).boxes(columns, format).array.tolist()
+    return found
+
+
+def said(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    """What a call prints that must succeed."""
+    assert main(arguments) == 0, capsys.readouterr().err
+    return capsys.readouterr().out
+
+
+def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    assert main(arguments) == 1
+    captured = capsys.readouterr()
+    assert captured.out == "" and captured.err.count("\n") == 1
+    return captured.err.removeprefix("sap: ")
+
+
+# Headers.
+
+
+@pytest.mark.parametrize("width", [2, 4, 6])
+def test_a_header_of_numbers_is_asked_for(width: int, capsys: pytest.CaptureFixture[str]) -> None:
+    boxes = np.tile(np.repeat([0, 9], width // 2), (3, 1))
+    header = ",".join(map(str, range(width)))
+    rows = "\n".join(",".join(map(str, row)) for row in boxes.tolist())
+    Path("a.csv").write_text(f"{header}\n{rows}\n")
+    for command in (["count"], ["pairs"], ["stats"]):
+        assert refused(capsys, *command, "a.csv").startswith(f"a.csv begins with {header}, which may be a box, or")
+    assert said(capsys, "count", "a.csv", "--header", "--columns", header) == "3\n"
+    assert said(capsys, "count", "a.csv", "--no-header") == "6\n"
+    pandas = pytest.importorskip("pandas")
+    pandas.DataFrame(boxes).to_csv("b.csv")  # with a column for the index, whose name is empty
+    assert "b.csv begins with a row of text and numbers (, 0, 1" in refused(capsys, "count", "b.csv")
+    assert said(capsys, "count", "b.csv", "--header", "--columns", header) == "3\n"
+
+
+def test_a_first_column_of_text_needs_no_guess(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("a.csv").write_text("cat,0,0,2,2\ndog,1,1,3,3\ncat,2,2,4,4\n")
+    message = refused(capsys, "count", "a.csv")
+    assert "(cat, 0, 0, 2, 2): pass --header if it names the columns, or --no-header, which numbers them" in message
+    chosen = ["a.csv", "--no-header", "--columns", "2,3,4,5"]
+    assert said(capsys, "count", *chosen) == "3\n"
+    assert said(capsys, "pairs", *chosen, "--by", "1", "--id", "1") == "a,b\ncat,cat\n"
+    assert "a.csv has no header and 5 columns; boxes have 2, 4 or 6" in refused(capsys, "count", "a.csv", "--no-header")
+    assert "2 columns '0'" in refused(capsys, "count", "a.csv", "--header", "--columns", "0,0,2,2")
+    # Numbers among names that are known are names.
+    Path("a.csv").write_text("name,2024,start,end\na,5,0,1\nb,6,1,2\n")
+    assert said(capsys, "pairs", "a.csv", "--id", "2024") == "a,b\n5,6\n"
+
+
+def test_comments_are_left_out() -> None:
+    Path("a.csv").write_text('# made by "x\n#\n#again, 5\nstart,end,name\n0,1,#1\n# 5, 6\n2,3,b\n')
+    assert boxes_of("a.csv") == [[0, 1], [2, 3]]
+    assert read("a.csv").label("name").tolist() == ["#1", "b"]
+    assert read("a.csv").place(1) == "a.csv, line 7"
+    Path("a.tsv").write_text("#chrom\tstart\tend\n1\t0\t1\n")
+    assert boxes_of("a.tsv") == [[0, 1]] and read("a.tsv").columns == ["chrom", "start", "end"]
+
+
+@pytest.mark.parametrize(
+    "names", ["start,stop", "begin,end", "start_time,end_time", "Start_Date,end_date", "start,end"]
+)
+def test_names_of_intervals_are_known(names: str, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("a.csv").write_text(f"{names}\n0,1\n1,2\n")
+    assert said(capsys, "count", "a.csv") == "1\n"
+    if names != "start,end":
+        Path("a.csv").write_text(f"start,end,{names.replace('end', 'END_')}\n0,1,5,6\n")
+        assert "a.csv: the columns start" in refused(capsys, "count", "a.csv")
+
+
+# Genomics.
+
+GENES = (
+    "#c\nchr1\tx\texon\t11\t20\t.\t+\t.\t{}\nchr1\tx\tgene\t21\t21\t.\t+\t.\t{}\n\nchr2\tx\texon\t1\t20\t.\t-\t0\t\n"
+)
+OF_GTF = 'gene_id "g 1"; exon_number 2;', 'exon_number 3; note "a; gene_id 5"; gene_id "g2";'
+OF_GFF3 = "ID=e1;gene_id=g%201;Parent=a,b", "gene_id=g2 ;ID=e2"
+GENOMIC = {
+    "a.bed": ("browser position chr1\ntrack name=x\n#c\nchr1\t10\t20\nchr1\t20\t21\textra\nchr2\t0\t20\n", []),
+    "a.bed.gz": ("chr1\t10\t20\r\nchr1\t20\t21\r\nchr2\t0\t20\r\n", []),
+    "a.bed.bgz": ("chr1\t10\t20\nchr1\t20\t21\nchr2\t0\t20\n", []),
+    "a.narrowPeak": (
+        "chr1\t10\t20\tp\t9\t.\t1.5\t2\t3\t4\nchr1\t20\t21\tq\t9\t.\t1.5\t2\t3\t-1\nchr2\t0\t20\tr\t9\t.\t1\t2\t3\t0\n",
+        [("peak", ["4", "-1", "0"]), ("signalValue", ["1.5", "1.5", "1"])],
+    ),
+    "a.broadPeak": (
+        "chr1\t10\t20\tp\t9\t.\t1\t2\t3\nchr1\t20\t21\tq\t9\t.\t1\t2\t3\nchr2\t0\t20\tr\t9\t.\t1\t2\t3\n",
+        [],
+    ),
+    "a.bedGraph": ("chr1\t10\t20\t0.5\nchr1\t20\t21\t7\nchr2\t0\t20\t8\n", [("value", ["0.5", "7", "8"])]),
+    "a.gtf": (GENES.format(*OF_GTF), [("gene_id", ["g 1", "g2", ""]), ("exon_number", ["2", "3", ""])]),
+    "a.gff3": (
+        "##gff-version 3\n" + GENES.format(*OF_GFF3) + "##FASTA\n>chr1\nACGT\n",
+        [("gene_id", ["g 1", "g2", ""]), ("ID", ["e1", "e2", ""]), ("feature", ["exon", "gene", "exon"])],
+    ),
+    "a.vcf": (
+        "##fileformat=VCFv4.3\n#CHROM\tPOS\tID\tREF\tALT\tQUAL\tFILTER\tINFO\n"
+        "chr1\t11\trs1\tACGTACGTAC\tA\t.\t.\tDP=3\nchr1\t21\trs2\tA\tT\t.\t.\t.\nchr2\t1\tsv\tA\t<DEL>\t.\t.\tX=1;END=20\n",
+        [("id", ["rs1", "rs2", "sv"])],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", GENOMIC)
+def test_formats_of_genomics_have_the_intervals_of_bed(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    text, labels = GENOMIC[name]
+    data = text.encode()
+    Path(name).write_bytes(gzip.compress(data[:30]) + gzip.compress(data[30:]) if name.endswith("gz") else data)
+    assert boxes_of(name) == [[10, 20], [20, 21], [0, 20]]
+    source = read(name)
+    for label, values in labels:
+        assert source.label(label).tolist() == values
+    Path("b.bed").write_text("chr1\t19\t20\tx\nchr2\t20\t30\ty\nchr1\t20\t21\tz\n")
+    assert said(capsys, "join", name, "b.bed") == "a,b\n0,0\n1,2\n"
+    assert said(capsys, "count", name, "b.bed", "--closed", "both") == "5\n"
+    if not name.endswith("gz"):
+        kind = name.split(".")[1].lower()
+        done = subprocess.run([*SAP, "join", "-", "b.bed", "--from", kind], input=data, capture_output=True)
+        assert (done.stdout, done.stderr) == (b"a,b\n0,0\n1,2\n", b"")
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        (
+            "a.gtf",
+            "chr1\tx\texon\t1\n",
+            "a.gtf, line 1: chrom, source, feature, start, end, score, strand and frame are",
+        ),
+        ("a.vcf", "chr1\tabc\tx\tA\tC\n", "a.vcf, line 1, column start: 'abc' is not a number"),
+        ("a.vcf", "chr1\t5\tx\tAC\n", "a.vcf, line 1: chrom, pos, id, ref and alt are expected, separated by tabs"),
+        ("a.gff3", "c\tx\texon\t9\t5\t.\t+\t.\t\n", "a.gff3, line 1, columns start and end: the box is inverted"),
+        ("a.bedGraph", "chr1 0 10 5\n", "a.bedGraph, line 1: chrom, start and end are expected, separated by tabs"),
+        ("a.bed", "chrom\tstart\tend\n", "a.bed, line 1, column start: 'start' is not a number"),
+    ],
+)
+def test_what_is_wrong_with_a_file_of_genomics_is_said(
+    name: str, text: str, message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path(name).write_text(text)
+    assert refused(capsys, "count", name).startswith(message)
+
+
+# JSON.
+
+
+def point(x: int, name: str) -> dict[str, Any]:
+    return {"type": "Feature", "properties": {"n": name}, "geometry": {"type": "Point", "coordinates": [x, 1]}}
+
+
+def test_geojson_is_read_in_each_of_its_forms(capsys: pytest.CaptureFixture[str]) -> None:
+    features = [point(0, "a"), point(0, "b"), point(2, "c")]
+    collection = {"type": "FeatureCollection", "features": features}
+    texts = {
+        "a.geojson": json.dumps(collection, indent=1),
+        "b.geojson": "\ufeff" + json.dumps(collection),
+        "a.geojsonl": "\n".join(map(json.dumps, features)) + "\n",
+        "a.ndjson": "\r\n\r\n".join(map(json.dumps, features)),
+        "a.geojsons": "".join(f"\x1e{json.dumps(feature, indent=None)}\n" for feature in features),
+        "a.json": json.dumps(features),
+    }
+    for name, text in texts.items():
+        Path(name).write_text(text, encoding="utf-8", newline="")
+        assert boxes_of(name) == [[0, 1, 0, 1], [0, 1, 0, 1], [2, 1, 2, 1]]
+        assert said(capsys, "pairs", name, "--id", "n") == "a,b\na,b\n"
+    for name, document in (("one.geojson", features[2]), ("shape.geojson", features[2]["geometry"])):
+        Path(name).write_text(json.dumps(document))
+        assert boxes_of(name) == [[2, 1, 2, 1]]
+    done = subprocess.run(
+        [*SAP, "count", "-", "--from", "json"], input=texts["a.geojsonl"], capture_output=True, text=True
+    )
+    assert (done.stdout, done.stderr) == ("1\n", "")
+    Path("a.geojsonl").write_text(texts["a.geojsonl"] + '{"x":\n')
+    assert refused(capsys, "count", "a.geojsonl").startswith("a.geojsonl, line 4: ")
+    Path("a.topojson").write_text('{"type": "Topology", "objects": {}, "arcs": []}')
+    assert "a.topojson is TopoJSON: convert it to GeoJSON first" in refused(capsys, "count", "a.topojson")
+    message = refused(capsys, "count", "a.geojson", "--format", "xywh")
+    assert message == "a.geojson is of a format that says where boxes begin and end: leave out --format\n"
+
+
+def test_detections_of_coco_pair_within_their_image(capsys: pytest.CaptureFixture[str]) -> None:
+    rows = [(1, 1, [0, 0, 2, 2]), (1, 2, [1, 1, 2.5, 2]), (2, 1, [1, 1, 1, 1]), (1, 1, [2, 2, 1, 1])]
+    annotations = [
+        {"id": 10 + at, "image_id": image, "category_id": kind, "bbox": box, "segmentation": [[1, 2]]}
+        for at, (image, kind, box) in enumerate(rows)
+    ]
+    for document in ({"images": [], "annotations": annotations}, annotations):
+        Path("a.json").write_text(json.dumps(document))
+        assert boxes_of("a.json") == [[0, 0, 2, 2], [1, 1, 3.5, 3], [1, 1, 2, 2], [2, 2, 3, 3]]
+        assert sorted(said(capsys, "pairs", "a.json", "--id", "id").split()[1:]) == ["10,11", "10,13", "11,13"]
+        assert said(capsys, "pairs", "a.json", "--by", "image_id,category_id") == "a,b\n0,3\n"
+    Path("b.csv").write_text("image_id,x,y,width,height\n2,0,0,1,1\n1,3,2,1,1\n")
+    assert sorted(said(capsys, "join", "a.json", "b.csv", "--format", "xywh", "--by", "image_id").split()[1:]) == [
+        *("1,1", "2,0", "3,1"),
+    ]
+    annotations[2]["bbox"] = [1, 2, 3]
+    Path("a.json").write_text(json.dumps({"annotations": annotations}))
+    assert "annotation 2 (the first is 0) has no image_id and bbox of 4 numbers" in refused(capsys, "count", "a.json")
+
+
+def test_columns_of_trackers_are_chosen_by_number(capsys: pytest.CaptureFixture[str]) -> None:
+    # MOT: frame, id, left, top, width, height, confidence, ..; YOLO: class, center, size.
+    Path("det.txt").write_text("1,7,10,10,5,5,0.9,-1,-1,-1\n1,8,15,15,5,5,0.8,-1,-1,-1\n2,7,15,15,5,5,0.8,-1,-1,-1\n")
+    message = refused(capsys, "count", "det.txt")
+    assert "det.txt has no header and 10 columns; boxes have 2, 4 or 6: choose columns by --columns 1,2,.." in message
+    chosen = ["det.txt", "--columns", "3,4,5,6", "--format", "xywh"]
+    assert said(capsys, "pairs", *chosen, "--by", "1", "--id", "2") == "a,b\n7,8\n"
+    assert said(capsys, "count", *chosen) == "3\n"
+    Path("frame.txt").write_text("0 0.5 0.5 0.2 0.2\n1 0.75 0.5 0.125 0.5\n0 0.65 0.5 0.2 0.2\n")
+    assert said(capsys, "count", "frame.txt", "--columns", "2,3,4,5", "--format", "cxcywh") == "2\n"
+    Path("names.txt").write_text("car 0.5 0.5 0.2 0.2\ncar 0.65 0.5 0.2 0.2\n")
+    assert "pass --header" in refused(capsys, "count", "names.txt", "--columns", "2,3,4,5")
+
+
+# Standard input, and both files of a join.
+
+
+@pytest.mark.parametrize("kind", ["csv", "tsv", "npy", "npz", "parquet", "arrow", "stream"])
+def test_standard_input_has_any_format(kind: str) -> None:
+    boxes = np.array([[0.0, 1], [1, 2], [5, 6]])
+    buffer: Any = io.BytesIO()
+    if kind in ("csv", "tsv"):
+        np.savetxt(buffer, boxes, delimiter="," if kind == "csv" else "\t", header="xmin xmax"[:0], comments="")
+        buffer = io.BytesIO(buffer.getvalue().strip())
+    elif kind == "npy":
+        np.save(buffer, boxes)
+    elif kind == "npz":
+        np.savez(buffer, boxes=boxes)
+    else:
+        arrow = pytest.importorskip("pyarrow")
+        table = arrow.table({"start": boxes[:, 0], "end": boxes[:, 1]})
+        if kind == "parquet":
+            importlib.import_module("pyarrow.parquet").write_table(table, buffer)
+        else:
+            with (arrow.ipc.new_file if kind == "arrow" else arrow.ipc.new_stream)(buffer, table.schema) as file:
+                file.write_table(table)
+    name = {"npz": "npy", "stream": "arrow"}.get(kind, kind)
+    done = subprocess.run([*SAP, "count", "-", "--from", name], input=buffer.getvalue(), capture_output=True)
+    assert (done.stdout, done.stderr) == (b"1\n", b"")
+    np.save("b.npy", boxes)
+    done = subprocess.run([*SAP, "count", "b.npy", "-", "--from", name], input=buffer.getvalue(), capture_output=True)
+    assert (done.stdout, done.stderr) == (b"5\n", b"")
+
+
+def test_standard_input_is_read_once(capsys: pytest.CaptureFixture[str]) -> None:
+    assert "standard input can be read once" in refused(capsys, "join", "-", "-")
+
+
+def test_each_file_has_its_own_columns_and_groups(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("a.csv").write_text("p,q,kind,of\n0,1,x,1\n5,6,y,2\n")
+    Path("b.csv").write_text("from,to,sort,by\n6,9,y,2.0\n1,2,x,1.0\n5,5,z,9.0\n")
+    files = ["a.csv", "b.csv", "--left-columns", "p,q", "--right-columns", "from,to"]
+    assert said(capsys, "count", *files) == "3\n"
+    assert said(capsys, "join", *files, "--left-by", "kind", "--right-by", "sort") == "a,b\n0,1\n1,0\n"
+    assert said(capsys, "join", *files, "--left-by", "kind,of", "--right-by", "sort,by") == "a,b\n0,1\n1,0\n"
+    assert "must name as many columns" in refused(capsys, "join", *files, "--left-by", "kind,of", "--right-by", "sort")
+    message = refused(capsys, "join", *files, "--by", "kind", "--right-by", "sort")
+    assert message == "pass --by, or --left-by and --right-by\n"
+    Path("b.csv").write_text("from,to\n6,9\n2,1\n")
+    message = refused(capsys, "count", *files)
+    assert message.startswith("b.csv, line 3, columns from and to: the box is inverted")
+
+
+# Coordinate reference systems.
+
+
+def test_files_of_different_coordinate_reference_systems_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    geopandas, shapely = pytest.importorskip("geopandas"), pytest.importorskip("shapely")
+
+    def write(name: str, crs: str | None, **options: Any) -> str:
+        frame = geopandas.GeoDataFrame({"n": [1, 2]}, geometry=shapely.box([0, 5], 0, [1, 6], 1), crs=crs)
+        if name.endswith("parquet"):
+            frame.to_parquet(name, **options)
+        else:
+            frame.to_file(name)
+        return name
+
+    degrees = [write("a.parquet", "EPSG:4326"), write("b.parquet", "OGC:CRS84", write_covering_bbox=True)]
+    degrees += [write("a.geojson", "EPSG:4326"), write("a.gpkg", "EPSG:4326"), write("c.parquet", None)]
+    meters = [write("d.parquet", "EPSG:25832"), write("e.parquet", "EPSG:25832", write_covering_bbox=True)]
+    meters += [
+        write("b.geojson", "EPSG:25832"),
+        write("d.shp", "EPSG:25832"),
+        write("d.fgb", "EPSG:25832"),
+        "c.parquet",
+    ]
+    for group in (degrees, meters):
+        for first in group:
+            for second in group:
+                assert said(capsys, "count", first, second) == "2\n", (first, second)
+    for first in degrees[:-1]:
+        for second in meters[:-1]:
+            message = refused(capsys, "join", first, second)
+            assert message.startswith(f"{first} and {second} have different coordinate reference systems, "), message
+            assert "EPSG:25832" in message
+    pytest.importorskip("distributed")
+    import sweep_and_prune.dask as dask
+
+    with pytest.raises(ValueError, match="different coordinate reference systems, EPSG:4326 and EPSG:25832"):
+        dask.count_pairs_between("a.parquet", "e.parquet", workers=0, progress=False)
+    assert dask.count_pairs_between("a.parquet", "b.parquet", workers=0, progress=False) == 2
+    with pytest.raises(dask.DatasetError, match=r"a\.parquet and d\.parquet have different coordinate reference systems"):
+        dask.count_pairs_between(["a.parquet", "d.parquet"], "a.parquet", workers=0, progress=False)
+
+
+def test_files_of_gis_are_read_with_their_attributes(capsys: pytest.CaptureFixture[str]) -> None:
+    geopandas, shapely = pytest.importorskip("geopandas"), pytest.importorskip("shapely")
+    shapes = [shapely.box(0, 0, 1, 1), None, shapely.Polygon(), shapely.Point(1, 1)]
+    frame = geopandas.GeoDataFrame({"n": list("abcd")}, geometry=shapes, crs="EPSG:25832")
+    for name in ("a.gpkg", "a.fgb", "a.shp"):
+        (frame if name == "a.gpkg" else frame.iloc[[0]]).to_file(name)
+    assert said(capsys, "pairs", "a.gpkg", "--missing", "skip", "--id", "n") == "a,b\na,d\n"
+    for name in ("a.fgb", "a.shp"):
+        assert boxes_of(name) == [[0, 0, 1, 1]]
