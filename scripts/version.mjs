@@ -20,8 +20,10 @@ export const VERSIONS = [
   ["python/Cargo.toml", /^(version = ")(.*?)(")/m],
   ["python/conda/recipe.yaml", /^( *version: ")(.*?)(")/m],
   ["js/package.json", /^( *"version": ")(.*?)(")/m],
+  ["classroom/demo/package.json", /^( *"version": ")(.*?)(")/m],
   ["site/package.json", /^( *"version": ")(.*?)(")/m],
   ["site/package.json", /^( *"sweep-and-prune": ")(.*?)(")/m],
+  ["site/package.json", /^( *"sweep-and-prune-classroom": ")(.*?)(")/m],
   ["CHANGELOG.md", /^(## (?:Unreleased \()?)(\d[^ )\n]*)(\)?.*)$/m],
 ];
 

@@ -10,11 +10,11 @@ import { typescriptImports } from "./support/typescript-imports.mjs";
 export const root = dirname(dirname(fileURLToPath(import.meta.url)));
 
 /** The folders that must be without cycles. */
-export const FOLDERS = ["core/src", "js/src", "bench/src", "site/src"];
+export const FOLDERS = ["core/src", "js/src", "classroom/demo/src", "bench/src", "site/src"];
 
 /** Which file of a folder imports which: file -> imported file -> names. */
 export const importsOf = (folder) =>
-  folder === "js/src" || folder === "site/src" ? typescriptImports(join(root, folder)) : rustImports(crateRoot(join(root, folder)));
+  /^(js|classroom\/demo|site)\//.test(folder) ? typescriptImports(join(root, folder)) : rustImports(crateRoot(join(root, folder)));
 
 /** A group of files that import each other, for people: one shortest cycle, and who else is in it. */
 export function report(graph, group) {

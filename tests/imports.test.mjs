@@ -1,4 +1,5 @@
-// No file imports a file that imports it, directly or indirectly: in core/src, js/src, bench/src and site/src.
+// No file imports a file that imports it, directly or indirectly: in core/src, js/src, classroom/demo/src, bench/src
+// and site/src.
 //
 // What counts as an import of file B by file A:
 //

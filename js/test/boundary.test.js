@@ -5,11 +5,10 @@ import { readFileSync } from "node:fs";
 import { before, test } from "node:test";
 import { Worker } from "node:worker_threads";
 import { findPairs, init, PairFinder } from "sweep-and-prune";
-import { init as initAlgorithms, Runner } from "sweep-and-prune/algorithms";
 import { BroadPhase, init as initWorlds } from "sweep-and-prune/broad-phase";
 import { isOverflow } from "./support/hostile.js";
 
-before(() => Promise.all([init(), initWorlds(), initAlgorithms()]));
+before(() => Promise.all([init(), initWorlds()]));
 
 /** An object whose every read runs code first. */
 const reading = (/** @type {object} */ value, /** @type {() => void} */ run) => new Proxy(value, { get: (target, key) => (run(), Reflect.get(target, key)), has: (target, key) => (run(), Reflect.has(target, key)) });
@@ -103,12 +102,9 @@ test("`isStatic` is true or false, and the core checks every kind, dimension and
 
   const finder = await started("sweep-and-prune");
   for (const [dimensions, isDouble] of [[1, 0], [4, 0], [2, 1], [3, 2], [3, -1]]) assert.equal(finder.finder_new(dimensions, isDouble), 0);
-  const algorithms = await started("algorithms");
-  for (const dimensions of [0, 4, -1]) assert.equal(algorithms.runner_new(dimensions, 0), 0);
-  assert.equal(algorithms.runner_start(algorithms.runner_new(2, 0), 2), internal);
 });
 
-test("a thousand callbacks that overflow the stack: finders, worlds and runners still answer", () => {
+test("a thousand callbacks that overflow the stack: finders and worlds still answer", () => {
   const boxes = [0, 0, 2, 2, 5, 5, 6, 6, 2, 1, 3, 4];
   const finder = new PairFinder({ dimensions: 2 });
   const world = new BroadPhase({ dimensions: 2 });
@@ -152,9 +148,7 @@ test("a thousand callbacks that overflow the stack: finders, worlds and runners 
   assert.deepEqual([...world.overlapping([0, 0, 1, 1])], [ids[0]]);
   assert.deepEqual([...world.pairs()], [ids[0], ids[2]]);
   assert.ok(interrupted > 0, "no call overflowed within the core");
-  const runner = new Runner({ dimensions: 2, method: "endpoint sweep" });
-  assert.deepEqual([...runner.step(boxes).pairs], [0, 2]);
-  for (const one of [finder, world, runner]) one.free();
+  for (const one of [finder, world]) one.free();
 });
 
 /** The error of the engine, or that of streamPairs where searches within callbacks leave no stack for another one. */
@@ -267,18 +261,17 @@ test("typed arrays that lie, change, shrink or are detached while other argument
 test("how boxes are stored cannot be changed from outside, and methods need their object", () => {
   const finder = /** @type {any} */ (new PairFinder({ dimensions: 2 }));
   const world = /** @type {any} */ (new BroadPhase({ dimensions: 2 }));
-  const runner = /** @type {any} */ (new Runner({ dimensions: 2, method: "endpoint sweep" }));
-  for (const one of [finder, world, runner]) {
+  for (const one of [finder, world]) {
     assert.throws(() => (one.dimensions = 3), TypeError);
     assert.equal(one.dimensions, 2);
   }
-  for (const Type of [PairFinder, BroadPhase, Runner]) {
+  for (const Type of [PairFinder, BroadPhase]) {
     for (const [name, { value, get }] of Object.entries(Object.getOwnPropertyDescriptors(Type.prototype))) {
       const method = name === "constructor" ? undefined : (value ?? get);
       for (const other of [undefined, {}, 1, Object.create(Type.prototype)]) if (method) assert.throws(() => method.call(other, unit, unit), (error) => error instanceof TypeError || error instanceof RangeError, `${Type.name}.${name}`);
     }
   }
-  for (const one of [finder, world, runner]) {
+  for (const one of [finder, world]) {
     one.free();
     one.free();
   }

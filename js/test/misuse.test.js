@@ -3,55 +3,10 @@
 import assert from "node:assert/strict";
 import { before, test } from "node:test";
 import { anyPair, countPairs, findPairs, findPairsBetween, forEachPair, init, PairFinder } from "sweep-and-prune";
-import { events, init as initAlgorithms, Player, Runner } from "sweep-and-prune/algorithms";
 import { BroadPhase, init as initWorlds, slotOf } from "sweep-and-prune/broad-phase";
+import { misuse } from "./support/misuse.js";
 
-before(() => Promise.all([init(), initWorlds(), initAlgorithms()]));
-
-const detached = new Float32Array(8);
-structuredClone(detached.buffer, { transfer: [detached.buffer] });
-
-const odd = [
-  ...[undefined, null, true, "", "x", 5n, Symbol("s"), () => false, Object.create(null), new Date()],
-  ...[NaN, -1, -0, 0, 1, 1.5, 2 ** 32, 2 ** 53, 1e308, Infinity, -Infinity],
-  ...[[], [1], [NaN, 1, 2, 3], [3, 3, 1, 1], [1n, 2n], ["1"], new Array(3), [null], [{}], [[1, 2, 3, 4]], [{ min: {}, max: {} }]],
-  ...[{}, { length: 4, 0: 1 }, { dimensions: 2 }, { category: "x" }, { group: 1.5 }, { minX: 0, minY: 0, maxX: 1, maxY: 1 }],
-  ...[new Float32Array(0), new Float32Array(3), new Float32Array(4), new Float32Array([NaN, 0, 0, 0]), new Float64Array(5), detached],
-  ...[new Int32Array(4), new Uint8Array(0), new Uint8Array(100), new Uint32Array(9), new ArrayBuffer(8), new DataView(new ArrayBuffer(8))],
-  ...[new Float32Array(new SharedArrayBuffer(16)), new Float32Array(new ArrayBuffer(64), 16, 4), new Proxy([1, 2, 3, 4], {}), new Proxy(new Float32Array(4), {})],
-];
-
-const named = /^(InvalidBox|StaleProxy|NotInitialized|OutOfMemory|Snapshot)Error$/;
-
-/**
- * @param {string} call
- * @param {any} error
- */
-function checkError(call, error) {
-  const isNamed = named.test(error?.name);
-  const isMisuse = error instanceof TypeError || error instanceof RangeError;
-  assert.ok(isNamed || isMisuse, `${call} throws ${error?.name}: ${error?.message}`);
-  // Messages of the engine, where our code did not check.
-  assert.doesNotMatch(error.message, /Cannot read|not a function|unreachable|internal error|call stack/, call);
-}
-
-/**
- * Makes a call with odd values in the place of each argument, and with none.
- *
- * @param {string} name
- * @param {(...args: any[]) => unknown} call
- * @param {unknown[]} good
- */
-function misuse(name, call, good) {
-  const all = good.flatMap((_, at) => odd.map((value) => good.with(at, value)));
-  for (const args of [...all, []]) {
-    try {
-      call(...args);
-    } catch (error) {
-      checkError(name, error);
-    }
-  }
-}
+before(() => Promise.all([init(), initWorlds()]));
 
 const rows = new Float32Array([0, 0, 2, 2, 5, 5, 6, 6, 2, 1, 3, 4]);
 const options = /** @type {const} */ ({ dimensions: 2 });
@@ -134,20 +89,4 @@ test("making a world, and a snapshot with any byte changed or its end cut off", 
       assert.throws(() => BroadPhase.fromSnapshot(bytes, options), /^(SnapshotError|RangeError)/, String(at));
     }
   }
-});
-
-test("the algorithms", () => {
-  const good = { ...options, method: "endpoint sweep", sort: "Timsort", axis: 0, persistent: true, focus: 0, traceWords: 10_000 };
-  for (const key of Object.keys(good)) misuse(key, (value) => new Runner(/** @type {any} */ ({ ...good, [key]: value })).free(), [0]);
-  const runner = /** @type {any} */ (new Runner(/** @type {any} */ (good)));
-  runner.step(rows);
-  misuse("events", (words) => [...events(words)], [runner.trace()]);
-  misuse("new Player", (runner) => new Player(runner).free(), [runner]);
-  const player = /** @type {any} */ (new Player(runner));
-  for (const name of ["seek", "forward", "backward", "state"]) misuse(name, (...args) => player[name](...args), [0]);
-  misuse("step", (boxes) => runner.step(boxes), [rows]);
-  assert.deepEqual([...runner.step(rows).pairs], [0, 2]);
-  for (const one of [player, runner]) one.free();
-  for (const name of ["step", "trace", "clearTrace", "trimTrace"]) assert.throws(() => runner[name](rows), /^TypeError: this Runner was freed/);
-  for (const name of ["seek", "state"]) assert.throws(() => player[name](0), /^TypeError: this Player was freed/);
 });

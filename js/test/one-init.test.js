@@ -3,18 +3,18 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { countPairs, init, NotInitializedError } from "sweep-and-prune";
-import { init as initAlgorithms, Runner } from "sweep-and-prune/algorithms";
 import { BroadPhase, init as initWorlds } from "sweep-and-prune/broad-phase";
+import { BroadPhase as Events, init as initEvents } from "sweep-and-prune/events-2d";
 
 const lines = [0, 1, 1, 2];
 const find = () => countPairs(lines, { dimensions: 1 });
 const track = () => new BroadPhase({ dimensions: 1 }).size;
-const run = () => new Runner({ dimensions: 1, method: "endpoint sweep" }).step(lines).pairs.join();
+const report = () => new Events({ dimensions: 1 }).size;
 
 test("with `wasm`, the core of this entry point starts and no other", async () => {
   await init({ wasm: readFileSync(new URL("../dist/sweep-and-prune.simd.wasm", import.meta.url)) });
   assert.equal(find(), 1);
-  for (const call of [track, run]) assert.throws(call, NotInitializedError);
+  for (const call of [track, report]) assert.throws(call, NotInitializedError);
 });
 
 test("if another cannot start, the error comes out, and the next call tries again", async () => {
@@ -22,13 +22,13 @@ test("if another cannot start, the error comes out, and the next call tries agai
   WebAssembly.instantiate = /** @type {any} */ (() => Promise.reject(new Error("refused")));
   await assert.rejects(initWorlds(), /refused/);
   WebAssembly.instantiate = instantiate;
-  for (const call of [track, run]) assert.throws(call, NotInitializedError);
+  for (const call of [track, report]) assert.throws(call, NotInitializedError);
 });
 
 test("without, all start, whichever entry point it is of, and calls at the same time wait for all", async () => {
   const [first, second] = [init(), init()];
   assert.deepEqual(await second, { simd: true });
-  assert.deepEqual([find(), track(), run()], [1, 0, "0,1"]);
+  assert.deepEqual([find(), track(), report()], [1, 0, 0]);
   assert.deepEqual(await first, { simd: true });
-  assert.deepEqual([await initWorlds(), await initAlgorithms()], [{ simd: true }, { simd: false }]);
+  assert.deepEqual([await initWorlds(), await initEvents()], [{ simd: true }, { simd: true }]);
 });

@@ -1,6 +1,6 @@
 // The explanation. What stands at its top comes first; the demos come when a reader comes near them.
 
-import "sweep-and-prune/demo.css";
+import "sweep-and-prune-classroom/demo.css";
 import { startArticle } from "./article/article.ts";
 import { HeroBoxes } from "./hero/hero-boxes.ts";
 import { showLoadFailure } from "./load-failed.ts";

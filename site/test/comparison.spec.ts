@@ -1,6 +1,6 @@
 // `<sap-comparison>`: one world under several methods, always at the same tick.
 import { expect, type Locator, type Page, test } from "@playwright/test";
-import type { DemoState, SapDemo } from "sweep-and-prune/demo";
+import type { DemoState, SapDemo } from "sweep-and-prune-classroom/demo";
 import { frames } from "./support/frames.ts";
 import { complaints } from "./support/pages.ts";
 

@@ -1,6 +1,6 @@
 // What `<sap-demo>` shows of an algorithm: the events, their number, the pairs, forward and back.
 import { expect, test } from "@playwright/test";
-import type { DemoState, SapDemo } from "sweep-and-prune/demo";
+import type { DemoState, SapDemo } from "sweep-and-prune-classroom/demo";
 import { type Attributes, complainOfNothing, open, pairwise, stateOf, step, walk } from "./support/embedded.ts";
 
 complainOfNothing();

@@ -1,6 +1,6 @@
 // `<sap-demo>` in the hands of a visitor: keys, a mouse, a finger, questions, guesses, what is shared.
 import { expect, test } from "@playwright/test";
-import type { SapDemo } from "sweep-and-prune/demo";
+import type { SapDemo } from "sweep-and-prune-classroom/demo";
 import { type Attributes, complainOfNothing, counter, open, pairwise, stateOf } from "./support/embedded.ts";
 import { frames } from "./support/frames.ts";
 

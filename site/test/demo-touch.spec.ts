@@ -1,7 +1,7 @@
 // Balls that are dragged and thrown while the world moves, other worlds, and only those controls and counters that
 // apply.
 import { expect, test } from "@playwright/test";
-import type { SapDemo } from "sweep-and-prune/demo";
+import type { SapDemo } from "sweep-and-prune-classroom/demo";
 import { complainOfNothing, open, pairwise, stateOf } from "./support/embedded.ts";
 
 complainOfNothing();

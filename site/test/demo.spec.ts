@@ -1,6 +1,6 @@
 // `<sap-demo>` in a page: its attributes, its life, its looks.
 import { expect, test } from "@playwright/test";
-import type { SapDemo } from "sweep-and-prune/demo";
+import type { SapDemo } from "sweep-and-prune-classroom/demo";
 import { type Attributes, complainOfNothing, open, pairwise, stateOf, step } from "./support/embedded.ts";
 import { frames, settled } from "./support/frames.ts";
 import { violations } from "./support/pages.ts";

@@ -1,6 +1,6 @@
 // The snippets that a reader copies, on a page that has nothing else: nothing in a frame is cut off.
 import { expect, test } from "@playwright/test";
-import type { SapDemo } from "sweep-and-prune/demo";
+import type { SapDemo } from "sweep-and-prune-classroom/demo";
 
 test("nothing in an embedded demo is cut off, with and without the script of its snippet", async ({ page }) => {
   test.slow();

@@ -1,6 +1,6 @@
 // What holds for every demo of the article, as it stands there: the given balls, in their place.
 import { expect, type Locator, test } from "@playwright/test";
-import type { SapDemo } from "sweep-and-prune/demo";
+import type { SapDemo } from "sweep-and-prune-classroom/demo";
 import { complaints } from "./support/pages.ts";
 
 /** All that a demo shows at a moment, and those that show the same world. */

@@ -1,6 +1,6 @@
 // What a link to a page shows of it elsewhere, what search engines are told, and what there is without scripts.
 import { expect, test } from "@playwright/test";
-import type { SapDemo } from "sweep-and-prune/demo";
+import type { SapDemo } from "sweep-and-prune-classroom/demo";
 import { PAGES } from "./support/pages.ts";
 
 // An embedded demo is a part of another page, and the address of the race leads to the playground.

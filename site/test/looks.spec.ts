@@ -1,6 +1,6 @@
 import { readFileSync } from "node:fs";
 import { expect, type Page, test } from "@playwright/test";
-import type { SapDemo } from "sweep-and-prune/demo";
+import type { SapDemo } from "sweep-and-prune-classroom/demo";
 
 // How the pages lie on a phone, a tablet and a desktop: each part of each page beside the picture of it that was looked at
 // and kept. Light and dark differ in colors alone, so dark is compared on a desktop. What moves or is measured is left blank.

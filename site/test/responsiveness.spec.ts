@@ -1,5 +1,5 @@
 import { type CDPSession, chromium, expect, type Page, test } from "@playwright/test";
-import type { SapDemo } from "sweep-and-prune/demo";
+import type { SapDemo } from "sweep-and-prune-classroom/demo";
 import { FallingBalls } from "./falling-balls.ts";
 import { open } from "./support/embedded.ts";
 

@@ -1,7 +1,7 @@
 // What the article does besides its demos: listings that follow them, the code for the three
 // balls, choices that change a demo, and contents that mark the section that is being read.
 
-import type { SapDemo } from "sweep-and-prune/demo";
+import type { SapDemo } from "sweep-and-prune-classroom/demo";
 import { copyable } from "../code/copy.ts";
 import { followDemos } from "./follow.ts";
 import { TransitivityCode } from "./transitivity.ts";

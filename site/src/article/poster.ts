@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import { Simulation } from "../../../simulation/wasm/simulation.js";
 
 const WIDTH = 600;
-await Simulation.load(readFileSync(new URL("../../../js/dist/simulation.wasm", import.meta.url)));
+await Simulation.load(readFileSync(new URL("../../../classroom/demo/dist/simulation.wasm", import.meta.url)));
 
 type Ball = readonly [x: number, y: number, radius: number];
 
@@ -31,7 +31,7 @@ function poster(attributes: string): string {
   return `<svg class="poster" viewBox="0 0 ${WIDTH} ${height}" aria-hidden="true">${discs.join("")}<path d="${links.join("")}"/></svg>`;
 }
 
-/** Given balls, or random ones as `js/src/demo/world.ts` makes them. */
+/** Given balls, or random ones as `classroom/demo/src/element/world.ts` makes them. */
 function ballsOf(text: string, seed: number, height: number): Ball[] {
   const rounded = (value: number): number => Math.round(value * 10) / 10;
   if (text.startsWith("[")) return (JSON.parse(text) as number[][]).map(([x = 0, y = 0, radius = 0]) => [x, y, radius]);

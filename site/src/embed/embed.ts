@@ -1,6 +1,7 @@
 // The demos that the address names after its `#`: what `share()` and `embedCode()` lead to. Several stand side by side.
 
-import { readShared } from "sweep-and-prune/demo";
+import "../classroom/start.ts";
+import { readShared } from "sweep-and-prune-classroom/demo";
 
 const place = document.querySelector("#demos")!;
 

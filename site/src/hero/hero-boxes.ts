@@ -1,4 +1,5 @@
-import { init, Runner } from "sweep-and-prune/algorithms";
+import { Runner } from "sweep-and-prune-classroom";
+import { startAlgorithms } from "../classroom/start.ts";
 import { showLoadFailure } from "../load-failed.ts";
 import { onAwake } from "../panel/awake.ts";
 import { bruteForceTests, formatCount } from "../panel/counters.ts";
@@ -53,7 +54,7 @@ export class HeroBoxes extends HTMLElement {
 
   connectedCallback(): void {
     this.#left = new AbortController();
-    void init().then(() => this.#start(), (error: unknown) => showLoadFailure(this.#part("message"), error));
+    void startAlgorithms().then(() => this.#start(), (error: unknown) => showLoadFailure(this.#part("message"), error));
   }
 
   disconnectedCallback(): void {

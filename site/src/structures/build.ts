@@ -1,8 +1,8 @@
 // Writes the first picture of `<three-structures>` into the page, so that it is there without scripts too; and below it
 // how to embed it elsewhere.
 
-import { init } from "sweep-and-prune/algorithms";
-import { iframeOf } from "../../../js/src/demo/snippet.ts";
+import { init } from "sweep-and-prune-classroom";
+import { iframeOf } from "../../../classroom/demo/src/element/snippet.ts";
 import { SITE } from "../shell/pages.ts";
 import { inside } from "./panels.ts";
 

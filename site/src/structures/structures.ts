@@ -1,7 +1,7 @@
 // One world in three structures: what a sweep, a grid and a tree test until they have found all overlapping pairs.
 // The sweep is the library's own, with its trace. The grid and the tree are the plain ones of the textbooks.
 
-import { events, Runner } from "sweep-and-prune/algorithms";
+import { events, Runner } from "sweep-and-prune-classroom";
 import { overlaps } from "../listings/overlaps.js";
 import { randomFrom } from "../random.ts";
 

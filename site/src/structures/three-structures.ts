@@ -1,6 +1,6 @@
 // `<three-structures>`: the same boxes in a sweep, a grid and a tree. In the article its first picture stands in the page already.
 
-import { init } from "sweep-and-prune/algorithms";
+import { startAlgorithms } from "../classroom/start.ts";
 import { showLoadFailure } from "../load-failed.ts";
 import { countPairs, inside, panels, structures } from "./panels.ts";
 import { type Box, moved, type Pair, WIDTH, world, type WorldName } from "./structures.ts";
@@ -16,7 +16,7 @@ export class ThreeStructures extends HTMLElement {
   #chosen = 0;
 
   connectedCallback(): void {
-    init().then(() => this.#start(), (error: unknown) => showLoadFailure(this.querySelector(".caption")!, error));
+    startAlgorithms().then(() => this.#start(), (error: unknown) => showLoadFailure(this.querySelector(".caption")!, error));
   }
 
   #start(): void {

@@ -1,6 +1,6 @@
 // `<sap-demo>`, one at a time on embed.html, as a visitor handles it.
 import { expect, type Locator, type Page, test } from "@playwright/test";
-import type { DemoEvent, DemoState, SapDemo } from "sweep-and-prune/demo";
+import type { DemoEvent, DemoState, SapDemo } from "sweep-and-prune-classroom/demo";
 import { complaints } from "./pages.ts";
 
 export type Attributes = Record<string, string>;

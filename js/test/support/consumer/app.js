@@ -1,7 +1,6 @@
 // What a user writes: every entry that loads a file, in the page and in a module worker. Leaves its
 // result in `globalThis.result`.
 import { findPairs, init } from "sweep-and-prune";
-import { Runner } from "sweep-and-prune/algorithms";
 import { BroadPhase } from "sweep-and-prune/broad-phase";
 
 async function run() {
@@ -10,13 +9,12 @@ async function run() {
   const world = new BroadPhase({ dimensions: 1 });
   world.insertMany([0, 1, 1, 2]);
   const begun = world.update().begun.length;
-  const swept = [...new Runner({ dimensions: 1, method: "endpoint sweep" }).step([0, 1, 1, 2]).pairs];
   const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
   const inWorker = await new Promise((resolve, reject) => {
     worker.onmessage = ({ data }) => resolve(data);
     worker.onerror = ({ message }) => reject(new Error(message || "the worker did not start"));
   });
-  return { simd, pairs, begun, swept, inWorker };
+  return { simd, pairs, begun, inWorker };
 }
 
 run().then(

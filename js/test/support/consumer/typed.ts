@@ -1,6 +1,5 @@
 // What a user's compiler sees.
 import { findPairs, forEachPair, init, InvalidBoxError, type Started } from "sweep-and-prune";
-import { Player, Runner } from "sweep-and-prune/algorithms";
 import { BroadPhase, type Changes, type ProxyId } from "sweep-and-prune/broad-phase";
 
 const started: Started = await init({ simd: true });
@@ -8,8 +7,6 @@ const pairs: Uint32Array = findPairs([0, 1], { dimensions: 1 });
 using world = new BroadPhase({ dimensions: 2, precision: "double" });
 const id: ProxyId = world.insert(0, 0, 1, 1);
 const { begun }: Changes = world.update();
-const runner = new Runner({ dimensions: 1, method: "endpoint sweep" });
-const player = new Player(runner);
 // @ts-expect-error there are no four dimensions
 findPairs([], { dimensions: 4 });
 const three = findPairs([{ min: { x: 0, y: 0, z: 0 }, max: { x: 1, y: 1, z: 1 } }]);
@@ -22,4 +19,4 @@ world.set(id, items[0]!);
 const near: number[] = world.nearest({ x: 0, y: 0 }, 1, 5, (id) => id > 0).map(({ distance }) => distance);
 // @ts-expect-error numbers do not say how many dimensions they have
 findPairs([0, 1]);
-export default [started, three, rbush, named, near, pairs, id, begun, player, InvalidBoxError];
+export default [started, three, rbush, named, near, pairs, id, begun, InvalidBoxError];

@@ -1,7 +1,7 @@
 // Runs a listing as the reader has changed it, in the place of the algorithm of a demo. The other listings are there
 // under their names, as in the article; some of them report what they do, so that the demo can show it.
 
-import type { DemoProgram, ProgramEvent } from "sweep-and-prune/demo";
+import type { DemoProgram, ProgramEvent } from "sweep-and-prune-classroom/demo";
 import { endpointsOf, precedes, refresh } from "../../listings/endpoints.js";
 import { key } from "../../listings/key.js";
 import { overlaps } from "../../listings/overlaps.js";

@@ -1,0 +1,367 @@
+import type { PlayerState } from "../algorithms/player.js";
+import { Runner } from "../algorithms/runner.js";
+import type { TraceEvent } from "../algorithms/trace.js";
+import { type Detection, newRunner, Oracle, oracleFor, stopsOf, TracedDetection } from "./detection.js";
+import type { Options } from "./options.js";
+import { ProgramDetection } from "./program.js";
+import { boxesOf, sweptBoxes, World } from "./world.js";
+
+/** What is kept of a tick, to come back to it. */
+interface Tick {
+  readonly number: number;
+  readonly positions: Float32Array;
+  /** Where the balls were at the detection before this tick, if there was one. */
+  readonly last: Float32Array | undefined;
+  /** The saved moment of the world. */
+  readonly moment: number;
+  /** If there is a detection at this tick: the runner as it was before. */
+  readonly before: Runner | undefined;
+  /** How many stops there are in it. */
+  stops: number;
+}
+
+/** So many ticks can be gone back, a quarter of a minute; of many balls fewer, for the memory's sake. */
+const MOST_TICKS = 900;
+const MOST_BALL_TICKS = 90_000;
+/** The number of detections to keep, if they are rarer than that. */
+const LEAST_DETECTIONS = 4;
+
+/**
+ * A world and its detections as one line of time: what has been can be gone through forward and
+ * back, what has not yet been is simulated when it is asked for. Within the past nothing is
+ * simulated: the world is restored, and the detection is run again from the runner of that time.
+ */
+export class Timeline {
+  readonly #world: World;
+  readonly #kinds: ReadonlySet<TraceEvent["kind"]>;
+  readonly #options: Options;
+  readonly #most: number;
+  readonly #oracle: Oracle | undefined;
+  #runner: Runner;
+  #ticks: Tick[] = [];
+  /** Which tick is shown. */
+  #at = 0;
+  /** Which tick the world is in. */
+  #worldAt = 0;
+  #detection: Detection | undefined;
+  #stops: number[] = [];
+  /** Which of the stops has been reached; -1 before the first. */
+  #stop = -1;
+
+  /** From the beginning, or in a world that is there already, at this tick. */
+  constructor(options: Options, kinds: ReadonlySet<TraceEvent["kind"]>, world: World = new World(options.world), tick = 0) {
+    this.#options = options;
+    this.#kinds = kinds;
+    this.#world = world;
+    const most = Math.min(MOST_TICKS, MOST_BALL_TICKS / Math.max(1, world.radii.length));
+    this.#most = Math.max(most, LEAST_DETECTIONS * (options.skip + 1));
+    this.#oracle = options.program ? new Oracle(undefined) : oracleFor(options);
+    this.#runner = newRunner(options.detecting);
+    this.#record(tick, true);
+  }
+
+  /**
+   * The state of the world after this many ticks. Only the last of its detections are run: of all of them a
+   * swap-driven method remembers no more than that.
+   */
+  static at(options: Options, kinds: ReadonlySet<TraceEvent["kind"]>, ticks: number): Timeline {
+    const interval = options.skip + 1;
+    const first = Math.max(0, Math.ceil(ticks / interval) - 1) * interval;
+    const world = new World(options.world);
+    for (let tick = 1; tick <= first; tick++) world.tick(tick % interval === 0);
+    const timeline = new Timeline(options, kinds, world, first);
+    while (timeline.tick < ticks) {
+      timeline.finish();
+      timeline.nextTick();
+    }
+    return timeline;
+  }
+
+  get tick(): number {
+    return this.#ticks[this.#at]!.number;
+  }
+
+  get positions(): Float32Array {
+    return this.#ticks[this.#at]!.positions;
+  }
+
+  get radii(): Float32Array {
+    return this.#world.radii;
+  }
+
+  /** Where the balls were at the detection shown and at the one before it. */
+  get jump(): { readonly from: Float32Array | undefined; readonly to: Float32Array } {
+    let at = this.#at;
+    while (at > 0 && !this.#ticks[at]!.before) at--;
+    const { last, positions } = this.#ticks[at]!;
+    return { from: last, to: positions };
+  }
+
+  /** The detection of this tick, or of the one before it that had one. */
+  get detection(): Detection {
+    return this.#detection!;
+  }
+
+  /** How many events of the detection have been played; the first is that it begins. */
+  get position(): number {
+    return this.#stop < 0 ? 1 : this.#stops[this.#stop]!;
+  }
+
+  /** The event at work: the one at which the detection has been stopped. */
+  get event(): TraceEvent | undefined {
+    if (this.#kinds.size === 0) return undefined;
+    const event = this.detection.events[this.position - 1];
+    return event && this.#kinds.has(event.kind) ? event : undefined;
+  }
+
+  get state(): PlayerState {
+    return this.detection.stateAt(this.position);
+  }
+
+  /** The event at the next stop, and the one that follows it in the trace; the end of a detection shows none. */
+  get coming(): readonly [next: TraceEvent | undefined, after: TraceEvent | undefined] {
+    const position = this.#stops[this.#stop + 1];
+    if (position === undefined) return [undefined, undefined];
+    const [next, after] = this.detection.events.slice(position - 1, position + 1);
+    return next && this.#kinds.has(next.kind) ? [next, after] : [undefined, undefined];
+  }
+
+  /** Whether the detection has been gone through, so that the world may move on. */
+  get isDetected(): boolean {
+    return this.#stop === this.#stops.length - 1;
+  }
+
+  /** Whether there is a detection at this very tick. */
+  get hasDetection(): boolean {
+    return this.#ticks[this.#at]!.before !== undefined;
+  }
+
+  /** Whether no event of the detection is worth a stop. */
+  get isStopless(): boolean {
+    return this.#stops.length === 1;
+  }
+
+  /** Which stop of the detection has been reached; -1 before the first. */
+  get stop(): number {
+    return this.#stop;
+  }
+
+  /** Which of the kept ticks is shown, and of each the number of stops: 0 without a detection. */
+  get kept(): { readonly at: number; readonly stops: readonly number[] } {
+    return { at: this.#at, stops: this.#ticks.map(({ stops }) => stops) };
+  }
+
+  /** Whether anything has been kept from before. */
+  get hasPast(): boolean {
+    return this.#at > 0 || this.#stop > -1;
+  }
+
+  /** Where it is on the way from the oldest that is kept to the newest. */
+  get progress(): { at: number; of: number } {
+    let at = 0;
+    let of = 0;
+    this.#ticks.forEach(({ stops }, index) => {
+      if (index < this.#at) at += stops;
+      of += stops;
+    });
+    // A tick without a detection belongs to the last stop before it.
+    if (this.#ticks[this.#at]!.before) at += this.#stop + 1;
+    return { at, of };
+  }
+
+  /** The state of the world here, 16 hexadecimal digits. */
+  hash(): string {
+    this.#bringWorld();
+    return this.#world.hash();
+  }
+
+  velocities(): Float32Array {
+    this.#bringWorld();
+    return this.#world.velocities();
+  }
+
+  /** Plays on to the next stop of this detection; the events that were played. */
+  nextStop(): readonly TraceEvent[] {
+    if (this.isDetected) return [];
+    const from = this.position;
+    this.#stop++;
+    return this.detection.events.slice(from, this.position);
+  }
+
+  /** To the end of this detection, at once. */
+  finish(): void {
+    this.#stop = this.#stops.length - 1;
+  }
+
+  /** To a stop of this detection; beyond the last, to that one. */
+  showStop(stop: number): void {
+    this.#stop = Math.min(stop, this.#stops.length - 1);
+  }
+
+  /** Back to before the first event of this detection. */
+  rewind(): void {
+    this.#stop = -1;
+  }
+
+  /** Moves on by a tick, in the past or beyond it. Whether it was beyond, so that it is new. */
+  nextTick(): boolean {
+    if (this.#at < this.#ticks.length - 1) {
+      this.#goTo(this.#at + 1, -1);
+      return false;
+    }
+    this.#bringWorld();
+    const number = this.tick + 1;
+    const isLast = number % (this.#options.skip + 1) === 0;
+    this.#world.tick(isLast);
+    this.#record(number, isLast);
+    return true;
+  }
+
+  /** The stop before this one, in this detection or one before; whether there was one. */
+  back(): boolean {
+    if (this.#ticks[this.#at]!.before && (this.#stop > 0 || (this.#stop === 0 && this.#at === 0))) {
+      this.#stop--;
+      return true;
+    }
+    for (let index = this.#at - 1; index >= 0; index--) {
+      if (!this.#ticks[index]!.before) continue;
+      this.#goTo(index, Infinity);
+      return true;
+    }
+    return false;
+  }
+
+  /** Goes to a stop by its index among the kept ones; 0 is the first. */
+  seek(place: number): void {
+    let left = Math.max(0, Math.trunc(place));
+    let last = 0;
+    for (const [index, { stops, before }] of this.#ticks.entries()) {
+      if (!before) continue;
+      last = index;
+      if (left <= stops) {
+        // Between two detections there is no such thing as before the first stop.
+        if (left > 0 || index === 0) return this.#goTo(index, left - 1);
+      }
+      left -= stops;
+    }
+    this.#goTo(last, Infinity);
+  }
+
+  /** Goes to a stop of a kept tick that has a detection; beyond its last stop, to that one. */
+  goTo(index: number, stop: number): void {
+    this.#goTo(index, stop);
+  }
+
+  /** Puts a ball elsewhere, here and now: what was to come is forgotten. */
+  placeBall(ball: number, x: number, y: number, vx: number, vy: number): void {
+    this.#bringWorld();
+    this.#truncate();
+    this.#world.place(ball, x, y, vx, vy);
+  }
+
+  /** Runs the detection again at this tick, to show a change in a world that does not move. */
+  detectAgain(): void {
+    this.#record(this.tick, true);
+    this.#stop = this.#stops.length - 1;
+  }
+
+  /** Ends this line of time, and hands over the world as it is shown. */
+  release(): World {
+    this.#bringWorld();
+    for (const tick of this.#ticks) this.#forget(tick);
+    this.#detection?.free();
+    this.#runner.free();
+    this.#oracle?.free();
+    return this.#world;
+  }
+
+  free(): void {
+    this.release().free();
+  }
+
+  #record(number: number, isDetecting: boolean): void {
+    const positions = this.#world.positions();
+    const last = this.#ticks.length > 0 ? this.jump.to : undefined;
+    let before: Runner | undefined;
+    let stops = 0;
+    if (isDetecting) {
+      this.#runner.trimTrace();
+      before = new Runner(this.#runner);
+      this.#detect(this.#runner, { positions, last });
+      stops = this.#stops.length;
+    }
+    this.#ticks.push({ number, positions, last, moment: this.#world.save(), before, stops });
+    if (this.#ticks.length > this.#most) this.#forget(this.#ticks.shift()!);
+    this.#at = this.#worldAt = this.#ticks.length - 1;
+  }
+
+  #detect(runner: Runner, tick: Pick<Tick, "positions" | "last">): void {
+    const { program } = this.#options;
+    const boxes = this.#boxesAt(tick);
+    const missedOf = (found: Uint32Array): Detection["missed"] => this.#missedAt(tick, found);
+    const detection = program
+      ? new ProgramDetection(program, boxes, tick.last && this.#boxes(tick.last), missedOf)
+      : new TracedDetection(runner, boxes, missedOf);
+    this.#detection?.free();
+    this.#detection = detection;
+    this.#stops = stopsOf(this.#detection, this.#kinds);
+    this.#stop = -1;
+  }
+
+  #boxes(positions: Float32Array): Float64Array {
+    return boxesOf(positions, this.radii, this.#options.world);
+  }
+
+  /** What a detection takes. */
+  #boxesAt({ positions, last }: Pick<Tick, "positions" | "last">): Float64Array {
+    const boxes = this.#boxes(positions);
+    return this.#options.swept === "on" && last ? sweptBoxes(this.#boxes(last), boxes) : boxes;
+  }
+
+  /** What it should have found and did not. */
+  #missedAt({ positions, last }: Pick<Tick, "positions" | "last">, found: Uint32Array): Detection["missed"] {
+    const oracle = this.#oracle;
+    const boxes = this.#boxes(positions);
+    if (!oracle || this.#options.swept !== "off") return oracle?.missed(boxes, found) ?? [];
+    if (!last) return [];
+    // What overlapped at the last detection was found there.
+    const before = this.#boxes(last);
+    return oracle.missed(sweptBoxes(before, boxes), found, oracle.pairs(before));
+  }
+
+  /** Shows a tick that is kept, at one of its stops. */
+  #goTo(index: number, stop: number): void {
+    const { before, positions, last } = this.#ticks[index]!;
+    if (before && index !== this.#at) {
+      const runner = new Runner(before);
+      this.#detect(runner, { positions, last });
+      runner.free();
+    }
+    this.#at = index;
+    if (before) this.#stop = Math.min(stop, this.#stops.length - 1);
+  }
+
+  /** Brings the world to the tick that is shown. */
+  #bringWorld(): void {
+    if (this.#worldAt === this.#at) return;
+    this.#world.restore(this.#ticks[this.#at]!.moment);
+    this.#worldAt = this.#at;
+  }
+
+  /** Forgets all that comes after the tick that is shown. */
+  #truncate(): void {
+    const later = this.#ticks.splice(this.#at + 1);
+    if (later.length === 0) return;
+    // The runner has to be as it was after the last detection up to here.
+    const before = this.#ticks.filter(({ before }) => before).at(-1)!;
+    this.#runner.free();
+    this.#runner = new Runner(before.before!);
+    this.#runner.step(this.#boxesAt(before));
+    for (const tick of later) this.#forget(tick);
+  }
+
+  #forget({ moment, before }: Tick): void {
+    this.#world.forget(moment);
+    before?.free();
+  }
+}

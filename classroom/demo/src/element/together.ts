@@ -1,0 +1,137 @@
+import type { TraceEvent } from "../algorithms/trace.js";
+import { MS_PER_TICK } from "./playback.js";
+import type { Run } from "./run.js";
+import type { Timeline } from "./timeline.js";
+
+/** A demo that shows the same world as others. */
+export interface Member {
+  /** Until it has begun there is none. */
+  readonly run: Run | undefined;
+  /** Whether a hand holds one of its balls. */
+  readonly isHeld: boolean;
+  /** Lets time pass within the detection. */
+  advance(ms: number): void;
+  /** Puts the ball that is held where the hand is. */
+  hold(): void;
+  /** One tick of the world. */
+  tick(): void;
+  /** Events of its detection were played. */
+  stopped(events: readonly TraceEvent[]): void;
+  setPlaying(isPlaying: boolean): void;
+  /** Starts over; plays then, if asked. */
+  begin(isPlaying: boolean): void;
+  /** Shows what has changed. */
+  show(): void;
+}
+
+/**
+ * The same world several times, each under another method, at the same tick: the world moves on when the slowest
+ * detection is done. Their kept ticks are the same, but a detection has other stops in each, so the k-th stop of
+ * all is the k-th of each, or its last.
+ */
+export class Together {
+  readonly #members: () => readonly Member[];
+  #spent = 0;
+
+  constructor(members: () => readonly Member[]) {
+    this.#members = members;
+  }
+
+  /** Whether every detection of this tick has been gone through. */
+  get isDetected(): boolean {
+    return this.#timelines.every(({ isDetected }) => isDetected);
+  }
+
+  get tick(): number {
+    return this.#timelines[0]?.tick ?? 0;
+  }
+
+  get hasPast(): boolean {
+    return this.#timelines.some(({ hasPast }) => hasPast);
+  }
+
+  /** Where it is on the way from the oldest stop that is kept to the newest. */
+  get progress(): { readonly at: number; readonly of: number } {
+    const { at, stops } = this.#kept;
+    const sum = (counts: readonly number[]): number => counts.reduce((total, count) => total + count, 0);
+    return { at: sum(stops.slice(0, at)) + (stops[at] === 0 ? 0 : this.#stop + 1), of: sum(stops) };
+  }
+
+  /** Lets so much time pass. */
+  advance(ms: number): void {
+    const members = this.#members();
+    for (const member of members) if (!member.run?.timeline.isDetected || member.isHeld) member.advance(ms);
+    if (!this.isDetected) return;
+    this.#spent = Math.min(this.#spent + ms, 4 * MS_PER_TICK);
+    while (this.#spent >= MS_PER_TICK && this.isDetected) {
+      this.#spent -= MS_PER_TICK;
+      this.#tickAll();
+    }
+    if (!this.isDetected) this.#spent = 0;
+  }
+
+  /** To the next stop of each detection; after the last of all, to the next detection. */
+  step(): void {
+    if (this.isDetected) {
+      do this.#tickAll();
+      while (this.#timelines[0]?.hasDetection === false);
+    }
+    for (const member of this.#members()) member.stopped(member.run!.timeline.nextStop());
+  }
+
+  back(): void {
+    const { at, stops } = this.#kept;
+    const isFirst = !stops.slice(0, at).some((count) => count > 0);
+    if (stops[at] !== 0 && (this.#stop > 0 || (this.#stop === 0 && isFirst))) return this.#goTo(at, this.#stop - 1);
+    for (let index = at - 1; index >= 0; index--) if (stops[index] !== 0) return this.#goTo(index, Infinity);
+  }
+
+  /** Goes to a stop by its index among the kept ones; 0 is the first. */
+  seek(place: number): void {
+    let left = Math.max(0, Math.trunc(place));
+    let last = 0;
+    const { stops } = this.#kept;
+    for (const [index, count] of stops.entries()) {
+      if (count === 0) continue;
+      last = index;
+      if (left <= count && (left > 0 || index === 0)) return this.#goTo(index, left - 1);
+      left -= count;
+    }
+    this.#goTo(last, Infinity);
+  }
+
+  /** Puts a ball elsewhere in every copy of the world. */
+  placeBall(ball: number, x: number, y: number, vx: number, vy: number): void {
+    for (const timeline of this.#timelines) timeline.placeBall(ball, x, y, vx, vy);
+  }
+
+  detectAgain(): void {
+    for (const timeline of this.#timelines) timeline.detectAgain();
+  }
+
+  get #timelines(): Timeline[] {
+    return this.#members().flatMap(({ run }) => (run ? [run.timeline] : []));
+  }
+
+  /** The stop that the furthest detection has reached. */
+  get #stop(): number {
+    return Math.max(...this.#timelines.map(({ stop }) => stop));
+  }
+
+  /** The kept ticks, each with the most stops of any of its detections. */
+  get #kept(): { at: number; stops: number[] } {
+    const all = this.#timelines.map(({ kept }) => kept);
+    const first = all[0] ?? { at: 0, stops: [] };
+    return { at: first.at, stops: first.stops.map((_, index) => Math.max(...all.map(({ stops }) => stops[index] ?? 0))) };
+  }
+
+  #goTo(index: number, stop: number): void {
+    for (const timeline of this.#timelines) timeline.goTo(index, stop);
+  }
+
+  /** First the hand, in every copy of the world; then one tick of each. */
+  #tickAll(): void {
+    for (const member of this.#members()) member.hold();
+    for (const member of this.#members()) member.tick();
+  }
+}

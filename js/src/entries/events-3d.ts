@@ -1,0 +1,17 @@
+/**
+ * A small {@link BroadPhase} for games in 3D that only need the overlaps that begin and end: half of the
+ * download of `sweep-and-prune/broad-phase`.
+ *
+ * @module
+ */
+import { entry, type InitOptions, type Started } from "../wasm/init.js";
+import { eventsCore3D } from "../world/events-core.js";
+
+export * from "./events.js";
+export { BroadPhase } from "../world/events-3d.js";
+
+/** Loads and starts the compiled core of this entry point, and those of the others. Otherwise it works as `init` of `sweep-and-prune`. */
+export const init: (options?: InitOptions) => Promise<Started> = entry(eventsCore3D, {
+  simd: () => new URL("./events-3d.simd.wasm", import.meta.url),
+  scalar: () => new URL("./events-3d.wasm", import.meta.url),
+});

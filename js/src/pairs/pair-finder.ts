@@ -1,0 +1,521 @@
+/// <reference lib="esnext.disposable" preserve="true" />
+import { type BoxObject, type Boxes, checkBoxes, checkDimensions, type Dimensions, writeRows } from "../boxes/boxes.js";
+import { describe } from "../wasm/describe.js";
+import { dimensionsOf } from "../boxes/dimensions-of.js";
+import { checkFits, Core, type Each, type Engine, type Exports, type Passed } from "../wasm/engine.js";
+import { InterruptedError, OutOfMemoryError } from "../wasm/errors.js";
+import { forgotten, Handle } from "../wasm/handle.js";
+import { streamPairs } from "./stream.js";
+import { lengthOf, tagOf } from "../wasm/typed.js";
+import { allocate, checkViews, copy, guard, view } from "../wasm/views.js";
+
+/** Options of a search. */
+export interface FindPairsOptions {
+  /** How many dimensions the boxes have. Boxes that are objects tell it themselves, and need no options. */
+  dimensions: Dimensions;
+}
+
+/** Options of a {@link PairFinder}. */
+export interface PairFinderOptions extends FindPairsOptions {
+  /**
+   * Whether `find` and `findBetween` return views of WebAssembly's memory, which save the time of a copy.
+   * A view is valid until the next call of anything in this package: that call may overwrite it, or let
+   * the memory grow, which leaves the view with length 0. False by default.
+   */
+  views?: boolean;
+}
+
+/** Is called with the indices of each pair. If it returns `false`, it is not called again. */
+export type EachPair = (a: number, b: number) => unknown;
+
+/** Where pairs are written: two indices a pair. Its buffer may be shared with workers. */
+export type PairsInto = Uint32Array | Int32Array;
+
+/** What js/wasm/src/finder.rs exports. */
+interface FinderExports extends Exports {
+  finder_new(dimensions: number, double: number): number;
+  finder_rows(finder: number, set: number, count: number): number;
+  finder_find(finder: number, a: number, b: number, chunk: Chunk): number;
+  finder_free(finder: number): void;
+}
+
+/** How many pairs the core collects before it hands them over. */
+const enum Chunk {
+  /** It only counts them. */
+  None = 0,
+  /** The first ones at once: one is enough. */
+  First = 1,
+  /** For a callback: small, so that it stays in the cache. */
+  Small = 4096,
+  /** For a result that is copied: 8 MB, so that few results take more than one. */
+  Large = 2 ** 20,
+  /** All of them: for a view. */
+  All = 2 ** 32 - 1,
+}
+
+/** Instead of the size of the second set, if there is only one set. */
+const noSet = -1;
+
+/** Instead of the second set, if there is only one set. */
+const alone = Symbol("no second set");
+
+/** The core that finds pairs. */
+export const finderCore: Core<FinderExports> = new Core("finder_new", "sweep-and-prune");
+
+/**
+ * Finds all pairs of boxes that overlap. The result holds indices of boxes, two a pair:
+ * `a0, b0, a1, b1, ...`. Each pair is listed once, with the smaller index first, in a deterministic
+ * order. Without options, for boxes that are objects, it holds the pairs of the objects themselves,
+ * `[[a0, b0], [a1, b1], ...]`, in the same order.
+ *
+ * Touching boxes overlap. Points, flat boxes and infinite edges are allowed. To find pairs many times, keep a {@link PairFinder}, which reuses its buffers.
+ *
+ * Time O(n log n + pairs) on typical inputs, memory O(n + pairs).
+ *
+ * @throws {@link InvalidBoxError} for the first box that is inverted or NaN.
+ * @throws {@link OutOfMemoryError} if the boxes or their pairs do not fit in memory.
+ * @throws {@link NotInitializedError} before `init()` is done.
+ * @throws `TypeError` if `boxes` is of another type or its buffer is detached.
+ * @throws `RangeError` if `boxes` is not whole rows, or `dimensions` is not 1, 2 or 3.
+ *
+ * @example
+ * ```js
+ * const boxes = new Float32Array([0, 0, 2, 2,  5, 5, 6, 6,  2, 1, 3, 4]);
+ * findPairs(boxes, { dimensions: 2 }); // Uint32Array [0, 2]
+ * ```
+ */
+export function findPairs<T extends BoxObject>(items: readonly T[]): [T, T][];
+export function findPairs(boxes: Boxes, options: FindPairsOptions): Uint32Array<ArrayBuffer>;
+export function findPairs(boxes: Boxes, options?: FindPairsOptions): Uint32Array<ArrayBuffer> | [unknown, unknown][] {
+  const pairs = once([boxes], options, (finder) => finder.find(boxes));
+  return options ? pairs : itemsOf(pairs, boxes, boxes);
+}
+
+/**
+ * Finds all pairs of a box of `a` and a box of `b` that overlap: `a0, b0, a1, b1, ...`, the index in
+ * `a` first. If one set is in double precision, all boxes are compared in double precision.
+ * Otherwise it works as {@link findPairs}.
+ *
+ * It answers thousands of questions of the form "which boxes does this one overlap?" at once, with
+ * the questions in `a`: faster than one by one, and without an index to build first.
+ *
+ * @throws As {@link findPairs}; an {@link InvalidBoxError} names the set by its `argument`.
+ *
+ * @example
+ * ```js
+ * const bullets = [0, 0, 1, 1,  5, 5, 6, 6];
+ * const targets = [4, 4, 7, 7];
+ * findPairsBetween(bullets, targets, { dimensions: 2 }); // Uint32Array [1, 0]
+ * ```
+ */
+export function findPairsBetween<A extends BoxObject, B extends BoxObject>(a: readonly A[], b: readonly B[]): [A, B][];
+export function findPairsBetween(a: Boxes, b: Boxes, options: FindPairsOptions): Uint32Array<ArrayBuffer>;
+export function findPairsBetween(
+  a: Boxes,
+  b: Boxes,
+  options?: FindPairsOptions,
+): Uint32Array<ArrayBuffer> | [unknown, unknown][] {
+  const pairs = once([a, b], options, (finder) => finder.findBetween(a, b));
+  return options ? pairs : itemsOf(pairs, a, b);
+}
+
+/**
+ * Counts the pairs that {@link findPairs} would find, without storing them.
+ *
+ * @throws As {@link findPairs}.
+ */
+export function countPairs(boxes: readonly BoxObject[], options?: FindPairsOptions): number;
+export function countPairs(boxes: Boxes, options: FindPairsOptions): number;
+export function countPairs(boxes: Boxes, options?: FindPairsOptions): number {
+  return once([boxes], options, (finder) => finder.count(boxes));
+}
+
+/**
+ * Whether any two boxes overlap. It stops at the first pair that it finds.
+ *
+ * @throws As {@link findPairs}.
+ */
+export function anyPair(boxes: readonly BoxObject[], options?: FindPairsOptions): boolean;
+export function anyPair(boxes: Boxes, options: FindPairsOptions): boolean;
+export function anyPair(boxes: Boxes, options?: FindPairsOptions): boolean {
+  return once([boxes], options, (finder) => finder.any(boxes));
+}
+
+/**
+ * Calls `each(a, b)` with every pair that {@link findPairs} would find, in the same order, until
+ * `each` returns `false`. Stores only a small buffer of pairs. Returns `false` if `each` did. Without
+ * options, for boxes that are objects, `each` gets the objects themselves.
+ *
+ * @throws As {@link findPairs}, before the first call of `each`; and what `each` throws.
+ */
+export function forEachPair<T extends BoxObject>(items: readonly T[], each: (a: T, b: T) => unknown): boolean;
+export function forEachPair(boxes: Boxes, options: FindPairsOptions, each: EachPair): boolean;
+export function forEachPair<T extends BoxObject>(
+  boxes: Boxes,
+  options: FindPairsOptions | ((a: T, b: T) => unknown),
+  each?: EachPair,
+): boolean {
+  if (typeof options !== "function") return once([boxes], options, (finder) => finder.forEach(boxes, each!));
+  const items = boxes as readonly T[];
+  return once([boxes], undefined, (finder) => finder.forEach(boxes, (a, b) => options(items[a]!, items[b]!)));
+}
+
+/** Without options, boxes that are objects tell how many dimensions they have. No boxes have any number. */
+function once<R>(sets: readonly Boxes[], options: FindPairsOptions | undefined, use: (finder: PairFinder) => R): R {
+  const areNone = sets.every((boxes) => Array.isArray(boxes) && boxes.length === 0);
+  const dimensions = options ? options.dimensions : areNone ? 1 : sets.map(dimensionsOf).find(Boolean);
+  if (!options && !dimensions) throw new RangeError("`options` is missing: flat arrays of boxes need `{ dimensions: 1 }`, 2 or 3");
+  const finder = new PairFinder({ dimensions: dimensions! });
+  try {
+    return use(finder);
+  } finally {
+    finder.free();
+  }
+}
+
+/** The pairs of the items that pairs of indices name. */
+function itemsOf(pairs: Uint32Array, a: Boxes, b: Boxes): [unknown, unknown][] {
+  return Array.from({ length: pairs.length / 2 }, (_, pair) => [a[pairs[2 * pair]!], b[pairs[2 * pair + 1]!]]);
+}
+
+/**
+ * Finds pairs many times and keeps its memory in between: as much as its largest input needed, and of
+ * pairs at most 16 MB. With the option `views` it also keeps as much as its largest result needed, and a
+ * call that needs no more memory than those before it allocates nothing.
+ *
+ * ```js
+ * using finder = new PairFinder({ dimensions: 2 });
+ * const pairs = finder.find(boxes);
+ * for (let i = 0; i < pairs.length; i += 2) collide(pairs[i], pairs[i + 1]);
+ * ```
+ *
+ * Its memory is freed by `using`, by {@link PairFinder.free}, or some time after the last reference
+ * to it is gone.
+ */
+export class PairFinder {
+  readonly #dimensions: Dimensions;
+  readonly #owned: Owned;
+  readonly #rows: [Rows?, Rows?] = [];
+  readonly #isView: boolean;
+  #pairs: Uint32Array<ArrayBuffer> | undefined;
+
+  /**
+   * A finder with empty buffers.
+   *
+   * @throws {@link NotInitializedError} before `init()` is done.
+   * @throws `RangeError` if `dimensions` is not 1, 2 or 3; `TypeError` if `views` is not a boolean.
+   */
+  constructor(options: PairFinderOptions) {
+    this.#dimensions = checkDimensions(options?.dimensions);
+    this.#isView = checkViews(options.views);
+    this.#owned = new Owned(finderCore.engine());
+    forgotten?.register(this, this.#owned);
+  }
+
+  /** How many dimensions the boxes have. */
+  get dimensions(): Dimensions {
+    return this.#dimensions;
+  }
+
+  /**
+   * Finds the pairs of {@link findPairs}. With the option `views` the result is a view, valid until the
+   * next call.
+   *
+   * @throws As {@link findPairs}, and `TypeError` if the finder was freed. It stays usable.
+   */
+  find(boxes: Boxes): Uint32Array<ArrayBuffer> {
+    return this.#store(boxes, alone);
+  }
+
+  /**
+   * Finds the pairs of {@link findPairsBetween}, otherwise as {@link PairFinder.find}.
+   *
+   * @throws As {@link findPairsBetween}, and `TypeError` if the finder was freed.
+   */
+  findBetween(a: Boxes, b: Boxes): Uint32Array<ArrayBuffer> {
+    return this.#store(a, b);
+  }
+
+  /**
+   * Writes the pairs of {@link findPairs} to an array of yours, which may be shared with workers, and
+   * returns how many pairs there are. If the array is too short for them, it has the first ones.
+   *
+   * @throws As {@link PairFinder.find}; `TypeError` if `into` is not a `Uint32Array` or `Int32Array`.
+   *
+   * @example
+   * ```js
+   * const into = new Uint32Array(new SharedArrayBuffer(8 * 1000)); // up to 1,000 pairs
+   * const count = finder.findInto(boxes, into);
+   * for (let i = 0; i < 2 * count; i += 2) collide(into[i], into[i + 1]);
+   * ```
+   */
+  findInto(boxes: Boxes, into: PairsInto): number {
+    return this.#write(into, boxes, alone);
+  }
+
+  /**
+   * Writes the pairs of {@link findPairsBetween}, otherwise as {@link PairFinder.findInto}.
+   *
+   * @throws As {@link PairFinder.findBetween} and {@link PairFinder.findInto}.
+   */
+  findBetweenInto(a: Boxes, b: Boxes, into: PairsInto): number {
+    return this.#write(into, a, b);
+  }
+
+  /**
+   * Whether any two boxes overlap. It stops at the first pair that it finds.
+   *
+   * @throws As {@link PairFinder.count}.
+   */
+  any(boxes: Boxes): boolean {
+    return this.#any(boxes, alone);
+  }
+
+  /**
+   * Whether any box of `a` overlaps one of `b`. It stops at the first pair that it finds.
+   *
+   * @throws As {@link PairFinder.findBetween}.
+   */
+  anyBetween(a: Boxes, b: Boxes): boolean {
+    return this.#any(a, b);
+  }
+
+  /**
+   * Counts the pairs of {@link findPairs}, without storing them.
+   *
+   * @throws As {@link countPairs}, and `TypeError` if the finder was freed.
+   */
+  count(boxes: Boxes): number {
+    return this.#count(boxes, alone);
+  }
+
+  /**
+   * Counts the pairs of {@link findPairsBetween}, without storing them.
+   *
+   * @throws As {@link PairFinder.findBetween}.
+   */
+  countBetween(a: Boxes, b: Boxes): number {
+    return this.#count(a, b);
+  }
+
+  /**
+   * Calls `each` as {@link forEachPair} does. Within `each` this finder cannot be used; others can.
+   *
+   * @throws As {@link forEachPair}, and `TypeError` if the finder was freed.
+   */
+  forEach(boxes: Boxes, each: EachPair): boolean {
+    return this.#stream(each, boxes, alone);
+  }
+
+  /**
+   * Calls `each` with the pairs of {@link findPairsBetween}, otherwise as {@link PairFinder.forEach}.
+   *
+   * @throws As {@link PairFinder.findBetween}; and what `each` throws.
+   */
+  forEachBetween(a: Boxes, b: Boxes, each: EachPair): boolean {
+    return this.#stream(each, a, b);
+  }
+
+  #store(a: Boxes, b: Boxes | typeof alone): Uint32Array<ArrayBuffer> {
+    const { engine } = this.#owned;
+    if (this.#isView) {
+      this.#search(Chunk.All, a, b, undefined);
+      return guard(engine, this.#pairs = this.#rest(this.#pairs));
+    }
+    const chunks: Uint32Array<ArrayBuffer>[] = [];
+    this.#search(Chunk.Large, a, b, (at, count) => {
+      chunks.push(copy(new Uint32Array(engine.exports.memory.buffer, at, 2 * count)));
+      return true;
+    });
+    const rest = copy(this.#pairs = this.#rest(this.#pairs));
+    return chunks.length === 0 ? rest : joined([...chunks, rest]);
+  }
+
+  /** A view of the pairs that the core kept at the end of the last search. */
+  #rest(last: Uint32Array<ArrayBuffer> | undefined): Uint32Array<ArrayBuffer> {
+    const { engine } = this.#owned;
+    return view<Uint32Array<ArrayBuffer>>(Uint32Array, last, engine.exports.memory.buffer, engine.detail(0), 2 * engine.detail(1));
+  }
+
+  #write(into: PairsInto, a: Boxes, b: Boxes | typeof alone): number {
+    checkInto(into);
+    const { engine } = this.#owned;
+    let total = 0;
+    const write: Each = (at, count) => {
+      const fitting = Math.max(0, Math.min(2 * count, lengthOf(into) - 2 * total));
+      if (fitting > 0) set.call(into, new Uint32Array(engine.exports.memory.buffer, at, fitting), 2 * total);
+      total += count;
+      return true;
+    };
+    this.#search(Chunk.Large, a, b, write);
+    write(engine.detail(0), engine.detail(1));
+    return total;
+  }
+
+  #any(a: Boxes, b: Boxes | typeof alone): boolean {
+    let isAny = false;
+    this.#search(Chunk.First, a, b, () => {
+      isAny = true;
+      return false;
+    });
+    return isAny;
+  }
+
+  #count(a: Boxes, b: Boxes | typeof alone): number {
+    const { engine } = this.#owned;
+    this.#search(Chunk.None, a, b, undefined);
+    return engine.detail(0) + 2 ** 32 * engine.detail(1);
+  }
+
+  #stream(each: EachPair, a: Boxes, b: Boxes | typeof alone): boolean {
+    if (typeof each !== "function") throw new TypeError(`\`each\` must be a function, not ${describe(each)}`);
+    const owned = this.#owned;
+    const { engine } = owned;
+    let isComplete = true;
+    const stream: Each = (at, count) => {
+      const begin = at / 4;
+      for (let word = begin; word < begin + 2 * count; word += 2) {
+        const words = engine.words();
+        isComplete = each(words[word]!, words[word + 1]!) !== false;
+        if (!isComplete) break;
+      }
+      return isComplete;
+    };
+    this.#search(Chunk.Small, a, b, stream);
+    // The rest: it is in the finder's memory, so the callback must not use this finder.
+    const [at, count] = [engine.detail(0), engine.detail(1)];
+    owned.isBusy = true;
+    try {
+      stream(at, count);
+    } finally {
+      owned.isBusy = false;
+    }
+    return isComplete;
+  }
+
+  #search(chunk: Chunk, a: Boxes, b: Boxes | typeof alone, each: Each | undefined): void {
+    const owned = this.#owned;
+    // First of all: this reads objects, and a getter may do anything.
+    const first = checkBoxes(a, this.#dimensions, b === alone ? "boxes" : "a");
+    const second = b === alone ? undefined : checkBoxes(b, this.#dimensions, "b");
+    // Reading the second may have changed the buffer of the first.
+    if (second) checkBoxes(first, this.#dimensions, "a");
+    owned.checkUsable();
+    const isDouble = tagOf(first) === "Float64Array" || tagOf(second) === "Float64Array";
+    // The core has no type for 1D boxes, nor for 2D in double precision: see js/wasm/src/finder.rs.
+    const stored = isDouble ? 3 : (Math.max(2, this.#dimensions) as Dimensions);
+    owned.isBusy = true;
+    try {
+      const { engine } = owned;
+      engine.calls++;
+      const finder = owned.finder(isDouble, stored);
+      // Writing one set may let the memory grow, which detaches an array of it.
+      const [countA, countB] = [this.#countOf(first), second ? this.#countOf(second) : noSet];
+      this.#writeRows(finder, 0, first, countA, isDouble, stored);
+      if (second) this.#writeRows(finder, 1, second, countB, isDouble, stored);
+      const passed: Passed = { boxes: second ? [["a", countA], ["b", countB]] : [["boxes", countA]] };
+      const find = () => finder.call((exports, at) => exports.finder_find(at, countA, countB, chunk));
+      if (each) streamPairs(engine, find, each, passed);
+      else engine.check(find(), passed);
+    } catch (error) {
+      // A finder that ran out of memory should not keep what it allocated; nor can one be used whose call ended halfway.
+      if (error instanceof OutOfMemoryError) owned.release("discard");
+      else if (error instanceof InterruptedError) owned.release("free");
+      throw error;
+    } finally {
+      owned.isBusy = false;
+    }
+  }
+
+  #countOf(rows: Rows): number {
+    return lengthOf(rows) / (2 * this.#dimensions);
+  }
+
+  /** Writes the rows of a set. */
+  #writeRows(finder: Handle<FinderExports>, set: 0 | 1, rows: Rows, count: number, isDouble: boolean, stored: Dimensions): void {
+    const length = 2 * stored * count;
+    checkFits(length * (isDouble ? 8 : 4));
+    const at = finder.call((exports, at) => exports.finder_rows(at, set, count)) >>> 0;
+    if (at === 0) throw new OutOfMemoryError();
+    const { buffer } = finder.engine.exports.memory;
+    const into = isDouble
+      ? view(Float64Array, this.#rows[set], buffer, at, length)
+      : view(Float32Array, this.#rows[set], buffer, at, length);
+    this.#rows[set] = into;
+    writeRows(rows, this.#dimensions, into, stored);
+  }
+
+  /**
+   * Frees the memory. The finder cannot be used any more. Freeing it twice is not an error.
+   *
+   * @throws `TypeError` within the callback of its own `forEach`.
+   */
+  free(): void {
+    if (!this.#owned.isFreed) this.#owned.checkUsable();
+    this.#owned.free();
+  }
+
+  /** As {@link PairFinder.free}, for `using`. */
+  [Symbol.dispose](): void {
+    this.free();
+  }
+}
+
+type Rows = Float32Array | Float64Array;
+
+const { set } = Uint32Array.prototype;
+
+/** Throws unless pairs can be written to it. By its tag, not by `instanceof`: it may be of another realm. */
+function checkInto(into: unknown): void {
+  const tag = tagOf(into);
+  if (tag === "Uint32Array" || tag === "Int32Array") return;
+  throw new TypeError(`\`into\` must be a Uint32Array or an Int32Array, not ${describe(into)}`);
+}
+
+/** Chunks of pairs as one array. */
+function joined(chunks: readonly Uint32Array[]): Uint32Array<ArrayBuffer> {
+  const all = allocate(() => new Uint32Array(chunks.reduce((length, chunk) => length + chunk.length, 0)));
+  let at = 0;
+  for (const chunk of chunks) {
+    all.set(chunk, at);
+    at += chunk.length;
+  }
+  return all;
+}
+
+/** The core's finders, one for each precision, made when they are needed. */
+class Owned {
+  #single: Handle<FinderExports> | undefined;
+  #double: Handle<FinderExports> | undefined;
+  /** Whether a call is running: then only a callback can call us. */
+  isBusy = false;
+  isFreed = false;
+
+  constructor(readonly engine: Engine<FinderExports>) {}
+
+  checkUsable(): void {
+    if (this.isFreed) throw new TypeError("this PairFinder was freed");
+    if (this.isBusy) throw new TypeError("this PairFinder is in use: its callback can only use others");
+  }
+
+  finder(isDouble: boolean, stored: Dimensions): Handle<FinderExports> {
+    return isDouble ? (this.#double ??= this.#new(1, stored)) : (this.#single ??= this.#new(0, stored));
+  }
+
+  #new(isDouble: 0 | 1, stored: Dimensions): Handle<FinderExports> {
+    const at = this.engine.call((exports) => exports.finder_new(stored, isDouble));
+    return new Handle(this.engine, at, "PairFinder", (exports, at) => exports.finder_free(at));
+  }
+
+  free(): void {
+    this.isFreed = true;
+    this.release("free");
+  }
+
+  /** Frees the core's finders. Later calls make new ones. */
+  release(how: "free" | "discard"): void {
+    this.#single?.[how]();
+    this.#double?.[how]();
+    this.#single = this.#double = undefined;
+  }
+}

@@ -1,0 +1,24 @@
+import { Bodies } from "./bodies.js";
+import { eventsCore3D, eventsMemory } from "./events-core.js";
+import type { BroadPhaseOptions } from "./types.js";
+
+/**
+ * The `BroadPhase` of `sweep-and-prune/broad-phase` for 3D in single precision, without queries, casts,
+ * lists of pairs and snapshots. What it has works in the same way and takes as long.
+ *
+ * ```js
+ * using world = new BroadPhase({ dimensions: 3 });
+ * ```
+ */
+export class BroadPhase extends Bodies {
+  /**
+   * An empty broad phase.
+   *
+   * @throws {@link NotInitializedError} before `init()` is done.
+   * @throws `RangeError` for other dimensions, double precision, or a margin or prediction that is
+   *   negative, infinite or NaN; `TypeError` if `views` is not a boolean.
+   */
+  constructor(options: BroadPhaseOptions) {
+    super(eventsMemory(eventsCore3D, [3], options));
+  }
+}

@@ -1,0 +1,24 @@
+import { checkOptions } from "./bodies.js";
+import type { Dimensions } from "../boxes/boxes.js";
+import { Core } from "../wasm/engine.js";
+import type { WorldExports } from "./core.js";
+import { WorldMemory } from "./memory.js";
+import type { BroadPhaseOptions } from "./types.js";
+
+/** The core for events in 1D and 2D. */
+export const eventsCore2D: Core<WorldExports> = new Core("world_new", "sweep-and-prune/events-2d");
+
+/** The core for events in 3D. */
+export const eventsCore3D: Core<WorldExports> = new Core("world_new", "sweep-and-prune/events-3d");
+
+/** An empty broad phase of a core that has only these dimensions, in single precision. */
+export function eventsMemory(core: Core<WorldExports>, dimensions: readonly Dimensions[], options: BroadPhaseOptions): WorldMemory {
+  const checked = checkOptions(options);
+  if (!dimensions.includes(checked.dimensions) || checked.precision === "double") {
+    throw new RangeError(
+      `"${core.entry}" has boxes of ${dimensions.join(" or ")} dimensions in single precision only: ` +
+        'import `BroadPhase` from "sweep-and-prune/broad-phase"',
+    );
+  }
+  return WorldMemory.create(core, checked);
+}

@@ -1,0 +1,231 @@
+import { type Boxes, checkBoxes, type Dimensions, writeRows } from "../boxes/boxes.js";
+import { checkFits, Code, type Core, type Engine, type Passed } from "../wasm/engine.js";
+import { OutOfMemoryError } from "../wasm/errors.js";
+import { forgotten, Handle } from "../wasm/handle.js";
+import { StaleProxyError } from "./stale-proxy-error.js";
+import { bufferOf, lengthOf } from "../wasm/typed.js";
+import { result, view } from "../wasm/views.js";
+import { readCorners, refuseCorners } from "./arguments.js";
+import type { WorldExports } from "./core.js";
+import type { BroadPhaseOptions, Changes } from "./types.js";
+
+/**
+ * A broad phase in WebAssembly's memory: calls it, writes its arguments where it reads them, and
+ * makes views of its answers.
+ *
+ * A method of a broad phase first reads and checks all its arguments, which may run any code of the user: that calls
+ * this broad phase, or frees it. Then it writes them, and makes its call.
+ */
+export class WorldMemory {
+  readonly dimensions: Dimensions;
+  readonly isDouble: boolean;
+  /** How many dimensions the boxes are stored in: at least those that they have. */
+  readonly stored: Dimensions;
+  /** Whether arrays that it gives out are views of memory. */
+  readonly isView: boolean;
+  readonly #handle: Handle<WorldExports>;
+  readonly #numbersAt: number;
+  #numbers: Float64Array | undefined;
+  #rows: Float32Array | Float64Array | undefined;
+  #ids: Float64Array | undefined;
+  #out: Float64Array | undefined;
+  #begun: Float64Array | undefined;
+  #ended: Float64Array | undefined;
+
+  constructor(dimensions: Dimensions, isDouble: boolean, isView: boolean, handle: Handle<WorldExports>) {
+    this.dimensions = dimensions;
+    this.isDouble = isDouble;
+    this.isView = isView;
+    // The core has no type for 1D boxes, nor for 2D in double precision: js/wasm/src/broad_phase/stored.rs.
+    this.stored = isDouble ? 3 : (Math.max(2, dimensions) as Dimensions);
+    this.#handle = handle;
+    this.#numbersAt = handle.call((exports, world) => exports.world_numbers(world)) >>> 0;
+    forgotten?.register(this, handle);
+  }
+
+  /** An empty broad phase. */
+  static create(core: Core<WorldExports>, options: Required<BroadPhaseOptions>): WorldMemory {
+    const { dimensions, precision, report, margin, prediction, views } = options;
+    const isDouble = precision === "double";
+    const handle = newWorld(core.engine(), dimensions, isDouble, margin, prediction, report === "fat");
+    return new WorldMemory(dimensions, isDouble, views, handle);
+  }
+
+  /** The started core. */
+  get engine(): Engine<WorldExports> {
+    return this.#handle.engine;
+  }
+
+  /** Frees the memory. Freeing it twice is not an error. */
+  free(): void {
+    this.#handle.free();
+  }
+
+  /** Throws if no call can be made, because this was freed. */
+  checkUsable(): void {
+    this.#handle.checkUsable();
+  }
+
+  /** Makes a call that cannot fail and overwrites no view. */
+  ask(ask: (exports: WorldExports, world: number) => number): number {
+    return this.#handle.call(ask);
+  }
+
+  /** Makes a call and throws its error. */
+  call(call: (exports: WorldExports, world: number) => number, passed?: Passed): void {
+    const handle = this.#handle;
+    const { engine } = handle;
+    engine.calls++;
+    try {
+      const code = handle.call(call);
+      if (code === Code.StaleProxy) throw new StaleProxyError(engine.detail(0), passed?.ids?.[engine.detail(0)] ?? NaN);
+      if (code === Code.InvalidArgument) throw new RangeError("`box` is inverted, or a coordinate is too large for single precision");
+      engine.check(code, passed);
+    } catch (error) {
+      // The call stopped halfway, so the state cannot be used any more.
+      if (error instanceof OutOfMemoryError) this.#handle.discard();
+      throw error;
+    }
+  }
+
+  /** Makes a call and returns the ids that it reports. */
+  answer(call: (exports: WorldExports, world: number) => number, passed?: Passed): Float64Array {
+    this.call(call, passed);
+    const { engine } = this;
+    const { buffer } = engine.exports.memory;
+    this.#out = view(Float64Array, this.#out, buffer, engine.detail(0), engine.detail(1));
+    return result(engine, this.#out, this.isView);
+  }
+
+  /** Updates, and writes what changed. */
+  update(into: Changes): void {
+    this.call((exports, world) => exports.world_update(world));
+    try {
+      const { engine } = this;
+      const { buffer } = engine.exports.memory;
+      const [at, total, begun] = [engine.detail(0), engine.detail(1), this.numbers()[0]!];
+      this.#begun = view(Float64Array, this.#begun, buffer, at, begun);
+      this.#ended = view(Float64Array, this.#ended, buffer, at + 8 * begun, total - begun);
+      into.begun = result(engine, this.#begun, this.isView);
+      into.ended = result(engine, this.#ended, this.isView);
+    } catch (error) {
+      this.free(); // the next update would not report these changes
+      throw error;
+    }
+  }
+
+  /** The numbers that go in and out, where they are now. */
+  numbers(): Float64Array {
+    this.#handle.checkUsable();
+    const { buffer } = this.engine.exports.memory;
+    return (this.#numbers = view(Float64Array, this.#numbers, buffer, this.#numbersAt, 16));
+  }
+
+  /** Writes a box, from one object or from separate numbers: as many as it has, and nothing else. */
+  writeBox(a: unknown, b: unknown, c: unknown, d: unknown, e: unknown, f: unknown, more: unknown): void {
+    if (typeof a === "object" && a !== null) {
+      if (b !== undefined) throw new TypeError(`there are more arguments than \`box\``);
+      this.write(0, readCorners(a, this.dimensions, "box"));
+      return;
+    }
+    const [numbers, stored] = [this.numbers(), this.stored];
+    switch (this.dimensions) {
+      case 1:
+        if (typeof a !== "number" || typeof b !== "number" || c !== undefined) break;
+        this.#writeAxes(numbers, 0, a, 0, 0);
+        this.#writeAxes(numbers, stored, b, 0, 0);
+        return;
+      case 2:
+        if (typeof a !== "number" || typeof b !== "number" || typeof c !== "number" || typeof d !== "number" || e !== undefined) break;
+        this.#writeAxes(numbers, 0, a, b, 0);
+        this.#writeAxes(numbers, stored, c, d, 0);
+        return;
+      case 3:
+        if (typeof a !== "number" || typeof b !== "number" || typeof c !== "number") break;
+        if (typeof d !== "number" || typeof e !== "number" || typeof f !== "number" || more !== undefined) break;
+        this.#writeAxes(numbers, 0, a, b, c);
+        this.#writeAxes(numbers, stored, d, e, f);
+        return;
+    }
+    refuseCorners(this.dimensions, [a, b, c, d, e, f]);
+  }
+
+  #writeAxes(numbers: Float64Array, at: number, x: number, y: number, z: number): void {
+    numbers[at] = x;
+    numbers[at + 1] = y;
+    if (this.stored === 3) numbers[at + 2] = z;
+  }
+
+  /** Writes corners that were read, with zeros on the axes that the user's boxes do not have. */
+  write(at: number, given: Float64Array): void {
+    const { dimensions, stored } = this;
+    const numbers = this.numbers();
+    for (let from = 0; from < given.length; from += dimensions, at += stored) {
+      for (let axis = 0; axis < stored; axis++) numbers[at + axis] = axis < dimensions ? given[from + axis]! : 0;
+    }
+  }
+
+  /** Rows in memory for `count` boxes. */
+  rowsFor(count: number): Float32Array | Float64Array {
+    const length = 2 * this.stored * count;
+    checkFits(length * (this.isDouble ? 8 : 4));
+    const at = this.#handle.call((exports, world) => exports.world_rows(world, count)) >>> 0;
+    if (at === 0) throw new OutOfMemoryError();
+    const { buffer } = this.engine.exports.memory;
+    return (this.#rows =
+      this.isDouble
+        ? view(Float64Array, this.#rows, buffer, at, length)
+        : view(Float32Array, this.#rows, buffer, at, length));
+  }
+
+  /** Writes boxes to the rows, unless they are already there, and returns how many there are. */
+  writeRows(boxes: Boxes): number {
+    const rows = checkBoxes(boxes, this.dimensions);
+    const count = lengthOf(rows) / (2 * this.dimensions);
+    const kept = this.#keep(rows, this.#rows);
+    const into = this.rowsFor(count);
+    if (kept !== into) writeRows(kept, this.dimensions, into, this.stored);
+    return count;
+  }
+
+  /** The array of memory for `count` ids. */
+  idsFor(count: number): Float64Array {
+    checkFits(count * 8);
+    const at = this.#handle.call((exports, world) => exports.world_ids_in(world, count)) >>> 0;
+    if (at === 0) throw new OutOfMemoryError();
+    return (this.#ids = view(Float64Array, this.#ids, this.engine.exports.memory.buffer, at, count));
+  }
+
+  /** Writes ids that were kept to their array, unless they are already there. */
+  writeIds(kept: Floats): void {
+    const into = this.idsFor(lengthOf(kept));
+    if (kept !== into) into.set(kept);
+  }
+
+  /** The ids, copied if writing other arguments first could move them. */
+  keepIds(ids: Floats): Floats {
+    return this.#keep(ids, this.#ids);
+  }
+
+  /** The numbers, copied if they lie in memory that may grow, unless they are the array that the core will read. */
+  #keep(numbers: Floats, written: Floats | undefined): Floats {
+    const isOutside = bufferOf(numbers) !== this.engine.exports.memory.buffer;
+    return isOutside || numbers === written ? numbers : new Float64Array(numbers);
+  }
+}
+
+type Floats = Float32Array | Float64Array;
+
+/** An empty broad phase of the core. */
+export function newWorld(
+  engine: Engine<WorldExports>,
+  dimensions: Dimensions,
+  isDouble: boolean,
+  margin = 0,
+  prediction = 0,
+  isFat = false,
+): Handle<WorldExports> {
+  const at = engine.call((exports) => exports.world_new(dimensions, isDouble ? 1 : 0, margin, prediction, isFat ? 1 : 0));
+  if (at === 0) throw new RangeError("`margin` or `prediction` does not fit in single precision");
+  return new Handle(engine, at, "BroadPhase", (exports, world) => exports.world_free(world));
+}

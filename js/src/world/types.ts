@@ -1,0 +1,93 @@
+import type { BoxObject, Corner, Dimensions, TypedNumbers } from "../boxes/boxes.js";
+import type { Filter } from "./filter.js";
+
+/**
+ * The id of a body: a whole number below 2^53. The lower 26 bits are its slot (see {@link slotOf}),
+ * the others count the bodies that have had the slot. An id does not come to mean another body
+ * before its slot has had 134 million others.
+ */
+export type ProxyId = number;
+
+/**
+ * The slot of a body: an index into your own tables. It is less than the greatest number of bodies
+ * that there ever were at once.
+ */
+export function slotOf(id: ProxyId): number {
+  return id % 2 ** 26;
+}
+
+/** How a `BroadPhase` treats its boxes. */
+export interface BroadPhaseOptions {
+  /** How many dimensions the boxes have. */
+  dimensions: Dimensions;
+  /**
+   * The precision in which coordinates are kept and compared: `"single"` (they are rounded to it)
+   * or `"double"`. `"single"` by default.
+   */
+  precision?: "single" | "double";
+  /** Whether pairs of the boxes as given are reported, or pairs of fat AABBs. `"exact"` by default. */
+  report?: "exact" | "fat";
+  /** By how much a fat AABB is larger than the body's box on each side, in units of length. 0 by default. */
+  margin?: number;
+  /** How many displacements a fat AABB reaches ahead of the body. 0 by default. */
+  prediction?: number;
+  /**
+   * Whether arrays of ids are views of WebAssembly's memory, which saves the time of a copy. A view is
+   * valid until the next call of anything in this package: that call may overwrite it, or let the memory
+   * grow, which leaves the view with length 0. False by default.
+   */
+  views?: boolean;
+}
+
+/** What an update found; see `BroadPhase.update`. */
+export interface Changes {
+  /**
+   * The pairs that overlap now and did not at the last update. Two ids a pair, one pair after
+   * another: `a0, b0, a1, b1, ...`. So the length is twice the number of pairs.
+   */
+  begun: Float64Array;
+  /** The pairs that overlapped at the last update and do not now, in the same form. Some ids may be stale. */
+  ended: Float64Array;
+}
+
+/** Arrays to write to; see `BroadPhase.buffers`. */
+export interface Buffers {
+  /** Where to write ids. */
+  ids: Float64Array;
+  /** Where to write as many boxes. */
+  boxes: Float32Array | Float64Array;
+}
+
+/** A body that a ray or a moving box hits. */
+export interface Hit {
+  /** The body. */
+  id: ProxyId;
+  /** Where the hit is: at `origin + t * direction`. 0 if they overlap at the start. */
+  t: number;
+}
+
+/** A body near a point. */
+export interface Neighbor {
+  /** The body. */
+  id: ProxyId;
+  /** The distance from the point to its box; 0 if the point is in it. */
+  distance: number;
+}
+
+/** Ids, or the coordinates of a point, a direction or a box. */
+export type Numbers = readonly number[] | TypedNumbers;
+
+/** A point or a direction: its coordinates, or an object `{ x, y, z }`. */
+export type Point = Numbers | Corner;
+
+/** Which bodies a query finds: those that may pair with a body of this filter, or those for which a function returns true. */
+export type QueryFilter = Partial<Filter> | ((id: ProxyId) => boolean);
+
+/** How ids are returned. */
+export interface SortOptions {
+  /** Whether they are sorted by slot; true by default. */
+  sorted?: boolean;
+}
+
+/** One box: its min corner and then its max corner, or an object. */
+export type Box = BoxObject;

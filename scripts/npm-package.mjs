@@ -1,0 +1,152 @@
+// What the builds of the npm packages share: compiled cores, modules, declarations, budgets.
+import { spawn } from "node:child_process";
+import { copyFileSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { homedir } from "node:os";
+import { basename, dirname, join, relative } from "node:path";
+import { fileURLToPath } from "node:url";
+import { deflateRawSync, gzipSync } from "node:zlib";
+import { build } from "esbuild";
+import { rolldown } from "rolldown";
+import { dts } from "rolldown-plugin-dts";
+import wabt from "wabt";
+
+export const root = dirname(dirname(fileURLToPath(import.meta.url)));
+const registry = join(process.env.CARGO_HOME ?? join(homedir(), ".cargo"), "registry");
+const target = process.env.CARGO_TARGET_DIR ?? join(root, "target");
+const tools = await wabt();
+
+/** Starts the build of a package's `dist/`; call what it returns at the end, which removes what an earlier build left. */
+export function begin(folder) {
+  const dist = join(folder, "dist");
+  const started = Date.now();
+  mkdirSync(dist, { recursive: true });
+  return () => {
+    for (const licence of ["LICENSE-MIT", "LICENSE-APACHE"]) copyFileSync(join(root, licence), join(dist, licence));
+    // Of a folder whose files are written over, the time does not change.
+    for (const name of readdirSync(dist, { recursive: true })) {
+      const path = join(dist, name);
+      const entry = statSync(path);
+      if (entry.isFile() && entry.mtimeMs < started - 1000) rmSync(path);
+    }
+  };
+}
+
+/**
+ * Compiles a crate to WebAssembly, into a target folder of its own, so that no build undoes another. `levels.all` is the
+ * optimization of `all` of it, and `levels.core` of what is compiled with the crate `sweep-and-prune` itself rather than with the
+ * one that uses it, which are above all the finder's innermost loops.
+ */
+export async function compile(crate, { features = [], directory, flags = [], levels }) {
+  const what = ["--package", crate, "--no-default-features", "--features", features.join()];
+  const profile = ["--profile", "wasm", "--target", "wasm32-unknown-unknown"];
+  // Paths of this machine do not belong in the package.
+  const all = [...flags, ...levels.flags, `--remap-path-prefix=${registry}=registry`].join("\x1f");
+  const inner = ["--config", `profile.wasm.package.sweep-and-prune.opt-level=${JSON.stringify(levels.core)}`];
+  await run(
+    "cargo",
+    ["build", "--quiet", ...inner, ...what, ...profile, "--target-dir", join(target, directory)],
+    { ...process.env, CARGO_ENCODED_RUSTFLAGS: all, CARGO_PROFILE_WASM_OPT_LEVEL: String(levels.all) },
+  );
+  return readFileSync(join(target, directory, `wasm32-unknown-unknown/wasm/${crate.replaceAll("-", "_")}.wasm`));
+}
+
+/** Writes a compiled core, if it is within its budget, has vector instructions exactly if `simd`, and names nothing of this machine. */
+export function writeCore(path, bytes, { budget, simd }) {
+  const file = basename(path);
+  // What lies there has passed; reading instructions takes ten seconds, which no second start should.
+  if (!existsSync(path) || !bytes.equals(readFileSync(path))) {
+    for (const folder of [root, registry]) if (bytes.includes(folder)) throw new Error(`${file} names a folder of this machine, ${folder}`);
+    const module = tools.readWasm(bytes, { readDebugNames: false });
+    const text = module.toText({ foldExprs: false, inlineExport: false });
+    module.destroy();
+    // Not any vector instruction, which copying has too: those that compare coordinates.
+    const vector = text.match(/^\s*(f32x4|f64x2)\.(le|ge|lt|gt)\b/gm)?.length ?? 0;
+    if (simd !== vector > 0) throw new Error(`${file} has ${vector} vector comparisons`);
+    console.log(`${file}: ${vector} vector comparisons`);
+  }
+  report(file, [bytes], budget);
+  writeFileSync(path, bytes);
+}
+
+/**
+ * Bundles the entries `{ name, source, budget }` of a package; a `source` that begins with `inline:` has its compiled cores inside.
+ * A budget is for an entry and all that it imports.
+ */
+export async function buildModules(folder, entries, plugins = []) {
+  const { metafile } = await build({
+    absWorkingDir: folder,
+    entryPoints: Object.fromEntries(entries.map(({ name, source }) => [name, source])),
+    outdir: "dist",
+    bundle: true,
+    splitting: true,
+    format: "esm",
+    platform: "neutral",
+    target: "es2022",
+    // Names stay, for stack traces that can be read.
+    minifySyntax: true,
+    minifyWhitespace: true,
+    plugins: [inlined(folder), ...plugins],
+    metafile: true,
+  });
+  for (const { name, budget = Infinity } of entries) {
+    const glue = [...withImports(metafile.outputs, `dist/${name}.js`)];
+    report(`${name}.js`, glue.map((path) => readFileSync(join(folder, path))), budget);
+  }
+}
+
+/** Makes the inline form of an entry: the same module, with each compiled core, deflated, in place of its address. */
+const inlined = (folder) => ({
+  name: "inlined",
+  setup({ onLoad, onResolve }) {
+    onResolve({ filter: /^inline:/ }, ({ path }) => ({ path: join(folder, path.slice("inline:".length)), namespace: "inline" }));
+    onLoad({ filter: /./, namespace: "inline" }, ({ path }) => {
+      const imported = `import { bytesOf } from ${JSON.stringify(join(root, "js/src/wasm/inlined.ts"))};\n`;
+      const source = readFileSync(path, "utf8");
+      const code = source.replace(/new URL\("(\.\/[^"]*\.wasm)", import\.meta\.url\)/g, (_, file) => {
+        const deflated = deflateRawSync(readFileSync(join(folder, "dist", file)), { level: 9 });
+        return `bytesOf("${deflated.toString("base64")}")`;
+      });
+      if (code === source) throw new Error(`${path} names no compiled core as new URL("./NAME.wasm", import.meta.url)`);
+      return { contents: imported + code, loader: "ts", resolveDir: dirname(path) };
+    });
+  },
+});
+
+/** An output and all that it imports. */
+function withImports(outputs, path, found = new Set()) {
+  found.add(path);
+  for (const { external, path: imported } of outputs[path].imports) {
+    if (!external && !found.has(imported)) withImports(outputs, imported, found);
+  }
+  return found;
+}
+
+/** Writes the declarations of the entries `{ name, source }`: of their public API alone. */
+export async function buildDeclarations(folder, entries) {
+  const typescript = join(createRequire(join(folder, "package.json")).resolve("typescript/package.json"), "..");
+  const all = join(target, "declarations", relative(root, folder));
+  await run(process.execPath, [join(typescript, "bin/tsc"), "--project", folder, "--outDir", all, "--rootDir", root, "--stripInternal"], process.env);
+  const emitted = ({ source }) => join(all, relative(root, join(folder, source))).replace(/\.ts$/, ".d.ts");
+  const bundle = await rolldown({
+    input: Object.fromEntries(entries.map((entry) => [entry.name, emitted(entry)])),
+    plugins: [dts({ dtsInput: true, tsconfig: false })],
+    experimental: { attachDebugInfo: "none" }, // no comments with paths
+  });
+  await bundle.write({ dir: join(folder, "dist"), format: "es", chunkFileNames: "shared-[name].d.ts", banner: '/// <reference lib="esnext.disposable" preserve="true" />' });
+}
+
+/** Runs a command that says itself what is wrong; then the build ends. */
+async function run(command, args, env) {
+  const child = spawn(command, args, { cwd: root, stdio: "inherit", env });
+  child.on("error", ({ message }) => console.error(`cannot start ${command}: ${message}`));
+  const [status] = await new Promise((resolve) => child.on("close", (...ended) => resolve(ended)));
+  if (status !== 0) process.exit(status > 0 ? status : 1);
+}
+
+function report(name, parts, budget) {
+  const size = parts.reduce((sum, bytes) => sum + bytes.length, 0);
+  const zipped = parts.reduce((sum, bytes) => sum + gzipSync(bytes, { level: 9 }).length, 0);
+  console.log(`${name}: ${size} bytes, ${zipped} after gzip`);
+  if (zipped > budget) throw new Error(`${name} is over its budget of ${budget} bytes after gzip`);
+}
