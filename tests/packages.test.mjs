@@ -57,14 +57,14 @@ describe("Rust: the packed crate", { skip }, () => {
   });
 });
 
-describe("JavaScript: the packed package", { skip }, () => {
+describe("JavaScript: the packed packages", { skip }, () => {
   test("prints in an empty project what each example says", () => {
     const path = project("js");
     writeFileSync(join(path, "package.json"), '{ "private": true, "type": "module" }');
-    // js/dist is built already: `npm pack` would build it again.
-    const packed = run(join(root, "js"), "npm", "pack", "--ignore-scripts", "--silent", "--pack-destination", path).trim();
-    run(path, "npm", "install", "--silent", "--no-audit", "--no-fund", `./${packed}`);
-    const codes = ["README.md", "js/README.md"].flatMap((readme) => examples(readme, "js"));
+    // They are built already: `npm pack` would build them again.
+    const pack = (folder) => run(join(root, folder), "npm", "pack", "--ignore-scripts", "--silent", "--pack-destination", path).trim();
+    run(path, "npm", "install", "--silent", "--no-audit", "--no-fund", ...["js", "classroom/demo"].map((folder) => `./${pack(folder)}`));
+    const codes = ["README.md", "js/README.md", "classroom/demo/README.md"].flatMap((readme) => examples(readme, "js"));
     assert.ok(codes.length >= 6, `${codes.length} examples`);
     for (const [at, code] of codes.entries()) {
       const expected = [...code.matchAll(/console\.log\(.*\);\s*\/\/ (.*)/g)].flatMap(([, said]) => said.split(" | "));

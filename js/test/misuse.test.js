@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { before, test } from "node:test";
 import { anyPair, countPairs, findPairs, findPairsBetween, forEachPair, init, PairFinder } from "sweep-and-prune";
 import { BroadPhase, init as initWorlds, slotOf } from "sweep-and-prune/broad-phase";
-import { misuse } from "./support/misuse.js";
+import { checkError, misuse, odd } from "./support/misuse.js";
 
 before(() => Promise.all([init(), initWorlds()]));
 

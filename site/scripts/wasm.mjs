@@ -2,9 +2,10 @@
 // instructions, into src/generated/. Quick when nothing has changed.
 
 import { spawnSync } from "node:child_process";
-import { copyFileSync, mkdirSync } from "node:fs";
+import { copyFileSync, mkdirSync, writeFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
+import { compile } from "../../scripts/npm-package.mjs";
 
 const root = resolve(dirname(fileURLToPath(import.meta.url)), "../..");
 const target = resolve(root, process.env.CARGO_TARGET_DIR ?? "target");
@@ -38,3 +39,11 @@ for (const { suffix, folder, flags } of builds) {
     copyFileSync(built, join(output, crate.name + suffix));
   }
 }
+
+// The algorithms of the classroom with the broken variants, which only the site shows.
+const algorithms = await compile("sweep-and-prune-wasm", {
+  features: ["broken"],
+  directory: "wasm-scalar/broken",
+  levels: { all: "s", core: "s", flags: [] },
+});
+writeFileSync(join(output, "algorithms.wasm"), algorithms);

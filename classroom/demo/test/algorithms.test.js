@@ -1,7 +1,7 @@
 // Every algorithm by name equals brute force; its trace plays forward and back.
 import assert from "node:assert/strict";
 import { before, test } from "node:test";
-import { axes, events, init, InvalidBoxError, methods, Player, Runner, sorts, wrongMethods } from "sweep-and-prune-classroom";
+import { axes, events, init, InvalidBoxError, methods, Player, Runner, sorts } from "sweep-and-prune-classroom";
 import { boxesAmong, oracle, random, sorted } from "../../../js/test/support/boxes.js";
 
 before(() => init());
@@ -121,23 +121,5 @@ test("a copy goes on as its runner does, and a trimmed trace plays one step by i
       runner = copy; // goes on from the copy
     }
     assert.throws(() => new Runner(whole).step([NaN, 0, 0, 0]), InvalidBoxError);
-  }
-});
-
-test("the wrong methods are wrong, as their names say, and play like the others", () => {
-  const worlds = {
-    "strict ties (wrong)": [0, 0, 1, 1, 1, 0, 2, 1],
-    "sorted start (wrong)": [0, 0, 2, 1, 1, 0, 3, 1],
-    "sort by center (wrong)": [-1, 0, 1, 1, 2, 0, 4, 1, 0, 0, 8, 1],
-  };
-  for (const method of wrongMethods) {
-    const runner = new Runner({ dimensions: 2, method, axis: 0, persistent: true, traceWords: 1 << 16 });
-    const found = [0, 1].map(() => runner.step(worlds[method]));
-    const expected = oracle(worlds[method], 2);
-    assert.ok(found.some(({ pairs }) => pairs.length / 2 !== expected.length), method);
-    const player = new Player(runner);
-    player.seek(2 ** 32);
-    assert.deepEqual(player.state().overlaps, sorted(found[1]?.pairs ?? new Uint32Array()).flat());
-    assert.deepEqual(player.state().held, player.state().overlaps);
   }
 });

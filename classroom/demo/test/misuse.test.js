@@ -31,7 +31,7 @@ test("dimensions cannot be changed from outside, and methods need their object",
   const runner = /** @type {any} */ (new Runner({ ...options, method: "endpoint sweep" }));
   assert.throws(() => (runner.dimensions = 3), TypeError);
   assert.equal(runner.dimensions, 2);
-  for (const Type of [Runner, Player]) {
+  for (const Type of [Runner]) {
     for (const [name, { value, get }] of Object.entries(Object.getOwnPropertyDescriptors(Type.prototype))) {
       const method = name === "constructor" ? undefined : (value ?? get);
       for (const other of [undefined, {}, 1, Object.create(Type.prototype)]) if (method) assert.throws(() => method.call(other, rows), (error) => error instanceof TypeError || error instanceof RangeError, `${Type.name}.${name}`);

@@ -181,7 +181,7 @@ extern "C" fn runner_choose(handle: &mut Handle, part: u32, index: u32) -> bool 
 fn choose(handle: &mut Handle, part: u32, index: u32) -> bool {
     let Ok(name) = core::str::from_utf8(&handle.text) else { return false };
     match part {
-        0 if Wrong::from_name(name).is_some() => {
+        0 if cfg!(feature = "broken") && Wrong::from_name(name).is_some() => {
             handle.wrong = Wrong::from_name(name);
             handle.wrong.map(|_| ())
         }
@@ -252,7 +252,7 @@ fn step(handle: &mut Handle, count: usize) -> Code {
     }
 }
 
-/// `js/src/runner.ts` reads them in this order.
+/// `classroom/demo/src/algorithms/runner.ts` reads them in this order.
 fn numbers_of(axis: usize, bytes: usize, counts: &Counts) -> [f64; 12] {
     let counts = [
         counts.comparisons,
@@ -364,7 +364,7 @@ extern "C" fn player_seek(playing: &mut Playing, position: usize) -> usize {
 /// Details: where the state is, and how many numbers. These are the axis, the axis of the current
 /// array, the position and edge of the line or -1, the ten counts; and then lists, each with its
 /// length in front: active boxes, overlaps, held pairs, axis overlaps (axis, a, b), and of each
-/// axis the endpoints (edge, at). `js/src/player.ts` reads them.
+/// axis the endpoints (edge, at). `classroom/demo/src/algorithms/player.ts` reads them.
 #[unsafe(no_mangle)]
 extern "C" fn player_state(playing: &mut Playing) -> Code {
     run(playing, stack::LARGE, write_state)

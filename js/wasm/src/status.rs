@@ -4,7 +4,7 @@ use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use sweep_and_prune::{Error, SnapshotFault};
 
-/// What a call returns; `js/src/engine.ts` has the same list.
+/// What a call returns; `js/src/wasm/engine.ts` has the same list.
 #[repr(u32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Code {
@@ -20,7 +20,7 @@ pub enum Code {
     StaleProxy = 4,
     /// Details: the position of the query or number.
     InvalidArgument = 5,
-    /// Details: what is wrong, as `SnapshotError` in `js/src/errors.ts` lists it, and the version
+    /// Details: what is wrong, as `js/src/world/snapshot-error.ts` lists it, and the version
     /// found.
     InvalidSnapshot = 6,
 }
