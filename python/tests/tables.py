@@ -21,6 +21,7 @@ Value = Any
 NANOSECONDS = {"ns": 1, "us": 10**3, "ms": 10**6, "s": 10**9, "D": 86_400 * 10**9}
 MIN, MAX = -(2**63) + 1, 2**63 - 1
 ZONE = dt.timezone(dt.timedelta(hours=2))
+HAS_SHAPES = all(map(find_spec, ("geopandas", "pandas", "shapely")))
 LIBRARIES = ["numpy", "lists", *(name for name in ("pandas", "polars", "pyarrow") if find_spec(name))]
 
 
@@ -269,6 +270,9 @@ def times_of(library: str, is_zoned: bool) -> list[Kind]:
                     make,
                 )
             )
+            if find_spec("pyarrow") and unit == "ms" and not is_zoned:
+                dates = lambda v: pandas.Series(pandas.arrays.ArrowExtensionArray(date64(v)))  # noqa: E731
+                found.append(Kind("date64[pyarrow]", day_of_milliseconds, dates))
             if find_spec("pyarrow"):
                 name = f"timestamp[{unit}{', tz=UTC' if is_zoned else ''}][pyarrow]"
                 found.append(
@@ -311,7 +315,19 @@ def times_of(library: str, is_zoned: bool) -> list[Kind]:
                 lambda v: pyarrow.array(counts(v, "D"), pyarrow.int32()).cast(pyarrow.date32()),
             )
         )
+        found.append(Kind("date64", day_of_milliseconds, date64))
     return found
+
+
+def day_of_milliseconds(value: Value) -> Value:
+    held = ticks("D")(value)
+    return held if held is not None and ticks("ms")(held) is not None else None
+
+
+def date64(values: list[Value]) -> Any:
+    import pyarrow
+
+    return pyarrow.array(counts(values, "ms"), pyarrow.int64()).cast(pyarrow.date64())
 
 
 def arrow_times(values: list[Value], unit: str, is_zoned: bool) -> Any:
@@ -471,6 +487,17 @@ def a_column(random: Random, library: str, what: str, wanted: list[Value], singl
         return None
     kind, held = random.choice(fitting)
     return Column(kind, held, kind.make(held))
+
+
+def a_table_of_shapes(boxes: dict[str, Column], columns: dict[str, Any]) -> Any:
+    """The boxes as rectangles of a `GeoDataFrame`, without one where a number is missing, and other columns."""
+    import geopandas
+    import pandas
+    import shapely
+
+    rows = list(zip(*(column.values for column in boxes.values())))
+    shapes = [None if None in row else shapely.box(*map(float, row)) for row in rows]
+    return geopandas.GeoDataFrame(pandas.DataFrame(columns, index=range(len(rows))), geometry=shapes)
 
 
 def a_table(library: str, columns: dict[str, Column]) -> Any:

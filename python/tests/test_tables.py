@@ -14,14 +14,30 @@ from random import Random
 from typing import Any
 
 import numpy as np
-from tables import LIBRARIES, NANOSECONDS, Column, a_column, a_table, some_center, some_value, ticks
+from tables import (
+    HAS_SHAPES,
+    LIBRARIES,
+    NANOSECONDS,
+    Column,
+    Kind,
+    a_column,
+    a_table,
+    a_table_of_shapes,
+    some_center,
+    some_value,
+    ticks,
+)
 
 import sweep_and_prune as sap
 from sweep_and_prune._command import main
 
 TABLES = int(os.environ.get("TABLES", 20_000 if "TEST_LONG" in os.environ else 400))
 SEED = int(os.environ.get("SEED", 1))
-NAMES = {1: ["start", "end"], 2: ["minx", "miny", "maxx", "maxy"]}
+NAMES = {
+    1: ["start", "end"],
+    2: ["minx", "miny", "maxx", "maxy"],
+    3: ["minx", "miny", "minz", "maxx", "maxy", "maxz"],
+}
 WORDS = ["a", "a\0", "b", "1", "1.0", "nan", ""]
 POOLS: dict[str, list[Any]] = {
     "text": WORDS,
@@ -43,17 +59,24 @@ class Table:
         if (single and self.library == "lists") or groups == ["mixed"]:
             self.library = "numpy" if single else "lists"
         self.what = what
+        self.has_shapes = dimensions == 2 and what == "numbers" and self.library == "pandas" and not single
+        self.has_shapes = self.has_shapes and HAS_SHAPES and random.random() < 0.4
         count = random.choice([0, 1, 2, 4, 7])
         self.boxes: dict[str, Column] = {}
         names, half = NAMES[dimensions], dimensions
         for axis in range(half):
             ends = [[some_value(random, what, center) for _ in "lh"] for _ in range(count)]
-            if random.random() < 0.95:
+            if random.random() < 0.95 or self.has_shapes:
                 ends = [sorted(pair) for pair in ends]
-            if what == "numbers" and random.random() < 0.1:
+            if what == "numbers" and random.random() < 0.1 and not self.has_shapes:
                 ends = [random.choice([pair, [-math.inf] * 2, [math.inf] * 2]) for pair in ends]
             for end in (0, 1):
                 wanted = [None if random.random() < 0.05 else pair[end] for pair in ends]
+                if self.has_shapes:  # whose coordinates are double precision, and finite
+                    held = [one if one is None or abs(one) < math.inf else Fraction(0) for one in wanted]
+                    held = [None if one is None else Fraction(float(one)) for one in held]
+                    self.boxes[names[axis + end * half]] = Column(OF_SHAPES, held, None)
+                    continue
                 while (column := a_column(random, self.library, what, wanted, single)) is None:
                     wanted = [some_value(random, what, 0) for _ in wanted]
                 self.boxes[names[axis + end * half]] = column
@@ -72,7 +95,26 @@ class Table:
                 pool = near(sort, 0) if sort not in POOLS else pool
             self.groups[f"group{number}"] = column
         self.count = count
-        self.given = a_table(self.library, {**self.boxes, **self.groups})
+        if self.has_shapes:
+            self._sort_corners()
+            self.given = a_table_of_shapes(self.boxes, {name: one.given for name, one in self.groups.items()})
+        else:
+            self.given = a_table(self.library, {**self.boxes, **self.groups})
+
+    def _sort_corners(self) -> None:
+        """A rectangle has no inverted sides. (A number that was infinite became 0.)"""
+        for low, high in (("minx", "maxx"), ("miny", "maxy")):
+            for row, pair in enumerate(zip(self.boxes[low].values, self.boxes[high].values)):
+                if None not in pair:
+                    self.boxes[low].values[row], self.boxes[high].values[row] = sorted(pair)
+
+    def with_rows(self) -> Any:
+        """The table with a column of the numbers of rows."""
+        if self.library == "polars":
+            return self.given.with_row_index("row")
+        given = self.given.copy()
+        given["row"] = range(self.count)
+        return given
 
     def box(self, row: int) -> list[Any]:
         return [column.values[row] for column in self.boxes.values()]
@@ -92,6 +134,9 @@ class Table:
             for one in self.boxes.values()
             for value in one.values
         )
+
+
+OF_SHAPES = Kind("shapes", None, None, True, False, True)
 
 
 def near(sort: str, base: Any) -> list[Any]:
@@ -169,7 +214,7 @@ def wanted_of(a: Table, b: Table, closed: str, margin: Any, is_single: bool, rou
 def table_call(random: Random) -> None:
     """One call with tables."""
     what = random.choice(["numbers", "numbers", "numbers", "times", "zoned", "durations"])
-    dimensions = random.choice([1, 1, 2])
+    dimensions = random.choice([1, 1, 2, 2, 3])
     groups = random.choice(
         [[], [], ["numbers"], ["text"], ["times"], ["zoned"], ["truth"], ["numbers", "text"], ["numbers", "numbers"]]
     )
@@ -215,10 +260,26 @@ def table_call(random: Random) -> None:
     found = {(i, j) for i, j in pairs.tolist()}
     assert len(found) == len(pairs) and found in allowed, f"{sorted(found)}{said}"
     joinable = a.library == b.library and a.library in ("pandas", "polars") and not is_single
+    joinable = joinable and a.has_shapes == b.has_shapes
     if joinable and allowed[0] is not sap.InvalidBoxError:
         distance = None if margin == 0 else margin
-        joined = sap.join(a.given, b.given, by=options.get("by"), closed=closed, distance=distance)
-        assert len(joined) == len(found), f"join: {len(joined)} rows, not {sorted(found)}{said}"
+        of_boxes: dict[str, Any] = {"closed": closed, "distance": distance}
+        if a.has_shapes:  # shapely's distance is not that of boxes
+            of_boxes = {}
+            if closed != "both" or margin != 0:
+                return
+        how = random.choice(["inner", "inner", "left", "right"])
+        joined = sap.join(a.with_rows(), b.with_rows(), how, by=options.get("by"), **of_boxes)
+        columns_of_rows = [joined[name] for name in ("row_left", "row_right")]
+        rows = [[None if one != one else one for one in column.to_list()] for column in columns_of_rows]
+        wanted = list(found)
+        if how == "left":
+            wanted += [(i, None) for i in range(a.count) if i not in {left for left, _ in found}]
+        elif how == "right":
+            wanted += [(None, j) for j in range(b.count) if j not in {right for _, right in found}]
+        kept = how == "right"
+        in_order = sorted(wanted, key=lambda pair: (pair[kept], -1 if pair[not kept] is None else pair[not kept]))
+        assert list(zip(*rows)) == in_order, f"join {how}: {list(zip(*rows))}, not {in_order}{said}"
 
 
 def text_call(random: Random, path: Path) -> None:
