@@ -327,9 +327,7 @@ def test_files_of_different_coordinate_reference_systems_are_refused(capsys: pyt
     with pytest.raises(ValueError, match="different coordinate reference systems, EPSG:4326 and EPSG:25832"):
         dask.count_pairs_between("a.parquet", "e.parquet", workers=0, progress=False)
     assert dask.count_pairs_between("a.parquet", "b.parquet", workers=0, progress=False) == 2
-    with pytest.raises(
-        dask.DatasetError, match=r"a\.parquet and d\.parquet have different coordinate"
-    ):
+    with pytest.raises(dask.DatasetError, match=r"a\.parquet and d\.parquet have different coordinate"):
         dask.count_pairs_between(["a.parquet", "d.parquet"], "a.parquet", workers=0, progress=False)
 
 

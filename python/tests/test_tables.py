@@ -51,16 +51,28 @@ class Table:
     """A table of a library, and what it holds."""
 
     def __init__(
-        self, random: Random, what: str, center: Any, dimensions: int, groups: list[str], single: bool
+        self,
+        random: Random,
+        what: str,
+        center: Any,
+        dimensions: int,
+        groups: list[str],
+        single: bool,
+        like: Table | None = None,
     ) -> None:
+        """Half of the tables are of the library of the first one, so that the two can be joined."""
         # NumPy has no times with a zone.
         of_zones = [name for name in LIBRARIES if name != "numpy"]
         self.library = random.choice(of_zones if "zoned" in (what, *groups) else LIBRARIES)
+        if like is not None and random.random() < 0.5:
+            self.library = like.library
         if (single and self.library == "lists") or groups == ["mixed"]:
             self.library = "numpy" if single else "lists"
         self.what = what
         self.has_shapes = dimensions == 2 and what == "numbers" and self.library == "pandas" and not single
-        self.has_shapes = self.has_shapes and HAS_SHAPES and random.random() < 0.4
+        self.has_shapes = (
+            self.has_shapes and HAS_SHAPES and random.random() < (0.8 if like and like.has_shapes else 0.5)
+        )
         count = random.choice([0, 1, 2, 4, 7])
         self.boxes: dict[str, Column] = {}
         names, half = NAMES[dimensions], dimensions
@@ -224,7 +236,7 @@ def table_call(random: Random) -> None:
     if is_single and not single and random.random() < 0.1:
         groups = ["mixed"]
     a = Table(random, what, center, dimensions, groups, single)
-    b = a if is_single else Table(random, what, center, dimensions, groups, single)
+    b = a if is_single else Table(random, what, center, dimensions, groups, single, a)
     exact = what != "numbers" or (a.is_exact and b.is_exact)
     margin, amount = a_margin(random, what, exact)
     closed = random.choice(["both", "both", "left", "right", "neither"])
@@ -266,8 +278,7 @@ def table_call(random: Random) -> None:
         of_boxes: dict[str, Any] = {"closed": closed, "distance": distance}
         if a.has_shapes:  # shapely's distance is not that of boxes
             of_boxes = {}
-            if closed != "both" or margin != 0:
-                return
+            found = {(i, j) for i, j in wanted_of(a, b, "both", 0, False, exact_sum)}
         how = random.choice(["inner", "inner", "left", "right"])
         joined = sap.join(a.with_rows(), b.with_rows(), how, by=options.get("by"), **of_boxes)
         columns_of_rows = [joined[name] for name in ("row_left", "row_right")]

@@ -78,6 +78,13 @@ def _read(values: Any, name: str) -> Column:
         return _of_polars(values)
     if library == "pandas" and not isinstance(values.dtype, np.dtype):
         return _of_pandas(getattr(values, "array", values), name)
+    if library == "duckdb" and hasattr(values, "columns"):
+        import pyarrow
+
+        values = pyarrow.table(values)
+        if len(values.columns) != 1:
+            raise ValueError(f"{name} must have one column, not {len(values.columns)}")
+        return _of_arrow(arrow_array(values[0]))
     if library == "pyarrow" or not hasattr(values, "__array__"):
         array = arrow_array(values)
         if array is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -39,6 +40,15 @@ def checked_format(format: object) -> str:
     return format
 
 
+def with_rows(values: Any) -> Any:
+    """A relation of DuckDB as a table, since each look at it runs its query; anything else as it is."""
+    if type(values).__module__.split(".")[0] != "duckdb" or not hasattr(values, "__arrow_c_stream__"):
+        return values
+    import pyarrow
+
+    return pyarrow.table(values)
+
+
 class Raw(NamedTuple):
     """Boxes in the type in which the user has them."""
 
@@ -54,6 +64,7 @@ def raw_boxes(values: Any, name: str, format: str = "xyxy") -> Raw:
         return Raw(values)  # the common case, without further questions
     if isinstance(values, Raw):  # columns of a file, which have been read already
         return _corners(values, format, name)
+    values = with_rows(values)
     ends = intervals(values)
     if ends is not None:
         columns = [read_column(side, name) for side in (ends.left, ends.right)]
@@ -72,6 +83,8 @@ def raw_boxes(values: Any, name: str, format: str = "xyxy") -> Raw:
     if nested is not None:
         return _corners(nested, format, name)
     array = as_array(values, name)
+    if array.dtype.kind in "OS" and array.ndim == 1 and array.size and isinstance(array[0], bytes):
+        raise TypeError(f"{name} is bytes, not numbers: for well-known binary (WKB), pass shapely.from_wkb({name})")
     if isinstance(values, (list, tuple)):
         exact = exact_numbers(values, array)
         is_exact, array = exact is not array, exact
@@ -167,6 +180,7 @@ def _from_arrow(values: Any, name: str, format: str) -> Raw | None:
     if not pyarrow.types.is_fixed_size_list(array.type):
         return None
     width = array.type.list_size
+    are_points = array.type.value_field.name in ("xy", "xyz", "xym", "xyzm")  # those of GeoArrow
     flat = array.values.slice(array.offset * width, len(array) * width)
     if array.null_count:  # the items of a list that is null are not null themselves
         import pyarrow.compute
@@ -179,7 +193,9 @@ def _from_arrow(values: Any, name: str, format: str) -> Raw | None:
         Column(column.values[axis::width], None if column.missing is None else column.missing[axis::width])
         for axis in range(width)
     ]
-    names = [f"{axis} of {name}" for axis in range(width)]
+    if are_points:
+        parts = [*parts[:2], *parts[:2]]
+    names = [f"{axis} of {name}" for axis in range(len(parts))]
     return Raw(*side_by_side([part._replace(is_zoned=column.is_zoned) for part in parts], names, name))
 
 
@@ -224,21 +240,63 @@ def _from_columns(values: Any, columns: list[str], name: str, format: str) -> Ra
         values = values.bounds
         if isinstance(values, np.ndarray):  # those of an array of geometries
             return Raw(values)
-    names = box_columns(columns, format)
+    names = box_columns(columns, format) or _geometry_column(values)
     if len(names) > 1:
         raw = Raw(*side_by_side([read_column(values[column], f"column {column}") for column in names], names, name))
         if format == "xyxy" and len(names) == 4 and names[1].lower() == "top":  # the y axis may point up or down
             raw.array[:, [1, 3]] = np.sort(raw.array[:, [1, 3]], axis=1)
         return raw
     if names:
+        if _geometry_column(values) == names:
+            return Raw(_bounds_of_geoarrow(values, names[0]))
         nested = _from_arrow(values[names[0]], name, format)
         if nested is not None:
             return nested
     wanted = {"xyxy": "minx, miny, maxx, maxy", "xywh": "x, y, w, h", "cxcywh": "cx, cy, w, h"}[format]
     raise ValueError(
         f"{name} has no columns that are known as boxes, such as {wanted}: {listed(columns)}; "
-        + unknown_columns(columns, "rename them, or pass an array")
+        + unknown_columns(columns, _other_way(values))
     )
+
+
+def _schema(values: Any) -> Any:
+    """The schema of a table or a batch of pyarrow; None for anything else."""
+    return getattr(values, "schema", None) if type(values).__module__.split(".")[0] == "pyarrow" else None
+
+
+def _geometry_column(values: Any) -> list[str]:
+    """The first column of geometries of GeoArrow, if there is one."""
+    for field in _schema(values) or []:
+        extension = (field.metadata or {}).get(b"ARROW:extension:name", b"").decode()
+        if (extension or getattr(field.type, "extension_name", "")).startswith("geoarrow."):
+            return [field.name]
+    return []
+
+
+def crs_of(values: Any) -> Any:
+    """The coordinate reference system of geometries; None if there are none or it is not known."""
+    if hasattr(type(values), "total_bounds"):
+        return values.crs
+    for column in _geometry_column(values):
+        metadata = _schema(values).field(column).metadata or {}
+        return json.loads(metadata.get(b"ARROW:extension:metadata") or b"{}").get("crs")
+    return None
+
+
+def _bounds_of_geoarrow(table: Any, column: str) -> NDArray[Any]:
+    try:
+        import geopandas
+    except ImportError:
+        raise TypeError(f"column {column} has geometries of GeoArrow, which geopandas reads: install it") from None
+    return np.asarray(geopandas.GeoDataFrame.from_arrow(table.select([column])).geometry.bounds)
+
+
+def _other_way(values: Any) -> str:
+    """What to do about columns that are not known in any format."""
+    for field in _schema(values) or []:
+        if str(field.type) in ("binary", "large_binary", "binary_view"):
+            return f"if column {field.name} is well-known binary (WKB), pass shapely.from_wkb(table[{field.name!r}])"
+    return "rename them, or pass an array"
 
 
 def _from_geometries(array: NDArray[Any]) -> NDArray[Any]:

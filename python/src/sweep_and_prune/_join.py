@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import thread_count
 from ._columns import group_codes
+from ._crs import difference
 from ._inputs import named_column
 from ._native import in_order
 from ._pairs import Progress, find_pairs_between
@@ -107,6 +108,11 @@ def join(
     has_geometries = [_has_geometries(frame) for frame in (left, right)]
     is_pandas = all(hasattr(frame, "iloc") and getattr(frame, "ndim", 0) == 2 for frame in (left, right))
     if not (is_polars or is_pandas) or has_geometries[0] != has_geometries[1]:
+        for name, frame in (("left", left), ("right", right)):
+            way = "collect" if hasattr(frame, "collect") else "df" if hasattr(frame, "df") else ""
+            if way:
+                kind = type(frame).__name__
+                raise TypeError(f"{name} is a {kind}, which has no rows yet: pass what its {way}() returns")
         kinds = " and ".join(type(frame).__name__ for frame in (left, right))
         raise TypeError(f"left and right must be two DataFrames of pandas or polars or two GeoDataFrames, not {kinds}")
     if how not in ("inner", "left", "right"):
@@ -120,10 +126,11 @@ def join(
     groups = _groups(left, right, columns)
     if has_geometries[0]:
         _check_distance(predicate, distance)
-        if left.crs is not None and right.crs is not None and left.crs != right.crs:
+        apart = difference(left.crs, right.crs)
+        if apart is not None:
             raise ValueError(
-                f"left and right have different coordinate reference systems, {left.crs.to_string()} and "
-                f"{right.crs.to_string()}: pass right.to_crs(left.crs)"
+                f"left and right have different coordinate reference systems, {apart[0]} and {apart[1]}: "
+                "pass right.to_crs(left.crs)"
             )
         if closed is not None or format != "xyxy":
             raise ValueError("closed and format are for boxes; geometries have neither")
@@ -194,6 +201,10 @@ def _of_geometries(
             distances = np.broadcast_to(np.asarray(distance, np.float64), len(left))
         except ValueError:
             raise ValueError(f"distance must be a number or {len(left)} of them, one for each left row") from None
+        wrong = np.flatnonzero(~(distances >= 0))
+        if len(wrong):
+            place = "distance" if np.ndim(distance) == 0 else f"distance[{wrong[0]}]"
+            raise ValueError(f"{place} is {distances[wrong[0]]}; it must be 0 or more")
         bounds[0] = _extended(bounds[0], distances)
     pairs = find_pairs_between(*bounds, threads=threads, missing="skip", by=groups, progress=progress)
     first, second = pairs[:, 0], pairs[:, 1]
@@ -379,8 +390,12 @@ def _frame(
     kept, other = (1, 0) if how == "right" else (0, 1)
     if how != "inner":
         rows = _with_missing(rows, kept, len((left, right)[kept]))
-    frames = [left, right.drop(columns=columns) if columns else right]
+    frames = [left, right]
     geometry = frames[kept].geometry.name if _has_geometries(frames[kept]) else None
+    # The keys of a row that nothing matches are there, too. (In geopandas they are always those of the left frame.)
+    of_keys = 0 if geometry is not None else kept
+    if columns:
+        frames[1 - of_keys] = frames[1 - of_keys].drop(columns=columns)
     if geometry is not None:
         frames[other] = pandas.DataFrame(frames[other]).drop(columns=frames[other].geometry.name)
     # The index of the other frame becomes columns. That of this one has names, too, which must differ from columns.
@@ -428,10 +443,11 @@ def _frame_of_polars(
     import polars
 
     rows = list(found)
+    kept = 1 if how == "right" else 0
     if how != "inner":
-        kept = 1 if how == "right" else 0
         rows = _with_missing(rows, kept, len((left, right)[kept]))
-    frames = [left, right.drop(columns)]
+    frames = [left, right]
+    frames[1 - kept] = frames[1 - kept].drop(columns)
     common = set(frames[0].columns) & set(frames[1].columns)
     if common and not any(suffixes):
         raise ValueError(f"lsuffix and rsuffix are empty, but both frames have columns {sorted(common)}")

@@ -23,8 +23,9 @@ from ._columns import (
     one_type,
     read_column,
 )
+from ._crs import difference
 from ._errors import InvalidBoxError
-from ._inputs import Raw, checked_format, has_columns, named_column
+from ._inputs import Raw, checked_format, crs_of, has_columns, named_column, with_rows
 
 _BLOCK = 2**18
 """So many pairs are translated at once: a second array of all of them would take as much memory as the result."""
@@ -84,6 +85,7 @@ def prepare(
             if rows[0].dtype != rows[1].dtype:
                 rows = [array.astype(np.float64, copy=False) for array in rows]
         return Prepared(rows, [None for _ in rows], None)
+    sets = {name: with_rows(boxes) for name, boxes in sets.items()}
     is_closed = checked_closed(closed, *sets.values())
     names = list(sets)
     raw = [read_boxes(values, name, 0, format) for name, values in sets.items()]
@@ -209,16 +211,11 @@ def _kind(raw: Raw) -> str:
 
 def _refuse_other_coordinates(a: Any, b: Any) -> None:
     """Refuses geometries of which each set has a coordinate reference system of its own."""
-    systems = [_crs(values) for values in (a, b)]
-    if None not in systems and systems[0] != systems[1]:
-        first, second = (system.to_string() for system in systems)
+    apart = difference(crs_of(a), crs_of(b))
+    if apart is not None:
         raise ValueError(
-            f"a and b have different coordinate reference systems, {first} and {second}: pass b.to_crs(a.crs)"
+            f"a and b have different coordinate reference systems, {apart[0]} and {apart[1]}: pass b.to_crs(a.crs)"
         )
-
-
-def _crs(values: Any) -> Any:
-    return getattr(values, "crs", None) if hasattr(type(values), "total_bounds") else None
 
 
 def _comparable(arrays: list[NDArray[Any]], names: list[str]) -> list[NDArray[Any]]:
