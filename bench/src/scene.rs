@@ -144,7 +144,7 @@ pub fn estimated_pairs<const D: usize>(name: &str, n: usize) -> Result<f64> {
 pub fn oracle<const D: usize>(name: &str, n: usize) -> Result<Fingerprint> {
     let mut sum = Fingerprint::default();
     Boxes::<D>::new(name, n)?.frames(|boxes| {
-        sum = sum + Fingerprint::of(&sweep_and_prune::algorithms::pairwise(boxes)?);
+        sum = sum + Fingerprint::of(&sweep_and_prune_scenes::brute_force(boxes)?);
         Ok(())
     })?;
     Ok(sum)

@@ -43,13 +43,6 @@ pub enum Error {
     OutOfMemory,
     /// The progress callback ended the search: see [`Search::progress`](crate::Search::progress).
     Cancelled,
-    /// The boxes do not have this axis.
-    InvalidAxis {
-        /// The axis that was passed.
-        axis: usize,
-        /// How many axes the boxes have.
-        dimensions: usize,
-    },
     /// An id that names no body here: its body was removed, or it never had one. (An id of another
     /// world is refused only if no body here has the same slot and generation.)
     StaleProxy {
@@ -173,11 +166,6 @@ impl fmt::Display for Error {
                  pass fewer boxes",
             ),
             Error::Cancelled => f.write_str("cancelled: the progress callback ended the search"),
-            Error::InvalidAxis { axis, dimensions } => write!(
-                f,
-                "axis {axis} does not exist: the boxes have {dimensions} dimensions, and the axis \
-                 must be less"
-            ),
             Error::StaleProxy { index, id } => write!(
                 f,
                 "the id at index {index} ({id}) is stale: its body was removed, or it never had one \

@@ -6,7 +6,6 @@ extern crate alloc;
 #[cfg(feature = "std")]
 extern crate std;
 
-pub mod algorithms;
 mod error;
 mod geometry;
 mod memory;

@@ -10,12 +10,11 @@ use std::ops::ControlFlow;
 use std::process::Command;
 use std::sync::atomic::{AtomicIsize, Ordering};
 
-use sweep_and_prune::algorithms::pairwise;
 use sweep_and_prune::{
     Aabb, BroadPhase, Error, Filter, PairFinder, ProxyId, count_pairs, find_pairs,
     find_pairs_between,
 };
-use sweep_and_prune_scenes::{Random, Scene};
+use sweep_and_prune_scenes::{Random, Scene, brute_force};
 
 /// The system's allocator, which gives as many allocations as are left.
 struct Limited;
@@ -183,7 +182,7 @@ fn call(name: &str, allocations: usize) -> bool {
     world.update();
     let boxes: Vec<_> = world.ids().map(|id| world.aabb(id).unwrap()).collect();
     let filters: Vec<_> = world.ids().map(|id| world.filter(id).unwrap()).collect();
-    let overlaps = pairwise(&boxes).unwrap();
+    let overlaps = brute_force(&boxes).unwrap();
     let allowed = |&&[a, b]: &&[u32; 2]| filters[a as usize].allows(&filters[b as usize]);
     world.pairs().count() == overlaps.iter().filter(allowed).count()
 }

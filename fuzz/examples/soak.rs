@@ -12,9 +12,8 @@ use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use sweep_and_prune::algorithms::pairwise;
 use sweep_and_prune::{Aabb, BroadPhase, Cast, Filter, ProxyId};
-use sweep_and_prune_scenes::Random;
+use sweep_and_prune_scenes::{Random, brute_force};
 
 /// The system's allocator, which counts the bytes in use.
 struct Counting;
@@ -181,7 +180,7 @@ impl Soak {
         let ids: Vec<_> = self.world.ids().collect();
         let boxes: Vec<_> = ids.iter().map(|&id| self.world.aabb(id).unwrap()).collect();
         let filters: Vec<_> = ids.iter().map(|&id| self.world.filter(id).unwrap()).collect();
-        let overlaps = pairwise(&boxes).unwrap();
+        let overlaps = brute_force(&boxes).unwrap();
         let allowed = overlaps.iter().map(|pair| pair.map(|index| index as usize));
         let allowed = allowed.filter(|&[a, b]| filters[a].allows(&filters[b]));
         let expected: BTreeSet<_> = allowed.map(|pair| pair.map(|index| ids[index])).collect();

@@ -2,9 +2,9 @@
 
 use core::fmt::Write;
 
-use sweep_and_prune::algorithms::pairwise;
 use sweep_and_prune::{Aabb, Scalar};
 
+use crate::brute_force::brute_force;
 use crate::motion::Motion;
 use crate::scene::Scene;
 
@@ -36,7 +36,7 @@ const SEED: u64 = 1;
 const FRAMES: usize = 20;
 
 /// Computes what `golden.txt` holds: for every scene and motion, in every dimension and
-/// coordinate type, the hash of its boxes, the number of its pairs by global pairwise and their
+/// coordinate type, the hash of its boxes, the number of its pairs by brute force and their
 /// hash. The same text on every platform, in every build.
 ///
 /// Of a motion, the boxes are those of the twentieth frame after the first.
@@ -71,7 +71,7 @@ fn line<const D: usize, T: Scalar>(report: &mut String, name: &str, boxes: Optio
     let Some(boxes) = boxes else { return };
     let bits = 8 * size_of::<T>();
     let hash = hash_boxes(boxes);
-    let found = match pairwise(boxes) {
+    let found = match brute_force(boxes) {
         Ok(pairs) => format!("{} {:016x}", pairs.len(), hash_pairs(&pairs)),
         Err(error) => error.to_string(),
     };

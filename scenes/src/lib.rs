@@ -19,12 +19,16 @@
 //! `f32` boxes of a scene are the rounded `f64` boxes, except for the two scenes that are made of
 //! the limits of the type. `golden.txt` holds the results; [`golden_report`] computes them.
 
+mod brute_force;
 mod golden;
 mod motion;
 mod random;
 mod recipes;
 mod scene;
+#[cfg(feature = "testing")]
+pub mod testing;
 
+pub use brute_force::brute_force;
 pub use golden::{golden_report, hash, hash_boxes, hash_pairs};
 pub use motion::{Motion, Moving};
 pub use random::Random;

@@ -1,6 +1,6 @@
 //! The table: what each algorithm costs at best, on average and at worst, in formulas.
 
-use sweep_and_prune::algorithms::{Axis, Method, RunnerOptions, Sort};
+use sweep_and_prune_algorithms::{Axis, Method, RunnerOptions, Sort};
 
 use crate::facts::Facts;
 use crate::worlds::World;

@@ -1,7 +1,7 @@
 //! What a claim may refer to, counted without the algorithm that is measured.
 
-use sweep_and_prune::algorithms::Endpoint;
 use sweep_and_prune::find_pairs;
+use sweep_and_prune_algorithms::Endpoint;
 
 use crate::worlds::{Boxes, World};
 

@@ -1,7 +1,7 @@
 //! Counts the operations of one step at growing sizes, and fits slopes.
 
 use serde::Serialize;
-use sweep_and_prune::algorithms::{Counts, Method, Runner};
+use sweep_and_prune_algorithms::{Counts, Method, Runner};
 
 use crate::claims::{Claim, Variant};
 use crate::facts::Facts;

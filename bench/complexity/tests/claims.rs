@@ -1,7 +1,7 @@
 //! The slopes that are measured are those that the table claims, here on fewer boxes than in
 //! `docs/complexity.md`.
 
-use sweep_and_prune::algorithms::{Method, Sort};
+use sweep_and_prune_algorithms::{Method, Sort};
 use sweep_and_prune_complexity::{
     Case, Claim, Limits, Report, TOLERANCE, Variant, World, measure, variants,
 };

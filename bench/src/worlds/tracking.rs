@@ -183,7 +183,7 @@ pub fn oracle<const D: usize>(motion: &str, n: usize) -> Result<Fingerprint> {
             frames.advance();
         }
         if frame % EVERY == 0 {
-            sum = sum + Fingerprint::of(&sweep_and_prune::algorithms::pairwise(frames.boxes())?);
+            sum = sum + Fingerprint::of(&sweep_and_prune_scenes::brute_force(frames.boxes())?);
         }
     }
     Ok(sum)

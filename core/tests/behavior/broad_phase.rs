@@ -196,7 +196,7 @@ fn sizes_may_differ_by_a_million_and_more() {
         }
         world.set_many(&ids, &boxes).unwrap();
         world.update();
-        let pairs = sweep_and_prune::algorithms::pairwise(&boxes).unwrap();
+        let pairs = sweep_and_prune_scenes::brute_force(&boxes).unwrap();
         let expected = pairs.iter().map(|pair| pair.map(|index| ids[index as usize]));
         assert!(sorted(world.pairs()).into_iter().eq(expected));
     }

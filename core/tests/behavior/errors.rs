@@ -82,10 +82,6 @@ fn messages_about_limits_say_what_to_do() {
         Error::TooManyBoxes { count }.to_string(),
         "8589934592 boxes are too many: one set can hold 4294967295, so split it"
     );
-    assert_eq!(
-        Error::InvalidAxis { axis: 2, dimensions: 2 }.to_string(),
-        "axis 2 does not exist: the boxes have 2 dimensions, and the axis must be less"
-    );
     let other = SnapshotFault::OtherWorld { dimensions: 2, scalar_bytes: 8 };
     assert_eq!(
         Error::InvalidSnapshot(other).to_string(),

@@ -4,8 +4,7 @@ use std::ops::ControlFlow;
 
 use proptest::prelude::*;
 use sweep_and_prune::{Aabb, Error, PairFinder, Scalar};
-
-use crate::common::valid_box;
+use sweep_and_prune_scenes::testing::valid_box;
 
 fn pairwise<T: Scalar>(a: &[Aabb<1, T>], b: &[Aabb<1, T>]) -> Vec<[u32; 2]> {
     let partners = |i: usize| {

@@ -1,28 +1,10 @@
-//! Every way to find pairs gives the pairs of global pairwise: on every scene, on every frame of
-//! every motion, and on random boxes full of ties.
+//! The finder gives the pairs of brute force: on every scene, on every frame of every motion, and on
+//! random boxes full of ties.
 
-use crate::common::{coordinate, valid_boxes};
 use proptest::prelude::*;
-use sweep_and_prune::algorithms::{Axis, Counts, Method, Runner, RunnerOptions, Sort, pairwise};
 use sweep_and_prune::{Aabb, Error, PairFinder, Scalar, find_pairs, validate};
-use sweep_and_prune_scenes::{Motion, Scene};
-
-/// Every algorithm with every sort, from scratch each step or from the last order, along one of
-/// the axes or choices of axis: the `turn`th, counted round and round.
-fn all_options<const D: usize>(turn: usize) -> Vec<RunnerOptions> {
-    // Of the fixed ones, `ALL` has the first.
-    let axes: Vec<Axis> = (1..D).map(Axis::Fixed).chain(Axis::ALL).collect();
-    let axis = axes[turn % axes.len()];
-    let mut all = Vec::new();
-    for method in Method::ALL {
-        for sort in Sort::ALL {
-            for persistent in [false, true] {
-                all.push(RunnerOptions::new(method).sort(sort).axis(axis).persistent(persistent));
-            }
-        }
-    }
-    all
-}
+use sweep_and_prune_scenes::testing::{coordinate, valid_box, valid_boxes};
+use sweep_and_prune_scenes::{Motion, Scene, brute_force, in_all_dimensions};
 
 fn sorted(pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
     let mut pairs = pairs.to_vec();
@@ -30,26 +12,11 @@ fn sorted(pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
     pairs
 }
 
-/// Each algorithm steps through the sets in turn, and finds the pairs of each.
-fn algorithms_agree<const D: usize, T: Scalar>(name: &str, turn: usize, sets: &[Vec<Aabb<D, T>>]) {
-    let expected: Vec<_> = sets.iter().map(|boxes| pairwise(boxes).unwrap()).collect();
-    for options in all_options::<D>(turn) {
-        let mut runner = Runner::new(options);
-        for (step, (boxes, expected)) in sets.iter().zip(&expected).enumerate() {
-            let found = sorted(runner.step(boxes, &mut ()).unwrap().pairs);
-            assert!(
-                found == *expected,
-                "{name}, {D}D, step {step}: {options:?}\n{boxes:?}\nfound {found:?}\nnot {expected:?}"
-            );
-        }
-    }
-}
-
 /// The finder finds the pairs of each set, in the same order whether its buffers are new or not.
 fn finder_agrees<const D: usize, T: Scalar>(name: &str, sets: &[Vec<Aabb<D, T>>]) {
     let mut finder = PairFinder::new();
     for boxes in sets {
-        let (found, expected) = (find_pairs(boxes).unwrap(), pairwise(boxes).unwrap());
+        let (found, expected) = (find_pairs(boxes).unwrap(), brute_force(boxes).unwrap());
         let n = boxes.len();
         assert!(sorted(&found) == expected, "{name}, {D}D: find_pairs is wrong about {n} boxes");
         assert!(finder.find(boxes).unwrap() == found, "{name}, {D}D: old buffers, {n} boxes");
@@ -59,16 +26,6 @@ fn finder_agrees<const D: usize, T: Scalar>(name: &str, sets: &[Vec<Aabb<D, T>>]
 fn scenes_in<const D: usize>() -> impl Iterator<Item = Scene> {
     Scene::ALL.iter().copied().filter(|scene| scene.dimensions().contains(&D))
 }
-
-fn algorithms_agree_on_scenes<const D: usize, T: Scalar>() {
-    for (turn, scene) in scenes_in::<D>().enumerate() {
-        // The second set meets the order that the first has left behind.
-        let sets = [(30, 1), (30, 2), (29, 2), (1, 3), (0, 4), (2, 5), (12, 6)];
-        let sets = sets.map(|(n, seed)| scene.boxes::<D, T>(n, seed).unwrap());
-        algorithms_agree(scene.name(), turn, &sets);
-    }
-}
-in_all_dimensions!(every_algorithm_agrees_on_every_scene, algorithms_agree_on_scenes);
 
 /// Enough boxes to fill many columns and vectors; more where the oracle is not a debug build.
 const MANY: usize = if cfg!(debug_assertions) { 300 } else { 2000 };
@@ -82,31 +39,18 @@ fn finder_agrees_on_scenes<const D: usize, T: Scalar>() {
 }
 in_all_dimensions!(finder_agrees_on_every_scene, finder_agrees_on_scenes);
 
-fn all_agree_in_motion<const D: usize, T: Scalar>() {
-    for (turn, motion) in Motion::ALL.into_iter().enumerate() {
+fn finder_agrees_in_motion<const D: usize, T: Scalar>() {
+    for motion in Motion::ALL {
         let mut moving = motion.start::<D, T>(40, 8).unwrap();
         let mut frames = vec![moving.boxes().to_vec()];
         for _ in 0..10 {
             moving.advance();
             frames.push(moving.boxes().to_vec());
         }
-        algorithms_agree(motion.name(), turn, &frames);
         finder_agrees(motion.name(), &frames);
     }
 }
-in_all_dimensions!(all_agree_on_every_motion, all_agree_in_motion);
-
-fn algorithms_agree_on_random_boxes<const D: usize, T: Scalar>() {
-    // Two frames of as many boxes, and one of any number.
-    let sets = (0..=25usize).prop_flat_map(|n| {
-        let frame = || prop::collection::vec(crate::common::valid_box::<D, T>(), n);
-        (frame(), frame(), valid_boxes::<D, T>(25))
-    });
-    proptest!(ProptestConfig::with_cases(64), |((a, b, c) in sets, turn in 0..D + 3)| {
-        algorithms_agree("random", turn, &[a, b, c]);
-    });
-}
-in_all_dimensions!(every_algorithm_agrees_on_random_boxes, algorithms_agree_on_random_boxes);
+in_all_dimensions!(finder_agrees_on_every_motion, finder_agrees_in_motion);
 
 fn finder_agrees_on_random_boxes<const D: usize, T: Scalar>() {
     proptest!(|(few in valid_boxes::<D, T>(30), many in valid_boxes::<D, T>(90))| {
@@ -115,34 +59,15 @@ fn finder_agrees_on_random_boxes<const D: usize, T: Scalar>() {
 }
 in_all_dimensions!(finder_agrees_on_all_random_boxes, finder_agrees_on_random_boxes);
 
-/// NaN or inverted boxes: the error names the first, no observer is called, and the next
-/// step is as if there had been no bad one.
-fn refuses<const D: usize, T: Scalar>(
-    turn: usize,
-    good: &[Aabb<D, T>],
-    bad: &[Aabb<D, T>],
-    error: Error,
-) {
+/// NaN or inverted boxes: the error names the first, and the next search is as if there had been no bad one.
+fn refuses<const D: usize, T: Scalar>(good: &[Aabb<D, T>], bad: &[Aabb<D, T>], error: Error) {
     assert_eq!(validate(bad), Err(error));
-    assert_eq!(pairwise(bad), Err(error));
+    assert_eq!(brute_force(bad), Err(error));
     assert_eq!(find_pairs(bad), Err(error));
     let mut finder = PairFinder::new();
     let before = finder.find(good).unwrap().to_vec();
     assert_eq!(finder.find(bad), Err(error));
     assert_eq!(finder.find(good).unwrap(), before);
-    for options in all_options::<D>(turn) {
-        let (mut disturbed, mut undisturbed) = (Runner::new(options), Runner::new(options));
-        disturbed.step(good, &mut ()).unwrap();
-        undisturbed.step(good, &mut ()).unwrap();
-        let mut counts = Counts::default();
-        assert_eq!(disturbed.step(bad, &mut counts).unwrap_err(), error, "{options:?}");
-        assert_eq!(counts, Counts::default(), "{options:?}");
-        let (mut counts, mut undisturbed_counts) = (counts, counts);
-        let found = disturbed.step(good, &mut counts).unwrap();
-        let expected = undisturbed.step(good, &mut undisturbed_counts).unwrap();
-        assert_eq!(found.pairs, expected.pairs, "{options:?}");
-        assert_eq!(counts, undisturbed_counts, "{options:?}");
-    }
 }
 
 fn bad_boxes_are_refused<const D: usize, T: Scalar>() {
@@ -156,27 +81,24 @@ fn bad_boxes_are_refused<const D: usize, T: Scalar>() {
                 let [min, max] = [min, max].map(|corner| corner[axis].to_f64().into());
                 Error::InvalidBox { set: 0, index, axis, min, max }
             };
-            for (turn, (min, max)) in [
+            for (min, max) in [
                 (nan, one),
                 (zero, nan),
                 (nan, nan),
                 (one, zero),
                 (T::INFINITY, T::NEG_INFINITY),
                 (T::INFINITY, one),
-            ]
-            .into_iter()
-            .enumerate()
-            {
+            ] {
                 let mut bad = good.clone();
                 (bad[index].min[axis], bad[index].max[axis]) = (min, max);
-                refuses(turn, &good, &bad, error(&bad));
+                refuses(&good, &bad, error(&bad));
             }
             // A different number of boxes, and a later one that is worse.
             let mut bad = [&good[..], &good[..]].concat();
             bad[index].min[axis] = nan;
             bad[index + 12] = Aabb::new([nan; D], [nan; D]);
             let error = error(&bad);
-            refuses(axis, &good, &bad, error);
+            refuses(&good, &bad, error);
             assert!(error.to_string().contains(&format!("box {index} ")));
             assert!(error.to_string().contains(&format!("axis {axis}")));
         }
@@ -188,35 +110,19 @@ fn bad_random_boxes_are_refused<const D: usize, T: Scalar>() {
     let wild = prop_oneof![40 => coordinate::<T>(), 1 => Just(T::from_f64(f64::NAN))];
     let corners = (prop::array::uniform::<_, D>(wild.clone()), prop::array::uniform::<_, D>(wild));
     let wild_box = corners.prop_map(|(min, max)| Aabb::new(min, max));
-    let any_box = prop_oneof![4 => crate::common::valid_box(), 1 => wild_box];
+    let any_box = prop_oneof![4 => valid_box(), 1 => wild_box];
     let sets = (valid_boxes::<D, T>(12), prop::collection::vec(any_box, 0..12));
-    proptest!(ProptestConfig::with_cases(64), |((good, wild) in sets, turn in 0..D + 3)| {
+    proptest!(ProptestConfig::with_cases(64), |((good, wild) in sets)| {
         let valid = |index: usize, axis: usize| wild[index].min[axis] <= wild[index].max[axis];
         let everywhere = (0..wild.len()).flat_map(|index| (0..D).map(move |axis| (index, axis)));
         match everywhere.into_iter().find(|&(index, axis)| !valid(index, axis)) {
             Some((index, axis)) => {
                 let Aabb { min, max } = wild[index];
                 let [min, max] = [min, max].map(|corner| corner[axis].to_f64().into());
-                refuses(turn, &good, &wild, Error::InvalidBox { set: 0, index, axis, min, max });
+                refuses(&good, &wild, Error::InvalidBox { set: 0, index, axis, min, max });
             }
             None => finder_agrees("wild", &[wild]),
         }
     });
 }
 in_all_dimensions!(bad_random_boxes_are_refused_by_name, bad_random_boxes_are_refused);
-
-fn a_missing_axis_is_refused<const D: usize, T: Scalar>() {
-    let boxes = Scene::Uniform.boxes::<D, T>(9, 1).unwrap();
-    for mut options in all_options::<D>(0) {
-        for axis in [D, D + 1, usize::MAX] {
-            options.axis = Axis::Fixed(axis);
-            let mut counts = Counts::default();
-            let error = Error::InvalidAxis { axis, dimensions: D };
-            let mut runner = Runner::new(options);
-            assert_eq!(runner.step(&boxes, &mut counts).unwrap_err(), error);
-            assert_eq!(runner.step(&[] as &[Aabb<D, T>], &mut counts).unwrap_err(), error);
-            assert_eq!(counts, Counts::default());
-        }
-    }
-}
-in_all_dimensions!(a_missing_axis_is_refused_by_name, a_missing_axis_is_refused);

@@ -3,14 +3,13 @@
 
 use std::ops::ControlFlow;
 
-use crate::common::{coordinate, valid_boxes};
 use proptest::prelude::*;
-use sweep_and_prune::algorithms::pairwise;
 use sweep_and_prune::{
     Aabb, Error, Kernel, PairFinder, Scalar, Search, Value, count_pairs, find_pairs,
     find_pairs_between, validate,
 };
-use sweep_and_prune_scenes::{Motion, Random};
+use sweep_and_prune_scenes::testing::{coordinate, valid_boxes};
+use sweep_and_prune_scenes::{Motion, Random, brute_force, in_all_dimensions};
 
 type Boxes<const D: usize, T> = Vec<Aabb<D, T>>;
 
@@ -134,8 +133,8 @@ fn finders<const D: usize, T: Scalar>() -> Vec<(String, PairFinder<D, T>)> {
     all
 }
 
-/// Pairs between two sets by global pairwise.
-fn pairwise_between<const D: usize, T: Scalar>(
+/// Pairs between two sets by brute force.
+fn brute_force_between<const D: usize, T: Scalar>(
     a: &[Aabb<D, T>],
     b: &[Aabb<D, T>],
 ) -> Vec<[u32; 2]> {
@@ -155,7 +154,7 @@ fn check<const D: usize, T: Scalar>(name: &str, boxes: &[Aabb<D, T>]) {
         boxes = &boxes[..boxes.len() / 2];
     }
     let found = find_pairs(boxes).unwrap();
-    assert!(sorted(&found) == pairwise(boxes).unwrap(), "{name}, {D}D, {} boxes", boxes.len());
+    assert!(sorted(&found) == brute_force(boxes).unwrap(), "{name}, {D}D, {} boxes", boxes.len());
     for (with, mut finder) in finders() {
         assert!(finder.find(boxes).unwrap() == found, "{name}, {D}D, {with}");
         assert_eq!(finder.search(boxes).count(), Ok(found.len() as u64), "{name}, {D}D, {with}");
@@ -174,7 +173,7 @@ fn check_between<const D: usize, T: Scalar>(name: &str, a: &[Aabb<D, T>], b: &[A
         (a, b) = (&a[..a.len().div_ceil(2)], &b[..b.len().div_ceil(2)]);
     }
     let found = find_pairs_between(a, b).unwrap();
-    assert!(sorted(&found) == pairwise_between(a, b), "{name}, {D}D, {} {}", a.len(), b.len());
+    assert!(sorted(&found) == brute_force_between(a, b), "{name}, {D}D, {} {}", a.len(), b.len());
     for (with, mut finder) in finders() {
         assert!(finder.find_between(a, b).unwrap() == found, "{name}, {D}D, {with}");
         assert_eq!(finder.search(a).against(b).count(), Ok(found.len() as u64), "{name}, {with}");

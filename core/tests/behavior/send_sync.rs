@@ -1,8 +1,5 @@
 //! Public types can be sent to and shared with other threads: this file compiles only if they can.
 
-use sweep_and_prune::algorithms::{
-    Axis, Counts, Edge, Endpoint, Event, Method, Player, Runner, RunnerOptions, Sort, Trace,
-};
 use sweep_and_prune::{
     Aabb, BroadPhase, Cast, Changes, Error, Filter, Hit, Kernel, Lists, Neighbor, Options,
     PairFinder, Pairs, ProxyId, Queries, Report, SnapshotFault,
@@ -36,20 +33,4 @@ fn worlds_and_what_they_return_are_send_and_sync() {
     is_send_and_sync::<Hit<3, f64>>();
     is_send_and_sync::<Neighbor>();
     is_send_and_sync::<Report>();
-}
-
-#[test]
-fn algorithms_and_what_they_report_are_send_and_sync() {
-    is_send_and_sync::<Runner<2>>();
-    is_send_and_sync::<Runner<3, f64>>();
-    is_send_and_sync::<RunnerOptions>();
-    is_send_and_sync::<Method>();
-    is_send_and_sync::<Sort>();
-    is_send_and_sync::<Axis>();
-    is_send_and_sync::<Counts>();
-    is_send_and_sync::<Edge>();
-    is_send_and_sync::<Endpoint<f32>>();
-    is_send_and_sync::<Trace>();
-    is_send_and_sync::<Event<'static>>();
-    is_send_and_sync::<Player>();
 }

@@ -5,10 +5,11 @@
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
-use sweep_and_prune::algorithms::{
-    Axis, Counts, Endpoint, Method, Observer, Player, Runner, RunnerOptions, Side, Sort, Trace,
+use sweep_and_prune::Aabb;
+use sweep_and_prune_algorithms::{
+    Axis, Counts, Endpoint, Error, Method, Observer, Player, Runner, RunnerOptions, Side, Sort,
+    Trace,
 };
-use sweep_and_prune::{Aabb, Error};
 
 use crate::broken::{Wrong, WrongRunner};
 use crate::call::{self, Running, run, stack, truth};
@@ -247,7 +248,11 @@ fn step(handle: &mut Handle, count: usize) -> Code {
         }
         Err(error) => {
             observer.0 = before;
-            report_error(error)
+            match error {
+                Error::Boxes(error) => report_error(error),
+                Error::InvalidAxis { axis, .. } => report(Code::InvalidArgument, [axis, 0]),
+                _ => report(Code::Internal, [0, 0]),
+            }
         }
     }
 }

@@ -2,13 +2,13 @@
 //! the effect: pairs that flicker, pairs that are missed. Never use them for anything else.
 //!
 //! They report to an observer and take the axis and the boxes as the correct algorithms in
-//! `core/src/algorithms/` do.
+//! `classroom/algorithms/` do.
 
 use alloc::vec::Vec;
 use core::mem;
 
-use sweep_and_prune::algorithms::{Axis, Edge, Endpoint, Observer, Separation, Side};
-use sweep_and_prune::{Aabb, Error, validate};
+use sweep_and_prune::{Aabb, validate};
+use sweep_and_prune_algorithms::{Axis, Edge, Endpoint, Error, Observer, Separation, Side};
 
 /// Which error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -256,7 +256,9 @@ fn pair(a: u32, b: u32) -> [u32; 2] {
 mod tests {
     use super::*;
     use alloc::vec;
-    use sweep_and_prune::algorithms::{Counts, Player, Trace, pairwise};
+    use sweep_and_prune::Error as BoxError;
+    use sweep_and_prune_algorithms::{Counts, Player, Trace};
+    use sweep_and_prune_scenes::brute_force;
 
     fn square(x: f64, y: f64, half: f64) -> Aabb<2, f64> {
         Aabb::new([x - half, y - half], [x + half, y + half])
@@ -280,7 +282,7 @@ mod tests {
         let apart = [square(0.0, 0.0, 1.0), square(1.5, 0.0, 1.0), square(9.0, 0.0, 1.0)];
         let mut runner = new(Wrong::StrictTies);
         for _ in 0..3 {
-            assert_eq!(pairs(&mut runner, &apart), pairwise(&apart).unwrap());
+            assert_eq!(pairs(&mut runner, &apart), brute_force(&apart).unwrap());
         }
     }
 
@@ -289,7 +291,7 @@ mod tests {
         let together = [square(0.0, 0.0, 2.0), square(1.0, 0.0, 2.0)];
         let parted = [square(0.0, 0.0, 2.0), square(9.0, 0.0, 2.0)];
         let mut runner = new(Wrong::SortedStart);
-        assert_eq!(pairwise(&together).unwrap(), [[0, 1]]);
+        assert_eq!(brute_force(&together).unwrap(), [[0, 1]]);
         assert_eq!(pairs(&mut runner, &together), [[0; 2]; 0]);
         assert_eq!(pairs(&mut runner, &together), [[0; 2]; 0]);
         assert_eq!(pairs(&mut runner, &parted), [[0; 2]; 0]);
@@ -299,11 +301,11 @@ mod tests {
     #[test]
     fn sorted_by_center_a_large_box_is_missed_behind_a_break() {
         let boxes = [square(0.0, 0.0, 1.0), square(3.0, 0.0, 1.0), square(4.0, 0.0, 4.0)];
-        assert_eq!(pairwise(&boxes).unwrap(), [[0, 2], [1, 2]]);
+        assert_eq!(brute_force(&boxes).unwrap(), [[0, 2], [1, 2]]);
         assert_eq!(pairs(&mut new(Wrong::SortByCenter), &boxes), [[1, 2]]);
         // Of one size, by center is by left edge.
         let same = [0.0, 1.5, 2.5, 9.0].map(|x| square(x, 0.0, 1.0));
-        assert_eq!(pairs(&mut new(Wrong::SortByCenter), &same), pairwise(&same).unwrap());
+        assert_eq!(pairs(&mut new(Wrong::SortByCenter), &same), brute_force(&same).unwrap());
     }
 
     #[test]
@@ -331,7 +333,10 @@ mod tests {
             }
             let nan = [square(0.0, f64::NAN, 1.0)];
             let refused = runner.step(&nan, &mut ());
-            assert!(matches!(refused, Err(Error::InvalidBox { index: 0, axis: 1, .. })));
+            assert!(matches!(
+                refused,
+                Err(Error::Boxes(BoxError::InvalidBox { index: 0, axis: 1, .. }))
+            ));
         }
     }
 }

@@ -42,7 +42,6 @@ pub fn report_error(error: Error) -> Code {
         Error::InvalidBox { index, axis, .. } => report(Code::InvalidBox, [index, axis]),
         Error::TooManyBoxes { .. } | Error::OutOfMemory => report(Code::OutOfMemory, [0, 0]),
         Error::StaleProxy { index, .. } => report(Code::StaleProxy, [index, 0]),
-        Error::InvalidAxis { axis, .. } => report(Code::InvalidArgument, [axis, 0]),
         Error::InvalidQuery { index, .. } => report(Code::InvalidArgument, [index, 0]),
         Error::InvalidSnapshot(fault) => {
             let fault = match fault {

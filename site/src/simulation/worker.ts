@@ -1,7 +1,7 @@
 // The thread of the simulation: steps the world at its own pace, sixty times a second if it can,
 // and sends what it has when the page has a buffer free for it.
 
-import { type BroadPhaseOptions, Simulation, type StepReport } from "../../../simulation/wasm/simulation.js";
+import { type BroadPhaseOptions, Simulation, type StepReport } from "../../../classroom/simulation/wasm/simulation.js";
 import scalarWasm from "../generated/simulation.wasm?url";
 import simdWasm from "../generated/simulation.simd.wasm?url";
 import { AXIS_NAMES, type FromSimulation, type Laws, type Measurement, type Method, type Setup, type ToSimulation } from "./messages.ts";

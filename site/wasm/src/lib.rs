@@ -33,7 +33,7 @@ use std::cell::RefCell;
 use std::sync::LazyLock;
 use std::sync::atomic::AtomicU64;
 
-use sweep_and_prune::algorithms::{Axis, Method, RunnerOptions, Sort};
+use sweep_and_prune_algorithms::{Axis, Method, RunnerOptions, Sort};
 use sweep_and_prune_exchange::{read_area, write_area};
 use sweep_and_prune_scenes::Scene;
 
@@ -189,7 +189,7 @@ pub extern "C" fn experiment_forecast(searcher: u32, sort: u32, axis: u32) -> Co
 pub extern "C" fn experiment_run(searcher: u32, counting: u32) -> Code {
     let report = with(|experiment| experiment.run(searcher as usize, counting != 0));
     code(report.map(|report| {
-        let count = |read: fn(&sweep_and_prune::algorithms::Counts) -> u64| {
+        let count = |read: fn(&sweep_and_prune_algorithms::Counts) -> u64| {
             report.counts.as_ref().map_or(-1.0, |counts| read(counts) as f64)
         };
         write_area(&[

@@ -1,7 +1,7 @@
 //! A searcher finds the pairs: an algorithm, the library's `PairFinder`, or its `BroadPhase`.
 
-use sweep_and_prune::algorithms::{Axis, Counts, Method, Runner, RunnerOptions, Sort};
-use sweep_and_prune::{Aabb, BroadPhase, Error, Filter, PairFinder, ProxyId};
+use sweep_and_prune::{Aabb, BroadPhase, Filter, PairFinder, ProxyId};
+use sweep_and_prune_algorithms::{Axis, Counts, Error, Method, Runner, RunnerOptions, Sort};
 
 /// Which one.
 #[derive(Clone, Copy, Debug)]
@@ -65,7 +65,7 @@ impl<const D: usize> Searcher<D> {
     /// Finds the pairs, timed and unobserved. What the algorithm did is counted on a copy, before.
     ///
     /// # Errors
-    /// [`Error::InvalidBox`], which scenes do not have.
+    /// [`Error::Boxes`], which scenes do not have.
     pub fn run(
         &mut self,
         boxes: &[Aabb<D>],

@@ -1,7 +1,7 @@
 //! The comparison is fair only if all algorithms see the same boxes and find the same pairs.
 
 use sweep_and_prune::Aabb;
-use sweep_and_prune::algorithms::{Axis, Counts, Method, Runner, RunnerOptions, Sort};
+use sweep_and_prune_algorithms::{Axis, Counts, Method, Runner, RunnerOptions, Sort};
 use sweep_and_prune_scenes::Scene;
 use sweep_and_prune_site_wasm::experiment::{Experiment, open_given};
 use sweep_and_prune_site_wasm::motion::{LAWS, Moving, resize};

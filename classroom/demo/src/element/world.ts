@@ -1,4 +1,4 @@
-import { Simulation, SimulationError } from "../../../../simulation/wasm/simulation.js";
+import { Simulation, SimulationError } from "../../../simulation/wasm/simulation.js";
 import type { Row } from "./types.js";
 import { OptionError } from "./option-error.js";
 import { WIDTH, type WorldOptions } from "./options.js";

@@ -1,0 +1,61 @@
+//! Which broad phase finds the pairs: a choice at run time.
+
+use sweep_and_prune::{Aabb, PairFinder};
+use sweep_and_prune_algorithms::{Counts, Error, Runner, RunnerOptions, Sort};
+
+/// Who finds the pairs of boxes. The motion is the same, bit for bit, whichever it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BroadPhase {
+    /// The library's [`PairFinder`], the fast path.
+    #[default]
+    Library,
+    /// One of the [`algorithms`](sweep_and_prune_algorithms) of
+    /// [`Method::ALL`](sweep_and_prune_algorithms::Method::ALL), which find all pairs.
+    Algorithm(RunnerOptions),
+}
+
+/// The chosen one with what it keeps from step to step.
+#[derive(Debug)]
+pub enum Engine<const D: usize> {
+    Library(Box<PairFinder<D>>),
+    Algorithm(Box<Runner<D>>),
+}
+
+impl<const D: usize> Engine<D> {
+    /// # Errors
+    /// [`Error::InvalidAxis`].
+    pub fn new(choice: BroadPhase) -> Result<Self, Error> {
+        match choice {
+            BroadPhase::Library => Ok(Engine::Library(Box::default())),
+            BroadPhase::Algorithm(options) => {
+                options.axis.choose::<D, f32>(&[])?;
+                // Insertion sort is for what is almost sorted, which the first step is not.
+                let first = if options.persistent { Sort::Standard } else { options.sort };
+                let options = options.first_sort(first);
+                Ok(Engine::Algorithm(Box::new(Runner::new(options))))
+            }
+        }
+    }
+
+    /// The overlapping pairs, unobserved: as fast as it goes.
+    pub fn find(&mut self, boxes: &[Aabb<D>]) -> Result<&[[u32; 2]], Error> {
+        match self {
+            Engine::Library(finder) => Ok(finder.find(boxes)?),
+            Engine::Algorithm(runner) => Ok(runner.step(boxes, &mut ())?.pairs),
+        }
+    }
+
+    /// What [`find`](Self::find) would do next, counted; on a copy, so that counting neither
+    /// costs the real run time nor sorts its array for it. The library's finder counts nothing.
+    ///
+    /// The overlaps on the axis are those that there are, also where the algorithm keeps them and
+    /// is told only of changes: so they mean the same for each.
+    pub fn count(&self, boxes: &[Aabb<D>]) -> Result<Option<Counts>, Error> {
+        let Engine::Algorithm(runner) = self else { return Ok(None) };
+        let mut counts = Counts::default();
+        let mut runner = runner.clone();
+        runner.step(boxes, &mut counts)?;
+        counts.axis_overlaps = runner.kept_axis_overlaps().unwrap_or(counts.axis_overlaps);
+        Ok(Some(counts))
+    }
+}
