@@ -10,7 +10,16 @@ import { typescriptImports } from "./support/typescript-imports.mjs";
 export const root = dirname(dirname(fileURLToPath(import.meta.url)));
 
 /** The folders that must be without cycles. */
-export const FOLDERS = ["core/src", "js/src", "classroom/demo/src", "bench/src", "site/src"];
+export const FOLDERS = [
+  "core/src",
+  "classroom/algorithms/src",
+  "classroom/simulation/src",
+  "classroom/demo/src",
+  "bindings/src",
+  "js/src",
+  "bench/src",
+  "site/src",
+];
 
 /** Which file of a folder imports which: file -> imported file -> names. */
 export const importsOf = (folder) =>

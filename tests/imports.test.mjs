@@ -1,5 +1,4 @@
-// No file imports a file that imports it, directly or indirectly: in core/src, js/src, classroom/demo/src, bench/src
-// and site/src.
+// No file imports a file that imports it, directly or indirectly, in the folders that tests/imports.mjs lists.
 //
 // What counts as an import of file B by file A:
 //
@@ -39,7 +38,7 @@ const folderOf = (file) => Object.keys(KNOWN).sort((a, b) => b.length - a.length
 for (const folder of FOLDERS) {
   test(`no file of ${folder} imports a file that imports it`, () => {
     const graph = importsOf(folder);
-    assert.ok(graph.size > 10, `only ${graph.size} files were found in ${folder}`);
+    assert.ok(graph.size > 5, `only ${graph.size} files were found in ${folder}`);
     const groups = cyclicGroups(graph);
     const counts = {};
     for (const file of groups.flat()) {

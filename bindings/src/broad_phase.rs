@@ -4,22 +4,10 @@ use alloc::vec::Vec;
 
 use sweep_and_prune::{BroadPhase, Error, Filter, Options, Pairs, ProxyId, Scalar, validate};
 
+use crate::id::Id;
+use crate::kind::{Kind, Settings};
 use crate::queries::{Answer, Query, ask};
 use crate::rows::{Coordinates, Rows, aabb};
-use crate::{Kind, Settings};
-
-/// An id in the form that a binding gives out.
-pub trait Id: Copy {
-    /// The form of an id of the core.
-    fn from_proxy(id: ProxyId) -> Self;
-}
-
-/// The bits of an id, as [`ProxyId::to_bits`].
-impl Id for u64 {
-    fn from_proxy(id: ProxyId) -> Self {
-        id.to_bits()
-    }
-}
 
 /// A broad phase with the rows that it reads. What a method of the same name promises in
 /// [`BroadPhase`] holds here, errors included; after an error nothing has changed.

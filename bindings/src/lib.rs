@@ -24,12 +24,15 @@
 extern crate alloc;
 
 mod broad_phase;
+mod choose;
+mod id;
 mod kind;
 mod pair_finder;
 mod queries;
 mod rows;
 
-pub use broad_phase::{AnyBroadPhase, ArrayBroadPhase, Id, TrackBodies, TypedBroadPhase};
+pub use broad_phase::{AnyBroadPhase, ArrayBroadPhase, TrackBodies, TypedBroadPhase};
+pub use id::Id;
 pub use kind::{Kind, Settings};
 pub use pair_finder::{AnyPairFinder, ArrayPairFinder, Progress, TypedPairFinder};
 pub use queries::{Answer, Query};

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use sweep_and_prune::{Cast, Error, ProxyId, Queries, Scalar};
 
-use crate::Id;
+use crate::id::Id;
 use crate::rows::{aabb, point};
 
 /// Which bodies a query finds. The numbers of a query in `D` dimensions are as listed here.

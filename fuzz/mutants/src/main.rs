@@ -43,10 +43,9 @@ const COPIED: [&str; 8] = [
 
 /// The random driver: a program, and how it is called.
 const DRIVER: &str = "sweep-and-prune-fuzz";
-/// What a mutant has to survive: random inputs, and the tests of the core, the fastest first. (Those of the algorithms that
-/// the site shows are left out: these are not mutated.)
+/// What a mutant has to survive: random inputs, and the tests of the core, the fastest first.
 const RUNS: [(&str, &[&str]); 9] = [
-    ("sweep_and_prune", &["--skip", "algorithms::"]),
+    ("sweep_and_prune", &[]),
     (DRIVER, &["broad_phase", "--calls", "100000", "--threads", "1"]),
     (DRIVER, &["finder", "--calls", "500", "--threads", "1"]),
     (DRIVER, &["snapshot", "--calls", "50000", "--threads", "1"]),
@@ -282,6 +281,7 @@ fn copy(root: &Path, copy: &Path) {
     let manifest = fs::read_to_string(root.join("Cargo.toml")).unwrap();
     let sections = manifest.split("\n\n").filter(|section| {
         !section.contains("lints")
+            && !section.contains("checked.package.sweep-and-prune-algorithms")
             && !section.contains("checked.package.sweep-and-prune-simulation")
     });
     let lines = sections.flat_map(|section| section.lines().chain([""]));
