@@ -33,16 +33,6 @@ pub enum Error {
         /// Its max on that axis.
         max: Value,
     },
-    /// More boxes than a `u32` can index.
-    TooManyBoxes {
-        /// How many boxes were passed.
-        count: usize,
-    },
-    /// The pairs, or the memory for finding them, do not fit. The finder keeps none of the pairs and
-    /// can be used again. Counting or streaming the pairs needs less memory.
-    OutOfMemory,
-    /// The progress callback ended the search: see [`Search::progress`](crate::Search::progress).
-    Cancelled,
     /// An id that names no body here: its body was removed, or it never had one. (An id of another
     /// world is refused only if no body here has the same slot and generation.)
     StaleProxy {
@@ -76,6 +66,16 @@ pub enum Error {
     },
     /// The bytes are not a snapshot that this world can read.
     InvalidSnapshot(SnapshotFault),
+    /// More boxes than a `u32` can index.
+    TooManyBoxes {
+        /// How many boxes were passed.
+        count: usize,
+    },
+    /// The pairs, or the memory for finding them, do not fit. The finder keeps none of the pairs and
+    /// can be used again. Counting or streaming the pairs needs less memory.
+    OutOfMemory,
+    /// The progress callback ended the search: see [`Search::progress`](crate::Search::progress).
+    Cancelled,
 }
 
 /// A number that an error reports: a coordinate, a length or an option, as `f64`.
