@@ -12,7 +12,7 @@ import { Simulation, SimulationError } from "../simulation.js";
 
 const root = resolve(dirname(fileURLToPath(import.meta.url)), "../../../..");
 const target = resolve(root, process.env.CARGO_TARGET_DIR ?? "target");
-const golden = readFileSync(join(root, "simulation/golden.txt"), "utf8").trim().split("\n");
+const golden = readFileSync(join(root, "classroom/simulation/golden.txt"), "utf8").trim().split("\n");
 
 /** The module, with or without vector instructions; each in a target folder of its own. */
 function build(folder, flags) {
