@@ -59,6 +59,7 @@ class Table:
         groups: list[str],
         single: bool,
         like: Table | None = None,
+        has_shapes: bool = False,
     ) -> None:
         """Half of the tables are of the library of the first one, so that the two can be joined."""
         # NumPy has no times with a zone.
@@ -69,10 +70,9 @@ class Table:
         if (single and self.library == "lists") or groups == ["mixed"]:
             self.library = "numpy" if single else "lists"
         self.what = what
-        self.has_shapes = dimensions == 2 and what == "numbers" and self.library == "pandas" and not single
-        self.has_shapes = (
-            self.has_shapes and HAS_SHAPES and random.random() < (0.8 if like and like.has_shapes else 0.5)
-        )
+        self.has_shapes = has_shapes
+        if has_shapes:
+            self.library = "pandas"
         count = random.choice([0, 1, 2, 4, 7])
         self.boxes: dict[str, Column] = {}
         names, half = NAMES[dimensions], dimensions
@@ -235,8 +235,13 @@ def table_call(random: Random) -> None:
     single = what == "numbers" and "zoned" not in groups and random.random() < 0.15
     if is_single and not single and random.random() < 0.1:
         groups = ["mixed"]
-    a = Table(random, what, center, dimensions, groups, single)
-    b = a if is_single else Table(random, what, center, dimensions, groups, single, a)
+    of_shapes = HAS_SHAPES and random.random() < 0.15
+    if of_shapes:
+        what, dimensions, center, single = "numbers", 2, some_center(random, "numbers"), False
+        groups = [] if groups == ["mixed"] else groups
+    a = Table(random, what, center, dimensions, groups, single, None, of_shapes)
+    has_shapes = of_shapes and random.random() < 0.8
+    b = a if is_single else Table(random, what, center, dimensions, groups, single, a, has_shapes)
     exact = what != "numbers" or (a.is_exact and b.is_exact)
     margin, amount = a_margin(random, what, exact)
     closed = random.choice(["both", "both", "left", "right", "neither"])
