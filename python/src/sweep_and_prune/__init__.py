@@ -25,7 +25,10 @@ array([[0, 2]])
 | a question that only needs a number | `count_pairs`, `count_pairs_between` |
 | more pairs than fit in memory, or a search that may stop early | `iter_chunks`, `for_each_chunk` |
 | two data frames: rows whose boxes or geometries overlap | `join` |
-| more boxes than fit in memory, or a cluster | `sweep_and_prune.dask` |
+| for each box the number of others, or those that are nearest | `count_overlaps`, `nearest` |
+| the size of each overlap, its share of a box, IoU | `measure_overlaps` |
+| intervals: connected ones, their union, what others cover | `cluster`, `merge`, `coverage` |
+| more boxes than fit in memory, or a cluster of machines | `sweep_and_prune.dask` |
 | any of these every frame | `PairFinder` |
 | bodies that mostly rest; begin and end events; queries and rays | `BroadPhase` |
 """
@@ -41,7 +44,9 @@ from ._errors import (
     SweepAndPruneError,
 )
 from ._filter import Filter
+from ._intervals import Merged, Nearest, cluster, coverage, merge, nearest
 from ._join import join
+from ._overlaps import Overlaps, count_overlaps, measure_overlaps
 from ._pairs import (
     PairFinder,
     count_pairs,
@@ -68,6 +73,15 @@ __all__ = [  # noqa: RUF022
     "iter_chunks",
     "iter_chunks_between",
     "join",
+    "count_overlaps",
+    "measure_overlaps",
+    "Overlaps",
+    "nearest",
+    "Nearest",
+    "cluster",
+    "merge",
+    "Merged",
+    "coverage",
     "PairFinder",
     "BroadPhase",
     "Filter",

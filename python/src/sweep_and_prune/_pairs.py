@@ -97,8 +97,8 @@ def find_pairs(
     >>> sap.find_pairs([[0, 10], [12, 20], [23, 30]], margin=2)
     array([[0, 1]])
     """
-    prepared = _one_set(boxes, format, closed, missing, by, margin)
-    return _find(prepared, threads, dtype, progress)
+    prepared = one_set(boxes, format, closed, missing, by, margin)
+    return find(prepared, threads, dtype, progress)
 
 
 def find_pairs_between(
@@ -147,8 +147,8 @@ def find_pairs_between(
     >>> sap.find_pairs_between(bullets, targets)
     array([[1, 0]])
     """
-    prepared = _two_sets(a, b, format, closed, missing, by, margin)
-    return _find(prepared, threads, dtype, progress)
+    prepared = two_sets(a, b, format, closed, missing, by, margin)
+    return find(prepared, threads, dtype, progress)
 
 
 def count_pairs(
@@ -184,7 +184,7 @@ def count_pairs(
     >>> sap.count_pairs(np.zeros((1000, 6)))
     499500
     """
-    prepared = _one_set(boxes, format, closed, missing, by, margin)
+    prepared = one_set(boxes, format, closed, missing, by, margin)
     return _count(prepared, threads, progress)
 
 
@@ -220,7 +220,7 @@ def count_pairs_between(
     >>> sap.count_pairs_between([[0, 2], [5, 6]], [[1, 7]])
     2
     """
-    prepared = _two_sets(a, b, format, closed, missing, by, margin)
+    prepared = two_sets(a, b, format, closed, missing, by, margin)
     return _count(prepared, threads, progress)
 
 
@@ -271,8 +271,8 @@ def for_each_chunk(
     >>> int(degrees.min()), int(degrees.max())
     (999, 999)
     """
-    prepared = _one_set(boxes, format, closed, missing, by, margin)
-    return _stream(prepared, each, size, dtype)
+    prepared = one_set(boxes, format, closed, missing, by, margin)
+    return stream(prepared, each, size, dtype)
 
 
 def for_each_chunk_between(
@@ -316,8 +316,8 @@ def for_each_chunk_between(
      [0 1]]
     True
     """
-    prepared = _two_sets(a, b, format, closed, missing, by, margin)
-    return _stream(prepared, each, size, dtype)
+    prepared = two_sets(a, b, format, closed, missing, by, margin)
+    return stream(prepared, each, size, dtype)
 
 
 def iter_chunks(
@@ -361,7 +361,7 @@ def iter_chunks(
     200000
     99500
     """
-    prepared = _one_set(boxes, format, closed, missing, by, margin)
+    prepared = one_set(boxes, format, closed, missing, by, margin)
     return _iterate(prepared, size, dtype)
 
 
@@ -403,7 +403,7 @@ def iter_chunks_between(
     ...     print(pairs.tolist())
     [[0, 0], [0, 1]]
     """
-    prepared = _two_sets(a, b, format, closed, missing, by, margin)
+    prepared = two_sets(a, b, format, closed, missing, by, margin)
     return _iterate(prepared, size, dtype)
 
 
@@ -633,7 +633,7 @@ _Result = TypeVar("_Result")
 _Each = Callable[[Pairs], object]
 
 
-def _find(prepared: Prepared, threads: int | None, dtype: DTypeLike, progress: Progress | None = None) -> Pairs:
+def find(prepared: Prepared, threads: int | None, dtype: DTypeLike, progress: Progress | None = None) -> Pairs:
     index = index_dtype(dtype)
     found = _search(prepared, threads, lambda finder: finder.find(*_arguments(prepared), index, _checked(progress)))
     return _done(prepared.translate(found), progress)
@@ -641,12 +641,12 @@ def _find(prepared: Prepared, threads: int | None, dtype: DTypeLike, progress: P
 
 def _count(prepared: Prepared, threads: int | None, progress: Progress | None) -> int:
     if prepared.groups is not None:
-        return len(_find(prepared, threads, np.int64, progress))
+        return len(find(prepared, threads, np.int64, progress))
     count = _search(prepared, threads, lambda finder: finder.count(*_arguments(prepared), _checked(progress)))
     return _done(count, progress)
 
 
-def _stream(prepared: Prepared, each: _Each, size: int, dtype: DTypeLike) -> bool:
+def stream(prepared: Prepared, each: _Each, size: int, dtype: DTypeLike) -> bool:
     index = index_dtype(dtype)
     each, size = _chunks(each, size)
 
@@ -666,7 +666,7 @@ def _iterate(prepared: Prepared, size: int, dtype: DTypeLike) -> Iterator[Pairs]
     # Refused now, and not with the first chunk.
     _chunk_size(size)
     index_dtype(dtype)
-    return _chunks_of_thread(lambda each: _stream(prepared, each, size, dtype))
+    return _chunks_of_thread(lambda each: stream(prepared, each, size, dtype))
 
 
 def _chunks_of_thread(stream: Callable[[_Each], object]) -> Iterator[Pairs]:
@@ -729,13 +729,13 @@ def _arguments(prepared: Prepared) -> tuple[Floats, Floats | None]:
     return prepared.sets[0], prepared.sets[1] if len(prepared.sets) == 2 else None
 
 
-def _one_set(
+def one_set(
     boxes: ArrayLike, format: str, closed: str | None, missing: str, by: Groups | None, margin: Margin
 ) -> Prepared:
     return prepare({"boxes": boxes}, format, closed, missing, None if by is None else [by], margin)
 
 
-def _two_sets(
+def two_sets(
     a: ArrayLike,
     b: ArrayLike,
     format: str,

@@ -39,7 +39,9 @@ class Prepared(NamedTuple):
     sets: list[Floats]
     kept: list[Rows]
     """The row of each box in what the user passed; None if no row was left out."""
-    groups: list[NDArray[Any]] | None
+    lengths: list[int]
+    """How many boxes the user passed in each set."""
+    groups: list[NDArray[Any]] | None = None
     """Groups that have to be compared after the search, because there is no axis left for them."""
 
     def translate(self, pairs: NDArray[Any]) -> NDArray[Any]:
@@ -84,19 +86,20 @@ def prepare(
             rows = list(same_width(*rows))
             if rows[0].dtype != rows[1].dtype:
                 rows = [array.astype(np.float64, copy=False) for array in rows]
-        return Prepared(rows, [None for _ in rows], None)
+        return Prepared(rows, [None for _ in rows], [*map(len, rows)])
     sets = {name: with_rows(boxes) for name, boxes in sets.items()}
     is_closed = checked_closed(closed, *sets.values())
     names = list(sets)
     raw = [read_boxes(values, name, 0, format) for name, values in sets.items()]
-    arrays = _one_kind(raw, names)
+    arrays = one_kind(raw, names)
+    lengths = [*map(len, arrays)]
     if len(arrays) == 2:
         _refuse_other_coordinates(*sets.values())
         arrays = list(same_width(*arrays))
-    of_group = None if by is None else _groups(by, sets, [len(array) for array in arrays])
+    of_group = None if by is None else _groups(by, sets, lengths)
     kept: list[Rows] = [None for _ in arrays]
     if missing == "skip":
-        arrays, kept = _leave_out([_is_missing(array) for array in arrays], arrays, kept)
+        arrays, kept = _leave_out([is_missing(array) for array in arrays], arrays, kept)
     if has_margin and not any(map(len, arrays)) and _is_duration(margin):
         arrays = [array.astype("m8[s]") for array in arrays]  # nothing else tells that these would be times
     are_grouped = of_group is None or all(bool((group >= 0).all()) for group in of_group)
@@ -129,14 +132,14 @@ def prepare(
     if not is_closed:
         rows = [_without_ends(array, are_whole and is_float) for array in rows]
     if of_group is None:
-        return Prepared(rows, kept, None)
+        return Prepared(rows, kept, lengths)
     groups = [group if own is None else group[own] for group, own in zip(of_group, kept)]
     if rows[0].shape[1] < 6:
         dtype = np.result_type(*rows)
         dtype = np.dtype(np.float64) if max(map(_most, groups)) >= 2**24 else dtype
         rows = [_with_axis(boxes, group.astype(dtype)[:, None]) for boxes, group in zip(rows, groups)]
-        return Prepared(rows, kept, None)
-    return Prepared(rows, kept, groups)
+        return Prepared(rows, kept, lengths)
+    return Prepared(rows, kept, lengths, groups)
 
 
 def is_zero(margin: object) -> bool:
@@ -154,7 +157,7 @@ def _most(array: NDArray[Any]) -> int:
     return int(array.max()) if len(array) else 0
 
 
-def _is_missing(array: NDArray[Any]) -> NDArray[np.bool_]:
+def is_missing(array: NDArray[Any]) -> NDArray[np.bool_]:
     """The boxes of which a coordinate is missing."""
     missing = np.zeros(len(array), bool)
     if array.dtype.kind not in "iu":
@@ -175,7 +178,7 @@ def _leave_out(masks: list[NDArray[np.bool_]], arrays: list[Any], kept: list[Row
     return result, rows
 
 
-def _one_kind(raw: list[Raw], names: list[str]) -> list[NDArray[Any]]:
+def one_kind(raw: list[Raw], names: list[str]) -> list[NDArray[Any]]:
     """Boxes whose coordinates can be compared: all of them numbers, durations, or times with or without a zone."""
     are_one = len({_kind(one) for one in raw}) == 1
     has_values = [bool(len(one.array)) if are_one else _has_value(one.array) for one in raw]

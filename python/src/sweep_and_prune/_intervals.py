@@ -1,0 +1,347 @@
+"""Intervals: which are connected, what they cover, and which are nearest. Boxes have the nearest, too."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._arrays import read_boxes, whole
+from ._columns import read_column
+from ._overlaps import Values, line_keys, plain_corners
+from ._pairs import Groups, Margin, find, one_set, stream, two_sets
+from ._prepare import Prepared, is_missing
+
+_CHUNK = 2**20
+
+
+class Merged(NamedTuple):
+    """Intervals that were merged, an entry for each."""
+
+    intervals: Values
+    """`(m, 2)`: starts and ends, in the type of what was merged."""
+    counts: NDArray[np.int64]
+    """How many intervals each one consists of."""
+    first: NDArray[np.int64]
+    """The first row of each one, by which its group can be looked up."""
+
+
+class Nearest(NamedTuple):
+    """Pairs of boxes that are near each other."""
+
+    pairs: NDArray[np.int64]
+    """`(m, 2)`: an index of a row of `a` and one of `b`."""
+    distances: Values
+    """The distance of each pair, 0 where they overlap or touch."""
+
+
+def cluster(
+    intervals: ArrayLike,
+    *,
+    closed: str | None = None,
+    missing: str = "raise",
+    by: Groups | None = None,
+    margin: Margin = 0,
+) -> NDArray[np.int64]:
+    """Numbers the groups of connected intervals: those that overlap, directly or through others.
+
+    Time O(n log n), however many overlap: no pairs are found.
+
+    Args:
+        intervals: `(n, 2)` starts and ends, or another form that `find_pairs` accepts.
+        closed: which ends belong to an interval. By default both: intervals that touch are connected.
+        missing: `"raise"` or `"skip"`: an interval with a NaN is in no cluster.
+        by: only intervals with equal values are connected.
+        margin: intervals within this distance are connected, too.
+
+    Returns:
+        `(n,)`: the cluster of each interval. They are numbered from 0, in the order of their first rows; -1 is none.
+
+    Raises:
+        ValueError: for boxes of more than one dimension.
+        InvalidBoxError, TypeError: as `find_pairs`.
+
+    >>> import sweep_and_prune as sap
+    >>> sap.cluster([[0, 2], [5, 6], [2, 3], [6, 9]])
+    array([0, 1, 0, 1])
+    >>> sap.cluster([[0, 2], [5, 6], [2, 3], [6, 9]], closed="left", margin=2)
+    array([0, 1, 0, 1])
+    """
+    prepared = one_set(intervals, "xyxy", closed, missing, by, margin)
+    _refuse_boxes(prepared, by)
+    labels = np.full(prepared.lengths[0], -1, np.int64)
+    kept = prepared.kept[0]
+    rows = np.arange(len(labels)) if kept is None else kept
+    labels[rows] = _clusters(prepared)
+    if kept is not None and len(rows) < len(labels):
+        # Those that overlap nothing, since they are empty or have no group, are by themselves.
+        alone = np.setdiff1d(np.flatnonzero(~is_missing(_lines(intervals))), rows)
+        labels[alone] = labels.max(initial=-1) + 1 + np.arange(len(alone))
+    present = np.flatnonzero(labels >= 0)
+    _, first, of_rows = np.unique(labels[present], return_index=True, return_inverse=True)
+    labels[present] = np.argsort(np.argsort(first))[of_rows.reshape(-1)]
+    return labels
+
+
+def _refuse_boxes(prepared: Prepared, by: Any) -> None:
+    width = prepared.sets[0].shape[1] - (0 if by is None else 2)
+    if width != 2:
+        raise ValueError(f"intervals must be of shape (n, 2), starts and ends, not of {width} columns")
+
+
+def _lines(intervals: Any) -> Values:
+    return read_boxes(intervals, "intervals").array
+
+
+def _clusters(prepared: Prepared) -> NDArray[np.int64]:
+    ((starts, ends),) = line_keys(prepared.sets)
+    order = np.argsort(starts, kind="stable")
+    if len(order) == 0:
+        return order
+    begins = np.ones(len(order), bool)
+    begins[1:] = starts[order][1:] > np.maximum.accumulate(ends[order])[:-1]
+    labels = np.empty(len(order), np.int64)
+    labels[order] = np.cumsum(begins) - 1
+    return labels
+
+
+def merge(
+    intervals: ArrayLike,
+    *,
+    closed: str | None = None,
+    missing: str = "raise",
+    by: Groups | None = None,
+    margin: Margin = 0,
+) -> Merged:
+    """Merges intervals that overlap, directly or through others, to the shortest ones that contain them.
+
+    Time O(n log n).
+
+    Args:
+        intervals: `(n, 2)` starts and ends, or another form that `find_pairs` accepts.
+        closed: which ends belong to an interval. By default both: intervals that touch are merged.
+        missing: `"raise"` or `"skip"`: an interval with a NaN is left out.
+        by: only intervals with equal values are merged.
+        margin: intervals within this distance are merged, too.
+
+    Returns:
+        `intervals, counts, first`, in the order of their first rows.
+
+    Raises:
+        ValueError, InvalidBoxError, TypeError: as `cluster`.
+
+    >>> import sweep_and_prune as sap
+    >>> sap.merge([[0, 2], [5, 6], [2, 3]]).intervals
+    array([[0, 3],
+           [5, 6]])
+    >>> chromosomes = ["chr1", "chr2", "chr2"]
+    >>> merged = sap.merge([[0, 2], [1, 6], [2, 9]], by=chromosomes)
+    >>> [(chromosomes[row], *ends) for row, ends in zip(merged.first, merged.intervals.tolist())]
+    [('chr1', 0, 2), ('chr2', 1, 9)]
+    """
+    labels = cluster(intervals, closed=closed, missing=missing, by=by, margin=margin)
+    ends = _lines(intervals)
+    order = np.argsort(labels, kind="stable")
+    order = order[labels[order] >= 0]
+    if len(order) == 0:
+        return Merged(ends[:0], order, order)
+    starts_at = np.flatnonzero(np.diff(labels[order], prepend=-1))
+    merged = [function.reduceat(ends[order, side], starts_at) for side, function in enumerate((np.minimum, np.maximum))]
+    return Merged(np.stack(merged, axis=1), np.diff(starts_at, append=len(order)), order[starts_at])
+
+
+def coverage(
+    a: ArrayLike,
+    b: ArrayLike,
+    *,
+    missing: str = "raise",
+    by: Groups | tuple[Groups, Groups] | None = None,
+) -> Values:
+    """Measures how much of each interval of `a` the intervals of `b` cover together.
+
+    What several intervals of `b` cover counts once. The intervals of `b` are merged first, so the time is O(n log n +
+    the pairs of an interval of `a` and a merged one).
+
+    Args:
+        a: `(n, 2)` starts and ends, or another form that `find_pairs` accepts.
+        b: another set of intervals.
+        missing: `"raise"` or `"skip"`: an interval with a NaN covers nothing, and 0 of it is covered.
+        by: an interval is only covered by those with equal values, as in `find_pairs_between`.
+
+    Returns:
+        `(n,)` lengths: integers for integers, durations for times.
+
+    Raises:
+        ValueError: for boxes of more than one dimension.
+        InvalidBoxError, TypeError: as `find_pairs_between`.
+
+    >>> import sweep_and_prune as sap
+    >>> sap.coverage([[0, 10], [20, 30]], [[2, 5], [4, 6], [9, 25]])
+    array([5, 5])
+    """
+    prepared = two_sets(a, b, "xyxy", "both", missing, by, 0)
+    _refuse_boxes(prepared, by)
+    of_a, of_b = plain_corners({"a": a, "b": b}, "xyxy")
+    second = prepared._replace(sets=prepared.sets[1:], kept=prepared.kept[1:])
+    labels = _clusters(second)
+    covered = np.zeros(len(of_a), (of_a[:, 1] - of_a[:, 0]).dtype)
+    if len(labels) == 0:
+        return covered
+    order = np.argsort(labels, kind="stable")
+    starts_at = np.flatnonzero(np.diff(labels[order], prepend=-1))
+    ends = of_b[order if prepared.kept[1] is None else prepared.kept[1][order]]
+    merged = [function.reduceat(ends[:, side], starts_at) for side, function in enumerate((np.minimum, np.maximum))]
+    half = prepared.sets[1].shape[1] // 2
+    boxes = prepared.sets[1][order[starts_at]]
+    for column, function in ((0, np.minimum), (half, np.maximum)):
+        boxes[:, column] = function.reduceat(prepared.sets[1][order, column], starts_at)
+    search = prepared._replace(sets=[prepared.sets[0], boxes], kept=[prepared.kept[0], None])
+
+    def add(pairs: NDArray[Any]) -> None:
+        first, other = pairs.T
+        shared = np.minimum(of_a[first, 1], merged[1][other]) - np.maximum(of_a[first, 0], merged[0][other])
+        np.add.at(covered, first, shared)
+
+    stream(search, add, _CHUNK, np.int64)
+    return covered
+
+
+def nearest(
+    a: ArrayLike,
+    b: ArrayLike,
+    k: int = 1,
+    *,
+    max_distance: float | None = None,
+    how: str = "inner",
+    format: str = "xyxy",
+    missing: str = "raise",
+    by: Groups | tuple[Groups, Groups] | None = None,
+) -> Nearest:
+    """Finds for each box of `a` the `k` nearest boxes of `b`.
+
+    The distance of two boxes is the length of the shortest line between them: 0 if they overlap or touch. Of boxes that
+    are equally near, those with smaller indices are taken. For intervals the time is O(n log n + n k + overlapping
+    pairs). In two and three dimensions, all boxes within `max_distance` on each axis are looked at.
+
+    Args:
+        a: `(n, 2 * D)` numbers, or another form that `find_pairs` accepts.
+        b: another set of boxes.
+        k: how many to find for each box of `a`, at most.
+        max_distance: boxes farther away are left out; a number, or a duration for times. Boxes of two or three
+            dimensions need it.
+        how: `"inner"`: boxes of `a` without any have no pair. `"left"`: such a box has one pair with -1, whose distance
+            is -1 for integers, and otherwise NaN or NaT.
+        format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
+        missing: `"raise"` or `"skip"`: a box with a NaN is near nothing.
+        by: only boxes with equal values are near each other, as in `find_pairs_between`.
+
+    Returns:
+        `pairs, distances`, sorted by the rows of `a`, then by distance and the rows of `b`. Distances of intervals have
+        their type: they are exact for integers and times.
+
+    Raises:
+        ValueError: for boxes of two or three dimensions without `max_distance`, and for unknown options.
+        InvalidBoxError, TypeError: as `find_pairs_between`.
+
+    >>> import sweep_and_prune as sap
+    >>> genes, peaks = [[0, 10], [50, 60]], [[12, 14], [44, 45], [58, 59]]
+    >>> found = sap.nearest(genes, peaks, 2)
+    >>> found.pairs.tolist(), found.distances.tolist()
+    ([[0, 0], [0, 1], [1, 2], [1, 1]], [2, 34, 0, 5])
+    """
+    if how not in ("inner", "left"):
+        raise ValueError(f'how must be "inner" or "left", not {how!r}')
+    k = whole(k, "k", 1, 2**31 - 1)
+    corners = plain_corners({"a": a, "b": b}, format)
+    half = corners[0].shape[1] // 2
+    is_line = half == 1
+    if not is_line and max_distance is None:
+        raise ValueError("boxes of two or three dimensions need max_distance: those farther away are left out")
+    if not any(map(len, corners)):  # of what kind coordinates would be is not known
+        return Nearest(np.empty((0, 2), np.int64), corners[0][:, 0])
+    limit = None if max_distance is None else _limit(max_distance, corners[0])
+    reach = 0 if is_line else _reach(corners, limit)
+    prepared = two_sets(a, b, format, "both", missing, by, reach)
+    pairs = find(prepared, 1, np.int64)
+    if is_line:
+        pairs = np.concatenate([pairs, *_beside(prepared, min(k, max(len(corners[1]), 1)))])
+    distances = _distances(corners, pairs)
+    if limit is not None:
+        is_near = distances <= limit
+        pairs, distances = pairs[is_near], distances[is_near]
+    ranks = np.unique(distances, return_inverse=True)[1].reshape(-1) if distances.dtype.kind == "O" else distances
+    order = np.lexsort((pairs[:, 1], ranks, pairs[:, 0]))
+    pairs, distances = pairs[order], distances[order]
+    begins = np.flatnonzero(np.diff(pairs[:, 0], prepend=-1))
+    place = np.arange(len(pairs)) - np.repeat(begins, np.diff(begins, append=len(pairs)))
+    pairs, distances = pairs[place < k], distances[place < k]
+    if how == "left":
+        alone = np.setdiff1d(np.arange(len(corners[0])), pairs[:, 0])
+        pairs = np.concatenate([pairs, np.stack([alone, np.full(len(alone), -1)], axis=1)])
+        nothing = {"m": "NaT", "f": np.nan}.get(distances.dtype.kind, -1)
+        distances = np.concatenate([distances, np.full(len(alone), nothing, distances.dtype)])
+        order = np.argsort(pairs[:, 0], kind="stable")
+        pairs, distances = pairs[order], distances[order]
+    return Nearest(pairs, distances)
+
+
+def _limit(max_distance: Any, corners: Values) -> Any:
+    column = read_column([max_distance], "max_distance")
+    wanted = "durations" if corners.dtype.kind in "mM" else "numbers"
+    if column.kinds() != {wanted}:
+        kind = "a timedelta for times" if wanted == "durations" else "a number"
+        raise TypeError(f"max_distance must be {kind}, not {max_distance!r}")
+    limit = column.values[0]
+    if not limit >= limit - limit:
+        raise ValueError(f"max_distance is {max_distance}; it must be finite and 0 or more")
+    return limit
+
+
+def _reach(corners: list[Values], limit: Any) -> Any:
+    """The margin that finds all boxes within a distance, however sums are rounded in single precision."""
+    if corners[0].dtype.kind != "f":
+        return math.floor(limit)
+    finite = [np.abs(boxes[np.isfinite(boxes)]).max(initial=0) for boxes in corners]
+    return float(limit + 4 * float(np.finfo(np.float32).eps) * (max(map(float, finite)) + limit))
+
+
+def _beside(prepared: Prepared, k: int) -> list[NDArray[np.int64]]:
+    """For each interval, the `k` that end nearest before it begins, and the `k` that begin nearest after its end."""
+    (low_a, high_a), (low_b, high_b) = line_keys(prepared.sets)
+    first, second = prepared.sets
+    is_grouped = first.shape[1] == 4
+    group_a, group_b = (boxes[:, 1] if is_grouped else np.zeros(len(boxes)) for boxes in (first, second))
+    of_b = np.arange(len(second))
+    found = []
+    for keys, own, side, step in ((low_b, high_a, "right", 1), (high_b, low_a, "left", -1)):
+        # Of equal ones, those with smaller indices come first, in the direction of the search.
+        order = np.lexsort((step * of_b, keys))
+        place = np.searchsorted(keys[order], own, side=side) + (0 if step == 1 else -1)  # type: ignore[call-overload]
+        for _ in range(k):
+            is_there = (place >= 0) & (place < len(order))
+            rows = np.flatnonzero(is_there)
+            rows = rows[group_a[rows] == group_b[order[place[rows]]]]
+            if len(rows) == 0:
+                break
+            found.append(_translated(prepared, rows, order[place[rows]]))
+            place = place + step
+    return found
+
+
+def _translated(prepared: Prepared, rows_of_a: Any, rows_of_b: Any) -> NDArray[np.int64]:
+    columns = [rows if kept is None else kept[rows] for rows, kept in zip((rows_of_a, rows_of_b), prepared.kept)]
+    return np.stack(columns, axis=1).astype(np.int64)
+
+
+def _distances(corners: list[Values], pairs: NDArray[np.int64]) -> Values:
+    first, second = corners[0][pairs[:, 0]], corners[1][pairs[:, 1]]
+    half = first.shape[1] // 2
+    with np.errstate(invalid="ignore"):
+        gaps = np.maximum(first[:, :half] - second[:, half:], second[:, :half] - first[:, half:])
+    zero = np.zeros((), gaps.dtype)
+    gaps = np.where(gaps > zero, gaps, zero)  # also for infinite ends, whose difference is NaN
+    if half == 1:
+        return np.asarray(gaps[:, 0])
+    return np.asarray(np.sqrt((gaps.astype(np.float64) ** 2).sum(axis=1)))

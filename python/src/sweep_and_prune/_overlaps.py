@@ -1,0 +1,206 @@
+"""How many boxes each box overlaps, and how much of them two boxes share."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._arrays import Floats, read_boxes, same_width
+from ._columns import in_one_unit, one_type
+from ._pairs import Groups, Margin, one_set, stream, two_sets
+from ._prepare import Prepared, one_kind
+
+Values = NDArray[Any]
+"""Coordinates or sizes in the type that the boxes have: integers, floating point or times."""
+
+_CHUNK = 2**20
+_SAFE = 2**61
+"""Sums and differences of two integers below this do not overflow."""
+
+
+class Overlaps(NamedTuple):
+    """How much pairs of boxes overlap, an entry for each pair."""
+
+    size: Values
+    """The length, area or volume of the intersection. In 1D it is exact for integers and times."""
+    fraction_a: NDArray[np.float64]
+    """The share of the first box that the second one covers; NaN if the first one has no size."""
+    fraction_b: NDArray[np.float64]
+    """The share of the second box that the first one covers; NaN if the second one has no size."""
+    iou: NDArray[np.float64]
+    """The intersection over the union; NaN if neither has a size."""
+
+
+def count_overlaps(
+    a: ArrayLike,
+    b: ArrayLike | None = None,
+    *,
+    format: str = "xyxy",
+    closed: str | None = None,
+    missing: str = "raise",
+    by: Groups | tuple[Groups, Groups] | None = None,
+    margin: Margin = 0,
+) -> NDArray[np.int64]:
+    """Counts for each box of `a` the boxes of `b` that overlap it; without `b`, the other boxes of `a`.
+
+    No pairs are stored. For intervals not even looked at: their starts and ends are sorted, so that the time is
+    O(n log n) however many overlap. For boxes of two or three dimensions, the time is that of `find_pairs`.
+
+    Args:
+        a: `(n, 2 * D)` numbers, or another form that `find_pairs` accepts.
+        b: another set of boxes.
+        format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
+        closed: `"both"`, `"left"`, `"right"` or `"neither"`.
+        missing: `"raise"` or `"skip"`: a box with a NaN overlaps nothing.
+        by: only boxes with equal values count, as in `find_pairs` and `find_pairs_between`.
+        margin: counts boxes within this distance on each axis, too.
+
+    Returns:
+        `(n,)` numbers.
+
+    Raises:
+        InvalidBoxError, ValueError, TypeError: as `find_pairs_between`.
+
+    >>> import sweep_and_prune as sap
+    >>> sap.count_overlaps([[0, 5], [6, 9], [20, 30]], [[1, 2], [4, 7], [5, 6]])
+    array([3, 2, 0])
+    >>> sap.count_overlaps([[0, 5], [4, 7], [20, 30]])
+    array([1, 1, 0])
+    """
+    if b is None:
+        prepared = one_set(a, format, closed, missing, by, margin)
+    else:
+        prepared = two_sets(a, b, format, closed, missing, by, margin)
+    rows = prepared.lengths[0]
+    counts = np.zeros(rows, np.int64)
+    if prepared.sets[0].shape[1] == (2 if by is None else 4):
+        counts[slice(None) if prepared.kept[0] is None else prepared.kept[0]] = _counts_of_intervals(prepared)
+        return counts
+
+    def add(pairs: NDArray[Any]) -> None:
+        counts[:] += np.bincount(pairs[:, 0], minlength=rows)
+        if b is None:
+            counts[:] += np.bincount(pairs[:, 1], minlength=rows)
+
+    stream(prepared, add, _CHUNK, np.int64)
+    return counts
+
+
+def _counts_of_intervals(prepared: Prepared) -> NDArray[np.int64]:
+    """Those that begin before the end of an interval, without those that end before its start."""
+    first, second = prepared.sets[0], prepared.sets[-1]
+    (starts, ends), (low, high) = line_keys([second, first])
+    begun = np.searchsorted(np.sort(starts), high, side="right")
+    ended = np.searchsorted(np.sort(ends), low, side="left")
+    return np.asarray(begun - ended - (len(prepared.sets) == 1), np.int64)
+
+
+def line_keys(sets: list[Floats]) -> list[tuple[Values, Values]]:
+    """Numbers for the starts and the ends of intervals, in the order of groups and then of coordinates."""
+    if sets[0].shape[1] == 2:
+        return [(boxes[:, 0], boxes[:, 1]) for boxes in sets]
+    every = np.concatenate([boxes[:, [0, 2]] for boxes in sets])
+    coordinates, ranks = np.unique(every, return_inverse=True)
+    ranks = ranks.reshape(every.shape)
+    codes = np.concatenate([boxes[:, 1] for boxes in sets])
+    groups = np.unique(codes, return_inverse=True)[1].reshape(-1).astype(np.int64)
+    keys = groups[:, None] * len(coordinates) + ranks
+    parts = np.split(keys, np.cumsum([len(boxes) for boxes in sets])[:-1])
+    return [(part[:, 0], part[:, 1]) for part in parts]
+
+
+def measure_overlaps(a: ArrayLike, b: ArrayLike | None, pairs: ArrayLike, *, format: str = "xyxy") -> Overlaps:
+    """Measures how much the boxes of each pair overlap.
+
+    Where two boxes do not overlap, as with a `margin`, the size is 0. Infinite boxes have a NaN where infinity would be
+    divided by infinity.
+
+    Args:
+        a: `(n, 2 * D)` numbers, or another form that `find_pairs` accepts.
+        b: another set of boxes; None for pairs of `a` itself.
+        pairs: `(m, 2)` indices of rows, as `find_pairs` or `find_pairs_between` returned them.
+        format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
+
+    Returns:
+        Four arrays of length m: `size, fraction_a, fraction_b, iou`.
+
+    Raises:
+        ValueError, TypeError: for boxes that are not recognized, times in more than one dimension, or pairs that are
+            not rows.
+
+    >>> import sweep_and_prune as sap
+    >>> genes, reads = [[0, 100], [200, 300]], [[90, 110], [220, 240]]
+    >>> pairs = sap.find_pairs_between(genes, reads)
+    >>> found = sap.measure_overlaps(genes, reads, pairs)
+    >>> found.size.tolist(), found.fraction_b.tolist()
+    ([10, 20], [0.5, 1.0])
+    >>> pairs[found.fraction_b >= 0.75].tolist()
+    [[1, 1]]
+    """
+    sets: dict[str, Any] = {"boxes": a} if b is None else {"a": a, "b": b}
+    corners = plain_corners(sets, format)
+    rows = np.asarray(pairs)
+    if rows.ndim != 2 or rows.shape[1] != 2 or (rows.dtype.kind not in "iu" and rows.size):
+        raise ValueError(f"pairs must be (m, 2) indices of rows, not of shape {rows.shape} and dtype {rows.dtype}")
+    rows = rows.astype(np.int64)
+    for side, boxes in zip(rows.T, (corners[0], corners[-1])):
+        if len(side) and not (0 <= side.min() and side.max() < len(boxes)):
+            wrong = int(side.min()) if side.min() < 0 else int(side.max())
+            raise ValueError(f"pairs has the index {wrong}; it must be from 0 to {len(boxes) - 1}")
+    first, second = corners[0][rows[:, 0]], corners[-1][rows[:, 1]]
+    with np.errstate(all="ignore"):
+        shared = _size(np.hstack([_larger(first, second), _smaller(first, second)]))
+        of_a, of_b = _size(first), _size(second)
+        union = of_a + of_b - shared
+        return Overlaps(shared, _share(shared, of_a), _share(shared, of_b), _share(shared, union))
+
+
+def _larger(first: Values, second: Values) -> Values:
+    half = first.shape[1] // 2
+    return np.asarray(np.maximum(first[:, :half], second[:, :half]))
+
+
+def _smaller(first: Values, second: Values) -> Values:
+    half = first.shape[1] // 2
+    return np.asarray(np.minimum(first[:, half:], second[:, half:]))
+
+
+def _size(boxes: Values) -> Values:
+    half = boxes.shape[1] // 2
+    sides = boxes[:, half:] - boxes[:, :half]
+    sides = np.maximum(sides, np.zeros((), sides.dtype))
+    if half == 1:
+        return np.asarray(sides[:, 0])
+    return np.asarray(sides.astype(np.float64).prod(axis=1))
+
+
+def _share(part: Values, whole: Values) -> NDArray[np.float64]:
+    if whole.dtype.kind == "O":
+        return np.array([one / other if other else np.nan for one, other in zip(part, whole)], np.float64)
+    return np.asarray(part / whole, np.float64)
+
+
+def plain_corners(sets: dict[str, Any], format: str) -> list[Values]:
+    """Corners of sets of boxes in one type, of which sums and differences are exact or rounded once.
+
+    These are `int64`, Python's own numbers, `float64`, or times in one unit.
+    """
+    raw = [read_boxes(values, name, 0, format) for name, values in sets.items()]
+    arrays = one_kind(raw, list(sets))
+    if len(arrays) == 2:
+        arrays = list(same_width(*arrays))
+    if arrays[0].dtype.kind in "mM":
+        if arrays[0].shape[1] > 2:
+            raise TypeError("boxes of times have sizes in one dimension only")
+        arrays = in_one_unit(arrays)
+        if arrays[0].dtype.kind == "O":
+            raise ValueError("the times of the two sets do not fit in one unit: convert them")
+        return arrays
+    arrays = one_type(arrays)
+    kind = arrays[0].dtype.kind
+    if kind in "iu":
+        is_safe = all(-_SAFE < int(array.min(initial=0)) and int(array.max(initial=0)) < _SAFE for array in arrays)
+        return [array.astype(np.int64 if is_safe else object) for array in arrays]
+    return [array if kind == "O" else array.astype(np.float64, copy=False) for array in arrays]

@@ -1,0 +1,260 @@
+"""Counts, sizes, clusters, coverage and nearest boxes against their definitions, tested on all pairs of Python's own
+numbers; and against bioframe and geopandas."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterator
+from fractions import Fraction
+from random import Random
+from typing import Any
+
+import numpy as np
+import pytest
+
+import sweep_and_prune as sap
+
+CALLS = int(os.environ.get("CALLS", 20_000 if "TEST_LONG" in os.environ else 600))
+SEED = int(os.environ.get("SEED", 1))
+
+
+class Boxes:
+    """Random boxes with few distinct coordinates, as they are passed and as Python's own numbers."""
+
+    def __init__(self, random: Random, dimensions: int, kind: str, groups: list[Any], may_miss: bool) -> None:
+        count = random.choice([0, 1, 2, 5, 9])
+        offset = {"large": 2**62, "times": 10**9}.get(kind, 0)
+        step = Fraction(1, 4) if kind in ("float32", "float64") else 1
+        self.rows: list[list[Any]] = []
+        self.groups = [random.choice(groups) for _ in range(count)]
+        for _ in range(count):
+            pairs = [sorted(random.randint(0, 12) * step + offset for _ in "lh") for _ in range(dimensions)]
+            self.rows.append([*(low for low, _ in pairs), *(high for _, high in pairs)])
+        self.missing = [may_miss and random.random() < 0.15 for _ in range(count)]
+        numbers = [[float(one) if step != 1 else int(one) for one in row] for row in self.rows]
+        shape = (count, 2 * dimensions)
+        if kind == "times":
+            array: Any = np.array(numbers, np.int64).reshape(shape).view("M8[s]")
+            array[np.array(self.missing, bool)] = "NaT"
+        elif kind == "large":
+            array = np.array(numbers, np.uint64 if offset else np.int64).reshape(shape)
+            self.missing = [False] * count
+        else:
+            array = np.array(numbers, kind).reshape(shape)
+            if array.dtype.kind == "f":
+                array[np.array(self.missing, bool)] = np.nan
+            else:
+                self.missing = [False] * count
+        self.given = array
+
+    def present(self) -> Iterator[int]:
+        return (row for row, is_missing in enumerate(self.missing) if not is_missing)
+
+
+def overlap(a: list[Any], b: list[Any], closed: str, margin: Any) -> bool:
+    half = len(a) // 2
+    if closed != "both" and any(box[axis] == box[axis + half] for box in (a, b) for axis in range(half)):
+        return False
+    ends = [(x[axis], y[axis + half] + margin) for axis in range(half) for x, y in ((a, b), (b, a))]
+    return all(low <= high if closed == "both" else low < high for low, high in ends)
+
+
+def gaps(a: list[Any], b: list[Any]) -> list[Any]:
+    half = len(a) // 2
+    return [max(a[axis] - b[axis + half], b[axis] - a[axis + half], 0) for axis in range(half)]
+
+
+def plain(values: Any) -> list[Any]:
+    """Results as Python's own numbers; durations in seconds."""
+    array = np.asarray(values)
+    items = array.astype("m8[s]").astype(np.int64).tolist() if array.dtype.kind == "m" else array.tolist()
+    return [Fraction(one) if isinstance(one, float) and math.isfinite(one) else one for one in items]
+
+
+def one_call(random: Random) -> None:
+    kind = random.choice(["int64", "int32", "float32", "float64", "large", "times"])
+    dimensions = random.choice([1, 1, 1, 2, 3]) if kind != "times" else 1
+    has_groups = random.random() < 0.5
+    groups: list[Any] = random.choice([["x", "y"], [1, 2, 3]]) if has_groups else [0]
+    a, b = (Boxes(random, dimensions, kind, groups, random.random() < 0.5) for _ in "ab")
+    closed = random.choice(["both", "left", "neither"])
+    margin = 0 if random.random() < 0.5 else random.choice([1, 2])
+    given = np.timedelta64(margin, "s") if kind == "times" and margin else margin
+    options: dict[str, Any] = {"closed": closed, "missing": "skip", "margin": given}
+    of_one: dict[str, Any]
+    of_two: dict[str, Any]
+    of_one, of_two = ({"by": a.groups}, {"by": (a.groups, b.groups)}) if has_groups else ({}, {})
+    said = f"{kind} {options} {of_two}\n{a.given.tolist()}\n{b.given.tolist()}"
+
+    def pairs(first: Boxes, second: Boxes, closed: str, margin: Any) -> list[tuple[int, int]]:
+        return [
+            (i, j)
+            for i in first.present()
+            for j in second.present()
+            if first.groups[i] == second.groups[j] and overlap(first.rows[i], second.rows[j], closed, margin)
+        ]
+
+    between = pairs(a, b, closed, margin)
+    among = [(i, j) for i, j in pairs(a, a, closed, margin) if i != j]
+    counts = [sum(i == row for i, _ in between) for row in range(len(a.rows))]
+    assert sap.count_overlaps(a.given, b.given, **options, **of_two).tolist() == counts, said
+    counts = [sum(i == row for i, _ in among) for row in range(len(a.rows))]
+    assert sap.count_overlaps(a.given, **options, **of_one).tolist() == counts, said
+
+    touching = pairs(a, b, "both", 0)
+    every = [(i, j) for i in a.present() for j in b.present()]
+    found = sap.measure_overlaps(a.given, b.given, np.array(every, np.int64).reshape(-1, 2))
+    half = dimensions
+
+    def size(box: list[Any]) -> Any:
+        return math.prod(max(high - low, 0) for low, high in zip(box[:half], box[half:]))
+
+    for (i, j), (shared, of_a, of_b, iou) in zip(every, zip(plain(found.size), *found[1:])):
+        first, second = a.rows[i], b.rows[j]
+        common = [*map(max, zip(first[:half], second[:half])), *map(min, zip(first[half:], second[half:]))]
+        assert shared == size(common), said
+        for share, whole in ((of_a, size(first)), (of_b, size(second)), (iou, size(first) + size(second) - shared)):
+            assert math.isnan(share) if whole == 0 else share == pytest.approx(float(Fraction(shared) / whole)), said
+
+    k = random.choice([1, 1, 2, 20])
+    limit = random.choice([None, 0, 1, 3]) if half == 1 else random.choice([0, 1, 3, 6])
+    how = random.choice(["inner", "left"])
+    near: list[Any] = []
+    for i in range(len(a.rows)):
+        squares = []
+        for j in b.present() if not a.missing[i] else []:
+            square = sum(gap * gap for gap in gaps(a.rows[i], b.rows[j]))
+            if a.groups[i] == b.groups[j] and (limit is None or square <= limit * limit):
+                squares.append((square, j))
+        near += [(i, j, square) for square, j in sorted(squares)[:k]]
+        if not squares and how == "left":
+            near.append((i, -1, None))
+    reach = np.timedelta64(limit, "s") if kind == "times" and limit is not None else limit
+    nearest = sap.nearest(a.given, b.given, k, max_distance=reach, how=how, missing="skip", **of_two)  # type: ignore
+    assert [tuple(pair) for pair in nearest.pairs.tolist()] == [(i, j) for i, j, _ in near], said
+    for distance, (_, j, square) in zip(plain(nearest.distances), near):
+        if j == -1:
+            assert distance == -1 or distance != distance or kind == "times", said
+        elif half == 1:
+            assert distance * distance == square, said
+        else:
+            assert float(distance) == pytest.approx(math.sqrt(square)), said
+
+    if half == 1:
+        clusters = clusters_of(a, among)
+        assert sap.cluster(a.given, **options, **of_one).tolist() == clusters, said
+        merged = sap.merge(a.given, **options, **of_one)
+        wanted = []
+        for label in range(max(clusters, default=-1) + 1):
+            rows = [row for row, of_row in enumerate(clusters) if of_row == label]
+            ends = min(a.rows[row][0] for row in rows), max(a.rows[row][1] for row in rows)
+            wanted.append((ends, len(rows), rows[0]))
+        rows = (merged.intervals.view(np.int64) if kind == "times" else merged.intervals).tolist()
+        assert [(tuple(map(Fraction, pair)), *rest) for pair, *rest in zip(rows, *merged[1:])] == wanted, said
+        covered = []
+        for i in range(len(a.rows)):
+            others = [b.rows[j] for other, j in touching if other == i]
+            marks = sorted({end for box in [a.rows[i], *others] for end in box})
+            inner = [
+                high - low
+                for low, high in zip(marks, marks[1:])
+                if a.rows[i][0] <= low < high <= a.rows[i][1] and any(o[0] <= low and high <= o[1] for o in others)
+            ]
+            covered.append(sum(inner) if not a.missing[i] else 0)
+        assert plain(sap.coverage(a.given, b.given, missing="skip", **of_two)) == covered, said
+
+
+def clusters_of(boxes: Boxes, among: list[tuple[int, int]]) -> list[int]:
+    """The components of a graph, numbered by their first rows."""
+    label = [*range(len(boxes.rows))]
+    for _ in label:
+        for i, j in among:
+            label[i] = label[j] = min(label[i], label[j])
+    numbers: dict[int, int] = {}
+    return [-1 if gone else numbers.setdefault(one, len(numbers)) for one, gone in zip(label, boxes.missing)]
+
+
+def test_each_answer_is_that_of_its_definition() -> None:
+    for seed in range(SEED, SEED + CALLS):
+        try:
+            one_call(Random(seed))
+        except Exception as error:
+            raise AssertionError(f"SEED={seed} CALLS=1: {type(error).__name__} {error}") from error
+
+
+def test_what_is_wrong_is_said() -> None:
+    plane: Any = [[0, 0, 1, 1]]
+    call: Any
+    for call in (sap.cluster, sap.merge):
+        with pytest.raises(ValueError, match=r"intervals must be of shape \(n, 2\), starts and ends, not of 4 columns"):
+            call(plane)
+    with pytest.raises(ValueError, match=r"intervals must be of shape \(n, 2\)"):
+        sap.coverage(plane, plane)
+    with pytest.raises(ValueError, match="boxes of two or three dimensions need max_distance"):
+        sap.nearest(plane, plane)
+    wrong: Any
+    for wrong, kind in ((-1, ValueError), (float("nan"), TypeError), ("x", TypeError)):
+        with pytest.raises(kind, match="max_distance"):
+            sap.nearest(plane, plane, max_distance=wrong)
+    with pytest.raises(ValueError, match="how must be"):
+        sap.nearest([[0, 1]], [[0, 1]], how="right")
+    with pytest.raises(ValueError, match="k must be from 1"):
+        sap.nearest([[0, 1]], [[0, 1]], 0)
+    with pytest.raises(sap.InvalidBoxError, match=r"b\[0\] is inverted"):
+        sap.coverage([[0, 1]], [[2, 1]])
+    for pairs, said in (([[0, 1]], "the index 1; it must be from 0 to 0"), ([0], "must be"), ([[0.0, 0.5]], "must be")):
+        with pytest.raises(ValueError, match=f"pairs .*{said}"):
+            sap.measure_overlaps(plane, None, pairs)
+
+
+def test_infinite_intervals_have_distances() -> None:
+    inf = math.inf
+    a, b = np.array([[-inf, 0], [5, inf], [inf, inf]]), np.array([[-inf, inf], [1, 2], [inf, inf]])
+    found = sap.nearest(a, b, 3)
+    assert found.pairs[:, 0].tolist() == [0, 0, 0, 1, 1, 1, 2, 2, 2]
+    assert found.distances.tolist() == [0, 1, inf, 0, 0, 3, 0, 0, inf]
+
+
+def frame(random: np.random.Generator, count: int) -> Any:
+    pandas = pytest.importorskip("pandas")
+    start = random.integers(0, 3000, count)
+    chrom = random.choice(["chr1", "chr2", "chrX"], count)
+    return pandas.DataFrame({"chrom": chrom, "start": start, "end": start + random.integers(1, 40, count)})
+
+
+@pytest.mark.filterwarnings("ignore")  # bioframe's own
+def test_the_answers_are_those_of_bioframe() -> None:
+    bioframe = pytest.importorskip("bioframe")
+    random = np.random.default_rng(5)
+    a, b = frame(random, 400), frame(random, 300)
+    assert (
+        sap.count_overlaps(a, b, by="chrom", closed="left").tolist() == bioframe.count_overlaps(a, b)["count"].tolist()
+    )
+    assert sap.coverage(a, b, by="chrom").tolist() == bioframe.coverage(a, b)["coverage"].tolist()
+    for distance in (0, 5):
+        wanted_frame = bioframe.merge(a, min_dist=distance)
+        found = sap.merge(a, by="chrom", margin=distance)
+        rows = sorted(zip(a["chrom"][found.first], *found.intervals.T.tolist(), found.counts.tolist()))
+        assert rows == sorted(wanted_frame[["chrom", "start", "end", "n_intervals"]].itertuples(index=False, name=None))
+        labels = bioframe.cluster(a, min_dist=distance)["cluster"]
+        matching = set(zip(sap.cluster(a, by="chrom", margin=distance).tolist(), labels.tolist()))
+        assert len(matching) == labels.nunique() == len(found.counts)
+    for k in (1, 3):
+        wanted_frame = bioframe.closest(a, b, k=k, return_index=True)
+        near = sap.nearest(a, b, k, by="chrom")
+        wanted = sorted(wanted_frame[["index", "distance"]].astype(int).itertuples(index=False, name=None))
+        assert sorted(zip(near.pairs[:, 0].tolist(), near.distances.tolist())) == wanted
+
+
+def test_the_nearest_are_those_of_geopandas() -> None:
+    geopandas, shapely = pytest.importorskip("geopandas"), pytest.importorskip("shapely")
+    random = np.random.default_rng(6)
+    corners = [random.random((200, 2)) for _ in "ab"]
+    boxes = [np.hstack([corner, corner + random.random((200, 2)) / 50]) for corner in corners]
+    a, b = (geopandas.GeoDataFrame(geometry=shapely.box(*of.T)) for of in boxes)
+    wanted_frame = geopandas.sjoin_nearest(a, b, max_distance=0.05, distance_col="distance")
+    wanted_frame = wanted_frame[~wanted_frame.index.duplicated()]
+    found = sap.nearest(a, b, max_distance=0.05)
+    assert found.pairs[:, 0].tolist() == wanted_frame.index.tolist()
+    np.testing.assert_allclose(found.distances, wanted_frame["distance"])
