@@ -183,6 +183,77 @@ def test_each_answer_is_that_of_its_definition() -> None:
             raise AssertionError(f"SEED={seed} CALLS=1: {type(error).__name__} {error}") from error
 
 
+def join_call(random: Random, library: Any) -> None:
+    """One join of frames whose columns have names of their own."""
+    tables = []
+    for side in "lr":
+        count = random.choice([0, 1, 3, 8])
+        ends = [sorted(random.randint(0, 9) for _ in "lh") for _ in range(count)]
+        columns = {f"from_{side}": [low for low, _ in ends], f"to_{side}": [high for _, high in ends]}
+        columns |= {f"kind_{side}": [random.choice([1, 2]) for _ in ends], f"row_{side}": [*range(count)]}
+        tables.append((ends, columns[f"kind_{side}"], library.DataFrame(columns)))
+    (ends_l, kinds_l, left), (ends_r, kinds_r, right) = tables
+    how = random.choice(["inner", "left", "right", "semi", "anti"])
+    fraction = random.choice([None, 0.5, (0.5, 0), (0, 1)])
+    options: dict[str, Any] = {"left_columns": ["from_l", "to_l"], "right_columns": ["from_r", "to_r"]}
+    if by := random.random() < 0.5:
+        options |= {"left_by": "kind_l", "right_by": ["kind_r"]}
+    least = (0, 0) if fraction is None else (fraction, fraction) if isinstance(fraction, float) else fraction
+    wanted: list[Any] = []
+    for i, (low, high) in enumerate(ends_l):
+        for j, (start, end) in enumerate(ends_r):
+            shared = min(high, end) - max(low, start)
+            sizes = high - low, end - start
+            is_enough = fraction is None or all(
+                one and Fraction(shared, one) >= part for one, part in zip(sizes, least)
+            )
+            if shared >= 0 and (not by or kinds_l[i] == kinds_r[j]) and is_enough:
+                wanted.append((i, j, shared, *(Fraction(shared, one) if one else None for one in sizes)))
+    matched = [{row[side] for row in wanted} for side in (0, 1)]
+    if how in ("semi", "anti"):
+        found = sap.join(left, right, how, fraction=fraction, **options)
+        rows = [row for row in range(len(ends_l)) if (row in matched[0]) == (how == "semi")]
+        assert found["row_l"].to_list() == rows and list(found.columns) == list(left.columns)
+        return
+    if how == "left":
+        wanted += [(i, None, None, None, None) for i in range(len(ends_l)) if i not in matched[0]]
+    if how == "right":
+        wanted += [(None, j, None, None, None) for j in range(len(ends_r)) if j not in matched[1]]
+    kept = how == "right"
+    wanted.sort(key=lambda row: (row[kept], -1 if row[not kept] is None else row[not kept]))
+    measures = ["size", "fraction_left", "fraction_right"]
+    joined = sap.join(left, right, how, fraction=fraction, measures=measures, **options)
+    columns_of = [joined[name].to_list() for name in ("row_l", "row_r", *measures)]
+    rows_of = [tuple(None if one is None or one != one else Fraction(one) for one in row) for row in zip(*columns_of)]
+    close = [tuple(None if one is None else pytest.approx(float(one)) for one in row) for row in wanted]
+    assert rows_of == close, f"{how} {fraction} {by}"
+
+
+@pytest.mark.parametrize("library", ["pandas", "polars"])
+def test_joins_measure_and_choose_their_pairs(library: str) -> None:
+    frames = pytest.importorskip(library)
+    for seed in range(SEED, SEED + CALLS // 4):
+        try:
+            join_call(Random(seed), frames)
+        except Exception as error:
+            raise AssertionError(f"SEED={seed} CALLS=4: {type(error).__name__} {error}") from error
+
+
+def test_on_attribute_is_by() -> None:
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.DataFrame({"start": [0, 0], "end": [1, 1], "kind": ["a", "b"]})
+    assert sap.join(frame, frame, on_attribute="kind").equals(sap.join(frame, frame, by=["kind"]))
+    with pytest.raises(ValueError, match="by and on_attribute are the same"):
+        sap.join(frame, frame, by="kind", on_attribute="kind")
+    with pytest.raises(ValueError, match="left_by and right_by must name as many columns"):
+        sap.join(frame, frame, left_by="kind")
+    for fraction in (-1, 2, (0.5, 0.5, 0.5), float("nan")):
+        with pytest.raises(ValueError, match="must be a number from 0 to 1, or two of them"):
+            sap.join(frame, frame, fraction=fraction)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="measures must be of size, fraction_left, fraction_right, iou, not 'area'"):
+        sap.join(frame, frame, measures=["area"])
+
+
 def test_what_is_wrong_is_said() -> None:
     plane: Any = [[0, 0, 1, 1]]
     call: Any

@@ -19,8 +19,14 @@ from . import _crs
 from ._columns import Column
 from ._errors import InvalidBoxError, SweepAndPruneError
 from ._file_error import FileError, printable
+from ._intervals import cluster as find_clusters
+from ._intervals import coverage as find_coverage
+from ._intervals import merge as find_merged
+from ._intervals import nearest as find_nearest
+from ._join import with_missing
 from ._output import output_file
-from ._pairs import count_pairs, count_pairs_between, find_pairs, iter_chunks, iter_chunks_between
+from ._overlaps import Overlaps, count_overlaps, measure_overlaps
+from ._pairs import count_pairs, count_pairs_between, find_pairs, find_pairs_between, iter_chunks, iter_chunks_between
 from ._progress import ProgressBar
 from ._signals import end_at_once, end_by_signals, remove_unfinished, signal_status
 from ._tables import FORMATS, READABLE, Source, read
@@ -38,6 +44,9 @@ Examples:
   sap pairs boxes.csv > pairs.csv
   sap pairs detections.csv --format xywh --by frame -o pairs.parquet
   sap join reads.bed genes.bed --id name
+  sap join reads.bed genes.bed --how anti --rows
+  sap coverage genes.gtf reads.bed --id gene_id
+  sap nearest peaks.narrowPeak genes.bed -k 3
   sap count parcels.parquet --margin 10
   sap pairs boxes.parquet --memory-limit 4GB -o pairs
   sap stats boxes.npy
@@ -46,6 +55,8 @@ Examples:
 Exit status: 0 if all went well, 1 for an error in the data or a file, 2 for wrong arguments, 130 after Ctrl-C, 143
 after SIGTERM, 129 after SIGHUP, 141 if the program that reads the output ended."""
 
+_SIDES = ("left", "right")
+_PER_SIDE = ("columns", "by", "id")
 Options = SimpleNamespace
 """The options and arguments of a command."""
 _Function = TypeVar("_Function", bound=Callable[..., None])
@@ -186,12 +197,30 @@ _boxes = _together(
 _output = _together(
     click.option("-o", "--output", metavar="FILE", help="Where to write; standard output by default."),
     click.option("--to", type=click.Choice(WRITABLE), help="The format; by default the file's name tells it, or csv."),
-    click.option("--id", metavar="COLUMN", help="Write these values instead of the numbers of rows."),
+    click.option(
+        "--id", metavar="A,B,..", callback=_names, help="Write the values of these columns instead of row numbers."
+    ),
+    click.option("--rows", is_flag=True, help="Write all columns of the files instead of row numbers."),
+)
+_overlap = _together(
+    click.option(
+        "--fraction",
+        metavar="F[,G]",
+        help="Only pairs whose overlap is at least this share of both boxes; or F of the first and G of the second.",
+    ),
+    click.option(
+        "--measure",
+        metavar="A,B,..",
+        callback=_names,
+        help=f"Write how much boxes overlap, too: {', '.join(Overlaps._fields)}.",
+    ),
 )
 _sides = _together(
     click.option("--left-columns", metavar="A,B,..", callback=_names, help="The columns of the boxes of file A."),
     click.option("--right-columns", metavar="A,B,..", callback=_names, help="The columns of the boxes of file B."),
     click.option("--left-by", metavar="A,B,..", callback=_names, help="The columns to group file A by."),
+    click.option("--left-id", metavar="A,B,..", callback=_names, help="The columns of file A to write."),
+    click.option("--right-id", metavar="A,B,..", callback=_names, help="The columns of file B to write."),
     click.option("--right-by", metavar="A,B,..", callback=_names, help="The columns to group file B by."),
 )
 _disk = _together(
@@ -214,7 +243,7 @@ def _file(name: str) -> Callable[[_Function], _Function]:
 
 @sap.command()
 @_file("file")
-@_together(_boxes, _output, _disk)
+@_together(_boxes, _overlap, _output, _disk)
 def pairs(file: str, **options: Any) -> None:
     """Writes all pairs of overlapping boxes of a file."""
     _write_pairs(Options(files=[file], **options))
@@ -223,7 +252,13 @@ def pairs(file: str, **options: Any) -> None:
 @sap.command()
 @_file("a")
 @_file("b")
-@_together(_boxes, _sides, _output, _disk)
+@click.option(
+    "--how",
+    type=click.Choice(["inner", "left", "right", "semi", "anti"]),
+    default="inner",
+    help="left, right: also the boxes of that file without a pair. semi, anti: the boxes of A with any pair, or none.",
+)
+@_together(_boxes, _sides, _overlap, _output, _disk)
 def join(a: str, b: str, **options: Any) -> None:
     """Writes all pairs of a box of one file and a box of another."""
     _write_pairs(Options(files=[a, b], **options))
@@ -232,17 +267,92 @@ def join(a: str, b: str, **options: Any) -> None:
 @sap.command()
 @_file("a")
 @click.argument("b", type=click.Path(allow_dash=True), required=False)
-@_together(_boxes, _sides, _disk)
+@click.option("--each", is_flag=True, help="Write a count for each box of A.")
+@_together(_boxes, _sides, _output, _disk)
 def count(a: str, b: str | None, **options: Any) -> None:
     """Counts the pairs of a file, or of two."""
     given = Options(files=[a] if b is None else [a, b], **options)
-    if given.memory_limit is not None:
+    if not given.each and (given.output or given.to or given.id or given.rows):
+        raise FileError("--output, --to, --id and --rows are for --each: without it, the count is printed")
+    if given.each and given.memory_limit is None:
+        _write_answers(given, lambda sets, search: [("count", count_overlaps(*sets, **search))])
+    elif given.memory_limit is not None:
         with _from_disk(given, to=None) as (dask, search):
             counted = dask.count_pairs if b is None else dask.count_pairs_between
             click.echo(counted(*given.files, **search))
     else:
         with _opened(given) as sources:
             click.echo(_counted(given, *_search(given, sources)))
+
+
+@sap.command()
+@_file("a")
+@_file("b")
+@_together(_boxes, _sides, _output)
+def coverage(a: str, b: str, **options: Any) -> None:
+    """Writes how many intervals of B overlap each of A, and how much of it they cover."""
+    given = Options(files=[a, b], **options)
+    if given.margin:
+        raise FileError("coverage is of the intervals themselves: leave out --margin")
+
+    def answers(sets: list[Any], search: dict[str, Any]) -> list[tuple[str, NDArray[Any]]]:
+        covered = find_coverage(*sets, missing=search["missing"], by=search.get("by"))
+        whole = measure_overlaps(sets[0], None, np.arange(len(covered)).repeat(2).reshape(-1, 2)).size
+        with np.errstate(all="ignore"):
+            share = np.asarray(covered / whole, np.float64)
+        return [("count", count_overlaps(*sets, **search)), ("covered", covered), ("fraction", share)]
+
+    _write_answers(given, answers)
+
+
+@sap.command()
+@_file("file")
+@_together(_boxes, _output)
+def cluster(file: str, **options: Any) -> None:
+    """Numbers the groups of connected intervals."""
+    given = Options(files=[file], **options)
+    _write_answers(given, lambda sets, search: [("cluster", find_clusters(*sets, **search))])
+
+
+@sap.command()
+@_file("file")
+@_together(_boxes, _output)
+def merge(file: str, **options: Any) -> None:
+    """Writes the union of connected intervals, with their group and their number."""
+    given = Options(files=[file], **options)
+    if given.id or given.rows:
+        raise FileError("merged intervals have no rows of their own: leave out --id and --rows")
+    kind = kind_of(given.output, given.to)
+    with _opened(given) as sources:
+        sets, search = _search(given, sources)
+        merged = find_merged(*sets, **search)
+        groups = [(name, sources[0].label(name)[merged.first]) for name in given.by or sources[0].by]
+        ends = [("start", merged.intervals[:, 0]), ("end", merged.intervals[:, 1]), ("count", merged.counts)]
+        _write_columns(given, kind, [*groups, *ends])
+
+
+@sap.command()
+@_file("a")
+@_file("b")
+@click.option("-k", type=int, default=1, help="How many boxes of B to write for each of A.")
+@click.option("--max-distance", type=float, help="Leave out boxes farther away; needed in two and three dimensions.")
+@click.option("--how", type=click.Choice(["inner", "left"]), default="inner", help="left: also boxes without any.")
+@_together(_boxes, _sides, _output)
+def nearest(a: str, b: str, **options: Any) -> None:
+    """Writes the nearest boxes of B for each box of A, with their distance."""
+    given = Options(files=[a, b], **options)
+    if given.margin:
+        raise FileError("the nearest boxes need no margin: pass --max-distance")
+    kind = kind_of(given.output, given.to)
+    with _opened(given) as sources:
+        sets, search = _search(given, sources)
+        chosen = {name: search[name] for name in ("missing", "by") if name in search}
+        found = find_nearest(sets[0], sets[1], given.k, max_distance=given.max_distance, how=given.how, **chosen)
+        distances = found.distances
+        if distances.dtype.kind in "iuO":  # what has no distance is written as nothing
+            distances = distances.astype(object)
+            distances[found.pairs[:, 1] < 0] = None
+        _write_columns(given, kind, [*_labelled(given, sources, [*found.pairs.T]), ("distance", distances)])
 
 
 @sap.command()
@@ -343,7 +453,7 @@ def _search(options: Options, sources: list[Source]) -> tuple[list[Any], dict[st
 def _of_sides(options: Options, name: str) -> list[list[str]]:
     """What an option says for each of two files, by itself or by those for one side."""
     both = getattr(options, name)
-    sides = [getattr(options, f"{side}_{name}", []) for side in ("left", "right")]
+    sides = [getattr(options, f"{side}_{name}", []) for side in _SIDES]
     if both and any(sides):
         raise FileError(f"pass --{name}, or --left-{name} and --right-{name}")
     return [side or both for side in sides]
@@ -407,28 +517,144 @@ def _chunks(sets: list[Any], search: dict[str, Any], number: int, progress: Prog
 
 
 def _write_pairs(options: Options) -> None:
+    how = getattr(options, "how", "inner")
     if options.memory_limit is not None:
         with _from_disk(options, to=options.to) as (dask, search):
             if options.output is None:
                 raise FileError("--memory-limit needs -o FOLDER: the pairs are a folder of Parquet files")
             find = dask.find_pairs if len(options.files) == 1 else dask.find_pairs_between
             try:
-                find(*options.files, ids=options.id, out=options.output, overwrite=options.overwrite, **search)
+                find(
+                    *options.files,
+                    ids=_id_from_disk(options),
+                    out=options.output,
+                    overwrite=options.overwrite,
+                    **search,
+                )
             except KeyboardInterrupt:
                 raise KeyboardInterrupt("cancelled; the same command continues") from None
         return
     kind = kind_of(options.output, options.to)
     with _opened(options) as sources:
-        labels = [source.label(options.id) for source in sources] if options.id else None
         sets, search = _search(options, sources)
+        if how != "inner" or options.fraction or options.measure:
+            _write_columns(options, kind, _chosen_pairs(options, how, sources, sets, search))
+            return
+        labels = _Labels(options, sources)
+        nothing = np.empty(0, np.int64)
+        names = [name for name, _ in labels.of([nothing, nothing])]
         number = _counted(options, sets, search)
-        names = ("a", "b")
         with writer(options.output, kind, number, names) as file, _progress("writing", options) as progress:
             for chunk in _chunks(sets, search, number, progress):
-                columns = [chunk[:, 0], chunk[:, 1]]
-                if labels:
-                    columns = [labels[0][columns[0]], labels[-1][columns[1]]]
-                file.write(columns)
+                file.write([column for _, column in labels.of([chunk[:, 0], chunk[:, 1]])])
+
+
+def _chosen_pairs(
+    options: Options, how: str, sources: list[Source], sets: list[Any], search: dict[str, Any]
+) -> list[tuple[str, NDArray[Any]]]:
+    """The pairs that overlap enough, what they measure, and boxes without any."""
+    find: Any = find_pairs if len(sets) == 1 else find_pairs_between
+    with _progress("finding", options) as progress:
+        pairs = find(*sets, threads=options.threads, progress=progress, **search)
+    first, second = sets[0], sets[1] if len(sets) == 2 else None
+    if options.fraction:
+        shares, least = measure_overlaps(first, second, pairs), _fractions(options.fraction)
+        pairs = pairs[(shares.fraction_a >= least[0]) & (shares.fraction_b >= least[1])]
+    if how in ("semi", "anti"):
+        if options.measure:
+            raise FileError(f"--how {how} writes boxes, not pairs: leave out --measure")
+        matches = np.zeros(len(sources[0]), bool)
+        matches[pairs[:, 0]] = True
+        return _labelled(options, sources, [np.flatnonzero(matches == (how == "semi"))])
+    rows = [pairs[:, 0], pairs[:, 1]]
+    if how != "inner":
+        kept = how == "right"
+        order = np.lexsort((rows[not kept], rows[kept]))
+        rows = with_missing([rows[0][order], rows[1][order]], kept, len(sources[kept]))
+    columns = _labelled(options, sources, rows)
+    is_pair = (rows[0] >= 0) & (rows[1] >= 0)
+    found = measure_overlaps(first, second, np.stack(rows, axis=1)[is_pair])
+    for name in options.measure:
+        if name not in Overlaps._fields:
+            raise FileError(f"--measure must be of {', '.join(Overlaps._fields)}, not {name}")
+        values = getattr(found, name)
+        if not is_pair.all():
+            filled = np.full(len(is_pair), None, object)
+            filled[is_pair] = values
+            values = filled
+        columns.append((name, values))
+    return columns
+
+
+def _fractions(text: str) -> list[float]:
+    try:
+        given = [float(part) for part in text.split(",")]
+    except ValueError:
+        given = []
+    if len(given) not in (1, 2) or not all(0 <= one <= 1 for one in given):
+        raise FileError(f"--fraction is {text}; it must be a number from 0 to 1, or two of them with a comma")
+    return [given[0], given[-1]]
+
+
+class _Labels:
+    """What is written for rows of the files: their numbers, some of their columns, or all."""
+
+    def __init__(self, options: Options, sources: list[Source]) -> None:
+        names = _of_sides(options, "id")
+        if options.rows:
+            if any(names):
+                raise FileError("pass --id or --rows: all columns, or some")
+            names = [source.columns for source in sources]
+            for source, of_source in zip(sources, names):
+                if not of_source:
+                    raise FileError(f"{source.name} has no named columns: leave out --rows")
+        self._columns: list[list[tuple[str, NDArray[Any] | None]]] = []
+        for side, source, of_side in zip("ab", [sources[0], sources[-1]], [names[0], names[len(sources) - 1]]):
+            is_one = len(of_side) == 1 and not options.rows
+            labels = [(side if is_one else f"{side}_{name}", source.label(name)) for name in of_side]
+            self._columns.append([*labels] or [(side, None)])
+
+    def of(self, rows: list[NDArray[Any]]) -> list[tuple[str, NDArray[Any]]]:
+        """The columns for rows of the first file and of the last one; a row of -1 has no values."""
+        return [
+            (name, _taken(values, of_side)) for of_side, columns in zip(rows, self._columns) for name, values in columns
+        ]
+
+
+def _taken(values: NDArray[Any] | None, rows: NDArray[Any]) -> NDArray[Any]:
+    is_there = rows >= 0
+    if is_there.all():
+        return rows if values is None else values[rows]
+    taken = np.full(len(rows), None, object)
+    taken[is_there] = rows[is_there] if values is None else values[rows[is_there]]
+    return taken
+
+
+def _labelled(options: Options, sources: list[Source], rows: list[NDArray[Any]]) -> list[tuple[str, NDArray[Any]]]:
+    return _Labels(options, sources).of(rows)
+
+
+def _write_answers(
+    options: Options, answers: Callable[[list[Any], dict[str, Any]], list[tuple[str, NDArray[Any]]]]
+) -> None:
+    """Writes a row for each box of the first file."""
+    kind = kind_of(options.output, options.to)
+    with _opened(options) as sources:
+        sets, search = _search(options, sources)
+        found = answers(sets, search)
+        _write_columns(options, kind, [*_labelled(options, sources, [np.arange(len(found[0][1]))]), *found])
+
+
+def _write_columns(options: Options, kind: str, columns: list[tuple[str, NDArray[Any]]]) -> None:
+    names = [name for name, _ in columns]
+    with writer(options.output, kind, len(columns[0][1]), names) as file:
+        file.write([values for _, values in columns])
+
+
+def _id_from_disk(options: Options) -> str | None:
+    if len(options.id) > 1:
+        raise FileError("--memory-limit takes one column of ids: pass one by --id")
+    return options.id[0] if options.id else None
 
 
 @contextmanager
@@ -440,7 +666,10 @@ def _from_disk(options: Options, to: str | None) -> Iterator[tuple[Any, dict[str
         from . import dask
     except ImportError:
         raise FileError("--memory-limit needs Dask: pip install 'sweep-and-prune[dask]'") from None
-    refused = {"--by": options.by, "--threads": options.threads != 1, "--to": to}
+    refused = {"--threads": options.threads != 1, "--to": to, "--header": options.header is not None}
+    refused |= {f"--{name}": getattr(options, name, None) for name in ("by", "fraction", "measure", "rows", "each")}
+    refused |= {f"--{side}-{name}": getattr(options, f"{side}_{name}", None) for side in _SIDES for name in _PER_SIDE}
+    refused |= {"--from": options.from_, "--how": getattr(options, "how", "inner") != "inner"}
     for name in (name for name, value in refused.items() if value):
         raise FileError(f"--memory-limit and {name} cannot be combined: leave {name} out")
     search = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -165,6 +165,12 @@ def named_column(values: Any, column: str, name: str) -> Column:
         fault = f"{name} has several columns of that name: rename or drop one" if column in columns else ""
         raise ValueError(f"by is {column!r}, but {fault or listed(columns, name)}")
     return read_column(values[column], f"column {column}")
+
+
+def chosen_boxes(column: Callable[[str], Any], names: Sequence[str], what: str, format: str = "xyxy") -> Raw:
+    """The corners of boxes in columns with these names, which a function looks up."""
+    read = [read_column(column(name), f"column {name}") for name in names]
+    return _corners(Raw(*side_by_side(read, names, what)), format, what)
 
 
 def _from_arrow(values: Any, name: str, format: str) -> Raw | None:

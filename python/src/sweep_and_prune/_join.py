@@ -10,15 +10,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import thread_count
-from ._columns import group_codes
+from ._columns import group_codes, is_rounded
 from ._crs import difference
-from ._inputs import named_column
+from ._inputs import Raw, chosen_boxes, named_column, raw_boxes
 from ._native import in_order
+from ._overlaps import measure_overlaps
 from ._pairs import Progress, find_pairs_between
 
 _FLIPPED = {"contains": "within", "covers": "covered_by", "within": "contains", "covered_by": "covers"}
 _SYMMETRIC = ("intersects", "touches", "overlaps", "dwithin")
 _PREDICATES = (*_FLIPPED, *_SYMMETRIC, "contains_properly", "crosses")
+
+_MEASURES = ("size", "fraction_left", "fraction_right", "iou")
 
 _OF_POINTS = {"intersects": "intersects_xy", "contains": "contains_xy"}
 """The predicates that shapely tests faster on coordinates than on points."""
@@ -47,6 +50,13 @@ def join(
     *,
     distance: ArrayLike | None = None,
     by: str | list[str] | None = None,
+    on_attribute: str | list[str] | None = None,
+    left_by: str | list[str] | None = None,
+    right_by: str | list[str] | None = None,
+    left_columns: list[str] | None = None,
+    right_columns: list[str] | None = None,
+    fraction: float | tuple[float, float] | None = None,
+    measures: list[str] | None = None,
     lsuffix: str = "left",
     rsuffix: str = "right",
     format: str = "xyxy",
@@ -70,14 +80,25 @@ def join(
         right: another of the same kind.
         how: `"inner"` keeps the rows that match. `"left"` and `"right"` keep all rows of that frame, with missing
             values where nothing matches. The index and the geometry are those of the left frame, with `"right"`
-            those of the right one.
+            those of the right one. `"semi"` returns the left rows that match any, once and without columns of the
+            right frame; `"anti"` those that match none.
         predicate: `predicate(left, right)` of shapely: `"intersects"`, `"contains"`, `"within"`, `"covers"`,
             `"covered_by"`, `"contains_properly"`, `"crosses"`, `"overlaps"`, `"touches"` or `"dwithin"`. Boxes
             without geometries know only `"intersects"`.
         distance: with `"dwithin"`: the largest distance, in the units of the coordinates; a number, or one for each
             left row. With boxes it is the `margin` of `find_pairs_between`.
         by: names of columns that both frames have: only rows with equal values match, and the result has these
-            columns once. A missing value equals none. (`geopandas.sjoin` calls this `on_attribute`.)
+            columns once. A missing value equals none.
+        on_attribute: what `geopandas.sjoin` calls `by`.
+        left_by: with `right_by`, names of columns of the left frame; the result has the columns of both.
+        right_by: names of as many columns of the right frame, which must be equal to those.
+        left_columns: of boxes without geometries: the columns of the left boxes, min corner and then max corner. By
+            default, those with known names.
+        right_columns: the same for the right frame.
+        fraction: of boxes without geometries: only pairs whose overlap is at least this share of both boxes; two
+            numbers are for the left and for the right box. A box without a size has no share.
+        measures: of boxes without geometries: columns to add for each pair, which `measure_overlaps` describes:
+            `"size"`, `"fraction_left"`, `"fraction_right"` and `"iou"`.
         lsuffix: what is added, after `_`, to names of left columns that the right frame has too.
         rsuffix: the same for right columns, and for the column that has the index of the right frame.
         format: of boxes without geometries: `"xyxy"`, `"xywh"` or `"cxcywh"`.
@@ -115,15 +136,22 @@ def join(
                 raise TypeError(f"{name} is a {kind}, which has no rows yet: pass what its {way}() returns")
         kinds = " and ".join(type(frame).__name__ for frame in (left, right))
         raise TypeError(f"left and right must be two DataFrames of pandas or polars or two GeoDataFrames, not {kinds}")
-    if how not in ("inner", "left", "right"):
-        raise ValueError(f'how must be "inner", "left" or "right", not {how!r}')
+    if how not in ("inner", "left", "right", "semi", "anti"):
+        raise ValueError(f'how must be "inner", "left", "right", "semi" or "anti", not {how!r}')
     if predicate not in _PREDICATES:
         raise ValueError(f"predicate must be one of {', '.join(_PREDICATES)}, not {predicate!r}")
     for name, suffix in (("lsuffix", lsuffix), ("rsuffix", rsuffix)):
         if not isinstance(suffix, str):
             raise TypeError(f"{name} must be a string, not {suffix!r}")
-    columns = [] if by is None else [by] if isinstance(by, str) else list(by)
-    groups = _groups(left, right, columns)
+    if by is not None and on_attribute is not None:
+        raise ValueError("by and on_attribute are the same: pass one of them")
+    columns = _listed_names(on_attribute if by is None else by)
+    of_sides = [_listed_names(left_by), _listed_names(right_by)]
+    if len(of_sides[0]) != len(of_sides[1]):
+        raise ValueError("left_by and right_by must name as many columns")
+    groups = _groups(left, right, columns + of_sides[0], columns + of_sides[1])
+    least = None if fraction is None else _two_fractions(fraction)
+    added = _measure_names(measures)
     if has_geometries[0]:
         _check_distance(predicate, distance)
         apart = difference(left.crs, right.crs)
@@ -134,13 +162,21 @@ def join(
             )
         if closed is not None or format != "xyxy":
             raise ValueError("closed and format are for boxes; geometries have neither")
+        if least is not None or added or left_columns is not None or right_columns is not None:
+            raise ValueError("fraction, measures, left_columns and right_columns are for boxes without geometries")
         found = _of_geometries(left, right, predicate, distance, groups, threads, progress)
     else:
         if predicate != "intersects":
             raise ValueError(f'predicate "{predicate}" needs geometries; boxes know only "intersects"')
+        boxes: list[Any] = [
+            frame if names is None else chosen_boxes(frame.__getitem__, names, name, format)
+            for name, frame, names in (("left", left, left_columns), ("right", right, right_columns))
+        ]
+        if left_columns is not None or right_columns is not None:
+            boxes = [raw_boxes(one, name, "xyxy" if isinstance(one, Raw) else format) for one, name in zip(boxes, "ab")]
+            format = "xyxy"
         pairs = find_pairs_between(
-            left,
-            right,
+            *boxes,
             threads=threads,
             format=format,
             closed=closed,
@@ -149,9 +185,63 @@ def join(
             margin=0 if distance is None else distance,
             progress=progress,
         )
+        if least is not None:
+            shares = measure_overlaps(boxes[0], boxes[1], pairs, format=format)
+            pairs = pairs[(shares.fraction_a >= least[0]) & (shares.fraction_b >= least[1])]
         found = pairs[:, 0], pairs[:, 1]
-    of_kind = _frame_of_polars if is_polars else _frame
-    return of_kind(left, right, in_order(*found, len(left)), how, columns, (lsuffix, rsuffix))
+    if how in ("semi", "anti"):
+        matches = np.zeros(len(left), bool)
+        matches[found[0]] = True
+        rows_of_left = np.flatnonzero(matches == (how == "semi"))
+        return left[rows_of_left] if is_polars else left.take(rows_of_left)
+    rows = list(in_order(*found, len(left)))
+    if how != "inner":
+        rows = with_missing(rows, how == "right", len(right if how == "right" else left))
+    joined = (_frame_of_polars if is_polars else _frame)(left, right, rows, how, columns, (lsuffix, rsuffix))
+    return _with_measures(joined, added, boxes, rows, format) if added else joined
+
+
+def _listed_names(names: str | list[str] | None) -> list[str]:
+    return [] if names is None else [names] if isinstance(names, str) else list(names)
+
+
+def _two_fractions(fraction: Any) -> tuple[float, float]:
+    both = np.atleast_1d(np.asarray(fraction, np.float64))
+    if both.shape not in ((1,), (2,)) or not ((both >= 0) & (both <= 1)).all():
+        raise ValueError(f"fraction is {fraction}; it must be a number from 0 to 1, or two of them")
+    return float(both[0]), float(both[-1])
+
+
+def _measure_names(measures: Any) -> list[str]:
+    names = _listed_names(measures)
+    for name in names:
+        if name not in _MEASURES:
+            raise ValueError(f"measures must be of {', '.join(_MEASURES)}, not {name!r}")
+    return names
+
+
+def _with_measures(joined: Any, names: list[str], boxes: list[Any], rows: list[Indices], format: str) -> Any:
+    """The joined frame with columns that measure its pairs; they are missing where a row has no match."""
+    is_pair = (rows[0] >= 0) & (rows[1] >= 0)
+    found = measure_overlaps(boxes[0], boxes[1], np.stack(rows, axis=1)[is_pair], format=format)
+    for name in names:
+        if name in joined.columns:
+            raise ValueError(f"{name!r} cannot be a column of left or right: measures adds it")
+        values = found[_MEASURES.index(name)]
+        if not is_pair.all():
+            if values.dtype.kind in "iu":
+                values = values.astype(object if is_rounded(values) else np.float64)
+            filled = np.full(len(is_pair), np.timedelta64("NaT") if values.dtype.kind == "m" else np.nan, values.dtype)
+            filled[is_pair] = values
+            values = filled
+        if _is_polars(joined):
+            import polars
+
+            series = polars.Series(name, values.tolist() if values.dtype.kind == "O" else values, nan_to_null=True)
+            joined = joined.with_columns(series)
+        else:
+            joined[name] = values
+    return joined
 
 
 def _is_polars(frame: Any) -> bool:
@@ -169,16 +259,16 @@ def _check_distance(predicate: str, distance: ArrayLike | None) -> None:
         raise ValueError('distance must be passed with predicate="dwithin", and only with it')
 
 
-def _groups(left: Any, right: Any, columns: list[str]) -> tuple[Groups, Groups] | None:
+def _groups(left: Any, right: Any, of_left: list[str], of_right: list[str]) -> tuple[Groups, Groups] | None:
     """A number for the values of each row in some columns."""
-    if not columns:
+    if not of_left:
         return None
-    named = ("left", left), ("right", right)
-    for name, frame in named:
+    named = ("left", left, of_left), ("right", right, of_right)
+    for name, frame, columns in named:
         absent = [column for column in columns if column not in frame.columns]
         if absent:
             raise ValueError(f"by names {absent[0]!r}, which is not a column of {name}")
-    sides = [[named_column(frame, column, name) for column in columns] for name, frame in named]
+    sides = [[named_column(frame, column, name) for column in columns] for name, frame, columns in named]
     left_codes, right_codes = group_codes(sides, ["left", "right"])
     # A row whose value is missing matches none.
     return np.where(left_codes < 0, np.nan, left_codes), np.where(right_codes < 0, np.nan, right_codes)
@@ -380,16 +470,11 @@ def _extended(bounds: NDArray[np.float64], distances: NDArray[np.float64]) -> ND
     return np.hstack([bounds[:, :2] - more, bounds[:, 2:] + more])
 
 
-def _frame(
-    left: Any, right: Any, found: tuple[Indices, Indices], how: str, columns: list[str], suffixes: tuple[str, str]
-) -> Any:
+def _frame(left: Any, right: Any, rows: list[Indices], how: str, columns: list[str], suffixes: tuple[str, str]) -> Any:
     """The joined frame."""
     import pandas
 
-    rows = list(found)
     kept, other = (1, 0) if how == "right" else (0, 1)
-    if how != "inner":
-        rows = _with_missing(rows, kept, len((left, right)[kept]))
     frames = [left, right]
     geometry = frames[kept].geometry.name if _has_geometries(frames[kept]) else None
     # The keys of a row that nothing matches are there, too. (In geopandas they are always those of the left frame.)
@@ -437,15 +522,12 @@ def _frame(
 
 
 def _frame_of_polars(
-    left: Any, right: Any, found: tuple[Indices, Indices], how: str, columns: list[str], suffixes: tuple[str, str]
+    left: Any, right: Any, rows: list[Indices], how: str, columns: list[str], suffixes: tuple[str, str]
 ) -> Any:
     """The joined frame; a row that is missing has nulls."""
     import polars
 
-    rows = list(found)
     kept = 1 if how == "right" else 0
-    if how != "inner":
-        rows = _with_missing(rows, kept, len((left, right)[kept]))
     frames = [left, right]
     frames[1 - kept] = frames[1 - kept].drop(columns)
     common = set(frames[0].columns) & set(frames[1].columns)
@@ -459,7 +541,7 @@ def _frame_of_polars(
     return polars.concat(taken, how="horizontal")
 
 
-def _with_missing(rows: list[Indices], kept: int, count: int) -> list[Indices]:
+def with_missing(rows: list[Indices], kept: int | bool, count: int) -> list[Indices]:
     """Pairs sorted by the rows of the frame that is kept, with a pair of -1 for each of its rows that has none."""
     of_kept, of_other = rows[kept], rows[1 - kept]
     missing = np.setdiff1d(np.arange(count), of_kept)

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from . import _crs
 from ._columns import Column, read_column, side_by_side
 from ._file_error import FileError
-from ._inputs import Raw, box_columns, listed, raw_boxes, unknown_columns
+from ._inputs import Raw, box_columns, chosen_boxes, listed, raw_boxes, unknown_columns
 from ._text import GENOMIC, Text, corners_of_bare, read_genomic, read_table
 from ._writers import ARROW_ENDINGS, pyarrow_for
 
@@ -84,8 +84,7 @@ class Source:
                 way = unknown_columns(self.columns, "choose them by --columns", "--format {}")
                 raise FileError(f"{self.name} has no columns that are known as boxes: {way}; {listed(self.columns)}")
             return raw_boxes(self.values, "boxes", format)
-        read = [read_column(self._column(name), f"column {name}") for name in columns]
-        return raw_boxes(Raw(*side_by_side(read, columns, self.name)), "boxes", format)
+        return chosen_boxes(self._column, columns, self.name, format)
 
     @property
     def text(self) -> Text | None:

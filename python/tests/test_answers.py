@@ -1,0 +1,168 @@
+"""The commands that answer more than which boxes overlap, on random BED files, against their definitions."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sweep_and_prune._command import main
+
+Row = tuple[str, int, int, str]
+
+
+@pytest.fixture(autouse=True)
+def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def a_file(random: Random, name: str) -> list[Row]:
+    rows = []
+    for number in range(random.choice([1, 4, 9])):
+        start = random.randint(0, 12)
+        rows.append((random.choice(["c1", "c2"]), start, start + random.randint(1, 6), f"{name[0]}{number}"))
+    Path(name).write_text("".join("\t".join(map(str, row)) + "\n" for row in rows))
+    return rows
+
+
+def table(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[list[str], list[list[str]]]:
+    assert main(arguments) == 0, capsys.readouterr().err
+    names, *rows = csv.reader(io.StringIO(capsys.readouterr().out))
+    return names, rows
+
+
+def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    assert main(arguments) == 1
+    captured = capsys.readouterr()
+    assert captured.out == "" and captured.err.count("\n") == 1
+    return captured.err
+
+
+def shared(a: Row, b: Row) -> int:
+    return min(a[2], b[2]) - max(a[1], b[1]) if a[0] == b[0] else -1
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_the_answers_are_their_definitions(seed: int, capsys: pytest.CaptureFixture[str]) -> None:
+    random = Random(seed)
+    a, b = a_file(random, "a.bed"), a_file(random, "b.bed")
+    files = ["a.bed", "b.bed"]
+    pairs = [(x, y) for x in a for y in b if shared(x, y) > 0]
+
+    # bedtools intersect -wao, -loj, -u, -v, -f .5, -F .5, -f .5 -r
+    names, rows = table(capsys, "join", *files, "--how", "left", "--rows", "--measure", "size")
+    assert names == [f"{side}_{name}" for side in "ab" for name in ("chrom", "start", "end", "name")] + ["size"]
+    wanted = []
+    for x in a:
+        matches = [y for other, y in pairs if other == x]
+        wanted += [[*map(str, x), *map(str, y), str(shared(x, y))] for y in matches] or [[*map(str, x), *[""] * 5]]
+    assert rows == wanted
+    names, rows = table(capsys, "join", *files, "--how", "right", "--id", "name")
+    assert names == ["a", "b"] and len(rows) == len(pairs) + sum(y not in [z for _, z in pairs] for y in b)
+    assert [row[1] for row in rows] == sorted([row[1] for row in rows], key=lambda name: int(name[1:]))
+    for how in ("semi", "anti"):
+        names, rows = table(capsys, "join", *files, "--how", how, "--rows")
+        kept = [x for x in a if (x in [z for z, _ in pairs]) == (how == "semi")]
+        assert rows == [[*map(str, x)] for x in kept] and names == ["a_chrom", "a_start", "a_end", "a_name"]
+    for text, of_a, of_b in (("0.5", 0.5, 0.5), ("0.5,0", 0.5, 0), ("0,0.75", 0, 0.75)):
+        names, rows = table(
+            capsys, "join", *files, "--fraction", text, "--id", "name,start", "--measure", "iou,fraction_b"
+        )
+        enough = [
+            (x, y, shared(x, y) / (x[2] - x[1] + y[2] - y[1] - shared(x, y)), shared(x, y) / (y[2] - y[1]))
+            for x, y in pairs
+            if shared(x, y) / (x[2] - x[1]) >= of_a and shared(x, y) / (y[2] - y[1]) >= of_b
+        ]
+        assert names == ["a_name", "a_start", "b_name", "b_start", "iou", "fraction_b"]
+        wanted = [[x[3], str(x[1]), y[3], str(y[1]), str(iou), str(share)] for x, y, iou, share in enough]
+        assert sorted(rows) == sorted(wanted)
+
+    # bedtools intersect -c, coverage, merge, cluster, closest
+    names, rows = table(capsys, "count", *files, "--each", "--left-id", "name")
+    counts = [sum(x == other for other, _ in pairs) for x in a]
+    assert names == ["a", "count"] and rows == [[x[3], str(count)] for x, count in zip(a, counts)]
+    names, rows = table(capsys, "coverage", *files)
+    covered = [len({p for y in b if y[0] == x[0] for p in range(max(x[1], y[1]), min(x[2], y[2]))}) for x in a]
+    assert names == ["a", "count", "covered", "fraction"]
+    assert rows == [
+        [str(at), str(count), str(length), str(length / (x[2] - x[1]))]
+        for at, (x, count, length) in enumerate(zip(a, counts, covered))
+    ]
+    for options, gap in (([], -1), (["--closed", "both"], 0), (["--closed", "both", "--margin", "2"], 2)):
+        label = [*range(len(a))]
+        for _ in a:
+            for i, x in enumerate(a):
+                for j, y in enumerate(a):
+                    if x[0] == y[0] and (shared(x, y) > 0 or 0 <= -shared(x, y) <= gap):
+                        label[i] = label[j] = min(label[i], label[j])
+        numbers: dict[int, int] = {}
+        clusters = [numbers.setdefault(one, len(numbers)) for one in label]
+        names, rows = table(capsys, "cluster", "a.bed", *options)
+        assert names == ["a", "cluster"] and rows == [[str(at), str(one)] for at, one in enumerate(clusters)]
+        names, rows = table(capsys, "merge", "a.bed", *options)
+        of_each = [[x for x, one in zip(a, clusters) if one == number] for number in numbers.values()]
+        assert names == ["chrom", "start", "end", "count"]
+        assert rows == [
+            [of[0][0], str(min(x[1] for x in of)), str(max(x[2] for x in of)), str(len(of))] for of in of_each
+        ]
+    for k, limit in ((1, math.inf), (2, 3)):
+        reach = [] if limit == math.inf else ["--max-distance", str(limit)]
+        names, rows = table(capsys, "nearest", *files, "-k", str(k), "--how", "left", "--id", "name", *reach)
+        wanted = []
+        for x in a:
+            near = sorted((max(0, -shared(x, y)), at, y[3]) for at, y in enumerate(b) if x[0] == y[0])
+            near = [one for one in near if one[0] <= limit][:k]
+            wanted += [[x[3], name, str(distance)] for distance, _, name in near] or [[x[3], "", ""]]
+        assert names == ["a", "b", "distance"] and rows == wanted
+
+
+def test_answers_are_written_in_each_format(capsys: pytest.CaptureFixture[str]) -> None:
+    a_file(Random(1), "a.bed")
+    np.save("a.npy", np.array([[0, 2], [1, 5], [7, 9]]))
+    assert main(["count", "a.npy", "--each", "-o", "c.npy"]) == 0
+    assert np.load("c.npy").tolist() == [[0, 1], [1, 1], [2, 0]]
+    assert "whole numbers only" in refused(capsys, "coverage", "a.npy", "a.npy", "-o", "d.npy")
+    arrow = pytest.importorskip("pyarrow.parquet")
+    assert main(["join", "a.bed", "a.bed", "--how", "left", "--rows", "--measure", "size,iou", "-o", "p.parquet"]) == 0
+    found: Any = arrow.read_table("p.parquet")
+    assert found.column_names[-2:] == ["size", "iou"] and str(found.schema.field("iou").type) == "double"
+    assert main(["nearest", "a.npy", "a.npy", "-k", "2", "-o", "n.parquet"]) == 0
+    assert str(arrow.read_table("n.parquet").schema.field("distance").type) == "int64"
+
+
+def test_options_that_do_not_fit_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    np.save("a.npy", np.array([[0, 2], [1, 5]]))
+    Path("a.bed").write_text("c\t0\t5\n")
+    for arguments, said in (
+        (["count", "a.npy", "--id", "x"], "are for --each"),
+        (["count", "a.npy", "-o", "x.csv"], "are for --each"),
+        (["join", "a.npy", "a.npy", "--rows"], "a.npy has no named columns: leave out --rows"),
+        (["join", "a.bed", "a.bed", "--rows", "--id", "chrom"], "pass --id or --rows"),
+        (["join", "a.npy", "a.npy", "--how", "semi", "--measure", "size"], "leave out --measure"),
+        (["join", "a.npy", "a.npy", "--measure", "area"], "must be of size, fraction_a, fraction_b, iou, not area"),
+        (["pairs", "a.npy", "--fraction", "50%"], "--fraction is 50%; it must be a number from 0 to 1"),
+        (["pairs", "a.npy", "--fraction", "0.5,nan"], "--fraction is 0.5,nan; it must be a number from 0 to 1"),
+        (["coverage", "a.npy", "a.npy", "--margin", "1"], "leave out --margin"),
+        (["nearest", "a.npy", "a.npy", "--margin", "1"], "pass --max-distance"),
+        (["nearest", "a.npy", "a.npy", "-k", "0"], "k must be from 1"),
+        (["merge", "a.bed", "--rows"], "leave out --id and --rows"),
+        (["pairs", "a.npy", "--memory-limit", "1GB", "--fraction", "0.5", "-o", "x"], "--fraction cannot be combined"),
+        (["count", "a.npy", "--memory-limit", "1GB", "--each"], "--each cannot be combined"),
+    ):
+        if "--memory-limit" in arguments:
+            pytest.importorskip("distributed")
+        assert said in refused(capsys, *arguments), arguments
+    np.save("b.npy", np.zeros((3, 4)))
+    for command in (
+        ["merge", "b.npy"],
+        ["cluster", "b.npy"],
+        ["coverage", "b.npy", "b.npy"],
+        ["nearest", "b.npy", "b.npy"],
+    ):
+        assert "b.npy: " in refused(capsys, *command)
