@@ -13,7 +13,7 @@ use crate::kind::{Kind, Settings};
 use crate::pair_finder::{ArrayPairFinder, TypedPairFinder};
 
 impl Kind {
-    /// A finder that uses at most so many threads; `None` unless there are 1 to 3 dimensions.
+    /// A finder that uses at most `threads` threads; `None` unless there are 1 to 3 dimensions.
     // Inline, so that this crate holds no code for six types: WebAssembly files would take theirs
     // from it in an order that compresses 14 % worse.
     #[inline]

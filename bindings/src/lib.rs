@@ -25,6 +25,7 @@ extern crate alloc;
 
 mod broad_phase;
 mod choose;
+mod filter;
 mod id;
 mod kind;
 mod pair_finder;
@@ -32,6 +33,7 @@ mod queries;
 mod rows;
 
 pub use broad_phase::{AnyBroadPhase, ArrayBroadPhase, TrackBodies, TypedBroadPhase};
+pub use filter::filter;
 pub use id::Id;
 pub use kind::{Kind, Settings};
 pub use pair_finder::{AnyPairFinder, ArrayPairFinder, Progress, TypedPairFinder};

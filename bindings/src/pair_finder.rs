@@ -64,7 +64,7 @@ pub trait ArrayPairFinder: AnyPairFinder {
         progress: Progress<'_>,
     ) -> Result<Option<u64>, Error>;
 
-    /// Uses at most so many threads from now on: without the feature `parallel`, one. Keeps what it can of the buffers.
+    /// Uses at most `threads` threads from now on: without the feature `parallel`, one. Keeps what it can of the buffers.
     fn use_threads(&mut self, threads: usize);
 
     /// Drops what a call that panicked left half done. The rows stay.
@@ -79,7 +79,7 @@ pub struct TypedPairFinder<const D: usize, T: Scalar> {
 }
 
 impl<const D: usize, T: Scalar> TypedPairFinder<D, T> {
-    /// A finder that uses at most so many threads: without the feature `parallel`, one.
+    /// A finder that uses at most `threads` threads: without the feature `parallel`, one.
     pub fn new(threads: usize) -> Self {
         let finder = with_threads(PairFinder::new(), threads);
         Self { finder, sets: [Rows::new(), Rows::new()], threads }

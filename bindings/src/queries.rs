@@ -31,7 +31,32 @@ pub enum Query {
     },
 }
 
+/// The names of the queries, in the order of their numbers. `js/src/world/core.ts` has the same numbers.
+const NAMES: [&str; 6] = ["overlapping", "containing", "within", "cast", "cast_all", "nearest"];
+
 impl Query {
+    /// The query of a number from 0 to 5: `overlapping`, `containing`, `within`, `cast`, `cast_all`, `nearest`.
+    ///
+    /// A query for the nearest bodies looks slightly farther than `max_distance`: other languages compare distances, which
+    /// are rounded roots, and not their squares.
+    pub fn numbered(number: u32, k: usize, max_distance: f64) -> Option<Self> {
+        Some(match number {
+            0 => Query::Overlapping,
+            1 => Query::Containing,
+            2 => Query::Within,
+            3 => Query::Cast,
+            4 => Query::CastAll,
+            5 => Query::Nearest { k, max_distance: max_distance.next_up() },
+            _ => return None,
+        })
+    }
+
+    /// The query of a name. See [`Query::numbered`].
+    pub fn named(name: &str, k: usize, max_distance: f64) -> Option<Self> {
+        let number = NAMES.iter().position(|&each| each == name)?;
+        Self::numbered(number as u32, k, max_distance)
+    }
+
     /// How many numbers one query takes.
     pub const fn width(self, dimensions: usize) -> usize {
         match self {
@@ -124,7 +149,7 @@ pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
     Ok(())
 }
 
-/// The numbers of queries, so many for each.
+/// The numbers of queries, `width` of them for each.
 struct Rows<'a> {
     numbers: &'a [f64],
     width: usize,

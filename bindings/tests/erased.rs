@@ -264,3 +264,19 @@ fn queries_without_a_filter_find_bodies_that_pair_with_nothing() {
     assert_eq!(found(None), Ok(vec![id.to_bits()]));
     assert_eq!(found(Some(Filter::ALL)), Ok(vec![]));
 }
+
+#[test]
+fn queries_have_names_and_numbers() {
+    let names = ["overlapping", "containing", "within", "cast", "cast_all"];
+    let queries =
+        [Query::Overlapping, Query::Containing, Query::Within, Query::Cast, Query::CastAll];
+    for (number, (name, query)) in (0..).zip(names.into_iter().zip(queries)) {
+        assert_eq!(Query::numbered(number, 0, 0.0), Some(query));
+        assert_eq!(Query::named(name, 0, 0.0), Some(query));
+    }
+    // A body at a distance whose rounded root is the greatest distance is found.
+    let nearest = Query::Nearest { k: 3, max_distance: 2f64.sqrt().next_up() };
+    assert_eq!(Query::numbered(5, 3, 2f64.sqrt()), Some(nearest));
+    assert_eq!(Query::named("nearest", 3, 2f64.sqrt()), Some(nearest));
+    assert_eq!((Query::numbered(6, 0, 0.0), Query::named("", 0, 0.0)), (None, None));
+}

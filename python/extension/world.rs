@@ -7,7 +7,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use sweep_and_prune::{Error, Filter, ProxyId, Report, SnapshotInfo};
-use sweep_and_prune_bindings::{Answer, ArrayBroadPhase, Coordinates, Id, Kind, Query, Settings};
+use sweep_and_prune_bindings::{
+    Answer, ArrayBroadPhase, Coordinates, Id, Kind, Query, Settings, filter,
+};
 
 use crate::arrays::{Array, copy_boxes, copy_numbers, numbers, pairs};
 use crate::errors::{busy, raise};
@@ -17,7 +19,7 @@ use crate::run::run;
 type Words = (u32, u32, i32, bool);
 
 fn filter_of((category, mask, group, is_static): Words) -> Filter {
-    Filter::default().category(category).mask(mask).group(group).is_static(is_static)
+    filter(category, mask, group, is_static)
 }
 
 /// An id in Python: slot and generation in one number, as [`ProxyId::to_bits`], but counted from
@@ -251,16 +253,8 @@ impl World {
         max_distance: f64,
         sorted: bool,
     ) -> PyResult<(Array<'py>, Array<'py>, Array<'py>)> {
-        let query = match kind {
-            "overlapping" => Query::Overlapping,
-            "containing" => Query::Containing,
-            "within" => Query::Within,
-            "cast" => Query::Cast,
-            "cast_all" => Query::CastAll,
-            // Slightly farther: Python compares distances, which are rounded roots, and not their squares.
-            "nearest" => Query::Nearest { k, max_distance: max_distance.next_up() },
-            _ => return Err(PyValueError::new_err("there is no such query")),
-        };
+        let query = Query::named(kind, k, max_distance)
+            .ok_or_else(|| PyValueError::new_err("there is no such query"))?;
         let (py, queries) = (queries.py(), copy_numbers::<f64>(&queries)?);
         let queries = queries.as_slice()?;
         self.with(|space| {

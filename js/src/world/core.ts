@@ -30,7 +30,7 @@ export interface WorldExports extends Exports {
   world_state_hash(world: number): number;
 }
 
-/** Which query; js/wasm/src/broad_phase/mod.rs has the same list. */
+/** Which query; bindings/src/queries.rs has the same list. */
 export const enum Query {
   Overlapping = 0,
   Containing = 1,

@@ -121,7 +121,7 @@ impl call::Handle for Handle {
     }
 }
 
-/// A new runner, to be chosen and started; records up to so many words of trace.
+/// A new runner, to be chosen and started; records up to `trace_words` words of trace.
 #[unsafe(no_mangle)]
 extern "C" fn runner_new(dimensions: u32, trace_words: usize) -> Option<Box<Handle>> {
     stack::check(stack::LARGE);
@@ -162,7 +162,7 @@ extern "C" fn runner_free(handle: Option<Box<Handle>>) {
     call::free(handle);
 }
 
-/// Where to write a name of so many bytes.
+/// Where to write a name of `length` bytes.
 #[unsafe(no_mangle)]
 extern "C" fn runner_text(handle: &mut Handle, length: usize) -> *mut u8 {
     run(handle, stack::SMALL, |handle| {
@@ -357,7 +357,7 @@ extern "C" fn player_free(playing: Option<Box<Playing>>) {
     call::free(playing);
 }
 
-/// Plays or undoes until so many events have been played, or all there are; how many those are.
+/// Plays or undoes until `position` events have been played, or all. Returns how many have been played.
 #[unsafe(no_mangle)]
 extern "C" fn player_seek(playing: &mut Playing, position: usize) -> usize {
     run(playing, stack::LARGE, |playing| {

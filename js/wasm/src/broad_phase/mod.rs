@@ -13,7 +13,7 @@ mod whole;
 use alloc::boxed::Box;
 
 use sweep_and_prune::{Filter, Report};
-use sweep_and_prune_bindings::{Id, Settings};
+use sweep_and_prune_bindings::{Id, Settings, filter};
 
 use crate::call::{self, run, stack, truth};
 use crate::status::{Code, report, report_error};
@@ -21,8 +21,7 @@ use handle::{Handle, Number};
 
 /// A filter from its numbers; `None` if `is_static` is no truth value.
 fn filter_of(category: u32, mask: u32, group: i32, is_static: u32) -> Option<Filter> {
-    let filter = Filter::default().category(category).mask(mask).group(group);
-    truth(is_static).map(|is_static| filter.is_static(is_static))
+    truth(is_static).map(|is_static| filter(category, mask, group, is_static))
 }
 
 /// A new broad phase, to be freed by [`world_free`]; null for dimensions other than 1 to 3, or a

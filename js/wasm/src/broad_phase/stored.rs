@@ -18,7 +18,7 @@ fn stored(dimensions: u32, is_double: bool) -> Kind {
     Kind { dimensions: if is_double { 3 } else { dimensions.max(2) as usize }, is_double }
 }
 
-/// The snapshot of a broad phase whose boxes have so many dimensions for the user.
+/// The snapshot of a broad phase whose boxes have this many dimensions for the user.
 pub(super) fn snapshot(world: &World, dimensions: u32) -> Vec<u8> {
     let mut bytes = world.snapshot();
     if world.kind().dimensions != dimensions as usize {
@@ -35,7 +35,7 @@ fn cover(bytes: &mut [u8], dimensions: u8) {
     }
 }
 
-/// The broad phase of a snapshot, if its boxes have so many dimensions for the user.
+/// The broad phase of a snapshot, if its boxes have this many dimensions for the user.
 ///
 /// # Errors
 /// [`Error::InvalidSnapshot`]; for other dimensions, [`SnapshotFault::OtherWorld`] with those of

@@ -72,16 +72,8 @@ extern "C" fn world_query(
         },
     };
     let dimensions = handle.world.kind().dimensions;
-    let query = match query {
-        0 => Query::Overlapping,
-        1 => Query::Containing,
-        2 => Query::Within,
-        3 => Query::Cast,
-        4 => Query::CastAll,
-        // Slightly farther: JavaScript compares distances, which are rounded roots, and not their squares.
-        5 => Query::Nearest { k, max_distance: handle.numbers[dimensions].next_up() },
-        _ => return internal(),
-    };
+    let max_distance = handle.numbers[dimensions];
+    let Some(query) = Query::numbered(query, k, max_distance) else { return internal() };
     let Some(is_sorted) = truth(is_sorted) else { return internal() };
     run(handle, stack::LARGE, |handle| {
         let numbers = &handle.numbers[..query.width(dimensions)];
