@@ -53,7 +53,7 @@ unsafe impl GlobalAlloc for Limited {
 #[global_allocator]
 static ALLOCATOR: Limited = Limited;
 
-/// Makes a call that gets so many allocations. Returns also whether one was refused.
+/// Makes a call that gets this many allocations. Returns also whether one was refused.
 fn with_allocations<R>(count: usize, call: impl FnOnce() -> R) -> (R, bool) {
     LEFT.store(count as isize, Ordering::Relaxed);
     let result = call();

@@ -13,7 +13,7 @@ use sweep_and_prune::{Aabb, PairFinder};
 #[derive(Clone, Copy, Debug)]
 struct Scene {
     counts: [usize; 2],
-    /// One in so many is parked at the origin; 0 for none.
+    /// One in this many is parked at the origin; 0 for none.
     parked: usize,
     size: f32,
 }

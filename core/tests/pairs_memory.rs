@@ -45,7 +45,7 @@ fn peak<const D: usize, T: Scalar>(kind: Scene, n: usize) -> Option<u64> {
 fn peak_memory_is_as_documented() {
     for &kind in Scene::ALL {
         for n in [3_000, 60_000] {
-            // As the finder's documentation says: so many times what the boxes take, and a little
+            // As the finder's documentation says: this many times what the boxes take, and a little
             // that is the same for any number of them.
             let times = match kind {
                 Scene::Uniform | Scene::Clustered | Scene::Tower | Scene::Slab => 4,

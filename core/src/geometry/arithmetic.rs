@@ -94,5 +94,4 @@ arithmetic!(f32, u32, i32, u64, 1e37, 1e-20, 64);
 arithmetic!(f64, u64, i64, u128, 1e300, 1e-280, 120);
 
 #[cfg(test)]
-#[path = "../../tests/recorded/arithmetic.rs"]
 mod tests;

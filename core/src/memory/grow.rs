@@ -5,9 +5,8 @@ use alloc::vec::Vec;
 
 use super::pages::enlarge_pages;
 
-/// Makes an array at least so long. Some slack is added, so that arrays of nearly one size do not
-/// grow again and again: twice as much where they are small, as those for the columns are whose
-/// lengths differ most from call to call. It never shrinks.
+/// Grows `array` to at least `size` items, with slack (an eighth; for small arrays twice the size), so that sizes that
+/// vary a little from call to call do not reallocate each time. Never shrinks.
 ///
 /// # Errors
 /// If there is not enough memory; then the array is as it was.
@@ -18,7 +17,7 @@ pub fn grow<V: Copy>(array: &mut Vec<V>, size: usize, value: V) -> Result<(), Tr
     Ok(())
 }
 
-/// Makes an array just so long.
+/// Grows `array` to exactly `size` items.
 ///
 /// # Errors
 /// As [`grow`].

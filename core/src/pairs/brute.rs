@@ -1,42 +1,41 @@
 //! Brute force for small inputs, where a plan does not pay.
 
-use super::control::{Stop, Task};
 use super::kernel::{PairOrder, SortedBoxes};
 use super::sink::{Sink, Store};
 use super::sort::Sorter;
 use super::source::Source;
+use super::task::{Stop, Task};
 use crate::{Aabb, Scalar};
 
 // Measured on random boxes in the plane and in space, one core of an AMD EPYC (Zen 5).
 
-/// Up to this many boxes of one set are tested one by one, and stored without a sink: 0.7 to 1.2 times
-/// brute force that validates; 41 sparse boxes by vectors take 1.3 times.
-const FEW: usize = 40;
-/// Up to this many tests, boxes are tested one by one.
-const FEW_TESTS: usize = 400;
-/// Up to this many boxes in a set, vectors test each against each,
-const BRUTE_FORCE: usize = 128;
-/// and with two sets also if one of them has no more than this.
-const BRUTE_FORCE_AGAINST_MANY: usize = 32;
-/// Boxes laid out at a time: they stay in the second-level cache.
-const CHUNK: usize = 4096;
+/// Up to this many boxes of one set are tested one by one, and their pairs are stored without a sink. (This takes 0.7
+/// to 1.2 times as long as brute force that validates. 41 sparse boxes, tested by vectors, take 1.3 times as long.)
+const MOST_SCALAR_BOXES: usize = 40;
+/// Up to this many tests, the boxes of any one or two sets are tested one by one.
+const MOST_SCALAR_TESTS: usize = 400;
+/// Up to this many boxes per set, every box is tested against every other with vectors.
+const MOST_BRUTE_FORCE_BOXES: usize = 128;
+/// Between two sets this also holds if the smaller has at most this many boxes.
+const MOST_BOXES_AGAINST_MANY: usize = 32;
+/// How many boxes are laid out at a time: they stay in the second-level cache.
+const BOXES_AT_A_TIME: usize = 4096;
 
-/// Whether each box is tested against each, with nothing sorted.
+/// Whether every box is tested against every other, with nothing sorted.
 pub(super) fn is_brute_force<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[&[S]]) -> bool {
     let [first, last] = [sets[0].len(), sets[sets.len() - 1].len()];
-    first.max(last) <= BRUTE_FORCE
-        || (sets.len() == 2 && first.min(last) <= BRUTE_FORCE_AGAINST_MANY)
+    first.max(last) <= MOST_BRUTE_FORCE_BOXES
+        || (sets.len() == 2 && first.min(last) <= MOST_BOXES_AGAINST_MANY)
 }
 
 /// Whether boxes are so few that they are tested one by one.
 #[inline]
 pub(super) fn is_few<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[&[S]]) -> bool {
     // With 65,536 boxes the product overflows where `usize` has 32 bits.
-    sets[0].len().saturating_mul(sets[sets.len() - 1].len()) <= FEW_TESTS
+    sets[0].len().saturating_mul(sets[sets.len() - 1].len()) <= MOST_SCALAR_TESTS
 }
 
-/// Tests each box against each, by `sweep`, which sweeps the one or two sets that it is given on all
-/// axes.
+/// Tests every box against every other by `sweep`, which sweeps one or two sets on all axes.
 pub(super) fn brute_force<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
     sets: &[&[S]],
     task: Task<'_>,
@@ -48,14 +47,14 @@ pub(super) fn brute_force<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
     if is_few(sets) {
         return send_few(sets, task.pair_order, sink);
     }
-    for start in (0..first.len()).step_by(CHUNK) {
-        let range = start..first.len().min(start + CHUNK);
+    for start in (0..first.len()).step_by(BOXES_AT_A_TIME) {
+        let range = start..first.len().min(start + BOXES_AT_A_TIME);
         Sorter::unsorted(first, range, &mut laid_out[0])?;
         if sets.len() == 1 {
             return sweep(&laid_out[..1], sink);
         }
-        for start in (0..last.len()).step_by(CHUNK) {
-            let range = start..last.len().min(start + CHUNK);
+        for start in (0..last.len()).step_by(BOXES_AT_A_TIME) {
+            let range = start..last.len().min(start + BOXES_AT_A_TIME);
             Sorter::unsorted(last, range, &mut laid_out[1])?;
             sweep(&laid_out[..], sink)?;
         }
@@ -63,11 +62,11 @@ pub(super) fn brute_force<const D: usize, T: Scalar, S: Source<D, T>, O: Sink>(
     Ok(())
 }
 
-/// Finds the pairs of up to [`FEW`] boxes. False, with nothing stored, if they are more, or invalid,
-/// or there is not enough memory.
+/// Finds the pairs of up to [`MOST_SCALAR_BOXES`] boxes. Returns false, with nothing stored, if there are more boxes, if
+/// one is invalid, or if there is not enough memory.
 #[inline]
 pub(super) fn find_few<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>], store: &mut Store) -> bool {
-    if boxes.len() > FEW || !boxes.iter().all(Aabb::is_valid) {
+    if boxes.len() > MOST_SCALAR_BOXES || !boxes.iter().all(Aabb::is_valid) {
         return false;
     }
     store.clear();

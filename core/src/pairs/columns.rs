@@ -1,39 +1,31 @@
 //! The columns of a grid, filled with copies of the boxes that touch them: count, prefix sum, scatter.
-//!
-//! With several threads each lists and counts a chunk of the boxes. The counts of all threads give each
-//! thread its places in every column, so that all of them write to one array, in the order in which
-//! one thread would.
 
 use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
-#[cfg(feature = "parallel")]
-use core::iter::once;
 use core::ops::Range;
 
-use super::control::Stop;
 use super::grid::Grid;
-use super::kernel::{CountedPlacements, Placement, Slots, assign_slots};
-#[cfg(feature = "parallel")]
-use super::parallel::for_each_on_threads;
+use super::kernel::{ColumnSlots, CountedPlacements, Placement, assign_slots};
+use super::parallel::Kept;
 use super::placements::Placements;
 use super::source::{Record, Source};
+use super::task::Stop;
 use crate::memory::grow_to;
 use crate::{Aabb, Scalar};
 
-/// Boxes become at most so many records each, and so many more for all. Uniform boxes become 1.2 to
-/// 1.6.
-const RECORDS_PER_BOX: u64 = 4;
-const MORE_RECORDS: u64 = 512;
+/// The most records per box, on average. Uniform boxes become 1.2 to 1.6 records each.
+const MOST_RECORDS_PER_BOX: u64 = 4;
+/// This many more records are allowed for all boxes together.
+const MOST_EXTRA_RECORDS: u64 = 512;
 
 /// The records of all columns. Those of one column stand in the order of the source.
 #[derive(Debug, Default)]
 pub(super) struct Columns<const D: usize, T> {
-    records: Records<D, T>,
+    pub records: Records<D, T>,
     /// Where each column ends.
-    ends: Vec<u32>,
-    /// Where in each column the boxes of a chunk end: of each chunk but the last.
-    #[cfg(feature = "parallel")]
-    chunk_ends: Vec<Vec<u32>>,
+    pub ends: Vec<u32>,
+    /// Where in each column the boxes of a chunk end: of each chunk but the last, if threads each take a chunk.
+    pub chunk_ends: Kept<Vec<u32>>,
 }
 
 impl<const D: usize, T: Scalar> Columns<D, T> {
@@ -58,49 +50,7 @@ impl<const D: usize, T: Scalar> Columns<D, T> {
         Ok(())
     }
 
-    /// As [`fill`](Self::fill), on as many threads as there are `placements`, at least one.
-    ///
-    /// # Errors
-    /// A [`Stop`].
-    #[cfg(feature = "parallel")]
-    pub fn fill_on_threads<S: Source<D, T>>(
-        &mut self,
-        source: &[S],
-        grid: &Grid<T>,
-        other: Option<&Self>,
-        placements: &mut [&mut Placements],
-    ) -> Result<(), Stop> {
-        let (chunks, boxes) = (placements.len(), source.len());
-        let limit = most_records(boxes);
-        self.chunk_ends.resize_with(chunks - 1, Vec::new);
-        let all_ends = self.chunk_ends.iter_mut().chain(once(&mut self.ends));
-        let mut counted: Vec<_> = placements.iter().map(|_| None).collect();
-        let chunk = placements.iter_mut().zip(all_ends).zip(&mut counted).enumerate();
-        for_each_on_threads(chunk, |(chunk, ((placements, ends), counted))| {
-            let range = boxes * chunk / chunks..boxes * (chunk + 1) / chunks;
-            *counted = Some(placements.list(source, range, grid, limit).and_then(|len| {
-                if let Some(other) = other {
-                    placements.retain(|column| !other.column(column).is_empty());
-                }
-                Ok((len, placements.count(ends)?))
-            }));
-        });
-        let stops = counted.iter().flatten().filter_map(|counted| counted.as_ref().err());
-        if let Some(&stop) = stops.min() {
-            return Err(stop);
-        }
-        let counted = counted.into_iter().flatten().flatten();
-        let (lens, mut counted): (Vec<u64>, Vec<_>) = counted.unzip();
-        if lens.into_iter().sum::<u64>() > limit {
-            return Err(Stop::TooMany);
-        }
-        let slots = self.records.slots(&mut counted)?;
-        for_each_on_threads(slots, |slots| write(source, slots));
-        Ok(())
-    }
-
     /// How many records all columns have.
-    #[cfg(test)]
     pub fn len(&self) -> usize {
         self.records.len
     }
@@ -112,14 +62,14 @@ impl<const D: usize, T: Scalar> Columns<D, T> {
     }
 
     /// The records of a column.
-    fn column(&self, column: usize) -> &[Record<D, T>] {
+    pub fn column(&self, column: usize) -> &[Record<D, T>] {
         &self.records.array[self.before(column)..self.before(column + 1)]
     }
 }
 
 /// The records of all columns; behind `len` the array is scratch.
 #[derive(Debug, Default)]
-struct Records<const D: usize, T> {
+pub(super) struct Records<const D: usize, T> {
     array: Vec<Record<D, T>>,
     len: usize,
 }
@@ -127,10 +77,10 @@ struct Records<const D: usize, T> {
 impl<const D: usize, T: Scalar> Records<D, T> {
     /// Makes the array large enough for the placements, and gives each list of them its slots. There
     /// must be less than 2^32 placements.
-    fn slots<'a>(
+    pub fn slots<'a>(
         &'a mut self,
         counted: &mut [CountedPlacements<'a>],
-    ) -> Result<impl Iterator<Item = Slots<'a, Record<D, T>>>, TryReserveError> {
+    ) -> Result<impl Iterator<Item = ColumnSlots<'a, Record<D, T>>>, TryReserveError> {
         self.len = counted.iter().map(CountedPlacements::len).sum();
         if self.array.len() < self.len {
             let aabb = Aabb::new([T::default(); D], [T::default(); D]);
@@ -144,7 +94,10 @@ impl<const D: usize, T: Scalar> Records<D, T> {
 
 /// Writes the records of a source to their slots.
 #[inline(always)]
-fn write<const D: usize, T: Scalar, S: Source<D, T>>(source: &[S], slots: Slots<'_, Record<D, T>>) {
+pub(super) fn write<const D: usize, T: Scalar, S: Source<D, T>>(
+    source: &[S],
+    slots: ColumnSlots<'_, Record<D, T>>,
+) {
     slots.write(|placement: Placement| {
         let at = placement.of as usize;
         let record = source[at].record(at);
@@ -152,9 +105,9 @@ fn write<const D: usize, T: Scalar, S: Source<D, T>>(source: &[S], slots: Slots<
     });
 }
 
-/// The most records that so many boxes may become.
-fn most_records(boxes: usize) -> u64 {
-    (RECORDS_PER_BOX * boxes as u64 + MORE_RECORDS).min(u32::MAX.into())
+/// The most records that this many boxes may become.
+pub(super) fn most_records(boxes: usize) -> u64 {
+    (MOST_RECORDS_PER_BOX * boxes as u64 + MOST_EXTRA_RECORDS).min(u32::MAX.into())
 }
 
 /// The columns of a grid, filled with the boxes of one set or two.
@@ -167,14 +120,14 @@ pub(super) struct Filled<'a, const D: usize, T> {
 }
 
 impl<'a, const D: usize, T: Scalar> Filled<'a, D, T> {
-    /// The columns of as many sets. None if a set has no records, as when two share no column: then
-    /// there are no pairs.
+    /// The columns of one set or two. None if a set has no records, as when two sets share no column: then there are no
+    /// pairs.
     pub fn new(columns: &'a [Columns<D, T>], grid: &'a Grid<T>, crowd: usize) -> Option<Self> {
         let all_have = columns.iter().all(|columns| columns.records.len > 0);
         all_have.then_some(Self { columns, grid, crowd })
     }
 
-    /// The records of a column: of each set, as far as there are sets.
+    /// The records of a column in each set, and how many sets there are.
     #[inline(never)]
     pub fn column(&self, column: usize) -> ([&'a [Record<D, T>]; 2], usize) {
         let of = |set: usize| self.columns.get(set).map_or(&[][..], |set| set.column(column));
@@ -195,12 +148,6 @@ impl<'a, const D: usize, T: Scalar> Filled<'a, D, T> {
         let first = &self.columns[0];
         let records = first.before(columns.end) - first.before(columns.start);
         records as f64 / first.records.len as f64
-    }
-
-    /// How many records a column has.
-    #[cfg(feature = "parallel")]
-    pub fn records(&self, column: usize) -> usize {
-        self.columns.iter().map(|set| set.column(column).len()).sum()
     }
 }
 

@@ -1,34 +1,35 @@
-//! When boxes that are swept together are so crowded that another plan is made for them.
+//! When the boxes of one sweep are so crowded that another plan is made for them.
 
 use super::kernel::SortedBoxes;
-use super::plan::{Among, CANDIDATE, Plan, plan};
+use super::plan::{Among, Plan, TEST_NS, plan};
 use super::source::Source;
 use crate::Scalar;
 
-// Chosen on clustered scenes, 10,000 to 100,000 boxes in the plane and in space. Clusters within clusters, at
-// 100,000, took 11 ms instead of 33 after a change of which plans that see clusters were the main part.
+// Chosen on clustered scenes, 10,000 to 100,000 boxes in the plane and in space. 100,000 boxes in clusters within
+// clusters took 11 ms instead of 33 after a change that, for the most part, let plans see clusters.
 
-/// A column with more boxes, or with so many times its share of them, is planned again before it is
-/// sorted: that many were not expected.
-const LARGE: usize = 16384;
-const UNEXPECTED: usize = 10;
+/// A column with more records than this is planned again before it is sorted.
+const MOST_COLUMN_RECORDS: usize = 16384;
+/// So is a column with more than this many times its share of the records: the plan did not expect them.
+const MOST_SHARES_IN_COLUMN: usize = 10;
 /// Fewer boxes take less time to sort than to plan.
-const WORTH_A_PLAN: usize = 2048;
+const MIN_BOXES_TO_PLAN: usize = 2048;
 
-/// Sorted boxes are never planned again if they are fewer,
-const WORTH_PROBING: usize = 512;
-/// or if a sweep has fewer candidates per box. (At 0.25 ns a candidate these cost as much as to place and
-/// sort the box.)
-const CROWDED: u64 = 96;
-/// How many probes show that boxes are not crowded, and how many decide that they are planned again.
+/// With fewer boxes, a second plan never pays after the sort.
+const MIN_BOXES_TO_PROBE: usize = 512;
+/// Nor does it if a sweep has fewer tests per box than this. (At 0.25 ns a test, this many cost as much as placing and
+/// sorting the box.)
+const CROWDED_TESTS_PER_BOX: u64 = 96;
+/// How many probes suffice to show that boxes are not crowded.
 pub(super) const FEW_PROBES: u64 = 32;
+/// How many probes decide whether crowded boxes are planned again.
 const MANY_PROBES: u64 = 512;
-/// They are planned again if that costs less than this share of the sweep: the model is not exact.
-const PLAN_PAYS: f64 = 0.75;
+/// They are planned again if the plan costs less than this share of the sweep: the model is not exact.
+const PLAN_COST_SHARE: f64 = 0.75;
 
 /// A column with more records is planned again before it is sorted.
 pub(super) fn most_records(boxes: usize, columns: usize) -> usize {
-    (UNEXPECTED * (boxes / columns)).clamp(WORTH_A_PLAN, LARGE)
+    (MOST_SHARES_IN_COLUMN * (boxes / columns)).clamp(MIN_BOXES_TO_PLAN, MOST_COLUMN_RECORDS)
 }
 
 /// A plan that costs less than to sweep these boxes, which are sorted on an axis, at once.
@@ -39,21 +40,21 @@ pub(super) fn better_plan<const D: usize, T: Scalar, S: Source<D, T>>(
     among: Among,
 ) -> Option<Plan<T>> {
     let boxes: usize = sets.iter().map(|set| set.len()).sum();
-    let crowd = CROWDED * boxes as u64;
-    if boxes < WORTH_PROBING || candidates(sorted, FEW_PROBES) <= crowd {
+    let crowd = CROWDED_TESTS_PER_BOX * boxes as u64;
+    if boxes < MIN_BOXES_TO_PROBE || count_tests(sorted, FEW_PROBES) <= crowd {
         return None;
     }
-    let candidates = candidates(sorted, MANY_PROBES);
-    if candidates <= crowd {
+    let tests = count_tests(sorted, MANY_PROBES);
+    if tests <= crowd {
         return None;
     }
     let (plan, cost) = plan(sets, among);
     let is_same = matches!(plan, Plan::Cut(grid) if grid.len() == 1 && grid.sweep == axis);
-    (!is_same && cost < PLAN_PAYS * CANDIDATE * candidates as f64).then_some(plan)
+    (!is_same && cost < PLAN_COST_SHARE * TEST_NS * tests as f64).then_some(plan)
 }
 
-/// About how many candidates a sweep would test, from so many probes.
-pub(super) fn candidates<T: Scalar>(sets: &[SortedBoxes<T>], probes: u64) -> u64 {
+/// About how many pairs of boxes a sweep would test, estimated from this many probes.
+pub(super) fn count_tests<T: Scalar>(sets: &[SortedBoxes<T>], probes: u64) -> u64 {
     let last = &sets[sets.len() - 1];
     let one_way = |boxes: &SortedBoxes<T>, against: &SortedBoxes<T>| {
         let left = &against.left[..against.len()];

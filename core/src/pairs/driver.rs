@@ -9,75 +9,59 @@
 //! by size first.
 
 use alloc::vec::Vec;
-#[cfg(feature = "parallel")]
-use core::iter::once;
-#[cfg(feature = "parallel")]
-use core::mem::{swap, take};
 use core::ops::Range;
 
 use super::brute::{brute_force, is_brute_force};
 use super::columns::{Columns, Filled, fill};
-use super::control::{Stop, Task};
-#[cfg(feature = "parallel")]
-use super::crowding::{FEW_PROBES, candidates};
-use super::crowding::{better_plan, most_records};
+use super::crowding::{FEW_PROBES, better_plan, count_tests, most_records};
 use super::grid::Grid;
 use super::kernel::{Cursor, Kernel, SortedBoxes};
 use super::lookup::{Table, may_pay};
-#[cfg(feature = "parallel")]
-use super::parallel::{Gather, Schedule, jobs_on_threads, on_threads, sweep_on_threads};
+use super::parallel::{Helpers, Receiver};
 use super::placements::Placements;
 use super::plan::{Among, Plan, SizeSplit, plan};
-use super::sink::Sink;
+use super::probe::Probe;
 use super::sizes::{Groups, wide_boxes};
 use super::sort::Sorter;
 use super::source::Source;
 use super::sweep::Sweep;
+use super::task::{Stop, Task};
 use crate::Scalar;
 
-/// Plans are nested at most so deep.
-const DEPTH: u32 = 12;
-/// A plan that leaves all but one in so many boxes in one column has not divided them: such a column is
-/// swept on the axis that seems best, and not cut again by the same means. (Two groups beside each other,
-/// of which one reaches into the column of the other: 24 times slower than uniform boxes, now 3.)
-const UNDIVIDED: usize = 8;
+/// The deepest that plans nest.
+const MOST_NESTED_PLANS: u32 = 12;
+/// If one column still holds more than 7/8 of the boxes, the plan has not divided them: the column is swept on its
+/// cheapest axis and not cut again. (Two groups beside each other, of which one reaches into the column of the
+/// other, took 24 times as long as uniform boxes. Now they take 3 times as long.)
+const UNDIVIDED_ONE_IN: usize = 8;
 
-/// With fewer boxes threads do not pay. (On two busy cores two threads take as long as one at 10,000
-/// boxes, and 0.7 of the time at 100,000.)
-#[cfg(feature = "parallel")]
-const WORTH_THREADS: usize = 4096;
-/// With fewer candidates threads do not pay to sweep a single column.
-#[cfg(feature = "parallel")]
-const MANY_CANDIDATES: u64 = 1 << 20;
-/// A thread looks up so many boxes at a time, so that their pairs stay in its cache.
-#[cfg(feature = "parallel")]
-const AT_A_TIME: usize = 4096;
-/// With fewer of them threads do not pay. (On two cores two threads take 1.4 to 2 times as long at 10,000, 1.0 to 1.5
-/// times at 100,000, and 0.8 to 0.9 at 200,000.)
-#[cfg(feature = "parallel")]
-const MANY_LOOKUPS: usize = 1 << 17;
+/// With fewer tests, threads do not pay for the sweep of a single column.
+const MIN_TESTS_FOR_THREADS: u64 = 1 << 20;
+/// A thread takes this many probes of a sweep at a time, so that their pairs stay in its cache.
+const PROBES_AT_A_TIME: usize = 256;
+/// With fewer boxes that look up others, threads do not pay. (On two cores, two threads take 1.4 to 2 times as long at
+/// 10,000, 1.0 to 1.5 times at 100,000, and 0.8 to 0.9 at 200,000.)
+const MIN_LOOKUPS_FOR_THREADS: usize = 1 << 17;
+/// A thread looks up this many boxes at a time, so that their pairs stay in its cache.
+const LOOKUPS_AT_A_TIME: usize = 4096;
 
 /// The buffers of one thread, kept between calls.
 #[derive(Debug)]
-pub(super) struct Driver<const D: usize, T: Scalar> {
+pub(super) struct Driver<const D: usize, T: Scalar, P = ()> {
     pub kernel: Kernel,
     sorter: Sorter<T>,
     sorted: [SortedBoxes<T>; 2],
     table: Table,
     pub placements: Placements,
-    /// Spare columns and groups by size: as many as plans were ever nested, if memory allows.
+    /// Spare columns and groups by size, one for each level at which plans were ever nested, if memory allows.
     columns: Vec<[Columns<D, T>; 2]>,
     groups: Vec<Groups<D, T>>,
     /// The drivers of the other threads.
-    #[cfg(feature = "parallel")]
-    pub helpers: Vec<Self>,
-    /// How many boxes this thread has sorted, about how many candidates it has tested, and how many copies of boxes it
-    /// has made.
-    #[cfg(test)]
-    pub work: [u64; 3],
+    pub helpers: Helpers<Self>,
+    pub probe: P,
 }
 
-impl<const D: usize, T: Scalar> Driver<D, T> {
+impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
     pub fn new(kernel: Kernel) -> Self {
         const { assert!(1 <= D && D <= 3, "boxes have one, two or three dimensions") };
         Self {
@@ -88,16 +72,22 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
             placements: Placements::default(),
             columns: Vec::new(),
             groups: Vec::new(),
-            #[cfg(feature = "parallel")]
-            helpers: Vec::new(),
-            #[cfg(test)]
-            work: [0; 3],
+            helpers: Helpers::new(),
+            probe: P::default(),
         }
+    }
+
+    /// The same buffers with another probe, and without helpers.
+    #[cfg(feature = "std")]
+    pub fn with_probe<Q: Probe>(self) -> Driver<D, T, Q> {
+        let Self { kernel, sorter, sorted, table, placements, columns, groups, .. } = self;
+        let (helpers, probe) = (Helpers::new(), Q::default());
+        Driver { kernel, sorter, sorted, table, placements, columns, groups, helpers, probe }
     }
 
     /// Sends all pairs within one set, or between two, to the sink. Sets that are searched by
     /// [brute force](is_brute_force) must be valid.
-    pub fn run<S: Source<D, T>, O: Sink>(
+    pub fn run<S: Source<D, T>, O: Receiver>(
         &mut self,
         sets: &[&[S]],
         task: Task<'_>,
@@ -109,20 +99,20 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
         if is_brute_force(sets) {
             let sweep = self.sweep(D, task);
             return brute_force(sets, task, &mut self.sorted, sink, |sets, sink| {
-                if O::SWEEPS { sweep.run(sets, Cursor::default(), sink) } else { Ok(()) }
+                if P::SWEEPS { sweep.run(sets, Cursor::default(), sink) } else { Ok(()) }
             });
         }
         if D == 1 && task.depth == 0 && sets.len() == 2 && self.look_up(sets, task, sink)? {
             return Ok(());
         }
-        let may_nest = task.depth < DEPTH;
+        let may_nest = task.depth < MOST_NESTED_PLANS;
         let among = if may_nest { Among::All { is_crowded: false } } else { Among::Cuts };
         self.run_plan(plan(sets, among).0, sets, task, sink)
     }
 
     /// Has the boxes of the larger of two sets on a line look up those of the smaller one. False, with nothing
     /// sent, if it is better to sweep.
-    fn look_up<S: Source<D, T>, O: Sink>(
+    fn look_up<S: Source<D, T>, O: Receiver>(
         &mut self,
         sets: &[&[S]],
         task: Task<'_>,
@@ -130,33 +120,28 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
     ) -> Result<bool, Stop> {
         let swap = sets[0].len() <= sets[1].len();
         let [smaller, larger] = if swap { [sets[0], sets[1]] } else { [sets[1], sets[0]] };
-        if !O::SWEEPS || !may_pay(smaller, larger) {
+        if !P::SWEEPS || !may_pay(smaller, larger) {
             return Ok(false);
         }
         if !sets.iter().all(is_valid) {
             return Err(Stop::Invalid);
         }
         self.sorter.sort(smaller, 0, &mut self.sorted[0])?;
-        #[cfg(test)]
-        {
-            self.work[0] += smaller.len() as u64;
-        }
-        #[cfg(feature = "parallel")]
-        let uses_threads = self.uses_threads::<O>(larger.len()) && larger.len() >= MANY_LOOKUPS;
+        self.probe.sorted(smaller.len());
         let Some(lookup) = self.table.fill(&self.sorted[0], larger)? else { return Ok(false) };
-        #[cfg(feature = "parallel")]
-        if uses_threads {
-            let range = |job| job * AT_A_TIME..larger.len().min((job + 1) * AT_A_TIME);
-            let (jobs, threads) = (larger.len().div_ceil(AT_A_TIME), 1 + self.helpers.len());
-            jobs_on_threads(jobs, threads, sink, |job, sink| {
-                lookup.run(larger, range(job), swap, task, sink)
-            })?;
-            return Ok(true);
+        let boxes = 0..larger.len();
+        match self.helpers.threads::<O>(larger.len()) {
+            Some(threads) if larger.len() >= MIN_LOOKUPS_FOR_THREADS => {
+                threads.in_chunks(boxes, LOOKUPS_AT_A_TIME, sink, |boxes, sink| {
+                    lookup.run(larger, boxes, swap, task, sink)
+                })?;
+            }
+            _ => lookup.run(larger, boxes, swap, task, sink)?,
         }
-        lookup.run(larger, 0..larger.len(), swap, task, sink).map(|()| true)
+        Ok(true)
     }
 
-    fn run_plan<S: Source<D, T>, O: Sink>(
+    fn run_plan<S: Source<D, T>, O: Receiver>(
         &mut self,
         plan: Plan<T>,
         sets: &[&[S]],
@@ -171,7 +156,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
     }
 
     /// Sweeps all boxes at once, without copying them to columns.
-    fn one_column<S: Source<D, T>, O: Sink>(
+    fn one_column<S: Source<D, T>, O: Receiver>(
         &mut self,
         sets: &[&[S]],
         axis: usize,
@@ -187,7 +172,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
     }
 
     /// Copies the boxes to the columns of a grid and finds the pairs of each column.
-    fn cut<S: Source<D, T>, O: Sink>(
+    fn cut<S: Source<D, T>, O: Receiver>(
         &mut self,
         sets: &[&[S]],
         grid: &Grid<T>,
@@ -196,36 +181,34 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
     ) -> Result<(), Stop> {
         let boxes = sets.iter().map(|set| set.len()).sum();
         let mut columns = self.columns.pop().unwrap_or_default();
-        #[cfg(feature = "parallel")]
-        let mut helpers =
-            if self.uses_threads::<O>(boxes) { take(&mut self.helpers) } else { Vec::new() };
+        let mut team = self.helpers.team::<O>(boxes);
         let filled = fill(sets, &mut columns, |set, columns, other| {
-            #[cfg(feature = "parallel")]
-            if !helpers.is_empty() {
-                let others = helpers.iter_mut().map(|helper| &mut helper.placements);
-                let mut placements: Vec<_> = once(&mut self.placements).chain(others).collect();
-                return columns.fill_on_threads(set, grid, other, &mut placements);
+            let placements = &mut self.placements;
+            match &mut team {
+                Some(team) => team
+                    .fill(columns, set, grid, other, placements, |helper| &mut helper.placements),
+                None => columns.fill(set, grid, other, placements),
             }
-            columns.fill(set, grid, other, &mut self.placements)
         });
-        #[cfg(test)]
-        {
-            self.work[2] += columns.iter().map(Columns::len).sum::<usize>() as u64;
-        }
+        self.probe.copied(columns.iter().map(Columns::len).sum());
         let crowd = most_records(boxes, grid.len());
-        let result = filled.and_then(|()| match Filled::new(&columns[..sets.len()], grid, crowd) {
-            #[cfg(feature = "parallel")]
-            Some(filled) if !helpers.is_empty() => {
-                self.columns_on_threads(&mut helpers, &filled, task, sink)
+        let result = filled.and_then(|()| {
+            let Some(filled) = Filled::new(&columns[..sets.len()], grid, crowd) else {
+                return task.done(1.0);
+            };
+            match &mut team {
+                Some(team) => team.search(
+                    self,
+                    |driver| &mut driver.helpers,
+                    &filled,
+                    sink,
+                    |driver, columns, sink| driver.columns(&filled, columns, task, sink),
+                ),
+                None => self.columns(&filled, 0..grid.len(), task, sink),
             }
-            Some(filled) => self.columns(&filled, 0..grid.len(), task, sink),
-            None => task.done(1.0),
         });
         self.columns.try_reserve(1).is_ok().then(|| self.columns.push(columns));
-        #[cfg(feature = "parallel")]
-        if !helpers.is_empty() {
-            self.helpers = helpers;
-        }
+        self.helpers.rest(team);
         if result == Err(Stop::TooMany) {
             return self.without_cut(sets, grid, task, sink);
         }
@@ -234,14 +217,14 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
 
     /// Follows another plan if a grid would make too many records, of boxes that the sample has
     /// missed: splits the wide ones from the rest, or does not cut.
-    fn without_cut<S: Source<D, T>, O: Sink>(
+    fn without_cut<S: Source<D, T>, O: Receiver>(
         &mut self,
         sets: &[&[S]],
         grid: &Grid<T>,
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
-        if task.depth < DEPTH
+        if task.depth < MOST_NESTED_PLANS
             && let Some(split) = wide_boxes(sets, grid)
         {
             return self.split_by_size(sets, split, task, sink);
@@ -250,7 +233,7 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
     }
 
     /// The pairs of some columns, one after the other.
-    fn columns<O: Sink>(
+    fn columns<O: Receiver>(
         &mut self,
         filled: &Filled<'_, D, T>,
         Range { mut start, end }: Range<usize>,
@@ -273,9 +256,9 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
         Ok(())
     }
 
-    /// Sorts and sweeps boxes, or plans them again if there are more than `crowd`, or more candidates
-    /// than a better plan would leave.
-    fn sort_and_sweep<S: Source<D, T>, O: Sink>(
+    /// Sorts and sweeps boxes, or plans them again if there are more than `crowd`, or if another plan
+    /// would leave fewer tests.
+    fn sort_and_sweep<S: Source<D, T>, O: Receiver>(
         &mut self,
         sets: &[&[S]],
         axis: usize,
@@ -287,9 +270,9 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
             return Ok(());
         }
         let boxes: usize = sets.iter().map(|set| set.len()).sum();
-        let is_divided = boxes < task.boxes - task.boxes / UNDIVIDED;
+        let is_divided = boxes < task.boxes - task.boxes / UNDIVIDED_ONE_IN;
         let among = if is_divided { Among::All { is_crowded: true } } else { Among::Sweeps };
-        if boxes > crowd && is_divided && task.depth < DEPTH {
+        if boxes > crowd && is_divided && task.depth < MOST_NESTED_PLANS {
             let (plan, _) = plan(sets, among);
             if plan.divides() {
                 return self.run_plan(plan, sets, task.nested(0.0, boxes), sink);
@@ -299,33 +282,29 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
             self.sorter.sort(set, axis, sorted)?;
         }
         let sorted = &self.sorted[..sets.len()];
-        #[cfg(test)]
-        {
-            self.work[0] += boxes as u64;
-        }
-        if task.depth < DEPTH
+        self.probe.sorted(boxes);
+        if task.depth < MOST_NESTED_PLANS
             && let Some(plan) = better_plan(sets, sorted, axis, among)
         {
             return self.run_plan(plan, sets, task.nested(0.0, boxes), sink);
         }
-        #[cfg(test)]
-        {
-            self.work[1] += super::crowding::candidates(sorted, 512);
-        }
-        if !O::SWEEPS {
+        self.probe.swept(sorted);
+        if !P::SWEEPS {
             return Ok(());
         }
         let sweep = self.sweep(D - 1, task);
-        #[cfg(feature = "parallel")]
-        if self.uses_threads::<O>(boxes) && candidates(sorted, FEW_PROBES) >= MANY_CANDIDATES {
-            return sweep_on_threads(sweep, sorted, 1 + self.helpers.len(), sink);
+        match self.helpers.threads::<O>(boxes) {
+            Some(threads) if count_tests(sorted, FEW_PROBES) >= MIN_TESTS_FOR_THREADS => threads
+                .in_chunks(0..boxes, PROBES_AT_A_TIME, sink, |probes, sink| {
+                    sweep.run(sorted, Cursor::of(sorted, probes), sink)
+                }),
+            _ => sweep.run(sorted, Cursor::default(), sink),
         }
-        sweep.run(sorted, Cursor::default(), sink)
     }
 
     /// Splits the boxes of a set by their size on an axis and searches the two groups separately, and
     /// of one set also between them.
-    fn split_by_size<S: Source<D, T>, O: Sink>(
+    fn split_by_size<S: Source<D, T>, O: Receiver>(
         &mut self,
         sets: &[&[S]],
         split: SizeSplit,
@@ -359,41 +338,4 @@ impl<const D: usize, T: Scalar> Driver<D, T> {
 /// Whether all boxes of a set are valid. No branch depends on a box.
 fn is_valid<const D: usize, T: Scalar, S: Source<D, T>>(set: &&[S]) -> bool {
     set.iter().fold(true, |valid, each| valid & each.aabb().is_valid())
-}
-
-#[cfg(feature = "parallel")]
-impl<const D: usize, T: Scalar> Driver<D, T> {
-    fn uses_threads<O: Sink>(&self, boxes: usize) -> bool {
-        O::TAKES_CHUNKS && !self.helpers.is_empty() && boxes >= WORTH_THREADS
-    }
-
-    /// The pairs of all columns, found by this thread and the helpers. All of them together search the
-    /// huge columns, one after the other.
-    fn columns_on_threads<O: Sink>(
-        &mut self,
-        helpers: &mut Vec<Self>,
-        filled: &Filled<'_, D, T>,
-        task: Task<'_>,
-        sink: &mut O,
-    ) -> Result<(), Stop> {
-        let records = (0..filled.grid.len()).map(|column| filled.records(column));
-        let schedule = Schedule::new(records, 1 + helpers.len(), filled.crowd);
-        let gather = Gather::new(sink, schedule.len());
-        for &group in &schedule.huge {
-            gather.job(group, |sink| {
-                swap(&mut self.helpers, helpers);
-                let result = self.columns(filled, schedule.columns(group), task, sink);
-                swap(&mut self.helpers, helpers);
-                result
-            });
-        }
-        let sweep_rest = |driver: &mut Self| {
-            gather.do_all(&schedule.rest, |group, sink| {
-                driver.columns(filled, schedule.columns(group), task, sink)
-            });
-        };
-        on_threads(|| sweep_rest(self), helpers.iter_mut(), sweep_rest);
-        let found = gather.end()?;
-        sink.join(found)
-    }
 }

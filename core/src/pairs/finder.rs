@@ -104,8 +104,7 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
     pub fn kernel(mut self, kernel: Kernel) -> Self {
         let driver = &mut self.0.driver;
         driver.kernel = kernel;
-        #[cfg(feature = "parallel")]
-        driver.helpers.iter_mut().for_each(|helper| helper.kernel = kernel);
+        driver.helpers.for_each(|helper| helper.kernel = kernel);
         self
     }
 
@@ -118,7 +117,7 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
     pub fn threads(mut self, threads: usize) -> Self {
         let driver = &mut self.0.driver;
         let kernel = driver.kernel;
-        driver.helpers.resize_with(threads.max(1) - 1, || Driver::new(kernel));
+        driver.helpers.resize(threads.max(1) - 1, || Driver::new(kernel));
         self
     }
 

@@ -1,21 +1,29 @@
-//! Pairs between two sets on a line: the smaller set is sorted, and each box of the larger one looks up where
-//! those begin that it may overlap. So the larger set is neither copied nor sorted, which is most of the work of
-//! a sweep.
+//! Pairs between two sets on a line. The smaller set is sorted, and each box of the larger set looks up the first
+//! sorted box that it may overlap. So the larger set is neither copied nor sorted, which is most of the work of a
+//! sweep.
 //!
-//! The table divides the line into cells. A cell has the first sorted box that reaches it or anything to its
-//! right. From there on boxes are tested until one begins behind the box that looks them up: all that begin
-//! within that box are pairs, so only those before it can be tested in vain.
+//! ```text
+//! sort the smaller set by left edge
+//! for each cell of the line
+//!     first[cell] = the first sorted box that reaches the cell or anything to its right
+//! for each box of the larger set
+//!     for each sorted box from first[cell of its left edge] on, until one begins behind its right edge
+//!         report the pair if they overlap
+//! ```
+//!
+//! All sorted boxes that begin within a box are its pairs, so a test can only fail for a sorted box that begins before
+//! it.
 
 use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
 use core::ops::{ControlFlow, Range};
 
-use super::control::{Progress, Stop, Task};
 use super::grid::BLOCK;
 use super::kernel::{PAD, SortedBoxes};
 use super::sink::Sink;
 use super::sort::intervals;
 use super::source::Source;
+use super::task::{Progress, Stop, Task};
 use crate::geometry::{Arithmetic, Quantizer};
 use crate::memory::grow;
 use crate::sampling::positions;
@@ -25,36 +33,36 @@ use crate::{Aabb, Scalar};
 // lookups take 0.55 (11,000 boxes), 0.56 (110,000) and 0.84 (1,100,000) of the time of a sweep; where a table was
 // made and not used, 1.06.
 
-/// Boxes of the smaller set, with their table, that stay in the second-level cache.
-const CACHED: usize = 1 << 14;
-/// With more, the larger set must be so many times as large,
-const MANY_TIMES: usize = 8;
-/// and this is the most.
-const MOST_SORTED: usize = 1 << 18;
-/// Sorted boxes that are tested in vain: at most so many for any box, and on average so many for the boxes of a
-/// sample of this size. Otherwise all boxes are swept.
-const MOST_IN_VAIN: usize = 1024;
-const FEW_IN_VAIN: usize = 16;
-const SAMPLE: usize = 64;
-/// Sorted boxes that are tested at a time, without a branch; as many stand behind the last of them.
-const STEP: usize = 4;
-const _: () = assert!(STEP <= PAD);
+/// The most boxes of the smaller set that stay in the second-level cache with their table.
+const MOST_CACHED_BOXES: usize = 1 << 14;
+/// Above [`MOST_CACHED_BOXES`], the larger set must be at least this many times as large.
+const MIN_SET_RATIO: usize = 8;
+/// The most boxes of the smaller set.
+const MOST_SORTED_BOXES: usize = 1 << 18;
+/// The most tests that may fail for any one box. With more, all boxes are swept.
+const MOST_FAILED_TESTS: usize = 1024;
+/// The most tests that may fail per box, on average over a sample. With more, all boxes are swept.
+const MEAN_FAILED_TESTS: usize = 16;
+/// The size of that sample.
+const SAMPLED_BOXES: usize = 64;
+/// How many sorted boxes are tested at a time, without a branch. Behind the last box there is padding for this many.
+const TESTED_AT_A_TIME: usize = 4;
+const _: () = assert!(TESTED_AT_A_TIME <= PAD);
 
-/// Whether it seems worth while to sort the smaller set: a sample does not show that its boxes overlap so many of
-/// each other that too many would be tested in vain.
+/// Whether sorting the smaller set is likely to pay: in a sample its boxes do not overlap each other too much.
 pub(super) fn may_pay<const D: usize, T: Scalar, S: Source<D, T>>(
     smaller: &[S],
     larger: &[S],
 ) -> bool {
     let len = smaller.len();
-    if len > CACHED.max(larger.len() / MANY_TIMES).min(MOST_SORTED) {
+    if len > MOST_CACHED_BOXES.max(larger.len() / MIN_SET_RATIO).min(MOST_SORTED_BOXES) {
         return false;
     }
-    let sample = || positions(len, SAMPLE).map(|at| smaller[at].aabb());
+    let sample = || positions(len, SAMPLED_BOXES).map(|at| smaller[at].aabb());
     let overlaps = |a: &Aabb<D, T>| sample().filter(|b| a.overlaps(b)).count();
     let (overlaps, drawn) = (sample().map(overlaps).sum::<usize>(), sample().len());
     // Half of the boxes that overlap a box begin before it. Each overlaps itself, too.
-    (overlaps - overlaps.min(drawn)) / 2 * len <= 2 * FEW_IN_VAIN * drawn * drawn
+    (overlaps - overlaps.min(drawn)) / 2 * len <= 2 * MEAN_FAILED_TESTS * drawn * drawn
 }
 
 /// Where to begin among the sorted boxes, for each cell of the line.
@@ -71,8 +79,8 @@ pub(super) struct Lookup<'a, T> {
 }
 
 impl Table {
-    /// For sorted boxes, at least one, which boxes of a larger set look up. None if too many would be tested in
-    /// vain.
+    /// For sorted boxes, at least one, which boxes of a larger set look up. None if too many tests would
+    /// fail.
     pub fn fill<'a, const D: usize, T: Scalar, S: Source<D, T>>(
         &'a mut self,
         boxes: &'a SortedBoxes<T>,
@@ -86,27 +94,27 @@ impl Table {
         let first = &mut self.first[..cells];
         let cell = |at: T| T::Arithmetic::cell(at, &quantizer) as usize;
         // Cells up to this one have their first box.
-        let (mut done, mut in_vain) = (0, 0);
+        let (mut done, mut failed) = (0, 0);
         for (i, (&left, &right)) in left.iter().zip(right).enumerate() {
             let reached = cell(right) + 1;
             if reached > done {
                 first[done..reached].fill(i as u32);
                 done = reached;
             }
-            in_vain = in_vain.max(i - first[cell(left)] as usize);
+            failed = failed.max(i - first[cell(left)] as usize);
         }
         first[done..].fill(left.len() as u32);
-        if in_vain > MOST_IN_VAIN {
+        if failed > MOST_FAILED_TESTS {
             return Ok(None);
         }
         let before = |at: T| left.partition_point(|&left| left < at);
-        let in_vain = |position: usize| {
+        let failed = |position: usize| {
             let at = larger[position].aabb().min[0];
             before(at).saturating_sub(first[cell(at)] as usize)
         };
-        let sample = positions(larger.len(), SAMPLE);
-        let few = FEW_IN_VAIN * sample.len();
-        let is_crowded = sample.map(in_vain).sum::<usize>() > few;
+        let sample = positions(larger.len(), SAMPLED_BOXES);
+        let few = MEAN_FAILED_TESTS * sample.len();
+        let is_crowded = sample.map(failed).sum::<usize>() > few;
         Ok((!is_crowded).then_some(Lookup { boxes, first, quantizer }))
     }
 }
@@ -136,16 +144,16 @@ impl<T: Scalar> Lookup<'_, T> {
                 let mut next = first as usize;
                 let mut is_done = false;
                 while !is_done {
-                    if out.len() - count < STEP {
+                    if out.len() - count < TESTED_AT_A_TIME {
                         sink.take(count)?;
                         if task.progress.map(Progress::report) == Some(ControlFlow::Break(())) {
                             return Err(Stop::Cancelled);
                         }
                         (out, count) = (sink.spare()?, 0);
                     }
-                    let to = &mut out[count..count + STEP];
+                    let to = &mut out[count..count + TESTED_AT_A_TIME];
                     let mut found = 0;
-                    for at in next..next + STEP {
+                    for at in next..next + TESTED_AT_A_TIME {
                         let other = self.boxes.id[at];
                         to[found] = if swap { [other, id] } else { [id, other] };
                         // Behind the last box the left edges are NaN.
@@ -155,7 +163,7 @@ impl<T: Scalar> Lookup<'_, T> {
                         is_done = !begins;
                     }
                     count += found;
-                    next += STEP;
+                    next += TESTED_AT_A_TIME;
                 }
             }
             if task.progress.is_some() {
@@ -181,8 +189,8 @@ mod tests {
     }
 
     #[test]
-    fn no_pattern_in_the_order_of_the_larger_set_hides_what_is_tested_in_vain() {
-        // Boxes at the end test all points behind the long one in vain, boxes before it nothing.
+    fn no_pattern_in_the_order_of_the_larger_set_hides_the_tests_that_fail() {
+        // Boxes at the end test all points behind the long one, and all tests fail. Boxes before it test nothing.
         let points = (0..1000).map(|at| Aabb::new([at as f32], [at as f32]));
         let smaller: Vec<_> = points.chain([Aabb::new([0.0], [2000.0])]).collect();
         let easy = Aabb::new([-2.0], [-1.0]);

@@ -38,7 +38,7 @@
 //! **Groups that need different axes** (`plan/overlaps.rs`). The model supposes that boxes are spread evenly
 //! in the finest cells of the histogram, and each axis independent of the others. Where boxes are crowded,
 //! where a plan seems dear, or where a glance at the sample contradicts the model, the boxes of the sample
-//! are compared with each other on each axis. `core/tests/recorded/hard_scenes.rs` has scenes that were 217 times slower than
+//! are compared with each other on each axis. `hard_scenes.rs` has scenes that were 217 times slower than
 //! uniform boxes before. A column that a plan has not divided is not cut again by the same means.
 //!
 //! **Long columns** are also cut along the sweep axis, into slabs that fit the caches.
@@ -77,28 +77,27 @@
 
 mod brute;
 mod columns;
-mod control;
+
 mod crowding;
 mod driver;
 mod finder;
 mod grid;
 #[cfg(all(test, feature = "std"))]
-#[path = "../../tests/recorded/hard_scenes.rs"]
 mod hard_scenes;
 mod kernel;
 mod lookup;
-#[cfg(feature = "parallel")]
 mod parallel;
 mod placements;
 mod plan;
+mod probe;
 mod search;
 mod sink;
 mod sizes;
 mod sort;
 mod source;
 mod sweep;
+mod task;
 #[cfg(all(test, feature = "std"))]
-#[path = "../../tests/recorded/finder.rs"]
 pub(crate) mod work;
 
 pub use finder::{PairFinder, count_pairs, find_pairs, find_pairs_between};

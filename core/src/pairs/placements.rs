@@ -4,10 +4,10 @@ use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::control::Stop;
 use super::grid::{BLOCK, CellCoordinates, Grid};
 use super::kernel::{CountedPlacements, Placement};
 use super::source::Source;
+use super::task::Stop;
 use crate::Scalar;
 use crate::memory::{grow, grow_to};
 

@@ -1,15 +1,21 @@
 //! One search: its options, and the ways to receive its pairs.
 
 use core::fmt;
+#[cfg(feature = "std")]
+use core::mem::replace;
 use core::ops::ControlFlow;
 
 use super::brute::{is_brute_force, is_few, send_few};
-use super::control::{Progress, Report, Stop, Task};
 use super::driver::Driver;
 use super::kernel::{Kernel, PairOrder};
 #[cfg(feature = "std")]
-use super::sink::Unswept;
-use super::sink::{Buffer, Count, Sink, Store, Stream};
+use super::parallel::Helpers;
+use super::parallel::Receiver;
+use super::probe::Probe;
+#[cfg(feature = "std")]
+use super::probe::SortOnly;
+use super::sink::{Buffer, Count, Store, Stream};
+use super::task::{Progress, ProgressCallback, Stop, Task};
 use crate::geometry::check_count;
 use crate::{Aabb, Error, Scalar, validate};
 
@@ -54,7 +60,7 @@ pub struct Search<'f, 'b, const D: usize, T: Scalar = f32> {
     buffers: &'f mut Buffers<D, T>,
     boxes: &'b [Aabb<D, T>],
     against: Option<&'b [Aabb<D, T>]>,
-    progress: Option<Report<'b>>,
+    progress: Option<ProgressCallback<'b>>,
 }
 
 impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
@@ -176,15 +182,23 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
         }
     }
 
-    /// Does all that [`count`](Self::count) does for more than a few hundred boxes apart from the
-    /// sweep, for benchmarks of the stages.
+    /// Does all that [`count`](Self::count) does on one thread for more than a few hundred boxes, apart from
+    /// the sweep: for benchmarks of the stages.
     ///
     /// # Errors
     /// As [`pairs`](Self::pairs).
     #[cfg(feature = "std")]
     #[doc(hidden)]
     pub fn sort_only(self) -> Result<(), Error> {
-        run(&mut self.buffers.driver, self.boxes, self.against, self.progress, &mut Unswept)
+        let driver = &mut self.buffers.driver;
+        let helpers = replace(&mut driver.helpers, Helpers::new());
+        let other = Driver::new(driver.kernel);
+        let mut sorting = replace(driver, other).with_probe::<SortOnly>();
+        let mut count = Count::default();
+        let result = run(&mut sorting, self.boxes, self.against, self.progress, &mut count);
+        *driver = sorting.with_probe();
+        driver.helpers = helpers;
+        result
     }
 }
 
@@ -204,7 +218,7 @@ pub(super) fn store<const D: usize, T: Scalar>(
     buffers: &mut Buffers<D, T>,
     boxes: &[Aabb<D, T>],
     against: Option<&[Aabb<D, T>]>,
-    progress: Option<Report<'_>>,
+    progress: Option<ProgressCallback<'_>>,
 ) -> Result<(), Error> {
     buffers.store.clear();
     let result = run(&mut buffers.driver, boxes, against, progress, &mut buffers.store);
@@ -217,11 +231,11 @@ pub(super) fn store<const D: usize, T: Scalar>(
 
 /// Searches sets that may be invalid.
 #[inline]
-fn run<const D: usize, T: Scalar, O: Sink>(
-    driver: &mut Driver<D, T>,
+fn run<const D: usize, T: Scalar, P: Probe, O: Receiver>(
+    driver: &mut Driver<D, T, P>,
     boxes: &[Aabb<D, T>],
     against: Option<&[Aabb<D, T>]>,
-    progress: Option<Report<'_>>,
+    progress: Option<ProgressCallback<'_>>,
     sink: &mut O,
 ) -> Result<(), Error> {
     let both = [boxes, against.unwrap_or(&[])];
@@ -236,13 +250,13 @@ fn run<const D: usize, T: Scalar, O: Sink>(
     run_many(driver, sets, pair_order, progress, sink)
 }
 
-/// Checks the sets as far as the driver does not, and searches.
+/// Checks what the driver does not check, and searches.
 #[inline(never)]
-fn run_many<const D: usize, T: Scalar, O: Sink>(
-    driver: &mut Driver<D, T>,
+fn run_many<const D: usize, T: Scalar, P: Probe, O: Receiver>(
+    driver: &mut Driver<D, T, P>,
     sets: &[&[Aabb<D, T>]],
     pair_order: PairOrder,
-    progress: Option<Report<'_>>,
+    progress: Option<ProgressCallback<'_>>,
     sink: &mut O,
 ) -> Result<(), Error> {
     sets.iter().try_for_each(|set| check_count(set.len()))?;

@@ -2,15 +2,14 @@
 
 use alloc::vec::Vec;
 
-use super::control::Stop;
 use super::grid::Grid;
 use super::plan::SizeSplit;
 use super::source::{Record, Source};
+use super::task::Stop;
 use crate::{Aabb, Scalar};
 
-/// If a grid would make too many records, boxes wider than so many of its columns are split from the
-/// rest.
-const WIDE: f64 = 8.0;
+/// If a grid would make too many records, boxes wider than this many of its columns are split from the rest.
+const WIDE_BOX_COLUMNS: f64 = 8.0;
 
 /// The small and the large boxes of one set, and all boxes of the other set, if there are two: copied,
 /// so that all groups are of one type.
@@ -58,7 +57,7 @@ pub(super) fn wide_boxes<const D: usize, T: Scalar, S: Source<D, T>>(
     grid: &Grid<T>,
 ) -> Option<SizeSplit> {
     grid.widths().find_map(|(axis, width)| {
-        let size = WIDE * width;
+        let size = WIDE_BOX_COLUMNS * width;
         let wide = |each: &S| extent(each.aabb(), axis) > size;
         let divides = |source: &&[S]| source.iter().any(wide) && !source.iter().all(wide);
         Some(SizeSplit { set: sets.iter().position(divides)?, axis, size })

@@ -1,9 +1,13 @@
 //! Sorts the boxes of a column by left edge, and lays them out as a structure of arrays.
 //!
-//! A counting pass spreads the edges over about as many equal intervals as there are edges, one pass
-//! exchanges neighbors, and insertion sort finishes. Where many edges fall into one interval (clusters,
-//! equal edges), the standard library's sort sorts that interval, so all of it is O(n log n) for any
-//! input.
+//! ```text
+//! spread the keys over about as many equal intervals as there are keys: count, prefix sum, scatter
+//! sort each crowded interval (clusters, equal edges) by the standard sort
+//! exchange neighbors that are out of order, in one pass without a branch
+//! finish by insertion sort: now nearly every key is in its place
+//! ```
+//!
+//! So it takes linear time where edges are spread, and O(n log n) for any input.
 //!
 //! The limits below were chosen on uniform boxes of 1,000 to 100,000, one core of an AMD EPYC (Zen 5). They
 //! were not measured one by one, apart from the exchange: 0.97 of the time, in clusters 0.9.
@@ -158,7 +162,7 @@ impl<T: Scalar> Sorter<T> {
     }
 }
 
-/// Cuts the line between two coordinates into so many equal intervals.
+/// Cuts the line between two coordinates into `count` equal intervals.
 pub(super) fn intervals<T: Scalar>(ends: [T; 2], count: usize) -> Quantizer<T> {
     let ends = ends.map(T::to_f64);
     let unit = T::Arithmetic::unit(greater(ends[0].abs(), ends[1].abs()));

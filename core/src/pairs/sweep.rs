@@ -2,9 +2,9 @@
 
 use core::ops::ControlFlow;
 
-use super::control::{Progress, Stop, Task};
 use super::kernel::{Cursor, Kernel, SortedBoxes};
 use super::sink::Sink;
+use super::task::{Progress, Stop, Task};
 use crate::Scalar;
 
 /// How to sweep.

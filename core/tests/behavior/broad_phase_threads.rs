@@ -6,7 +6,7 @@ use sweep_and_prune_scenes::Motion;
 /// Enough bodies for the finder to split the work among threads.
 const BODIES: usize = 12_000;
 
-/// One in so many bodies is static, so that two sets are searched too.
+/// One in this many bodies is static, so that two sets are searched too.
 const STATIC: usize = 8;
 
 #[test]

@@ -75,7 +75,7 @@ proptest! {
     }
 }
 
-/// From none for most to all for one, and so many that buffers are handed on while one looks them up.
+/// From none for most to all for one, and enough that buffers are handed on while one looks them up.
 #[test]
 fn intervals_of_all_lengths_are_found() {
     let mut random = random();

@@ -218,7 +218,7 @@ fn random_boxes<const D: usize, T: Scalar>() {
     proptest!(ProptestConfig::with_cases(48), |(a in valid_boxes::<D, T>(90), b in valid_boxes::<D, T>(150))| {
         check_between("random", &a, &b);
     });
-    // So many boxes that space is cut, on so few coordinates that edges of boxes and columns meet.
+    // Enough boxes that space is cut, on so few coordinates that edges of boxes and columns meet.
     let whole = |k: usize| move |random: &mut Random| random.below(k) as f64;
     let mut random = Random::new(17);
     for k in [3, 10, 40] {

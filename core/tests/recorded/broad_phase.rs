@@ -115,7 +115,7 @@ fn updates_do_the_work_that_is_recorded() {
             motion!(&mut report, motion, life, 3, f32);
         }
     }
-    compare_with_record("broad_phase.txt", &report);
+    compare_with_record("tests/recorded/broad_phase.txt", &report);
 }
 
 /// A box of size 1 at a place, and a world of so many of them, ten apart, after an update.

@@ -134,7 +134,7 @@ impl Kernel {
     }
 }
 
-/// The boxes as those of `f32`, or those of `f64`, which they are.
+/// The same boxes, under the name of their type: `f32` or `f64`.
 fn typed<T: Scalar, U: Scalar>(boxes: &SortedBoxes<T>) -> &SortedBoxes<U> {
     let boxes: &dyn Any = boxes;
     boxes.downcast_ref().unwrap_or_else(|| unreachable!("coordinates are f32 or f64"))

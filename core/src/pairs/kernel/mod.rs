@@ -6,14 +6,14 @@
 #![allow(unsafe_code)]
 
 mod dispatch;
-#[cfg(test)]
-mod model;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 mod output;
 mod scalar;
 mod scan;
 mod scatter;
+#[cfg(test)]
+mod software;
 mod sorted_boxes;
 mod vector;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
@@ -23,7 +23,7 @@ mod x86;
 
 pub use dispatch::Kernel;
 pub use scan::Cursor;
-pub use scatter::{CountedPlacements, Placement, Slots, assign_slots};
+pub use scatter::{ColumnSlots, CountedPlacements, Placement, assign_slots};
 pub use sorted_boxes::{PAD, SortedBoxes};
 pub use vector::PairOrder;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]

@@ -1,7 +1,14 @@
-//! Turns the hits of a sweep into pairs. Vectors that can pack their lanes write pairs at once. For the
-//! others hits are noted, and made pairs many at a time: how many hits a vector has is unpredictable, so
-//! the processor mispredicts the end of a loop over the hits of each vector. It does not mispredict one
-//! loop over all hits that were noted.
+//! Turns the hits of a sweep into pairs. Vectors that can pack their lanes write pairs at once. The others note
+//! their hits, and many notes are turned into pairs at a time:
+//!
+//! ```text
+//! for each note                          (a vector with hits)
+//!     for each hit of the note
+//!         write its pair; advance unless the two boxes share a dedup bit
+//! ```
+//!
+//! How many hits a vector has is unpredictable, so the processor would mispredict the end of the inner loop for each
+//! vector. So both loops are one loop over all hits, without a branch for the end of a note.
 
 use core::hint::black_box;
 use core::marker::PhantomData;
@@ -10,9 +17,9 @@ use core::mem::MaybeUninit;
 use super::sorted_boxes::SortedBoxes;
 use super::vector::{Reporter, Vector};
 
-/// The most vectors with hits that are noted before their pairs are written (0.983 of the time on the
-/// classic scene in WebAssembly, compared with fewer).
-const MOST: usize = 256;
+/// The most vectors with hits that are noted before their pairs are written. (With fewer, a search of the classic scene
+/// took longer in WebAssembly: this many take 0.983 of the time.)
+const MOST_NOTES: usize = 256;
 
 /// The hits of a box in one vector.
 #[derive(Clone, Copy)]
@@ -27,17 +34,17 @@ struct Note {
     dedup: u32,
 }
 
-/// Beside the dedup bits, which are not that many: the other boxes are those of the first of two sets.
+/// Flag in the high bit of `dedup`, which the dedup bits never reach: the other box belongs to the first of two sets.
 const IN_FIRST: u32 = 1 << 31;
 
-/// Space for notes, and for two behind them, which are read before it is known that they are none.
-/// Apart from [`Output`], so that the compiler may keep that in registers.
-pub(super) struct Notes([MaybeUninit<Note>; MOST + 2]);
+/// Space for notes, and for two more: these are read before it is known that they are no notes.
+/// It is apart from [`Output`], so that the compiler can keep the output in registers.
+pub(super) struct Notes([MaybeUninit<Note>; MOST_NOTES + 2]);
 
 impl Notes {
     #[inline(always)]
     pub fn new() -> Self {
-        Self([const { MaybeUninit::uninit() }; MOST + 2])
+        Self([const { MaybeUninit::uninit() }; MOST_NOTES + 2])
     }
 }
 
@@ -46,7 +53,7 @@ pub(super) struct Output<'a, T, V> {
     pairs: &'a mut [[u32; 2]],
     written: usize,
     noted: usize,
-    /// For so many notes there is space.
+    /// How many notes fit before a flush.
     most: usize,
     vector: PhantomData<(T, V)>,
 }
@@ -55,7 +62,7 @@ impl<'a, T: Copy, V: Vector<T>> Output<'a, T, V> {
     /// For pairs of the vectors `V`, at least one.
     #[inline(always)]
     pub fn new(pairs: &'a mut [[u32; 2]]) -> Self {
-        let most = MOST.min(pairs.len() / V::LANES);
+        let most = MOST_NOTES.min(pairs.len() / V::LANES);
         Self { pairs, written: 0, noted: 0, most, vector: PhantomData }
     }
 
@@ -73,7 +80,8 @@ impl<'a, T: Copy, V: Vector<T>> Output<'a, T, V> {
         at: usize,
         notes: &mut Notes,
     ) {
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller has the instructions, and LANES boxes at `at`. The output is not full, so there is space
+        // for LANES more pairs, or for one more note.
         unsafe {
             if V::PACKS {
                 let (ids, dedup) = (boxes.id.as_ptr().add(at), boxes.dedup.as_ptr().add(at));
@@ -108,13 +116,14 @@ impl<'a, T: Copy, V: Vector<T>> Output<'a, T, V> {
         notes: &mut Notes,
     ) -> bool {
         if !V::PACKS {
-            // SAFETY: the caller's promise; there is space for `most` vectors full of pairs.
+            // SAFETY: the hits are lanes of these sets, at most `most` vectors of them, and there is space for `most`
+            // vectors full of pairs.
             unsafe {
                 let out = self.pairs.as_mut_ptr().add(self.written);
                 self.written += write(notes, self.noted, sets, ascending, out);
             }
             self.noted = 0;
-            self.most = MOST.min((self.pairs.len() - self.written) / V::LANES);
+            self.most = MOST_NOTES.min((self.pairs.len() - self.written) / V::LANES);
         }
         self.has_space()
     }
@@ -134,7 +143,7 @@ impl<'a, T: Copy, V: Vector<T>> Output<'a, T, V> {
 /// bit. Returns how many. One that is no pair may be written behind them.
 ///
 /// # Safety
-/// So many notes were made, at most [`MOST`]. The lanes of all bits are positions in their sets, and
+/// `noted` notes were written, at most [`MOST_NOTES`]. The lanes of all bits are positions in their sets, and
 /// there is space at `out` for as many pairs as there are bits.
 #[inline(never)]
 unsafe fn write<T, const N: usize>(
@@ -148,7 +157,7 @@ unsafe fn write<T, const N: usize>(
     notes.0[noted].write(none);
     notes.0[noted + 1].write(none);
     let mut note = notes.0.as_ptr().cast::<Note>();
-    // SAFETY: the caller's promise: notes are read up to those two. `count` is less than the number
+    // SAFETY: all notes up to `noted` are written, and the two behind them are written above. `count` is less than the number
     // of bits so far.
     unsafe {
         let end = note.add(noted);

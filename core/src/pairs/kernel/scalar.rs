@@ -18,7 +18,7 @@ unsafe impl<T: Copy + PartialOrd> Vector<T> for One<T> {
 
     #[inline(always)]
     unsafe fn load(from: *const T) -> Self {
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller has a coordinate at `from`.
         One(unsafe { *from })
     }
 

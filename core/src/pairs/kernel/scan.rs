@@ -9,13 +9,13 @@
 //!
 //! The order of the pairs (by probe, then by position) does not depend on the number of lanes.
 
-#[cfg(feature = "parallel")]
-use alloc::vec::Vec;
+use core::ops::Range;
 
 use super::output::{Notes, Output};
 use super::sorted_boxes::SortedBoxes;
 use super::vector::{PairOrder, Reporter, Vector};
 use crate::Scalar;
+use crate::pairs::parallel::MAY_SPLIT;
 
 /// Where a sweep stopped because its output was full: it goes on from here in the next call.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +26,6 @@ pub struct Cursor {
     /// How far ahead of the probe the scan has come.
     ahead: usize,
     /// The sweep ends before this probe, of those of all sets in sweep order.
-    #[cfg(feature = "parallel")]
     end: usize,
     done: bool,
 }
@@ -34,14 +33,7 @@ pub struct Cursor {
 impl Default for Cursor {
     /// Before the first probe of a whole sweep.
     fn default() -> Self {
-        Self {
-            first: 0,
-            second: 0,
-            ahead: 0,
-            #[cfg(feature = "parallel")]
-            end: usize::MAX,
-            done: false,
-        }
+        Self { first: 0, second: 0, ahead: 0, end: usize::MAX, done: false }
     }
 }
 
@@ -72,28 +64,19 @@ impl Cursor {
     /// Whether the next probe is beyond those of its chunk.
     #[inline(always)]
     fn is_at_end(&self) -> bool {
-        #[cfg(feature = "parallel")]
-        return self.first + self.second >= self.end;
-        #[cfg(not(feature = "parallel"))]
-        false
+        MAY_SPLIT && self.first + self.second >= self.end
     }
 
-    /// Splits a sweep into chunks of so many probes.
-    #[cfg(feature = "parallel")]
-    pub fn chunks<T: Scalar>(sets: &[SortedBoxes<T>], probes: usize) -> Vec<Self> {
-        let boxes = sets.iter().map(SortedBoxes::len).sum();
-        let chunk = |begin| {
-            let first = sets.get(1).map_or(begin, |second| probes_of(&sets[0], second, begin));
-            let end = begin + probes;
-            Self { first, second: begin - first, end, ..Self::default() }
-        };
-        (0..boxes).step_by(probes).map(chunk).collect()
+    /// The part of a sweep with these of its probes.
+    pub fn of<T: Scalar>(sets: &[SortedBoxes<T>], probes: Range<usize>) -> Self {
+        let Range { start, end } = probes;
+        let first = sets.get(1).map_or(start, |second| probes_of(&sets[0], second, start));
+        Self { first, second: start - first, end, ..Self::default() }
     }
 }
 
-/// How many of the first so many probes are boxes of the first set. Binary search (Odeh et al. 2012,
+/// How many of the first `probes` probes are boxes of the first set. Binary search (Odeh et al. 2012,
 /// "Merge Path").
-#[cfg(feature = "parallel")]
 fn probes_of<T: Scalar>(first: &SortedBoxes<T>, second: &SortedBoxes<T>, probes: usize) -> usize {
     let (mut low, mut high) = (probes.saturating_sub(second.len()), probes.min(first.len()));
     while low < high {
@@ -124,7 +107,7 @@ pub(super) unsafe fn sweep<T: Scalar, V: Vector<T>, const TWO: bool>(
     cursor: &mut Cursor,
     out: &mut [[u32; 2]],
 ) -> usize {
-    // SAFETY: the caller's promise.
+    // SAFETY: the caller has the instructions, and the sets are ready for `others` axes.
     unsafe {
         match others {
             0 => sweep_on::<T, V, TWO, 0>(first, second, pair_order, cursor, out),

@@ -9,11 +9,11 @@ use core::mem::{replace, take};
 
 use crate::memory::prefetch;
 
-/// An array of more bytes does not fit the second-level cache: lines are prefetched (with large pages, 0.69
-/// to 0.85 of the time at 1,000,000 boxes in the plane and in space),
-const LARGE: usize = 1 << 20;
-/// so many bytes ahead. A column is written front to back, so these are its next lines.
-const AHEAD: usize = 128;
+/// Arrays above this many bytes exceed the second-level cache, so their lines are prefetched. (With large pages this
+/// takes 0.69 to 0.85 of the time at 1,000,000 boxes in the plane and in space.)
+const MOST_CACHED_BYTES: usize = 1 << 20;
+/// How many bytes ahead to prefetch. A column is written front to back, so these are its next lines.
+const PREFETCHED_BYTES_AHEAD: usize = 128;
 
 /// The bits of [`Placement::column`] that are the column.
 const COLUMN_BITS: u32 = 29;
@@ -82,7 +82,7 @@ impl<'a> CountedPlacements<'a> {
 pub fn assign_slots<'a, V: Copy>(
     lists: &mut [CountedPlacements<'a>],
     array: &'a mut [V],
-) -> impl Iterator<Item = Slots<'a, V>> {
+) -> impl Iterator<Item = ColumnSlots<'a, V>> {
     let columns = lists.first().map_or(0, |list| list.ends.len());
     let len = lists.iter().map(CountedPlacements::len).sum::<usize>();
     assert!(len == array.len() && u32::try_from(len).is_ok());
@@ -96,18 +96,18 @@ pub fn assign_slots<'a, V: Copy>(
     }
     let start = array.as_mut_ptr();
     // Taken, so that no list gets slots twice.
-    lists.iter_mut().map(move |list| Slots {
+    lists.iter_mut().map(move |list| ColumnSlots {
         placements: take(&mut list.placements),
         ends: take(&mut list.ends),
         start,
-        is_large: size_of::<V>() * len > LARGE,
+        is_large: size_of::<V>() * len > MOST_CACHED_BYTES,
         array: PhantomData,
     })
 }
 
 /// The places in an array that one list fills. See [`assign_slots`].
 #[derive(Debug)]
-pub struct Slots<'a, V> {
+pub struct ColumnSlots<'a, V> {
     placements: &'a [Placement],
     ends: &'a mut [u32],
     start: *mut V,
@@ -115,10 +115,10 @@ pub struct Slots<'a, V> {
     array: PhantomData<&'a mut [V]>,
 }
 
-// SAFETY: it writes values to places that no other `Slots` of the array has.
-unsafe impl<V: Send> Send for Slots<'_, V> {}
+// SAFETY: it writes values to places that no other `ColumnSlots` of the array has.
+unsafe impl<V: Send> Send for ColumnSlots<'_, V> {}
 
-impl<V: Copy> Slots<'_, V> {
+impl<V: Copy> ColumnSlots<'_, V> {
     /// Writes the value of each placement to its slot.
     #[inline(always)]
     pub fn write(self, value: impl Fn(Placement) -> V) {
@@ -128,7 +128,7 @@ impl<V: Copy> Slots<'_, V> {
             // In bounds, as is the slot itself.
             let slot = self.start.wrapping_add(*end as usize);
             if self.is_large {
-                prefetch(slot.wrapping_add(AHEAD / size_of::<V>()));
+                prefetch(slot.wrapping_add(PREFETCHED_BYTES_AHEAD / size_of::<V>()));
             }
             // SAFETY: `assign_slots` gave each column of each list as many slots of the array, which
             // `self` has borrowed, as the list has placements in the column, and no two share one.

@@ -11,7 +11,7 @@ use crate::memory::grow;
 pub const PAD: usize = 16;
 
 /// At most this many axes are tested beside the sweep axis: all three when nothing is swept.
-pub const MAX_OTHERS: usize = 3;
+const MAX_OTHERS: usize = 3;
 
 /// Boxes in sweep order: those of a column of the grid, or all of a set. Every array is `len + PAD` long at least.
 ///

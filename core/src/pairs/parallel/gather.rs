@@ -1,6 +1,6 @@
 //! Puts the pairs of the jobs of a search, which threads do in any order, into the order of the jobs.
-//! They are stored in chunks. Each chunk is copied to its place as soon as all before it have theirs:
-//! most of them while they are in the cache of the thread that found them.
+//! Pairs are stored in chunks. Each chunk is copied to its place as soon as all chunks before it have their places: most
+//! of them while they are in the cache of the thread that found them.
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
@@ -9,36 +9,21 @@ use core::mem::take;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock};
 
-use super::threads::on_threads;
-use crate::pairs::control::Stop;
-use crate::pairs::sink::{Chunk, Gathered, Sink};
-
-/// Does so many jobs on so many threads, at least two, and sends their pairs to the sink in order.
-pub fn jobs_on_threads<O: Sink>(
-    jobs: usize,
-    threads: usize,
-    sink: &mut O,
-    find: impl Fn(usize, &mut Job<'_, '_, O::Chunk>) -> Result<(), Stop> + Sync,
-) -> Result<(), Stop> {
-    let all: Vec<_> = (0..jobs).collect();
-    let gather = Gather::new(sink, jobs);
-    let do_all = || gather.do_all(&all, &find);
-    on_threads(do_all, 1..threads, |_| do_all());
-    let found = gather.end()?;
-    sink.join(found)
-}
+use super::receiver::{Chunk, Gathered, Receiver};
+use crate::pairs::sink::Sink;
+use crate::pairs::task::Stop;
 
 /// The pairs found so far, and where they go.
 #[derive(Debug)]
 pub struct Gather<'a, C> {
-    state: Mutex<State<'a, C>>,
+    state: Mutex<GatherState<'a, C>>,
     /// How many jobs have been begun.
     begun: AtomicUsize,
     failed: OnceLock<Stop>,
 }
 
 #[derive(Debug)]
-struct State<'a, C> {
+struct GatherState<'a, C> {
     jobs: Vec<Found<C>>,
     /// The first job whose pairs do not all have their places.
     next: usize,
@@ -61,12 +46,13 @@ struct Found<C> {
 }
 
 impl<'a, C: Chunk> Gather<'a, C> {
-    /// For the pairs of so many jobs.
-    pub fn new<O: Sink<Chunk = C>>(sink: &'a mut O, jobs: usize) -> Self {
+    /// For the pairs of this many jobs.
+    pub fn new<O: Receiver<Chunk = C>>(sink: &'a mut O, jobs: usize) -> Self {
         let found = || Found { chunks: VecDeque::new(), is_complete: false };
         let (spare, jobs) = (sink.spare_chunks(), repeat_with(found).take(jobs).collect());
         let (unused, wanted) = (spare.len(), sink.most());
-        let state = State { jobs, next: 0, free: sink.free(), written: 0, wanted, spare, unused };
+        let state =
+            GatherState { jobs, next: 0, free: sink.free(), written: 0, wanted, spare, unused };
         Self { state: Mutex::new(state), begun: AtomicUsize::new(0), failed: OnceLock::new() }
     }
 
@@ -101,8 +87,7 @@ impl<'a, C: Chunk> Gather<'a, C> {
         chunk.unwrap_or_default()
     }
 
-    /// Takes chunks of a job, the last ones if it is complete then, and copies all pairs to their
-    /// places that have one.
+    /// Takes finished chunks of a job (`is_complete`: its last) and copies every chunk whose place is known.
     fn put(
         &self,
         job: usize,
@@ -140,7 +125,7 @@ impl<'a, C: Chunk> Gather<'a, C> {
             return Err(stop);
         }
         // No thread panics while it has the lock.
-        let State { jobs, written, spare, unused, .. } =
+        let GatherState { jobs, written, spare, unused, .. } =
             self.state.into_inner().map_err(|_| Stop::Memory)?;
         let mut waiting = Vec::new();
         waiting.try_reserve_exact(jobs.iter().map(|found| found.chunks.len()).sum())?;
@@ -149,7 +134,7 @@ impl<'a, C: Chunk> Gather<'a, C> {
     }
 }
 
-impl<'a, C: Chunk> State<'a, C> {
+impl<'a, C: Chunk> GatherState<'a, C> {
     /// The next chunk and where its pairs go, if it is there and there is spare capacity.
     fn next(&mut self) -> Option<(&'a mut [[u32; 2]], C)> {
         loop {
@@ -181,10 +166,6 @@ pub struct Job<'g, 'a, C> {
 }
 
 impl<C: Chunk> Sink for Job<'_, '_, C> {
-    const SWEEPS: bool = C::SWEEPS;
-
-    type Chunk = C;
-
     #[inline]
     fn spare(&mut self) -> Result<&mut [[u32; 2]], Stop> {
         if self.chunk.is_full() {
@@ -198,13 +179,17 @@ impl<C: Chunk> Sink for Job<'_, '_, C> {
     fn take(&mut self, count: usize) -> Result<(), Stop> {
         self.chunk.take(count)
     }
+}
+
+impl<C: Chunk> Receiver for Job<'_, '_, C> {
+    type Chunk = C;
 
     fn most(&self) -> usize {
         self.gather.state.lock().map_or(usize::MAX, |state| state.wanted)
     }
 
     fn spare_chunks(&mut self) -> Vec<C> {
-        let all = |state: &mut State<'_, C>| {
+        let all = |state: &mut GatherState<'_, C>| {
             state.unused = 0;
             take(&mut state.spare)
         };

@@ -1,10 +1,10 @@
-//! Which columns a thread sweeps together.
+//! Which columns a thread sweeps in one job.
 
 use alloc::vec::Vec;
 use core::ops::Range;
 
 /// Groups of columns for each thread: some take longer than others.
-const GROUPS: usize = 16;
+const GROUPS_PER_THREAD: usize = 16;
 
 /// A range of columns, and how many records they have.
 struct Group {
@@ -15,17 +15,17 @@ struct Group {
 /// The columns in groups of about equally many records.
 pub struct Schedule {
     groups: Vec<Group>,
-    /// Groups of one column each that hold more than half of a thread's share, and that will be
-    /// planned again: all threads search them together, before the rest.
+    /// Groups of one column each that hold more than half of a thread's share and will be planned again. All threads
+    /// share the search of each, before the rest.
     pub huge: Vec<usize>,
     /// The other groups, the large ones first, so that none is left for the end.
     pub rest: Vec<usize>,
 }
 
 impl Schedule {
-    /// For columns with so many records each. A column with more than `crowd` is planned again.
+    /// A schedule of columns with these numbers of records. A column with more than `crowd` is planned again.
     pub fn new(records: impl Iterator<Item = usize> + Clone, threads: usize, crowd: usize) -> Self {
-        let groups = groups(records, threads * GROUPS);
+        let groups = groups(records, threads * GROUPS_PER_THREAD);
         let records = groups.iter().map(|group| group.records).sum::<usize>();
         let huge = crowd.max(records / (2 * threads));
         let is_huge =
@@ -46,7 +46,8 @@ impl Schedule {
     }
 }
 
-/// Groups of columns with about as many records each; a column that has so many is by itself.
+/// Groups neighboring columns so that each group has about `1 / count` of the records; a column with more stands
+/// alone.
 fn groups(records: impl Iterator<Item = usize> + Clone, count: usize) -> Vec<Group> {
     let share = records.clone().sum::<usize>() / count + 1;
     let mut groups: Vec<Group> = Vec::with_capacity(count + 1);

@@ -8,7 +8,7 @@ use std::thread::yield_now;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 /// With fewer pairs threads do not pay to copy them (two busy cores of a virtual machine).
-const MANY_PAIRS: usize = 1 << 18;
+const MIN_PAIRS_TO_COPY_ON_THREADS: usize = 1 << 18;
 /// How often the calling thread checks whether the others have finished, and then how often more
 /// while it lets others run, before it goes to sleep: some hundred microseconds in all. (Two threads at
 /// 100,000 boxes take 0.93 to 0.95 of the time that they take if it sleeps at once; 11 scenes.)
@@ -70,7 +70,7 @@ pub type Placed<'a> = (&'a mut [[u32; 2]], &'a [[u32; 2]]);
 /// Copies chunks of pairs to their places, on threads if they are many.
 pub fn copy(chunks: Vec<Placed<'_>>) {
     let pairs: usize = chunks.iter().map(|(_, from)| from.len()).sum();
-    if pairs < MANY_PAIRS {
+    if pairs < MIN_PAIRS_TO_COPY_ON_THREADS {
         chunks.into_iter().for_each(|(to, from)| to.copy_from_slice(from));
     } else {
         chunks.into_par_iter().for_each(|(to, from)| to.copy_from_slice(from));

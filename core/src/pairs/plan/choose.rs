@@ -1,41 +1,40 @@
 //! The choice of a plan: the cheapest cut of space, or a split of the boxes by size if that costs less.
 
-use super::cost::{Cut, RECORD, Search, Shape, chance, cost, together};
-use super::field::Field;
+use super::cost::{Cut, PlannedSearch, RECORD_NS, Shape, chance, chance_to_share, cost};
+use super::distribution::Distribution;
 use super::float::{greater, greatest, lesser, whole};
-use super::overlaps::{Overlaps, UNKNOWN, is_unexpected};
+use super::overlaps::{NO_LIMITS, Overlaps, is_unexpected};
 use super::sample::{AXES, Sample};
 
 // Which plan is taken decides the order of the pairs, so these limits do not depend on the machine. They were
 // chosen on the scenes of the benchmark, 1,000 to 1,000,000 boxes, on one core of an AMD EPYC (Zen 5).
 
-/// A plan that costs less than this share of another is cheaper: by so much that noise in the sample
-/// does not change the plan from call to call.
-const CHEAPER: f64 = 0.95;
-/// A split by size has to cost less than this share of the cheapest plan so far,
-const SPLIT_CHEAPER: f64 = 0.8;
-/// and is not tried if that costs less than so many times what placing and sorting the boxes costs.
-const DEAR: f64 = 3.0;
-/// With fewer boxes, a plan is not compared with what a glance at the sample shows: that takes half a
-/// microsecond an axis.
-const GLANCE_PAYS: f64 = 2048.0;
-/// Columns for each box of the smaller of two sets, at least, where few boxes are searched against
-/// many (100 against 100,000 boxes took 0.58 of the time).
-const SPARSE: f64 = 4.0;
+/// A plan is cheaper than another if it costs less than this share of it. The difference keeps noise in the sample from
+/// changing the plan from call to call.
+const CHEAPER_COST_SHARE: f64 = 0.95;
+/// A split by size must cost less than this share of the best plan so far.
+const SPLIT_COST_SHARE: f64 = 0.8;
+/// It is tried only if that plan costs more than this many times the placing and sorting of the boxes.
+const DEAR_COST_RATIO: f64 = 3.0;
+/// With fewer boxes, no glance at the sample checks a plan: it takes half a microsecond an axis.
+const MIN_BOXES_TO_GLANCE: f64 = 2048.0;
+/// Where few boxes are searched against many, the fewest columns for each box of the smaller set. (100 against 100,000
+/// boxes took 0.58 of the time.)
+const SPARSE_COLUMNS_PER_BOX: f64 = 4.0;
 /// The most columns for each box of the smaller of two sets, and for each box of the larger. A column
-/// costs 15 to 100 nanoseconds even if it is empty, which the model leaves out: with points, which fit
-/// into columns of any width, it would take 2^24 (1,000 against 4,000 points in space: 60 to 690 ms, now
-/// less than 2, on a loaded machine).
-const COLUMNS_PER_BOX: [f64; 2] = [8.0, 0.125];
+/// costs 15 to 100 nanoseconds even if it is empty, which the model leaves out. With points, which fit
+/// into columns of any width, it would choose 2^24 columns. (1,000 against 4,000 points in space took 60 to 690 ms on a
+/// loaded machine, and take less than 2 ms with this limit.)
+const MOST_COLUMNS_PER_BOX: [f64; 2] = [8.0, 0.125];
 /// The most columns, nearly: with a last step and with slabs still less than 2^29.
 const MOST_COLUMNS: f64 = (1 << 24) as f64;
 /// Records in a slab: they, their keys and the sorted boxes fit the second-level cache.
-const SLAB: f64 = 4096.0;
+const RECORDS_PER_SLAB: f64 = 4096.0;
 
 /// Which plans are considered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Among {
-    /// All. Of boxes that are known to be crowded the sample gets a closer look at once.
+    /// All. If boxes are known to be crowded, the sample gets a closer look at once.
     All { is_crowded: bool },
     /// Cuts, since plans are nested too deep to split any further.
     Cuts,
@@ -51,35 +50,39 @@ pub struct SizeSplit {
     pub size: f64,
 }
 
-/// A plan, in the units of the field.
+/// A plan, in the units of the distribution.
 #[derive(Clone, Copy)]
 pub enum Choice {
     Cut(Cut),
     SplitBySize(SizeSplit),
 }
 
-/// The cheapest plan, and its cost. If boxes are crowded, or if it seems dear, it is from a closer look.
-pub fn cheapest(field: &Field, samples: &[&Sample], among: Among) -> (Choice, f64) {
-    let shapes = [Shape::new(samples[0], field), Shape::new(samples[samples.len() - 1], field)];
+/// The cheapest plan, and its cost. If boxes are crowded or the plan seems dear, it follows from a closer look.
+pub fn cheapest(distribution: &Distribution, samples: &[&Sample], among: Among) -> (Choice, f64) {
+    let shapes = [
+        Shape::new(samples[0], distribution),
+        Shape::new(samples[samples.len() - 1], distribution),
+    ];
     let all = &shapes[..samples.len()];
     let boxes: f64 = all.iter().map(|shape| shape.count).sum();
-    let is_dear = |cost| cost > DEAR * RECORD * boxes;
+    let is_dear = |cost| cost > DEAR_COST_RATIO * RECORD_NS * boxes;
     if matches!(among, Among::All { is_crowded: false } | Among::Cuts) {
-        let search = Search { field, shapes: all, limits: [UNKNOWN; AXES] };
+        let search = PlannedSearch { distribution, shapes: all, limits: [NO_LIMITS; AXES] };
         let (cut, cost) = cheapest_cut(&search);
         // The chance to overlap on the sweep axis, and on the others to share a column.
         let expected = |axis| match axis == cut.sweep {
             true => (3 - all.len()) as f64 * chance(&search, axis),
-            false => together(field, &shapes, &cut, axis),
+            false => chance_to_share(distribution, &shapes, &cut, axis),
         };
         let is_unexpected = |axis| is_unexpected(samples, axis, expected(axis));
-        let is_expected = boxes < GLANCE_PAYS || !(0..field.dimensions).any(is_unexpected);
+        let is_expected =
+            boxes < MIN_BOXES_TO_GLANCE || !(0..distribution.dimensions).any(is_unexpected);
         if is_expected && !is_dear(cost) {
             return (Choice::Cut(cut), cost);
         }
     }
     let overlaps = Overlaps::new(samples);
-    let search = closer(field, all, &overlaps);
+    let search = closer(distribution, all, &overlaps);
     let (cut, cost) =
         if among == Among::Sweeps { cheapest_sweep(&search) } else { cheapest_cut(&search) };
     let mut best = (Choice::Cut(cut), cost);
@@ -91,20 +94,20 @@ pub fn cheapest(field: &Field, samples: &[&Sample], among: Among) -> (Choice, f6
         return best;
     }
     for set in 0..samples.len() {
-        for axis in 0..field.dimensions {
+        for axis in 0..distribution.dimensions {
             for size in samples[set].quantiles(axis) {
-                let [small, large] = Shape::split(samples[set], field, axis, size);
+                let [small, large] = Shape::split(samples[set], distribution, axis, size);
                 if small.count == 0.0 || large.count == 0.0 {
                     continue;
                 }
-                let limit = SPLIT_CHEAPER * best.1;
+                let limit = SPLIT_COST_SHARE * best.1;
                 let cost = if samples.len() == 1 {
                     let searches: [&[_]; 3] = [&[small], &[large], &[small, large]];
-                    cost_up_to(limit, field, &overlaps, &searches)
+                    cost_up_to(limit, distribution, &overlaps, &searches)
                 } else {
                     let [mut with_small, mut with_large] = [shapes; 2];
                     (with_small[set], with_large[set]) = (small, large);
-                    cost_up_to(limit, field, &overlaps, &[&with_small, &with_large])
+                    cost_up_to(limit, distribution, &overlaps, &[&with_small, &with_large])
                 };
                 if cost < limit {
                     best = (Choice::SplitBySize(SizeSplit { set, axis, size }), cost);
@@ -116,17 +119,26 @@ pub fn cheapest(field: &Field, samples: &[&Sample], among: Among) -> (Choice, f6
 }
 
 /// A search of some shapes, after a closer look.
-fn closer<'a>(field: &'a Field, shapes: &'a [Shape], overlaps: &Overlaps) -> Search<'a> {
+fn closer<'a>(
+    distribution: &'a Distribution,
+    shapes: &'a [Shape],
+    overlaps: &Overlaps,
+) -> PlannedSearch<'a> {
     let [first, last] = [&shapes[0], &shapes[shapes.len() - 1]];
     let limits = overlaps.limits(first.members, last.members, shapes.len() == 1);
-    Search { field, shapes, limits }
+    PlannedSearch { distribution, shapes, limits }
 }
 
 /// The cost of several searches, or something not below the limit.
-fn cost_up_to(limit: f64, field: &Field, overlaps: &Overlaps, searches: &[&[Shape]]) -> f64 {
+fn cost_up_to(
+    limit: f64,
+    distribution: &Distribution,
+    overlaps: &Overlaps,
+    searches: &[&[Shape]],
+) -> f64 {
     let mut cost = 0.0;
     for shapes in searches {
-        cost += cheapest_cut(&closer(field, shapes, overlaps)).1;
+        cost += cheapest_cut(&closer(distribution, shapes, overlaps)).1;
         if cost >= limit {
             break;
         }
@@ -135,25 +147,26 @@ fn cost_up_to(limit: f64, field: &Field, overlaps: &Overlaps, searches: &[&[Shap
 }
 
 /// The cheapest axis to sweep on without a cut, and the cost.
-fn cheapest_sweep(search: &Search<'_>) -> (Cut, f64) {
-    let sweeps = (0..search.field.dimensions).map(Cut::uncut).map(|cut| (cut, cost(search, &cut)));
+fn cheapest_sweep(search: &PlannedSearch<'_>) -> (Cut, f64) {
+    let sweeps =
+        (0..search.distribution.dimensions).map(Cut::uncut).map(|cut| (cut, cost(search, &cut)));
     sweeps.reduce(|best, next| if next.1 < best.1 { next } else { best }).expect("there are axes")
 }
 
 /// The cheapest cut, and its cost.
-fn cheapest_cut(search: &Search<'_>) -> (Cut, f64) {
-    let Search { field, shapes, .. } = *search;
+fn cheapest_cut(search: &PlannedSearch<'_>) -> (Cut, f64) {
+    let PlannedSearch { distribution, shapes, .. } = *search;
     let mut best = (Cut::uncut(0), f64::INFINITY);
-    for sweep in 0..field.dimensions {
+    for sweep in 0..distribution.dimensions {
         let (mut cut, mut cost) = refined(search, Cut::uncut(sweep));
         if let [first, second] = shapes {
             // Of few boxes against many most columns hold none, once there are many more
             // columns than boxes; until then more columns do not pay.
             let fewer = lesser(first.count, second.count);
             let mut sparse = Cut::uncut(sweep);
-            while sparse.len() < SPARSE * fewer {
-                for axis in
-                    (0..field.dimensions).filter(|&axis| axis != sweep && field.extent(axis) > 0.0)
+            while sparse.len() < SPARSE_COLUMNS_PER_BOX * fewer {
+                for axis in (0..distribution.dimensions)
+                    .filter(|&axis| axis != sweep && distribution.extent(axis) > 0.0)
                 {
                     sparse.columns[axis] *= 2.0;
                 }
@@ -162,45 +175,45 @@ fn cheapest_cut(search: &Search<'_>) -> (Cut, f64) {
                 }
             }
             let (sparse, sparse_cost) = refined(search, sparse);
-            if sparse_cost < CHEAPER * cost {
+            if sparse_cost < CHEAPER_COST_SHARE * cost {
                 (cut, cost) = (sparse, sparse_cost);
             }
         }
-        if cost < CHEAPER * best.1 {
+        if cost < CHEAPER_COST_SHARE * best.1 {
             best = (cut, cost);
         }
     }
     let (cut, _) = &mut best;
-    let records: f64 = shapes.iter().map(|shape| shape.records(field, cut)).sum();
-    let slabs = whole(records / cut.len() / SLAB);
+    let records: f64 = shapes.iter().map(|shape| shape.records(distribution, cut)).sum();
+    let slabs = whole(records / cut.len() / RECORDS_PER_SLAB);
     // Only if few boxes reach from slab to slab.
     let largest = greatest(shapes.iter().map(|shape| shape.mean[cut.sweep]));
-    if slabs > 1.0 && largest * slabs < 0.25 * field.extent(cut.sweep) {
+    if slabs > 1.0 && largest * slabs < 0.25 * distribution.extent(cut.sweep) {
         cut.columns[cut.sweep] = slabs;
     }
     best
 }
 
 /// A cut made finer step by step, as long as that pays, and its cost.
-fn refined(search: &Search<'_>, mut cut: Cut) -> (Cut, f64) {
-    let Search { field, shapes, .. } = *search;
+fn refined(search: &PlannedSearch<'_>, mut cut: Cut) -> (Cut, f64) {
+    let PlannedSearch { distribution, shapes, .. } = *search;
     let mut most_columns = MOST_COLUMNS;
     if let [first, second] = shapes {
         let fewer = lesser(first.count, second.count);
         let more = greater(first.count, second.count);
-        let [for_fewer, for_more] = COLUMNS_PER_BOX;
+        let [for_fewer, for_more] = MOST_COLUMNS_PER_BOX;
         most_columns = lesser(for_fewer * fewer + for_more * more, most_columns);
     }
     let mut cut_cost = cost(search, &cut);
     while cut.len() < most_columns {
         let mut next = (cut, cut_cost);
-        for axis in
-            (0..field.dimensions).filter(|&axis| axis != cut.sweep && field.extent(axis) > 0.0)
+        for axis in (0..distribution.dimensions)
+            .filter(|&axis| axis != cut.sweep && distribution.extent(axis) > 0.0)
         {
             let mut finer = cut;
             finer.columns[axis] = whole(cut.columns[axis] * 1.25) + 1.0;
             let finer_cost = cost(search, &finer);
-            let limit = if next.1 < cut_cost { CHEAPER * next.1 } else { cut_cost };
+            let limit = if next.1 < cut_cost { CHEAPER_COST_SHARE * next.1 } else { cut_cost };
             if finer_cost < limit {
                 next = (finer, finer_cost);
             }

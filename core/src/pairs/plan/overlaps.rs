@@ -1,30 +1,30 @@
 //! Which boxes of the samples overlap on each axis: a closer look, where boxes are crowded.
 //!
-//! The [`Field`](super::field::Field) supposes that boxes are spread evenly within the finest cells that a
-//! sample can tell, and each axis independent of the others. Where most boxes lie in a small part of an
-//! axis, or small and large ones in different parts, only their edges show how many a sweep would test.
+//! The [`Distribution`](super::distribution::Distribution) supposes that boxes are spread evenly within the finest cells
+//! that a sample can tell apart, and that the axes are independent of each other. Where most boxes lie in a small part
+//! of an axis, or small and large boxes in different parts, only their edges show how many a sweep would test.
 
 use super::float::greater;
 use super::sample::{AXES, Sample};
 
-/// The most boxes of a sample that are looked at: one bit each.
-const LOOKED_AT: usize = u64::BITS as usize;
-/// Two boxes of a set may overlap so many times more or less often than those of the sample,
-const TOLERANCE: f64 = 1.5;
-/// and so many overlaps in the sample are chance. (If boxes that all overlap are so few that the sample
-/// has at most one of them one time in ten, it has four on average, and six pairs.)
-const CHANCE: f64 = 6.0;
+/// The most boxes of a sample that are compared: one bit each.
+const MOST_COMPARED: usize = u64::BITS as usize;
+/// The true number of overlaps may differ from the sample's by this factor, plus or minus [`OVERLAPS_BY_CHANCE`].
+const OVERLAP_TOLERANCE: f64 = 1.5;
+/// This many overlaps in the sample may be chance. (If there are so few boxes that all overlap each other that one
+/// sample in ten has at most one of them, a sample has four of them on average, which are six pairs.)
+const OVERLAPS_BY_CHANCE: f64 = 6.0;
 
 /// Boxes of a sample: one bit each.
 pub type Members = u64;
 
-/// A box of a sample; none if it is not looked at.
+/// A box of a sample; no member if it is not compared.
 pub fn member(sample: &Sample, i: usize) -> Members {
-    let step = step(sample.len, LOOKED_AT);
+    let step = step(sample.len, MOST_COMPARED);
     if i.is_multiple_of(step) { 1 << (i / step) } else { 0 }
 }
 
-/// From one box that is looked at to the next, if at most so many of the sample are.
+/// The stride that visits at most `most` of `len` boxes.
 fn step(len: usize, most: usize) -> usize {
     len.div_ceil(most).max(1)
 }
@@ -40,10 +40,10 @@ fn edges(sample: &Sample, axis: usize) -> Edges<'_> {
     Edges { min: &sample.min[axis][..sample.len], max: &sample.max[axis][..sample.len] }
 }
 
-/// For each box of the first sample, which boxes of the last it overlaps; of each sample so many at most.
+/// For each box of the first sample, which boxes of the last it overlaps. At most `most` boxes of each sample are compared.
 #[inline(never)]
-fn compare(first: Edges<'_>, last: Edges<'_>, most: usize) -> [Members; LOOKED_AT] {
-    let mut rows = [0; LOOKED_AT];
+fn compare(first: Edges<'_>, last: Edges<'_>, most: usize) -> [Members; MOST_COMPARED] {
+    let mut rows = [0; MOST_COMPARED];
     let [first_step, last_step] = [first, last].map(|edges| step(edges.min.len(), most));
     for (row, i) in rows.iter_mut().zip((0..first.min.len()).step_by(first_step)) {
         for k in (0..last.min.len()).step_by(last_step).rev() {
@@ -57,7 +57,7 @@ fn compare(first: Edges<'_>, last: Edges<'_>, most: usize) -> [Members; LOOKED_A
 /// The pairs of a box of one group and a box of another, and how many overlap; of one group, the pairs
 /// within it.
 #[inline(never)]
-fn count(rows: &[Members; LOOKED_AT], first: Members, last: Members, is_one: bool) -> [f64; 2] {
+fn count(rows: &[Members; MOST_COMPARED], first: Members, last: Members, is_one: bool) -> [f64; 2] {
     let (mut overlaps, mut left) = (0, first);
     while left != 0 {
         overlaps += (rows[left.trailing_zeros() as usize] & last).count_ones();
@@ -70,50 +70,55 @@ fn count(rows: &[Members; LOOKED_AT], first: Members, last: Members, is_one: boo
         .map(|count| f64::from(count.saturating_sub(with_itself)) * times)
 }
 
-/// How many boxes a glance at a sample takes, and how much more often they overlap than expected if that
-/// asks for a closer look: so many times, and so many overlaps more.
-const GLANCE: usize = 24;
-const UNEXPECTED: f64 = 3.0;
-const MORE: f64 = 8.0;
+/// How many boxes of a sample a glance compares.
+const GLANCED_BOXES: usize = 24;
+/// A glance asks for a closer look if boxes overlap more than this many times as often as expected, plus
+/// [`GLANCE_OVERLAP_MARGIN`].
+const GLANCE_OVERLAP_RATIO: f64 = 3.0;
+/// See [`GLANCE_OVERLAP_RATIO`].
+const GLANCE_OVERLAP_MARGIN: f64 = 8.0;
 
-/// Whether many more boxes overlap on an axis than a chance of two boxes lets expect: to overlap if it is the sweep axis,
-/// else to share a column, as boxes that overlap do.
+/// Whether a glance finds far more overlaps on an axis than the model expects. `chance` is that of two boxes to overlap
+/// (sweep axis) or to share a column (other axes).
 pub fn is_unexpected(samples: &[&Sample], axis: usize, chance: f64) -> bool {
     let [first, last] = [samples[0], samples[samples.len() - 1]];
-    let rows = compare(edges(first, axis), edges(last, axis), GLANCE);
-    let all = Members::MAX >> (LOOKED_AT - GLANCE);
+    let rows = compare(edges(first, axis), edges(last, axis), GLANCED_BOXES);
+    let all = Members::MAX >> (MOST_COMPARED - GLANCED_BOXES);
     let [pairs, overlaps] = count(&rows, all, all, samples.len() == 1);
-    overlaps > UNEXPECTED * chance * pairs + MORE
+    overlaps > GLANCE_OVERLAP_RATIO * chance * pairs + GLANCE_OVERLAP_MARGIN
 }
 
-/// Between what limits the chance is that two boxes overlap on each axis.
+/// Lower and upper bound of the chance that two boxes overlap, per axis.
 pub type Limits = [(f64, f64); AXES];
 
 /// The limits without a closer look.
-pub const UNKNOWN: (f64, f64) = (0.0, f64::INFINITY);
+pub const NO_LIMITS: (f64, f64) = (0.0, f64::INFINITY);
 
 /// For each box of the first sample, which boxes of the last it overlaps on each axis. If there is one
 /// sample, it is both.
 pub struct Overlaps {
-    rows: [[Members; LOOKED_AT]; AXES],
+    rows: [[Members; MOST_COMPARED]; AXES],
 }
 
 impl Overlaps {
     pub fn new(samples: &[&Sample]) -> Self {
         let [first, last] = [samples[0], samples[samples.len() - 1]];
-        let rows = |axis| compare(edges(first, axis), edges(last, axis), LOOKED_AT);
-        let mut overlaps = Self { rows: [[0; LOOKED_AT]; AXES] };
+        let rows = |axis| compare(edges(first, axis), edges(last, axis), MOST_COMPARED);
+        let mut overlaps = Self { rows: [[0; MOST_COMPARED]; AXES] };
         (0..first.dimensions).for_each(|axis| overlaps.rows[axis] = rows(axis));
         overlaps
     }
 
-    /// Between what limits the chance is that a box of one group and one of another overlap on each axis; or
-    /// two boxes of one group, which is both.
+    /// Lower and upper bound of the chance that a box of one group and a box of another overlap, per axis; or two boxes
+    /// of one group, if that is both.
     pub fn limits(&self, first: Members, last: Members, is_one: bool) -> Limits {
         self.rows.each_ref().map(|rows| {
             let [pairs, overlaps] = count(rows, first, last, is_one);
             let pairs = greater(pairs, 1.0);
-            ((overlaps - CHANCE) / TOLERANCE / pairs, (overlaps + CHANCE) * TOLERANCE / pairs)
+            (
+                (overlaps - OVERLAPS_BY_CHANCE) / OVERLAP_TOLERANCE / pairs,
+                (overlaps + OVERLAPS_BY_CHANCE) * OVERLAP_TOLERANCE / pairs,
+            )
         })
     }
 }

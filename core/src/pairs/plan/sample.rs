@@ -7,13 +7,13 @@ use crate::sampling::positions;
 use crate::{Aabb, Scalar};
 
 /// The most boxes in a sample.
-pub const SAMPLE: usize = 256;
-/// One box in so many is drawn,
-const ONE_IN: usize = 32;
-/// but at least so many.
-const FEWEST: usize = 24;
+pub const MOST_SAMPLED: usize = 256;
+/// One box in this many is drawn.
+const SAMPLED_ONE_IN: usize = 32;
+/// The smallest sample.
+const LEAST_SAMPLED: usize = 24;
 
-/// The most axes. (Plans have as many in all dimensions, so that their code is compiled once.)
+/// The most axes. Plans have this many in all dimensions, so that their code is compiled once.
 pub const AXES: usize = 3;
 
 /// The boxes that were drawn from a set.
@@ -24,10 +24,10 @@ pub struct Sample {
     /// Boxes in the sample.
     pub len: usize,
     /// Corners by axis, times the unit, clamped to the limit of the coordinate type.
-    pub min: [[f64; SAMPLE]; AXES],
-    pub max: [[f64; SAMPLE]; AXES],
+    pub min: [[f64; MOST_SAMPLED]; AXES],
+    pub max: [[f64; MOST_SAMPLED]; AXES],
     /// The coordinates of `min`, sorted.
-    pub sorted: [[f64; SAMPLE]; AXES],
+    pub sorted: [[f64; MOST_SAMPLED]; AXES],
 }
 
 impl Sample {
@@ -36,9 +36,9 @@ impl Sample {
             dimensions,
             count: 0.0,
             len: 0,
-            min: [[0.0; SAMPLE]; AXES],
-            max: [[0.0; SAMPLE]; AXES],
-            sorted: [[0.0; SAMPLE]; AXES],
+            min: [[0.0; MOST_SAMPLED]; AXES],
+            max: [[0.0; MOST_SAMPLED]; AXES],
+            sorted: [[0.0; MOST_SAMPLED]; AXES],
         }
     }
 
@@ -70,7 +70,7 @@ impl Sample {
     /// Sizes that the largest half, quarter .. of the boxes exceed on an axis. Of boxes of the same size,
     /// all or none do.
     pub fn quantiles(&self, axis: usize) -> impl Iterator<Item = f64> {
-        let mut sizes = [0.0; SAMPLE];
+        let mut sizes = [0.0; MOST_SAMPLED];
         let len = self.len;
         for (i, size) in sizes[..len].iter_mut().enumerate() {
             *size = self.size(axis, i);
@@ -92,7 +92,7 @@ pub fn unit<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[&[S]]) -> T {
 
 /// The positions of the boxes in the sample of a set.
 fn drawn<const D: usize, T: Scalar, S: Source<D, T>>(source: &[S]) -> impl Iterator<Item = usize> {
-    positions(source.len(), (source.len() / ONE_IN).clamp(FEWEST, SAMPLE))
+    positions(source.len(), (source.len() / SAMPLED_ONE_IN).clamp(LEAST_SAMPLED, MOST_SAMPLED))
 }
 
 /// The greatest absolute coordinate that is finite.
@@ -101,11 +101,11 @@ fn magnitude<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> f64 {
     greatest(magnitudes.filter(|at| at.is_finite()))
 }
 
-/// Sorts at most [`SAMPLE`] values by `f64::total_cmp`: as whole numbers, which is faster and, in
+/// Sorts at most [`MOST_SAMPLED`] values by `f64::total_cmp`: as whole numbers, which is faster and, in
 /// WebAssembly, shares the code of the sort of keys.
 pub fn sort(values: &mut [f64]) {
     const SIGN: u64 = 1 << 63;
-    let mut keys = [0; SAMPLE];
+    let mut keys = [0; MOST_SAMPLED];
     let keys = &mut keys[..values.len()];
     for (key, value) in keys.iter_mut().zip(&*values) {
         let bits = value.to_bits();

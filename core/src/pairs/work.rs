@@ -1,6 +1,6 @@
-//! The work of searches: how many boxes are copied to columns and sorted (once for each column), how many candidates
-//! are tested, and in which order pairs are found, which follows from the plan. `core/tests/recorded/finder.txt` records
-//! these for every scene, so that a plan only changes on purpose: they depend on neither processor, kernel nor threads.
+//! The work of searches: how many boxes are copied to columns and sorted (once for each column), how many pairs of boxes
+//! are tested, and in which order pairs are found, which follows from the plan. `work.txt` records these
+//! for every scene, so that a plan only changes on purpose: they depend on neither processor, kernel nor threads.
 
 use std::fmt::Write;
 use std::format;
@@ -8,7 +8,7 @@ use std::path::Path;
 use std::string::String;
 use std::vec::Vec;
 
-use super::control::Task;
+use super::crowding::count_tests;
 use super::driver::Driver;
 use super::grid::{Cells, Grid};
 use super::hard_scenes::boxes;
@@ -16,20 +16,47 @@ use super::hard_scenes::boxes;
 use super::kernel::Cursor;
 use super::kernel::{Kernel, PAD, PairOrder, SortedBoxes};
 use super::placements::Placements;
+use super::probe::Probe;
 use super::sink::Store;
 use super::sizes::wide_boxes;
 use super::sort::Sorter;
+use super::task::Task;
 use crate::{Aabb, Scalar};
 use sweep_and_prune_scenes::Scene;
 
-/// Scenes with so many pairs that a search of 20,000 boxes takes long.
+/// Scenes that have many pairs: a search of 20,000 boxes takes long.
 const MANY_PAIRS: [&str; 9] =
     ["nested", "coincident", "flat", "needles", "needles-x", "giants", "slab", "beams", "infinite"];
 
-/// Compares with what is recorded in `core/tests/recorded/`. With the environment variable `RECORD` set, records it.
+/// The work of a thread.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Work {
+    /// How many copies of boxes it has made.
+    pub copied: u64,
+    /// How many boxes it has sorted.
+    pub sorted: u64,
+    /// About how many pairs of boxes it has tested.
+    pub tests: u64,
+}
+
+impl Probe for Work {
+    fn copied(&mut self, copies: usize) {
+        self.copied += copies as u64;
+    }
+
+    fn sorted(&mut self, boxes: usize) {
+        self.sorted += boxes as u64;
+    }
+
+    fn swept<T: Scalar>(&mut self, sorted: &[SortedBoxes<T>]) {
+        self.tests += count_tests(sorted, 512);
+    }
+}
+
+/// Compares with what is recorded in a file of this crate. With the environment variable `RECORD` set, records it.
 #[track_caller]
-pub(crate) fn compare_with_record(name: &str, now: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/recorded").join(name);
+pub(crate) fn compare_with_record(path: &str, now: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
     if std::env::var_os("RECORD").is_some() {
         std::fs::write(&path, now).expect("the record can be written");
     }
@@ -52,16 +79,16 @@ fn hash(pairs: &[[u32; 2]]) -> u64 {
 
 /// Adds a line about a search.
 fn search<const D: usize, T: Scalar>(report: &mut String, name: &str, sets: &[&[Aabb<D, T>]]) {
-    let mut driver = Driver::new(Kernel::best());
+    let mut driver = Driver::<_, _, Work>::new(Kernel::best());
     let order = if sets.len() == 1 { PairOrder::Ascending } else { PairOrder::BySet };
     let mut store = Store::default();
     driver.run(sets, Task::new(order, None), &mut store).expect("the boxes are valid");
-    let [sorted, candidates, copied] = driver.work;
+    let Work { copied, sorted, tests } = driver.probe;
     let (pairs, hash) = (store.pairs().len(), hash(store.pairs()));
     let counts = sets.iter().map(|set| set.len()).collect::<Vec<_>>();
     writeln!(
         report,
-        "{name} {D}D {counts:?}: {copied} copied, {sorted} sorted, {candidates} candidates, {pairs} pairs, \
+        "{name} {D}D {counts:?}: {copied} copied, {sorted} sorted, {tests} tests, {pairs} pairs, \
          order {hash:016x}"
     )
     .expect("a string grows");
@@ -99,7 +126,7 @@ fn searches_do_the_work_that_is_recorded() {
     searches!(&mut report, Scene::Uniform, 2, f32, 129, [0]);
     searches!(&mut report, Scene::Uniform, 2, f32, 3000, [32, 33]);
     groups(&mut report);
-    compare_with_record("finder.txt", &report);
+    compare_with_record("src/pairs/work.txt", &report);
 }
 
 /// Adds lines about uniform boxes with groups of others, each somewhere, so large and so far apart as it happens: a sample
@@ -193,42 +220,44 @@ fn chunks_of_a_sweep_of_two_sets_hold_all_pairs() {
     let all = sweep(&sets, Cursor::default());
     assert!(!all.is_empty());
     for probes in [1, 7, 64, 2000] {
-        let chunks = Cursor::chunks(&sets, probes).into_iter();
+        let starts = (0..1100).step_by(probes);
+        let chunks = starts.map(|start| Cursor::of(&sets, start..start + probes));
         let found = chunks.flat_map(|cursor| sweep(&sets, cursor)).collect::<Vec<_>>();
         assert_eq!(found, all, "{probes}");
     }
     // Where a set has ended, nothing of either is read.
     let short = [sorted(3, 3), sorted(700, 2)];
-    for cursor in Cursor::chunks(&sets, 1).into_iter().skip(600) {
-        assert!(sweep(&short, cursor).is_empty());
+    for probe in 600..1100 {
+        assert!(sweep(&short, Cursor::of(&sets, probe..probe + 1)).is_empty());
     }
 }
 
 #[cfg(feature = "parallel")]
 mod on_threads {
     use super::*;
-    use crate::pairs::control::Stop;
-    use crate::pairs::parallel::{Gather, Schedule};
-    use crate::pairs::sink::{Chunk, Sink};
+    use crate::pairs::parallel::{Chunk, Gather, Receiver, Schedule};
+    use crate::pairs::sink::Sink;
+    use crate::pairs::task::Stop;
 
     fn uniform(count: usize) -> Vec<Aabb<2>> {
         let boxes = Scene::Uniform.boxes::<2, f32>(count, 1).expect("a scene in 2D");
         boxes.iter().map(|aabb| Aabb::new(aabb.min, aabb.max)).collect()
     }
 
-    /// The pairs and the work of a search with so many helpers, and whether the first of them placed boxes.
-    fn search(sets: &[&[Aabb<2>]], helpers: usize) -> (Vec<[u32; 2]>, [u64; 3], bool) {
-        let mut driver = Driver::new(Kernel::best());
-        driver.helpers.resize_with(helpers, || Driver::new(Kernel::best()));
+    /// The pairs and the work of a search with this many helpers, and whether the first of them placed boxes.
+    fn search(sets: &[&[Aabb<2>]], helpers: usize) -> (Vec<[u32; 2]>, Work, bool) {
+        let mut driver = Driver::<_, _, Work>::new(Kernel::best());
+        driver.helpers.resize(helpers, || Driver::new(Kernel::best()));
         let order = if sets.len() == 1 { PairOrder::Ascending } else { PairOrder::BySet };
         let mut store = Store::default();
         driver.run(sets, Task::new(order, None), &mut store).expect("the boxes are valid");
         let unused = format!("{:?}", Placements::default());
-        let helper = driver.helpers.first();
+        let helper = driver.helpers.all().first();
         let placed = helper.is_some_and(|helper| format!("{:?}", helper.placements) != unused);
-        let work = driver.helpers.iter().fold(driver.work, |mut sum, helper| {
-            sum.iter_mut().zip(helper.work).for_each(|(sum, work)| *sum += work);
-            sum
+        let work = driver.helpers.all().iter().fold(driver.probe, |sum, helper| Work {
+            copied: sum.copied + helper.probe.copied,
+            sorted: sum.sorted + helper.probe.sorted,
+            tests: sum.tests + helper.probe.tests,
         });
         (store.pairs().to_vec(), work, placed)
     }

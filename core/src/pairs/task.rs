@@ -1,4 +1,4 @@
-//! What controls a search: its progress callback, how deep it has split its boxes, why it stopped.
+//! The task of a search: its share of the work, its progress callback, how deep plans are nested, why it stopped.
 
 use alloc::collections::TryReserveError;
 use core::ops::ControlFlow;
@@ -6,31 +6,31 @@ use core::sync::atomic::{AtomicU32, Ordering};
 
 use super::kernel::PairOrder;
 
-/// Progress is counted in units of 2^-24,
-const UNIT: f64 = 1.0 / (1 << 24) as f64;
-/// and reported in steps of 2^-8.
-const STEP_BITS: u32 = 16;
+/// Progress is counted in units of 2^-24.
+const PROGRESS_UNIT: f64 = 1.0 / (1 << 24) as f64;
+/// It is reported each time it has grown by 2^-8.
+const PROGRESS_STEP_BITS: u32 = 16;
 
 /// The caller's progress callback. Threads share it.
-pub(super) type Report<'a> = &'a (dyn Fn(f64) -> ControlFlow<()> + Sync);
+pub(super) type ProgressCallback<'a> = &'a (dyn Fn(f64) -> ControlFlow<()> + Sync);
 
 /// A progress callback, and how much of the work is done.
 pub(super) struct Progress<'a> {
-    report: Report<'a>,
+    report: ProgressCallback<'a>,
     /// In units of 2^-24.
     done: AtomicU32,
 }
 
 impl<'a> Progress<'a> {
-    pub fn new(report: Report<'a>) -> Self {
+    pub fn new(report: ProgressCallback<'a>) -> Self {
         Self { report, done: AtomicU32::new(0) }
     }
 
     /// Adds a share of the work, and reports what is done if a step is complete.
     fn add(&self, share: f64) -> ControlFlow<()> {
-        let share = (share / UNIT) as u32;
+        let share = (share / PROGRESS_UNIT) as u32;
         let before = self.done.fetch_add(share, Ordering::Relaxed);
-        if before >> STEP_BITS == (before + share) >> STEP_BITS {
+        if before >> PROGRESS_STEP_BITS == (before + share) >> PROGRESS_STEP_BITS {
             ControlFlow::Continue(())
         } else {
             self.report()
@@ -39,7 +39,7 @@ impl<'a> Progress<'a> {
 
     /// Reports what is done, even if that is no more than before, to ask whether to go on.
     pub fn report(&self) -> ControlFlow<()> {
-        (self.report)((f64::from(self.done.load(Ordering::Relaxed)) * UNIT).min(1.0))
+        (self.report)((f64::from(self.done.load(Ordering::Relaxed)) * PROGRESS_UNIT).min(1.0))
     }
 }
 
@@ -50,9 +50,9 @@ pub(super) struct Task<'a> {
     pub progress: Option<&'a Progress<'a>>,
     /// The share of the whole work.
     pub share: f64,
-    /// How many plans it is nested in,
+    /// How many plans enclose this search.
     pub depth: u32,
-    /// and how many boxes the last of them had.
+    /// How many boxes the innermost of them had.
     pub boxes: usize,
 }
 
@@ -61,7 +61,7 @@ impl<'a> Task<'a> {
         Self { pair_order, progress, share: 1.0, depth: 0, boxes: usize::MAX }
     }
 
-    /// A task nested in this one, with a share of its work, whose plan has so many boxes.
+    /// A task nested in this one, with a share of its work. Its plan has this many boxes.
     pub fn nested(self, share: f64, boxes: usize) -> Self {
         Self { depth: self.depth + 1, share: self.share * share, boxes, ..self }
     }

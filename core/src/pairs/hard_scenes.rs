@@ -3,10 +3,11 @@
 
 use alloc::vec::Vec;
 
-use super::control::Task;
 use super::driver::Driver;
 use super::kernel::{Kernel, PairOrder};
-use super::sink::Unswept;
+use super::sink::Count;
+use super::task::Task;
+use super::work::Work;
 use crate::{Aabb, Scalar};
 
 /// Boxes of one kind: how many, of which set, where they begin, over what extents, and their size.
@@ -29,19 +30,19 @@ pub(super) fn boxes<const D: usize, T: Scalar>(groups: &[Group<D>]) -> [Vec<Aabb
     sets
 }
 
-/// A search sorts each box less than 5 times, and has less than 150 candidates for it.
+/// A search sorts each box less than 5 times, and tests it against less than 150 others.
 fn takes_little_work<const D: usize, T: Scalar>(groups: &[Group<D>]) {
     let sets = boxes::<D, T>(groups);
     let count = (sets[0].len() + sets[1].len()) as u64;
     let used = if sets[1].is_empty() { 1 } else { 2 };
     let slices = sets.each_ref().map(|set| &set[..]);
-    let mut driver = Driver::new(Kernel::best());
+    let mut driver = Driver::<_, _, Work>::new(Kernel::best());
     let order = if used == 1 { PairOrder::Ascending } else { PairOrder::BySet };
     let task = Task::new(order, None);
-    driver.run(&slices[..used], task, &mut Unswept).expect("the boxes are valid");
-    let [sorted, candidates, _] = driver.work;
+    driver.run(&slices[..used], task, &mut Count::default()).expect("the boxes are valid");
+    let Work { sorted, tests, .. } = driver.probe;
     assert!(sorted < 5 * count, "{sorted} of {count} boxes sorted");
-    assert!(candidates < 150 * count, "{candidates} candidates of {count} boxes");
+    assert!(tests < 150 * count, "{tests} tests of {count} boxes");
 }
 
 #[test]

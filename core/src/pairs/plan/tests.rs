@@ -38,7 +38,7 @@ fn plans_do_not_depend_on_the_unit() {
     for step in [f64::from_bits(1), 2f64.powi(-1000), 2f64.powi(1000)] {
         assert_eq!(columns::<f64>(step, 1.0), usual, "{step}");
     }
-    // In other units other coordinates are round, to which the ends of the field are snapped:
+    // In other units other coordinates are round, to which the ends of the distribution are snapped:
     // that may come to a step finer or coarser, by a quarter.
     let is_alike = |columns: usize| 3 * columns <= 4 * usual && 3 * usual <= 4 * columns;
     for step in [1e-40, 1e-30, 1e30, 3.3e36] {

@@ -1,23 +1,22 @@
-//! Where the boxes of the samples are: how far they reach, how they cluster.
+//! The distribution of the boxes of the samples: how far they reach, how they cluster.
 
 use super::float::{floor, greater, lesser};
 use super::sample::{AXES, Sample};
 
-/// The cells of an axis are halved one time less than this to see how boxes cluster: at most, with a
-/// full sample.
-const LEVELS: usize = 11;
-/// The least chance that a sample can tell from none.
-const SURE: f64 = 1.0 / 2048.0;
+/// How many resolutions the histogram of an axis has: 1, 2, 4, ... 2^(RESOLUTIONS - 1) cells. Small samples use fewer.
+const RESOLUTIONS: usize = 11;
+/// The smallest chance that a sample can tell from none.
+const LEAST_SURE_CHANCE: f64 = 1.0 / 2048.0;
 
-/// Where the boxes are: the same for the boxes up to a size, and for those above, as for all.
-pub struct Field {
+/// The distribution of the boxes. Small and large boxes are assumed to share it.
+pub struct Distribution {
     pub dimensions: usize,
-    /// From where to where, apart from a few outliers.
+    /// The interval that holds the boxes, apart from a few outliers.
     pub low: [f64; AXES],
     pub high: [f64; AXES],
-    /// The chance that two boxes begin in the same of 1, 2, 4 .. equal cells.
-    together: [[f64; LEVELS]; AXES],
-    /// How many of them are known: the fewer boxes were drawn, the less the finest cells would tell.
+    /// The chance that two boxes begin in the same cell, of 1, 2, 4, ... equal cells.
+    share_cell: [[f64; RESOLUTIONS]; AXES],
+    /// How many of these chances are known: the fewer boxes were drawn, the less the finest cells would tell.
     levels: usize,
     /// The extent over which evenly spread boxes would be as near to each other as these are:
     /// less than `high - low` if they are clustered.
@@ -26,21 +25,21 @@ pub struct Field {
     pub ties: [f64; AXES],
 }
 
-impl Field {
+impl Distribution {
     pub fn new(samples: &[&Sample]) -> Self {
         let drawn = samples.iter().map(|sample| sample.len).max().unwrap_or(1);
-        let levels = (drawn.next_power_of_two().ilog2() as usize + 3).min(LEVELS);
-        let mut field = Field {
+        let levels = (drawn.next_power_of_two().ilog2() as usize + 3).min(RESOLUTIONS);
+        let mut distribution = Distribution {
             dimensions: samples[0].dimensions,
             levels,
             low: [0.0; AXES],
             high: [0.0; AXES],
-            together: [[1.0; LEVELS]; AXES],
+            share_cell: [[1.0; RESOLUTIONS]; AXES],
             spread: [0.0; AXES],
             ties: [0.0; AXES],
         };
-        for axis in 0..field.dimensions {
-            field.ties[axis] = ties(samples, axis);
+        for axis in 0..distribution.dimensions {
+            distribution.ties[axis] = ties(samples, axis);
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
             for sample in samples {
                 let sorted = &sample.sorted[axis][..sample.len];
@@ -51,16 +50,20 @@ impl Field {
                 high = greater(lesser(most + margin, sorted[sample.len - 1]), high);
             }
             let (low, high) = snapped(low, high);
-            (field.low[axis], field.high[axis]) = (low, high);
+            (distribution.low[axis], distribution.high[axis]) = (low, high);
             let extent = high - low;
-            field.together[axis] = together(samples, axis, levels, low, extent);
+            distribution.share_cell[axis] =
+                chances_to_share_a_cell(samples, axis, levels, low, extent);
             // As fine as the sample can tell.
-            let level = (0..levels).rev().find(|&level| field.together[axis][level] > SURE);
+            let level = (0..levels)
+                .rev()
+                .find(|&level| distribution.share_cell[axis][level] > LEAST_SURE_CHANCE);
             let level = level.unwrap_or(0);
             let cells = (1u32 << level) as f64;
-            field.spread[axis] = lesser(extent / cells / field.together[axis][level], extent);
+            distribution.spread[axis] =
+                lesser(extent / cells / distribution.share_cell[axis][level], extent);
         }
-        field
+        distribution
     }
 
     fn clip(&self, axis: usize, coordinate: f64) -> f64 {
@@ -72,25 +75,24 @@ impl Field {
         self.high[axis] - self.low[axis]
     }
 
-    /// The size of a sampled box on an axis, as far as it lies in the field.
+    /// The size of the part of a sampled box on an axis that lies within the distribution.
     pub fn size(&self, sample: &Sample, axis: usize, i: usize) -> f64 {
         self.clip(axis, sample.max[axis][i]) - self.clip(axis, sample.min[axis][i])
     }
 
-    /// The chance that two boxes begin in the same of so many columns.
-    pub fn together(&self, axis: usize, columns: f64) -> f64 {
+    /// The chance that two boxes begin in the same of this many columns.
+    pub fn chance_to_share(&self, axis: usize, columns: f64) -> f64 {
         // Between the powers of two, and beyond the last, as if evenly spread.
         let level = ((columns as u32).ilog2() as usize).min(self.levels - 1);
         let beyond = columns / f64::from(1u32 << level);
-        let finer = self.together[axis][(level + 1).min(self.levels - 1)];
-        greater(self.together[axis][level] / beyond, finer)
+        let finer = self.share_cell[axis][(level + 1).min(self.levels - 1)];
+        greater(self.share_cell[axis][level] / beyond, finer)
     }
 }
 
-/// The interval with its ends at whole multiples of a power of two, an eighth to a sixteenth of its
-/// extent: that of boxes which move little is the same from call to call. It holds all of the old
-/// one but a few hundredths, and where boxes reach a little over a round number that is not the
-/// next end.
+/// Moves the ends of an interval to whole multiples of a power of two, which is an eighth to a sixteenth of its
+/// extent. So boxes that move little have the same interval from call to call. It holds all of the old interval but a
+/// few hundredths, so boxes that reach a little beyond a round number do not move an end to the next one.
 fn snapped(low: f64, high: f64) -> (f64, f64) {
     const EXPONENT: u64 = 0x7FF << 52;
     let step = f64::from_bits((high - low).to_bits() & EXPONENT) / 8.0;
@@ -102,16 +104,16 @@ fn snapped(low: f64, high: f64) -> (f64, f64) {
     (low * step, greater(high, low + 1.0) * step)
 }
 
-/// The chance that two boxes begin in the same of 1, 2, 4 .. equal cells, from the finest up.
-fn together(
+/// The chance that two boxes begin in the same cell, of 1, 2, 4, ... equal cells; counted from the finest up.
+fn chances_to_share_a_cell(
     samples: &[&Sample],
     axis: usize,
     levels: usize,
     low: f64,
     extent: f64,
-) -> [f64; LEVELS] {
+) -> [f64; RESOLUTIONS] {
     let finest = 1 << (levels - 1);
-    let mut counts = [[0u32; 1 << (LEVELS - 1)]; 2];
+    let mut counts = [[0u32; 1 << (RESOLUTIONS - 1)]; 2];
     let scale = if extent > 0.0 { finest as f64 / extent } else { 0.0 };
     for (counts, sample) in counts.iter_mut().zip(samples) {
         for at in &sample.min[axis][..sample.len] {
@@ -119,7 +121,7 @@ fn together(
             counts[cell.min(finest - 1)] += 1;
         }
     }
-    let mut chances = [1.0; LEVELS];
+    let mut chances = [1.0; RESOLUTIONS];
     let [first, second] = &mut counts;
     let len = samples[0].len as f64;
     for level in (0..levels).rev() {
