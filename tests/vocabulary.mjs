@@ -76,6 +76,19 @@ export const WORDS = [
     pattern: /\b(somebody|whoever|nobody)\b|\b(bod(y|ies)|box(es)?|threads?|those|ones?) who\b/i,
   },
   {
+    not: "so many (a number)",
+    but: "this many, N, or the name of the number",
+    pattern: /\bso many\b(?! that\b)/i,
+    // Elsewhere it still stands.
+    only: /^(core\/(src\/(?!world)|tests\/(?!recorded))|bindings|scenes|fuzz\/(?!TOTALS)|classroom\/(algorithms|simulation)|bench\/complexity|js\/wasm|site\/wasm)/,
+  },
+  {
+    not: "those of, twice in a sentence",
+    but: "the noun again",
+    pattern: /\bthose of\b[^.;]*\bthose of\b/i,
+    only: /\.rs$/,
+  },
+  {
     not: "British spelling",
     but: "American spelling",
     pattern: /neighbour|colour|behaviour|(?<![a-z])centre|serialis|optimis(e|ation)|normalis|initialis/i,

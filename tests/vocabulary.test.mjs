@@ -20,10 +20,12 @@ test("the words are found in prose, in identifiers and in the names of files", (
   assert.deepEqual(found("python/extension/door.rs", ""), ["door"]);
   assert.deepEqual(found("core/src/a.rs", "bodies who rest"), ["who, somebody, nobody (for a thing)"]);
   assert.deepEqual(found("site/src/a.ts", "interface LabOptions {}"), ["lab, laboratory"]);
+  assert.deepEqual(found("core/src/pairs/a.rs", "/// Cuts a line into so many cells."), ["so many (a number)"]);
+  assert.deepEqual(found("bench/src/a.rs", "// The boxes are those of a set, or those of a column."), ["those of, twice in a sentence"]);
 });
 
 test("plain English and names that only look alike are no finds", () => {
-  for (const text of ["the following example", "hours and flours", "split, litter", "seaten, theater", "a convex hull"]) {
+  for (const text of ["the following example", "hours and flours", "split, litter", "seaten, theater", "a convex hull", "so many that it is slow"]) {
     assert.deepEqual(placesIn("README.md", text), [], text);
   }
   assert.deepEqual(placesIn("js/src/a.ts", 'import { html } from "lit";'), []);

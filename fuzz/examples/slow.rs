@@ -19,7 +19,7 @@ use sweep_and_prune_scenes::Random;
 const MOST_PAIRS: u64 = 20;
 /// How many changes a scene is given.
 const CHANGES: usize = 150;
-/// A scene that is so many times slower than uniform boxes is a fault.
+/// A scene that takes this many times as long as uniform boxes is a fault.
 const FAULT: f64 = 10.0;
 
 /// Boxes of one kind.

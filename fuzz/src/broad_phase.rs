@@ -134,7 +134,7 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
         self.model.bodies.keys().nth(which).copied()
     }
 
-    /// One in so many bodies, from the first, second or another one on.
+    /// One in this many bodies, from the first, second or another one on.
     fn ids(&self, input: &mut Input) -> Vec<ProxyId> {
         let step = input.pick(&[1, 1, 2, 3, 7, 20, 100]);
         self.model.bodies.keys().skip(input.below(step)).step_by(step).copied().collect()
@@ -159,7 +159,7 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
         self.model.insert(id, aabb, filter);
     }
 
-    /// Inserts up to so many bodies that single ones are looked up in the tree.
+    /// Inserts 2 to 90 bodies: of the most, some are looked up one by one in the tree.
     fn insert_many(&mut self, input: &mut Input) {
         let count = input.pick(&[2, 5, 20, 70, 90]);
         let (filter, seed) = (self.filter(input), input.below(256));
@@ -214,7 +214,7 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
         ids.iter().zip(boxes).for_each(|(&id, &aabb)| self.model.set(id, aabb));
     }
 
-    /// The box of a body that moved by so many units on each axis.
+    /// The box of a body that moved by this many units on each axis.
     fn moved(&self, id: ProxyId, way: [f64; D]) -> Aabb<D, T> {
         let mut aabb = self.model.bodies[&id].aabb;
         for (axis, &way) in way.iter().enumerate() {
@@ -260,7 +260,7 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
         }
     }
 
-    /// Moves one or two bodies for so many updates that others may fall asleep.
+    /// Moves one or two bodies for enough updates that others may fall asleep.
     fn rest(&mut self, input: &mut Input) {
         let (first, last) = (self.id(input), self.id(input));
         let way = std::array::from_fn(|_| Self::step(input));

@@ -129,7 +129,7 @@ impl<const D: usize, T: Scalar> Case<'_, D, T> {
         assert_eq!(self.search(finder).count().unwrap(), self.found.len() as u64);
     }
 
-    /// Streams the pairs in chunks, and one by one until one in so many.
+    /// Streams the pairs in chunks, and one by one until one in this many.
     fn stream(&self, finder: &mut PairFinder<D, T>, stop: usize) {
         let mut streamed = Vec::new();
         let each = |pairs: &[[u32; 2]]| {
@@ -151,7 +151,7 @@ impl<const D: usize, T: Scalar> Case<'_, D, T> {
         assert_eq!(streamed, self.found[..self.found.len().min(stop + 1)]);
     }
 
-    /// Cancels a search after so many calls of its progress callback.
+    /// Cancels a search after this many calls of its progress callback.
     fn cancel(&self, finder: &mut PairFinder<D, T>, most: usize) {
         let reports = AtomicUsize::new(0);
         let progress = |done: f64| {

@@ -53,7 +53,7 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// True in one of so many cases, but not where no bytes are left.
+    /// True in one of this many cases, but not where no bytes are left.
     pub fn chance(&mut self, one_in: usize) -> bool {
         self.below(one_in) + 1 == one_in
     }
@@ -79,12 +79,12 @@ pub struct Space {
     origin: f64,
     /// How many values there are.
     values: usize,
-    /// One in so many coordinates is special: infinite, huge or subnormal. With 1 none is.
+    /// One in this many coordinates is special: infinite, huge or subnormal. With 1 none is.
     special: usize,
 }
 
 impl Space {
-    /// A space for about so many boxes with coordinates of a type. Few boxes may be anywhere; many lie apart, so that
+    /// A space for about this many boxes with coordinates of a type. Few boxes may be anywhere; many lie apart, so that
     /// each overlaps a few others and not all.
     pub fn draw<const D: usize, T: Scalar>(input: &mut Input, boxes: usize) -> Self {
         let (huge, tiny) = if T::BYTES == 4 { (1e37, 1e-44) } else { (1e307, 3e-323) };
@@ -121,7 +121,7 @@ impl Space {
         T::from_f64(units * self.unit + self.origin)
     }
 
-    /// A length of so many units.
+    /// A length of this many units.
     pub fn length<T: Scalar>(&self, units: f64) -> T {
         T::from_f64(units * self.unit)
     }

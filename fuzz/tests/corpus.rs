@@ -25,7 +25,7 @@ fn every_kept_input_passes() {
     assert!(inputs > 20, "the corpus has only {inputs} inputs");
 }
 
-/// Runs random inputs until they made so many calls.
+/// Runs random inputs until they have made this many calls.
 fn check(name: &str, calls: u64) {
     let (target, seed) = (target(name), 0);
     let calls = if cfg!(debug_assertions) { calls / 50 } else { calls };

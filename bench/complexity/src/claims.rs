@@ -31,7 +31,7 @@ impl Case {
     }
 }
 
-/// So many operations in a step of this world.
+/// This many operations in a step of this world.
 #[derive(Clone, Copy, Debug)]
 pub struct Claim {
     /// The column.
@@ -75,7 +75,7 @@ fn claim(case: Case, world: World, formula: &'static str, cost: fn(&Facts) -> f6
     Claim { case, world, formula, cost }
 }
 
-/// What it takes to sort so many keys by comparisons; of the first order, since the constant
+/// What it takes to sort this many keys by comparisons; of the first order, since the constant
 /// differs from sort to sort.
 fn n_log_n(keys: f64) -> f64 {
     keys * keys.log2()

@@ -72,7 +72,7 @@ pub const LAWS: [Law; 6] = [
     },
 ];
 
-/// So many steps a box needs to fall from the top of the scene to its floor.
+/// How many steps a box needs to fall from the top of the scene to its floor.
 const FALL_STEPS: f64 = 90.0;
 
 /// The boxes of a scene in motion. Centers stay inside the bounds of the first centers.
