@@ -122,6 +122,15 @@ def test_the_answers_are_their_definitions(seed: int, capsys: pytest.CaptureFixt
         assert names == ["a", "b", "distance"] and rows == wanted
 
 
+def test_the_rows_of_a_large_join_are_sorted(capsys: pytest.CaptureFixture[str]) -> None:
+    starts = np.random.default_rng(3).integers(0, 9000, 3000)
+    np.save("a.npy", np.stack([starts, starts + 3], axis=1))
+    for how, kept in (("left", 0), ("right", 1)):
+        _, rows = table(capsys, "join", "a.npy", "a.npy", "--how", how)
+        keys = [(int(row[kept]), int(row[1 - kept])) for row in rows]
+        assert len(keys) > 6000 and keys == sorted(keys)
+
+
 def test_answers_are_written_in_each_format(capsys: pytest.CaptureFixture[str]) -> None:
     a_file(Random(1), "a.bed")
     np.save("a.npy", np.array([[0, 2], [1, 5], [7, 9]]))
