@@ -31,67 +31,77 @@ export type Boxes = TypedNumbers | readonly number[] | readonly BoxObject[];
  * One box in the form of another library: `{ minX, minY, maxX, maxY }` of rbush, with `minZ` and
  * `maxZ` in 3D; `{ min, max }` of the `Box2` and `Box3` of three.js and the bounds of matter;
  * `{ lowerBound, upperBound }` of cannon and planck; `{ x, y, width, height }` of a `DOMRect` or a
- * sprite, with `z` and `depth` in 3D; a row of numbers as in box-intersect. Other properties of the
- * object are ignored.
+ * sprite, with `z` and `depth` in 3D; `{ x, y, w, h }`; `{ left, top, right, bottom }`; a row of numbers as in
+ * box-intersect. Other properties of the object are ignored.
  */
-export type BoxObject = EdgesBox | MinMaxBox | BoundsBox | SizedBox | readonly number[] | TypedNumbers;
+export type BoxObject = EdgesBox | MinMaxBox | BoundsBox | SizedBox | SidesBox | readonly number[] | TypedNumbers;
 
-/** A box by its edges, as in rbush. */
-export interface EdgesBox {
-  /** The smallest x. */
-  readonly minX: number;
-  /** The smallest y, in 2D and 3D. */
-  readonly minY?: number;
-  /** The smallest z, in 3D. */
-  readonly minZ?: number;
-  /** The greatest x. */
-  readonly maxX: number;
-  /** The greatest y. */
-  readonly maxY?: number;
-  /** The greatest z. */
-  readonly maxZ?: number;
-}
+/** A box by its edges, as in rbush: `minX` and `maxX`, in 2D and 3D `minY` and `maxY`, in 3D `minZ` and `maxZ`. */
+export type EdgesBox =
+  | { readonly minX: number; readonly maxX: number; readonly minY?: undefined; readonly maxY?: undefined; readonly minZ?: undefined; readonly maxZ?: undefined }
+  | { readonly minX: number; readonly minY: number; readonly maxX: number; readonly maxY: number; readonly minZ?: undefined; readonly maxZ?: undefined }
+  | { readonly minX: number; readonly minY: number; readonly minZ: number; readonly maxX: number; readonly maxY: number; readonly maxZ: number };
 
 /** A box by its corners, as in three.js and matter. */
-export interface MinMaxBox {
-  /** The min corner. */
-  readonly min: Corner;
-  /** The max corner. */
-  readonly max: Corner;
-}
+export type MinMaxBox =
+  | { readonly min: Corner1D; readonly max: Corner1D }
+  | { readonly min: Corner2D; readonly max: Corner2D }
+  | { readonly min: Corner3D; readonly max: Corner3D };
 
 /** A box by its corners, as in cannon and planck. */
-export interface BoundsBox {
-  /** The min corner. */
-  readonly lowerBound: Corner;
-  /** The max corner. */
-  readonly upperBound: Corner;
-}
+export type BoundsBox =
+  | { readonly lowerBound: Corner1D; readonly upperBound: Corner1D }
+  | { readonly lowerBound: Corner2D; readonly upperBound: Corner2D }
+  | { readonly lowerBound: Corner3D; readonly upperBound: Corner3D };
 
-/** A box by its min corner and its size, as a `DOMRect`. Its max corner is their sum in double precision. */
-export interface SizedBox {
-  /** The smallest x. */
-  readonly x: number;
-  /** The smallest y, in 2D and 3D. */
-  readonly y?: number;
-  /** The smallest z, in 3D. */
-  readonly z?: number;
-  /** The extent in x, 0 or more. */
-  readonly width: number;
-  /** The extent in y. */
-  readonly height?: number;
-  /** The extent in z. */
-  readonly depth?: number;
-}
+/**
+ * A box by a corner and its size, as a `DOMRect`. The other corner is their sum in double precision. A negative size
+ * reaches to the other side, as of a rectangle that is drawn to the upper left.
+ */
+export type SizedBox =
+  | { readonly x: number; readonly width: number; readonly y?: undefined; readonly height?: undefined; readonly depth?: undefined }
+  | { readonly x: number; readonly y: number; readonly width: number; readonly height: number }
+  | { readonly x: number; readonly y: number; readonly z: number; readonly width: number; readonly height: number; readonly depth: number }
+  | { readonly x: number; readonly w: number; readonly y?: undefined; readonly h?: undefined; readonly d?: undefined }
+  | { readonly x: number; readonly y: number; readonly w: number; readonly h: number }
+  | { readonly x: number; readonly y: number; readonly z: number; readonly w: number; readonly h: number; readonly d: number };
+
+/** A box by its sides, in 1D and 2D. Either of `top` and `bottom` may be the smaller one, and of `left` and `right`. */
+export type SidesBox =
+  | { readonly left: number; readonly right: number; readonly top?: undefined; readonly bottom?: undefined }
+  | { readonly left: number; readonly top: number; readonly right: number; readonly bottom: number };
 
 /** A point, or a corner of a box: as many coordinates as there are dimensions. */
-export interface Corner {
+export type Corner = Corner1D | Corner2D | Corner3D;
+
+/** A point in 1D. */
+export interface Corner1D {
+  /** Its coordinate. */
+  readonly x: number;
+  /** There is none. */
+  readonly y?: undefined;
+  /** There is none. */
+  readonly z?: undefined;
+}
+
+/** A point in 2D. */
+export interface Corner2D {
   /** The first coordinate. */
   readonly x: number;
-  /** The second, in 2D and 3D. */
-  readonly y?: number;
-  /** The third, in 3D. */
-  readonly z?: number;
+  /** The second. */
+  readonly y: number;
+  /** There is none. */
+  readonly z?: undefined;
+}
+
+/** A point in 3D. */
+export interface Corner3D {
+  /** The first coordinate. */
+  readonly x: number;
+  /** The second. */
+  readonly y: number;
+  /** The third. */
+  readonly z: number;
 }
 
 /** @internal The dimensions, checked. */
@@ -117,9 +127,16 @@ export function checkBoxes(boxes: unknown, dimensions: Dimensions, name = "boxes
 /** @internal Numbers as a typed array. Its own properties may be overridden: see typed.ts. */
 export function checkNumbers(values: unknown, name: string): Float32Array | Float64Array {
   const numbers = Array.isArray(values) ? fromNumbers(values, name) : floats(unguard(values));
-  if (!numbers) throw new TypeError(`\`${name}\` must be a typed array of numbers or a plain array, not ${describe(values)}`);
+  if (!numbers) refuseNumbers(values, name);
   if (lengthOf(numbers) === 0) refuseDetached(numbers, name);
   return numbers;
+}
+
+/** Throws that a value is no array, and what to do if it is one box. */
+function refuseNumbers(values: unknown, name: string): never {
+  const isBox = isNamed(values) && forms.some(({ key }) => key in values);
+  const hint = isBox ? `: one box is written [box]` : "";
+  throw new TypeError(`\`${name}\` must be a typed array of numbers or a plain array, not ${describe(values)}${hint}`);
 }
 
 /** @internal Whether a value is a box or a point as an object with named coordinates. */
@@ -134,7 +151,7 @@ export function readBox(box: object, dimensions: Dimensions, name: string, into:
     for (let axis = 0; axis < dimensions; axis++, at++) {
       const value = form.read(box, corner, axis);
       if (typeof value !== "number") {
-        throw new TypeError(`the ${corner ? "max" : "min"} ${"xyz"[axis]} of ${name} must be a number, not ${describe(value)}`);
+        throw new TypeError(`${nameOf(form, corner, axis, box)} of ${name} must be a number, not ${describe(value)}`);
       }
       into[at] = value;
     }
@@ -190,6 +207,10 @@ export function copyNumbers(values: ArrayLike<unknown>, length: number, name: st
 interface Form {
   /** A property that only boxes of this form have. */
   readonly key: string;
+  /** The property that gives corner 0 or 1, or the size instead of corner 1; undefined if the form has no such axis. */
+  name(corner: 0 | 1, axis: number): string | undefined;
+  /** What that property holds. */
+  given(box: object, corner: 0 | 1, axis: number): unknown;
   /** A coordinate of corner 0 or 1; the caller checks that it is a number. */
   read(box: object, corner: 0 | 1, axis: number): unknown;
 }
@@ -199,41 +220,96 @@ export function coordinate(corner: Corner | null | undefined, axis: number): unk
   return axis === 0 ? corner?.x : axis === 1 ? corner?.y : corner?.z;
 }
 
-const minMax: Form = {
-  key: "min",
-  read: (box, corner, axis) => coordinate(corner ? (box as MinMaxBox).max : (box as MinMaxBox).min, axis),
-};
+/** A form that names its corners. */
+function corners(key: string, other: string, read: Form["read"]): Form {
+  return { key, name: (corner, axis) => `${corner ? other : key}.${"xyz"[axis]}`, given: read, read };
+}
 
-const bounds: Form = {
-  key: "lowerBound",
-  read: (box, corner, axis) => coordinate(corner ? (box as BoundsBox).upperBound : (box as BoundsBox).lowerBound, axis),
+/** A form whose read coordinates lie in the right order. */
+function ordered(key: string, name: Form["name"], given: Form["given"], other: (from: number, value: number) => number): Form {
+  const read: Form["read"] = (box, corner, axis) => {
+    const from = given(box, 0, axis);
+    const value = given(box, 1, axis);
+    if (typeof from !== "number" || typeof value !== "number") return corner ? value : from;
+    const to = other(from, value);
+    return corner === 1 === from < to ? to : from;
+  };
+  return { key, name, given, read };
+}
+
+const minMax = corners("min", "max", (box, corner, axis) => {
+  const { min, max } = box as MinMaxBox;
+  return coordinate(corner ? max : min, axis);
+});
+
+const bounds = corners("lowerBound", "upperBound", (box, corner, axis) => {
+  const { lowerBound, upperBound } = box as BoundsBox;
+  return coordinate(corner ? upperBound : lowerBound, axis);
+});
+
+const readEdges: Form["read"] = (box, corner, axis) => {
+  const { minX, minY, minZ, maxX, maxY, maxZ } = box as EdgesBox;
+  return axis === 0 ? (corner ? maxX : minX) : axis === 1 ? (corner ? maxY : minY) : corner ? maxZ : minZ;
 };
 
 const edges: Form = {
   key: "minX",
-  read(box, corner, axis) {
-    const { minX, minY, minZ, maxX, maxY, maxZ } = box as EdgesBox;
-    return axis === 0 ? (corner ? maxX : minX) : axis === 1 ? (corner ? maxY : minY) : corner ? maxZ : minZ;
-  },
+  name: (corner, axis) => `${corner ? "max" : "min"}${"XYZ"[axis]}`,
+  given: readEdges,
+  read: readEdges,
 };
 
-/** @internal The form of a `DOMRect`. */
-export const sized: Form = {
-  key: "width",
-  read(box, corner, axis) {
-    const from = coordinate(box as SizedBox, axis);
-    if (!corner || typeof from !== "number") return from;
-    const size: unknown = extent(box as SizedBox, axis);
-    return typeof size === "number" ? from + size : size;
-  },
-};
-
-/** @internal The size of a box on an axis. */
-export function extent(box: SizedBox, axis: number): number | undefined {
-  return axis === 0 ? box.width : axis === 1 ? box.height : box.depth;
+/** A form of a position and a size, which this reads. */
+function sized(names: readonly [string, string, string], size: (box: any, axis: number) => unknown): Form {
+  const given: Form["given"] = (box, corner, axis) => (corner ? size(box, axis) : coordinate(box as Corner, axis));
+  return ordered(names[0], (corner, axis) => (corner ? names[axis] : "xyz"[axis]), given, (from, size) => from + size);
 }
 
-const forms: readonly Form[] = [minMax, bounds, edges, sized];
+const rectangle = sized(["width", "height", "depth"], (box, axis) => (axis === 0 ? box.width : axis === 1 ? box.height : box.depth));
+const shortRectangle = sized(["w", "h", "d"], (box, axis) => (axis === 0 ? box.w : axis === 1 ? box.h : box.d));
+
+const sides = ordered(
+  "left",
+  (corner, axis) => [["left", "right"], ["top", "bottom"]][axis]?.[corner],
+  (box, corner, axis) => {
+    const { left, top, right, bottom } = box as SidesBox;
+    return axis === 0 ? (corner ? right : left) : axis === 1 ? (corner ? bottom : top) : undefined;
+  },
+  (_, to) => to,
+);
+
+const forms: readonly Form[] = [minMax, bounds, edges, rectangle, sides, shortRectangle];
+
+/** The property that gives a coordinate: of a rectangle the one that is missing. */
+function nameOf(form: Form, corner: 0 | 1, axis: number, box: object): string {
+  const at = typeof form.given(box, 0, axis) !== "number" ? 0 : corner;
+  return form.name(at, axis) ?? `the ${corner ? "max" : "min"} ${"xyz"[axis]}`;
+}
+
+/**
+ * @internal How many axes a box has that is an object or a row: those of which it has both corners.
+ *
+ * @throws `TypeError` if it has half of an axis.
+ */
+export function axesOf(box: unknown, name: string): Dimensions {
+  if (isRow(box)) {
+    const length = rowLength(box);
+    if (length === 2 || length === 4 || length === 6) return (length / 2) as Dimensions;
+    throw new RangeError(`${name} has ${describe(length)} numbers; a box has 2 in 1D, 4 in 2D and 6 in 3D`);
+  }
+  if (!isNamed(box)) return refuseObject(box, name);
+  const form = formOf(box, name);
+  let axes = 0;
+  for (const axis of [0, 1, 2]) {
+    const [low, high] = [form.given(box, 0, axis) !== undefined, form.given(box, 1, axis) !== undefined];
+    // A sprite may have a `z` that is no coordinate.
+    if (!high && (!low || ((form === rectangle || form === shortRectangle) && axis === 2))) continue;
+    if (!low || !high) throw new TypeError(`${name} has \`${form.name(high ? 1 : 0, axis)}\` but no \`${form.name(high ? 0 : 1, axis)}\``);
+    if (axis > axes) throw new TypeError(`${name} has \`${form.name(0, axis)}\` but no \`${form.name(0, axes)}\``);
+    axes++;
+  }
+  return (axes || 1) as Dimensions; // without any, reading it says what is missing
+}
 
 /** @internal The form of a box that is an object. */
 export function formOf(box: object, name: string): Form {
@@ -272,7 +348,7 @@ function fromObjects(boxes: readonly unknown[], dimensions: Dimensions, name: st
 function refuseObject(box: unknown, name: string): never {
   const isObject = typeof box === "object" && box !== null;
   throw new TypeError(
-    `${name} must be { minX, .. }, { min, max }, { lowerBound, upperBound }, { x, .., width, .. } or a row of numbers, not ` +
+    `${name} must be { minX, .. }, { min, max }, { lowerBound, upperBound }, { x, .., width, .. }, { left, .. } or a row of numbers, not ` +
       (isObject ? `an object with ${Object.keys(box).slice(0, 6).join(", ") || "no properties"}` : describe(box)),
   );
 }

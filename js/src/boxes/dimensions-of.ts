@@ -1,12 +1,29 @@
-import { checkDimensions, type Dimensions, extent, formOf, isRow, rowLength, sized, type SizedBox } from "./boxes.js";
+import { describe } from "../wasm/describe.js";
+import { axesOf, type Dimensions, isRow } from "./boxes.js";
 
-/** @internal How many dimensions boxes have that are objects: those of the first; `undefined` for flat arrays. */
-export function dimensionsOf(boxes: unknown): Dimensions | undefined {
-  const first: unknown = Array.isArray(boxes) ? boxes[0] : undefined;
-  if (isRow(first)) return checkDimensions((rowLength(first) as number) / 2);
-  if (typeof first !== "object" || first === null) return undefined;
-  const form = formOf(first, "boxes[0]");
-  // Not by its `z`: a sprite may have one that is no coordinate.
-  const has = (axis: number) => (form === sized ? extent(first as SizedBox, axis) : form.read(first, 0, axis)) !== undefined;
-  return has(2) ? 3 : has(1) ? 2 : has(0) ? 1 : undefined;
+/**
+ * @internal How many dimensions boxes have that are objects: each has as many. Empty sets have any number.
+ *
+ * @throws `RangeError` for flat arrays, which do not tell; `TypeError` if two boxes differ.
+ */
+export function dimensionsOf(sets: readonly (readonly [name: string, boxes: unknown])[]): Dimensions {
+  let first: { name: string; axes: Dimensions } | undefined;
+  for (const [set, boxes] of sets) {
+    if (!Array.isArray(boxes)) refuseFlat(boxes, set);
+    for (const [at, box] of boxes.entries()) {
+      if (typeof box === "number") refuseFlat(boxes, set);
+      const name = `${set}[${at}]`;
+      const axes = axesOf(box, name);
+      first ??= { name, axes };
+      if (axes !== first.axes) throw new TypeError(`${name} is in ${axes}D and ${first.name} in ${first.axes}D; all boxes of a search have the same dimensions`);
+    }
+  }
+  return first?.axes ?? 1;
+}
+
+function refuseFlat(boxes: unknown, name: string): never {
+  if (Array.isArray(boxes) || isRow(boxes)) {
+    throw new RangeError(`\`options\` is missing: \`${name}\` is a flat array of numbers, which needs \`{ dimensions: 1 }\`, 2 or 3`);
+  }
+  throw new TypeError(`\`${name}\` must be an array of boxes, not ${describe(boxes)}`);
 }

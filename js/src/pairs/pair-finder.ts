@@ -1,10 +1,12 @@
 /// <reference lib="esnext.disposable" preserve="true" />
-import { type BoxObject, type Boxes, checkBoxes, checkDimensions, type Dimensions, writeRows } from "../boxes/boxes.js";
-import { describe } from "../wasm/describe.js";
+import { type BoxObject, type Boxes, checkBoxes, checkDimensions, type Dimensions, isNamed, writeRows } from "../boxes/boxes.js";
 import { dimensionsOf } from "../boxes/dimensions-of.js";
-import { checkFits, Core, type Each, type Engine, type Exports, type Passed } from "../wasm/engine.js";
+import { describe } from "../wasm/describe.js";
+import { checkFits, Core, type Corners, type Each, type Engine, type Exports, type Passed } from "../wasm/engine.js";
 import { InterruptedError, OutOfMemoryError } from "../wasm/errors.js";
 import { forgotten, Handle } from "../wasm/handle.js";
+import { checkOptionNames } from "../wasm/options.js";
+import { dropMissing, renamePairs } from "./missing.js";
 import { streamPairs } from "./stream.js";
 import { lengthOf, tagOf } from "../wasm/typed.js";
 import { allocate, checkViews, copy, guard, view } from "../wasm/views.js";
@@ -13,6 +15,12 @@ import { allocate, checkViews, copy, guard, view } from "../wasm/views.js";
 export interface FindPairsOptions {
   /** How many dimensions the boxes have. Boxes that are objects tell it themselves, and need no options. */
   dimensions: Dimensions;
+  /**
+   * What is done with a box that has a NaN, and with one that is empty (its min is `Infinity` and its max `-Infinity`, as
+   * bounds of nothing in three.js and Pixi). `"raise"`, the default: the call throws {@link InvalidBoxError}. `"skip"`:
+   * the box has no pairs; the indices of the others stay. So a pool can keep its free slots: fill them with NaN.
+   */
+  missing?: "raise" | "skip";
 }
 
 /** Options of a {@link PairFinder}. */
@@ -87,8 +95,8 @@ export const finderCore: Core<FinderExports> = new Core("finder_new", "sweep-and
 export function findPairs<T extends BoxObject>(items: readonly T[]): [T, T][];
 export function findPairs(boxes: Boxes, options: FindPairsOptions): Uint32Array<ArrayBuffer>;
 export function findPairs(boxes: Boxes, options?: FindPairsOptions): Uint32Array<ArrayBuffer> | [unknown, unknown][] {
-  const pairs = once([boxes], options, (finder) => finder.find(boxes));
-  return options ? pairs : itemsOf(pairs, boxes, boxes);
+  const pairs = once([["boxes", boxes]], options, (finder) => finder.find(boxes));
+  return options === undefined ? itemsOf(pairs, boxes, boxes) : pairs;
 }
 
 /**
@@ -115,8 +123,8 @@ export function findPairsBetween(
   b: Boxes,
   options?: FindPairsOptions,
 ): Uint32Array<ArrayBuffer> | [unknown, unknown][] {
-  const pairs = once([a, b], options, (finder) => finder.findBetween(a, b));
-  return options ? pairs : itemsOf(pairs, a, b);
+  const pairs = once([["a", a], ["b", b]], options, (finder) => finder.findBetween(a, b));
+  return options === undefined ? itemsOf(pairs, a, b) : pairs;
 }
 
 /**
@@ -127,7 +135,7 @@ export function findPairsBetween(
 export function countPairs(boxes: readonly BoxObject[], options?: FindPairsOptions): number;
 export function countPairs(boxes: Boxes, options: FindPairsOptions): number;
 export function countPairs(boxes: Boxes, options?: FindPairsOptions): number {
-  return once([boxes], options, (finder) => finder.count(boxes));
+  return once([["boxes", boxes]], options, (finder) => finder.count(boxes));
 }
 
 /**
@@ -138,7 +146,7 @@ export function countPairs(boxes: Boxes, options?: FindPairsOptions): number {
 export function anyPair(boxes: readonly BoxObject[], options?: FindPairsOptions): boolean;
 export function anyPair(boxes: Boxes, options: FindPairsOptions): boolean;
 export function anyPair(boxes: Boxes, options?: FindPairsOptions): boolean {
-  return once([boxes], options, (finder) => finder.any(boxes));
+  return once([["boxes", boxes]], options, (finder) => finder.any(boxes));
 }
 
 /**
@@ -155,23 +163,29 @@ export function forEachPair<T extends BoxObject>(
   options: FindPairsOptions | ((a: T, b: T) => unknown),
   each?: EachPair,
 ): boolean {
-  if (typeof options !== "function") return once([boxes], options, (finder) => finder.forEach(boxes, each!));
+  if (typeof options !== "function") return once([["boxes", boxes]], options, (finder) => finder.forEach(boxes, each!));
   const items = boxes as readonly T[];
-  return once([boxes], undefined, (finder) => finder.forEach(boxes, (a, b) => options(items[a]!, items[b]!)));
+  return once([["boxes", boxes]], undefined, (finder) => finder.forEach(boxes, (a, b) => options(items[a]!, items[b]!)));
 }
 
 /** Without options, boxes that are objects tell how many dimensions they have. No boxes have any number. */
-function once<R>(sets: readonly Boxes[], options: FindPairsOptions | undefined, use: (finder: PairFinder) => R): R {
-  const areNone = sets.every((boxes) => Array.isArray(boxes) && boxes.length === 0);
-  const dimensions = options ? options.dimensions : areNone ? 1 : sets.map(dimensionsOf).find(Boolean);
-  if (!options && !dimensions) throw new RangeError("`options` is missing: flat arrays of boxes need `{ dimensions: 1 }`, 2 or 3");
-  const finder = new PairFinder({ dimensions: dimensions! });
+function once<R>(sets: readonly (readonly [name: string, boxes: Boxes])[], options: FindPairsOptions | undefined, use: (finder: PairFinder) => R): R {
+  const missing = sets.find(([, boxes]) => boxes === undefined || (options === undefined && isNamed(boxes) && "dimensions" in boxes));
+  if (missing) throw new TypeError(`\`${missing[0]}\` is missing`);
+  if (Array.isArray(options) || ArrayBuffer.isView(options)) {
+    throw new TypeError("`options` is a set of boxes: the pairs between two sets are found by `findPairsBetween`, `countBetween`, `anyBetween` and `forEachBetween`");
+  }
+  if (options !== undefined) checkOptionNames(options, findOptions);
+  const finder = new PairFinder(options ?? { dimensions: dimensionsOf(sets) });
   try {
     return use(finder);
   } finally {
     finder.free();
   }
 }
+
+const findOptions = ["dimensions", "missing"];
+const finderOptions = [...findOptions, "views"];
 
 /** The pairs of the items that pairs of indices name. */
 function itemsOf(pairs: Uint32Array, a: Boxes, b: Boxes): [unknown, unknown][] {
@@ -197,17 +211,21 @@ export class PairFinder {
   readonly #owned: Owned;
   readonly #rows: [Rows?, Rows?] = [];
   readonly #isView: boolean;
+  readonly #skipsMissing: boolean;
   #pairs: Uint32Array<ArrayBuffer> | undefined;
 
   /**
    * A finder with empty buffers.
    *
    * @throws {@link NotInitializedError} before `init()` is done.
-   * @throws `RangeError` if `dimensions` is not 1, 2 or 3; `TypeError` if `views` is not a boolean.
+   * @throws `RangeError` if `dimensions` is not 1, 2 or 3; `TypeError` if `views` is not a boolean, or an option does not
+   *   exist.
    */
   constructor(options: PairFinderOptions) {
-    this.#dimensions = checkDimensions(options?.dimensions);
+    checkOptionNames(options, finderOptions);
+    this.#dimensions = checkDimensions(options.dimensions);
     this.#isView = checkViews(options.views);
+    this.#skipsMissing = checkMissing(options.missing);
     this.#owned = new Owned(finderCore.engine());
     forgotten?.register(this, this.#owned);
   }
@@ -223,7 +241,9 @@ export class PairFinder {
    *
    * @throws As {@link findPairs}, and `TypeError` if the finder was freed. It stays usable.
    */
-  find(boxes: Boxes): Uint32Array<ArrayBuffer> {
+  find(boxes: Boxes): Uint32Array<ArrayBuffer>;
+  find(boxes: Boxes, more?: unknown): Uint32Array<ArrayBuffer> {
+    if (typeof more === "object") refuseSecond("find");
     return this.#store(boxes, alone);
   }
 
@@ -267,7 +287,9 @@ export class PairFinder {
    *
    * @throws As {@link PairFinder.count}.
    */
-  any(boxes: Boxes): boolean {
+  any(boxes: Boxes): boolean;
+  any(boxes: Boxes, more?: unknown): boolean {
+    if (typeof more === "object") refuseSecond("any");
     return this.#any(boxes, alone);
   }
 
@@ -285,7 +307,9 @@ export class PairFinder {
    *
    * @throws As {@link countPairs}, and `TypeError` if the finder was freed.
    */
-  count(boxes: Boxes): number {
+  count(boxes: Boxes): number;
+  count(boxes: Boxes, more?: unknown): number {
+    if (typeof more === "object") refuseSecond("count");
     return this.#count(boxes, alone);
   }
 
@@ -395,15 +419,23 @@ export class PairFinder {
 
   #search(chunk: Chunk, a: Boxes, b: Boxes | typeof alone, each: Each | undefined): void {
     const owned = this.#owned;
+    const dimensions = this.#dimensions;
     // First of all: this reads objects, and a getter may do anything.
-    const first = checkBoxes(a, this.#dimensions, b === alone ? "boxes" : "a");
-    const second = b === alone ? undefined : checkBoxes(b, this.#dimensions, "b");
+    let first = checkBoxes(a, dimensions, b === alone ? "boxes" : "a");
+    let second = b === alone ? undefined : checkBoxes(b, dimensions, "b");
     // Reading the second may have changed the buffer of the first.
-    if (second) checkBoxes(first, this.#dimensions, "a");
+    if (second) checkBoxes(first, dimensions, "a");
     owned.checkUsable();
+    // The indices of the boxes that take part, if not all do.
+    let keptA: Uint32Array | undefined;
+    let keptB: Uint32Array | undefined;
+    if (this.#skipsMissing) {
+      [first, keptA] = dropMissing(first, dimensions);
+      if (second) [second, keptB] = dropMissing(second, dimensions);
+    }
     const isDouble = tagOf(first) === "Float64Array" || tagOf(second) === "Float64Array";
     // The core has no type for 1D boxes, nor for 2D in double precision: see js/wasm/src/finder.rs.
-    const stored = isDouble ? 3 : (Math.max(2, this.#dimensions) as Dimensions);
+    const stored = isDouble ? 3 : (Math.max(2, dimensions) as Dimensions);
     owned.isBusy = true;
     try {
       const { engine } = owned;
@@ -415,8 +447,15 @@ export class PairFinder {
       if (second) this.#writeRows(finder, 1, second, countB, isDouble, stored);
       const passed: Passed = { boxes: second ? [["a", countA], ["b", countB]] : [["boxes", countA]] };
       const find = () => finder.call((exports, at) => exports.finder_find(at, countA, countB, chunk));
-      if (each) streamPairs(engine, find, each, passed);
-      else engine.check(find(), passed);
+      const rename = keptA || keptB ? (at: number, count: number) => renamePairs(engine.words(), at, count, keptA, second ? keptB : keptA) : undefined;
+      const read = (set: number, index: number, axis: number): Corners => {
+        const rows = (set === 0 ? first : second)!;
+        const from = index * 2 * dimensions + axis;
+        return { index: (set === 0 ? keptA : keptB)?.[index] ?? index, min: rows[from]!, max: rows[from + dimensions]! };
+      };
+      if (each) streamPairs(engine, find, rename ? (at, count) => (rename(at, count), each(at, count)) : each, passed, read);
+      else engine.check(find(), passed, read);
+      if (chunk !== Chunk.None) rename?.(engine.detail(0), engine.detail(1));
     } catch (error) {
       // A finder that ran out of memory should not keep what it allocated; nor can one be used whose call ended halfway.
       if (error instanceof OutOfMemoryError) owned.release("discard");
@@ -462,6 +501,17 @@ export class PairFinder {
 }
 
 type Rows = Float32Array | Float64Array;
+
+/** Throws that a method of one set got another argument. */
+function refuseSecond(method: string): never {
+  throw new TypeError(`\`${method}\` takes one set of boxes; the pairs between two are those of \`${method}Between\``);
+}
+
+function checkMissing(missing: unknown): boolean {
+  if (missing === undefined || missing === "raise") return false;
+  if (missing === "skip") return true;
+  throw new RangeError(`\`missing\` must be "raise" or "skip", not ${describe(missing)}`);
+}
 
 const { set } = Uint32Array.prototype;
 

@@ -33,6 +33,16 @@ export interface Passed {
   readonly ids?: ArrayLike<number>;
 }
 
+/** Where a box is among those that the user passed, and its corners on the axis at fault. */
+export interface Corners {
+  readonly index: number;
+  readonly min: number;
+  readonly max: number;
+}
+
+/** Reads a box that a call passed: which set, which box of it, which axis. */
+export type ReadCorners = (set: number, index: number, axis: number) => Corners;
+
 /** Refuses what memory cannot hold: the core would see the size modulo 2^32. */
 export function checkFits(bytes: number): void {
   if (!(bytes < 2 ** 32)) throw new OutOfMemoryError();
@@ -96,12 +106,12 @@ export class Engine<E extends Exports> {
   }
 
   /** Throws the error of a code other than `Ok`: of those that every core has. */
-  check(code: number, passed: Passed = {}): void {
+  check(code: number, passed: Passed = {}, read?: ReadCorners): void {
     switch (code) {
       case Code.Ok:
         return;
       case Code.InvalidBox:
-        throw invalidBox(this.detail(0), this.detail(1), passed);
+        throw invalidBox(this.detail(0), this.detail(1), passed, read);
       case Code.OutOfMemory:
         throw new OutOfMemoryError();
       default:
@@ -116,12 +126,11 @@ export class Engine<E extends Exports> {
 }
 
 /** The box at fault, counted within the argument that holds it. */
-function invalidBox(index: number, axis: number, { boxes = [] }: Passed): InvalidBoxError {
-  for (const [name, count] of boxes) {
-    if (index < count) return new InvalidBoxError(index, axis, name);
-    index -= count;
-  }
-  return new InvalidBoxError(index, axis);
+function invalidBox(index: number, axis: number, { boxes = [["boxes", Infinity]] }: Passed, read?: ReadCorners): InvalidBoxError {
+  let set = 0;
+  while (set + 1 < boxes.length && index >= boxes[set]![1]) index -= boxes[set++]![1];
+  const corners = read?.(set, index, axis);
+  return new InvalidBoxError(corners?.index ?? index, axis, boxes[set]![0], corners?.min, corners?.max);
 }
 
 /** What starting a core needs to know of it. */

@@ -19,10 +19,21 @@ export class InvalidBoxError extends SweepAndPruneError {
     readonly axis: number,
     /** The name of the argument: `boxes`, `a`, `b`, ... */
     readonly argument: string = "boxes",
+    /** Its min on that axis. */
+    readonly min: number = NaN,
+    /** Its max on that axis. */
+    readonly max: number = NaN,
   ) {
-    super(`box ${index} of \`${argument}\` is inverted or NaN on axis ${axis} (${"xyz"[axis]}): its min must be <= its max`);
+    const fault = Number.isNaN(min) || Number.isNaN(max) ? "has a NaN" : min === Infinity && max === -Infinity ? "is empty" : "is inverted";
+    super(`box ${index} of \`${argument}\` ${fault} on axis ${axis} (${"xyz"[axis]}): its min is ${min} and its max ${max}${hints[fault]}`);
   }
 }
+
+const hints = {
+  "has a NaN": "",
+  "is empty": ", as bounds of nothing are; leave it out",
+  "is inverted": ". A box is its min corner and then its max corner: a position and a size are `{ x, y, width, height }`",
+};
 
 /** A call was made before the promise of `init()` was fulfilled. */
 export class NotInitializedError extends SweepAndPruneError {

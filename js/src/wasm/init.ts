@@ -1,4 +1,5 @@
 import type { AnyCore } from "./engine.js";
+import { checkOptionNames } from "./options.js";
 
 /**
  * A compiled core: its address (a string or a `URL`), its bytes (an `ArrayBuffer` or a view of one), a
@@ -45,10 +46,13 @@ const known = new Map<AnyCore, Sources>();
 /** The promises of cores: each is started once, whichever entry asks first. */
 const starting = new Map<AnyCore, Promise<Started>>();
 
+const initOptions = ["simd", "wasm", "development"];
+
 /** Makes a core known, and returns the `init` of its entry point. */
 export function entry(core: AnyCore, sources: Sources): (options?: InitOptions) => Promise<Started> {
   known.set(core, sources);
   return (options = {}) => {
+    checkOptionNames(options, initOptions);
     const own = start(core, sources, options);
     const others = options.wasm === undefined ? [...known].filter(([other]) => other !== core) : [];
     return others.length === 0 ? own : Promise.all([own, ...others.map((other) => start(...other, options))]).then(() => own);

@@ -1,10 +1,20 @@
 import { checkNumbers, copyNumbers, type Dimensions, isNamed, readBox, rowLength } from "../boxes/boxes.js";
 import { describe } from "../wasm/describe.js";
+import { tagOf } from "../wasm/typed.js";
 
 /** @internal An id, which may be stale. Only a number: `valueOf` of an object could free the world. */
 export function checkId(id: unknown): number {
   if (typeof id !== "number") throw new TypeError(`\`id\` must be a number, not ${describe(id)}`);
   return id;
+}
+
+/** @internal Ids as a typed array, which may be stale. */
+export function checkIds(ids: unknown): Float32Array | Float64Array {
+  const tag = tagOf(ids);
+  if (tag === "Float32Array" || tag === "Float16Array") {
+    throw new TypeError(`\`ids\` must not be a ${tag}, which rounds ids above 2^24 to those of other bodies; use a Float64Array`);
+  }
+  return checkNumbers(ids, "ids");
 }
 
 const names = [

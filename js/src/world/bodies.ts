@@ -1,10 +1,11 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 import { describe } from "../wasm/describe.js";
-import { type Boxes, checkDimensions, checkNumbers, type Dimensions } from "../boxes/boxes.js";
-import { defaultFilter, type Filter, filterWords } from "./filter.js";
+import { type Boxes, checkDimensions, type Dimensions } from "../boxes/boxes.js";
+import { defaultFilter, type Filter, type FilterWords, filterWords } from "./filter.js";
+import { checkOptionNames } from "../wasm/options.js";
 import { lengthOf } from "../wasm/typed.js";
 import { allocate, checkViews } from "../wasm/views.js";
-import { checkId, readCorners } from "./arguments.js";
+import { checkId, checkIds, readCorners } from "./arguments.js";
 import type { WorldMemory } from "./memory.js";
 import type { Box, BroadPhaseOptions, Buffers, Changes, Numbers, ProxyId } from "./types.js";
 
@@ -63,14 +64,27 @@ export abstract class Bodies {
   }
 
   /**
-   * Adds bodies with one filter. Their ids are in the order of their boxes.
+   * Adds bodies with one filter, or each with its own: an array of as many filters as boxes. Their ids are in the order
+   * of their boxes.
    *
-   * @throws {@link InvalidBoxError} with the index of the first bad box; then none was added.
+   * @throws {@link InvalidBoxError} with the index of the first bad box; then none was added. `RangeError` if there are
+   *   not as many filters as boxes.
    */
-  insertMany(boxes: Boxes, filter: Partial<Filter> = defaultFilter): Float64Array {
-    const words = filterWords(filter, defaultFilter);
+  insertMany(boxes: Boxes, filter: Partial<Filter> | readonly Partial<Filter>[] = defaultFilter): Float64Array {
+    if (Array.isArray(filter)) return this.#insertEach(boxes, filter.map((one: Partial<Filter>) => filterWords(one, defaultFilter)));
+    const words = filterWords(filter as Partial<Filter>, defaultFilter);
     const count = this.memory.writeRows(boxes);
     return this.memory.answer((exports, world) => exports.world_insert_many(world, count, ...words));
+  }
+
+  #insertEach(boxes: Boxes, filters: readonly FilterWords[]): Float64Array {
+    const count = this.memory.writeRows(boxes);
+    if (filters.length !== count) throw new RangeError(`\`filter\` has ${filters.length} filters and \`boxes\` ${count} boxes; there must be as many`);
+    const words = filterWords(defaultFilter, defaultFilter);
+    // Copied: what follows may let the memory grow.
+    const ids = Float64Array.from(this.memory.answer((exports, world) => exports.world_insert_many(world, count, ...words)));
+    filters.forEach((own, at) => this.memory.call((exports, world) => exports.world_set_filter(world, ids[at]!, ...own)));
+    return ids;
   }
 
   /**
@@ -96,7 +110,7 @@ export abstract class Bodies {
    */
   setMany(ids: Numbers, boxes: Boxes): void {
     // Writing the boxes may let the memory grow, which leaves views of it empty.
-    const kept = this.memory.keepIds(checkNumbers(ids, "ids"));
+    const kept = this.memory.keepIds(checkIds(ids));
     const count = this.memory.writeRows(boxes);
     const idCount = lengthOf(kept);
     if (idCount !== count) throw new RangeError(`\`ids\` has ${idCount} ids and \`boxes\` ${count} boxes; there must be as many`);
@@ -159,8 +173,10 @@ export abstract class Bodies {
    *
    * @throws {@link StaleProxyError}.
    */
-  remove(id: ProxyId): void {
+  remove(id: ProxyId): void;
+  remove(id: ProxyId, more?: unknown): void {
     checkId(id);
+    if (typeof more === "number") throw new TypeError("`remove` takes one id; `removeMany` takes an array of ids");
     this.memory.idsFor(1)[0] = id;
     this.memory.call((exports, world) => exports.world_remove_many(world, 1), { ids: [id] });
   }
@@ -172,7 +188,7 @@ export abstract class Bodies {
    *   twice. Then no body was removed.
    */
   removeMany(ids: Numbers): void {
-    const kept = this.memory.keepIds(checkNumbers(ids, "ids"));
+    const kept = this.memory.keepIds(checkIds(ids));
     this.memory.writeIds(kept);
     this.memory.call((exports, world) => exports.world_remove_many(world, lengthOf(kept)), { ids: kept });
   }
@@ -238,9 +254,12 @@ const none: Float64Array = new Float64Array(0);
 /** @internal The box of a call that has only one. */
 export const oneBox: { readonly boxes: readonly [readonly ["box", 1]] } = { boxes: [["box", 1]] } as const;
 
+const optionNames = ["dimensions", "precision", "report", "margin", "prediction", "views"];
+
 /** @internal The options with their defaults. */
 export function checkOptions(options: BroadPhaseOptions): Required<BroadPhaseOptions> {
-  const dimensions = checkDimensions(options?.dimensions);
+  checkOptionNames(options, optionNames);
+  const dimensions = checkDimensions(options.dimensions);
   const { precision = "single", report = "exact", margin = 0, prediction = 0 } = options;
   const views = checkViews(options.views);
   if (precision !== "single" && precision !== "double") {

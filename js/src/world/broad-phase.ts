@@ -4,10 +4,11 @@ import { checkDimensions, type Dimensions } from "../boxes/boxes.js";
 import { checkFits, Code } from "../wasm/engine.js";
 import { OutOfMemoryError } from "../wasm/errors.js";
 import { defaultFilter, filterWords, type FilterWords } from "./filter.js";
-import { checkCount, checkLength, checkRule, readPoint } from "./query-arguments.js";
+import { checkCount, checkLength, checkRule, checkSorted, readPoint } from "./query-arguments.js";
 import { SnapshotError } from "./snapshot-error.js";
 import { checkId, readCorners } from "./arguments.js";
 import { Query, worldCore } from "./core.js";
+import { checkOptionNames } from "../wasm/options.js";
 import { lengthOf, tagOf } from "../wasm/typed.js";
 import { checkViews } from "../wasm/views.js";
 import { newWorld, WorldMemory } from "./memory.js";
@@ -49,7 +50,8 @@ export class BroadPhase extends Bodies {
    */
   static fromSnapshot(bytes: Uint8Array, options: { dimensions: Dimensions; views?: boolean }): BroadPhase {
     if (tagOf(bytes) !== "Uint8Array") throw new TypeError(`\`bytes\` must be a Uint8Array, not ${describe(bytes)}`);
-    const memory: unknown = restore(bytes, checkDimensions(options?.dimensions), checkViews(options.views));
+    checkOptionNames(options, ["dimensions", "views"]);
+    const memory: unknown = restore(bytes, checkDimensions(options.dimensions), checkViews(options.views));
     return new BroadPhase(memory as BroadPhaseOptions);
   }
 
@@ -58,8 +60,8 @@ export class BroadPhase extends Bodies {
    * `{ sorted: false }` they are in no particular order, which takes less time.
    */
   pairs(options?: SortOptions): Float64Array {
-    const isSorted = options?.sorted !== false;
-    return this.memory.answer((exports, world) => exports.world_pairs(world, isSorted ? 1 : 0));
+    const isSorted = checkSorted(options);
+    return this.memory.answer((exports, world) => exports.world_pairs(world, isSorted));
   }
 
   /**
@@ -202,7 +204,7 @@ export class BroadPhase extends Bodies {
 
   #ask(query: Query, corners: Float64Array, radius: number, filter: QueryFilter | undefined, options: SortOptions | undefined): Float64Array {
     const [category, mask, group, isStatic] = wordsOf(filter);
-    const isSorted = options?.sorted !== false ? 1 : 0;
+    const isSorted = checkSorted(options);
     if (query === Query.Within) this.#writeSphere(corners, radius);
     else this.memory.write(0, corners);
     const ids = this.memory.answer((exports, world) => exports.world_query(world, query, 0, category, mask, group, isStatic, isSorted), oneBox);

@@ -1,4 +1,5 @@
 import { describe } from "../wasm/describe.js";
+import { checkOptionNames } from "../wasm/options.js";
 
 /** A filter as the core takes it: category, mask, group, whether static. */
 export type FilterWords = [number, number, number, number];
@@ -26,9 +27,11 @@ export interface Filter {
 /** The filter of a body by default. */
 export const defaultFilter: Filter = { category: 1, mask: 2 ** 32 - 1, group: 0, isStatic: false };
 
+const filterNames = Object.keys(defaultFilter);
+
 /** A filter as the core takes it, checked. `others` gives what is left out. */
 export function filterWords(filter: Partial<Filter>, others: Filter): FilterWords {
-  if (typeof filter !== "object" || filter === null) throw new TypeError(`\`filter\` must be an object, not ${describe(filter)}`);
+  checkOptionNames(filter, filterNames, "filter");
   const { category = others.category, mask = others.mask, group = others.group, isStatic = others.isStatic } = filter;
   // Bits may be written as signed numbers too: ~2 is all but the second.
   for (const [name, bits] of [["category", category], ["mask", mask], ["group", group]] as const) {

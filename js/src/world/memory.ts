@@ -1,5 +1,5 @@
 import { type Boxes, checkBoxes, type Dimensions, writeRows } from "../boxes/boxes.js";
-import { checkFits, Code, type Core, type Engine, type Passed } from "../wasm/engine.js";
+import { checkFits, Code, type Core, type Corners, type Engine, type Passed } from "../wasm/engine.js";
 import { OutOfMemoryError } from "../wasm/errors.js";
 import { forgotten, Handle } from "../wasm/handle.js";
 import { StaleProxyError } from "./stale-proxy-error.js";
@@ -80,12 +80,20 @@ export class WorldMemory {
       const code = handle.call(call);
       if (code === Code.StaleProxy) throw new StaleProxyError(engine.detail(0), passed?.ids?.[engine.detail(0)] ?? NaN);
       if (code === Code.InvalidArgument) throw new RangeError("`box` is inverted, or a coordinate is too large for single precision");
-      engine.check(code, passed);
+      if (code !== Code.Ok) engine.check(code, passed, (set, index, axis) => this.#corners(passed?.boxes === undefined, set, index, axis));
     } catch (error) {
       // The call stopped halfway, so the state cannot be used any more.
       if (error instanceof OutOfMemoryError) this.#handle.discard();
       throw error;
     }
+  }
+
+  /** The corners of a box that a call passed: in the rows, or among the numbers. */
+  #corners(isRow: boolean, set: number, index: number, axis: number): Corners {
+    const { stored } = this;
+    const numbers = isRow ? this.#rows! : this.numbers();
+    const at = (isRow ? index : set) * 2 * stored + axis;
+    return { index, min: numbers[at]!, max: numbers[at + stored]! };
   }
 
   /** Makes a call and returns the ids that it reports. */

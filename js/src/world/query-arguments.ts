@@ -1,5 +1,6 @@
 import { coordinate, type Corner, type Dimensions, isNamed } from "../boxes/boxes.js";
 import { describe } from "../wasm/describe.js";
+import { checkOptionNames } from "../wasm/options.js";
 import { readRow } from "./arguments.js";
 
 /** @internal A length that may be infinite. */
@@ -36,4 +37,15 @@ export function checkRule(numbers: Float64Array, name: string, rule: "finite" | 
     if (rule === "finite" ? !Number.isFinite(x) : Number.isNaN(x)) throw new RangeError(`\`${name}[${at}]\` is ${x}; it must be ${rule}`);
   }
   return numbers;
+}
+
+const sortOptions = ["sorted"];
+
+/** @internal Whether ids are to be sorted, as the core takes it. */
+export function checkSorted(options: unknown): 0 | 1 {
+  if (options === undefined) return 1;
+  checkOptionNames(options, sortOptions);
+  const { sorted = true } = options as { sorted?: unknown };
+  if (typeof sorted !== "boolean") throw new TypeError(`\`sorted\` must be true or false, not ${describe(sorted)}`);
+  return sorted ? 1 : 0;
 }

@@ -78,7 +78,10 @@ extern "C" fn world_query(
     run(handle, stack::LARGE, |handle| {
         let numbers = &handle.numbers[..query.width(dimensions)];
         let result = handle.world.query(query, numbers, filter, is_sorted, &mut handle.answer);
-        handle.numbers[0] = handle.answer.values.as_ptr().addr() as f64;
+        // After an error JavaScript reads the box that was passed.
+        if result.is_ok() {
+            handle.numbers[0] = handle.answer.values.as_ptr().addr() as f64;
+        }
         handle.answer(result)
     })
 }
