@@ -30,9 +30,12 @@ const cores = [
   { name: "events-3d", feature: "events-3d", budget: 70_500, levels: fastForOne },
 ];
 
-/** The entries, with budgets of what they import in all. Each has an inline form, with its core inside. */
+/**
+ * The entries, with budgets of what they import in all. 2 KB of each are messages that name what is wrong with a call.
+ * Each has an inline form, with its core inside.
+ */
 const entries = [
-  { name: "index", inline: "inline", budget: 9_600 },
+  { name: "index", inline: "inline", budget: 9_900 },
   { name: "broad-phase", inline: "broad-phase-inline", budget: 12_900 },
   { name: "events-2d", inline: "events-2d-inline", budget: 10_900 },
   { name: "events-3d", inline: "events-3d-inline", budget: 10_900 },

@@ -132,7 +132,7 @@ test("what is missing or of another kind is named", () => {
   }
   assert.throws(() => findPairs([box], { dimensions: 3 }), /minZ of boxes\[0\] must be a number, not undefined/);
   assert.throws(() => findPairs([[0, 0, 1]]), RangeError);
-  assert.throws(() => findPairs([[0, 0, 1, 1], [0, 1]]), /^TypeError: boxes\[1\] is in 1D and boxes\[0\] in 2D/);
+  assert.throws(() => findPairs([[0, 0, 1, 1], [0, 1]]), /^TypeError: boxes\[1\] is in 1D and others in 2D/);
   assert.throws(() => findPairs([[0, 0, 1, 1], [0, 1]], { dimensions: 2 }), /^RangeError: boxes\[1\] must hold 4 numbers, not 2/);
   assert.throws(() => findPairs(/** @type {any} */ ([{}])), /^TypeError: boxes\[0\] must be .* an object with no properties/);
   assert.throws(

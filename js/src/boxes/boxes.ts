@@ -112,7 +112,7 @@ export function checkDimensions(dimensions: unknown): Dimensions {
 
 /** @internal The boxes as a typed array of whole rows. Their coordinates are not checked. */
 export function checkBoxes(boxes: unknown, dimensions: Dimensions, name = "boxes"): Float32Array | Float64Array {
-  if (Array.isArray(boxes) && typeof boxes[0] === "object") return fromObjects(boxes, dimensions, name);
+  if (Array.isArray(boxes) && typeof boxes[0] === "object") return fromObjects(boxes, dimensions, name, true);
   const rows = checkNumbers(boxes, name);
   const [length, width] = [lengthOf(rows), 2 * dimensions];
   if (length % width !== 0) {
@@ -134,7 +134,7 @@ export function checkNumbers(values: unknown, name: string): Float32Array | Floa
 
 /** Throws that a value is no array, and what to do if it is one box. */
 function refuseNumbers(values: unknown, name: string): never {
-  const isBox = isNamed(values) && forms.some(({ key }) => key in values);
+  const isBox = isNamed(values) && ["min", "lowerBound", "minX", "width", "left", "w"].some((key) => key in values);
   const hint = isBox ? `: one box is written [box]` : "";
   throw new TypeError(`\`${name}\` must be a typed array of numbers or a plain array, not ${describe(values)}${hint}`);
 }
@@ -144,18 +144,33 @@ export function isNamed(value: unknown): value is object {
   return typeof value === "object" && value !== null && !isRow(value);
 }
 
-/** @internal Writes the corners of a box that is an object, from `at`. They are not checked, apart from their type. */
-export function readBox(box: object, dimensions: Dimensions, name: string, into: Float64Array, at: number): void {
-  const form = formOf(box, name);
+/**
+ * @internal Writes the corners of a box that is an object, from `at`. They are not checked, apart from their type. `index` is
+ * that of the box if `name` is an array. Axes that it has beside are not looked at.
+ */
+export function readBox(box: object, dimensions: Dimensions, name: string, into: Float64Array, at: number, index: number): Form {
+  const form = formOf(box, name, index);
   for (const corner of [0, 1] as const) {
     for (let axis = 0; axis < dimensions; axis++, at++) {
       const value = form.read(box, corner, axis);
       if (typeof value !== "number") {
-        throw new TypeError(`${nameOf(form, corner, axis, box)} of ${name} must be a number, not ${describe(value)}`);
+        throw new TypeError(`${nameOf(form, corner, axis, box)} of ${labelOf(name, index)} must be a number, not ${describe(value)}`);
       }
       into[at] = value;
     }
   }
+  return form;
+}
+
+/** Throws if a box has other axes than those before it. */
+function checkAxes(box: unknown, dimensions: Dimensions, name: string, index: number): void {
+  const axes = axesOf(box, name, index);
+  if (axes !== dimensions) throw new TypeError(`${labelOf(name, index)} is in ${axes}D and others in ${dimensions}D; all boxes of a search have the same dimensions`);
+}
+
+/** What a box is called in errors: `index` is negative if `name` is no array. */
+function labelOf(name: string, index: number): string {
+  return index < 0 ? `\`${name}\`` : `${name}[${index}]`;
 }
 
 /** The length of an array, which a proxy may give as anything. */
@@ -205,8 +220,6 @@ export function copyNumbers(values: ArrayLike<unknown>, length: number, name: st
 
 /** A form of boxes that are objects. */
 interface Form {
-  /** A property that only boxes of this form have. */
-  readonly key: string;
   /** The property that gives corner 0 or 1, or the size instead of corner 1; undefined if the form has no such axis. */
   name(corner: 0 | 1, axis: number): string | undefined;
   /** What that property holds. */
@@ -221,31 +234,13 @@ export function coordinate(corner: Corner | null | undefined, axis: number): unk
 }
 
 /** A form that names its corners. */
-function corners(key: string, other: string, read: Form["read"]): Form {
-  return { key, name: (corner, axis) => `${corner ? other : key}.${"xyz"[axis]}`, given: read, read };
+function corners(min: string, max: string, read: Form["read"]): Form {
+  return { name: (corner, axis) => `${corner ? max : min}.${"xyz"[axis]}`, given: read, read };
 }
 
-/** A form whose read coordinates lie in the right order. */
-function ordered(key: string, name: Form["name"], given: Form["given"], other: (from: number, value: number) => number): Form {
-  const read: Form["read"] = (box, corner, axis) => {
-    const from = given(box, 0, axis);
-    const value = given(box, 1, axis);
-    if (typeof from !== "number" || typeof value !== "number") return corner ? value : from;
-    const to = other(from, value);
-    return corner === 1 === from < to ? to : from;
-  };
-  return { key, name, given, read };
-}
+const minMax = corners("min", "max", (box, corner, axis) => coordinate(corner ? (box as MinMaxBox).max : (box as MinMaxBox).min, axis));
 
-const minMax = corners("min", "max", (box, corner, axis) => {
-  const { min, max } = box as MinMaxBox;
-  return coordinate(corner ? max : min, axis);
-});
-
-const bounds = corners("lowerBound", "upperBound", (box, corner, axis) => {
-  const { lowerBound, upperBound } = box as BoundsBox;
-  return coordinate(corner ? upperBound : lowerBound, axis);
-});
+const bounds = corners("lowerBound", "upperBound", (box, corner, axis) => coordinate(corner ? (box as BoundsBox).upperBound : (box as BoundsBox).lowerBound, axis));
 
 const readEdges: Form["read"] = (box, corner, axis) => {
   const { minX, minY, minZ, maxX, maxY, maxZ } = box as EdgesBox;
@@ -253,32 +248,64 @@ const readEdges: Form["read"] = (box, corner, axis) => {
 };
 
 const edges: Form = {
-  key: "minX",
   name: (corner, axis) => `${corner ? "max" : "min"}${"XYZ"[axis]}`,
   given: readEdges,
   read: readEdges,
 };
 
-/** A form of a position and a size, which this reads. */
-function sized(names: readonly [string, string, string], size: (box: any, axis: number) => unknown): Form {
-  const given: Form["given"] = (box, corner, axis) => (corner ? size(box, axis) : coordinate(box as Corner, axis));
-  return ordered(names[0], (corner, axis) => (corner ? names[axis] : "xyz"[axis]), given, (from, size) => from + size);
+/** A coordinate of a rectangle: a negative size reaches to the other side. */
+function side(from: unknown, size: unknown, corner: 0 | 1): unknown {
+  if (typeof from !== "number" || typeof size !== "number") return corner ? size : from;
+  const isOther = (corner === 0) === size < 0;
+  return isOther ? from + size : from;
 }
 
-const rectangle = sized(["width", "height", "depth"], (box, axis) => (axis === 0 ? box.width : axis === 1 ? box.height : box.depth));
-const shortRectangle = sized(["w", "h", "d"], (box, axis) => (axis === 0 ? box.w : axis === 1 ? box.h : box.d));
+const rectangle: Form = {
+  name: (corner, axis) => (corner ? ["width", "height", "depth"] : "xyz")[axis],
+  given: (box, corner, axis) => (corner ? extent(box as Rectangle, axis) : coordinate(box as Corner, axis)),
+  read: (box, corner, axis) => side(coordinate(box as Corner, axis), extent(box as Rectangle, axis), corner),
+};
 
-const sides = ordered(
-  "left",
-  (corner, axis) => [["left", "right"], ["top", "bottom"]][axis]?.[corner],
-  (box, corner, axis) => {
-    const { left, top, right, bottom } = box as SidesBox;
-    return axis === 0 ? (corner ? right : left) : axis === 1 ? (corner ? bottom : top) : undefined;
+interface Rectangle {
+  readonly width?: unknown;
+  readonly height?: unknown;
+  readonly depth?: unknown;
+}
+
+function extent(box: Rectangle, axis: number): unknown {
+  return axis === 0 ? box.width : axis === 1 ? box.height : box.depth;
+}
+
+const shortRectangle: Form = {
+  name: (corner, axis) => (corner ? "whd" : "xyz")[axis],
+  given: (box, corner, axis) => (corner ? shortExtent(box as ShortRectangle, axis) : coordinate(box as Corner, axis)),
+  read: (box, corner, axis) => side(coordinate(box as Corner, axis), shortExtent(box as ShortRectangle, axis), corner),
+};
+
+interface ShortRectangle {
+  readonly w?: unknown;
+  readonly h?: unknown;
+  readonly d?: unknown;
+}
+
+function shortExtent(box: ShortRectangle, axis: number): unknown {
+  return axis === 0 ? box.w : axis === 1 ? box.h : box.d;
+}
+
+const readSides: Form["read"] = (box, corner, axis) => {
+  const { left, top, right, bottom } = box as SidesBox;
+  return axis === 0 ? (corner ? right : left) : axis === 1 ? (corner ? bottom : top) : undefined;
+};
+
+const sides: Form = {
+  name: (corner, axis) => [["left", "right"], ["top", "bottom"]][axis]?.[corner],
+  given: readSides,
+  read(box, corner, axis) {
+    const [from, to] = [readSides(box, 0, axis), readSides(box, 1, axis)];
+    const isFlipped = typeof from === "number" && typeof to === "number" && from > to;
+    return corner === 1 !== isFlipped ? to : from;
   },
-  (_, to) => to,
-);
-
-const forms: readonly Form[] = [minMax, bounds, edges, rectangle, sides, shortRectangle];
+};
 
 /** The property that gives a coordinate: of a rectangle the one that is missing. */
 function nameOf(form: Form, corner: 0 | 1, axis: number, box: object): string {
@@ -291,14 +318,15 @@ function nameOf(form: Form, corner: 0 | 1, axis: number, box: object): string {
  *
  * @throws `TypeError` if it has half of an axis.
  */
-export function axesOf(box: unknown, name: string): Dimensions {
+export function axesOf(box: unknown, set: string, index: number): Dimensions {
+  const name = labelOf(set, index);
   if (isRow(box)) {
     const length = rowLength(box);
     if (length === 2 || length === 4 || length === 6) return (length / 2) as Dimensions;
     throw new RangeError(`${name} has ${describe(length)} numbers; a box has 2 in 1D, 4 in 2D and 6 in 3D`);
   }
   if (!isNamed(box)) return refuseObject(box, name);
-  const form = formOf(box, name);
+  const form = formOf(box, set, index);
   let axes = 0;
   for (const axis of [0, 1, 2]) {
     const [low, high] = [form.given(box, 0, axis) !== undefined, form.given(box, 1, axis) !== undefined];
@@ -311,9 +339,15 @@ export function axesOf(box: unknown, name: string): Dimensions {
   return (axes || 1) as Dimensions; // without any, reading it says what is missing
 }
 
-/** @internal The form of a box that is an object. */
-export function formOf(box: object, name: string): Form {
-  return forms.find(({ key }) => key in box) ?? refuseObject(box, name);
+/** The form of a box that is an object. */
+function formOf(box: object, name: string, index: number): Form {
+  if ("min" in box) return minMax;
+  if ("lowerBound" in box) return bounds;
+  if ("minX" in box) return edges;
+  if ("width" in box) return rectangle;
+  if ("left" in box) return sides;
+  if ("w" in box) return shortRectangle;
+  return refuseObject(box, labelOf(name, index));
 }
 
 /** @internal Whether a box is an array of numbers. */
@@ -326,20 +360,32 @@ export function rowLength(row: ArrayLike<unknown>): unknown {
   return Array.isArray(row) ? row.length : lengthOf(row);
 }
 
-function fromObjects(boxes: readonly unknown[], dimensions: Dimensions, name: string): Float64Array {
+/** @internal Boxes that are objects or rows, each with exactly these axes, as rows. */
+export function readAlike(boxes: readonly unknown[], dimensions: Dimensions, name: string): Float64Array {
+  return fromObjects(boxes, dimensions, name, false);
+}
+
+/** `areAlone` boxes may have more axes: they are not looked at. */
+function fromObjects(boxes: readonly unknown[], dimensions: Dimensions, name: string, areAlone: boolean): Float64Array {
   const width = 2 * dimensions;
   const count = checkedLength(boxes, name);
   const rows = allocate(() => new Float64Array(width * count));
   for (let index = 0; index < count; index++) {
     const box = boxes[index];
     if (isNamed(box)) {
-      readBox(box, dimensions, `${name}[${index}]`, rows, index * width);
+      const form = readBox(box, dimensions, name, rows, index * width, index);
+      if (!areAlone && dimensions < 3 && (form.given(box, 1, dimensions) !== undefined || form.given(box, 0, dimensions) !== undefined)) {
+        checkAxes(box, dimensions, name, index);
+      }
       continue;
     }
-    if (!isRow(box)) refuseObject(box, `${name}[${index}]`);
+    if (!isRow(box)) refuseObject(box, labelOf(name, index));
     const length = rowLength(box);
-    if (length !== width) throw new RangeError(`${name}[${index}] must hold ${width} numbers, not ${describe(length)}`);
-    copyNumbers(box, width, `${name}[${index}]`, rows, index * width);
+    if (length !== width) {
+      if (!areAlone) checkAxes(box, dimensions, name, index);
+      throw new RangeError(`${labelOf(name, index)} must hold ${width} numbers, not ${describe(length)}`);
+    }
+    copyNumbers(box, width, labelOf(name, index), rows, index * width);
   }
   return rows;
 }

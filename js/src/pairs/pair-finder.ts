@@ -1,9 +1,9 @@
 /// <reference lib="esnext.disposable" preserve="true" />
-import { type BoxObject, type Boxes, checkBoxes, checkDimensions, type Dimensions, isNamed, writeRows } from "../boxes/boxes.js";
+import { type BoxObject, type Boxes, checkBoxes, checkDimensions, type Dimensions, isNamed, readAlike, writeRows } from "../boxes/boxes.js";
 import { dimensionsOf } from "../boxes/dimensions-of.js";
 import { describe } from "../wasm/describe.js";
-import { checkFits, Core, type Corners, type Each, type Engine, type Exports, type Passed } from "../wasm/engine.js";
-import { InterruptedError, OutOfMemoryError } from "../wasm/errors.js";
+import { checkFits, Code, Core, type Each, type Engine, type Exports } from "../wasm/engine.js";
+import { InterruptedError, InvalidBoxError, OutOfMemoryError } from "../wasm/errors.js";
 import { forgotten, Handle } from "../wasm/handle.js";
 import { checkOptionNames } from "../wasm/options.js";
 import { dropMissing, renamePairs } from "./missing.js";
@@ -95,14 +95,14 @@ export const finderCore: Core<FinderExports> = new Core("finder_new", "sweep-and
 export function findPairs<T extends BoxObject>(items: readonly T[]): [T, T][];
 export function findPairs(boxes: Boxes, options: FindPairsOptions): Uint32Array<ArrayBuffer>;
 export function findPairs(boxes: Boxes, options?: FindPairsOptions): Uint32Array<ArrayBuffer> | [unknown, unknown][] {
-  const pairs = once([["boxes", boxes]], options, (finder) => finder.find(boxes));
+  const pairs = once([["boxes", boxes]], options, (finder, rows) => finder.find(rows!));
   return options === undefined ? itemsOf(pairs, boxes, boxes) : pairs;
 }
 
 /**
  * Finds all pairs of a box of `a` and a box of `b` that overlap: `a0, b0, a1, b1, ...`, the index in
  * `a` first. If one set is in double precision, all boxes are compared in double precision.
- * Otherwise it works as {@link findPairs}.
+ * Otherwise it works as {@link findPairs}. A set with itself gives each pair both ways round, and each box with itself.
  *
  * It answers thousands of questions of the form "which boxes does this one overlap?" at once, with
  * the questions in `a`: faster than one by one, and without an index to build first.
@@ -123,7 +123,7 @@ export function findPairsBetween(
   b: Boxes,
   options?: FindPairsOptions,
 ): Uint32Array<ArrayBuffer> | [unknown, unknown][] {
-  const pairs = once([["a", a], ["b", b]], options, (finder) => finder.findBetween(a, b));
+  const pairs = once([["a", a], ["b", b]], options, (finder, rowsA, rowsB) => finder.findBetween(rowsA!, rowsB!));
   return options === undefined ? itemsOf(pairs, a, b) : pairs;
 }
 
@@ -135,7 +135,7 @@ export function findPairsBetween(
 export function countPairs(boxes: readonly BoxObject[], options?: FindPairsOptions): number;
 export function countPairs(boxes: Boxes, options: FindPairsOptions): number;
 export function countPairs(boxes: Boxes, options?: FindPairsOptions): number {
-  return once([["boxes", boxes]], options, (finder) => finder.count(boxes));
+  return once([["boxes", boxes]], options, (finder, rows) => finder.count(rows!));
 }
 
 /**
@@ -146,7 +146,7 @@ export function countPairs(boxes: Boxes, options?: FindPairsOptions): number {
 export function anyPair(boxes: readonly BoxObject[], options?: FindPairsOptions): boolean;
 export function anyPair(boxes: Boxes, options: FindPairsOptions): boolean;
 export function anyPair(boxes: Boxes, options?: FindPairsOptions): boolean {
-  return once([["boxes", boxes]], options, (finder) => finder.any(boxes));
+  return once([["boxes", boxes]], options, (finder, rows) => finder.any(rows!));
 }
 
 /**
@@ -163,26 +163,31 @@ export function forEachPair<T extends BoxObject>(
   options: FindPairsOptions | ((a: T, b: T) => unknown),
   each?: EachPair,
 ): boolean {
-  if (typeof options !== "function") return once([["boxes", boxes]], options, (finder) => finder.forEach(boxes, each!));
+  if (typeof options !== "function") return once([["boxes", boxes]], options, (finder, rows) => finder.forEach(rows!, each!));
   const items = boxes as readonly T[];
-  return once([["boxes", boxes]], undefined, (finder) => finder.forEach(boxes, (a, b) => options(items[a]!, items[b]!)));
+  return once([["boxes", boxes]], undefined, (finder, rows) => finder.forEach(rows!, (a, b) => options(items[a]!, items[b]!)));
 }
 
 /** Without options, boxes that are objects tell how many dimensions they have. No boxes have any number. */
-function once<R>(sets: readonly (readonly [name: string, boxes: Boxes])[], options: FindPairsOptions | undefined, use: (finder: PairFinder) => R): R {
+function once<R>(sets: readonly Set[], options: FindPairsOptions | undefined, use: (finder: PairFinder, ...sets: Boxes[]) => R): R {
   const missing = sets.find(([, boxes]) => boxes === undefined || (options === undefined && isNamed(boxes) && "dimensions" in boxes));
   if (missing) throw new TypeError(`\`${missing[0]}\` is missing`);
   if (Array.isArray(options) || ArrayBuffer.isView(options)) {
     throw new TypeError("`options` is a set of boxes: the pairs between two sets are found by `findPairsBetween`, `countBetween`, `anyBetween` and `forEachBetween`");
   }
   if (options !== undefined) checkOptionNames(options, findOptions);
-  const finder = new PairFinder(options ?? { dimensions: dimensionsOf(sets) });
+  const dimensions = options ? options.dimensions : dimensionsOf(sets);
+  const rows = options ? sets.map(([, boxes]) => boxes) : sets.map(([name, boxes]) => readAlike(boxes as readonly unknown[], dimensions, name));
+  const finder = new PairFinder(options ?? { dimensions });
   try {
-    return use(finder);
+    return use(finder, ...rows);
   } finally {
     finder.free();
   }
 }
+
+/** A set of boxes with the name of its argument. */
+type Set = readonly [name: string, boxes: Boxes];
 
 const findOptions = ["dimensions", "missing"];
 const finderOptions = [...findOptions, "views"];
@@ -445,17 +450,13 @@ export class PairFinder {
       const [countA, countB] = [this.#countOf(first), second ? this.#countOf(second) : noSet];
       this.#writeRows(finder, 0, first, countA, isDouble, stored);
       if (second) this.#writeRows(finder, 1, second, countB, isDouble, stored);
-      const passed: Passed = { boxes: second ? [["a", countA], ["b", countB]] : [["boxes", countA]] };
       const find = () => finder.call((exports, at) => exports.finder_find(at, countA, countB, chunk));
-      const rename = keptA || keptB ? (at: number, count: number) => renamePairs(engine.words(), at, count, keptA, second ? keptB : keptA) : undefined;
-      const read = (set: number, index: number, axis: number): Corners => {
-        const rows = (set === 0 ? first : second)!;
-        const from = index * 2 * dimensions + axis;
-        return { index: (set === 0 ? keptA : keptB)?.[index] ?? index, min: rows[from]!, max: rows[from + dimensions]! };
-      };
-      if (each) streamPairs(engine, find, rename ? (at, count) => (rename(at, count), each(at, count)) : each, passed, read);
-      else engine.check(find(), passed, read);
-      if (chunk !== Chunk.None) rename?.(engine.detail(0), engine.detail(1));
+      const isRenamed = keptA !== undefined || keptB !== undefined;
+      const taking = each && isRenamed ? this.#renaming(each, keptA, second ? keptB : keptA) : each;
+      const code = taking ? streamPairs(engine, find, taking) : find();
+      if (code === Code.InvalidBox) this.#refuseBox(first, second, keptA, keptB);
+      engine.check(code);
+      if (isRenamed && chunk !== Chunk.None) renamePairs(engine.words(), engine.detail(0), engine.detail(1), keptA, second ? keptB : keptA);
     } catch (error) {
       // A finder that ran out of memory should not keep what it allocated; nor can one be used whose call ended halfway.
       if (error instanceof OutOfMemoryError) owned.release("discard");
@@ -464,6 +465,25 @@ export class PairFinder {
     } finally {
       owned.isBusy = false;
     }
+  }
+
+  /** Takes pairs under the indices that their boxes had before some were dropped. */
+  #renaming(each: Each, keptA: Uint32Array | undefined, keptB: Uint32Array | undefined): Each {
+    const { engine } = this.#owned;
+    return (at, count) => {
+      renamePairs(engine.words(), at, count, keptA, keptB);
+      return each(at, count);
+    };
+  }
+
+  /** Throws that a box is invalid, which the core counts through both sets. */
+  #refuseBox(first: Rows, second: Rows | undefined, keptA: Uint32Array | undefined, keptB: Uint32Array | undefined): never {
+    const { engine } = this.#owned;
+    const [counted, axis, countA] = [engine.detail(0), engine.detail(1), this.#countOf(first)];
+    const isSecond = second !== undefined && counted >= countA;
+    const [rows, kept, index] = isSecond ? [second, keptB, counted - countA] : [first, keptA, counted];
+    const at = index * 2 * this.#dimensions + axis;
+    throw new InvalidBoxError(kept?.[index] ?? index, axis, isSecond ? "b" : second ? "a" : "boxes", rows[at], rows[at + this.#dimensions]);
   }
 
   #countOf(rows: Rows): number {

@@ -1,14 +1,14 @@
-import type { Each, Engine, Exports, Passed, ReadCorners } from "../wasm/engine.js";
+import type { Each, Engine, Exports } from "../wasm/engine.js";
 
 /** How much of Rust's own stack a call needs at most, in bytes: all calls take less than half of it (js/test/boundary.test.js). */
 const stackForCall = 128 * 1024;
 
 /**
- * Makes a call that hands pairs to `each`. What `each` throws cancels the search, and is thrown
+ * Makes a call that hands pairs to `each`, and returns its code. What `each` throws cancels the search, and is thrown
  * from here, after the call returned: an exception must not skip Rust's frames. Within `each`
  * other calls are allowed.
  */
-export function streamPairs(engine: Engine<Exports>, call: () => number, each: Each, passed: Passed, read: ReadCorners): void {
+export function streamPairs(engine: Engine<Exports>, call: () => number, each: Each): number {
   const outer = engine.each;
   let thrown: { error: unknown } | undefined;
   engine.each = (at, count) => {
@@ -31,7 +31,7 @@ export function streamPairs(engine: Engine<Exports>, call: () => number, each: E
   try {
     const code = call();
     if (thrown) throw thrown.error;
-    engine.check(code, passed, read);
+    return code;
   } finally {
     engine.each = outer;
   }

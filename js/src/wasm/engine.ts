@@ -33,15 +33,8 @@ export interface Passed {
   readonly ids?: ArrayLike<number>;
 }
 
-/** Where a box is among those that the user passed, and its corners on the axis at fault. */
-export interface Corners {
-  readonly index: number;
-  readonly min: number;
-  readonly max: number;
-}
-
-/** Reads a box that a call passed: which set, which box of it, which axis. */
-export type ReadCorners = (set: number, index: number, axis: number) => Corners;
+/** Reads the min and the max of a box that a call passed: which argument, which box of it, which axis. */
+export type ReadCorners = (set: number, index: number, axis: number) => readonly [min: number, max: number];
 
 /** Refuses what memory cannot hold: the core would see the size modulo 2^32. */
 export function checkFits(bytes: number): void {
@@ -129,8 +122,7 @@ export class Engine<E extends Exports> {
 function invalidBox(index: number, axis: number, { boxes = [["boxes", Infinity]] }: Passed, read?: ReadCorners): InvalidBoxError {
   let set = 0;
   while (set + 1 < boxes.length && index >= boxes[set]![1]) index -= boxes[set++]![1];
-  const corners = read?.(set, index, axis);
-  return new InvalidBoxError(corners?.index ?? index, axis, boxes[set]![0], corners?.min, corners?.max);
+  return new InvalidBoxError(index, axis, boxes[set]![0], ...(read?.(set, index, axis) ?? []));
 }
 
 /** What starting a core needs to know of it. */

@@ -36,7 +36,7 @@ export function refuseCorners(dimensions: number, corners: readonly unknown[]): 
 export function readCorners(box: unknown, dimensions: Dimensions, name: string): Float64Array {
   if (!isNamed(box)) return readRow(box, dimensions, 2, name);
   const numbers = new Float64Array(2 * dimensions);
-  readBox(box, dimensions, `\`${name}\``, numbers, 0);
+  readBox(box, dimensions, name, numbers, 0, -1);
   return numbers;
 }
 

@@ -31,7 +31,8 @@ const filterNames = Object.keys(defaultFilter);
 
 /** A filter as the core takes it, checked. `others` gives what is left out. */
 export function filterWords(filter: Partial<Filter>, others: Filter): FilterWords {
-  checkOptionNames(filter, filterNames, "filter");
+  if (typeof filter !== "object" || filter === null) throw new TypeError(`\`filter\` must be an object, not ${describe(filter)}`);
+  for (const key in filter) if (key !== "mask" && key !== "category" && key !== "group" && key !== "isStatic") checkOptionNames(filter, filterNames, "filter");
   const { category = others.category, mask = others.mask, group = others.group, isStatic = others.isStatic } = filter;
   // Bits may be written as signed numbers too: ~2 is all but the second.
   for (const [name, bits] of [["category", category], ["mask", mask], ["group", group]] as const) {

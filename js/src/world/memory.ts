@@ -1,5 +1,5 @@
 import { type Boxes, checkBoxes, type Dimensions, writeRows } from "../boxes/boxes.js";
-import { checkFits, Code, type Core, type Corners, type Engine, type Passed } from "../wasm/engine.js";
+import { checkFits, Code, type Core, type Engine, type Passed } from "../wasm/engine.js";
 import { OutOfMemoryError } from "../wasm/errors.js";
 import { forgotten, Handle } from "../wasm/handle.js";
 import { StaleProxyError } from "./stale-proxy-error.js";
@@ -78,9 +78,7 @@ export class WorldMemory {
     engine.calls++;
     try {
       const code = handle.call(call);
-      if (code === Code.StaleProxy) throw new StaleProxyError(engine.detail(0), passed?.ids?.[engine.detail(0)] ?? NaN);
-      if (code === Code.InvalidArgument) throw new RangeError("`box` is inverted, or a coordinate is too large for single precision");
-      if (code !== Code.Ok) engine.check(code, passed, (set, index, axis) => this.#corners(passed?.boxes === undefined, set, index, axis));
+      if (code !== Code.Ok) this.#refuse(code, passed);
     } catch (error) {
       // The call stopped halfway, so the state cannot be used any more.
       if (error instanceof OutOfMemoryError) this.#handle.discard();
@@ -88,12 +86,20 @@ export class WorldMemory {
     }
   }
 
+  /** Throws the error of a call. */
+  #refuse(code: number, passed: Passed | undefined): void {
+    const { engine } = this;
+    if (code === Code.StaleProxy) throw new StaleProxyError(engine.detail(0), passed?.ids?.[engine.detail(0)] ?? NaN);
+    if (code === Code.InvalidArgument) throw new RangeError("`box` is inverted, or a coordinate is too large for single precision");
+    engine.check(code, passed, (set, index, axis) => this.#corners(passed?.boxes === undefined, set, index, axis));
+  }
+
   /** The corners of a box that a call passed: in the rows, or among the numbers. */
-  #corners(isRow: boolean, set: number, index: number, axis: number): Corners {
+  #corners(isRow: boolean, set: number, index: number, axis: number): readonly [min: number, max: number] {
     const { stored } = this;
     const numbers = isRow ? this.#rows! : this.numbers();
     const at = (isRow ? index : set) * 2 * stored + axis;
-    return { index, min: numbers[at]!, max: numbers[at + stored]! };
+    return [numbers[at]!, numbers[at + stored]!];
   }
 
   /** Makes a call and returns the ids that it reports. */
