@@ -36,40 +36,41 @@ export type Boxes = TypedNumbers | readonly number[] | readonly BoxObject[];
  */
 export type BoxObject = EdgesBox | MinMaxBox | BoundsBox | SizedBox | SidesBox | readonly number[] | TypedNumbers;
 
+/** Properties with values of a type. */
+type Of<Keys extends string, Value> = { readonly [Key in Keys]: Value };
+
+/** No such properties. */
+type Without<Keys extends string> = { readonly [Key in Keys]?: undefined };
+
 /** A box by its edges, as in rbush: `minX` and `maxX`, in 2D and 3D `minY` and `maxY`, in 3D `minZ` and `maxZ`. */
 export type EdgesBox =
-  | { readonly minX: number; readonly maxX: number; readonly minY?: undefined; readonly maxY?: undefined; readonly minZ?: undefined; readonly maxZ?: undefined }
-  | { readonly minX: number; readonly minY: number; readonly maxX: number; readonly maxY: number; readonly minZ?: undefined; readonly maxZ?: undefined }
-  | { readonly minX: number; readonly minY: number; readonly minZ: number; readonly maxX: number; readonly maxY: number; readonly maxZ: number };
+  | (Of<"minX" | "maxX", number> & Without<"minY" | "maxY" | "minZ" | "maxZ">)
+  | (Of<"minX" | "minY" | "maxX" | "maxY", number> & Without<"minZ" | "maxZ">)
+  | Of<"minX" | "minY" | "minZ" | "maxX" | "maxY" | "maxZ", number>;
 
-/** A box by its corners, as in three.js and matter. */
-export type MinMaxBox =
-  | { readonly min: Corner1D; readonly max: Corner1D }
-  | { readonly min: Corner2D; readonly max: Corner2D }
-  | { readonly min: Corner3D; readonly max: Corner3D };
+/** A box by its corners `min` and `max`, as in three.js and matter. */
+export type MinMaxBox = Of<"min" | "max", Corner1D> | Of<"min" | "max", Corner2D> | Of<"min" | "max", Corner3D>;
 
-/** A box by its corners, as in cannon and planck. */
+/** A box by its corners `lowerBound` and `upperBound`, as in cannon and planck. */
 export type BoundsBox =
-  | { readonly lowerBound: Corner1D; readonly upperBound: Corner1D }
-  | { readonly lowerBound: Corner2D; readonly upperBound: Corner2D }
-  | { readonly lowerBound: Corner3D; readonly upperBound: Corner3D };
+  | Of<"lowerBound" | "upperBound", Corner1D>
+  | Of<"lowerBound" | "upperBound", Corner2D>
+  | Of<"lowerBound" | "upperBound", Corner3D>;
 
 /**
  * A box by a corner and its size, as a `DOMRect`. The other corner is their sum in double precision. A negative size
  * reaches to the other side, as of a rectangle that is drawn to the upper left.
  */
 export type SizedBox =
-  | { readonly x: number; readonly width: number; readonly y?: undefined; readonly height?: undefined; readonly depth?: undefined }
-  | { readonly x: number; readonly y: number; readonly width: number; readonly height: number }
-  | { readonly x: number; readonly y: number; readonly z: number; readonly width: number; readonly height: number; readonly depth: number }
-  | { readonly x: number; readonly w: number; readonly y?: undefined; readonly h?: undefined; readonly d?: undefined }
-  | { readonly x: number; readonly y: number; readonly w: number; readonly h: number }
-  | { readonly x: number; readonly y: number; readonly z: number; readonly w: number; readonly h: number; readonly d: number };
+  | (Of<"x" | "width", number> & Without<"y" | "height" | "depth">)
+  | Of<"x" | "y" | "width" | "height", number>
+  | Of<"x" | "y" | "z" | "width" | "height" | "depth", number>
+  | (Of<"x" | "w", number> & Without<"y" | "h" | "d">)
+  | Of<"x" | "y" | "w" | "h", number>
+  | Of<"x" | "y" | "z" | "w" | "h" | "d", number>;
 
 /** A box by its sides, in 1D and 2D. Either of `top` and `bottom` may be the smaller one, and of `left` and `right`. */
-export type SidesBox =
-  | { readonly left: number; readonly right: number; readonly top?: undefined; readonly bottom?: undefined }
-  | { readonly left: number; readonly top: number; readonly right: number; readonly bottom: number };
+export type SidesBox = (Of<"left" | "right", number> & Without<"top" | "bottom">) | Of<"left" | "top" | "right" | "bottom", number>;
 
 /** A point, or a corner of a box: as many coordinates as there are dimensions. */
 export type Corner = Corner1D | Corner2D | Corner3D;

@@ -4,9 +4,13 @@ export type {
   Boxes,
   BoxObject,
   Corner,
+  Corner1D,
+  Corner2D,
+  Corner3D,
   Dimensions,
   EdgesBox,
   MinMaxBox,
+  SidesBox,
   SizedBox,
   TypedNumbers,
 } from "../boxes/boxes.js";
