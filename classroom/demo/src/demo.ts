@@ -7,7 +7,7 @@
 import { SapDemo } from "./element/api.js";
 import { readShared as read } from "./element/share.js";
 
-export { type DemoDrag, type DemoEvent, type DemoEventMap, type DemoProgram, type DemoSort, type DemoState, type ProgramEvent, type Row, SapDemo } from "./element/api.js";
+export { type DemoDrag, type DemoEvent, type DemoEventMap, type DemoMark, type DemoProgram, type DemoSort, type DemoState, type ProgramEvent, type Row, SapDemo } from "./element/api.js";
 
 /** The attributes that an address from `share()` holds after its `#`, as pairs of name and value. */
 export function readShared(hash: string): [name: string, value: string][] {

@@ -4,6 +4,7 @@
 import type { SapDemo } from "sweep-and-prune-classroom/demo";
 import { copyable } from "../code/copy.ts";
 import { followDemos } from "./follow.ts";
+import { markTogether } from "./marks.ts";
 import { TransitivityCode } from "./transitivity.ts";
 
 export function startArticle(): void {
@@ -11,6 +12,7 @@ export function startArticle(): void {
   for (const listing of document.querySelectorAll<HTMLElement>(".listing")) copyable(listing);
   for (const listing of document.querySelectorAll<HTMLElement>(".listing[data-listing]")) editable(listing);
   followDemos();
+  markTogether();
   for (const choices of document.querySelectorAll<HTMLElement>(".choices[data-for]")) applyChoices(choices);
   markContents();
 }

@@ -1,6 +1,8 @@
 // Highlights the lines of a listing that match the current event of a demo. Readers can switch this
 // off, for all listings at once; the choice is stored.
 
+import type { DemoEvent } from "sweep-and-prune/demo";
+
 const KEY = "follow-demos";
 
 export function followDemos(): void {
@@ -10,7 +12,7 @@ export function followDemos(): void {
 
   const show = (): void => {
     for (const button of buttons) button?.setAttribute("aria-pressed", String(follows));
-    if (!follows) for (const listing of listings) light(listing, undefined);
+    if (!follows) for (const listing of listings) highlight(listing, undefined);
   };
   show();
   for (const button of buttons) {
@@ -22,16 +24,17 @@ export function followDemos(): void {
   }
   for (const listing of listings) {
     const demo = document.querySelector(`#${listing.dataset["follows"]} sap-demo`);
-    demo?.addEventListener("sap-event", (event) => {
-      if (follows) light(listing, (event as CustomEvent<{ kind: string }>).detail.kind);
+    demo?.addEventListener("sap-show", (event) => {
+      if (follows) highlight(listing, (event as CustomEvent<DemoEvent | undefined>).detail);
     });
   }
 }
 
-function light(listing: HTMLElement, kind: string | undefined): void {
-  for (const line of listing.querySelectorAll<HTMLElement>("[data-kinds]")) {
-    const kinds = line.dataset["kinds"]?.split(" ") ?? [];
-    line.classList.toggle("at-work", kind !== undefined && kinds.includes(kind));
+/** The lines that do what the event says: the one that a program tells, or else those that are marked with its kind. */
+function highlight(listing: HTMLElement, event: DemoEvent | undefined): void {
+  for (const [at, line] of listing.querySelectorAll<HTMLElement>("pre .line").entries()) {
+    const isAtWork = event?.line === undefined ? line.dataset["kinds"]?.split(" ").includes(event?.kind ?? "none") : event.line === at + 1;
+    line.classList.toggle("at-work", isAtWork === true);
   }
 }
 

@@ -60,6 +60,7 @@ const KEYS: Readonly<Record<string, Key>> = {
   "overlapping-box": { swatch: box('style="fill:color-mix(in oklab, var(--sap-overlap) 55%, var(--sap-stage))" stroke="var(--sap-muted)"'), word: "overlap", says: "overlaps another box" },
   looked: { swatch: `<rect x="3" y="1" width="28" height="14" fill="var(--sap-edge)" fill-opacity="0.2"/>`, word: "edge", says: "where its partners are looked for" },
   focus: { swatch: disc('fill="none" stroke="var(--sap-chosen)" stroke-width="3"'), word: "focus", says: "the ball in question" },
+  within: { swatch: cell("inside"), word: "touched", says: "its interval in the array" },
   inside: {
     swatch: `${upright(11, "chosen")}${upright(23, "chosen", 'stroke-dasharray="4 3"')}`,
     word: "focus",

@@ -27,7 +27,7 @@ const EDITABLE = new Set(["pairwise", "sorted-pairwise", "sweep", "sweep-and-pru
 export function listing(name: string, follows: string | undefined): string {
   const { code, kinds } = readListing(name);
   const edit = follows && EDITABLE.has(name) ? `<button type="button" class="small" data-part="edit" aria-pressed="false">Edit</button>` : "";
-  const follow = follows
+  const follow = follows && kinds.some((kind) => kind.replace("added", "") !== "")
     ? `<button type="button" class="small" data-part="follow" aria-pressed="true">Follow the demo</button>`
     : "";
   return `

@@ -6,8 +6,8 @@ export function oneToN(endpoints, box, onOverlapX) {
 
   const met = new Set();
   for (let i = from + 1; i < to; i++) {
-    const other = endpoints[i].box; // @enter
-    if (!met.has(other)) onOverlapX(box, other); // @test
+    const other = endpoints[i].box;
+    if (!met.has(other)) onOverlapX(box, other);
     met.add(other);
   }
 }

@@ -12,7 +12,7 @@ export function quicksort(
 
   while (i <= j) {
     while (precedes(endpoints[i], pivot)) i++; // @compare
-    while (precedes(pivot, endpoints[j])) j--;
+    while (precedes(pivot, endpoints[j])) j--; // @compare
     if (i > j) break;
     const swapped = endpoints[i];
     endpoints[i++] = endpoints[j]; // @swap

@@ -28,8 +28,8 @@ export function begin(boxes) {
   const flags = new Flags();
   const arrays = axes.map((sides) => endpointsOf(boxes, sides));
   for (const endpoints of arrays) {
-    quicksort(endpoints);
-    sweep(endpoints, (a, b) => flags.change(a, b, +1));
+    quicksort(endpoints); // @start
+    sweep(endpoints, (a, b) => flags.change(a, b, +1)); // @start
   }
   return { arrays, flags };
 }

@@ -7,8 +7,8 @@ import { sweep } from "./sweep.js";
 export function begin(boxes) {
   const endpoints = endpointsOf(boxes);
   const overlapping = new Map();
-  quicksort(endpoints);
-  sweep(endpoints, (a, b) => overlapping.set(key(a, b), [a, b]));
+  quicksort(endpoints); // @start
+  sweep(endpoints, (a, b) => overlapping.set(key(a, b), [a, b])); // @start
   return { endpoints, overlapping };
 }
 

@@ -17,7 +17,7 @@ export function sweepAllAxes(boxes, onPair) {
 
     sweep(endpoints, (a, b) => { // @enter @leave
       const count = (flags.get(key(a, b)) ?? 0) + 1;
-      flags.set(key(a, b), count);
+      flags.set(key(a, b), count); // @flag
       if (count === axes.length) onPair(a, b); // @overlap
     });
   }

@@ -2,7 +2,7 @@ import { SapComparisonElement } from "./comparison.js";
 import { SapDemoElement } from "./element.js";
 import type { SapDemo as Interface } from "./types.js";
 
-export type { DemoDrag, DemoEvent, DemoEventMap, DemoProgram, DemoSort, DemoState, ProgramEvent, Row } from "./types.js";
+export type { DemoDrag, DemoEvent, DemoEventMap, DemoMark, DemoProgram, DemoSort, DemoState, ProgramEvent, Row } from "./types.js";
 
 /** `<sap-demo>`, beside its attributes. Each of those is a property as well, in camel case. */
 export interface SapDemo extends Interface {}

@@ -139,6 +139,11 @@ export function hasFlags({ method }: Detecting): boolean {
   return method.endsWith("on every axis");
 }
 
+/** Whether a detection is the full sweep that tells a swap-driven method what overlaps before anything is swapped. */
+export function isStart(detection: Detection, { method }: Detecting): boolean {
+  return method.startsWith("swap-driven") && !detection.isDrivenBySwaps;
+}
+
 /** Which kinds of events are worth a stop. */
 export function shownKinds({ checks, sweep, array }: Decorations, detecting: Detecting): Set<TraceEvent["kind"]> {
   const kinds = new Set<TraceEvent["kind"]>();
@@ -151,10 +156,10 @@ export function shownKinds({ checks, sweep, array }: Decorations, detecting: Det
   return kinds;
 }
 
-/** The positions at which to stop: after each event of these kinds, and at the end. */
-export function stopsOf(detection: Detection, kinds: ReadonlySet<TraceEvent["kind"]>): number[] {
+/** The positions at which to stop: after each event of these kinds, and at the end. The full sweep that swaps begin with is only its end. */
+export function stopsOf(detection: Detection, kinds: ReadonlySet<TraceEvent["kind"]>, isStart: boolean): number[] {
   const stops: number[] = [];
-  if (!detection.isTruncated && kinds.size > 0) {
+  if (!detection.isTruncated && kinds.size > 0 && !isStart) {
     detection.events.forEach(({ kind }, index, { [index + 1]: next }) => {
       // The last flag of a pair and the pair are one moment.
       const isLastFlag = kind === "axis overlap" && next?.kind === "overlap" && kinds.has("overlap");

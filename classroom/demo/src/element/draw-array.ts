@@ -43,6 +43,25 @@ export function drawArray(context: CanvasRenderingContext2D, width: number, scen
   });
 }
 
+/** The ball whose endpoint stands at a point of the drawn arrays. */
+export function ballAt(arrays: PlayerState["arrays"], width: number, x: number, y: number): number | undefined {
+  let top = 2;
+  for (const array of arrays) {
+    const { perRow, cell } = cellsOf(array.length, width);
+    const [row, column] = [Math.floor((y - top) / CELL_HEIGHT), Math.floor(x / cell)];
+    const place = array[row * perRow + column];
+    if (row >= 0 && column < perRow && place) return place.edge >> 1;
+    if (array.length > 0) top += Math.ceil(array.length / CELLS) * CELL_HEIGHT + GAP;
+  }
+  return undefined;
+}
+
+/** How many cells stand in a row, and how wide each is. */
+function cellsOf(count: number, width: number): { perRow: number; cell: number } {
+  const perRow = Math.min(CELLS, Math.max(count, 8));
+  return { perRow, cell: Math.min(46, width / perRow) };
+}
+
 interface Place {
   readonly top: number;
   readonly width: number;
@@ -52,8 +71,7 @@ interface Place {
 function drawOne(context: CanvasRenderingContext2D, edges: number[], scene: ArrayScene, place: Place, theme: Theme): void {
   const { event, options, labels, chosen, moved, lineEdge, isScanHidden, flashing } = scene;
   const { decorations, focus, isRainbow } = options;
-  const perRow = Math.min(CELLS, Math.max(edges.length, 8));
-  const cell = Math.min(46, place.width / perRow);
+  const { perRow, cell } = cellsOf(edges.length, place.width);
   const height = CELL_HEIGHT - 4;
   const comparison = decorations.array?.comparison ?? theme.comparison;
   const swap = decorations.array?.swap ?? theme.swap;

@@ -4,7 +4,7 @@ import type { Decorations } from "./decorations.js";
 import { type Detection, hasFlags } from "./detection.js";
 import type { Explanation } from "./explain.js";
 import { type Options, WIDTH } from "./options.js";
-import { rainbow, type Theme } from "./theme.js";
+import { type ColorName, rainbow, type Theme } from "./theme.js";
 
 /** What one picture shows. */
 export interface Scene {
@@ -32,6 +32,8 @@ export interface Scene {
   readonly missed: Detection["missed"];
   /** The gap that an explanation speaks of. */
   readonly gap: Explanation["gap"];
+  /** The color of what is to stand out. */
+  readonly emphasis: string | undefined;
 }
 
 /** Draws the world into a context that is scaled to it. */
@@ -62,6 +64,11 @@ class Painter {
     this.#context = context;
     this.#scene = scene;
     this.#theme = theme;
+  }
+
+  /** The width of a line of this color: of what is to stand out, twice that. */
+  #wide(color: ColorName, width: number): number {
+    return this.#scene.emphasis === color ? 2 * width + 1 : width;
   }
 
   get #height(): number {
@@ -109,6 +116,7 @@ class Painter {
       this.#context.fillStyle = fill;
       this.#context.fill();
       this.#context.strokeStyle = this.#theme.muted;
+      this.#context.lineWidth = active.has(ball) ? this.#wide("inside", 1.5) : 1.5;
       this.#context.stroke();
       if (hasBoxes) this.#box(ball, this.#theme.muted);
     }
@@ -148,7 +156,7 @@ class Painter {
         const isInside = within !== undefined && at >= within[0] && at <= within[1];
         const isFlashing = flashing.has(2 * ball + side);
         this.#context.strokeStyle = isFlashing ? this.#theme.swap : isInside ? inside : outside;
-        this.#context.lineWidth = isFlashing ? 5 : isInside ? 2 : 1;
+        this.#context.lineWidth = isFlashing ? 5 : isInside ? this.#wide("chosen", 2) : this.#wide("edge", 1);
         this.#context.setLineDash(side === 0 ? [] : [4, 3]);
         this.#across(axis, at, this.#center(ball)[1 - axis]!);
       }
@@ -161,7 +169,7 @@ class Painter {
     if (this.#scene.isScanHidden || !(options.decorations.checks || options.predicts)) return;
     if (hasFlags(options.detecting)) this.#flags();
     this.#context.strokeStyle = this.#theme.overlap;
-    this.#context.lineWidth = 2;
+    this.#context.lineWidth = this.#wide("overlap", 2);
     for (let i = 0; i + 1 < state.overlaps.length; i += 2) {
       const [a, b] = [state.overlaps[i]!, state.overlaps[i + 1]!];
       // Where boxes are shown: dashed if only the boxes overlap.
@@ -175,7 +183,7 @@ class Painter {
   #flags(): void {
     const { overlaps, axisOverlaps } = this.#scene.state;
     this.#context.strokeStyle = this.#theme.edge;
-    this.#context.lineWidth = 2;
+    this.#context.lineWidth = this.#wide("edge", 2);
     this.#context.setLineDash([2, 5]);
     const pairs = new Set<string>();
     for (let i = 0; i + 1 < overlaps.length; i += 2) pairs.add(`${overlaps[i]} ${overlaps[i + 1]}`);
@@ -185,7 +193,7 @@ class Painter {
 
   missed(): void {
     this.#context.strokeStyle = this.#theme.sweep;
-    this.#context.lineWidth = 4;
+    this.#context.lineWidth = this.#wide("sweep", 4);
     this.#context.setLineDash([3, 5]);
     for (const [a, b] of this.#scene.missed) this.#between(a, b);
     this.#context.setLineDash([]);
@@ -197,9 +205,9 @@ class Painter {
     if (event?.kind === "test" || event?.kind === "overlap" || event?.kind === "axis overlap") {
       const [a, b] = [Number(event["a"]), Number(event["b"])];
       this.#context.strokeStyle = check;
-      this.#context.lineWidth = 5;
+      this.#context.lineWidth = this.#wide("check", 5);
       this.#between(a, b);
-      this.#context.lineWidth = 4;
+      this.#context.lineWidth = this.#wide("check", 4);
       for (const ball of [a, b]) {
         this.#disc(ball, this.#scene.radii[ball]! - 1);
         this.#context.stroke();
@@ -214,7 +222,7 @@ class Painter {
     const { sweep } = options.decorations;
     if (!sweep || lineAt === undefined) return;
     this.#context.strokeStyle = sweep.line ?? this.#theme.sweep;
-    this.#context.lineWidth = 2.5;
+    this.#context.lineWidth = this.#wide("sweep", 2.5);
     this.#across(state.arrayAxis, lineAt, undefined);
   }
 
@@ -222,7 +230,7 @@ class Painter {
     const { chosen, options } = this.#scene;
     const { focus } = options;
     this.#context.strokeStyle = this.#theme.chosen;
-    this.#context.lineWidth = 3;
+    this.#context.lineWidth = this.#wide("chosen", 3);
     for (const ball of new Set([...chosen, ...(focus === undefined ? [] : [focus])])) {
       this.#context.setLineDash(chosen.includes(ball) ? [6, 4] : []);
       this.#disc(ball, this.#scene.radii[ball]! + 4);
@@ -257,7 +265,7 @@ class Painter {
     const [to] = this.#interval(right, axis);
     const [a, b] = [this.#center(left)[1 - axis]!, this.#center(right)[1 - axis]!];
     this.#context.strokeStyle = color;
-    this.#context.lineWidth = 2.5;
+    this.#context.lineWidth = this.#wide("skip", 2.5);
     const point = (along: number, across: number): [number, number] => (axis === 0 ? [along, across] : [across, along]);
     this.#context.beginPath();
     for (const [at, across] of [[from, a], [to, b]] as const) {

@@ -1,6 +1,6 @@
 import { type CSSResult, LitElement, type TemplateResult } from "lit";
 import type { TraceEvent } from "../algorithms/trace.js";
-import type { DemoEvent, DemoProgram, DemoState, Row } from "./types.js";
+import type { DemoEvent, DemoMark, DemoProgram, DemoState, Row } from "./types.js";
 import { Canvases } from "./canvas.js";
 import { clock } from "./clock.js";
 import { comparisonOf, type SapComparisonElement } from "./comparison.js";
@@ -48,6 +48,11 @@ export class SapDemoElement extends LitElement {
   /** Whether its files did not load. */
   #hasFailed = false;
   #program: DemoProgram | undefined;
+  #marked: DemoMark | undefined;
+  /** The ball that the pointer is on. */
+  #pointed: number | undefined;
+  /** The moment that was last told. */
+  #told = "";
   #isPlaying = false;
   #speed: number | undefined;
   #hasChanged = false;
@@ -78,6 +83,12 @@ export class SapDemoElement extends LitElement {
       this.#comparison?.moved();
     },
     chose: () => this.#changed(),
+    pointed: (ball) => {
+      if (ball === this.#pointed) return;
+      this.#pointed = ball;
+      this.#paint();
+      emit(this, "sap-point", ball);
+    },
     place: (...where) => (this.#comparison?.together ?? this.#run!.timeline).placeBall(...where),
     detectAgain: () => (this.#comparison?.together ?? this.#run!.timeline).detectAgain(),
     say: (text) => this.#speech.now(text),
@@ -213,6 +224,19 @@ export class SapDemoElement extends LitElement {
     if (this.#program === program) return;
     this.#program = program;
     if (this.#run || this.#wrong !== "") this.#understand();
+  }
+
+  get names(): readonly string[] {
+    return this.#run?.names ?? [];
+  }
+
+  get marked(): DemoMark | undefined {
+    return this.#marked;
+  }
+
+  set marked(mark: DemoMark | undefined) {
+    this.#marked = mark;
+    this.#paint();
   }
 
   get chosen(): number[] {
@@ -491,13 +515,18 @@ export class SapDemoElement extends LitElement {
       timeline: run.timeline,
       options: run.options,
       names: run.names,
-      marked: this.#hands.selection.marked,
+      marked: [...this.#hands.selection.marked, ...[this.#pointed, this.#marked?.ball].filter((ball) => ball !== undefined)],
+      emphasis: this.#marked?.color,
       explanation: this.#explanation,
       lineAt: run.playback.lineAt(this.#isPlaying),
       theme: this.#theme,
       isScanHidden: run.isScanHidden,
       flashing: this.#swapLog.flashing(performance.now()),
     });
+    const { tick, position } = run.timeline;
+    const shown = `${tick} ${position}`;
+    if (shown !== this.#told) emit(this, "sap-show", run.event);
+    this.#told = shown;
   }
 
   /** Says in words what the picture shows, with each picture of an event. Ticks pass too fast to be read. */
@@ -542,6 +571,7 @@ export class SapDemoElement extends LitElement {
   }
 
   readonly #acts: Acts = {
+    point: (ball) => this.#hands.point(ball),
     press: (event) => this.#run && press(event, this.#run.options, this.#hands.keyboard),
     guess: (choice) => this.#guess(choice),
     load: () => this.#load(),

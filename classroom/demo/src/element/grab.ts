@@ -21,6 +21,8 @@ export interface Grabbing {
   release(ball: number, vx: number, vy: number): void;
   /** Pressed and let go in one place. */
   choose(ball: number | undefined): void;
+  /** The pointer is on a ball, or on none. */
+  point(ball: number | undefined): void;
 }
 
 /** A finger hits a ball from this many CSS pixels away. Among balls that move, it has to leave room to scroll the page. */
@@ -45,6 +47,7 @@ export class Grab {
     picture.addEventListener("pointermove", (event) => this.#move(event));
     picture.addEventListener("pointerup", (event) => this.#up(event));
     picture.addEventListener("pointercancel", () => this.#drop());
+    picture.addEventListener("pointerleave", () => grabbing.point(undefined));
     // A finger on a ball moves the ball; elsewhere it scrolls the page.
     picture.addEventListener("touchstart", (event) => this.#touch(event), { passive: false });
   }
@@ -81,7 +84,8 @@ export class Grab {
 
   #move(event: PointerEvent): void {
     const held = this.#held;
-    if (!held || event.pointerId !== held.pointer || !this.#grabbing.isDraggable()) return;
+    if (!held) return this.#grabbing.point(this.#ballAt(...this.#inWorld(event)));
+    if (event.pointerId !== held.pointer || !this.#grabbing.isDraggable()) return;
     const far = Math.hypot(event.clientX - held.from[0], event.clientY - held.from[1]);
     if (!held.hasMoved && far < CLICK) return;
     if (!held.hasMoved) this.#grabbing.take();

@@ -15,6 +15,8 @@ export interface Handled {
   moved(drag: DemoDrag, isDetected: boolean): void;
   /** A choice is to be shown. */
   chose(): void;
+  /** The pointer is on a ball, or on none. */
+  pointed(ball: number | undefined): void;
   /** Puts a ball elsewhere, with this velocity; also in the demos that show the same world. */
   place(ball: number, x: number, y: number, vx: number, vy: number): void;
   /** Runs the detection again where the world stands still. */
@@ -55,6 +57,7 @@ export class Hands {
         if (!this.#demo.isPlaying) this.#handled.detectAgain();
       },
       choose: (ball) => this.#handled.run() && this.#choose(ball),
+      point: (ball) => this.#handled.pointed(ball),
     });
   }
 
@@ -79,6 +82,11 @@ export class Hands {
   hold(): void {
     const { held, target } = this.#grab ?? {};
     if (held !== undefined && target) this.#place(held, target.x, target.y, 0, 0);
+  }
+
+  /** The pointer is on a ball, or on its endpoint, or on none. */
+  point(ball: number | undefined): void {
+    this.#handled.pointed(ball);
   }
 
   readonly keyboard: Keyboard = {

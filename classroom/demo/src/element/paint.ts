@@ -14,6 +14,8 @@ export interface Painting {
   readonly names: readonly string[];
   /** The balls to be marked. */
   readonly marked: readonly number[];
+  /** The color of what is to stand out. */
+  readonly emphasis: string | undefined;
   readonly explanation: Explanation | undefined;
   /** Where the sweep line is, if it is anywhere. */
   readonly lineAt: number | undefined;
@@ -40,7 +42,7 @@ export function paint(root: ParentNode, canvases: Canvases, painting: Painting):
     const touched = ofFocus?.touched ?? state.active;
     const { axis } = detection.step;
     const missed = timeline.isDetected && !isScanHidden ? detection.missed : [];
-    drawScene(picture.context, { ...common, positions, radii, jump, labels, lineAt, touched, axis, missed, gap: explanation?.gap }, theme);
+    drawScene(picture.context, { ...common, positions, radii, jump, labels, lineAt, touched, axis, missed, gap: explanation?.gap, emphasis: painting.emphasis }, theme);
   }
   const array = options.decorations.array && canvases.open(root.querySelector("canvas.array"));
   if (array) {

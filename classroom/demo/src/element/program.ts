@@ -52,10 +52,10 @@ export class ProgramDetection implements Detection {
 function traced(event: ProgramEvent, boxes: Float64Array): TraceEvent {
   if (event.kind === "test") {
     const gap = gapOn(boxes, 0, event.a, event.b) ?? gapOn(boxes, 1, event.a, event.b);
-    return { ...event, axis: gap?.axis ?? NONE, left: gap?.left ?? NONE };
+    return { ...event, axis: gap?.axis ?? NONE, left: gap?.left ?? NONE } as TraceEvent;
   }
   if (event.kind === "array") return { kind: "array", axis: event.axis, edges: event.edges.join(" ") };
-  return { ...event };
+  return { ...event } as TraceEvent;
 }
 
 /** What is to be drawn after each of the events, all of which are gone through once. */

@@ -10,6 +10,7 @@ const kinds: Partial<Record<TraceEvent["kind"], DemoEvent["kind"]>> = {
   leave: "leave",
   overlap: "overlap",
   prune: "skip",
+  "axis overlap": "flag",
 };
 
 /** The demo event of a trace event, if it has one. `index` counts within its detection. */
@@ -19,7 +20,8 @@ export function demoEventOf(event: TraceEvent, index: number): DemoEvent | undef
   const a = Number(event["a"] ?? event["left"] ?? event["id"]);
   const b = Number(event["b"] ?? event["right"] ?? event["id"]);
   const isOfEdges = kind === "compare" || kind === "swap";
-  return { kind, a: isOfEdges ? a >> 1 : a, b: isOfEdges ? b >> 1 : b, index };
+  const line = event["line"] === undefined ? {} : { line: Number(event["line"]) };
+  return { kind, a: isOfEdges ? a >> 1 : a, b: isOfEdges ? b >> 1 : b, index, ...line };
 }
 
 /** The event of the sort, if it is one. */

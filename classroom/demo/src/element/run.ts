@@ -16,6 +16,8 @@ export type Counts = Omit<DemoState, "tick" | "events" | "hash">;
 
 export const NOTHING_COUNTED: Counts = { tests: 0, flagChecks: 0, axisOverlaps: 0, pairs: 0, comparisons: 0, swaps: 0 };
 
+const START = "Once, at the start, a sort and a full sweep find all overlaps. From here on, swaps tell what changes.";
+
 /** A world and its detections, as the attributes ask for them, and what can be said of where it stands. */
 export class Run {
   readonly options: Options;
@@ -77,6 +79,7 @@ export class Run {
 
   get event(): DemoEvent | undefined {
     const { event, position } = this.timeline;
+    if (this.timeline.isStart && this.timeline.isDetected) return { kind: "start", a: 0, b: 0, index: 0 };
     return event && demoEventOf(event, position - 1);
   }
 
@@ -113,8 +116,6 @@ export class Run {
   get question(): Question | undefined {
     const { timeline, options } = this;
     if (!options.predicts) return undefined;
-    // The first detection of a swap-driven sweep only sorts.
-    if (options.detecting.method.startsWith("swap-driven") && !timeline.detection.isDrivenBySwaps) return undefined;
     return asksOfScan(options) ? questionsOfScan(timeline, options.detecting.focus, this.#known)[this.#answered] : questionAt(timeline, this.#known);
   }
 
@@ -137,9 +138,11 @@ export class Run {
 
   /** Where it stands, in words. */
   get sentence(): string {
-    const { event, detection, tick, isDetected, radii } = this.timeline;
+    const { timeline } = this;
+    const { event, detection, tick, isDetected, radii } = timeline;
     if (event) return describeEvent(event, this.#known);
     const when = this.options.isStatic ? undefined : tick;
+    if (timeline.isStart && isDetected) return START;
     return summary(isDetected && !this.isScanHidden, when, radii.length, detection, this.names, this.#flagChecks);
   }
 }

@@ -1,7 +1,7 @@
 import type { PlayerState } from "../algorithms/player.js";
 import { Runner } from "../algorithms/runner.js";
 import type { TraceEvent } from "../algorithms/trace.js";
-import { type Detection, newRunner, Oracle, oracleFor, stopsOf, TracedDetection } from "./detection.js";
+import { type Detection, isStart, newRunner, Oracle, oracleFor, stopsOf, TracedDetection } from "./detection.js";
 import type { Options } from "./options.js";
 import { ProgramDetection } from "./program.js";
 import { boxesOf, sweptBoxes, World } from "./world.js";
@@ -109,9 +109,14 @@ export class Timeline {
 
   /** The event at work: the one at which the detection has been stopped. */
   get event(): TraceEvent | undefined {
-    if (this.#kinds.size === 0) return undefined;
+    if (this.#kinds.size === 0 || this.isStart) return undefined;
     const event = this.detection.events[this.position - 1];
     return event && this.#kinds.has(event.kind) ? event : undefined;
+  }
+
+  /** Whether this detection is the full sweep that a swap-driven method begins with. */
+  get isStart(): boolean {
+    return !this.#options.program && isStart(this.detection, this.#options.detecting);
   }
 
   get state(): PlayerState {
@@ -304,7 +309,7 @@ export class Timeline {
       : new TracedDetection(runner, boxes, missedOf);
     this.#detection?.free();
     this.#detection = detection;
-    this.#stops = stopsOf(this.#detection, this.#kinds);
+    this.#stops = stopsOf(this.#detection, this.#kinds, this.isStart);
     this.#stop = -1;
   }
 

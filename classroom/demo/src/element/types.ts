@@ -25,14 +25,27 @@ export interface DemoState {
 
 /** One event of an algorithm, as listeners of `sap-event` are told it. */
 export interface DemoEvent {
-  /** What was done: a comparison or a swap of the sort, a pair tested, skipped or found, a ball entered or left by the line. */
-  kind: "compare" | "swap" | "test" | "enter" | "leave" | "overlap" | "skip";
+  /**
+   * What was done: a comparison or a swap of the sort, a pair tested, skipped or found, or given a flag, a ball entered or left
+   * by the line; or the full sweep that a swap-driven method begins with.
+   */
+  kind: "compare" | "swap" | "test" | "enter" | "leave" | "overlap" | "skip" | "flag" | "start";
   /** The first ball. */
   a: number;
   /** The second; of `enter` and `leave` the same. */
   b: number;
   /** Which event of the detection, from 0. */
   index: number;
+  /** The line of the program that did it, if a program did and told. */
+  line?: number;
+}
+
+/** What is to stand out in a demo: a ball, or all things of a kind, named as the colors are. */
+export interface DemoMark {
+  /** Which ball. */
+  ball?: number | undefined;
+  /** Which color, without `--sap-`. */
+  color?: string | undefined;
 }
 
 /** A comparison or a swap of the sort: the positions in the array; of a comparison, the edges. */
@@ -64,6 +77,8 @@ export type ProgramEvent =
       readonly a: number;
       /** The second edge. */
       readonly b: number;
+      /** The line of the program. */
+      readonly line?: number | undefined;
     }
   | {
       /** Two positions of the array were swapped. */
@@ -80,6 +95,8 @@ export type ProgramEvent =
       readonly a: number;
       /** The second ball. */
       readonly b: number;
+      /** The line of the program. */
+      readonly line?: number | undefined;
     }
   | {
       /** Two balls overlap on one axis. */
@@ -117,6 +134,10 @@ export interface DemoEventMap {
   "sap-sort": CustomEvent<DemoSort>;
   /** A ball was moved by hand. */
   "sap-drag": CustomEvent<DemoDrag>;
+  /** Another moment is shown: the event at work, if there is one. */
+  "sap-show": CustomEvent<DemoEvent | undefined>;
+  /** The pointer is on a ball, or on its endpoint in the array; on none, `undefined`. */
+  "sap-point": CustomEvent<number | undefined>;
 }
 
 /** `<sap-demo>`, beside its attributes. Each of those is a property as well, in camel case. */
@@ -151,6 +172,10 @@ export interface SapDemo extends HTMLElement {
   readonly pairs: [number, number][];
   /** What finds the pairs in the place of `strategy`; the world goes on where it is when that changes. */
   program: DemoProgram | undefined;
+  /** What is to stand out. */
+  marked: DemoMark | undefined;
+  /** What the balls are called. */
+  readonly names: readonly string[];
   /** The balls that the visitor has chosen, at most two. */
   readonly chosen: number[];
   /** Resolves when it is loaded and shown; also if it cannot be, which it then says itself. */

@@ -1,6 +1,7 @@
 import { html, nothing, type TemplateResult } from "lit";
 import type { SapDemo } from "./types.js";
 import { counters } from "./counters.js";
+import { ballAt } from "./draw-array.js";
 import { keysOf } from "./keys.js";
 import { hasSeed } from "./options.js";
 import { heightOfArray } from "./paint.js";
@@ -33,6 +34,7 @@ export interface View {
 /** What is done where a visitor presses, beside what anybody may call. */
 export interface Acts {
   press(event: KeyboardEvent): void;
+  point(ball: number | undefined): void;
   guess(choice: number): void;
   /** Tries once more to load what it needs. */
   load(): void;
@@ -53,7 +55,7 @@ export function inside(view: View, demo: SapDemo, acts: Acts): TemplateResult {
       ${view.wrong ? html`<div class="wrong"><p role="alert">${view.wrong}</p>${view.hasFailed ? html`<button type="button" @click=${acts.load}>Try again</button>` : nothing}</div>` : nothing}
     </div>
     <p id="keys" class="hidden">${keysOf(options, canPlay(run))}</p>
-    ${run && options?.decorations.array ? array(run) : nothing}
+    ${run && options?.decorations.array ? array(run, acts) : nothing}
     ${hasControls ? html`<p class="said" part="said" aria-hidden="true" ?data-explains=${view.explains}></p>` : nothing}
     ${options?.predicts ? guessing({ ...view, guess: acts.guess, next: options.isStatic ? undefined : () => demo.step() }) : nothing}
     ${options?.hasSwapLog ? swapsSoFar(view.swapLog) : nothing}
@@ -90,7 +92,8 @@ function canPlay(run: Run | undefined): boolean {
   return !(run?.options.isStatic && run.timeline.isStopless);
 }
 
-function array({ options, timeline }: Run): TemplateResult {
+function array({ options, timeline }: Run, acts: Acts): TemplateResult {
   const height = heightOfArray(options, timeline.radii.length);
-  return html`<canvas class="array" part="array" role="img" aria-label="The array of endpoints, in order" style="height:${height}px"></canvas>`;
+  const point = ({ offsetX, offsetY, target }: PointerEvent): void => acts.point(ballAt(timeline.state.arrays, (target as HTMLElement).clientWidth, offsetX, offsetY));
+  return html`<canvas class="array" part="array" role="img" aria-label="The array of endpoints, in order" style="height:${height}px" @pointermove=${point} @pointerleave=${() => acts.point(undefined)}></canvas>`;
 }

@@ -3,6 +3,7 @@
 import { javascriptLanguage } from "@codemirror/lang-javascript";
 import type { Compile } from "./harness.ts";
 import { messageOf } from "../../message-of.ts";
+import { withLines } from "./lines.ts";
 
 /** Loops and calls in one run, at most. */
 const MOST = 200_000;
@@ -25,7 +26,7 @@ export function compiled(code: string): { compile: Compile; restart(): void } {
   };
   const names = [...code.matchAll(/^export (?:function|const|let|class) (\w+)/gm)].map(([, name]) => name!);
   const declared = new Set([...code.matchAll(/^\s*(?:export )?(?:function|const|let|class) (\w+)/gm)].map(([, name]) => name!));
-  const body = `"use strict"; ${guarded(code).replace(/^export /gm, "")}\nreturn { ${names.join(", ")} };`;
+  const body = `"use strict"; ${withLines(guarded(code)).replace(/^export /gm, "")}\nreturn { ${names.join(", ")} };`;
   return {
     restart: () => (left = MOST),
     compile: (helpers) => {

@@ -53,6 +53,8 @@ export function edit(listing: HTMLElement, demo: SapDemo): () => void {
   again.type = "button";
   again.className = "small";
   again.textContent = "Original code";
+  /** What the demo runs when nothing is edited. */
+  const before = demo.program;
   let timer: ReturnType<typeof setTimeout> | undefined;
 
   const say = (text: string, fault?: Fault): void => {
@@ -117,7 +119,7 @@ export function edit(listing: HTMLElement, demo: SapDemo): () => void {
   run();
   return () => {
     clearTimeout(timer);
-    demo.program = undefined;
+    demo.program = before;
     view.destroy();
     for (const part of [place, said, again]) part.remove();
     shown.hidden = false;

@@ -115,13 +115,15 @@ const MOST_EVENTS = 20_000;
 /** Collects what a listing does in one detection. */
 class Recorder implements Report {
   readonly events: ProgramEvent[] = [];
+  /** The line that is at work, if the code tells. */
+  line: number | undefined;
   /** The arrays that are being sorted, and the order in which they were when last looked at. */
   #arrays: readonly Endpoint[][] = [];
   #seen: Endpoint[][] = [];
   #axis = -1;
 
-  test = (a: Box, b: Box): void => this.#add({ kind: "test", ...pair(a, b) });
-  overlap = (a: Box, b: Box): void => this.#add({ kind: "overlap", ...pair(a, b) });
+  test = (a: Box, b: Box): void => this.#add({ kind: "test", ...pair(a, b), line: this.line });
+  overlap = (a: Box, b: Box): void => this.#add({ kind: "overlap", ...pair(a, b), line: this.line });
   axisOverlap = (axis: number, a: Box, b: Box): void => this.#add({ kind: "axis overlap", axis, ...pair(a, b) });
 
   sorting(arrays: readonly Endpoint[][], sort: () => unknown): void {
@@ -130,6 +132,8 @@ class Recorder implements Report {
     this.#show(0);
     sort();
     this.#look();
+    // What follows is done with what the listing returned.
+    this.line = undefined;
     this.#arrays = [];
   }
 
@@ -137,7 +141,7 @@ class Recorder implements Report {
     if (this.#arrays.length === 0) return;
     this.#look();
     this.#show(axisOf(p));
-    this.#add({ kind: "compare", a: edge(p), b: edge(q) });
+    this.#add({ kind: "compare", a: edge(p), b: edge(q), line: this.line });
   }
 
   /** Reports what has been swapped since the last look: a listing that exchanges two places does so between comparisons. */
@@ -179,6 +183,7 @@ export type Compile = (helpers: Readonly<Record<string, unknown>>) => Exports;
 export function programOf(name: string, compile: Compile): DemoProgram {
   let recorder = new Recorder();
   const listing = compile({
+    $line: (line: number) => (recorder.line = line),
     key,
     endpointsOf,
     refresh,

@@ -1,0 +1,3 @@
+declare module "virtual:quicksort" {
+  export const compile: import("./edit/harness.ts").Compile;
+}
