@@ -3,6 +3,7 @@ import { api } from "./src/api/build.ts";
 import { article } from "./src/article/build.ts";
 import { benchmark, alternatives } from "./src/benchmark/build.ts";
 import { insertComplexity } from "./src/complexity/table.ts";
+import { hero } from "./src/hero/build.ts";
 import { expandPlayground } from "./src/playground/markup.ts";
 import { offline } from "./src/shell/offline.ts";
 import { pages, shell } from "./src/shell/pages.ts";
@@ -38,7 +39,7 @@ const quiet: Rolldown.InputOptions = {
 export default defineConfig({
   base: "./",
   appType: "mpa",
-  plugins: [shell, article, api, panels, complexity, testing, benchmark, offline],
+  plugins: [hero, shell, article, api, panels, complexity, testing, benchmark, offline],
   worker: { format: "es", plugins: () => [alternatives()], rolldownOptions: quiet },
   build: {
     target: "es2022",

@@ -56,6 +56,7 @@ function applyChoices(choices: HTMLElement): void {
 /** Marks the section that is being read in the contents, and names it at the top where they are out of sight. */
 function markContents(): void {
   const here = document.querySelector<HTMLElement>(".here")!;
+  here.addEventListener("click", () => (document.querySelector<HTMLDetailsElement>(".contents details")!.open = true));
   const links = new Map(
     [...document.querySelectorAll<HTMLAnchorElement>(".contents a")].map((link) => [link.hash.slice(1), link]),
   );

@@ -53,21 +53,6 @@ export function drawBoxes(canvas: HTMLCanvasElement, width: number, height: numb
     context.stroke();
   }
 
-  const entered = touched.at(-1);
-  const middle = (box: number): [number, number] => [((rows[4 * box]! + rows[4 * box + 2]!) / 2) * scale, ((rows[4 * box + 1]! + rows[4 * box + 3]!) / 2) * scale];
-  if (entered !== undefined) {
-    context.beginPath();
-    const every = Math.ceil(partners.length / MOST_LINES);
-    for (const [at, partner] of partners.entries()) {
-      if (at % every !== 0) continue;
-      context.moveTo(...middle(entered));
-      context.lineTo(...middle(partner));
-    }
-    context.strokeStyle = colors.test;
-    context.lineWidth = partners.length > 60 ? 0.75 : 1.5;
-    context.stroke();
-  }
-
   // On a seam of the background's color the line is seen over boxes of any color.
   const at = line * scale;
   for (const [color, wide] of [[colors.stage, 5], [colors.line, 2.5]] as const) {
@@ -86,5 +71,29 @@ export function drawBoxes(canvas: HTMLCanvasElement, width: number, height: numb
   context.globalAlpha = 1;
   context.strokeStyle = colors.line;
   context.lineWidth = 2;
+  context.stroke();
+
+  const entered = touched.at(-1);
+  if (entered === undefined) return;
+  const middle = (box: number): [number, number] => [((rows[4 * box]! + rows[4 * box + 2]!) / 2) * scale, ((rows[4 * box + 1]! + rows[4 * box + 3]!) / 2) * scale];
+  const isFew = partners.length <= 60;
+  context.beginPath();
+  const every = Math.ceil(partners.length / MOST_LINES);
+  for (const [at, partner] of partners.entries()) {
+    if (at % every !== 0) continue;
+    context.moveTo(...middle(entered));
+    context.lineTo(...middle(partner));
+  }
+  // On a seam as well, where there are few enough to be seen one by one.
+  for (const [color, wide] of [[colors.stage, 7], [colors.test, 3.5]] as const) {
+    if (!isFew && color === colors.stage) continue;
+    context.strokeStyle = color;
+    context.lineWidth = isFew ? wide : 0.75;
+    context.stroke();
+  }
+  context.beginPath();
+  outline(entered);
+  context.strokeStyle = colors.test;
+  context.lineWidth = 3.5;
   context.stroke();
 }

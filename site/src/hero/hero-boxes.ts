@@ -17,6 +17,10 @@ const COUNTER_MS = 150;
 const CROSSING_S = 12;
 /** A pointer takes a box from this many CSS pixels away, and the line from twice as far. */
 const REACH = 6;
+/** Of more boxes, a frame of every pair takes a slow phone a tenth of a second. */
+const MOST_OF_EVERY_PAIR = 1_000;
+/** So many boxes tell how long one test takes. */
+const SAMPLE = 500;
 /** A thrown box keeps its mean speed over this many milliseconds. */
 const THROW_MS = 80;
 
@@ -36,6 +40,8 @@ interface Work {
  */
 export class HeroBoxes extends HTMLElement {
   readonly #runners = new Map<Method, Runner>();
+  /** The milliseconds of one test of every pair. */
+  #testMs: number | undefined;
   #boxes!: MovingBoxes;
   #seed = 1;
   #pairs: Uint32Array = new Uint32Array();
@@ -102,6 +108,11 @@ export class HeroBoxes extends HTMLElement {
     return COUNTS[this.#part<HTMLInputElement>("boxes").valueAsNumber] ?? 400;
   }
 
+  /** Whether every pair would take longer than a frame may: then the picture stands still, with the pairs that the sweep finds. */
+  get #isTooMuch(): boolean {
+    return this.#method === "global pairwise" && this.#count > MOST_OF_EVERY_PAIR;
+  }
+
   get #canvas(): HTMLCanvasElement {
     return this.#part("canvas");
   }
@@ -112,7 +123,12 @@ export class HeroBoxes extends HTMLElement {
     const slider = this.#part<HTMLInputElement>("boxes");
     slider.max = String(COUNTS.length - 1);
     slider.addEventListener("input", () => this.#begin());
-    for (const choice of this.querySelectorAll("[name=hero-method]")) choice.addEventListener("change", () => this.#changed());
+    for (const choice of this.querySelectorAll("[name=hero-method]")) {
+      choice.addEventListener("change", () => {
+        this.#changed();
+        this.#wake();
+      });
+    }
     this.#part("play").addEventListener("click", () => {
       this.#isPlaying = !this.#isPlaying;
       this.#changed();
@@ -181,6 +197,7 @@ export class HeroBoxes extends HTMLElement {
     for (const runner of this.#runners.values()) runner.free();
     this.#runners.clear();
     this.#changed();
+    this.#wake();
   }
 
   /** The width of the world: as high as ever, and as wide as the picture. */
@@ -200,7 +217,7 @@ export class HeroBoxes extends HTMLElement {
   // Time
 
   #wake(): void {
-    const isRunning = this.#isPlaying && this.#isAwake;
+    const isRunning = this.#isPlaying && this.#isAwake && !this.#isTooMuch;
     if (isRunning && this.#request === undefined) this.#request = requestAnimationFrame(this.#frame);
     if (!isRunning && this.#request !== undefined) {
       cancelAnimationFrame(this.#request);
@@ -228,7 +245,8 @@ export class HeroBoxes extends HTMLElement {
 
   /** Lets the chosen algorithm of the library find the pairs. */
   #detect(): void {
-    const method = this.#method;
+    const isTooMuch = this.#isTooMuch;
+    const method = isTooMuch ? "sorted pairwise" : this.#method;
     let runner = this.#runners.get(method);
     if (!runner) this.#runners.set(method, (runner = new Runner({ dimensions: 2, method, axis: 0, persistent: true })));
     const began = performance.now();
@@ -236,6 +254,10 @@ export class HeroBoxes extends HTMLElement {
     const ms = performance.now() - began;
     this.#pairs = pairs;
     this.#work = { tests: counts.tests, comparisons: counts.comparisons, pairs: counts.pairs, ms };
+    if (!isTooMuch) return;
+    const tests = bruteForceTests(this.#boxes.count);
+    this.#testMs ??= measureTest(this.#boxes.rows);
+    this.#work = { tests, comparisons: 0, pairs: counts.pairs, ms: tests * this.#testMs };
   }
 
   // Showing
@@ -277,7 +299,7 @@ export class HeroBoxes extends HTMLElement {
     this.#set("boxes-value", formatCount(count));
     this.#set("count", formatCount(tests));
     this.#set("sort", isEvery ? "no sort" : `and ${formatCount(comparisons)} comparisons to sort`);
-    this.#set("ms", `${ms.toFixed(ms < 10 ? 1 : 0)} ms`);
+    this.#set("ms", this.#isTooMuch ? `about ${Math.max(1, Math.round(ms)).toLocaleString("en")} ms a frame here, so the picture stands still` : `${ms.toFixed(ms < 10 ? 1 : 0)} ms`);
     this.#set("pairs", formatCount(pairs));
     this.#set("at-line", isEvery ? `tested against all ${formatCount(partners)} others` : `tested against ${formatCount(partners)} others that the line still touches`);
     this.#set("fewer", isEvery ? `${formatCount(count)} boxes make ${formatCount(all)} pairs` : `${formatCount(Math.floor(all / Math.max(tests, 1)))} times fewer than the ${formatCount(all)} pairs`);
@@ -301,4 +323,16 @@ export class HeroBoxes extends HTMLElement {
     if (!found) throw new Error(`<hero-boxes> has no part "${name}"`);
     return found;
   }
+}
+
+/** How long one test of every pair takes here, from the pairs of some of the boxes. */
+function measureTest(rows: Float64Array): number {
+  const runner = new Runner({ dimensions: 2, method: "global pairwise" });
+  const sample = rows.slice(0, 4 * SAMPLE);
+  runner.step(sample);
+  const began = performance.now();
+  runner.step(sample);
+  const ms = Math.max(performance.now() - began, 0.1);
+  runner.free();
+  return ms / bruteForceTests(SAMPLE);
 }
