@@ -282,6 +282,7 @@ test("on a phone, a line at the top names the section that is being read, and le
   await page.goto("/");
   const here = page.locator(".here");
   await expect(here).toBeHidden();
+  await page.locator(".contents summary").click();
   await page.getByRole("navigation", { name: "Contents" }).getByRole("link").nth(5).click();
   const heading = page.locator("#sweep h2");
   await expect(here).toHaveText(/^6 of 15: .* Contents$/);

@@ -1,5 +1,6 @@
 // The first picture of the article: the library finds the pairs of moving boxes, and the numbers are right.
 import { expect, type Locator, type Page, test } from "@playwright/test";
+import { frames } from "./support/frames.ts";
 import { complaints } from "./support/pages.ts";
 
 interface Hero {
@@ -99,6 +100,83 @@ test("10,000 boxes: 49,995,000 tests against thousands; one click leads to 10,00
   expect(ofSweep).toBeLessThan(1_000_000);
   await hero.getByRole("radio", { name: "Every pair" }).check();
   expect(await tests()).toBe(49_995_000);
+  await expect(hero.locator("[data-part=ms]")).toHaveText(/^about [\d,]+ ms a frame here, so the picture stands still$/);
   await hero.getByRole("link", { name: "10,000 spheres in 3D" }).click();
   await expect(page.locator("falling-balls#spheres [data-counter=brute-force] dd")).toHaveText("49,995,000");
+});
+
+test("every pair of 10,000 boxes never runs: what is shown are the sweep's pairs, and the picture stands still until there are fewer", async ({ page }) => {
+  // Counted work, not time: how many tests a frame makes.
+  await page.goto("/");
+  const hero = page.locator("hero-boxes");
+  await expect(hero).toHaveAttribute("data-ready", "");
+  const slider = hero.getByLabel("Boxes", { exact: true });
+  const rows = (): Promise<string> => hero.evaluate((element) => String((element as HTMLElement & { rows: Float64Array }).rows));
+  for (const [presses, runs] of [[0, true], [2, true], [3, false]] as const) {
+    await slider.fill("3");
+    for (let press = 0; press < presses; press++) await slider.press("ArrowRight");
+    await hero.getByRole("radio", { name: "Every pair" }).check();
+    const before = await rows();
+    if (runs) await expect.poll(rows).not.toBe(before);
+    else {
+      await frames(page, 10);
+      expect(await rows()).toBe(before);
+      await expect(hero.locator("[data-part=ms]")).toContainText("stands still");
+    }
+    await hero.getByRole("radio", { name: "Sweep" }).check();
+    await expect.poll(rows).not.toBe(before);
+  }
+});
+
+test("on a phone the article begins within 1,700 pixels, the pages take one row, and the count and the choice lie on the picture", async ({ page }) => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  await page.goto("/");
+  const hero = page.locator("hero-boxes");
+  await expect(hero).toHaveAttribute("data-ready", "");
+  const top = (selector: string): Promise<number> => page.locator(selector).first().evaluate((element) => element.getBoundingClientRect().top + scrollY);
+  expect(await top(".sections h2")).toBeLessThan(1_700);
+  const links = await page.getByRole("navigation", { name: "Site" }).getByRole("link").evaluateAll((all) => all.map((link) => link.getBoundingClientRect()).map(({ top, right }) => [top, right]));
+  expect(new Set(links.map(([top]) => top)).size).toBe(1);
+  expect(Math.max(...links.map(([, right]) => right!))).toBeLessThanOrEqual(390);
+  const picture = (await hero.locator("canvas").boundingBox())!;
+  for (const part of [".hero-count", ".hero-switch span >> nth=0"]) {
+    const { x, y, width, height } = (await hero.locator(part).boundingBox())!;
+    expect(x >= picture.x && y >= picture.y && x + width <= picture.x + picture.width && y + height <= picture.y + picture.height, part).toBe(true);
+  }
+});
+
+test("the tests of the box that the line has entered are drawn over the line", async ({ page }) => {
+  await page.emulateMedia({ colorScheme: "light", reducedMotion: "reduce" });
+  await page.goto("/");
+  const hero = page.locator("hero-boxes");
+  await expect(hero).toHaveAttribute("data-ready", "");
+  /** Pixels of the color of a test, #0b7a4b. */
+  const painted = await hero.locator("canvas").evaluate((canvas: HTMLCanvasElement) => {
+    const { data } = canvas.getContext("2d")!.getImageData(0, 0, canvas.width, canvas.height);
+    let count = 0;
+    for (let at = 0; at < data.length; at += 4) count += Number(data[at] === 0x0b && data[at + 1] === 0x7a && data[at + 2] === 0x4b);
+    return count;
+  });
+  expect(painted).toBeGreaterThan(400);
+});
+
+test.describe("without scripts", () => {
+  test.use({ javaScriptEnabled: false });
+
+  test("the picture is whole, and the numbers in the text are its own", async ({ page, request }) => {
+    await page.goto("/");
+    const image = page.locator(".hero-stage img");
+    await expect.poll(() => image.evaluate((element: HTMLImageElement) => element.naturalWidth)).toBeGreaterThan(100);
+    const svg = await (await request.get("/still/hero.svg")).text();
+    const boxesOf = (kind: string): number[][] =>
+      [...(new RegExp(`class="${kind}" d="([^"]*)"`).exec(svg)?.[1] ?? "").matchAll(/M([\d.]+) ([\d.]+)H([\d.]+)V([\d.]+)/g)].map((match) => match.slice(1).map(Number));
+    const overlapping = boxesOf("overlap");
+    const all = [...boxesOf("box"), ...overlapping];
+    expect(all).toHaveLength(400);
+    const { pairs, onX } = count(all.flat());
+    const shown = async (part: string): Promise<number> => Number((await page.locator(`hero-boxes [data-part=${part}]`).textContent())!.replace(/\D/g, ""));
+    // Drawn to a tenth of a unit: a few boxes that nearly touch may differ.
+    expect(Math.abs((await shown("pairs")) - pairs)).toBeLessThanOrEqual(3);
+    expect(Math.abs((await shown("count")) - onX)).toBeLessThanOrEqual(30);
+  });
 });

@@ -1,6 +1,6 @@
 // One thing, one name, one color: what a demo says, draws, lists and explains is the same.
 import { expect, type Page, test } from "@playwright/test";
-import type { DemoEvent, SapDemo } from "sweep-and-prune/demo";
+import type { DemoEvent, SapDemo } from "sweep-and-prune-classroom/demo";
 import { Demo } from "./support/demo.ts";
 import { frames } from "./support/frames.ts";
 

@@ -169,7 +169,7 @@ test.describe("without scripts", () => {
 
   // What each page says and shows where nothing moves.
   const SAID: Readonly<Record<string, readonly string[]>> = {
-    "/index.html": [".hero-stage img", "sap-demo svg.poster", "text=Ten thousand balls make fifty million pairs"],
+    "/index.html": [".hero-stage img", "sap-demo svg.poster", "text=Four hundred boxes make 79,800 pairs"],
     "/falling.html": ["#discs img.still", "#spheres img.still", "text=49,995,000 tests in each step"],
     "/race.html": ["text=The race is now a part of the"],
     "/playground.html": ["box-playground img.still", "text=Make a world of your own"],

@@ -1,7 +1,7 @@
 // Highlights the lines of a listing that match the current event of a demo. Readers can switch this
 // off, for all listings at once; the choice is stored.
 
-import type { DemoEvent } from "sweep-and-prune/demo";
+import type { DemoEvent } from "sweep-and-prune-classroom/demo";
 
 const KEY = "follow-demos";
 

@@ -1,7 +1,7 @@
 // What belongs together lights up together: a word of a caption, its entry in the legend, the lines of the listing, the ball, its
 // endpoints in the array, and the same thing in the picture. By a pointer, or by the keyboard on a legend.
 
-import type { SapDemo } from "sweep-and-prune/demo";
+import type { SapDemo } from "sweep-and-prune-classroom/demo";
 
 /** The color in a demo, and the kinds of lines of a listing, of each kind of word. */
 const WORDS: Readonly<Record<string, { readonly color: string; readonly kinds: readonly string[] }>> = {

@@ -1,7 +1,7 @@
 // The first picture of the article as it stands in the page before its script, and where there are no scripts: the numbers in the
 // text are counted in the picture.
 
-import { init, Runner } from "sweep-and-prune/algorithms";
+import { init, Runner } from "sweep-and-prune-classroom";
 import type { Plugin } from "vite";
 import { bruteForceTests, formatCount } from "../panel/counters.ts";
 import { MovingBoxes, WORLD_HEIGHT } from "./moving-boxes.ts";
