@@ -1,4 +1,4 @@
-import { readFileSync } from "node:fs";
+import { readdirSync, readFileSync } from "node:fs";
 import { expect, test } from "@playwright/test";
 import { Demo } from "./support/demo.ts";
 
@@ -229,6 +229,23 @@ test.describe("mistakes are shown to be mistakes", () => {
   });
 });
 
+test("the article has at most 5,200 words, and on a phone at most 45,000 pixels", async ({ page }) => {
+  const words = readdirSync(new URL("../src/article/sections/", import.meta.url)).map((file) =>
+    readFileSync(new URL(`../src/article/sections/${file}`, import.meta.url), "utf8").replace(/<[^>]*>/g, " ").split(/\s+/).filter(Boolean).length,
+  );
+  expect(words).toHaveLength(15);
+  expect(words.reduce((sum, count) => sum + count)).toBeLessThanOrEqual(5_200);
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await page.setViewportSize({ width: 390, height: 844 });
+  await page.goto("/");
+  await page.locator("sap-demo").first().scrollIntoViewIfNeeded();
+  await page.evaluate(async () => {
+    await customElements.whenDefined("sap-demo");
+    await Promise.all([...document.querySelectorAll("sap-demo")].map((demo) => (demo as HTMLElement & { ready: Promise<void> }).ready));
+  });
+  expect(await page.evaluate(() => document.documentElement.scrollHeight)).toBeLessThanOrEqual(45_000);
+});
+
 test.describe("listings", () => {
   test("a line lights while the demo does what it says, until that is switched off", async ({ page }) => {
     await page.goto("/");
@@ -303,7 +320,7 @@ test.describe("without scripts", () => {
     await page.goto("/");
     await expect(page.locator("main section h2")).toHaveCount(15);
     await expect(page.locator("figure.listing pre .line").first()).toBeVisible();
-    await expect(page.locator("svg.figure")).toHaveCount(11);
+    await expect(page.locator("svg.figure")).toHaveCount(10);
     await expect(page.locator("#cost table").first()).toBeVisible();
   });
 });

@@ -91,8 +91,8 @@ for (const colorScheme of ["light", "dark"] as const) {
     const colors = await page.evaluate(() => {
       const of = (selector: string, property: "stroke" | "color" | "fill"): string => getComputedStyle(document.querySelector(selector)!)[property];
       return {
-        sweep: [of(".figure .sweep", "stroke"), of("[data-figure=mini-sweep] .sweep", "stroke"), of("hero-boxes .is-sweep", "color"), of(".sections .is-sweep", "color")],
-        overlap: [of("[data-figure=columns] .hit", "stroke"), of("[data-figure=mini-sweep] .hit", "fill"), of("hero-boxes .is-overlap", "color"), of(".sections .is-overlap", "color")],
+        sweep: [of(".figure .sweep", "stroke"), of("hero-boxes .is-sweep", "color"), of(".sections .is-sweep", "color")],
+        overlap: [of("[data-figure=columns] .hit", "stroke"), of("hero-boxes .is-overlap", "color"), of(".sections .is-overlap", "color")],
       };
     });
     expect(new Set(colors.sweep).size, colors.sweep.join()).toBe(1);

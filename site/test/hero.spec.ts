@@ -175,8 +175,8 @@ test.describe("without scripts", () => {
     expect(all).toHaveLength(400);
     const { pairs, onX } = count(all.flat());
     const shown = async (part: string): Promise<number> => Number((await page.locator(`hero-boxes [data-part=${part}]`).textContent())!.replace(/\D/g, ""));
-    // Drawn to a tenth of a unit: a few boxes that nearly touch may differ.
-    expect(Math.abs((await shown("pairs")) - pairs)).toBeLessThanOrEqual(3);
-    expect(Math.abs((await shown("count")) - onX)).toBeLessThanOrEqual(30);
+    // Drawn to a hundredth of a unit: boxes that nearly touch may differ.
+    expect(Math.abs((await shown("pairs")) - pairs)).toBeLessThanOrEqual(1);
+    expect(Math.abs((await shown("count")) - onX)).toBeLessThanOrEqual(5);
   });
 });

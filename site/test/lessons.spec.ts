@@ -120,7 +120,7 @@ test("d5 and d16 can be guessed: what is right is what is drawn, and a wrong gue
   await page.locator("#d5").getByLabel("Guess each step").uncheck();
   await expect(group(d5)).toHaveCount(0);
 
-  const d16 = await new Demo(page, "d16", 2).open();
+  const d16 = await new Demo(page, "d16").open();
   await page.getByLabel("Guess what each swap tells us").check();
   const answers = ["one begins", "one ends", "nothing"];
   for (let guess = 0; guess < 3; guess++) {

@@ -34,7 +34,7 @@ const numbers: Readonly<Record<string, string>> = {
 };
 
 function picture(): string {
-  const round = (value: number): number => Math.round(value * 10) / 10;
+  const round = (value: number): number => Math.round(value * 100) / 100;
   const rect = (box: number): string => {
     const [left = 0, top = 0, right = 0, bottom = 0] = boxes.rows.subarray(4 * box, 4 * box + 4);
     return `M${round(left)} ${round(top)}H${round(right)}V${round(bottom)}H${round(left)}z`;

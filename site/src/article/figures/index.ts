@@ -4,7 +4,7 @@ import { boxTest, transitivity } from "./boxes.ts";
 import { columns, lanes } from "./columns.ts";
 import { endpointArray, sweepLine } from "./endpoints.ts";
 import { allPairs, measured } from "./growth.ts";
-import { miniSweep, swapCases } from "./swaps.ts";
+import { swapCases } from "./swaps.ts";
 
 export const figures: Readonly<Record<string, () => string>> = {
   "all-pairs": allPairs,
@@ -13,7 +13,6 @@ export const figures: Readonly<Record<string, () => string>> = {
   "endpoint-array": endpointArray,
   "sweep-line": sweepLine,
   "swap-cases": swapCases,
-  "mini-sweep": miniSweep,
   columns,
   lanes,
   measured,
