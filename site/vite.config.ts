@@ -8,7 +8,6 @@ import { expandPlayground } from "./src/playground/markup.ts";
 import { offline } from "./src/shell/offline.ts";
 import { pages, shell } from "./src/shell/pages.ts";
 import { expandFallingBalls } from "./src/simulation/markup.ts";
-import { insertTesting } from "./src/testing/build.ts";
 
 /** Writes the inside of `<falling-balls>` and `<box-playground>` into the page, so that nothing moves when scripts arrive. */
 const panels: Plugin = {
@@ -22,12 +21,6 @@ const complexity: Plugin = {
   transformIndexHtml: { order: "pre", handler: insertComplexity },
 };
 
-/** Writes docs/testing.md into its page. */
-const testing: Plugin = {
-  name: "testing",
-  transformIndexHtml: { order: "pre", handler: insertTesting },
-};
-
 /** Warnings about the packages of the alternatives are not for this project to fix. */
 const quiet: Rolldown.InputOptions = {
   checks: { pluginTimings: false },
@@ -39,7 +32,7 @@ const quiet: Rolldown.InputOptions = {
 export default defineConfig({
   base: "./",
   appType: "mpa",
-  plugins: [hero, shell, article, api, panels, complexity, testing, benchmark, offline],
+  plugins: [hero, shell, article, api, panels, complexity, benchmark, offline],
   worker: { format: "es", plugins: () => [alternatives()], rolldownOptions: quiet },
   build: {
     target: "es2022",

@@ -159,6 +159,33 @@ test("steps without a question are skipped, and a wrong guess is explained; also
   }
 });
 
+test("what is asked of a sort is not always answered by stay, and never of the two ends of one ball", async ({ page }) => {
+  const demo = await open(page, { strategy: "sweep", sort: "insertion", balls: "4", seed: "7", "skip-interval": "9", decorations: "edges:array", predict: "", labels: "A,B,C,D" });
+  const asked = await demo.evaluate(async (element: SapDemo) => {
+    const group = element.shadowRoot!.querySelector(".guess")!;
+    const asked: { text: string; isSwap: boolean; tick: number }[] = [];
+    for (let press = 0; press < 200 && asked.length < 40; press++) {
+      await new Promise(requestAnimationFrame);
+      const [first] = group.querySelectorAll("button");
+      const text = group.querySelector("p")!.textContent!;
+      const { tick } = element.state;
+      first!.click();
+      await new Promise(requestAnimationFrame);
+      if (text.includes("is compared with")) asked.push({ text, isSwap: group.textContent!.includes("Right."), tick });
+    }
+    return asked;
+  });
+  const later = asked.filter(({ tick }) => tick >= 10);
+  expect(later.length).toBeGreaterThan(20);
+  const swaps = later.filter(({ isSwap }) => isSwap).length / later.length;
+  expect(swaps).toBeGreaterThan(0.3);
+  expect(swaps).toBeLessThan(0.8);
+  for (const { text } of asked) {
+    const [, p = "", q = ""] = /(\S+) is compared with ([^\s.]+)/.exec(text)!;
+    expect(p.replace(/\W/g, ""), text).not.toBe(q.replace(/\W/g, ""));
+  }
+});
+
 test("what is shared paused opens paused, at the same stop", async ({ page }) => {
   const shown = (demo: SapDemo): unknown => [demo.state, demo.event?.kind, demo.isPlaying, demo.shadowRoot?.querySelector(".said")?.textContent];
   for (const attributes of [

@@ -176,7 +176,6 @@ test.describe("without scripts", () => {
     "/benchmark.html": [".fronts table", "text=finds all overlapping pairs among 10,000 boxes"],
     "/api.html": ["text=cargo add sweep-and-prune", "text=pip install sweep-and-prune"],
     "/teachers.html": ["text=A lesson of 45 minutes"],
-    "/testing.html": ["text=What is promised, and how it is tested", "text=An hour of a churning world", "text=thumbv7em"],
     "/embed.html": ["noscript p"],
   };
 

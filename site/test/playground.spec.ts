@@ -327,6 +327,21 @@ test.describe("paused", () => {
     expect(await playground.value("pairs")).toBe(pairs);
   });
 
+  test("six scenes are offered at once, and all of them after more", async ({ page }) => {
+    const playground = await new Playground(page).open("?boxes=10&motion=still");
+    const scene = playground.root.getByLabel("Scene");
+    const names = (): Promise<string[]> => scene.locator("option").allTextContents();
+    expect(await names()).toEqual(["uniform", "clustered", "tower", "slab", "mixed", "grid", "more …"]);
+    await scene.selectOption("more …");
+    await expect.poll(async () => (await names()).length).toBeGreaterThan(25);
+    await expect(scene).toHaveValue("clustered");
+    await scene.selectOption("needles");
+    await expect(playground.part("status")).toContainText("needles");
+    await page.reload();
+    await expect(scene).toHaveValue("needles");
+    expect(await names()).toHaveLength(8);
+  });
+
   test("the picture moves and zooms by pointer and by keyboard", async ({ page }) => {
     const playground = await new Playground(page).open("?boxes=10");
     const surface = playground.part("surface");

@@ -2,19 +2,23 @@
 
 import { Scenes } from "../../../bench/js/src/scenes.js";
 import type { Listed } from "../../../bench/js/src/scenes.js";
-import { FINDER, WORLD } from "../../../bench/js/libraries/index.js";
-import runs from "virtual:benchmark-results";
+import { FINDER, type Library, WORLD } from "../../../bench/js/libraries/index.js";
 import scenesUrl from "../generated/bench-scenes.wasm?url";
-import { looksOf } from "./looks.ts";
-import type { Point } from "./plots.ts";
-import { element, fill, select, table } from "./recorded.ts";
-import { type Case, duration, fastest, fastestOwn, fastestAlternative, significant, timesOf } from "./results.ts";
+import { bars } from "./bars.ts";
+import { type Case, count, duration, fastest, fastestOther, fastestOwn, significant } from "./results.ts";
 import { librariesFor, measure } from "./trial-here.ts";
 
 /** The scenes that everybody can be measured on; the others try robustness. */
 const SCENES = ["uniform", "clustered", "mixed", "slab", "tower", "box-pruning", "drift", "fast", "mostly-still", "teleport"];
-/** Engines in WebAssembly, megabytes to load: only if they are wanted. */
-const HEAVY = /rapier|jolt/;
+/** The libraries that are measured, the best known first, five of them beside sweep-and-prune; engines that load megabytes are left out. */
+const MEASURED = ["plain sweep", "flatbush", "rbush", "box-intersect", "matter-js", "rbush-3d", "cannon-es", "detect-collisions", "planck", "p2-es"];
+const MOST = 5;
+
+function measured(dimensions: number, task: Listed["task"]): Library[] {
+  const all = librariesFor(dimensions, task);
+  const others = MEASURED.flatMap((name) => all.find((library) => library.name === name) ?? []).slice(0, MOST);
+  return [...all.filter(({ name }) => name === FINDER || name === WORLD), ...others];
+}
 
 export class BenchmarkHere {
   readonly #form = element("here") as HTMLFormElement;
@@ -46,12 +50,6 @@ export class BenchmarkHere {
       void this.#start();
     });
     this.#cancel.addEventListener("click", () => this.#stop?.abort());
-    let width = innerWidth;
-    addEventListener("resize", () => {
-      if (innerWidth === width) return;
-      width = innerWidth;
-      void this.#draw();
-    });
     this.#offer();
   }
 
@@ -67,19 +65,8 @@ export class BenchmarkHere {
     element("here-description").textContent = description;
     for (const option of this.#dimensions.options) option.disabled = !dimensions.includes(Number(option.value));
     if (this.#dimensions.selectedOptions[0]?.disabled) this.#dimensions.value = "3";
-    const offered = librariesFor(Number(this.#dimensions.value), task).filter(({ name }) => ![FINDER, WORLD].includes(name));
-    element("here-alternatives").replaceChildren(
-      ...offered.map(({ name }) => {
-        const label = document.createElement("label");
-        const box = document.createElement("input");
-        box.type = "checkbox";
-        box.name = "alternative";
-        box.value = name;
-        box.checked = !HEAVY.test(name);
-        label.append(box, HEAVY.test(name) ? `${name} (loads megabytes)` : name);
-        return label;
-      }),
-    );
+    const names = measured(Number(this.#dimensions.value), task).map(({ name }) => name);
+    element("here-alternatives").textContent = `Measured: ${names.join(", ")}.`;
   }
 
   #checked(name: string): string[] {
@@ -91,12 +78,11 @@ export class BenchmarkHere {
     const { name: scene, task } = this.#listed;
     const dimensions = Number(this.#dimensions.value);
     const sizes = this.#checked("size").map(Number);
-    const alternatives = this.#checked("alternative");
     if (sizes.length === 0) {
       this.#status.textContent = "Choose at least one number of boxes.";
       return;
     }
-    const libraries = librariesFor(dimensions, task).filter(({ name }) => [FINDER, WORLD, ...alternatives].includes(name));
+    const libraries = measured(dimensions, task);
     const stop = (this.#stop = new AbortController());
     this.#busy(true);
     this.#cases = [];
@@ -107,12 +93,12 @@ export class BenchmarkHere {
     try {
       for await (const one of measure({ scene, dimensions, sizes, libraries, isMoving: task === "track" }, progress, stop.signal)) {
         this.#cases.push(one);
-        element("here-results").hidden = false;
-        element("here-table").replaceChildren(...table(this.#cases));
-        await this.#draw();
+        const results = element("here-results");
+        results.hidden = false;
+        results.innerHTML = this.#cases.map((one) => bars(one, `${count(one.boxes)} boxes, ${count(one.pairs)} pairs, checked against ${one.reference}`, one.results)).join("");
       }
       this.#progress.value = 1;
-      this.#status.textContent = `Done. ${verdict(this.#cases.at(-1))}${asRecorded(this.#cases.at(-1), task === "track" ? "worlds" : "cases")}`;
+      this.#status.textContent = `Done. ${verdict(this.#cases.at(-1))}`;
     } catch (error) {
       this.#progress.value = 0;
       this.#status.textContent = stop.signal.aborted ? "Cancelled." : `The measurement failed: ${String(error)}`;
@@ -131,37 +117,27 @@ export class BenchmarkHere {
     if (hadFocus) on.focus();
     off.disabled = true;
   }
-
-  async #draw(): Promise<void> {
-    const points = this.#cases.flatMap(({ boxes, results }) =>
-      results.flatMap((entry): Point[] => {
-        const times = timesOf(entry);
-        return times ? [{ name: entry.name, alternative: entry.alternative, boxes, value: times.median_ns }] : [];
-      }),
-    );
-    if (points.length === 0) return;
-    const { drawLines } = await import("./plots.ts");
-    drawLines(element("plot-here"), points, looksOf(points), { unit: "time" });
-  }
 }
 
 /** The result for the largest number of boxes, in a sentence. */
 function verdict(one: Case | undefined): string {
   const own = one && fastestOwn(one);
   if (!one || !own) return "";
-  const alternative = fastestAlternative(one);
+  const alternative = fastestOther(one);
   const size = `${one.boxes.toLocaleString("en")} boxes`;
   if (!alternative) return `sweep-and-prune finds the ${one.pairs.toLocaleString("en")} pairs of ${size} in ${duration(own)}.`;
   return `${size}: ${fastest(one)} is the fastest. sweep-and-prune takes ${duration(own)}; the fastest alternative, ${alternative.name}, takes ${significant(alternative.ratio)} times as long.`;
 }
 
-/** Whether the recorded run of the same case agrees on which library is the fastest, and which alternative. */
-function asRecorded(one: Case | undefined, task: "cases" | "worlds"): string {
-  const run = runs.find(({ kind }) => kind === "javascript");
-  const kept = one && run?.[task].find(({ scene, dimensions, boxes }) => scene === one.scene && dimensions === one.dimensions && boxes === one.boxes);
-  const [then, now] = [kept && fastestAlternative(kept), one && fastestAlternative(one)];
-  if (!kept || !then || !now || !run) return "";
-  const isSame = fastest(kept) === fastest(one) && then.name === now.name;
-  const said = `${fastest(kept)} is the fastest, ${then.name} the fastest alternative (${significant(then.ratio)} times as long)`;
-  return isSame ? ` The recorded run in Node agrees: ${said}.` : ` In the recorded run in Node, ${said}: another machine, another engine, or a library that was not selected here.`;
+function fill(choice: HTMLSelectElement, options: readonly (readonly [value: string, text: string])[]): void {
+  choice.replaceChildren(...options.map(([value, text]) => new Option(text, value)));
+  choice.disabled = options.length === 0;
 }
+
+function element(id: string): HTMLElement {
+  const found = document.getElementById(id);
+  if (!found) throw new Error(`there is no #${id}`);
+  return found;
+}
+
+const select = (id: string): HTMLSelectElement => element(id) as HTMLSelectElement;

@@ -1,33 +1,22 @@
-// The benchmark page. What is folded is set up when it is opened.
+// The benchmark page. What measures is set up when it is opened.
 
+import { showLoadFailure } from "../load-failed.ts";
 import { BenchmarkHere } from "./here.ts";
-import { element, RecordedRuns } from "./recorded.ts";
 
-/** Sets up a part of the page when it is opened first: drawings need its width. */
-function whenOpened(id: string, setUp: () => void): void {
-  const details = element(id) as HTMLDetailsElement;
-  const open = (): void => {
-    if (!details.open) return;
-    details.removeEventListener("toggle", open);
-    setUp();
-  };
-  details.addEventListener("toggle", open);
-  open();
+const details = document.querySelector<HTMLDetailsElement>("#here-details")!;
+
+function setUp(): void {
+  if (!details.open) return;
+  details.removeEventListener("toggle", setUp);
+  BenchmarkHere.start().catch((error: unknown) => showLoadFailure(document.querySelector("#here-status")!, error));
 }
+details.addEventListener("toggle", setUp);
 
-whenOpened("recorded-details", () => new RecordedRuns());
-whenOpened("here-details", () => {
-  BenchmarkHere.start().catch((error: unknown) => {
-    element("here-status").textContent = `This browser cannot run it: ${String(error)}`;
-  });
-});
-
-/** A link to a heading opens what it is the heading of. */
+/** A link to its heading opens it. */
 function openTarget(): void {
-  const target = location.hash && document.getElementById(location.hash.slice(1))?.closest("details");
-  if (!target) return;
-  target.open = true;
-  target.scrollIntoView();
+  if (location.hash !== "#here-heading") return;
+  details.open = true;
+  details.scrollIntoView();
 }
 addEventListener("hashchange", openTarget);
 openTarget();

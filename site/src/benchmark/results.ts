@@ -36,26 +36,12 @@ export interface Machine {
 export interface Recorded {
   readonly date: string;
   readonly machine: Machine;
-  readonly node?: string;
-  readonly rustc?: string;
-  readonly versions?: Readonly<Record<string, string>>;
-  readonly how?: Readonly<Record<string, string>>;
   readonly cases?: readonly Case[];
-  readonly worlds?: readonly Case[];
 }
 
-/** A file as the page reads it. */
-export interface Run {
+/** A file, and whose results it has. */
+export interface Run extends Recorded {
   readonly kind: "native" | "javascript";
-  readonly name: string;
-  readonly address: string;
-  readonly date: string;
-  readonly machine: Machine;
-  readonly tools: string;
-  readonly versions: Readonly<Record<string, string>>;
-  readonly how: Readonly<Record<string, string>>;
-  readonly cases: readonly Case[];
-  readonly worlds: readonly Case[];
 }
 
 /** The sweep that a good developer writes in an hour: beside the alternatives, and not one of them. */
@@ -83,10 +69,10 @@ export function fastest(one: Case): string | undefined {
   return timed.sort((a, b) => a.ns - b.ns)[0]?.name;
 }
 
-/** The fastest alternative and how many times as long as sweep-and-prune it takes. */
-export function fastestAlternative(one: Case): { name: string; ratio: number } | undefined {
+/** The fastest that is not sweep-and-prune, also if it is the plain sweep, and how many times as long it takes. */
+export function fastestOther(one: Case): { name: string; ratio: number } | undefined {
   const own = fastestOwn(one);
-  const alternatives = one.results.filter((entry) => entry.alternative && !PLAIN.test(entry.name));
+  const alternatives = one.results.filter((entry) => entry.alternative || PLAIN.test(entry.name));
   const timed = alternatives.flatMap((entry) => (timesOf(entry) ? [{ name: entry.name, ns: timesOf(entry)?.median_ns ?? 0 }] : []));
   const first = timed.sort((a, b) => a.ns - b.ns)[0];
   return first && own ? { name: first.name, ratio: first.ns / own } : undefined;
@@ -98,12 +84,6 @@ export function duration(ns: number): string {
   if (ns < 1e6) return `${significant(ns / 1e3)} µs`;
   if (ns < 1e9) return `${significant(ns / 1e6)} ms`;
   return `${significant(ns / 1e9)} s`;
-}
-
-/** A number of bytes with a unit that suits it. */
-export function bytes(count: number): string {
-  if (count < 1e6) return `${significant(count / 1e3)} KB`;
-  return count < 1e9 ? `${significant(count / 1e6)} MB` : `${significant(count / 1e9)} GB`;
 }
 
 export function significant(value: number): string {

@@ -44,6 +44,9 @@ const DEFAULTS = {
 const MOST_IN_ADDRESS = 100;
 /** An address leads to this step at most: it has to be computed. */
 const LAST_STEP = 10_000;
+/** The scenes that are offered at once; the others after `MORE`. */
+const SCENES = ["uniform", "clustered", "mixed", "slab", "tower", "grid"];
+const MORE = "more …";
 /** What the choice of a scene shows where the boxes are the visitor's own. */
 const OWN = "your own boxes";
 
@@ -77,6 +80,8 @@ export class BoxPlayground extends PanelElement {
   #isHeld = false;
   #writing: ReturnType<typeof setTimeout> | undefined;
   #whenPaced: () => void = () => undefined;
+  /** Whether the choice of a scene has all of them. */
+  #offersAll = false;
   /** Own boxes that wait until those before have been searched. */
   #isWaiting = false;
   #shownAt = -Infinity;
@@ -179,6 +184,7 @@ export class BoxPlayground extends PanelElement {
     if (names) select.replaceChildren(...names.map((name) => new Option(name)));
     if (select.options.length > 0) this.#choose(key);
     select.addEventListener("change", () => {
+      if (select.value === MORE) return this.#offerAllScenes();
       this.#state[key] = select.value;
       if (key === "dimensions" || key === "scene") this.#forgetOwn();
       before();
@@ -191,10 +197,18 @@ export class BoxPlayground extends PanelElement {
     const { dimensions } = this.#world();
     const there = (this.#lists?.scenes ?? []).filter(({ dimensions: [least, most] }) => least <= dimensions && dimensions <= most);
     const isOwn = this.#own !== undefined;
-    this.named("scene").replaceChildren(...(isOwn ? [new Option(OWN, "")] : []), ...there.map(({ name }) => new Option(name)));
+    const names = there.map(({ name }) => name).filter((name) => this.#offersAll || SCENES.includes(name) || name === this.#state.scene);
+    this.named("scene").replaceChildren(...(isOwn ? [new Option(OWN, "")] : []), ...names.map((name) => new Option(name)), ...(this.#offersAll ? [] : [new Option(MORE)]));
     if (!isOwn) this.#choose("scene");
     this.#lanes.set(lanes, dimensions);
     this.#keepLanes(this.#lanes.all);
+  }
+
+  /** All scenes from now on, with the chosen one still chosen. */
+  #offerAllScenes(): void {
+    this.#offersAll = true;
+    this.#fill();
+    this.named<HTMLSelectElement>("scene").value = this.#own ? "" : this.#state.scene;
   }
 
   /** The algorithms that the address names: the first always, the others where there are such. */

@@ -117,7 +117,7 @@ function footer(): string {
         Based on the article <cite>Sort, sweep, and prune</cite> by Lean and on the lesson about sweep and
         prune in Matthias Müller’s <cite>Ten Minute Physics</cite>. Free software under the MIT or Apache 2.0
         license, whichever you prefer: <a href="${REPOSITORY}">source code</a>,
-        and <a href="./testing.html">how it is tested</a>.${GUIDE} By the sweep-and-prune authors, 2026. These pages load nothing from other hosts, and those that you have
+        and <a href="${REPOSITORY}/blob/main/docs/testing.md">how it is tested</a>.${GUIDE} By the sweep-and-prune authors, 2026. These pages load nothing from other hosts, and those that you have
         visited work offline.
       </p>
     </footer>`;

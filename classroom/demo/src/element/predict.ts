@@ -31,12 +31,25 @@ export class Guesses {
 /** The question about what comes next in a detection, if there is a good one. */
 export function questionAt({ coming, detection, state }: Timeline, known: Known): Question | undefined {
   const [next, after] = coming;
-  if (!next) return undefined;
+  if (!next || (next.kind === "compare" && !comparisonsAsked(detection, known, state.arrayAxis).has(next))) return undefined;
   const prunes = detection.events.some(({ kind }) => kind === "prune");
   return questionOf(next, { ...known, after, prunes, sorted: state.arrayAxis });
 }
 
 const NONE = 2 ** 32 - 1;
+
+/**
+ * The comparisons of a detection that are worth a guess: those that lead to a swap, and as many others, of the endpoints that are
+ * nearest to each other. Of nothing but those that stay there is nothing to guess, and the two ends of one ball never swap.
+ */
+function comparisonsAsked({ events }: Pick<Timeline["detection"], "events">, { boxes }: Known, axis: number): Set<TraceEvent> {
+  const at = (edge: number): number => boxes[4 * (edge >> 1) + 2 * (edge % 2) + axis] ?? 0;
+  const gap = ({ a, b }: TraceEvent): number => Math.abs(at(Number(a)) - at(Number(b)));
+  const compared = events.filter(({ kind, a, b }) => kind === "compare" && Number(a) >> 1 !== Number(b) >> 1);
+  const swaps = new Set(compared.filter((event) => events[events.indexOf(event) + 1]?.kind === "swap"));
+  const stays = compared.filter((event) => !swaps.has(event)).sort((a, b) => gap(a) - gap(b));
+  return new Set([...swaps, ...stays.slice(0, swaps.size)]);
+}
 
 /** What a question depends on, beside the event that it is about. */
 interface Context extends Known {
