@@ -49,7 +49,7 @@ async function open(page: Page, sizes = ["1000"]): Promise<void> {
 const row = (page: Page, name: string) => page.locator(`#here-results tr[data-library="${name}"]`);
 
 test.describe("run it here", () => {
-  test("five alternatives are checked and timed, in its worker, without a request to anybody else", async ({ page, baseURL }) => {
+  test("the libraries are checked and timed, in its worker, without a request to anybody else", async ({ page, baseURL }) => {
     const heard = complaints(page);
     const elsewhere = requestsElsewhere(page, baseURL ?? "");
     for (const [scene, dimensions] of [["mixed", "2"], ["drift", "3"]] as const) {
@@ -58,7 +58,7 @@ test.describe("run it here", () => {
       await page.locator("#here-dimensions").selectOption(dimensions);
       const said = (await page.locator("#here-alternatives").textContent())!;
       const alternatives = said.replace(/^Measured: |\.$/g, "").split(", ").filter((name) => !/^(sweep-and-prune|BroadPhase)/.test(name));
-      expect(alternatives).toHaveLength(5);
+      expect(alternatives.length, "five libraries with sweep-and-prune, or six").toBeGreaterThanOrEqual(4);
       await page.getByRole("button", { name: "Run" }).click();
       await expect(page.locator("#here-status")).toContainText("Done.", { timeout: 600_000 });
       for (const name of ["sweep-and-prune", ...alternatives]) await expect(row(page, name)).toContainText(/\d (µs|ms)/);

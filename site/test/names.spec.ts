@@ -169,8 +169,8 @@ test("at each stop of each algorithm, the highlighted line is the one that runs"
           demo.step();
           for (let frame = 0; frame < 2; frame++) await new Promise(requestAnimationFrame);
           const lines = [...document.querySelectorAll(`.listing[data-follows="${id}"] pre .line`)];
-          const lit = lines.flatMap((line, at) => (line.classList.contains("at-work") ? [{ number: at + 1, text: line.textContent! }] : []));
-          stops.push({ event: demo.event, lines: lit });
+          const atWork = lines.flatMap((line, at) => (line.classList.contains("at-work") ? [{ number: at + 1, text: line.textContent! }] : []));
+          stops.push({ event: demo.event, lines: atWork });
         }
         return stops;
       }, [steps, id] as const);
@@ -240,9 +240,9 @@ test("what the pointer or the focus is on lights up with all that belongs to it"
   const marked = (): Promise<unknown> => demo.root.evaluate((element) => (element as SapDemo).marked);
   await unit.locator(".legend li", { hasText: "tested" }).focus();
   expect(await marked()).toEqual({ color: "check" });
-  await expect(unit.locator("figcaption .is-test").first()).toHaveClass(/lit/);
-  await expect(unit.locator(".listing .line.lit")).toHaveText(/overlaps\(a, b\)/);
-  await expect(unit.locator(".is-overlap.lit")).toHaveCount(0);
+  await expect(unit.locator("figcaption .is-test").first()).toHaveClass(/marked/);
+  await expect(unit.locator(".listing .line.marked")).toHaveText(/overlaps\(a, b\)/);
+  await expect(unit.locator(".is-overlap.marked")).toHaveCount(0);
   await page.keyboard.press("ArrowRight");
   expect(await marked()).toEqual({ color: "overlap" });
   await unit.locator("figcaption .is-test").first().hover();

@@ -5,12 +5,14 @@ import type { SapDemo } from "sweep-and-prune-classroom/demo";
 import { copyable } from "../code/copy.ts";
 import { followDemos } from "./follow.ts";
 import { markTogether } from "./marks.ts";
+import { startSpaceTime } from "./space-time.ts";
 import { TransitivityCode } from "./transitivity.ts";
 
 export function startArticle(): void {
   customElements.define("transitivity-code", TransitivityCode);
   for (const listing of document.querySelectorAll<HTMLElement>(".listing")) copyable(listing);
   for (const listing of document.querySelectorAll<HTMLElement>(".listing[data-listing]")) editable(listing);
+  for (const figure of document.querySelectorAll<HTMLElement>("space-time")) startSpaceTime(figure);
   followDemos();
   markTogether();
   for (const choices of document.querySelectorAll<HTMLElement>(".choices[data-for]")) applyChoices(choices);

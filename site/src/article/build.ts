@@ -8,6 +8,7 @@ import { legend } from "./legend.ts";
 import { highlight, listing, readListing } from "../code/listing.ts";
 import { withLines } from "./edit/lines.ts";
 import { withPosters } from "./poster.ts";
+import { spaceTime } from "./space-time.ts";
 import { expandStructures } from "../structures/build.ts";
 import { SITE } from "../shell/pages.ts";
 
@@ -82,6 +83,7 @@ findPairs(boxes, { dimensions: 2 }); // 0, 2`;
 /** Fills in the listings, legends and drawings. */
 function expand(page: string): string {
   return expandStructures(withPosters(page))
+    .replace("<space-time></space-time>", () => `<space-time>${spaceTime()}</space-time>`)
     .replaceAll("%SITE%", SITE)
     .replace("<trial-code></trial-code>", () => highlight(TRIAL, "javascript", "how to call the library"))
     .replace(/<code-listing name="([^"]*)"(?: follows="([^"]*)")?><\/code-listing>/g, (_, name: string, follows?: string) =>

@@ -17,6 +17,7 @@ const upright = (x: number, color: string, rest = ""): string =>
 const cell = (color: string): string =>
   `<rect x="6" y="1.5" width="22" height="13" fill="var(--sap-${color})" stroke="var(--sap-ink)" stroke-width="1.5"/>`;
 const box = (rest: string): string => `<rect x="8" y="2" width="18" height="12" fill="var(--sap-stage)" ${rest}/>`;
+const dot = (rest: string): string => `<circle cx="17" cy="8" r="5" stroke-width="2" ${rest}/>`;
 const disc = (rest: string): string => `<circle cx="17" cy="8" r="6.5" ${rest}/>`;
 
 const KEYS: Readonly<Record<string, Key>> = {
@@ -59,6 +60,10 @@ const KEYS: Readonly<Record<string, Key>> = {
   "tested-box": { swatch: box('stroke="var(--sap-check)" stroke-width="3"'), word: "test", says: "tested against it" },
   "overlapping-box": { swatch: box('style="fill:color-mix(in oklab, var(--sap-overlap) 55%, var(--sap-stage))" stroke="var(--sap-muted)"'), word: "overlap", says: "overlaps another box" },
   looked: { swatch: `<rect x="3" y="1" width="28" height="14" fill="var(--sap-edge)" fill-opacity="0.2"/>`, word: "edge", says: "where its partners are looked for" },
+  begins: { swatch: dot('fill="var(--sap-overlap)" stroke="var(--sap-overlap)"'), word: "overlap", says: ")( becomes (): an overlap begins" },
+  ends: { swatch: dot('fill="var(--paper)" stroke="var(--sap-overlap)"'), word: "overlap", says: "() becomes )(: it ends" },
+  unchanged: { swatch: dot('fill="var(--paper)" stroke="var(--sap-muted)"'), word: "muted", says: "(( or )): nothing changes" },
+  now: { swatch: `<line x1="3" y1="8" x2="31" y2="8" stroke="var(--sap-sweep)" stroke-width="2.5"/>`, word: "sweep", says: "now" },
   focus: { swatch: disc('fill="none" stroke="var(--sap-chosen)" stroke-width="3"'), word: "focus", says: "the ball in question" },
   within: { swatch: cell("inside"), word: "touched", says: "its interval in the array" },
   inside: {

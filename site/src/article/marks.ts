@@ -62,8 +62,8 @@ function nearby(element: Element, groups: ReadonlyMap<Element, Group>): Group | 
 function start(group: Group): void {
   const mark = (name: string | undefined): void => {
     const { color, kinds = [] } = WORDS[name ?? ""] ?? {};
-    for (const word of group.words) word.classList.toggle("lit", wordOf(word) === name);
-    for (const line of group.lines) line.classList.toggle("lit", line.dataset["kinds"]!.split(" ").some((kind) => kinds.includes(kind)));
+    for (const word of group.words) word.classList.toggle("marked", wordOf(word) === name);
+    for (const line of group.lines) line.classList.toggle("marked", line.dataset["kinds"]!.split(" ").some((kind) => kinds.includes(kind)));
     for (const demo of group.demos) demo.marked = color === undefined ? undefined : { color };
   };
   const onPoint = (element: HTMLElement, name: string | undefined): void => {
@@ -77,7 +77,7 @@ function start(group: Group): void {
     onPoint(line, Object.keys(WORDS).find((name) => WORDS[name]!.kinds.some((kind) => kinds.includes(kind))));
   }
   const markBall = (demo: SapDemo | undefined, name: string | undefined): void => {
-    for (const word of group.balls) word.classList.toggle("lit", word.textContent === name);
+    for (const word of group.balls) word.classList.toggle("marked", word.textContent === name);
     const others = demo ? group.demos.filter((other) => other !== demo) : group.demos;
     for (const other of others) other.marked = name === undefined ? undefined : { ball: other.names.indexOf(name) };
   };

@@ -2,7 +2,7 @@
 // It is drawn when the site is built, from the same compiled simulation that the demo runs.
 
 import { readFileSync } from "node:fs";
-import { Simulation } from "../../../simulation/wasm/simulation.js";
+import { Simulation } from "../../../classroom/simulation/wasm/simulation.js";
 
 const WIDTH = 600;
 await Simulation.load(readFileSync(new URL("../../../classroom/demo/dist/simulation.wasm", import.meta.url)));

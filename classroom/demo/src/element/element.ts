@@ -51,8 +51,8 @@ export class SapDemoElement extends LitElement {
   #marked: DemoMark | undefined;
   /** The ball that the pointer is on. */
   #pointed: number | undefined;
-  /** The moment that was last told. */
-  #told = "";
+  /** The moment that was last reported. */
+  #reported = "";
   #isPlaying = false;
   #speed: number | undefined;
   #hasChanged = false;
@@ -525,8 +525,8 @@ export class SapDemoElement extends LitElement {
     });
     const { tick, position } = run.timeline;
     const shown = `${tick} ${position}`;
-    if (shown !== this.#told) emit(this, "sap-show", run.event);
-    this.#told = shown;
+    if (shown !== this.#reported) emit(this, "sap-show", run.event);
+    this.#reported = shown;
   }
 
   /** Says in words what the picture shows, with each picture of an event. Ticks pass too fast to be read. */

@@ -36,7 +36,7 @@ export interface DemoEvent {
   b: number;
   /** Which event of the detection, from 0. */
   index: number;
-  /** The line of the program that did it, if a program did and told. */
+  /** The line of the program that did it, if a program did and says which. */
   line?: number;
 }
 

@@ -4,7 +4,6 @@ import { boxTest, transitivity } from "./boxes.ts";
 import { columns, lanes } from "./columns.ts";
 import { endpointArray, sweepLine } from "./endpoints.ts";
 import { allPairs, measured } from "./growth.ts";
-import { swapCases } from "./swaps.ts";
 
 export const figures: Readonly<Record<string, () => string>> = {
   "all-pairs": allPairs,
@@ -12,7 +11,6 @@ export const figures: Readonly<Record<string, () => string>> = {
   transitivity,
   "endpoint-array": endpointArray,
   "sweep-line": sweepLine,
-  "swap-cases": swapCases,
   columns,
   lanes,
   measured,
