@@ -16,7 +16,7 @@ export type Counts = Omit<DemoState, "tick" | "events" | "hash">;
 
 export const NOTHING_COUNTED: Counts = { tests: 0, flagChecks: 0, axisOverlaps: 0, pairs: 0, comparisons: 0, swaps: 0 };
 
-const START = "Once, at the start, a sort and a full sweep find all overlaps. From here on, swaps tell what changes.";
+const START = "Once, at the start, one full sweep finds all overlaps.";
 
 /** A world and its detections, as the attributes ask for them, and what can be said of where it stands. */
 export class Run {
