@@ -113,6 +113,10 @@ def sensible(name: str, ids: Any) -> Any:
         **{"id": int(ids[0]), "ids": ids, "filter": sap.Filter(), "each": lambda chunk: None, "snapshot": b""},
         **{"format": "xyxy", "closed": "both", "missing": "raise", "by": None, "index_dtype": np.int64},
         **{"how": "inner", "predicate": "intersects", "distance": None, "lsuffix": "left", "rsuffix": "right"},
+        **dict.fromkeys(
+            ("on_attribute", "left_by", "right_by", "left_columns", "right_columns", "fraction", "measures")
+        ),
+        **{"intervals": ROWS[:, [0, 2]], "pairs": np.array([[0, 1], [2, 2]])},
         **dict.fromkeys(("left", "right"), pandas and pandas.DataFrame(ROWS, columns=["x1", "y1", "x2", "y2"])),
         **{
             "dimensions": 2,
@@ -151,6 +155,7 @@ def calls() -> Iterator[tuple[str, Any]]:
         "iter_chunks",
         "iter_chunks_between",
         *(["join"] if pandas else []),
+        *("count_overlaps", "measure_overlaps", "nearest", "cluster", "merge"),
         "slots_of",
         "PairFinder",
         "BroadPhase",

@@ -247,6 +247,11 @@ def test_on_attribute_is_by() -> None:
         sap.join(frame, frame, by="kind", on_attribute="kind")
     with pytest.raises(ValueError, match="left_by and right_by must name as many columns"):
         sap.join(frame, frame, left_by="kind")
+    for columns, said in ((["start", "q"], "left has no such column; its columns are start, end, kind"), ("start", "")):
+        with pytest.raises((ValueError, TypeError), match=f"left_columns .*{said}"):
+            sap.join(frame, frame, left_columns=columns)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match='how="anti" returns rows of the left frame, not pairs: leave out measures'):
+        sap.join(frame, frame, "anti", measures=["size"])
     for fraction in (-1, 2, (0.5, 0.5, 0.5), float("nan")):
         with pytest.raises(ValueError, match="must be a number from 0 to 1, or two of them"):
             sap.join(frame, frame, fraction=fraction)  # type: ignore[arg-type]
@@ -265,7 +270,7 @@ def test_what_is_wrong_is_said() -> None:
     with pytest.raises(ValueError, match="boxes of two or three dimensions need max_distance"):
         sap.nearest(plane, plane)
     wrong: Any
-    for wrong, kind in ((-1, ValueError), (float("nan"), TypeError), ("x", TypeError)):
+    for wrong, kind in ((-1, ValueError), (float("nan"), TypeError), (math.inf, ValueError), ("x", TypeError)):
         with pytest.raises(kind, match="max_distance"):
             sap.nearest(plane, plane, max_distance=wrong)
     with pytest.raises(ValueError, match="how must be"):

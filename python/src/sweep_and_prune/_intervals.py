@@ -294,7 +294,8 @@ def _limit(max_distance: Any, corners: Values) -> Any:
         kind = "a timedelta for times" if wanted == "durations" else "a number"
         raise TypeError(f"max_distance must be {kind}, not {max_distance!r}")
     limit = column.values[0]
-    if not limit >= limit - limit:
+    is_finite = column.values.dtype.kind != "f" or math.isfinite(limit)
+    if not is_finite or limit < np.zeros((), column.values.dtype):
         raise ValueError(f"max_distance is {max_distance}; it must be finite and 0 or more")
     return limit
 

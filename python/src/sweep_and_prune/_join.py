@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._arrays import thread_count
 from ._columns import group_codes, is_rounded
 from ._crs import difference
-from ._inputs import Raw, chosen_boxes, named_column, raw_boxes
+from ._inputs import Raw, chosen_boxes, listed, named_column, raw_boxes
 from ._native import in_order
 from ._overlaps import measure_overlaps
 from ._pairs import Progress, find_pairs_between
@@ -152,6 +152,8 @@ def join(
     groups = _groups(left, right, columns + of_sides[0], columns + of_sides[1])
     least = None if fraction is None else _two_fractions(fraction)
     added = _measure_names(measures)
+    if added and how in ("semi", "anti"):
+        raise ValueError(f'how="{how}" returns rows of the left frame, not pairs: leave out measures')
     if has_geometries[0]:
         _check_distance(predicate, distance)
         apart = difference(left.crs, right.crs)
@@ -169,7 +171,7 @@ def join(
         if predicate != "intersects":
             raise ValueError(f'predicate "{predicate}" needs geometries; boxes know only "intersects"')
         boxes: list[Any] = [
-            frame if names is None else chosen_boxes(frame.__getitem__, names, name, format)
+            frame if names is None else _chosen(frame, names, name, format)
             for name, frame, names in (("left", left, left_columns), ("right", right, right_columns))
         ]
         if left_columns is not None or right_columns is not None:
@@ -199,6 +201,18 @@ def join(
         rows = with_missing(rows, how == "right", len(right if how == "right" else left))
     joined = (_frame_of_polars if is_polars else _frame)(left, right, rows, how, columns, (lsuffix, rsuffix))
     return _with_measures(joined, added, boxes, rows, format) if added else joined
+
+
+def _chosen(frame: Any, names: Any, name: str, format: str) -> Raw:
+    """The boxes in columns that a user names."""
+    if not isinstance(names, (list, tuple)) or not names:
+        raise TypeError(f"{name}_columns must be a list of names of columns, not {names!r}")
+    own = list(frame.columns)
+    for column in names:
+        if own.count(column) != 1:
+            fault = "several columns of that name" if column in own else "no such column"
+            raise ValueError(f"{name}_columns has {column!r}, but {name} has {fault}; {listed(own)}")
+    return chosen_boxes(frame.__getitem__, names, name, format)
 
 
 def _listed_names(names: str | list[str] | None) -> list[str]:
