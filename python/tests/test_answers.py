@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 
 from sweep_and_prune._command import main
+from sweep_and_prune._file_error import FileError
+from sweep_and_prune._writers import writer
 
 Row = tuple[str, int, int, str]
 
@@ -145,6 +147,25 @@ def test_answers_are_written_in_each_format(capsys: pytest.CaptureFixture[str]) 
     assert str(arrow.read_table("n.parquet").schema.field("distance").type) == "int64"
 
 
+@pytest.mark.parametrize("kind", ["parquet", "arrow"])
+def test_chunks_without_values_are_of_the_type_of_their_column(kind: str) -> None:
+    pytest.importorskip("pyarrow")
+    pandas = pytest.importorskip("pandas")
+    values = np.array([None, None, "x"], object)
+    with writer(f"p.{kind}", kind, 3, ["a", "b"], [values, np.arange(3)]) as file:
+        for rows in ([0, 1], [2]):
+            file.write([values[rows], np.array(rows)])
+    with writer(f"q.{kind}", kind, 0, ["a"], [values]) as file:
+        pass
+    read = pandas.read_parquet if kind == "parquet" else pandas.read_feather
+    assert read(f"p.{kind}")["a"].isna().tolist() == [True, True, False]
+    assert read(f"q.{kind}")["a"].tolist() == []
+    with pytest.raises(FileError, match="cannot hold a column"):
+        with writer(f"r.{kind}", kind, 2, ["a"], [np.array(["x", 1], object)]):
+            pass
+    assert not Path(f"r.{kind}").exists()
+
+
 def test_options_that_do_not_fit_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
     np.save("a.npy", np.array([[0, 2], [1, 5]]))
     Path("a.bed").write_text("c\t0\t5\n")
@@ -161,8 +182,13 @@ def test_options_that_do_not_fit_are_refused(capsys: pytest.CaptureFixture[str])
         (["nearest", "a.npy", "a.npy", "--margin", "1"], "pass --max-distance"),
         (["nearest", "a.npy", "a.npy", "-k", "0"], "k must be from 1"),
         (["merge", "a.bed", "--rows"], "leave out --id and --rows"),
-        (["pairs", "a.npy", "--memory-limit", "1GB", "--fraction", "0.5", "-o", "x"], "--fraction cannot be combined"),
-        (["count", "a.npy", "--memory-limit", "1GB", "--each"], "--each cannot be combined"),
+        (
+            ["pairs", "a.parquet", "--memory-limit", "1GB", "--fraction", "0.5", "-o", "x"],
+            "--fraction cannot be combined",
+        ),
+        (["count", "a.bed", "--memory-limit", "1GB"], "a.bed: --memory-limit reads Parquet files and folders of them"),
+        (["count", "-", "--memory-limit", "1GB"], "-: --memory-limit reads Parquet files and folders of them"),
+        (["count", "a.parquet", "--memory-limit", "1GB", "--each"], "--each cannot be combined"),
     ):
         if "--memory-limit" in arguments:
             pytest.importorskip("distributed")

@@ -29,7 +29,7 @@ from ._overlaps import Overlaps, count_overlaps, measure_overlaps
 from ._pairs import count_pairs, count_pairs_between, find_pairs, find_pairs_between, iter_chunks, iter_chunks_between
 from ._progress import ProgressBar
 from ._signals import end_at_once, end_by_signals, remove_unfinished, signal_status
-from ._tables import FORMATS, READABLE, Source, read
+from ._tables import FORMATS, READABLE, Source, kind_of_file, read
 from ._writers import WRITABLE, kind_of, writer
 
 _EPILOG = f"""\b
@@ -541,10 +541,10 @@ def _write_pairs(options: Options) -> None:
             _write_columns(options, kind, _chosen_pairs(options, how, sources, sets, search))
             return
         labels = _Labels(options, sources)
-        nothing = np.empty(0, np.int64)
-        names = [name for name, _ in labels.of([nothing, nothing])]
+        names, examples = zip(*labels.of([np.arange(len(source)) for source in (sources[0], sources[-1])]))
         number = _counted(options, sets, search)
-        with writer(options.output, kind, number, names) as file, _progress("writing", options) as progress:
+        opened = writer(options.output, kind, number, names, examples)
+        with opened as file, _progress("writing", options) as progress:
             for chunk in _chunks(sets, search, number, progress):
                 file.write([column for _, column in labels.of([chunk[:, 0], chunk[:, 1]])])
 
@@ -666,6 +666,10 @@ def _from_disk(options: Options, to: str | None) -> Iterator[tuple[Any, dict[str
         from . import dask
     except ImportError:
         raise FileError("--memory-limit needs Dask: pip install 'sweep-and-prune[dask]'") from None
+    for path in options.files:
+        kind = kind_of_file(path)
+        if path == "-" or (kind not in (None, "parquet") and not os.path.isdir(path)):
+            raise FileError(f"{path}: --memory-limit reads Parquet files and folders of them: convert it first")
     refused = {"--threads": options.threads != 1, "--to": to, "--header": options.header is not None}
     refused |= {f"--{name}": getattr(options, name, None) for name in ("by", "fraction", "measure", "rows", "each")}
     refused |= {f"--{side}-{name}": getattr(options, f"{side}_{name}", None) for side in _SIDES for name in _PER_SIDE}

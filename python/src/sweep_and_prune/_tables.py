@@ -149,8 +149,7 @@ def read(path: str, kind: str | None = None, header: bool | None = None) -> Sour
         header: whether the first row of a table of text names its columns; None to find out.
     """
     name = "standard input" if path == "-" else path
-    known = None if path == "-" else _KINDS.get(Path(_unpacked(path)).suffix.lower())
-    kind = known or kind or ("csv" if path == "-" else None)
+    kind = kind_of_file(path) or kind or ("csv" if path == "-" else None)
     if kind is None:
         raise FileError(f"{path} has an unknown ending: the known ones are {READABLE}; or pass --from")
     try:
@@ -179,6 +178,11 @@ def read(path: str, kind: str | None = None, header: bool | None = None) -> Sour
         raise
     except Exception as error:  # what readers of other formats raise for damaged files is not documented
         raise FileError(f"{name} cannot be read, it seems damaged: {error}") from None
+
+
+def kind_of_file(path: str) -> str | None:
+    """The format that a file's name tells."""
+    return None if path == "-" else _KINDS.get(Path(_unpacked(path)).suffix.lower())
 
 
 def _unpacked(path: str) -> str:

@@ -68,16 +68,25 @@ class _NumpyWriter:
 
 
 class _ArrowWriter:
-    def __init__(self, file: IO[bytes], kind: str, names: Sequence[str], is_pipe: bool) -> None:
+    def __init__(
+        self, file: IO[bytes], kind: str, names: Sequence[str], is_pipe: bool, examples: Sequence[NDArray[Any]] | None
+    ) -> None:
         self._arrow = pyarrow_for(f"--to {kind}")
         self._file, self._kind, self._names, self._is_pipe = file, kind, names, is_pipe
         self._writer: Any = None
+        # A chunk whose values are all missing does not tell the type of its column.
+        self._types = [None for _ in names]
+        if examples is not None:
+            self._types = [array.type for array in self._arrays(examples)]
 
-    def write(self, columns: Sequence[NDArray[Any]]) -> None:
+    def _arrays(self, columns: Sequence[NDArray[Any]]) -> list[Any]:
         try:
-            arrays = [self._arrow.array(column) for column in columns]
+            return [self._arrow.array(column, kind) for column, kind in zip(columns, self._types)]
         except self._arrow.ArrowException as error:
             raise FileError(f"--to {self._kind} cannot hold a column: {error}; write csv") from None
+
+    def write(self, columns: Sequence[NDArray[Any]]) -> None:
+        arrays = self._arrays(columns)
         table = self._arrow.table(arrays, names=list(self._names))
         if self._writer is None:
             self._writer = self._open(table.schema)
@@ -94,8 +103,8 @@ class _ArrowWriter:
 
     def close(self) -> None:
         if self._writer is None:
-            integer = self._arrow.int64()
-            self._writer = self._open(self._arrow.schema([(name, integer) for name in self._names]))
+            types = [kind or self._arrow.int64() for kind in self._types]
+            self._writer = self._open(self._arrow.schema(list(zip(self._names, types))))
         self._writer.close()
 
 
@@ -109,15 +118,25 @@ def pyarrow_for(what: str) -> Any:
 
 
 @contextmanager
-def writer(path: str | None, kind: str, count: int, names: Sequence[str]) -> Iterator[Writer]:
-    """Opens a file for this many rows, or standard output. A file that could not be completed is removed."""
+def writer(
+    path: str | None, kind: str, count: int, names: Sequence[str], examples: Sequence[NDArray[Any]] | None = None
+) -> Iterator[Writer]:
+    """Opens a file for this many rows, or standard output. A file that could not be completed is removed.
+
+    Args:
+        path: the name of the file; None for standard output.
+        kind: one of `WRITABLE`.
+        count: the number of rows.
+        names: those of the columns.
+        examples: all values of which each column has some, where rows are written chunk by chunk.
+    """
     if path is None:
         with _standard_output() as file:
-            yield from _closing(file, kind, count, names, True)
+            yield from _closing(file, kind, count, names, True, examples)
         return
     try:
         with output_file(path) as (file, is_stream):
-            yield from _closing(file, kind, count, names, is_stream)
+            yield from _closing(file, kind, count, names, is_stream, examples)
     except BrokenPipeError:
         raise  # the program that reads a named pipe ended
     except OSError as error:
@@ -130,14 +149,21 @@ def _standard_output() -> AbstractContextManager[IO[bytes]]:
     return open(output.fileno(), "wb", closefd=False) if isinstance(output, io.RawIOBase) else nullcontext(output)
 
 
-def _closing(file: IO[bytes], kind: str, count: int, names: Sequence[str], is_pipe: bool) -> Iterator[Writer]:
+def _closing(
+    file: IO[bytes],
+    kind: str,
+    count: int,
+    names: Sequence[str],
+    is_pipe: bool,
+    examples: Sequence[NDArray[Any]] | None,
+) -> Iterator[Writer]:
     made: Writer
     if kind == "npy":
         made = _NumpyWriter(file, count, len(names))
     elif kind in ("csv", "tsv"):
         made = _TextWriter(file, "," if kind == "csv" else "\t", names)
     else:
-        made = _ArrowWriter(file, kind, names, is_pipe)
+        made = _ArrowWriter(file, kind, names, is_pipe, examples)
     yield made
     made.close()
 
