@@ -170,7 +170,7 @@ impl Comparison<'_> {
         let too_slow = format!("over {} s", self.limit.as_secs_f64());
         let key = (self.kind, self.scene.to_owned(), self.dimensions, info.name);
         if let Some(&(boxes, took)) = slow.get(&key) {
-            // Nothing here takes less than proportionally longer for more boxes.
+            // Every library's time grows at least in proportion to the boxes.
             if took.saturating_mul((self.boxes / boxes.max(1)) as u32) > self.limit {
                 return Ok(Err(format!("{too_slow}, as its time for {boxes} boxes shows")));
             }

@@ -145,7 +145,7 @@ impl<const D: usize> Neighborhood<D> {
         self.places.clear();
         self.places.extend(enclosures.middles());
         self.reach = enclosures.widest.map(|side| 0.5 * side);
-        // Twice as wide as boxes reach: fewer rows take less time than fewer balls save.
+        // Cells are twice as wide as boxes reach: visiting fewer rows saves more than visiting fewer balls.
         let widths = self.reach.map(|reach| 2.0 * reach);
         self.grid = Grid::new(&bounding_box(&self.places), self.places.len(), widths);
 

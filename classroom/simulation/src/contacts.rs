@@ -69,7 +69,7 @@ pub struct Surroundings<const D: usize> {
     pub time: f32,
 }
 
-/// How near to a wall a ball touches it, in radii. A ball at rest on the floor stays a contact
+/// A ball touches a wall if it is at most this near, in radii. So a ball at rest on the floor stays a contact
 /// although its position is rounded.
 const WALL_MARGIN: f32 = 0.01;
 

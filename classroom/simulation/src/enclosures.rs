@@ -9,13 +9,13 @@ use crate::bodies::Bodies;
 use crate::contacts::Contacts;
 use crate::vector::{BLOCK, dot, greater, lesser, repeated};
 
-/// What a box leaves around the way that its ball is expected to take, as a share of the way: where
-/// the ball touched no other of late, so that most likely it flies on...
-/// (Wider boxes make more pairs, narrower ones are left by more balls.)
+/// The margin of a box around the path that its ball is expected to take, as a share of the path. It is for a ball that
+/// has not touched another lately, so that it most likely flies on.
+/// (Wider boxes make more pairs, and more balls leave narrower ones.)
 const MARGIN_IN_FLIGHT: f32 = 0.15;
-/// ...where it did, and may be sent anywhere...
+/// The same for a ball that has touched another lately, and may be sent anywhere.
 const MARGIN_IN_TOUCH: f32 = 0.7;
-/// ...and in either case as a share of the radius.
+/// The margin that is added in either case, as a share of the radius.
 const MARGIN_OF_RADIUS: f32 = 0.05;
 /// How near to the side of its box a ball may come, as a share of the radius. More than rounding
 /// takes, so that a ball inside is inside by any arithmetic.

@@ -171,7 +171,7 @@ macro_rules! sweeps {
                         cursor: &mut Cursor,
                         out: &mut [[u32; 2]],
                     ) -> usize {
-                        // SAFETY: the caller's promise.
+                        // SAFETY: the caller has the instructions, and sets and a cursor that fit each other.
                         unsafe {
                             scan::sweep::<_, $vector, TWO>(first, second, others, pair_order, cursor, out)
                         }

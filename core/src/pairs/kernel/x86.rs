@@ -64,7 +64,7 @@ unsafe fn pack(
     out: *mut [u32; 2],
     lanes: usize,
 ) -> usize {
-    // SAFETY: the caller's promise; four pairs are one vector.
+    // SAFETY: the caller has the instructions, and space for `lanes` pairs at `out`; four pairs are one vector.
     unsafe {
         let own = _mm256_set1_epi32(probe.id as i32);
         let shared = _mm256_and_si256(dedup, _mm256_set1_epi32(probe.dedup as i32));
@@ -124,7 +124,7 @@ unsafe fn compress(
     out: *mut [u32; 2],
     lanes: usize,
 ) -> usize {
-    // SAFETY: the caller's promise; eight pairs are one vector.
+    // SAFETY: the caller has the instructions, and space for `lanes` pairs at `out`; eight pairs are one vector.
     unsafe {
         let own = _mm512_set1_epi32(probe.id as i32);
         let reported =

@@ -1,4 +1,4 @@
-//! One thread: there are no helpers, so no [`Team`] and no [`Threads`] ever exist.
+//! One thread: there are no helpers, so there is never a [`Team`] or [`Threads`].
 
 use core::marker::PhantomData;
 use core::ops::Range;
