@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import importlib
 import io
 import math
 from pathlib import Path
@@ -138,8 +139,12 @@ def test_answers_are_written_in_each_format(capsys: pytest.CaptureFixture[str]) 
     np.save("a.npy", np.array([[0, 2], [1, 5], [7, 9]]))
     assert main(["count", "a.npy", "--each", "-o", "c.npy"]) == 0
     assert np.load("c.npy").tolist() == [[0, 1], [1, 1], [2, 0]]
-    assert "whole numbers only" in refused(capsys, "coverage", "a.npy", "a.npy", "-o", "d.npy")
+    for output in (["-o", "d.npy"], ["--to", "npy"]):  # nothing is written before
+        assert "whole numbers only" in refused(capsys, "coverage", "a.npy", "a.npy", *output)
     arrow = pytest.importorskip("pyarrow.parquet")
+    large = importlib.import_module("pyarrow").table({"start": [0, 0], "end": [1, 1], "n": np.array([1, 2**63], "u8")})
+    arrow.write_table(large, "large.parquet")
+    assert "below 2^63 only" in refused(capsys, "pairs", "large.parquet", "--id", "n", "-o", "d.npy")
     assert main(["join", "a.bed", "a.bed", "--how", "left", "--rows", "--measure", "size,iou", "-o", "p.parquet"]) == 0
     found: Any = arrow.read_table("p.parquet")
     assert found.column_names[-2:] == ["size", "iou"] and str(found.schema.field("iou").type) == "double"

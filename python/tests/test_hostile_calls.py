@@ -17,7 +17,7 @@ import pytest
 from sweep_and_prune._command import main
 
 SAP = [sys.executable, "-m", "sweep_and_prune"]
-COMMANDS = ["count", "pairs", "stats", "plot"]
+COMMANDS = ["count", "pairs", "stats", "plot", "merge"]
 
 
 @pytest.fixture(autouse=True)

@@ -198,9 +198,12 @@ _output = _together(
     click.option("-o", "--output", metavar="FILE", help="Where to write; standard output by default."),
     click.option("--to", type=click.Choice(WRITABLE), help="The format; by default the file's name tells it, or csv."),
     click.option(
-        "--id", metavar="A,B,..", callback=_names, help="Write the values of these columns instead of row numbers."
+        "--id",
+        metavar="A,B,..",
+        callback=_names,
+        help="Write these columns, as in the files, instead of row numbers.",
     ),
-    click.option("--rows", is_flag=True, help="Write all columns of the files instead of row numbers."),
+    click.option("--rows", is_flag=True, help="Write all columns, as in the files, instead of row numbers."),
 )
 _overlap = _together(
     click.option(

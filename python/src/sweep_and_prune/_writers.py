@@ -53,17 +53,26 @@ def _quoted(value: object, delimiter: str) -> str:
 
 class _NumpyWriter:
     def __init__(self, file: IO[bytes], count: int, width: int) -> None:
-        self._file = file
-        header = {"descr": "<i8", "fortran_order": False, "shape": (count, width)}
-        np.lib.format.write_array_header_1_0(file, header)
+        self._file, self._shape = file, (count, width)
+        self._has_header = False
 
     def write(self, columns: Sequence[NDArray[Any]]) -> None:
         if any(column.dtype.kind not in "iu" for column in columns):
             raise FileError("an array of NumPy holds whole numbers only: write another format, or leave out --id")
-        rows = np.stack(columns, axis=1).astype("<i8", casting="same_kind")
+        if any(column.dtype.kind == "u" and int(column.max(initial=0)) >= 2**63 for column in columns):
+            raise FileError("an array of NumPy holds numbers below 2^63 only: write another format")
+        rows = np.stack([column.astype("<i8") for column in columns], axis=1)
+        self._write_header()
         self._file.write(rows.tobytes())
 
+    def _write_header(self) -> None:
+        if not self._has_header:
+            header = {"descr": "<i8", "fortran_order": False, "shape": self._shape}
+            np.lib.format.write_array_header_1_0(self._file, header)
+            self._has_header = True
+
     def close(self) -> None:
+        self._write_header()
         self._file.flush()
 
 
