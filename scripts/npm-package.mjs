@@ -75,7 +75,7 @@ export function writeCore(path, bytes, { budget, simd }) {
  * Bundles the entries `{ name, source, budget }` of a package; a `source` that begins with `inline:` has its compiled cores inside.
  * A budget is for an entry and all that it imports.
  */
-export async function buildModules(folder, entries, plugins = []) {
+export async function buildModules(folder, entries, { plugins = [], hasShortNames = false } = {}) {
   const { metafile } = await build({
     absWorkingDir: folder,
     entryPoints: Object.fromEntries(entries.map(({ name, source }) => [name, source])),
@@ -85,7 +85,8 @@ export async function buildModules(folder, entries, plugins = []) {
     format: "esm",
     platform: "neutral",
     target: "es2022",
-    // Names stay, for stack traces that can be read.
+    // Names stay, for stack traces that can be read, unless a package asks for short ones.
+    minifyIdentifiers: hasShortNames,
     minifySyntax: true,
     minifyWhitespace: true,
     plugins: [inlined(folder), ...plugins],

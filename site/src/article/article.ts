@@ -14,7 +14,8 @@ export function startArticle(): void {
   for (const listing of document.querySelectorAll<HTMLElement>(".listing[data-listing]")) editable(listing);
   for (const figure of document.querySelectorAll<HTMLElement>("space-time")) startSpaceTime(figure);
   followDemos();
-  markTogether();
+  // Not while the page loads: nothing is pointed at yet.
+  (window.requestIdleCallback ?? setTimeout)(markTogether);
   for (const choices of document.querySelectorAll<HTMLElement>(".choices[data-for]")) applyChoices(choices);
   markContents();
 }

@@ -11,11 +11,6 @@ export function choice(): Choice {
   return chosen === "light" || chosen === "dark" ? chosen : "auto";
 }
 
-/** Whether the page is dark now. */
-export function isDark(): boolean {
-  return choice() === "auto" ? system.matches : choice() === "dark";
-}
-
 /** Chooses, for this page and those visited later. */
 export function choose(chosen: Choice): void {
   try {
