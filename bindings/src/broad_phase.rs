@@ -82,6 +82,7 @@ pub trait AnyBroadPhase<I: Id>: TrackBodies<I> {
         query: Query,
         numbers: &[f64],
         filter: Option<Filter>,
+        excluded: &[ProxyId],
         is_sorted: bool,
         answer: &mut Answer<I>,
     ) -> Result<(), Error>;
@@ -225,10 +226,11 @@ impl<const D: usize, T: Scalar, I: Id> AnyBroadPhase<I> for TypedBroadPhase<D, T
         query: Query,
         numbers: &[f64],
         filter: Option<Filter>,
+        excluded: &[ProxyId],
         is_sorted: bool,
         answer: &mut Answer<I>,
     ) -> Result<(), Error> {
-        let queries = self.world.queries();
+        let queries = self.world.queries().excluding(excluded);
         let queries = filter.map_or(queries, |filter| queries.with_filter(filter));
         ask(if is_sorted { queries } else { queries.unsorted() }, query, numbers, answer)
     }

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use sweep_and_prune::{Cast, Error, ProxyId, Queries, Scalar};
+use sweep_and_prune::{Cast, Error, Hit, ProxyId, Queries, Scalar};
 
 use crate::id::Id;
 use crate::rows::{aabb, point};
@@ -18,10 +18,14 @@ pub enum Query {
     Within,
     /// The first one that a moving box hits: its min corner, its max corner, the direction, the
     /// limit. A ray is a box whose corners are equal. Values: t, where the hit is at
-    /// `start + t * direction`.
+    /// `start + t * direction`. Its hits have faces.
     Cast,
     /// All that a moving box hits, nearest first. Numbers and values are those of [`Query::Cast`].
     CastAll,
+    /// As [`Query::Cast`], but what it touches at the start and does not approach is no hit.
+    CastEntering,
+    /// As [`Query::CastAll`], but what it touches at the start and does not approach is no hit.
+    CastAllEntering,
     /// The `k` nearest to a point, nearest first, that are at most `max_distance` away. Values: squared distances.
     Nearest {
         /// How many.
@@ -32,10 +36,19 @@ pub enum Query {
 }
 
 /// The names of the queries, in the order of their numbers. `js/src/world/core.ts` has the same numbers.
-const NAMES: [&str; 6] = ["overlapping", "containing", "within", "cast", "cast_all", "nearest"];
+const NAMES: [&str; 8] = [
+    "overlapping",
+    "containing",
+    "within",
+    "cast",
+    "cast_all",
+    "nearest",
+    "cast_entering",
+    "cast_all_entering",
+];
 
 impl Query {
-    /// The query of a number from 0 to 5: `overlapping`, `containing`, `within`, `cast`, `cast_all`, `nearest`.
+    /// The query of a number, which is its place in the list of names.
     ///
     /// A query for the nearest bodies looks slightly farther than `max_distance`: other languages compare distances, which
     /// are rounded roots, and not their squares.
@@ -47,6 +60,8 @@ impl Query {
             3 => Query::Cast,
             4 => Query::CastAll,
             5 => Query::Nearest { k, max_distance: max_distance.next_up() },
+            6 => Query::CastEntering,
+            7 => Query::CastAllEntering,
             _ => return None,
         })
     }
@@ -63,7 +78,9 @@ impl Query {
             Query::Overlapping => 2 * dimensions,
             Query::Containing | Query::Nearest { .. } => dimensions,
             Query::Within => dimensions + 1,
-            Query::Cast | Query::CastAll => 3 * dimensions + 1,
+            Query::Cast | Query::CastAll | Query::CastEntering | Query::CastAllEntering => {
+                3 * dimensions + 1
+            }
         }
     }
 }
@@ -75,6 +92,9 @@ pub struct Answer<I> {
     pub ids: Vec<I>,
     /// A value for each body, if the query has one.
     pub values: Vec<f64>,
+    /// The face of each body that a cast hits: 1 and 2 are the faces at the min and the max of the first axis, 3 and 4
+    /// those of the second, ...; 0 if the cast starts inside.
+    pub faces: Vec<u8>,
     /// Where the bodies of each query end in `ids`; they begin where those of the one before end.
     pub ends: Vec<usize>,
 }
@@ -83,6 +103,7 @@ impl<I: Id> Answer<I> {
     pub(crate) fn clear(&mut self) {
         self.ids.clear();
         self.values.clear();
+        self.faces.clear();
         self.ends.clear();
     }
 
@@ -90,6 +111,14 @@ impl<I: Id> Answer<I> {
     fn push(&mut self, id: ProxyId, value: f64) {
         self.ids.push(I::from_proxy(id));
         self.values.push(value);
+    }
+
+    fn push_hit<const D: usize, T: Scalar>(&mut self, hit: &Hit<D, T>) {
+        self.push(hit.id, hit.t);
+        let normal = hit.normal.map(|at| at.to_f64());
+        let axis = normal.iter().position(|&at| at != 0.0);
+        let face = axis.map_or(0, |axis| 2 * axis + 1 + usize::from(normal[axis] > 0.0));
+        self.faces.push(face as u8);
     }
 
     fn end(&mut self) {
@@ -110,17 +139,19 @@ pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
         Query::Overlapping => queries.overlapping_many(&rows.read(aabb::<D, T, f64>))?,
         Query::Containing => queries.containing_many(&rows.read(point::<D, T, f64>))?,
         Query::Within => queries.within_many(&rows.read(sphere::<D, T>))?,
-        Query::Cast => {
-            for hit in queries.cast_many(&rows.read(cast::<D, T>))? {
+        Query::Cast | Query::CastEntering => {
+            let casts = casts(&rows, query == Query::CastEntering);
+            for hit in queries.cast_many(&casts)? {
                 if let Some(hit) = hit {
-                    answer.push(hit.id, hit.t);
+                    answer.push_hit(&hit);
                 }
                 answer.end();
             }
             return Ok(());
         }
-        Query::CastAll => {
-            for (index, cast) in rows.read(cast::<D, T>).iter().enumerate() {
+        Query::CastAll | Query::CastAllEntering => {
+            let casts = casts(&rows, query == Query::CastAllEntering);
+            for (index, cast) in casts.iter().enumerate() {
                 let hits = queries.cast_all(cast).map_err(|error| match error {
                     Error::InvalidQuery { argument, value, .. } => {
                         Error::InvalidQuery { index, argument, value }
@@ -128,7 +159,7 @@ pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
                     error => error,
                 })?;
                 for hit in hits {
-                    answer.push(hit.id, hit.t);
+                    answer.push_hit(&hit);
                 }
                 answer.end();
             }
@@ -166,6 +197,12 @@ impl Rows<'_> {
 
 fn sphere<const D: usize, T: Scalar>(row: &[f64]) -> ([T; D], T) {
     (point(row), T::from_f64(row[D]))
+}
+
+fn casts<const D: usize, T: Scalar>(rows: &Rows<'_>, are_entering: bool) -> Vec<Cast<D, T>> {
+    let mut casts = rows.read(cast::<D, T>);
+    casts.iter_mut().for_each(|cast| cast.ignores_touching = are_entering);
+    casts
 }
 
 fn cast<const D: usize, T: Scalar>(row: &[f64]) -> Cast<D, T> {

@@ -139,7 +139,7 @@ fn broad_phase_gives_what_the_core_gives<const D: usize, T: Scalar>() {
 
     queries_give_what_the_core_gives(&mut core, &mut |query, numbers| {
         let mut answer = Answer { values: vec![7.0], ..Answer::default() };
-        erased.query(query, numbers, None, true, &mut answer).map(|()| answer)
+        erased.query(query, numbers, None, &[], true, &mut answer).map(|()| answer)
     });
     let stale = [ids[0], ids[310]];
     assert_eq!(
@@ -160,6 +160,7 @@ fn queries_give_what_the_core_gives<const D: usize, T: Scalar>(
     let of = |lists: &sweep_and_prune::Lists<ProxyId>| Answer {
         ids: bits(lists.values().iter().copied()),
         values: Vec::new(),
+        faces: Vec::new(),
         ends: lists.ends().to_vec(),
     };
     assert_eq!(
@@ -259,7 +260,7 @@ fn queries_without_a_filter_find_bodies_that_pair_with_nothing() {
     world.set_filter(id, Filter::default().mask(0)).unwrap();
     let mut found = |filter| {
         let mut answer = Answer::default();
-        world.query(Query::Overlapping, &aabb, filter, true, &mut answer).map(|()| answer.ids)
+        world.query(Query::Overlapping, &aabb, filter, &[], true, &mut answer).map(|()| answer.ids)
     };
     assert_eq!(found(None), Ok(vec![id.to_bits()]));
     assert_eq!(found(Some(Filter::ALL)), Ok(vec![]));

@@ -92,8 +92,8 @@ test("`isStatic` is true or false, and the core checks every kind, dimension and
     assert.equal(core.world_insert_many(handle, 1, 1, 1, 0, isStatic), internal);
     assert.equal(core.world_set_filter(handle, 0, 1, 1, 0, isStatic), internal);
   }
-  for (const [query, isStatic, isSorted] of [[6, 0, 1], [-1, 0, 1], [0, 3, 1], [0, -1, 1], [0, 0, 2]]) {
-    assert.equal(core.world_query(handle, query, 0, 1, 1, 0, isStatic, isSorted), internal, String([query, isStatic, isSorted]));
+  for (const [query, isStatic, isSorted] of [[8, 0, 1], [-1, 0, 1], [0, 3, 1], [0, -1, 1], [0, 0, 2]]) {
+    assert.equal(core.world_query(handle, query, 0, 1, 1, 0, isStatic, isSorted, 0), internal, String([query, isStatic, isSorted]));
   }
   assert.equal(core.world_pairs(handle, 2), internal);
   // More than was written is what was written.

@@ -460,8 +460,9 @@ test("a query without a filter finds every body, whatever its filter", () => {
 test("without a limit, casts and nearest reach as far as numbers do", () => {
   const world = new BroadPhase({ dimensions: 1, precision: "double" });
   const id = world.insert(1e300, 2e300);
-  assert.deepEqual([world.rayCast([0], [1]), world.rayCastAll([0], [1])], [{ id, t: 1e300 }, [{ id, t: 1e300 }]]);
-  assert.deepEqual([world.boxCast([0, 0], [1]), world.boxCastAll([0, 0], [1])], [{ id, t: 1e300 }, [{ id, t: 1e300 }]]);
+  const hit = { id, t: 1e300, normal: [-1], startsInside: false };
+  assert.deepEqual([world.rayCast([0], [1]), world.rayCastAll([0], [1])], [hit, [hit]]);
+  assert.deepEqual([world.boxCast([0, 0], [1]), world.boxCastAll([0, 0], [1])], [hit, [hit]]);
   assert.equal(world.rayCast([0], [1], 9e299), undefined);
   world.set(id, 1e150, 2e150);
   assert.deepEqual(world.nearest([0]), [{ id, distance: 1e150 }]);

@@ -43,8 +43,8 @@ for (const dimensions of /** @type {const} */ ([1, 2, 3])) {
           ...{ insert: box, insertMany: [[...box, ...box], {}], set: [a, ...box], setMany: [[a, b], [...box, ...box]], setSwept: [a, box, box] },
           ...{ remove: [c], removeMany: [[c]], clear: [], setFilter: [a, {}], filter: [a], contains: [a], box: [a], pairsOf: [a], buffers: [2] },
           ...{ update: [], pairs: [{}], ids: [], snapshot: [], stateHash: [], overlapping: [box, {}], containing: [point, {}] },
-          ...{ within: [point, 1, {}], nearest: [point, 1, 5, {}], rayCast: [point, direction, 5, {}], rayCastAll: [point, direction, 5, {}] },
-          ...{ boxCast: [box, direction, 5, {}], boxCastAll: [box, direction, 5, {}] },
+          ...{ within: [point, 1, {}], nearest: [point, 1, 5, {}, { exclude: 1 }], rayCast: [point, direction, 5, {}, { exclude: 1 }], rayCastAll: [point, direction, 5, {}, { ignoreTouching: true }] },
+          ...{ boxCast: [box, direction, 5, {}, {}], boxCastAll: [box, direction, 5, {}, { exclude: [1] }] },
         };
         return { world, calls: /** @type {Record<string, unknown[]>} */ (calls) };
       };

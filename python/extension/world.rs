@@ -261,7 +261,7 @@ impl World {
             let (mut answer, filter) = (Answer::default(), filter.map(filter_of));
             let count = space.world.len() + queries.len();
             let done = space
-                .run(py, count, |world| world.query(query, queries, filter, sorted, &mut answer))?;
+                .run(py, count, |world| world.query(query, queries, filter, &[], sorted, &mut answer))?;
             done.map_err(|error| raise(py, error, argument, &[]))?;
             Ok((
                 numbers(py, answer.ids.iter().map(|id| id.0))?,

@@ -9,12 +9,12 @@ export function checkId(id: unknown): number {
 }
 
 /** @internal Ids as a typed array, which may be stale. */
-export function checkIds(ids: unknown): Float32Array | Float64Array {
+export function checkIds(ids: unknown, name = "ids"): Float32Array | Float64Array {
   const tag = tagOf(ids);
   if (tag === "Float32Array" || tag === "Float16Array") {
-    throw new TypeError(`\`ids\` must not be a ${tag}, which rounds ids above 2^24 to those of other bodies; use a Float64Array`);
+    throw new TypeError(`\`${name}\` must not be a ${tag}, which rounds ids above 2^24 to those of other bodies; use a Float64Array`);
   }
-  return checkNumbers(ids, "ids");
+  return checkNumbers(ids, name);
 }
 
 const names = [

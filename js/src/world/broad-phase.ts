@@ -4,7 +4,7 @@ import { checkDimensions, type Dimensions } from "../boxes/boxes.js";
 import { checkFits, Code } from "../wasm/engine.js";
 import { OutOfMemoryError } from "../wasm/errors.js";
 import { defaultFilter, filterWords, type FilterWords } from "./filter.js";
-import { checkCount, checkLength, checkRule, checkSorted, readPoint } from "./query-arguments.js";
+import { checkCount, checkLength, checkRule, checkSorted, type QueryChoices, readChoices, readPoint } from "./query-arguments.js";
 import { SnapshotError } from "./snapshot-error.js";
 import { checkId, readCorners } from "./arguments.js";
 import { Query, worldCore } from "./core.js";
@@ -12,7 +12,7 @@ import { checkOptionNames } from "../wasm/options.js";
 import { lengthOf, tagOf } from "../wasm/typed.js";
 import { checkViews } from "../wasm/views.js";
 import { newWorld, WorldMemory } from "./memory.js";
-import type { Box, BroadPhaseOptions, Hit, Neighbor, Point, ProxyId, QueryFilter, SortOptions } from "./types.js";
+import type { Box, BroadPhaseOptions, CastOptions, ExcludeOptions, Hit, Neighbor, Point, ProxyId, QueryFilter, QueryOptions, SortOptions } from "./types.js";
 
 /**
  * A persistent broad phase: it keeps bodies with boxes, and reports which overlaps began and which
@@ -85,7 +85,7 @@ export class BroadPhase extends Bodies {
    *
    * @throws {@link InvalidBoxError}; and what `filter` throws.
    */
-  overlapping(box: Box, filter?: QueryFilter, options?: SortOptions): Float64Array {
+  overlapping(box: Box, filter?: QueryFilter, options?: QueryOptions): Float64Array {
     return this.#ask(Query.Overlapping, readCorners(box, this.dimensions, "box"), 0, filter, options);
   }
 
@@ -94,7 +94,7 @@ export class BroadPhase extends Bodies {
    *
    * @throws `RangeError` for a NaN.
    */
-  containing(point: Point, filter?: QueryFilter, options?: SortOptions): Float64Array {
+  containing(point: Point, filter?: QueryFilter, options?: QueryOptions): Float64Array {
     return this.#ask(Query.Containing, this.#readPoint(point, "point", "a number"), 0, filter, options);
   }
 
@@ -103,7 +103,7 @@ export class BroadPhase extends Bodies {
    *
    * @throws `RangeError` if the center is not finite, or the radius negative or NaN.
    */
-  within(center: Point, radius: number, filter?: QueryFilter, options?: SortOptions): Float64Array {
+  within(center: Point, radius: number, filter?: QueryFilter, options?: QueryOptions): Float64Array {
     checkLength(radius, "radius");
     return this.#ask(Query.Within, this.#readPoint(center, "center"), radius, filter, options);
   }
@@ -115,12 +115,13 @@ export class BroadPhase extends Bodies {
    *
    * The ray is tested against boxes. To find the first hit of what is inside the boxes, pass a function
    * as `filter`, which is called nearest first until it returns true, or test the results of
-   * {@link BroadPhase.rayCastAll}. With a function all hits are searched first.
+   * {@link BroadPhase.rayCastAll}. With a function all hits are searched first; to leave out single bodies, pass
+   * `{ exclude }`, which takes no longer than without. `{ ignoreTouching: true }` passes what the ray only touches.
    *
    * @throws `RangeError` if the origin or the direction is not finite, or the limit negative or NaN.
    */
-  rayCast(origin: Point, direction: Point, limit: number = Infinity, filter?: QueryFilter): Hit | undefined {
-    return this.#firstHit(this.#readRay(origin, direction, limit), filter);
+  rayCast(origin: Point, direction: Point, limit: number = Infinity, filter?: QueryFilter, options?: CastOptions): Hit | undefined {
+    return this.#firstHit(this.#readRay(origin, direction, limit), filter, options);
   }
 
   /**
@@ -128,8 +129,8 @@ export class BroadPhase extends Bodies {
    *
    * @throws As {@link BroadPhase.rayCast}.
    */
-  rayCastAll(origin: Point, direction: Point, limit: number = Infinity, filter?: QueryFilter): Hit[] {
-    return this.#allHits(this.#readRay(origin, direction, limit), filter);
+  rayCastAll(origin: Point, direction: Point, limit: number = Infinity, filter?: QueryFilter, options?: CastOptions): Hit[] {
+    return this.#allHits(this.#readRay(origin, direction, limit), filter, options);
   }
 
   /**
@@ -137,8 +138,8 @@ export class BroadPhase extends Bodies {
    *
    * @throws As {@link BroadPhase.rayCast}, also if the box is inverted.
    */
-  boxCast(box: Box, direction: Point, limit: number = Infinity, filter?: QueryFilter): Hit | undefined {
-    return this.#firstHit(this.#readCast(box, direction, limit), filter);
+  boxCast(box: Box, direction: Point, limit: number = Infinity, filter?: QueryFilter, options?: CastOptions): Hit | undefined {
+    return this.#firstHit(this.#readCast(box, direction, limit), filter, options);
   }
 
   /**
@@ -146,8 +147,8 @@ export class BroadPhase extends Bodies {
    *
    * @throws As {@link BroadPhase.boxCast}.
    */
-  boxCastAll(box: Box, direction: Point, limit: number = Infinity, filter?: QueryFilter): Hit[] {
-    return this.#allHits(this.#readCast(box, direction, limit), filter);
+  boxCastAll(box: Box, direction: Point, limit: number = Infinity, filter?: QueryFilter, options?: CastOptions): Hit[] {
+    return this.#allHits(this.#readCast(box, direction, limit), filter, options);
   }
 
   /**
@@ -158,13 +159,14 @@ export class BroadPhase extends Bodies {
    *
    * @throws `RangeError` if the point is not finite, `k` not a whole number, or the distance negative or NaN.
    */
-  nearest(point: Point, k: number = 1, maxDistance: number = Infinity, filter?: QueryFilter): Neighbor[] {
+  nearest(point: Point, k: number = 1, maxDistance: number = Infinity, filter?: QueryFilter, options?: ExcludeOptions): Neighbor[] {
     checkCount(k, "k");
     checkLength(maxDistance, "maxDistance");
     const from = this.#readPoint(point, "point");
     const words = wordsOf(filter);
+    const choices = readChoices(options, "nearest");
     const search = (wanted: number): Neighbor[] => {
-      const found = this.#hits(Query.Nearest, () => this.#writeSphere(from, maxDistance), words, Math.min(wanted, 2 ** 32 - 1));
+      const found = this.#found(Query.Nearest, () => this.#writeSphere(from, maxDistance), words, choices, Math.min(wanted, 2 ** 32 - 1));
       // The search compares squares, and finds a little more.
       return found.map(({ id, t }) => ({ id, distance: Math.sqrt(t) })).filter(({ distance }) => distance <= maxDistance);
     };
@@ -202,20 +204,22 @@ export class BroadPhase extends Bodies {
     return (BigInt(engine.detail(1)) << 32n) | BigInt(engine.detail(0));
   }
 
-  #ask(query: Query, corners: Float64Array, radius: number, filter: QueryFilter | undefined, options: SortOptions | undefined): Float64Array {
+  #ask(query: Query, corners: Float64Array, radius: number, filter: QueryFilter | undefined, options: QueryOptions | undefined): Float64Array {
     const [category, mask, group, isStatic] = wordsOf(filter);
-    const isSorted = checkSorted(options);
+    const { isSorted, excluded } = readChoices(options, "region");
+    const count = this.#writeExcluded(excluded);
     if (query === Query.Within) this.#writeSphere(corners, radius);
     else this.memory.write(0, corners);
-    const ids = this.memory.answer((exports, world) => exports.world_query(world, query, 0, category, mask, group, isStatic, isSorted), oneBox);
+    const ids = this.memory.answer((exports, world) => exports.world_query(world, query, 0, category, mask, group, isStatic, isSorted, count), oneBox);
     // With the option `views`, the function could let them become stale.
     return typeof filter === "function" ? Float64Array.from(ids).filter((id) => filter(id)) : ids;
   }
 
-  /** Makes a query whose numbers `write` writes. */
-  #hits(query: Query, write: () => void, [category, mask, group, isStatic]: FilterWords, k = 0): Hit[] {
+  /** Makes a query whose numbers `write` writes; what it found, with a value for each. */
+  #found(query: Query, write: () => void, [category, mask, group, isStatic]: FilterWords, { excluded }: QueryChoices, k = 0): { id: ProxyId; t: number }[] {
+    const excludedCount = this.#writeExcluded(excluded);
     write();
-    this.memory.call((exports, world) => exports.world_query(world, query, k, category, mask, group, isStatic, 1));
+    this.memory.call((exports, world) => exports.world_query(world, query, k, category, mask, group, isStatic, 1, excludedCount));
     const { engine } = this.memory;
     const { buffer } = engine.exports.memory;
     const count = engine.detail(1);
@@ -224,17 +228,40 @@ export class BroadPhase extends Bodies {
     return Array.from(ids, (id, at) => ({ id, t: values[at]! }));
   }
 
-  #allHits(path: Path, filter: QueryFilter | undefined): Hit[] {
+  #hits(query: Query, path: Path, words: FilterWords, choices: QueryChoices): Hit[] {
+    const found = this.#found(query, () => this.#writePath(path), words, choices);
+    const { buffer } = this.memory.engine.exports.memory;
+    const faces = new Uint8Array(buffer, this.memory.numbers()[1]!, found.length);
+    return found.map(({ id, t }, at) => ({ id, t, ...this.#faceOf(faces[at]!) }));
+  }
+
+  /** The normal of a face as the core numbers it. A face on an axis that is only stored is none: there the cast starts inside. */
+  #faceOf(face: number): { normal: number[]; startsInside: boolean } {
+    const axis = Math.ceil(face / 2) - 1;
+    const startsInside = axis < 0 || axis >= this.dimensions;
+    const normal = Array.from({ length: this.dimensions }, (_, at) => (at !== axis ? 0 : face % 2 ? -1 : 1));
+    return { normal, startsInside };
+  }
+
+  #allHits(path: Path, filter: QueryFilter | undefined, options: CastOptions | undefined): Hit[] {
     const words = wordsOf(filter);
-    const hits = this.#hits(Query.CastAll, () => this.#writePath(path), words);
+    const choices = readChoices(options, "cast");
+    const hits = this.#hits(choices.ignoresTouching ? Query.CastAllEntering : Query.CastAll, path, words, choices);
     return typeof filter === "function" ? hits.filter(({ id }) => filter(id)) : hits;
   }
 
-  #firstHit(path: Path, filter: QueryFilter | undefined): Hit | undefined {
+  #firstHit(path: Path, filter: QueryFilter | undefined, options: CastOptions | undefined): Hit | undefined {
+    if (typeof filter === "function") return this.#allHits(path, undefined, options).find(({ id }) => filter(id));
     const words = wordsOf(filter);
-    const isFunction = typeof filter === "function";
-    const hits = this.#hits(isFunction ? Query.CastAll : Query.Cast, () => this.#writePath(path), words);
-    return isFunction ? hits.find(({ id }) => filter(id)) : hits[0];
+    const choices = readChoices(options, "cast");
+    return this.#hits(choices.ignoresTouching ? Query.CastEntering : Query.Cast, path, words, choices)[0];
+  }
+
+  /** Writes the ids that a query does not find, and returns how many there are. */
+  #writeExcluded(excluded: Float32Array | Float64Array): number {
+    const count = lengthOf(excluded);
+    if (count > 0) this.memory.writeIds(this.memory.keepIds(excluded));
+    return count;
   }
 
   #readRay(origin: Point, direction: Point, limit: number): Path {

@@ -1,7 +1,7 @@
 import { coordinate, type Corner, type Dimensions, isNamed } from "../boxes/boxes.js";
 import { describe } from "../wasm/describe.js";
 import { checkOptionNames } from "../wasm/options.js";
-import { readRow } from "./arguments.js";
+import { checkIds, readRow } from "./arguments.js";
 
 /** @internal A length that may be infinite. */
 export function checkLength(value: unknown, name: string): number {
@@ -40,12 +40,41 @@ export function checkRule(numbers: Float64Array, name: string, rule: "finite" | 
 }
 
 const sortOptions = ["sorted"];
+const queryOptions = ["sorted", "exclude"];
+const castOptions = ["exclude", "ignoreTouching"];
+const excludeOptions = ["exclude"];
 
 /** @internal Whether ids are to be sorted, as the core takes it. */
 export function checkSorted(options: unknown): 0 | 1 {
   if (options === undefined) return 1;
   checkOptionNames(options, sortOptions);
-  const { sorted = true } = options as { sorted?: unknown };
-  if (typeof sorted !== "boolean") throw new TypeError(`\`sorted\` must be true or false, not ${describe(sorted)}`);
-  return sorted ? 1 : 0;
+  return readFlag(options as object, "sorted", true) ? 1 : 0;
+}
+
+/** @internal What a query leaves out and how it sorts, checked. */
+export interface QueryChoices {
+  readonly isSorted: 0 | 1;
+  readonly ignoresTouching: boolean;
+  readonly excluded: Float32Array | Float64Array;
+}
+
+const none = new Float64Array(0);
+const byDefault: QueryChoices = { isSorted: 1, ignoresTouching: false, excluded: none };
+
+/** @internal The options of a query of a kind. */
+export function readChoices(options: unknown, kind: "region" | "cast" | "nearest"): QueryChoices {
+  if (options === undefined) return byDefault;
+  checkOptionNames(options, kind === "region" ? queryOptions : kind === "cast" ? castOptions : excludeOptions);
+  const { exclude } = options as { exclude?: unknown };
+  return {
+    isSorted: readFlag(options as object, "sorted", true) ? 1 : 0,
+    ignoresTouching: readFlag(options as object, "ignoreTouching", false),
+    excluded: exclude === undefined ? none : typeof exclude === "number" ? Float64Array.of(exclude) : checkIds(exclude, "exclude"),
+  };
+}
+
+function readFlag(options: object, name: string, byDefault: boolean): boolean {
+  const value = (options as Record<string, unknown>)[name] ?? byDefault;
+  if (typeof value !== "boolean") throw new TypeError(`\`${name}\` must be true or false, not ${describe(value)}`);
+  return value;
 }

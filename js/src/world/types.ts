@@ -64,6 +64,13 @@ export interface Hit {
   id: ProxyId;
   /** Where the hit is: at `origin + t * direction`. 0 if they overlap at the start. */
   t: number;
+  /**
+   * Which way the face that is hit looks: of length 1 along an axis, away from the body. All 0 if the cast starts inside
+   * the body. At an edge or a corner, the face of the first axis.
+   */
+  normal: number[];
+  /** Whether the cast starts inside the body. A box that only touches it at the start does not. */
+  startsInside: boolean;
 }
 
 /** A body near a point. */
@@ -87,6 +94,24 @@ export type QueryFilter = Partial<Filter> | ((id: ProxyId) => boolean);
 export interface SortOptions {
   /** Whether they are sorted by slot; true by default. */
   sorted?: boolean;
+}
+
+/** What a query leaves out, without a call for each body as of a function. */
+export interface ExcludeOptions {
+  /** The bodies that it does not find: what asks, and what it carries. Each body that is found is compared with all of them. */
+  exclude?: ProxyId | Numbers;
+}
+
+/** Options of a search for bodies in a region. */
+export interface QueryOptions extends SortOptions, ExcludeOptions {}
+
+/** Options of a ray or a moving box. */
+export interface CastOptions extends ExcludeOptions {
+  /**
+   * Whether it passes what it only touches: the floor that a character stands on, the wall along which it slides. It hits
+   * what it enters. False by default.
+   */
+  ignoreTouching?: boolean;
 }
 
 /** One box: its min corner and then its max corner, or an object. */

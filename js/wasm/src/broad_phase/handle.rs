@@ -109,7 +109,7 @@ impl Handle {
     }
 }
 
-fn id_of(generations: &[u32], number: f64) -> Option<ProxyId> {
+pub(super) fn id_of(generations: &[u32], number: f64) -> Option<ProxyId> {
     // A number that is no id gives some slot; comparing the numbers afterwards refuses it.
     let slot = number as i64 as u32 & ((1 << SLOT_BITS) - 1);
     let generation = *generations.get(slot as usize)?;

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use sweep_and_prune_bindings::Query;
 
 use super::filter_of;
-use super::handle::{Handle, note};
+use super::handle::{Handle, id_of, note};
 use super::stored;
 use crate::call::{run, stack, truth};
 use crate::status::{Code, report, report_error};
@@ -50,8 +50,9 @@ extern "C" fn world_pairs_of(handle: &mut Handle, id: f64) -> Code {
 }
 
 /// Answers a query, whose numbers are in the numbers. Details: where the ids are that it found, and
-/// how many; the first number is where their values are (t, or squared distances), as many. If
-/// `is_static` is 2 there is no filter. `is_sorted` is for queries whose answer has no values.
+/// how many; the first number is where their values are (t, or squared distances), as many, and the second where the
+/// faces of hits are. If `is_static` is 2 there is no filter. `is_sorted` is for queries whose answer has no values. The
+/// first `excluded` ids that were written are not found; one of them that is stale excludes nothing.
 #[unsafe(no_mangle)]
 extern "C" fn world_query(
     handle: &mut Handle,
@@ -62,6 +63,7 @@ extern "C" fn world_query(
     group: i32,
     is_static: u32,
     is_sorted: u32,
+    excluded: usize,
 ) -> Code {
     let internal = || report(Code::Internal, [0, 0]);
     let filter = match is_static {
@@ -77,10 +79,15 @@ extern "C" fn world_query(
     let Some(is_sorted) = truth(is_sorted) else { return internal() };
     run(handle, stack::LARGE, |handle| {
         let numbers = &handle.numbers[..query.width(dimensions)];
-        let result = handle.world.query(query, numbers, filter, is_sorted, &mut handle.answer);
+        let written = handle.ids_in.iter().take(excluded);
+        handle.ids.clear();
+        handle.ids.extend(written.filter_map(|&number| id_of(&handle.generations, number)));
+        let (excluded, answer) = (&handle.ids, &mut handle.answer);
+        let result = handle.world.query(query, numbers, filter, excluded, is_sorted, answer);
         // After an error JavaScript reads the box that was passed.
         if result.is_ok() {
             handle.numbers[0] = handle.answer.values.as_ptr().addr() as f64;
+            handle.numbers[1] = handle.answer.faces.as_ptr().addr() as f64;
         }
         handle.answer(result)
     })
