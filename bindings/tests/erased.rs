@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use sweep_and_prune::{
-    Aabb, BroadPhase, Cast, Error, Filter, PairFinder, ProxyId, Scalar, find_pairs_between,
+    Aabb, BroadPhase, Cast, Error, Filter, Hit, PairFinder, ProxyId, Scalar, find_pairs_between,
 };
 use sweep_and_prune_bindings::{Answer, Coordinates, Kind, Query, Settings};
 use sweep_and_prune_scenes::Scene;
@@ -209,6 +209,15 @@ fn queries_give_what_the_core_gives<const D: usize, T: Scalar>(
     let expected: Vec<_> = casts.iter().map(|cast| queries.cast_all(cast).unwrap()).collect();
     assert_eq!(all.ids, bits(expected.iter().flatten().map(|hit| hit.id)));
     assert!(all.ids.len() > first.ids.len());
+    let face_of = |hit: &Hit<D, T>| {
+        let axis = hit.normal.iter().position(|at| at.to_f64() != 0.0);
+        axis.map_or(0, |axis| 2 * axis as u8 + 1 + u8::from(hit.normal[axis].to_f64() > 0.0))
+    };
+    assert_eq!(first.faces, hits.iter().map(face_of).collect::<Vec<_>>());
+    assert_eq!(all.faces, expected.iter().flatten().map(face_of).collect::<Vec<_>>());
+    let entering = ask(Query::CastAllEntering, &flat).unwrap();
+    let entered = casts.iter().flat_map(|cast| queries.cast_all(&cast.ignore_touching()).unwrap());
+    assert_eq!(entering.ids, bits(entered.map(|hit| hit.id)));
     let mut end = 0;
     for (list, &found) in expected.iter().zip(&all.ends) {
         end += list.len();
@@ -217,7 +226,8 @@ fn queries_give_what_the_core_gives<const D: usize, T: Scalar>(
 
     let width = 3 * D + 1;
     flat[2 * width - 1] = -1.0; // the limit of the second cast
-    for query in [Query::Cast, Query::CastAll] {
+    let casts_all = [Query::Cast, Query::CastAll, Query::CastEntering, Query::CastAllEntering];
+    for query in casts_all {
         let value = (-1.0).into();
         let error = Error::InvalidQuery { index: 1, argument: "limit", value };
         assert_eq!(ask(query, &flat), Err(error));
@@ -279,5 +289,9 @@ fn queries_have_names_and_numbers() {
     let nearest = Query::Nearest { k: 3, max_distance: 2f64.sqrt().next_up() };
     assert_eq!(Query::numbered(5, 3, 2f64.sqrt()), Some(nearest));
     assert_eq!(Query::named("nearest", 3, 2f64.sqrt()), Some(nearest));
-    assert_eq!((Query::numbered(6, 0, 0.0), Query::named("", 0, 0.0)), (None, None));
+    let entering = [Query::CastEntering, Query::CastAllEntering];
+    assert_eq!([6, 7].map(|number| Query::numbered(number, 0, 0.0)), entering.map(Some));
+    let named = ["cast_entering", "cast_all_entering"].map(|name| Query::named(name, 0, 0.0));
+    assert_eq!(named, entering.map(Some));
+    assert_eq!((Query::numbered(8, 0, 0.0), Query::named("", 0, 0.0)), (None, None));
 }
