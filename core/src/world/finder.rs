@@ -74,6 +74,49 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         pairs.retain(|&pair| allows(pair));
         Some(pairs)
     }
+
+    /// Lists for each box of `queries` which boxes of a table overlap it, of bodies that `takes_part` names, as pairs of
+    /// its position and a body: what a tree lists, where there is none. `most` is how many may still be listed, about, and
+    /// becomes less; returns false, with none listed, if that is not enough.
+    #[inline(never)]
+    pub fn find_near(
+        &mut self,
+        queries: &[(u32, Aabb<D, T>)],
+        table: &[Aabb<D, T>],
+        takes_part: impl Fn(u32) -> bool,
+        near: &mut Vec<[u32; 2]>,
+        most: &mut usize,
+    ) -> bool {
+        let Self { finder, boxes, .. } = self;
+        near.clear();
+        boxes.clear();
+        boxes.extend(queries.iter().map(|(_, aabb)| *aabb));
+        let pairs = finder.search(boxes).against(table).pairs_up_to(*most);
+        let Some(pairs) = found(pairs) else { return false };
+        *most = most.saturating_sub(pairs.len());
+        near.extend(pairs.iter().filter(|[_, body]| takes_part(*body)));
+        true
+    }
+
+    /// Adds the pairs among the queries of the last [`find_near`](Self::find_near), each once: the position of the body
+    /// with the smaller index, and the other body. Returns false if there are more than `most`.
+    #[inline(never)]
+    pub fn find_among(
+        &mut self,
+        queries: &[(u32, Aabb<D, T>)],
+        near: &mut Vec<[u32; 2]>,
+        most: &mut usize,
+    ) -> bool {
+        let Self { finder, boxes, .. } = self;
+        let pairs = finder.search(boxes).pairs_up_to(*most);
+        let Some(pairs) = found(pairs) else { return false };
+        *most = most.saturating_sub(pairs.len());
+        near.extend(pairs.iter().map(|&[a, b]| {
+            let [first, second] = [a, b].map(|at| queries[at as usize].0);
+            if first < second { [a, second] } else { [b, first] }
+        }));
+        true
+    }
 }
 
 impl<const D: usize, T: Scalar> Clone for Finder<D, T> {

@@ -13,6 +13,8 @@ use crate::memory::reserve;
 
 /// How many new fat AABBs per body make the order useless.
 const DECAY: usize = 16;
+/// With fewer candidates than one for so many bodies the order does not matter.
+const BODIES_A_CANDIDATE: usize = 4;
 /// How much a body decays the order that jumped away from its neighbors in memory, in new fat AABBs.
 const JUMP_DECAY: usize = 10 * DECAY;
 
@@ -25,8 +27,9 @@ pub enum Reorder {
     No,
     /// Bodies that are near in space get indices that are near.
     BySpace,
-    /// Each body gets the index of its slot.
-    BySlot,
+    /// Tracking is skipped from now on: each body gets the index of its slot in the next update, which has less to do
+    /// than this one.
+    Later,
 }
 
 /// Notes that this many bodies jumped.
@@ -35,10 +38,14 @@ pub fn note_jumps(decay: &mut usize, jumped: usize) {
 }
 
 /// Notes that the finder found the candidates of `moved` bodies with new fat AABBs, `new` of them new.
-/// Returns whether to reorder storage of so many bodies.
-pub fn note_rebuild(decay: &mut usize, moved: usize, new: usize, bodies: usize) -> bool {
+/// Returns whether to reorder storage of so many bodies with so many candidates.
+pub fn note_rebuild(
+    decay: &mut usize,
+    [moved, new]: [usize; 2],
+    [bodies, candidates]: [usize; 2],
+) -> bool {
     *decay = decay.saturating_add(moved).saturating_add(2 * DECAY * new);
-    let is_decayed = *decay > DECAY * bodies;
+    let is_decayed = *decay > DECAY * bodies && candidates * BODIES_A_CANDIDATE > bodies;
     if is_decayed {
         *decay = 0;
     }
@@ -55,16 +62,22 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
                 self.apply_order(bodies);
                 bodies.slots.is_reordered = true;
             }
-            Reorder::BySlot => {
+            Reorder::Later => {
                 self.locality_decay = usize::MAX;
                 self.tree_state = TreeState::Unbuilt;
-                if bodies.slots.is_reordered {
-                    self.scratch.order.clone_from(&bodies.slots.index_of);
-                    self.scratch.renamed.clone_from(&bodies.slots.slot_of);
-                    self.apply_order(bodies);
-                    bodies.slots.is_reordered = false;
-                }
             }
+        }
+    }
+
+    /// Gives each body the index of its slot, if they differ; then fat AABBs are stale. O(n + pairs) time.
+    pub fn order_by_slot(&mut self, bodies: &mut Bodies<D, T>) {
+        if bodies.slots.is_reordered {
+            self.fat.clear();
+            self.is_fat_stale = true;
+            self.scratch.order.clone_from(&bodies.slots.index_of);
+            self.scratch.renamed.clone_from(&bodies.slots.slot_of);
+            self.apply_order(bodies);
+            bodies.slots.is_reordered = false;
         }
     }
 
@@ -98,13 +111,17 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     /// Moves all rows to their new indices, given the old index of each and the new index of each.
     fn apply_order(&mut self, bodies: &mut Bodies<D, T>) {
         let Scratch { boxes: spare, order, renamed, words, filters, flags, .. } = &mut self.scratch;
-        for table in [&mut bodies.boxes, &mut bodies.shapes, &mut bodies.previous, &mut self.fat] {
+        let Bodies { boxes, shapes, previous, rests, .. } = bodies;
+        for table in [boxes, shapes, previous, rests, &mut self.fat] {
             apply(table, order, spare);
         }
-        apply(&mut bodies.filters, order, filters);
+        for table in [&mut bodies.filters, &mut bodies.old_filters] {
+            apply(table, order, filters);
+        }
         apply(&mut bodies.slots.flags, order, flags);
         apply(&mut bodies.slots.slot_of, order, words);
-        for index in bodies.slots.index_of.iter_mut().chain(&mut bodies.changed) {
+        let Bodies { slots, changed, leaving, swept, .. } = bodies;
+        for index in slots.index_of.iter_mut().chain(changed).chain(leaving).chain(swept) {
             *index = renamed[*index as usize];
         }
         self.candidates.rename(renamed);
@@ -112,9 +129,10 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     }
 }
 
-/// Puts a table into a new order; an empty one stays empty.
+/// Puts a table into a new order; an empty one stays empty. What a table does not reach to is not needed.
 fn apply<V: Copy>(table: &mut Vec<V>, order: &[u32], spare: &mut Vec<V>) {
-    if !table.is_empty() {
+    if let Some(&any) = table.first() {
+        table.resize(order.len(), any);
         spare.clear();
         reserve(spare, order.len());
         spare.extend(order.iter().map(|&old| table[old as usize]));

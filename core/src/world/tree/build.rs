@@ -9,37 +9,55 @@ use crate::{Aabb, Scalar};
 
 /// Sample size for measuring how bodies spread. 64 instead takes 0.99 to 1.03 of the time.
 const SAMPLE: usize = 16;
+/// The leaf of a body that is to be put into one.
+const AWAITED: u32 = NONE - 1;
 /// Sample size for measuring how large they are.
 const SAMPLE_OF_SIDES: usize = 512;
 
+/// How deep a step cuts, the first one, which also lists the bodies, and any other.
+const CUTS_A_STEP: [u32; 2] = [1, 5];
+
+/// A build that takes several steps.
+#[derive(Clone, Debug, Default)]
+pub struct Building {
+    /// By size class that there is, where its entries end.
+    ends: Vec<usize>,
+    /// How deep the entries are cut.
+    depth: u32,
+    /// Whether they are cut to the bottom.
+    is_cut: bool,
+}
+
 impl<const D: usize, T: Scalar> Tree<D, T> {
-    /// Builds the tree from scratch of these bodies. O(n log n) time.
+    /// Builds the tree of these bodies: from scratch, or if a build has begun, from where it is. O(n log n) time.
     pub fn build(&mut self, bodies: impl Iterator<Item = u32> + Clone, boxes: &[Aabb<D, T>]) {
+        let Building { ends, depth, .. } = self.building.take().unwrap_or_else(|| {
+            let ends = sort_by_class(bodies.clone(), boxes, &mut self.entries);
+            Building { ends, ..Building::default() }
+        });
         self.nodes.clear();
         self.free.clear();
         self.leaves.clear();
         self.leaves.resize(boxes.len(), NONE);
+        // What left since the build began has no place.
+        bodies.clone().for_each(|body| self.leaves[body as usize] = AWAITED);
         let mut entries = core::mem::take(&mut self.entries);
-        let ends = sort_by_class(bodies, boxes, &mut entries);
-        self.count = entries.len();
         // Spare capacity for what moving bodies add, so that steady motion does not allocate.
-        let leaves = self.count.div_ceil(FILL);
+        let leaves = entries.len().div_ceil(FILL);
         let nodes = leaves + leaves.div_ceil(FAN / 2);
         self.nodes.reserve(nodes + nodes / 2);
         self.free.reserve(nodes / 2);
+        self.count = 0;
         let mut roots = Node::new(false);
         let mut start = 0;
         for end in ends {
-            // Where there are more classes than a node can hold, the last holds the others.
-            let end = if roots.count == FAN - 1 { entries.len() } else { end as usize };
-            if end <= start {
-                continue;
-            }
-            let leaves = (end - start).div_ceil(FILL);
             let entries = &mut entries[start..end];
-            let sides = mean_sides(entries, boxes);
-            let (root, bounds) = self.build_node(entries, boxes, &sides, leaves);
-            roots.push(root, &bounds);
+            let cuts = Cuts { sides: mean_sides(entries, boxes), done: depth, depth: u32::MAX };
+            if let Some((root, bounds)) =
+                self.build_node(entries, boxes, &cuts, leaves_of(entries), 0)
+            {
+                roots.push(root, &bounds);
+            }
             start = end;
         }
         self.entries = entries;
@@ -49,34 +67,77 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
             _ => self.add_inner(roots),
         };
         self.built = (self.leaf_size(), self.count);
+        // What came since the build began.
+        for body in bodies {
+            if self.leaves[body as usize] == AWAITED {
+                self.insert(body, &boxes[body as usize]);
+            }
+        }
     }
 
-    /// A node over bodies that go into `leaves` leaves, and its bounds.
+    /// Begins a build or takes it further, but makes no node. Returns whether what is left to do is to make the nodes.
+    /// Meanwhile there may be other bodies and other boxes. O(n) time.
+    pub fn prepare(
+        &mut self,
+        bodies: impl Iterator<Item = u32> + Clone,
+        boxes: &[Aabb<D, T>],
+    ) -> bool {
+        let Self { building, entries, .. } = self;
+        let building = building.get_or_insert_with(|| Building {
+            ends: sort_by_class(bodies, boxes, entries),
+            ..Building::default()
+        });
+        if building.is_cut {
+            return true;
+        }
+        let depth = building.depth + CUTS_A_STEP[usize::from(building.depth > 0)];
+        let (mut start, mut is_cut) = (0, true);
+        for &end in &building.ends {
+            let entries = &mut entries[start..end];
+            let cuts = Cuts { sides: mean_sides(entries, boxes), done: building.depth, depth };
+            let leaves = leaves_of(entries);
+            is_cut &= cuts.cut_all(entries, leaves, capacity_of(leaves), 0);
+            start = end;
+        }
+        (building.depth, building.is_cut) = (depth, is_cut);
+        false
+    }
+
+    /// Forgets a build that has begun.
+    pub fn forget_build(&mut self) {
+        self.building = None;
+    }
+
+    /// A node over bodies that go into `leaves` leaves, and its bounds, if one of them is still there. These are the
+    /// entries after `depth` cuts.
     fn build_node(
         &mut self,
         entries: &mut [Entry<D, T>],
         boxes: &[Aabb<D, T>],
-        sides: &[f64; D],
+        cuts: &Cuts<D>,
         leaves: usize,
-    ) -> (u32, Aabb<D, T>) {
+        depth: u32,
+    ) -> Option<(u32, Aabb<D, T>)> {
         if leaves <= 1 {
             let mut leaf = Node::new(true);
             for &Entry { body, .. } in entries.iter() {
-                leaf.push(body, &boxes[body as usize]);
-                self.leaves[body as usize] = self.nodes.len() as u32;
+                if self.leaves[body as usize] == AWAITED {
+                    leaf.push(body, &boxes[body as usize]);
+                    self.leaves[body as usize] = self.nodes.len() as u32;
+                }
             }
+            if leaf.count == 0 {
+                return None;
+            }
+            self.count += leaf.count;
             self.nodes.push(leaf);
-            return ((self.nodes.len() - 1) as u32, leaf.bounds());
+            return Some(((self.nodes.len() - 1) as u32, leaf.bounds()));
         }
-        // As few children as hold the leaves when they are full to the bottom.
-        let mut capacity = 1;
-        while capacity * FAN < leaves {
-            capacity *= FAN;
-        }
+        let capacity = capacity_of(leaves);
         let mut inner = Node::new(false);
         inner.has_leaves = capacity == 1;
-        self.build_children(entries, boxes, sides, leaves, capacity, &mut inner);
-        (self.add_inner(inner), inner.bounds())
+        self.build_children(entries, boxes, cuts, [leaves, capacity], depth, &mut inner);
+        (inner.count > 0).then(|| (self.add_inner(inner), inner.bounds()))
     }
 
     /// Cuts bodies in two until what is left goes into a child of `capacity` leaves.
@@ -84,25 +145,20 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         &mut self,
         entries: &mut [Entry<D, T>],
         boxes: &[Aabb<D, T>],
-        sides: &[f64; D],
-        leaves: usize,
-        capacity: usize,
+        cuts: &Cuts<D>,
+        [leaves, capacity]: [usize; 2],
+        depth: u32,
         inner: &mut Node<D, T>,
     ) {
-        let count = leaves.div_ceil(capacity);
-        if count <= 1 {
-            let (child, bounds) = self.build_node(entries, boxes, sides, leaves);
-            inner.push(child, &bounds);
+        if leaves <= capacity {
+            if let Some((child, bounds)) = self.build_node(entries, boxes, cuts, leaves, depth) {
+                inner.push(child, &bounds);
+            }
             return;
         }
-        let left = (leaves * (count / 2)).div_ceil(count);
-        // The product of two counts, which 32 bits do not hold.
-        let middle = (entries.len() as u64 * left as u64 / leaves as u64) as usize;
-        let axis = widest_axis(entries, sides);
-        entries.select_nth_unstable_by(middle, |a, b| a.center[axis].order(b.center[axis]));
-        let (low, high) = entries.split_at_mut(middle);
-        self.build_children(low, boxes, sides, left, capacity, inner);
-        self.build_children(high, boxes, sides, leaves - left, capacity, inner);
+        let (low, high, left) = cuts.cut(entries, leaves, capacity, depth);
+        self.build_children(low, boxes, cuts, [left, capacity], depth + 1, inner);
+        self.build_children(high, boxes, cuts, [leaves - left, capacity], depth + 1, inner);
     }
 
     /// Takes over new boxes of all bodies. Returns how many times as large as when built the
@@ -134,15 +190,85 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
     }
 }
 
+/// How entries are cut in two again and again.
+struct Cuts<const D: usize> {
+    /// The mean side of the boxes on each axis.
+    sides: [f64; D],
+    /// How deep they are cut already, and how deep they are to be cut.
+    done: u32,
+    depth: u32,
+}
+
+impl<const D: usize> Cuts<D> {
+    /// The two parts of entries that go into `leaves` leaves below children of `capacity` leaves, and how many leaves
+    /// the first part takes.
+    fn cut<'a, T: Scalar>(
+        &self,
+        entries: &'a mut [Entry<D, T>],
+        leaves: usize,
+        capacity: usize,
+        depth: u32,
+    ) -> (&'a mut [Entry<D, T>], &'a mut [Entry<D, T>], usize) {
+        let count = leaves.div_ceil(capacity);
+        let left = (leaves * (count / 2)).div_ceil(count);
+        // The product of two counts, which 32 bits do not hold.
+        let middle = (entries.len() as u64 * left as u64 / leaves as u64) as usize;
+        if depth >= self.done {
+            let axis = widest_axis(entries, &self.sides);
+            entries.select_nth_unstable_by(middle, |a, b| a.center[axis].order(b.center[axis]));
+        }
+        let (low, high) = entries.split_at_mut(middle);
+        (low, high, left)
+    }
+
+    /// Cuts entries. Returns whether they are cut to the bottom.
+    fn cut_all<T: Scalar>(
+        &self,
+        entries: &mut [Entry<D, T>],
+        leaves: usize,
+        mut capacity: usize,
+        depth: u32,
+    ) -> bool {
+        if leaves <= 1 {
+            return true;
+        }
+        if depth == self.depth {
+            return false;
+        }
+        if leaves <= capacity {
+            capacity = capacity_of(leaves);
+        }
+        let (low, high, left) = self.cut(entries, leaves, capacity, depth);
+        let is_low_cut = self.cut_all(low, left, capacity, depth + 1);
+        self.cut_all(high, leaves - left, capacity, depth + 1) && is_low_cut
+    }
+}
+
+/// How many leaves entries go into.
+fn leaves_of<E>(entries: &[E]) -> usize {
+    entries.len().div_ceil(FILL)
+}
+
+/// How many leaves each child of a node over `leaves` of them holds: as many as make it full to the bottom, so that
+/// there are as few children as can be.
+fn capacity_of(leaves: usize) -> usize {
+    let mut capacity = 1;
+    while capacity * FAN < leaves {
+        capacity *= FAN;
+    }
+    capacity
+}
+
 /// How many size classes there are.
 const CLASSES: usize = 2048 / 3 + 1;
 
-/// Lists bodies by size class, and within a class in the order given. Returns by class where it ends.
+/// Lists bodies by size class, and within a class in the order given. Returns where each class that there is ends; where
+/// there are more than a node can hold, the last one holds the others.
 fn sort_by_class<const D: usize, T: Scalar>(
     bodies: impl Iterator<Item = u32> + Clone,
     boxes: &[Aabb<D, T>],
     entries: &mut Vec<Entry<D, T>>,
-) -> [u32; CLASSES] {
+) -> Vec<usize> {
     let class = |body: u32| size_class(&boxes[body as usize]);
     let mut ends = [0; CLASSES];
     bodies.clone().for_each(|body| ends[class(body)] += 1);
@@ -158,6 +284,12 @@ fn sort_by_class<const D: usize, T: Scalar>(
         let center = core::array::from_fn(|axis| T::from_f64(aabb.doubled_center(axis) / 2.0));
         entries[*at as usize] = Entry { center, body };
         *at += 1;
+    }
+    let mut last = 0;
+    let mut ends: Vec<usize> = ends.iter().map(|&end| end as usize).collect();
+    ends.retain(|&end| core::mem::replace(&mut last, end) < end);
+    if ends.len() > FAN {
+        ends.drain(FAN - 1..ends.len() - 1);
     }
     ends
 }

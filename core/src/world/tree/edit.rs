@@ -2,6 +2,7 @@
 
 use alloc::vec::Vec;
 
+use super::build::Building;
 use super::node::{FAN, LEAST, NONE, Node, split};
 use crate::{Aabb, Scalar};
 
@@ -22,8 +23,9 @@ pub struct Tree<const D: usize, T> {
     pub(super) leaves: Vec<u32>,
     /// How many bodies it holds.
     pub count: usize,
-    /// A buffer for building.
+    /// The bodies of a build that has begun, else a buffer.
     pub(super) entries: Vec<Entry<D, T>>,
+    pub(super) building: Option<Building>,
     /// The size of the leaves as built, and the number of bodies then.
     pub(super) built: (f64, usize),
 }
@@ -37,6 +39,7 @@ impl<const D: usize, T: Scalar> Default for Tree<D, T> {
             leaves: Vec::new(),
             count: 0,
             entries: Vec::new(),
+            building: None,
             built: (0.0, 0),
         }
     }
@@ -67,6 +70,9 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
 
     /// Gives the bodies other bodies. O(n) time.
     pub fn rename(&mut self, renamed: &[u32]) {
+        if self.building.is_some() {
+            self.entries.iter_mut().for_each(|entry| entry.body = renamed[entry.body as usize]);
+        }
         self.leaves.clear();
         self.leaves.resize(renamed.len(), NONE);
         for (index, node) in self.nodes.iter_mut().enumerate().filter(|(_, node)| node.is_leaf) {

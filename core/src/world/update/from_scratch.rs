@@ -16,9 +16,11 @@ pub fn from_scratch<const D: usize, T: Scalar>(
     tracking: &mut Tracking<D, T>,
     events: &mut Events,
 ) {
+    tracking.order_by_slot(bodies);
     tracking.candidates.sort(&bodies.slots, &mut tracking.scratch.sorter);
     tracking.wake_all(bodies);
     let has_tree = tracking.tree_state != TreeState::Unbuilt;
+    tracking.tree.forget_build();
     let Tracking { candidates, scratch, finder, .. } = &mut *tracking;
     let Scratch { sorter, before, .. } = scratch;
     core::mem::swap(before, &mut candidates.sorted);

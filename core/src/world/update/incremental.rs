@@ -40,19 +40,28 @@ pub fn incremental<const D: usize, T: Scalar>(
     woken.clear();
     woken.extend(lost.filter(|&&index| bodies.slots.has(index, flag::ASLEEP)));
     let (escaped, wakes) = (escaped.len(), !woken.is_empty());
-    if escaped > 0 || wakes {
+    let has_tree = if escaped > 0 || wakes {
         tracking.tree_uses += escaped;
-        tracking.ready_tree(bodies);
-    }
+        tracking.advance_tree(bodies)
+    } else {
+        tracking.tree_state != TreeState::Unbuilt
+    };
     let extends = !wakes && tracking.can_extend(bodies);
     let mut most = tracking.policy.most_reads(bodies.slots.live);
+    if !has_tree {
+        // What the finder finds is stored, all of it.
+        most = most.min(bodies.slots.live);
+    }
     tracking.policy.note_incremental(escaped);
     tracking.scratch.mark(bodies, true);
-    let mut is_right = !wakes || tracking.wake(bodies, &mut events.ended, &mut most);
+    let mut is_right = !wakes || tracking.wake(bodies, &mut events.ended, &mut most, has_tree);
     if is_right {
-        let jumped = tracking.move_in_tree(bodies, extends);
+        let jumped = tracking.list_queries(bodies, extends);
         layout::note_jumps(&mut tracking.locality_decay, jumped);
-        is_right = tracking.find_added(bodies, &mut events.begun, extends, most);
+        if has_tree {
+            tracking.move_in_tree(bodies);
+        }
+        is_right = tracking.find_added(bodies, &mut events.begun, extends, most, has_tree);
     }
     if is_right {
         if !bodies.changed.is_empty() || !bodies.leaving.is_empty() {
@@ -87,18 +96,26 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         bodies: &mut Bodies<D, T>,
         ended: &mut Vec<[u32; 2]>,
         most: &mut usize,
+        has_tree: bool,
     ) -> bool {
-        let Scratch { queries, woken, leaves, found, is_escaped, .. } = &mut self.scratch;
+        let Self { tree, fat, finder, scratch, .. } = self;
+        let Scratch { queries, woken, leaves, found, is_escaped, .. } = scratch;
         queries.clear();
         queries.extend(woken.iter().map(|&index| (index, bodies.previous[index as usize])));
-        for batch in queries.chunks(BATCH) {
-            if !self.tree.overlapping_many(batch, leaves, found, most) {
+        let are_asleep = |index| bodies.slots.has(index, flag::ASLEEP);
+        for batch in queries.chunks(if has_tree { BATCH } else { usize::MAX }) {
+            let is_found = if has_tree {
+                tree.overlapping_many(batch, leaves, found, most)
+            } else {
+                finder.find_near(batch, fat, are_asleep, found, most)
+            };
+            if !is_found {
                 woken.clear();
                 return false;
             }
             let pairs = found.iter().map(|&[query, other]| [batch[query as usize].0, other]);
             ended.extend(pairs.filter(|&[index, other]| {
-                bodies.slots.has(other, flag::ASLEEP)
+                are_asleep(other)
                     && (index < other || index != other && !is_escaped[other as usize])
                     && bodies.was_live([index, other])
                     && !bodies.is_live([index, other])
@@ -155,36 +172,39 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         }
     }
 
-    /// Removes bodies that left from the tree, and gives it the new fat AABBs of those that left theirs,
-    /// which are to be looked up. Returns how many jumped.
+    /// Lists the new fat AABBs of the bodies that left theirs, which are to be looked up. Returns how many jumped.
     #[inline(never)]
-    fn move_in_tree(&mut self, bodies: &Bodies<D, T>, extends: bool) -> usize {
+    fn list_queries(&mut self, bodies: &Bodies<D, T>, extends: bool) -> usize {
         let mut jumped = 0;
-        let Self { tree, fat, motion, policy, scratch: Scratch { escaped, queries, .. }, .. } =
-            self;
+        let Self { fat, motion, policy, scratch: Scratch { escaped, queries, .. }, .. } = self;
+        queries.clear();
+        queries.reserve(bodies.slots.live / LOOK_UP + 1);
+        queries.extend(escaped.iter().map(|&index| {
+            let row = index as usize;
+            let is_new = bodies.slots.has(index, flag::NEW);
+            let before = if is_new { &bodies.boxes[row] } else { &bodies.previous[row] };
+            jumped += usize::from(motion.is_jump(before, &bodies.boxes[row]));
+            let ahead = if policy.is_tight() {
+                bodies.boxes[row]
+            } else {
+                motion.alone(index, before, &bodies.boxes[row], &bodies.options)
+            };
+            (index, if extends { fat[row].union(&ahead) } else { ahead })
+        }));
+        jumped
+    }
+
+    /// Removes bodies that left from the tree, and gives it the new fat AABBs.
+    #[inline(never)]
+    fn move_in_tree(&mut self, bodies: &Bodies<D, T>) {
+        let Self { tree, scratch: Scratch { queries, .. }, .. } = self;
         for &index in &bodies.leaving {
             tree.remove(index);
         }
-        queries.clear();
-        queries.reserve(bodies.slots.live / LOOK_UP + 1);
-        for chunk in escaped.chunks(TOGETHER) {
-            chunk.iter().for_each(|&index| tree.prefetch_leaf_of(index));
-            for &index in chunk {
-                let row = index as usize;
-                let is_new = bodies.slots.has(index, flag::NEW);
-                let before = if is_new { &bodies.boxes[row] } else { &bodies.previous[row] };
-                jumped += usize::from(motion.is_jump(before, &bodies.boxes[row]));
-                let ahead = if policy.is_tight() {
-                    bodies.boxes[row]
-                } else {
-                    motion.alone(index, before, &bodies.boxes[row], &bodies.options)
-                };
-                let aabb = if extends { fat[row].union(&ahead) } else { ahead };
-                queries.push((index, aabb));
-                tree.set(index, &aabb);
-            }
+        for chunk in queries.chunks(TOGETHER) {
+            chunk.iter().for_each(|&(index, _)| tree.prefetch_leaf_of(index));
+            chunk.iter().for_each(|(index, aabb)| tree.set(*index, aabb));
         }
-        jumped
     }
 
     /// Finds the candidates of the bodies that are looked up: if `extends`, those that are not candidates yet. Returns
@@ -196,14 +216,22 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         begun: &mut Vec<[u32; 2]>,
         extends: bool,
         mut most: usize,
+        has_tree: bool,
     ) -> bool {
         let limit = self.policy.most_candidates(bodies.slots.live);
-        let Self { tree, fat, candidates, scratch, .. } = self;
+        let Self { tree, fat, candidates, finder, scratch, .. } = self;
         let Scratch { queries, leaves, found, is_escaped, added, .. } = scratch;
         added.clear();
         added.reserve(candidates.pairs.capacity() / 4);
-        for batch in queries.chunks(BATCH) {
-            let is_found = tree.overlapping_many(batch, leaves, found, &mut most);
+        for batch in queries.chunks(if has_tree { BATCH } else { usize::MAX }) {
+            let is_found = if has_tree {
+                tree.overlapping_many(batch, leaves, found, &mut most)
+            } else {
+                let has_fat =
+                    |index: u32| bodies.slots.has(index, flag::LIVE) && !is_escaped[index as usize];
+                finder.find_near(batch, fat, has_fat, found, &mut most)
+                    && finder.find_among(batch, found, &mut most)
+            };
             if !is_found || candidates.pairs.len() + added.len() > limit {
                 return false;
             }

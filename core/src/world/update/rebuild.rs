@@ -35,9 +35,10 @@ pub fn rebuild<const D: usize, T: Scalar>(
     tracking.note_new_fat(bodies);
 
     let live = bodies.slots.live;
-    let is_decayed = layout::note_rebuild(&mut tracking.locality_decay, moved, new, live);
+    let counts = [live, tracking.candidates.pairs.len()];
+    let is_decayed = layout::note_rebuild(&mut tracking.locality_decay, [moved, new], counts);
     if tracking.policy.note_rebuild(live, is_fat, (moved - new) * 2 < live) {
-        Reorder::BySlot
+        Reorder::Later
     } else if is_decayed {
         Reorder::BySpace
     } else {

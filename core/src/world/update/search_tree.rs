@@ -7,23 +7,35 @@ use crate::world::tracking::{Tracking, TreeState};
 
 impl<const D: usize, T: Scalar> Tracking<D, T> {
     /// Makes the tree hold the fat AABBs of all bodies that are not new.
+    fn ready_tree(&mut self, bodies: &Bodies<D, T>) {
+        while !self.advance_tree(bodies) {}
+    }
+
+    /// Brings the tree closer to holding the fat AABBs of all bodies that are not new, by about as much work as finding
+    /// all pairs from scratch is. Returns whether it holds them.
     #[inline(never)]
-    pub fn ready_tree(&mut self, bodies: &Bodies<D, T>) {
+    pub fn advance_tree(&mut self, bodies: &Bodies<D, T>) -> bool {
         self.refresh_fat(bodies);
         let Self { tree, tree_state, tree_uses, fat, .. } = self;
         match *tree_state {
-            TreeState::Fresh { .. } => return,
+            TreeState::Fresh { .. } => return true,
             TreeState::Old if refit_pays(tree.refit(fat), *tree_uses, tree.count) => {}
             _ => {
-                *tree_uses = 0;
+                *tree_state = TreeState::Unbuilt;
                 let is_known = |&index: &u32| {
                     bodies.slots.has(index, flag::LIVE | flag::LEAVING)
                         && !bodies.slots.has(index, flag::NEW)
                 };
-                tree.build((0..bodies.slots.len() as u32).filter(is_known), fat);
+                let known = (0..bodies.slots.len() as u32).filter(is_known);
+                if !tree.prepare(known.clone(), fat) {
+                    return false;
+                }
+                *tree_uses = 0;
+                tree.build(known, fat);
             }
         }
         *tree_state = TreeState::Fresh { known: 0 };
+        true
     }
 
     /// Makes the tree hold every body, with a box that contains its own.

@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 use std::collections::BTreeSet;
 
+use crate::world::tracking::TreeState;
 use crate::{Aabb, BroadPhase, ProxyId, find_pairs};
 
 /// A world, its bodies, and the pairs of the last update.
@@ -126,4 +127,34 @@ fn a_few_bodies_that_would_have_too_many_candidates_cost_no_more_than_a_new_sear
         assert!(candidates <= 2 * count + 4 * world.pairs.len(), "{frame}: {candidates}");
     }
     assert!(was_tight);
+}
+
+#[test]
+fn a_tree_is_built_over_several_updates_while_bodies_come_go_and_move() {
+    let count = 2_000;
+    let place = |at| somewhere(at, 50.0, [1.0; 2]);
+    let mut world = World::new((0..count).map(place).collect());
+    let mut unbuilt = 0;
+    for frame in 0..24 {
+        // One body jumps; another one goes, a third one takes its slot, and a fourth one comes.
+        let jumping = 10 + frame;
+        world.boxes[jumping] = place(2 * count + frame);
+        world.world.set(world.ids[jumping], world.boxes[jumping]).unwrap();
+        if frame % 2 == 0 {
+            world.world.remove(world.ids[0]).unwrap();
+            world.boxes[0] = Aabb::new([-9.0; 2], [-9.0; 2]);
+        } else {
+            world.boxes[0] = place(3 * count + frame);
+            world.ids[0] = world.world.insert(world.boxes[0]).unwrap();
+            world.boxes.push(place(4 * count + frame));
+            world.ids.push(world.world.insert(*world.boxes.last().unwrap()).unwrap());
+        }
+        world.update();
+        unbuilt += usize::from(world.world.tracking.tree_state == TreeState::Unbuilt);
+    }
+    // The first one lists the bodies and cuts them once, the next two five times each: 2,000 go into 167 leaves.
+    assert_eq!(unbuilt, 3);
+    let tree = &world.world.tracking.tree;
+    assert_eq!(tree.count, world.world.len());
+    assert!((0..world.boxes.len() as u32).all(|body| tree.holds(body)));
 }
