@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::edit::{Entry, Tree};
+use super::edit::{Building, Entry, Tree};
 use super::node::{FAN, FILL, NONE, Node, finite, size};
 use crate::sampling::positions;
 use crate::{Aabb, Scalar};
@@ -16,17 +16,6 @@ const SAMPLE_OF_SIDES: usize = 512;
 
 /// How deep a step cuts, the first one, which also lists the bodies, and any other.
 const CUTS_A_STEP: [u32; 2] = [1, 5];
-
-/// A build that takes several steps.
-#[derive(Clone, Debug, Default)]
-pub struct Building {
-    /// By size class that there is, where its entries end.
-    ends: Vec<usize>,
-    /// How deep the entries are cut.
-    depth: u32,
-    /// Whether they are cut to the bottom.
-    is_cut: bool,
-}
 
 impl<const D: usize, T: Scalar> Tree<D, T> {
     /// Builds the tree of these bodies: from scratch, or if a build has begun, from where it is. O(n log n) time.

@@ -2,7 +2,6 @@
 
 use alloc::vec::Vec;
 
-use super::build::Building;
 use super::node::{FAN, LEAST, NONE, Node, split};
 use crate::{Aabb, Scalar};
 
@@ -11,6 +10,17 @@ use crate::{Aabb, Scalar};
 pub struct Entry<const D: usize, T> {
     pub center: [T; D],
     pub body: u32,
+}
+
+/// A build that takes several steps.
+#[derive(Clone, Debug, Default)]
+pub struct Building {
+    /// By size class that there is, where its entries end.
+    pub ends: Vec<usize>,
+    /// How deep the entries are cut.
+    pub depth: u32,
+    /// Whether they are cut to the bottom.
+    pub is_cut: bool,
 }
 
 /// The tree. Bodies are storage indices, and their boxes in it may be larger than they are.

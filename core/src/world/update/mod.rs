@@ -3,8 +3,9 @@
 //! Every body has a fat AABB around its box, and the pairs of fat AABBs are kept as candidates. While
 //! bodies stay within their fat AABBs only candidates can begin or end, and an update tests the list of
 //! them, without those of sleeping bodies. A body that leaves its fat AABB gets a new one, which reaches
-//! ahead in the direction of its motion, and a tree finds what that overlaps (`incremental`). When many
-//! leave theirs, the finder finds all candidates (`rebuild`). Where that happens again and again, fat
+//! ahead in the direction of its motion, and a tree finds what that overlaps (`incremental`), or the finder
+//! while there is no tree: one is built over several updates, since at once it would take several times as
+//! long as finding all pairs where few boxes overlap. When many leave theirs, the finder finds all candidates (`rebuild`). Where that happens again and again, fat
 //! AABBs do not pay, and for some updates all pairs of the boxes themselves are found and compared with
 //! those of the last update (`from_scratch`).
 //!
