@@ -239,35 +239,39 @@ impl World {
         })
     }
 
-    /// Ids, their values, and where the ids of each query end. `kind` names a [`Query`]; `queries`
-    /// holds its numbers, a row for each query.
-    #[pyo3(signature = (kind, queries, filter, argument, k=0, max_distance=0.0, sorted=true))]
+    /// Ids, their values, the faces that casts hit, and where the ids of each query end. `kind` names a [`Query`];
+    /// `queries` holds its numbers, a row for each query. `excluded` are ids that no query finds.
+    #[pyo3(signature = (kind, queries, filter, excluded, argument, k=0, max_distance=0.0, sorted=true))]
     #[allow(clippy::too_many_arguments)] // Python passes them by name
     fn query<'py>(
         &self,
         kind: &str,
         queries: Array<'py>,
         filter: Option<Words>,
+        excluded: Array<'py>,
         argument: &str,
         k: usize,
         max_distance: f64,
         sorted: bool,
-    ) -> PyResult<(Array<'py>, Array<'py>, Array<'py>)> {
+    ) -> PyResult<[Array<'py>; 4]> {
         let query = Query::named(kind, k, max_distance)
             .ok_or_else(|| PyValueError::new_err("there is no such query"))?;
         let (py, queries) = (queries.py(), copy_numbers::<f64>(&queries)?);
         let queries = queries.as_slice()?;
+        let excluded = proxies(copy_numbers(&excluded)?.as_slice()?);
         self.with(|space| {
             let (mut answer, filter) = (Answer::default(), filter.map(filter_of));
             let count = space.world.len() + queries.len();
-            let done = space
-                .run(py, count, |world| world.query(query, queries, filter, &[], sorted, &mut answer))?;
+            let done = space.run(py, count, |world| {
+                world.query(query, queries, filter, &excluded, sorted, &mut answer)
+            })?;
             done.map_err(|error| raise(py, error, argument, &[]))?;
-            Ok((
+            Ok([
                 numbers(py, answer.ids.iter().map(|id| id.0))?,
                 numbers(py, answer.values.into_iter())?,
+                numbers(py, answer.faces.iter().map(|&face| i64::from(face)))?,
                 numbers(py, answer.ends.iter().map(|&end| end as i64))?,
-            ))
+            ])
         })
     }
 

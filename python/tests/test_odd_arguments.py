@@ -126,6 +126,8 @@ def sensible(name: str, ids: Any) -> Any:
             "other": sap.Filter(),
             "is_static": False,
             "sorted": True,
+            "ignore_touching": True,
+            "exclude": [0],
         },
     }
     return values[name]

@@ -179,18 +179,18 @@ def one_id(id: object) -> Ids:
     return np.array([_id(id, 0)], np.int64)
 
 
-def id_array(ids: ArrayLike) -> Ids:
+def id_array(ids: ArrayLike, name: str = "ids") -> Ids:
     """Ids as an array."""
-    array = as_array(ids, "ids")
+    array = as_array(ids, name)
     if array.ndim != 1:
-        raise ValueError(f"ids must be of shape (n,), not {array.shape}")
+        raise ValueError(f"{name} must be of shape (n,), not {array.shape}")
     if array.size == 0 and array.dtype.kind == "f":
         return np.empty(0, np.int64)
     if array.dtype.kind in "fO" and isinstance(ids, (list, tuple)):
         # NumPy makes floats or objects of integers of which some are too large for int64.
         array = np.array([_id(id, index) for index, id in enumerate(ids)], np.int64)
     if array.dtype.kind not in "iu":
-        raise TypeError(f"ids must be whole numbers, not of dtype {array.dtype}")
+        raise TypeError(f"{name} must be whole numbers, not of dtype {array.dtype}")
     if array.dtype.kind == "u" and array.dtype.itemsize == 8 and (array >= 2**63).any():
         index = int(np.argmax(array >= 2**63))
         raise StaleProxyError(int(array[index]), index)

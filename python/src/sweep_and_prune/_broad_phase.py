@@ -31,6 +31,11 @@ class Hit(NamedTuple):
     """The body."""
     t: float
     """The ray hits at `origin + t * direction`; 0 if they overlap at the start."""
+    normal: tuple[float, ...]
+    """Which way the face that is hit looks: of length 1 along an axis, away from the body. All 0 if the cast starts
+    inside the body. At an edge or a corner, the face of the first axis."""
+    starts_inside: bool
+    """Whether the cast starts inside the body. A box that only touches it at the start does not."""
 
 
 class Hits(NamedTuple):
@@ -40,6 +45,10 @@ class Hits(NamedTuple):
     """`(n,)` ids; of many casts, -1 for a cast that hits nothing."""
     t: NDArray[np.float64]
     """`(n,)`: each hit is at `origin + t * direction`; of many casts, infinite for a cast that hits nothing."""
+    normals: NDArray[np.float64]
+    """`(n, dimensions)`: the normal of each hit, as in `Hit`; of many casts, 0 for a cast that hits nothing."""
+    starts_inside: NDArray[np.bool_]
+    """`(n,)`: whether each cast starts inside what it hits."""
 
 
 class Neighbors(NamedTuple):
@@ -49,6 +58,15 @@ class Neighbors(NamedTuple):
     """`(k,)` ids; of many points `(n, k)`."""
     distances: NDArray[np.float64]
     """The distance from the point to each body's box, in the same shape; 0 if the box contains the point."""
+
+
+class Found(NamedTuple):
+    """What the compiled part finds."""
+
+    ids: Ids
+    values: NDArray[np.float64]
+    faces: NDArray[np.int64]
+    ends: NDArray[np.int64]
 
 
 class Lists(NamedTuple):
@@ -570,7 +588,9 @@ class BroadPhase:
         """
         return self._world.pairs_of(int(one_id(id)[0]))
 
-    def overlapping(self, box: ArrayLike, filter: Filter | None = None, *, sorted: bool = True) -> Ids:
+    def overlapping(
+        self, box: ArrayLike, filter: Filter | None = None, *, sorted: bool = True, exclude: ArrayLike | None = None
+    ) -> Ids:
         """Finds the bodies whose boxes overlap a box.
 
         All queries see the boxes as last set, whether updated or not. The first query after a change takes longer.
@@ -579,6 +599,8 @@ class BroadPhase:
             box: `2 * dimensions` numbers.
             filter: finds only bodies with which a body with this filter may pair; by default, all bodies.
             sorted: False for ids in no particular order: sorting takes a quarter of the time for 100, half for 10,000.
+            exclude: an id, or ids, that it does not find: what asks, and what it carries. Each body that is found is
+                compared with all of them, so keep the list short. Ids of bodies that are gone do no harm.
 
         Returns:
             `(m,)` ids, sorted by slot unless `sorted` is False.
@@ -593,15 +615,18 @@ class BroadPhase:
         >>> world.overlapping([1, 3]) == [a]
         array([ True])
         """
-        return self._ask("overlapping", filter, Part("box", self._row(box, "box")), sorted=sorted)[0]
+        return self._ask("overlapping", filter, Part("box", self._row(box, "box")), sorted=sorted, exclude=exclude).ids
 
-    def overlapping_many(self, boxes: ArrayLike, filter: Filter | None = None, *, sorted: bool = True) -> Lists:
+    def overlapping_many(
+        self, boxes: ArrayLike, filter: Filter | None = None, *, sorted: bool = True, exclude: ArrayLike | None = None
+    ) -> Lists:
         """Finds the bodies that overlap each of many boxes.
 
         Args:
             boxes: `(n, 2 * dimensions)` numbers.
             filter: as in `overlapping`.
             sorted: as in `overlapping`.
+            exclude: as in `overlapping`.
 
         Raises:
             InvalidBoxError: for the first box that is inverted or has a NaN.
@@ -613,16 +638,21 @@ class BroadPhase:
         >>> world.overlapping_many([[1, 3], [3, 4], [0, 9]]).ends
         array([1, 1, 3])
         """
-        ids, _, ends = self._ask("overlapping", filter, Part("boxes", self._rows(boxes, "boxes")), sorted=sorted)
-        return Lists(ids, ends)
+        found = self._ask(
+            "overlapping", filter, Part("boxes", self._rows(boxes, "boxes")), sorted=sorted, exclude=exclude
+        )
+        return Lists(found.ids, found.ends)
 
-    def containing(self, point: ArrayLike, filter: Filter | None = None, *, sorted: bool = True) -> Ids:
+    def containing(
+        self, point: ArrayLike, filter: Filter | None = None, *, sorted: bool = True, exclude: ArrayLike | None = None
+    ) -> Ids:
         """Finds the bodies whose boxes contain a point.
 
         Args:
             point: `dimensions` numbers.
             filter: as in `overlapping`.
             sorted: as in `overlapping`.
+            exclude: as in `overlapping`.
 
         Returns:
             `(m,)` ids, sorted by slot.
@@ -637,15 +667,20 @@ class BroadPhase:
         >>> world.containing([2, 1]) == [a]
         array([ True])
         """
-        return self._ask("containing", filter, Part("point", self._point(point, "point"), "not NaN"), sorted=sorted)[0]
+        return self._ask(
+            "containing", filter, Part("point", self._point(point, "point"), "not NaN"), sorted=sorted, exclude=exclude
+        ).ids
 
-    def containing_many(self, points: ArrayLike, filter: Filter | None = None, *, sorted: bool = True) -> Lists:
+    def containing_many(
+        self, points: ArrayLike, filter: Filter | None = None, *, sorted: bool = True, exclude: ArrayLike | None = None
+    ) -> Lists:
         """Finds the bodies whose boxes contain each of many points.
 
         Args:
             points: `(n, dimensions)` numbers.
             filter: as in `overlapping`.
             sorted: as in `overlapping`.
+            exclude: as in `overlapping`.
 
         Raises:
             InvalidQueryError: for the first point with a NaN.
@@ -657,12 +692,24 @@ class BroadPhase:
         >>> world.containing_many([[0], [1]]).ends
         array([1, 3])
         """
-        ids, _, ends = self._ask(
-            "containing", filter, Part("points", self._points(points, "points"), "not NaN"), sorted=sorted
+        found = self._ask(
+            "containing",
+            filter,
+            Part("points", self._points(points, "points"), "not NaN"),
+            sorted=sorted,
+            exclude=exclude,
         )
-        return Lists(ids, ends)
+        return Lists(found.ids, found.ends)
 
-    def within(self, center: ArrayLike, radius: float, filter: Filter | None = None, *, sorted: bool = True) -> Ids:
+    def within(
+        self,
+        center: ArrayLike,
+        radius: float,
+        filter: Filter | None = None,
+        *,
+        sorted: bool = True,
+        exclude: ArrayLike | None = None,
+    ) -> Ids:
         """Finds the bodies whose boxes are at most `radius` away from a point.
 
         Args:
@@ -670,6 +717,7 @@ class BroadPhase:
             radius: not negative; may be infinite.
             filter: as in `overlapping`.
             sorted: as in `overlapping`.
+            exclude: as in `overlapping`.
 
         Returns:
             `(m,)` ids, sorted by slot.
@@ -685,10 +733,16 @@ class BroadPhase:
         (1, 0)
         """
         point, length = Part("center", self._point(center, "center"), "finite"), self._number(radius, "radius")
-        return self._ask("within", filter, point, length, sorted=sorted)[0]
+        return self._ask("within", filter, point, length, sorted=sorted, exclude=exclude).ids
 
     def within_many(
-        self, centers: ArrayLike, radii: ArrayLike, filter: Filter | None = None, *, sorted: bool = True
+        self,
+        centers: ArrayLike,
+        radii: ArrayLike,
+        filter: Filter | None = None,
+        *,
+        sorted: bool = True,
+        exclude: ArrayLike | None = None,
     ) -> Lists:
         """Finds the bodies near each of many points.
 
@@ -697,6 +751,7 @@ class BroadPhase:
             radii: `(n,)` numbers, or one for all.
             filter: as in `overlapping`.
             sorted: as in `overlapping`.
+            exclude: as in `overlapping`.
 
         Raises:
             InvalidQueryError: for the first that is invalid, as for a single one.
@@ -710,11 +765,17 @@ class BroadPhase:
         """
         points = self._points(centers, "centers")
         lengths = Part("radii", each(radii, "radii", self._dtype, len(points))[:, None], "0 or more")
-        ids, _, ends = self._ask("within", filter, Part("centers", points, "finite"), lengths, sorted=sorted)
-        return Lists(ids, ends)
+        found = self._ask("within", filter, Part("centers", points, "finite"), lengths, sorted=sorted, exclude=exclude)
+        return Lists(found.ids, found.ends)
 
     def nearest(
-        self, point: ArrayLike, k: int = 1, filter: Filter | None = None, *, max_distance: float = np.inf
+        self,
+        point: ArrayLike,
+        k: int = 1,
+        filter: Filter | None = None,
+        *,
+        max_distance: float = np.inf,
+        exclude: ArrayLike | None = None,
     ) -> Neighbors:
         """Finds the `k` bodies nearest to a point, or all if there are fewer, sorted by distance and then by slot.
 
@@ -723,6 +784,7 @@ class BroadPhase:
             k: how many; 0 or more.
             filter: as in `overlapping`.
             max_distance: bodies farther away are not found, nor searched: a small one saves time.
+            exclude: as in `overlapping`.
 
         Raises:
             InvalidQueryError: if the point is not finite, or the distance negative or NaN.
@@ -736,11 +798,17 @@ class BroadPhase:
         >>> world.nearest([3], k=9, max_distance=1.5).ids.tolist() == [ids[0]]
         True
         """
-        found = self._nearest("point", self._point(point, "point"), k, filter, max_distance)
+        found = self._nearest("point", self._point(point, "point"), k, filter, max_distance, exclude)
         return Neighbors(found.ids[0], found.distances[0])
 
     def nearest_many(
-        self, points: ArrayLike, k: int = 1, filter: Filter | None = None, *, max_distance: float = np.inf
+        self,
+        points: ArrayLike,
+        k: int = 1,
+        filter: Filter | None = None,
+        *,
+        max_distance: float = np.inf,
+        exclude: ArrayLike | None = None,
     ) -> Neighbors:
         """Finds the `k` bodies nearest to each of many points.
 
@@ -749,6 +817,7 @@ class BroadPhase:
             k: how many; 0 or more.
             filter: as in `overlapping`.
             max_distance: as in `nearest`.
+            exclude: as in `overlapping`.
 
         Returns:
             `(n, k)` ids and distances, or fewer columns if no point has so many. Points that have fewer than others
@@ -765,10 +834,17 @@ class BroadPhase:
         array([[1., 2.],
                [3., 7.]])
         """
-        return self._nearest("points", self._points(points, "points"), k, filter, max_distance)
+        return self._nearest("points", self._points(points, "points"), k, filter, max_distance, exclude)
 
     def ray_cast(
-        self, origin: ArrayLike, direction: ArrayLike, limit: float = np.inf, filter: Filter | None = None
+        self,
+        origin: ArrayLike,
+        direction: ArrayLike,
+        limit: float = np.inf,
+        filter: Filter | None = None,
+        *,
+        ignore_touching: bool = False,
+        exclude: ArrayLike | None = None,
     ) -> Hit | None:
         """Finds the first body that a ray hits; if it hits several at once, the one with the smallest slot.
 
@@ -777,6 +853,8 @@ class BroadPhase:
             direction: `dimensions` numbers, finite, of any length.
             limit: the largest t, in lengths of `direction`: 0 or more, may be infinite.
             filter: as in `overlapping`.
+            ignore_touching: as in `box_cast`.
+            exclude: as in `overlapping`.
 
         Returns:
             The hit, at `origin + t * direction`, or `None`.
@@ -791,10 +869,17 @@ class BroadPhase:
         >>> world.ray_cast([1, 1], [2, 0]).t
         2.0
         """
-        return _first(self._cast(self._ray(origin), direction, limit, filter, False))
+        return _first(self._cast(self._ray(origin), direction, limit, filter, False, ignore_touching, exclude))
 
     def ray_cast_all(
-        self, origin: ArrayLike, direction: ArrayLike, limit: float = np.inf, filter: Filter | None = None
+        self,
+        origin: ArrayLike,
+        direction: ArrayLike,
+        limit: float = np.inf,
+        filter: Filter | None = None,
+        *,
+        ignore_touching: bool = False,
+        exclude: ArrayLike | None = None,
     ) -> Hits:
         """Finds all bodies that a ray hits, sorted by t and then by slot.
 
@@ -803,6 +888,8 @@ class BroadPhase:
             direction: `dimensions` numbers, finite.
             limit: the largest t, in lengths of `direction`.
             filter: as in `overlapping`.
+            ignore_touching: as in `box_cast`.
+            exclude: as in `overlapping`.
 
         Raises:
             InvalidQueryError, ValueError, TypeError: as `ray_cast`.
@@ -813,10 +900,17 @@ class BroadPhase:
         >>> world.ray_cast_all([0], [1]).t
         array([2., 5.])
         """
-        return self._cast(self._ray(origin), direction, limit, filter, True)
+        return self._cast(self._ray(origin), direction, limit, filter, True, ignore_touching, exclude)
 
     def ray_cast_many(
-        self, origins: ArrayLike, directions: ArrayLike, limits: ArrayLike = np.inf, filter: Filter | None = None
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        limits: ArrayLike = np.inf,
+        filter: Filter | None = None,
+        *,
+        ignore_touching: bool = False,
+        exclude: ArrayLike | None = None,
     ) -> Hits:
         """Finds the first hit of each of many rays.
 
@@ -825,6 +919,8 @@ class BroadPhase:
             directions: `(n, dimensions)` numbers.
             limits: `(n,)` numbers, or one for all.
             filter: as in `overlapping`.
+            ignore_touching: as in `box_cast`.
+            exclude: as in `overlapping`.
 
         Returns:
             `(n,)` ids and t; id -1 and an infinite t for a ray that hits nothing.
@@ -841,10 +937,17 @@ class BroadPhase:
         """
         points = self._points(origins, "origins")
         starts = Part("origins", np.concatenate([points, points], axis=1), "finite")
-        return self._cast_many(starts, directions, limits, filter)
+        return self._cast_many(starts, directions, limits, filter, ignore_touching, exclude)
 
     def box_cast(
-        self, box: ArrayLike, direction: ArrayLike, limit: float = np.inf, filter: Filter | None = None
+        self,
+        box: ArrayLike,
+        direction: ArrayLike,
+        limit: float = np.inf,
+        filter: Filter | None = None,
+        *,
+        ignore_touching: bool = False,
+        exclude: ArrayLike | None = None,
     ) -> Hit | None:
         """Finds the first body that a moving box hits.
 
@@ -853,6 +956,9 @@ class BroadPhase:
             direction: `dimensions` numbers, finite.
             limit: the largest t, in lengths of `direction`.
             filter: as in `overlapping`.
+            ignore_touching: whether it passes what it only touches: the floor that a character stands on, the wall
+                along which it slides. It hits what it enters.
+            exclude: as in `overlapping`.
 
         Raises:
             InvalidQueryError, ValueError, TypeError: as `ray_cast`, also if the box is inverted.
@@ -861,12 +967,25 @@ class BroadPhase:
         >>> world = sap.BroadPhase(dimensions=1)
         >>> wall = world.insert([5, 6])
         >>> world.box_cast([0, 1], [1])
-        Hit(id=0, t=4.0)
+        Hit(id=0, t=4.0, normal=(-1.0,), starts_inside=False)
+        >>> world.box_cast([4, 5], [1]).t, world.box_cast([4, 5], [-1], ignore_touching=True)
+        (0.0, None)
         """
-        return _first(self._cast(Part("box", self._row(box, "box"), "finite"), direction, limit, filter, False))
+        return _first(
+            self._cast(
+                Part("box", self._row(box, "box"), "finite"), direction, limit, filter, False, ignore_touching, exclude
+            )
+        )
 
     def box_cast_all(
-        self, box: ArrayLike, direction: ArrayLike, limit: float = np.inf, filter: Filter | None = None
+        self,
+        box: ArrayLike,
+        direction: ArrayLike,
+        limit: float = np.inf,
+        filter: Filter | None = None,
+        *,
+        ignore_touching: bool = False,
+        exclude: ArrayLike | None = None,
     ) -> Hits:
         """Finds all bodies that a moving box hits, sorted by t and then by slot.
 
@@ -875,6 +994,8 @@ class BroadPhase:
             direction: `dimensions` numbers, finite.
             limit: the largest t, in lengths of `direction`.
             filter: as in `overlapping`.
+            ignore_touching: as in `box_cast`.
+            exclude: as in `overlapping`.
 
         Raises:
             InvalidQueryError, ValueError, TypeError: as `box_cast`.
@@ -885,10 +1006,19 @@ class BroadPhase:
         >>> world.box_cast_all([0, 1], [1], limit=3).t
         array([1.])
         """
-        return self._cast(Part("box", self._row(box, "box"), "finite"), direction, limit, filter, True)
+        return self._cast(
+            Part("box", self._row(box, "box"), "finite"), direction, limit, filter, True, ignore_touching, exclude
+        )
 
     def box_cast_many(
-        self, boxes: ArrayLike, directions: ArrayLike, limits: ArrayLike = np.inf, filter: Filter | None = None
+        self,
+        boxes: ArrayLike,
+        directions: ArrayLike,
+        limits: ArrayLike = np.inf,
+        filter: Filter | None = None,
+        *,
+        ignore_touching: bool = False,
+        exclude: ArrayLike | None = None,
     ) -> Hits:
         """Finds the first hit of each of many moving boxes.
 
@@ -897,6 +1027,8 @@ class BroadPhase:
             directions: `(n, dimensions)` numbers.
             limits: `(n,)` numbers, or one for all.
             filter: as in `overlapping`.
+            ignore_touching: as in `box_cast`.
+            exclude: as in `overlapping`.
 
         Raises:
             InvalidQueryError: for the first that is invalid, as for a single one.
@@ -908,7 +1040,9 @@ class BroadPhase:
         >>> world.box_cast_many([[0, 1], [9, 10]], [[1], [-2]]).t
         array([4. , 1.5])
         """
-        return self._cast_many(Part("boxes", self._rows(boxes, "boxes"), "finite"), directions, limits, filter)
+        return self._cast_many(
+            Part("boxes", self._rows(boxes, "boxes"), "finite"), directions, limits, filter, ignore_touching, exclude
+        )
 
     def snapshot(self) -> bytes:
         """Returns the whole state as bytes, for rollback, replay and saved games.
@@ -982,22 +1116,29 @@ class BroadPhase:
         k: int = 0,
         max_distance: float = 0.0,
         sorted: bool = True,
-    ) -> tuple[Ids, NDArray[np.float64], NDArray[np.int64]]:
+        exclude: ArrayLike | None = None,
+    ) -> Found:
         """Answers queries whose numbers are in the rows of the parts, side by side."""
         rows = parts[0].rows if len(parts) == 1 else np.concatenate([part.rows for part in parts], axis=1)
         if not isinstance(sorted, (bool, np.bool_)):
             raise TypeError(f"sorted must be True or False, not a {type(sorted).__name__}")
+        checked, excluded = None if filter is None else words(filter), _excluded(exclude)
         try:
-            checked = None if filter is None else words(filter)
-            return self._world.query(kind, _double(rows), checked, parts[0].name, k, max_distance, bool(sorted))
+            found = self._world.query(
+                kind, _double(rows), checked, excluded, parts[0].name, k, max_distance, bool(sorted)
+            )
+            return Found(*found)
         except InvalidQueryError as error:
             raise _explained(error.index, parts) from None
 
-    def _nearest(self, name: str, points: Floats, k: int, filter: Filter | None, max_distance: float) -> Neighbors:
+    def _nearest(
+        self, name: str, points: Floats, k: int, filter: Filter | None, max_distance: float, exclude: ArrayLike | None
+    ) -> Neighbors:
         count, far = min(whole(k, "k", 0, 2**63 - 1), len(self)), real(max_distance, "max_distance")
         if not far >= 0:
             raise InvalidQueryError(0, "max_distance", far, "0 or more")
-        ids, squares, ends = self._ask("nearest", filter, Part(name, points, "finite"), k=count, max_distance=far)
+        part = Part(name, points, "finite")
+        ids, squares, _, ends = self._ask("nearest", filter, part, k=count, max_distance=far, exclude=exclude)
         distances = np.sqrt(squares)
         near = distances <= far  # the search compares squares, and finds a little more
         counts = np.bincount(np.repeat(np.arange(len(ends)), np.diff(ends, prepend=0))[near], minlength=len(ends))
@@ -1007,24 +1148,42 @@ class BroadPhase:
         found.ids[has], found.distances[has] = ids[near], distances[near]
         return found
 
-    def _cast(self, start: Part, direction: ArrayLike, limit: float, filter: Filter | None, all: bool) -> Hits:
+    def _cast(
+        self,
+        start: Part,
+        direction: ArrayLike,
+        limit: float,
+        filter: Filter | None,
+        all: bool,
+        ignore_touching: bool,
+        exclude: ArrayLike | None,
+    ) -> Hits:
         way = Part("direction", self._point(direction, "direction"), "finite")
-        kind = "cast_all" if all else "cast"
-        ids, t, _ = self._ask(kind, filter, start, way, self._number(limit, "limit"))
-        return Hits(ids, t)
+        kind = _cast_kind(all, ignore_touching)
+        ids, t, faces, _ = self._ask(kind, filter, start, way, self._number(limit, "limit"), exclude=exclude)
+        return Hits(ids, t, _normals(faces, self._dimensions), faces == 0)
 
-    def _cast_many(self, starts: Part, directions: ArrayLike, limits: ArrayLike, filter: Filter | None) -> Hits:
+    def _cast_many(
+        self,
+        starts: Part,
+        directions: ArrayLike,
+        limits: ArrayLike,
+        filter: Filter | None,
+        ignore_touching: bool,
+        exclude: ArrayLike | None,
+    ) -> Hits:
         ways, count = self._points(directions, "directions"), len(starts.rows)
         if len(ways) != count:
             raise ValueError(
                 f"{starts.name} and directions must have the same length: they have {count} and {len(ways)} rows"
             )
         far = Part("limits", each(limits, "limits", self._dtype, count)[:, None], "0 or more")
-        found, times, ends = self._ask("cast", filter, starts, Part("directions", ways, "finite"), far)
-        ids, t = np.full(count, -1), np.full(count, np.inf)
-        hits = np.diff(ends, prepend=0) > 0
-        ids[hits], t[hits] = found, times
-        return Hits(ids, t)
+        way, kind = Part("directions", ways, "finite"), _cast_kind(False, ignore_touching)
+        found = self._ask(kind, filter, starts, way, far, exclude=exclude)
+        hits = np.diff(found.ends, prepend=0) > 0
+        ids, t, faces = np.full(count, -1), np.full(count, np.inf), np.zeros(count, np.int64)
+        ids[hits], t[hits], faces[hits] = found.ids, found.values, found.faces
+        return Hits(ids, t, _normals(faces, self._dimensions), hits & (faces == 0))
 
 
 class Part(NamedTuple):
@@ -1062,5 +1221,35 @@ def _explained(index: int, parts: tuple[Part, ...]) -> InvalidQueryError:
     return InvalidQueryError(index, parts[0].name, parts[0].rows[index].tolist(), "min <= max on every axis")
 
 
+def _excluded(exclude: ArrayLike | None) -> Ids:
+    """The ids that a query does not find."""
+    if exclude is None:
+        return np.empty(0, np.int64)
+    return (
+        one_id(exclude)
+        if isinstance(exclude, SupportsIndex) and np.ndim(exclude) == 0
+        else id_array(exclude, "exclude")
+    )
+
+
+def _cast_kind(all: bool, ignore_touching: bool) -> str:
+    """The name of the query."""
+    if not isinstance(ignore_touching, (bool, np.bool_)):
+        raise TypeError(f"ignore_touching must be True or False, not a {type(ignore_touching).__name__}")
+    return ("cast_all" if all else "cast") + ("_entering" if ignore_touching else "")
+
+
+def _normals(faces: NDArray[np.int64], dimensions: int) -> NDArray[np.float64]:
+    """The normals of faces: 1 and 2 are those at the min and the max of the first axis, and so on; 0 is none."""
+    normals = np.zeros((len(faces), dimensions))
+    hits = np.flatnonzero(faces)
+    axes, at_max = np.divmod(faces[hits] - 1, 2)
+    normals[hits, axes] = np.where(at_max, 1.0, -1.0)
+    return normals
+
+
 def _first(hits: Hits) -> Hit | None:
-    return Hit(int(hits.ids[0]), float(hits.t[0])) if len(hits.ids) else None
+    if not len(hits.ids):
+        return None
+    normal = tuple(hits.normals[0].tolist())
+    return Hit(int(hits.ids[0]), float(hits.t[0]), normal, bool(hits.starts_inside[0]))

@@ -51,11 +51,12 @@ class World:
         kind: str,
         queries: NDArray[np.float64],
         filter: _Words | None,
+        excluded: Ids,
         argument: str,
         k: int = 0,
         max_distance: float = 0.0,
         sorted: bool = True,
-    ) -> tuple[Ids, NDArray[np.float64], NDArray[np.int64]]: ...
+    ) -> tuple[Ids, NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]: ...
     def snapshot(self) -> bytes: ...
     def state_hash(self) -> int: ...
 
