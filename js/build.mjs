@@ -11,7 +11,7 @@ const dist = join(here, "dist");
 /** The finder for size: 40 KB instead of 63, for at most 4 % of its speed (2026-11-22); its loops for speed take no more. */
 const smallWithFastLoops = { all: "s", core: 3, flags: ["-Cllvm-args=-inline-threshold=15"] };
 /** BroadPhase for speed: 151 KB instead of about 132, for up to a third less time. Inlining more makes it larger, not faster. */
-const fast = { all: 3, core: 3, flags: ["-Cllvm-args=-inline-threshold=25"] };
+const fast = { all: 3, core: 3, flags: ["-Cllvm-args=-inline-threshold=23"] };
 /**
  * One type of box: as fast with less inlined, and 3 KB smaller. Binaryen takes 3 KB more and no time; it would make the
  * finder and the BroadPhase larger (10,000 bodies at rest, drifting and flying, 2026-11-23).

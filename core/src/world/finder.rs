@@ -4,6 +4,7 @@ use alloc::alloc::{Layout, handle_alloc_error};
 use alloc::vec::Vec;
 
 use super::bodies::Bodies;
+use super::policy::LOOK_UP;
 use crate::pairs::PairFinder;
 use crate::{Aabb, Error, Scalar};
 
@@ -83,13 +84,15 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         &mut self,
         queries: &[(u32, Aabb<D, T>)],
         table: &[Aabb<D, T>],
-        takes_part: impl Fn(u32) -> bool,
+        takes_part: &dyn Fn(u32) -> bool,
         near: &mut Vec<[u32; 2]>,
         most: &mut usize,
     ) -> bool {
         let Self { finder, boxes, .. } = self;
         near.clear();
         boxes.clear();
+        // Spare capacity, so that steady motion does not allocate.
+        boxes.reserve(table.len() / LOOK_UP + 1);
         boxes.extend(queries.iter().map(|(_, aabb)| *aabb));
         let pairs = finder.search(boxes).against(table).pairs_up_to(*most);
         let Some(pairs) = found(pairs) else { return false };

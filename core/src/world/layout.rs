@@ -130,6 +130,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
 }
 
 /// Puts a table into a new order; an empty one stays empty. What a table does not reach to is not needed.
+#[inline(never)]
 fn apply<V: Copy>(table: &mut Vec<V>, order: &[u32], spare: &mut Vec<V>) {
     if let Some(&any) = table.first() {
         table.resize(order.len(), any);

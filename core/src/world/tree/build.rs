@@ -4,14 +4,13 @@ use alloc::vec::Vec;
 
 use super::edit::{Building, Entry, Tree};
 use super::node::{FAN, FILL, NONE, Node, finite, size};
-use crate::sampling::positions;
 use crate::{Aabb, Scalar};
 
 /// Sample size for measuring how bodies spread. 64 instead takes 0.99 to 1.03 of the time.
 const SAMPLE: usize = 16;
 /// The leaf of a body that is to be put into one.
 const AWAITED: u32 = NONE - 1;
-/// Sample size for measuring how large they are.
+/// Sample size for measuring how large they are, at least but for small trees.
 const SAMPLE_OF_SIDES: usize = 512;
 
 /// How deep a step cuts, the first one, which also lists the bodies, and any other.
@@ -240,6 +239,7 @@ fn leaves_of<E>(entries: &[E]) -> usize {
 
 /// How many leaves each child of a node over `leaves` of them holds: as many as make it full to the bottom, so that
 /// there are as few children as can be.
+#[inline(never)]
 fn capacity_of(leaves: usize) -> usize {
     let mut capacity = 1;
     while capacity * FAN < leaves {
@@ -252,12 +252,12 @@ fn capacity_of(leaves: usize) -> usize {
 const CLASSES: usize = 2048 / 3 + 1;
 
 /// Lists bodies by size class, and within a class in the order given. Returns where each class that there is ends; where
-/// there are more than a node can hold, the last one holds the others.
+/// there are more than a node can hold, the last one holds the others, and where there are fewer, the last ones are empty.
 fn sort_by_class<const D: usize, T: Scalar>(
     bodies: impl Iterator<Item = u32> + Clone,
     boxes: &[Aabb<D, T>],
     entries: &mut Vec<Entry<D, T>>,
-) -> Vec<usize> {
+) -> [usize; FAN] {
     let class = |body: u32| size_class(&boxes[body as usize]);
     let mut ends = [0; CLASSES];
     bodies.clone().for_each(|body| ends[class(body)] += 1);
@@ -274,13 +274,15 @@ fn sort_by_class<const D: usize, T: Scalar>(
         entries[*at as usize] = Entry { center, body };
         *at += 1;
     }
-    let mut last = 0;
-    let mut ends: Vec<usize> = ends.iter().map(|&end| end as usize).collect();
-    ends.retain(|&end| core::mem::replace(&mut last, end) < end);
-    if ends.len() > FAN {
-        ends.drain(FAN - 1..ends.len() - 1);
+    let (mut parts, mut last, mut found) = ([entries.len(); FAN], 0, 0);
+    for end in ends {
+        if end > last && found < FAN - 1 {
+            parts[found] = end as usize;
+            found += 1;
+        }
+        last = end;
     }
-    ends
+    parts
 }
 
 /// Sizes that differ by less than a factor of 8 on the longest axis are of one class, or of two
@@ -299,13 +301,15 @@ fn mean_sides<const D: usize, T: Scalar>(
     boxes: &[Aabb<D, T>],
 ) -> [f64; D] {
     let mut sides = [0.0; D];
-    for at in positions(entries.len(), SAMPLE_OF_SIDES) {
-        let aabb = &boxes[entries[at].body as usize];
+    let mut count = 0.0;
+    for entry in entries.iter().step_by(entries.len() / SAMPLE_OF_SIDES + 1) {
+        let aabb = &boxes[entry.body as usize];
+        count += 1.0;
         for (axis, side) in sides.iter_mut().enumerate() {
             *side += finite(aabb.max[axis]) - finite(aabb.min[axis]);
         }
     }
-    sides.map(|side| side / entries.len().min(SAMPLE_OF_SIDES) as f64)
+    sides.map(|side| side / count)
 }
 
 /// The axis on which the centers spread most for the size of the boxes, by a sample.

@@ -15,8 +15,8 @@ pub struct Entry<const D: usize, T> {
 /// A build that takes several steps.
 #[derive(Clone, Debug, Default)]
 pub struct Building {
-    /// By size class that there is, where its entries end.
-    pub ends: Vec<usize>,
+    /// Where the entries of each size class end, of those that there are; behind the last one empty ones.
+    pub ends: [usize; FAN],
     /// How deep the entries are cut.
     pub depth: u32,
     /// Whether they are cut to the bottom.

@@ -107,7 +107,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             let is_found = if has_tree {
                 tree.overlapping_many(batch, leaves, found, most)
             } else {
-                finder.find_near(batch, fat, are_asleep, found, most)
+                finder.find_near(batch, fat, &are_asleep, found, most)
             };
             if !is_found {
                 woken.clear();
@@ -229,7 +229,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             } else {
                 let has_fat =
                     |index: u32| bodies.slots.has(index, flag::LIVE) && !is_escaped[index as usize];
-                finder.find_near(batch, fat, has_fat, found, &mut most)
+                finder.find_near(batch, fat, &has_fat, found, &mut most)
                     && finder.find_among(batch, found, &mut most)
             };
             if !is_found || candidates.pairs.len() + added.len() > limit {
