@@ -30,8 +30,8 @@ import pyarrow.parquet
 
 import sweep_and_prune.dask as sap
 from sweep_and_prune._partitioned import boxes as boxes_module
+from sweep_and_prune._partitioned import graph, tasks, workers
 from sweep_and_prune._partitioned import run as run_module
-from sweep_and_prune._partitioned import tasks, workers
 from sweep_and_prune._partitioned.dataset import hash_pairs
 
 # Dask calls pandas in a way that a newer pandas warns of.
@@ -124,6 +124,36 @@ def test_wide_boxes_of_a_cell_that_is_split_again_meet_those_of_the_whole(
     assert np.array_equal(dataset(), in_order(core.find_pairs(boxes)))
     names = [path.name for path in Path("out").glob("cell-*wide.parquet")]
     assert len(names) > 1, "there are wide boxes at both levels"
+
+
+def with_a_pattern(number: int, period: int) -> Any:
+    """Boxes whose first one in each `period` is near 0, and all others near 1000."""
+    low = np.random.default_rng(1).random((number, 2)) + np.where(np.arange(number)[:, None] % period, 1000, 0)
+    return np.hstack([low, low])
+
+
+def test_a_pattern_of_any_period_cannot_hide_boxes_from_a_sample(
+    small_memory: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for period in (2, 7):  # the steps between the rows of the samples
+        rows = period * 20_000
+        for boxes in (with_a_pattern(rows, period), with_a_pattern(rows, period).astype(np.float32)):
+            collections = [dask.array.from_array(boxes, chunks=rows)]
+            collections += [dask.dataframe.from_pandas(table(boxes).to_pandas(), npartitions=1)]
+            for collection in collections:
+                options = {"format": "xyxy", "closed": None, "missing": "raise", "margin": 0}
+                sample = graph.source_of_collection(collection, None, None, "boxes", options).sample
+                assert len(sample) == 20_000
+                assert abs((sample[:, 0] > 500).mean() - (period - 1) / period) < 0.01
+    # A cell that is split into 80: one box in 10 is in the sample.
+    samples = []
+    real = tasks.choose_cells
+    monkeypatch.setattr(tasks, "choose_cells", lambda sample, count: samples.append(sample) or real(sample, count))
+    monkeypatch.setattr(tasks, "_SAMPLE_PER_CELL", 25)
+    write("a.parquet", with_a_pattern(20_000, 10), group=20_000)
+    sap.find_pairs("a.parquet", out="out", workers=0, cells=1)
+    assert len(samples[0]) == 2000
+    assert abs((samples[0][:, 0] > 500).mean() - 0.9) < 0.03
 
 
 def test_the_hash_of_pairs_sees_which_ids_pair_and_not_their_order() -> None:

@@ -108,6 +108,16 @@ class Cells(NamedTuple):
         return [rows + np.int32(first) for rows in groups]
 
 
+def rows_of_sample(number: int, step: int, seed: int = 0) -> NDArray[np.int64]:
+    """One row in each `step` consecutive rows of `number`, at a pseudo-random place among them.
+
+    A fixed place would miss what a periodic pattern puts elsewhere. The rows ascend, and depend on the arguments alone.
+    """
+    starts = np.arange(0, number, step)
+    places = np.random.default_rng(seed).random(len(starts))
+    return starts + (places * np.minimum(step, number - starts)).astype(np.int64)
+
+
 def choose_cells(sample: Floats, count: int) -> Cells:
     """Splits space into at most `count` cells that get about equally many boxes, by a sample of the boxes.
 

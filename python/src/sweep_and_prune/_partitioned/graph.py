@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from .._arrays import Floats
 from .boxes import Chunk, Form, id_type_of, read_chunk
-from .cells import Cells, choose_cells
+from .cells import Cells, choose_cells, rows_of_sample
 from .dataset import DatasetError
 from .plan import ARGUMENTS
 from .run import CELL_BOXES, SAMPLE_PER_CELL, Source, chunks_of, dimensions_of, sample_of
@@ -76,8 +76,8 @@ def _form_of_frame(meta: Any, columns: Any, ids: str | None, options: dict[str, 
 
 def _summary(table: Any, form: Form, name: str) -> tuple[int, Floats]:
     rows = len(table)
-    step = max(1, rows // _SAMPLE_OF_PARTITION)
-    sampled = table.iloc[::step] if hasattr(table, "iloc") else table[::step]
+    of_sample = rows_of_sample(rows, max(1, rows // _SAMPLE_OF_PARTITION))
+    sampled = table.iloc[of_sample] if hasattr(table, "iloc") else table[of_sample]
     try:
         return rows, form.read(sampled, name, 0, 0, name).rows
     except ValueError:  # reading the whole partition reports it

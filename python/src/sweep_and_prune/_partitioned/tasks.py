@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from .._errors import SweepAndPruneError
 from .boxes import Chunk, read_chunk
-from .cells import Cells, choose_cells
+from .cells import Cells, choose_cells, rows_of_sample
 from .dataset import DatasetError, has_its_pairs, pair_file
 from .files import read_sealed, write_sealed
 from .folder import Folders
@@ -132,12 +132,13 @@ def _chosen(folders: Folders, plan: Plan, node: Node, wanted: int) -> Cells | No
 
 
 def _sample(folders: Folders, plan: Plan, node: Node, step: int) -> NDArray[np.float64]:
-    blocks = [
-        boxes.rows[::step]
+    blocks = (
+        boxes.rows
         for argument in range(plan.sets)
         for boxes in read_groups(folders.boxes(plan, node.level, argument), node.group, node.groups)
-    ]
-    return np.concatenate(blocks).astype(np.float64)
+    )
+    sampled = [rows[rows_of_sample(len(rows), step, number)] for number, rows in enumerate(blocks)]
+    return np.concatenate(sampled).astype(np.float64)
 
 
 def _clipped(sample: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
