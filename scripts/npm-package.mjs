@@ -33,7 +33,7 @@ export function begin(folder) {
 }
 
 /**
- * Compiles a crate to WebAssembly, into a target folder of its own, so that no build undoes another. `levels.all` is the
+ * Compiles a crate to WebAssembly, and to nothing else, or it would not be optimized as one program; into a target folder of its own, so that no build undoes another. `levels.all` is the
  * optimization of `all` of it, and `levels.core` of what is compiled with the crate `sweep-and-prune` itself rather than with the
  * one that uses it, which are above all the finder's innermost loops.
  */
@@ -47,7 +47,7 @@ export async function compile(crate, { features = [], directory, flags = [], lev
   const inner = ["--config", `profile.wasm.package.sweep-and-prune.opt-level=${JSON.stringify(levels.core)}`];
   await run(
     "cargo",
-    ["build", "--quiet", ...inner, ...what, ...profile, "--target-dir", join(target, directory)],
+    ["rustc", "--lib", "--crate-type", "cdylib", "--quiet", ...inner, ...what, ...profile, "--target-dir", join(target, directory)],
     { ...process.env, CARGO_ENCODED_RUSTFLAGS: all, CARGO_PROFILE_WASM_OPT_LEVEL: String(levels.all) },
   );
   return readFileSync(join(target, directory, `wasm32-unknown-unknown/wasm/${crate.replaceAll("-", "_")}.wasm`));

@@ -41,8 +41,7 @@ for (const { suffix, folder, flags } of builds) {
 }
 
 // The algorithms of the classroom with the broken variants, which only the site shows.
-const algorithms = await compile("sweep-and-prune-wasm", {
-  features: ["broken"],
+const algorithms = await compile("sweep-and-prune-site-broken", {
   directory: "wasm-scalar/broken",
   levels: { all: "s", core: "s", flags: [] },
 });

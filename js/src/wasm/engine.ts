@@ -5,14 +5,14 @@ import { InvalidBoxError, NotInitializedError, OutOfMemoryError, SweepAndPruneEr
 /** A `WebAssembly.Module`. */
 export type Module = object;
 
-/** What every build of js/wasm/ exports. Pointers and counts are signed numbers: `>>> 0` makes them unsigned. */
+/** What every compiled core exports. Pointers and counts are signed numbers: `>>> 0` makes them unsigned. */
 export interface Exports {
   readonly memory: { readonly buffer: ArrayBuffer };
   readonly __stack_pointer: { value: number };
   status(): number;
 }
 
-/** The codes that js/wasm/src/status.rs gives. Any other is an internal error. */
+/** The codes that bindings/wasm/src/status.rs gives. Any other is an internal error. */
 export const enum Code {
   Ok = 0,
   InvalidBox = 1,

@@ -11,8 +11,8 @@ use core::ops::ControlFlow::{self, Break, Continue};
 use sweep_and_prune::Error;
 use sweep_and_prune_bindings::{AnyPairFinder, TypedPairFinder};
 
-use crate::call::{self, Running, stack, truth};
-use crate::status::{Code, report, report_error};
+use sweep_and_prune_wasm_runtime::call::{self, Running, stack, truth};
+use sweep_and_prune_wasm_runtime::status::{Code, report, report_error};
 
 /// Stands for the count of the second set where there is only one.
 const NO_SET: usize = usize::MAX;
@@ -43,8 +43,16 @@ impl Taker {
 }
 
 #[cfg(target_arch = "wasm32")]
+#[link(wasm_import_module = "sweep_and_prune")]
+unsafe extern "C" {
+    /// Hands `count` pairs to the callback of the running call. Returns 0 if the callback wants no more. Never
+    /// throws: an exception of the callback is thrown when the call has returned.
+    safe fn each(pairs: *const [u32; 2], count: usize) -> u32;
+}
+
+#[cfg(target_arch = "wasm32")]
 fn hand_over(pairs: &[[u32; 2]]) -> bool {
-    crate::runtime::each(pairs.as_ptr(), pairs.len()) != 0
+    each(pairs.as_ptr(), pairs.len()) != 0
 }
 
 #[cfg(not(target_arch = "wasm32"))]

@@ -2,7 +2,7 @@
 //!
 //! Each feature is a build of its own, a file that a page loads if it uses it.
 //!
-//! A function that can fail gives a code, with details in the [`status`] area. Handles and
+//! A function that can fail gives a code, with details in the area that `status` returns. Handles and
 //! pointers are those that this module gave out.
 #![cfg_attr(target_arch = "wasm32", no_std)]
 // SAFETY of the exports: each has a name that no other symbol has, and is called by `js/src/`
@@ -13,15 +13,7 @@
 
 extern crate alloc;
 
-#[cfg(feature = "algorithms")]
-mod algorithms;
 #[cfg(any(feature = "broad-phase", feature = "events-2d", feature = "events-3d"))]
 mod broad_phase;
-#[cfg(feature = "algorithms")]
-mod broken;
-mod call;
 #[cfg(feature = "finder")]
 mod finder;
-#[cfg(target_arch = "wasm32")]
-mod runtime;
-mod status;

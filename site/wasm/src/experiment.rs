@@ -3,8 +3,8 @@
 use sweep_and_prune::{Aabb, PairFinder};
 use sweep_and_prune_exchange::clock;
 
-use crate::SCENES;
 use crate::motion::{LAWS, Moving, resize};
+use crate::scenes::SCENES;
 use crate::searcher::{Choice, Forecast, Report, Searcher, forecast};
 
 /// The most boxes of a world.

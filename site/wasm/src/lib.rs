@@ -27,6 +27,7 @@
 
 pub mod experiment;
 pub mod motion;
+mod scenes;
 pub mod searcher;
 
 use std::cell::RefCell;
@@ -35,9 +36,9 @@ use std::sync::atomic::AtomicU64;
 
 use sweep_and_prune_algorithms::{Axis, Method, RunnerOptions, Sort};
 use sweep_and_prune_exchange::{read_area, write_area};
-use sweep_and_prune_scenes::Scene;
 
 use experiment::Experiment;
+use scenes::SCENES;
 use searcher::Choice;
 
 /// Whether a call was done. What is not done has changed nothing.
@@ -63,12 +64,6 @@ fn with<R>(run: impl FnOnce(&mut dyn Experiment) -> Option<R>) -> Option<R> {
 fn code(done: Option<()>) -> Code {
     if done.is_some() { Code::Ok } else { Code::Invalid }
 }
-
-/// The scenes that can be shown: not the three whose coordinates are too extreme to move.
-static SCENES: LazyLock<Vec<Scene>> = LazyLock::new(|| {
-    let hidden = [Scene::Extreme, Scene::Subnormal, Scene::Infinite];
-    Scene::ALL.iter().copied().filter(|scene| !hidden.contains(scene)).collect()
-});
 
 /// The rules that choose the sweep axis; behind them come the axes themselves.
 const RULES: [Axis; 3] = [Axis::LargestVariance, Axis::LongestExtent, Axis::FewestOverlaps];

@@ -6,13 +6,15 @@ import { OutOfMemoryError } from "../../../../js/src/wasm/errors.js";
 import { forgotten, Handle } from "../../../../js/src/wasm/handle.js";
 import { lengthOf } from "../../../../js/src/wasm/typed.js";
 
-/** What js/wasm/src/algorithms.rs exports. */
+/** What classroom/algorithms/wasm/ exports. */
 export interface AlgorithmsExports extends Exports {
   runner_new(dimensions: number, traceWords: number): number;
   runner_copy(runner: number): number;
   runner_free(runner: number): void;
   runner_text(runner: number, length: number): number;
   runner_choose(runner: number, part: number, index: number): number;
+  /** Chooses a method that only the compiled algorithms of a page have, by the text. */
+  runner_choose_variant?(runner: number): number;
   runner_start(runner: number, isPersistent: number): number;
   runner_rows(runner: number, count: number): number;
   runner_step(runner: number, count: number): number;
@@ -150,7 +152,8 @@ export class Runner {
     const engine = algorithmsCore.engine();
     this.#handle = own(engine, engine.call((exports) => exports.runner_new(this.#dimensions, traceWords)));
     forgotten?.register(this, this.#handle);
-    if (!this.#choose(0, method, focus)) {
+    const isVariant = (): boolean => this.#handle.call((exports, runner) => exports.runner_choose_variant?.(runner)) === 1;
+    if (!this.#choose(0, method, focus) && !isVariant()) {
       this.free();
       refuseName("method", method);
     }
@@ -229,7 +232,7 @@ export class Runner {
     this.free();
   }
 
-  /** Whether the core knows the name. */
+  /** Whether the compiled algorithms know the name. */
   #choose(part: number, name: string, index: number): boolean {
     const { engine } = this.#handle;
     const text = new TextEncoder().encode(name);
@@ -245,7 +248,7 @@ export class Runner {
   }
 }
 
-/** @internal Counts in the order in which js/wasm/src/algorithms.rs has them. */
+/** @internal Counts in the order in which classroom/algorithms/wasm/src/numbers.rs has them. */
 export function readCounts(numbers: Float64Array, from: number): Counts {
   const [comparisons = 0, swaps = 0, tests = 0, axisOverlaps = 0, axisEnds = 0] = numbers.subarray(from);
   const [pairs = 0, begun = 0, ended = 0, active = 0, maxActive = 0] = numbers.subarray(from + 5);

@@ -5,7 +5,7 @@ use sweep_and_prune_exchange::clock;
 use sweep_and_prune_simulation::scenes::{self, Population};
 use sweep_and_prune_simulation::{Ball, BroadPhase, Moment, Setup, SetupError, Simulation};
 
-use crate::Code;
+use crate::code::Code;
 
 /// The most balls of a random start.
 pub const MOST_BODIES: f64 = 100_000.0;

@@ -33,6 +33,7 @@
 // numbers only and dereference no pointer.
 #![allow(unsafe_code)]
 
+mod code;
 mod dynamic;
 mod names;
 
@@ -43,23 +44,7 @@ use sweep_and_prune_exchange::{read_area, write_area};
 
 use dynamic::{DynSimulation, Start};
 
-/// How a call ended; `simulation.js` has the same list.
-#[repr(u32)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Code {
-    /// Done.
-    Ok = 0,
-    /// The handle is not that of a simulation.
-    NoSuchSimulation = 1,
-    /// An option is NaN, or does not exist.
-    InvalidOption = 2,
-    /// The balls do not fit without overlap.
-    TooCrowded = 3,
-    /// More balls, or simulations, than can be held.
-    TooMany = 4,
-    /// A bug.
-    Internal = 5,
-}
+pub use code::Code;
 
 #[derive(Default)]
 struct State {

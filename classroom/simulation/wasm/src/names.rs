@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use sweep_and_prune_algorithms::{Axis, Method, RunnerOptions, Sort};
 use sweep_and_prune_simulation::BroadPhase;
 
-use crate::Code;
+use crate::code::Code;
 
 /// The rules that choose the sweep axis, with their names.
 const AXES: [(Axis, &str); 2] =

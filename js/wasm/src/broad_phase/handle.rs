@@ -10,8 +10,8 @@ use sweep_and_prune_bindings::AnyBroadPhase as Bodies;
 use sweep_and_prune_bindings::TrackBodies as Bodies;
 use sweep_and_prune_bindings::{Answer, Id};
 
-use crate::call::{self, Running};
-use crate::status::{Code, report, report_error};
+use sweep_and_prune_wasm_runtime::call::{self, Running};
+use sweep_and_prune_wasm_runtime::status::{Code, report, report_error};
 
 /// Bits of an id that are its slot. Each body takes more than 64 bytes, so 4 GiB hold fewer.
 const SLOT_BITS: u32 = 26;

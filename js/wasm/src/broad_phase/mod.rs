@@ -15,9 +15,9 @@ use alloc::boxed::Box;
 use sweep_and_prune::{Filter, Report};
 use sweep_and_prune_bindings::{Id, Settings, filter};
 
-use crate::call::{self, run, stack, truth};
-use crate::status::{Code, report, report_error};
 use handle::{Handle, Number};
+use sweep_and_prune_wasm_runtime::call::{self, run, stack, truth};
+use sweep_and_prune_wasm_runtime::status::{Code, report, report_error};
 
 /// A filter from its numbers; `None` if `is_static` is no truth value.
 fn filter_of(category: u32, mask: u32, group: i32, is_static: u32) -> Option<Filter> {

@@ -7,8 +7,8 @@ use sweep_and_prune_bindings::Query;
 use super::filter_of;
 use super::handle::{Handle, id_of, note};
 use super::stored;
-use crate::call::{run, stack, truth};
-use crate::status::{Code, report, report_error};
+use sweep_and_prune_wasm_runtime::call::{run, stack, truth};
+use sweep_and_prune_wasm_runtime::status::{Code, report, report_error};
 
 /// Where to write `count` bytes of a snapshot; null if there is no memory for them.
 #[unsafe(no_mangle)]

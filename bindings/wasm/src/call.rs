@@ -57,26 +57,33 @@ pub const fn truth(number: u32) -> Option<bool> {
     }
 }
 
-#[cfg(not(target_arch = "wasm32"))]
+/// How much of the engine's stack a call needs.
 pub mod stack {
-    pub const SMALL: u32 = 0;
-    pub const LARGE: u32 = 0;
-
-    pub fn check(_: u32) {}
-}
-
-#[cfg(target_arch = "wasm32")]
-pub mod stack {
-    //! The engine's stack cannot be measured, but a function that finds no space on it does not begin.
-
-    use core::sync::atomic::AtomicU64;
-
     /// Frames for a call with one body.
     pub const SMALL: u32 = 1;
     /// For the allocator, which every object shares: it must never be ended halfway. In V8 it takes less than half of this.
     pub const ALLOCATOR: u32 = 4;
     /// For all other calls. Some take more, so they may be ended halfway all the same; then their handle says so.
     pub const LARGE: u32 = 8;
+
+    #[cfg(not(target_arch = "wasm32"))]
+    pub use super::no_frames::check;
+
+    #[cfg(target_arch = "wasm32")]
+    pub use super::frames::check;
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+mod no_frames {
+    /// Only an engine ends a call by throwing.
+    pub fn check(_: u32) {}
+}
+
+#[cfg(target_arch = "wasm32")]
+mod frames {
+    //! The engine's stack cannot be measured, but a function that finds no space on it does not begin.
+
+    use core::sync::atomic::AtomicU64;
 
     static WORDS: [AtomicU64; 64] = [const { AtomicU64::new(0) }; 64];
 

@@ -1,7 +1,8 @@
-//! Linker options of the WebAssembly build.
+//! The build script of each WebAssembly file that uses this crate: options for the linker.
 
 fn main() {
-    println!("cargo:rerun-if-changed=build.rs");
+    // A change of this file runs it; it reads no other.
+    println!("cargo:rerun-if-env-changed=CARGO_CFG_TARGET_ARCH");
     if std::env::var("CARGO_CFG_TARGET_ARCH").is_ok_and(|arch| arch == "wasm32") {
         // JavaScript puts the stack pointer back where a call was left by throwing.
         println!("cargo:rustc-link-arg-cdylib=--export=__stack_pointer");

@@ -15,11 +15,6 @@ use crate::call::stack;
 unsafe extern "C" {
     /// Throws: `OutOfMemoryError`, or an internal error.
     safe fn fail(is_out_of_memory: bool) -> !;
-
-    /// Hands `count` pairs to the callback of the running call. Returns 0 if the callback wants no more. Never
-    /// throws: an exception of the callback is thrown when the call has returned.
-    #[cfg(feature = "finder")]
-    pub safe fn each(pairs: *const [u32; 2], count: usize) -> u32;
 }
 
 /// The allocator, which notes whether its last allocation failed, and begins only if it can end.
