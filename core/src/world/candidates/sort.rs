@@ -19,6 +19,7 @@ pub struct PairSorter {
     buffer: Vec<[u32; 2]>,
     unsorted: Vec<[u32; 2]>,
     starts: Vec<u32>,
+    keys: Vec<u64>,
 }
 
 impl PairSorter {
@@ -35,8 +36,7 @@ impl PairSorter {
     pub fn sort_into(&mut self, from: &[[u32; 2]], sorted: &mut Vec<[u32; 2]>, bound: usize) {
         if from.len() < RADIX_FROM || u32::try_from(from.len()).is_err() {
             sorted.clear();
-            sorted.extend_from_slice(from);
-            sorted.sort_unstable_by_key(|&pair| key(pair));
+            sorted.extend(self.sort_keys(from.iter().map(|&pair| key(pair))).map(pair));
             return;
         }
         let bits = usize::BITS - bound.saturating_sub(1).leading_zeros();
@@ -61,6 +61,15 @@ impl PairSorter {
             }
         }
         core::mem::swap(sorted, &mut self.buffer);
+    }
+
+    /// Sorts numbers that stand for pairs or ids. All short lists are sorted as such numbers, because each type that
+    /// is sorted takes a kilobyte of a WebAssembly file.
+    pub fn sort_keys(&mut self, keys: impl Iterator<Item = u64>) -> impl Iterator<Item = u64> {
+        self.keys.clear();
+        self.keys.extend(keys);
+        self.keys.sort_unstable();
+        self.keys.drain(..)
     }
 
     /// Of two sorted lists without duplicates, appends what only the first has and what only the second
@@ -123,6 +132,12 @@ fn distribute(
 #[inline(always)]
 fn key(pair: [u32; 2]) -> u64 {
     u64::from(pair[0]) << 32 | u64::from(pair[1])
+}
+
+/// The pair of a [`key`].
+#[inline(always)]
+fn pair(key: u64) -> [u32; 2] {
+    [(key >> 32) as u32, key as u32]
 }
 
 /// Two sorted lists that are compared, and how far.

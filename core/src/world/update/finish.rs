@@ -2,7 +2,7 @@
 //! asleep.
 
 use crate::Scalar;
-use crate::world::bodies::{Bodies, flag};
+use crate::world::bodies::{Bodies, ProxyId, flag};
 use crate::world::candidates::are_asleep;
 use crate::world::changes::Events;
 use crate::world::tracking::{Tracking, TreeState};
@@ -36,9 +36,11 @@ pub fn finish<const D: usize, T: Scalar>(
     }
     // After an update from scratch no body falls asleep.
     let is_scattered = !tracking.candidates.are_sorted && tracking.fall_asleep(bodies, moved);
+    let removed = bodies.leaving.iter().map(|&index| bodies.slots.id(index).to_ordered_bits());
     events.removed.clear();
-    events.removed.extend(bodies.leaving.iter().map(|&index| bodies.slots.id(index)));
-    events.removed.sort_unstable();
+    events
+        .removed
+        .extend(tracking.scratch.sorter.sort_keys(removed).map(ProxyId::from_ordered_bits));
     for index in bodies.leaving.drain(..) {
         bodies.slots.release(index, 0);
     }
