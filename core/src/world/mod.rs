@@ -24,7 +24,6 @@ mod tracking;
 mod tree;
 mod update;
 #[cfg(all(test, feature = "std"))]
-#[path = "../../tests/recorded/broad_phase.rs"]
 mod work;
 
 pub use bodies::{Filter, ProxyId};

@@ -181,5 +181,4 @@ impl Comparison<'_> {
 }
 
 #[cfg(test)]
-#[path = "../../../tests/recorded/candidates_sort.rs"]
 mod tests;

@@ -138,5 +138,4 @@ impl Policy {
 }
 
 #[cfg(test)]
-#[path = "../../../tests/recorded/policy_cost.rs"]
 mod tests;

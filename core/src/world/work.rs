@@ -1,7 +1,7 @@
 //! The work of updates: how often a broad phase finds all pairs from scratch, finds all candidates, looks up the bodies
 //! that left their fat AABBs, or only tests candidates; how many candidates there are, and how many bodies sleep; and a
 //! hash of what it keeps from update to update (fat AABBs, candidates, tree, order in memory, policies).
-//! `core/tests/recorded/broad_phase.txt` records these for every motion, so that they only change on purpose.
+//! `work.txt` records these for every motion, so that they only change on purpose.
 
 use std::fmt::Write;
 use std::format;
@@ -115,7 +115,7 @@ fn updates_do_the_work_that_is_recorded() {
             motion!(&mut report, motion, life, 3, f32);
         }
     }
-    compare_with_record("tests/recorded/broad_phase.txt", &report);
+    compare_with_record("src/world/work.txt", &report);
 }
 
 /// A box of size 1 at a place, and a world of so many of them, ten apart, after an update.
