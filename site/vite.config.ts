@@ -3,11 +3,13 @@ import { api } from "./src/api/build.ts";
 import { article } from "./src/article/build.ts";
 import { benchmark, alternatives } from "./src/benchmark/build.ts";
 import { insertComplexity } from "./src/complexity/table.ts";
+import { listings, sandboxWorker } from "./src/edit/build.ts";
 import { hero } from "./src/hero/build.ts";
 import { expandPlayground } from "./src/playground/markup.ts";
 import { offline } from "./src/shell/offline.ts";
 import { pages, shell } from "./src/shell/pages.ts";
 import { expandFallingBalls } from "./src/simulation/markup.ts";
+import { tasks } from "./src/tasks/build.ts";
 
 /** Writes the inside of `<falling-balls>` and `<box-playground>` into the page, so that nothing moves when scripts arrive. */
 const panels: Plugin = {
@@ -32,7 +34,7 @@ const quiet: Rolldown.InputOptions = {
 export default defineConfig({
   base: "./",
   appType: "mpa",
-  plugins: [hero, shell, article, api, panels, complexity, benchmark, offline],
+  plugins: [hero, shell, article, tasks, listings, sandboxWorker, api, panels, complexity, benchmark, offline],
   worker: { format: "es", plugins: () => [alternatives()], rolldownOptions: quiet },
   build: {
     target: "es2022",

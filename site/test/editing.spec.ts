@@ -52,10 +52,17 @@ test("changed code runs in the demo: its tests, its pairs, what it misses; time 
   await expect(said).toHaveText("The demo runs your code.");
   await expect.poll(async () => (await demo.finish()).tests).toBe(4);
   const moments = await demo.root.evaluate((element) => {
-    const demo = element as unknown as { state: unknown; step(): void; back(): void };
-    const forward = Array.from({ length: 12 }, () => (demo.step(), JSON.stringify(demo.state)));
-    const back = Array.from({ length: 11 }, () => (demo.back(), JSON.stringify(demo.state)));
-    return { forward, back };
+    const demo = element as unknown as { state: unknown; settled: Promise<void>; step(): void; back(): void };
+    const states = async (count: number, act: () => void): Promise<string[]> => {
+      const states: string[] = [];
+      while (states.length < count) {
+        act();
+        await demo.settled;
+        states.push(JSON.stringify(demo.state));
+      }
+      return states;
+    };
+    return states(12, () => demo.step()).then(async (forward) => ({ forward, back: await states(11, () => demo.back()) }));
   });
   expect(moments.back.reverse()).toEqual(moments.forward.slice(0, -1));
 
@@ -76,6 +83,29 @@ test("changed code runs in the demo: its tests, its pairs, what it misses; time 
   expect(heard).toEqual([]);
 });
 
+test("code runs without document, storage and network", async ({ page }) => {
+  const heard: string[] = [];
+  page.on("request", (request) => heard.push(request.url()));
+  const { said, type } = await edit(page, "d2", "pairwise");
+  await expect(said).toHaveText("The demo runs this code. Change it.");
+  heard.length = 0;
+  /** What an expression gives, told as an error. */
+  let asked = 0;
+  const result = async (expression: string): Promise<string> => {
+    await type(`const says = ${expression};\nexport function globalPairwise() { throw new Error("No. ${++asked}: It is " + says); }`);
+    await expect(said).toContainText(`No. ${asked}: `);
+    return (await said.textContent())!;
+  };
+  const attempt = (expression: string): string => `(() => { try { return String(${expression}); } catch (error) { return error.name; } })()`;
+  expect(await result("typeof document + typeof localStorage + typeof window")).toContain("It is undefinedundefinedundefined");
+  expect(await result(attempt("self.origin"))).toContain("It is null");
+  expect(await result(attempt('(indexedDB.open("x"), "open")'))).toContain("It is SecurityError");
+  expect(await result(attempt('new XMLHttpRequest().open("GET", "/icon.svg") ?? (() => { const request = new XMLHttpRequest(); request.open("GET", "data:,x", false); request.send(); return request.responseText; })()'))).toMatch(/It is (NetworkError|SyntaxError)/);
+  expect(await result(attempt(`importScripts("${new URL(page.url()).origin}/service-worker.js")`))).toContain("It is NetworkError");
+  expect(await result(attempt(`(fetch("${new URL(page.url()).origin}/icon.svg"), new WebSocket("ws://localhost:9"), "sent")`))).toMatch(/It is (sent|SecurityError)/);
+  expect(heard.filter((url) => !url.startsWith("blob:")), "nothing has been asked for").toEqual([]);
+});
+
 test("errors are shown at their line; a loop that never ends is stopped; the demo goes on", async ({ page }) => {
   const heard = complaints(page);
   const { demo, listing, said, type, code } = await edit(page, "d5", "sorted-pairwise");
@@ -93,7 +123,10 @@ test("errors are shown at their line; a loop that never ends is stopped; the dem
   await type(original.replace("j < boxes.length", "true").replace("if (b.left > a.right) break;", ""));
   await expect(said).toContainText(/Cannot read properties of undefined|b is undefined/);
   await type(original.replace("for (let i = 0;", "while (true) ;\n  for (let i = 0;"));
-  await expect(said).toContainText(/Stopped after 200,000 loops and calls/);
+  await expect(said).toHaveText("Ended after 2 seconds: does a loop never end?");
+  // Not only loops that can be counted: here the engine itself does not come back.
+  await type(original.replace("for (let i = 0;", '/(a+)+$/.test("a".repeat(40) + "b");\n  for (let i = 0;'));
+  await expect(said).toHaveText("Ended after 2 seconds: does a loop never end?");
   await type("export function mine() {}");
   await expect(said).toHaveText("The demo calls sortedPairwise(), and there is no such function any more.");
   await listing.getByRole("button", { name: "Original code" }).click();
@@ -115,10 +148,11 @@ test("each listing, unchanged, finds what the compiled algorithm finds", async (
     await demo.reset();
     /** The pairs of the same detections, and the most that was counted in one. */
     const run = (): Promise<{ pairs: string[]; most: Record<string, number> }> =>
-      demo.root.evaluate((element) => {
-        const demo = element as unknown as { state: Record<string, number>; pairs: number[][]; step(): void; reset(): void; pause(): void };
+      demo.root.evaluate(async (element) => {
+        const demo = element as unknown as { state: Record<string, number>; settled: Promise<void>; pairs: number[][]; step(): void; reset(): void; pause(): void };
         demo.reset();
         demo.pause();
+        await demo.settled;
         const pairs = new Map<number, string>();
         const most: Record<string, number> = {};
         const look = (): void => {
@@ -130,6 +164,7 @@ test("each listing, unchanged, finds what the compiled algorithm finds", async (
         if (element.hasAttribute("static")) return look(), { pairs: [...pairs.values()], most };
         for (let steps = 0; steps < 400 && pairs.size < 3; steps++) {
           demo.step();
+          await demo.settled;
           look();
         }
         return { pairs: [...pairs.values()].slice(0, -1), most };

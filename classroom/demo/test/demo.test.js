@@ -146,3 +146,46 @@ test("its types need nothing but the package", () => {
     encoding: "utf8",
   });
 });
+
+test("a program may answer later: the demo waits, goes back without asking again, and says what fails", async () => {
+  body = '<sap-demo balls="3" skip-interval="2" decorations="checks" paused></sap-demo>';
+  const { page, complaints } = await open();
+  await page.goto(base);
+  await page.evaluate("customElements.whenDefined('sap-demo').then(() => document.querySelector('sap-demo').ready)");
+  const seen = /** @type {any} */ (
+    await page.evaluate(`(async () => {
+      const demo = document.querySelector("sap-demo");
+      const asked = [];
+      demo.program = () => new Promise((resolve) => asked.push(resolve));
+      const waiting = [demo.state.tick, demo.state.tests];
+      demo.step(); // Not before there is an answer.
+      const stepped = demo.state.tick;
+      const answer = () => (asked.at(-1)([{ kind: "test", a: 0, b: 1 }, { kind: "test", a: 1, b: 2 }]), demo.settled);
+      await answer();
+      const first = demo.state.tests;
+      demo.step(); // The next detection, which has not been answered.
+      const next = [demo.state.tick, asked.length];
+      await answer();
+      const shown = [demo.state.tests, demo.state.events];
+      demo.step();
+      const then = demo.state.tests;
+      demo.back();
+      demo.back();
+      const back = [demo.state.tick, demo.state.tests, asked.length];
+      demo.program = () => Promise.reject(new Error("it broke"));
+      await demo.settled;
+      await demo.updateComplete;
+      return { waiting, stepped, first, next, shown, then, back, says: demo.shadowRoot.textContent };
+    })()`)
+  );
+  assert.deepEqual(seen.waiting, [0, 0]);
+  assert.equal(seen.stepped, 0);
+  assert.equal(seen.first, 2);
+  assert.deepEqual(seen.next, [3, 2]);
+  assert.deepEqual(seen.shown, [1, 2]);
+  assert.equal(seen.then, 2);
+  assert.deepEqual(seen.back, [0, 2, 2]);
+  assert.match(seen.says, /it broke/);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});

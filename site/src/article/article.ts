@@ -31,7 +31,7 @@ function editable(listing: HTMLElement): void {
       end = undefined;
     } else {
       button.disabled = true;
-      const [{ edit }] = await Promise.all([import("./edit/editor.ts"), import("./demos.ts")]);
+      const [{ edit }] = await Promise.all([import("./editing.ts"), import("./demos.ts")]);
       await demo.ready;
       button.disabled = false;
       end = edit(listing, demo);

@@ -5,8 +5,7 @@ import { readFileSync } from "node:fs";
 import type { Plugin } from "vite";
 import { figures } from "./figures/index.ts";
 import { legend } from "./legend.ts";
-import { highlight, listing, readListing } from "../code/listing.ts";
-import { withLines } from "./edit/lines.ts";
+import { highlight, listing } from "../code/listing.ts";
 import { withPosters } from "./poster.ts";
 import { spaceTime } from "./space-time.ts";
 import { expandStructures } from "../structures/build.ts";
@@ -33,16 +32,8 @@ const SECTIONS = [
 
 const WORDS_A_MINUTE = 200;
 
-/** The listing whose demo it runs itself: the library's quicksort takes the median of three, and leaves the rest to insertion sort. */
-const QUICKSORT = "virtual:quicksort";
-
 export const article: Plugin = {
   name: "article",
-  resolveId: (id) => (id === QUICKSORT ? `\0${QUICKSORT}` : undefined),
-  load: (id) =>
-    id === `\0${QUICKSORT}`
-      ? `export const compile = ({ precedes, $line }) => {\n${withLines(readListing("quicksort").code).replaceAll("export ", "")}\nreturn { quicksort };\n};`
-      : undefined,
   transformIndexHtml: { order: "pre", handler: (page) => (page.includes("<article-sections>") ? assemble(page) : page) },
 };
 

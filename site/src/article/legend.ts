@@ -4,8 +4,8 @@
 /** A swatch, drawn as the demo draws the thing, and what it means. */
 interface Key {
   readonly swatch: string;
-  /** The words for it in the text have this class, `is-...`. */
-  readonly word: string;
+  /** The words for it in the text have this class, `is-...`, if it has a color of its own. */
+  readonly word?: string;
   readonly says: string;
 }
 
@@ -62,7 +62,7 @@ const KEYS: Readonly<Record<string, Key>> = {
   looked: { swatch: `<rect x="3" y="1" width="28" height="14" fill="var(--sap-edge)" fill-opacity="0.2"/>`, word: "edge", says: "where its partners are looked for" },
   begins: { swatch: dot('fill="var(--sap-overlap)" stroke="var(--sap-overlap)"'), word: "overlap", says: ")( becomes (): an overlap begins" },
   ends: { swatch: dot('fill="var(--paper)" stroke="var(--sap-overlap)"'), word: "overlap", says: "() becomes )(: it ends" },
-  unchanged: { swatch: dot('fill="var(--paper)" stroke="var(--sap-muted)"'), word: "muted", says: "(( or )): nothing changes" },
+  unchanged: { swatch: dot('fill="var(--paper)" stroke="var(--sap-muted)"'), says: "(( or )): nothing changes" },
   now: { swatch: `<line x1="3" y1="8" x2="31" y2="8" stroke="var(--sap-sweep)" stroke-width="2.5"/>`, word: "sweep", says: "now" },
   focus: { swatch: disc('fill="none" stroke="var(--sap-chosen)" stroke-width="3"'), word: "focus", says: "the ball in question" },
   within: { swatch: cell("inside"), word: "touched", says: "its interval in the array" },
@@ -78,7 +78,7 @@ export function legend(names: string): string {
   const items = names.split(" ").map((name) => {
     const key = KEYS[name];
     if (!key) throw new Error(`there is no color key "${name}", only ${Object.keys(KEYS).join(", ")}`);
-    return `<li><svg viewBox="0 0 34 16" width="34" height="16" aria-hidden="true">${key.swatch}</svg><span class="is-${key.word}">${key.says}</span></li>`;
+    return `<li><svg viewBox="0 0 34 16" width="34" height="16" aria-hidden="true">${key.swatch}</svg><span${key.word ? ` class="is-${key.word}"` : ""}>${key.says}</span></li>`;
   });
   return `<ul class="legend" aria-label="Legend">${items.join("")}</ul>`;
 }

@@ -13,7 +13,7 @@ export interface State {
   hash: string;
 }
 
-type Element = HTMLElement & { state: State; balls: number[][]; isPlaying: boolean; pause(): void; play(): void; step(): void; back(): void; reset(): void };
+type Element = HTMLElement & { state: State; settled: Promise<void>; balls: number[][]; isPlaying: boolean; pause(): void; play(): void; step(): void; back(): void; reset(): void };
 
 /** One demo of the article, by the id of its figure. */
 export class Demo {
@@ -67,12 +67,13 @@ export class Demo {
 
   /** Steps until a detection is done: what it counted, and where the balls were. */
   async finish(): Promise<State & { balls: number[][] }> {
-    return this.root.evaluate((element) => {
+    return this.root.evaluate(async (element) => {
       const demo = element as unknown as Element;
       // The next step after the last of a detection begins another: its counters start at zero.
       let last = { ...demo.state, balls: demo.balls };
       for (let steps = 0; steps < 2000; steps++) {
         demo.step();
+        await demo.settled;
         if (demo.state.tick !== last.tick || demo.state.events < last.events) return last;
         last = { ...demo.state, balls: demo.balls };
       }

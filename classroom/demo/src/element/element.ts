@@ -131,6 +131,7 @@ export class SapDemoElement extends LitElement {
     if (!run) return;
     const { timeline, options } = run;
     this.#isPlaying = false;
+    if (timeline.isWaiting) return;
     const isNew = timeline.isDetected;
     if (isNew && options.isStatic) timeline.rewind();
     else if (isNew) run.nextDetection(this.#listener);
@@ -224,6 +225,10 @@ export class SapDemoElement extends LitElement {
     if (this.#program === program) return;
     this.#program = program;
     if (this.#run || this.#wrong !== "") this.#understand();
+  }
+
+  get settled(): Promise<void> {
+    return this.#run?.timeline.settled ?? Promise.resolve();
   }
 
   get names(): readonly string[] {
@@ -349,6 +354,13 @@ export class SapDemoElement extends LitElement {
     this.#wrong = "";
     this.#hasFailed = false;
     this.#run = run;
+    run.timeline.waiter = {
+      answered: (events) => {
+        this.#report(events);
+        this.#changed();
+      },
+      failed: (error) => this.#refuse(messageOf(error)),
+    };
     this.#speed = undefined;
   }
 

@@ -48,7 +48,7 @@ export class Playback {
     const began = performance.now();
     this.#spent += ms;
     if (listener.isHeld()) timeline.finish();
-    for (let count = 0; count < MOST_AT_ONCE; count++) {
+    for (let count = 0; count < MOST_AT_ONCE && !timeline.isWaiting; count++) {
       const isDetected = timeline.isDetected;
       if (isDetected && !mayTick) break;
       if (isDetected && this.#options.isStatic) return false;
@@ -73,7 +73,7 @@ export class Playback {
   /** As `tick`, where balls that are held have been put in their places. */
   tickFreely(listener: Listener): void {
     this.#timeline.nextTick();
-    if (!this.#timeline.isDetected && this.#timeline.isStopless) this.#timeline.finish();
+    if (this.#timeline.isStopless && !this.#timeline.isWaiting) this.#timeline.finish();
     listener.ticked();
   }
 

@@ -3,7 +3,7 @@ import type { Step } from "../algorithms/runner.js";
 import type { TraceEvent } from "../algorithms/trace.js";
 import type { Detection } from "./detection.js";
 import { gapOn } from "./explain.js";
-import type { DemoProgram, ProgramEvent } from "./types.js";
+import type { ProgramEvent } from "./types.js";
 
 const NONE = 2 ** 32 - 1;
 
@@ -19,10 +19,10 @@ export class ProgramDetection implements Detection {
   /** After each event. */
   readonly #states: PlayerState[];
 
-  /** `before` are the boxes of the detection before this one, if there was one. */
-  constructor(program: DemoProgram, boxes: Float64Array, before: Float64Array | undefined, missedOf: (found: Uint32Array) => Detection["missed"]) {
+  /** From what the program reported about these boxes. */
+  constructor(reported: readonly ProgramEvent[], boxes: Float64Array, missedOf: (found: Uint32Array) => Detection["missed"]) {
     this.boxes = boxes;
-    this.events = [{ kind: "step", axis: 0, keeps: 0 }, ...program(boxes, before).map((event) => traced(event, boxes))];
+    this.events = [{ kind: "step", axis: 0, keeps: 0 }, ...reported.map((event) => traced(event, boxes))];
     this.#states = statesOf(this.events, boxes);
     const { overlaps, counts } = this.#states.at(-1)!;
     const none = new Uint32Array(0);

@@ -4,6 +4,7 @@ import type { TraceEvent } from "../algorithms/trace.js";
 import { type Detection, isStart, newRunner, Oracle, oracleFor, stopsOf, TracedDetection } from "./detection.js";
 import type { Options } from "./options.js";
 import { ProgramDetection } from "./program.js";
+import type { ProgramEvent } from "./types.js";
 import { boxesOf, sweptBoxes, World } from "./world.js";
 
 /** What is kept of a tick, to come back to it. */
@@ -18,6 +19,8 @@ interface Tick {
   readonly before: Runner | undefined;
   /** How many stops there are in it. */
   stops: number;
+  /** What a program did in it, once it has answered. */
+  reported?: readonly ProgramEvent[];
 }
 
 /** So many ticks can be gone back, a quarter of a minute; of many balls fewer, for the memory's sake. */
@@ -47,6 +50,11 @@ export class Timeline {
   #stops: number[] = [];
   /** Which of the stops has been reached; -1 before the first. */
   #stop = -1;
+  /** Where a program has not answered yet: the tick it was asked about, and the stop to show then. What is shown until then is the detection before. */
+  #awaited: { readonly tick: Tick; stop: number } | undefined;
+  #settled: Promise<void> = Promise.resolve();
+  /** Called when a program has answered, with the events that are played at once, or has failed. */
+  waiter: { answered(events: readonly TraceEvent[]): void; failed(error: unknown): void } | undefined;
 
   /** From the beginning, or in a world that is there already, at this tick. */
   constructor(options: Options, kinds: ReadonlySet<TraceEvent["kind"]>, world: World = new World(options.world), tick = 0) {
@@ -133,7 +141,17 @@ export class Timeline {
 
   /** Whether the detection has been gone through, so that the world may move on. */
   get isDetected(): boolean {
-    return this.#stop === this.#stops.length - 1;
+    return !this.isWaiting && this.#stop === this.#stops.length - 1;
+  }
+
+  /** Whether a program has not yet answered what this detection found. */
+  get isWaiting(): boolean {
+    return this.#awaited !== undefined;
+  }
+
+  /** Resolves when it has, or has failed. */
+  get settled(): Promise<void> {
+    return this.#settled;
   }
 
   /** Whether there is a detection at this very tick. */
@@ -187,7 +205,8 @@ export class Timeline {
 
   /** Plays on to the next stop of this detection; the events that were played. */
   nextStop(): readonly TraceEvent[] {
-    if (this.isDetected) return [];
+    if (this.#awaited) this.#awaited.stop = Math.max(this.#awaited.stop, 0);
+    if (this.#awaited || this.isDetected) return [];
     const from = this.position;
     this.#stop++;
     return this.detection.events.slice(from, this.position);
@@ -195,17 +214,18 @@ export class Timeline {
 
   /** To the end of this detection, at once. */
   finish(): void {
-    this.#stop = this.#stops.length - 1;
+    this.showStop(Infinity);
   }
 
   /** To a stop of this detection; beyond the last, to that one. */
   showStop(stop: number): void {
-    this.#stop = Math.min(stop, this.#stops.length - 1);
+    if (this.#awaited) this.#awaited.stop = stop;
+    else this.#stop = Math.min(stop, this.#stops.length - 1);
   }
 
   /** Back to before the first event of this detection. */
   rewind(): void {
-    this.#stop = -1;
+    this.showStop(-1);
   }
 
   /** Moves on by a tick, in the past or beyond it. Whether it was beyond, so that it is new. */
@@ -267,12 +287,13 @@ export class Timeline {
   /** Runs the detection again at this tick, to show a change in a world that does not move. */
   detectAgain(): void {
     this.#record(this.tick, true);
-    this.#stop = this.#stops.length - 1;
+    this.finish();
   }
 
   /** Ends this line of time, and hands over the world as it is shown. */
   release(): World {
     this.#bringWorld();
+    this.#awaited = undefined;
     for (const tick of this.#ticks) this.#forget(tick);
     this.#detection?.free();
     this.#runner.free();
@@ -288,29 +309,53 @@ export class Timeline {
     const positions = this.#world.positions();
     const last = this.#ticks.length > 0 ? this.jump.to : undefined;
     let before: Runner | undefined;
-    let stops = 0;
     if (isDetecting) {
       this.#runner.trimTrace();
       before = new Runner(this.#runner);
-      this.#detect(this.#runner, { positions, last });
-      stops = this.#stops.length;
     }
-    this.#ticks.push({ number, positions, last, moment: this.#world.save(), before, stops });
+    const tick: Tick = { number, positions, last, moment: this.#world.save(), before, stops: 0 };
+    if (isDetecting) this.#detect(this.#runner, tick);
+    this.#ticks.push(tick);
     if (this.#ticks.length > this.#most) this.#forget(this.#ticks.shift()!);
     this.#at = this.#worldAt = this.#ticks.length - 1;
   }
 
-  #detect(runner: Runner, tick: Pick<Tick, "positions" | "last">): void {
+  #detect(runner: Runner, tick: Tick): void {
     const { program } = this.#options;
     const boxes = this.#boxesAt(tick);
     const missedOf = (found: Uint32Array): Detection["missed"] => this.#missedAt(tick, found);
-    const detection = program
-      ? new ProgramDetection(program, boxes, tick.last && this.#boxes(tick.last), missedOf)
-      : new TracedDetection(runner, boxes, missedOf);
+    this.#awaited = undefined;
+    if (!program) return this.#show(new TracedDetection(runner, boxes, missedOf), tick);
+    const reported = tick.reported ?? program(boxes, tick.last && this.#boxes(tick.last));
+    if (!(reported instanceof Promise)) {
+      tick.reported = reported;
+      return this.#show(new ProgramDetection(reported, boxes, missedOf), tick);
+    }
+    if (!this.#detection) this.#show(new ProgramDetection([], boxes, () => []), tick);
+    tick.stops = 1;
+    const awaited = { tick, stop: -1 };
+    this.#awaited = awaited;
+    // Meanwhile another tick may be shown, or another program asked.
+    const isAwaited = (): boolean => this.#awaited === awaited;
+    this.#settled = reported.then(
+      (events) => {
+        tick.reported = events;
+        if (!isAwaited()) return;
+        this.#awaited = undefined;
+        this.#show(new ProgramDetection(events, boxes, missedOf), tick);
+        this.showStop(this.isStopless ? 0 : awaited.stop);
+        this.waiter?.answered(this.detection.events.slice(1, this.position));
+      },
+      (error: unknown) => isAwaited() && this.waiter?.failed(error),
+    ) as Promise<void>;
+  }
+
+  #show(detection: Detection, tick: Tick): void {
     this.#detection?.free();
     this.#detection = detection;
-    this.#stops = stopsOf(this.#detection, this.#kinds, this.isStart);
+    this.#stops = stopsOf(detection, this.#kinds, this.isStart);
     this.#stop = -1;
+    tick.stops = this.#stops.length;
   }
 
   #boxes(positions: Float32Array): Float64Array {
@@ -336,14 +381,14 @@ export class Timeline {
 
   /** Shows a tick that is kept, at one of its stops. */
   #goTo(index: number, stop: number): void {
-    const { before, positions, last } = this.#ticks[index]!;
-    if (before && index !== this.#at) {
-      const runner = new Runner(before);
-      this.#detect(runner, { positions, last });
+    const tick = this.#ticks[index]!;
+    if (tick.before && index !== this.#at) {
+      const runner = new Runner(tick.before);
+      this.#detect(runner, tick);
       runner.free();
     }
     this.#at = index;
-    if (before) this.#stop = Math.min(stop, this.#stops.length - 1);
+    if (tick.before) this.showStop(stop);
   }
 
   /** Brings the world to the tick that is shown. */

@@ -119,10 +119,10 @@ export type ProgramEvent =
 
 /**
  * Finds pairs in the place of a compiled algorithm. `boxes` are rows of min corner and max corner, `before` those of the
- * detection before, if there was one. It must depend on nothing else: to go back in time, a demo runs it again. An
- * exception is shown in the place of the demo.
+ * detection before, if there was one. It runs once for each detection; its events are kept to go back in time. The events may
+ * arrive later, for example from a worker: until then the demo waits. An exception is shown in the place of the demo.
  */
-export type DemoProgram = (boxes: Float64Array, before: Float64Array | undefined) => readonly ProgramEvent[];
+export type DemoProgram = (boxes: Float64Array, before: Float64Array | undefined) => readonly ProgramEvent[] | Promise<readonly ProgramEvent[]>;
 
 /** What the element tells, each event bubbling out of it. */
 export interface DemoEventMap {
@@ -172,6 +172,8 @@ export interface SapDemo extends HTMLElement {
   readonly pairs: [number, number][];
   /** What finds the pairs in the place of `strategy`; the world goes on where it is when that changes. */
   program: DemoProgram | undefined;
+  /** Resolves when the program has answered; at once where nothing is awaited. */
+  readonly settled: Promise<void>;
   /** What is to stand out. */
   marked: DemoMark | undefined;
   /** What the balls are called. */

@@ -2,13 +2,13 @@
 // under their names, as in the article; some of them report what they do, so that the demo can show it.
 
 import type { DemoProgram, ProgramEvent } from "sweep-and-prune-classroom/demo";
-import { endpointsOf, precedes, refresh } from "../../listings/endpoints.js";
-import { key } from "../../listings/key.js";
-import { overlaps } from "../../listings/overlaps.js";
-import { quicksort } from "../../listings/quicksort.js";
-import { sweep } from "../../listings/sweep.js";
+import { endpointsOf, precedes, refresh } from "../listings/endpoints.js";
+import { key } from "../listings/key.js";
+import { overlaps } from "../listings/overlaps.js";
+import { quicksort } from "../listings/quicksort.js";
+import { sweep } from "../listings/sweep.js";
 
-interface Box {
+export interface Box {
   readonly id: number;
   left: number;
   top: number;
@@ -16,14 +16,14 @@ interface Box {
   bottom: number;
 }
 
-interface Endpoint {
+export interface Endpoint {
   readonly box: Box;
   readonly side: keyof Omit<Box, "id">;
   readonly isLeft: boolean;
   at: number;
 }
 
-type Exports = Readonly<Record<string, (...values: never[]) => unknown>>;
+export type Exports = Readonly<Record<string, (...values: never[]) => unknown>>;
 
 /** What a listing reports while it runs. */
 interface Report {

@@ -1,4 +1,4 @@
-// A listing that a reader changes, and the demo that runs it. Loaded when the first listing is edited.
+// A listing that a reader changes, in its place. Loaded when the first one is edited.
 
 import { defaultKeymap, history, historyKeymap } from "@codemirror/commands";
 import { javascriptLanguage } from "@codemirror/lang-javascript";
@@ -6,9 +6,7 @@ import { HighlightStyle, indentUnit, syntaxHighlighting } from "@codemirror/lang
 import { EditorState, StateEffect, StateField } from "@codemirror/state";
 import { Decoration, drawSelection, EditorView, keymap, lineNumbers } from "@codemirror/view";
 import { tags } from "@lezer/highlight";
-import type { SapDemo } from "sweep-and-prune-classroom/demo";
-import { compiled, type Fault, faultOf } from "./compile.ts";
-import { programOf } from "./harness.ts";
+import { CodeError } from "./sandbox.ts";
 
 /** A change runs when nothing was typed for this long. */
 const PAUSE_MS = 400;
@@ -39,10 +37,19 @@ const faultLine = StateField.define({
   provide: (field) => EditorView.decorations.from(field),
 });
 
-/** Shows an editor in the place of a listing; its demo runs what is in it. Returns what ends that. */
-export function edit(listing: HTMLElement, demo: SapDemo): () => void {
+/** An editor in the place of a listing. */
+export interface Editor {
+  /** Shows what there is to say of the code, the line of an error as well. */
+  say(text: unknown): void;
+  readonly code: string;
+  readonly original: string;
+  /** Shows the listing as it was. */
+  close(): void;
+}
+
+/** Edits a listing; `changed` is called once, and whenever nothing has been typed for a moment. */
+export function openEditor(listing: HTMLElement, label: string, changed: (code: string) => void): Editor {
   const shown = listing.querySelector("pre")!;
-  const name = listing.dataset["listing"]!;
   const original = shown.textContent ?? "";
   const place = document.createElement("div");
   place.className = "editor";
@@ -53,42 +60,8 @@ export function edit(listing: HTMLElement, demo: SapDemo): () => void {
   again.type = "button";
   again.className = "small";
   again.textContent = "Original code";
-  /** What the demo runs when nothing is edited. */
-  const before = demo.program;
   let timer: ReturnType<typeof setTimeout> | undefined;
-
-  const say = (text: string, fault?: Fault): void => {
-    said.textContent = text;
-    said.toggleAttribute("data-fault", fault !== undefined);
-    view.dispatch({ effects: setFault.of(fault?.line) });
-  };
-  const fail = (error: unknown, code: string): void => {
-    const fault = faultOf(error, code);
-    say(`${fault.line === undefined ? "" : `Line ${fault.line}: `}${fault.message}`, fault);
-  };
-  const run = (): void => {
-    const code = view.state.doc.toString();
-    try {
-      const { compile, restart } = compiled(code);
-      const program = programOf(name, compile);
-      let hasFailed = false;
-      say(code === original ? "The demo runs this code. Change it." : "The demo runs your code.");
-      demo.program = (boxes, before) => {
-        restart();
-        try {
-          return program(boxes, before);
-        } catch (error) {
-          // Said once, however often the demo asks; what it finds then is nothing.
-          if (!hasFailed) queueMicrotask(() => fail(error, code));
-          hasFailed = true;
-          return [];
-        }
-      };
-    } catch (error) {
-      fail(error, code);
-    }
-  };
-
+  const run = (): void => changed(view.state.doc.toString());
   const view = new EditorView({
     parent: place,
     state: EditorState.create({
@@ -103,7 +76,7 @@ export function edit(listing: HTMLElement, demo: SapDemo): () => void {
         faultLine,
         // Tab leaves the editor, as it leaves any other control.
         keymap.of([{ key: "Mod-Enter", run: () => (run(), true) }, ...defaultKeymap, ...historyKeymap]),
-        EditorView.contentAttributes.of({ "aria-label": `Code of ${name}.js: the demo runs it` }),
+        EditorView.contentAttributes.of({ "aria-label": label }),
         EditorView.updateListener.of(({ docChanged }) => {
           if (!docChanged) return;
           clearTimeout(timer);
@@ -115,13 +88,37 @@ export function edit(listing: HTMLElement, demo: SapDemo): () => void {
   again.addEventListener("click", () => view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: original } }));
   shown.hidden = true;
   shown.after(place, said, again);
-  view.focus();
-  run();
-  return () => {
-    clearTimeout(timer);
-    demo.program = before;
-    view.destroy();
-    for (const part of [place, said, again]) part.remove();
-    shown.hidden = false;
+  const editor: Editor = {
+    original,
+    get code() {
+      return view.state.doc.toString();
+    },
+    say: (text) => {
+      const isFault = text instanceof Error;
+      const { line, isSyntax } = text instanceof CodeError ? text.fault : {};
+      const at = isSyntax ? syntaxLine(editor.code) : line;
+      said.textContent = `${at === undefined ? "" : `Line ${at}: `}${isFault ? text.message : String(text)}`;
+      said.toggleAttribute("data-fault", isFault);
+      view.dispatch({ effects: setFault.of(at) });
+    },
+    close: () => {
+      clearTimeout(timer);
+      view.destroy();
+      for (const part of [place, said, again]) part.remove();
+      shown.hidden = false;
+    },
   };
+  run();
+  return editor;
+}
+
+/** The first line that is no program, as the parser of the editor finds it. */
+function syntaxLine(code: string): number | undefined {
+  let line: number | undefined;
+  javascriptLanguage.parser.parse(code).iterate({
+    enter({ type, from }) {
+      if (type.isError) line ??= code.slice(0, from).split("\n").length;
+    },
+  });
+  return line;
 }

@@ -1,3 +1,0 @@
-declare module "virtual:quicksort" {
-  export const compile: import("./edit/harness.ts").Compile;
-}
