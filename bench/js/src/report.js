@@ -92,16 +92,16 @@ export function ratio(one, own) {
  *
  * @param {Case} one
  */
-export function alternativesOf(one) {
+function alternativesOf(one) {
   const alternatives = one.results.filter((entry) => entry.alternative && entry.name !== PLAIN && "Timed" in entry.outcome);
   const found = alternatives.map(({ name }) => ({ name, times: /** @type {import("./record.js").Times} */ (timesOf(one, name)) }));
   return found.sort((a, b) => a.times.median_ns - b.times.median_ns);
 }
 
 /** What the package promises: at least this many times faster than the fastest alternative. */
-export const goal = (/** @type {number} */ boxes) => (boxes >= 10_000 ? 10 : 3);
+const goal = (/** @type {number} */ boxes) => (boxes >= 10_000 ? 10 : 3);
 /** And than the plain sweep. */
-export const PLAIN_GOAL = 1.5;
+const PLAIN_GOAL = 1.5;
 
 function table(/** @type {Case[]} */ cases, /** @type {readonly string[]} */ own) {
   const head = ["scene", "boxes", "pairs", ...own, "fastest alternative", "ratio", "next", "plain sweep", "ratio"];

@@ -34,7 +34,7 @@ export interface Passed {
 }
 
 /** Reads the min and the max of a box that a call passed: which argument, which box of it, which axis. */
-export type ReadCorners = (set: number, index: number, axis: number) => readonly [min: number, max: number];
+type ReadCorners = (set: number, index: number, axis: number) => readonly [min: number, max: number];
 
 /** Refuses what memory cannot hold: the core would see the size modulo 2^32. */
 export function checkFits(bytes: number): void {

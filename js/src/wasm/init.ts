@@ -34,7 +34,7 @@ export interface Started {
 }
 
 /** Where the builds of a core are, unless the caller passes one. */
-export interface Sources {
+interface Sources {
   /** The one with vector instructions, if there is one. */
   simd?: () => Wasm;
   scalar: () => Wasm;

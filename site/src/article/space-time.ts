@@ -38,10 +38,10 @@ export const WORLDS: Readonly<Record<string, World>> = {
   ],
 };
 
-export type Kind = "begins" | "ends" | "nothing";
+type Kind = "begins" | "ends" | "nothing";
 
 /** A swap: in which frame, where, and what it means. */
-export interface Crossing {
+interface Crossing {
   readonly frame: number;
   readonly x: number;
   readonly kind: Kind;

@@ -11,7 +11,7 @@ interface Interval {
 type Demo = Element & { balls: readonly (readonly number[])[] };
 
 /** The results for three intervals. */
-export interface Verdict {
+interface Verdict {
   /** Whether A ends before B begins, and B before C. */
   readonly ab: boolean;
   readonly bc: boolean;

@@ -6,7 +6,7 @@ export interface Times {
   readonly peak_bytes: number | null;
 }
 
-export type Outcome = { readonly Timed: Times } | { readonly Untimed: { readonly why: string } };
+type Outcome = { readonly Timed: Times } | { readonly Untimed: { readonly why: string } };
 
 export interface Entry {
   readonly name: string;
@@ -25,7 +25,7 @@ export interface Case {
   readonly results: readonly Entry[];
 }
 
-export interface Machine {
+interface Machine {
   readonly cpu: string;
   readonly cores: number;
   readonly load: number | null;

@@ -14,7 +14,7 @@ const ROUNDS = 5;
 /** A library's turn in a round, in ms. */
 const TURN = 30;
 
-export interface Wish {
+interface Wish {
   readonly scene: string;
   readonly dimensions: number;
   readonly sizes: readonly number[];

@@ -32,7 +32,7 @@ export interface RunnerOptions {
 }
 
 /** A scene or a motion. */
-export interface Named {
+interface Named {
   readonly name: string;
   readonly description: string;
 }
@@ -60,7 +60,7 @@ export interface Report {
 }
 
 /** What a first run would cost. */
-export interface Forecast {
+interface Forecast {
   readonly tests: number;
   /** Overlaps that the algorithm would have to keep in memory. */
   readonly kept: number;

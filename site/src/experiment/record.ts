@@ -78,7 +78,7 @@ export function middleMean(all: readonly (number | null | undefined)[]): number 
 }
 
 /** The lanes whose pairs are not those of the first runner that is in. */
-export function atOdds(lanes: readonly Lane[]): number[] {
+function atOdds(lanes: readonly Lane[]): number[] {
   const first = lanes.find((lane) => "report" in lane);
   if (!first || !("report" in first)) return [];
   const { pairs, fingerprint } = first.report;

@@ -15,7 +15,7 @@ export interface HeroColors {
 }
 
 /** What one picture shows. */
-export interface HeroPicture {
+interface HeroPicture {
   readonly boxes: MovingBoxes;
   /** The pairs that overlap: `a0, b0, a1, b1, ...`. */
   readonly pairs: Uint32Array;

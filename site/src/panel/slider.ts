@@ -3,7 +3,7 @@
 /** A slider that is being dragged is heard at most this often. */
 const DRAG_MS = 100;
 
-export interface SliderOptions {
+interface SliderOptions {
   readonly slider: HTMLInputElement;
   /** Shows the value as text. */
   readonly output: HTMLElement;

@@ -3,14 +3,14 @@
 import { messageOf } from "../message-of.ts";
 
 /** Boxes that were read. */
-export interface Imported {
+interface Imported {
   readonly dimensions: 2 | 3;
   /** Rows of min corner and max corner. */
   readonly boxes: Float32Array;
 }
 
 /** The most boxes that the playground takes. */
-export const MOST_BOXES = 20_000;
+const MOST_BOXES = 20_000;
 
 /** One box as it was written, and where. */
 interface Row {

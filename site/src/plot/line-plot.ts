@@ -9,7 +9,7 @@ export interface Line {
   readonly values: readonly (number | null)[];
 }
 
-export interface PlotOptions {
+interface PlotOptions {
   readonly lines: readonly Line[];
   /** The step of the first value. */
   readonly first: number;

@@ -7,7 +7,7 @@ const FRAME_MS = 1000 / 60;
 const LEFT = 46;
 const TOP = 20;
 
-export interface StagesOptions {
+interface StagesOptions {
   /** By moment, milliseconds by stage. */
   readonly moments: readonly (readonly number[])[];
   /** How many moments there is room for. */

@@ -1,5 +1,5 @@
 /** A demo that the clock calls while it is visible. */
-export interface Ticking {
+interface Ticking {
   /** So many milliseconds have passed; called once a frame. Whether it wants the next one too. */
   frame(ms: number): boolean;
 }

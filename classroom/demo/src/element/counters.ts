@@ -14,7 +14,7 @@ const names = {
 } as const satisfies Record<keyof Counts, string>;
 
 /** The counters that apply to a method: flags take the place of tests, and some methods sweep or sort nothing. */
-export function countersOf(detecting: Detecting): (keyof Counts)[] {
+function countersOf(detecting: Detecting): (keyof Counts)[] {
   const { like, sort } = detecting;
   const isPairwise = like.includes("pairwise");
   const sorts = like !== "global pairwise";

@@ -4,7 +4,7 @@ import type { Options } from "./options.js";
 import { rainbow, type Theme } from "./theme.js";
 
 /** What the array of endpoints looks like at one moment. */
-export interface ArrayScene {
+interface ArrayScene {
   readonly state: PlayerState;
   readonly event: TraceEvent | undefined;
   readonly options: Options;

@@ -7,7 +7,7 @@ export interface Balls {
 }
 
 /** What a pointer does, in units of the world. */
-export interface Grabbing {
+interface Grabbing {
   /** The balls, if any can be met. */
   balls(): Balls | undefined;
   /** Whether balls may be moved, and not only chosen. */

@@ -6,7 +6,7 @@ import type { Run } from "./run.js";
 import { Selection } from "./selection.js";
 
 /** What hands find and do, beside what anybody may call. */
-export interface Handled {
+interface Handled {
   run(): Run | undefined;
   guess(choice: number): void;
   /** A ball was taken, to be moved. */

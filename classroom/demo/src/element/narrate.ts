@@ -82,7 +82,7 @@ export function describeEvent(event: TraceEvent, known: Known): string {
 }
 
 /** What a swap of neighbors means. `a` stood before `b`. */
-export function swapCase(a: number, b: number, name: (ball: number) => string): string {
+function swapCase(a: number, b: number, name: (ball: number) => string): string {
   const pair = `${name(a >> 1)} and ${name(b >> 1)}`;
   if (a % 2 === 1 && b % 2 === 0) return `)( becomes (), ${pair} begin to overlap on this axis.`;
   if (a % 2 === 0 && b % 2 === 1) return `() becomes )(, ${pair} cease to overlap on this axis.`;

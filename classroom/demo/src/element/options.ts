@@ -8,7 +8,7 @@ import { variants } from "./variants.js";
 export const WIDTH = 600;
 export const HEIGHT = 400;
 /** A world that is only a strip. */
-export const STRIP_HEIGHT = 160;
+const STRIP_HEIGHT = 160;
 
 /** How the world moves from one tick to the next. */
 export type Motion = "bounce" | "drift" | "teleport" | "rest";

@@ -8,7 +8,7 @@ import type { Theme } from "./theme.js";
 import type { Timeline } from "./timeline.js";
 
 /** What is to be painted. */
-export interface Painting {
+interface Painting {
   readonly timeline: Timeline;
   readonly options: Options;
   readonly names: readonly string[];
