@@ -29,6 +29,7 @@ describe("The packed package in", { skip }, () => {
     const { installInto } = await import("../js/test/support/packed.js");
     resultOf = read;
     project = process.env.TEST_PROJECT ?? mkdtempSync(join(tmpdir(), "sweep-and-prune-bundlers-"));
+    mkdirSync(project, { recursive: true });
     if (!existsSync(join(project, "node_modules"))) {
       writeFileSync(join(project, "package.json"), '{ "private": true, "type": "module" }');
       run("npm", "install", "--silent", "--no-audit", "--no-fund", ...tools);

@@ -36,6 +36,12 @@ test("an argument that frees the world while it is read", () => {
     within: (world, _, evil) => world.within([0, 0], 1, evil({})),
     rayCast: (world, _, evil) => world.rayCast([0, 0], evil([1, 0])),
     "boxCastAll, filter": (world, _, evil) => world.boxCastAll(unit, [1, 0], 9, evil({})),
+    overlappingMany: (world, _, evil) => world.overlappingMany(evil([unit])),
+    "containingMany, filter": (world, _, evil) => world.containingMany([0, 0], evil({})),
+    "withinMany, radii": (world, _, evil) => world.withinMany([0, 0], evil([1])),
+    "nearestMany, options": (world, _, evil) => world.nearestMany([0, 0], 1, 9, {}, evil({})),
+    "rayCastMany, directions": (world, _, evil) => world.rayCastMany([0, 0], evil([1, 0])),
+    "boxCastMany, exclude": (world, _, evil) => world.boxCastMany(unit, [1, 0], 1, {}, { exclude: evil([1]) }),
     nearest: (world, _, evil) => world.nearest([0, 0], 1, 9, evil({})),
   };
   for (let round = 0; round < 20; round++) {

@@ -44,6 +44,8 @@ for (const dimensions of /** @type {const} */ ([1, 2, 3])) {
           ...{ remove: [c], removeMany: [[c]], clear: [], setFilter: [a, {}], filter: [a], contains: [a], box: [a], pairsOf: [a], buffers: [2] },
           ...{ update: [], pairs: [{}], ids: [], snapshot: [], stateHash: [], overlapping: [box, {}], containing: [point, {}] },
           ...{ within: [point, 1, {}], nearest: [point, 1, 5, {}, { exclude: 1 }], rayCast: [point, direction, 5, {}, { exclude: 1 }], rayCastAll: [point, direction, 5, {}, { ignoreTouching: true }] },
+          ...{ overlappingMany: [[...box, ...box], {}, {}], containingMany: [[...point, ...point], {}, { exclude: 1 }], withinMany: [[point, point], [1, 1], {}, {}], nearestMany: [point, 1, 5, {}, {}] },
+          ...{ rayCastMany: [point, direction, [5], {}, {}], boxCastMany: [box, [direction], 5, {}, {}] },
           ...{ boxCast: [box, direction, 5, {}, {}], boxCastAll: [box, direction, 5, {}, { exclude: [1] }] },
         };
         return { world, calls: /** @type {Record<string, unknown[]>} */ (calls) };

@@ -17,8 +17,10 @@ import { entry, type InitOptions, type Started } from "../wasm/init.js";
 import { worldCore } from "../world/core.js";
 
 export * from "./common.js";
+export type { Batches } from "../world/batches.js";
 export type { Bodies } from "../world/bodies.js";
 export { BroadPhase } from "../world/broad-phase.js";
+export type { Queries } from "../world/queries.js";
 export {
   type Box,
   type BroadPhaseOptions,
@@ -27,9 +29,13 @@ export {
   type Changes,
   type ExcludeOptions,
   type Hit,
+  type Hits,
+  type Lists,
   type Neighbor,
+  type NeighborLists,
   type Numbers,
   type Point,
+  type Points,
   type ProxyId,
   type QueryFilter,
   type QueryOptions,

@@ -31,6 +31,8 @@ export interface Passed {
   readonly boxes?: readonly (readonly [name: string, count: number])[];
   /** The ids. */
   readonly ids?: ArrayLike<number>;
+  /** Reads the corners of these boxes, if they are not where a call usually writes them. */
+  readonly read?: ReadCorners;
 }
 
 /** Reads the min and the max of a box that a call passed: which argument, which box of it, which axis. */

@@ -36,11 +36,6 @@ export function unguard(value: unknown): unknown {
   return view;
 }
 
-/** What a call returns of memory: a copy, which stays valid; or, for an object with the option `views`, the view. */
-export function result<T extends Typed>(clock: Clock, view: T, isView: boolean): T {
-  return isView ? guard(clock, view) : copy(view);
-}
-
 /**
  * A copy of a view.
  *

@@ -24,7 +24,7 @@ export interface WorldExports extends Exports {
   world_pairs_of(world: number, id: number): number;
   world_ids(world: number): number;
   world_len(world: number): number;
-  world_query(world: number, query: Query, k: number, ...others: [...FilterWords, sorted: number, excluded: number]): number;
+  world_query(world: number, query: Query, k: number, ...others: [...FilterWords, sorted: number, excluded: number, many: number]): number;
   world_snapshot(world: number): number;
   world_restore(world: number): number;
   world_state_hash(world: number): number;

@@ -4,7 +4,7 @@ import { OutOfMemoryError } from "../wasm/errors.js";
 import { forgotten, Handle } from "../wasm/handle.js";
 import { StaleProxyError } from "./stale-proxy-error.js";
 import { bufferOf, lengthOf } from "../wasm/typed.js";
-import { result, view } from "../wasm/views.js";
+import { copy, guard, view } from "../wasm/views.js";
 import { readCorners, refuseCorners } from "./arguments.js";
 import type { WorldExports } from "./core.js";
 import type { BroadPhaseOptions, Changes } from "./types.js";
@@ -25,12 +25,11 @@ export class WorldMemory {
   readonly isView: boolean;
   readonly #handle: Handle<WorldExports>;
   readonly #numbersAt: number;
-  #numbers: Float64Array | undefined;
+  #numbers = new Float64Array(0);
   #rows: Float32Array | Float64Array | undefined;
   #ids: Float64Array | undefined;
-  #out: Float64Array | undefined;
-  #begun: Float64Array | undefined;
-  #ended: Float64Array | undefined;
+  /** The views that calls gave out last: the first array of a call, the second. */
+  readonly #given: Float64Array[] = [];
 
   constructor(dimensions: Dimensions, isDouble: boolean, isView: boolean, handle: Handle<WorldExports>) {
     this.dimensions = dimensions;
@@ -91,7 +90,7 @@ export class WorldMemory {
     const { engine } = this;
     if (code === Code.StaleProxy) throw new StaleProxyError(engine.detail(0), passed?.ids?.[engine.detail(0)] ?? NaN);
     if (code === Code.InvalidArgument) throw new RangeError("`box` is inverted, or a coordinate is too large for single precision");
-    engine.check(code, passed, (set, index, axis) => this.#corners(passed?.boxes === undefined, set, index, axis));
+    engine.check(code, passed, passed?.read ?? ((set, index, axis) => this.#corners(passed?.boxes === undefined, set, index, axis)));
   }
 
   /** The corners of a box that a call passed: in the rows, or among the numbers. */
@@ -105,10 +104,14 @@ export class WorldMemory {
   /** Makes a call and returns the ids that it reports. */
   answer(call: (exports: WorldExports, world: number) => number, passed?: Passed): Float64Array {
     this.call(call, passed);
+    return this.give(this.engine.detail(0), this.engine.detail(1));
+  }
+
+  /** Numbers that lie in memory, as a call returns them: a copy, which stays valid; or with the option `views` a view. */
+  give(at: number, count: number, which = 0): Float64Array {
     const { engine } = this;
-    const { buffer } = engine.exports.memory;
-    this.#out = view(Float64Array, this.#out, buffer, engine.detail(0), engine.detail(1));
-    return result(engine, this.#out, this.isView);
+    const given = (this.#given[which] = view(Float64Array, this.#given[which], engine.exports.memory.buffer, at, count));
+    return this.isView ? guard(engine, given) : copy(given);
   }
 
   /** Updates, and writes what changed. */
@@ -116,12 +119,9 @@ export class WorldMemory {
     this.call((exports, world) => exports.world_update(world));
     try {
       const { engine } = this;
-      const { buffer } = engine.exports.memory;
       const [at, total, begun] = [engine.detail(0), engine.detail(1), this.numbers()[0]!];
-      this.#begun = view(Float64Array, this.#begun, buffer, at, begun);
-      this.#ended = view(Float64Array, this.#ended, buffer, at + 8 * begun, total - begun);
-      into.begun = result(engine, this.#begun, this.isView);
-      into.ended = result(engine, this.#ended, this.isView);
+      into.begun = this.give(at, begun);
+      into.ended = this.give(at + 8 * begun, total - begun, 1);
     } catch (error) {
       this.free(); // the next update would not report these changes
       throw error;
@@ -131,8 +131,9 @@ export class WorldMemory {
   /** The numbers that go in and out, where they are now. */
   numbers(): Float64Array {
     this.#handle.checkUsable();
-    const { buffer } = this.engine.exports.memory;
-    return (this.#numbers = view(Float64Array, this.#numbers, buffer, this.#numbersAt, 16));
+    // Growing the memory detaches the view, which leaves it with length 0.
+    if (this.#numbers.length === 0) this.#numbers = new Float64Array(this.engine.exports.memory.buffer, this.#numbersAt, 16);
+    return this.#numbers;
   }
 
   /** Writes a box, from one object or from separate numbers: as many as it has, and nothing else. */

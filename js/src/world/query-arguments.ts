@@ -1,7 +1,10 @@
-import { coordinate, type Corner, type Dimensions, isNamed } from "../boxes/boxes.js";
+import { checkNumbers, coordinate, type Corner, type Dimensions, isNamed } from "../boxes/boxes.js";
 import { describe } from "../wasm/describe.js";
 import { checkOptionNames } from "../wasm/options.js";
+import { allocate } from "../wasm/views.js";
 import { checkIds, readRow } from "./arguments.js";
+import { defaultFilter, type FilterWords, filterWords } from "./filter.js";
+import type { QueryFilter } from "./types.js";
 
 /** @internal A length that may be infinite. */
 export function checkLength(value: unknown, name: string): number {
@@ -28,6 +31,24 @@ export function readPoint(point: unknown, dimensions: Dimensions, name: string):
     numbers[axis] = value;
   }
   return numbers;
+}
+
+/** @internal Numbers that were read, in an array that no code of the user can change: `values` are those that it passed. */
+export function own(numbers: Float32Array | Float64Array, values: unknown): Float64Array {
+  return Array.isArray(values) && numbers instanceof Float64Array ? numbers : allocate(() => new Float64Array(numbers));
+}
+
+/** @internal Points in one array: an array of points, or their numbers one after another. */
+export function readPoints(points: unknown, dimensions: Dimensions, name: string): Float64Array {
+  if (Array.isArray(points) && typeof points[0] === "object") {
+    const read = points.map((point: unknown, at) => readPoint(point, dimensions, `${name}[${at}]`));
+    const all = allocate(() => new Float64Array(read.length * dimensions));
+    read.forEach((point, at) => all.set(point, at * dimensions));
+    return all;
+  }
+  const numbers = own(checkNumbers(points, name), points);
+  if (numbers.length % dimensions === 0) return numbers;
+  throw new RangeError(`\`${name}\` holds ${numbers.length} numbers, which is not a multiple of ${dimensions}: a point in ${dimensions}D is as many`);
 }
 
 /** @internal Throws unless all numbers are as the rule says. */
@@ -58,8 +79,9 @@ export interface QueryChoices {
   readonly excluded: Float32Array | Float64Array;
 }
 
-const none = new Float64Array(0);
-const byDefault: QueryChoices = { isSorted: 1, ignoresTouching: false, excluded: none };
+/** @internal No ids. */
+export const noIds: Float64Array = new Float64Array(0);
+const byDefault: QueryChoices = { isSorted: 1, ignoresTouching: false, excluded: noIds };
 
 /** @internal The options of a query of a kind. */
 export function readChoices(options: unknown, kind: "region" | "cast" | "nearest"): QueryChoices {
@@ -69,7 +91,7 @@ export function readChoices(options: unknown, kind: "region" | "cast" | "nearest
   return {
     isSorted: readFlag(options as object, "sorted", true) ? 1 : 0,
     ignoresTouching: readFlag(options as object, "ignoreTouching", false),
-    excluded: exclude === undefined ? none : typeof exclude === "number" ? Float64Array.of(exclude) : checkIds(exclude, "exclude"),
+    excluded: exclude === undefined ? noIds : typeof exclude === "number" ? Float64Array.of(exclude) : checkIds(exclude, "exclude"),
   };
 }
 
@@ -77,4 +99,12 @@ function readFlag(options: object, name: string, byDefault: boolean): boolean {
   const value = (options as Record<string, unknown>)[name] ?? byDefault;
   if (typeof value !== "boolean") throw new TypeError(`\`${name}\` must be true or false, not ${describe(value)}`);
   return value;
+}
+
+/** @internal What the core takes for no filter: a query without one finds every body. */
+const noFilter: FilterWords = [0, 0, 0, 2];
+
+/** @internal The filter of a query as the core takes it: none if it is a function, which is called afterwards. */
+export function wordsOf(filter: QueryFilter | undefined): FilterWords {
+  return filter == null || typeof filter === "function" ? noFilter : filterWords(filter, defaultFilter);
 }

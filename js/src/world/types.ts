@@ -73,6 +73,32 @@ export interface Hit {
   startsInside: boolean;
 }
 
+/** What many queries found: the ids of each, one list after another. */
+export interface Lists {
+  /** The ids of all. */
+  ids: Float64Array;
+  /** Where the ids of each query end; they begin where those of the query before end. */
+  ends: Uint32Array;
+}
+
+/** The bodies near each of many points, nearest first. */
+export interface NeighborLists extends Lists {
+  /** The distance of each body; see {@link Neighbor}. */
+  distances: Float64Array;
+}
+
+/** The first hit of each of many rays or moving boxes. */
+export interface Hits {
+  /** The bodies; -1 for a cast that hits nothing. */
+  ids: Float64Array;
+  /** Where the hits are; infinite for a cast that hits nothing. */
+  t: Float64Array;
+  /** The normals of {@link Hit}, one after another; 0 for a cast that hits nothing. */
+  normals: Float64Array;
+  /** Whether each cast starts inside the body: 0 or 1. */
+  startsInside: Uint8Array;
+}
+
 /** A body near a point. */
 export interface Neighbor {
   /** The body. */
@@ -86,6 +112,9 @@ export type Numbers = readonly number[] | TypedNumbers;
 
 /** A point or a direction: its coordinates, or an object `{ x, y, z }`. */
 export type Point = Numbers | Corner;
+
+/** Points: an array of them, or their coordinates one after another. */
+export type Points = Numbers | readonly Point[];
 
 /** Which bodies a query finds: those that may pair with a body of this filter, or those for which a function returns true. */
 export type QueryFilter = Partial<Filter> | ((id: ProxyId) => boolean);

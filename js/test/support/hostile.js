@@ -299,8 +299,8 @@ export class HostileWorld extends Hostile {
   }
 
   /** The bodies whose boxes overlap a box, as the model sees it. */
-  found(/** @type {number[]} */ row, /** @type {Filter | undefined} */ filter = undefined) {
-    return [...this.bodies].filter(([, body]) => overlap(body.row, row) && (!filter || mayPair(body.filter, filter))).map(([id]) => id).sort(bySlot);
+  found(/** @type {number[]} */ row, /** @type {Filter | undefined} */ filter = undefined, /** @type {number[]} */ excluded = []) {
+    return [...this.bodies].filter(([id, body]) => !excluded.includes(id) && overlap(body.row, row) && (!filter || mayPair(body.filter, filter))).map(([id]) => id).sort(bySlot);
   }
 
   /** A filter as an argument. */
@@ -321,8 +321,24 @@ export class HostileWorld extends Hostile {
     ]);
   }
 
-  sortOptions() {
-    return Object.defineProperty({}, "sorted", { get: () => (this.read(), true) });
+  /**
+   * Options of a query, and the ids that they leave out: `names` are the flags that it knows, by their values.
+   *
+   * @param {Record<string, boolean>} names
+   */
+  options(names) {
+    const excluded = Array.from({ length: this.below(3) }, () => this.id());
+    const form = this.below(2) === 0 && excluded.length === 1 ? excluded[0] : this.array(excluded);
+    const options = {};
+    for (const [key, value] of Object.entries({ exclude: form, ...names })) {
+      if (this.below(4) > 0 || value === true) Object.defineProperty(options, key, { enumerable: true, get: () => (this.read(), value) });
+      else if (key === "exclude") excluded.length = 0;
+    }
+    if (this.below(10) > 0) return { options, excluded };
+    this.isWrong = true;
+    const valueOf = () => (this.read(), 1);
+    const wrong = [null, 1, "x", [1], { sort: true }, { exclude: "1" }, { exclude: ["1"] }, { exclude: { valueOf } }, { exclude: new Float32Array(1) }, { [this.pick(Object.keys(names).concat("exclud"))]: 1 }];
+    return { options: this.pick(wrong), excluded };
   }
 
   /** One call with hostile arguments. */
@@ -332,7 +348,7 @@ export class HostileWorld extends Hostile {
       this.restart();
     }
     this.arm();
-    const call = this.pick(/** @type {const} */ (["insert", "insert", "insertMany", "set", "setMany", "setSwept", "setFilter", "removeMany", "overlapping", "overlapping", "containing", "cast", "within", "nearest", "ids", "callback", "this", "update"]));
+    const call = this.pick(/** @type {const} */ (["insert", "insert", "insertMany", "set", "setMany", "setSwept", "setFilter", "removeMany", "overlapping", "overlapping", "containing", "many", "cast", "within", "nearest", "ids", "callback", "this", "update"]));
     try {
       this[`$${call}`]();
     } catch (error) {
@@ -474,31 +490,72 @@ export class HostileWorld extends Hostile {
   }
 
   $overlapping() {
-    const [row, filter] = [this.row(), this.below(2) === 0 ? this.newFilter() : undefined];
-    const found = [...this.#right(this.world.overlapping(this.#box(row), filter && this.#filter(filter), this.sortOptions()))];
-    assert.deepEqual(found, this.found(row, filter));
+    const [row, filter, { options, excluded }] = [this.row(), this.below(2) === 0 ? this.newFilter() : undefined, this.options({ sorted: true })];
+    const found = [...this.#right(this.world.overlapping(this.#box(row), filter && this.#filter(filter), options))];
+    assert.deepEqual(found, this.found(row, filter, excluded));
   }
 
   $containing() {
-    const [point, filter] = [this.point(), this.newFilter()];
-    const found = [...this.#right(this.world.containing(this.#point(point), this.#filter(filter), this.sortOptions()))];
-    assert.deepEqual(found, this.found([...point, ...point], filter));
+    const [point, filter, { options, excluded }] = [this.point(), this.newFilter(), this.options({ sorted: true })];
+    const found = [...this.#right(this.world.containing(this.#point(point), this.#filter(filter), options))];
+    assert.deepEqual(found, this.found([...point, ...point], filter, excluded));
+  }
+
+  /** Many queries in one call, against the model or a call for each. */
+  $many() {
+    const count = this.below(4);
+    const filter = this.newFilter();
+    const points = Array.from({ length: count }, () => this.point());
+    const directions = Array.from({ length: count }, () => this.point());
+    const rows = Array.from({ length: count }, () => this.row());
+    const name = this.pick(/** @type {const} */ (["overlappingMany", "containingMany", "withinMany", "nearestMany", "rayCastMany"]));
+    const isCast = name === "rayCastMany";
+    const ignoreTouching = isCast && this.below(2) === 0;
+    const { options, excluded } = this.options(isCast ? { ignoreTouching } : name === "nearestMany" ? {} : { sorted: true });
+    const [given, filtered] = [name === "overlappingMany" ? this.boxes(rows) : this.#points(points), this.#filter(filter)];
+    const many = this.world[name].bind(this.world);
+    const found = this.#right(
+      name === "withinMany" ? many(given, this.array(points.map(() => 1)), filtered, options)
+      : name === "nearestMany" ? many(given, 2, 2, filtered, options)
+      : isCast ? many(given, this.#points(directions), 2, filtered, options)
+      : many(given, filtered, options),
+    );
+    const plain = { exclude: excluded };
+    if (isCast) {
+      const expected = points.map((point, at) => this.world.rayCast(point, directions[at], 2, filter, { ...plain, ignoreTouching })?.id ?? -1);
+      return assert.deepEqual([...found.ids], expected);
+    }
+    const lists = [...found.ends].map((end, at) => [...found.ids.slice(found.ends[at - 1] ?? 0, end)]);
+    const expected = {
+      overlappingMany: () => rows.map((row) => this.found(row, filter, excluded)),
+      containingMany: () => points.map((point) => this.found([...point, ...point], filter, excluded)),
+      withinMany: () => points.map((point) => [...this.world.within(point, 1, filter, plain)]),
+      nearestMany: () => points.map((point) => this.world.nearest(point, 2, 2, filter, plain).map((/** @type {{ id: number }} */ { id }) => id)),
+    };
+    assert.deepEqual(lists, expected[name]());
+  }
+
+  /** Points, as one array or an array of points. */
+  #points(/** @type {number[][]} */ points) {
+    return this.below(2) === 0 ? this.array(points.flat()) : points.map((point) => this.array(point));
   }
 
   $within() {
     const [point, filter] = [this.point(), this.newFilter()];
     const radius = this.#orWrong(() => this.below(3), () => ((this.isWrong = true), this.pick([new Number(1), "1", NaN, -1, { valueOf: /** @returns {number} */ () => (this.read(), 1) }])));
-    const found = [...this.#right(this.world.within(this.#point(point), radius, this.#filter(filter), this.sortOptions()))];
-    assert.deepEqual(found, [...this.world.within(point, radius, filter)]);
-    const expected = [...this.bodies].filter(([, body]) => distance(body.row, point) <= radius && mayPair(body.filter, filter));
+    const { options, excluded } = this.options({ sorted: true });
+    const found = [...this.#right(this.world.within(this.#point(point), radius, this.#filter(filter), options))];
+    assert.deepEqual(found, [...this.world.within(point, radius, filter, { exclude: excluded })]);
+    const expected = [...this.bodies].filter(([id, body]) => !excluded.includes(id) && distance(body.row, point) <= radius && mayPair(body.filter, filter));
     assert.deepEqual(found, expected.map(([id]) => id).sort(bySlot));
   }
 
   $nearest() {
     const [point, filter] = [this.point(), this.newFilter()];
-    const found = this.#right(this.world.nearest(this.#point(point), 3, 2, this.#filter(filter)));
-    assert.deepEqual(found, this.world.nearest(point, 3, 2, filter));
-    const expected = [...this.bodies].filter(([, body]) => distance(body.row, point) <= 2 && mayPair(body.filter, filter));
+    const { options, excluded } = this.options({});
+    const found = this.#right(this.world.nearest(this.#point(point), 3, 2, this.#filter(filter), options));
+    assert.deepEqual(found, this.world.nearest(point, 3, 2, filter, { exclude: excluded }));
+    const expected = [...this.bodies].filter(([id, body]) => !excluded.includes(id) && distance(body.row, point) <= 2 && mayPair(body.filter, filter));
     assert.equal(found.length, Math.min(3, expected.length));
   }
 
@@ -508,13 +565,19 @@ export class HostileWorld extends Hostile {
     const point = box.slice(0, this.dimensions);
     const name = this.pick(["boxCast", "boxCastAll", "rayCast", "rayCastAll"]);
     const isBox = name.startsWith("box");
-    const hit = this.#right(this.world[name](isBox ? this.#box(box) : this.#point(point), this.#point(direction), 2, this.#filter(filter)));
-    assert.deepEqual(hit, this.world[name](isBox ? box : point, direction, 2, filter));
-    // It finds, too, what overlaps where it starts.
-    if (name.endsWith("All")) {
-      const found = new Set(hit.map((/** @type {{ id: number }} */ { id }) => id));
-      for (const id of this.found(isBox ? box : [...point, ...point], filter)) assert.ok(found.has(id), name);
+    const ignoreTouching = this.below(2) === 0;
+    const { options, excluded } = this.options({ ignoreTouching });
+    const hit = this.#right(this.world[name](isBox ? this.#box(box) : this.#point(point), this.#point(direction), 2, this.#filter(filter), options));
+    assert.deepEqual(hit, this.world[name](isBox ? box : point, direction, 2, filter, { exclude: excluded, ignoreTouching }));
+    if (!name.endsWith("All")) return;
+    // It finds, too, what overlaps where it starts: what it only touches there, unless it ignores that.
+    const found = new Set(hit.map((/** @type {{ id: number }} */ { id }) => id));
+    for (const id of this.found(isBox ? box : [...point, ...point], filter, excluded)) {
+      const row = this.#body(id).row;
+      const isInside = direction.every((_, axis) => (box[axis] ?? 0) < (row[axis + this.dimensions] ?? 0) && (isBox ? (box[axis + this.dimensions] ?? 0) : (point[axis] ?? 0)) > (row[axis] ?? 0));
+      if (isInside || !ignoreTouching) assert.ok(found.has(id), name);
     }
+    for (const each of hit) assert.equal(each.normal.filter((/** @type {number} */ at) => at !== 0).length, each.startsInside ? 0 : 1);
   }
 
   /** A function as filter is called after the search, and may do anything. */
@@ -540,7 +603,7 @@ export class HostileWorld extends Hostile {
   $this() {
     this.isWrong = true;
     const { prototype } = this.BroadPhase;
-    const name = this.pick(["insert", "set", "overlapping", "update", "free", "ids"]);
+    const name = this.pick(["insert", "set", "overlapping", "overlappingMany", "update", "free", "ids"]);
     const other = this.pick([{}, null, { memory: this.world }, new Proxy(this.world, {}), Object.create(prototype)]);
     try {
       prototype[name].call(other, ...this.row());

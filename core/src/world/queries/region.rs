@@ -83,8 +83,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
     /// [`Error::InvalidBox`] with the index of the first bad one.
     pub fn overlapping_many(&self, areas: &[Aabb<D, T>]) -> Result<Lists<ProxyId>, Error> {
         crate::validate(areas)?;
-        let bound = |area: &Aabb<D, T>, bounds: &Aabb<D, T>| bounds.overlaps(area);
-        Ok(self.collect(areas, bound))
+        Ok(self.collect(areas, |area, visit| self.visit_box(area, visit)))
     }
 
     /// Shows the bodies whose boxes overlap a box to `visit`, which may stop the search; in no
@@ -98,7 +97,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         mut visit: impl FnMut(ProxyId) -> ControlFlow<()>,
     ) -> Result<(), Error> {
         area.check(0)?;
-        self.visit_region(|bounds| bounds.overlaps(area), &mut visit);
+        self.visit_box(area, &mut visit);
         Ok(())
     }
 
@@ -117,9 +116,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
     pub fn containing_many(&self, points: &[[T; D]]) -> Result<Lists<ProxyId>, Error> {
         let is_number = |at: T| at <= T::INFINITY && at >= T::NEG_INFINITY;
         check_each(points, |point| fault_in("point", point, is_number))?;
-        let bound =
-            |&point: &[T; D], bounds: &Aabb<D, T>| bounds.overlaps(&Aabb::new(point, point));
-        Ok(self.collect(points, bound))
+        Ok(self.collect(points, |&point, visit| self.visit_box(&Aabb::new(point, point), visit)))
     }
 
     /// The bodies whose boxes are at most `radius` away from `center`, sorted.
@@ -138,10 +135,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         check_each(spheres, |(center, radius)| {
             fault_in("center", center, is_finite).or(fault_in("radius", &[*radius], is_length))
         })?;
-        let bound = |sphere: &([T; D], T), bounds: &Aabb<D, T>| {
-            is_within(&sphere.0, sphere.1.to_f64(), bounds)
-        };
-        Ok(self.collect(spheres, bound))
+        Ok(self.collect(spheres, |sphere, visit| self.visit_sphere(sphere, visit)))
     }
 
     /// One query by way of the form for many.
@@ -153,22 +147,19 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         Ok(many(self, core::slice::from_ref(query))?.values)
     }
 
-    /// The bodies in each of many regions.
+    /// The bodies in each of many regions, which `search` shows to its visitor.
     fn collect<Q>(
         &self,
         regions: &[Q],
-        is_near: impl Fn(&Q, &Aabb<D, T>) -> bool,
+        search: impl Fn(&Q, &mut dyn FnMut(ProxyId) -> ControlFlow<()>),
     ) -> Lists<ProxyId> {
         let mut lists = Lists::new();
         for region in regions {
             let start = lists.values.len();
-            self.visit_region(
-                |bounds| is_near(region, bounds),
-                |id| {
-                    lists.values.push(id);
-                    ControlFlow::Continue(())
-                },
-            );
+            search(region, &mut |id| {
+                lists.values.push(id);
+                ControlFlow::Continue(())
+            });
             if self.is_sorted {
                 lists.values[start..].sort_unstable();
             }
@@ -177,11 +168,22 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         lists
     }
 
-    fn visit_region(
+    /// Shows the bodies whose boxes overlap a box: all boxes of a node are tested at once, by vectors.
+    fn visit_box(&self, area: &Aabb<D, T>, visit: &mut dyn FnMut(ProxyId) -> ControlFlow<()>) {
+        self.tree.visit_overlapping(area, &mut |index| {
+            if self.bodies.shape(index).overlaps(area) && self.sees(index) {
+                visit(self.bodies.slots.id(index))?;
+            }
+            ControlFlow::Continue(())
+        });
+    }
+
+    fn visit_sphere(
         &self,
-        is_near: impl Fn(&Aabb<D, T>) -> bool,
-        mut visit: impl FnMut(ProxyId) -> ControlFlow<()>,
+        (center, radius): &([T; D], T),
+        visit: &mut dyn FnMut(ProxyId) -> ControlFlow<()>,
     ) {
+        let is_near = |bounds: &Aabb<D, T>| is_within(center, radius.to_f64(), bounds);
         let bound = |bounds: &Aabb<D, T>| is_near(bounds).then_some(0.0);
         self.tree.search(bound, |index| {
             if is_near(self.bodies.shape(index)) && self.sees(index) {

@@ -108,6 +108,39 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         })
     }
 
+    /// Visits the bodies whose boxes overlap `area`, in no particular order. It tests each node once, where
+    /// [`overlapping`](Self::overlapping) tests those above again on the way back.
+    pub fn visit_overlapping(
+        &self,
+        area: &Aabb<D, T>,
+        visit: &mut dyn FnMut(u32) -> ControlFlow<()>,
+    ) {
+        if self.root != NONE {
+            // The visitor knows whether it stopped.
+            let _ = self.visit_overlapping_in(self.root, area, visit);
+        }
+    }
+
+    fn visit_overlapping_in(
+        &self,
+        index: u32,
+        area: &Aabb<D, T>,
+        visit: &mut dyn FnMut(u32) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let node = &self.nodes[index as usize];
+        let mut bits = node.overlapping(area);
+        while bits != 0 {
+            let item = node.items[bits.trailing_zeros() as usize];
+            bits &= bits - 1;
+            if node.is_leaf {
+                visit(item)?;
+            } else {
+                self.visit_overlapping_in(item, area, visit)?;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
     /// Prefetches the leaf of a body.
     #[inline]
     pub fn prefetch_leaf_of(&self, body: u32) {

@@ -49,10 +49,11 @@ extern "C" fn world_pairs_of(handle: &mut Handle, id: f64) -> Code {
     })
 }
 
-/// Answers a query, whose numbers are in the numbers. Details: where the ids are that it found, and
-/// how many; the first number is where their values are (t, or squared distances), as many, and the second where the
-/// faces of hits are. If `is_static` is 2 there is no filter. `is_sorted` is for queries whose answer has no values. The
-/// first `excluded` ids that were written are not found; one of them that is stale excludes nothing.
+/// Answers a query, whose numbers are in the numbers, or many, whose `many` numbers follow the excluded ids. Details: where
+/// the ids are that it found, and how many. The first number is where their values are (t, or squared distances), as many,
+/// the second where the faces of hits are, the third where the ids of each query end, 32 bits for each query. If `is_static`
+/// is 2 there is no filter. `is_sorted` is for queries whose answer has no values. The first `excluded` ids that were written
+/// are not found; one of them that is stale excludes nothing.
 #[unsafe(no_mangle)]
 extern "C" fn world_query(
     handle: &mut Handle,
@@ -64,6 +65,7 @@ extern "C" fn world_query(
     is_static: u32,
     is_sorted: u32,
     excluded: usize,
+    many: usize,
 ) -> Code {
     let internal = || report(Code::Internal, [0, 0]);
     let filter = match is_static {
@@ -78,16 +80,20 @@ extern "C" fn world_query(
     let Some(query) = Query::numbered(query, k, max_distance) else { return internal() };
     let Some(is_sorted) = truth(is_sorted) else { return internal() };
     run(handle, stack::LARGE, |handle| {
-        let numbers = &handle.numbers[..query.width(dimensions)];
-        let written = handle.ids_in.iter().take(excluded);
+        let (excluded, rest) = handle.ids_in.split_at(excluded.min(handle.ids_in.len()));
+        let numbers = match many {
+            0 => &handle.numbers[..query.width(dimensions)],
+            _ => &rest[..many.min(rest.len())],
+        };
         handle.ids.clear();
-        handle.ids.extend(written.filter_map(|&number| id_of(&handle.generations, number)));
+        handle.ids.extend(excluded.iter().filter_map(|&id| id_of(&handle.generations, id)));
         let (excluded, answer) = (&handle.ids, &mut handle.answer);
         let result = handle.world.query(query, numbers, filter, excluded, is_sorted, answer);
         // After an error JavaScript reads the box that was passed.
         if result.is_ok() {
             handle.numbers[0] = handle.answer.values.as_ptr().addr() as f64;
             handle.numbers[1] = handle.answer.faces.as_ptr().addr() as f64;
+            handle.numbers[2] = handle.answer.ends.as_ptr().addr() as f64;
         }
         handle.answer(result)
     })
