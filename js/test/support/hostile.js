@@ -330,7 +330,7 @@ export class HostileWorld extends Hostile {
     const excluded = Array.from({ length: this.below(3) }, () => this.id());
     const form = this.below(2) === 0 && excluded.length === 1 ? excluded[0] : this.array(excluded);
     const options = {};
-    for (const [key, value] of Object.entries({ exclude: form, ...names })) {
+    for (const [key, value] of /** @type {[string, unknown][]} */ (Object.entries({ exclude: form, ...names }))) {
       if (this.below(4) > 0 || value === true) Object.defineProperty(options, key, { enumerable: true, get: () => (this.read(), value) });
       else if (key === "exclude") excluded.length = 0;
     }
