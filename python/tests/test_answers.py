@@ -198,10 +198,11 @@ def test_options_that_do_not_fit_are_refused(capsys: pytest.CaptureFixture[str])
         if "--memory-limit" in arguments:
             pytest.importorskip("distributed")
         assert said in refused(capsys, *arguments), arguments
-    np.save("b.npy", np.zeros((3, 4)))
+    np.save("b.npy", np.array([[0, 0, 2, 2], [5, 5, 6, 6], [1, 1, 3, 9]]))
+    assert table(capsys, "cluster", "b.npy")[1] == [["0", "0"], ["1", "1"], ["2", "0"]]
+    names, rows = table(capsys, "merge", "b.npy")
+    assert names == ["minx", "miny", "maxx", "maxy", "count"] and rows == [[*"00392"], [*"55661"]]
     for command in (
-        ["merge", "b.npy"],
-        ["cluster", "b.npy"],
         ["coverage", "b.npy", "b.npy"],
         ["nearest", "b.npy", "b.npy"],
     ):

@@ -32,6 +32,7 @@ import sweep_and_prune.dask as sap
 from sweep_and_prune._partitioned import boxes as boxes_module
 from sweep_and_prune._partitioned import graph, tasks, workers
 from sweep_and_prune._partitioned import run as run_module
+from sweep_and_prune._partitioned.cells import choose_cells
 from sweep_and_prune._partitioned.dataset import hash_pairs
 
 # Dask calls pandas in a way that a newer pandas warns of.
@@ -143,12 +144,16 @@ def test_a_pattern_of_any_period_cannot_hide_boxes_from_a_sample(
             for collection in collections:
                 options = {"format": "xyxy", "closed": None, "missing": "raise", "margin": 0}
                 sample = graph.source_of_collection(collection, None, None, "boxes", options).sample
-                assert len(sample) == 20_000
+                assert sample is not None and len(sample) == 20_000
                 assert abs((sample[:, 0] > 500).mean() - (period - 1) / period) < 0.01
     # A cell that is split into 80: one box in 10 is in the sample.
-    samples = []
-    real = tasks.choose_cells
-    monkeypatch.setattr(tasks, "choose_cells", lambda sample, count: samples.append(sample) or real(sample, count))
+    samples: list[Any] = []
+
+    def noted(sample: Any, count: int) -> Any:
+        samples.append(sample)
+        return choose_cells(sample, count)
+
+    monkeypatch.setattr(tasks, "choose_cells", noted)
     monkeypatch.setattr(tasks, "_SAMPLE_PER_CELL", 25)
     write("a.parquet", with_a_pattern(20_000, 10), group=20_000)
     sap.find_pairs("a.parquet", out="out", workers=0, cells=1)

@@ -309,3 +309,43 @@ def test_geometries_are_checked() -> None:
             sap.join(left, right, **options)
     with pytest.raises(TypeError, match="GeoDataFrame and DataFrame"):
         sap.join(left, pandas.DataFrame(right))
+
+
+def test_shares_and_measures_of_geometries_are_those_of_their_areas() -> None:
+    geopandas = pytest.importorskip("geopandas")
+    import shapely
+
+    random = np.random.default_rng(3)
+    frames = []
+    for count in (60, 80):
+        centers = shapely.points(random.random((count, 2)) * 5)
+        shapes = shapely.buffer(centers, random.random(count), quad_segs=3)
+        shapes[::7] = centers[::7]
+        shapes[3] = shapely.LineString([(0, 0), (5, 5)])
+        frames.append(geopandas.GeoDataFrame({"n": np.arange(count)}, geometry=shapes))
+    left, right = frames
+    plain = left.sjoin(right).sort_values(["n_left", "n_right"])
+    a, b = left.geometry[plain["n_left"]].array, right.geometry[plain["n_right"]].array
+    shared = a.intersection(b).area
+    with np.errstate(all="ignore"):
+        wanted = {
+            "size": shared,
+            "fraction_left": shared / a.area,
+            "fraction_right": shared / b.area,
+            "iou": shared / a.union(b).area,
+        }
+    joined = sap.join(left, right, measures=list(wanted))
+    assert joined["n_right"].tolist() == plain["n_right"].tolist()
+    for name, values in wanted.items():
+        assert np.allclose(joined[name], values, equal_nan=True), name
+    for fraction in (0.2, (0.5, 0), (0, 0.5)):
+        least = fraction if isinstance(fraction, tuple) else (fraction, fraction)
+        kept = (wanted["fraction_left"] >= least[0]) & (wanted["fraction_right"] >= least[1])
+        few = sap.join(left, right, fraction=fraction)
+        assert 0 < len(few) < len(plain) and few["n_right"].tolist() == plain["n_right"][kept].tolist()
+    every = sap.join(left, right, how="left", fraction=0.5, measures=["iou"])
+    assert every["iou"].isna().sum() == every["n_right"].isna().sum() > 0
+    bow_tie = geopandas.GeoDataFrame({"n": [0]}, geometry=[shapely.Polygon([(0, 0), (2, 2), (2, 0), (0, 2)])])
+    square = geopandas.GeoDataFrame({"n": [0]}, geometry=[shapely.Polygon([(0, 0), (2, 0), (1, 1), (2, 2), (0, 2)])])
+    with pytest.raises(ValueError, match=r"left row 0 .*is not a valid geometry.*make_valid"):
+        sap.join(bow_tie, square, measures=["size"])

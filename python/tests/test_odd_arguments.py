@@ -114,7 +114,7 @@ def sensible(name: str, ids: Any) -> Any:
         **{"format": "xyxy", "closed": "both", "missing": "raise", "by": None, "index_dtype": np.int64},
         **{"how": "inner", "predicate": "intersects", "distance": None, "lsuffix": "left", "rsuffix": "right"},
         **dict.fromkeys(
-            ("on_attribute", "left_by", "right_by", "left_columns", "right_columns", "fraction", "measures")
+            ("on_attribute", "left_by", "right_by", "left_columns", "right_columns", "fraction", "measures", "wrap")
         ),
         **{"intervals": ROWS[:, [0, 2]], "pairs": np.array([[0, 1], [2, 2]])},
         **dict.fromkeys(("left", "right"), pandas and pandas.DataFrame(ROWS, columns=["x1", "y1", "x2", "y2"])),

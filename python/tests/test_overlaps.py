@@ -141,17 +141,17 @@ def one_call(random: Random) -> None:
         else:
             assert float(distance) == pytest.approx(math.sqrt(square)), said
 
+    clusters = clusters_of(a, among)
+    assert sap.cluster(a.given, **options, **of_one).tolist() == clusters, said
+    merged = sap.merge(a.given, **options, **of_one)
+    wanted = []
+    for label in range(max(clusters, default=-1) + 1):
+        rows = [row for row, of_row in enumerate(clusters) if of_row == label]
+        sides = [*zip(*(a.rows[row] for row in rows))]
+        wanted.append(((*map(min, sides[:half]), *map(max, sides[half:])), len(rows), rows[0]))
+    corners = (merged.intervals.view(np.int64) if kind == "times" else merged.intervals).tolist()
+    assert [(tuple(map(Fraction, ends)), *rest) for ends, *rest in zip(corners, *merged[1:])] == wanted, said
     if half == 1:
-        clusters = clusters_of(a, among)
-        assert sap.cluster(a.given, **options, **of_one).tolist() == clusters, said
-        merged = sap.merge(a.given, **options, **of_one)
-        wanted = []
-        for label in range(max(clusters, default=-1) + 1):
-            rows = [row for row, of_row in enumerate(clusters) if of_row == label]
-            ends = min(a.rows[row][0] for row in rows), max(a.rows[row][1] for row in rows)
-            wanted.append((ends, len(rows), rows[0]))
-        rows = (merged.intervals.view(np.int64) if kind == "times" else merged.intervals).tolist()
-        assert [(tuple(map(Fraction, pair)), *rest) for pair, *rest in zip(rows, *merged[1:])] == wanted, said
         covered = []
         for i in range(len(a.rows)):
             others = [b.rows[j] for other, j in touching if other == i]
@@ -261,12 +261,15 @@ def test_on_attribute_is_by() -> None:
 
 def test_what_is_wrong_is_said() -> None:
     plane: Any = [[0, 0, 1, 1]]
+    with pytest.raises(ValueError, match=r"intervals must be of shape \(n, 2\), starts and ends, not of 4 columns"):
+        sap.coverage(plane, plane)
+    for boxes in (plane, [[0, 0, 0, 1, 1, 1]]):
+        with pytest.raises(ValueError, match=rf"starts and ends, not of {len(boxes[0])} columns"):
+            sap.coverage(boxes, boxes, by=([1], [1]))
     call: Any
     for call in (sap.cluster, sap.merge):
-        with pytest.raises(ValueError, match=r"intervals must be of shape \(n, 2\), starts and ends, not of 4 columns"):
-            call(plane)
-    with pytest.raises(ValueError, match=r"intervals must be of shape \(n, 2\)"):
-        sap.coverage(plane, plane)
+        with pytest.raises(ValueError, match="format must be"):
+            call(plane, format="wrong")
     with pytest.raises(ValueError, match="boxes of two or three dimensions need max_distance"):
         sap.nearest(plane, plane)
     wrong: Any
@@ -282,6 +285,27 @@ def test_what_is_wrong_is_said() -> None:
     for pairs, said in (([[0, 1]], "the index 1; it must be from 0 to 0"), ([0], "must be"), ([[0.0, 0.5]], "must be")):
         with pytest.raises(ValueError, match=f"pairs .*{said}"):
             sap.measure_overlaps(plane, None, pairs)
+
+
+def test_components_of_many_boxes_are_those_of_scipy() -> None:
+    csgraph = pytest.importorskip("scipy.sparse.csgraph")
+    sparse = pytest.importorskip("scipy.sparse")
+    random = np.random.default_rng(5)
+    low = random.random((20_000, 2))
+    chain = np.arange(20_000)[::-1, None] * [1, 0]
+    for boxes in (
+        np.hstack([low, low + 0.006]),
+        np.hstack([chain, chain + 1]),
+        random.permutation(np.hstack([chain, chain + 1])),
+    ):
+        pairs = sap.find_pairs(boxes)
+        graph = sparse.coo_matrix((np.ones(len(pairs), bool), tuple(pairs.T)), (len(boxes), len(boxes)))
+        number, labels = csgraph.connected_components(graph, directed=False)
+        found = sap.cluster(boxes)
+        assert found.max() + 1 == number == len({*zip(found.tolist(), labels.tolist())})
+        shifted = np.hstack([boxes[:, :2], boxes[:, 2:] - boxes[:, :2]])
+        assert sap.cluster(shifted, format="xywh").tolist() == found.tolist()
+        assert sap.merge(boxes).counts.tolist() == np.bincount(found).tolist()
 
 
 def test_infinite_intervals_have_distances() -> None:

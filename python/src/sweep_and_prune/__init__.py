@@ -27,7 +27,7 @@ array([[0, 2]])
 | two data frames: rows whose boxes or geometries overlap | `join` |
 | for each box the number of others, or those that are nearest | `count_overlaps`, `nearest` |
 | the size of each overlap, its share of a box, IoU | `measure_overlaps` |
-| intervals: connected ones, their union, what others cover | `cluster`, `merge`, `coverage` |
+| which intervals or boxes are connected, their union; what intervals cover | `cluster`, `merge`; `coverage` |
 | more boxes than fit in memory, or a cluster of machines | `sweep_and_prune.dask` |
 | any of these every frame | `PairFinder` |
 | bodies that mostly rest; begin and end events; queries and rays | `BroadPhase` |

@@ -205,6 +205,9 @@ _output = _together(
     ),
     click.option("--rows", is_flag=True, help="Write all columns, as in the files, instead of row numbers."),
 )
+_wrap = click.option(
+    "--wrap", type=float, metavar="LENGTH", help="The x axis is a circle of this length, such as 360 for longitude."
+)
 _overlap = _together(
     click.option(
         "--fraction",
@@ -246,7 +249,7 @@ def _file(name: str) -> Callable[[_Function], _Function]:
 
 @sap.command()
 @_file("file")
-@_together(_boxes, _overlap, _output, _disk)
+@_together(_boxes, _wrap, _overlap, _output, _disk)
 def pairs(file: str, **options: Any) -> None:
     """Writes all pairs of overlapping boxes of a file."""
     _write_pairs(Options(files=[file], **options))
@@ -261,7 +264,7 @@ def pairs(file: str, **options: Any) -> None:
     default="inner",
     help="left, right: also the boxes of that file without a pair. semi, anti: the boxes of A with any pair, or none.",
 )
-@_together(_boxes, _sides, _overlap, _output, _disk)
+@_together(_boxes, _wrap, _sides, _overlap, _output, _disk)
 def join(a: str, b: str, **options: Any) -> None:
     """Writes all pairs of a box of one file and a box of another."""
     _write_pairs(Options(files=[a, b], **options))
@@ -271,7 +274,7 @@ def join(a: str, b: str, **options: Any) -> None:
 @_file("a")
 @click.argument("b", type=click.Path(allow_dash=True), required=False)
 @click.option("--each", is_flag=True, help="Write a count for each box of A.")
-@_together(_boxes, _sides, _output, _disk)
+@_together(_boxes, _wrap, _sides, _output, _disk)
 def count(a: str, b: str | None, **options: Any) -> None:
     """Counts the pairs of a file, or of two."""
     given = Options(files=[a] if b is None else [a, b], **options)
@@ -312,7 +315,7 @@ def coverage(a: str, b: str, **options: Any) -> None:
 @_file("file")
 @_together(_boxes, _output)
 def cluster(file: str, **options: Any) -> None:
-    """Numbers the groups of connected intervals."""
+    """Numbers the groups of connected intervals or boxes."""
     given = Options(files=[file], **options)
     _write_answers(given, lambda sets, search: [("cluster", find_clusters(*sets, **search))])
 
@@ -321,7 +324,7 @@ def cluster(file: str, **options: Any) -> None:
 @_file("file")
 @_together(_boxes, _output)
 def merge(file: str, **options: Any) -> None:
-    """Writes the union of connected intervals, with their group and their number."""
+    """Writes the union of connected intervals, or the bounds of connected boxes, with their group and number."""
     given = Options(files=[file], **options)
     if given.id or given.rows:
         raise FileError("merged intervals have no rows of their own: leave out --id and --rows")
@@ -330,8 +333,9 @@ def merge(file: str, **options: Any) -> None:
         sets, search = _search(given, sources)
         merged = find_merged(*sets, **search)
         groups = [(name, sources[0].label(name)[merged.first]) for name in given.by or sources[0].by]
-        ends = [("start", merged.intervals[:, 0]), ("end", merged.intervals[:, 1]), ("count", merged.counts)]
-        _write_columns(given, kind, [*groups, *ends])
+        half = merged.intervals.shape[1] // 2
+        names = ["start", "end"] if half == 1 else [f"{end}{axis}" for end in ("min", "max") for axis in "xyz"[:half]]
+        _write_columns(given, kind, [*groups, *zip(names, merged.intervals.T), ("count", merged.counts)])
 
 
 @sap.command()
@@ -448,6 +452,8 @@ def _search(options: Options, sources: list[Source]) -> tuple[list[Any], dict[st
         raise FileError("the formats of the files differ in whether ends belong to boxes: pass --closed")
     search: dict[str, Any] = {"missing": options.missing, "closed": closed.pop()}
     search["margin"] = options.margin
+    if getattr(options, "wrap", None) is not None:
+        search["wrap"] = options.wrap
     if any(by):
         search["by"] = groups[0] if len(groups) == 1 else tuple(groups)
     return sets, search
@@ -561,7 +567,7 @@ def _chosen_pairs(
         pairs = find(*sets, threads=options.threads, progress=progress, **search)
     first, second = sets[0], sets[1] if len(sets) == 2 else None
     if options.fraction:
-        shares, least = measure_overlaps(first, second, pairs), _fractions(options.fraction)
+        shares, least = measure_overlaps(first, second, pairs, wrap=options.wrap), _fractions(options.fraction)
         pairs = pairs[(shares.fraction_a >= least[0]) & (shares.fraction_b >= least[1])]
     if how in ("semi", "anti"):
         if options.measure:
@@ -576,7 +582,7 @@ def _chosen_pairs(
         rows = with_missing([rows[0][order], rows[1][order]], kept, len(sources[kept]))
     columns = _labelled(options, sources, rows)
     is_pair = (rows[0] >= 0) & (rows[1] >= 0)
-    found = measure_overlaps(first, second, np.stack(rows, axis=1)[is_pair])
+    found = measure_overlaps(first, second, np.stack(rows, axis=1)[is_pair], wrap=options.wrap)
     for name in options.measure:
         if name not in Overlaps._fields:
             raise FileError(f"--measure must be of {', '.join(Overlaps._fields)}, not {name}")
@@ -674,7 +680,9 @@ def _from_disk(options: Options, to: str | None) -> Iterator[tuple[Any, dict[str
         if path == "-" or (kind not in (None, "parquet") and not os.path.isdir(path)):
             raise FileError(f"{path}: --memory-limit reads Parquet files and folders of them: convert it first")
     refused = {"--threads": options.threads != 1, "--to": to, "--header": options.header is not None}
-    refused |= {f"--{name}": getattr(options, name, None) for name in ("by", "fraction", "measure", "rows", "each")}
+    refused |= {
+        f"--{name}": getattr(options, name, None) for name in ("by", "fraction", "measure", "rows", "each", "wrap")
+    }
     refused |= {f"--{side}-{name}": getattr(options, f"{side}_{name}", None) for side in _SIDES for name in _PER_SIDE}
     refused |= {"--from": options.from_, "--how": getattr(options, "how", "inner") != "inner"}
     for name in (name for name, value in refused.items() if value):

@@ -1,4 +1,4 @@
-"""Intervals: which are connected, what they cover, and which are nearest. Boxes have the nearest, too."""
+"""Which intervals and boxes are connected, which are nearest, and what intervals cover."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ _CHUNK = 2**20
 
 
 class Merged(NamedTuple):
-    """Intervals that were merged, an entry for each."""
+    """Intervals or boxes that were merged, an entry for each."""
 
     intervals: Values
-    """`(m, 2)`: starts and ends, in the type of what was merged."""
+    """`(m, 2 * D)`: min corners and max corners, in the type of what was merged."""
     counts: NDArray[np.int64]
-    """How many intervals each one consists of."""
+    """How many intervals or boxes each one consists of."""
     first: NDArray[np.int64]
     """The first row of each one, by which its group can be looked up."""
 
@@ -40,17 +40,20 @@ class Nearest(NamedTuple):
 def cluster(
     intervals: ArrayLike,
     *,
+    format: str = "xyxy",
     closed: str | None = None,
     missing: str = "raise",
     by: Groups | None = None,
     margin: Margin = 0,
 ) -> NDArray[np.int64]:
-    """Numbers the groups of connected intervals: those that overlap, directly or through others.
+    """Numbers the groups of connected intervals or boxes: those that overlap, directly or through others.
 
-    Time O(n log n), however many overlap: no pairs are found.
+    For intervals the time is O(n log n), however many overlap: no pairs are found. For boxes of two or three dimensions
+    it is that of `find_pairs`, but no pairs are stored.
 
     Args:
-        intervals: `(n, 2)` starts and ends, or another form that `find_pairs` accepts.
+        intervals: `(n, 2)` starts and ends, `(n, 2 * D)` boxes, or another form that `find_pairs` accepts.
+        format: `"xyxy"`, `"xywh"` or `"cxcywh"`.
         closed: which ends belong to an interval. By default both: intervals that touch are connected.
         missing: `"raise"` or `"skip"`: an interval with a NaN is in no cluster.
         by: only intervals with equal values are connected.
@@ -60,39 +63,60 @@ def cluster(
         `(n,)`: the cluster of each interval. They are numbered from 0, in the order of their first rows; -1 is none.
 
     Raises:
-        ValueError: for boxes of more than one dimension.
-        InvalidBoxError, TypeError: as `find_pairs`.
+        InvalidBoxError, ValueError, TypeError: as `find_pairs`.
 
     >>> import sweep_and_prune as sap
     >>> sap.cluster([[0, 2], [5, 6], [2, 3], [6, 9]])
     array([0, 1, 0, 1])
     >>> sap.cluster([[0, 2], [5, 6], [2, 3], [6, 9]], closed="left", margin=2)
     array([0, 1, 0, 1])
+    >>> sap.cluster([[0, 0, 2, 2], [5, 5, 6, 6], [1, 1, 3, 3]])
+    array([0, 1, 0])
     """
-    prepared = one_set(intervals, "xyxy", closed, missing, by, margin)
-    _refuse_boxes(prepared, by)
+    prepared = one_set(intervals, format, closed, missing, by, margin)
     labels = np.full(prepared.lengths[0], -1, np.int64)
     kept = prepared.kept[0]
     rows = np.arange(len(labels)) if kept is None else kept
-    labels[rows] = _clusters(prepared)
+    labels[rows] = _clusters(prepared) if _are_intervals(prepared, by) else _components(prepared)[rows]
     if kept is not None and len(rows) < len(labels):
         # Those that overlap nothing, since they are empty or have no group, are by themselves.
-        alone = np.setdiff1d(np.flatnonzero(~is_missing(_lines(intervals))), rows)
-        labels[alone] = labels.max(initial=-1) + 1 + np.arange(len(alone))
+        alone = np.setdiff1d(np.flatnonzero(~is_missing(_corners_of(intervals, format))), rows)
+        labels[alone] = len(labels) + np.arange(len(alone))
     present = np.flatnonzero(labels >= 0)
     _, first, of_rows = np.unique(labels[present], return_index=True, return_inverse=True)
     labels[present] = np.argsort(np.argsort(first))[of_rows.reshape(-1)]
     return labels
 
 
+def _are_intervals(prepared: Prepared, by: Any) -> bool:
+    return int(prepared.sets[0].shape[1]) == (2 if by is None else 4)
+
+
 def _refuse_boxes(prepared: Prepared, by: Any) -> None:
-    width = prepared.sets[0].shape[1] - (0 if by is None else 2)
-    if width != 2:
+    if not _are_intervals(prepared, by):
+        width = prepared.sets[0].shape[1] - (0 if by is None or prepared.groups is not None else 2)
         raise ValueError(f"intervals must be of shape (n, 2), starts and ends, not of {width} columns")
 
 
-def _lines(intervals: Any) -> Values:
-    return read_boxes(intervals, "intervals").array
+def _corners_of(boxes: Any, format: str) -> Values:
+    return read_boxes(boxes, "intervals", 0, format).array
+
+
+def _components(prepared: Prepared) -> NDArray[np.int64]:
+    """For each row the first row of those that are connected to it, directly or through others."""
+    parents = np.arange(prepared.lengths[0])  # between chunks, all lead to the first row at once
+
+    def connect(pairs: NDArray[Any]) -> None:
+        first, second = parents[pairs[:, 0]], parents[pairs[:, 1]]
+        while len(apart := np.flatnonzero(first != second)):
+            first, second = first[apart], second[apart]
+            np.minimum.at(parents, np.maximum(first, second), np.minimum(first, second))
+            while not np.array_equal(above := parents[parents], parents):
+                parents[:] = above
+            first, second = parents[first], parents[second]
+
+    stream(prepared, connect, _CHUNK, np.int64)
+    return parents
 
 
 def _clusters(prepared: Prepared) -> NDArray[np.int64]:
@@ -110,17 +134,20 @@ def _clusters(prepared: Prepared) -> NDArray[np.int64]:
 def merge(
     intervals: ArrayLike,
     *,
+    format: str = "xyxy",
     closed: str | None = None,
     missing: str = "raise",
     by: Groups | None = None,
     margin: Margin = 0,
 ) -> Merged:
-    """Merges intervals that overlap, directly or through others, to the shortest ones that contain them.
+    """Merges intervals or boxes that overlap, directly or through others, to the smallest ones that contain them.
 
-    Time O(n log n).
+    Merged intervals do not overlap. Merged boxes may: each is that of a group of connected boxes, as `cluster` numbers
+    them, and need not be filled by these. Cost is that of `cluster`.
 
     Args:
-        intervals: `(n, 2)` starts and ends, or another form that `find_pairs` accepts.
+        intervals: `(n, 2)` starts and ends, `(n, 2 * D)` boxes, or another form that `find_pairs` accepts.
+        format: `"xyxy"`, `"xywh"` or `"cxcywh"`; the result has corners.
         closed: which ends belong to an interval. By default both: intervals that touch are merged.
         missing: `"raise"` or `"skip"`: an interval with a NaN is left out.
         by: only intervals with equal values are merged.
@@ -130,7 +157,7 @@ def merge(
         `intervals, counts, first`, in the order of their first rows.
 
     Raises:
-        ValueError, InvalidBoxError, TypeError: as `cluster`.
+        InvalidBoxError, ValueError, TypeError: as `find_pairs`.
 
     >>> import sweep_and_prune as sap
     >>> sap.merge([[0, 2], [5, 6], [2, 3]]).intervals
@@ -141,15 +168,19 @@ def merge(
     >>> [(chromosomes[row], *ends) for row, ends in zip(merged.first, merged.intervals.tolist())]
     [('chr1', 0, 2), ('chr2', 1, 9)]
     """
-    labels = cluster(intervals, closed=closed, missing=missing, by=by, margin=margin)
-    ends = _lines(intervals)
+    labels = cluster(intervals, format=format, closed=closed, missing=missing, by=by, margin=margin)
+    corners = _corners_of(intervals, format)
     order = np.argsort(labels, kind="stable")
     order = order[labels[order] >= 0]
     if len(order) == 0:
-        return Merged(ends[:0], order, order)
+        return Merged(corners[:0], order, order)
     starts_at = np.flatnonzero(np.diff(labels[order], prepend=-1))
-    merged = [function.reduceat(ends[order, side], starts_at) for side, function in enumerate((np.minimum, np.maximum))]
-    return Merged(np.stack(merged, axis=1), np.diff(starts_at, append=len(order)), order[starts_at])
+    half = corners.shape[1] // 2
+    merged = [
+        function.reduceat(corners[order][:, side], starts_at)
+        for function, side in ((np.minimum, slice(half)), (np.maximum, slice(half, None)))
+    ]
+    return Merged(np.hstack(merged), np.diff(starts_at, append=len(order)), order[starts_at])
 
 
 def coverage(

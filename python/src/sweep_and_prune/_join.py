@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -14,8 +15,9 @@ from ._columns import group_codes, is_rounded
 from ._crs import difference
 from ._inputs import Raw, chosen_boxes, listed, named_column, raw_boxes
 from ._native import in_order
-from ._overlaps import measure_overlaps
+from ._overlaps import Overlaps, measure_overlaps
 from ._pairs import Progress, find_pairs_between
+from ._wrap import checked_wrap
 
 _FLIPPED = {"contains": "within", "covers": "covered_by", "within": "contains", "covered_by": "covers"}
 _SYMMETRIC = ("intersects", "touches", "overlaps", "dwithin")
@@ -38,6 +40,9 @@ _ROUNDING = 1e-9
 _BLOCK = 20_000
 """So many candidates are tested at once: few enough for the cache, and enough for each thread."""
 
+_MOST_TURNS = 100
+"""With `wrap`, geometries are moved by at most this many turns of the circle."""
+
 Indices = NDArray[np.int64]
 Groups = NDArray[np.float64]
 
@@ -57,6 +62,7 @@ def join(
     right_columns: list[str] | None = None,
     fraction: float | tuple[float, float] | None = None,
     measures: list[str] | None = None,
+    wrap: float | None = None,
     lsuffix: str = "left",
     rsuffix: str = "right",
     format: str = "xyxy",
@@ -95,10 +101,14 @@ def join(
         left_columns: of boxes without geometries: the columns of the left boxes, min corner and then max corner. By
             default, those with known names.
         right_columns: the same for the right frame.
-        fraction: of boxes without geometries: only pairs whose overlap is at least this share of both boxes; two
-            numbers are for the left and for the right box. A box without a size has no share.
-        measures: of boxes without geometries: columns to add for each pair, which `measure_overlaps` describes:
-            `"size"`, `"fraction_left"`, `"fraction_right"` and `"iou"`.
+        fraction: only pairs whose overlap is at least this share of both boxes or geometries; two numbers are for the
+            left and for the right one. What has no size has no share.
+        measures: columns to add for each pair, which `measure_overlaps` describes: `"size"`, `"fraction_left"`,
+            `"fraction_right"` and `"iou"`. Of geometries these are areas, which shapely computes, in the units of the
+            coordinates: lines and points have none.
+        wrap: the length of the x axis if it is a circle, such as 360 for longitude. Boxes may cross its end, as in
+            `find_pairs`. A geometry pairs with those that are one turn or several away, too; it must not cross the end
+            by itself, but may have a part on each side of it, or coordinates beyond it.
         lsuffix: what is added, after `_`, to names of left columns that the right frame has too.
         rsuffix: the same for right columns, and for the column that has the index of the right frame.
         format: of boxes without geometries: `"xyxy"`, `"xywh"` or `"cxcywh"`.
@@ -164,9 +174,15 @@ def join(
             )
         if closed is not None or format != "xyxy":
             raise ValueError("closed and format are for boxes; geometries have neither")
-        if least is not None or added or left_columns is not None or right_columns is not None:
-            raise ValueError("fraction, measures, left_columns and right_columns are for boxes without geometries")
-        found = _of_geometries(left, right, predicate, distance, groups, threads, progress)
+        if left_columns is not None or right_columns is not None:
+            raise ValueError("left_columns and right_columns are for boxes without geometries")
+        sides = [_side(np.asarray(frame.geometry.array, object)) for frame in (left, right)]
+        found = _of_geometries(sides, predicate, distance, groups, threads, progress, wrap)
+        shapes = [side.shapes for side in sides]
+
+        def measured(rows: Indices) -> Overlaps:
+            return _measured_geometries(shapes, rows, wrap)
+
     else:
         if predicate != "intersects":
             raise ValueError(f'predicate "{predicate}" needs geometries; boxes know only "intersects"')
@@ -185,12 +201,18 @@ def join(
             missing="skip",
             by=groups,
             margin=0 if distance is None else distance,
+            wrap=wrap,
             progress=progress,
         )
-        if least is not None:
-            shares = measure_overlaps(boxes[0], boxes[1], pairs, format=format)
-            pairs = pairs[(shares.fraction_a >= least[0]) & (shares.fraction_b >= least[1])]
         found = pairs[:, 0], pairs[:, 1]
+
+        def measured(rows: Indices) -> Overlaps:
+            return measure_overlaps(boxes[0], boxes[1], rows, format=format, wrap=wrap)
+
+    if least is not None:
+        shares = measured(np.stack(found, axis=1))
+        is_enough = (shares.fraction_a >= least[0]) & (shares.fraction_b >= least[1])
+        found = found[0][is_enough], found[1][is_enough]
     if how in ("semi", "anti"):
         matches = np.zeros(len(left), bool)
         matches[found[0]] = True
@@ -200,7 +222,7 @@ def join(
     if how != "inner":
         rows = with_missing(rows, how == "right", len(right if how == "right" else left))
     joined = (_frame_of_polars if is_polars else _frame)(left, right, rows, how, columns, (lsuffix, rsuffix))
-    return _with_measures(joined, added, boxes, rows, format) if added else joined
+    return _with_measures(joined, added, rows, measured) if added else joined
 
 
 def _chosen(frame: Any, names: Any, name: str, format: str) -> Raw:
@@ -234,10 +256,10 @@ def _measure_names(measures: Any) -> list[str]:
     return names
 
 
-def _with_measures(joined: Any, names: list[str], boxes: list[Any], rows: list[Indices], format: str) -> Any:
+def _with_measures(joined: Any, names: list[str], rows: list[Indices], measured: Callable[[Indices], Overlaps]) -> Any:
     """The joined frame with columns that measure its pairs; they are missing where a row has no match."""
     is_pair = (rows[0] >= 0) & (rows[1] >= 0)
-    found = measure_overlaps(boxes[0], boxes[1], np.stack(rows, axis=1)[is_pair], format=format)
+    found = measured(np.stack(rows, axis=1)[is_pair])
     for name in names:
         if name in joined.columns:
             raise ValueError(f"{name!r} cannot be a column of left or right: measures adds it")
@@ -289,26 +311,100 @@ def _groups(left: Any, right: Any, of_left: list[str], of_right: list[str]) -> t
 
 
 def _of_geometries(
-    left: Any,
-    right: Any,
+    sides: list[_Side],
     predicate: str,
     distance: ArrayLike | None,
     groups: tuple[Groups, Groups] | None,
     threads: int | None,
     progress: Progress | None,
+    wrap: float | None,
 ) -> tuple[Indices, Indices]:
-    sides = [_side(np.asarray(frame.geometry.array, object)) for frame in (left, right)]
-    bounds = [side.bounds for side in sides]
     distances = None
     if distance is not None:
+        rows = len(sides[0].shapes)
         try:
-            distances = np.broadcast_to(np.asarray(distance, np.float64), len(left))
+            distances = np.broadcast_to(np.asarray(distance, np.float64), rows)
         except ValueError:
-            raise ValueError(f"distance must be a number or {len(left)} of them, one for each left row") from None
+            raise ValueError(f"distance must be a number or {rows} of them, one for each left row") from None
         wrong = np.flatnonzero(~(distances >= 0))
         if len(wrong):
             place = "distance" if np.ndim(distance) == 0 else f"distance[{wrong[0]}]"
             raise ValueError(f"{place} is {distances[wrong[0]]}; it must be 0 or more")
+    if wrap is None:
+        return _of_turn(sides, predicate, distances, groups, threads, progress)
+    found = [
+        _of_turn([sides[0], _moved(sides[1], turn)], predicate, distances, groups, threads, progress)
+        for turn in _turns(sides, distances, checked_wrap(wrap))
+    ]
+    pairs = np.unique(np.concatenate([np.empty((0, 2), np.int64), *(np.stack(one, axis=1) for one in found)]), axis=0)
+    return pairs[:, 0], pairs[:, 1]
+
+
+def _turns(sides: list[_Side], distances: NDArray[np.float64] | None, wrap: float) -> list[float]:
+    """How far the right geometries are moved, so that they may meet left ones that are some turns away."""
+    x = [side.bounds[:, [0, 2]] for side in sides]
+    x = [ends[np.isfinite(ends).all(axis=1)] for ends in x]
+    if not all(map(len, x)):
+        return []
+    most = 0.0 if distances is None else float(distances.max(initial=0))
+    first = math.ceil((float(x[0].min()) - most - float(x[1].max())) / wrap)
+    last = math.floor((float(x[0].max()) + most - float(x[1].min())) / wrap)
+    if last - first >= _MOST_TURNS:
+        raise ValueError(f"the coordinates go {last - first} times around a circle of {wrap}: is wrap in their units?")
+    return [turn * wrap for turn in range(first, last + 1)]
+
+
+def _moved(side: _Side, by: float) -> _Side:
+    """The geometries moved along the x axis."""
+    import shapely
+
+    if by == 0:
+        return side
+    shapes = shapely.transform(side.shapes, lambda points: points + [by, 0])
+    return side._replace(shapes=shapes, bounds=side.bounds + [by, 0, by, 0])
+
+
+def _measured_geometries(shapes: list[NDArray[Any]], rows: Indices, wrap: float | None) -> Overlaps:
+    """The areas that pairs of geometries share."""
+    import shapely
+
+    first, second = (of_side[at] for of_side, at in zip(shapes, rows.T))
+    areas = [np.asarray(shapely.area(of_side), np.float64) for of_side in shapes]
+    of_a, of_b = areas[0][rows[:, 0]], areas[1][rows[:, 1]]
+    turns = [0.0] if wrap is None else _turns([_side(first), _side(second)], None, checked_wrap(wrap))
+    shared = np.zeros(len(rows))
+    try:
+        for turn in turns:
+            moved = shapely.transform(second, lambda points, turn=turn: points + [turn, 0]) if turn else second
+            shared += shapely.area(shapely.intersection(first, moved))
+    except shapely.errors.GEOSException as error:
+        raise ValueError(f"{_first_invalid(shapes, rows)} ({error}): pass frames with geometry.make_valid()") from None
+    with np.errstate(all="ignore"):
+        return Overlaps(shared, shared / of_a, shared / of_b, shared / (of_a + of_b - shared))
+
+
+def _first_invalid(shapes: list[NDArray[Any]], rows: Indices) -> str:
+    import shapely
+
+    for name, of_side, of_pairs in zip(("left", "right"), shapes, rows.T):
+        used = np.unique(of_pairs)
+        wrong = used[~shapely.is_valid(of_side[used])]
+        if len(wrong):
+            return f"{name} row {wrong[0]} (the first is 0) is not a valid geometry, whose overlaps have no area"
+    return "geometries cannot be intersected"
+
+
+def _of_turn(
+    sides: list[_Side],
+    predicate: str,
+    distances: NDArray[np.float64] | None,
+    groups: tuple[Groups, Groups] | None,
+    threads: int | None,
+    progress: Progress | None,
+) -> tuple[Indices, Indices]:
+    """The pairs of geometries as they are."""
+    bounds = [side.bounds for side in sides]
+    if distances is not None:
         bounds[0] = _extended(bounds[0], distances)
     pairs = find_pairs_between(*bounds, threads=threads, missing="skip", by=groups, progress=progress)
     first, second = pairs[:, 0], pairs[:, 1]

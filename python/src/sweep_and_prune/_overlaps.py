@@ -11,6 +11,7 @@ from ._arrays import Floats, read_boxes, same_width
 from ._columns import in_one_unit, one_type
 from ._pairs import Groups, Margin, one_set, stream, two_sets
 from ._prepare import Prepared, one_kind
+from ._wrap import checked_wrap, length_on_circle, shared_length
 
 Values = NDArray[Any]
 """Coordinates or sizes in the type that the boxes have: integers, floating point or times."""
@@ -42,6 +43,7 @@ def count_overlaps(
     missing: str = "raise",
     by: Groups | tuple[Groups, Groups] | None = None,
     margin: Margin = 0,
+    wrap: float | None = None,
 ) -> NDArray[np.int64]:
     """Counts for each box of `a` the boxes of `b` that overlap it; without `b`, the other boxes of `a`.
 
@@ -56,6 +58,7 @@ def count_overlaps(
         missing: `"raise"` or `"skip"`: a box with a NaN overlaps nothing.
         by: only boxes with equal values count, as in `find_pairs` and `find_pairs_between`.
         margin: counts boxes within this distance on each axis, too.
+        wrap: the length of axis 0 if it is a circle, as in `find_pairs`.
 
     Returns:
         `(n,)` numbers.
@@ -70,12 +73,12 @@ def count_overlaps(
     array([1, 1, 0])
     """
     if b is None:
-        prepared = one_set(a, format, closed, missing, by, margin)
+        prepared = one_set(a, format, closed, missing, by, margin, wrap)
     else:
-        prepared = two_sets(a, b, format, closed, missing, by, margin)
+        prepared = two_sets(a, b, format, closed, missing, by, margin, wrap)
     rows = prepared.lengths[0]
     counts = np.zeros(rows, np.int64)
-    if prepared.sets[0].shape[1] == (2 if by is None else 4):
+    if prepared.sets[0].shape[1] == (2 if by is None else 4) and wrap is None:
         counts[slice(None) if prepared.kept[0] is None else prepared.kept[0]] = _counts_of_intervals(prepared)
         return counts
 
@@ -111,7 +114,9 @@ def line_keys(sets: list[Floats]) -> list[tuple[Values, Values]]:
     return [(part[:, 0], part[:, 1]) for part in parts]
 
 
-def measure_overlaps(a: ArrayLike, b: ArrayLike | None, pairs: ArrayLike, *, format: str = "xyxy") -> Overlaps:
+def measure_overlaps(
+    a: ArrayLike, b: ArrayLike | None, pairs: ArrayLike, *, format: str = "xyxy", wrap: float | None = None
+) -> Overlaps:
     """Measures how much the boxes of each pair overlap.
 
     Where two boxes do not overlap, as with a `margin`, the size is 0. Infinite boxes have a NaN where infinity would be
@@ -122,6 +127,7 @@ def measure_overlaps(a: ArrayLike, b: ArrayLike | None, pairs: ArrayLike, *, for
         b: another set of boxes; None for pairs of `a` itself.
         pairs: `(m, 2)` indices of rows, as `find_pairs` or `find_pairs_between` returned them.
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
+        wrap: the length of axis 0 if it is a circle, as in `find_pairs`; then sizes are floating point.
 
     Returns:
         Four arrays of length m: `size, fraction_a, fraction_b, iou`.
@@ -151,10 +157,28 @@ def measure_overlaps(a: ArrayLike, b: ArrayLike | None, pairs: ArrayLike, *, for
             raise ValueError(f"pairs has the index {wrong}; it must be from 0 to {len(boxes) - 1}")
     first, second = corners[0][rows[:, 0]], corners[-1][rows[:, 1]]
     with np.errstate(all="ignore"):
-        shared = _size(np.hstack([_larger(first, second), _smaller(first, second)]))
-        of_a, of_b = _size(first), _size(second)
+        sides = np.hstack([_larger(first, second), _smaller(first, second)])
+        if wrap is not None:
+            sides, first, second = _on_circle(sides, first, second, checked_wrap(wrap))
+        shared, of_a, of_b = _size(sides), _size(first), _size(second)
         union = of_a + of_b - shared
         return Overlaps(shared, _share(shared, of_a), _share(shared, of_b), _share(shared, union))
+
+
+def _on_circle(shared: Values, first: Values, second: Values, wrap: float) -> list[Values]:
+    """Boxes that are as long on axis 0 as these are on a circle, and begin there at 0."""
+    if first.dtype.kind not in "iuf":
+        raise TypeError("wrap is for numbers that floating point holds, not for times and integers beyond 2^53")
+    half = first.shape[1] // 2
+    ends = [boxes[:, [0, half]] for boxes in (first, second)]
+    lengths = [
+        shared_length(ends[0], ends[1], wrap),
+        *(length_on_circle(each[:, 0], each[:, 1], wrap) for each in ends),
+    ]
+    sized = [boxes.astype(np.float64) for boxes in (shared, first, second)]
+    for boxes, length in zip(sized, lengths):
+        boxes[:, 0], boxes[:, half] = 0, length
+    return sized
 
 
 def _larger(first: Values, second: Values) -> Values:

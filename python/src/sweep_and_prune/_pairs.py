@@ -42,6 +42,7 @@ def find_pairs(
     missing: str = "raise",
     by: Groups | None = None,
     margin: Margin = 0,
+    wrap: float | None = None,
     progress: Progress | None = None,
 ) -> Pairs:
     """Finds all pairs of boxes that overlap.
@@ -73,6 +74,8 @@ def find_pairs(
         margin: finds boxes within this distance of each other on each axis, too. One number for all axes, or D of
             them; a `timedelta` for times. On each axis `min <= other max + margin` holds for both boxes, where the
             sum is rounded to the precision of the boxes.
+        wrap: the length of axis 0 if it is a circle, such as 360 for longitude: coordinates that differ by it are the
+            same, and a box whose min is greater than its max crosses the end. (From -inf to inf is all of it.)
         progress: called about 50 times a second with the share of the work that is done, from 0 to 1, and with 1
             at the end. An exception that it raises ends the search. Short searches only call it at the end.
 
@@ -97,7 +100,7 @@ def find_pairs(
     >>> sap.find_pairs([[0, 10], [12, 20], [23, 30]], margin=2)
     array([[0, 1]])
     """
-    prepared = one_set(boxes, format, closed, missing, by, margin)
+    prepared = one_set(boxes, format, closed, missing, by, margin, wrap)
     return find(prepared, threads, dtype, progress)
 
 
@@ -112,6 +115,7 @@ def find_pairs_between(
     missing: str = "raise",
     by: Groups | tuple[Groups, Groups] | None = None,
     margin: Margin = 0,
+    wrap: float | None = None,
     progress: Progress | None = None,
 ) -> Pairs:
     """Finds all pairs of a box of `a` and a box of `b` that overlap.
@@ -130,6 +134,7 @@ def find_pairs_between(
         by: only boxes with equal values pair: a pair of arrays, `(n,)` and `(k,)`; or of data frames the name of a
             column of both, or a list of names, or a pair of these. A box whose value is missing pairs with none.
         margin: finds boxes within this distance on each axis, too.
+        wrap: the length of axis 0 if it is a circle, as in `find_pairs`.
         progress: called with the share of the work that is done, from 0 to 1.
 
     Returns:
@@ -147,7 +152,7 @@ def find_pairs_between(
     >>> sap.find_pairs_between(bullets, targets)
     array([[1, 0]])
     """
-    prepared = two_sets(a, b, format, closed, missing, by, margin)
+    prepared = two_sets(a, b, format, closed, missing, by, margin, wrap)
     return find(prepared, threads, dtype, progress)
 
 
@@ -160,6 +165,7 @@ def count_pairs(
     missing: str = "raise",
     by: Groups | None = None,
     margin: Margin = 0,
+    wrap: float | None = None,
     progress: Progress | None = None,
 ) -> int:
     """Counts the pairs that `find_pairs` finds, without storing them.
@@ -174,6 +180,7 @@ def count_pairs(
         missing: `"raise"` or `"skip"`.
         by: `(n,)` values, or the name of a column: only boxes with equal values pair.
         margin: counts boxes within this distance on each axis, too.
+        wrap: the length of axis 0 if it is a circle, as in `find_pairs`.
         progress: called with the share of the work that is done, from 0 to 1.
 
     Raises:
@@ -184,7 +191,7 @@ def count_pairs(
     >>> sap.count_pairs(np.zeros((1000, 6)))
     499500
     """
-    prepared = one_set(boxes, format, closed, missing, by, margin)
+    prepared = one_set(boxes, format, closed, missing, by, margin, wrap)
     return _count(prepared, threads, progress)
 
 
@@ -198,6 +205,7 @@ def count_pairs_between(
     missing: str = "raise",
     by: Groups | tuple[Groups, Groups] | None = None,
     margin: Margin = 0,
+    wrap: float | None = None,
     progress: Progress | None = None,
 ) -> int:
     """Counts the pairs that `find_pairs_between` finds, without storing them.
@@ -211,6 +219,7 @@ def count_pairs_between(
         missing: `"raise"` or `"skip"`.
         by: a pair of arrays, or the name of a column: only boxes with equal values pair.
         margin: counts boxes within this distance on each axis, too.
+        wrap: the length of axis 0 if it is a circle, as in `find_pairs`.
         progress: called with the share of the work that is done, from 0 to 1.
 
     Raises:
@@ -220,7 +229,7 @@ def count_pairs_between(
     >>> sap.count_pairs_between([[0, 2], [5, 6]], [[1, 7]])
     2
     """
-    prepared = two_sets(a, b, format, closed, missing, by, margin)
+    prepared = two_sets(a, b, format, closed, missing, by, margin, wrap)
     return _count(prepared, threads, progress)
 
 
@@ -330,6 +339,7 @@ def iter_chunks(
     missing: str = "raise",
     by: Groups | None = None,
     margin: Margin = 0,
+    wrap: float | None = None,
 ) -> Iterator[Pairs]:
     """Iterates over all pairs that `find_pairs` finds, in the same order, one chunk at a time.
 
@@ -346,6 +356,7 @@ def iter_chunks(
         missing: `"raise"` or `"skip"`.
         by: `(n,)` values, or the name of a column: only boxes with equal values pair.
         margin: finds boxes within this distance on each axis, too.
+        wrap: the length of axis 0 if it is a circle, as in `find_pairs`.
 
     Returns:
         An iterator over arrays of shape `(m, 2)`, m from 1 to `size`.
@@ -361,7 +372,7 @@ def iter_chunks(
     200000
     99500
     """
-    prepared = one_set(boxes, format, closed, missing, by, margin)
+    prepared = one_set(boxes, format, closed, missing, by, margin, wrap)
     return _iterate(prepared, size, dtype)
 
 
@@ -376,6 +387,7 @@ def iter_chunks_between(
     missing: str = "raise",
     by: Groups | tuple[Groups, Groups] | None = None,
     margin: Margin = 0,
+    wrap: float | None = None,
 ) -> Iterator[Pairs]:
     """Iterates over all pairs that `find_pairs_between` finds, in the same order, one chunk at a time.
 
@@ -391,6 +403,7 @@ def iter_chunks_between(
         missing: `"raise"` or `"skip"`.
         by: a pair of arrays, or the name of a column: only boxes with equal values pair.
         margin: finds boxes within this distance on each axis, too.
+        wrap: the length of axis 0 if it is a circle, as in `find_pairs`.
 
     Returns:
         An iterator over arrays of shape `(m, 2)`, m from 1 to `size`.
@@ -403,7 +416,7 @@ def iter_chunks_between(
     ...     print(pairs.tolist())
     [[0, 0], [0, 1]]
     """
-    prepared = two_sets(a, b, format, closed, missing, by, margin)
+    prepared = two_sets(a, b, format, closed, missing, by, margin, wrap)
     return _iterate(prepared, size, dtype)
 
 
@@ -640,7 +653,7 @@ def find(prepared: Prepared, threads: int | None, dtype: DTypeLike, progress: Pr
 
 
 def _count(prepared: Prepared, threads: int | None, progress: Progress | None) -> int:
-    if prepared.groups is not None:
+    if prepared.is_filtered:
         return len(find(prepared, threads, np.int64, progress))
     count = _search(prepared, threads, lambda finder: finder.count(*_arguments(prepared), _checked(progress)))
     return _done(count, progress)
@@ -654,7 +667,7 @@ def stream(prepared: Prepared, each: _Each, size: int, dtype: DTypeLike) -> bool
         pairs = prepared.translate(found)
         return each(pairs) if len(pairs) else None
 
-    is_plain = prepared.groups is None and all(rows is None for rows in prepared.kept)
+    is_plain = not prepared.is_filtered and all(rows is None for rows in prepared.kept)
     return _search(
         prepared,
         1,
@@ -730,9 +743,15 @@ def _arguments(prepared: Prepared) -> tuple[Floats, Floats | None]:
 
 
 def one_set(
-    boxes: ArrayLike, format: str, closed: str | None, missing: str, by: Groups | None, margin: Margin
+    boxes: ArrayLike,
+    format: str,
+    closed: str | None,
+    missing: str,
+    by: Groups | None,
+    margin: Margin,
+    wrap: float | None = None,
 ) -> Prepared:
-    return prepare({"boxes": boxes}, format, closed, missing, None if by is None else [by], margin)
+    return prepare({"boxes": boxes}, format, closed, missing, None if by is None else [by], margin, wrap)
 
 
 def two_sets(
@@ -743,6 +762,7 @@ def two_sets(
     missing: str,
     by: Groups | tuple[Groups, Groups] | None,
     margin: Margin,
+    wrap: float | None = None,
 ) -> Prepared:
     if isinstance(by, str) or (isinstance(by, list) and by and all(type(one) is str for one in by)):
         by = (by, by)  # columns of both
@@ -750,7 +770,7 @@ def two_sets(
         raise ValueError(
             "by must be a pair of arrays, one for a and one for b, or the name of a column of both, or a list of names"
         )
-    return prepare({"a": a, "b": b}, format, closed, missing, None if by is None else list(by), margin)
+    return prepare({"a": a, "b": b}, format, closed, missing, None if by is None else list(by), margin, wrap)
 
 
 def _search(prepared: Prepared, threads: int | None, call: Callable[[Finder], _Result]) -> _Result:

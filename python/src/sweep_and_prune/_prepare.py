@@ -26,6 +26,16 @@ from ._columns import (
 from ._crs import difference
 from ._errors import InvalidBoxError
 from ._inputs import Raw, checked_format, crs_of, has_columns, named_column, with_rows
+from ._wrap import (
+    checked_wrap,
+    cut,
+    first_rows,
+    in_one_turn,
+    is_repeated,
+    precise_enough,
+    refuse_infinite,
+    without_crossings,
+)
 
 _BLOCK = 2**18
 """So many pairs are translated at once: a second array of all of them would take as much memory as the result."""
@@ -43,10 +53,17 @@ class Prepared(NamedTuple):
     """How many boxes the user passed in each set."""
     groups: list[NDArray[Any]] | None = None
     """Groups that have to be compared after the search, because there is no axis left for them."""
+    crossing: list[NDArray[np.int64]] | None = None
+    """On a circle: the boxes of each set that cross its end. Their second parts follow all boxes of `sets`."""
+
+    @property
+    def is_filtered(self) -> bool:
+        """Whether some pairs that are found are none of those that are wanted."""
+        return self.groups is not None or self.crossing is not None
 
     def translate(self, pairs: NDArray[Any]) -> NDArray[Any]:
         """The pairs in rows of what the user passed, in the memory of `pairs`, which is written to and shortened."""
-        if self.groups is not None or any(rows is not None for rows in self.kept):
+        if self.is_filtered or any(rows is not None for rows in self.kept):
             left = self._translate_in_place(pairs)
             if left < len(pairs):
                 pairs.resize((left, 2), refcheck=False)
@@ -59,11 +76,22 @@ class Prepared(NamedTuple):
             block = pairs[start : start + _BLOCK]
             if self.groups is not None:
                 block = block[self.groups[0][block[:, 0]] == self.groups[-1][block[:, 1]]]
+            if self.crossing is not None:
+                block = self._of_boxes(block, self.crossing)
             into = pairs[left : left + len(block)]
             for column, rows in enumerate((self.kept[0], self.kept[-1])):
                 into[:, column] = block[:, column] if rows is None else rows[block[:, column]]
             left += len(block)
         return left
+
+    def _of_boxes(self, pairs: NDArray[Any], crossing: list[NDArray[np.int64]]) -> NDArray[Any]:
+        """The pairs of boxes, once each, of pairs of boxes or of their second parts."""
+        pairs = pairs[~is_repeated(pairs, self.sets, crossing)]
+        sides = zip(pairs.T, (self.sets[0], self.sets[-1]), (crossing[0], crossing[-1]))
+        pairs = np.stack([first_rows(rows, boxes, of_set) for rows, boxes, of_set in sides], axis=1)
+        if len(self.sets) == 1:
+            pairs.sort(axis=1)
+        return pairs
 
 
 def prepare(
@@ -73,6 +101,7 @@ def prepare(
     missing: str = "raise",
     by: list[Any] | None = None,
     margin: object = 0,
+    wrap: object = None,
 ) -> Prepared:
     """Brings sets of boxes, by the names of their arguments, into the form that is searched."""
     checked_format(format)
@@ -80,6 +109,7 @@ def prepare(
         raise ValueError(f'missing must be "raise" or "skip", not {missing!r}')
     has_margin = not is_zero(margin)
     is_plain = format == "xyxy" and closed is None and missing == "raise" and by is None and not has_margin
+    is_plain &= wrap is None
     if is_plain and all(type(boxes) is np.ndarray and boxes.dtype.kind == "f" for boxes in sets.values()):
         rows = [box_rows(boxes, name) for name, boxes in sets.items()]  # the common case, quickly
         if len(rows) == 2:
@@ -108,6 +138,8 @@ def prepare(
     if not are_times:
         arrays = _comparable(arrays, names)
     is_float = arrays[0].dtype.kind == "f"
+    if wrap is not None:
+        return _on_circle(arrays, names, kept, lengths, of_group, is_closed, margin, checked_wrap(wrap))
     is_all = all(rows is None for rows in kept) and are_grouped
     # Most often, all intervals have a length: then none is inverted or empty.
     with np.errstate(invalid="ignore"):
@@ -131,15 +163,63 @@ def prepare(
     rows = arrays if is_float else _ranks(arrays)
     if not is_closed:
         rows = [_without_ends(array, are_whole and is_float) for array in rows]
+    return _grouped(Prepared(rows, kept, lengths), of_group)
+
+
+def _grouped(prepared: Prepared, of_group: list[NDArray[np.int64]] | None) -> Prepared:
+    """Boxes of which only those of one group pair: it is one more axis, if there is one left."""
     if of_group is None:
-        return Prepared(rows, kept, lengths)
-    groups = [group if own is None else group[own] for group, own in zip(of_group, kept)]
+        return prepared
+    rows = prepared.sets
+    groups = [group if own is None else group[own] for group, own in zip(of_group, prepared.kept)]
+    if prepared.crossing is not None:
+        groups = [np.concatenate([group, group[second]]) for group, second in zip(groups, prepared.crossing)]
     if rows[0].shape[1] < 6:
         dtype = np.result_type(*rows)
         dtype = np.dtype(np.float64) if max(map(_most, groups)) >= 2**24 else dtype
         rows = [_with_axis(boxes, group.astype(dtype)[:, None]) for boxes, group in zip(rows, groups)]
-        return Prepared(rows, kept, lengths)
-    return Prepared(rows, kept, lengths, groups)
+        return prepared._replace(sets=rows)
+    return prepared._replace(groups=groups)
+
+
+def _on_circle(
+    arrays: list[NDArray[Any]],
+    names: list[str],
+    kept: list[Rows],
+    lengths: list[int],
+    of_group: list[NDArray[np.int64]] | None,
+    is_closed: bool,
+    margin: object,
+    wrap: float,
+) -> Prepared:
+    """Boxes whose first axis is a circle, as boxes on lines."""
+    if arrays[0].dtype.kind != "f":
+        raise TypeError("wrap is for numbers that floating point holds, not for times and integers beyond 2^53")
+    boxes = [precise_enough(array, wrap) for array in arrays]
+    boxes = [array.astype(np.result_type(*boxes), copy=False) for array in boxes]
+    for array, name, own in zip(boxes, names, kept):
+        refuse_inverted(without_crossings(array), name, own)
+        refuse_infinite(array, name, own)
+    boxes = [in_one_turn(array, wrap) for array in boxes]
+    if not is_closed:
+        boxes, kept = _leave_out([_is_empty(array) for array in boxes], boxes, kept)
+    if of_group is not None:
+        lost = [(group if own is None else group[own]) < 0 for group, own in zip(of_group, kept)]
+        boxes, kept = _leave_out(lost, boxes, kept)
+    extended = boxes if is_zero(margin) else _extended(boxes, margin)
+    rows, crossing = [], []
+    for array, reaching in zip(boxes, extended):
+        half = array.shape[1] // 2
+        there = np.hstack([reaching[:, :half], array[:, half : half + 1], reaching[:, half + 1 :]])
+        pieces, second = cut(there, reaching[:, half], wrap)
+        if not is_closed:
+            # A second part without a length has nothing but the end of the circle, which does not belong to it.
+            has_length = np.ones(len(pieces), bool)
+            has_length[len(array) :] = pieces[len(array) :, 0] < pieces[len(array) :, half]
+            pieces, second = _without_ends(pieces[has_length], False), second[has_length[len(array) :]]
+        rows.append(pieces)
+        crossing.append(second)
+    return _grouped(Prepared(rows, kept, lengths, None, crossing), of_group)
 
 
 def is_zero(margin: object) -> bool:
