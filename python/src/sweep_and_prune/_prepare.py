@@ -211,13 +211,13 @@ def _on_circle(
     for array, reaching in zip(boxes, extended):
         half = array.shape[1] // 2
         there = np.hstack([reaching[:, :half], array[:, half : half + 1], reaching[:, half + 1 :]])
-        pieces, second = cut(there, reaching[:, half], wrap)
+        on_line, second = cut(there, reaching[:, half], wrap)
         if not is_closed:
             # A second part without a length has nothing but the end of the circle, which does not belong to it.
-            has_length = np.ones(len(pieces), bool)
-            has_length[len(array) :] = pieces[len(array) :, 0] < pieces[len(array) :, half]
-            pieces, second = _without_ends(pieces[has_length], False), second[has_length[len(array) :]]
-        rows.append(pieces)
+            has_length = np.ones(len(on_line), bool)
+            has_length[len(array) :] = on_line[len(array) :, 0] < on_line[len(array) :, half]
+            on_line, second = _without_ends(on_line[has_length], False), second[has_length[len(array) :]]
+        rows.append(on_line)
         crossing.append(second)
     return _grouped(Prepared(rows, kept, lengths, None, crossing), of_group)
 

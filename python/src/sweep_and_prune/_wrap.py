@@ -74,14 +74,14 @@ def cut(boxes: Floats, reach: Floats, wrap: float) -> tuple[Floats, NDArray[np.i
     half, end = boxes.shape[1] // 2, wrap / 2
     low, high = boxes[:, 0], boxes[:, half]
     is_whole = np.where(low <= high, _is_as_long(low, reach, wrap), reach >= low)
-    pieces = boxes.copy()
-    pieces[:, 0], pieces[:, half] = _place(low, wrap), _place(reach, wrap)
-    pieces[is_whole, 0], pieces[is_whole, half] = -end, end
-    crossing = np.flatnonzero(pieces[:, 0] > pieces[:, half])
-    second = pieces[crossing]
+    on_line = boxes.copy()
+    on_line[:, 0], on_line[:, half] = _place(low, wrap), _place(reach, wrap)
+    on_line[is_whole, 0], on_line[is_whole, half] = -end, end
+    crossing = np.flatnonzero(on_line[:, 0] > on_line[:, half])
+    second = on_line[crossing]
     second[:, 0] = -end
-    pieces[crossing, half] = end
-    return np.concatenate([pieces, second]), crossing
+    on_line[crossing, half] = end
+    return np.concatenate([on_line, second]), crossing
 
 
 def _place(numbers: Floats, wrap: float) -> Floats:
