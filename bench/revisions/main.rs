@@ -82,7 +82,8 @@ impl Times {
         median(self.new.iter().zip(&self.old).map(|(new, old)| new / old).collect())
     }
 
-    /// Counts the calls that take long and come seldom, as the rebuilds of a world do, by what they take.
+    /// The ratio of all times together. Rare calls that take long, such as the rebuilds of a world, have their full weight
+    /// in it.
     fn ratio_of_totals(&self) -> f64 {
         self.new.iter().sum::<f64>() / self.old.iter().sum::<f64>()
     }

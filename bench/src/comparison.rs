@@ -27,12 +27,12 @@ const PATIENCE: Duration = Duration::from_secs(2);
 const MOST_PAIRS: f64 = 5e7;
 /// How many times the limit a world may take to be checked, over many frames.
 const WORLD_CHECK: u32 = 3;
-/// What it takes to check a box in a world, of which the library can do nothing: to keep what began and
-/// ended in the first frames, one by one.
+/// How long the check of a world takes for each box. None of it is the library's time: the check applies the events of the
+/// first frames one by one.
 const CHECK_OF_BOX: Duration = Duration::from_micros(10);
 
 impl Kind {
-    /// Short runs are repeated until a round of a library takes about so long.
+    /// About how long a round of a library takes: short runs are repeated until they fill it.
     fn round(self) -> Duration {
         match self {
             Self::Pairs => Duration::from_millis(20),
@@ -58,7 +58,7 @@ impl Kind {
     }
 }
 
-/// One set of boxes that is to be measured.
+/// One set of boxes to measure.
 pub struct Comparison<'a> {
     /// What the libraries do.
     pub kind: Kind,

@@ -4,8 +4,8 @@ use std::ops::Add;
 
 use serde::{Deserialize, Serialize};
 
-/// The number of pairs and a hash that depends neither on their order nor on which box of a pair
-/// comes first, but on how often each is given.
+/// The number of pairs and a hash of them. The hash depends on how often each pair is given, but not on the order of the
+/// pairs, nor on which box of a pair comes first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fingerprint {
     /// How many pairs there are.

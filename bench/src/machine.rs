@@ -112,8 +112,8 @@ pub fn revision() -> Option<String> {
     git.status.success().then(|| String::from_utf8_lossy(&git.stdout).trim().to_owned())
 }
 
-/// How long the main thread of a process has waited for a processor, because other programs had
-/// them all; nothing where the system does not tell.
+/// How long the main thread of a process has waited for a processor while other programs used them all. Zero where the
+/// system does not report it.
 pub fn waited(process: impl Display) -> Duration {
     // Nanoseconds run, nanoseconds waited, time slices.
     let text = std::fs::read_to_string(format!("/proc/{process}/schedstat")).unwrap_or_default();

@@ -40,7 +40,7 @@ pub struct Options {
     /// Few boxes and few rounds: minutes instead of half an hour.
     #[arg(long)]
     quick: bool,
-    /// Leave out the cases that the file of results has, to go on where a run was stopped.
+    /// Continue a run that was stopped: leave out the cases that the file of results already has.
     #[arg(long)]
     resume: bool,
     /// Names of scenes (all for every one) or of motions, or files of raw boxes (rows of 2 × D
@@ -65,13 +65,13 @@ pub struct Options {
     /// Begin no case after this many minutes; `--resume` continues from there.
     #[arg(long)]
     minutes: Option<f64>,
-    /// The file of results; those of other boxes in it are kept. By default it is named for the
-    /// processor and the day, in the folder of results.
+    /// The file of results. Cases that are not measured again stay in it. By default it is named for the processor and the
+    /// day, in the folder of results.
     #[arg(long)]
     output: Option<PathBuf>,
 }
 
-/// One case that is to be measured.
+/// One case to measure.
 struct Planned {
     kind: Kind,
     scene: String,

@@ -21,8 +21,7 @@ pub struct Record {
     pub how: BTreeMap<String, String>,
     /// Finding all pairs, by scene, dimensions and number of boxes.
     pub cases: Vec<Case>,
-    /// Tracking pairs, by motion, dimensions and number of boxes: the times are those of a
-    /// frame.
+    /// Tracking pairs, by motion, dimensions and number of boxes. Times are per frame.
     #[serde(default)]
     pub worlds: Vec<Case>,
     /// How close finding all pairs comes to what the machine can do.
@@ -66,7 +65,7 @@ pub struct Stage {
     pub share: f64,
 }
 
-/// The machine, as far as the times depend on it.
+/// What the times depend on in the machine.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Machine {
     /// The processor's name, family and model.
@@ -198,7 +197,7 @@ impl Record {
     }
 }
 
-/// Adds a case, or replaces the one of the same boxes.
+/// Adds a case. If there is one with the same boxes, replaces it.
 pub fn put(cases: &mut Vec<Case>, case: Case) {
     match cases.iter_mut().find(|kept| kept.key() == case.key()) {
         Some(kept) => *kept = case,

@@ -1,10 +1,9 @@
 //! How close finding all pairs comes to what the machine can do: what it must read, write and test,
 //! at the rates that the machine reaches when it does nothing else.
 //!
-//! The stages are told apart from outside, by runs that end earlier: a run that is stopped at the
-//! first sign of progress has made the plan and filled the columns, and ordered and swept but the first
-//! of them; one that only orders has not swept; one that counts has; one that stores the pairs has
-//! done it all.
+//! The stages are measured from outside, by runs that end earlier. A run that is cancelled at its first report of progress
+//! has made the plan, filled the columns, and sorted and swept only the first of them. A run that only sorts has not swept.
+//! A run that counts has swept, and a run that stores the pairs has done everything.
 
 use std::collections::BTreeMap;
 use std::hint::black_box;
@@ -39,8 +38,8 @@ pub fn measure(copy_bytes_per_second: f64, quick: bool) -> Result<Roofline> {
     Ok(Roofline { copy_bytes_per_second, kernel_tests_per_second, stages })
 }
 
-/// Boxes tested a second at the best: a few boxes, each against each, of which none overlap. So
-/// few are neither binned nor sorted, and all of them fit in the nearest cache.
+/// The most box tests per second: every box of a small set against every other, where none overlap. Such a small set is
+/// neither split into columns nor sorted, and it fits in the first-level cache.
 fn test_rate<const D: usize>() -> Result<f64> {
     const CALLS: usize = 200;
     let mut finder = PairFinder::<D>::new();

@@ -68,7 +68,7 @@ pub enum Boxes<const D: usize> {
         /// The same in a random order.
         shuffled: Vec<Aabb<D>>,
     },
-    /// Boxes of which a frame differs little from the last.
+    /// Boxes that move a little from frame to frame.
     InMotion(Moving<D, f32>),
 }
 

@@ -56,8 +56,8 @@ pub trait TrackBodies<I: Id>: Send {
     /// Calls `each` with the id of each body.
     fn for_each_id(&self, each: &mut dyn FnMut(ProxyId));
 
-    /// Updates. Appends the ids of the pairs that began and then those of the pairs that ended, two
-    /// a pair, and returns how many ids the former are.
+    /// Updates. Appends the ids of the pairs that began, then the ids of the pairs that ended, two for each pair. Returns how
+    /// many ids belong to pairs that began.
     fn update(&mut self, ids: &mut Vec<I>) -> usize;
 }
 
@@ -73,8 +73,8 @@ pub trait AnyBroadPhase<I: Id>: TrackBodies<I> {
     /// Appends the ids of the bodies that overlapped this one at the last update.
     fn pairs_of(&mut self, id: ProxyId, ids: &mut Vec<I>) -> Result<(), Error>;
 
-    /// Answers queries of one kind, whose numbers follow each other: see [`Query`]. Without a filter they
-    /// find every body. What [`Queries::unsorted`] speaks of is sorted on demand.
+    /// Answers queries of one kind, whose numbers follow each other: see [`Query`]. Without a filter they find every body.
+    /// `is_sorted` is the opposite of [`Queries::unsorted`].
     ///
     /// [`Queries::unsorted`]: sweep_and_prune::Queries::unsorted
     fn query(

@@ -9,8 +9,8 @@ use crate::rows::{Coordinates, Rows};
 
 /// A pair finder with the rows that it reads: set 0, or the sets 0 and 1.
 ///
-/// `a` and `b` are how many rows of the sets 0 and 1 are searched. Without `b`, the pairs are those
-/// within set 0; with it, those of a box of set 0 and a box of set 1.
+/// `a` and `b` are how many rows of the sets 0 and 1 are searched. Without `b`, a pair is two boxes of set 0; with it, a box of
+/// set 0 and a box of set 1.
 pub trait AnyPairFinder: Send {
     /// Where to write `count` rows of a set, valid until the next call of this method for the same
     /// set; `None` for a set other than 0 and 1, or if there is no memory.
@@ -28,11 +28,10 @@ pub trait AnyPairFinder: Send {
     ) -> Result<ControlFlow<()>, Error>;
 }
 
-/// What is told of the progress of a search, from 0 to 1, and may cancel it. Other threads call it.
+/// Receives the progress of a search, from 0 to 1, and cancels the search by breaking. Other threads call it.
 pub type Progress<'a> = &'a (dyn Fn(f64) -> ControlFlow<()> + Sync);
 
-/// A pair finder whose boxes are copied from arrays. Errors are those of
-/// [`for_each_chunk`](AnyPairFinder::for_each_chunk).
+/// A pair finder whose boxes are copied from arrays. It has the errors of [`for_each_chunk`](AnyPairFinder::for_each_chunk).
 pub trait ArrayPairFinder: AnyPairFinder {
     /// Copies boxes to the rows of set 0 or 1, and returns how many there are.
     ///

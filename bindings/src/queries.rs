@@ -7,30 +7,31 @@ use sweep_and_prune::{Cast, Error, Hit, ProxyId, Queries, Scalar};
 use crate::id::Id;
 use crate::rows::{aabb, point};
 
-/// Which bodies a query finds. The numbers of a query in `D` dimensions are as listed here.
+/// Which bodies a query finds. Each kind says which numbers a query consists of, in `D` dimensions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Query {
-    /// Those that overlap a box: its min corner, its max corner.
+    /// The bodies that overlap a box. Numbers: its min corner, its max corner.
     Overlapping,
-    /// Those that contain a point.
+    /// The bodies that contain a point. Numbers: the point.
     Containing,
-    /// Those near a point: the point, the radius.
+    /// The bodies near a point. Numbers: the point, the radius.
     Within,
-    /// The first one that a moving box hits: its min corner, its max corner, the direction, the
-    /// limit. A ray is a box whose corners are equal. Values: t, where the hit is at
-    /// `start + t * direction`. Its hits have faces.
+    /// The first body that a moving box hits. Numbers: the min corner of the box, its max corner, the direction, the
+    /// limit. A ray is a box whose corners are equal. Values: t, where the hit is at `start + t * direction`. A hit has
+    /// a face.
     Cast,
-    /// All that a moving box hits, nearest first. Numbers and values are those of [`Query::Cast`].
+    /// Every body that a moving box hits, nearest first. Numbers and values as in [`Query::Cast`].
     CastAll,
-    /// As [`Query::Cast`], but what it touches at the start and does not approach is no hit.
+    /// As [`Query::Cast`], but a body that the box touches at the start and does not approach is no hit.
     CastEntering,
-    /// As [`Query::CastAll`], but what it touches at the start and does not approach is no hit.
+    /// As [`Query::CastAll`], but a body that the box touches at the start and does not approach is no hit.
     CastAllEntering,
-    /// The `k` nearest to a point, nearest first, that are at most `max_distance` away. Values: squared distances.
+    /// The `k` bodies nearest to a point, nearest first, at most `max_distance` away. Numbers: the point. Values: squared
+    /// distances.
     Nearest {
-        /// How many.
+        /// The most bodies found.
         k: usize,
-        /// How far away they may be: 0 or more.
+        /// How far away a body may be: 0 or more.
         max_distance: f64,
     },
 }
@@ -93,9 +94,9 @@ pub struct Answer<I> {
     /// A value for each body, if the query has one.
     pub values: Vec<f64>,
     /// The face of each body that a cast hits: 1 and 2 are the faces at the min and the max of the first axis, 3 and 4
-    /// those of the second, ...; 0 if the cast starts inside.
+    /// the faces of the second axis, and so on; 0 if the cast starts inside.
     pub faces: Vec<u8>,
-    /// Where the bodies of each query end in `ids`; they begin where those of the one before end.
+    /// Where the bodies of each query end in `ids`, which is where the bodies of the next query begin.
     pub ends: Vec<usize>,
 }
 

@@ -35,8 +35,8 @@ struct Group {
     places: usize,
     /// The share of the boxes in the second set.
     second: f64,
-    /// Whether its boxes come in turn with those of the groups before it, and not after them: a pattern that a sample
-    /// may not see.
+    /// Whether its boxes alternate with the boxes of the groups before it, instead of following them: a pattern that a sample
+    /// may miss.
     alternates: bool,
 }
 

@@ -171,7 +171,7 @@ impl Soak {
 
     /// Compares the pairs with brute force, and a restored world with this one.
     fn check(&mut self) {
-        // Swept bodies settle in an update, so that the boxes are those of the last one.
+        // Swept bodies need a second update: only then is a body's box its last box alone.
         for _ in 0..2 {
             let changes = self.world.update();
             changes.ended().for_each(|pair| assert!(self.live.remove(&pair)));

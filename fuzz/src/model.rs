@@ -163,8 +163,8 @@ impl<const D: usize, T: Scalar> Model<D, T> {
         self.seen(filter).filter(|(_, aabb)| is_near(aabb)).map(|(id, _)| id).collect()
     }
 
-    /// The `k` bodies nearest to a point, at most so far away, and the squares of their distances, sorted by these
-    /// and then by id.
+    /// The `k` bodies nearest to a point and at most `max_distance` away, with the squares of their distances, sorted by
+    /// distance and then by id.
     pub fn nearest(
         &self,
         point: [T; D],

@@ -104,7 +104,7 @@ impl Index {
     }
 }
 
-/// From so many pairs on, memory is worth more than a buffer that is kept for the next call.
+/// From this many pairs on, their memory is given away instead of kept for the next call.
 pub const MANY: usize = 1 << 20;
 
 fn many_pairs<'py, V: Element + Copy>(

@@ -46,7 +46,7 @@ impl Finder {
         Ok(Self(Mutex::new(Search { finder, kind, threads })))
     }
 
-    /// Uses at most so many threads from now on.
+    /// Uses at most `threads` threads from now on.
     fn use_threads(&self, threads: usize) -> PyResult<()> {
         self.with(|search| {
             search.threads = at_most(threads);
@@ -174,7 +174,7 @@ fn wants_more<'py>(each: &Array<'py>, chunk: Array<'py>) -> PyResult<bool> {
 }
 
 impl Finder {
-    /// A second call meanwhile is refused. It cannot wait, since the first may be waiting for it.
+    /// Refuses a second call while one is running. The second cannot wait, since the first may be waiting for it.
     fn with<R>(&self, call: impl FnOnce(&mut Search) -> PyResult<R>) -> PyResult<R> {
         let mut search = self.0.try_lock().map_err(|_| busy("PairFinder"))?;
         call(&mut search)

@@ -96,7 +96,7 @@ pub fn call_back<'py>(
     call_object(function, arguments)
 }
 
-/// Calls a Python function so that the thread may be ended meanwhile.
+/// Calls a Python function in a way that lets Python end the thread during the call.
 ///
 /// While the interpreter shuts down, Python up to 3.13 ends other threads by `pthread_exit` when they
 /// run Python code. That unwinds the stack, which aborts the process if Rust frames without cleanup

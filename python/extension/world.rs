@@ -295,7 +295,7 @@ impl World {
         Self(Mutex::new(space))
     }
 
-    /// A second call meanwhile is refused. It cannot wait, since the first may be waiting for it.
+    /// Refuses a second call while one is running. The second cannot wait, since the first may be waiting for it.
     fn with<R>(&self, call: impl FnOnce(&mut Space) -> PyResult<R>) -> PyResult<R> {
         let mut space = self.0.try_lock().map_err(|_| busy("BroadPhase"))?;
         call(&mut space)

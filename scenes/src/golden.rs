@@ -32,14 +32,14 @@ pub fn hash_pairs(pairs: &[[u32; 2]]) -> u64 {
 const N: usize = 150;
 /// The seed of each line.
 const SEED: u64 = 1;
-/// The number of frames of a motion, the last of which is reported.
+/// How many frames a motion runs. The last one is reported.
 const FRAMES: usize = 20;
 
 /// Computes what `golden.txt` holds: for every scene and motion, in every dimension and
 /// coordinate type, the hash of its boxes, the number of its pairs by brute force and their
 /// hash. The same text on every platform, in every build.
 ///
-/// Of a motion, the boxes are those of the twentieth frame after the first.
+/// For a motion, this is the twentieth frame after the first.
 pub fn golden_report() -> String {
     let mut report =
         format!("# n = {N}, seed = {SEED}; scene, type, boxes, pairs, hash of pairs\n");

@@ -41,7 +41,7 @@ impl Draw {
     }
 }
 
-/// The side of cubes of which `n` in the unit cube have 1.2 pairs a box.
+/// The side at which `n` cubes in the unit cube have 1.2 pairs per box.
 fn side<const D: usize>(n: usize) -> f64 {
     0.5 * root(D, 2.4 / n.max(1) as f64)
 }

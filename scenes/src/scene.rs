@@ -12,10 +12,9 @@ macro_rules! scenes {
     ($($variant:ident, $name:literal, $dimensions:expr, $recipe:ident, $description:literal;)*) => {
         /// A recipe for a set of boxes at rest.
         ///
-        /// Most have about as many pairs as boxes, however many boxes there are. The pairs of
-        /// `Coincident`, `Nested`, `Giants` and `Infinite`, in 1D and 2D those of `Needles` and
-        /// `Beams`, and in 1D those of `Slab`, `Flat` and `NeedlesX`, grow with the square of `n`:
-        /// thousands of these boxes have millions of pairs.
+        /// Most have about as many pairs as boxes, for any number of boxes. In some the number of pairs grows with the square of
+        /// `n`, so that thousands of boxes have millions of pairs: `Coincident`, `Nested`, `Giants` and `Infinite`; in 1D
+        /// and 2D also `Needles` and `Beams`; in 1D also `Slab`, `Flat` and `NeedlesX`.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Scene {
             $(#[doc = $description] $variant,)*

@@ -82,7 +82,7 @@ fn n_log_n(keys: f64) -> f64 {
 }
 
 fn pairwise() -> Variant {
-    // A test a pair; what overlaps on the axis, and what is a pair, is told besides.
+    // One test for each pair of boxes, one report for each overlap on the axis, one for each pair that overlaps.
     let cost: fn(&Facts) -> f64 = |f| f.n * (f.n - 1.0) / 2.0 + f.m + f.p;
     let always = |case, world| claim(case, world, "n²", cost);
     Variant {

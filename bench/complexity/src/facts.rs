@@ -60,8 +60,8 @@ fn overlaps(boxes: &Boxes, axis: usize) -> u64 {
     n * n.saturating_sub(1) / 2 - apart as u64
 }
 
-/// The inversions of the endpoints of `now`, in the order of those of `before`; of the left ones
-/// alone if `sides` is 1.
+/// How many pairs of endpoints of `now` are out of order where the array still has the order of `before`. If `sides` is 1,
+/// only left endpoints count.
 fn inversions(before: Option<&Boxes>, now: &Boxes, axis: usize, sides: usize) -> u64 {
     let endpoints = |boxes: &Boxes| {
         let mut all = Vec::new();

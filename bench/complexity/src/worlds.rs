@@ -12,15 +12,15 @@ pub type Boxes = Vec<Aabb<2, f64>>;
 pub enum World {
     /// Disjoint boxes in order, at rest.
     Rest,
-    /// A long level, as wide as it has boxes, in which all drift a little: the side-scroller of
+    /// A long level whose width grows with the number of boxes, all of which drift a little: the side-scroller of
     /// the usual analysis. m and s grow as n.
     Corridor,
-    /// As `Corridor`, but the first step: the boxes come in no order.
+    /// The first step of `Corridor`, where the boxes are in random order.
     CorridorStart,
     /// A square that fills with ever smaller boxes, in which all drift a little. Seen from one
     /// axis it gets crowded: m and s grow as n√n.
     Square,
-    /// As `Square`, but the first step.
+    /// The first step of `Square`.
     SquareStart,
     /// All boxes in the same place, at rest: n(n-1)/2 pairs.
     Heap,
@@ -28,8 +28,7 @@ pub enum World {
     Tower,
     /// Disjoint boxes that all fly past one another: the mirror image of the step before.
     Mirror,
-    /// Disjoint boxes, in the order that makes quicksort on the middle of three take two at a
-    /// time off the whole.
+    /// Disjoint boxes, in the order in which quicksort with the median of three splits off only two endpoints at a time.
     QuicksortKiller,
 }
 

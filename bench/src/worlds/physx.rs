@@ -67,9 +67,9 @@ impl PhysX {
     }
 
     fn update(&mut self, created: &[u32], moved: &[u32]) -> Found<'_> {
-        // SAFETY: the broad phase lives; the arrays hold as many elements as it is told, and the
-        // bounds one more, which it may read; the pairs it points to stay until the next update,
-        // and are copied before.
+        // SAFETY: `self` owns the broad phase and releases it only in `drop`. Each array holds the number of elements that is
+        // passed with it, and the bounds one more, which PhysX may read. The pairs that it points to stay until the next
+        // update, which needs `self` exclusively; they are copied before.
         unsafe {
             let update = PxBroadPhaseUpdateData_new(
                 created.as_ptr(),
@@ -97,7 +97,7 @@ impl PhysX {
 unsafe fn copy(from: *const PxBroadPhasePair, count: u32, to: &mut Vec<[u32; 2]>) {
     to.clear();
     if count > 0 {
-        // SAFETY: as the caller promises.
+        // SAFETY: `from` points to `count` pairs, which PhysX keeps until the next update. The slice is dropped before.
         let pairs = unsafe { slice::from_raw_parts(from, count as usize) };
         to.extend(pairs.iter().map(|pair| [pair.mID0, pair.mID1]));
     }

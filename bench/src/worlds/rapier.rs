@@ -69,7 +69,7 @@ macro_rules! rapier {
                     let widths = boxes.iter().map(|aabb| aabb.max[0] - aabb.min[0]);
                     self.parameters.length_unit = widths.sum::<f32>() / boxes.len().max(1) as f32;
                     for (index, aabb) in (0..).zip(boxes) {
-                        // Where it is comes from `set_aabb` alone.
+                        // Only `set_aabb` says where it is.
                         let collider = ColliderBuilder::ball(0.0)
                             .active_collision_types(ActiveCollisionTypes::all());
                         self.handles.push(self.colliders.insert(collider));

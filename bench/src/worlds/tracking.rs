@@ -134,7 +134,7 @@ struct Live {
 }
 
 impl Live {
-    /// Applies what was found; an error if a pair began that had begun, or ended that had not.
+    /// Applies what was found. It is an error if a pair begins twice, or ends before it began.
     fn take(&mut self, found: Found<'_>) -> Result<()> {
         let ordered = |&[a, b]: &[u32; 2]| [a.min(b), a.max(b)];
         match found {

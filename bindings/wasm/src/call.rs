@@ -1,8 +1,8 @@
 //! What every call with a handle does around its work, because the engine may end it by throwing.
 //!
 //! Where JavaScript has recursed deeply, the engine throws in whichever function finds no stack left, and skips the
-//! frames below it. So a call first checks that there is some stack left, while nothing has changed. Should it be ended
-//! all the same, its handle still says that a call is under way: JavaScript refuses it from then on.
+//! frames below it. So a call first checks that there is some stack left, while nothing has changed. If the engine cuts the
+//! call off all the same, the handle still says that a call is running: JavaScript refuses the handle from then on.
 
 use alloc::boxed::Box;
 
@@ -12,7 +12,7 @@ use alloc::boxed::Box;
 pub struct Running(u32);
 
 const IDLE: u32 = 0;
-/// A call with the handle is under way, or ended halfway.
+/// A call with the handle is running, or was cut off.
 const RUNNING: u32 = 1;
 
 /// What JavaScript holds a pointer to. In memory, it begins with its [`Running`].
@@ -21,8 +21,8 @@ pub trait Handle {
     fn running(&mut self) -> &mut Running;
 }
 
-/// Frees what a handle stands for. If a call with it ended halfway, or freeing it did, it is lost: parts of it could be freed
-/// twice.
+/// Frees the object behind a handle. If a call with it was cut off, or an earlier call of this function, its memory is leaked:
+/// freeing it could free parts of it twice.
 pub fn free<H: Handle>(handle: Option<Box<H>>) {
     stack::check(stack::SMALL);
     let Some(mut handle) = handle else { return };
@@ -61,9 +61,9 @@ pub const fn truth(number: u32) -> Option<bool> {
 pub mod stack {
     /// Frames for a call with one body.
     pub const SMALL: u32 = 1;
-    /// For the allocator, which every object shares: it must never be ended halfway. In V8 it takes less than half of this.
+    /// For the allocator, which every object shares: it must never be cut off. In V8 it takes less than half of this.
     pub const ALLOCATOR: u32 = 4;
-    /// For all other calls. Some take more, so they may be ended halfway all the same; then their handle says so.
+    /// For all other calls. Some need more, so the engine may still cut them off; then their handle says so.
     pub const LARGE: u32 = 8;
 
     #[cfg(not(target_arch = "wasm32"))]
@@ -88,7 +88,7 @@ mod frames {
     static WORDS: [AtomicU64; 64] = [const { AtomicU64::new(0) }; 64];
 
     fn word(at: usize) -> u64 {
-        // SAFETY: it is a static. Volatile, so that the compiler cannot know what is there: always zero.
+        // SAFETY: a static is valid to read. Volatile, so that the compiler does not know that every word is zero.
         unsafe { WORDS[at].as_ptr().read_volatile() }
     }
 
@@ -120,10 +120,10 @@ mod frames {
         };
     }
 
-    /// Ends by the engine's own error if there is not enough stack left for this many frames, of a size that no other function
-    /// here has: its frame has space for 64 words, which are never kept. That takes two nanoseconds a frame.
+    /// Throws the engine's own error if the stack has no space for this many frames. A frame of this function is larger than
+    /// that of any other here: it has space for 64 words, which are never stored. The check takes two nanoseconds a frame.
     ///
-    /// A frame takes a KiB in V8's baseline compiler. The optimizing one makes do with 130 bytes, but then other functions
+    /// A frame takes a KiB in V8's baseline compiler. In the optimizing one it takes only 130 bytes, but there other functions
     /// take less, too.
     #[inline(never)]
     pub fn check(frames: u32) {
@@ -135,7 +135,7 @@ mod frames {
                 check(frames);
                 0
             });
-            // SAFETY: as above, and there is one thread.
+            // SAFETY: a static is valid to write to, and there is one thread.
             unsafe { WORDS[0].as_ptr().write_volatile(sum) }
         }
     }

@@ -1,6 +1,6 @@
 //! What the standard library would provide: the allocator, and what happens on a panic.
 //!
-//! Neither may trap. Where the core can go on no further it calls JavaScript, which throws.
+//! Neither may trap. Where the core cannot continue, it calls JavaScript, which throws.
 
 use core::alloc::{GlobalAlloc, Layout};
 use core::arch::wasm32::memory_size;
@@ -17,7 +17,7 @@ unsafe extern "C" {
     safe fn fail(is_out_of_memory: bool) -> !;
 }
 
-/// The allocator, which notes whether its last allocation failed, and begins only if it can end.
+/// The allocator. It notes whether its last allocation failed, and checks for stack before it changes anything.
 struct Noting;
 
 static LAST_FAILED: AtomicBool = AtomicBool::new(false);
@@ -61,10 +61,9 @@ static ALLOCATOR: Noting = Noting;
 /// A gigabyte, in pages of WebAssembly.
 const GIGABYTE: usize = 1 << 14;
 
-/// A panic is a bug, or one of the two ways in which `alloc` says that memory has run out: after
-/// an allocation that failed, or before one that 32 bits cannot measure; and no array that grows
-/// comes to that before it takes a gigabyte. What the panic says is not read: to be able to would
-/// take 1.5 KB of the finder's 40, for code that prints numbers.
+/// A panic is a bug, or means that memory has run out. `alloc` panics in two cases: an allocation has failed, or its size
+/// does not fit 32 bits. An array that grows reaches the second case only after it has taken a gigabyte. The message of
+/// the panic is not read: formatting it would add 1.5 KB, for code that prints numbers, to the finder's 40 KB.
 #[panic_handler]
 fn panic(_: &PanicInfo) -> ! {
     fail(LAST_FAILED.load(Relaxed) || memory_size(0) >= GIGABYTE)

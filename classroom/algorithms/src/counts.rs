@@ -13,8 +13,8 @@ pub struct Counts {
     pub swaps: u64,
     /// Pairs of boxes handed to the box test, those that it rejects included.
     pub tests: u64,
-    /// Pairs found to overlap on a swept axis. The persistent swap-driven forms tell only those
-    /// that begin to, so there `axis_overlaps - axis_ends` is how many there are.
+    /// Pairs found to overlap on a swept axis. The persistent swap-driven forms report only overlaps that begin, so there
+    /// `axis_overlaps - axis_ends` is how many there are now.
     pub axis_overlaps: u64,
     /// Pairs found to overlap no longer on a swept axis.
     pub axis_ends: u64,

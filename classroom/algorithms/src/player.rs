@@ -18,8 +18,7 @@ use crate::trace::{Event, Trace};
 pub struct PlayerState {
     /// The axis along which the current step sweeps, or sweeps first.
     pub axis: usize,
-    /// The array of endpoints on each axis, as far as it is sorted by now. Coordinates are rounded
-    /// to `f32`.
+    /// The array of endpoints on each axis, in its order at this moment of the sort. Coordinates are rounded to `f32`.
     pub arrays: Vec<Vec<Endpoint<f32>>>,
     /// The axis whose array is being sorted or swept.
     pub array_axis: usize,
@@ -27,7 +26,7 @@ pub struct PlayerState {
     pub line: Option<(usize, Edge)>,
     /// The boxes that the sweep line touches.
     pub active: BTreeSet<u32>,
-    /// The pairs that overlap on a swept axis, as far as is known: (axis, pair).
+    /// The pairs that the algorithm has found to overlap on a swept axis: (axis, pair).
     pub axis_overlaps: BTreeSet<(usize, [u32; 2])>,
     /// The pairs found in this step.
     pub overlaps: BTreeSet<[u32; 2]>,
@@ -44,7 +43,7 @@ enum Overwritten {
     MaxActive(u64),
     /// The array of the axis, how many arrays there were, and which was the current one.
     Array(Vec<Endpoint<f32>>, usize, usize),
-    /// The state that a step began with, less what the step goes on with.
+    /// What a step dropped from the state when it began.
     Step(Box<PlayerState>),
 }
 

@@ -168,10 +168,13 @@ pub struct Step<'a> {
 #[derive(Clone, Debug)]
 pub struct Runner<const D: usize, T = f32> {
     options: RunnerOptions,
-    /// The boxes of the last step, ascending, and how those of this step differ.
+    /// The boxes of the last step, ascending.
     ids: Vec<u32>,
+    /// The boxes of this step, ascending.
     next_ids: Vec<u32>,
+    /// What only this step has.
     added: Vec<u32>,
+    /// What only the last step had.
     removed: Vec<u32>,
     /// The axis of the last step.
     last_axis: Option<usize>,

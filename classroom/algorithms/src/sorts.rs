@@ -52,7 +52,7 @@ impl Sort {
         Self::ALL.into_iter().find(|sort| sort.name() == name)
     }
 
-    /// Sorts `endpoints[from..]` in place. Reported positions are those of the whole array.
+    /// Sorts `endpoints[from..]` in place. Reports positions in `endpoints`, not in that part of it.
     pub(crate) fn sort_tail<T: Scalar, O: Observer>(
         self,
         endpoints: &mut [Endpoint<T>],

@@ -15,8 +15,8 @@
 //! passes. When a left endpoint moves left, its box begins to overlap each box whose right endpoint
 //! it passes.
 //!
-//! Time of an update: O(n + s + m) on each axis. All 2n endpoints are refreshed and compared, also
-//! those of boxes that rest: O(n). There are s swaps, exactly one for each inversion: none in a world
+//! Time of an update: O(n + s + m) on each axis. All 2n endpoints are refreshed and compared, even if
+//! their boxes rest: O(n). There are s swaps, exactly one for each inversion: none in a world
 //! at rest, a few if it moves a little, and at worst 2n(n-1). (A full reversal of 2n endpoints has
 //! n(2n-1) inversions, and the n pairs of endpoints of one box never swap.) At the end all m stored
 //! overlaps are listed. On one axis each of them is tested on the other axes. On every axis a pair
@@ -53,11 +53,12 @@ use sweep_and_prune::{Aabb, Scalar};
 pub(crate) struct SwapSweep<T> {
     /// The axes that are swept, each with its sorted endpoints.
     sweeps: Vec<(usize, EndpointArray<T>)>,
-    /// Whether those are all the axes there are: then nothing is left to test.
+    /// Whether every axis is swept: then nothing is left to test.
     every_axis: bool,
     overlaps: Overlaps,
-    /// The boxes that the sweep line touches: those that stay, and those that come or go.
+    /// The boxes that the sweep line touches and that were there in the last step.
     staying: Touching,
+    /// The boxes that the sweep line touches and that are added or removed.
     marked: Touching,
 }
 

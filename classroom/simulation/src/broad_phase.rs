@@ -48,8 +48,8 @@ impl<const D: usize> Engine<D> {
     /// What [`find`](Self::find) would do next, counted; on a copy, so that counting neither
     /// costs the real run time nor sorts its array for it. The library's finder counts nothing.
     ///
-    /// The overlaps on the axis are those that there are, also where the algorithm keeps them and
-    /// is told only of changes: so they mean the same for each.
+    /// The overlaps on the axis are all that exist, even if the algorithm keeps them and reports only changes. So the number
+    /// means the same for every algorithm.
     pub fn count(&self, boxes: &[Aabb<D>]) -> Result<Option<Counts>, Error> {
         let Engine::Algorithm(runner) = self else { return Ok(None) };
         let mut counts = Counts::default();

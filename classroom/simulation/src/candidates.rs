@@ -46,7 +46,7 @@ impl<const D: usize> Candidates<D> {
         &self.enclosures.boxes
     }
 
-    /// Makes the boxes of a step that begins. `contacts` are those of the substep before.
+    /// Makes the boxes for a new step. `contacts` are what the substep before found.
     pub fn enclose(&mut self, bodies: &Bodies<D>, contacts: &Contacts, ahead: &Ahead<D>) {
         self.enclosures.enclose_all(bodies, contacts, ahead);
         self.is_stale = true;
@@ -110,8 +110,9 @@ struct Neighborhood<const D: usize> {
     places: Vec<[f32; D]>,
     /// By ball, its cell.
     cells: Vec<u32>,
-    /// The balls, cell by cell, and where those of each cell begin, and the last end.
+    /// The balls, cell by cell.
     balls: Vec<u32>,
+    /// Where the balls of each cell begin, and, as a last number, where all end.
     starts: Vec<u32>,
     /// What a search finds. It holds all balls, and one more that does not count.
     found: Vec<u32>,

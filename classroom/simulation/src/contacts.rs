@@ -74,8 +74,8 @@ pub struct Surroundings<const D: usize> {
 const WALL_MARGIN: f32 = 0.01;
 
 impl Contacts {
-    /// Finds the contacts among `pairs`, which are sorted by their indices, and at the walls. The
-    /// rows are those of the balls as they are.
+    /// Finds the contacts among `pairs`, which are sorted by their indices, and at the walls. `rows` holds the balls where
+    /// they are now.
     pub fn find<const D: usize>(
         &mut self,
         pairs: &[[u32; 2]],

@@ -1,4 +1,4 @@
-//! Boxes that hold the balls through a whole step, as far as can be foreseen.
+//! Boxes that hold the balls through a step, unless a bounce sends one out of its box.
 
 use std::array::from_fn;
 use std::ops::Range;
@@ -17,11 +17,11 @@ const MARGIN_IN_FLIGHT: f32 = 0.15;
 const MARGIN_IN_TOUCH: f32 = 0.7;
 /// The margin that is added in either case, as a share of the radius.
 const MARGIN_OF_RADIUS: f32 = 0.05;
-/// How near to the side of its box a ball may come, as a share of the radius. More than rounding
-/// takes, so that a ball inside is inside by any arithmetic.
+/// How near to the side of its box a ball may come, as a share of the radius. This exceeds any rounding error, so that a
+/// ball inside its box overlaps only what the box overlaps.
 const CLEARANCE: f32 = 0.01;
 
-/// As many coordinates as a ball has at most.
+/// The most coordinates of a ball.
 const ONE: usize = 3;
 
 /// Where balls are about to go.
@@ -57,8 +57,8 @@ impl<const D: usize> Default for Enclosures<D> {
 }
 
 impl<const D: usize> Enclosures<D> {
-    /// Makes all boxes from scratch. A box holds all that its ball sweeps through to the end of the step
-    /// if nothing stops it, and a margin around that. `contacts` are those of the last substep.
+    /// Makes all boxes from scratch. A box holds all that its ball sweeps through to the end of the step if nothing stops
+    /// it, and a margin around that. `contacts` are what the last substep found.
     pub fn enclose_all(&mut self, bodies: &Bodies<D>, contacts: &Contacts, ahead: &Ahead<D>) {
         self.in_touch.clear();
         self.in_touch.resize(bodies.len(), false);

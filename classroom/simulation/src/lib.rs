@@ -52,8 +52,8 @@
 //!   start is scaled to where it is least along its direction. So the energy falls however few
 //!   sweeps are made.
 //! - A ball that went through a wall is put back with the speed that it had at the wall.
-//! - Moving balls apart about their common center of mass adds nothing. Pressed against the floor
-//!   it lifts the heap: this is done only as far as the energy that the contacts have just lost.
+//! - Moving balls apart about their common center of mass adds no energy. But a heap that is pressed against the floor
+//!   is lifted by it: balls are moved apart only until that has taken the energy that the contacts have just lost.
 //! - What remains are errors of the finite substep, where contacts turn while balls slide over each
 //!   other: a few millionths, which are taken out of all velocities alike.
 //!

@@ -3,8 +3,8 @@
 
 use crate::vector::{greater, lesser};
 
-/// Sorts pairs by (a, b): counted into one bucket a `b`, then, keeping that order, into one an `a`;
-/// the few that come later are merged.
+/// Sorts pairs by (a, b): into one bucket for each `b` and then, keeping that order, into one for each `a`. A few pairs that
+/// are added later are merged.
 #[derive(Clone, Debug, Default)]
 pub struct PairOrder {
     moved: Vec<[u32; 2]>,
@@ -12,8 +12,8 @@ pub struct PairOrder {
 }
 
 impl PairOrder {
-    /// Sorts pairs of indices below `n`, of which the first `sorted` are so already.
-    /// O(n + pairs); where some are sorted, O(pairs + k log k) for k others.
+    /// Sorts pairs of indices below `n`. The first `sorted` pairs must be sorted already.
+    /// O(n + pairs); if `sorted` is not 0, O(pairs + k log k) for the k other pairs.
     pub fn sort(&mut self, pairs: &mut [[u32; 2]], sorted: usize, n: usize) {
         if sorted > 0 { self.merge(pairs, sorted) } else { self.count(pairs, n) }
     }
@@ -34,7 +34,7 @@ impl PairOrder {
         scatter(moved, firsts, pairs, |[a, _]| a);
     }
 
-    /// From the back to the front, until all that are new have found their places.
+    /// From back to front, until all new pairs have their places.
     fn merge(&mut self, pairs: &mut [[u32; 2]], mut sorted: usize) {
         self.moved.clear();
         self.moved.extend_from_slice(&pairs[sorted..]);
@@ -53,8 +53,8 @@ impl PairOrder {
     }
 }
 
-/// Moves pairs into the order of their keys, those of equal keys in the order in which they are.
-/// There are `ends[k + 1]` of key `k`.
+/// Moves pairs into the order of their keys; pairs with equal keys keep their order. `ends[k + 1]` is how many pairs have
+/// key `k`.
 fn scatter(
     pairs: &[[u32; 2]],
     ends: &mut [u32],
@@ -64,7 +64,7 @@ fn scatter(
     for k in 1..ends.len() {
         ends[k] += ends[k - 1];
     }
-    // `ends[k]` is where the next of key `k` goes, and so ends as their end.
+    // `ends[k]` is where the next pair with key `k` goes: after the loop, where they end.
     for &pair in pairs {
         let place = &mut ends[key(pair) as usize];
         to[*place as usize] = pair;

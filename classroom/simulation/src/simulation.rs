@@ -31,8 +31,8 @@ pub struct StepReport {
     /// Milliseconds of all narrow phases: which balls of the pairs touch, and in what order they
     /// are solved.
     pub narrow_phase_ms: f64,
-    /// Milliseconds of the step, those of counting left out: what is neither broad nor narrow phase
-    /// went into motion, impulses and projection.
+    /// Milliseconds of the step without counting. What neither the broad nor the narrow phase took went into motion, impulses
+    /// and projection.
     pub total_ms: f64,
 }
 
@@ -138,7 +138,7 @@ impl<const D: usize> Simulation<D> {
 
     /// Goes back, or forward again, to a saved moment of this simulation. From there the same steps
     /// give the same bits as they did, if gravity, restitution, substeps and collisions are the
-    /// same. Pairs and boxes are those of the last step still.
+    /// same. Pairs and boxes stay as the last step left them.
     pub fn restore(&mut self, moment: &Moment<D>) {
         self.bodies.clone_from(&moment.bodies);
         self.contacts.clone_from(&moment.contacts);

@@ -65,10 +65,10 @@ pub fn bounce<const D: usize>(
 /// Lets no two that touch approach each other: the smallest change of velocities, measured in
 /// energy, after which no contact closes (projected Gauss-Seidel on the contact impulses).
 ///
-/// It starts from the impulses of the substep before, as far as they bring that minimum nearer.
-/// Each correction brings it nearer still; so none of this ever adds energy, converged or not.
+/// The solver starts from the impulses of the substep before, scaled to bring that minimum nearest. Each correction brings it
+/// nearer still, so energy is never added, whether the solver converges or not.
 ///
-/// `velocities` are those of the balls, and become those after it.
+/// `velocities` are the velocities of the balls before, and are changed to those after it.
 pub fn rest<const D: usize>(contacts: &mut Contacts, bodies: &Bodies<D>, velocities: &mut [Row]) {
     for contact in &contacts.balls {
         push_apart(contact, contact.impulse, velocities);

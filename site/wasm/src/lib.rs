@@ -68,7 +68,7 @@ fn code(done: Option<()>) -> Code {
 /// The rules that choose the sweep axis; behind them come the axes themselves.
 const RULES: [Axis; 3] = [Axis::LargestVariance, Axis::LongestExtent, Axis::FewestOverlaps];
 
-/// Of each kind one item a line, its parts parted by tabs.
+/// The items of each kind, one a line, their fields separated by tabs.
 static NAMES: LazyLock<[String; 5]> = LazyLock::new(|| {
     let library = ["find pairs", "broad phase"].into_iter();
     let scenes = SCENES.iter().map(|scene| {

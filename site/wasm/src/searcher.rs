@@ -137,9 +137,9 @@ fn fingerprint(pairs: &[[u32; 2]]) -> u64 {
 /// What a first run would cost, told without it. O(n log n).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forecast {
-    /// Pairs to be tested or flagged.
+    /// How many pairs are tested or flagged.
     pub tests: f64,
-    /// Of these, how many are to be kept in memory.
+    /// How many of them stay in memory.
     pub kept: f64,
 }
 

@@ -185,7 +185,7 @@ extern "C" fn runner_new(dimensions: u32, trace_words: usize) -> Option<Box<Hand
     })
 }
 
-/// A copy of a runner, which goes on as the runner would, to be freed as well.
+/// A copy of a runner, which continues as the runner would. It has to be freed, too.
 #[unsafe(no_mangle)]
 extern "C" fn runner_copy(handle: &Handle) -> Box<Handle> {
     stack::check(stack::LARGE);
@@ -317,14 +317,14 @@ extern "C" fn runner_is_truncated(handle: &mut Handle) -> bool {
     handle.recorder.1.is_truncated()
 }
 
-/// Forgets the trace.
+/// Clears the trace.
 #[unsafe(no_mangle)]
 extern "C" fn runner_clear_trace(handle: &mut Handle) {
     run(handle, stack::LARGE, |handle| handle.recorder.1.clear());
 }
 
-/// Forgets the trace but for what the next step goes on from (the arrays, the axis overlaps and
-/// the pairs held), which is recorded as the only events so far; how many those are.
+/// Clears the trace except for what the next step continues from: the arrays, the axis overlaps and the current pairs are then
+/// its only events. Returns how many there are.
 #[unsafe(no_mangle)]
 extern "C" fn runner_trim_trace(handle: &mut Handle) -> usize {
     run(handle, stack::LARGE, |handle| trim(&mut handle.recorder.1))

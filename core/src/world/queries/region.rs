@@ -86,11 +86,27 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         Ok(self.collect(areas, |area, visit| self.visit_box(area, visit)))
     }
 
-    /// Shows the bodies whose boxes overlap a box to `visit`, which may stop the search; in no
-    /// particular order.
+    /// Calls `visit` with each body whose box overlaps a box, in no particular order, until it breaks. It
+    /// makes no list, and stops as soon as the answer is known: is this place free?
     ///
     /// # Errors
     /// [`Error::InvalidBox`].
+    ///
+    /// # Example
+    /// ```
+    /// use core::ops::ControlFlow;
+    /// use sweep_and_prune::{Aabb, BroadPhase};
+    ///
+    /// let mut world = BroadPhase::<2>::new();
+    /// world.insert(Aabb::new([0.0, 0.0], [2.0, 2.0]))?;
+    /// let mut is_free = true;
+    /// world.queries().visit_overlapping(&Aabb::new([1.0, 1.0], [3.0, 3.0]), |_| {
+    ///     is_free = false;
+    ///     ControlFlow::Break(())
+    /// })?;
+    /// assert!(!is_free);
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
     pub fn visit_overlapping(
         &self,
         area: &Aabb<D, T>,

@@ -13,9 +13,9 @@ use sweep_and_prune_bindings::{Answer, Id};
 use sweep_and_prune_wasm_runtime::call::{self, Running};
 use sweep_and_prune_wasm_runtime::status::{Code, report, report_error};
 
-/// Bits of an id that are its slot. Each body takes more than 64 bytes, so 4 GiB hold fewer.
+/// How many bits of an id are its slot. Each body takes more than 64 bytes, so the slots of 4 GiB fit.
 const SLOT_BITS: u32 = 26;
-/// Bits of an id that are its generation: with those of the slot, as many as an `f64` holds.
+/// The bits of an id that are its generation: 27, which with the 26 of the slot are all that an `f64` holds exactly.
 const GENERATION_MASK: u32 = (1 << 27) - 1;
 
 /// An id as a whole number below 2^53.

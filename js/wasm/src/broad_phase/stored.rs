@@ -38,8 +38,7 @@ fn cover(bytes: &mut [u8], dimensions: u8) {
 /// The broad phase of a snapshot, if its boxes have this many dimensions for the user.
 ///
 /// # Errors
-/// [`Error::InvalidSnapshot`]; for other dimensions, [`SnapshotFault::OtherWorld`] with those of
-/// the user.
+/// [`Error::InvalidSnapshot`]. If the dimensions differ, [`SnapshotFault::OtherWorld`] with the dimensions in the snapshot.
 pub(super) fn restore(bytes: &mut [u8], dimensions: u32) -> Result<World, Error> {
     let (flat, bytes) = if bytes.starts_with(&FLAT) {
         let Some((&mut flat, bytes)) = bytes[FLAT.len()..].split_first_mut() else {

@@ -74,10 +74,10 @@ impl<const D: usize> WrongRunner<D> {
         }
     }
 
-    /// What it takes for the pairs of these boxes; the axis.
+    /// Finds what it takes for the pairs of these boxes. Returns the axis that it swept.
     ///
     /// # Errors
-    /// As those of a right runner; then nothing has changed.
+    /// As [`Runner::step`](sweep_and_prune_algorithms::Runner::step); then nothing has changed.
     pub fn step<O: Observer>(
         &mut self,
         boxes: &[Aabb<D, f64>],

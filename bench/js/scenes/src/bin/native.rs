@@ -92,9 +92,9 @@ fn world<const D: usize>(first: &[Aabb<D>]) -> Result<Call<D>, Error> {
     }))
 }
 
-/// How long the thread has waited for a processor, because other programs had them all; nothing
-/// where the system does not tell. Of calls so short that they are timed in batches it is not
-/// asked: they are seldom interrupted, and to ask would take as long.
+/// How long the thread has waited for a processor while other programs used them all. Zero where the system does not
+/// report it. Calls that are timed in batches are too short to ask: they are seldom interrupted, and asking would take as
+/// long as a call.
 struct Waited(Option<Duration>);
 
 impl Waited {
