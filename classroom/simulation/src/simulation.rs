@@ -52,7 +52,7 @@ impl Energy {
     }
 }
 
-/// Balls in a box: see the [crate](crate) for what it does and why.
+/// Balls in a box: see the [crate] for what it does and why.
 #[derive(Debug)]
 pub struct Simulation<const D: usize> {
     bodies: Bodies<D>,
