@@ -27,7 +27,7 @@ function pathsNamed(text) {
   );
 }
 
-for (const document of ["ARCHITECTURE.md", "README.md", "CONTRIBUTING.md", "docs/testing.md", "docs/releasing.md"]) {
+for (const document of ["ARCHITECTURE.md", "js/ARCHITECTURE.md", "python/ARCHITECTURE.md", "classroom/ARCHITECTURE.md", "README.md", "CONTRIBUTING.md", "docs/testing.md", "docs/releasing.md"]) {
   test(`every path that ${document} names exists`, () => {
     const paths = pathsNamed(read(document));
     assert.ok(paths.length > 0, "no path found: is the pattern still right?");
