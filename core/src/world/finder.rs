@@ -3,8 +3,9 @@
 use alloc::alloc::{Layout, handle_alloc_error};
 use alloc::vec::Vec;
 
-use super::bodies::Bodies;
+use super::bodies::{Bodies, Filter};
 use super::policy::LOOK_UP;
+use super::sets::Sets;
 use crate::pairs::PairFinder;
 use crate::{Aabb, Error, Scalar};
 
@@ -13,9 +14,9 @@ use crate::{Aabb, Error, Scalar};
 pub struct Finder<const D: usize, T: Scalar> {
     finder: PairFinder<D, T>,
     threads: usize,
-    /// The boxes that take part, and their indices.
+    /// The bodies that take part, and their boxes.
+    sets: Sets,
     boxes: Vec<Aabb<D, T>>,
-    indices: Vec<u32>,
     pairs: Vec<[u32; 2]>,
     /// How many pairs the last search found, before filters.
     pub found: usize,
@@ -30,18 +31,18 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
     }
 
     /// The pairs of overlapping boxes of a table, as indices, of bodies that have one of the flags of
-    /// `any` and none of `none`, as far as `allows` does. The boxes are valid. Pairs of two bodies that are
-    /// and were static are not even searched. `None` if there are more than `most`, before filters.
+    /// `any` and none of `none`, as far as their filters allow. The boxes are valid. Within sets of bodies whose
+    /// filters forbid all of them to pair nothing is searched. `None` if more than `most` are found, before filters.
     #[inline(never)]
     pub fn find(
         &mut self,
         table: &[Aabb<D, T>],
         bodies: &Bodies<D, T>,
         [any, none]: [u16; 2],
-        allows: &dyn Fn([u32; 2]) -> bool,
+        filter_of: &dyn Fn(u32) -> Filter,
         most: usize,
     ) -> Option<&[[u32; 2]]> {
-        let Self { finder, boxes, indices, pairs, .. } = self;
+        let Self { finder, sets, boxes, pairs, .. } = self;
         let flags = &bodies.slots.flags;
         let takes_part = |flags: u16| (flags & any != 0) & (flags & none == 0);
         if !bodies.any_filter && flags.iter().all(|&flags| takes_part(flags)) {
@@ -49,30 +50,24 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
             self.found = pairs.len();
             return Some(pairs);
         }
-        let all = || (0..flags.len() as u32).filter(|&index| takes_part(flags[index as usize]));
-        let is_static = |&index: &u32| {
-            bodies.filters[index as usize].is_static && bodies.old_filter(index).is_static
-        };
-        indices.clear();
-        indices.extend(all().filter(|index| !is_static(index)));
-        let movable = indices.len();
-        indices.extend(all().filter(is_static));
+        let all = (0..flags.len() as u32).filter(|&index| takes_part(flags[index as usize]));
+        sets.divide(all, filter_of);
         boxes.clear();
-        boxes.extend(indices.iter().map(|&index| table[index as usize]));
-        let (movable_boxes, static_boxes) = boxes.split_at(movable);
-        let (movable, fixed) = indices.split_at(movable);
+        boxes.extend(sets.bodies.iter().map(|&index| table[index as usize]));
         pairs.clear();
-        let within = found(finder.search(movable_boxes).pairs_up_to(most))?;
-        self.found = within.len();
-        pairs.extend(within.iter().map(|pair| pair.map(|at| movable[at as usize])));
-        let between = finder.search(movable_boxes).against(static_boxes);
-        let between = found(between.pairs_up_to(most.saturating_sub(self.found)))?;
-        self.found += between.len();
-        pairs.extend(between.iter().map(|&[a, b]| {
-            let (a, b) = (movable[a as usize], fixed[b as usize]);
-            [a.min(b), a.max(b)]
-        }));
-        pairs.retain(|&pair| allows(pair));
+        self.found = 0;
+        for [a, b] in sets.meetings() {
+            let mut search = finder.search(&boxes[a.clone()]);
+            if a != b {
+                search = search.against(&boxes[b.clone()]);
+            }
+            let all = found(search.pairs_up_to(most.saturating_sub(self.found)))?;
+            self.found += all.len();
+            let (a, b) = (&sets.bodies[a], &sets.bodies[b]);
+            let named = all.iter().map(|&[at, other]| [a[at as usize], b[other as usize]]);
+            let allowed = named.filter(|&[a, b]| filter_of(a).allows(&filter_of(b)));
+            pairs.extend(allowed.map(|[a, b]| [a.min(b), a.max(b)]));
+        }
         Some(pairs)
     }
 

@@ -2,7 +2,7 @@
 //! and end.
 //!
 //! ```text
-//! bodies -> tree -> candidates -> policy -> finder -> tracking -> layout -> update
+//! bodies -> tree -> candidates -> policy -> sets -> finder -> tracking -> layout -> update
 //!     -> queries, snapshot -> broad_phase -> edit
 //! ```
 //! Each of these uses only those before it. `update/mod.rs` is the update on one page.
@@ -19,6 +19,7 @@ mod policy;
 mod queries;
 #[cfg(feature = "serde")]
 mod serde;
+mod sets;
 mod snapshot;
 mod tracking;
 mod tree;

@@ -13,6 +13,9 @@ use crate::setters::setters;
 /// their masks; these are box2d's rules. The default is category 1, all bits in the mask, no
 /// group, dynamic.
 ///
+/// Updates search neither among bodies whose filters forbid each other, such as bullets, nor for
+/// bodies that can pair with nobody.
+///
 /// ```
 /// use sweep_and_prune::Filter;
 ///
@@ -56,6 +59,11 @@ impl Filter {
         } else {
             self.category & other.mask != 0 && other.category & self.mask != 0
         }
+    }
+
+    /// Whether no filter at all allows a body with this one to pair.
+    pub(crate) const fn allows_nobody(&self) -> bool {
+        self.group <= 0 && (self.category == 0 || self.mask == 0)
     }
 }
 

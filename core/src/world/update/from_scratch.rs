@@ -30,8 +30,8 @@ pub fn from_scratch<const D: usize, T: Scalar>(
     for &index in &bodies.changed {
         bodies.slots.lower(index, flag::CHANGED | flag::IN_TREE);
     }
-    let allows = |pair| bodies.allows(pair);
-    let all = finder.find(&bodies.boxes, bodies, [flag::LIVE, 0], &allows, usize::MAX);
+    let filter_of = |index| bodies.filters[index as usize];
+    let all = finder.find(&bodies.boxes, bodies, [flag::LIVE, 0], &filter_of, usize::MAX);
     let pairs = all.unwrap_or_default();
     sorter.sort_into(pairs, &mut candidates.sorted, bodies.slots.len());
     sorter.differences(before, &candidates.sorted, &mut events.ended, &mut events.begun);

@@ -56,12 +56,13 @@ pub fn incremental<const D: usize, T: Scalar>(
     tracking.scratch.mark(bodies, true);
     let mut is_right = !wakes || tracking.wake(bodies, &mut events.ended, &mut most, has_tree);
     if is_right {
-        let jumped = tracking.list_queries(bodies, extends);
+        let [jumped, count] = tracking.list_queries(bodies, extends);
         layout::note_jumps(&mut tracking.locality_decay, jumped);
         if has_tree {
             tracking.move_in_tree(bodies);
         }
-        is_right = tracking.find_added(bodies, &mut events.begun, extends, most, has_tree);
+        let look_ups = LookUps { count, extends, most, has_tree };
+        is_right = tracking.find_added(bodies, &mut events.begun, look_ups);
     }
     if is_right {
         if !bodies.changed.is_empty() || !bodies.leaving.is_empty() {
@@ -73,6 +74,18 @@ pub fn incremental<const D: usize, T: Scalar>(
     }
     tracking.scratch.mark(bodies, false);
     is_right
+}
+
+/// How candidates are looked up.
+struct LookUps {
+    /// Of how many bodies.
+    count: usize,
+    /// Whether only those are wanted that are not candidates yet.
+    extends: bool,
+    /// In how many steps, at most.
+    most: usize,
+    /// Whether in the tree.
+    has_tree: bool,
 }
 
 impl<const D: usize, T: Scalar> Tracking<D, T> {
@@ -101,7 +114,9 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         let Self { tree, fat, finder, scratch, .. } = self;
         let Scratch { queries, woken, leaves, found, is_escaped, .. } = scratch;
         queries.clear();
-        queries.extend(woken.iter().map(|&index| (index, bodies.previous[index as usize])));
+        let may_pair = |index: &&u32| !bodies.old_filter(**index).allows_nobody();
+        let woken_boxes = woken.iter().filter(may_pair);
+        queries.extend(woken_boxes.map(|&index| (index, bodies.previous[index as usize])));
         let are_asleep = |index| bodies.slots.has(index, flag::ASLEEP);
         for batch in queries.chunks(if has_tree { BATCH } else { usize::MAX }) {
             let is_found = if has_tree {
@@ -172,9 +187,10 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         }
     }
 
-    /// Lists the new fat AABBs of the bodies that left theirs, which are to be looked up. Returns how many jumped.
+    /// Lists the new fat AABBs of the bodies that left theirs: first of those that are to be looked up, then of those whose
+    /// filters allow nobody. Returns how many jumped, and how many are to be looked up.
     #[inline(never)]
-    fn list_queries(&mut self, bodies: &Bodies<D, T>, extends: bool) -> usize {
+    fn list_queries(&mut self, bodies: &Bodies<D, T>, extends: bool) -> [usize; 2] {
         let mut jumped = 0;
         let Self { fat, motion, policy, scratch: Scratch { escaped, queries, .. }, .. } = self;
         queries.clear();
@@ -191,7 +207,15 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             };
             (index, if extends { fat[row].union(&ahead) } else { ahead })
         }));
-        jumped
+        let mut count = 0;
+        for at in 0..queries.len() {
+            let filter = &bodies.filters[queries[at].0 as usize];
+            if !(bodies.any_filter && filter.allows_nobody()) {
+                queries.swap(count, at);
+                count += 1;
+            }
+        }
+        [jumped, count]
     }
 
     /// Removes bodies that left from the tree, and gives it the new fat AABBs.
@@ -207,23 +231,21 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         }
     }
 
-    /// Finds the candidates of the bodies that are looked up: if `extends`, those that are not candidates yet. Returns
-    /// false if there are too many, or if they are not found in so many steps.
+    /// Finds the candidates of the bodies that are looked up. Returns false if there are too many, or if they are not
+    /// found in so many steps.
     #[inline(never)]
     fn find_added(
         &mut self,
         bodies: &Bodies<D, T>,
         begun: &mut Vec<[u32; 2]>,
-        extends: bool,
-        mut most: usize,
-        has_tree: bool,
+        LookUps { count, extends, mut most, has_tree }: LookUps,
     ) -> bool {
         let limit = self.policy.most_candidates(bodies.slots.live);
         let Self { tree, fat, candidates, finder, scratch, .. } = self;
         let Scratch { queries, leaves, found, is_escaped, added, .. } = scratch;
         added.clear();
         added.reserve(candidates.pairs.capacity() / 4);
-        for batch in queries.chunks(if has_tree { BATCH } else { usize::MAX }) {
+        for batch in queries[..count].chunks(if has_tree { BATCH } else { usize::MAX }) {
             let is_found = if has_tree {
                 tree.overlapping_many(batch, leaves, found, &mut most)
             } else {

@@ -117,8 +117,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     fn find_candidates(&mut self, bodies: &Bodies<D, T>) -> bool {
         let Self { fat, candidates, finder, policy, .. } = self;
         let most = policy.most_candidates(bodies.slots.live);
-        let allows = |pair| bodies.allows(pair);
-        let Some(pairs) = finder.find(fat, bodies, [flag::LIVE, 0], &allows, most) else {
+        let filter_of = |index| bodies.filters[index as usize];
+        let Some(pairs) = finder.find(fat, bodies, [flag::LIVE, 0], &filter_of, most) else {
             policy.note_excess();
             return false;
         };
@@ -130,8 +130,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     /// Replaces the candidates by the pairs of boxes.
     fn find_overlaps(&mut self, bodies: &Bodies<D, T>) {
         let Self { candidates, finder, policy, .. } = self;
-        let allows = |pair| bodies.allows(pair);
-        let pairs = finder.find(&bodies.boxes, bodies, [flag::LIVE, 0], &allows, usize::MAX);
+        let filter_of = |index| bodies.filters[index as usize];
+        let pairs = finder.find(&bodies.boxes, bodies, [flag::LIVE, 0], &filter_of, usize::MAX);
         candidates.replace(pairs.unwrap_or_default());
         policy.note_overlaps(finder.found);
     }
@@ -143,8 +143,8 @@ pub fn restore<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Tracking<D, 
     let mut tracking = Tracking { fat: bodies.previous.clone(), ..Tracking::default() };
     let Tracking { fat, candidates, finder, policy, .. } = &mut tracking;
     let known = [flag::LIVE | flag::LEAVING, flag::NEW];
-    let allowed = |[a, b]: [u32; 2]| bodies.old_filter(a).allows(bodies.old_filter(b));
-    let pairs = finder.find(fat, bodies, known, &allowed, usize::MAX);
+    let filter_of = |index| *bodies.old_filter(index);
+    let pairs = finder.find(fat, bodies, known, &filter_of, usize::MAX);
     candidates.replace(pairs.unwrap_or_default());
     candidates.live.resize(candidates.pairs.len(), true);
     policy.note_overlaps(finder.found);

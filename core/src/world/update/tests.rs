@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use std::collections::BTreeSet;
 
 use crate::world::tracking::TreeState;
-use crate::{Aabb, BroadPhase, ProxyId, find_pairs};
+use crate::{Aabb, BroadPhase, Filter, ProxyId, find_pairs, find_pairs_between};
 
 /// A world, its bodies, and the pairs of the last update.
 struct World<const D: usize> {
@@ -157,4 +157,45 @@ fn a_tree_is_built_over_several_updates_while_bodies_come_go_and_move() {
     let tree = &world.world.tracking.tree;
     assert_eq!(tree.count, world.world.len());
     assert!((0..world.boxes.len() as u32).all(|body| tree.holds(body)));
+}
+
+#[test]
+fn bodies_that_may_not_meet_are_not_searched_among_themselves() {
+    // A fountain of bullets, some enemies, and a pool of bodies that are switched off at one place.
+    let (bullets, enemies, pool) = (2_000, 50, 500);
+    let bullet = Filter::default().category(2).mask(4);
+    let mut world = BroadPhase::<2>::new();
+    let at = |index: usize, frame: usize| {
+        let way = if index.is_multiple_of(4) { 0.0 } else { 0.4 * frame as f32 };
+        let place = [noise(index), noise(index * index)].map(|part| (part - 0.5) * way);
+        Aabb::new(place, place.map(|at| at + 0.1))
+    };
+    let mut boxes: Vec<_> = (0..bullets).map(|index| at(index, 0)).collect();
+    let ids = world.insert_many(&boxes, bullet).unwrap();
+    let targets: Vec<_> = (0..enemies).map(|index| somewhere(index, 4.0, [0.1; 2])).collect();
+    world.insert_many(&targets, Filter::default().category(4).mask(2)).unwrap();
+    let off = world.insert_many(&boxes[..pool], Filter::default().mask(0)).unwrap();
+    let mut known = BTreeSet::new();
+    for frame in 0..40 {
+        let moving = if frame < 20 { bullets } else { 20 };
+        for (index, aabb) in boxes.iter_mut().enumerate().take(moving) {
+            *aabb = at(index, frame);
+        }
+        world.set_many(&ids[..moving], &boxes[..moving]).unwrap();
+        let parked = if frame < 30 { pool } else { 5 };
+        world.set_many(&off[..parked], &std::vec![at(4 * frame, frame); parked]).unwrap();
+        let changes = world.update();
+        let found = find_pairs_between(&boxes, &targets).unwrap();
+        let pairs: BTreeSet<_> = found.into_iter().map(|[a, b]| [a, b + bullets as u32]).collect();
+        assert!(changes.begun().slots().iter().eq(pairs.difference(&known)));
+        assert!(changes.ended().slots().iter().eq(known.difference(&pairs)));
+        known = pairs;
+        let tracking = &world.tracking;
+        let most = 2 * (enemies + known.len());
+        assert!(tracking.finder.found <= most, "{frame}: {} found", tracking.finder.found);
+        assert!(tracking.candidates.pairs.len() <= most, "{frame}");
+        // What a tree lists it lists before filters, but an update reads no more of it than there are bodies.
+        assert!(tracking.scratch.found.len() <= world.len() + known.len(), "{frame}");
+    }
+    assert!(known.len() > 20, "{} pairs prove little", known.len());
 }
