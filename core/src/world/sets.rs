@@ -11,11 +11,11 @@ use super::bodies::Filter;
 
 /// How many filters are told apart: the first ones. All others count as one that allows everybody, in the first set.
 const FILTERS: usize = 48;
-/// Places for them, some of which stay free.
-const PLACES: usize = 64;
+/// The size of the hash table of filters. Some of it stays free.
+const BUCKETS: usize = 64;
 /// The first set, and three more: of scenery, projectiles and triggers, say.
 const SETS: usize = 4;
-/// In place of a set, for bodies that can pair with nobody.
+/// In bucket of a set, for bodies that can pair with no other.
 const NOWHERE: u8 = SETS as u8;
 
 /// Bodies by set. Keeps its buffers.
@@ -50,11 +50,11 @@ impl Sets {
         bodies: impl Iterator<Item = u32> + Clone,
         filter_of: &dyn Fn(u32) -> Filter,
     ) {
-        let mut places = [u8::MAX; PLACES];
+        let mut buckets = [u8::MAX; BUCKETS];
         self.kinds.clear();
         self.kind_of.clear();
         for index in bodies.clone() {
-            let kind = self.kind(&mut places, filter_of(index));
+            let kind = self.kind(&mut buckets, filter_of(index));
             self.kinds[usize::from(kind)].count += 1;
             self.kind_of.push(kind);
         }
@@ -68,14 +68,14 @@ impl Sets {
         }
     }
 
-    /// The position of a filter among the kinds. `places` has it by hash.
+    /// The position of a filter among the kinds. `buckets` has it by hash.
     #[inline(always)]
-    fn kind(&mut self, places: &mut [u8; PLACES], filter: Filter) -> u8 {
+    fn kind(&mut self, buckets: &mut [u8; BUCKETS], filter: Filter) -> u8 {
         let Filter { category, mask, group, is_static } = filter;
         let bits = category ^ mask.rotate_left(11) ^ group.rotate_left(22) as u32;
-        let mut place = (bits ^ u32::from(is_static)).wrapping_mul(0x9E37_79B1) as usize >> 26;
+        let mut bucket = (bits ^ u32::from(is_static)).wrapping_mul(0x9E37_79B1) as usize >> 26;
         loop {
-            let kind = places[place % PLACES];
+            let kind = buckets[bucket % BUCKETS];
             if kind == u8::MAX {
                 let count = self.kinds.len();
                 if count > FILTERS {
@@ -85,14 +85,14 @@ impl Sets {
                 let filter = if count == FILTERS { Filter::ALL } else { filter };
                 self.kinds.push(Kind { filter, count: 0, set: NOWHERE });
                 if count < FILTERS {
-                    places[place % PLACES] = count as u8;
+                    buckets[bucket % BUCKETS] = count as u8;
                 }
                 return count as u8;
             }
             if self.kinds[usize::from(kind)].filter == filter {
                 return kind;
             }
-            place += 1;
+            bucket += 1;
         }
     }
 
@@ -101,7 +101,7 @@ impl Sets {
     fn may_pair(&self, a: usize, b: usize) -> bool {
         let [one, other] = [a, b].map(|kind| &self.kinds[kind].filter);
         // Of filters that are not told apart any group may be that of the other.
-        let is_unknown = a.max(b) == FILTERS && !one.allows_nobody() && !other.allows_nobody();
+        let is_unknown = a.max(b) == FILTERS && !one.allows_none() && !other.allows_none();
         is_unknown || one.allows(other)
     }
 

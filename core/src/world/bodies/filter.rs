@@ -14,7 +14,7 @@ use crate::setters::setters;
 /// group, dynamic.
 ///
 /// Updates search neither among bodies whose filters forbid each other, such as bullets, nor for
-/// bodies that can pair with nobody.
+/// bodies that can pair with no other.
 ///
 /// ```
 /// use sweep_and_prune::Filter;
@@ -62,7 +62,7 @@ impl Filter {
     }
 
     /// Whether no filter at all allows a body with this one to pair.
-    pub(crate) const fn allows_nobody(&self) -> bool {
+    pub(crate) const fn allows_none(&self) -> bool {
         self.group <= 0 && (self.category == 0 || self.mask == 0)
     }
 }

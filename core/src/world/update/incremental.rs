@@ -114,7 +114,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         let Self { tree, fat, finder, scratch, .. } = self;
         let Scratch { queries, woken, leaves, found, is_escaped, .. } = scratch;
         queries.clear();
-        let may_pair = |index: &&u32| !bodies.old_filter(**index).allows_nobody();
+        let may_pair = |index: &&u32| !bodies.old_filter(**index).allows_none();
         let woken_boxes = woken.iter().filter(may_pair);
         queries.extend(woken_boxes.map(|&index| (index, bodies.previous[index as usize])));
         let are_asleep = |index| bodies.slots.has(index, flag::ASLEEP);
@@ -188,7 +188,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     }
 
     /// Lists the new fat AABBs of the bodies that left theirs: first of those that are to be looked up, then of those whose
-    /// filters allow nobody. Returns how many jumped, and how many are to be looked up.
+    /// filters allow no pair. Returns how many jumped, and how many are to be looked up.
     #[inline(never)]
     fn list_queries(&mut self, bodies: &Bodies<D, T>, extends: bool) -> [usize; 2] {
         let mut jumped = 0;
@@ -210,7 +210,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         let mut count = 0;
         for at in 0..queries.len() {
             let filter = &bodies.filters[queries[at].0 as usize];
-            if !(bodies.any_filter && filter.allows_nobody()) {
+            if !(bodies.any_filter && filter.allows_none()) {
                 queries.swap(count, at);
                 count += 1;
             }
