@@ -15,7 +15,7 @@ const FILTERS: usize = 48;
 const BUCKETS: usize = 64;
 /// The first set, and three more: of scenery, projectiles and triggers, say.
 const SETS: usize = 4;
-/// In bucket of a set, for bodies that can pair with no other.
+/// In place of a set, for bodies that can pair with no other.
 const NOWHERE: u8 = SETS as u8;
 
 /// Bodies by set. Keeps its buffers.
