@@ -36,8 +36,8 @@ const cores = [
  */
 const entries = [
   { name: "index", inline: "inline", budget: 9_900 },
-  // Of these, 1.7 KB are for many queries in one call.
-  { name: "broad-phase", inline: "broad-phase-inline", budget: 15_000 },
+  // Of these, 1.7 KB are for many queries in one call, and 1.1 KB for data of bodies, clones and restoring in place.
+  { name: "broad-phase", inline: "broad-phase-inline", budget: 16_200 },
   { name: "events-2d", inline: "events-2d-inline", budget: 10_900 },
   { name: "events-3d", inline: "events-3d-inline", budget: 10_900 },
 ].map((entry) => ({ ...entry, source: `src/entries/${entry.name}.ts` }));

@@ -19,6 +19,9 @@ test("an argument that frees the world while it is read", () => {
   /** @type {Record<string, (world: any, id: number, evil: (value: object) => any) => unknown>} */
   const calls = {
     insert: (world, _, evil) => world.insert(evil(unit)),
+    "insert, options": (world, _, evil) => world.insert(unit, evil({ data: 1 })),
+    "insertMany, data": (world, _, evil) => world.insertMany([unit], {}, evil([1])),
+    boxes: (world, id, evil) => world.boxes(evil([id])),
     insertMany: (world, _, evil) => world.insertMany(evil(unit)),
     "insertMany, filter": (world, _, evil) => world.insertMany(unit, evil({})),
     set: (world, id, evil) => world.set(id, evil(unit)),

@@ -10,7 +10,7 @@ import { boxesSpread, random } from "./support/boxes.js";
 
 before(() => init());
 
-/** @type {[typeof Events2D, 1 | 2 | 3][]} */
+/** @type {[any, 1 | 2 | 3][]} */
 const small = [[Events2D, 1], [Events2D, 2], [Events3D, 3]];
 
 /** A result as arrays, whatever becomes of views. @param {any} result @returns {any} */
@@ -75,7 +75,7 @@ test("what they do not have is refused by name, or not there", () => {
   for (const [Events, dimensions] of /** @type {any} */ (wrong)) {
     assert.throws(() => new Events({ dimensions }), /^RangeError: "sweep-and-prune\/events-.d" has boxes of .* import `BroadPhase` from "sweep-and-prune\/broad-phase"/);
   }
-  assert.throws(() => new Events2D({ dimensions: 2, precision: "double" }), /in single precision only/);
+  assert.throws(() => new Events2D(/** @type {any} */ ({ dimensions: 2, precision: "double" })), /in single precision only/);
   assert.throws(() => new Events2D(/** @type {any} */ ({ dimensions: 4 })), /^RangeError: `dimensions` must be 1, 2 or 3, not 4/);
   const world = /** @type {any} */ (new Events2D({ dimensions: 2 }));
   for (const name of ["pairs", "pairsOf", "overlapping", "rayCast", "nearest", "snapshot", "stateHash"]) assert.equal(world[name], undefined);

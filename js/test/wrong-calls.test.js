@@ -78,7 +78,17 @@ const calls = [
   ["filters that are not as many as boxes", (world) => world.insertMany([0, 0, 1, 1], [{}, {}]), /^RangeError: `filter` has 2 filters and `boxes` 1 boxes/],
   ["one of many filters", (world) => world.insertMany([0, 0, 1, 1, 0, 0, 1, 1], [{}, { layer: 1 }]), /^TypeError: `filter` has no `layer`/],
   ["one box for insertMany", (world) => world.insertMany(box), /^TypeError: `boxes` must be .*: one box is written \[box\]/],
-  ["a box and a filter", (world) => world.insert(box, { mask: 1 }), /^TypeError: there are more arguments than `box`/],
+  ["a box and a filter that does not exist", (world) => world.insert(box, { layer: 1 }), /^TypeError: `options` has no `layer`: there is `data`, `category`/],
+  ["separate numbers and options", (world) => world.insert(0, 0, 1, 1, { data: 1 }), /^TypeError: there are more arguments than maxY/],
+  ["a box and another", (world) => world.insert(box, box), /^TypeError: `options` (has no|must be)/],
+  ["data for other boxes", (world) => world.insertMany([box, box], {}, [1]), /^RangeError: `data` has 1 and `boxes` 2 boxes/],
+  ["data that is no array", (world) => world.insertMany([box], {}, "x"), /^TypeError: `data` must be an array, not a string/],
+  ["data in the place of a filter", (world) => world.insertMany([box], { data: [1] }), /^TypeError: `filter` has no `data`/],
+  ["data of a body that is not here", (world) => world.setData(5, "x"), /^StaleProxyError: the id at index 0 \(5\)/],
+  ["boxes of a body that is not here", (world, id) => world.boxes([id, 5]), /^StaleProxyError: the id at index 1 \(5\)/],
+  ["a snapshot that is none", (world) => world.restore(new Uint8Array(9)), /^SnapshotError/],
+  ["a snapshot of other dimensions", (world) => world.restore(new BroadPhase({ dimensions: 3 }).snapshot()), /^SnapshotError: .* pass `dimensions: 3`/],
+  ["a snapshot of another precision", (world) => world.restore(new BroadPhase({ dimensions: 2, precision: "double" }).snapshot()), /^RangeError: the snapshot is of double precision/],
   ["two ids for remove", (world, id) => world.remove(id, id), /^TypeError: `remove` takes one id; `removeMany`/],
   ["ids in single precision", (world, id) => world.removeMany(new Float32Array([id])), /^TypeError: `ids` must not be a Float32Array, which rounds ids/],
   ["a filter in the place of a limit", (world) => world.rayCast([0, 0], [1, 0], { mask: 1 }), /^TypeError: `limit` must be a number, not a Object/],
@@ -260,8 +270,18 @@ test("the types refuse what they can", () => {
     world.setFilter(world.insert(box), { layer: 2 });
     // @ts-expect-error an option that does not exist
     new BroadPhase({ dimensions: 2, margn: 1 });
-    // @ts-expect-error a box and a filter
-    world.insert(box, { mask: 1 });
+    // @ts-expect-error a filter key that does not exist
+    world.insert(box, { layer: 1 });
+    // @ts-expect-error a box in 3D for a world in 2D
+    world.insert({ minX: 0, minY: 0, minZ: 0, maxX: 1, maxY: 1, maxZ: 1 });
+    // @ts-expect-error separate numbers in 3D for a world in 2D
+    world.insert(0, 0, 0, 1, 1, 1);
+    // @ts-expect-error a point in 3D for a world in 2D
+    world.containing({ x: 0, y: 0, z: 0 });
+    // @ts-expect-error a function for many queries
+    world.overlappingMany([box], () => true);
+    // @ts-expect-error data of another type
+    /** @type {BroadPhase<2, string>} */ (/** @type {unknown} */ (undefined)).insert(box, { data: 1 });
     // @ts-expect-error two ids
     world.remove(world.insert(box), world.insert(box));
     // Right calls.

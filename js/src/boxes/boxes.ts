@@ -25,7 +25,7 @@ export type TypedNumbers =
  * precision. Plain arrays, of numbers or of {@link BoxObject | boxes}, are slower: each call reads
  * every number, checks it and copies it to a `Float64Array`.
  */
-export type Boxes = TypedNumbers | readonly number[] | readonly BoxObject[];
+export type Boxes<D extends Dimensions = Dimensions> = TypedNumbers | readonly number[] | readonly BoxObject<D>[];
 
 /**
  * One box in the form of another library: `{ minX, minY, maxX, maxY }` of rbush, with `minZ` and
@@ -34,7 +34,14 @@ export type Boxes = TypedNumbers | readonly number[] | readonly BoxObject[];
  * sprite, with `z` and `depth` in 3D; `{ x, y, w, h }`; `{ left, top, right, bottom }`; a row of numbers as in
  * box-intersect. Other properties of the object are ignored.
  */
-export type BoxObject = EdgesBox | MinMaxBox | BoundsBox | SizedBox | SidesBox | readonly number[] | TypedNumbers;
+export type BoxObject<D extends Dimensions = Dimensions> =
+  | EdgesBox<D>
+  | MinMaxBox<D>
+  | BoundsBox<D>
+  | SizedBox<D>
+  | SidesBox<D>
+  | readonly number[]
+  | TypedNumbers;
 
 /** Properties with values of a type. */
 type Of<Keys extends string, Value> = { readonly [Key in Keys]: Value };
@@ -43,37 +50,37 @@ type Of<Keys extends string, Value> = { readonly [Key in Keys]: Value };
 type Without<Keys extends string> = { readonly [Key in Keys]?: undefined };
 
 /** A box by its edges, as in rbush: `minX` and `maxX`, in 2D and 3D `minY` and `maxY`, in 3D `minZ` and `maxZ`. */
-export type EdgesBox =
-  | (Of<"minX" | "maxX", number> & Without<"minY" | "maxY" | "minZ" | "maxZ">)
-  | (Of<"minX" | "minY" | "maxX" | "maxY", number> & Without<"minZ" | "maxZ">)
-  | Of<"minX" | "minY" | "minZ" | "maxX" | "maxY" | "maxZ", number>;
+export type EdgesBox<D extends Dimensions = Dimensions> = D extends 1
+  ? Of<"minX" | "maxX", number> & Without<"minY" | "maxY" | "minZ" | "maxZ">
+  : D extends 2
+    ? Of<"minX" | "minY" | "maxX" | "maxY", number> & Without<"minZ" | "maxZ">
+    : Of<"minX" | "minY" | "minZ" | "maxX" | "maxY" | "maxZ", number>;
 
 /** A box by its corners `min` and `max`, as in three.js and matter. */
-export type MinMaxBox = Of<"min" | "max", Corner1D> | Of<"min" | "max", Corner2D> | Of<"min" | "max", Corner3D>;
+export type MinMaxBox<D extends Dimensions = Dimensions> = D extends Dimensions ? Of<"min" | "max", Corner<D>> : never;
 
 /** A box by its corners `lowerBound` and `upperBound`, as in cannon and planck. */
-export type BoundsBox =
-  | Of<"lowerBound" | "upperBound", Corner1D>
-  | Of<"lowerBound" | "upperBound", Corner2D>
-  | Of<"lowerBound" | "upperBound", Corner3D>;
+export type BoundsBox<D extends Dimensions = Dimensions> = D extends Dimensions ? Of<"lowerBound" | "upperBound", Corner<D>> : never;
 
 /**
  * A box by a corner and its size, as a `DOMRect`. The other corner is their sum in double precision. A negative size
  * reaches to the other side, as of a rectangle that is drawn to the upper left.
  */
-export type SizedBox =
-  | (Of<"x" | "width", number> & Without<"y" | "height" | "depth">)
-  | Of<"x" | "y" | "width" | "height", number>
-  | Of<"x" | "y" | "z" | "width" | "height" | "depth", number>
-  | (Of<"x" | "w", number> & Without<"y" | "h" | "d">)
-  | Of<"x" | "y" | "w" | "h", number>
-  | Of<"x" | "y" | "z" | "w" | "h" | "d", number>;
+export type SizedBox<D extends Dimensions = Dimensions> = D extends 1
+  ? (Of<"x" | "width", number> & Without<"y" | "height" | "depth">) | (Of<"x" | "w", number> & Without<"y" | "h" | "d">)
+  : D extends 2
+    ? Of<"x" | "y" | "width" | "height", number> | Of<"x" | "y" | "w" | "h", number>
+    : Of<"x" | "y" | "z" | "width" | "height" | "depth", number> | Of<"x" | "y" | "z" | "w" | "h" | "d", number>;
 
 /** A box by its sides, in 1D and 2D. Either of `top` and `bottom` may be the smaller one, and of `left` and `right`. */
-export type SidesBox = (Of<"left" | "right", number> & Without<"top" | "bottom">) | Of<"left" | "top" | "right" | "bottom", number>;
+export type SidesBox<D extends Dimensions = Dimensions> = D extends 1
+  ? Of<"left" | "right", number> & Without<"top" | "bottom">
+  : D extends 2
+    ? Of<"left" | "top" | "right" | "bottom", number>
+    : never;
 
 /** A point, or a corner of a box: as many coordinates as there are dimensions. */
-export type Corner = Corner1D | Corner2D | Corner3D;
+export type Corner<D extends Dimensions = Dimensions> = D extends 1 ? Corner1D : D extends 2 ? Corner2D : Corner3D;
 
 /** A point in 1D. */
 export interface Corner1D {

@@ -27,9 +27,12 @@ export {
   type Buffers,
   type CastOptions,
   type Changes,
+  type Corners,
+  type EventsOptions,
   type ExcludeOptions,
   type Hit,
   type Hits,
+  type InsertOptions,
   type Lists,
   type Neighbor,
   type NeighborLists,
@@ -42,6 +45,7 @@ export {
   slotOf,
   type SortOptions,
 } from "../world/types.js";
+export { inPairs } from "../pairs/in-pairs.js";
 export { StaleProxyError } from "../world/stale-proxy-error.js";
 export { SnapshotError } from "../world/snapshot-error.js";
 export type { Filter } from "../world/filter.js";

@@ -5,9 +5,12 @@
  * @module
  */
 import { entry, type InitOptions, type Started } from "../wasm/init.js";
+import type { EventsOptions } from "../world/types.js";
 import { eventsCore2D } from "../world/events-core.js";
 
 export * from "./events.js";
+/** How a {@link BroadPhase} treats its boxes. */
+export type BroadPhaseOptions<D extends 1 | 2 = 1 | 2> = EventsOptions<D>;
 export { BroadPhase } from "../world/events-2d.js";
 
 /** Loads and starts the compiled core of this entry point, and those of the others. Otherwise it works as `init` of `sweep-and-prune`. */

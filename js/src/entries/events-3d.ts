@@ -5,9 +5,12 @@
  * @module
  */
 import { entry, type InitOptions, type Started } from "../wasm/init.js";
+import type { EventsOptions } from "../world/types.js";
 import { eventsCore3D } from "../world/events-core.js";
 
 export * from "./events.js";
+/** How a {@link BroadPhase} treats its boxes. */
+export type BroadPhaseOptions<D extends 3 = 3> = EventsOptions<D>;
 export { BroadPhase } from "../world/events-3d.js";
 
 /** Loads and starts the compiled core of this entry point, and those of the others. Otherwise it works as `init` of `sweep-and-prune`. */

@@ -2,9 +2,10 @@
 export * from "./common.js";
 export {
   type Box,
-  type BroadPhaseOptions,
   type Buffers,
   type Changes,
+  type Corners,
+  type EventsOptions,
   type Numbers,
   type ProxyId,
   slotOf,

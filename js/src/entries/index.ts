@@ -18,6 +18,7 @@ import { entry, type InitOptions, type Started } from "../wasm/init.js";
 import { finderCore } from "../pairs/pair-finder.js";
 
 export * from "./common.js";
+export { inPairs } from "../pairs/in-pairs.js";
 export {
   anyPair,
   countPairs,

@@ -1,4 +1,4 @@
-import { type Boxes, checkBoxes, checkNumbers } from "../boxes/boxes.js";
+import { type Boxes, checkBoxes, checkNumbers, type Dimensions } from "../boxes/boxes.js";
 import type { Passed } from "../wasm/engine.js";
 import { guard } from "../wasm/views.js";
 import { Query } from "./core.js";
@@ -8,7 +8,7 @@ import { checkCount, checkLength, checkRule, type QueryChoices, own, readChoices
 import type { CastOptions, ExcludeOptions, Hits, Lists, NeighborLists, Numbers, Points, QueryOptions } from "./types.js";
 
 /** Many queries in one call, which takes less time than a call for each. */
-export abstract class Batches extends Queries {
+export abstract class Batches<D extends Dimensions = Dimensions> extends Queries<D> {
   /**
    * {@link Queries.overlapping} for each of many boxes: `ids` are those that they find, one list after another, and
    * `ends[i]` is where the list of box `i` ends. A filter is an object, not a function, here and in the other calls for
@@ -22,7 +22,7 @@ export abstract class Batches extends Queries {
    * for (let i = 0, at = 0; i < ends.length; i++) for (; at < ends[i]; at++) console.log(`box ${i} finds ${ids[at]}`);
    * ```
    */
-  overlappingMany(boxes: Boxes, filter?: Partial<Filter>, options?: QueryOptions): Lists {
+  overlappingMany(boxes: Boxes<D>, filter?: Partial<Filter>, options?: QueryOptions): Lists {
     return this.#lists(Query.Overlapping, this.#boxParts(own(checkBoxes(boxes, this.dimensions), boxes)), filter, options);
   }
 
@@ -31,7 +31,7 @@ export abstract class Batches extends Queries {
    *
    * @throws `RangeError` for a NaN.
    */
-  containingMany(points: Points, filter?: Partial<Filter>, options?: QueryOptions): Lists {
+  containingMany(points: Points<D>, filter?: Partial<Filter>, options?: QueryOptions): Lists {
     return this.#lists(Query.Containing, [this.#pointPart(points, "points", "a number")], filter, options);
   }
 
@@ -40,7 +40,7 @@ export abstract class Batches extends Queries {
    *
    * @throws `RangeError` if a center is not finite, a radius negative or NaN, or there are not as many.
    */
-  withinMany(centers: Points, radii: number | Numbers, filter?: Partial<Filter>, options?: QueryOptions): Lists {
+  withinMany(centers: Points<D>, radii: number | Numbers, filter?: Partial<Filter>, options?: QueryOptions): Lists {
     const part = this.#pointPart(centers, "centers");
     return this.#lists(Query.Within, [part, lengthPart(radii, "radii", countOf(part))], filter, options);
   }
@@ -50,7 +50,7 @@ export abstract class Batches extends Queries {
    *
    * @throws As {@link Queries.nearest}.
    */
-  nearestMany(points: Points, k: number = 1, maxDistance: number = Infinity, filter?: Partial<Filter>, options?: ExcludeOptions): NeighborLists {
+  nearestMany(points: Points<D>, k: number = 1, maxDistance: number = Infinity, filter?: Partial<Filter>, options?: ExcludeOptions): NeighborLists {
     checkCount(k, "k");
     checkLength(maxDistance, "maxDistance");
     const part = this.#pointPart(points, "points");
@@ -75,7 +75,7 @@ export abstract class Batches extends Queries {
    *
    * @throws `RangeError` if an origin or a direction is not finite, a limit negative or NaN, or there are not as many.
    */
-  rayCastMany(origins: Points, directions: Points, limits: number | Numbers = Infinity, filter?: Partial<Filter>, options?: CastOptions): Hits {
+  rayCastMany(origins: Points<D>, directions: Points<D>, limits: number | Numbers = Infinity, filter?: Partial<Filter>, options?: CastOptions): Hits {
     const from = this.#pointPart(origins, "origins");
     return this.#firstHits([from, from], directions, limits, filter, options);
   }
@@ -85,12 +85,12 @@ export abstract class Batches extends Queries {
    *
    * @throws As {@link Batches.rayCastMany}, also if a box is inverted.
    */
-  boxCastMany(boxes: Boxes, directions: Points, limits: number | Numbers = Infinity, filter?: Partial<Filter>, options?: CastOptions): Hits {
+  boxCastMany(boxes: Boxes<D>, directions: Points<D>, limits: number | Numbers = Infinity, filter?: Partial<Filter>, options?: CastOptions): Hits {
     const rows = checkRule(own(checkBoxes(boxes, this.dimensions), boxes), "boxes", "finite");
     return this.#firstHits(this.#boxParts(rows), directions, limits, filter, options);
   }
 
-  #firstHits(starts: readonly Part[], directions: Points, limits: number | Numbers, filter: Partial<Filter> | undefined, options: CastOptions | undefined): Hits {
+  #firstHits(starts: readonly Part[], directions: Points<D>, limits: number | Numbers, filter: Partial<Filter> | undefined, options: CastOptions | undefined): Hits {
     const { dimensions } = this;
     const total = countOf(starts[0]!);
     const parts = [...starts, this.#pointPart(directions, "directions", "finite", total), lengthPart(limits, "limits", total)];
@@ -175,7 +175,7 @@ export abstract class Batches extends Queries {
     return [0, this.dimensions].map((offset) => ({ numbers: rows, stride, offset, isLength: false }));
   }
 
-  #pointPart(points: Points, name: string, rule: "finite" | "a number" = "finite", count?: number): Part {
+  #pointPart(points: Points<D>, name: string, rule: "finite" | "a number" = "finite", count?: number): Part {
     const numbers = checkRule(readPoints(points, this.dimensions, name), name, rule);
     const part = { numbers, stride: this.dimensions, offset: 0, isLength: false };
     if (count !== undefined) checkCounts(name, countOf(part), count);

@@ -7,12 +7,12 @@ import { lengthOf } from "../wasm/typed.js";
 import { allocate, checkViews } from "../wasm/views.js";
 import { checkId, checkIds, readCorners } from "./arguments.js";
 import type { WorldMemory } from "./memory.js";
-import type { Box, BroadPhaseOptions, Buffers, Changes, Numbers, ProxyId } from "./types.js";
+import type { Box, BroadPhaseOptions, Buffers, Changes, Corners, Numbers, ProxyId } from "./types.js";
 
 /** Bodies with boxes: which overlaps began and which ended. What every entry point with a `BroadPhase` has. */
-export abstract class Bodies {
+export abstract class Bodies<D extends Dimensions = Dimensions> {
   /** @internal */
-  protected readonly memory: WorldMemory;
+  protected memory: WorldMemory;
   readonly #changes: Changes = { begun: none, ended: none };
 
   /** @internal */
@@ -21,8 +21,8 @@ export abstract class Bodies {
   }
 
   /** How many dimensions the boxes have. */
-  get dimensions(): Dimensions {
-    return this.memory.dimensions;
+  get dimensions(): D {
+    return this.memory.dimensions as D;
   }
 
   /** The precision of the coordinates. */
@@ -53,11 +53,9 @@ export abstract class Bodies {
    * @throws {@link InvalidBoxError} if the box is inverted or NaN; `TypeError` if the arguments are
    *   not as many numbers as a box has; `RangeError` if an array does not have as many.
    */
-  insert(box: Box): ProxyId;
-  insert(minX: number, maxX: number): ProxyId;
-  insert(minX: number, minY: number, maxX: number, maxY: number): ProxyId;
-  insert(minX: number, minY: number, minZ: number, maxX: number, maxY: number, maxZ: number): ProxyId;
-  insert(a: number | Box, b?: number, c?: number, d?: number, e?: number, f?: number, more?: never): ProxyId {
+  insert(box: Box<D>): ProxyId;
+  insert(...corners: Corners<D>): ProxyId;
+  insert(a?: unknown, b?: unknown, c?: unknown, d?: unknown, e?: unknown, f?: unknown, more?: unknown): ProxyId {
     this.memory.writeBox(a, b, c, d, e, f, more);
     this.memory.call((exports, world) => exports.world_insert(world), oneBox);
     return this.memory.numbers()[0]!;
@@ -70,14 +68,14 @@ export abstract class Bodies {
    * @throws {@link InvalidBoxError} with the index of the first bad box; then none was added. `RangeError` if there are
    *   not as many filters as boxes.
    */
-  insertMany(boxes: Boxes, filter: Partial<Filter> | readonly Partial<Filter>[] = defaultFilter): Float64Array {
+  insertMany(boxes: Boxes<D>, filter: Partial<Filter> | readonly Partial<Filter>[] = defaultFilter): Float64Array {
     if (Array.isArray(filter)) return this.#insertEach(boxes, filter.map((one: Partial<Filter>) => filterWords(one, defaultFilter)));
     const words = filterWords(filter as Partial<Filter>, defaultFilter);
     const count = this.memory.writeRows(boxes);
     return this.memory.answer((exports, world) => exports.world_insert_many(world, count, ...words));
   }
 
-  #insertEach(boxes: Boxes, filters: readonly FilterWords[]): Float64Array {
+  #insertEach(boxes: Boxes<D>, filters: readonly FilterWords[]): Float64Array {
     const count = this.memory.writeRows(boxes);
     if (filters.length !== count) throw new RangeError(`\`filter\` has ${filters.length} filters and \`boxes\` ${count} boxes; there must be as many`);
     const words = filterWords(defaultFilter, defaultFilter);
@@ -92,11 +90,9 @@ export abstract class Bodies {
    *
    * @throws {@link StaleProxyError}; otherwise as {@link Bodies.insert}.
    */
-  set(id: ProxyId, box: Box): void;
-  set(id: ProxyId, minX: number, maxX: number): void;
-  set(id: ProxyId, minX: number, minY: number, maxX: number, maxY: number): void;
-  set(id: ProxyId, minX: number, minY: number, minZ: number, maxX: number, maxY: number, maxZ: number): void;
-  set(id: ProxyId, a: number | Box, b?: number, c?: number, d?: number, e?: number, f?: number, more?: never): void {
+  set(id: ProxyId, box: Box<D>): void;
+  set(id: ProxyId, ...corners: Corners<D>): void;
+  set(id: ProxyId, a?: unknown, b?: unknown, c?: unknown, d?: unknown, e?: unknown, f?: unknown, more?: unknown): void {
     checkId(id);
     this.memory.writeBox(a, b, c, d, e, f, more);
     this.memory.call((exports, world) => exports.world_set(world, id), { ids: [id], boxes: oneBox.boxes });
@@ -108,7 +104,7 @@ export abstract class Bodies {
    * @throws {@link StaleProxyError} or {@link InvalidBoxError} with the index of the first bad one,
    *   `RangeError` if there are not as many ids as boxes. Then no box has changed.
    */
-  setMany(ids: Numbers, boxes: Boxes): void {
+  setMany(ids: Numbers, boxes: Boxes<D>): void {
     // Writing the boxes may let the memory grow, which leaves views of it empty.
     const kept = this.memory.keepIds(checkIds(ids));
     const count = this.memory.writeRows(boxes);
@@ -145,7 +141,7 @@ export abstract class Bodies {
    *
    * @throws {@link StaleProxyError}; {@link InvalidBoxError} for `from` or `to`.
    */
-  setSwept(id: ProxyId, from: Box, to: Box): void {
+  setSwept(id: ProxyId, from: Box<D>, to: Box<D>): void {
     checkId(id);
     const [begin, end] = [readCorners(from, this.dimensions, "from"), readCorners(to, this.dimensions, "to")];
     this.memory.write(0, begin);
@@ -211,15 +207,14 @@ export abstract class Bodies {
   }
 
   /**
-   * Changes which other bodies a body may pair with. What is left out is as in the default filter.
+   * Changes which other bodies a body may pair with. What is left out stays as it is.
    * The next update reports the pairs that begin and end because of it.
    *
    * @throws {@link StaleProxyError}; `RangeError` if `category`, `mask` or `group` is not a whole
    *   number of 32 bits.
    */
   setFilter(id: ProxyId, filter: Partial<Filter>): void {
-    checkId(id);
-    const words = filterWords(filter, defaultFilter);
+    const words = filterWords(filter, this.filter(id));
     this.memory.call((exports, world) => exports.world_set_filter(world, id, ...words), { ids: [id] });
   }
 

@@ -1,6 +1,6 @@
 import { Bodies } from "./bodies.js";
 import { eventsCore3D, eventsMemory } from "./events-core.js";
-import type { BroadPhaseOptions } from "./types.js";
+import type { EventsOptions } from "./types.js";
 
 /**
  * The `BroadPhase` of `sweep-and-prune/broad-phase` for 3D in single precision, without queries, casts,
@@ -10,7 +10,7 @@ import type { BroadPhaseOptions } from "./types.js";
  * using world = new BroadPhase({ dimensions: 3 });
  * ```
  */
-export class BroadPhase extends Bodies {
+export class BroadPhase<D extends 3 = 3> extends Bodies<D> {
   /**
    * An empty broad phase.
    *
@@ -18,7 +18,7 @@ export class BroadPhase extends Bodies {
    * @throws `RangeError` for other dimensions, double precision, or a margin or prediction that is
    *   negative, infinite or NaN; `TypeError` if `views` is not a boolean.
    */
-  constructor(options: BroadPhaseOptions) {
+  constructor(options: EventsOptions<D>) {
     super(eventsMemory(eventsCore3D, [3], options));
   }
 }

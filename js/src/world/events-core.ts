@@ -3,7 +3,7 @@ import type { Dimensions } from "../boxes/boxes.js";
 import { Core } from "../wasm/engine.js";
 import type { WorldExports } from "./core.js";
 import { WorldMemory } from "./memory.js";
-import type { BroadPhaseOptions } from "./types.js";
+import type { EventsOptions } from "./types.js";
 
 /** The core for events in 1D and 2D. */
 export const eventsCore2D: Core<WorldExports> = new Core("world_new", "sweep-and-prune/events-2d");
@@ -12,7 +12,7 @@ export const eventsCore2D: Core<WorldExports> = new Core("world_new", "sweep-and
 export const eventsCore3D: Core<WorldExports> = new Core("world_new", "sweep-and-prune/events-3d");
 
 /** An empty broad phase of a core that has only these dimensions, in single precision. */
-export function eventsMemory(core: Core<WorldExports>, dimensions: readonly Dimensions[], options: BroadPhaseOptions): WorldMemory {
+export function eventsMemory(core: Core<WorldExports>, dimensions: readonly Dimensions[], options: EventsOptions): WorldMemory {
   const checked = checkOptions(options);
   if (!dimensions.includes(checked.dimensions) || checked.precision === "double") {
     throw new RangeError(

@@ -27,7 +27,8 @@ export interface Filter {
 /** The filter of a body by default. */
 export const defaultFilter: Filter = { category: 1, mask: 2 ** 32 - 1, group: 0, isStatic: false };
 
-const filterNames = Object.keys(defaultFilter);
+/** @internal What a filter has. */
+export const filterNames: string[] = Object.keys(defaultFilter);
 
 /** A filter as the core takes it, checked. `others` gives what is left out. */
 export function filterWords(filter: Partial<Filter>, others: Filter): FilterWords {

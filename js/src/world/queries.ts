@@ -1,4 +1,5 @@
 import { lengthOf } from "../wasm/typed.js";
+import type { Dimensions } from "../boxes/boxes.js";
 import { readCorners } from "./arguments.js";
 import { Bodies, oneBox } from "./bodies.js";
 import type { Passed } from "../wasm/engine.js";
@@ -13,7 +14,7 @@ const FEW = 32;
 const nothing: readonly number[] = [];
 
 /** Bodies that can be asked: what overlaps a box, a point or a sphere, what a ray or a moving box hits, what is nearest. */
-export abstract class Queries extends Bodies {
+export abstract class Queries<D extends Dimensions = Dimensions> extends Bodies<D> {
   /** All of memory, as numbers and as bytes, which are read without making a view of each answer. */
   #floats = new Float64Array(0);
   #bytes = new Uint8Array(0);
@@ -29,7 +30,7 @@ export abstract class Queries extends Bodies {
    *
    * @throws {@link InvalidBoxError}; and what `filter` throws.
    */
-  overlapping(box: Box, filter?: QueryFilter, options?: QueryOptions): Float64Array {
+  overlapping(box: Box<D>, filter?: QueryFilter, options?: QueryOptions): Float64Array {
     return this.#ask(Query.Overlapping, readCorners(box, this.dimensions, "box"), 0, filter, options);
   }
 
@@ -38,7 +39,7 @@ export abstract class Queries extends Bodies {
    *
    * @throws `RangeError` for a NaN.
    */
-  containing(point: Point, filter?: QueryFilter, options?: QueryOptions): Float64Array {
+  containing(point: Point<D>, filter?: QueryFilter, options?: QueryOptions): Float64Array {
     return this.#ask(Query.Containing, this.#readPoint(point, "point", "a number"), 0, filter, options);
   }
 
@@ -47,7 +48,7 @@ export abstract class Queries extends Bodies {
    *
    * @throws `RangeError` if the center is not finite, or the radius negative or NaN.
    */
-  within(center: Point, radius: number, filter?: QueryFilter, options?: QueryOptions): Float64Array {
+  within(center: Point<D>, radius: number, filter?: QueryFilter, options?: QueryOptions): Float64Array {
     checkLength(radius, "radius");
     return this.#ask(Query.Within, this.#readPoint(center, "center"), radius, filter, options);
   }
@@ -64,7 +65,7 @@ export abstract class Queries extends Bodies {
    *
    * @throws `RangeError` if the origin or the direction is not finite, or the limit negative or NaN.
    */
-  rayCast(origin: Point, direction: Point, limit: number = Infinity, filter?: QueryFilter, options?: CastOptions): Hit | undefined {
+  rayCast(origin: Point<D>, direction: Point<D>, limit: number = Infinity, filter?: QueryFilter, options?: CastOptions): Hit | undefined {
     return this.#firstHit(this.#readRay(origin, direction, limit), filter, options);
   }
 
@@ -73,7 +74,7 @@ export abstract class Queries extends Bodies {
    *
    * @throws As {@link Queries.rayCast}.
    */
-  rayCastAll(origin: Point, direction: Point, limit: number = Infinity, filter?: QueryFilter, options?: CastOptions): Hit[] {
+  rayCastAll(origin: Point<D>, direction: Point<D>, limit: number = Infinity, filter?: QueryFilter, options?: CastOptions): Hit[] {
     return this.#allHits(this.#readRay(origin, direction, limit), filter, options);
   }
 
@@ -82,7 +83,7 @@ export abstract class Queries extends Bodies {
    *
    * @throws As {@link Queries.rayCast}, also if the box is inverted.
    */
-  boxCast(box: Box, direction: Point, limit: number = Infinity, filter?: QueryFilter, options?: CastOptions): Hit | undefined {
+  boxCast(box: Box<D>, direction: Point<D>, limit: number = Infinity, filter?: QueryFilter, options?: CastOptions): Hit | undefined {
     return this.#firstHit(this.#readCast(box, direction, limit), filter, options);
   }
 
@@ -91,7 +92,7 @@ export abstract class Queries extends Bodies {
    *
    * @throws As {@link Queries.boxCast}.
    */
-  boxCastAll(box: Box, direction: Point, limit: number = Infinity, filter?: QueryFilter, options?: CastOptions): Hit[] {
+  boxCastAll(box: Box<D>, direction: Point<D>, limit: number = Infinity, filter?: QueryFilter, options?: CastOptions): Hit[] {
     return this.#allHits(this.#readCast(box, direction, limit), filter, options);
   }
 
@@ -103,7 +104,7 @@ export abstract class Queries extends Bodies {
    *
    * @throws `RangeError` if the point is not finite, `k` not a whole number, or the distance negative or NaN.
    */
-  nearest(point: Point, k: number = 1, maxDistance: number = Infinity, filter?: QueryFilter, options?: ExcludeOptions): Neighbor[] {
+  nearest(point: Point<D>, k: number = 1, maxDistance: number = Infinity, filter?: QueryFilter, options?: ExcludeOptions): Neighbor[] {
     checkCount(k, "k");
     checkLength(maxDistance, "maxDistance");
     const from = this.#readPoint(point, "point");
@@ -227,7 +228,7 @@ export abstract class Queries extends Bodies {
     return count;
   }
 
-  #readRay(origin: Point, direction: Point, limit: number): Path {
+  #readRay(origin: Point<D>, direction: Point<D>, limit: number): Path {
     const start = this.#readPoint(origin, "origin");
     const box = new Float64Array(2 * start.length);
     box.set(start);
@@ -235,11 +236,11 @@ export abstract class Queries extends Bodies {
     return this.#readPath(box, direction, limit);
   }
 
-  #readCast(box: Box, direction: Point, limit: number): Path {
+  #readCast(box: Box<D>, direction: Point<D>, limit: number): Path {
     return this.#readPath(checkRule(readCorners(box, this.dimensions, "box"), "box", "finite"), direction, limit);
   }
 
-  #readPath(box: Float64Array, direction: Point, limit: number): Path {
+  #readPath(box: Float64Array, direction: Point<D>, limit: number): Path {
     checkLength(limit, "limit");
     return { box, direction: this.#readPoint(direction, "direction"), limit };
   }
@@ -251,7 +252,7 @@ export abstract class Queries extends Bodies {
     this.memory.numbers()[3 * stored] = limit;
   }
 
-  #readPoint(point: Point, name: string, rule: "finite" | "a number" = "finite"): Float64Array {
+  #readPoint(point: Point<D>, name: string, rule: "finite" | "a number" = "finite"): Float64Array {
     return checkRule(readPoint(point, this.dimensions, name), name, rule);
   }
 

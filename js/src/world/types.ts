@@ -16,15 +16,12 @@ export function slotOf(id: ProxyId): number {
   return id % 2 ** 26;
 }
 
-/** How a `BroadPhase` treats its boxes. */
-export interface BroadPhaseOptions {
+/** How a `BroadPhase` for events only treats its boxes. */
+export interface EventsOptions<D extends Dimensions = Dimensions> {
   /** How many dimensions the boxes have. */
-  dimensions: Dimensions;
-  /**
-   * The precision in which coordinates are kept and compared: `"single"` (they are rounded to it)
-   * or `"double"`. `"single"` by default.
-   */
-  precision?: "single" | "double";
+  dimensions: D;
+  /** The precision in which coordinates are kept and compared: they are rounded to it. */
+  precision?: "single";
   /** Whether pairs of the boxes as given are reported, or pairs of fat AABBs. `"exact"` by default. */
   report?: "exact" | "fat";
   /** By how much a fat AABB is larger than the body's box on each side, in units of length. 0 by default. */
@@ -37,6 +34,21 @@ export interface BroadPhaseOptions {
    * grow, which leaves the view with length 0. False by default.
    */
   views?: boolean;
+}
+
+/** How a `BroadPhase` treats its boxes. */
+export interface BroadPhaseOptions<D extends Dimensions = Dimensions> extends Omit<EventsOptions<D>, "precision"> {
+  /**
+   * The precision in which coordinates are kept and compared: `"single"` (they are rounded to it)
+   * or `"double"`. `"single"` by default.
+   */
+  precision?: "single" | "double";
+}
+
+/** What a body has beside its box. What is left out of its filter is as in the default one. */
+export interface InsertOptions<Data = unknown> extends Partial<Filter> {
+  /** Anything of yours: see `BroadPhase.data`. */
+  data?: Data;
 }
 
 /** What an update found; see `BroadPhase.update`. */
@@ -111,10 +123,10 @@ export interface Neighbor {
 export type Numbers = readonly number[] | TypedNumbers;
 
 /** A point or a direction: its coordinates, or an object `{ x, y, z }`. */
-export type Point = Numbers | Corner;
+export type Point<D extends Dimensions = Dimensions> = Numbers | Corner<D>;
 
 /** Points: an array of them, or their coordinates one after another. */
-export type Points = Numbers | readonly Point[];
+export type Points<D extends Dimensions = Dimensions> = Numbers | readonly Point<D>[];
 
 /** Which bodies a query finds: those that may pair with a body of this filter, or those for which a function returns true. */
 export type QueryFilter = Partial<Filter> | ((id: ProxyId) => boolean);
@@ -144,4 +156,11 @@ export interface CastOptions extends ExcludeOptions {
 }
 
 /** One box: its min corner and then its max corner, or an object. */
-export type Box = BoxObject;
+export type Box<D extends Dimensions = Dimensions> = BoxObject<D>;
+
+/** A box as separate numbers: its min corner and then its max corner. */
+export type Corners<D extends Dimensions = Dimensions> = D extends 1
+  ? [minX: number, maxX: number]
+  : D extends 2
+    ? [minX: number, minY: number, maxX: number, maxY: number]
+    : [minX: number, minY: number, minZ: number, maxX: number, maxY: number, maxZ: number];
