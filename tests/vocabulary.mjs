@@ -79,14 +79,13 @@ export const WORDS = [
     not: "so many (a number)",
     but: "this many, N, or the name of the number",
     pattern: /\bso many\b(?! that\b)/i,
-    // Elsewhere it still stands.
-    only: /^(core\/(src\/(?!world)|tests)|bindings|scenes|fuzz\/(?!TOTALS)|classroom\/(algorithms|simulation)|bench\/complexity|js\/wasm|site\/wasm)/,
+    only: /^(?!core\/src\/world|fuzz\/TOTALS)/,
   },
   {
     not: "those of, twice in a sentence",
     but: "the noun again",
     pattern: /\bthose of\b[^.;]*\bthose of\b/i,
-    only: /\.rs$/,
+    only: /\.(rs|ts|js|mjs|py)$/,
   },
   {
     not: "British spelling",

@@ -21,6 +21,7 @@ test("the words are found in prose, in identifiers and in the names of files", (
   assert.deepEqual(found("core/src/a.rs", "bodies who rest"), ["who, somebody, nobody (for a thing)"]);
   assert.deepEqual(found("site/src/a.ts", "interface LabOptions {}"), ["lab, laboratory"]);
   assert.deepEqual(found("core/src/pairs/a.rs", "/// Cuts a line into so many cells."), ["so many (a number)"]);
+  assert.deepEqual(found("site/src/a.ts", "/** So many tests take a second. */"), ["so many (a number)"]);
   assert.deepEqual(found("bench/src/a.rs", "// The boxes are those of a set, or those of a column."), ["those of, twice in a sentence"]);
 });
 

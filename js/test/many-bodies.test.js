@@ -1,4 +1,4 @@
-// So many bodies that the product of two counts is no 32-bit number.
+// With this number of bodies, the product of two counts does not fit 32 bits.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { BroadPhase, init, slotOf } from "sweep-and-prune/broad-phase";

@@ -58,7 +58,7 @@ class Interrupted(Exception):
 
 
 def interrupt(monkeypatch: pytest.MonkeyPatch, after: int) -> None:
-    """Ends the process, as it were, after so many tasks; the first tasks are those that scatter."""
+    """Ends the process, as it were, after `after` tasks; the first tasks are those that scatter."""
     calls = 0
     real = tasks.guarded
 

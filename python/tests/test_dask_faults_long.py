@@ -92,7 +92,7 @@ class Case:
         return program.returncode, out.strip()
 
     def wait_for(self, files: int, program: subprocess.Popen[str]) -> bool:
-        """Waits until there are so many files in the folder of the run; False if it ended before."""
+        """Waits until there are `files` files in the folder of the run; False if it ended before."""
         while program.poll() is None:
             if not files or sum(1 for _ in self.work.rglob("*")) >= files:
                 return True

@@ -1,4 +1,4 @@
-"""Joins equal those of geopandas, and those of brute force where there are no geometries."""
+"""Joins equal the joins of geopandas, and brute force where there are no geometries."""
 
 from __future__ import annotations
 

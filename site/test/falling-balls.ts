@@ -30,7 +30,7 @@ export class FallingBalls {
     await expect(this.status).toContainText("Paused");
   }
 
-  /** So many single steps, each seen to be done. Only while paused. */
+  /** Makes `count` single steps and waits for each. Only while paused. */
   async step(count: number): Promise<void> {
     for (let done = 0; done < count; done++) {
       const before = await this.stepNumber();

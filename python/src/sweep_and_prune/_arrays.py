@@ -108,7 +108,7 @@ def box_rows(
     dimensions: int = 0,
     format: str = "xyxy",
 ) -> Floats:
-    """Boxes as rows, of so many dimensions unless that is 0."""
+    """Boxes as rows. Their number of dimensions must be `dimensions`, unless that is 0."""
     array = read_boxes(boxes, name, dimensions, format).array
     if array.dtype.kind == "O":  # numbers of Python, which are converted as all others are
         try:

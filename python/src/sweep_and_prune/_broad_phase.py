@@ -820,7 +820,7 @@ class BroadPhase:
             exclude: as in `overlapping`.
 
         Returns:
-            `(n, k)` ids and distances, or fewer columns if no point has so many. Points that have fewer than others
+            `(n, k)` ids and distances, or fewer columns if no point has `k`. Points that have fewer than others
             have the id -1 and an infinite distance for those that they lack.
 
         Raises:

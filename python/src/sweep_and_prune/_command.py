@@ -515,7 +515,7 @@ def _counted(options: Options, sets: list[Any], search: dict[str, Any]) -> int:
 
 
 def _chunks(sets: list[Any], search: dict[str, Any], number: int, progress: ProgressBar) -> Iterator[NDArray[Any]]:
-    """So many pairs, with progress: each chunk counts as done when the next one is asked for."""
+    """Chunks of `number` pairs, with progress: each counts as done when the next one is asked for."""
     # Large, since there is work for each chunk; it takes 16 MB.
     chunks: Any = iter_chunks if len(sets) == 1 else iter_chunks_between
     done = 0

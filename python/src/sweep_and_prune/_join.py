@@ -32,13 +32,13 @@ _FEW_POINTS = 5
 """A geometry with so few points gains nothing by being prepared."""
 
 _VERTICES = 8
-"""Of a geometry, so many vertices are candidates to be looked up in a polygon."""
+"""How many vertices of a geometry are candidates to be looked up in a polygon."""
 
 _ROUNDING = 1e-9
 """Squares of distances that differ by less than this share are compared by shapely, which rounds in its own way."""
 
 _BLOCK = 20_000
-"""So many candidates are tested at once: few enough for the cache, and enough for each thread."""
+"""How many candidates are tested at once: few enough for the cache, and enough for each thread."""
 
 _MOST_TURNS = 100
 """With `wrap`, geometries are moved by at most this many turns of the circle."""

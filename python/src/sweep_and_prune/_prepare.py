@@ -38,7 +38,7 @@ from ._wrap import (
 )
 
 _BLOCK = 2**18
-"""So many pairs are translated at once: a second array of all of them would take as much memory as the result."""
+"""How many pairs are translated at once: a second array of all of them would take as much memory as the result."""
 
 Rows = Optional[NDArray[np.int64]]
 

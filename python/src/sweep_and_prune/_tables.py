@@ -428,7 +428,7 @@ def _bounds_of_binary(path: str, column: Any) -> NDArray[Any]:
 
 
 def check_memory(path: str, contents: str, needed: int) -> None:
-    """Refuses a file whose boxes cannot be searched in this machine's memory, of which they need so many bytes."""
+    """Refuses a file whose boxes need `needed` bytes to be searched, if this machine has not that much memory."""
     try:
         memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, ValueError, OSError):

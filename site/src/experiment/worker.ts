@@ -10,9 +10,9 @@ import { messageOf } from "../message-of.ts";
 const STEP_MS = 50;
 /** A world with more pairs than this would fill the memory. */
 const MOST_PAIRS = 2_000_000;
-/** So many tests take about a second. */
+/** The most tests: they take about a second. */
 const MOST_TESTS = 3e8;
-/** So many overlaps to keep take about 200 MB. */
+/** The most overlaps that are kept: they take about 200 MB. */
 const MOST_KEPT = 5e6;
 /** A runner that takes longer than this twice in a row is out: the others are waiting. */
 const BUDGET_MS = 400;

@@ -19,7 +19,7 @@ const CROSSING_S = 12;
 const REACH = 6;
 /** Of more boxes, a frame of every pair takes a slow phone a tenth of a second. */
 const MOST_OF_EVERY_PAIR = 1_000;
-/** So many boxes tell how long one test takes. */
+/** How many boxes are tested to learn how long one test takes. */
 const SAMPLE = 300;
 /** A thrown box keeps its mean speed over this many milliseconds. */
 const THROW_MS = 80;

@@ -25,7 +25,7 @@ export interface Playground {
   select(text: string): void;
 }
 
-/** So many changes can be undone. */
+/** How many changes can be undone. */
 const MOST_UNDONE = 100;
 /** A key moves a box by this share of what is shown. */
 const KEY_STEP = 0.01;

@@ -90,7 +90,7 @@ interface Node {
   readonly ids: readonly number[];
 }
 
-/** A node of the tree has at most so many boxes before it is divided. */
+/** A node of the tree with more boxes is divided. */
 const LEAF = 4;
 
 /** Bounding boxes within bounding boxes: divided at the middle box, along the longer side. */

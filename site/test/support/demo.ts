@@ -53,7 +53,7 @@ export class Demo {
     return this.root.evaluate((demo) => (demo as unknown as Element).play());
   }
 
-  /** The kinds of events that it tells within so many steps. */
+  /** The kinds of events that it reports within `count` steps. */
   async step(count: number): Promise<string[]> {
     return this.root.evaluate((demo, count) => {
       const kinds: string[] = [];
@@ -81,7 +81,7 @@ export class Demo {
     });
   }
 
-  /** Presses a ball and moves it by so many units of the world. */
+  /** Presses a ball and moves it by `dx` and `dy` units of the world. */
   async drag(ball: number, dx: number, dy = 0): Promise<void> {
     const [x = 0, y = 0] = (await this.balls())[ball] ?? [];
     const box = await this.root.locator("canvas").first().boundingBox();

@@ -1,6 +1,6 @@
 /** A demo that the clock calls while it is visible. */
 interface Ticking {
-  /** So many milliseconds have passed; called once a frame. Whether it wants the next one too. */
+  /** Called once a frame with the milliseconds since the last. Returns whether it wants another. */
   frame(ms: number): boolean;
 }
 

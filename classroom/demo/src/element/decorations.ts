@@ -20,7 +20,7 @@ const CHECK_MS = 100;
 
 /**
  * Reads `checks[:color][:ms]`, `sweep[:line[:inside]]` and `edges[:focus][:array][:color:color]`,
- * whose colors are those of comparisons and swaps in the array, or without it those of the edges
+ * whose colors are for comparisons and swaps in the array or, without `array`, for the edges
  * inside and outside the interval in focus. A list like `checks:#4c8:600, sweep:red, edges:array:orange:blue`.
  *
  * @throws {@link OptionError}

@@ -20,7 +20,7 @@ interface ArrayScene {
   readonly flashing: ReadonlySet<number>;
 }
 
-/** So many cells stand in a row. */
+/** How many cells stand in a row. */
 const CELLS = 16;
 const CELL_HEIGHT = 30;
 const GAP = 6;

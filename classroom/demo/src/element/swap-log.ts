@@ -2,7 +2,7 @@ import type { Detection } from "./detection.js";
 
 /** How long a swap is flashed, in milliseconds. */
 export const FLASH_MS = 900;
-/** So many of the last changes are listed. */
+/** How many of the last changes are listed. */
 const LINES = 3;
 
 /** What the swaps have shown since a ball was taken: how many there were, and which overlaps began and ended. */

@@ -23,8 +23,9 @@ interface Tick {
   reported?: readonly ProgramEvent[];
 }
 
-/** So many ticks can be gone back, a quarter of a minute; of many balls fewer, for the memory's sake. */
+/** How many ticks a demo can go back: a quarter of a minute. */
 const MOST_TICKS = 900;
+/** The most ticks times balls that are kept, so that many balls do not take too much memory. */
 const MOST_BALL_TICKS = 90_000;
 /** The number of detections to keep, if they are rarer than that. */
 const LEAST_DETECTIONS = 4;

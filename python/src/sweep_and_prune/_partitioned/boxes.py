@@ -343,7 +343,7 @@ def id_type_of(kind: Any, where: str) -> str:
 
 
 def chunks_of_files(files: Sequence[File], argument: int, rows: int) -> list[Chunk]:
-    """Consecutive row groups, until they have so many rows."""
+    """Chunks of consecutive row groups. A chunk is complete as soon as it has `rows` rows."""
     chunks = []
     index = 0
     for number, file in enumerate(files):
@@ -363,7 +363,7 @@ def chunks_of_files(files: Sequence[File], argument: int, rows: int) -> list[Chu
 
 
 def read_chunk(file: File, chunk: Chunk, form: Form, argument: str, rows: int) -> Iterator[Boxes]:
-    """The boxes of a chunk, at most so many at once.
+    """The boxes of a chunk, at most `rows` at a time.
 
     Raises:
         DatasetError: if the file is damaged, or not as it was.
@@ -395,7 +395,7 @@ def read_chunk(file: File, chunk: Chunk, form: Form, argument: str, rows: int) -
 
 
 def sample_file(file: File, form: Form, argument: str, rows: int) -> Iterator[Boxes]:
-    """The first boxes of each row group, about so many in all; invalid ones are left out."""
+    """The first boxes of each row group, about `rows` in all; invalid ones are left out."""
     import pyarrow
 
     if not sum(file.rows):

@@ -333,7 +333,7 @@ def _plan(sources: list[Source], cells: Cells, request: dict[str, Any]) -> Plan:
 
 
 def sample_of(sources: list[Source], wanted: int, dimensions: int) -> Floats:
-    """A sample of the boxes of all sets, with about so many boxes or a few more."""
+    """A sample of the boxes of all sets: `wanted` boxes or a few more."""
     total = sum(sum(source.rows) for source in sources)
     samples = []
     for argument, source in enumerate(sources):
@@ -475,7 +475,7 @@ class _Progress:
         self.advance(sum(plan.chunks[number].rows for number in numbers))
 
     def advance(self, rows: int) -> None:
-        """So many rows are scattered."""
+        """Notes that `rows` more rows are scattered."""
         self._scattered += rows
         self._say()
 

@@ -12,7 +12,7 @@ from .._arrays import Floats
 from .._pairs import for_each_chunk, for_each_chunk_between
 
 CHUNK = 131_072
-"""So many pairs at once: large enough for NumPy, small enough for the cache."""
+"""How many pairs a chunk has: large enough for NumPy, small enough for the cache."""
 
 Report = Callable[[NDArray[Any], NDArray[Any]], object]
 """Takes the ids of both boxes of some pairs."""

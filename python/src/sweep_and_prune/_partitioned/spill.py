@@ -124,7 +124,7 @@ def _boxes(table: Any) -> Boxes:
 
 
 def gathered(blocks: Iterable[Boxes], rows: int) -> Iterator[Boxes]:
-    """Boxes of many small blocks as blocks of so many, but for the last one."""
+    """The boxes of many small blocks in blocks of `rows` boxes; the last one may have fewer."""
     waiting: list[Boxes] = []
     number = 0
     for block in blocks:

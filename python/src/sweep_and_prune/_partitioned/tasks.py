@@ -101,7 +101,7 @@ def check_file(folders: Folders, path: Path) -> None:
 
 
 def split_node(folders: Folders, node: Node, wanted: int) -> None:
-    """Splits a node into at most so many cells, and writes its boxes to them, unless splitting does not help.
+    """Splits a node into at most `wanted` cells, and writes its boxes to them, unless splitting does not help.
 
     How it is split is noted first: if this is repeated, the cells are the same, and their finished pairs are kept.
     """
@@ -216,7 +216,7 @@ def nodes(
 
 
 def join_node(folders: Folders, node: Node, rows: int, is_counted: bool) -> Joined:
-    """Writes the pairs of a node to its file, or only counts them. Takes at most so many boxes into memory at once."""
+    """Writes the pairs of a node to its file, or only counts them. Takes at most `rows` boxes into memory at once."""
     plan = folders.plan()
     low, high = np.array(node.low), np.array(node.high)
     is_whole = sum(node.counts) <= rows
