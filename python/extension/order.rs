@@ -15,9 +15,11 @@ const BUCKET_BITS: u32 = 10;
 /// than `rows`. The arrays are the package's own: nothing writes to them during the call.
 ///
 /// Pairs go to buckets of neighboring first rows; a bucket fits a cache, where it is sorted by counting. The second rows
-/// of each first row are sorted last. O(pairs + rows) time where each row has few partners. The radix sort with which the
-/// core sorts candidates keeps more of its buffers in the cache where lists are short, but takes 1.2 to 3 times as long for
-/// 30,000 to 10,000,000 pairs (paired runs on a busy machine, 2026-11-26).
+/// of each first row are sorted last. O(pairs + rows) time where each row has few partners.
+///
+/// The core sorts its candidates otherwise, by radix: faster where its two further arrays of pairs are kept from call to
+/// call, as there. Here they would be new memory in each call, and sorting would take 1.2 to 3 times as long (30,000 to
+/// 10,000,000 pairs, paired runs on a busy machine, 2026-11-26).
 #[pyfunction]
 pub fn in_order<'py>(
     first: &Bound<'py, PyArray1<i64>>,
