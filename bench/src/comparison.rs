@@ -21,7 +21,7 @@ use crate::{machine, scene, worlds};
 const ORACLE_LIMIT: usize = 10_000;
 /// With fewer boxes than this, calls are timed in batches that have about this many boxes together.
 const BATCHED: usize = 1000;
-/// No library takes part in more rounds once it has taken so long, but for the first three.
+/// After this time a library takes part in no more rounds, except for the first three.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// Sets of boxes with more pairs than about this are left out.
 const MOST_PAIRS: f64 = 5e7;
@@ -48,8 +48,8 @@ impl Kind {
         }
     }
 
-    /// A round's time from that of its repeats. Worlds may do now and then what pays for many
-    /// frames, so all frames count.
+    /// A round's time from the times of its repeats. A world may do work now and then that pays for many frames, so all
+    /// frames count.
     fn sum_up(self, nanoseconds: &[f64]) -> f64 {
         match self {
             Self::Pairs => median(nanoseconds),
@@ -70,13 +70,13 @@ pub struct Comparison<'a> {
     pub boxes: usize,
     /// Rounds in which each library is timed.
     pub rounds: usize,
-    /// After so long a library is stopped.
+    /// After this time a library is stopped.
     pub limit: Duration,
     /// Shows the progress: one step for the check and one for each round.
     pub bar: &'a ProgressBar,
 }
 
-/// How long a library took for a number of boxes of a scene; without end if it was stopped.
+/// How long a library took for a number of boxes of a scene; infinite if it was stopped.
 pub type Slow = HashMap<(Kind, String, usize, &'static str), (usize, Duration)>;
 
 /// A library whose worker runs.
@@ -212,7 +212,7 @@ impl Comparison<'_> {
         }
     }
 
-    /// Of how many frames the pairs are checked.
+    /// How many frames are checked.
     fn frames_checked(&self) -> u64 {
         match self.kind {
             Kind::Pairs => scene::frames_checked(self.scene) as u64,
@@ -220,7 +220,7 @@ impl Comparison<'_> {
         }
     }
 
-    /// The right pairs, and in words how we know; nothing if no two libraries agree.
+    /// The right pairs, and in words how we know them; `None` if no two libraries agree.
     fn reference(&self, running: &[Running]) -> Result<Option<(String, Fingerprint)>> {
         if self.boxes <= ORACLE_LIMIT {
             let right = match (self.kind, self.dimensions) {
@@ -271,7 +271,7 @@ impl Comparison<'_> {
             let once = library.first.as_nanos().max(1) * batch as u128;
             let repeats = (round_time.as_nanos() / once).clamp(least, most);
             let request = Request::Time { repeats: repeats as usize, batch };
-            // The limit is for what takes too long once; here it only guards against hanging.
+            // The first call had the limit; here it only guards against hanging.
             match library.worker.ask(&request, 10 * self.limit + 20 * round_time)? {
                 remote::Outcome::Reply(Reply::Timed { nanoseconds }) => {
                     let all = nanoseconds.iter().sum::<f64>() * batch as f64;
@@ -289,7 +289,7 @@ impl Comparison<'_> {
     }
 }
 
-/// What went wrong, of an outcome that is not what was asked for.
+/// What went wrong, in words.
 fn failure(outcome: remote::Outcome) -> String {
     match outcome {
         remote::Outcome::Reply(Reply::Failed { message }) => message,

@@ -23,7 +23,7 @@ impl Fingerprint {
     }
 }
 
-/// That of the pairs of both together.
+/// The fingerprint of the pairs of both together.
 impl Add for Fingerprint {
     type Output = Self;
 

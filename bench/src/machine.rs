@@ -10,7 +10,7 @@ use crate::record::Machine;
 /// Far more than the caches hold.
 const MANY_BYTES: usize = 128 << 20;
 
-/// Measures what has to be measured (a quarter of a second) and asks the system for the rest.
+/// Measures the clock and the memory (a quarter of a second) and asks the system for the rest.
 pub fn describe() -> Machine {
     Machine {
         cpu: cpu(),
@@ -121,8 +121,7 @@ pub fn waited(process: impl Display) -> Duration {
     Duration::from_nanos(waited.unwrap_or(0))
 }
 
-/// A time shorter than this is taken as it is: it is seldom interrupted, and to ask whether it was
-/// would take as long.
+/// A shorter time is taken as it is: it is seldom interrupted, and asking whether it was would take as long.
 const WAIT_COUNTS: Duration = Duration::from_micros(100);
 
 /// How long something takes, without what this thread waited for a processor.

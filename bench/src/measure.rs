@@ -112,14 +112,14 @@ impl Options {
         if all || self.worlds {
             let motions = self.scenes(|| Motion::ALL.map(|it| it.name().to_owned()).to_vec());
             for boxes in self.sizes(&[1_000, 10_000, 100_000, 1_000_000]) {
-                // Of a million, whether the time a body stays flat.
+                // A million shows whether the time per body stays flat.
                 let libraries: &[&str] = if boxes > 100_000 { &[THIS_CRATE] } else { &[] };
                 self.add(&mut plan, Kind::Worlds, &motions, boxes, libraries, 5)?;
             }
         }
         if all || self.flat {
             for boxes in self.sizes(&[10_000, 100_000, 1_000_000]) {
-                // Of a million, one that is seldom slow is enough to agree with.
+                // For a million, one library that is seldom slow suffices as a second opinion.
                 let witnesses = if boxes > 100_000 { &WITNESSES[..1] } else { &WITNESSES };
                 let rounds = if boxes > 100_000 { 2 } else { 3 };
                 let libraries = [&[ON_TWO_THREADS], witnesses].concat();
@@ -284,7 +284,7 @@ fn open(
         let (date, machine, rustc) = (record.date, record.machine, record.rustc);
         record = Record { date, machine, rustc, ..kept };
     }
-    // Some are both, and called in another way.
+    // Some libraries take part in both, called in different ways.
     let finders = finders.iter().map(|it| (it.name.to_owned(), it));
     let trackers = trackers.iter().map(|it| (format!("{}, world", it.name), it));
     for (name, info) in finders.chain(trackers) {

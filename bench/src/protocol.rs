@@ -47,7 +47,7 @@ pub enum Reply {
     },
     /// The answer to [`Request::Time`].
     Timed {
-        /// How long each call took, in the mean of a batch.
+        /// How long each call took: the mean of its batch.
         nanoseconds: Vec<f64>,
     },
     /// The library returned an error.

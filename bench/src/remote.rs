@@ -10,7 +10,7 @@ use anyhow::{Result, bail};
 use crate::machine;
 use crate::protocol::{Kind, MARK, Reply, Request};
 
-/// How many times its limit a worker may take where other programs keep it from running.
+/// How many times as long as its limit a worker may take if other programs keep it from running.
 const PATIENCE: u32 = 20;
 
 /// How long a worker may take to make its boxes.
@@ -27,7 +27,7 @@ pub struct Remote {
 pub enum Outcome {
     /// The worker answered.
     Reply(Reply),
-    /// It took longer than it may, and was stopped.
+    /// It exceeded its limit and was stopped.
     Late,
     /// It ended by itself; how, in words.
     Ended(String),

@@ -70,14 +70,14 @@ fn of<const D: usize>(n: usize, test_rate: f64) -> Result<Vec<Stage>> {
     let mut rounds_ns = [(); 4].map(|()| Vec::with_capacity(rounds));
     for _ in 0..rounds {
         for (until, rounds_ns) in rounds_ns.iter_mut().enumerate() {
-            // Nothing that it may have learnt from the last call helps.
+            // A search in another order first, so that nothing learnt from the last call helps.
             finder.find(&shuffled)?;
             let (result, took) = machine::clock(|| run(&mut finder, black_box(&boxes), until));
             result?;
             rounds_ns.push(took.as_nanos() as f64);
         }
     }
-    // Differences within a round: what slowed the machine slowed both.
+    // The differences are taken within a round, where whatever slowed the machine slowed both.
     let less = |a: usize, b: usize| -> Vec<f64> {
         rounds_ns[a].iter().zip(&rounds_ns[b]).map(|(a, b)| a - b).collect()
     };

@@ -1,14 +1,15 @@
-//! Large worlds at random: no update takes much longer than finding all pairs, or much memory, whatever moves how.
+//! Large random worlds: however bodies move, no update takes much longer than finding all pairs, or much memory.
 //!
 //! ```text
 //! cargo run --release --package sweep-and-prune-fuzz --example large -- [OPERATIONS] [SEED] [BODIES] [TIMES]
 //! ```
 //! 10 million operations, seed 1, at most 100,000 bodies, and updates that take at most 3 times as long as finding and
-//! sorting all pairs, if not said otherwise; with `inf` times no clock decides, only events and memory. A world has a few groups of bodies, with
-//! sizes over six decades, that drift, jitter, jump, rest or all move as one. At each update its events are compared with the
-//! pairs that the finder finds before and after, sorted; its processor time with that of finding and sorting them; and its
-//! memory with a limit. Now and then a restored or cloned world goes on beside it. The same seed gives the same worlds; where
-//! one is wrong, slow or large its seed is printed, and the exit status is 1.
+//! sorting all pairs, if not said otherwise; with `inf` times no clock decides, only events and memory.
+//!
+//! A world has a few groups of bodies, with sizes over six decades, that drift, jitter, jump, rest or all move as one. At each
+//! update its events are compared with the pairs that the finder finds before and after; its processor time with the time
+//! of finding and sorting them; and its memory with a limit. Now and then a restored or cloned world continues beside it.
+//! The same seed gives the same worlds. If a world is wrong, slow or large, its seed is printed, and the exit status is 1.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::ops::ControlFlow;
@@ -28,7 +29,7 @@ const SHORT: f64 = 300e-6;
 const MOST_BYTES: [usize; 2] = [500, 200];
 /// How many more it may have, whatever its bodies.
 const FEW_BYTES: usize = 500_000;
-/// A world ends with this many pairs for each body: it would say little about bodies.
+/// With more pairs for each body a world ends: its time would say little about bodies.
 const MOST_PAIRS: usize = 30;
 /// How many updates a world has.
 const UPDATES: usize = 60;
@@ -45,13 +46,13 @@ unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         let in_use = IN_USE.fetch_add(layout.size(), Ordering::Relaxed) + layout.size();
         MOST_IN_USE.fetch_max(in_use, Ordering::Relaxed);
-        // SAFETY: as required of our caller.
+        // SAFETY: the arguments are our caller's, who has to keep the contract of the same method.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
         IN_USE.fetch_sub(layout.size(), Ordering::Relaxed);
-        // SAFETY: as required of our caller.
+        // SAFETY: the arguments are our caller's, who has to keep the contract of the same method.
         unsafe { System.dealloc(pointer, layout) }
     }
 }
@@ -159,8 +160,8 @@ fn key([a, b]: [u32; 2]) -> u64 {
     u64::from(a.min(b)) << 32 | u64::from(a.max(b))
 }
 
-/// What a world showed: how many operations it had, its slowest update as a multiple of finding all pairs, and which that
-/// was, and the most bytes as a multiple of the limit.
+/// What a world showed: how many operations it had; its slowest update, and how many times as long as finding all pairs that
+/// took; and the most bytes, as a multiple of the limit.
 #[derive(Default)]
 struct Outcome {
     operations: usize,
@@ -267,7 +268,7 @@ fn world<const D: usize, T: Scalar>(seed: u64, most: usize, most_time: f64) -> O
     }
     random.shuffle(&mut bodies);
     outcome.operations += bodies.len();
-    // A world that goes on beside this one.
+    // A second world, which continues beside this one.
     let mut twin: Option<BroadPhase<D, T>> = None;
     // What the updates of the world allocated and still hold.
     let (mut most_pairs, mut held) = (0, 0);
@@ -322,7 +323,7 @@ fn world<const D: usize, T: Scalar>(seed: u64, most: usize, most_time: f64) -> O
         outcome.bytes = outcome.bytes.max(bytes as f64 / limit as f64);
         let mut times = time / from_scratch.max(SHORT);
         if times > most_time && held > held_before {
-            // The world grew: as a finder does that is new.
+            // The world allocated. So would a new finder, which is the fair comparison.
             times = times.min(time / expected.find_with_new());
         }
         if times > outcome.slowest {
@@ -360,7 +361,7 @@ fn main() -> ExitCode {
         let mut outcome = run(seed, most, most_time);
         made += outcome.operations;
         for _ in 0..3 {
-            // Another program may have been in the way.
+            // Another program may have slowed it down.
             if outcome.slowest > most_time {
                 let again = run(seed, most, most_time);
                 if again.slowest < outcome.slowest {

@@ -4,8 +4,8 @@
 //! cargo run --release --package sweep-and-prune-fuzz --example slow -- [SECONDS] [SEED]
 //! ```
 //! A scene is a few groups of boxes. Each group has a place, a spread and sizes on each axis, of any order of magnitude. The
-//! measure is the processor time of one thread, the least of several, for each box and pair, compared with that of uniform
-//! boxes. So it holds on a busy machine too, but for a factor of 1.5 or so. Scenes that are more than ten times slower are
+//! measure is the processor time of one thread for each box and pair, the least of several searches, compared with uniform
+//! boxes. On a busy machine it is right within a factor of about 1.5. Scenes that are more than ten times slower are
 //! faults: they are printed in full, and the exit status is 1.
 
 use std::process::ExitCode;
@@ -76,7 +76,7 @@ impl Group {
     }
 }
 
-/// One of each in turn, and then the rest of the longer list.
+/// Items of two lists in turn, and then the rest of the longer list.
 fn in_turn<B>(first: Vec<B>, second: Vec<B>) -> Vec<B> {
     let (mut first, mut second) = (first.into_iter(), second.into_iter());
     let pair = || Some([first.next(), second.next()]);
@@ -146,7 +146,7 @@ fn cost<const D: usize, T: Scalar>(
     Some(best / (all.len() as u64 + pairs) as f64)
 }
 
-/// The cost of uniform boxes, as many as a scene has.
+/// The cost of this many uniform boxes.
 fn uniform<const D: usize, T: Scalar>(count: usize, has_two_sets: bool, times: usize) -> f64 {
     let size = [0.5 * (count as f64).powf(-1.0 / D as f64); 3];
     let group = Group {
@@ -166,7 +166,7 @@ fn uniform<const D: usize, T: Scalar>(count: usize, has_two_sets: bool, times: u
 fn slowness<const D: usize, T: Scalar>(scene: &[Group], has_two_sets: bool, times: usize) -> f64 {
     let sets = boxes::<D, T>(scene);
     let count = sets[0].len() + sets[1].len();
-    // Of few boxes, the time of the call counts and not that of the search.
+    // With few boxes, most of the time is the call and not the search.
     if count < 300 {
         return 0.0;
     }
@@ -200,7 +200,7 @@ fn climb<const D: usize, T: Scalar>(
             (worst, scene) = (slowness, changed);
         }
     }
-    // The least of few times is by chance too large now and then, and the search looks for such chances.
+    // The least of a few times can be too large by chance, and this search would find exactly those chances.
     let worst = slowness::<D, T>(&scene, has_two_sets, 21);
     (worst, scene)
 }

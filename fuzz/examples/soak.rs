@@ -1,4 +1,4 @@
-//! A world in which bodies come, move, rest and go for as long as told: it stays right, and its memory stays flat.
+//! A world in which bodies come, move, rest and go for a given time: it stays right, and its memory stays flat.
 //!
 //! ```text
 //! cargo run --profile checked --package sweep-and-prune-fuzz --example soak -- [MINUTES] [BODIES] [SEED]
@@ -25,13 +25,13 @@ static IN_USE: AtomicUsize = AtomicUsize::new(0);
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         IN_USE.fetch_add(layout.size(), Ordering::Relaxed);
-        // SAFETY: as required of our caller.
+        // SAFETY: the arguments are our caller's, who has to keep the contract of the same method.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
         IN_USE.fetch_sub(layout.size(), Ordering::Relaxed);
-        // SAFETY: as required of our caller.
+        // SAFETY: the arguments are our caller's, who has to keep the contract of the same method.
         unsafe { System.dealloc(pointer, layout) }
     }
 }
@@ -43,7 +43,7 @@ static ALLOCATOR: Counting = Counting;
 const CHECK: u64 = 200;
 /// For how many updates the world moves in one way: all bodies, a few of them, or all in leaps.
 const PHASE: u64 = 300;
-/// By how much memory may grow after the first quarter of the time: buffers differ with chance.
+/// How much memory may grow after the first quarter of the time: the sizes of buffers vary by chance.
 const MOST_GROWTH: f64 = 1.1;
 
 struct Soak {
@@ -51,9 +51,9 @@ struct Soak {
     world: BroadPhase<3>,
     /// All bodies, and their velocities.
     bodies: Vec<(ProxyId, [f32; 3])>,
-    /// The pairs by the events so far.
+    /// The pairs that follow from the events so far.
     live: BTreeSet<[ProxyId; 2]>,
-    /// Is never updated.
+    /// A world that is never updated.
     edited: BroadPhase<3>,
     edited_ids: Vec<ProxyId>,
 }
@@ -100,7 +100,7 @@ impl Soak {
         self.bodies.push((id, velocity));
     }
 
-    /// One update, with all that a game does between two of them.
+    /// One update, and everything that a game does between two updates.
     fn step(&mut self, number: u64) {
         let moving = match number / PHASE % 4 {
             0 => 1, // all
@@ -193,7 +193,7 @@ impl Soak {
     }
 }
 
-/// The memory of the process in MiB, where it can be read in the way of Linux.
+/// The memory of the process in MiB, on Linux.
 fn resident() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;

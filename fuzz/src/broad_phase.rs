@@ -10,8 +10,8 @@ use sweep_and_prune_scenes::Random;
 
 use super::{Input, Model, Pair, Space, in_any_dimension};
 
-/// The most bodies of a world: few, since brute force tests each against each. From 64 on, a body that leaves its fat AABB
-/// is looked up in the tree.
+/// The most bodies of a world: few, since brute force tests every pair. In a world with at least 64, a body that leaves its
+/// fat AABB is looked up in the tree.
 const MOST: [usize; 6] = [12, 5, 12, 24, 72, 110];
 
 pub(super) fn target(input: &mut Input) -> u64 {
@@ -159,12 +159,12 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
         self.model.insert(id, aabb, filter);
     }
 
-    /// Inserts 2 to 90 bodies: of the most, some are looked up one by one in the tree.
+    /// Inserts 2 to 90 bodies. With the larger numbers, some are looked up one by one in the tree.
     fn insert_many(&mut self, input: &mut Input) {
         let count = input.pick(&[2, 5, 20, 70, 90]);
         let (filter, seed) = (self.filter(input), input.below(256));
         let count = count.min(self.most.saturating_sub(self.model.bodies.len()));
-        // The boxes follow from one byte, by as many bytes as they need.
+        // One byte is the seed of the bytes from which the boxes are made.
         let mut random = Random::new(seed as u64);
         let bytes: Vec<u8> = (0..count * D * 6).map(|_| random.bits() as u8).collect();
         let mut drawn = Input::new(&bytes);
@@ -391,7 +391,7 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
             assert!(all.iter().all(|hit| hit.0.is_sign_positive()), "a hit at -0.0");
             let first = queries.cast(&cast).unwrap();
             assert_eq!(first.as_ref().map(found), expected.first().copied());
-            // Without what it hits first.
+            // The same cast, excluding its first hits.
             let excluded: Vec<_> = expected.iter().take(most).map(|hit| hit.1).collect();
             let next = queries.excluding(&excluded).cast(&cast).unwrap();
             assert_eq!(next.as_ref().map(found), expected.get(most).copied());
@@ -411,7 +411,7 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
         }
     }
 
-    /// Each query for many gives a list for each, as the query for one does.
+    /// A query for many gives for each the list that the query for one gives.
     fn query_many(&mut self, input: &mut Input) {
         fn lists<V: Clone>(lists: &Lists<V>) -> Vec<Vec<V>> {
             lists.iter().map(<[V]>::to_vec).collect()
@@ -505,7 +505,7 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
         self.world = clone;
     }
 
-    /// What has to be so at any time.
+    /// Checks what holds at any time.
     fn check_state(&mut self) {
         assert!(self.world.ids().eq(self.model.bodies.keys().copied()));
         assert_eq!(self.world.len(), self.model.bodies.len());
@@ -519,7 +519,7 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
         }
     }
 
-    /// Calls that are refused, after which nothing has changed.
+    /// Makes calls that are refused; nothing changes by them.
     fn misuse(&mut self, input: &mut Input) {
         input.say(|| "calls that are refused".into());
         let before = self.world.snapshot();

@@ -21,7 +21,7 @@ fn search<const D: usize, T: Scalar>(input: &mut Input) -> u64 {
     let space = Space::draw::<D, T>(input, crowd);
     let has_two_sets = input.below(3) == 1;
     let odds = input.pick(&[2, 2, 5, 40, 250]);
-    // What follows may be used in a few operations.
+    // Drawn now; only some of the searches below use them.
     let (stop, at, kind) = (input.below(256), input.below(256), input.below(12));
     let clusters = input.pick(&[1, 1, 2, 9]);
     let mut sets = [Vec::new(), Vec::new()];
@@ -29,7 +29,7 @@ fn search<const D: usize, T: Scalar>(input: &mut Input) -> u64 {
         let set = usize::from(has_two_sets && input.below(odds) == 0);
         let mut aabb = space.aabb::<D, T>(input);
         if clusters > 1 {
-            // Far from each other, so that no plan suits all.
+            // Groups far from each other, so that no plan suits all.
             let shift: T = space.length((input.below(clusters) * 1000) as f64);
             let shift = if shift < T::INFINITY { shift } else { T::default() };
             aabb.min = aabb.min.map(|at| at + shift);
@@ -171,7 +171,7 @@ impl<const D: usize, T: Scalar> Case<'_, D, T> {
     fn refuse(&self, finder: &mut PairFinder<D, T>, at: usize) {
         let mut sets = [self.boxes.to_vec(), self.against.unwrap_or_default().to_vec()];
         let (set, axis) = (usize::from(self.against.is_some() && at.is_multiple_of(2)), at % D);
-        // An empty set has no pairs, and the other is not looked at.
+        // With an empty set there are no pairs, and the other set is not validated.
         if sets.iter().take(1 + usize::from(self.against.is_some())).any(Vec::is_empty) {
             return;
         }

@@ -106,7 +106,7 @@ impl Space {
             let density = input.pick(&[2.0, 1.0, 5.0]);
             (density * (boxes as f64).powf(1.0 / D as f64)).ceil() as usize
         };
-        // Beyond a few times sixteen units coordinates become infinite: that is welcome, but not always.
+        // With the huge unit, coordinates beyond a few times sixteen units are infinite. That is tested too, but seldom.
         let values = if unit == huge { values.min(16) } else { values };
         Self { unit, origin, values, special: input.pick(&[1, 1, 200, 24, 5]) }
     }

@@ -127,14 +127,14 @@ fn fuzz(target: &Target, options: &Options) -> bool {
     thread::scope(|scope| {
         for worker in &workers {
             scope.spawn(|| {
-                // Kept open: to empty a file for each input takes longer than to run the input.
+                // The file stays open: emptying one for each input would take longer than running the input.
                 let mut kept = File::create(&worker.file).ok();
                 while !end.load(Ordering::Relaxed) {
                     let number = next.fetch_add(1, Ordering::Relaxed);
                     worker.input.store(number, Ordering::Relaxed);
                     worker.begun.store(begun.elapsed().as_millis() as u64, Ordering::Relaxed);
                     let bytes = random_input(target, options.seed, number);
-                    // Where the process is ended, as by a fault of memory, this is what it was doing.
+                    // If the process ends here, for example by an access to invalid memory, the file has its input.
                     _ = kept.as_mut().map(|file| keep(file, &bytes));
                     match run(target, &bytes, false) {
                         Ok(made) => {

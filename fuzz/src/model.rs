@@ -145,8 +145,8 @@ impl<const D: usize, T: Scalar> Model<D, T> {
     /// The bodies whose boxes are at most `radius` away from a point, sorted.
     pub fn within(&self, center: [T; D], radius: T, filter: &Option<Filter>) -> Vec<ProxyId> {
         let radius = radius.to_f64();
-        // Scaled by the power of two that brings the radius near 1, squares neither overflow nor vanish. (Of bits: `powi`
-        // may round, and under Miri it does.)
+        // Scaled by the power of two that brings the radius near 1, squares neither overflow nor vanish. (The power is made
+        // of bits, since `powi` may round; under Miri it does.)
         let exponent = (radius.to_bits() >> 52) as i32 - 1023;
         let power_of_two = |exponent: i32| f64::from_bits(((1023 + exponent) as u64) << 52);
         let scales = [-exponent / 2, exponent / 2 - exponent].map(power_of_two);
@@ -202,7 +202,7 @@ impl<const D: usize, T: Scalar> Model<D, T> {
                 face.into_iter().for_each(|(axis, side)| normal[axis] = side);
                 let starts_inside = face.is_none();
                 let is_entered = is_entered(&axes, limit);
-                // Not -0.0, which is no other time.
+                // 0.0 instead of -0.0, which is the same time.
                 hits.push(ModelHit { t: first + 0.0, id, normal, starts_inside, is_entered });
             }
         }
@@ -243,13 +243,14 @@ impl Approach {
         }
     }
 
-    /// Whether the insides meet for ever where nothing moves.
+    /// Whether the insides meet at all times, on an axis on which the cast does not move.
     fn is_inside(&self) -> bool {
         self.until_touch < 0.0 && self.until_past > 0.0 || self.until_touch == self.until_past
     }
 }
 
-/// The face that is touched first, and which way it looks; none if the insides overlap at the start.
+/// The axis of the face that is touched first, and the direction in which that face looks; `None` if the insides overlap at the
+/// start.
 fn face<const D: usize>(axes: &[Approach; D]) -> Option<(usize, f64)> {
     let towards = |axis: &Approach| axis.speed != 0.0 && axis.touching().0 >= 0.0;
     let latest = axes.iter().filter(|axis| towards(axis)).map(|axis| axis.touching().0);
@@ -279,7 +280,7 @@ fn is_entered<const D: usize>(axes: &[Approach; D], limit: f64) -> bool {
     }
     times.sort_by(f64::total_cmp);
     times.dedup();
-    // Moments are numbered: even ones are `times`, odd ones are between them.
+    // The even moments are `times`, the odd ones lie between them.
     let moment = |time: f64| 2 * times.iter().position(|&other| other == time).unwrap();
     (moment(0.0)..=moment(limit)).any(|now| {
         axes.iter().all(|axis| {
@@ -309,13 +310,13 @@ fn missing(from: &[Pair], of: &[Pair]) -> Vec<Pair> {
     missing
 }
 
-/// From a point to a box on one axis.
+/// The distance from a point to a box on one axis.
 fn gap<const D: usize, T: Scalar>(point: &[T; D], aabb: &Aabb<D, T>, axis: usize) -> f64 {
     let at = point[axis].to_f64();
     (aabb.min[axis].to_f64() - at).max(at - aabb.max[axis].to_f64()).max(0.0)
 }
 
-/// The box that is reported of a body that moved by `way`.
+/// The box whose overlaps are reported, of a body that moved by `way`.
 #[expect(clippy::needless_range_loop, reason = "four arrays are read at the axis")]
 fn fatten<const D: usize, T: Scalar>(
     options: &Options<T>,

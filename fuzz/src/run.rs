@@ -11,9 +11,9 @@ use super::{Input, broad_phase, finder, snapshot};
 /// Something that can be fuzzed: its name, and what it does with an input. It returns how many calls of the library it
 /// made, and panics if one of them was wrong.
 pub struct Target {
-    /// Its name, and that of its folder in `corpus/`.
+    /// Its name, which is also the name of its folder in `corpus/`.
     pub name: &'static str,
-    /// How many bytes long random inputs are at most: most of them, and one in 64.
+    /// The most bytes of a random input: of most inputs, and of one in 64.
     pub lengths: [usize; 2],
     /// What it does with an input.
     pub run: fn(&mut Input) -> u64,
@@ -102,7 +102,7 @@ pub fn shorten(target: &Target, bytes: &[u8]) -> Vec<u8> {
             chunk /= 2;
         }
         for at in 0..best.len() {
-            // Most bytes choose one of few possibilities, by their remainder.
+            // Most bytes choose one of a few possibilities by their remainder, so small values reach all of them.
             for plainer in 0..best[at].min(64) {
                 let mut bytes = best.clone();
                 bytes[at] = plainer;

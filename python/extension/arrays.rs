@@ -70,7 +70,7 @@ pub enum Index {
 }
 
 impl Index {
-    /// The type that NumPy calls so.
+    /// The type of this name in NumPy.
     pub fn of(name: &str) -> PyResult<Self> {
         Ok(match name {
             "int32" => Self::Int32,
@@ -92,8 +92,8 @@ impl Index {
         }
     }
 
-    /// A new array of many pairs. What was converted is freed at once, so that both together take
-    /// little more memory than the array.
+    /// A new array of many pairs. Converted pairs are freed at once, so that both together take little more memory than
+    /// the array.
     pub fn many_pairs<'py>(self, py: Python<'py>, found: Vec<[u32; 2]>) -> PyResult<Array<'py>> {
         match self {
             Self::Int32 => many_pairs(py, found, |index| index as i32),

@@ -34,12 +34,12 @@ thread_local! {
     static IS_EXITING_ITSELF: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Threads that search look every 20 ms whether they have to stop; a busy machine may let them wait for much longer.
+/// Threads that search check every 20 ms whether they have to stop. On a busy machine the next check may come much later.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// A callback may wait for ever, for example until its chunk is taken.
 const PATIENCE_WITH_CALLBACKS: Duration = Duration::from_millis(50);
 
-/// Marks the thread as being where it was before when this is dropped.
+/// When this is dropped, the thread counts again as being where it was before.
 pub struct Back(Place);
 
 impl Drop for Back {
@@ -48,7 +48,7 @@ impl Drop for Back {
     }
 }
 
-/// To be held during whatever may release the GIL.
+/// Held during everything that may release the GIL.
 pub fn enter(py: Python<'_>) -> Back {
     if must_stop() {
         py.detach(|| stop());
@@ -56,12 +56,12 @@ pub fn enter(py: Python<'_>) -> Back {
     Back(go_to(Place::Here))
 }
 
-/// To be held while a function of the user runs.
+/// Held while a function of the user runs.
 pub fn enter_callback() -> Back {
     Back(go_to(Place::Callback))
 }
 
-/// To be called by a thread without the GIL, before it asks for it.
+/// A thread without the GIL calls this before it asks for the GIL.
 pub fn stop_if_exiting() {
     if must_stop() {
         stop();

@@ -142,7 +142,7 @@ impl Finder {
                     ControlFlow::Continue(())
                 })?;
                 if complete.is_continue() && !buffer.is_empty() {
-                    // What it returned counts as if more pairs could follow.
+                    // Its result counts as if more pairs could follow.
                     let _ = hand_over(&buffer);
                 }
                 Ok(end)

@@ -33,8 +33,8 @@ const INTERVAL: Duration = Duration::from_millis(20);
 /// A progress callback of the core; it may cancel the search.
 pub type Progress<'a> = &'a (dyn Fn(f64) -> ControlFlow<()> + Sync);
 
-/// Runs `work`, which looks at about `boxes` boxes. Now and then it calls `report` with the share of
-/// the work that is done, from 0 to 1; not if there are few boxes.
+/// Runs `work`, which looks at about `boxes` boxes. Unless there are few, it calls `report` now and then with the share of the
+/// work that is done, from 0 to 1.
 ///
 /// # Errors
 /// What `report` raised, or a signal handler, usually `KeyboardInterrupt`: then the work was cancelled
@@ -198,7 +198,7 @@ pub fn processors() -> usize {
 
 /// Lets Python handle signals during a search, and reports progress.
 struct Watch<'a> {
-    /// When that was last done, and the exception that it raised.
+    /// The time of the last check, and the exception that it raised.
     state: Mutex<(Instant, Option<PyErr>)>,
     report: Option<&'a Py<PyAny>>,
 }

@@ -32,7 +32,7 @@ fn hash_all<const N: usize>(parts: [Vec<u64>; N]) -> u64 {
     hash(parts.into_iter().flatten().flat_map(u64::to_le_bytes))
 }
 
-/// For each scene, the hashes of its pairs and of those between its halves.
+/// For each scene, the hash of its pairs and the hash of the pairs between its halves.
 fn pairs<const D: usize, T: Scalar>(kernel: Kernel) -> Result<Vec<u64>, Error> {
     let mut finder = PairFinder::<D, T>::new().kernel(kernel);
     let mut hashes = Vec::new();
@@ -44,7 +44,7 @@ fn pairs<const D: usize, T: Scalar>(kernel: Kernel) -> Result<Vec<u64>, Error> {
     Ok(hashes)
 }
 
-/// For each motion, the hash of all events, and that of the snapshot at the end.
+/// For each motion, the hash of all events, and the hash of the snapshot at the end.
 fn events<const D: usize, T: Scalar>() -> Result<Vec<u64>, Error> {
     let mut hashes = Vec::new();
     for mut moving in Motion::ALL.into_iter().filter_map(|motion| motion.start::<D, T>(BODIES, 3)) {

@@ -1,4 +1,4 @@
-//! Hashes of scenes and of their pairs, to compare platforms and builds by.
+//! Hashes of scenes and of their pairs, which compare platforms and builds.
 
 use core::fmt::Write;
 

@@ -11,13 +11,13 @@ use crate::scene::round;
 /// Directions are even over the circle or sphere, speeds even from 0 to twice the mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Motion {
-    /// All drift, by a twentieth of a box width a frame in the mean.
+    /// All drift, by a twentieth of a box width per frame on average.
     Drift,
-    /// All fly, by half a box width a frame in the mean.
+    /// All fly, by half a box width per frame on average.
     Fast,
     /// One in ten drifts, the others rest.
     MostlyStill,
-    /// All drift, and one in a hundred a frame jumps to a random place.
+    /// All drift, and in each frame one in a hundred jumps to a random place.
     Teleport,
 }
 
@@ -124,7 +124,7 @@ impl<const D: usize, T: Scalar> Moving<D, T> {
         for (center, velocity) in self.centers.iter_mut().zip(&mut self.velocities) {
             for (at, speed) in center.iter_mut().zip(velocity) {
                 *at += *speed;
-                // More than once only where a few boxes are wider than the cube.
+                // More than once only if the few boxes are wider than the cube.
                 while !(0.0..=1.0).contains(at) {
                     *at = if *at < 0.0 { -*at } else { 2.0 - *at };
                     *speed = -*speed;

@@ -204,8 +204,8 @@ pub(crate) fn needles<const D: usize>(draw: &mut Draw) -> Vec<Aabb<D, f64>> {
     needles_along(draw, |random| random.below(D))
 }
 
-/// Boxes half the scene long on the axis chosen and thin on the others, 1.2 pairs a box if all
-/// were parallel and space had one axis less.
+/// Boxes that are half as long as the scene on a chosen axis and thin on the others. There would be 1.2 pairs per box if
+/// all were parallel and space had one axis less.
 fn needles_along<const D: usize>(
     draw: &mut Draw,
     choose: impl Fn(&mut Random) -> usize,
@@ -218,8 +218,7 @@ fn needles_along<const D: usize>(
     })
 }
 
-/// Uniform, but for the boxes chosen by index, which span the unit cube on the axes that
-/// `spanned` gives.
+/// Uniform boxes, except for some, which span the unit cube on the axes that `spanned` gives for their index.
 fn uniform_with<const D: usize>(
     draw: &mut Draw,
     chosen: impl Fn(usize) -> bool,

@@ -132,7 +132,7 @@ impl Scene {
     }
 }
 
-/// A box in the coordinate type asked for; the only place where coordinates are rounded.
+/// A box in another coordinate type: the only place where coordinates are rounded.
 pub(crate) fn round<const D: usize, T: Scalar>(aabb: &Aabb<D, f64>) -> Aabb<D, T> {
     Aabb::new(aabb.min.map(T::from_f64), aabb.max.map(T::from_f64))
 }

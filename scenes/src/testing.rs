@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use sweep_and_prune::{Aabb, Scalar};
 
-/// One test a dimension and coordinate type, from a generic `fn check<const D: usize, T: Scalar>()`.
+/// One test for each dimension and coordinate type, from a generic `fn check<const D: usize, T: Scalar>()`.
 #[macro_export]
 macro_rules! in_all_dimensions {
     ($name:ident, $check:ident) => {

@@ -75,8 +75,7 @@ fn claim(case: Case, world: World, formula: &'static str, cost: fn(&Facts) -> f6
     Claim { case, world, formula, cost }
 }
 
-/// What it takes to sort this many keys by comparisons; of the first order, since the constant
-/// differs from sort to sort.
+/// The comparisons of a sort of this many keys, to the first order: the constant differs from sort to sort.
 fn n_log_n(keys: f64) -> f64 {
     keys * keys.log2()
 }
@@ -128,7 +127,7 @@ fn one_axis_claims(
     n_log_n_m: fn(&Facts) -> f64,
     n_s_m: fn(&Facts) -> f64,
 ) -> Vec<Claim> {
-    // These take an array that is in order in one pass: s = 0.
+    // These sorts need one pass over an array that is in order: s = 0.
     let is_adaptive = matches!(sort, Sort::Standard | Sort::Timsort | Sort::Insertion);
     let best = if is_adaptive { ("n", n) } else { ("n log n", n_log_n_m) };
     let (average, average_cost) = match sort {
@@ -136,7 +135,7 @@ fn one_axis_claims(
         _ => ("n log n + m", n_log_n_m),
     };
     let at_rest = if is_adaptive { n_s_m } else { n_log_n_m };
-    // The order in which the sort does worst.
+    // The worst order for the sort.
     let (order, by_sort) = match sort {
         Sort::Insertion => (World::Mirror, "n² (s)"),
         _ => (World::CorridorStart, "n log n + m (sort)"),
@@ -157,7 +156,7 @@ fn axis_sweeps(sort: Sort) -> Variant {
         Sort::Insertion => ("n + S + M", |f| 4.0 * f.n + 2.0 * f.s_all + f.m_all + f.p),
         _ => ("n log n + M", |f| 2.0 * n_log_n(2.0 * f.n) + f.m_all + f.p),
     };
-    // Both sorts take an array that is in order in one pass.
+    // Both sorts need one pass over an array that is in order.
     let at_rest: fn(&Facts) -> f64 = |f| 4.0 * f.n + f.m_all + f.p;
     let mut claims = vec![
         claim(Case::Best, World::Rest, "n", at_rest),

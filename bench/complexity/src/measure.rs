@@ -113,7 +113,7 @@ pub fn measure(variant: &Variant, claim: &Claim, limits: Limits) -> Measurement 
     result
 }
 
-/// To four decimals, so that the report is the same whatever the last bit of a logarithm is.
+/// Rounds to four decimals, so that the last bit of a logarithm does not change the report.
 fn round(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }

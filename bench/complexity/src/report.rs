@@ -118,7 +118,7 @@ fn section(variant: &Variant, measurements: Vec<Measurement>) -> Section {
         let mut formulas: Vec<&str> = Vec::new();
         for claim in variant.claims.iter().filter(|claim| claim.case == case) {
             let formula = claim.formula.split(" (").next().unwrap_or_default();
-            // Of several worst cases the worst is the column's.
+            // If there are several worst cases, the column has the worst of them.
             let is_lesser = case == Case::Worst && !formula.contains('²');
             if !formulas.contains(&formula) && !is_lesser {
                 formulas.push(formula);

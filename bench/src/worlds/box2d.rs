@@ -100,7 +100,7 @@ unsafe extern "C" fn meet(_proxy: i32, other: u64, context: *mut c_void) -> bool
     // SAFETY: the context is the query that `update` passes, which nothing else uses meanwhile.
     let query = unsafe { &mut *context.cast::<Query>() };
     let (index, other) = (query.index, other as u32);
-    // Of two boxes that left, the larger index asks.
+    // If both boxes have left their fat AABBs, the one with the larger index reports the pair.
     if other != index && !(query.has_left[other as usize] && index < other) {
         let pair = [index.min(other), index.max(other)];
         if !query.pairs.contains(&pair) {

@@ -23,7 +23,7 @@ macro_rules! from_scratch {
     };
 }
 
-/// What a world has to be faster than.
+/// The worlds that any other world has to beat.
 pub const FINDER: WorldLibrary = from_scratch!(
     libraries::this_crate::LIBRARY,
     FROM_SCRATCH,

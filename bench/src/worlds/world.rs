@@ -10,9 +10,8 @@ pub trait World<const D: usize> {
     /// Takes in the boxes of the first frame.
     fn start<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<Found<'a>>;
 
-    /// Goes on to the next frame, in which the boxes of the indices `moved`, in ascending order,
-    /// are others than in the last. This is what is timed: until it is known which pairs there
-    /// are, or which began and ended.
+    /// Continues with the next frame, in which the boxes at the indices `moved` (ascending) have changed. This is what is
+    /// timed: until it is known which pairs there are, or which began and ended.
     fn step<'a>(&'a mut self, boxes: &'a [Aabb<D>], moved: &[u32]) -> Result<Found<'a>>;
 
     /// The current pairs of a world that stores them in its own form. Not timed.
@@ -26,9 +25,9 @@ pub trait World<const D: usize> {
 pub enum Found<'a> {
     /// The pairs that began and those that ended.
     Events {
-        /// Which were none before.
+        /// Pairs that did not overlap in the last frame.
         begun: &'a [[u32; 2]],
-        /// Which are none any more.
+        /// Pairs that no longer overlap.
         ended: &'a [[u32; 2]],
     },
     /// All pairs.

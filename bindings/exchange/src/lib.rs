@@ -43,7 +43,7 @@ fn now() -> f64 {
     0.0
 }
 
-/// Milliseconds from any origin. (A function of Rust, since an imported one is no `Fn`.)
+/// Milliseconds from any origin. (A Rust function, since an imported function does not implement `Fn`.)
 pub fn clock() -> f64 {
     now()
 }

@@ -129,7 +129,7 @@ impl<const D: usize> Moving<D> {
             let (center, velocity) = (&mut self.centers[index], &mut self.velocities[index]);
             let before = *center;
             for axis in 0..D {
-                // Half the kick before the way and half after it: what falls rises as high again.
+                // Half of the acceleration before the move and half after it, so that a box that falls rises as high again.
                 velocity[axis] += 0.5 * self.gravity[axis];
                 center[axis] += velocity[axis];
                 velocity[axis] += 0.5 * self.gravity[axis];
@@ -158,9 +158,8 @@ impl<const D: usize> Moving<D> {
     }
 }
 
-/// The boxes `size` times as large about their centers, and the largest made `spread` times as
-/// large as the smallest: factors from `size / √spread` to `size * √spread`, even in their
-/// logarithm. Both 1 leave every bit as it is.
+/// Scales each box about its center by a random factor from `size / √spread` to `size * √spread`, whose logarithm is uniform:
+/// the largest factor is `spread` times the smallest. If both are 1, no bit changes.
 pub fn resize<const D: usize>(boxes: &mut [Aabb<D>], size: f64, spread: f64, seed: u64) {
     if size == 1.0 && spread == 1.0 {
         return;

@@ -34,11 +34,11 @@ enum Engine<const D: usize> {
 pub struct Report {
     /// Milliseconds from boxes to the list of all pairs.
     pub ms: f64,
-    /// What was counted; the library's two tell nothing but their pairs.
+    /// What was counted; the library's two searchers report only pairs.
     pub counts: Option<Counts>,
     /// How many pairs.
     pub pairs: usize,
-    /// The same for the same pairs in whatever order.
+    /// A hash of the pairs that does not depend on their order.
     pub fingerprint: u64,
 }
 
@@ -53,7 +53,7 @@ impl<const D: usize> Searcher<D> {
             Choice::World => Engine::World(Box::default(), Vec::new()),
             Choice::Algorithm(options) => {
                 options.axis.choose::<D, f32>(&[])?;
-                // Insertion sort is for what is almost sorted, which the first step is not.
+                // The first step is not almost sorted, so insertion sort would take O(n²).
                 let first = if options.persistent { Sort::Standard } else { options.sort };
                 let options = options.first_sort(first);
                 Engine::Algorithm(Box::new(Runner::new(options)))
@@ -99,7 +99,7 @@ impl<const D: usize> Searcher<D> {
             return Ok(None);
         };
         if options.method == Method::Pairwise {
-            // It always does the same, and watching it do so would take longer than doing it.
+            // Brute force always does the same; observing it would take longer than running it.
             let tests = (boxes.len() * boxes.len().saturating_sub(1) / 2) as u64;
             let axis_overlaps = axis_overlaps(boxes, options.axis)? as u64;
             return Ok(Some(Counts { tests, axis_overlaps, ..Counts::default() }));
@@ -134,7 +134,7 @@ fn fingerprint(pairs: &[[u32; 2]]) -> u64 {
     pairs.iter().fold(0, |sum: u64, pair| sum.wrapping_add(hash(pair)))
 }
 
-/// What a first run would cost, told without it. O(n log n).
+/// What a first run would cost, computed without running it. O(n log n).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forecast {
     /// How many pairs are tested or flagged.
@@ -164,8 +164,7 @@ pub fn forecast<const D: usize>(choice: Choice, boxes: &[Aabb<D>]) -> Result<For
     })
 }
 
-/// How many pairs overlap on the axis: of each box, those that begin before it ends less those that
-/// began before it did.
+/// How many pairs overlap on the axis: for each box, the boxes that begin before it ends, less the boxes that began before it.
 fn axis_overlaps<const D: usize>(boxes: &[Aabb<D>], axis: Axis) -> Result<f64, Error> {
     let axis = axis.choose(boxes)?;
     let mut lefts: Vec<f32> = boxes.iter().map(|aabb| aabb.min[axis]).collect();

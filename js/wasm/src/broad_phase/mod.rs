@@ -198,8 +198,8 @@ extern "C" fn world_remove_many(handle: &mut Handle, count: usize) -> Code {
     })
 }
 
-/// Details: where the ids are and how many: two for each pair that began, and then two for each pair
-/// that ended. The first number is how many ids the former are.
+/// Details: where the ids are, and how many: two for each pair that began, and then two for each pair that ended. The first
+/// number is how many ids belong to pairs that began.
 #[unsafe(no_mangle)]
 extern "C" fn world_update(handle: &mut Handle) -> Code {
     run(handle, stack::LARGE, |handle| {

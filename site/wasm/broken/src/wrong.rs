@@ -10,7 +10,7 @@ use core::mem;
 use sweep_and_prune::{Aabb, validate};
 use sweep_and_prune_algorithms::{Axis, Edge, Endpoint, Error, Observer, Separation, Side};
 
-/// Which error.
+/// Which mistake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wrong {
     /// The swap-driven sweep, whose insertion sort stops at a strict `<` of the coordinates: equal
@@ -127,7 +127,7 @@ impl<const D: usize> WrongRunner<D> {
             + self.overlapping.len() * size_of::<[u32; 2]>()
     }
 
-    /// Insertion sort, whose swaps are believed.
+    /// Insertion sort; each swap begins or ends an overlap.
     fn swap<O: Observer>(&mut self, axis: usize, observer: &mut O) {
         for i in 1..self.array.len() {
             for j in (0..i).rev() {
@@ -233,8 +233,7 @@ fn test<const D: usize, O: Observer>(
     }
 }
 
-/// The endpoints of all boxes as they come, which is as if they lay one after another; or only the
-/// left ones.
+/// The endpoints of all boxes in the order of the boxes, as if these lay one after another; or only the left ones.
 fn endpoints<const D: usize>(boxes: &[Aabb<D, f64>], both: bool) -> Vec<Endpoint<f64>> {
     let ends = |id| [Endpoint::left(0.0, id), Endpoint::right(0.0, id)];
     let every = (0..boxes.len() as u32).flat_map(ends);
@@ -303,7 +302,7 @@ mod tests {
         let boxes = [square(0.0, 0.0, 1.0), square(3.0, 0.0, 1.0), square(4.0, 0.0, 4.0)];
         assert_eq!(brute_force(&boxes).unwrap(), [[0, 2], [1, 2]]);
         assert_eq!(pairs(&mut new(Wrong::SortByCenter), &boxes), [[1, 2]]);
-        // Of one size, by center is by left edge.
+        // If all boxes have one size, the order by center is the order by left edge.
         let same = [0.0, 1.5, 2.5, 9.0].map(|x| square(x, 0.0, 1.0));
         assert_eq!(pairs(&mut new(Wrong::SortByCenter), &same), brute_force(&same).unwrap());
     }
