@@ -35,7 +35,7 @@ pub fn frames_checked(name: &str) -> usize {
     if Motion::from_name(name).is_some() { FRAMES_CHECKED } else { 1 }
 }
 
-/// The scenes of these names, [`ALL`] spelt out.
+/// The scenes of these names, with [`ALL`] replaced by all names.
 pub fn named(names: &[String]) -> Vec<String> {
     let mut named = Vec::new();
     for name in names {
@@ -126,8 +126,8 @@ fn read<const D: usize>(path: &Path, n: usize) -> Result<Vec<Aabb<D>>> {
     Ok(boxes)
 }
 
-/// About how many pairs a scene has, from small versions of it: a scene whose pairs grow with
-/// the square of its boxes is worth knowing of before memory is full.
+/// About how many pairs a scene has, extrapolated from small versions of it. So a scene whose pairs grow with the square
+/// of its boxes is left out before it fills the memory.
 pub fn estimated_pairs<const D: usize>(name: &str, n: usize) -> Result<f64> {
     const SMALL: usize = 500;
     const LARGE: usize = 2000;

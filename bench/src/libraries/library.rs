@@ -24,8 +24,8 @@ pub trait Finder<const D: usize> {
     /// The pairs of indices of `boxes` that overlap, each once, in any order and orientation.
     fn find<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<&'a [[u32; 2]]>;
 
-    /// Called untimed before each timed call with the same boxes in another order, so that a
-    /// library that learns from call to call has nothing to start from.
+    /// Called before each timed call, untimed, with the same boxes in another order. So a library that learns from call to
+    /// call has nothing to start from.
     fn forget(&mut self, _shuffled: &[Aabb<D>]) -> Result<()> {
         Ok(())
     }
@@ -73,7 +73,7 @@ pub struct LibraryInfo {
     pub how: &'static str,
     /// As [`Library::alternative`].
     pub alternative: bool,
-    /// The version that was compiled in, or a word on where it comes from.
+    /// The version that was compiled in, or its origin.
     pub version: String,
     /// The numbers of dimensions in which it exists.
     pub dimensions: Vec<usize>,
@@ -92,7 +92,7 @@ impl<Two, Three> Library<Two, Three> {
         }
     }
 
-    /// The version that was compiled in, or a word on where it comes from.
+    /// The version that was compiled in, or its origin.
     fn version(&self) -> String {
         match self.origin {
             Origin::Here => "this repository".into(),

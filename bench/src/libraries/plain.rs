@@ -1,4 +1,4 @@
-//! What a good developer writes in an hour, and what anybody writes in five minutes.
+//! What a good developer writes in an hour, and what takes five minutes.
 
 use anyhow::Result;
 use sweep_and_prune::{Aabb, validate};

@@ -25,8 +25,8 @@ pub const TWO_THREADS: Library = Library {
     three: Some(|| Box::new(Reused(PairFinder::<3>::new().threads(2)))),
 };
 
-/// Two finders of one thread each at work at once, each on all boxes: what the machine makes of
-/// two threads that have nothing to do with each other.
+/// Two finders at the same time, each on one thread and all boxes: how the machine runs two threads that are
+/// independent of each other.
 pub const TWICE: Library = Library {
     name: TWO_AT_ONCE,
     origin: Origin::Here,

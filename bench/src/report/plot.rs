@@ -34,7 +34,7 @@ struct Series {
 /// How a line is drawn.
 #[derive(Clone, Copy)]
 enum Look {
-    /// The one to look for.
+    /// The line that the plot is about.
     Main,
     /// In the color of this number, and dashed where the colors are used up.
     Line(usize),
@@ -276,7 +276,7 @@ fn label(number: &f64) -> String {
         number if number >= 1e3 => (number / 1e3, "k"),
         number => (number, ""),
     };
-    // Three digits are enough, and hide what a power of ten is off.
+    // Three digits suffice, and hide the rounding errors of powers of ten.
     let digits = (2 - number.log10().floor() as i32).max(0) as usize;
     let text = format!("{number:.digits$}");
     let text =

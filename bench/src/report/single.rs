@@ -194,7 +194,7 @@ fn least_traffic(record: &Record) -> String {
     )
 }
 
-/// Every box read once, every pair written once.
+/// The bytes of a search that reads every box once and writes every pair once.
 fn least_bytes(case: &Case) -> f64 {
     (case.boxes * 2 * case.dimensions * size_of::<f32>()) as f64
         + case.pairs as f64 * size_of::<[u32; 2]>() as f64

@@ -3,9 +3,9 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// A hash table over a dense list: the list holds the pairs, the table where in it each stands.
-/// Expected O(1) to find, add and remove; the list is walked without a hash, in an order that
-/// depends only on the calls made, on every machine.
+/// A hash table over a dense list: the list holds the pairs, the table their positions in the list.
+/// Expected O(1) to find, add and remove. Iterating needs no hash, and its order depends only on
+/// the calls made, on every machine.
 #[derive(Clone, Debug, Default)]
 pub struct PairMap<V> {
     entries: Vec<([u32; 2], V)>,
@@ -105,7 +105,7 @@ impl<V> PairMap<V> {
         let mut slot = self.after(hole);
         while self.table[slot] != EMPTY {
             let home = self.home(self.entries[self.table[slot]].0);
-            // From home to the slot the way leads past the hole.
+            // The probes from its home to its slot pass the hole.
             if slot.wrapping_sub(home) & mask >= slot.wrapping_sub(hole) & mask {
                 self.table[hole] = self.table[slot];
                 hole = slot;

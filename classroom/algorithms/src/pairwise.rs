@@ -9,8 +9,8 @@
 //! Always n(n-1)/2 tests, in the best case and the worst, and no memory of its own. It is too slow
 //! beyond a few hundred boxes and too simple to be wrong. Its pairs come sorted.
 //!
-//! Unlike the article's listing it tests closed intervals (touching boxes overlap), and hands the
-//! pairs over instead of bouncing the boxes while it still goes through them.
+//! Unlike the article's listing it tests closed intervals (touching boxes overlap), and it collects the
+//! pairs instead of bouncing boxes during the loop.
 
 use alloc::vec::Vec;
 

@@ -117,7 +117,7 @@ impl Player {
 }
 
 impl PlayerState {
-    /// Returns whether what the event adds, removes or swaps was there to be.
+    /// Returns whether the event changed anything: it may add what is there, or remove or swap what is not.
     fn apply(&mut self, event: Event<'_>, overwritten: &mut Vec<Overwritten>) -> bool {
         self.count(event, 1);
         let changed = self.toggle(event, true);
@@ -180,7 +180,7 @@ impl PlayerState {
         self.count(event, -1);
     }
 
-    /// Adds, removes or swaps what an event does, or undoes that. Returns whether it was there to be.
+    /// Adds, removes or swaps what an event says, or undoes that. Returns whether that changed anything.
     fn toggle(&mut self, event: Event<'_>, forward: bool) -> bool {
         fn put<V: Ord>(set: &mut BTreeSet<V>, value: V, is_in: bool) -> bool {
             if is_in { set.insert(value) } else { set.remove(&value) }
@@ -201,7 +201,7 @@ impl PlayerState {
         changed
     }
 
-    /// Moves what outlives a step from this state to another.
+    /// Moves to another state what the next step keeps.
     fn hand_on(&mut self, to: &mut PlayerState, axis_overlaps: bool) {
         to.arrays = mem::take(&mut self.arrays);
         to.array_axis = self.array_axis;

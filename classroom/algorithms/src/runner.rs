@@ -65,7 +65,7 @@ impl Method {
         }
     }
 
-    /// The method with this [`name`](Self::name). The one-to-n scan is that of box 0.
+    /// The method with this [`name`](Self::name); the one-to-n scan for box 0.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().chain([Method::OneToN(0)]).find(|method| method.name() == name)
     }
@@ -138,7 +138,7 @@ pub struct Step<'a> {
     pub begun: &'a [[u32; 2]],
     /// The pairs that only the step before had, sorted. Empty unless persistent.
     pub ended: &'a [[u32; 2]],
-    /// The axis that was swept, or was the first to be.
+    /// The axis that was swept, or swept first.
     pub axis: usize,
 }
 
@@ -180,7 +180,7 @@ pub struct Runner<const D: usize, T = f32> {
     last_axis: Option<usize>,
     state: State<D, T>,
     pairs: Vec<[u32; 2]>,
-    /// The pairs of the last step, sorted; of the methods that do not keep them themselves.
+    /// The pairs of the last step, sorted, if the method does not keep them itself.
     last_pairs: Vec<[u32; 2]>,
     begun: Vec<[u32; 2]>,
     ended: Vec<[u32; 2]>,
@@ -189,7 +189,7 @@ pub struct Runner<const D: usize, T = f32> {
 /// What a method works on.
 #[derive(Clone, Debug)]
 enum State<const D: usize, T> {
-    /// Of all methods that sweep at most one axis from scratch. Global pairwise leaves it empty.
+    /// The endpoints, for all methods that sweep at most one axis from scratch. Global pairwise leaves it empty.
     Endpoints(EndpointArray<T>, Touching),
     Axes(AxisSweeps<D, T>),
     Swaps(SwapSweep<T>),
@@ -205,7 +205,7 @@ impl<const D: usize, T: Scalar> State<D, T> {
         }
     }
 
-    /// Starts again from no boxes, in the same memory where that is simple.
+    /// Starts over without boxes. Keeps memory where that is simple.
     fn forget(&mut self, method: Method) {
         match self {
             State::Endpoints(array, _) => array.endpoints.clear(),

@@ -10,7 +10,7 @@
 //!
 //! Time: the sort, plus O(n + m) where m is the number of overlaps *on the sweep axis* (not of
 //! pairs: a tall stack swept from the side has m near n²/2 and hardly a pair). Memory: O(n) for
-//! the order. There is no set of active boxes: the scan from each box forward stands for it.
+//! the order. There is no set of active boxes: the scan forward from each box replaces it.
 //!
 //! Unlike the article's listing it sorts an array of its own, not the caller's; the order is
 //! total, so ties stay where they are; the break and the box test share one closed rule; and the

@@ -174,11 +174,11 @@ impl<T: Scalar> SwapSweep<T> {
         }
     }
 
-    /// Appends which pairs of the last report are new in it, and which of the one before are not
-    /// in it any more, each sorted. O(c log c) for c changes.
+    /// Appends the pairs that only the last report has, and the pairs that only the one before has, each sorted.
+    /// O(c log c) for c changes.
     pub fn changes(&mut self, begun: &mut Vec<[u32; 2]>, ended: &mut Vec<[u32; 2]>) {
         let Overlaps { flagged, changed, .. } = &mut self.overlaps;
-        // Each entry turns the pair from reported to not or back, so an even number cancels.
+        // Each entry switches a pair between reported and not reported, so an even number of them cancels.
         changed.sort_unstable();
         for turns in changed.chunk_by(|a, b| a == b).filter(|turns| turns.len() % 2 == 1) {
             let pair = turns[0];

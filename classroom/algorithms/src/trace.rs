@@ -32,11 +32,11 @@ const NONE: u32 = u32::MAX;
 /// | 7 leave | id | the sweep left a box behind |
 /// | 8 prune | axis, left, right | `left` ends before `right` begins, so the scan from `left` ends here |
 /// | 9 test | a, b, axis, left | a box test; `axis` is the one that separates and `left` the box that ends first there, or both are 2^32 - 1 if the two overlap |
-/// | 10 axis overlap | axis, a, b | a pair overlaps on a swept axis, or from now on does |
+/// | 10 axis overlap | axis, a, b | a pair overlaps, or begins to overlap, on a swept axis |
 /// | 11 axis apart | axis, a, b | a pair no longer does |
 /// | 12 overlap | a, b | a pair overlaps on every axis |
-/// | 13 begin | a, b | a pair that was none after the last step |
-/// | 14 end | a, b | what was a pair after the last step is none any more |
+/// | 13 begin | a, b | a pair that the last step did not have |
+/// | 14 end | a, b | a pair of the last step that no longer overlaps |
 ///
 /// `edge` is `2 * id` for the left endpoint of a box and `2 * id + 1` for the right one; `at` is
 /// the coordinate as the bits of an `f32` (rounded, if the boxes are `f64`: it is for drawing).

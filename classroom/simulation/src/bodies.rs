@@ -55,8 +55,8 @@ impl<const D: usize> Bodies<D> {
         }
     }
 
-    /// Moves every ball on along its velocity for `time`. No ball goes further than the box is
-    /// wide: faster ones are slowed down, so that no coordinate ever overflows.
+    /// Moves every ball along its velocity for `time`. Balls that would move further than the width of the
+    /// box are slowed down, so that no coordinate ever overflows.
     pub fn drift(&mut self, time: f32, bounds: &Aabb<D>) {
         let limit: [f32; D] = from_fn(|axis| (bounds.max[axis] - bounds.min[axis]) / time);
         for (position, velocity) in self.positions.iter_mut().zip(&mut self.velocities) {
@@ -67,11 +67,10 @@ impl<const D: usize> Bodies<D> {
         }
     }
 
-    /// Puts balls that went through a wall back to it, and gives the velocity across the wall the
-    /// speed that it had there: it has since fallen or risen by the depth.
+    /// Puts balls that went through a wall back to the wall, and restores the speed across the wall that
+    /// they had there, before they fell or rose further.
     ///
-    /// So a ball that comes back from the floor has no more energy than it came with, however deep
-    /// a step had carried it.
+    /// So a ball that bounces off the floor gains no energy, however deep a step carried it.
     pub fn stop_at_walls(&mut self, gravity: [f32; D], bounds: &Aabb<D>) {
         for ((position, velocity), &radius) in
             self.positions.iter_mut().zip(&mut self.velocities).zip(&self.radii)
@@ -90,8 +89,8 @@ impl<const D: usize> Bodies<D> {
         }
     }
 
-    /// Per unit of mass, of the velocities less `ahead`, what gravity has added to them since the
-    /// time of the positions.
+    /// The kinetic energy per unit of mass at the time of the positions: `ahead` is what gravity has added to the
+    /// velocities since.
     pub fn kinetic_energy(&self, ahead: [f32; D]) -> f64 {
         self.mean_by_mass(|index| {
             let velocity = self.velocities[index];
@@ -100,12 +99,12 @@ impl<const D: usize> Bodies<D> {
         })
     }
 
-    /// Per unit of mass, above the walls that gravity points to.
+    /// The potential energy per unit of mass, above the walls to which gravity points.
     pub fn potential_energy(&self, gravity: [f32; D], bounds: &Aabb<D>) -> f64 {
         self.potential_energy_at(|ball| self.positions[ball], gravity, bounds)
     }
 
-    /// What it would be with the balls at these places.
+    /// The potential energy with the balls at these places.
     pub fn potential_energy_at(
         &self,
         place: impl Fn(usize) -> [f32; D],

@@ -3,7 +3,7 @@
 use sweep_and_prune::{Aabb, PairFinder};
 use sweep_and_prune_algorithms::{Counts, Error, Runner, RunnerOptions, Sort};
 
-/// Who finds the pairs of boxes. The motion is the same, bit for bit, whichever it is.
+/// What finds the pairs of boxes. The motion is the same for every choice, bit for bit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BroadPhase {
     /// The library's [`PairFinder`], the fast path.
@@ -29,7 +29,7 @@ impl<const D: usize> Engine<D> {
             BroadPhase::Library => Ok(Engine::Library(Box::default())),
             BroadPhase::Algorithm(options) => {
                 options.axis.choose::<D, f32>(&[])?;
-                // Insertion sort is for what is almost sorted, which the first step is not.
+                // The first step is not almost sorted, so insertion sort would take O(n²).
                 let first = if options.persistent { Sort::Standard } else { options.sort };
                 let options = options.first_sort(first);
                 Ok(Engine::Algorithm(Box::new(Runner::new(options))))

@@ -1,4 +1,4 @@
-//! The pairs that may touch within a step: found once, and kept up while it lasts.
+//! The pairs that may touch within a step: found once, and updated until the step ends.
 
 use std::array::from_fn;
 
@@ -22,9 +22,9 @@ const MOST_LEAVING: usize = 8;
 ///
 /// The broad phase runs once a step, over boxes that are large enough for all its substeps
 /// (Müller et al. 2020, "Detailed rigid body simulation with extended position based dynamics",
-/// §3.5). It is not left at that: in each substep every ball that is about to leave its box, because
-/// a bounce sent it elsewhere, gets a larger one, and is tested against all that are near. So no
-/// contact is missed, and the motion is to the bit that of a broad phase in every substep.
+/// §3.5). In addition, a ball that is about to leave its box in a substep, because a bounce sent it
+/// elsewhere, gets a larger box, which is tested against all boxes near it. So no contact is missed, and
+/// the motion is bit for bit what a broad phase in every substep would give.
 #[derive(Debug, Default)]
 pub struct Candidates<const D: usize> {
     enclosures: Enclosures<D>,
@@ -94,8 +94,8 @@ impl<const D: usize> Candidates<D> {
         Ok(is_stale)
     }
 
-    /// Sorts the pairs. They last for several substeps, so that costs less than to sort, in each,
-    /// those whose balls touch.
+    /// Sorts the pairs. They last for several substeps, so this costs less than sorting the touching pairs in each
+    /// substep.
     pub fn sort(&mut self) {
         self.order.sort(&mut self.pairs, self.sorted, self.enclosures.boxes.len());
         self.sorted = self.pairs.len();
@@ -172,7 +172,7 @@ impl<const D: usize> Neighborhood<D> {
         }
     }
 
-    /// Takes notice that a box has become this large.
+    /// Notes that a box has become this large.
     fn grown(&mut self, ball: u32, aabb: &Aabb<D>) {
         for (axis, place) in self.places[ball as usize].into_iter().enumerate() {
             let sides = greater(place - aabb.min[axis], aabb.max[axis] - place);
@@ -182,7 +182,7 @@ impl<const D: usize> Neighborhood<D> {
 
     /// The balls whose boxes overlap this one.
     fn overlapping(&mut self, aabb: &Aabb<D>, boxes: &[Aabb<D>]) -> &[u32] {
-        // A hair more, for places and reaches are rounded.
+        // Slightly more, because places and reaches are rounded.
         let region = Aabb::new(
             from_fn(|axis| aabb.min[axis] - 1.01 * self.reach[axis]),
             from_fn(|axis| aabb.max[axis] + 1.01 * self.reach[axis]),
@@ -190,7 +190,7 @@ impl<const D: usize> Neighborhood<D> {
         let mut count = 0;
         self.grid.any_row(&region, |cells| {
             let [begin, end] = [cells.start, cells.end].map(|cell| self.starts[cell] as usize);
-            // Each is written, and counts if it overlaps: a branch would be guessed wrong.
+            // Each is written, and counts only if it overlaps: a branch would be mispredicted.
             for &ball in &self.balls[begin..end] {
                 self.found[count] = ball;
                 count += usize::from(overlap(aabb, &boxes[ball as usize]));
@@ -201,7 +201,7 @@ impl<const D: usize> Neighborhood<D> {
     }
 }
 
-/// As [`Aabb::overlaps`], without a branch that would be guessed wrong.
+/// [`Aabb::overlaps`] without a branch, which would be mispredicted.
 fn overlap<const D: usize>(a: &Aabb<D>, b: &Aabb<D>) -> bool {
     (0..D).fold(true, |all, axis| all & (a.min[axis] <= b.max[axis]) & (b.min[axis] <= a.max[axis]))
 }

@@ -38,8 +38,8 @@ pub struct WallContact {
     pub push: f32,
 }
 
-/// The contacts of a substep, with the impulses that those that last had in the substep before.
-/// Their order depends on the balls alone, not on the order in which a broad phase found them.
+/// The contacts of a substep. A contact that the substep before had, too, begins with its impulse. The order of the
+/// contacts depends on the balls alone, not on the order in which a broad phase found them.
 #[derive(Clone, Debug, Default)]
 pub struct Contacts {
     /// From the top down, as gravity sees it; those on one level by their indices.
@@ -88,8 +88,7 @@ impl Contacts {
         self.before.extend(balls.map(|contact| (key(contact.pair), contact.impulse)));
         std::mem::swap(&mut self.walls, &mut self.walls_before);
 
-        // Each is written, and counts if it touches: that about every other does would be guessed
-        // wrong as often.
+        // Each is written, and counts only if it touches. About half do, so a branch would often be mispredicted.
         self.touching.resize(pairs.len(), [0; 2]);
         let mut count = 0;
         for &pair in pairs {
@@ -186,7 +185,7 @@ fn contact<const D: usize>(
 pub fn normal_and_distance<const D: usize>([a, b]: [u32; 2], places: &[Row]) -> (Row, f32) {
     let apart = Row::new(places[b as usize].minus(&places[a as usize]).vector::<D>(), 0.0);
     let square = apart.dot::<D>(&apart);
-    // Below this the square is subnormal, or was rounded to nothing.
+    // Below this the square is subnormal, or was rounded to zero.
     if square < 1e-30 {
         let mut normal = [0.0; D];
         let direction = a.wrapping_add(b) as usize % (2 * D);
@@ -202,7 +201,7 @@ fn find_walls<const D: usize>(bodies: &Bodies<D>, bounds: &Aabb<D>, walls: &mut 
     walls.clear();
     for (body, (position, &radius)) in (0..).zip(bodies.positions.iter().zip(&bodies.radii)) {
         let reach = radius + radius * WALL_MARGIN;
-        // Most are at none: that is one branch a ball, and guessed right.
+        // Most balls are at no wall: that is one branch for each ball, and it is predicted.
         let is_near = (0..D).fold(false, |near, axis| {
             let at = position[axis];
             near | (at - bounds.min[axis] <= reach) | (bounds.max[axis] - at <= reach)

@@ -40,7 +40,7 @@ pub struct Ahead<const D: usize> {
 #[derive(Debug)]
 pub struct Enclosures<const D: usize> {
     pub boxes: Vec<Aabb<D>>,
-    /// Between which places the center has to stay for the ball to be inside its box.
+    /// The region in which the center has to stay for the ball to be inside its box.
     lowest: Vec<[f32; D]>,
     highest: Vec<[f32; D]>,
     /// By axis, at least the greatest side of any box.
@@ -87,8 +87,7 @@ impl<const D: usize> Enclosures<D> {
         }
     }
 
-    /// Makes the box of one ball, which something has sent elsewhere, larger, so that it holds the
-    /// rest of the step too. The box that it was.
+    /// Enlarges the box of a ball that was sent elsewhere, so that it holds the rest of the step, too. Returns the box before.
     pub fn enclose_too(&mut self, ball: u32, bodies: &Bodies<D>, ahead: &Ahead<D>) -> Aabb<D> {
         let ball = ball as usize;
         let before = self.boxes[ball];
@@ -171,7 +170,7 @@ fn extents<const D: usize, const N: usize>(
     let (mut min, mut max) = ([0.0; N], [0.0; N]);
     for i in 0..at.len().min(N) {
         let speed = speeds[i] + kicks[i];
-        // The substep is part of the way; it is here for the sake of rounding.
+        // The end of this substep lies on the path to the end of the step, except for rounding.
         let (next, end) = (at[i] + speed * ahead.time, at[i] + speed * time);
         let fallen = end + falls[i];
         min[i] = lesser(lesser(at[i], next), lesser(end, fallen)) - reaches[i];

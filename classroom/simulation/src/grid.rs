@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use sweep_and_prune::Aabb;
 
-/// Cells of one size, numbered. What lies outside the region belongs to the cells at its rim.
+/// Numbered cells of one size. What lies outside the region belongs to the cells at its border.
 #[derive(Debug)]
 pub struct Grid<const D: usize> {
     origin: [f32; D],
@@ -64,8 +64,7 @@ impl<const D: usize> Grid<D> {
         (0..D).fold(0, |index, axis| index * self.cells[axis] + place[axis])
     }
 
-    /// Monotone in every coordinate, whatever rounds: so no point escapes the search of a region
-    /// that holds it.
+    /// Monotone in every coordinate, whatever is rounded. So the search of a region finds every point in it.
     #[inline]
     fn place(&self, at: [f32; D]) -> [usize; D] {
         from_fn(|axis| {

@@ -22,7 +22,7 @@ impl<const D: usize> Ball<D> {
     }
 }
 
-/// The balls, the box they live in and the laws they obey. [`scenes`](crate::scenes) makes the
+/// The balls, the box that holds them and the laws that move them. [`scenes`](crate::scenes) makes the
 /// usual ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup<const D: usize> {

@@ -16,8 +16,8 @@ use crate::vector::dot;
 /// What one step did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepReport {
-    /// How often the broad phase ran over all balls: once at the beginning, and again where many
-    /// balls at once leave the boxes that were to hold them for the step.
+    /// How often the broad phase ran over all balls: once at the beginning, and again whenever many balls at once left
+    /// the boxes that should hold them for the step.
     pub broad_phases: u32,
     /// What the algorithm did in the first broad phase of the step; `None` is not counted: the
     /// library's finder does not report it, or counting is off.
@@ -39,9 +39,9 @@ pub struct StepReport {
 /// Kinetic and potential energy per unit of mass, in units²/s².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
-    /// Of the velocities at the time of the positions.
+    /// From the velocities at the time of the positions.
     pub kinetic: f64,
-    /// Of the heights above the walls that gravity points to.
+    /// From the heights above the walls to which gravity points.
     pub potential: f64,
 }
 
@@ -64,7 +64,7 @@ pub struct Simulation<const D: usize> {
     collisions: bool,
     counting: bool,
     steps: u64,
-    /// The least that the energy has been under these laws.
+    /// The lowest energy so far under these laws.
     least_energy: f64,
     engine: Engine<D>,
     contacts: Contacts,
@@ -74,7 +74,7 @@ pub struct Simulation<const D: usize> {
     bounced: Vec<u8>,
 }
 
-/// A simulation at one moment, to go back to: all that its motion depends on but the laws.
+/// A simulation at one moment, to which it can return: everything that its motion depends on, except the laws.
 /// Memory: O(balls + contacts).
 #[derive(Clone, Debug)]
 pub struct Moment<const D: usize> {
@@ -126,7 +126,7 @@ impl<const D: usize> Simulation<D> {
         Ok(report)
     }
 
-    /// What it takes to come back to now.
+    /// Saves this moment, so that [`restore`](Self::restore) can return to it.
     pub fn save(&self) -> Moment<D> {
         Moment {
             bodies: self.bodies.clone(),
@@ -229,9 +229,8 @@ impl<const D: usize> Simulation<D> {
         Ok(())
     }
 
-    /// Bounces act on the velocities at the time of the positions, rest on those that carry the
-    /// balls on. How far the energy is then below its least is what moving
-    /// overlapping balls apart may add.
+    /// Bounces change the velocities at the time of the positions, rest the velocities that move the balls next. Moving
+    /// overlapping balls apart may then add as much energy as it has fallen below its lowest so far.
     fn resolve(&mut self, around: &Surroundings<D>) {
         let (threshold, half_kick) = (self.bounce_threshold(), self.half_kick());
         let Self { contacts, bodies, rows, bounced, .. } = self;
@@ -247,11 +246,11 @@ impl<const D: usize> Simulation<D> {
         solver::project(contacts, bodies, rows, around, allowance);
     }
 
-    /// Slows everything down by a hair where the energy has grown: contacts turn while balls slide
-    /// over each other, and within a substep the solver does not see it.
+    /// Slows everything down slightly where the energy has grown: contacts turn while balls slide over each other, which
+    /// the solver does not see within a substep.
     ///
-    /// A ball that comes to rest keeps half a kick as its velocity at the time of the positions, so
-    /// that much is no surplus.
+    /// A ball at rest has half of gravity's change in a substep as its velocity at the time of the positions. That much
+    /// is allowed.
     fn take_surplus(&mut self) {
         let half_kick = self.half_kick();
         let energy = self.energy();

@@ -1,4 +1,4 @@
-//! What contacts do to balls: bounce, rest, and give way. The crate's front page says why so.
+//! What contacts do to balls: bounce, rest, and give way. The documentation of the crate says why.
 
 use crate::bodies::{Bodies, inside_walls};
 use crate::contacts::{Contact, Contacts, Surroundings, WallContact, normal_and_distance};
@@ -13,17 +13,17 @@ const REST_SWEEPS: usize = 4;
 const PROJECT_SWEEPS: usize = 4;
 /// The share of an overlap that one sweep takes away.
 const PROJECT_SHARE: f32 = 0.6;
-/// The overlap that is left alone, in radii of the smaller ball: so contacts at rest last.
+/// The overlap that is not corrected, in radii of the smaller ball, so that contacts at rest persist.
 const SLOP: f32 = 0.01;
 
-/// Bounces all that meet faster than `threshold`: each impulse turns the speed of approach into
-/// `restitution` times as much speed of parting.
+/// Bounces all balls that meet faster than `threshold`: each impulse turns the speed of approach into
+/// `restitution` times that speed of separation.
 ///
 /// Each impulse by itself keeps momentum and, with restitution at most 1, adds no energy; so
 /// neither does any number of them, one after another.
 ///
-/// Two balls whose velocities have not changed since they were looked at would not bounce this time
-/// either. So they are not looked at: `last` is kept by ball, the pass in which it last changed.
+/// Two balls whose velocities have not changed since they were tested would not bounce now either, so they are skipped:
+/// `last` holds for each ball the pass in which it last changed.
 pub fn bounce<const D: usize>(
     contacts: &Contacts,
     velocities: &mut [Row],
@@ -62,8 +62,8 @@ pub fn bounce<const D: usize>(
     }
 }
 
-/// Lets no two that touch approach each other: the smallest change of velocities, measured in
-/// energy, after which no contact closes (projected Gauss-Seidel on the contact impulses).
+/// Stops touching balls from approaching each other, by the smallest change of velocities, measured in energy, after which
+/// no contact closes (projected Gauss-Seidel on the contact impulses).
 ///
 /// The solver starts from the impulses of the substep before, scaled to bring that minimum nearest. Each correction brings it
 /// nearer still, so energy is never added, whether the solver converges or not.
@@ -105,7 +105,7 @@ pub fn rest<const D: usize>(contacts: &mut Contacts, bodies: &Bodies<D>, velocit
     }
 }
 
-/// Corrects the impulse of one contact: as much as it takes, as little as it can be.
+/// Corrects the impulse of one contact: the least impulse that keeps it from closing.
 #[inline]
 fn hold_apart<const D: usize>(contact: &mut Contact, velocities: &mut [Row]) {
     let speed = speed_of_parting::<D>(contact, velocities) + contact.slack;
@@ -125,8 +125,8 @@ fn up_and_down<C>(
     if sweep.is_multiple_of(2) { contacts.rev().for_each(visit) } else { contacts.for_each(visit) }
 }
 
-/// Between the velocities of the balls (0) and `after` (1), where what the resting solver minimizes
-/// is least: it is a parabola on the way. `slack` is what the slack of the contacts adds to its slope.
+/// Where on the line from the velocities of the balls (0) to `after` (1) the quantity that the resting solver minimizes is
+/// least: on that line it is a parabola. `slack` is what the slack of the contacts adds to its slope.
 fn share_of_least_energy<const D: usize>(bodies: &Bodies<D>, after: &[Row], slack: f64) -> f32 {
     let (mut slope, mut curvature) = (slack, 0.0);
     for ((row, &before), &mass) in after.iter().zip(&bodies.velocities).zip(&bodies.masses) {
@@ -140,10 +140,10 @@ fn share_of_least_energy<const D: usize>(bodies: &Bodies<D>, after: &[Row], slac
 /// Moves balls that overlap apart, and back inside the walls, without touching velocities.
 ///
 /// The center of mass of two balls stays where it is, so in uniform gravity moving them apart
-/// costs no energy; but moving a heap off the floor lifts it. What that adds must not exceed
-/// `allowance`, per unit of mass: else the balls are moved only that part of the way.
+/// costs no energy; but moving a heap off the floor lifts it. That may add at most `allowance` of energy per
+/// unit of mass; otherwise the balls are moved only the part of the way that adds this much.
 ///
-/// `rows` are of the balls where they are, and become where they would be with no such limit.
+/// `rows` holds the balls where they are, and afterwards where they would be without that limit.
 pub fn project<const D: usize>(
     contacts: &Contacts,
     bodies: &mut Bodies<D>,
@@ -152,7 +152,7 @@ pub fn project<const D: usize>(
     allowance: f64,
 ) {
     let places = &mut rows.places[..];
-    // Their last coordinate, the radius, stays.
+    // The last coordinate of a row, the radius, stays.
     let lowest = Row::new(around.bounds.min, f32::NEG_INFINITY);
     let highest = Row::new(around.bounds.max, f32::INFINITY);
     for sweep in 0..PROJECT_SWEEPS {
@@ -213,7 +213,7 @@ fn move_apart<const D: usize>(contact: &Contact, places: &mut [Row]) -> bool {
     overlap
 }
 
-/// How fast two balls part; negative if they approach.
+/// How fast two balls move apart; negative if they approach.
 #[inline]
 fn speed_of_parting<const D: usize>(contact: &Contact, velocities: &[Row]) -> f32 {
     let [a, b] = contact.pair.map(|id| &velocities[id as usize]);
@@ -227,7 +227,7 @@ fn push_apart(contact: &Contact, impulse: f32, velocities: &mut [Row]) {
     velocities[b].add_scaled(&contact.normal, impulse * contact.inverse_masses[1]);
 }
 
-/// The velocity across the wall; along `inward` it parts from the wall.
+/// The velocity across the wall; the ball moves away from the wall if it has the sign of `inward`.
 #[inline]
 fn speed_from_wall<'a>(wall: &WallContact, velocities: &'a mut [Row]) -> &'a mut f32 {
     &mut velocities[wall.body as usize].0[wall.axis as usize]

@@ -30,8 +30,8 @@ pub fn add_scaled<const D: usize>(a: &mut [f32; D], b: [f32; D], scale: f32) {
     }
 }
 
-/// A vector of up to three dimensions in one of four coordinates, which is what a processor's vector
-/// instructions take at once. What its last coordinates are is said where it is used.
+/// A vector of up to three dimensions, stored in four coordinates, which a processor's vector instructions process at
+/// once. Each user says what the last coordinates hold.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(16))]
 pub struct Row(pub [f32; 4]);
@@ -49,20 +49,20 @@ impl Row {
         from_fn(|axis| self.0[axis])
     }
 
-    /// As [`difference`], and of the further coordinates too.
+    /// [`difference`], also of the further coordinates.
     #[inline]
     pub fn minus(&self, other: &Self) -> Self {
         Self(difference(self.0, other.0))
     }
 
-    /// As [`dot`], of the first `D` coordinates.
+    /// [`dot`] of the first `D` coordinates.
     #[inline]
     pub fn dot<const D: usize>(&self, other: &Self) -> f32 {
         let products: [f32; 4] = from_fn(|axis| self.0[axis] * other.0[axis]);
         products[1..D].iter().fold(products[0], |sum, product| sum + product)
     }
 
-    /// As [`add_scaled`], to the further coordinates too.
+    /// [`add_scaled`], also to the further coordinates.
     #[inline]
     pub fn add_scaled(&mut self, other: &Self, scale: f32) {
         add_scaled(&mut self.0, other.0, scale);
