@@ -7,6 +7,8 @@ import { showLoadFailure } from "./load-failed.ts";
 
 customElements.define("hero-boxes", HeroBoxes);
 
+const DEMOS = "sap-demo, falling-balls, library-trial, fast-sweep, three-structures";
+
 /** The script of the demos; where it does not load, each of them says so. */
 let isLoading = false;
 function loadDemos(): void {
@@ -29,8 +31,8 @@ const near = new IntersectionObserver(
   },
   { rootMargin: "300px" },
 );
-for (const element of document.querySelectorAll("sap-demo, falling-balls, library-trial")) near.observe(element);
+for (const element of document.querySelectorAll(DEMOS)) near.observe(element);
 // A link into the article: its demos are fetched before the page is laid out.
-if (document.getElementById(location.hash.slice(1))?.querySelector("sap-demo")) loadDemos();
+if (document.getElementById(location.hash.slice(1))?.matches(`:has(${DEMOS}), section:has(${DEMOS}) *`)) loadDemos();
 
 startArticle();

@@ -320,7 +320,7 @@ test.describe("without scripts", () => {
     await page.goto("/");
     await expect(page.locator("main section h2")).toHaveCount(15);
     await expect(page.locator("figure.listing pre .line").first()).toBeVisible();
-    await expect(page.locator("svg.figure")).toHaveCount(10);
+    await expect(page.locator("svg.figure")).toHaveCount(9);
     await expect(page.locator("#cost table").first()).toBeVisible();
   });
 });

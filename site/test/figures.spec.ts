@@ -3,7 +3,7 @@ import { expect, test } from "@playwright/test";
 // The parts of the site that do not move and do not hang on the fonts of the machine: the shapes of
 // the figures, their words hidden. Anything else would fail on the next machine.
 
-const FIGURES = ["all-pairs", "box-test", "transitivity", "endpoint-array", "sweep-line", "space-time", "columns", "lanes", "measured", "measured-narrow"];
+const FIGURES = ["all-pairs", "box-test", "transitivity", "endpoint-array", "sweep-line", "space-time", "columns", "measured", "measured-narrow"];
 
 for (const colorScheme of ["light", "dark"] as const) {
   test(`figures in ${colorScheme} look as they did`, async ({ page }) => {

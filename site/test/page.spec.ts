@@ -1,3 +1,4 @@
+import { readFileSync } from "node:fs";
 import { gzipSync } from "node:zlib";
 import { expect, test } from "@playwright/test";
 import { complaints, cutOff, overflow, PAGES, RACE, requestsElsewhere, scrolledThrough, tabbedThrough, tooSmall, violations, watchShifts } from "./support/pages.ts";
@@ -103,6 +104,24 @@ test("the documentation of each language that there is can be reached, and is of
     await expect(page).toHaveURL(/\/api\.html$/);
   }
   expect(heard).toEqual([]);
+});
+
+test("users of matter, cannon and bedtools find their page from the API page, with what the documents say", async ({ page }) => {
+  const read = (file: string): string => readFileSync(new URL(`../../${file}`, import.meta.url), "utf8");
+  for (const [link, name] of [["In the place of the broad phase of matter or cannon", "matter"], ["For users of bedtools", "bedtools"]] as const) {
+    await page.goto("/api.html");
+    await page.getByRole("link", { name: link }).click();
+    await expect(page.locator(`#${name}`)).toBeInViewport();
+  }
+  const physics = read("js/docs/physics.md");
+  const codes = await page.locator("pre code").evaluateAll((all) => all.map((code) => code.textContent!));
+  expect(codes).toHaveLength(2);
+  for (const code of codes) expect(physics).toContain(code);
+  const table = read("docs/guide/from-other-libraries.md").split("## bedtools")[1]!.split("\n## ")[0]!;
+  const cells = await page.locator("tbody td code").allTextContents();
+  expect(cells.length).toBeGreaterThan(20);
+  expect(cells).toEqual([...table.matchAll(/`([^`]*)`/g)].map(([, code]) => code).slice(-cells.length));
+  expect(cells.filter((cell) => cell.startsWith("bedtools "))).toHaveLength(table.split("\n| `bedtools").length - 1);
 });
 
 test("the guide, and the folder of the crate's documentation, can be reached", async ({ page }) => {

@@ -77,6 +77,8 @@
 
 mod brute;
 mod columns;
+#[cfg(all(test, feature = "std"))]
+mod columns_record;
 
 mod crowding;
 mod driver;

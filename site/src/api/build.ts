@@ -1,6 +1,6 @@
 // The API page: highlighted examples, and links to the documentation of each language if it was built.
 
-import { existsSync } from "node:fs";
+import { existsSync, readFileSync } from "node:fs";
 import type { Plugin } from "vite";
 import { highlight } from "../code/listing.ts";
 
@@ -53,6 +53,32 @@ const INSTALLATION: Readonly<Record<keyof typeof EXAMPLES, readonly (readonly [s
 const copyable = (code: string, what: string): string =>
   `<div class="listing">${code}<button type="button" class="small" data-part="copy" aria-label="Copy ${what}">Copy</button></div>`;
 
+/** What stands below a heading of a document of this repository: its lines, up to the next heading. */
+function below(file: string, heading: string): string[] {
+  const lines = readFileSync(new URL(`../../../${file}`, import.meta.url), "utf8").split("\n");
+  const at = lines.indexOf(`## ${heading}`);
+  if (at < 0) throw new Error(`${file} has no heading "${heading}"`);
+  const end = lines.findIndex((line, place) => place > at && line.startsWith("## "));
+  return lines.slice(at + 1, end < 0 ? undefined : end);
+}
+
+/** The first code below a heading. */
+function codeBelow(file: string, heading: string): string {
+  const lines = below(file, heading);
+  const begin = lines.findIndex((line) => line.startsWith("```"));
+  const code = lines.slice(begin + 1, lines.indexOf("```", begin + 1)).join("\n");
+  return copyable(highlight(code, "javascript", `sweep-and-prune with ${heading}`), "the example");
+}
+
+/** The table below a heading, whose cells are code. */
+function tableBelow(file: string, heading: string): string {
+  const [head = [], , ...rows] = below(file, heading).filter((line) => line.startsWith("|")).map((line) => line.slice(2, -2).split(" | "));
+  const cell = (text: string): string => text.replaceAll("<", "&lt;").replace(/`([^`]*)`/g, "<code>$1</code>");
+  return `<div class="table-scroll" tabindex="0" role="region" aria-label="${heading} and sap">
+        <table><thead><tr>${head.map((text) => `<th scope="col">${cell(text)}</th>`).join("")}</tr></thead>
+        <tbody>${rows.map((row) => `<tr>${row.map((text) => `<td>${cell(text)}</td>`).join("")}</tr>`).join("")}</tbody></table></div>`;
+}
+
 /** The first page of each language’s documentation, below public/. */
 const DOCUMENTATION = {
   rust: "api/rust/sweep_and_prune/index.html",
@@ -72,6 +98,8 @@ export const api: Plugin = {
           const example = copyable(highlight(code, language, `an example in ${language}`), "the example");
           return `<div class="examples">${INSTALLATION[name].map(([says, line]) => `<p>${says}</p>${copyable(highlight(line, "shell", `installation for ${says}`), line)}`).join("")}<p>Find pairs</p>${example}</div>`;
         })
+        .replace(/<guide-code file="([^"]*)" heading="([^"]*)"><\/guide-code>/g, (_, file: string, heading: string) => codeBelow(file, heading))
+        .replace(/<guide-table file="([^"]*)" heading="([^"]*)"><\/guide-table>/g, (_, file: string, heading: string) => tableBelow(file, heading))
         .replace(/<api-link name="(rust|js|python|guide)">(.*?)<\/api-link>/g, (_, name: keyof typeof DOCUMENTATION, text: string) => {
           const path = DOCUMENTATION[name];
           const exists = existsSync(new URL(`../../public/${path}`, import.meta.url));

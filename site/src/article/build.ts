@@ -8,6 +8,7 @@ import { legend } from "./legend.ts";
 import { highlight, listing } from "../code/listing.ts";
 import { withPosters } from "./poster.ts";
 import { spaceTime } from "./space-time.ts";
+import { inside as fastSweep } from "../lanes/picture.ts";
 import { expandStructures } from "../structures/build.ts";
 import { SITE } from "../shell/pages.ts";
 
@@ -31,6 +32,9 @@ const SECTIONS = [
 ] as const;
 
 const WORDS_A_MINUTE = 200;
+
+/** The columns of a real search of the library. */
+const COLUMNS = new URL("../../../core/src/pairs/columns.txt", import.meta.url);
 
 export const article: Plugin = {
   name: "article",
@@ -75,6 +79,7 @@ findPairs(boxes, { dimensions: 2 }); // 0, 2`;
 function expand(page: string): string {
   return expandStructures(withPosters(page))
     .replace("<space-time></space-time>", () => `<space-time>${spaceTime()}</space-time>`)
+    .replace("<fast-sweep></fast-sweep>", () => `<fast-sweep>${fastSweep(readFileSync(COLUMNS, "utf8"))}</fast-sweep>`)
     .replaceAll("%SITE%", SITE)
     .replace("<trial-code></trial-code>", () => highlight(TRIAL, "javascript", "how to call the library"))
     .replace(/<code-listing name="([^"]*)"(?: follows="([^"]*)")?><\/code-listing>/g, (_, name: string, follows?: string) =>

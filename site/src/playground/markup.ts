@@ -60,7 +60,7 @@ function markup(): string {
         <input type="file" data-part="file" accept=".csv,.json,.txt,text/csv,application/json,text/plain" aria-label="A file with boxes" hidden />
         <p data-part="selected" role="status"></p>
         <p data-part="imported" role="status"></p>
-        <p class="hint">Blue-green boxes overlap another. Drag a box to move it, or choose <em>Draw</em> and drag where there is none. Files: CSV or JSON, by the button or dropped on the picture.</p>
+        <p class="hint">Boxes of <span class="is-overlap">this color</span> overlap another. Drag a box to move it, or choose <em>Draw</em> and drag where there is none. Files: CSV or JSON, by the button or dropped on the picture.</p>
         <details>
           <summary>Paste boxes as text</summary>
           <textarea data-part="pasted" rows="5" spellcheck="false" aria-label="Boxes as CSV or JSON" autocomplete="off">min_x,min_y,max_x,max_y

@@ -1,7 +1,7 @@
 // What the figure of three structures shows: three panels of one world, as html. Written when the site is built, and
 // again whenever a box is moved.
 
-import { type Box, grid, HEIGHT, type Pair, sweep, tree, WIDTH, type Work, world } from "./structures.ts";
+import { type Box, grid, HEIGHT, linesOf, type MemoryArray, type Pair, sweep, tree, WIDTH, type Work, world } from "./structures.ts";
 
 export const structures = [
   { name: "Sweep", says: "along x", run: sweep },
@@ -35,6 +35,7 @@ export function panels(boxes: readonly Box[], chosen: number): string {
       return `<figure class="structure" data-structure="${name.toLowerCase()}">
         <p class="structure-name"><strong>${name}</strong> ${says}</p>
         ${picture(boxes, work, chosen, ofChosen, `${name}: ${boxes.length} boxes; box ${chosen + 1} is tested against ${ofChosen.size} others.`)}
+        ${memory(work.memoryOf(chosen))}
         <div class="structure-bar" aria-hidden="true"><span style="width:${share.toFixed(1)}%"></span></div>
         <p class="structure-count"><strong data-part="tests">${work.tests.length}</strong> box tests, and ${work.beside}</p>
       </figure>`;
@@ -56,6 +57,15 @@ function picture(boxes: readonly Box[], work: Work, chosen: number, tested: Read
   // The one that is chosen is never hidden.
   const last = shapes.splice(chosen, 1);
   return `<svg viewBox="0 0 ${WIDTH} ${HEIGHT}" role="img" aria-label="${label}">${work.partsOf(boxes[chosen]!).map((part) => rect(part, "looked")).join("")}${work.parts.map((part) => rect(part, "part")).join("")}${shapes.join("")}${last.join("")}</svg>`;
+}
+
+/** A cell for each cache line: filled where it is loaded to find the partners of the box in question. */
+function memory(arrays: readonly MemoryArray[]): string {
+  const all = arrays.map((array) => ({ name: array.name, lines: linesOf(array) }));
+  const loaded = all.reduce((sum, { lines }) => sum + lines.filter(Boolean).length, 0);
+  const rows = all.map(({ lines, name }) => `<span class="memory-row" title="${name}">${lines.map((isLoaded) => `<i${isLoaded ? ' class="loaded"' : ""}></i>`).join("")}</span>`);
+  return `<div class="memory" role="img" aria-label="Memory: ${all.map(({ name, lines }) => `${name}, ${lines.filter(Boolean).length} of ${lines.length} cache lines`).join("; ")}">${rows.join("")}</div>
+        <p class="structure-count"><strong data-part="lines">${loaded}</strong> cache lines for this box</p>`;
 }
 
 function rect({ left, top, right, bottom }: Box, kind: string): string {

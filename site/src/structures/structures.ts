@@ -28,7 +28,32 @@ export interface Work {
   readonly parts: readonly Box[];
   /** Where it looks for the partners of a box. */
   partsOf(box: Box): Box[];
+  /** Its arrays in memory, and what of them is read to find the partners of a box. */
+  memoryOf(id: number): readonly MemoryArray[];
 }
+
+/** An array, and which of its items are read. */
+export interface MemoryArray {
+  readonly name: string;
+  /** The bytes of an item, and how many there are. */
+  readonly bytes: number;
+  readonly count: number;
+  readonly read: ReadonlySet<number>;
+}
+
+/** A processor loads memory by lines of this many bytes. */
+const CACHE_LINE = 64;
+
+/** Of each cache line of an array, whether it is loaded. */
+export const linesOf = ({ bytes, count, read }: MemoryArray): boolean[] => {
+  const lines = Array.from({ length: Math.ceil((bytes * count) / CACHE_LINE) }, () => false);
+  for (const item of read) lines[Math.floor((bytes * item) / CACHE_LINE)] = true;
+  return lines;
+};
+
+/** Bytes of a box, and of the number of one. */
+const BOX = 16;
+const NUMBER = 4;
 
 /** Sorts by left edge, and tests each box against those that begin before it ends. */
 export function sweep(boxes: readonly Box[]): Work {
@@ -43,6 +68,14 @@ export function sweep(boxes: readonly Box[]): Work {
     beside: `${counts.comparisons} comparisons to sort`,
     parts: [],
     partsOf: ({ left, right }) => [{ left, right, top: 0, bottom: HEIGHT }],
+    memoryOf: (id) => {
+      // The array is sorted: it is read from the box on, up to the first that begins too late.
+      const sorted = [...boxes.keys()].sort((a, b) => boxes[a]!.left - boxes[b]!.left || a - b);
+      const from = sorted.indexOf(id);
+      const end = sorted.findIndex((other, at) => at > from && boxes[other]!.left > boxes[id]!.right);
+      const read = sorted.map((_, at) => at).slice(from, end < 0 ? undefined : end + 1);
+      return [{ name: "sorted boxes", bytes: BOX, count: boxes.length, read: new Set(read) }];
+    },
   };
 }
 
@@ -81,7 +114,17 @@ export function grid(boxes: readonly Box[], size = 40): Work {
     const [left, top] = [(cell % across) * size, Math.floor(cell / across) * size];
     return { left, top, right: left + size, bottom: top + size };
   };
-  return { tests, pairs, beside: `${copies} entries in cells`, parts: [...cells.keys()].map(boxOf), partsOf: (box) => cellsOf(box).map(boxOf) };
+  const memoryOf = (id: number): MemoryArray[] => {
+    // The lists of the cells stand one behind the other, and name boxes that stand elsewhere.
+    const starts = cells.map((_, cell) => cells.slice(0, cell).reduce((sum, { length }) => sum + length, 0));
+    const touched = cellsOf(boxes[id]!);
+    const entries = touched.flatMap((cell) => cells[cell]!.map((_, at) => starts[cell]! + at));
+    return [
+      { name: "lists of cells", bytes: NUMBER, count: copies, read: new Set(entries) },
+      { name: "boxes", bytes: BOX, count: boxes.length, read: new Set(touched.flatMap((cell) => cells[cell]!)) },
+    ];
+  };
+  return { tests, pairs, beside: `${copies} entries in cells`, parts: [...cells.keys()].map(boxOf), partsOf: (box) => cellsOf(box).map(boxOf), memoryOf };
 }
 
 interface Node {
@@ -97,8 +140,11 @@ const LEAF = 4;
 export function tree(boxes: readonly Box[]): Work {
   const root = node(boxes, [...boxes.keys()]);
   let visits = 0;
-  const visit = (box: Box, { children, ids, box: bounds }: Node, leaf: (ids: readonly number[], bounds: Box) => void): void => {
+  let visited = new Set<Node>();
+  const visit = (box: Box, at: Node, leaf: (ids: readonly number[], bounds: Box) => void): void => {
+    const { children, ids, box: bounds } = at;
     visits++;
+    visited.add(at);
     if (!overlaps(box, bounds)) return;
     if (children.length === 0) leaf(ids, bounds);
     for (const child of children) visit(box, child, leaf);
@@ -115,15 +161,28 @@ export function tree(boxes: readonly Box[]): Work {
     });
   }
   const beside = `${visits} tests of nodes`;
-  const found: Box[] = [];
-  const collect = ({ children, box }: Node): void => (children.length === 0 ? void found.push(box) : children.forEach(collect));
+  /** The nodes in the order in which they were made, parents first. */
+  const nodes: Node[] = [];
+  const collect = (each: Node): void => {
+    nodes.push(each);
+    each.children.forEach(collect);
+  };
   collect(root);
+  const found = nodes.filter(({ children }) => children.length === 0).map(({ box }) => box);
   const partsOf = (box: Box): Box[] => {
     const looked: Box[] = [];
     visit(box, root, (_, bounds) => void looked.push(bounds));
     return looked;
   };
-  return { tests, pairs, beside, parts: found, partsOf };
+  const memoryOf = (id: number): MemoryArray[] => {
+    visited = new Set();
+    const read = new Set<number>();
+    visit(boxes[id]!, root, (ids) => ids.forEach((other) => read.add(other)));
+    // A node is its box and where its children or boxes stand.
+    const ofNodes = { name: "nodes", bytes: 2 * BOX, count: nodes.length, read: new Set(nodes.flatMap((each, at) => (visited.has(each) ? [at] : []))) };
+    return [ofNodes, { name: "boxes", bytes: BOX, count: boxes.length, read }];
+  };
+  return { tests, pairs, beside, parts: found, partsOf, memoryOf };
 }
 
 function node(boxes: readonly Box[], ids: number[]): Node {

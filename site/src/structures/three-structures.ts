@@ -76,6 +76,12 @@ export class ThreeStructures extends HTMLElement {
     return this.#boxes.map(({ left, top, right, bottom }) => [left, top, right, bottom]);
   }
 
+  /** The box in question. */
+  set chosen(id: number) {
+    this.#chosen = id;
+    this.#show();
+  }
+
   /** The pairs that each structure finds. */
   get found(): Pair[][] {
     return structures.map(({ run }) => [...run(this.#boxes).pairs]);

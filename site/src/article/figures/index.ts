@@ -1,7 +1,7 @@
 // The figures of the explanation, by name.
 
 import { boxTest, transitivity } from "./boxes.ts";
-import { columns, lanes } from "./columns.ts";
+import { columns } from "./columns.ts";
 import { endpointArray, sweepLine } from "./endpoints.ts";
 import { allPairs, measured } from "./growth.ts";
 
@@ -12,6 +12,5 @@ export const figures: Readonly<Record<string, () => string>> = {
   "endpoint-array": endpointArray,
   "sweep-line": sweepLine,
   columns,
-  lanes,
   measured,
 };

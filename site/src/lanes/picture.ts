@@ -1,0 +1,98 @@
+// What `<fast-sweep>` shows of one step: the boxes, the arrays of their column in memory, and the lanes of a vector.
+
+import { LINE, readRecord, type Step, stepsOf } from "./sweep-steps.ts";
+
+export const WIDTHS = [1, 4, 8, 16] as const;
+const WIDE = 560;
+
+export interface Shown {
+  readonly steps: readonly Step[];
+  readonly html: (step: number) => string;
+}
+
+const rect = (x: number, y: number, width: number, height: number, kind: string): string =>
+  `<rect x="${x.toFixed(1)}" y="${y.toFixed(1)}" width="${width.toFixed(1)}" height="${height.toFixed(1)}" class="${kind}"/>`;
+
+/** The sweep of the largest column of a recorded search, with vectors of this many lanes. */
+export function sweepOf(record: string, width: number): Shown {
+  const { columns } = readRecord(record);
+  const column = columns.reduce((largest, each) => (each.length > largest.length ? each : largest));
+  const all = columns.flat();
+  const steps = stepsOf(column, width);
+  const [left, right] = [Math.min(...all.map((box) => box.left)), Math.max(...all.map((box) => box.right))];
+  const [top, bottom] = [Math.min(...all.map((box) => box.min)), Math.max(...all.map((box) => box.max))];
+  const height = 300;
+  const x = (at: number): number => ((at - left) * WIDE) / (right - left);
+  const y = (at: number): number => ((at - top) * height) / (bottom - top);
+  const tests = stepsOf(column, 1).length;
+
+  const scene = ({ probe, from, lanes, hits }: Step): string => {
+    const others = all.filter((box) => !column.some(({ id }) => id === box.id)).map((box) => rect(x(box.left), y(box.min), x(box.right) - x(box.left), y(box.max) - y(box.min), "other"));
+    const boxes = column.map((box, at) => {
+      const kind = at === probe ? "probe" : hits.includes(at) ? "hit" : at >= from && at < from + lanes.length ? "lane" : "box";
+      return rect(x(box.left), y(box.min), x(box.right) - x(box.left), y(box.max) - y(box.min), kind);
+    });
+    return `<svg viewBox="-2 -2 ${WIDE + 4} ${height + 4}" role="img" aria-label="A column of ${column.length} boxes; box number ${probe + 1} is compared with ${lanes.length === 1 ? "the one" : `the ${lanes.length}`} at ${from + 1}.">${others.join("")}${boxes.join("")}${boxes[probe]}</svg>`;
+  };
+
+  const cell = WIDE / (Math.ceil((column.length + 16) / LINE) * LINE + 4);
+  const memory = ({ probe, from, lanes }: Step): string => {
+    const rows = (["left", "min", "max"] as const).map((name, row) => {
+      const begin = 62;
+      const place = (at: number): number => begin + (at * (WIDE - begin)) / (WIDE / cell) + (Math.floor(at / LINE) * (WIDE - begin)) / WIDE * 3;
+      const size = ((WIDE - begin) * cell) / WIDE;
+      const loaded = Math.floor((from + lanes.length - 1) / LINE);
+      const cells = Array.from({ length: column.length }, (_, at) => {
+        const inVector = at >= from && at < from + lanes.length;
+        const line = Math.floor(at / LINE);
+        const kind = at === probe ? "probe" : inVector ? "lane" : line <= loaded ? "loaded" : "cell";
+        return rect(place(at), 6 + 26 * row, size * 0.86, 18, kind);
+      });
+      return `<text x="0" y="${20 + 26 * row}">${{ left: "left", min: "top", max: "bottom" }[name]}</text>${cells.join("")}`;
+    });
+    return `<svg viewBox="0 0 ${WIDE} 86" role="img" aria-label="Three arrays in memory, in cache lines of ${LINE} numbers. A vector of ${lanes.length} from position ${from + 1} is loaded from each.">${rows.join("")}</svg>`;
+  };
+
+  const vector = ({ lanes, hits, from }: Step): string => {
+    const says = [
+      ["b.left ≤ a.right", ({ begun }: Step["lanes"][number]) => begun],
+      ["b.top ≤ a.bottom", ({ above }: Step["lanes"][number]) => above],
+      ["b.bottom ≥ a.top", ({ below }: Step["lanes"][number]) => below],
+      ["all three", ({ begun, above, below }: Step["lanes"][number]) => begun && above && below],
+    ] as const;
+    const size = Math.min(30, (WIDE - 150) / lanes.length);
+    const rows = says.map(([name, holds], row) => {
+      const top = 4 + 30 * row + (row === 3 ? 6 : 0);
+      return `<text x="0" y="${top + 18}">${name}</text>${lanes.map((lane, at) => rect(150 + size * at, top, size - 3, 24, holds(lane) ? "yes" : "no")).join("")}`;
+    });
+    const found = hits.length === 0 ? "none overlaps" : hits.length === 1 ? `number ${hits[0]! + 1} overlaps` : `numbers ${hits.map((at) => at + 1).join(" and ")} overlap`;
+    return `<svg viewBox="0 0 ${WIDE} 134" role="img" aria-label="The comparisons of the lanes from number ${from + 1} on: ${found}.">${rows.join("")}</svg>`;
+  };
+
+  return {
+    steps,
+    html: (at) => {
+      const step = steps[at]!;
+      const linesSoFar = Math.floor((step.from + width - 1) / LINE) + 1;
+      return `${scene(step)}${memory(step)}${vector(step)}
+        <p class="fast-count"><strong>${at + 1}</strong> of ${steps.length} steps (one lane: ${tests.toLocaleString("en")}); <strong>${Math.min(linesSoFar, Math.ceil(column.length / LINE))}</strong> of ${Math.ceil(column.length / LINE)} cache lines of each array loaded</p>`;
+    },
+  };
+}
+
+/** The step that is shown first: one that finds something in the middle of the column. */
+export function firstStep({ steps }: Shown): number {
+  const middle = steps.findIndex(({ hits }, at) => at > steps.length / 3 && hits.length > 0);
+  return Math.max(0, middle);
+}
+
+/** All that stands in a `<fast-sweep>` at first. Its controls can be used once there are scripts. */
+export function inside(record: string): string {
+  const shown = sweepOf(record, 8);
+  const at = firstStep(shown);
+  return `<div class="fast-picture">${shown.html(at)}</div>
+    <div class="choices">
+      <label>Step <input type="range" min="0" max="${shown.steps.length - 1}" value="${at}" autocomplete="off" disabled /></label>
+      <label>Lanes <select autocomplete="off" disabled>${WIDTHS.map((width) => `<option${width === 8 ? " selected" : ""}>${width}</option>`).join("")}</select></label>
+    </div>`;
+}

@@ -1,0 +1,71 @@
+// The sweep of a column as the kernels of the library do it, step by step: each step loads one vector of each array. The columns
+// are those of a real search, recorded by core/src/pairs/columns_record.rs.
+
+export interface Entry {
+  readonly left: number;
+  readonly right: number;
+  readonly min: number;
+  readonly max: number;
+  readonly id: number;
+  /** On which cut axes it began in an earlier column. */
+  readonly dedup: number;
+}
+
+export type Column = readonly Entry[];
+
+/** The columns and the pairs of the record. */
+export function readRecord(text: string): { readonly columns: readonly Column[]; readonly pairs: readonly (readonly [number, number])[] } {
+  const columns: Entry[][] = [];
+  const pairs: [number, number][] = [];
+  for (const line of text.trim().split("\n")) {
+    if (line.startsWith("column")) columns.push([]);
+    else if (line.startsWith("pair")) pairs.push(line.split(" ").slice(1).map(Number) as [number, number]);
+    else {
+      const [left = 0, right = 0, min = 0, max = 0, id = 0, dedup = 0] = line.split(" ").map(Number);
+      columns.at(-1)!.push({ left, right, min, max, id, dedup });
+    }
+  }
+  return { columns, pairs };
+}
+
+/** The numbers of a cache line of 64 bytes. */
+export const LINE = 16;
+
+/** One vector of each array, compared with one box. */
+export interface Step {
+  /** The position of the box whose partners are looked for. */
+  readonly probe: number;
+  /** The position of the first lane. */
+  readonly from: number;
+  /** Of each lane, what the three comparisons say; behind the last box nothing holds. */
+  readonly lanes: readonly { readonly begun: boolean; readonly above: boolean; readonly below: boolean }[];
+  /** The positions that overlap. */
+  readonly hits: readonly number[];
+}
+
+/** All steps of the sweep of a column with vectors of this many lanes. */
+export function stepsOf(column: Column, width: number): Step[] {
+  const steps: Step[] = [];
+  for (const [probe, a] of column.entries()) {
+    for (let from = probe + 1; ; from += width) {
+      const lanes = Array.from({ length: width }, (_, lane) => {
+        const b = column[from + lane];
+        return { begun: b !== undefined && b.left <= a.right, above: b !== undefined && b.min <= a.max, below: b !== undefined && a.min <= b.max };
+      });
+      const hits = lanes.flatMap(({ begun, above, below }, lane) => (begun && above && below ? [from + lane] : []));
+      steps.push({ probe, from, lanes, hits });
+      // They are sorted: if the last lane has begun, there may be more.
+      if (!lanes.at(-1)!.begun) break;
+    }
+  }
+  return steps;
+}
+
+/** The pairs that a column reports: where two boxes began together in an earlier column, that one reports them. */
+export const reportedBy = (column: Column): [number, number][] =>
+  stepsOf(column, 1).flatMap(({ probe, hits }) =>
+    hits.filter((at) => (column[at]!.dedup & column[probe]!.dedup) === 0).map((at): [number, number] => {
+      const [a, b] = [column[probe]!.id, column[at]!.id];
+      return a < b ? [a, b] : [b, a];
+    }),
+  );
