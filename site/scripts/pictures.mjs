@@ -17,14 +17,14 @@ const lastStep = Number(process.argv[2] ?? 75);
 
 /** Leaves the view and, below it, four figures that hold on any machine or are worth comparing. */
 const STYLE = `
-  #spheres { padding: 0; margin: 0; max-width: none; }
-  #spheres .panel { display: block; width: 44rem; padding: 1rem; background: var(--paper, Canvas); }
-  #spheres .panel-stage { aspect-ratio: 16 / 10; }
-  #spheres :is(.panel-transport, .panel-world, .panel-method, .panel-stages, h3) { display: none; }
-  #spheres:not(.paused) .panel-stage { width: 4rem; }
-  #spheres .panel-counters { display: grid; grid-template-columns: 1fr 1fr; gap: 0 2.5rem; margin-top: 0.75rem; }
-  #spheres .counter:not([data-counter=brute-force], [data-counter=pairs], [data-counter=broad-phase], [data-counter=narrow-phase]) { display: none; }
-  #spheres .counter { font-size: 1.0625rem; color: inherit; border: 0; }
+  box-playground { padding: 0; margin: 0; max-width: none; }
+  box-playground .panel { display: block; width: 44rem; padding: 1rem; background: var(--paper, Canvas); }
+  box-playground .panel-stage { aspect-ratio: 16 / 10; }
+  box-playground :is(.panel-transport, .panel-world, .panel-tools, .panel-lanes > :not(.lanes), .lane legend, .lane .field, .export) { display: none; }
+  box-playground:not(.paused) .panel-stage { width: 4rem; }
+  box-playground .lane dl { display: grid; grid-template-columns: 1fr 1fr; gap: 0 2.5rem; margin-top: 0.75rem; }
+  box-playground .counter:not([data-counter=pairs], [data-counter=ms]) { display: none; }
+  box-playground .counter { font-size: 1.0625rem; color: inherit; border: 0; }
 `;
 
 const server = await preview({ root: site, preview: { host: "127.0.0.1", port: 4300 }, logLevel: "error" });
@@ -34,11 +34,9 @@ const browser = await chromium.launch({
 });
 try {
   const page = await browser.newPage({ deviceScaleFactor: 2, viewport: { width: 1000, height: 700 } });
-  await page.goto(new URL("falling.html", server.resolvedUrls.local[0]).href);
-  // The discs would take half of the processor.
-  await page.evaluate(() => document.getElementById("discs").closest("section").remove());
+  await page.goto(new URL("playground.html?scene=falling+balls&dimensions=3&boxes=10000&algorithm=find+pairs", server.resolvedUrls.local[0]).href);
   await page.addStyleTag({ content: STYLE });
-  const spheres = page.locator("#spheres");
+  const spheres = page.locator("box-playground");
   await spheres.scrollIntoViewIfNeeded();
   const moment = spheres.locator("[data-part=moment]");
   const step = async () => Number(/\d[\d,]*/.exec((await moment.textContent()) ?? "")?.[0].replaceAll(",", "") ?? 0);

@@ -1,13 +1,13 @@
 import { expect, type Locator, type Page } from "@playwright/test";
 
-/** One simulation of falling balls, as its visitor handles it. */
+/** The falling discs of the article, as their visitor handles them. */
 export class FallingBalls {
   readonly root: Locator;
   readonly algorithm: Locator;
   readonly play: Locator;
   readonly status: Locator;
 
-  constructor(page: Page, id: "discs" | "spheres") {
+  constructor(page: Page, id: "few" = "few") {
     this.root = page.locator(`#${id}`);
     this.algorithm = this.root.getByLabel("Algorithm");
     this.play = this.root.locator('[data-part="play"]');

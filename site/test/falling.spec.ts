@@ -1,20 +1,102 @@
-import { gzipSync } from "node:zlib";
-import { expect, test } from "@playwright/test";
-import { FallingBalls } from "./falling-balls.ts";
+// The scene of falling balls in the playground: discs and spheres, searched by any of the algorithms.
+import { expect, type Locator, type Page, test } from "@playwright/test";
+import { complaints } from "./support/pages.ts";
 
-test("three.js is not loaded before the spheres are near, and the first page is light", async ({ page }) => {
-  let bytes = 0;
-  const scripts: string[] = [];
-  page.on("response", async (response) => {
-    if (response.url().endsWith(".js")) scripts.push(response.url());
-    bytes += gzipSync(await response.body().catch(() => Buffer.alloc(0))).length;
+const SCENE = "/playground.html?scene=falling+balls";
+
+async function open(page: Page, query: string): Promise<{ root: Locator; step(count: number): Promise<void>; world(): Promise<{ boxes: number[][]; pairs: number }> }> {
+  await page.goto(SCENE + query);
+  const root = page.locator("box-playground");
+  await expect(root).toHaveAttribute("data-step", /^\d+$/);
+  return {
+    root,
+    step: async (count) => {
+      for (let done = 0; done < count; done++) {
+        const before = Number(await root.getAttribute("data-step"));
+        await root.getByRole("button", { name: "Step", exact: true }).click();
+        await expect(root).toHaveAttribute("data-step", String(before + 1));
+      }
+    },
+    world: async () => {
+      await root.getByLabel("As", { exact: true }).selectOption("json");
+      await root.getByRole("button", { name: "Copy", exact: true }).click();
+      await expect(root.locator("[data-part=exported]")).toHaveText(`Step ${await root.getAttribute("data-step")} copied.`);
+      return JSON.parse(await page.evaluate(() => navigator.clipboard.readText()));
+    },
+  };
+}
+
+test.use({ contextOptions: { reducedMotion: "reduce" }, permissions: ["clipboard-read", "clipboard-write"] });
+
+for (const dimensions of [2, 3]) {
+  test(`${dimensions}D: four algorithms search the boxes of the balls, step by step, and find what brute force finds`, async ({ page }) => {
+    const heard = complaints(page);
+    const { root, step, world } = await open(page, `&dimensions=${dimensions}&boxes=100&spread=4&algorithm=global+pairwise&2=sorted+pairwise&3=swap-driven+sweep&4=find+pairs`);
+    const seen = new Set<string>();
+    for (let at = 0; at < 4; at++) {
+      const { boxes, pairs } = await world();
+      seen.add(JSON.stringify(boxes));
+      expect(boxes).toHaveLength(100);
+      const overlap = (a: number[], b: number[]): boolean => Array.from({ length: dimensions }, (_, axis) => a[axis]! <= b[axis + dimensions]! && b[axis]! <= a[axis + dimensions]!).every(Boolean);
+      expect(pairs).toBe(boxes.reduce((sum, a, i) => sum + boxes.slice(i + 1).filter((b) => overlap(a, b)).length, 0));
+      // They are balls: as wide as high.
+      for (const box of boxes) expect(box[dimensions]! - box[0]!).toBeCloseTo(box[dimensions + 1]! - box[1]!, 4);
+      await expect(root.locator("[data-part=verdict]")).toContainText(`All 4 found the same ${pairs} pairs`);
+      await step(5);
+    }
+    expect(seen.size, "they move").toBe(4);
+    await expect(root.locator("[data-part=alarm]")).toBeEmpty();
+    await expect(root.locator("[data-lane='1'] [data-counter=tests] dd")).toHaveText("4,950");
+    await expect(root.getByLabel("Motion")).toBeDisabled();
+    expect(heard).toEqual([]);
   });
-  await page.setViewportSize({ width: 1280, height: 700 });
-  await page.goto("/falling.html");
-  await new FallingBalls(page, "discs").open();
-  await page.waitForLoadState("networkidle");
+}
+
+test("the same seed gives the same balls, another seed others, and an address leads back to its step", async ({ page }) => {
+  const { root, step, world } = await open(page, "&boxes=50");
+  await step(6);
+  const first = JSON.stringify((await world()).boxes);
+  await root.getByRole("button", { name: "Reset" }).click();
+  await expect(root).toHaveAttribute("data-step", "0");
+  await step(6);
+  expect(JSON.stringify((await world()).boxes)).toBe(first);
+  const again = await open(page, "&boxes=50&step=6");
+  expect(JSON.stringify((await again.world()).boxes)).toBe(first);
+  const other = await open(page, "&boxes=50&seed=2&step=6");
+  expect(JSON.stringify((await other.world()).boxes)).not.toBe(first);
+});
+
+test("the motion of the balls is loaded for their scene alone, and three.js for spheres, which keys turn; another scene shows boxes again", async ({ page }) => {
+  const scripts: string[] = [];
+  page.on("response", (response) => void scripts.push(response.url()));
+  await page.goto("/playground.html");
+  await expect(page.locator("box-playground")).toHaveAttribute("data-step", /^\d+$/);
+  expect(scripts.filter((url) => url.includes("/simulation"))).toEqual([]);
+  const { root } = await open(page, "&boxes=20");
+  await expect(root.getByRole("img", { name: "Discs falling into a box" })).toBeVisible();
   expect(scripts.filter((url) => url.includes("sphere-view"))).toEqual([]);
-  expect(bytes, "gzipped, before the spheres").toBeLessThan(300_000);
+  await root.getByLabel("Dimensions").selectOption("3");
+  const picture = root.getByRole("application", { name: /^Spheres falling/ });
+  await expect(picture).toBeVisible();
+  await expect.poll(() => scripts.filter((url) => url.includes("sphere-view")).length).toBeGreaterThan(0);
+  const before = await picture.screenshot();
+  await picture.focus();
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("ArrowRight");
+  await expect.poll(async () => before.equals(await picture.screenshot())).toBe(false);
+  await root.getByLabel("Scene").selectOption("uniform");
+  await expect(picture).toBeHidden();
+  await expect(root.locator("[data-part=surface]")).toBeVisible();
+  await expect(root.getByLabel("Motion")).toBeEnabled();
+});
+
+test("boxes of the balls that a hand changes are the visitor's own, and no longer fall", async ({ page }) => {
+  const { root, step } = await open(page, "&boxes=20");
+  await root.getByRole("button", { name: "Add a box" }).click();
+  await expect(root.locator("[data-part=surface]")).toBeVisible();
+  await expect(root.getByLabel("Scene")).toHaveValue("");
+  await step(1);
+  await expect(root.getByRole("status").filter({ hasText: "21 boxes of your own" })).toBeVisible();
 });
 
 test("says so where there is no WebGL, and still counts", async ({ page }) => {
@@ -24,8 +106,22 @@ test("says so where there is no WebGL, and still counts", async ({ page }) => {
       return kind.startsWith("webgl") ? null : (original as (...all: unknown[]) => unknown).call(this, kind, ...rest);
     } as typeof original;
   });
-  await page.goto("/falling.html");
-  const balls = await new FallingBalls(page, "spheres").open();
-  await expect(balls.root.locator('[data-part="message"]')).toContainText("no picture: drawing the spheres needs WebGL");
-  await expect.poll(() => balls.value("pairs")).toBeGreaterThan(0);
+  const { root, step } = await open(page, "&dimensions=3&boxes=200");
+  await expect(root.locator("[data-part=message]")).toContainText("no picture: drawing the spheres needs WebGL");
+  await step(2);
+  await expect(root.locator("[data-part=message]")).toContainText("no picture");
+  await expect(root.locator("[data-counter=pairs] dd").first()).not.toHaveText("–");
+});
+
+test("old addresses of falling balls lead to the same scene", async ({ page }) => {
+  for (const [old, expected] of [
+    ["/falling.html#spheres", { scene: "falling balls", dimensions: "3", boxes: "10000", algorithm: "find pairs" }],
+    ["/falling.html?discs.bodies=50&discs.algorithm=sorted+pairwise&discs.seed=4#discs", { scene: "falling balls", dimensions: "2", boxes: "50", algorithm: "sorted pairwise", seed: "4" }],
+  ] as const) {
+    await page.goto("about:blank");
+    await page.goto(old);
+    await expect(page).toHaveURL(/playground\.html/);
+    expect(Object.fromEntries(new URL(page.url()).searchParams)).toEqual(expected);
+    await expect(page.locator("box-playground")).toHaveAttribute("data-step", /^\d+$/);
+  }
 });

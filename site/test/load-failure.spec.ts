@@ -6,7 +6,6 @@ import config from "../playwright.config.ts";
 /** What says so, by page. */
 const PLACES = {
   "/": "hero-boxes .load-failure",
-  "/falling.html": "#discs .load-failure",
   "/playground.html": "box-playground .load-failure",
 } as const;
 

@@ -32,7 +32,6 @@ const PAGES: Readonly<Record<string, { parts: string; rest(page: Page): Promise<
       await ballsAwake(page);
     },
   },
-  falling: { parts: "main > *", rest: ballsAwake },
   playground: { parts: "main > *", rest: (page) => expect(page.locator("box-playground")).toHaveAttribute("data-step", "0") },
   benchmark: {
     parts: "main > *",

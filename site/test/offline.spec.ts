@@ -36,7 +36,7 @@ test("a page that was visited opens without a network; a first visit stores the 
   // A request of a page that was left before it had an answer is no failure.
   failed.length = 0;
   await context.setOffline(true);
-  for (const path of [...visited, "/", "/falling.html?discs.bodies=50"]) {
+  for (const path of [...visited, "/", "/playground.html?scene=falling+balls&boxes=50"]) {
     await page.goto(path);
     await page.waitForLoadState("load");
     await expect(page.locator("main")).toBeAttached();

@@ -1,14 +1,14 @@
 import { readFileSync } from "node:fs";
 import { gzipSync } from "node:zlib";
 import { expect, test } from "@playwright/test";
-import { complaints, cutOff, overflow, PAGES, RACE, requestsElsewhere, scrolledThrough, tabbedThrough, tooSmall, violations, watchShifts } from "./support/pages.ts";
+import { complaints, cutOff, MOVED, overflow, PAGES, requestsElsewhere, scrolledThrough, tabbedThrough, tooSmall, violations, watchShifts } from "./support/pages.ts";
 
 // What holds on every page of the site, whichever there are.
 
 /** What is most often asked of a color, and what else may differ between light and dark. */
 const COLOR_RULES = ["color-contrast", "link-in-text-block"];
 
-for (const path of PAGES.map((path) => (path === "/race.html" ? RACE : path))) {
+for (const path of PAGES.map((path) => MOVED[path] ?? path)) {
   test.describe(path, () => {
     test("is light, loads and runs at any width without a complaint or a request to another host, and nothing jumps or is cut off", async ({ page, baseURL }) => {
       test.slow(); // the whole page at three widths
@@ -25,7 +25,9 @@ for (const path of PAGES.map((path) => (path === "/race.html" ? RACE : path))) {
         const shifts = await watchShifts(page);
         if (width === 1280) {
           await page.waitForLoadState("networkidle");
-          expect(bytes, "gzipped, before it is scrolled").toBeLessThan(path === "/index.html" ? 250_000 : 300_000);
+          // Balls that fall need a second compiled module, that of their motion.
+          const most = path === "/index.html" ? 250_000 : path === MOVED["/falling.html"] ? 400_000 : 300_000;
+          expect(bytes, "gzipped, before it is scrolled").toBeLessThan(most);
         }
         await scrolledThrough(page);
         const { sum, what } = await shifts();
@@ -189,11 +191,13 @@ test.describe("without scripts", () => {
   // What each page says and shows where nothing moves.
   const SAID: Readonly<Record<string, readonly string[]>> = {
     "/index.html": [".hero-stage img", "sap-demo svg.poster", "text=Four hundred boxes make 79,800 pairs"],
-    "/falling.html": ["#discs img.still", "#spheres img.still", "text=49,995,000 tests in each step"],
+    "/falling.html": ["text=Falling discs and spheres are now a scene"],
     "/race.html": ["text=The race is now a part of the"],
     "/playground.html": ["box-playground img.still", "text=Make a world of your own"],
     "/benchmark.html": [".fronts table", "text=finds all overlapping pairs among 10,000 boxes"],
     "/api.html": ["text=cargo add sweep-and-prune", "text=pip install sweep-and-prune"],
+    "/tasks.html": ["#miss pre", "#swaps .ask summary"],
+    "/from-other-libraries.html": ["#matter ~ .listing pre, section pre", "text=bedtools cluster"],
     "/teachers.html": ["text=A lesson of 45 minutes"],
     "/embed.html": ["noscript p"],
   };

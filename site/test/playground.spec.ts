@@ -331,7 +331,7 @@ test.describe("paused", () => {
     const playground = await new Playground(page).open("?boxes=10&motion=still");
     const scene = playground.root.getByLabel("Scene");
     const names = (): Promise<string[]> => scene.locator("option").allTextContents();
-    expect(await names()).toEqual(["uniform", "clustered", "tower", "slab", "mixed", "grid", "more …"]);
+    expect(await names()).toEqual(["falling balls", "uniform", "clustered", "tower", "mixed", "grid", "more …"]);
     await scene.selectOption("more …");
     await expect.poll(async () => (await names()).length).toBeGreaterThan(25);
     await expect(scene).toHaveValue("clustered");

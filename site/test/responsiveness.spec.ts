@@ -1,16 +1,27 @@
-import { type CDPSession, chromium, expect, type Page, test } from "@playwright/test";
+import { type CDPSession, chromium, expect, type Locator, type Page, test } from "@playwright/test";
 import type { SapDemo } from "sweep-and-prune-classroom/demo";
-import { FallingBalls } from "./falling-balls.ts";
 import { open } from "./support/embedded.ts";
+
+/** The falling spheres of the playground. */
+async function spheres(page: Page, query: string): Promise<{ root: Locator; play: Locator; stepNumber(): Promise<number>; value(key: string): Promise<number> }> {
+  await page.goto(`/playground.html?scene=falling+balls&dimensions=3${query}`);
+  const root = page.locator("box-playground");
+  await expect(root).toHaveAttribute("data-step", /^\d+$/);
+  return {
+    root,
+    play: root.locator("[data-part=play]"),
+    stepNumber: async () => Number(await root.getAttribute("data-step")),
+    value: async (key) => Number.parseFloat(((await root.locator(`[data-counter="${key}"] dd`).first().textContent()) ?? "").replaceAll(",", "")),
+  };
+}
 
 // Drawing ten thousand spheres in software takes the graphics process hundreds of milliseconds,
 // so pictures a second say nothing here. What counts is the thread of the page, and the step.
 
 test("brute force at 10,000 spheres leaves the page responsive, and shows what it costs", async ({ page }) => {
-  await page.goto("/falling.html?spheres.algorithm=global+pairwise");
-  const balls = await new FallingBalls(page, "spheres").open();
+  const balls = await spheres(page, "&boxes=10000&algorithm=global+pairwise");
   await expect.poll(() => balls.stepNumber()).toBeGreaterThan(1);
-  await expect.poll(() => balls.counter("tests")).toBe("49,995,000");
+  await expect.poll(() => balls.value("tests")).toBe(49_995_000);
 
   const gaps = await page.evaluate(async () => {
     const gaps: number[] = [];
@@ -25,7 +36,7 @@ test("brute force at 10,000 spheres leaves the page responsive, and shows what i
     return gaps.sort((a, b) => a - b);
   });
   const at = (share: number): number => gaps[Math.floor(share * (gaps.length - 1))] ?? Infinity;
-  const brute = await balls.value("broad-phase");
+  const brute = await balls.value("ms");
   console.log(`brute force: broad phase ${brute} ms; gaps of the page's thread: median ${at(0.5).toFixed(1)}, 95% ${at(0.95).toFixed(1)}, longest ${at(1).toFixed(1)} ms`);
   expect(at(0.95)).toBeLessThan(100);
   expect(brute).toBeGreaterThan(50);
@@ -46,23 +57,21 @@ for (const { name, args } of [{ name: "nothing drawn", args: ["--disable-3d-apis
   test(`10,000 spheres, ${name}: the broad phase of a frame`, async ({ baseURL, launchOptions }) => {
     const browser = await chromium.launch({ ...launchOptions, args: [...(launchOptions.args ?? []), ...args] });
     const page = await browser.newPage({ baseURL: baseURL!, viewport: { width: 1280, height: 900 } });
-    await page.goto("/falling.html");
-    const balls = await new FallingBalls(page, "spheres").open();
-    const [library = ""] = await balls.algorithms();
-    await expect(balls.algorithm).toHaveValue(library);
+    const library = "find pairs";
+    const balls = await spheres(page, `&boxes=10000&algorithm=${library}`);
     // From a beginning that is seen: while a page prepares to draw it may miss seconds.
     await expect.poll(() => balls.stepNumber()).toBeGreaterThan(1);
-    await balls.pause();
-    await balls.reset();
+    await balls.play.click();
+    await balls.root.getByRole("button", { name: "Reset" }).click();
     await balls.play.click();
     // Each value is the mean of half a second, which the first steps are not yet.
     const times: number[] = [];
     for (let step = 0; step < 200; step = await balls.stepNumber()) {
-      const time = await balls.value("broad-phase");
+      const time = await balls.value("ms");
       if (step >= 30 && time !== times.at(-1)) times.push(time);
       await page.waitForTimeout(100);
     }
-    console.log(`${library}, ${name}: broad phase of a frame while they fall and pile up ${times.join(", ")} ms, narrow phase ${await balls.value("narrow-phase")}, solving ${await balls.value("solving")}, drawing ${await balls.value("drawing")} ms`);
+    console.log(`${library}, ${name}: broad phase of a frame while they fall and pile up ${times.join(", ")} ms ms`);
     await browser.close();
     // The aim is 2 ms, and what is printed tells. What fails is a whole frame: a test's machine may be
     // busy with other things.
@@ -71,8 +80,7 @@ for (const { name, args } of [{ name: "nothing drawn", args: ["--disable-3d-apis
 }
 
 test("100,000 spheres by the library: the page answers", async ({ page }) => {
-  await page.goto("/falling.html?spheres.bodies=100000");
-  const balls = await new FallingBalls(page, "spheres").open();
+  const balls = await spheres(page, "&boxes=100000&algorithm=find+pairs");
   await expect.poll(() => balls.stepNumber(), { timeout: 600_000 }).toBeGreaterThan(1);
   expect(await balls.value("pairs")).toBeGreaterThan(10_000);
   const answered = await balls.play.evaluate((button: HTMLElement) => {
@@ -80,13 +88,13 @@ test("100,000 spheres by the library: the page answers", async ({ page }) => {
     button.click();
     return performance.now() - clicked;
   });
-  console.log(`100,000 spheres: broad phase ${await balls.value("broad-phase")} ms, narrow phase ${await balls.value("narrow-phase")}, solving ${await balls.value("solving")}, drawing ${await balls.value("drawing")} ms`);
+  console.log(`100,000 spheres: broad phase ${await balls.value("ms")} ms ms`);
   expect(answered).toBeLessThan(50);
 });
 
 // Where nothing is drawn in 3D, Chromium draws on the processor: the emulated graphics card that the
 // spheres need takes a second for what a real one does at once, and there would be no frames to count.
-for (const path of ["/#d6a", "/#d13a", "/#swaps", "/falling.html", "/playground.html", "/playground.html?boxes=5000&motion=fast"]) {
+for (const path of ["/#d6a", "/#d13a", "/#swaps", "/playground.html?scene=falling+balls&boxes=5000&algorithm=find+pairs", "/playground.html", "/playground.html?boxes=5000&motion=fast"]) {
   test(`${path}: script a frame`, async ({ baseURL, launchOptions }) => {
     const browser = await chromium.launch({ executablePath: launchOptions.executablePath!, args: ["--no-sandbox"] });
     const page = await browser.newPage({ baseURL: baseURL!, viewport: { width: 1280, height: 900 } });

@@ -23,7 +23,7 @@ export function bars(one: Case, caption: string, entries: readonly Entry[], labe
     const last = name === first ? `${ratio} fastest` : ratio;
     const label = labels[name] ?? (PLAIN.test(name) ? "no library: a plain sweep" : name);
     const kind = isOwn ? "own" : PLAIN.test(name) ? "plain" : "";
-    return `<tr class="${kind}" data-library="${name}"><th scope="row">${label}</th><td class="bar" aria-hidden="true"><span style="width: ${width(ns).toFixed(1)}%"></span></td><td>${duration(ns)}</td><td>${last}</td></tr>`;
+    return `<tr class="${kind}" data-library="${name}"><th scope="row">${label.replace(/[._]/g, "$&<wbr>")}</th><td class="bar" aria-hidden="true"><span style="width: ${width(ns).toFixed(1)}%"></span></td><td>${duration(ns)}</td><td>${last}</td></tr>`;
   });
   const untimed = entries.flatMap(({ name, outcome }) =>
     "Untimed" in outcome ? [`<tr data-library="${name}"><th scope="row">${labels[name] ?? name}</th><td colspan="3" class="why">${outcome.Untimed.why}</td></tr>`] : [],

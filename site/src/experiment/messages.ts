@@ -21,6 +21,14 @@ export type ToExperiment =
 /** A runner in one step: what it did, or why it is out. */
 export type Lane = { readonly report: Report } | { readonly out: string };
 
+/** Balls that fall, in the scene of that name. */
+export interface Balls {
+  /** The centers, one ball after another. */
+  readonly positions: Float32Array;
+  /** The box that they are in, and how large they are: with the first frame of a run. */
+  readonly world?: { readonly min: readonly number[]; readonly max: readonly number[]; readonly radii: Float32Array } | undefined;
+}
+
 export interface ExperimentFrame {
   readonly type: "frame";
   /** The number that the page gave this experiment; what an earlier one still sends is stale. */
@@ -30,6 +38,7 @@ export interface ExperimentFrame {
   /** The pairs of the first runner that is in. */
   readonly pairs: Uint32Array;
   readonly lanes: readonly Lane[];
+  readonly balls?: Balls | undefined;
 }
 
 export type FromExperiment =

@@ -1,13 +1,18 @@
 // The thread of an experiment: one step of the world, then every runner on the same boxes, one after
 // another, so that none disturbs the clock of another.
 
-import { Experiment, type RunnerOptions, type Report } from "./experiment.ts";
+import { loadSimulation } from "../balls/load.ts";
+import { Experiment, type RunnerOptions, type Report, type WorldOptions } from "./experiment.ts";
+import { Falling } from "./falling.ts";
 import { formatCount } from "../panel/counters.ts";
+import { FALLING } from "./scene.ts";
 import type { FromExperiment, Lane, ToExperiment } from "./messages.ts";
 import { messageOf } from "../message-of.ts";
 
 /** More steps per second would be too fast to watch. */
 const STEP_MS = 50;
+/** Balls fall in time. */
+const FALLING_MS = 1000 / 60;
 /** A world with more pairs than this would fill the memory. */
 const MOST_PAIRS = 2_000_000;
 /** The most tests: they take about a second. */
@@ -30,7 +35,9 @@ interface Runner {
 
 interface Session {
   readonly run: number;
-  readonly dimensions: number;
+  readonly world: WorldOptions;
+  /** What moves the boxes, if balls do. */
+  readonly falling: Falling | undefined;
   readonly runners: Runner[];
   step: number;
   /** Whether the page has not shown the last frame. */
@@ -45,11 +52,14 @@ let timer: ReturnType<typeof setTimeout> | undefined;
 const send = (message: FromExperiment, transfer: Transferable[] = []): void => self.postMessage(message, { transfer });
 
 function begin(experiment: Experiment, { run, world, runners: options, steps = 0, keep = false }: Extract<ToExperiment, { type: "begin" }>): void {
-  const isKept = keep && session?.dimensions === world.dimensions && session.runners.every(({ out }) => out === undefined);
+  const isKept = keep && session?.world.dimensions === world.dimensions && session.runners.every(({ out }) => out === undefined);
   const kept = isKept ? session?.runners : undefined;
+  session?.falling?.free();
   session = undefined;
-  experiment.begin(world, isKept);
-  for (let step = 0; step < steps; step++) experiment.advance();
+  const falling = isFalling(world) ? new Falling(world) : undefined;
+  if (falling) for (let step = 0; step < steps; step++) falling.advance();
+  experiment.begin(falling ? { ...world, own: falling.rows } : world, isKept);
+  if (!falling) for (let step = 0; step < steps; step++) experiment.advance();
   const pairs = experiment.countPairs();
   if (pairs > MOST_PAIRS) {
     const reason = `${formatCount(world.boxes)} boxes of this scene make ${formatCount(pairs)} pairs; the limit is ${formatCount(MOST_PAIRS)}. Choose fewer or smaller boxes, or another scene.`;
@@ -64,9 +74,11 @@ function begin(experiment: Experiment, { run, world, runners: options, steps = 0
     experiment.enter(runner.options);
     runner.number = number++;
   }
-  session = { run, dimensions: world.dimensions, runners, step: steps, unseen: false };
+  session = { run, world, falling, runners, step: steps, unseen: false };
   compete(experiment, session);
 }
+
+const isFalling = ({ scene, own }: WorldOptions): boolean => scene === FALLING && !own;
 
 /** Why a runner cannot even begin, if it cannot. */
 function refusal(experiment: Experiment, options: RunnerOptions): string | undefined {
@@ -104,12 +116,17 @@ function compete(experiment: Experiment, session: Session): void {
   const pairs = first ? experiment.pairs(first.number).slice() : new Uint32Array(0);
   const boxes = experiment.boxes.slice();
   session.unseen = true;
-  send({ type: "frame", run: session.run, step, boxes, pairs, lanes }, [boxes.buffer, pairs.buffer]);
+  const balls = session.falling?.balls;
+  send({ type: "frame", run: session.run, step, boxes, pairs, lanes, balls }, [boxes.buffer, pairs.buffer, ...(balls ? [balls.positions.buffer] : [])]);
 }
 
 function advance(experiment: Experiment): void {
   if (!session) return;
-  experiment.advance();
+  const { falling, world } = session;
+  falling?.advance();
+  // The runners stay, with what they have kept.
+  if (falling) experiment.begin({ ...world, own: falling.rows }, true);
+  else experiment.advance();
   session.step++;
   compete(experiment, session);
 }
@@ -123,8 +140,12 @@ function tick(experiment: Experiment): void {
     timer = setTimeout(() => tick(experiment), due - now);
     return;
   }
-  due = now + STEP_MS;
-  guarded(() => advance(experiment));
+  due = now + (session.falling ? FALLING_MS : STEP_MS);
+  try {
+    advance(experiment);
+  } catch (error) {
+    fail(error);
+  }
 }
 
 function receive(experiment: Experiment, message: ToExperiment): void {
@@ -146,18 +167,14 @@ function receive(experiment: Experiment, message: ToExperiment): void {
   timer ??= setTimeout(() => tick(experiment));
 }
 
-/** An error is told to the page, and stops the session. */
-function guarded(work: () => void): void {
-  try {
-    work();
-  } catch (error) {
-    running = false;
-    send({ type: "failed", message: messageOf(error) });
-  }
+/** An error is sent to the page, and stops the session. */
+function fail(error: unknown): void {
+  running = false;
+  send({ type: "failed", message: messageOf(error) });
 }
 
 // Messages that come before the experiment is there wait for it, in their order.
-const loaded = Experiment.load().then(
+let queue: Promise<Experiment> = Experiment.load().then(
   (experiment) => {
     send({ type: "ready", lists: experiment.lists });
     return experiment;
@@ -168,5 +185,14 @@ const loaded = Experiment.load().then(
   },
 );
 self.addEventListener("message", ({ data }: MessageEvent<ToExperiment>) => {
-  void loaded.then((experiment) => guarded(() => receive(experiment, data)), () => undefined);
+  queue = queue.then(async (experiment) => {
+    try {
+      if (data.type === "begin" && isFalling(data.world)) await loadSimulation();
+      receive(experiment, data);
+    } catch (error) {
+      fail(error);
+    }
+    return experiment;
+  });
+  queue.catch(() => undefined);
 });

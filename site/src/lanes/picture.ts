@@ -4,6 +4,8 @@ import { LINE, readRecord, type Step, stepsOf } from "./sweep-steps.ts";
 
 export const WIDTHS = [1, 4, 8, 16] as const;
 const WIDE = 560;
+/** Where the squares of the comparisons begin. */
+const LABELS = 178;
 
 export interface Shown {
   readonly steps: readonly Step[];
@@ -38,7 +40,7 @@ export function sweepOf(record: string, width: number): Shown {
   const cell = WIDE / (Math.ceil((column.length + 16) / LINE) * LINE + 4);
   const memory = ({ probe, from, lanes }: Step): string => {
     const rows = (["left", "min", "max"] as const).map((name, row) => {
-      const begin = 62;
+      const begin = 78;
       const place = (at: number): number => begin + (at * (WIDE - begin)) / (WIDE / cell) + (Math.floor(at / LINE) * (WIDE - begin)) / WIDE * 3;
       const size = ((WIDE - begin) * cell) / WIDE;
       const loaded = Math.floor((from + lanes.length - 1) / LINE);
@@ -60,10 +62,10 @@ export function sweepOf(record: string, width: number): Shown {
       ["b.bottom ≥ a.top", ({ below }: Step["lanes"][number]) => below],
       ["all three", ({ begun, above, below }: Step["lanes"][number]) => begun && above && below],
     ] as const;
-    const size = Math.min(30, (WIDE - 150) / lanes.length);
+    const size = Math.min(30, (WIDE - LABELS) / lanes.length);
     const rows = says.map(([name, holds], row) => {
       const top = 4 + 30 * row + (row === 3 ? 6 : 0);
-      return `<text x="0" y="${top + 18}">${name}</text>${lanes.map((lane, at) => rect(150 + size * at, top, size - 3, 24, holds(lane) ? "yes" : "no")).join("")}`;
+      return `<text x="0" y="${top + 18}">${name}</text>${lanes.map((lane, at) => rect(LABELS + size * at, top, size - 3, 24, holds(lane) ? "yes" : "no")).join("")}`;
     });
     const found = hits.length === 0 ? "none overlaps" : hits.length === 1 ? `number ${hits[0]! + 1} overlaps` : `numbers ${hits.map((at) => at + 1).join(" and ")} overlap`;
     return `<svg viewBox="0 0 ${WIDE} 134" role="img" aria-label="The comparisons of the lanes from number ${from + 1} on: ${found}.">${rows.join("")}</svg>`;

@@ -1,6 +1,7 @@
 import { numberWithin, readAddress, writeAddress } from "../experiment/address.ts";
 import { type BoxColors, drawBoxes, type Window2, windowOf } from "../experiment/box-picture.ts";
 import type { Lists, RunnerOptions, WorldOptions } from "../experiment/experiment.ts";
+import { FALLING } from "../experiment/scene.ts";
 import type { ExperimentFrame, FromExperiment, ToExperiment } from "../experiment/messages.ts";
 import { ExperimentRecord, MEASURES, SHOWN } from "../experiment/record.ts";
 import { showLoadFailure } from "../load-failed.ts";
@@ -10,6 +11,7 @@ import { PanelElement } from "../panel/panel-element.ts";
 import { LARGEST_SEED } from "../panel/parts.ts";
 import { drawLines } from "../plot/line-plot.ts";
 import { onThemeChange } from "../shell/theme.ts";
+import { BallsPicture } from "./balls.ts";
 import { type Format, FORMATS, preview, shortest, type Snapshot, write } from "./export.ts";
 import { Hands, type Shown } from "./hands.ts";
 import { readBoxes } from "./import.ts";
@@ -19,7 +21,7 @@ import { verdict } from "./verdict.ts";
 
 /** What the sliders offer. */
 const RANGES = {
-  boxes: [1, 2, 3, 5, 10, 20, 50, 100, 200, 500, 1_000, 2_000, 5_000, 10_000, 20_000],
+  boxes: [1, 2, 3, 5, 10, 20, 50, 100, 200, 500, 1_000, 2_000, 5_000, 10_000, 20_000, 50_000, 100_000],
   size: [0.1, 0.2, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10],
   spread: [1, 2, 4, 8, 16, 32, 64, 100],
 } as const;
@@ -45,7 +47,7 @@ const MOST_IN_ADDRESS = 100;
 /** An address leads to this step at most: it has to be computed. */
 const LAST_STEP = 10_000;
 /** The scenes that are offered at once; the others after `MORE`. */
-const SCENES = ["uniform", "clustered", "mixed", "slab", "tower", "grid"];
+const SCENES = [FALLING, "uniform", "clustered", "mixed", "tower", "grid"];
 const MORE = "more …";
 /** What the choice of a scene shows where the boxes are the visitor's own. */
 const OWN = "your own boxes";
@@ -77,6 +79,9 @@ export class BoxPlayground extends PanelElement {
   /** The boxes with which the world begins, if they are the visitor's own. */
   #own: Float32Array | undefined;
   #hands!: Hands;
+  #balls!: BallsPicture;
+  /** Why balls cannot be drawn, if so. */
+  #noPicture = "";
   #isHeld = false;
   #writing: ReturnType<typeof setTimeout> | undefined;
   #whenPaced: () => void = () => undefined;
@@ -97,8 +102,13 @@ export class BoxPlayground extends PanelElement {
       this.#colors = undefined;
       this.requestShow();
     }, this.signal);
+    this.#balls = new BallsPicture(this.named("orbit"), this.signal, () => this.requestShow(), (error) => {
+      this.#noPicture = `There is no picture: ${messageOf(error)}.`;
+      this.message(this.#noPicture);
+    });
     this.onResize(["picture", "lines"], () => {
       this.#view = undefined;
+      this.#balls.resize();
       this.requestShow();
     });
     this.followAwake();
@@ -134,7 +144,9 @@ export class BoxPlayground extends PanelElement {
 
   // Controls
 
-  #setUp(lists: Lists): void {
+  #setUp(given: Lists): void {
+    const falling = { name: FALLING, description: "Balls fall into a box and bounce off each other; the algorithms search their boxes.", dimensions: [2, 3] } as const;
+    const lists = { ...given, scenes: [falling, ...given.scenes] };
     this.#lists = lists;
     this.#bindChoice("dimensions", undefined, () => this.#fill());
     this.#bindChoice("scene");
@@ -432,7 +444,7 @@ export class BoxPlayground extends PanelElement {
       dimensions: dimensions === "3" ? 3 : 2,
       scene,
       motion,
-      boxes: this.#own ? this.#own.length / (dimensions === "3" ? 6 : 4) : Math.round(numberWithin(boxes, 1, 20_000, Number(DEFAULTS.boxes))),
+      boxes: this.#own ? this.#own.length / (dimensions === "3" ? 6 : 4) : Math.round(numberWithin(boxes, 1, 100_000, Number(DEFAULTS.boxes))),
       seed: Math.round(numberWithin(seed, 0, LARGEST_SEED, 1)),
       size: numberWithin(size, 0.01, 100, 1),
       spread: numberWithin(spread, 1, 1000, 1),
@@ -560,10 +572,13 @@ export class BoxPlayground extends PanelElement {
     this.#showNumbers(this.#frame, performance.now());
   }
 
-  #draw({ boxes, pairs }: ExperimentFrame): void {
+  #draw({ boxes, pairs, balls }: ExperimentFrame): void {
     const canvas = this.named<HTMLCanvasElement>("picture");
     const { clientWidth: width, clientHeight: height } = canvas;
     const { dimensions } = this.#world();
+    this.#balls.show(balls, dimensions);
+    this.named("surface").hidden = balls !== undefined;
+    if (balls) return;
     this.#view ??= windowOf(boxes, dimensions, width, height);
     this.#colors ??= this.#readColors();
     drawBoxes(canvas, { width, height }, this.#view, boxes, dimensions, pairs, this.#colors.boxes, this.#hands.selected);
@@ -592,9 +607,10 @@ export class BoxPlayground extends PanelElement {
     const names = this.#lanes.all.map(({ algorithm }) => algorithm);
     this.dataset["step"] = String(step);
     this.named("moment").textContent = `Step ${formatCount(step)}`;
-    this.message("");
+    this.message(frame.balls ? this.#noPicture : "");
     this.#lanes.show(lanes, names.map((_, at) => this.#record.level(at, MEASURES[0])));
     this.named("verdict").textContent = names.length > 1 ? verdict(frame, this.#record, names) : "";
+    this.named<HTMLSelectElement>("motion").disabled = frame.balls !== undefined;
     for (const part of ["boxes", "size", "spread"]) this.named<HTMLInputElement>(part).disabled = this.#own !== undefined;
   }
 
@@ -610,7 +626,8 @@ export class BoxPlayground extends PanelElement {
     const { boxes, scene, motion } = this.#world();
     const what = this.#own ? `${formatCount(boxes)} boxes of your own` : `${formatCount(boxes)} boxes, ${scene}`;
     const names = this.#lanes.all.map(({ algorithm }) => algorithm);
-    const where = `${what}, ${motion}, by ${names.join(", ")}.`;
+    const moves = this.#own || scene !== FALLING ? `, ${motion}` : "";
+    const where = `${what}${moves}, by ${names.join(", ")}.`;
     const lane = this.#frame?.lanes.find((lane) => "report" in lane);
     const found = lane && "report" in lane ? ` ${formatCount(lane.report.pairs)} pairs.` : "";
     this.say(this.wanted ? where : `Paused after step ${formatCount(this.#frame?.step ?? 0)}: ${where}${found}`);

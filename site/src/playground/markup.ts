@@ -21,6 +21,9 @@ export const COUNTERS: readonly Counter<Shown>[] = [
   ...WORK,
 ];
 
+/** Ten thousand spheres: one click away. */
+export const SPHERES = "./playground.html?scene=falling+balls&amp;dimensions=3&amp;boxes=10000&amp;algorithm=find+pairs";
+
 export function expandPlayground(page: string): string {
   return page.replace("<box-playground></box-playground>", () => `<box-playground>${markup()}</box-playground>`);
 }
@@ -32,6 +35,7 @@ function markup(): string {
         <div class="surface" data-part="surface" tabindex="0" role="application" aria-label="The boxes; those in a pair are highlighted. Arrow keys move the view, plus and minus zoom, zero shows everything. B selects the next box: then arrow keys move it, with shift they resize it, and Delete removes it. N adds a box.">
           <canvas data-part="picture"></canvas>
         </div>
+        <div class="orbit" data-part="orbit" hidden></div>
         ${still("playground", "Five hundred boxes in clusters; those that overlap another are highlighted")}
         <p class="stage-message" data-part="message">Loading</p>
       </div>
@@ -48,7 +52,7 @@ function markup(): string {
         <div class="lanes" data-part="lanes">${laneMarkup(1)}</div>
         <p class="alarm" role="alert" data-part="alarm"></p>
         <button type="button" data-part="add-algorithm" disabled>Add an algorithm</button>
-        <a class="button" href="./falling.html#spheres">10,000 spheres in 3D</a>
+        <a class="button" href="${SPHERES}">10,000 spheres in 3D</a>
       </div>
       <div class="panel-tools" role="group" aria-label="Change the boxes">
         <button type="button" data-part="draw" aria-pressed="false" disabled>Draw</button>

@@ -16,8 +16,8 @@ const site = new URL("../../", here);
 /** The pages of the navigation, in its order. */
 const NAVIGATION: readonly (readonly [file: string, name: string])[] = [
   ["index.html", "Article"],
-  ["falling.html", "Falling balls"],
   ["playground.html", "Playground"],
+  ["tasks.html", "Tasks"],
   ["benchmark.html", "Benchmark"],
   ["api.html", "API"],
 ];
@@ -25,8 +25,8 @@ const NAVIGATION: readonly (readonly [file: string, name: string])[] = [
 /** The way to the guide, where it was built. */
 const GUIDE = existsSync(new URL("public/api/python/guide.html", site)) ? ` There is a <a href="./api/python/guide.html">guide</a> for Python that begins with your problem.` : "";
 
-/** What search engines need not know: the frame of an embedded demo, and an old address that leads to the playground. */
-const UNLISTED: readonly string[] = ["embed.html", "race.html"];
+/** What search engines need not know: the frame of an embedded demo, and old addresses that lead to the playground. */
+const UNLISTED: readonly string[] = ["embed.html", "falling.html", "race.html"];
 
 /** Every page there is: each html file of the site's folder. */
 export function pages(): string[] {

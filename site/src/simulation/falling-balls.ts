@@ -3,9 +3,8 @@ import { whenNear } from "../panel/awake.ts";
 import { bruteForceTests, formatCount, showCounters } from "../panel/counters.ts";
 import { PanelElement } from "../panel/panel-element.ts";
 import { showLoadFailure } from "../load-failed.ts";
-import { messageOf } from "../message-of.ts";
 import { onThemeChange, readTheme } from "../view/theme.ts";
-import type { View } from "../view/view.ts";
+import { DiscView } from "../view/disc-view.ts";
 import { SimulationClient } from "./client.ts";
 import { type Shown, TIME_COUNTERS, WORK_COUNTERS } from "./counters.ts";
 import { AXIS_NAMES, type Begun, type Choices, type Frame, type Laws, type Method } from "./messages.ts";
@@ -25,17 +24,16 @@ const STAGES = ["broad-phase", "narrow-phase", "solving", "drawing"] as const;
 type NumberKey = "bodies" | "size" | "spread" | keyof Laws;
 
 /**
- * `<falling-balls dimensions="2 or 3" bodies="200" most="10000">`: bodies that fall, the algorithm that
+ * `<falling-balls bodies="200" most="10000">`: discs that fall, the algorithm that
  * finds which of them may touch, and what that costs. Its inside is written by `markup.ts`. While
  * it cannot be seen it sleeps; where the visitor wants less motion it begins paused.
  */
 export class FallingBalls extends PanelElement {
-  readonly #dimensions = this.getAttribute("dimensions") === "2" ? 2 : 3;
   readonly #mostBodies = Number(this.getAttribute("most"));
   #defaults!: Settings;
   #settings!: Settings;
   #client: SimulationClient | undefined;
-  #view: View | undefined;
+  #view: DiscView | undefined;
   #begun: Begun | undefined;
   #frame: Frame | undefined;
   #ready = false;
@@ -63,33 +61,13 @@ export class FallingBalls extends PanelElement {
         else showLoadFailure(this.named("message"), message);
       },
     });
-    this.#openView().then(
-      (view) => {
-        this.#view = view;
-        onThemeChange(() => {
-          view.setTheme(readTheme());
-          this.requestShow();
-        }, this.signal);
-        this.onResize(["canvas"], () => this.#fit());
-        this.#showBegun();
-      },
-      (error: unknown) => this.message(`There is no picture: ${messageOf(error)}`),
-    );
+    this.#view = new DiscView(this.named<HTMLCanvasElement>("canvas"), readTheme());
+    onThemeChange(() => {
+      this.#view?.setTheme(readTheme());
+      this.requestShow();
+    }, this.signal);
+    this.onResize(["canvas"], () => this.#fit());
     this.followAwake();
-  }
-
-  async #openView(): Promise<View> {
-    const canvas = this.named<HTMLCanvasElement>("canvas");
-    if (this.#dimensions === 2) {
-      const { DiscView } = await import("../view/disc-view.ts");
-      return new DiscView(canvas, readTheme());
-    }
-    const { SphereView } = await import("../view/sphere-view.ts");
-    try {
-      return new SphereView(canvas, this.named("orbit"), readTheme(), () => this.requestShow());
-    } catch (cause) {
-      throw new Error("drawing the spheres needs WebGL, which this browser does not offer. The simulation runs anyway, and the numbers are correct.", { cause });
-    }
   }
 
   // Controls
@@ -108,12 +86,12 @@ export class FallingBalls extends PanelElement {
       spread: Number(this.getAttribute("spread") ?? 1),
       seed: 1,
       gravity: 9.81,
-      substeps: this.#dimensions === 2 ? 8 : 4,
+      substeps: 8,
     };
     this.#settings = readSettings(this.id, this.#defaults, this.#mostBodies);
     this.#bindChoice("algorithm", choices.algorithms);
     this.#bindChoice("sort", choices.sorts);
-    this.#bindChoice("axis", [...choices.axes, ...AXIS_NAMES.slice(0, this.#dimensions)]);
+    this.#bindChoice("axis", [...choices.axes, ...AXIS_NAMES]);
     this.#bindSize("bodies", RANGES.bodies.filter((n) => n <= this.#mostBodies), formatCount);
     this.#bindSize("size", RANGES.size, (size) => `${size}%`);
     this.#bindSize("spread", RANGES.spread, (spread) => `${spread} : 1`);
@@ -125,8 +103,8 @@ export class FallingBalls extends PanelElement {
       this.#begin();
     });
     this.bindTransport(() => this.#client?.step(), () => this.#begin());
-    const lines = this.querySelector<HTMLInputElement>('[data-part="lines"]');
-    lines?.addEventListener("change", () => this.#client?.listPairs(lines.checked));
+    const lines = this.named<HTMLInputElement>("lines");
+    lines.addEventListener("change", () => this.#client?.listPairs(lines.checked));
     for (const control of this.querySelectorAll<HTMLInputElement>(":disabled")) control.disabled = false;
     this.#ready = true;
     this.#begin();
@@ -164,7 +142,7 @@ export class FallingBalls extends PanelElement {
   }
 
   #begin(): void {
-    this.#client?.begin(setupOf(this.#settings, this.#dimensions), this.#laws(), this.#settings);
+    this.#client?.begin(setupOf(this.#settings), this.#laws(), this.#settings);
     this.#clearCounters();
     this.#counter("brute-force").textContent = formatCount(bruteForceTests(this.#settings.bodies));
     this.#describe();
@@ -210,7 +188,7 @@ export class FallingBalls extends PanelElement {
     const { min, max, radii } = this.#begun;
     const { positions } = this.#frame;
     const [floor = 0, ceiling = 1] = [min[1], max[1]];
-    const tints = radii.map((_, body) => ((positions[this.#dimensions * body + 1] ?? 0) - floor) / (ceiling - floor));
+    const tints = radii.map((_, body) => ((positions[2 * body + 1] ?? 0) - floor) / (ceiling - floor));
     this.#view.begin({ min, max }, radii, tints);
     this.#fit();
     this.message("");
@@ -274,8 +252,7 @@ export class FallingBalls extends PanelElement {
   /** Tells in words what is going on: seldom enough to be read out. */
   #describe(): void {
     const { bodies, algorithm, sort } = this.#settings;
-    const noun = this.#dimensions === 2 ? "disc" : "sphere";
-    const who = `${formatCount(bodies)} ${noun}${bodies === 1 ? "" : "s"}`;
+    const who = `${formatCount(bodies)} disc${bodies === 1 ? "" : "s"}`;
     const by = this.named<HTMLSelectElement>("sort").disabled ? algorithm : `${algorithm}, ${sort}`;
     const frame = this.#frame?.run === this.#begun?.run ? this.#frame : undefined;
     if (this.wanted) {

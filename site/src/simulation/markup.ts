@@ -5,13 +5,6 @@ import { bruteForceTests, counterRows, formatCount } from "../panel/counters.ts"
 import { choice, seedField, slider, still, transport } from "../panel/parts.ts";
 import { TIME_COUNTERS, WORK_COUNTERS } from "./counters.ts";
 
-interface SimulationOptions {
-  readonly id: string;
-  readonly dimensions: 2 | 3;
-  /** How many bodies it begins with. */
-  readonly bodies: number;
-}
-
 /** Fills every empty `<falling-balls …></falling-balls>` of a page. */
 export function expandFallingBalls(page: string): string {
   return page.replace(/<falling-balls([^>]*)><\/falling-balls>/g, (_, attributes: string) => {
@@ -20,21 +13,16 @@ export function expandFallingBalls(page: string): string {
       if (value === undefined) throw new Error(`<falling-balls${attributes}> has no ${name}`);
       return value;
     };
-    const options: SimulationOptions = {
-      id: attribute("id"),
-      dimensions: attribute("dimensions") === "2" ? 2 : 3,
-      bodies: Number(attribute("bodies")),
-    };
-    return `<falling-balls${attributes}>${inside(options)}</falling-balls>`;
+    return `<falling-balls${attributes}>${inside(attribute("id"), Number(attribute("bodies")))}</falling-balls>`;
   });
 }
 
-function inside({ id, dimensions, bodies }: SimulationOptions): string {
+function inside(id: string, bodies: number): string {
   return `
     <div class="panel" role="group" aria-labelledby="${id}-heading">
       <div class="panel-stage">
-        ${dimensions === 2 ? discStage() : sphereStage()}
-        ${still(dimensions === 2 ? "discs" : "spheres", `${dimensions === 2 ? "Discs of very different sizes" : "Ten thousand spheres"} that have fallen into a box`)}
+        <canvas data-part="canvas" role="img" aria-label="Discs falling into a box"></canvas>
+        ${still("discs", "Discs of very different sizes that have fallen into a box")}
         <p class="stage-message" data-part="message">Loading</p>
       </div>
 
@@ -54,24 +42,13 @@ function inside({ id, dimensions, bodies }: SimulationOptions): string {
       </div>
 
       <div class="panel-world">
-        ${slider(id, "bodies", dimensions === 2 ? "Discs" : "Spheres", formatCount(bodies))}
+        ${slider(id, "bodies", "Discs", formatCount(bodies))}
         ${slider(id, "size", "Size", "100%")}
         ${slider(id, "spread", "Size ratio", "1 : 1")}
         ${seedField(id)}
         ${slider(id, "gravity", "Gravity", "9.81 m/s²")}
-        ${slider(id, "substeps", "Substeps", dimensions === 2 ? "8" : "4")}
-        ${dimensions === 2 ? linesSwitch() : ""}
+        ${slider(id, "substeps", "Substeps", "8")}
+        <label class="switch"><input type="checkbox" data-part="lines" autocomplete="off" disabled /> <span>Draw a line for each pair</span></label>
       </div>
     </div>`;
 }
-
-const discStage = (): string =>
-  `<canvas data-part="canvas" role="img" aria-label="Discs falling into a box"></canvas>`;
-
-const sphereStage = (): string =>
-  `<div class="orbit" data-part="orbit" tabindex="0" role="application" aria-label="Spheres falling into a box. Arrow keys turn the view, plus and minus zoom.">
-          <canvas data-part="canvas"></canvas>
-        </div>`;
-
-const linesSwitch = (): string =>
-  `<label class="switch"><input type="checkbox" data-part="lines" autocomplete="off" disabled /> <span>Draw a line for each pair</span></label>`;

@@ -1,7 +1,7 @@
 // What the page and the thread of the simulation say to each other.
 
 /** The axes by name. */
-export const AXIS_NAMES: readonly string[] = ["x", "y", "z"];
+export const AXIS_NAMES: readonly string[] = ["x", "y"];
 
 /** How the pairs are found. Names are those that `Choices` lists. */
 export interface Method {
@@ -20,7 +20,6 @@ export interface Choices {
 
 /** A world to begin with. The same setup gives the same world, step for step, bit for bit. */
 export interface Setup {
-  readonly dimensions: 2 | 3;
   readonly bodies: number;
   /** The middle radius; the box is 10 wide. */
   readonly radius: number;
@@ -97,7 +96,7 @@ export interface Frame {
 }
 
 export type FromSimulation =
-  | { readonly type: "ready"; readonly choices: Choices; readonly simd: boolean }
+  | { readonly type: "ready"; readonly choices: Choices }
   | Begun
   | Frame
   | { readonly type: "failed"; readonly message: string };

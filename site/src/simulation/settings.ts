@@ -1,3 +1,4 @@
+import { radiusOf } from "../balls/setup.ts";
 import { LARGEST_SEED } from "../panel/parts.ts";
 import type { Laws, Method, Setup } from "./messages.ts";
 
@@ -13,21 +14,16 @@ export interface Settings extends Method, Laws {
 
 /** The numbers that the sliders offer. */
 export const RANGES = {
-  bodies: [1, 2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100, 150, 200, 300, 500, 700, 1000, 1500, 2000, 3000, 5000, 7000, 10000, 15000, 20000, 30000, 50000, 70000, 100000],
+  bodies: [1, 2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100, 150, 200, 300, 500, 700, 1000, 1500, 2000, 3000, 5000, 7000, 10000],
   size: [40, 50, 60, 70, 80, 90, 100, 110, 120, 130, 140],
   spread: [1, 1.5, 2, 3, 4, 5, 6, 8, 10, 15, 20],
   gravity: [-9.81, 0, 1.62, 3.7, 9.81, 20, 50],
   substeps: [1, 2, 3, 4, 6, 8, 12, 16],
 } as const;
 
-/** What the bodies of 100% fill together: an area in 2D, a volume in 3D. The box is 10 wide. */
-const FILLED = { 2: 32, 3: 335 } as const;
-
-/** The world of these settings. More bodies are smaller bodies: they fill the same space. */
-export function setupOf({ bodies, size, spread, seed }: Settings, dimensions: 2 | 3): Setup {
-  const each = FILLED[dimensions] / bodies;
-  const radius = dimensions === 2 ? Math.sqrt(each / Math.PI) : Math.cbrt((3 * each) / (4 * Math.PI));
-  return { dimensions, bodies, radius: (radius * size) / 100, spread, seed };
+/** The world of these settings. */
+export function setupOf({ bodies, size, spread, seed }: Settings): Setup {
+  return { bodies, radius: (radiusOf(bodies, 2) * size) / 100, spread, seed };
 }
 
 /** Reads `prefix.bodies=500&prefix.seed=3..` from the page's address; `defaults` where it says nothing sensible. */

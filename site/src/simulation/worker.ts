@@ -1,11 +1,9 @@
 // The thread of the simulation: steps the world at its own pace, sixty times a second if it can,
 // and sends what it has when the page has a buffer free for it.
 
-import { type BroadPhaseOptions, Simulation, type StepReport } from "../../../classroom/simulation/wasm/simulation.js";
-import scalarWasm from "../generated/simulation.wasm?url";
-import simdWasm from "../generated/simulation.simd.wasm?url";
+import type { BroadPhaseOptions, StepReport } from "../../../classroom/simulation/wasm/simulation.js";
+import { loadSimulation, Simulation } from "../balls/load.ts";
 import { AXIS_NAMES, type FromSimulation, type Laws, type Measurement, type Method, type Setup, type ToSimulation } from "./messages.ts";
-import { hasSimd } from "../simd.ts";
 import { messageOf } from "../message-of.ts";
 
 const STEP_MS = 1000 / 60;
@@ -28,8 +26,7 @@ interface World {
 
 /** A world to warm up by: large enough for all of the code, and small enough not to be waited for. */
 const WARM_UP = { bodies: 2000, steps: 4 };
-/** The dimensions that have been warmed up. */
-const warmedUp = new Set<number>();
+let isCompiled = false;
 
 let world: World | undefined;
 let running = false;
@@ -43,11 +40,11 @@ const send = (message: FromSimulation, transfer: Transferable[] = []): void =>
 
 function begin(run: number, setup: Setup, { gravity, substeps }: Laws, method: Method): void {
   world?.simulation.free();
-  const { dimensions, bodies, radius, spread, seed } = setup;
-  warmUp(dimensions);
+  const { bodies, radius, spread, seed } = setup;
+  warmUp();
   const simulation = new Simulation({
     scene: "falling",
-    dimensions,
+    dimensions: 2,
     bodies,
     size: radius,
     spread,
@@ -64,10 +61,10 @@ function begin(run: number, setup: Setup, { gravity, substeps }: Laws, method: M
 
 /** A browser compiles a function when it is first called, and again when it was called often: so that the
  * times of the first steps are not those of the compiler, a few steps are run first and not shown. */
-function warmUp(dimensions: 2 | 3): void {
-  if (warmedUp.has(dimensions)) return;
-  warmedUp.add(dimensions);
-  const simulation = new Simulation({ scene: "falling", dimensions, bodies: WARM_UP.bodies });
+function warmUp(): void {
+  if (isCompiled) return;
+  isCompiled = true;
+  const simulation = new Simulation({ scene: "falling", dimensions: 2, bodies: WARM_UP.bodies });
   for (let step = 0; step < WARM_UP.steps; step++) simulation.step();
   simulation.free();
 }
@@ -213,12 +210,11 @@ function guarded(work: () => void): void {
   }
 }
 
-const simd = hasSimd();
 // Messages that come before the module is there wait for it, in their order.
-const loaded = Simulation.load(new URL(simd ? simdWasm : scalarWasm, self.location.href)).then(
+const loaded = loadSimulation().then(
   () => {
     const { algorithms, sorts, axes } = Simulation;
-    send({ type: "ready", choices: { algorithms, sorts, axes }, simd });
+    send({ type: "ready", choices: { algorithms, sorts, axes } });
   },
   (error: unknown) => {
     send({ type: "failed", message: messageOf(error) });

@@ -11,6 +11,12 @@ export const PAGES: readonly string[] = readdirSync(new URL("../../", import.met
 /** Where race.html leads: four algorithms in the playground. */
 export const RACE = "/playground.html?scene=uniform&boxes=1000&algorithm=global+pairwise&2=sorted+pairwise&3=swap-driven+sweep&4=find+pairs";
 
+/** Where the pages lead that only forward. */
+export const MOVED: Readonly<Record<string, string>> = {
+  "/race.html": RACE,
+  "/falling.html": "/playground.html?scene=falling+balls&boxes=2000&algorithm=find+pairs",
+};
+
 /** Everything that a browser complains about, from now on. */
 export function complaints(page: Page): string[] {
   const all: string[] = [];

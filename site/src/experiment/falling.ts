@@ -1,0 +1,46 @@
+// The scene of balls that fall: their boxes are what the algorithms search, step by step.
+
+import { Simulation } from "../balls/load.ts";
+import { radiusOf } from "../balls/setup.ts";
+import type { WorldOptions } from "./experiment.ts";
+import type { Balls } from "./messages.ts";
+
+export class Falling {
+  readonly #simulation: Simulation;
+  readonly #dimensions: number;
+  #isNew = true;
+
+  constructor({ dimensions, boxes, seed, size, spread }: WorldOptions) {
+    this.#dimensions = dimensions;
+    this.#simulation = new Simulation({ scene: "falling", dimensions, bodies: boxes, size: size * radiusOf(boxes, dimensions), spread: Math.min(spread, 100), seed, counting: false });
+  }
+
+  advance(): void {
+    this.#simulation.step();
+  }
+
+  /** The boxes of the balls, rows of min corner and max corner. */
+  get rows(): Float32Array {
+    const { positions, radii } = this.#simulation;
+    const row = 2 * this.#dimensions;
+    const rows = new Float32Array(2 * positions.length);
+    for (const [at, center] of positions.entries()) {
+      const [ball, axis] = [Math.floor(at / this.#dimensions), at % this.#dimensions];
+      rows[row * ball + axis] = center - radii[ball]!;
+      rows[row * ball + this.#dimensions + axis] = center + radii[ball]!;
+    }
+    return rows;
+  }
+
+  /** What is drawn: where the balls are, and at first also in which world. */
+  get balls(): Balls {
+    const { positions, radii, bounds } = this.#simulation;
+    const world = this.#isNew ? { ...bounds, radii: radii.slice() } : undefined;
+    this.#isNew = false;
+    return { positions: positions.slice(), world };
+  }
+
+  free(): void {
+    this.#simulation.free();
+  }
+}

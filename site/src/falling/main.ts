@@ -1,3 +1,0 @@
-import { FallingBalls } from "../simulation/falling-balls.ts";
-
-customElements.define("falling-balls", FallingBalls);

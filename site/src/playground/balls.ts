@@ -1,0 +1,79 @@
+// Draws the scene of falling balls: discs or spheres in the place of their boxes.
+
+import type { Balls } from "../experiment/messages.ts";
+import { onThemeChange, readTheme } from "../view/theme.ts";
+import type { View } from "../view/view.ts";
+
+const NOTHING = new Uint32Array(0);
+
+export class BallsPicture {
+  /** What holds the canvas: it turns the view of spheres. */
+  readonly #place: HTMLElement;
+  readonly #signal: AbortSignal;
+  readonly #changed: () => void;
+  readonly #failed: (error: unknown) => void;
+  #view: View | undefined;
+  #dimensions = 0;
+  #last: Balls | undefined;
+
+  constructor(place: HTMLElement, signal: AbortSignal, changed: () => void, failed: (error: unknown) => void) {
+    this.#place = place;
+    this.#signal = signal;
+    this.#changed = changed;
+    this.#failed = failed;
+  }
+
+  /** Shows balls, or hides the picture. */
+  show(balls: Balls | undefined, dimensions: 2 | 3): void {
+    this.#place.hidden = balls === undefined;
+    if (!balls) return;
+    const world = balls.world ?? this.#last?.world;
+    const isNew = balls.world !== undefined && balls.world !== this.#last?.world;
+    this.#last = { ...balls, world };
+    if (dimensions !== this.#dimensions) return this.#open(dimensions);
+    if (isNew) this.#begin();
+    this.#view?.draw({ positions: balls.positions, pairs: NOTHING });
+  }
+
+  resize(): void {
+    const { clientWidth, clientHeight } = this.#place;
+    if (clientWidth > 0) this.#view?.resize(clientWidth, clientHeight);
+  }
+
+  #begin(): void {
+    const { world, positions } = this.#last ?? {};
+    if (!world || !positions || !this.#view) return;
+    const [floor = 0, ceiling = 1] = [world.min[1], world.max[1]];
+    // Painted by the height at which they start.
+    const tints = world.radii.map((_, body) => ((positions[this.#dimensions * body + 1] ?? 0) - floor) / (ceiling - floor));
+    this.#view.begin(world, world.radii, tints);
+    this.resize();
+  }
+
+  #open(dimensions: 2 | 3): void {
+    this.#dimensions = dimensions;
+    this.#view = undefined;
+    const canvas = document.createElement("canvas");
+    const isTurned = dimensions === 3;
+    this.#place.replaceChildren(canvas);
+    this.#place.tabIndex = isTurned ? 0 : -1;
+    this.#place.setAttribute("role", isTurned ? "application" : "img");
+    this.#place.setAttribute("aria-label", isTurned ? "Spheres falling into a box. Arrow keys turn the view, plus and minus zoom." : "Discs falling into a box");
+    const opened = isTurned
+      ? import("../view/sphere-view.ts").then(({ SphereView }): View => new SphereView(canvas, this.#place, readTheme(), this.#changed))
+      : import("../view/disc-view.ts").then(({ DiscView }): View => new DiscView(canvas, readTheme()));
+    opened.then(
+      (view) => {
+        if (dimensions !== this.#dimensions) return;
+        this.#view = view;
+        onThemeChange(() => {
+          view.setTheme(readTheme());
+          this.#changed();
+        }, this.#signal);
+        this.#begin();
+        this.#changed();
+      },
+      (error: unknown) => this.#failed(isTurned ? new Error("drawing the spheres needs WebGL, which this browser does not offer. The boxes are searched anyway, and the numbers are correct", { cause: error }) : error),
+    );
+  }
+}
