@@ -73,9 +73,9 @@ export function writeCore(path, bytes, { budget, simd }) {
 
 /**
  * Bundles the entries `{ name, source, budget }` of a package; a `source` that begins with `inline:` has its compiled cores inside.
- * A budget is for an entry and all that it imports.
+ * A budget is for an entry and all that it imports. With `hasMaps`, source maps with the sources lie beside.
  */
-export async function buildModules(folder, entries, { plugins = [], hasShortNames = false } = {}) {
+export async function buildModules(folder, entries, { plugins = [], hasShortNames = false, hasMaps = false } = {}) {
   const { metafile } = await build({
     absWorkingDir: folder,
     entryPoints: Object.fromEntries(entries.map(({ name, source }) => [name, source])),
@@ -89,13 +89,31 @@ export async function buildModules(folder, entries, { plugins = [], hasShortName
     minifyIdentifiers: hasShortNames,
     minifySyntax: true,
     minifyWhitespace: true,
+    sourcemap: hasMaps && "linked",
     plugins: [inlined(folder), ...plugins],
     metafile: true,
   });
+  for (const path of Object.keys(metafile.outputs).filter((path) => path.endsWith(".map"))) leaveOutCores(join(folder, path));
   for (const { name, budget = Infinity } of entries) {
     const glue = [...withImports(metafile.outputs, `dist/${name}.js`)];
     report(`${name}.js`, glue.map((path) => readFileSync(join(folder, path))), budget);
   }
+}
+
+/**
+ * Writes a module for `require` beside each of these, which gives what it has: Node and bundlers load an ES module there, but a
+ * compiler that reads `module: node16` wants to see CommonJS. So there is one copy of the code, whoever loads it.
+ */
+export function writeForRequire(folder, names) {
+  for (const name of names) writeFileSync(join(folder, "dist", `${name}.cjs`), `"use strict";\nmodule.exports = require("./${name}.js");\n`);
+}
+
+/** Takes the compiled cores out of the sources in a source map, and paths of this machine. */
+function leaveOutCores(path) {
+  const map = JSON.parse(readFileSync(path, "utf8"));
+  map.sourcesContent = map.sourcesContent.map((source) => source.replace(/bytesOf\("[^"]{1000,}"\)/g, 'bytesOf("...")'));
+  map.sources = map.sources.map((source) => (source.startsWith("inline:") ? relative(dirname(path), source.slice("inline:".length)) : source));
+  writeFileSync(path, JSON.stringify(map));
 }
 
 /** Makes the inline form of an entry: the same module, with each compiled core, deflated, in place of its address. */
@@ -104,7 +122,8 @@ const inlined = (folder) => ({
   setup({ onLoad, onResolve }) {
     onResolve({ filter: /^inline:/ }, ({ path }) => ({ path: join(folder, path.slice("inline:".length)), namespace: "inline" }));
     onLoad({ filter: /./, namespace: "inline" }, ({ path }) => {
-      const imported = `import { bytesOf } from ${JSON.stringify(join(root, "js/src/wasm/inlined.ts"))};\n`;
+      // Relative, for the source map.
+      const imported = `import { bytesOf } from ${JSON.stringify(relative(dirname(path), join(root, "js/src/wasm/inlined.ts")))};\n`;
       const source = readFileSync(path, "utf8");
       const code = source.replace(/new URL\("(\.\/[^"]*\.wasm)", import\.meta\.url\)/g, (_, file) => {
         const deflated = deflateRawSync(readFileSync(join(folder, "dist", file)), { level: 9 });
@@ -125,8 +144,11 @@ function withImports(outputs, path, found = new Set()) {
   return found;
 }
 
-/** Writes the declarations of the entries `{ name, source }`: of their public API alone. */
-export async function buildDeclarations(folder, entries) {
+/**
+ * Writes the declarations of the entries `{ name, source }`: of their public API alone. With `isForRequire`, also for those of
+ * {@link writeForRequire}.
+ */
+export async function buildDeclarations(folder, entries, { isForRequire = false } = {}) {
   const typescript = join(createRequire(join(folder, "package.json")).resolve("typescript/package.json"), "..");
   const all = join(target, "declarations", relative(root, folder));
   await run(process.execPath, [join(typescript, "bin/tsc"), "--project", folder, "--outDir", all, "--rootDir", root, "--stripInternal"], process.env);
@@ -136,7 +158,10 @@ export async function buildDeclarations(folder, entries) {
     plugins: [dts({ dtsInput: true, tsconfig: false })],
     experimental: { attachDebugInfo: "none" }, // no comments with paths
   });
-  await bundle.write({ dir: join(folder, "dist"), format: "es", chunkFileNames: "shared-[name].d.ts", banner: '/// <reference lib="esnext.disposable" preserve="true" />' });
+  const { output } = await bundle.write({ dir: join(folder, "dist"), format: "es", chunkFileNames: "shared-[name].d.ts", banner: '/// <reference lib="esnext.disposable" preserve="true" />' });
+  for (const { fileName, code } of isForRequire ? output : []) {
+    writeFileSync(join(folder, "dist", fileName.replace(/\.d\.ts$/, ".d.cts")), code.replace(/(from "\.\/[\w-]+)\.js"/g, '$1.cjs"'));
+  }
 }
 
 /** Runs a command that says itself what is wrong; then the build ends. */

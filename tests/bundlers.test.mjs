@@ -18,7 +18,7 @@ const consumer = join(root, "js/test/support/consumer");
 /** What is installed beside the package, under its name. */
 const tools = ["parcel@2", "@rspack/core@2", "@rspack/cli@2", "vite@8", "vitest@5", "esbuild", "rollup@4", "@rollup/plugin-node-resolve"];
 // The oldest TypeScript that the types promise to work with, and the newest.
-tools.push("typescript-oldest@npm:typescript@5.7", "typescript-newest@npm:typescript@latest");
+tools.push("publint", "@arethetypeswrong/cli", "typescript-oldest@npm:typescript@5.7", "typescript-newest@npm:typescript@latest");
 
 describe("The packed package in", { skip }, () => {
   let project, browser, resultOf;
@@ -170,6 +170,32 @@ describe("The packed package in", { skip }, () => {
     });
   }
 
+  for (const version of ["oldest", "newest"]) {
+    test(`CommonJS in TypeScript, the ${version}, with module: node16`, () => {
+      writeFileSync(
+        join(project, "required.cts"),
+        `import { countPairs, init } from "sweep-and-prune";
+         import { BroadPhase } from "sweep-and-prune/broad-phase";
+         import { BroadPhase as Events } from "sweep-and-prune/events-2d/inline";
+         init().then(() => console.log(countPairs([0, 1, 1, 2], { dimensions: 1 }), new BroadPhase({ dimensions: 2 }).size));
+         // @ts-expect-error the types are read
+         new Events({ dimensions: 3 });`,
+      );
+      const compilerOptions = { noEmit: true, strict: true, target: "es2022", lib: ["es2022", "esnext.disposable", "dom"], types: [], module: "node16" };
+      writeFileSync(join(project, "tsconfig.json"), JSON.stringify({ compilerOptions, files: ["required.cts"] }));
+      run(process.execPath, join(project, `node_modules/typescript-${version}/bin/tsc`));
+    });
+  }
+
+  test("publint and attw have no finding", () => {
+    const installed = join(project, "node_modules/sweep-and-prune");
+    tool("publint", "run", installed, "--level", "warning", "--strict");
+    const [packed] = JSON.parse(run("npm", "pack", installed, "--ignore-scripts", "--json"));
+    // Files that are no modules have no types.
+    const files = Object.keys(JSON.parse(readFileSync(join(installed, "package.json"), "utf8")).exports).filter((name) => /\.(wasm|json)$/.test(name));
+    tool("attw", packed.filename, "--exclude-entrypoints", ...files);
+  });
+
   test("what the README links to is in the package", () => {
     const installed = join(project, "node_modules/sweep-and-prune");
     const links = [...readFileSync(join(installed, "README.md"), "utf8").matchAll(/\]\((docs\/[^)#]+)/g)].map(([, link]) => link);
@@ -178,7 +204,8 @@ describe("The packed package in", { skip }, () => {
     const { exports } = JSON.parse(readFileSync(join(installed, "package.json"), "utf8"));
     const files = readdirSync(join(installed, "dist")).filter((name) => name.endsWith(".wasm"));
     for (const name of files) assert.equal(exports[`./${name}`], `./dist/${name}`, "not exported");
-    for (const target of Object.values(exports).flatMap((target) => (typeof target === "string" ? [target] : Object.values(target)))) {
+    const all = (target) => (typeof target === "string" ? [target] : Object.values(target).flatMap(all));
+    for (const target of all(exports)) {
       assert.ok(existsSync(join(installed, target)), target);
     }
   });

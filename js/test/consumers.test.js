@@ -7,7 +7,7 @@ import { cpSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writ
 import { createServer } from "node:http";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
-import { extname, join } from "node:path";
+import { dirname, extname, join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { nodeResolve } from "@rollup/plugin-node-resolve";
@@ -99,6 +99,28 @@ test("no bundler: a plain script, and a module worker", async () => {
   }
   writePage(folder, "./app.js");
   assert.deepEqual(await resultOfFolder(folder), expected);
+});
+
+test("each module has a source map with its sources, without the compiled cores", () => {
+  const dist = join(installed, "dist");
+  const modules = readdirSync(dist).filter((name) => name.endsWith(".js"));
+  const seen = new Set();
+  for (const name of modules) {
+    const [, file] = /\n\/\/# sourceMappingURL=(.*)\n$/.exec(readFileSync(join(dist, name), "utf8")) ?? [];
+    assert.equal(file, `${name}.map`);
+    const text = readFileSync(join(dist, `${name}.map`), "utf8");
+    assert.ok(text.length < 150_000, `${name}.map has a core in it`);
+    assert.ok(!text.includes(dirname(here)), `${name}.map has a path of this machine`);
+    const { sources, sourcesContent, mappings } = JSON.parse(text);
+    assert.ok(mappings.length > 0 && sources.length === sourcesContent.length);
+    for (const [at, source] of sources.entries()) {
+      seen.add(source);
+      assert.match(source, /^\.\.\//, "a path of another machine");
+      // The inline form of an entry is not its source, but what the build makes of it.
+      if (source.startsWith("../src") && !name.includes("inline")) assert.equal(sourcesContent[at], readFileSync(join(here, "dist", source), "utf8"));
+    }
+  }
+  assert.ok(seen.has("../src/world/broad-phase.ts") && seen.has("../src/pairs/pair-finder.ts"));
 });
 
 test("Vite, built", async () => {
@@ -226,7 +248,7 @@ test("the package holds what it should and nothing else", () => {
   for (const file of ["package.json", "README.md", "dist/index.js", "dist/index.d.ts", "dist/sweep-and-prune.simd.wasm", "dist/LICENSE-MIT", "docs/games.md"]) {
     assert.ok(files.includes(file), file);
   }
-  const odd = files.filter((path) => !/^(package\.json|README\.md|dist\/[\w.-]+\.(js|d\.ts|wasm)|dist\/LICENSE-\w+|docs\/[\w-]+\.md|docs\/picture\.svg)$/.test(path));
+  const odd = files.filter((path) => !/^(package\.json|README\.md|dist\/[\w.-]+\.(js|cjs|js\.map|d\.ts|d\.cts|wasm)|dist\/LICENSE-\w+|docs\/[\w-]+\.md|docs\/picture\.svg)$/.test(path));
   assert.deepEqual(odd, []);
   assert.deepEqual(files.filter((path) => /demo|simulation|algorithms|runner|player/.test(path)), [], "what teaches is in a package of its own");
   const { unpackedSize } = JSON.parse(listed)[0];
