@@ -102,7 +102,7 @@ export async function buildModules(folder, entries, { plugins = [], hasShortName
 
 /**
  * Writes a module for `require` beside each of these, which gives what it has: Node and bundlers load an ES module there, but a
- * compiler that reads `module: node16` wants to see CommonJS. So there is one copy of the code, whoever loads it.
+ * compiler that reads `module: node16` wants to see CommonJS. So there is one copy of the code.
  */
 export function writeForRequire(folder, names) {
   for (const name of names) writeFileSync(join(folder, "dist", `${name}.cjs`), `"use strict";\nmodule.exports = require("./${name}.js");\n`);
