@@ -143,3 +143,67 @@ fn sweeping_without_updates_takes_no_memory() {
     });
     assert!(grown < FEW_BYTES, "{grown}");
 }
+
+/// How many bytes a world takes before a crowd, at the update after all its bodies were at one place, and `later` updates
+/// after that.
+fn crowd(
+    each: impl Fn(usize, usize) -> Aabb<2>,
+    moving: usize,
+    later: usize,
+) -> ([isize; 3], BroadPhase<2>) {
+    let count = 1_500;
+    let at = |frame: usize| (0..count).map(|index| each(index, frame)).collect::<Vec<_>>();
+    let begin = BYTES.get();
+    let mut world = BroadPhase::<2>::new();
+    let ids = world.insert_many(&at(0), Filter::default()).unwrap();
+    let mut held = [0; 3];
+    for frame in 0..20 + later {
+        let boxes = at(frame);
+        let moving = if frame < 20 { count } else { moving };
+        world.set_many(&ids[..moving], &boxes[..moving]).unwrap();
+        world.update();
+        let taken =
+            BYTES.get() - begin - size_of_val(&boxes[..]) as isize - size_of_val(&ids[..]) as isize;
+        held[usize::from(frame > 8) + usize::from(frame > 20)] = taken;
+    }
+    (held, world)
+}
+
+#[test]
+fn the_memory_of_a_crowd_is_given_back() {
+    let apart = |index: usize| (2 * index) as f32;
+    // All jump to one place and back; all come slowly and go; either way some move on, or none.
+    let jump = |index: usize, frame: usize| {
+        aabb(if (9..15).contains(&frame) { 0.0 } else { apart(index) })
+    };
+    let walk = |index: usize, frame: usize| {
+        let way =
+            [1.0, 0.5, 0.25, 0.1, 0.01, 0.001, 0.0][(12_usize.abs_diff(frame.min(18))).min(6)];
+        aabb(apart(index) * if frame < 20 { 1.0 - way } else { 1.0 } + 0.1 * (frame % 3) as f32)
+    };
+    for moving in [0, 10, 1_500] {
+        for (name, held) in
+            [("jump", crowd(jump, moving, 130).0), ("walk", crowd(walk, moving, 130).0)]
+        {
+            let [before, spike, after] = held;
+            assert!(spike > 10_000_000, "{name}: {spike} bytes prove little");
+            // No list of 16,384 pairs is shrunk.
+            assert!(
+                after < before + 1_000_000,
+                "{name}, {moving} move: {before}, {spike}, {after}"
+            );
+        }
+    }
+}
+
+#[test]
+fn shrinking_to_fit_gives_back_all_that_is_spare() {
+    let jump = |index: usize, frame: usize| aabb(if frame < 20 { 0.0 } else { (2 * index) as f32 });
+    let ([.., held], mut world) = crowd(jump, 1_500, 2);
+    let (hash, before) = (world.state_hash(), BYTES.get());
+    world.shrink_to_fit();
+    let held_now = held - (before - BYTES.get());
+    assert!(held > 10_000_000 && held_now < 200 * 1_500, "{held}, {held_now}");
+    assert_eq!(world.state_hash(), hash);
+    assert!(world.update().is_empty() && world.pairs().len() == 0);
+}

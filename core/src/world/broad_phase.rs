@@ -265,6 +265,15 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         Ok(Self { bodies, tracking, events: Events::default() })
     }
 
+    /// Gives back memory that is not needed now, and changes no result. Updates give back the memory of a crowd by
+    /// themselves, at most 128 updates after it is gone.
+    ///
+    /// Takes O(n + pairs) time, and meanwhile as much memory again as the world needs.
+    pub fn shrink_to_fit(&mut self) {
+        // Buffers are not cloned, and lists without spare room.
+        *self = self.clone();
+    }
+
     /// A hash of the whole state, that of its [`snapshot`](Self::snapshot): boxes, filters, the
     /// ids given out, and what the next update has to report. Equal for equal states, on every
     /// platform: it shows whether two machines that run the same simulation diverged. It is no

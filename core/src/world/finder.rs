@@ -20,6 +20,8 @@ pub struct Finder<const D: usize, T: Scalar> {
     pairs: Vec<[u32; 2]>,
     /// How many pairs the last search found, before filters.
     pub found: usize,
+    /// How many pairs a search found, at most, since the buffers were empty.
+    pub most_found: usize,
 }
 
 impl<const D: usize, T: Scalar> Finder<D, T> {
@@ -48,6 +50,7 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         if !bodies.any_filter && flags.iter().all(|&flags| takes_part(flags)) {
             let pairs = found(finder.search(table).pairs_up_to(most))?;
             self.found = pairs.len();
+            self.most_found = self.most_found.max(self.found);
             return Some(pairs);
         }
         let all = (0..flags.len() as u32).filter(|&index| takes_part(flags[index as usize]));
@@ -63,6 +66,7 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
             }
             let all = found(search.pairs_up_to(most.saturating_sub(self.found)))?;
             self.found += all.len();
+            self.most_found = self.most_found.max(all.len());
             let (a, b) = (&sets.bodies[a], &sets.bodies[b]);
             let named = all.iter().map(|&[at, other]| [a[at as usize], b[other as usize]]);
             let allowed = named.filter(|&[a, b]| filter_of(a).allows(&filter_of(b)));
@@ -92,6 +96,7 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         let pairs = finder.search(boxes).against(table).pairs_up_to(*most);
         let Some(pairs) = found(pairs) else { return false };
         *most = most.saturating_sub(pairs.len());
+        self.most_found = self.most_found.max(pairs.len());
         near.extend(pairs.iter().filter(|[_, body]| takes_part(*body)));
         true
     }

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use super::bodies::{Bodies, flag};
 use super::candidates::{Candidates, PairSorter};
 use super::finder::Finder;
-use super::policy::{Motion, Policy, Sleep};
+use super::policy::{Motion, Policy, Sleep, Usage};
 use super::tree::Tree;
 use crate::{Aabb, Scalar};
 
@@ -28,6 +28,7 @@ pub struct Tracking<const D: usize, T: Scalar> {
     /// How much the locality of the storage order decayed by motion.
     pub locality_decay: usize,
     pub finder: Finder<D, T>,
+    pub usage: Usage,
     pub scratch: Scratch<D, T>,
 }
 

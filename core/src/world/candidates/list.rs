@@ -27,6 +27,11 @@ pub struct Candidates {
 }
 
 impl Candidates {
+    /// How many pairs are listed.
+    pub fn len(&self) -> usize {
+        self.pairs.len() + self.asleep.len() + self.sorted.len()
+    }
+
     /// Moves the live pairs, as slots, to `sorted`, and drops all other candidates.
     pub fn sort(&mut self, slots: &Slots, sorter: &mut PairSorter) {
         if !self.are_sorted {

@@ -16,8 +16,8 @@ const DIGIT: u32 = 11;
 /// buffers.
 #[derive(Clone, Debug, Default)]
 pub struct PairSorter {
-    buffer: Vec<[u32; 2]>,
-    unsorted: Vec<[u32; 2]>,
+    pub buffer: Vec<[u32; 2]>,
+    pub unsorted: Vec<[u32; 2]>,
     starts: Vec<u32>,
     keys: Vec<u64>,
 }

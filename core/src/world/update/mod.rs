@@ -17,6 +17,7 @@
 mod collect;
 mod finish;
 mod from_scratch;
+mod give_back;
 mod incremental;
 mod rebuild;
 mod search_tree;
@@ -38,6 +39,7 @@ pub fn update<const D: usize, T: Scalar>(
     tracking: &mut Tracking<D, T>,
     events: &mut Events,
 ) {
+    give_back::note_usage(bodies, tracking, events);
     events.begun.clear();
     events.ended.clear();
     let mut order = Reorder::No;
