@@ -21,7 +21,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use crate::exit;
 
 /// Fewer boxes than this take less time than releasing the GIL and waiting to acquire it again.
-pub const FEW: usize = 1024;
+const FEW: usize = 1024;
 
 /// With fewer boxes than this the core uses one thread. (On two cores, two threads cost 0.1 ms more at 10,000 boxes that
 /// hardly overlap; they save half of a search whose boxes overlap many others.)
