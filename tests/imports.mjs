@@ -28,6 +28,7 @@ export const FOLDERS = {
   "bench/complexity/src": 6,
   "bench/js/src": 10,
   "bench/js/libraries": 20,
+  "python/extension": 8,
   "site/src": 90,
   "site/wasm/src": 4,
 };
