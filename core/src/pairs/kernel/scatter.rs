@@ -1,8 +1,14 @@
 //! The last step of a counting sort, by one thread or by several at once: each has a list of what goes
 //! to which column, and all write to one array.
 //!
-//! No two write to one place. That follows from the counts, which are made here, of lists that cannot
-//! change until they are written.
+//! ```text
+//! for each list: count what it has in each column
+//! for each column, for each list: its slots begin where those before it end
+//! for each list, on its own thread: write each value to the next slot of its list and column
+//! ```
+//!
+//! No two threads write to one place. That follows from the counts, which are made here, of lists that
+//! cannot change until they are written.
 
 use core::marker::PhantomData;
 use core::mem::{replace, take};
