@@ -6,6 +6,7 @@ mod arrays;
 mod errors;
 mod exit;
 mod finder;
+mod lines;
 mod order;
 mod run;
 mod world;
@@ -20,12 +21,16 @@ mod _native {
     #[pymodule_export]
     use super::finder::Finder;
     #[pymodule_export]
+    use super::lines::read_bed;
+    #[pymodule_export]
     use super::order::in_order;
     #[pymodule_export]
     use super::world::World;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // Loads NumPy's functions now: a signal that comes while they are loaded by the first search is a panic.
+        drop(numpy::dtype::<f64>(module.py()));
         super::exit::register(module)
     }
 }

@@ -8,13 +8,18 @@ import io
 import json
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import numpy as np
 import pytest
 
+from sweep_and_prune import _text
+from sweep_and_prune._columns import group_codes
 from sweep_and_prune._command import main
+from sweep_and_prune._file_error import FileError
 from sweep_and_prune._tables import read
 
 SAP = [sys.executable, "-m", "sweep_and_prune"]
@@ -137,7 +142,7 @@ def test_formats_of_genomics_have_the_intervals_of_bed(name: str, capsys: pytest
     assert boxes_of(name) == [[10, 20], [20, 21], [0, 20]]
     source = read(name)
     for label, values in labels:
-        assert source.label(label).tolist() == values
+        assert source.label(label)[np.arange(len(source))].tolist() == values
     Path("b.bed").write_text("chr1\t19\t20\tx\nchr2\t20\t30\ty\nchr1\t20\t21\tz\n")
     assert said(capsys, "join", name, "b.bed") == "a,b\n0,0\n1,2\n"
     assert said(capsys, "count", name, "b.bed", "--closed", "both") == "5\n"
@@ -340,3 +345,67 @@ def test_files_of_gis_are_read_with_their_attributes(capsys: pytest.CaptureFixtu
     assert said(capsys, "pairs", "a.gpkg", "--missing", "skip", "--id", "n") == "a,b\na,d\n"
     for name in ("a.fgb", "a.shp"):
         assert boxes_of(name) == [[0, 0, 1, 1]]
+
+
+LINES = [
+    "chr1\t5\t9\tx\ty",
+    "chr2\t0\t1",
+    "chr1\t7\t7\t\t",
+    "# no\t1\t2",
+    "",
+    "track name=a",
+    "browser",
+    "1\t007\t10\té",
+]
+ODD_LINES = [
+    "chr1\t5\t9x",
+    "chr1\t-1\t9",
+    "chr1\t5",
+    "\t1\t2",
+    "chr1\t5\t9\rchr2\t1\t2",
+    "chr1\t1_0\t20",
+    "a\t 1\t2",
+    "a\t1\t2 ",
+]
+ODD_LINES += ["track\t1\t2", "trackx\t1\t2", "a\t1.5\t2", f"a\t1\t{10**18}", f"a\t1\t{10**30}", "a b\t1\t2\r"]
+
+
+def test_lines_of_bed_are_read_as_cell_by_cell() -> None:
+    random = Random(2)
+    fast = 0
+    for _ in range(600):
+        lines = [random.choice(ODD_LINES if random.random() < 0.03 else LINES) for _ in range(random.randint(0, 12))]
+        end = random.choice(["\n", "\r\n"])
+        data = (random.choice(["", "\ufeff"]) + end.join(lines) + random.choice(["", end])).encode()
+
+        def outcome(read: Any, given: Any = data) -> Any:
+            try:
+                table = read("a.bed", given, "bed")
+                count = np.arange(len(table))
+                cells = [np.asarray(table.label(name)[count]).tolist() for name in table.columns]
+                ends = [[repr(float(one)) for one in table[name]] for name in ("start", "end")]
+                kinds = [table.are_plain_numbers("chrom"), table.are_plain_numbers("end")]
+                codes = group_codes([[table.group("chrom")]], ["a"])[0].tolist()
+                if kinds[0]:
+                    codes.append(group_codes([[table.group_of_numbers("chrom")]], ["a"])[0].tolist())
+                return table.columns, cells, ends, [table.line(row) for row in count], kinds, codes
+            except FileError as error:
+                return str(error)
+
+        text = io.StringIO(data.decode("utf-8-sig"), newline="")
+        assert outcome(_text.read_genomic) == outcome(_text._read_genomic, text), data
+        with suppress(FileError):
+            fast += isinstance(_text.read_genomic("a.bed", data, "bed"), _text.Lines)
+    assert fast > 300
+    with pytest.raises(UnicodeDecodeError):
+        _text.read_genomic("a.bed", b"a\t1\t2\t\xff\n", "bed")
+
+
+@pytest.mark.parametrize("name", ["a.bed", "a.bed.gz", "a.csv", "a.csv.gz"])
+def test_reading_a_file_of_text_reports_how_far_it_is(name: str) -> None:
+    rows = [f"chr1\t{at}\t{at + 5}" if ".bed" in name else f"{at},{at + 5}" for at in range(500_000)]
+    text = "\n".join(rows).encode()
+    Path(name).write_bytes(gzip.compress(text, 0) if name.endswith(".gz") else text)
+    shares: list[float] = []
+    assert len(read(name, progress=shares.append)) == 500_000
+    assert shares == sorted(shares) and len(shares) >= 3 and shares[0] < 0.7 and shares[-1] == 0.99

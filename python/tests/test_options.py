@@ -241,3 +241,28 @@ def test_large_results_are_those_of_small_ones_in_every_type() -> None:
     assert np.array_equal(chunks, sap.find_pairs(boxes))
     finder = sap.PairFinder(3, np.float32, threads=2)
     assert np.array_equal(finder.find(boxes), finder.find(boxes)) and len(finder.find(boxes[:3])) == 3
+
+
+@pytest.mark.parametrize("closed", ["both", "left"])
+@pytest.mark.parametrize("offset", [0, -(2**40), 2**50, 2**52 - 200, -(2**53) + 1, 2**53 - 100, 2**60, 2**63 - 200])
+def test_whole_intervals_of_different_groups_never_pair(offset: int, closed: str) -> None:
+    random = np.random.default_rng(4)
+    for _ in range(20):
+        sets, groups = [], []
+        for count in random.integers(0, 40, 2):
+            start = random.integers(0, 60, count)
+            sets.append((np.stack([start, start + random.integers(0, 9, count)], axis=1) + np.int64(offset)))
+            groups.append(random.choice([7, 8, 2**40, 2**40 + 1], count))
+        a, b = (boxes.astype(object) for boxes in sets)
+        near = (a[:, None, 0] <= b[None, :, 1]) & (b[None, :, 0] <= a[:, None, 1])
+        if closed == "left":
+            near = (a[:, None, 0] < b[None, :, 1]) & (b[None, :, 0] < a[:, None, 1])
+            near &= (a[:, 0] < a[:, 1])[:, None] & (b[:, 0] < b[:, 1])[None]
+        wanted = np.argwhere(near.astype(bool) & (groups[0][:, None] == groups[1][None]))
+        found = sap.find_pairs_between(*sets, by=tuple(groups), closed=closed)
+        assert np.array_equal(in_order(found), wanted)
+        assert sap.count_pairs_between(*sets, by=tuple(groups), closed=closed) == len(wanted)
+    with pytest.raises(
+        sap.InvalidBoxError, match=rf"boxes\[1\] is inverted on axis 0: min {offset + 5}(\.0)? is greater"
+    ):
+        sap.find_pairs(np.array([[0, 1], [5, 4]]) + offset, by=[1, 2], closed=closed)

@@ -49,6 +49,13 @@ class Column(NamedTuple):
     """Whether these are times with a time zone. They are in UTC here."""
     name: str = ""
     """What it is called in messages."""
+    codes: NDArray[Any] | None = None
+    """Which of the values each row has; None if there is a value for each row."""
+
+    @property
+    def rows(self) -> int:
+        """How many rows it has."""
+        return len(self.values if self.codes is None else self.codes)
 
     def kinds(self) -> set[str]:
         """What the values are, in words; an empty set if there are none."""
@@ -500,7 +507,7 @@ def group_codes(sides: Sequence[Sequence[Column]], sets: Sequence[str]) -> list[
             found = np.unique(both, return_inverse=True)[1].reshape(-1) - int((both < 0).any())
         combined = found
     assert combined is not None
-    return list(np.split(combined, np.cumsum([len(columns[0].values) for columns in sides])[:-1]))
+    return list(np.split(combined, np.cumsum([columns[0].rows for columns in sides])[:-1]))
 
 
 def _codes_of_columns(columns: Sequence[Column]) -> NDArray[np.int64]:
@@ -510,7 +517,8 @@ def _codes_of_columns(columns: Sequence[Column]) -> NDArray[np.int64]:
     present = [one.values if one.missing is None else one.values[~one.missing] for one in columns]
     found = np.full(len(is_present), -1, np.int64)
     found[is_present] = _codes_of_values([values for values in present if len(values)])
-    return found
+    parts = np.split(found, np.cumsum([len(one.values) for one in columns])[:-1])
+    return np.concatenate([part if one.codes is None else part[one.codes] for part, one in zip(parts, columns)])
 
 
 def _codes_of_values(arrays: list[NDArray[Any]]) -> NDArray[np.int64]:

@@ -26,10 +26,19 @@ from ._intervals import nearest as find_nearest
 from ._join import with_missing
 from ._output import output_file
 from ._overlaps import Overlaps, count_overlaps, measure_overlaps
-from ._pairs import count_pairs, count_pairs_between, find_pairs, find_pairs_between, iter_chunks, iter_chunks_between
+from ._pairs import (
+    count_pairs,
+    count_pairs_between,
+    find_pairs,
+    find_pairs_between,
+    iter_chunks,
+    iter_chunks_between,
+    release_buffers,
+)
 from ._progress import ProgressBar
 from ._signals import end_at_once, end_by_signals, remove_unfinished, signal_status
 from ._tables import FORMATS, READABLE, Source, kind_of_file, read
+from ._text import Cells
 from ._writers import WRITABLE, kind_of, writer
 
 _EPILOG = f"""\b
@@ -57,6 +66,9 @@ after SIGTERM, 129 after SIGHUP, 141 if the program that reads the output ended.
 
 _SIDES = ("left", "right")
 _PER_SIDE = ("columns", "by", "id")
+_PAIRS_AT_ONCE = 2**20
+"""Many, since there is work for each chunk; they take 16 MB."""
+_LABELLED_AT_ONCE = 2**15
 Options = SimpleNamespace
 """The options and arguments of a command."""
 _Function = TypeVar("_Function", bound=Callable[..., None])
@@ -392,7 +404,10 @@ def _opened(options: Options) -> Iterator[list[Source]]:
             raise FileError(f"{path} has the boxes, which the output would replace: choose another file by -o")
     if options.files.count("-") > 1:
         raise FileError("standard input can be read once: pass one file by its name")
-    sources = [read(path, options.from_, options.header) for path in options.files]
+    sources = []
+    for path in options.files:
+        with _progress("reading", options) as progress:
+            sources.append(read(path, options.from_, options.header, progress))
     try:
         yield sources
     except InvalidBoxError as error:
@@ -514,12 +529,14 @@ def _counted(options: Options, sets: list[Any], search: dict[str, Any]) -> int:
     return number
 
 
-def _chunks(sets: list[Any], search: dict[str, Any], number: int, progress: ProgressBar) -> Iterator[NDArray[Any]]:
-    """Chunks of `number` pairs, with progress: each counts as done when the next one is asked for."""
-    # Large, since there is work for each chunk; it takes 16 MB.
+def _chunks(
+    sets: list[Any], search: dict[str, Any], number: int, progress: ProgressBar, size: int = _PAIRS_AT_ONCE
+) -> Iterator[NDArray[Any]]:
+    """The pairs, `number` in all, with progress: each chunk counts as done when the next one is asked for."""
     chunks: Any = iter_chunks if len(sets) == 1 else iter_chunks_between
+    release_buffers()  # those of the thread that counted, since another one finds the pairs
     done = 0
-    for chunk in chunks(*sets, size=2**20, **search):
+    for chunk in chunks(*sets, size=size, **search):
         yield chunk
         done += len(chunk)
         progress(done / number)
@@ -550,11 +567,11 @@ def _write_pairs(options: Options) -> None:
             _write_columns(options, kind, _chosen_pairs(options, how, sources, sets, search))
             return
         labels = _Labels(options, sources)
-        names, examples = zip(*labels.of([np.arange(len(source)) for source in (sources[0], sources[-1])]))
+        names, examples = zip(*labels.examples())
         number = _counted(options, sets, search)
         opened = writer(options.output, kind, number, names, examples)
         with opened as file, _progress("writing", options) as progress:
-            for chunk in _chunks(sets, search, number, progress):
+            for chunk in _chunks(sets, search, number, progress, labels.pairs_at_once):
                 file.write([column for _, column in labels.of([chunk[:, 0], chunk[:, 1]])])
 
 
@@ -617,11 +634,26 @@ class _Labels:
             for source, of_source in zip(sources, names):
                 if not of_source:
                     raise FileError(f"{source.name} has no named columns: leave out --rows")
-        self._columns: list[list[tuple[str, NDArray[Any] | None]]] = []
+        self._columns: list[list[tuple[str, Any]]] = []
         for side, source, of_side in zip("ab", [sources[0], sources[-1]], [names[0], names[len(sources) - 1]]):
             is_one = len(of_side) == 1 and not options.rows
             labels = [(side if is_one else f"{side}_{name}", source.label(name)) for name in of_side]
             self._columns.append([*labels] or [(side, None)])
+
+    @property
+    def pairs_at_once(self) -> int:
+        """How many pairs are written at once: fewer if each has cells of text."""
+        has_values = any(values is not None for columns in self._columns for _, values in columns)
+        return _LABELLED_AT_ONCE if has_values else _PAIRS_AT_ONCE
+
+    def examples(self) -> list[tuple[str, NDArray[Any]]]:
+        """Values of each column that tell its type."""
+        text, number = np.array(["text"], object), np.zeros(1, np.int64)
+        return [
+            (name, number if values is None else text if isinstance(values, Cells) else values)
+            for columns in self._columns
+            for name, values in columns
+        ]
 
     def of(self, rows: list[NDArray[Any]]) -> list[tuple[str, NDArray[Any]]]:
         """The columns for rows of the first file and of the last one; a row of -1 has no values."""
@@ -630,10 +662,10 @@ class _Labels:
         ]
 
 
-def _taken(values: NDArray[Any] | None, rows: NDArray[Any]) -> NDArray[Any]:
+def _taken(values: Any, rows: NDArray[Any]) -> NDArray[Any]:
     is_there = rows >= 0
     if is_there.all():
-        return rows if values is None else values[rows]
+        return rows if values is None else np.asarray(values[rows])
     taken = np.full(len(rows), None, object)
     taken[is_there] = rows[is_there] if values is None else values[rows[is_there]]
     return taken

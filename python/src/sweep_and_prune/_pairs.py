@@ -100,7 +100,7 @@ def find_pairs(
     >>> sap.find_pairs([[0, 10], [12, 20], [23, 30]], margin=2)
     array([[0, 1]])
     """
-    prepared = one_set(boxes, format, closed, missing, by, margin, wrap)
+    prepared = one_set(boxes, format, closed, missing, by, margin, wrap, fold=True)
     return find(prepared, threads, dtype, progress)
 
 
@@ -152,7 +152,7 @@ def find_pairs_between(
     >>> sap.find_pairs_between(bullets, targets)
     array([[1, 0]])
     """
-    prepared = two_sets(a, b, format, closed, missing, by, margin, wrap)
+    prepared = two_sets(a, b, format, closed, missing, by, margin, wrap, fold=True)
     return find(prepared, threads, dtype, progress)
 
 
@@ -191,7 +191,7 @@ def count_pairs(
     >>> sap.count_pairs(np.zeros((1000, 6)))
     499500
     """
-    prepared = one_set(boxes, format, closed, missing, by, margin, wrap)
+    prepared = one_set(boxes, format, closed, missing, by, margin, wrap, fold=True)
     return _count(prepared, threads, progress)
 
 
@@ -229,7 +229,7 @@ def count_pairs_between(
     >>> sap.count_pairs_between([[0, 2], [5, 6]], [[1, 7]])
     2
     """
-    prepared = two_sets(a, b, format, closed, missing, by, margin, wrap)
+    prepared = two_sets(a, b, format, closed, missing, by, margin, wrap, fold=True)
     return _count(prepared, threads, progress)
 
 
@@ -372,7 +372,7 @@ def iter_chunks(
     200000
     99500
     """
-    prepared = one_set(boxes, format, closed, missing, by, margin, wrap)
+    prepared = one_set(boxes, format, closed, missing, by, margin, wrap, fold=True)
     return _iterate(prepared, size, dtype)
 
 
@@ -416,7 +416,7 @@ def iter_chunks_between(
     ...     print(pairs.tolist())
     [[0, 0], [0, 1]]
     """
-    prepared = two_sets(a, b, format, closed, missing, by, margin, wrap)
+    prepared = two_sets(a, b, format, closed, missing, by, margin, wrap, fold=True)
     return _iterate(prepared, size, dtype)
 
 
@@ -750,8 +750,9 @@ def one_set(
     by: Groups | None,
     margin: Margin,
     wrap: float | None = None,
+    fold: bool = False,
 ) -> Prepared:
-    return prepare({"boxes": boxes}, format, closed, missing, None if by is None else [by], margin, wrap)
+    return prepare({"boxes": boxes}, format, closed, missing, None if by is None else [by], margin, wrap, fold)
 
 
 def two_sets(
@@ -763,6 +764,7 @@ def two_sets(
     by: Groups | tuple[Groups, Groups] | None,
     margin: Margin,
     wrap: float | None = None,
+    fold: bool = False,
 ) -> Prepared:
     if isinstance(by, str) or (isinstance(by, list) and by and all(type(one) is str for one in by)):
         by = (by, by)  # columns of both
@@ -770,7 +772,12 @@ def two_sets(
         raise ValueError(
             "by must be a pair of arrays, one for a and one for b, or the name of a column of both, or a list of names"
         )
-    return prepare({"a": a, "b": b}, format, closed, missing, None if by is None else list(by), margin, wrap)
+    return prepare({"a": a, "b": b}, format, closed, missing, None if by is None else list(by), margin, wrap, fold)
+
+
+def release_buffers() -> None:
+    """Frees what this thread keeps of its last search."""
+    vars(_idle).clear()
 
 
 def _search(prepared: Prepared, threads: int | None, call: Callable[[Finder], _Result]) -> _Result:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import Floats, box_rows, checked_closed, numbers, read_boxes, same_width
 from ._columns import (
+    EXACT,
     Column,
     as_array,
     exact_numbers,
@@ -102,8 +103,12 @@ def prepare(
     by: list[Any] | None = None,
     margin: object = 0,
     wrap: object = None,
+    fold: bool = False,
 ) -> Prepared:
-    """Brings sets of boxes, by the names of their arguments, into the form that is searched."""
+    """Brings sets of boxes, by the names of their arguments, into the form that is searched.
+
+    With `fold`, whole intervals in groups may stay intervals: those of each group are moved to a place of their own.
+    """
     checked_format(format)
     if not (isinstance(missing, str) and missing in ("raise", "skip")):
         raise ValueError(f'missing must be "raise" or "skip", not {missing!r}')
@@ -144,8 +149,9 @@ def prepare(
     # Most often, all intervals have a length: then none is inverted or empty.
     with np.errstate(invalid="ignore"):
         have_length = not is_closed and all(bool((low < high).all()) for array in arrays for low, high in _sides(array))
-    if not (have_length or (is_float and is_closed and is_all and not has_margin)):
-        # The compiled part would not see these boxes, or not by these indices.
+    are_as_passed = is_float and is_closed and is_all and not has_margin and not (fold and by is not None)
+    if not (have_length or are_as_passed):
+        # The compiled part would not see these boxes, or not by these indices, or with other coordinates.
         for array, name, own in zip(arrays, names, kept):
             refuse_inverted(array, name, own)
     if not (is_closed or have_length):
@@ -161,12 +167,13 @@ def prepare(
     elif are_times:
         arrays = _counts(in_one_unit(arrays))
     rows = arrays if is_float else _ranks(arrays)
+    are_whole |= not is_float
     if not is_closed:
-        rows = [_without_ends(array, are_whole and is_float) for array in rows]
-    return _grouped(Prepared(rows, kept, lengths), of_group)
+        rows = [_without_ends(array, are_whole) for array in rows]
+    return _grouped(Prepared(rows, kept, lengths), of_group, fold and are_whole)
 
 
-def _grouped(prepared: Prepared, of_group: list[NDArray[np.int64]] | None) -> Prepared:
+def _grouped(prepared: Prepared, of_group: list[NDArray[np.int64]] | None, fold: bool = False) -> Prepared:
     """Boxes of which only those of one group pair: it is one more axis, if there is one left."""
     if of_group is None:
         return prepared
@@ -174,6 +181,13 @@ def _grouped(prepared: Prepared, of_group: list[NDArray[np.int64]] | None) -> Pr
     groups = [group if own is None else group[own] for group, own in zip(of_group, prepared.kept)]
     if prepared.crossing is not None:
         groups = [np.concatenate([group, group[second]]) for group, second in zip(groups, prepared.crossing)]
+    if fold and rows[0].shape[1] == 2:
+        least, most = min(map(_least, rows)), max(map(_most, rows))
+        step = most - least + 2
+        if abs(least) + step * (max(map(_most, groups)) + 1) < EXACT:
+            for boxes, group in zip(rows, groups):  # copies, of integers or of ranks
+                boxes += (group * step)[:, None]
+            return prepared
     if rows[0].shape[1] < 6:
         dtype = np.result_type(*rows)
         dtype = np.dtype(np.float64) if max(map(_most, groups)) >= 2**24 else dtype
@@ -231,6 +245,10 @@ def _with_axis(boxes: Floats, code: Any) -> Floats:
     half = boxes.shape[1] // 2
     extended: Floats = np.hstack([boxes[:, :half], code, boxes[:, half:], code])
     return extended
+
+
+def _least(array: NDArray[Any]) -> int:
+    return int(array.min()) if len(array) else 0
 
 
 def _most(array: NDArray[Any]) -> int:
@@ -433,7 +451,7 @@ def _without_ends(boxes: Floats, are_whole: bool) -> Floats:
 
     Among whole numbers these are the next smaller whole ones, which takes a fifth of the time.
     """
-    if are_whole:  # they were integers, so this is a copy
+    if are_whole:  # they were integers or are ranks, so this is a copy
         for _, high in _sides(boxes):
             high -= 1
         return boxes
@@ -451,8 +469,8 @@ def _groups(by: list[Any], sets: dict[str, Any], counts: list[int]) -> list[NDAr
         raise ValueError(f"by must have as many columns for a as for b, not {' and '.join(map(str, map(len, sides)))}")
     for columns, name, count in zip(sides, sets, counts):
         for column in columns:
-            if len(column.values) != count:
-                has = len(column.values)
+            if column.rows != count:
+                has = column.rows
                 raise ValueError(f"by must have one value for each box of {name}: shape ({count},), not ({has},)")
     return group_codes(sides, list(sets))
 

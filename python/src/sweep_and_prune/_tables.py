@@ -8,7 +8,8 @@ import json
 import math
 import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
 from itertools import chain
 from pathlib import Path
 from typing import Any, Union
@@ -21,7 +22,7 @@ from . import _crs
 from ._columns import Column, read_column, side_by_side
 from ._file_error import FileError
 from ._inputs import Raw, box_columns, chosen_boxes, listed, raw_boxes, unknown_columns
-from ._text import GENOMIC, Text, corners_of_bare, read_genomic, read_table
+from ._text import GENOMIC, Lines, Text, corners_of_bare, read_genomic, read_table
 from ._writers import ARROW_ENDINGS, pyarrow_for
 
 _KINDS = {
@@ -43,6 +44,9 @@ _BYTES = 8 * 7
 """Of memory for each number: the table, the boxes, and what the search keeps."""
 _BYTES_OF_TEXT = 11
 """Of memory for each byte of text (measured: 400 MB for a million boxes in 36 MB)."""
+
+_READ_AT_ONCE = 2**22
+"""This many bytes are read between two reports of progress."""
 
 _File = Union[str, io.BytesIO]
 
@@ -77,6 +81,8 @@ class Source:
         """The corners of boxes, from columns with these names or else from those that are recognized."""
         if not columns and self.are_corners:
             format = "xyxy"
+        if not columns and isinstance(self.values, Lines):
+            return Raw(self.values.corners)
         if not columns and self.is_bare:
             columns = corners_of_bare(self.values)
         if not columns:
@@ -104,19 +110,19 @@ class Source:
     def group(self, name: str) -> Column:
         """The values of a column to group by; those of a file of text are text, and what is empty is missing."""
         if isinstance(self.values, Text):
-            cells = np.array(self.values.text(name), object)
-            missing = cells == ""
-            return Column(cells, missing if missing.any() else None, name=f"column {name}")
+            return self.values.group(name)
         return read_column(self._labels(name), f"column {name}")
 
     def group_of_numbers(self, name: str) -> Column:
         """The same, if the values of the other file are numbers."""
+        if isinstance(self.values, Text) and name in self.values.columns:
+            return self.values.group_of_numbers(name)
         return read_column(self._column(name), f"column {name}")
 
-    def label(self, name: str) -> NDArray[Any]:
-        """A column of any type, as it is written."""
+    def label(self, name: str) -> Any:
+        """A column of any type as it is written: an array, or something that has an array of some rows at `[rows]`."""
         if isinstance(self.values, Text):
-            return np.array(self.values.text(name), object)
+            return self.values.label(name)
         values = self._labels(name)
         if getattr(values, "null_count", 0):  # as an array of NumPy, integers would become floating point
             values = values.to_pylist()
@@ -140,13 +146,40 @@ class Source:
         return f"{self.name}, row {index} (the first is 0)"
 
 
-def read(path: str, kind: str | None = None, header: bool | None = None) -> Source:
+class _Watched(io.RawIOBase):
+    """A file that reports which share of it was read."""
+
+    def __init__(self, path: str, progress: Callable[[float], object]) -> None:
+        self._file, self._progress = open(path, "rb", buffering=0), progress
+        self._size, self._done = max(os.fstat(self._file.fileno()).st_size, 1), 0
+
+    def readable(self) -> bool:
+        """Says so, since readers ask."""
+        return True
+
+    def readinto(self, into: Any) -> int:
+        """Reads what comes next."""
+        count = self._file.readinto(memoryview(into)[:_READ_AT_ONCE]) or 0
+        self._done += count
+        self._progress(min(self._done / self._size, 0.99))
+        return count
+
+    def close(self) -> None:
+        """Closes the file."""
+        self._file.close()
+        super().close()
+
+
+def read(
+    path: str, kind: str | None = None, header: bool | None = None, progress: Callable[[float], object] | None = None
+) -> Source:
     """Reads a file, or standard input if it is `-`.
 
     Args:
         path: the name of the file.
         kind: one of `FORMATS`: what standard input is, by default CSV, and a file whose name does not tell.
         header: whether the first row of a table of text names its columns; None to find out.
+        progress: called with the share of a file of text that was read, from 0 to 1.
     """
     name = "standard input" if path == "-" else path
     kind = kind_of_file(path) or kind or ("csv" if path == "-" else None)
@@ -157,6 +190,9 @@ def read(path: str, kind: str | None = None, header: bool | None = None) -> Sour
             if sys.stdin is None:
                 raise FileError("standard input is closed")
             opened: Any = sys.stdin.fileno()
+            if kind in GENOMIC:
+                with open(opened, "rb", closefd=False) as file:
+                    return _read_lines(name, file.read(), kind)
             if kind in _OF_TEXT:
                 with open(opened, encoding="utf-8-sig", newline="", closefd=False) as file:
                     return _read_text(name, file, kind, header)
@@ -168,8 +204,13 @@ def read(path: str, kind: str | None = None, header: bool | None = None) -> Sour
         # Of what is compressed, a box takes about a third.
         size = os.path.getsize(path) * (3 if is_packed else 1)
         check_memory(path, f"{size / 1e9:.1f} GB of boxes", size * _BYTES_OF_TEXT)
-        with (gzip.open if is_packed else open)(path, "rt", encoding="utf-8-sig", newline="") as file:
-            return _read_text(name, file, kind, header)
+        with ExitStack() as files:
+            plain = files.enter_context(io.BufferedReader(_Watched(path, progress or (lambda _: None)), 2**16))
+            data: Any = files.enter_context(gzip.open(plain)) if is_packed else plain
+            if kind in GENOMIC:
+                return _read_lines(name, data.read(), kind)
+            lines = files.enter_context(io.TextIOWrapper(data, "utf-8-sig", newline=""))
+            return _read_text(name, lines, kind, header)
     except OSError as error:
         raise FileError(f"{name} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
@@ -190,11 +231,13 @@ def _unpacked(path: str) -> str:
     return path.removesuffix(".gz").removesuffix(".bgz")
 
 
+def _read_lines(name: str, data: bytes, kind: str) -> Source:
+    source = Source(name, read_genomic(name, data, kind))
+    source.closed, source.by, source.are_corners = "left", ["chrom"], True
+    return source
+
+
 def _read_text(name: str, file: Any, kind: str, header: bool | None) -> Source:
-    if kind in GENOMIC:
-        source = Source(name, read_genomic(name, file, kind))
-        source.closed, source.by, source.are_corners = "left", ["chrom"], True
-        return source
     table, is_bare = read_table(name, file, "\t" if kind == "tsv" else "", header)
     source = Source(name, table)
     source.is_bare = is_bare

@@ -9,8 +9,10 @@ import csv
 import math
 import re
 from array import array
+from codecs import BOM_UTF8
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from io import BytesIO, TextIOWrapper
 from itertools import chain
 from typing import IO, Any, NamedTuple
 from urllib.parse import unquote
@@ -18,9 +20,10 @@ from urllib.parse import unquote
 import numpy as np
 from numpy.typing import NDArray
 
-from ._columns import EXACT
+from ._columns import EXACT, Column, read_column
 from ._file_error import FileError
 from ._inputs import FORMATS, box_columns, listed
+from ._native import read_bed
 
 _MISSING = {"", "na", "n/a", "nan", "null", "none", "."}
 _CORNERS = (2, 4, 6)
@@ -28,7 +31,7 @@ _PLAIN_NUMBER = re.compile(r"\s*-?(0|[1-9][0-9]*)(\.[0-9]+)?\s*")
 """A number that is no name: not as 007 or 1e5 may be."""
 _OF_GTF = re.compile(r'\s*([^\s;"]+)\s+(?:"([^"]*)"|([^;"]*?))\s*(?:;|$)')
 _OF_GFF3 = re.compile(r"\s*([^;=]+)=([^;]*)")
-_BED_LIKE = ("bed", "narrowpeak", "broadpeak", "bedgraph")
+BED_LIKE = ("bed", "narrowpeak", "broadpeak", "bedgraph")
 
 
 class Format(NamedTuple):
@@ -75,13 +78,31 @@ class Text:
 
     def text(self, name: str) -> Sequence[str]:
         """The cells of a column, as they are in the file."""
-        number = self.columns.count(name)
-        if number == 0 and self.format is not None and self.format.attributes:
+        if self.columns.count(name) == 0 and self.format is not None and self.format.attributes:
             return [_attribute(cell, name, self.format.attributes) for cell in self.text("attributes")]
+        return self._cells[self.place(name) :: len(self.columns)]
+
+    def place(self, name: str) -> int:
+        """Which column has a name."""
+        number = self.columns.count(name)
         if number != 1:
             fault = f"{number} columns {name!r}: rename all but one" if number > 1 else f"no column {name!r}"
             raise FileError(f"{self.name} has {fault}; {listed(self.columns)}")
-        return self._cells[self.columns.index(name) :: len(self.columns)]
+        return self.columns.index(name)
+
+    def group(self, name: str) -> Column:
+        """The values of a column to group by, which are text; what is empty is missing."""
+        cells = np.array(self.text(name), object)
+        missing = cells == ""
+        return Column(cells, missing if missing.any() else None, name=f"column {name}")
+
+    def group_of_numbers(self, name: str) -> Column:
+        """The same, if the values of the other file are numbers."""
+        return read_column(self[name], f"column {name}")
+
+    def label(self, name: str) -> Any:
+        """A column as it is written."""
+        return np.array(self.text(name), object)
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         numbers = self._numbers(name)
@@ -116,6 +137,75 @@ class Text:
         return found
 
 
+class Lines(Text):
+    """A table of text of which only the intervals were read; other cells are when they are asked for."""
+
+    def __init__(self, name: str, columns: list[str], data: bytes, found: Any) -> None:
+        """`found` is what `read_bed` returned for `data`."""
+        self._data = data
+        self._offsets, self.corners, self._codes, self._names = found
+        super().__init__(name, columns, [], self._offsets)
+
+    def line(self, index: int) -> int:
+        """The line of the file that has a row."""
+        return self._data.count(b"\n", 0, int(self._offsets[index])) + 1
+
+    def text(self, name: str) -> Sequence[str]:
+        """The cells of a column, as they are in the file."""
+        found: list[str] = self.cells(name)[np.arange(len(self))].tolist()
+        return found
+
+    def label(self, name: str) -> Any:
+        """A column as it is written, whose cells are read when they are asked for."""
+        return self.cells(name)
+
+    def cells(self, name: str) -> Cells:
+        """A column whose cells are read when they are asked for."""
+        return Cells(self._data, self._offsets, self.place(name))
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        known = {"start": 0, "end": 1}
+        return self.corners[:, known[name]] if name in known else super().__getitem__(name)
+
+    def are_plain_numbers(self, name: str) -> bool:
+        if name != "chrom":
+            return super().are_plain_numbers(name)
+        return len(self) > 0 and all(map(_PLAIN_NUMBER.fullmatch, self._names))
+
+    def group(self, name: str) -> Column:
+        if name != "chrom":
+            return super().group(name)
+        return Column(np.array(self._names, object), name=f"column {name}", codes=self._codes)
+
+    def group_of_numbers(self, name: str) -> Column:
+        if name != "chrom":
+            return super().group_of_numbers(name)
+        table = Text(
+            self.name,
+            [name],
+            self._names,
+            [self.line(int(np.argmax(self._codes == code))) for code in range(len(self._names))],
+        )
+        return table.group_of_numbers(name)._replace(codes=self._codes)
+
+
+class Cells:
+    """The cells of a column of a table of text."""
+
+    def __init__(self, data: bytes, offsets: NDArray[np.int64], place: int) -> None:
+        self._data, self._offsets, self._place = data, offsets, place
+
+    def __getitem__(self, rows: NDArray[Any]) -> NDArray[Any]:
+        """The cells of some rows."""
+        data, place = self._data, self._place
+        cells = np.empty(len(rows), object)
+        for at, offset in enumerate(self._offsets[rows].tolist()):
+            end = data.find(b"\n", offset)
+            row = data[offset : end if end >= 0 else len(data)].rstrip(b"\r").split(b"\t", place + 1)
+            cells[at] = row[place].decode() if place < len(row) else ""
+        return cells
+
+
 def _attribute(cell: str, name: str, form: str) -> str:
     """A value that the last column of GTF or GFF3 names; empty if it does not."""
     pattern = _OF_GFF3 if form == "gff3" else _OF_GTF
@@ -139,8 +229,26 @@ def number(cell: str) -> float | None:
     return None
 
 
-def read_genomic(name: str, file: IO[str], kind: str) -> Text:
-    """A file of one of the formats of genomics."""
+def read_genomic(name: str, data: bytes, kind: str) -> Text:
+    """A file of one of the formats of genomics.
+
+    Raises:
+        UnicodeDecodeError: if it is not text in UTF-8.
+    """
+    data = data.removeprefix(BOM_UTF8)
+    form = GENOMIC[kind]
+    found = read_bed(data) if kind in BED_LIKE else None
+    if found is not None and len(found[0]):
+        first = int(found[0][0])
+        cells = data[first : data.find(b"\n", first) if b"\n" in data[first:] else len(data)].count(b"\t") + 1
+        table: Text = Lines(name, form.columns[:cells], data, found)
+        table.format = form
+        return table
+    with TextIOWrapper(BytesIO(data), "utf-8", newline="") as file:
+        return _read_genomic(name, file, kind)
+
+
+def _read_genomic(name: str, file: IO[str], kind: str) -> Text:
     form = GENOMIC[kind]
     cells: list[str] = []
     lines = array("Q")
@@ -156,7 +264,7 @@ def read_genomic(name: str, file: IO[str], kind: str) -> Text:
             *first, last = form.columns[: form.least]
             raise FileError(f"{name}, line {line}: {', '.join(first)} and {last} are expected, separated by tabs")
         if not columns:  # only the least ones are in each row
-            columns = form.columns[: len(row) if kind in _BED_LIKE else None]
+            columns = form.columns[: len(row) if kind in BED_LIKE else None]
         row = (row + [""] * len(columns))[: len(columns)]
         if kind == "vcf":
             row[1:2] = _replaced(*(row[at] for at in (1, 3, 7)))
