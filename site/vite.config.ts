@@ -8,13 +8,12 @@ import { hero } from "./src/hero/build.ts";
 import { expandPlayground } from "./src/playground/markup.ts";
 import { offline } from "./src/shell/offline.ts";
 import { pages, shell } from "./src/shell/pages.ts";
-import { expandFallingBalls } from "./src/simulation/markup.ts";
 import { tasks } from "./src/tasks/build.ts";
 
-/** Writes the inside of `<falling-balls>` and `<box-playground>` into the page, so that nothing moves when scripts arrive. */
+/** Writes the inside of `<box-playground>` into the page, so that nothing moves when scripts arrive. */
 const panels: Plugin = {
   name: "panels",
-  transformIndexHtml: { order: "pre", handler: (page) => expandPlayground(expandFallingBalls(page)) },
+  transformIndexHtml: { order: "pre", handler: (page) => expandPlayground(page) },
 };
 
 /** Writes the measured complexity table into the page. */

@@ -52,7 +52,7 @@ try {
 
   // Some steps into each world, as wide as it stands on a page.
   for (const [path, element, file, steps] of [
-    ["index.html#falling", "#few", "discs", 24],
+    ["index.html#falling", "#d20 box-playground", "discs", 24],
     ["playground.html", "box-playground", "playground", 2],
   ]) {
     await page.setViewportSize({ width: 1280, height: 900 });

@@ -7,7 +7,7 @@ import { showLoadFailure } from "./load-failed.ts";
 
 customElements.define("hero-boxes", HeroBoxes);
 
-const DEMOS = "sap-demo, falling-balls, library-trial, fast-sweep, three-structures";
+const DEMOS = "sap-demo, box-playground, library-trial, fast-sweep, three-structures";
 
 /** The script of the demos; where it does not load, each of them says so. */
 let isLoading = false;

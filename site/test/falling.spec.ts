@@ -1,5 +1,6 @@
 // The scene of falling balls in the playground: discs and spheres, searched by any of the algorithms.
 import { expect, type Locator, type Page, test } from "@playwright/test";
+import { frames, settled } from "./support/frames.ts";
 import { complaints } from "./support/pages.ts";
 
 const SCENE = "/playground.html?scene=falling+balls";
@@ -54,8 +55,10 @@ for (const dimensions of [2, 3]) {
 
 test("the same seed gives the same balls, another seed others, and an address leads back to its step", async ({ page }) => {
   const { root, step, world } = await open(page, "&boxes=50");
+  const beginning = JSON.stringify((await world()).boxes);
   await step(6);
   const first = JSON.stringify((await world()).boxes);
+  expect(first).not.toBe(beginning);
   await root.getByRole("button", { name: "Reset" }).click();
   await expect(root).toHaveAttribute("data-step", "0");
   await step(6);
@@ -124,4 +127,34 @@ test("old addresses of falling balls lead to the same scene", async ({ page }) =
     expect(Object.fromEntries(new URL(page.url()).searchParams)).toEqual(expected);
     await expect(page.locator("box-playground")).toHaveAttribute("data-step", /^\d+$/);
   }
+});
+
+test.describe("in the article", () => {
+  test.use({ contextOptions: { reducedMotion: "no-preference" } });
+
+  test("discs fall, another algorithm races, the address keeps what was chosen, and nothing is edited there", async ({ page }) => {
+    const heard = complaints(page);
+    await page.goto("/#falling");
+    const root = page.locator("#d20 box-playground");
+    await root.scrollIntoViewIfNeeded();
+    await expect.poll(async () => Number(await root.getAttribute("data-step"))).toBeGreaterThan(5);
+    await expect(root.getByRole("img", { name: "Discs falling into a box" })).toBeVisible();
+    expect(new URL(page.url()).search).toBe("");
+    await expect(root.getByRole("button", { name: "Draw", exact: true })).toBeHidden();
+    await root.getByRole("button", { name: "Add an algorithm" }).click();
+    await expect(root.locator(".lane")).toHaveCount(2);
+    await root.locator("[data-lane='2']").getByLabel("Algorithm", { exact: true }).selectOption("global pairwise");
+    await expect(root.locator("[data-lane='2'] [data-counter=tests] dd")).toHaveText("124,750");
+    await expect(root.locator("[data-part=verdict]")).toContainText("All 2 found the same");
+    expect(Object.fromEntries(new URL(page.url()).searchParams)).toMatchObject({ "2": "global pairwise" });
+    await page.reload();
+    await root.scrollIntoViewIfNeeded();
+    await expect(root.locator(".lane")).toHaveCount(2);
+    // It sleeps while it cannot be seen.
+    await page.locator("h1").scrollIntoViewIfNeeded();
+    const before = await settled(page, async () => Number(await root.getAttribute("data-step")), "it sleeps");
+    await frames(page, 60);
+    expect(Number(await root.getAttribute("data-step"))).toBe(before);
+    expect(heard).toEqual([]);
+  });
 });

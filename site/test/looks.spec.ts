@@ -29,7 +29,8 @@ const PAGES: Readonly<Record<string, { parts: string; rest(page: Page): Promise<
       await page.locator("sap-demo").first().scrollIntoViewIfNeeded();
       await page.evaluate(() => customElements.whenDefined("sap-demo"));
       await page.locator("sap-demo").evaluateAll((all) => Promise.all(all.map((demo) => (demo as SapDemo).ready)));
-      await ballsAwake(page);
+      await page.locator("box-playground").scrollIntoViewIfNeeded();
+      await expect(page.locator("box-playground")).toHaveAttribute("data-step", "0");
     },
   },
   playground: { parts: "main > *", rest: (page) => expect(page.locator("box-playground")).toHaveAttribute("data-step", "0") },
@@ -44,14 +45,6 @@ const PAGES: Readonly<Record<string, { parts: string; rest(page: Page): Promise<
   api: { parts: "main > *", rest: async () => {} },
   embed: { parts: "main", rest: (page) => page.locator("sap-demo").evaluate((demo) => (demo as SapDemo).ready) },
 };
-
-/** Simulations of falling balls begin when they are seen. */
-async function ballsAwake(page: Page): Promise<void> {
-  for (const balls of await page.locator("falling-balls").all()) {
-    await balls.scrollIntoViewIfNeeded();
-    await expect(balls.getByRole("button", { name: "Step" })).toBeEnabled();
-  }
-}
 
 const WIDTHS = { phone: 390, tablet: 768, desktop: 1280 };
 

@@ -6,7 +6,7 @@ import simdWasm from "../generated/experiment.simd.wasm?url";
 import { hasSimd } from "../simd.ts";
 
 /** The axes by name. */
-export const AXIS_NAMES: readonly string[] = ["x", "y", "z"];
+const AXIS_NAMES: readonly string[] = ["x", "y", "z"];
 
 /** A world. The same numbers and names give the same boxes, step for step, bit for bit. */
 export interface WorldOptions {

@@ -11,7 +11,7 @@ export interface Entry {
   readonly dedup: number;
 }
 
-export type Column = readonly Entry[];
+type Column = readonly Entry[];
 
 /** The columns and the pairs of the record. */
 export function readRecord(text: string): { readonly columns: readonly Column[]; readonly pairs: readonly (readonly [number, number])[] } {
@@ -60,12 +60,3 @@ export function stepsOf(column: Column, width: number): Step[] {
   }
   return steps;
 }
-
-/** The pairs that a column reports: where two boxes began together in an earlier column, that one reports them. */
-export const reportedBy = (column: Column): [number, number][] =>
-  stepsOf(column, 1).flatMap(({ probe, hits }) =>
-    hits.filter((at) => (column[at]!.dedup & column[probe]!.dedup) === 0).map((at): [number, number] => {
-      const [a, b] = [column[probe]!.id, column[at]!.id];
-      return a < b ? [a, b] : [b, a];
-    }),
-  );

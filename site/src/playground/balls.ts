@@ -4,8 +4,6 @@ import type { Balls } from "../experiment/messages.ts";
 import { onThemeChange, readTheme } from "../view/theme.ts";
 import type { View } from "../view/view.ts";
 
-const NOTHING = new Uint32Array(0);
-
 export class BallsPicture {
   /** What holds the canvas: it turns the view of spheres. */
   readonly #place: HTMLElement;
@@ -32,7 +30,7 @@ export class BallsPicture {
     this.#last = { ...balls, world };
     if (dimensions !== this.#dimensions) return this.#open(dimensions);
     if (isNew) this.#begin();
-    this.#view?.draw({ positions: balls.positions, pairs: NOTHING });
+    this.#view?.draw(balls);
   }
 
   resize(): void {

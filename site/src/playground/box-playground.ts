@@ -7,6 +7,7 @@ import { ExperimentRecord, MEASURES, SHOWN } from "../experiment/record.ts";
 import { showLoadFailure } from "../load-failed.ts";
 import { messageOf } from "../message-of.ts";
 import { formatCount } from "../panel/counters.ts";
+import { whenNear } from "../panel/awake.ts";
 import { PanelElement } from "../panel/panel-element.ts";
 import { LARGEST_SEED } from "../panel/parts.ts";
 import { drawLines } from "../plot/line-plot.ts";
@@ -64,13 +65,15 @@ interface Colors {
 
 /**
  * `<box-playground>`: a world of boxes, up to four algorithms at work on it in lockstep, on a thread of their own,
- * and the way to take it home. Its inside is written by `markup.ts`.
+ * and the way to take it home. Attributes say how it begins, by the names of `DEFAULTS`. Its inside is written by `markup.ts`;
+ * of one that is `compact` the half that edits and exports is hidden.
  */
 export class BoxPlayground extends PanelElement {
-  readonly #worker = new Worker(new URL("../experiment/worker.ts", import.meta.url), { type: "module" });
+  #worker: Worker | undefined;
   #lists: Lists | undefined;
   #lanes!: Lanes;
-  #state = readAddress<Key>(DEFAULTS);
+  #defaults: Readonly<Record<Key, string>> = DEFAULTS;
+  #state: Record<Key, string> = DEFAULTS;
   #run = 0;
   #record = new ExperimentRecord(0);
   #frame: ExperimentFrame | undefined;
@@ -93,9 +96,16 @@ export class BoxPlayground extends PanelElement {
   #colors: Colors | undefined;
 
   protected start(): void {
+    this.#defaults = { ...DEFAULTS, ...Object.fromEntries([...this.attributes].filter(({ name }) => name in DEFAULTS).map(({ name, value }) => [name, value])) };
+    this.#state = readAddress<Key>(this.#defaults);
     // The algorithms of the address have their places at once: nothing jumps when their names are known.
     const lanes = 1 + [2, 3, 4].filter((lane) => this.#state[keysOf(lane).algorithm as Key] !== NONE).length;
     if (lanes > 1) this.named("lanes").innerHTML = Array.from({ length: lanes }, (_, at) => laneMarkup(at + 1)).join("");
+    void whenNear(this, this.signal).then(() => this.#open());
+  }
+
+  #open(): void {
+    this.#worker = new Worker(new URL("../experiment/worker.ts", import.meta.url), { type: "module" });
     this.#worker.addEventListener("message", ({ data }: MessageEvent<FromExperiment>) => this.#receive(data));
     this.#worker.addEventListener("error", ({ message }) => this.#fail(message ?? "its script"));
     onThemeChange(() => {
@@ -139,7 +149,7 @@ export class BoxPlayground extends PanelElement {
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.#worker.terminate();
+    this.#worker?.terminate();
   }
 
   // Controls
@@ -227,7 +237,7 @@ export class BoxPlayground extends PanelElement {
   #lanesOfAddress({ algorithms, sorts, axes }: Lists): RunnerOptions[] {
     const known = (key: string, names: readonly string[]): string => {
       const name = this.#state[key as Key];
-      return names.includes(name) ? name : DEFAULTS[key as Key];
+      return names.includes(name) ? name : this.#defaults[key as Key];
     };
     const all = Array.from({ length: MOST_LANES }, (_, at): RunnerOptions => {
       const { algorithm, sort, axis } = keysOf(at + 1);
@@ -270,7 +280,7 @@ export class BoxPlayground extends PanelElement {
   #choose(key: Key): void {
     const select = this.named<HTMLSelectElement>(key);
     const names = [...select.options].map(({ value }) => value);
-    const name = [this.#state[key], DEFAULTS[key], names[0] ?? ""].find((name) => names.includes(name)) ?? "";
+    const name = [this.#state[key], this.#defaults[key], names[0] ?? ""].find((name) => names.includes(name)) ?? "";
     select.value = this.#state[key] = name;
   }
 
@@ -374,7 +384,7 @@ export class BoxPlayground extends PanelElement {
 
   #keep(key: Key, text: string): void {
     this.#state[key] = text;
-    writeAddress(this.#state, DEFAULTS);
+    writeAddress(this.#state, this.#defaults);
   }
 
   #change(key: Key, text: string): void {
@@ -444,7 +454,7 @@ export class BoxPlayground extends PanelElement {
       dimensions: dimensions === "3" ? 3 : 2,
       scene,
       motion,
-      boxes: this.#own ? this.#own.length / (dimensions === "3" ? 6 : 4) : Math.round(numberWithin(boxes, 1, 100_000, Number(DEFAULTS.boxes))),
+      boxes: this.#own ? this.#own.length / (dimensions === "3" ? 6 : 4) : Math.round(numberWithin(boxes, 1, 100_000, Number(this.#defaults.boxes))),
       seed: Math.round(numberWithin(seed, 0, LARGEST_SEED, 1)),
       size: numberWithin(size, 0.01, 100, 1),
       spread: numberWithin(spread, 1, 1000, 1),
@@ -499,7 +509,7 @@ export class BoxPlayground extends PanelElement {
   }
 
   #send(message: ToExperiment): void {
-    this.#worker.postMessage(message);
+    this.#worker?.postMessage(message);
   }
 
   // What comes from the thread
@@ -623,11 +633,12 @@ export class BoxPlayground extends PanelElement {
 
   /** Tells what is going on: seldom enough to be read out. */
   #describe(): void {
-    const { boxes, scene, motion } = this.#world();
-    const what = this.#own ? `${formatCount(boxes)} boxes of your own` : `${formatCount(boxes)} boxes, ${scene}`;
+    const { boxes, scene, motion, dimensions } = this.#world();
+    const isFalling = !this.#own && scene === FALLING;
+    const balls = `falling ${dimensions === 2 ? "disc" : "sphere"}${boxes === 1 ? "" : "s"}`;
+    const what = `${formatCount(boxes)} ${isFalling ? balls : this.#own ? `boxes of your own, ${motion}` : `boxes, ${scene}, ${motion}`}`;
     const names = this.#lanes.all.map(({ algorithm }) => algorithm);
-    const moves = this.#own || scene !== FALLING ? `, ${motion}` : "";
-    const where = `${what}${moves}, by ${names.join(", ")}.`;
+    const where = `${what}, by ${names.join(", ")}.`;
     const lane = this.#frame?.lanes.find((lane) => "report" in lane);
     const found = lane && "report" in lane ? ` ${formatCount(lane.report.pairs)} pairs.` : "";
     this.say(this.wanted ? where : `Paused after step ${formatCount(this.#frame?.step ?? 0)}: ${where}${found}`);

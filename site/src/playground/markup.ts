@@ -22,13 +22,13 @@ export const COUNTERS: readonly Counter<Shown>[] = [
 ];
 
 /** Ten thousand spheres: one click away. */
-export const SPHERES = "./playground.html?scene=falling+balls&amp;dimensions=3&amp;boxes=10000&amp;algorithm=find+pairs";
+const SPHERES = "./playground.html?scene=falling+balls&amp;dimensions=3&amp;boxes=10000&amp;algorithm=find+pairs";
 
 export function expandPlayground(page: string): string {
-  return page.replace("<box-playground></box-playground>", () => `<box-playground>${markup()}</box-playground>`);
+  return page.replace(/<box-playground([^>]*)><\/box-playground>/g, (_, attributes: string) => `<box-playground${attributes}>${markup(/\bcompact\b/.test(attributes))}</box-playground>`);
 }
 
-function markup(): string {
+function markup(isCompact: boolean): string {
   return `
     <div class="panel" role="group" aria-label="Playground">
       <div class="panel-stage">
@@ -36,7 +36,7 @@ function markup(): string {
           <canvas data-part="picture"></canvas>
         </div>
         <div class="orbit" data-part="orbit" hidden></div>
-        ${still("playground", "Five hundred boxes in clusters; those that overlap another are highlighted")}
+        ${isCompact ? still("discs", "Discs of very different sizes that have fallen into a box") : still("playground", "Five hundred boxes in clusters; those that overlap another are highlighted")}
         <p class="stage-message" data-part="message">Loading</p>
       </div>
       <div class="panel-plot">
@@ -86,7 +86,7 @@ function markup(): string {
       </div>
     </div>
     <section class="export" aria-labelledby="export-heading">
-      <h2 id="export-heading">Export these boxes</h2>
+      <${isCompact ? "h4" : "h2"} id="export-heading">Export these boxes</${isCompact ? "h4" : "h2"}>
       <p>
         The boxes of the step that is shown, with exact coordinates, and the call that finds their pairs. Copying
         pauses the world, and the address leads back to the same step.

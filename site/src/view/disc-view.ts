@@ -45,7 +45,7 @@ export class DiscView implements View {
     this.#canvas.height = Math.round(height * pixelRatio());
   }
 
-  draw({ positions, pairs }: Picture): void {
+  draw({ positions }: Picture): void {
     const context = this.#context;
     const { width, height } = this.#canvas;
     const [left = 0, bottom = 0] = this.#world.min;
@@ -75,20 +75,6 @@ export class DiscView implements View {
       context.fillStyle = this.#colors[shade] ?? this.#theme.edge;
       context.fill();
     });
-
-    context.beginPath();
-    for (let i = 0; i + 1 < pairs.length; i += 2) {
-      const [a = 0, b = 0] = [pairs[i], pairs[i + 1]];
-      context.moveTo(x(a), y(a));
-      context.lineTo(x(b), y(b));
-    }
-    // On a seam of the background's color a line can be seen on discs of any shade.
-    context.strokeStyle = this.#theme.stage;
-    context.lineWidth = 4.5 * pixelRatio();
-    context.stroke();
-    context.strokeStyle = this.#theme.line;
-    context.lineWidth = 1.75 * pixelRatio();
-    context.stroke();
   }
 }
 

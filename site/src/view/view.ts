@@ -22,8 +22,6 @@ export function shownHeight({ min, max }: World, radii: Float32Array): number {
 /** What one picture shows. `positions` holds the centers one body after another. */
 export interface Picture {
   readonly positions: Float32Array;
-  /** Pairs of bodies whose boxes overlap, a0, b0, a1, b1, .. Empty unless asked for. */
-  readonly pairs: Uint32Array;
 }
 
 /** Draws the bodies of one simulation on one canvas. */

@@ -1,0 +1,3 @@
+import { BoxPlayground } from "../playground/box-playground.ts";
+
+customElements.define("box-playground", BoxPlayground);

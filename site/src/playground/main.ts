@@ -1,3 +1,0 @@
-import { BoxPlayground } from "./box-playground.ts";
-
-customElements.define("box-playground", BoxPlayground);
