@@ -32,6 +32,13 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         Self { finder, threads, ..Self::default() }
     }
 
+    /// Frees the memory of the pairs that were found.
+    pub fn forget(&mut self) {
+        self.finder.take_pairs();
+        self.pairs = Vec::new();
+        self.most_found = 0;
+    }
+
     /// The pairs of overlapping boxes of a table, as indices, of bodies that have one of the flags of
     /// `any` and none of `none`, as far as their filters allow. The boxes are valid. Within sets of bodies whose
     /// filters forbid all of them to pair nothing is searched. `None` if more than `most` are found, before filters.

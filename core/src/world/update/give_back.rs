@@ -9,7 +9,6 @@ use crate::Scalar;
 use crate::world::bodies::Bodies;
 use crate::world::candidates::{Candidates, PairSorter};
 use crate::world::changes::Events;
-use crate::world::finder::Finder;
 use crate::world::tracking::{Scratch, Tracking};
 
 /// Notes what the last update needed, before its events are cleared, and gives back what is far more than that.
@@ -26,7 +25,8 @@ pub fn note_usage<const D: usize, T: Scalar>(
     }
 }
 
-/// Shrinks each list that has room for more than so many pairs to half as many, or to what it holds.
+/// Frees each buffer that has room for more than so many pairs, and shrinks such lists to what they hold. Events of the
+/// last update are of no use any more.
 fn give_back<const D: usize, T: Scalar>(
     tracking: &mut Tracking<D, T>,
     events: &mut Events,
@@ -34,30 +34,26 @@ fn give_back<const D: usize, T: Scalar>(
 ) {
     let Tracking { candidates, finder, scratch, .. } = tracking;
     let Candidates { pairs, live, asleep, sorted, .. } = candidates;
-    let Scratch { sorter, before, positions, dropped, added, leaves, found, .. } = scratch;
+    for list in [pairs, asleep, sorted] {
+        if list.capacity() > enough {
+            list.shrink_to_fit();
+        }
+    }
+    if live.capacity() > enough {
+        live.shrink_to_fit();
+    }
+    let Scratch { sorter, before, leaves, found, positions, dropped, added, .. } = scratch;
     let PairSorter { buffer, unsorted, .. } = sorter;
     let Events { begun, ended, .. } = events;
-    // What these hold between updates is of no use.
-    for list in [&mut *before, buffer, unsorted, leaves, found] {
-        list.clear();
+    for buffer in [before, leaves, found, buffer, unsorted, begun, ended] {
+        if buffer.capacity() > enough {
+            *buffer = Vec::new();
+        }
     }
-    for list in [pairs, asleep, sorted, before, buffer, unsorted, leaves, found, begun, ended] {
-        shrink(list, enough);
+    if added.capacity().max(positions.capacity()) > enough {
+        (*added, *positions, *dropped) = (Vec::new(), Vec::new(), Vec::new());
     }
-    shrink(live, enough);
-    for list in [positions, dropped] {
-        list.clear();
-        shrink(list, enough);
-    }
-    added.clear();
-    shrink(added, enough);
     if finder.most_found > enough {
-        *finder = Finder::clone(finder);
-    }
-}
-
-fn shrink<V>(list: &mut Vec<V>, enough: usize) {
-    if list.capacity() > enough {
-        list.shrink_to(enough / 2);
+        finder.forget();
     }
 }
