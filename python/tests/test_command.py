@@ -311,6 +311,12 @@ def test_plots_are_drawn(dimensions: int, capsys: pytest.CaptureFixture[str]) ->
     text = Path("a.svg").read_text()
     assert text.count("#4c78a8") >= 30 and "#e45756" in text
     assert "cannot be written" in refused(capsys, "plot", "a.npy", "-o", "a.nonsense")
+    for rows in ([[0, 0, 1, 1], [3, 0, 2, 1]], [[0, 1], [3, 2]]):
+        np.save("inverted.npy", rows)
+        for options in ([], ["--pairs"]):
+            said = refused(capsys, "plot", "inverted.npy", *options, "-o", "inverted.svg")
+            assert "inverted.npy, row 1 (the first is 0): the box is inverted on axis 0: min 3" in said
+    assert not Path("inverted.svg").exists()
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pipes end in another way there")

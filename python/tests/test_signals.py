@@ -76,3 +76,54 @@ def test_a_signal_that_is_ignored_stays_so() -> None:
         program.send_signal(signal.SIGHUP)
         assert pipe.read() == "a,b\n"
     assert program.wait(600) == 0
+
+
+AT_ONCE = """
+import os, signal
+from pathlib import Path
+from sweep_and_prune import _signals
+
+_signals.end_by_signals()
+_signals.remove_at_end("a.part")
+Path("a.part").touch()
+try:
+    os.kill(os.getpid(), signal.SIGTERM)
+finally:
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+    finally:
+        print("not at once", flush=True)
+"""
+
+
+def test_a_second_signal_ends_at_once_while_the_first_one_is_handled() -> None:
+    done = subprocess.run([sys.executable, "-c", AT_ONCE], capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "")
+    assert os.listdir() == []
+
+
+def test_what_a_killed_program_left_is_removed_and_nothing_else() -> None:
+    np.save("a.npy", np.zeros((30_000, 2)))  # 450 million pairs
+    first, second = (subprocess.Popen([*SAP, "pairs", "a.npy", "-o", f"{name}.csv"]) for name in "pq")
+    while len(parts := list(Path().glob(".sap-*.part"))) < 2 or not all(part.stat().st_size for part in parts):
+        assert first.poll() is second.poll() is None
+    first.kill()
+    first.wait()
+    second.send_signal(signal.SIGSTOP)
+    os.waitid(os.P_PID, second.pid, os.WSTOPPED | os.WNOWAIT)
+    others = [".sap-1.part", f".sap-{32 * 'g'}.part", f".sap-{32 * 'a'}.part.csv", f".sap-{32 * 'b'}.part"]
+    for name in others:
+        Path(name).mkdir() if "b" in name else Path(name).touch()
+    fresh = Path(f".sap-{32 * 'c'}.part")
+    fresh.touch()
+    for path in [*parts, *map(Path, others)]:
+        os.utime(path, (1e9, 1e9))
+    np.save("b.npy", [[0.0, 1.0], [1.0, 2.0]])
+    assert subprocess.run([*SAP, "pairs", "b.npy", "-o", "b.csv"]).returncode == 0
+    left = {path for path in parts if path.exists()}
+    assert len(left) == 1 and second.poll() is None, "the program that still runs keeps its file"
+    assert all(Path(name).exists() for name in others) and fresh.exists()
+    second.terminate()
+    second.send_signal(signal.SIGCONT)
+    second.wait()
+    assert not any(path.exists() for path in parts)

@@ -35,6 +35,7 @@ from ._pairs import (
     iter_chunks_between,
     release_buffers,
 )
+from ._prepare import is_missing, refuse_inverted
 from ._progress import ProgressBar
 from ._signals import end_at_once, end_by_signals, remove_unfinished, signal_status
 from ._tables import FORMATS, READABLE, Source, kind_of_file, read
@@ -800,6 +801,8 @@ def _draw(options: Options, sources: list[Source]) -> None:
         raise FileError("plot needs matplotlib: pip install 'sweep-and-prune[plot]'") from None
     sets, search = _search(options, sources)
     boxes = _corners(sets[0])
+    kept = np.flatnonzero(~is_missing(boxes)) if options.missing == "skip" else np.arange(len(boxes))
+    refuse_inverted(boxes[kept], "boxes", kept)
     pairs = find_pairs(sets[0], threads=options.threads, **search) if options.pairs else np.empty((0, 2), np.int64)
     half = boxes.shape[1] // 2
     if half == 1:  # each on a line of its own

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import shutil
 import stat
+import time
 import uuid
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import IO
 
 from ._signals import remove_at_end, remove_unfinished
 
 _MOST_LINKS = 40
+_PART = re.compile(r"\.sap-[0-9a-f]{32}\.part")
+_SECONDS_UNTIL_LOCKED = 60
+"""A file that is younger may have been made by a program that has not locked it yet."""
 
 
 @contextmanager
@@ -44,9 +49,11 @@ def output_file(path: str) -> Iterator[tuple[IO[bytes], bool]]:
     part = os.path.join(os.path.dirname(target), f".sap-{uuid.uuid4().hex}.part")
     mode = 0o666 if before is None else stat.S_IMODE(before.st_mode) & 0o777
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+    _remove_abandoned(os.path.dirname(target))
     remove_at_end(part)
     try:
         with open(part, "wb", opener=lambda name, _: os.open(name, flags, mode)) as file:
+            _lock(file)
             yield file, False
         if before is None or _takes_the_place(part, before):
             os.replace(part, target)
@@ -54,6 +61,33 @@ def output_file(path: str) -> Iterator[tuple[IO[bytes], bool]]:
             shutil.copyfile(part, target)
     finally:
         remove_unfinished()
+
+
+def _lock(file: IO[bytes]) -> bool:
+    """Whether no other process has a file of this package, which this one has from now on until it is closed."""
+    try:
+        import fcntl
+
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except (ImportError, OSError):  # Windows has no such locks, and some network drives have none
+        return False
+    return True
+
+
+def _remove_abandoned(folder: str) -> None:
+    """Removes the unfinished files of programs that were killed: files of this user that no process has locked."""
+    try:
+        entries = [entry for entry in os.scandir(folder or ".") if _PART.fullmatch(entry.name)]
+    except OSError:
+        return
+    for entry in entries:
+        with suppress(OSError, AttributeError):
+            status = entry.stat(follow_symlinks=False)
+            is_old = time.time() - status.st_mtime > _SECONDS_UNTIL_LOCKED
+            if stat.S_ISREG(status.st_mode) and status.st_uid == os.getuid() and is_old:
+                with open(entry.path, "rb") as file:
+                    if _lock(file):
+                        os.remove(entry.path)
 
 
 def _target(path: str) -> str | int:

@@ -2,7 +2,7 @@
 
 Python raises an exception between any two of its instructions, also before `finally` has begun to clean up. So the
 names of unfinished files are known before the files are made, and `main` removes what is left of them at its end.
-(Nothing can be done about SIGKILL, which no program sees.)
+(No program sees SIGKILL: what it leaves, a later one removes.)
 """
 
 from __future__ import annotations
