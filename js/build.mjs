@@ -72,7 +72,8 @@ function optimizeAgain(compiled, simd) {
   module.setFeatures(
     BulkMemory | BulkMemoryOpt | MultiValue | MutableGlobals | NontrappingFPToInt | ReferenceTypes | SignExt | (simd ? SIMD128 : 0),
   );
-  // At level 3 the file is 500 bytes larger after gzip; and the compiler has inlined what pays: inlining again takes 500 more.
+  // At level 3 a file is 500 bytes larger after gzip. The compiler has inlined what pays: inlining again takes 500 more, and up to a
+  // quarter more time (10,000 bodies that drift in 3D, Node.js 20, 2026-11-26).
   binaryen.setOptimizeLevel(2);
   binaryen.setShrinkLevel(0);
   binaryen.setAlwaysInlineMaxSize(1);

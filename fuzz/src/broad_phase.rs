@@ -182,8 +182,13 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
             true => self.ids(input),
             false => self.id(input).into_iter().collect(),
         };
-        input.say(|| format!("remove_many {ids:?}"));
-        self.world.remove_many(&ids).unwrap();
+        if ids.len() > 1 && ids.len() == self.world.len() {
+            input.say(|| "clear".to_string());
+            self.world.clear();
+        } else {
+            input.say(|| format!("remove_many {ids:?}"));
+            self.world.remove_many(&ids).unwrap();
+        }
         ids.iter().for_each(|&id| self.model.remove(id));
         self.stale = ids.last().copied().or(self.stale);
     }

@@ -187,6 +187,25 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         }
         Ok(())
     }
+
+    /// Removes all bodies. Their ids are stale from now on. The next update reports that their pairs ended.
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, BroadPhase};
+    ///
+    /// let mut world = BroadPhase::<1>::new();
+    /// let ids = world.insert_many(&[Aabb::new([0.0], [1.0]); 2], Default::default())?;
+    /// world.update();
+    /// world.clear();
+    /// assert!(world.is_empty());
+    /// assert!(world.update().ended().eq([[ids[0], ids[1]]]));
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
+    pub fn clear(&mut self) {
+        let ids: Vec<_> = self.ids().collect();
+        let removed = self.remove_many(&ids);
+        debug_assert!(removed.is_ok(), "the ids of bodies that are here, each once");
+    }
 }
 
 /// Whether a box is valid, without a branch.

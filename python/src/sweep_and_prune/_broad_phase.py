@@ -445,6 +445,19 @@ class BroadPhase:
         """
         self._world.remove(id_array(ids))
 
+    def clear(self) -> None:
+        """Removes all bodies. Their ids are stale from now on; the next update reports that their pairs ended.
+
+        >>> import sweep_and_prune as sap
+        >>> world = sap.BroadPhase(dimensions=1)
+        >>> ids = world.insert_many([[0, 2], [1, 3]])
+        >>> changes = world.update()
+        >>> world.clear()
+        >>> len(world), len(world.update().ended)
+        (0, 1)
+        """
+        self._world.remove(self._world.ids())
+
     def box(self, id: SupportsIndex) -> Floats:
         """Returns the box of a body as last set; for a swept body, until the next update, the union of both boxes.
 
