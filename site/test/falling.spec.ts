@@ -93,6 +93,15 @@ test("the motion of the balls is loaded for their scene alone, and three.js for 
   await expect(root.getByLabel("Motion")).toBeEnabled();
 });
 
+test("the picture has as many pixels as it is wide, also when the window changes", async ({ page }) => {
+  const { root } = await open(page, "&boxes=20");
+  const canvas = root.locator("[data-part=orbit] canvas");
+  const shares = (): Promise<number> => canvas.evaluate((canvas: HTMLCanvasElement) => canvas.width / canvas.clientWidth / devicePixelRatio);
+  await expect.poll(shares).toBeCloseTo(1, 2);
+  await page.setViewportSize({ width: 500, height: 800 });
+  await expect.poll(shares).toBeCloseTo(1, 2);
+});
+
 test("boxes of the balls that a hand changes are the visitor's own, and no longer fall", async ({ page }) => {
   const { root, step } = await open(page, "&boxes=20");
   await root.getByRole("button", { name: "Add a box" }).click();

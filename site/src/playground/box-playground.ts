@@ -116,7 +116,7 @@ export class BoxPlayground extends PanelElement {
       this.#noPicture = `There is no picture: ${messageOf(error)}.`;
       this.message(this.#noPicture);
     });
-    this.onResize(["picture", "lines"], () => {
+    this.onResize(["picture", "orbit", "lines"], () => {
       this.#view = undefined;
       this.#balls.resize();
       this.requestShow();
