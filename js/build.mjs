@@ -36,7 +36,8 @@ const cores = [
  * Each has an inline form, with its core inside.
  */
 const entries = [
-  { name: "index", inline: "inline", budget: 10_100 },
+  // Of these, 1 KB is for pairs in chunks.
+  { name: "index", inline: "inline", budget: 11_200 },
   // Of these, 1.7 KB are for many queries in one call, and 1.1 KB for data of bodies, clones and restoring in place.
   { name: "broad-phase", inline: "broad-phase-inline", budget: 16_400 },
   { name: "events-2d", inline: "events-2d-inline", budget: 10_900 },

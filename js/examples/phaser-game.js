@@ -6,7 +6,6 @@ await init();
 
 class Shooter extends Phaser.Scene {
   world = new BroadPhase({ dimensions: 2 });
-  objectOf = new Map();
   hits = 0;
 
   create() {
@@ -16,22 +15,20 @@ class Shooter extends Phaser.Scene {
 
   /** Gives the object a body, and returns its id. */
   track(object, filter) {
-    const [id] = this.world.insertMany([edges(object)], filter);
-    this.objectOf.set(id, object);
-    return id;
+    return this.world.insert(object.getBounds(), { ...filter, data: object });
   }
 
   update() {
     for (const id of this.bullets.filter((id) => this.world.contains(id))) {
-      const bullet = this.objectOf.get(id);
-      const before = edges(bullet);
+      const bullet = this.world.data(id);
+      const before = bullet.getBounds();
       bullet.x += 50; // more than its own size: its whole path counts
-      this.world.setSwept(id, before, edges(bullet));
+      this.world.setSwept(id, before, bullet.getBounds());
     }
     const { begun } = this.world.update();
     this.hits += begun.length / 2;
     for (const id of new Set(begun)) { // a set: a bullet that hits two rocks is in two pairs
-      this.objectOf.get(id).destroy();
+      this.world.data(id).destroy();
       this.world.remove(id);
     }
     if (this.hits === this.bullets.length) {
@@ -39,12 +36,6 @@ class Shooter extends Phaser.Scene {
       this.game.destroy(true);
     }
   }
-}
-
-/** The bounds of a game object as a row of numbers. */
-function edges(object) {
-  const { left, top, right, bottom } = object.getBounds();
-  return [left, top, right, bottom];
 }
 
 new Phaser.Game({ type: Phaser.HEADLESS, width: 400, height: 200, scene: Shooter, banner: false });

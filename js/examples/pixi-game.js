@@ -13,10 +13,8 @@ const coins = [60, 120, 180].map((x) => {
 const sprites = [hero, ...coins];
 
 const world = new BroadPhase({ dimensions: 2 });
-const ids = world.insertMany(sprites.map((sprite) => sprite.getBounds()));
-const spriteOf = new Map([...ids].map((id, i) => [id, sprites[i]]));
-world.setFilter(ids[0], { category: 1, mask: 2 });
-for (const id of ids.subarray(1)) world.setFilter(id, { category: 2, mask: 1 }); // coins do not pair with coins
+const filters = sprites.map((sprite) => (sprite === hero ? { category: 1, mask: 2 } : { category: 2, mask: 1 })); // coins do not pair with coins
+const ids = world.insertMany(sprites.map((sprite) => sprite.getBounds()), filters, sprites);
 
 let collected = 0;
 for (let frame = 0; frame < 100; frame++) {
@@ -26,7 +24,7 @@ for (let frame = 0; frame < 100; frame++) {
   const { begun } = world.update();
   // Two ids a pair: the hero, and the coin that it touches.
   for (const coin of [...begun].filter((id) => id !== ids[0])) {
-    spriteOf.get(coin).visible = false;
+    world.data(coin).visible = false;
     world.remove(coin);
     collected++;
   }

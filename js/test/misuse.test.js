@@ -19,7 +19,7 @@ test("finding pairs", () => {
   misuse("forEachPair", forEachPair, [rows, options, () => true]);
   misuse("new PairFinder", (options) => new PairFinder(options).free(), [options]);
   const finder = /** @type {any} */ (new PairFinder(options));
-  const calls = { find: [rows], findBetween: [rows, rows], count: [rows], countBetween: [rows, rows], forEach: [rows, () => {}], forEachBetween: [rows, rows, () => {}], findInto: [rows, new Uint32Array(9)], findBetweenInto: [rows, rows, new Uint32Array(9)], any: [rows], anyBetween: [rows, rows] };
+  const calls = { find: [rows], findBetween: [rows, rows], count: [rows], countBetween: [rows, rows], forEach: [rows, () => {}], forEachBetween: [rows, rows, () => {}], findInto: [rows, new Uint32Array(9)], findBetweenInto: [rows, rows, new Uint32Array(9)], any: [rows], anyBetween: [rows, rows], chunks: [rows, rows] };
   for (const [name, good] of Object.entries(calls)) {
     misuse(name, (...args) => finder[name](...args), good);
     assert.deepEqual([...finder.find(rows)], [0, 2], `after ${name}`);

@@ -713,7 +713,7 @@ export class HostileFinder extends Hostile {
       this.isFreed = false;
     }
     this.arm();
-    const call = this.pick(/** @type {const} */ (["find", "between", "each", "into", "count"]));
+    const call = this.pick(/** @type {const} */ (["find", "between", "each", "into", "count", "chunks"]));
     try {
       this[`$${call}`]();
     } catch (error) {
@@ -748,6 +748,14 @@ export class HostileFinder extends Hostile {
   $find() {
     const rows = this.rows();
     assert.deepEqual(sorted(this.#right(this.finder.find(this.#boxes(rows)))), oracle(rows.flat(), this.dimensions));
+  }
+
+  $chunks() {
+    const [rows, others] = [this.rows(), this.below(2) === 0 ? this.rows() : undefined];
+    const chunks = this.finder.chunks(this.#boxes(rows), others && this.#boxes(others));
+    const found = this.#right([...chunks].flatMap((chunk) => sorted(chunk)));
+    const expected = others ? sorted(this.finder.findBetween(rows.flat(), others.flat())) : oracle(rows.flat(), this.dimensions);
+    assert.deepEqual(found.sort((/** @type {number[]} */ [a = 0, b = 0], /** @type {number[]} */ [c = 0, d = 0]) => a - c || b - d), expected);
   }
 
   $count() {
