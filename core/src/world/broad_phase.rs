@@ -270,7 +270,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     ///
     /// Takes O(n + pairs) time, and meanwhile as much memory again as the world needs.
     pub fn shrink_to_fit(&mut self) {
-        // Buffers are not cloned, and lists without spare room.
+        // Buffers are not cloned, and lists without spare capacity.
         *self = self.clone();
     }
 

@@ -4,7 +4,7 @@
 const UPDATES: usize = 64;
 /// How many times as much memory as needed is too much. Growing lists have twice as much as they need.
 const SPARE: usize = 4;
-/// Room for so many pairs is never too much: some lists always reserve it.
+/// Capacity for this many pairs is never too much: some lists always reserve it.
 const LEAST: usize = 1 << 14;
 
 /// How many pairs there were lately.
@@ -16,7 +16,7 @@ pub struct Usage {
 
 impl Usage {
     /// Notes an update of so many bodies that had so many pairs. Returns, once in [`UPDATES`], for how many pairs a list
-    /// needs room at most, judged by what was noted since it last did.
+    /// needs capacity at most, judged by what was noted since it last did.
     pub fn note(&mut self, bodies: usize, pairs: usize) -> Option<usize> {
         self.most = self.most.max(bodies.saturating_add(pairs));
         self.updates += 1;

@@ -1,7 +1,7 @@
 //! Gives back the memory of a crowd that is gone.
 //!
 //! A list keeps its memory from update to update, so that steady motion does not allocate. Once in 64 updates a list is
-//! shrunk that has room for more than four times as many pairs as there were bodies and pairs since then.
+//! shrunk that has capacity for more than four times as many pairs as there were bodies and pairs since then.
 
 use alloc::vec::Vec;
 
@@ -25,7 +25,7 @@ pub fn note_usage<const D: usize, T: Scalar>(
     }
 }
 
-/// Frees each buffer that has room for more than so many pairs, and shrinks such lists to what they hold. Events of the
+/// Frees each buffer that has capacity for more than this many pairs, and shrinks such lists to what they hold. Events of the
 /// last update are of no use any more.
 fn give_back<const D: usize, T: Scalar>(
     tracking: &mut Tracking<D, T>,
