@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from ._arrays import Floats, Ids, Pairs
 
-__all__ = ["Finder", "World", "in_order", "stop_threads"]
+__all__ = ["Finder", "World", "in_order", "read_bed", "stop_threads"]
 
 _Words = tuple[int, int, int, bool]
 
