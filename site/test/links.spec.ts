@@ -1,10 +1,10 @@
 // What a link to a page shows of it elsewhere, what search engines are told, and what there is without scripts.
 import { expect, test } from "@playwright/test";
 import type { SapDemo } from "sweep-and-prune-classroom/demo";
-import { PAGES } from "./support/pages.ts";
+import { MOVED, PAGES } from "./support/pages.ts";
 
-// An embedded demo is a part of another page, and the address of the race leads to the playground.
-const LINKED = PAGES.filter((path) => path !== "/embed.html" && path !== "/race.html");
+// An embedded demo is a part of another page, and the old addresses lead to the playground.
+const LINKED = PAGES.filter((path) => path !== "/embed.html" && !(path in MOVED));
 
 test("every page has a title, a description, an address and a picture of its own kind", async ({ page, request }) => {
   const titles = new Set<string>();
