@@ -29,7 +29,8 @@ export function complaints(page: Page): string[] {
     if (message.type() === "error" || message.type() === "warning") hear(message.text());
   });
   page.on("pageerror", (error) => hear(String(error)));
-  page.on("requestfailed", (request) => hear(`failed: ${request.url()}`));
+  // What is still loading when the page is left is aborted, and that is no failure.
+  page.on("requestfailed", (request) => request.failure()?.errorText !== "net::ERR_ABORTED" && hear(`failed: ${request.url()}`));
   page.on("response", (response) => {
     if (!response.ok() && response.status() !== 304) hear(`${response.status()}: ${response.url()}`);
   });
