@@ -18,6 +18,8 @@ test("a body is inserted with a filter and data", () => {
   const c = world.insert(unit, { data: "c" });
   assert.deepEqual([a, b, c].map((id) => world.data(id)), ["a", undefined, "c"]);
   assert.deepEqual([a, b, c].map((id) => world.filter(id).category), [2, 2, 1]);
+  const d = world.insert([5, 5, 6, 6], new (class { get mask() { return 4; } })());
+  assert.equal(world.filter(d).mask, 4);
   assert.deepEqual(world.dataPairs(world.update().begun), [["a", "c"], [undefined, "c"]]);
   world.setData(b, "b");
   assert.deepEqual(world.dataOf(world.overlapping(unit)), ["a", "b", "c"]);

@@ -128,7 +128,7 @@ export abstract class Batches<D extends Dimensions = Dimensions> extends Queries
     if (typeof filter === "function") throw new TypeError("`filter` must be an object here: many queries call no function");
     const words = wordsOf(filter);
     const { dimensions, memory } = this;
-    const excluded = Float64Array.from(choices.excluded);
+    const excluded = new Float64Array(choices.excluded);
     memory.checkUsable();
     const count = countOf(parts[0]!);
     if (count === 0) return 0;

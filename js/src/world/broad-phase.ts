@@ -138,7 +138,7 @@ export class BroadPhase<D extends Dimensions = Dimensions, Data = unknown> exten
    * ```
    */
   dataOf(ids: Numbers): Data[] {
-    return Array.from(checkIds(ids), (id) => this.#data.get(id)!);
+    return Array.from(new Float64Array(checkIds(ids)), (id) => this.#data.get(id)!);
   }
 
   /**
@@ -163,7 +163,7 @@ export class BroadPhase<D extends Dimensions = Dimensions, Data = unknown> exten
 
   override removeMany(ids: Numbers): void {
     if (this.#data.size === 0) return super.removeMany(ids);
-    const given = Float64Array.from(checkIds(ids));
+    const given = new Float64Array(checkIds(ids));
     super.removeMany(given);
     for (const id of given) this.#leaving.push(id);
   }
@@ -192,7 +192,7 @@ export class BroadPhase<D extends Dimensions = Dimensions, Data = unknown> exten
    * @throws {@link StaleProxyError} with the index of the first bad id.
    */
   boxes(ids: Numbers): Float32Array | Float64Array {
-    const given = Float64Array.from(checkIds(ids));
+    const given = new Float64Array(checkIds(ids));
     const width = 2 * this.dimensions;
     const Floats = this.memory.isDouble ? Float64Array : Float32Array;
     const boxes = allocate(() => new Floats(width * given.length));
@@ -277,9 +277,11 @@ const insertOptions = ["data", ...filterNames];
 /** What a body is to have beside its box: its filter as the core takes it, if it has one of its own. */
 function readInsertOptions<Data>(options: unknown): { words?: FilterWords; data?: Data } {
   checkOptionNames(options, insertOptions);
-  const { data, ...filter } = options as InsertOptions<Data>;
+  // Each by its name, as of filters: they may be getters of a class.
+  const { data, category, mask, group, isStatic } = options as { [Key in keyof InsertOptions<Data>]: InsertOptions<Data>[Key] | undefined };
+  const isFiltered = category !== undefined || mask !== undefined || group !== undefined || isStatic !== undefined;
   return {
-    ...(Object.keys(filter).length > 0 && { words: filterWords(filter, defaultFilter) }),
+    ...(isFiltered && { words: filterWords({ category, mask, group, isStatic } as Partial<Filter>, defaultFilter) }),
     ...("data" in (options as object) && { data: data! }),
   };
 }

@@ -433,10 +433,11 @@ export class HostileWorld extends Hostile {
   }
 
   $insert() {
-    const row = this.row();
-    const id = this.#right(this.world.insert(this.#box(row)));
+    const [row, own] = [this.row(), this.below(2) === 0 ? this.newFilter() : undefined];
+    const id = this.#right(this.world.insert(this.#box(row), own && this.#filter(own)));
     assert.ok(!this.bodies.has(id));
-    this.bodies.set(id, { row, filter: { category: 1, mask: 0xffff_ffff, group: 0, isStatic: false } });
+    this.bodies.set(id, { row, filter: own ?? { category: 1, mask: 0xffff_ffff, group: 0, isStatic: false } });
+    if (own) assert.deepEqual({ ...this.world.filter(id), mask: this.world.filter(id).mask >>> 0 }, own);
   }
 
   $insertMany() {
@@ -596,7 +597,11 @@ export class HostileWorld extends Hostile {
     const odd = this.#id(id);
     assert.equal(this.world.contains(odd), !this.isWrong && this.bodies.has(id));
     this.isWrong = false;
-    if (this.bodies.has(id)) assert.deepEqual(this.world.box(id), this.#body(id).row);
+    if (!this.bodies.has(id)) return;
+    assert.deepEqual(this.world.box(id), this.#body(id).row);
+    /** @type {number[]} */
+    let both = [];
+    if (this.#for([id], () => (both = [...this.world.boxes(this.array([id, id]))]))) assert.deepEqual(both, [...this.#body(id).row, ...this.#body(id).row]);
   }
 
   /** A method of another object. */
