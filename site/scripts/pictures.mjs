@@ -4,7 +4,7 @@
 //   npm run pictures -w site [-- STEP]    STEP: the step of the simulation to draw (default 75)
 //
 // Chromium draws without a graphics card here, so the time of drawing says nothing about a visitor's machine: the
-// picture leaves it out, and the view is small until the simulation pauses. The times of the phases are those of this
+// picture leaves it out, and the view is small until the simulation pauses. The time of the search is that of this
 // machine: run it while nothing else runs.
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -15,7 +15,7 @@ const site = resolve(dirname(fileURLToPath(import.meta.url)), "..");
 const docs = resolve(site, "../docs");
 const lastStep = Number(process.argv[2] ?? 75);
 
-/** Leaves the view and, below it, four figures that hold on any machine or are worth comparing. */
+/** Leaves the view and, below it, the time of the search and the number of pairs. */
 const STYLE = `
   box-playground { padding: 0; margin: 0; max-width: none; }
   box-playground .panel { display: block; width: 44rem; padding: 1rem; background: var(--paper, Canvas); }
