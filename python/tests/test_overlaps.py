@@ -358,3 +358,22 @@ def test_the_nearest_are_those_of_geopandas() -> None:
     found = sap.nearest(a, b, max_distance=0.05)
     assert found.pairs[:, 0].tolist() == wanted_frame.index.tolist()
     np.testing.assert_allclose(found.distances, wanted_frame["distance"])
+
+
+@pytest.mark.parametrize("bad", [[5.0, 1.0], [math.nan, 1.0], [0.0, math.nan]])
+@pytest.mark.parametrize("by", [None, "x"])
+def test_intervals_that_are_no_boxes_are_refused_by_name(bad: list[float], by: str | None) -> None:
+    good = [[0.0, 2.0], [1.0, 4.0]]
+    one: Any = {} if by is None else {"by": [by] * 3}
+    first: Any = {} if by is None else {"by": ([by] * 3, [by] * 2)}
+    second: Any = {} if by is None else {"by": ([by] * 2, [by] * 3)}
+    for call in (sap.count_overlaps, sap.cluster, sap.merge):
+        with pytest.raises(sap.InvalidBoxError, match=r"^boxes\[1\] "):
+            call([good[0], bad, good[1]], **one)
+    for between in (sap.count_overlaps, sap.coverage, sap.nearest):
+        with pytest.raises(sap.InvalidBoxError, match=r"^a\[2\] "):
+            between([*good, bad], good, **first)
+        with pytest.raises(sap.InvalidBoxError, match=r"^b\[2\] "):
+            between(good, [*good, bad], **second)
+        with pytest.raises(sap.InvalidBoxError, match=r"^a\[2\] "):
+            between([*good, bad], np.empty((0, 2)), **({} if by is None else {"by": ([by] * 3, np.empty(0, "U1"))}))

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import read_boxes, whole
 from ._columns import read_column
-from ._overlaps import Values, line_keys, plain_corners
+from ._overlaps import Values, check_intervals, line_keys, plain_corners
 from ._pairs import Groups, Margin, find, one_set, stream, two_sets
 from ._prepare import Prepared, is_missing
 
@@ -120,7 +120,7 @@ def _components(prepared: Prepared) -> NDArray[np.int64]:
 
 
 def _clusters(prepared: Prepared) -> NDArray[np.int64]:
-    ((starts, ends),) = line_keys(prepared.sets)
+    ((starts, ends),) = line_keys(prepared)
     order = np.argsort(starts, kind="stable")
     if len(order) == 0:
         return order
@@ -214,6 +214,7 @@ def coverage(
     """
     prepared = two_sets(a, b, "xyxy", "both", missing, by, 0)
     _refuse_boxes(prepared, by)
+    check_intervals(prepared)
     of_a, of_b = plain_corners({"a": a, "b": b}, "xyxy")
     second = prepared._replace(sets=prepared.sets[1:], kept=prepared.kept[1:])
     labels = _clusters(second)
@@ -341,7 +342,7 @@ def _reach(corners: list[Values], limit: Any) -> Any:
 
 def _beside(prepared: Prepared, k: int) -> list[NDArray[np.int64]]:
     """For each interval, the `k` that end nearest before it begins, and the `k` that begin nearest after its end."""
-    (low_a, high_a), (low_b, high_b) = line_keys(prepared.sets)
+    (low_a, high_a), (low_b, high_b) = line_keys(prepared)
     first, second = prepared.sets
     is_grouped = first.shape[1] == 4
     group_a, group_b = (boxes[:, 1] if is_grouped else np.zeros(len(boxes)) for boxes in (first, second))

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import Floats, read_boxes, same_width
+from ._arrays import read_boxes, same_width
 from ._columns import in_one_unit, one_type
 from ._pairs import Groups, Margin, one_set, stream, two_sets
 from ._prepare import Prepared, one_kind
@@ -93,15 +93,31 @@ def count_overlaps(
 
 def _counts_of_intervals(prepared: Prepared) -> NDArray[np.int64]:
     """Those that begin before the end of an interval, without those that end before its start."""
-    first, second = prepared.sets[0], prepared.sets[-1]
-    (starts, ends), (low, high) = line_keys([second, first])
+    keys = line_keys(prepared)
+    (low, high), (starts, ends) = keys[0], keys[-1]
     begun = np.searchsorted(np.sort(starts), high, side="right")
     ended = np.searchsorted(np.sort(ends), low, side="left")
     return np.asarray(begun - ended - (len(prepared.sets) == 1), np.int64)
 
 
-def line_keys(sets: list[Floats]) -> list[tuple[Values, Values]]:
-    """Numbers for the starts and the ends of intervals, in the order of groups and then of coordinates."""
+def check_intervals(prepared: Prepared) -> None:
+    """Refuses intervals that end before they start or have a NaN, as a search does: sorting alone would not see them.
+
+    Raises:
+        InvalidBoxError: for the first of them.
+    """
+    if not all((boxes[:, 0] <= boxes[:, boxes.shape[1] // 2]).all() for boxes in prepared.sets):
+        stream(prepared, lambda pairs: None, _CHUNK, np.int64)
+
+
+def line_keys(prepared: Prepared) -> list[tuple[Values, Values]]:
+    """Numbers for the starts and the ends of intervals, in the order of groups and then of coordinates.
+
+    Raises:
+        InvalidBoxError: as `check_intervals`.
+    """
+    check_intervals(prepared)
+    sets = prepared.sets
     if sets[0].shape[1] == 2:
         return [(boxes[:, 0], boxes[:, 1]) for boxes in sets]
     every = np.concatenate([boxes[:, [0, 2]] for boxes in sets])
