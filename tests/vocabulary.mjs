@@ -79,7 +79,7 @@ export const WORDS = [
     not: "so many (a number)",
     but: "this many, N, or the name of the number",
     pattern: /\bso many\b(?! that\b)/i,
-    only: /^(?!core\/src\/world|fuzz\/TOTALS)/,
+    only: /^(?!fuzz\/TOTALS)/,
   },
   {
     not: "those of, twice in a sentence",

@@ -13,7 +13,7 @@ use crate::memory::reserve;
 
 /// How many new fat AABBs per body make the order useless.
 const DECAY: usize = 16;
-/// With fewer candidates than one for so many bodies the order does not matter.
+/// With fewer candidates than one for this many bodies the order does not matter.
 const BODIES_A_CANDIDATE: usize = 4;
 /// How much a body decays the order that jumped away from its neighbors in memory, in new fat AABBs.
 const JUMP_DECAY: usize = 10 * DECAY;
@@ -38,7 +38,7 @@ pub fn note_jumps(decay: &mut usize, jumped: usize) {
 }
 
 /// Notes that the finder found the candidates of `moved` bodies with new fat AABBs, `new` of them new.
-/// Returns whether to reorder storage of so many bodies with so many candidates.
+/// Returns whether to reorder storage, given the numbers of bodies and of candidates.
 pub fn note_rebuild(
     decay: &mut usize,
     [moved, new]: [usize; 2],

@@ -118,12 +118,13 @@ fn updates_do_the_work_that_is_recorded() {
     compare_with_record("src/world/work.txt", &report);
 }
 
-/// A box of size 1 at a place, and a world of so many of them, ten apart, after an update.
+/// A box of size 1; those of neighboring places are ten apart.
 fn at(place: usize) -> Aabb<2> {
     let place = 10.0 * place as f32;
     Aabb::new([place, 0.0], [place + 1.0, 1.0])
 }
 
+/// A world of bodies at the first places, after an update.
 fn world_of(count: usize) -> (BroadPhase<2>, Vec<ProxyId>) {
     let mut world = BroadPhase::<2>::new();
     let boxes: Vec<_> = (0..count).map(at).collect();

@@ -10,7 +10,7 @@ use crate::{Aabb, Scalar};
 
 /// Reading a row at random takes as long as reading this many rows in order (see `crate::memory`).
 pub const RANDOM_READ: usize = 16;
-/// Above this share of changed bodies, one in so many, all bodies are scanned in storage order.
+/// If more than one body in this many changed, all bodies are scanned in storage order.
 /// 2 instead takes 0.97 to 1.02 of the time; with 16 mostly-still takes 1.20 to 1.54.
 const SCAN_ALL: usize = 4;
 

@@ -60,7 +60,7 @@ pub struct Policy {
 }
 
 impl Policy {
-    /// How many candidates so many bodies may have, before filters.
+    /// How many candidates a number of bodies may have, before filters.
     pub fn most_candidates(&self, bodies: usize) -> usize {
         self.limit(bodies, MOST_CANDIDATES)
     }
@@ -74,17 +74,17 @@ impl Policy {
         (by_body * bodies as f64 + by_pair * self.overlaps as f64) as usize
     }
 
-    /// Notes that so many pairs of boxes overlap.
+    /// Notes how many pairs of boxes overlap.
     pub fn note_overlaps(&mut self, count: usize) {
         self.overlaps = count;
     }
 
-    /// Notes that so many pairs of fat AABBs overlap: not more of the boxes do.
+    /// Notes how many pairs of fat AABBs overlap: not more of the boxes do.
     pub fn note_candidates(&mut self, count: usize) {
         self.overlaps = self.overlaps.min(count);
     }
 
-    /// Whether this update skips tracking, given that this many of so many bodies changed.
+    /// Whether this update skips tracking, given how many of the bodies changed.
     pub fn skips_tracking(&mut self, changed: usize, bodies: usize) -> bool {
         let skips = self.skipped > 0 && rebuild_pays(changed, bodies);
         self.skipped = if skips { self.skipped - 1 } else { 0 };

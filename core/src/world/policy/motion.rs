@@ -36,7 +36,7 @@ const SLACK: f64 = 0.125;
 const SAMPLE: usize = 512;
 
 impl Motion {
-    /// Samples the motion of so many bodies: their boxes at the last update and now.
+    /// Samples motion: the boxes that each body had at the last update and has now.
     pub fn sample<'a, const D: usize, T: Scalar>(
         &mut self,
         bodies: usize,

@@ -15,7 +15,7 @@ pub struct Usage {
 }
 
 impl Usage {
-    /// Notes an update of so many bodies that had so many pairs. Returns, once in [`UPDATES`], for how many pairs a list
+    /// Notes the numbers of bodies and of pairs of an update. Returns, once in [`UPDATES`], for how many pairs a list
     /// needs capacity at most, judged by what was noted since it last did.
     pub fn note(&mut self, bodies: usize, pairs: usize) -> Option<usize> {
         self.most = self.most.max(bodies.saturating_add(pairs));

@@ -102,7 +102,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     }
 
     /// Wakes the marked bodies, and lists what ends between one of them and a body that was asleep too: such pairs are
-    /// not among the candidates. Returns false, with no body awake, if they are not found in so many steps.
+    /// not among the candidates. Returns false, with no body awake, if they are not found in `most` steps.
     #[inline(never)]
     fn wake(
         &mut self,
@@ -232,7 +232,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     }
 
     /// Finds the candidates of the bodies that are looked up. Returns false if there are too many, or if they are not
-    /// found in so many steps.
+    /// found in `most` steps.
     #[inline(never)]
     fn find_added(
         &mut self,
