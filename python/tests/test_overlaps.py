@@ -367,6 +367,7 @@ def test_intervals_that_are_no_boxes_are_refused_by_name(bad: list[float], by: s
     one: Any = {} if by is None else {"by": [by] * 3}
     first: Any = {} if by is None else {"by": ([by] * 3, [by] * 2)}
     second: Any = {} if by is None else {"by": ([by] * 2, [by] * 3)}
+    none: Any = {} if by is None else {"by": ([by] * 3, np.empty(0, "U1"))}
     for call in (sap.count_overlaps, sap.cluster, sap.merge):
         with pytest.raises(sap.InvalidBoxError, match=r"^boxes\[1\] "):
             call([good[0], bad, good[1]], **one)
@@ -376,4 +377,4 @@ def test_intervals_that_are_no_boxes_are_refused_by_name(bad: list[float], by: s
         with pytest.raises(sap.InvalidBoxError, match=r"^b\[2\] "):
             between(good, [*good, bad], **second)
         with pytest.raises(sap.InvalidBoxError, match=r"^a\[2\] "):
-            between([*good, bad], np.empty((0, 2)), **({} if by is None else {"by": ([by] * 3, np.empty(0, "U1"))}))
+            between([*good, bad], np.empty((0, 2)), **none)
