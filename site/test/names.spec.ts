@@ -164,9 +164,12 @@ test("at each stop of each algorithm, the highlighted line is the one that runs"
         const demo = element as SapDemo;
         demo.reset();
         demo.pause();
+        // Edited code runs in a worker, which may take its time.
+        await demo.settled;
         const stops: Stop[] = [];
         for (let step = 0; step < steps; step++) {
           demo.step();
+          await demo.settled;
           for (let frame = 0; frame < 2; frame++) await new Promise(requestAnimationFrame);
           const lines = [...document.querySelectorAll(`.listing[data-follows="${id}"] pre .line`)];
           const atWork = lines.flatMap((line, at) => (line.classList.contains("at-work") ? [{ number: at + 1, text: line.textContent! }] : []));
@@ -238,19 +241,24 @@ test("what the pointer or the focus is on lights up with all that belongs to it"
   const demo = await new Demo(page, "d2").open();
   const unit = page.locator(".beside", { has: page.locator("#d2") });
   const marked = (): Promise<unknown> => demo.root.evaluate((element) => (element as SapDemo).marked);
-  await unit.locator(".legend li", { hasText: "tested" }).focus();
-  expect(await marked()).toEqual({ color: "check" });
+  const entry = unit.locator(".legend li", { hasText: "tested" });
+  // What follows the pointer and the focus is loaded after the demo.
+  await expect(async () => {
+    await entry.blur();
+    await entry.focus();
+    expect(await marked()).toEqual({ color: "check" });
+  }).toPass();
   await expect(unit.locator("figcaption .is-test").first()).toHaveClass(/marked/);
   await expect(unit.locator(".listing .line.marked")).toHaveText(/overlaps\(a, b\)/);
   await expect(unit.locator(".is-overlap.marked")).toHaveCount(0);
   await page.keyboard.press("ArrowRight");
-  expect(await marked()).toEqual({ color: "overlap" });
+  await expect.poll(marked).toEqual({ color: "overlap" });
   await unit.locator("figcaption .is-test").first().hover();
-  expect(await marked()).toEqual({ color: "check" });
+  await expect.poll(marked).toEqual({ color: "check" });
   await page.mouse.move(0, 0);
-  expect(await marked()).toBeUndefined();
+  await expect.poll(marked).toBeUndefined();
   await unit.locator(".listing .line", { hasText: "overlaps(a, b)" }).hover();
-  expect(await marked()).toEqual({ color: "check" });
+  await expect.poll(marked).toEqual({ color: "check" });
 
   // A ball and its two endpoints.
   const of = await new Demo(page, "d7").open();
@@ -269,7 +277,7 @@ test("what the pointer or the focus is on lights up with all that belongs to it"
       });
     });
   await page.mouse.move(0, 0);
-  expect(await chosen()).toEqual([0, 0]);
+  await expect.poll(chosen).toEqual([0, 0]);
   await array.hover({ position: { x: 20, y: 15 } });
   const [ring = 0, cells = 0] = await chosen();
   expect(ring, "the ball").toBeGreaterThan(50);
