@@ -155,6 +155,8 @@ test("the side-scroller: one or two tests a row along x in every frame, nearly a
   await page.emulateMedia({ reducedMotion: "reduce" });
   await page.goto("/#side-scroller");
   const counts = await page.locator("#side-scroller").evaluate(async (comparison) => {
+    // The demos are loaded when a reader comes near them.
+    await customElements.whenDefined("sap-demo");
     const demos = [...comparison.querySelectorAll("sap-demo")] as (HTMLElement & { ready: Promise<void>; step(): void; state: { tests: number; tick: number } })[];
     await Promise.all(demos.map(({ ready }) => ready));
     const counts: number[][] = [];

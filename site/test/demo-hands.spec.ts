@@ -205,6 +205,7 @@ test("what is shared paused opens paused, at the same stop", async ({ page }) =>
       const url = await demo.evaluate((element: SapDemo) => element.share());
       await page.goto("about:blank");
       await page.goto(url);
+      await page.evaluate(() => customElements.whenDefined("sap-demo"));
       await demo.evaluate((element: SapDemo) => element.ready);
       await expect.poll(() => demo.evaluate(shown), { message: url }).toBe(before);
       await frames(page, 30);
@@ -224,6 +225,7 @@ test("what is shared opens as it was", async ({ page }) => {
   expect(code).toContain("<iframe");
   await page.goto("about:blank");
   await page.goto(url!);
+  await page.evaluate(() => customElements.whenDefined("sap-demo"));
   await demo.evaluate((element: SapDemo) => (element.pause(), element.ready));
   await expect.poll(async () => (await stateOf(demo)).tick).toBeGreaterThanOrEqual(tick);
   await demo.evaluate((element: SapDemo) => element.seek(0));

@@ -59,6 +59,7 @@ test("a new world has another seed, which the link contains; a demo that was pau
   await page.goto("about:blank");
   await page.goto(link);
   const shared = page.locator("sap-demo");
+  await page.evaluate(() => customElements.whenDefined("sap-demo"));
   await shared.evaluate((element: SapDemo) => element.ready);
   await shared.evaluate((element: SapDemo) => (element.pause(), element.seek(0)));
   expect((await stateOf(shared)).hash).toBe(another);
