@@ -37,16 +37,4 @@ impl ProxyId {
     pub const fn from_bits(bits: u64) -> Self {
         Self { slot: bits as u32, generation: (bits >> 32) as u32 }
     }
-
-    /// The id as one number in the order of ids.
-    #[inline]
-    pub(crate) const fn to_ordered_bits(self) -> u64 {
-        (self.slot as u64) << 32 | self.generation as u64
-    }
-
-    /// The id of [`Self::to_ordered_bits`].
-    #[inline]
-    pub(crate) const fn from_ordered_bits(bits: u64) -> Self {
-        Self { slot: (bits >> 32) as u32, generation: bits as u32 }
-    }
 }

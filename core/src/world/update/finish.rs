@@ -36,11 +36,12 @@ pub fn finish<const D: usize, T: Scalar>(
     }
     // After an update from scratch no body falls asleep.
     let is_scattered = !tracking.candidates.are_sorted && tracking.fall_asleep(bodies, moved);
-    let removed = bodies.leaving.iter().map(|&index| bodies.slots.id(index).to_ordered_bits());
+    // The bits of an id with the slot above the generation: numbers in the order of ids.
+    let bits = |id: ProxyId| id.to_bits().rotate_left(32);
+    let removed = bodies.leaving.iter().map(|&index| bits(bodies.slots.id(index)));
+    let sorted = tracking.scratch.sorter.sort_keys(removed);
     events.removed.clear();
-    events
-        .removed
-        .extend(tracking.scratch.sorter.sort_keys(removed).map(ProxyId::from_ordered_bits));
+    events.removed.extend(sorted.map(|bits| ProxyId::from_bits(bits.rotate_left(32))));
     for index in bodies.leaving.drain(..) {
         bodies.slots.release(index, 0);
     }

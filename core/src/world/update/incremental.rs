@@ -207,10 +207,12 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             };
             (index, if extends { fat[row].union(&ahead) } else { ahead })
         }));
+        if !bodies.any_filter {
+            return [jumped, queries.len()];
+        }
         let mut count = 0;
         for at in 0..queries.len() {
-            let filter = &bodies.filters[queries[at].0 as usize];
-            if !(bodies.any_filter && filter.allows_none()) {
+            if !bodies.filters[queries[at].0 as usize].allows_none() {
                 queries.swap(count, at);
                 count += 1;
             }
