@@ -162,6 +162,11 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
         take(&mut self.0.store).into_pairs()
     }
 
+    /// How many pairs fit the memory that is kept for them.
+    pub(crate) fn capacity(&self) -> usize {
+        self.0.store.capacity()
+    }
+
     /// A search with options, whose pairs can also be counted or received one by one: see [`Search`].
     pub fn search<'f, 'b>(&'f mut self, boxes: &'b [Aabb<D, T>]) -> Search<'f, 'b, D, T> {
         Search::new(&mut self.0, boxes)

@@ -68,6 +68,11 @@ impl Store {
         &self.buffer[..self.len]
     }
 
+    /// How many pairs fit the memory that it has.
+    pub fn capacity(&self) -> usize {
+        self.buffer.capacity()
+    }
+
     pub fn into_pairs(mut self) -> Vec<[u32; 2]> {
         self.buffer.truncate(self.len);
         self.buffer

@@ -20,8 +20,6 @@ pub struct Finder<const D: usize, T: Scalar> {
     pairs: Vec<[u32; 2]>,
     /// How many pairs the last search found, before filters.
     pub found: usize,
-    /// How many pairs a search found, at most, since the buffers were empty.
-    pub most_found: usize,
 }
 
 impl<const D: usize, T: Scalar> Finder<D, T> {
@@ -32,11 +30,15 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         Self { finder, threads, ..Self::default() }
     }
 
+    /// How many pairs fit the memory that is kept for them, in the larger of two lists.
+    pub fn capacity(&self) -> usize {
+        self.finder.capacity().max(self.pairs.capacity())
+    }
+
     /// Frees the memory of the pairs that were found.
     pub fn forget(&mut self) {
         self.finder.take_pairs();
         self.pairs = Vec::new();
-        self.most_found = 0;
     }
 
     /// The pairs of overlapping boxes of a table, as indices, of bodies that have one of the flags of
@@ -57,7 +59,6 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         if !bodies.any_filter && flags.iter().all(|&flags| takes_part(flags)) {
             let pairs = found(finder.search(table).pairs_up_to(most))?;
             self.found = pairs.len();
-            self.most_found = self.most_found.max(self.found);
             return Some(pairs);
         }
         let all = (0..flags.len() as u32).filter(|&index| takes_part(flags[index as usize]));
@@ -73,7 +74,6 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
             }
             let all = found(search.pairs_up_to(most.saturating_sub(self.found)))?;
             self.found += all.len();
-            self.most_found = self.most_found.max(all.len());
             let (a, b) = (&sets.bodies[a], &sets.bodies[b]);
             let named = all.iter().map(|&[at, other]| [a[at as usize], b[other as usize]]);
             let allowed = named.filter(|&[a, b]| filter_of(a).allows(&filter_of(b)));
@@ -103,7 +103,6 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         let pairs = finder.search(boxes).against(table).pairs_up_to(*most);
         let Some(pairs) = found(pairs) else { return false };
         *most = most.saturating_sub(pairs.len());
-        self.most_found = self.most_found.max(pairs.len());
         near.extend(pairs.iter().filter(|[_, body]| takes_part(*body)));
         true
     }

@@ -25,8 +25,8 @@ pub fn note_usage<const D: usize, T: Scalar>(
     }
 }
 
-/// Frees each buffer that has capacity for more than this many pairs, and shrinks such lists to what they hold. Events of the
-/// last update are of no use any more.
+/// Frees each buffer that has capacity for more than this many pairs, and shrinks such lists to what they hold. Events of
+/// the last update are of no use any more.
 fn give_back<const D: usize, T: Scalar>(
     tracking: &mut Tracking<D, T>,
     events: &mut Events,
@@ -53,7 +53,7 @@ fn give_back<const D: usize, T: Scalar>(
     if added.capacity().max(positions.capacity()) > enough {
         (*added, *positions, *dropped) = (Vec::new(), Vec::new(), Vec::new());
     }
-    if finder.most_found > enough {
+    if finder.capacity() > enough {
         finder.forget();
     }
 }
