@@ -2,10 +2,12 @@
 
 use alloc::vec::Vec;
 
-use sweep_and_prune::{BroadPhase, Error, Filter, Options, Pairs, ProxyId, Scalar, validate};
+use sweep_and_prune::{
+    BroadPhase, Error, Filter, Options, Pairs, ProxyId, Report, Scalar, validate,
+};
 
 use crate::id::Id;
-use crate::kind::{Kind, Settings};
+use crate::kind::Kind;
 use crate::queries::{Answer, Query, ask};
 use crate::rows::{Coordinates, Rows, aabb};
 
@@ -35,14 +37,20 @@ pub trait TrackBodies<I: Id>: Send {
     /// Moves a body from the box of these corners to another.
     fn set_swept(&mut self, id: ProxyId, from: &[f64], to: &[f64]) -> Result<(), Error>;
 
+    /// Gives a body the box of these corners, to which it did not move.
+    fn teleport(&mut self, id: ProxyId, corners: &[f64]) -> Result<(), Error>;
+
+    /// Adds an offset, given on each axis, to all boxes.
+    fn shift(&mut self, offset: &[f64]) -> Result<(), Error>;
+
     /// Changes the filter of a body.
     fn set_filter(&mut self, id: ProxyId, filter: Filter) -> Result<(), Error>;
 
     /// The filter of a body.
     fn filter(&self, id: ProxyId) -> Result<Filter, Error>;
 
-    /// Writes the corners of the box of a body.
-    fn corners(&self, id: ProxyId, corners: &mut [f64]) -> Result<(), Error>;
+    /// Writes the corners of the box of a body, as set or as its overlaps are reported.
+    fn corners(&self, id: ProxyId, is_reported: bool, corners: &mut [f64]) -> Result<(), Error>;
 
     /// Whether a body is here.
     fn contains(&self, id: ProxyId) -> bool;
@@ -126,11 +134,14 @@ impl<const D: usize, T: Scalar> TypedBroadPhase<D, T> {
     ///
     /// # Errors
     /// [`Error::InvalidOption`].
-    pub fn new(settings: Settings) -> Result<Self, Error> {
-        let Settings { margin, prediction, report } = settings;
-        let (margin, prediction) = (T::from_f64(margin), T::from_f64(prediction));
-        let options = Options::default().margin(margin).prediction(prediction).report(report);
-        let world = BroadPhase::with_options(options)?;
+    pub fn new(report: Report<f64>) -> Result<Self, Error> {
+        let report = match report {
+            Report::Exact => Report::Exact,
+            Report::Fat { margin, prediction } => {
+                Report::Fat { margin: T::from_f64(margin), prediction: T::from_f64(prediction) }
+            }
+        };
+        let world = BroadPhase::with_options(Options::default().report(report))?;
         Ok(Self { world, rows: Rows::new() })
     }
 }
@@ -164,6 +175,14 @@ impl<const D: usize, T: Scalar, I: Id> TrackBodies<I> for TypedBroadPhase<D, T> 
         self.world.set_swept(id, aabb(from), aabb(to))
     }
 
+    fn teleport(&mut self, id: ProxyId, corners: &[f64]) -> Result<(), Error> {
+        self.world.teleport(id, aabb(corners))
+    }
+
+    fn shift(&mut self, offset: &[f64]) -> Result<(), Error> {
+        self.world.shift(core::array::from_fn(|axis| T::from_f64(offset[axis])))
+    }
+
     fn set_filter(&mut self, id: ProxyId, filter: Filter) -> Result<(), Error> {
         self.world.set_filter(id, filter)
     }
@@ -172,8 +191,9 @@ impl<const D: usize, T: Scalar, I: Id> TrackBodies<I> for TypedBroadPhase<D, T> 
         self.world.filter(id)
     }
 
-    fn corners(&self, id: ProxyId, corners: &mut [f64]) -> Result<(), Error> {
-        let aabb = self.world.aabb(id)?;
+    fn corners(&self, id: ProxyId, is_reported: bool, corners: &mut [f64]) -> Result<(), Error> {
+        let world = &self.world;
+        let aabb = if is_reported { world.reported_aabb(id) } else { world.aabb(id) }?;
         for (number, at) in corners.iter_mut().zip(aabb.min.into_iter().chain(aabb.max)) {
             *number = at.to_f64();
         }

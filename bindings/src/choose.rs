@@ -5,11 +5,11 @@
 
 use alloc::boxed::Box;
 
-use sweep_and_prune::Error;
+use sweep_and_prune::{Error, Report};
 
 use crate::broad_phase::{ArrayBroadPhase, TypedBroadPhase};
 use crate::id::Id;
-use crate::kind::{Kind, Settings};
+use crate::kind::Kind;
 use crate::pair_finder::{ArrayPairFinder, TypedPairFinder};
 
 impl Kind {
@@ -35,21 +35,15 @@ impl Kind {
     /// [`Error::InvalidOption`].
     pub fn broad_phase<I: Id>(
         self,
-        settings: Settings,
+        report: Report<f64>,
     ) -> Option<Result<Box<dyn ArrayBroadPhase<I>>, Error>> {
         Some(match (self.dimensions, self.is_double) {
-            (1, false) => {
-                TypedBroadPhase::<1, f32>::new(settings).map(|world| Box::new(world) as _)
-            }
-            (2, false) => {
-                TypedBroadPhase::<2, f32>::new(settings).map(|world| Box::new(world) as _)
-            }
-            (3, false) => {
-                TypedBroadPhase::<3, f32>::new(settings).map(|world| Box::new(world) as _)
-            }
-            (1, true) => TypedBroadPhase::<1, f64>::new(settings).map(|world| Box::new(world) as _),
-            (2, true) => TypedBroadPhase::<2, f64>::new(settings).map(|world| Box::new(world) as _),
-            (3, true) => TypedBroadPhase::<3, f64>::new(settings).map(|world| Box::new(world) as _),
+            (1, false) => TypedBroadPhase::<1, f32>::new(report).map(|world| Box::new(world) as _),
+            (2, false) => TypedBroadPhase::<2, f32>::new(report).map(|world| Box::new(world) as _),
+            (3, false) => TypedBroadPhase::<3, f32>::new(report).map(|world| Box::new(world) as _),
+            (1, true) => TypedBroadPhase::<1, f64>::new(report).map(|world| Box::new(world) as _),
+            (2, true) => TypedBroadPhase::<2, f64>::new(report).map(|world| Box::new(world) as _),
+            (3, true) => TypedBroadPhase::<3, f64>::new(report).map(|world| Box::new(world) as _),
             _ => return None,
         })
     }

@@ -1,6 +1,6 @@
 //! Which of the six types of box an object has, chosen at run time.
 
-use sweep_and_prune::{Error, Report, SnapshotFault, SnapshotInfo};
+use sweep_and_prune::{Error, SnapshotFault, SnapshotInfo};
 
 /// The dimensions and the precision of boxes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,17 +9,6 @@ pub struct Kind {
     pub dimensions: usize,
     /// Whether coordinates are `f64`, and not `f32`.
     pub is_double: bool,
-}
-
-/// How a broad phase treats its boxes: [`Options`](sweep_and_prune::Options) of any precision.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Settings {
-    /// What a fat AABB has around the body's own, in units of length.
-    pub margin: f64,
-    /// How many displacements a fat AABB reaches ahead.
-    pub prediction: f64,
-    /// Which pairs are reported.
-    pub report: Report,
 }
 
 impl Kind {

@@ -35,7 +35,7 @@ mod rows;
 pub use broad_phase::{AnyBroadPhase, ArrayBroadPhase, TrackBodies, TypedBroadPhase};
 pub use filter::filter;
 pub use id::Id;
-pub use kind::{Kind, Settings};
+pub use kind::Kind;
 pub use pair_finder::{AnyPairFinder, ArrayPairFinder, Progress, TypedPairFinder};
 pub use queries::{Answer, Query};
 pub use rows::Coordinates;

@@ -3,9 +3,10 @@
 use std::ops::ControlFlow;
 
 use sweep_and_prune::{
-    Aabb, BroadPhase, Cast, Error, Filter, Hit, PairFinder, ProxyId, Scalar, find_pairs_between,
+    Aabb, BroadPhase, Cast, Error, Filter, Hit, PairFinder, ProxyId, Report, Scalar,
+    find_pairs_between,
 };
-use sweep_and_prune_bindings::{Answer, Coordinates, Kind, Query, Settings};
+use sweep_and_prune_bindings::{Answer, Coordinates, Kind, Query};
 use sweep_and_prune_scenes::Scene;
 
 const GO_ON: &(dyn Fn(f64) -> ControlFlow<()> + Sync) = &|_| ControlFlow::Continue(());
@@ -70,7 +71,7 @@ fn bits(ids: impl IntoIterator<Item = ProxyId>) -> Vec<u64> {
 fn broad_phase_gives_what_the_core_gives<const D: usize, T: Scalar>() {
     let kind = kind::<D, T>();
     let mut core = BroadPhase::<D, T>::new();
-    let mut erased = kind.broad_phase::<u64>(Settings::default()).unwrap().unwrap();
+    let mut erased = kind.broad_phase::<u64>(Report::Exact).unwrap().unwrap();
     assert_eq!(erased.kind(), kind);
     let (start, end) = (boxes::<D, T>(3), boxes::<D, T>(4));
     let filter = Filter::default().category(2);
@@ -111,7 +112,7 @@ fn broad_phase_gives_what_the_core_gives<const D: usize, T: Scalar>() {
     assert!(0 < begun && begun < events.len());
 
     let mut corners = vec![0.0; 2 * D];
-    erased.corners(ids[5], &mut corners).unwrap();
+    erased.corners(ids[5], false, &mut corners).unwrap();
     assert_eq!(corners, numbers(&end[5..6]));
     let mut found = Vec::new();
     erased.pairs(&mut found);
@@ -131,7 +132,7 @@ fn broad_phase_gives_what_the_core_gives<const D: usize, T: Scalar>() {
     let bytes = erased.snapshot();
     assert_eq!(bytes, core.snapshot());
     assert_eq!(erased.state_hash(), core.state_hash());
-    let mut restored = kind.broad_phase::<u64>(Settings::default()).unwrap().unwrap();
+    let mut restored = kind.broad_phase::<u64>(Report::Exact).unwrap().unwrap();
     restored.restore(&bytes).unwrap();
     assert_eq!(restored.state_hash(), core.state_hash());
     restored.reset();
@@ -249,22 +250,22 @@ fn there_is_nothing_of_0_or_4_dimensions() {
     for dimensions in [0, 4] {
         let kind = Kind { dimensions, is_double: false };
         assert!(kind.pair_finder(1).is_none());
-        assert!(kind.broad_phase::<u64>(Settings::default()).is_none());
+        assert!(kind.broad_phase::<u64>(Report::Exact).is_none());
     }
 }
 
 #[test]
 fn a_bad_margin_is_refused() {
     let kind = Kind { dimensions: 2, is_double: false };
-    let settings = Settings { margin: -1.0, ..Settings::default() };
-    let refused = kind.broad_phase::<u64>(settings).unwrap().map(|_| ());
+    let report = Report::Fat { margin: -1.0, prediction: 0.0 };
+    let refused = kind.broad_phase::<u64>(report).unwrap().map(|_| ());
     let value = (-1.0).into();
     assert_eq!(refused, Err(Error::InvalidOption { option: "margin", value }));
 }
 
 #[test]
 fn queries_without_a_filter_find_bodies_that_pair_with_nothing() {
-    let mut world = kind::<2, f64>().broad_phase::<u64>(Settings::default()).unwrap().unwrap();
+    let mut world = kind::<2, f64>().broad_phase::<u64>(Report::Exact).unwrap().unwrap();
     let aabb = [0.0, 0.0, 1.0, 1.0];
     let id = world.insert(&aabb).unwrap();
     world.set_filter(id, Filter::default().mask(0)).unwrap();

@@ -55,6 +55,13 @@ pub enum Error {
         /// Its value.
         value: Value,
     },
+    /// The offset of a shift is not finite.
+    InvalidOffset {
+        /// The first axis on which it is not.
+        axis: usize,
+        /// Its coordinate there.
+        value: Value,
+    },
     /// An argument of a query is NaN, or infinite or negative where it must not be.
     InvalidQuery {
         /// The index of the first invalid query in the slice that was passed, 0 for a single query.
@@ -176,6 +183,9 @@ impl fmt::Display for Error {
             }
             Error::InvalidOption { option, value } => {
                 write!(f, "the option `{option}` is {value}, but it must be finite and 0 or more")
+            }
+            Error::InvalidOffset { axis, value } => {
+                write!(f, "the offset on axis {axis} is {value}, but it must be finite")
             }
             Error::InvalidQuery { index, argument, value } => {
                 let limit = match value.get() {

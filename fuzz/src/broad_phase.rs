@@ -24,8 +24,11 @@ fn sequence<const D: usize, T: Scalar>(input: &mut Input) -> u64 {
     let lengths = [0.0, 0.0, 0.5, 1.0, 2.5];
     let margin = space.length(input.pick(&lengths));
     let prediction = T::from_f64(input.pick(&lengths));
-    let report = if input.below(3) == 1 { Report::Fat } else { Report::Exact };
-    let options = Options::default().margin(margin).prediction(prediction).report(report);
+    let report = match input.below(3) {
+        1 => Report::Fat { margin, prediction },
+        _ => Report::Exact,
+    };
+    let options = Options::default().report(report);
     let world = BroadPhase::<D, T>::with_options(options).unwrap();
     input.say(|| format!("{D}D, {} bytes, {space:?}, {options:?}", T::BYTES));
     let mut sequence = Sequence::new(world, space, most);
@@ -57,7 +60,7 @@ fn sorted<V: Ord>(values: impl Iterator<Item = V>) -> Vec<V> {
 }
 
 impl<const D: usize, T: Scalar> Sequence<D, T> {
-    /// A world without swept bodies.
+    /// A world after an update, without swept bodies.
     pub fn new(world: BroadPhase<D, T>, space: Space, most: usize) -> Self {
         let model = Model::of(&world);
         let changes = (world.changes().begun().collect(), world.changes().ended().collect());
@@ -94,8 +97,10 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
             25..=28 => self.drift_all(input),
             29..=30 => self.rest(input),
             31..=32 => self.sweep(input),
-            33..=34 => self.refilter(input),
-            35..=38 => self.find(input),
+            33 => self.teleport(input),
+            34 => self.refilter(input),
+            35..=37 => self.find(input),
+            38 => self.shift(input),
             39..=41 => self.cast(input),
             42 => self.query_many(input),
             43 => self.pairs_of(input),
@@ -281,6 +286,22 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
             self.update();
             self.calls += 3;
         }
+    }
+
+    fn teleport(&mut self, input: &mut Input) {
+        if let Some(id) = self.id(input) {
+            let aabb = self.aabb(input);
+            input.say(|| format!("teleport {id:?} {aabb:?}"));
+            self.world.teleport(id, aabb).unwrap();
+            self.model.teleport(id, aabb);
+        }
+    }
+
+    fn shift(&mut self, input: &mut Input) {
+        let offset = std::array::from_fn(|_| self.space.length(Self::step(input)));
+        input.say(|| format!("shift {offset:?}"));
+        self.world.shift(offset).unwrap();
+        self.model.shift(offset);
     }
 
     fn sweep(&mut self, input: &mut Input) {
@@ -541,10 +562,15 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
         refused(world.insert(bad), invalid(0, bad));
         refused(world.insert_many(&[good, inverted], Filter::ALL), invalid(1, inverted));
         refused(world.queries().overlapping(&bad), invalid(0, bad));
+        let mut offset = good.min.map(|_| T::default());
+        offset[axis] = input.pick(&[T::INFINITY, T::NEG_INFINITY, bad.min[axis]]);
+        let value = offset[axis].to_f64().into();
+        refused(world.shift(offset), Error::InvalidOffset { axis, value });
         if let Some(gone) = self.stale {
             let stale = Error::StaleProxy { index: 0, id: gone.to_bits() };
             refused(world.set(gone, good), stale);
             refused(world.set_swept(gone, good, good), stale);
+            refused(world.teleport(gone, good), stale);
             refused(world.set_filter(gone, Filter::ALL), stale);
             refused(world.remove(gone), stale);
             refused(world.aabb(gone), stale);
@@ -554,6 +580,7 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
             let foreign = ProxyId::from_bits(id.to_bits() + (1 << 32));
             let stale = |id: ProxyId| Error::StaleProxy { index: 1, id: id.to_bits() };
             refused(world.set_swept(id, good, inverted), invalid(1, inverted));
+            refused(world.teleport(id, bad), invalid(0, bad));
             refused(world.set_many(&[id, id], &[good, bad]), invalid(1, bad));
             refused(world.set_many(&[id, foreign], &[good; 2]), stale(foreign));
             refused(world.set_many(&[id], &[]), Error::LengthMismatch { ids: 1, boxes: 0 });

@@ -19,6 +19,8 @@ mod snapshot;
 
 #[cfg(feature = "targets")]
 pub use input::{Input, Space};
+#[cfg(feature = "targets")]
+use model::missing;
 pub use model::{Body, Model, Pair};
 #[cfg(feature = "targets")]
 pub use run::{Failure, TARGETS, Target, random_input, run, shorten};

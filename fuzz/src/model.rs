@@ -16,45 +16,64 @@ pub struct Body<const D: usize, T> {
     pub reported: Aabb<D, T>,
     /// Its filter.
     pub filter: Filter,
+    /// What it had at the last update, if that knew it.
+    last: Option<AtUpdate<D, T>>,
     /// Where its sweep ends, if it was swept since the last update.
     rest: Option<Aabb<D, T>>,
+}
+
+/// What a body had at the last update.
+#[derive(Clone, Debug)]
+struct AtUpdate<const D: usize, T> {
+    /// Its box as given, or the one to which it was teleported since.
+    from: Aabb<D, T>,
+    /// Its box that was reported.
+    reported: Aabb<D, T>,
 }
 
 /// A broad phase that is too simple to be wrong: it tests each body against each.
 #[derive(Clone, Debug)]
 pub struct Model<const D: usize, T> {
-    options: Options<T>,
+    report: Report<T>,
     /// All bodies by id.
     pub bodies: BTreeMap<ProxyId, Body<D, T>>,
     /// The pairs of the last update, sorted.
     pub pairs: Vec<Pair>,
+    /// How far all was shifted since the last update.
+    shifted: [T; D],
 }
 
 impl<const D: usize, T: Scalar> Model<D, T> {
     /// A model without bodies.
     pub fn new(options: Options<T>) -> Self {
-        Self { options, bodies: BTreeMap::new(), pairs: Vec::new() }
+        let shifted = [T::default(); D];
+        Self { report: options.report, bodies: BTreeMap::new(), pairs: Vec::new(), shifted }
     }
 
-    /// The model of a world as it describes itself, which must have no swept bodies.
+    /// The model of a world after an update, as the world describes itself.
     pub fn of(world: &BroadPhase<D, T>) -> Self {
-        let body = |id| Body {
-            aabb: world.aabb(id).unwrap(),
-            reported: world.reported_aabb(id).unwrap(),
-            filter: world.filter(id).unwrap(),
-            rest: None,
+        let body = |id| {
+            let (aabb, reported) = (world.aabb(id).unwrap(), world.reported_aabb(id).unwrap());
+            let filter = world.filter(id).unwrap();
+            Body {
+                aabb,
+                reported,
+                filter,
+                last: Some(AtUpdate { from: aabb, reported }),
+                rest: None,
+            }
         };
-        let bodies = world.ids().map(|id| (id, body(id))).collect();
-        let mut pairs: Vec<_> = world.pairs().collect();
-        pairs.sort_unstable();
-        Self { options: world.options(), bodies, pairs }
+        let mut model = Self::new(world.options());
+        model.bodies = world.ids().map(|id| (id, body(id))).collect();
+        model.pairs = world.pairs().collect();
+        model
     }
 
     /// Adds a body, under the id that the world gave it.
     pub fn insert(&mut self, id: ProxyId, aabb: Aabb<D, T>, filter: Filter) {
-        let reported = fatten(&self.options, &aabb, [T::default(); D]);
-        let body = Body { aabb, reported, filter, rest: None };
+        let body = Body { aabb, reported: aabb, filter, last: None, rest: None };
         assert!(self.bodies.insert(id, body).is_none(), "{id:?} was given out twice");
+        self.refatten(id);
     }
 
     /// Removes a body.
@@ -62,22 +81,44 @@ impl<const D: usize, T: Scalar> Model<D, T> {
         self.bodies.remove(&id).unwrap();
     }
 
+    fn body(&mut self, id: ProxyId) -> &mut Body<D, T> {
+        self.bodies.get_mut(&id).unwrap()
+    }
+
+    /// Gives a body the reported box that follows from its box and from the last update.
+    fn refatten(&mut self, id: ProxyId) {
+        let (report, shifted) = (self.report, self.shifted);
+        let body = self.body(id);
+        body.reported = match report {
+            Report::Fat { margin, prediction } => {
+                let from = match &body.last {
+                    Some(last) if body.rest.is_none() => last.from,
+                    _ => body.aabb,
+                };
+                let new = fatten([margin, prediction], &from, &body.aabb);
+                let had = body.last.as_ref().map(|last| translate(&last.reported, &shifted));
+                match had {
+                    Some(had) if is_kept(&had, &body.aabb, &new) => had,
+                    _ => new,
+                }
+            }
+            _ => body.aabb,
+        };
+    }
+
     /// Gives a body its new box.
     pub fn set(&mut self, id: ProxyId, aabb: Aabb<D, T>) {
-        let old = self.bodies[&id].clone();
-        let holds = |axis: usize| {
-            old.reported.min[axis] <= aabb.min[axis] && aabb.max[axis] <= old.reported.max[axis]
-        };
-        let reported = if self.options.report == Report::Fat && (0..D).all(holds) {
-            old.reported
-        } else {
-            let way = std::array::from_fn(|axis| {
-                let way = aabb.min[axis] - old.aabb.min[axis];
-                if way.to_f64().is_finite() { way } else { T::default() }
-            });
-            fatten(&self.options, &aabb, way)
-        };
-        self.bodies.insert(id, Body { aabb, reported, rest: None, ..old });
+        let body = self.body(id);
+        (body.aabb, body.rest) = (aabb, None);
+        self.refatten(id);
+    }
+
+    /// Gives a body a box to which it did not move.
+    pub fn teleport(&mut self, id: ProxyId, aabb: Aabb<D, T>) {
+        if let Some(last) = &mut self.body(id).last {
+            last.from = aabb;
+        }
+        self.set(id, aabb);
     }
 
     /// Moves a body from one box to another.
@@ -86,8 +127,27 @@ impl<const D: usize, T: Scalar> Model<D, T> {
         let most = |a: T, b: T| if a > b { a } else { b };
         let min = std::array::from_fn(|axis| least(from.min[axis], to.min[axis]));
         let max = std::array::from_fn(|axis| most(from.max[axis], to.max[axis]));
-        self.set(id, Aabb::new(min, max));
-        self.bodies.get_mut(&id).unwrap().rest = Some(to);
+        let body = self.body(id);
+        (body.aabb, body.rest) = (Aabb::new(min, max), Some(to));
+        self.refatten(id);
+    }
+
+    /// Moves everything.
+    pub fn shift(&mut self, offset: [T; D]) {
+        self.shifted = std::array::from_fn(|axis| self.shifted[axis] + offset[axis]);
+        for body in self.bodies.values_mut() {
+            let rest = body.rest.as_mut();
+            let from = body.last.as_mut().map(|last| &mut last.from);
+            for aabb in [Some(&mut body.aabb), from, rest].into_iter().flatten() {
+                *aabb = translate(aabb, &offset);
+            }
+        }
+        self.refatten_all();
+    }
+
+    fn refatten_all(&mut self) {
+        let ids: Vec<_> = self.bodies.keys().copied().collect();
+        ids.into_iter().for_each(|id| self.refatten(id));
     }
 
     /// Gives a body another filter.
@@ -95,26 +155,34 @@ impl<const D: usize, T: Scalar> Model<D, T> {
         self.bodies.get_mut(&id).unwrap().filter = filter;
     }
 
-    /// The pairs that began and those that ended since the last update, sorted.
-    pub fn update(&mut self) -> (Vec<Pair>, Vec<Pair>) {
+    /// The pairs that the reported boxes have now, sorted.
+    pub fn overlapping_pairs(&self) -> Vec<Pair> {
         let bodies: Vec<_> = self.bodies.iter().collect();
-        let mut now = Vec::with_capacity(self.pairs.len());
+        let mut pairs = Vec::with_capacity(self.pairs.len());
         for (index, (a, first)) in bodies.iter().enumerate() {
             for (b, second) in &bodies[index + 1..] {
                 if first.reported.overlaps(&second.reported) && first.filter.allows(&second.filter)
                 {
-                    now.push([**a, **b]);
+                    pairs.push([**a, **b]);
                 }
             }
         }
+        pairs
+    }
+
+    /// The pairs that began and those that ended since the last update, sorted.
+    pub fn update(&mut self) -> (Vec<Pair>, Vec<Pair>) {
+        self.refatten_all();
+        let now = self.overlapping_pairs();
         let (begun, ended) = (missing(&self.pairs, &now), missing(&now, &self.pairs));
         self.pairs = now;
-        let swept = self.bodies.iter().filter(|(_, body)| body.rest.is_some());
-        for id in swept.map(|(&id, _)| id).collect::<Vec<_>>() {
-            let body = self.bodies.get_mut(&id).unwrap();
-            let to = body.rest.take().unwrap();
-            body.aabb = to;
-            body.reported = fatten(&self.options, &to, [T::default(); D]);
+        self.shifted = [T::default(); D];
+        for body in self.bodies.values_mut() {
+            body.last = Some(AtUpdate { from: body.aabb, reported: body.reported });
+        }
+        let swept = self.bodies.iter().filter_map(|(&id, body)| Some((id, body.rest?)));
+        for (id, to) in swept.collect::<Vec<_>>() {
+            self.teleport(id, to);
         }
         (begun, ended)
     }
@@ -298,7 +366,7 @@ fn is_entered<const D: usize>(axes: &[Approach; D], limit: f64) -> bool {
 }
 
 /// The items of a sorted list that are not in another.
-fn missing(from: &[Pair], of: &[Pair]) -> Vec<Pair> {
+pub(super) fn missing(from: &[Pair], of: &[Pair]) -> Vec<Pair> {
     let mut from = from.iter().peekable();
     let mut missing = Vec::new();
     for pair in of {
@@ -316,24 +384,53 @@ fn gap<const D: usize, T: Scalar>(point: &[T; D], aabb: &Aabb<D, T>, axis: usize
     (aabb.min[axis].to_f64() - at).max(at - aabb.max[axis].to_f64()).max(0.0)
 }
 
-/// The box whose overlaps are reported, of a body that moved by `way`.
+/// Whether a body keeps the fat AABB that it had.
+fn is_kept<const D: usize, T: Scalar>(
+    had: &Aabb<D, T>,
+    aabb: &Aabb<D, T>,
+    new: &Aabb<D, T>,
+) -> bool {
+    let two = T::from_f64(2.0);
+    (0..D).all(|axis| had.min[axis] <= aabb.min[axis] && aabb.max[axis] <= had.max[axis])
+        && !(0..D).any(|axis| had.max[axis] - had.min[axis] > two * (new.max[axis] - new.min[axis]))
+}
+
+fn translate<const D: usize, T: Scalar>(aabb: &Aabb<D, T>, offset: &[T; D]) -> Aabb<D, T> {
+    let moved = |corner: [T; D]| std::array::from_fn(|axis| corner[axis] + offset[axis]);
+    Aabb::new(moved(aabb.min), moved(aabb.max))
+}
+
+/// A new fat AABB of a body that moved from one box to another.
 #[expect(clippy::needless_range_loop, reason = "four arrays are read at the axis")]
 fn fatten<const D: usize, T: Scalar>(
-    options: &Options<T>,
+    [margin, prediction]: [T; 2],
+    from: &Aabb<D, T>,
     aabb: &Aabb<D, T>,
-    way: [T; D],
 ) -> Aabb<D, T> {
+    let zero = T::default();
+    let size = |way: T| if way < zero { zero - way } else { way };
+    let sides = (0..D).map(|axis| aabb.max[axis] - aabb.min[axis]);
+    let longest = sides.fold(zero, |longest, side| if side > longest { side } else { longest });
+    let limit = T::from_f64(4.0) * (longest + margin);
+    let ways: [T; D] = std::array::from_fn(|axis| {
+        let way = aabb.min[axis] - from.min[axis];
+        if way.to_f64().is_finite() { way } else { zero }
+    });
+    let has_jumped = ways.iter().any(|&way| size(way) > limit);
     let mut fat = *aabb;
-    if options.report == Report::Fat {
-        for axis in 0..D {
-            let ahead = way[axis] * options.prediction;
-            fat.min[axis] = aabb.min[axis] - options.margin;
-            fat.max[axis] = aabb.max[axis] + options.margin;
-            if ahead < T::default() {
-                fat.min[axis] = fat.min[axis] + ahead;
-            } else {
-                fat.max[axis] = fat.max[axis] + ahead;
-            }
+    for axis in 0..D {
+        fat.min[axis] = aabb.min[axis] - margin;
+        fat.max[axis] = aabb.max[axis] + margin;
+        let reach = size(ways[axis] * prediction);
+        let ahead = match has_jumped {
+            true => zero,
+            false if reach > limit => limit,
+            false => reach,
+        };
+        if ways[axis] < zero {
+            fat.min[axis] = fat.min[axis] - ahead;
+        } else {
+            fat.max[axis] = fat.max[axis] + ahead;
         }
     }
     fat

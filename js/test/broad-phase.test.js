@@ -19,6 +19,7 @@ assert.throws(() => new BroadPhase({ dimensions: 2 }), (error) => error instance
 before(() => init());
 
 const every = /** @type {const} */ ([1, 2, 3]);
+const kinds = every.flatMap((dimensions) => /** @type {const} */ (["single", "double"]).map((precision) => ({ dimensions, precision })));
 const precisions = /** @type {const} */ (["single", "double"]);
 
 /** @param {Float64Array} ids */
@@ -160,8 +161,8 @@ test("a refused call changes nothing", () => {
   assert.throws(() => world.nearest([0, 0], 0.5), RangeError);
   assert.throws(() => world.buffers(-1), RangeError);
   assert.equal(world.stateHash(), before);
-  assert.throws(() => new BroadPhase({ dimensions: 2, margin: -1 }), RangeError);
-  assert.throws(() => new BroadPhase({ dimensions: 2, margin: NaN }), RangeError);
+  assert.throws(() => new BroadPhase({ dimensions: 2, report: "fat", margin: -1 }), RangeError);
+  assert.throws(() => new BroadPhase({ dimensions: 2, report: "fat", margin: NaN }), RangeError);
   assert.throws(() => new BroadPhase({ dimensions: 2, precision: /** @type {any} */ ("half") }), RangeError);
   assert.throws(() => new BroadPhase({ dimensions: /** @type {any} */ (4) }), RangeError);
   world.free();
@@ -209,10 +210,56 @@ test("fat AABBs pair within the margin", () => {
   world.insert(0, 0, 0, 1, 1, 1);
   world.insert(1.75, 0, 0, 2, 1, 1);
   assert.equal(world.update().begun.length, 2);
-  const exact = new BroadPhase({ dimensions: 3, margin: 0.5 });
+  const exact = new BroadPhase({ dimensions: 3 });
   exact.insert(0, 0, 0, 1, 1, 1);
   exact.insert(1.75, 0, 0, 2, 1, 1);
   assert.equal(exact.update().begun.length, 0);
+});
+
+test("a fat AABB reaches ahead of a body that moves, not of one that teleports or rests", () => {
+  for (const { dimensions, precision } of kinds) {
+    const world = /** @type {BroadPhase} */ (new BroadPhase(/** @type {any} */ ({ dimensions, precision, report: "fat", margin: 0.5, prediction: 2 })));
+    const at = (/** @type {number} */ x) => [x, 0, 0].slice(0, dimensions).concat([x + 1, 1, 1].slice(0, dimensions));
+    const reach = () => [world.reportedBox(id)[0], world.reportedBox(id)[dimensions]];
+    const id = world.insert(/** @type {any} */ (at(0)));
+    world.update();
+    assert.deepEqual(reach(), [-0.5, 1.5]);
+    world.set(id, /** @type {any} */ (at(2)));
+    assert.deepEqual(reach(), [1.5, 7.5]);
+    world.set(id, /** @type {any} */ (at(0)));
+    assert.deepEqual(reach(), [-0.5, 1.5], "a move that is taken back");
+    world.set(id, /** @type {any} */ (at(2)));
+    world.update();
+    world.update();
+    assert.deepEqual(reach(), [1.5, 3.5], "at rest");
+    world.teleport(id, /** @type {any} */ (at(4)));
+    assert.deepEqual(reach(), [3.5, 5.5]);
+    world.free();
+  }
+});
+
+test("a shift moves all boxes and reports nothing", () => {
+  for (const { dimensions, precision } of kinds) {
+    const options = /** @type {any} */ ({ dimensions, precision });
+    for (const world of [new BroadPhase(options), new BroadPhase({ ...options, report: "fat", margin: 0.25, prediction: 1 })]) {
+      // Quarters, so that nothing is rounded.
+      const rows = boxesSpread(random(7), 300, dimensions).map((corner) => Math.round(4 * corner) / 4);
+      const ids = world.insertMany(rows);
+      world.update();
+      const before = [...world.pairs()];
+      const offset = [1024, -64, 8].slice(0, dimensions);
+      world.shift(/** @type {any} */ (offset));
+      const { begun, ended } = world.update();
+      assert.deepEqual([begun.length, ended.length], [0, 0]);
+      assert.deepEqual([...world.pairs()], before);
+      const first = [...rows.subarray(0, 2 * dimensions)].map((corner, at) => corner + (offset[at % dimensions] ?? NaN));
+      assert.deepEqual(world.box(ids[0] ?? NaN), first);
+      for (const wrong of [[NaN, 0, 0], [Infinity, 0, 0], [0, 0, 0, 0], "1", null]) assert.throws(() => world.shift(/** @type {any} */ (wrong)), /`offset/);
+      assert.deepEqual(world.box(ids[0] ?? NaN), first);
+      world.free();
+    }
+  }
+  assert.throws(() => new BroadPhase({ dimensions: 2 }).shift([1e39, 0]), /^RangeError: `offset\[0\]` is Infinity; it must be finite/);
 });
 
 test("queries equal brute force", () => {
@@ -312,7 +359,7 @@ test("insert and set take as many numbers as a box has, and nothing else", () =>
 test("an id must be a number: an object whose valueOf frees the world reaches no other memory", () => {
   const world = /** @type {any} */ (new BroadPhase({ dimensions: 1 }));
   const id = world.insert(0, 1);
-  const calls = { set: [0, 1], setSwept: [[0, 1], [0, 1]], remove: [], box: [], filter: [], setFilter: [{}], pairsOf: [] };
+  const calls = { set: [0, 1], teleport: [0, 1], setSwept: [[0, 1], [0, 1]], remove: [], box: [], reportedBox: [], filter: [], setFilter: [{}], pairsOf: [] };
   const evil = { valueOf: () => (world.free(), id) };
   for (const [name, rest] of Object.entries(calls)) {
     for (const odd of [evil, String(id), null, undefined, BigInt(id)]) {
@@ -346,7 +393,8 @@ test("messages name the argument, its value and the limit", () => {
     [() => world.nearest([0, 0], 0.5), /^RangeError: `k` is 0.5; it must be a whole number/],
     [() => world.overlapping([0, 1]), /^RangeError: `box` has 2 numbers; in 2D it must have 4/],
     [() => world.setFilter(id, { mask: 2 ** 32 }), /^RangeError: `mask` of the filter is 4294967296; /],
-    [() => new BroadPhase({ dimensions: 2, margin: -1 }), /^RangeError: `margin` is -1; it must be finite, and 0 or more/],
+    [() => new BroadPhase({ dimensions: 2, report: "fat", margin: -1 }), /^RangeError: `margin` is -1; it must be finite, and 0 or more/],
+    [() => new BroadPhase({ dimensions: 2, prediction: 1 }), /^RangeError: `prediction` is 1, which has no effect without the option `report: "fat"`/],
   ];
   for (const [call, message] of cases) assert.throws(call, message);
   world.free();

@@ -48,12 +48,14 @@ for (const [Events, dimensions] of small) {
         const [a = NaN, b = NaN] = some;
         const box = [...rows.subarray(0, width)];
         both((world) => world.set(a, ...box));
+        if (frame % 4 === 1) both((world) => world.teleport(a, box));
+        if (frame % 16 === 5) both((world) => world.shift(box.slice(0, dimensions)));
         both((world) => world.setSwept(b, box, [...rows.subarray(width, 2 * width)]));
         both((world) => world.setFilter(b, { category: 2 * (frame % 2), group: frame % 3 - 1 }));
         const removed = frame % 5 === 0 ? ids.splice(0, 20) : [];
         both((world) => world.removeMany(removed));
         ids.push(both((world) => world.insert(...box)));
-        for (const call of ["box", "filter", "contains"]) both((world) => world[call](a));
+        for (const call of ["box", "reportedBox", "filter", "contains"]) both((world) => world[call](a));
         both((world) => world.set(ids[0], ...box.toReversed())); // inverted
         both((world) => world.remove(7)); // stale
         const changes = both((world) => world.update());

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use sweep_and_prune::{Error, Filter, ProxyId, Report, SnapshotInfo};
 use sweep_and_prune_bindings::{
-    Answer, ArrayBroadPhase, Coordinates, Id, Kind, Query, Settings, filter,
+    Answer, ArrayBroadPhase, Coordinates, Id, Kind, Query, filter,
 };
 
 use crate::arrays::{Array, copy_boxes, copy_numbers, numbers, pairs};
@@ -64,9 +64,9 @@ impl World {
         prediction: f64,
         fat: bool,
     ) -> PyResult<Self> {
-        let report = if fat { Report::Fat } else { Report::Exact };
+        let report = if fat { Report::Fat { margin, prediction } } else { Report::Exact };
         let kind = Kind { dimensions, is_double: double };
-        Space::new(py, kind, Settings { margin, prediction, report }).map(Self::of)
+        Space::new(py, kind, report).map(Self::of)
     }
 
     /// The world of a snapshot, with the dimensions and the precision that it names.
@@ -76,7 +76,7 @@ impl World {
         // A damaged header may name other types: any type reports what is wrong then.
         let dimensions = if matches!(info.dimensions, 1..=3) { info.dimensions } else { 1 };
         let kind = Kind { dimensions, is_double: info.scalar_bytes == 8 };
-        let mut space = Space::new(py, kind, Settings::default())?;
+        let mut space = Space::new(py, kind, Report::Exact)?;
         let restored = run(py, bytes.len(), 1, None, |_| space.world.restore(bytes))?;
         restored.map_err(|error| raise(py, error, "", &[]))?;
         Ok((Self::of(space), kind.dimensions, kind.is_double))
@@ -142,6 +142,37 @@ impl World {
         })
     }
 
+    fn teleport(&self, ids: Array<'_>, boxes: Array<'_>, argument: &str) -> PyResult<()> {
+        let (py, ids) = (ids.py(), copy_numbers(&ids)?);
+        let boxes = copy_numbers::<f64>(&boxes)?;
+        let (ids, boxes) = (ids.as_slice()?, boxes.as_slice()?);
+        self.with(|space| {
+            let width = 2 * space.kind.dimensions;
+            if boxes.len() != width * ids.len() {
+                return Err(different_lengths());
+            }
+            // Everything that can be refused is checked before anything changes.
+            space.check_ids(py, ids)?;
+            let valid = space.world.write_rows(Coordinates::Double(boxes));
+            let valid = valid.and_then(|count| space.world.validate(count));
+            valid.map_err(|error| raise(py, error, argument, ids))?;
+            let proxies = proxies(ids);
+            let done = space.run(py, proxies.len(), |world| {
+                let mut bodies = proxies.iter().zip(boxes.chunks_exact(width));
+                bodies.try_for_each(|(&id, corners)| world.teleport(id, corners))
+            })?;
+            done.map_err(|error| raise(py, error, argument, ids))
+        })
+    }
+
+    fn shift(&self, py: Python<'_>, offset: Vec<f64>) -> PyResult<()> {
+        self.with(|space| {
+            let count = space.world.len();
+            let done = space.run(py, count, |world| world.shift(&offset))?;
+            done.map_err(|error| raise(py, error, "offset", &[]))
+        })
+    }
+
     fn set_filter(&self, ids: Array<'_>, filter: Words) -> PyResult<()> {
         let (py, ids) = (ids.py(), copy_numbers(&ids)?);
         let (ids, filter) = (ids.as_slice()?, filter_of(filter));
@@ -169,8 +200,9 @@ impl World {
         })
     }
 
-    /// Coordinates, box by box, in double precision, which holds those in single precision.
-    fn boxes<'py>(&self, ids: Array<'py>) -> PyResult<Array<'py>> {
+    /// Coordinates, box by box, in double precision, which holds those in single precision: of the boxes as set, or of those
+    /// whose overlaps are reported.
+    fn boxes<'py>(&self, ids: Array<'py>, reported: bool) -> PyResult<Array<'py>> {
         let (py, ids) = (ids.py(), copy_numbers(&ids)?);
         let ids = ids.as_slice()?;
         self.with(|space| {
@@ -178,7 +210,10 @@ impl World {
             let width = 2 * space.kind.dimensions;
             let mut coordinates = vec![0.0; width * ids.len()];
             let mut bodies = ids.iter().zip(coordinates.chunks_exact_mut(width));
-            let done = bodies.try_for_each(|(&id, row)| space.world.corners(proxy(id), row));
+            let corners = |(&id, row): (&i64, &mut [f64])| {
+                space.world.corners(proxy(id), reported, row)
+            };
+            let done = bodies.try_for_each(corners);
             done.map_err(|error| raise(py, error, "", ids))?;
             numbers(py, coordinates.into_iter())
         })
@@ -303,8 +338,8 @@ impl World {
 }
 
 impl Space {
-    fn new(py: Python<'_>, kind: Kind, settings: Settings) -> PyResult<Self> {
-        let world = kind.broad_phase(settings);
+    fn new(py: Python<'_>, kind: Kind, report: Report<f64>) -> PyResult<Self> {
+        let world = kind.broad_phase(report);
         let world = world.ok_or_else(|| PyValueError::new_err("dimensions must be 1, 2 or 3"))?;
         let world = world.map_err(|error| raise(py, error, "", &[]))?;
         Ok(Self { world, kind })

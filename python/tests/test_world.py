@@ -81,6 +81,17 @@ class Worlds(RuleBasedStateMachine):
 
     @precondition(some)
     @rule(data=st.data())
+    def teleport(self, data: st.DataObject) -> None:
+        id, box = self.draw_id(data), self.draw_box(data)
+        if data.draw(st.booleans()):
+            self.world.teleport(id, box)
+        else:
+            self.world.teleport_many([id], [box])
+        self.boxes[id] = box
+        self.ends.pop(id, None)
+
+    @precondition(some)
+    @rule(data=st.data())
     def set_swept(self, data: st.DataObject) -> None:
         id, start, end = self.draw_id(data), self.draw_box(data), self.draw_box(data)
         if data.draw(st.booleans()):
@@ -317,6 +328,49 @@ def test_pairs_of_fat_aabbs_begin_early_and_end_late() -> None:
     for each in (world, again):
         each.set(b, [9, 10])
         assert each.update().ended.tolist() == [[a, b]]
+
+
+def test_a_fat_aabb_reaches_ahead_of_a_body_that_moves_not_of_one_that_teleports_or_rests() -> None:
+    world = sap.BroadPhase(1, report="fat", margin=0.5, prediction=2)
+    id = world.insert([0, 1])
+    world.update()
+    world.set(id, [2, 3])
+    assert world.reported_box(id).tolist() == [1.5, 7.5]
+    world.set(id, [0, 1])
+    assert world.reported_box(id).tolist() == [-0.5, 1.5]  # taken back
+    world.set(id, [2, 3])
+    world.update()
+    world.update()
+    assert world.reported_box(id).tolist() == [1.5, 3.5]  # at rest
+    world.teleport(id, [4, 5])
+    assert world.reported_box(id).tolist() == [3.5, 5.5]
+    world.teleport_many([id], [[20, 21]])
+    assert world.reported_box(id).tolist() == [19.5, 21.5]
+
+
+@pytest.mark.parametrize("options", [{}, {"report": "fat", "margin": 0.25, "prediction": 1}])
+def test_a_shift_moves_all_boxes_and_reports_nothing(options: dict[str, Any]) -> None:
+    world = sap.BroadPhase(2, **options)
+    low = np.random.default_rng(7).integers(0, 60, (300, 2)).astype(float)
+    ids = world.insert_many(np.hstack([low, low + 2]))
+    world.update()
+    pairs = world.pairs().tolist()
+    world.shift([1024, -64])
+    begun, ended = world.update()
+    assert (len(begun), len(ended)) == (0, 0)
+    assert world.pairs().tolist() == pairs
+    assert world.box(ids[0]).tolist() == [low[0, 0] + 1024, low[0, 1] - 64, low[0, 0] + 1026, low[0, 1] - 62]
+    for wrong in ([np.nan, 0], [0, np.inf], [1], [[1, 2]], 3, "12"):
+        with pytest.raises((ValueError, TypeError), match="offset"):
+            world.shift(wrong)
+    with pytest.raises(ValueError, match="offset on axis 1 is inf"):
+        sap.BroadPhase(2, np.float32).shift([0, 1e39])
+    stale = ids[-1] + 2**32
+    with pytest.raises(sap.StaleProxyError):
+        world.teleport_many([ids[0], stale], [[0, 0, 1, 1], [0, 0, 1, 1]])
+    with pytest.raises(sap.InvalidBoxError):
+        world.teleport_many(ids[:2], [[0, 0, 1, 1], [0, 2, 1, 1]])
+    assert world.box(ids[0]).tolist()[0] == low[0, 0] + 1024
 
 
 def test_coordinates_are_kept_in_the_type_of_the_world() -> None:

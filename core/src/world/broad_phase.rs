@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::bodies::{Bodies, Filter, ProxyId, flag};
+use super::bodies::{Bodies, Filter, ProxyId, flag, sort_ids};
 use super::candidates::PairSorter;
 use super::changes::{Changes, Events};
 #[cfg(feature = "parallel")]
@@ -218,7 +218,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             }));
         }
         let mut others: Vec<_> = others.into_iter().map(|other| slots.id(other)).collect();
-        others.sort_unstable();
+        sort_ids(&mut others);
         Ok(others.into_iter())
     }
 

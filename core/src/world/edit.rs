@@ -4,7 +4,6 @@ use alloc::vec::Vec;
 
 use super::bodies::{Bodies, Filter, ProxyId, flag};
 use super::broad_phase::BroadPhase;
-use super::options::Report;
 use crate::memory::{prefetch_item, prefetch_pays, preload};
 use crate::{Aabb, Error, Scalar, validate};
 
@@ -75,13 +74,13 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         }
         if !bodies.swept.is_empty() {
             for id in ids {
-                bodies.slots.lower(bodies.slots.index_of[id.slot() as usize], flag::SWEPT);
+                bodies.cancel_sweep(bodies.slots.index_of[id.slot() as usize]);
             }
         }
         let index_of =
             |bodies: &Bodies<D, T>, id: &ProxyId| bodies.slots.index_of[id.slot() as usize];
         // Of many boxes the update finds out which differ from those of the last one.
-        if bodies.scans_all(ids.len()) && bodies.options.report == Report::Exact {
+        if bodies.scans_all(ids.len()) && !bodies.options.report.is_fat() {
             bodies.any_unlisted = true;
             let is_far = bodies.slots.is_reordered && prefetch_pays(&bodies.boxes);
             for (position, (id, aabb)) in rows.enumerate() {
@@ -122,8 +121,63 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     ) -> Result<(), Error> {
         let index = self.bodies.slots.check(id, 0)?;
         validate(&[from, to])?;
-        self.set(id, from.union(&to))?;
         self.bodies.sweep_to(index, to);
+        self.bodies.place(index, &from.union(&to));
+        Ok(())
+    }
+
+    /// Gives a body a new box to which it did not move: it was respawned, or went through a portal. With
+    /// [`Report::Fat`](crate::Report::Fat) its fat AABB does not reach ahead, and displacements count from here; otherwise the
+    /// same as [`set`](Self::set).
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, BroadPhase, Options, Report};
+    ///
+    /// let report = Report::Fat { margin: 0.5, prediction: 2.0 };
+    /// let mut world = BroadPhase::<1>::with_options(Options::default().report(report))?;
+    /// let id = world.insert(Aabb::new([0.0], [1.0]))?;
+    /// world.update();
+    /// world.teleport(id, Aabb::new([3.0], [4.0]))?;
+    /// assert_eq!(world.reported_aabb(id)?, Aabb::new([2.5], [4.5]));
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`set`](Self::set).
+    pub fn teleport(&mut self, id: ProxyId, aabb: Aabb<D, T>) -> Result<(), Error> {
+        let index = self.bodies.slots.check(id, 0)?;
+        aabb.check(0)?;
+        self.bodies.cancel_sweep(index);
+        self.bodies.teleport(index, &aabb);
+        Ok(())
+    }
+
+    /// Adds an offset to the boxes of all bodies: for worlds whose origin follows the player. The next update reports no
+    /// event because of it, except where rounding makes boxes touch. What swept bodies are set to after the next update
+    /// is moved too.
+    ///
+    /// Takes O(n) time, and the next update the time of finding all pairs.
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, BroadPhase};
+    ///
+    /// let mut world = BroadPhase::<2>::new();
+    /// let ids = world.insert_many(&[Aabb::new([8.0, 0.0], [9.0, 1.0]); 2], Default::default())?;
+    /// world.update();
+    /// world.shift([-8.0, 0.0])?;
+    /// assert_eq!(world.aabb(ids[0])?, Aabb::new([0.0, 0.0], [1.0, 1.0]));
+    /// assert!(world.update().is_empty());
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::InvalidOffset`] if a coordinate of the offset is not finite.
+    pub fn shift(&mut self, offset: [T; D]) -> Result<(), Error> {
+        let is_finite = |at: T| at > T::NEG_INFINITY && at < T::INFINITY;
+        if let Some(axis) = offset.iter().position(|&at| !is_finite(at)) {
+            return Err(Error::InvalidOffset { axis, value: offset[axis].to_f64().into() });
+        }
+        self.bodies.shift(&offset);
         Ok(())
     }
 
@@ -183,7 +237,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             // No update knew it, so none has to report its end, and its slot is free at once: a world
             // that is edited and never updated does not grow.
             self.tracking.tree.remove(index);
-            slots.release(index, flag::CHANGED | flag::IN_TREE);
+            slots.release(index, flag::LISTED);
         }
         Ok(())
     }

@@ -111,8 +111,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     /// Moves all rows to their new indices, given the old index of each and the new index of each.
     fn apply_order(&mut self, bodies: &mut Bodies<D, T>) {
         let Scratch { boxes: spare, order, renamed, words, filters, flags, .. } = &mut self.scratch;
-        let Bodies { boxes, shapes, previous, rests, .. } = bodies;
-        for table in [boxes, shapes, previous, rests, &mut self.fat] {
+        let Bodies { boxes, shapes, origins, previous, rests, .. } = bodies;
+        for table in [boxes, shapes, origins, previous, rests, &mut self.fat] {
             apply(table, order, spare);
         }
         for table in [&mut bodies.filters, &mut bodies.old_filters] {
@@ -120,8 +120,9 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         }
         apply(&mut bodies.slots.flags, order, flags);
         apply(&mut bodies.slots.slot_of, order, words);
-        let Bodies { slots, changed, leaving, swept, .. } = bodies;
-        for index in slots.index_of.iter_mut().chain(changed).chain(leaving).chain(swept) {
+        let Bodies { slots, changed, leaving, swept, moved, too_wide, .. } = bodies;
+        let lists = changed.iter_mut().chain(leaving).chain(swept).chain(moved).chain(too_wide);
+        for index in slots.index_of.iter_mut().chain(lists) {
             *index = renamed[*index as usize];
         }
         self.candidates.rename(renamed);

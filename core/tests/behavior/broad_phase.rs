@@ -283,10 +283,10 @@ fn the_header_of_a_snapshot_says_what_world_it_holds() {
 #[test]
 fn negative_infinite_and_nan_margins_are_refused() {
     for bad in [-1.0, f32::INFINITY, f32::NAN] {
-        let margin = Options::default().margin(bad);
-        let prediction = Options::default().prediction(bad);
-        for (option, options) in [("margin", margin), ("prediction", prediction)] {
-            let world = BroadPhase::<2>::with_options(options);
+        let margin = Report::Fat { margin: bad, prediction: 0.0 };
+        let prediction = Report::Fat { margin: 0.0, prediction: bad };
+        for (option, report) in [("margin", margin), ("prediction", prediction)] {
+            let world = BroadPhase::<2>::with_options(Options::default().report(report));
             let value = f64::from(bad).into();
             assert_eq!(world.map(|_| ()), Err(Error::InvalidOption { option, value }));
         }
@@ -295,20 +295,134 @@ fn negative_infinite_and_nan_margins_are_refused() {
 
 #[test]
 fn a_fat_aabb_reaches_ahead_and_contains_its_body_at_the_edge_of_the_range() {
-    let options = Options::default().margin(1.0f32).prediction(2.0).report(Report::Fat);
     let moved = |from, to| {
-        let mut world = BroadPhase::with_options(options).unwrap();
+        let mut world = fat_world(1.0f32, 2.0);
         let id = world.insert(from).unwrap();
+        world.update();
         world.set(id, to).unwrap();
         world.reported_aabb(id).unwrap()
     };
     let fat = moved(Aabb::new([-3.0, 3.0], [-2.0, 4.0]), Aabb::new([0.0, 0.0], [1.0, 1.0]));
     assert_eq!(fat, Aabb::new([-1.0, -7.0], [8.0, 2.0]));
+    // By no more than 4 times the longest side and the margin together; further is a jump.
+    let far = moved(Aabb::new([-8.0, 3.0], [-7.0, 4.0]), Aabb::new([0.0, 0.0], [1.0, 1.0]));
+    assert_eq!(far, Aabb::new([-1.0, -7.0], [10.0, 2.0]));
+    let jump = moved(Aabb::new([-8.5, 3.0], [-7.5, 4.0]), Aabb::new([0.0, 0.0], [1.0, 1.0]));
+    assert_eq!(jump, Aabb::new([-1.0, -1.0], [2.0, 2.0]));
 
     let inf = f32::INFINITY;
     let far = Aabb::new([f32::MIN, inf], [f32::MAX, inf]);
     let fat = moved(Aabb::new([f32::MAX, -inf], [f32::MAX, inf]), far);
     assert!(fat.is_valid() && fat.contains(&far));
+}
+
+/// A world that reports the pairs of fat AABBs.
+fn fat_world<const D: usize, T: sweep_and_prune::Scalar>(
+    margin: T,
+    prediction: T,
+) -> BroadPhase<D, T> {
+    let report = Report::Fat { margin, prediction };
+    BroadPhase::with_options(Options::default().report(report)).unwrap()
+}
+
+/// Boxes of side 1 in a row, ten apart.
+fn row(count: usize) -> Vec<Aabb<2>> {
+    let at = |index: usize| 10.0 * index as f32;
+    (0..count).map(|index| Aabb::new([at(index), 0.0], [at(index) + 1.0, 1.0])).collect()
+}
+
+#[test]
+fn a_body_that_jumps_over_others_begins_no_pair_with_them() {
+    for teleports in [false, true] {
+        let mut world = fat_world(0.1, 2.0);
+        let mut boxes = row(222);
+        boxes[0] = Aabb::new([0.0, 0.0], [1.0, 1.0]);
+        let ids = world.insert_many(&boxes, Filter::default()).unwrap();
+        world.update();
+        let next_to_the_last = Aabb::new([1109.5, 0.0], [1110.5, 1.0]);
+        match teleports {
+            false => world.set(ids[0], next_to_the_last).unwrap(),
+            true => world.teleport(ids[0], next_to_the_last).unwrap(),
+        }
+        let changes = world.update();
+        assert_eq!((changes.begun().len(), changes.ended().len()), (1, 0));
+    }
+}
+
+#[test]
+fn a_fat_aabb_is_replaced_if_its_body_stops_or_shrinks() {
+    let mut world = fat_world::<1, f32>(0.1, 2.0);
+    let id = world.insert(Aabb::new([0.0], [1.0])).unwrap();
+    let wall = world.insert(Aabb::new([7.0], [8.0])).unwrap();
+    world.update();
+    world.set(id, Aabb::new([3.0], [4.0])).unwrap();
+    assert!(world.update().begun().eq([[id, wall]]), "it reaches ahead");
+    assert!(world.update().ended().eq([[id, wall]]), "it has stopped");
+    assert_eq!(world.reported_aabb(id).unwrap(), Aabb::new([2.9], [4.1]));
+
+    world.set(id, Aabb::new([-100.0], [100.0])).unwrap();
+    assert_eq!(world.update().begun().len(), 1);
+    world.set(id, Aabb::new([-1.0], [1.0])).unwrap();
+    assert_eq!(world.update().ended().len(), 1);
+    assert!(world.reported_aabb(id).unwrap().extents()[0] < 300.0);
+}
+
+#[test]
+fn a_fat_aabb_depends_on_the_boxes_at_updates_alone() {
+    let mut world = fat_world::<2, f32>(0.1, 2.0);
+    let boxes = row(20);
+    let ids = world.insert_many(&boxes, Filter::default()).unwrap();
+    world.update();
+    let fat = world.reported_aabb(ids[0]).unwrap();
+    // A move that is taken back.
+    world.set(ids[0], boxes[7]).unwrap();
+    world.set(ids[0], boxes[0]).unwrap();
+    assert_eq!(world.reported_aabb(ids[0]).unwrap(), fat);
+    assert!(world.update().is_empty());
+    // A move in one step, in two, and in two with a snapshot in between.
+    let way = |by| Aabb::new([by, 0.0], [by + 1.0, 1.0]);
+    let mut worlds = [world.clone(), world.clone(), world];
+    worlds[0].set(ids[0], way(3.0)).unwrap();
+    for (world, is_saved) in worlds[1..].iter_mut().zip([false, true]) {
+        world.set(ids[0], way(1.5)).unwrap();
+        if is_saved {
+            *world = BroadPhase::from_snapshot(&world.snapshot()).unwrap();
+        }
+        world.set(ids[0], way(3.0)).unwrap();
+    }
+    let hashes = worlds.each_mut().map(|world| {
+        world.update();
+        world.state_hash()
+    });
+    assert_eq!(hashes, [hashes[0]; 3]);
+}
+
+#[test]
+fn a_shift_of_the_origin_reports_nothing() {
+    for report in [Report::Exact, Report::Fat { margin: 0.25, prediction: 2.0 }] {
+        let mut world = BroadPhase::with_options(Options::default().report(report)).unwrap();
+        let mut boxes = row(20_000);
+        boxes[1] = boxes[0];
+        let ids = world.insert_many(&boxes, Filter::default()).unwrap();
+        let swept = world.insert(boxes[7]).unwrap();
+        world.update();
+        // Powers of two, so that nothing is rounded.
+        for offset in [[-65536.0, 512.0], [-1024.0, 0.0]] {
+            world.shift(offset).unwrap();
+        }
+        let here = world.aabb(ids[7]).unwrap();
+        world.set_swept(swept, here, here).unwrap();
+        world.shift([66560.0, -512.0]).unwrap();
+        world.shift([-4096.0, 0.0]).unwrap();
+        let changes = world.update();
+        assert_eq!((changes.begun().len(), changes.ended().len()), (0, 0), "{report:?}");
+        assert_eq!(world.aabb(ids[0]).unwrap(), Aabb::new([-4096.0, 0.0], [-4095.0, 1.0]));
+        let [fat, aabb] = [world.reported_aabb(ids[9]), world.aabb(ids[9])].map(Result::unwrap);
+        let margin = if report == Report::Exact { 0.0 } else { 0.25 };
+        assert_eq!(aabb.min[0] - fat.min[0], margin);
+        assert_eq!(world.aabb(swept).unwrap().min[0], 70.0 - 4096.0);
+        assert_eq!(world.queries().containing([-4095.5, 0.5]).unwrap(), [ids[0], ids[1]]);
+    }
 }
 
 #[test]

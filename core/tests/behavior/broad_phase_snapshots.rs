@@ -38,10 +38,11 @@ fn without_checksum(mut bytes: Vec<u8>) -> Vec<u8> {
 }
 
 /// A world that has every kind of slot.
-fn busy_world<const D: usize, T: Scalar>(report: Report, random: &mut Random) -> BroadPhase<D, T> {
-    let half = T::from_f64(0.5);
-    let options = Options::default().margin(half).prediction(half).report(report);
-    let mut world = BroadPhase::with_options(options).unwrap();
+fn busy_world<const D: usize, T: Scalar>(
+    report: Report<T>,
+    random: &mut Random,
+) -> BroadPhase<D, T> {
+    let mut world = BroadPhase::with_options(Options::default().report(report)).unwrap();
     let mut draw = || {
         let min: [T; D] = std::array::from_fn(|_| T::from_f64(random.below(6) as f64));
         Aabb::new(min, min.map(|at| at + T::from_f64(random.below(3) as f64)))
@@ -71,7 +72,8 @@ fn busy_world<const D: usize, T: Scalar>(report: Report, random: &mut Random) ->
 fn use_world<const D: usize, T: Scalar>(mut world: BroadPhase<D, T>) {
     let bytes = world.snapshot();
     assert_eq!(BroadPhase::<D, T>::from_snapshot(&bytes).unwrap().snapshot(), bytes);
-    for _ in 0..2 {
+    let is_exact = world.options().report == Report::Exact;
+    for update in 0..3 {
         let mut live: BTreeSet<_> = world.pairs().collect();
         let ids: Vec<_> = world.ids().collect();
         let mut expected = BTreeSet::new();
@@ -90,7 +92,10 @@ fn use_world<const D: usize, T: Scalar>(mut world: BroadPhase<D, T>) {
         let changes = world.update();
         assert!(changes.ended().all(|pair| live.remove(&pair)));
         assert!(changes.begun().all(|pair| live.insert(pair)));
-        assert_eq!(live, expected);
+        // The first two updates may give bodies other fat AABBs.
+        if is_exact || update == 2 {
+            assert_eq!(live, expected);
+        }
     }
     let ids: Vec<_> = world.ids().collect();
     world.remove_many(&ids).unwrap();
@@ -104,7 +109,9 @@ fn forge<const D: usize, T: Scalar>() -> [usize; 2] {
     let mut counts = [0; 2];
     let mut random = Random::new(7);
     for round in 0..FORGERIES {
-        let report = if round % 2 == 0 { Report::Exact } else { Report::Fat };
+        let half = T::from_f64(0.5);
+        let fat = Report::Fat { margin: half, prediction: half };
+        let report = if round % 2 == 0 { Report::Exact } else { fat };
         let mut bytes = without_checksum(busy_world::<D, T>(report, &mut random).snapshot());
         for _ in 0..=random.below(3) {
             let at = 8 + random.below(bytes.len() - 8);
@@ -144,16 +151,14 @@ fn each_contradiction_in_a_forged_snapshot_is_corrupt() {
     let corrupt = Err(Error::InvalidSnapshot(SnapshotFault::Corrupt));
     let read = |bytes| BroadPhase::<1>::from_snapshot(&signed(bytes)).map(|_| ());
     assert_eq!(read(good.clone()), Ok(()));
-    // Header of 8 bytes, margin, prediction, count, what the slot holds, generation, box.
-    let (margin, kind, generation, min) = (8, 17, 18, 19);
+    // Header of 8 bytes, count, what the slot holds, generation, box.
+    let (count, kind, generation, min) = (8, 9, 10, 11);
     let forged = |at: usize, replaced: &[u8]| {
         let mut bytes = good.clone();
         bytes[at..at + replaced.len()].copy_from_slice(replaced);
         read(bytes)
     };
     assert_eq!(forged(7, &[2]), corrupt, "what is reported");
-    assert_eq!(forged(margin, &(-1f32).to_le_bytes()), corrupt, "a negative margin");
-    assert_eq!(forged(margin, &f32::NAN.to_le_bytes()), corrupt, "a margin that is NaN");
     assert_eq!(forged(generation, &[0]), corrupt, "generation 0");
     assert_eq!(forged(min, &2f32.to_le_bytes()), corrupt, "an inverted box");
     assert_eq!(forged(min, &f32::NAN.to_le_bytes()), corrupt, "a box with a NaN");
@@ -162,12 +167,29 @@ fn each_contradiction_in_a_forged_snapshot_is_corrupt() {
     for kinds in [1 | 2 | 4, 1 | 4 | 32, 8, 1 | 4 | 128] {
         assert_eq!(forged(kind, &[kinds]), corrupt, "{kinds}");
     }
-    let huge = [good[..16].to_vec(), vec![0xff, 0xff, 0xff, 0xff, 0x0f], good[17..].to_vec()];
-    assert!(read(huge.concat()).is_err(), "more slots than bytes");
-    let overlong = [good[..16].to_vec(), vec![0xff; 10], good[17..].to_vec()].concat();
+    let with_count = |bytes: &[u8]| [&good[..count], bytes, &good[kind..]].concat();
+    assert!(read(with_count(&[0xff, 0xff, 0xff, 0xff, 0x0f])).is_err(), "more slots than bytes");
+    let overlong = with_count(&[0xff; 10]);
     assert_eq!(read(overlong), corrupt, "a count beyond 64 bits");
     let trailing = [good.clone(), vec![0]].concat();
     assert!(read(trailing).is_err(), "bytes after the last slot");
+
+    let report = Report::Fat { margin: 0.5, prediction: 0.0 };
+    let mut world = BroadPhase::<1>::with_options(Options::default().report(report)).unwrap();
+    world.insert(Aabb::new([0.0], [1.0])).unwrap();
+    let good = without_checksum(world.snapshot());
+    // Header, margin, prediction, offset, count, what the slot holds, generation, box, fat AABB.
+    let (margin, kind, min) = (8, 21, 31);
+    let forged = |at: usize, replaced: &[u8]| {
+        let mut bytes = good.clone();
+        bytes[at..at + replaced.len()].copy_from_slice(replaced);
+        read(bytes)
+    };
+    assert_eq!(forged(margin, &0.5f32.to_le_bytes()), Ok(()));
+    assert_eq!(forged(margin, &(-1f32).to_le_bytes()), corrupt, "a negative margin");
+    assert_eq!(forged(margin, &f32::NAN.to_le_bytes()), corrupt, "a margin that is NaN");
+    assert_eq!(forged(kind, &[1 | 4 | 128]), corrupt, "a new body with an origin");
+    assert_eq!(forged(min, &0.5f32.to_le_bytes()), corrupt, "a fat AABB without its body");
 }
 
 #[test]
@@ -177,8 +199,8 @@ fn a_slot_without_a_body_holds_no_more_than_it_can() {
     let good = without_checksum(world.snapshot());
     // Behind the count: what the slot holds, generation 1, and perhaps the box at the last update.
     let read = |kind: u8, has_box: bool| {
-        let aabb = if has_box { &good[19..27] } else { &[] };
-        let bytes = [&good[..17], &[kind, 1], aabb].concat();
+        let aabb = if has_box { &good[11..19] } else { &[] };
+        let bytes = [&good[..9], &[kind, 1], aabb].concat();
         BroadPhase::<1>::from_snapshot(&signed(bytes)).map(|_| ())
     };
     for (kind, has_box, what) in
@@ -205,7 +227,7 @@ fn a_slot_whose_generations_are_used_up_is_not_given_out_again() {
     world.insert(aabb).unwrap();
     let good = without_checksum(world.snapshot());
     // Generation 2^32 - 2 instead of 1, as LEB128.
-    let bytes = [&good[..18], &[0xfe, 0xff, 0xff, 0xff, 0x0f], &good[19..]].concat();
+    let bytes = [&good[..10], &[0xfe, 0xff, 0xff, 0xff, 0x0f], &good[11..]].concat();
     let mut world = BroadPhase::<1>::from_snapshot(&signed(bytes)).unwrap();
     let mut replace = || {
         let old = world.ids().next().unwrap();

@@ -1,6 +1,6 @@
 //! Error messages name the argument, its value, the limit that the value broke, and what to do.
 
-use sweep_and_prune::{Aabb, BroadPhase, Cast, Error, Options, SnapshotFault, find_pairs};
+use sweep_and_prune::{Aabb, BroadPhase, Cast, Error, Options, Report, SnapshotFault, find_pairs};
 
 fn message<T>(result: Result<T, Error>) -> String {
     result.map(|_| ()).unwrap_err().to_string()
@@ -39,7 +39,8 @@ fn a_message_about_an_id_shows_the_id_and_its_index() {
 
 #[test]
 fn a_message_about_an_option_names_the_option() {
-    let options = Options::default().prediction(-1.5);
+    let report = Report::Fat { margin: 0.0, prediction: -1.5 };
+    let options = Options::default().report(report);
     assert_eq!(
         message(BroadPhase::<2>::with_options(options)),
         "the option `prediction` is -1.5, but it must be finite and 0 or more"

@@ -1,4 +1,4 @@
-import { checkNumbers, copyNumbers, type Dimensions, isNamed, readBox, rowLength } from "../boxes/boxes.js";
+import { checkNumbers, coordinate, copyNumbers, type Corner, type Dimensions, isNamed, readBox, rowLength } from "../boxes/boxes.js";
 import { describe } from "../wasm/describe.js";
 import { tagOf } from "../wasm/typed.js";
 
@@ -49,5 +49,26 @@ export function readRow(values: unknown, dimensions: Dimensions, corners: 1 | 2,
     throw new RangeError(`\`${name}\` has ${describe(length)} numbers; in ${dimensions}D it must have ${corners * dimensions}`);
   }
   copyNumbers(given, length, name, numbers, 0);
+  return numbers;
+}
+
+/** @internal A point: an array, or an object `{ x, y, z }`, with as many coordinates as there are dimensions. */
+export function readPoint(point: unknown, dimensions: Dimensions, name: string): Float64Array {
+  if (!isNamed(point)) return readRow(point, dimensions, 1, name);
+  const numbers = new Float64Array(dimensions);
+  for (let axis = 0; axis < dimensions; axis++) {
+    const value = coordinate(point as Corner, axis);
+    if (typeof value !== "number") throw new TypeError(`\`${name}.${"xyz"[axis]}\` must be a number, not ${describe(value)}`);
+    numbers[axis] = value;
+  }
+  return numbers;
+}
+
+/** @internal Throws unless all numbers are as the rule says. */
+export function checkRule(numbers: Float64Array, name: string, rule: "finite" | "a number"): Float64Array {
+  for (let at = 0; at < numbers.length; at++) {
+    const x = numbers[at]!;
+    if (rule === "finite" ? !Number.isFinite(x) : Number.isNaN(x)) throw new RangeError(`\`${name}[${at}]\` is ${x}; it must be ${rule}`);
+  }
   return numbers;
 }

@@ -4,7 +4,8 @@ import { guard } from "../wasm/views.js";
 import { Query } from "./core.js";
 import type { Filter } from "./filter.js";
 import { Queries, signOf } from "./queries.js";
-import { checkCount, checkLength, checkRule, type QueryChoices, own, readChoices, readPoints, wordsOf } from "./query-arguments.js";
+import { checkRule } from "./arguments.js";
+import { checkCount, checkLength, type QueryChoices, own, readChoices, readPoints, wordsOf } from "./query-arguments.js";
 import type { CastOptions, ExcludeOptions, Hits, Lists, NeighborLists, Numbers, Points, QueryOptions } from "./types.js";
 
 /** Many queries in one call, which takes less time than a call for each. */

@@ -5,9 +5,9 @@ import { defaultFilter, type Filter, type FilterWords, filterWords } from "./fil
 import { checkOptionNames } from "../wasm/options.js";
 import { lengthOf } from "../wasm/typed.js";
 import { allocate, checkViews } from "../wasm/views.js";
-import { checkId, checkIds, readCorners } from "./arguments.js";
+import { checkId, checkIds, checkRule, readCorners, readPoint } from "./arguments.js";
 import type { WorldMemory } from "./memory.js";
-import type { Box, BroadPhaseOptions, Buffers, Changes, Corners, Numbers, ProxyId } from "./types.js";
+import type { Box, BroadPhaseOptions, Buffers, Changes, Corners, Numbers, Point, ProxyId } from "./types.js";
 
 /** Bodies with boxes: which overlaps began and which ended. What every entry point with a `BroadPhase` has. */
 export abstract class Bodies<D extends Dimensions = Dimensions> {
@@ -95,7 +95,36 @@ export abstract class Bodies<D extends Dimensions = Dimensions> {
   set(id: ProxyId, a?: unknown, b?: unknown, c?: unknown, d?: unknown, e?: unknown, f?: unknown, more?: unknown): void {
     checkId(id);
     this.memory.writeBox(a, b, c, d, e, f, more);
-    this.memory.call((exports, world) => exports.world_set(world, id), { ids: [id], boxes: oneBox.boxes });
+    this.memory.call((exports, world) => exports.world_set(world, id, 0), { ids: [id], boxes: oneBox.boxes });
+  }
+
+  /**
+   * Gives a body a new box to which it did not move: it was respawned, or went through a portal. With the option
+   * `report: "fat"` its fat AABB does not reach ahead, and displacements count from here; otherwise the same as
+   * {@link Bodies.set}.
+   *
+   * @throws As {@link Bodies.set}.
+   */
+  teleport(id: ProxyId, box: Box<D>): void;
+  teleport(id: ProxyId, ...corners: Corners<D>): void;
+  teleport(id: ProxyId, a?: unknown, b?: unknown, c?: unknown, d?: unknown, e?: unknown, f?: unknown, more?: unknown): void {
+    checkId(id);
+    this.memory.writeBox(a, b, c, d, e, f, more);
+    this.memory.call((exports, world) => exports.world_set(world, id, 1), { ids: [id], boxes: oneBox.boxes });
+  }
+
+  /**
+   * Adds an offset, given like a point, to the boxes of all bodies: for worlds whose origin follows the player.
+   * The next {@link Bodies.update} reports no event because of it, except where rounding makes boxes touch, and takes
+   * the time of finding all pairs.
+   *
+   * @throws `RangeError` if it does not have a finite number for each axis, `TypeError` if it has anything but numbers.
+   */
+  shift(offset: Point<D>): void {
+    const numbers = readPoint(offset, this.dimensions, "offset");
+    const rounded = this.memory.isDouble ? numbers : numbers.map(Math.fround);
+    this.memory.write(0, checkRule(rounded, "offset", "finite"));
+    this.memory.call((exports, world) => exports.world_shift(world));
   }
 
   /**
@@ -155,8 +184,22 @@ export abstract class Bodies<D extends Dimensions = Dimensions> {
    * @throws {@link StaleProxyError}.
    */
   box(id: ProxyId): number[] {
+    return this.#box(id, 0);
+  }
+
+  /**
+   * The box of a body whose overlaps are reported, as an array like that of {@link Bodies.box}: with the option
+   * `report: "fat"` its fat AABB.
+   *
+   * @throws {@link StaleProxyError}.
+   */
+  reportedBox(id: ProxyId): number[] {
+    return this.#box(id, 1);
+  }
+
+  #box(id: ProxyId, reported: number): number[] {
     checkId(id);
-    this.memory.call((exports, world) => exports.world_box(world, id), { ids: [id] });
+    this.memory.call((exports, world) => exports.world_box(world, id, reported), { ids: [id] });
     const [numbers, stored] = [this.memory.numbers(), this.memory.stored];
     return [
       ...numbers.subarray(0, this.dimensions),
@@ -264,6 +307,7 @@ export function checkOptions(options: BroadPhaseOptions): Required<BroadPhaseOpt
     throw new RangeError(`\`report\` must be "exact" or "fat", not ${describe(report)}`);
   }
   for (const [name, value] of [["margin", margin], ["prediction", prediction]] as const) {
+    if (value !== 0 && report === "exact") throw new RangeError(`\`${name}\` is ${describe(value)}, which has no effect without the option \`report: "fat"\``);
     if (!(Number.isFinite(value) && value >= 0)) throw new RangeError(`\`${name}\` is ${describe(value)}; it must be finite, and 0 or more`);
   }
   return { dimensions, precision, report, margin, prediction, views };

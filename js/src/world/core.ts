@@ -11,12 +11,13 @@ export interface WorldExports extends Exports {
   world_bytes(world: number, count: number): number;
   world_insert(world: number): number;
   world_insert_many(world: number, count: number, ...filter: FilterWords): number;
-  world_set(world: number, id: number): number;
+  world_set(world: number, id: number, teleports: number): number;
+  world_shift(world: number): number;
   world_set_many(world: number, count: number): number;
   world_set_swept(world: number, id: number): number;
   world_set_filter(world: number, id: number, ...filter: FilterWords): number;
   world_filter(world: number, id: number): number;
-  world_box(world: number, id: number): number;
+  world_box(world: number, id: number, reported: number): number;
   world_contains(world: number, id: number): number;
   world_remove_many(world: number, count: number): number;
   world_update(world: number): number;

@@ -1,11 +1,11 @@
 import { lengthOf } from "../wasm/typed.js";
 import type { Dimensions } from "../boxes/boxes.js";
-import { readCorners } from "./arguments.js";
+import { checkRule, readCorners, readPoint } from "./arguments.js";
 import { Bodies, oneBox } from "./bodies.js";
 import type { Passed } from "../wasm/engine.js";
 import { Query } from "./core.js";
 import type { FilterWords } from "./filter.js";
-import { checkCount, checkLength, checkRule, noIds, type QueryChoices, readChoices, readPoint, wordsOf } from "./query-arguments.js";
+import { checkCount, checkLength, noIds, type QueryChoices, readChoices, wordsOf } from "./query-arguments.js";
 import type { Box, CastOptions, ExcludeOptions, Hit, Neighbor, Point, ProxyId, QueryFilter, QueryOptions } from "./types.js";
 
 /** Up to this many ids are copied one by one, which takes less time than making a view of them. */

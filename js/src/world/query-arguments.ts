@@ -1,8 +1,8 @@
-import { checkNumbers, coordinate, type Corner, type Dimensions, isNamed } from "../boxes/boxes.js";
+import { checkNumbers, type Dimensions } from "../boxes/boxes.js";
 import { describe } from "../wasm/describe.js";
 import { checkOptionNames } from "../wasm/options.js";
 import { allocate } from "../wasm/views.js";
-import { checkIds, readRow } from "./arguments.js";
+import { checkIds, readPoint } from "./arguments.js";
 import { defaultFilter, type FilterWords, filterWords } from "./filter.js";
 import type { QueryFilter } from "./types.js";
 
@@ -21,18 +21,6 @@ export function checkCount(value: unknown, name: string): number {
   return value as number;
 }
 
-/** @internal A point: an array, or an object `{ x, y, z }`, with as many coordinates as there are dimensions. */
-export function readPoint(point: unknown, dimensions: Dimensions, name: string): Float64Array {
-  if (!isNamed(point)) return readRow(point, dimensions, 1, name);
-  const numbers = new Float64Array(dimensions);
-  for (let axis = 0; axis < dimensions; axis++) {
-    const value = coordinate(point as Corner, axis);
-    if (typeof value !== "number") throw new TypeError(`\`${name}.${"xyz"[axis]}\` must be a number, not ${describe(value)}`);
-    numbers[axis] = value;
-  }
-  return numbers;
-}
-
 /** @internal Numbers that were read, in an array that no code of the user can change: `values` are those that it passed. */
 export function own(numbers: Float32Array | Float64Array, values: unknown): Float64Array {
   return Array.isArray(values) && numbers instanceof Float64Array ? numbers : allocate(() => new Float64Array(numbers));
@@ -49,15 +37,6 @@ export function readPoints(points: unknown, dimensions: Dimensions, name: string
   const numbers = own(checkNumbers(points, name), points);
   if (numbers.length % dimensions === 0) return numbers;
   throw new RangeError(`\`${name}\` holds ${numbers.length} numbers, which is not a multiple of ${dimensions}: a point in ${dimensions}D is as many`);
-}
-
-/** @internal Throws unless all numbers are as the rule says. */
-export function checkRule(numbers: Float64Array, name: string, rule: "finite" | "a number"): Float64Array {
-  for (let at = 0; at < numbers.length; at++) {
-    const x = numbers[at]!;
-    if (rule === "finite" ? !Number.isFinite(x) : Number.isNaN(x)) throw new RangeError(`\`${name}[${at}]\` is ${x}; it must be ${rule}`);
-  }
-  return numbers;
 }
 
 const sortOptions = ["sorted"];

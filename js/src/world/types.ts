@@ -22,11 +22,18 @@ export interface EventsOptions<D extends Dimensions = Dimensions> {
   dimensions: D;
   /** The precision in which coordinates are kept and compared: they are rounded to it. */
   precision?: "single";
-  /** Whether pairs of the boxes as given are reported, or pairs of fat AABBs. `"exact"` by default. */
+  /**
+   * Whether pairs of the boxes as given are reported, or pairs of fat AABBs, which begin and end less often. A body keeps
+   * its fat AABB while its box is within, unless that is on any axis more than twice as wide as a new one. `"exact"` by
+   * default.
+   */
   report?: "exact" | "fat";
-  /** By how much a fat AABB is larger than the body's box on each side, in units of length. 0 by default. */
+  /** Only with `report: "fat"`: how far a fat AABB reaches beyond the body on every side, in units of length. 0 by default. */
   margin?: number;
-  /** How many displacements a fat AABB reaches ahead of the body. 0 by default. */
+  /**
+   * Only with `report: "fat"`: how many displacements a fat AABB reaches ahead of the body, by at most 4 times its longest side and
+   * the margin together. 0 by default.
+   */
   prediction?: number;
   /**
    * Whether arrays of ids are views of WebAssembly's memory, which saves the time of a copy. A view is

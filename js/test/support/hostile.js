@@ -348,7 +348,7 @@ export class HostileWorld extends Hostile {
       this.restart();
     }
     this.arm();
-    const call = this.pick(/** @type {const} */ (["insert", "insert", "insertMany", "set", "setMany", "setSwept", "setFilter", "removeMany", "overlapping", "overlapping", "containing", "many", "cast", "within", "nearest", "ids", "callback", "this", "update"]));
+    const call = this.pick(/** @type {const} */ (["insert", "insert", "insertMany", "set", "teleport", "shift", "setMany", "setSwept", "setFilter", "removeMany", "overlapping", "overlapping", "containing", "many", "cast", "within", "nearest", "ids", "callback", "this", "update"]));
     try {
       this[`$${call}`]();
     } catch (error) {
@@ -453,6 +453,19 @@ export class HostileWorld extends Hostile {
   $set() {
     const [id, row] = [this.id(), this.row()];
     if (this.#for([id], () => this.world.set(this.#id(id), this.#box(row)))) this.#body(id).row = row;
+  }
+
+  $teleport() {
+    const [id, row] = [this.id(), this.row()];
+    if (this.#for([id], () => this.world.teleport(this.#id(id), this.#box(row)))) this.#body(id).row = row;
+  }
+
+  /** Back and forth, so that boxes stay where the others are; only -0 is then 0. */
+  $shift() {
+    const offset = Array.from({ length: this.dimensions }, () => this.below(5) - 2);
+    if (!this.#for([], () => this.world.shift(this.#point(offset)))) return;
+    this.world.shift(/** @type {any} */ (offset.map((at) => -at)));
+    for (const body of this.bodies.values()) body.row = body.row.map((at) => at + 0);
   }
 
   $setSwept() {

@@ -411,6 +411,73 @@ class BroadPhase:
         _same_length(len(array), starts=len(first), ends=len(last))
         self._world.set_swept(array, _double(first), _double(last), ("starts", "ends"))
 
+    def teleport(self, id: SupportsIndex, box: ArrayLike) -> None:
+        """Gives a body a new box to which it did not move: it was respawned, or went through a portal.
+
+        With `report="fat"` its fattened AABB does not reach ahead, and displacements count from here; otherwise the
+        same as `set`.
+
+        Args:
+            id: the body.
+            box: `2 * dimensions` numbers.
+
+        Raises:
+            StaleProxyError, InvalidBoxError: then nothing has changed.
+            ValueError, TypeError: for other shapes, or anything but numbers.
+
+        >>> import sweep_and_prune as sap
+        >>> world = sap.BroadPhase(dimensions=1, report="fat", margin=0.5, prediction=2)
+        >>> hero = world.insert([0, 1])
+        >>> changes = world.update()
+        >>> world.teleport(hero, [3, 4])
+        >>> world.reported_box(hero)
+        array([2.5, 4.5])
+        """
+        self._world.teleport(one_id(id), _double(self._row(box, "box")), "box")
+
+    def teleport_many(self, ids: ArrayLike, boxes: ArrayLike) -> None:
+        """Gives many bodies new boxes, each as `teleport` does.
+
+        Args:
+            ids: `(n,)` ids.
+            boxes: `(n, 2 * dimensions)` numbers.
+
+        Raises:
+            StaleProxyError, InvalidBoxError: for the first id or box that is invalid; then no box has changed.
+            ValueError, TypeError: for other shapes, or anything but numbers.
+
+        >>> import sweep_and_prune as sap
+        >>> world = sap.BroadPhase(dimensions=1)
+        >>> ids = world.insert_many([[0, 1], [5, 6]])
+        >>> world.teleport_many(ids, [[2, 3], [3, 4]])
+        >>> len(world.update().begun)
+        1
+        """
+        array, rows = id_array(ids), self._rows(boxes, "boxes")
+        _same_length(len(array), boxes=len(rows))
+        self._world.teleport(array, _double(rows), "boxes")
+
+    def shift(self, offset: ArrayLike) -> None:
+        """Adds an offset to the boxes of all bodies: for worlds whose origin follows the player.
+
+        The next update reports no event because of it, except where rounding makes boxes touch, and takes the time of
+        finding all pairs.
+
+        Args:
+            offset: `dimensions` finite numbers.
+
+        Raises:
+            ValueError, TypeError: for another number of them, or anything but finite numbers.
+
+        >>> import sweep_and_prune as sap
+        >>> world = sap.BroadPhase(dimensions=1)
+        >>> hero = world.insert([8, 9])
+        >>> world.shift([-8])
+        >>> world.box(hero)
+        array([0., 1.])
+        """
+        self._world.shift(row(offset, "offset", self._dtype, self._dimensions)[0].tolist())
+
     def remove(self, id: SupportsIndex) -> None:
         """Removes a body. Its id is stale from now on; the next update reports its ended pairs.
 
@@ -476,6 +543,25 @@ class BroadPhase:
         array([0., 1.])
         """
         return self._boxes(one_id(id))
+
+    def reported_box(self, id: SupportsIndex) -> Floats:
+        """Returns the box of a body whose overlaps are reported: with `report="fat"` its fattened AABB.
+
+        Args:
+            id: the body.
+
+        Returns:
+            `(2 * dimensions,)` coordinates in the world's dtype.
+
+        Raises:
+            StaleProxyError: if the id names no body of this world.
+
+        >>> import sweep_and_prune as sap
+        >>> world = sap.BroadPhase(dimensions=1, report="fat", margin=0.5)
+        >>> world.reported_box(world.insert([0, 1]))
+        array([-0.5,  1.5])
+        """
+        return self._boxes(one_id(id), reported=True)
 
     def box_many(self, ids: ArrayLike) -> Floats:
         """Returns the boxes of many bodies as last set.
@@ -1118,8 +1204,8 @@ class BroadPhase:
         point = self._point(origin, "origin")
         return Part("origin", np.concatenate([point, point], axis=1), "finite")
 
-    def _boxes(self, ids: Ids) -> Floats:
-        return self._world.boxes(ids).astype(self._dtype, copy=False)
+    def _boxes(self, ids: Ids, reported: bool = False) -> Floats:
+        return self._world.boxes(ids, reported).astype(self._dtype, copy=False)
 
     def _ask(
         self,

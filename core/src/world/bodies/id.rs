@@ -1,5 +1,7 @@
 //! The ids of bodies.
 
+use alloc::vec::Vec;
+
 /// The id of a body in a [`BroadPhase`](crate::BroadPhase): a slot and a generation.
 ///
 /// A slot is reused after its body was removed, under the next generation, so an id never comes to
@@ -10,6 +12,30 @@
 pub struct ProxyId {
     pub(super) slot: u32,
     pub(super) generation: u32,
+}
+
+/// Up to this many ids are sorted by insertion.
+const FEW: usize = 20;
+
+/// Sorts ids, as numbers if there are many: each type that the standard library sorts takes a kilobyte of a WebAssembly
+/// file.
+#[inline(never)]
+pub fn sort_ids(ids: &mut [ProxyId]) {
+    if ids.len() <= FEW {
+        for end in 1..ids.len() {
+            let mut at = end;
+            while at > 0 && ids[at] < ids[at - 1] {
+                ids.swap(at, at - 1);
+                at -= 1;
+            }
+        }
+        return;
+    }
+    let mut keys: Vec<_> = ids.iter().map(|id| id.to_key()).collect();
+    keys.sort_unstable();
+    for (id, key) in ids.iter_mut().zip(keys) {
+        *id = ProxyId::from_key(key);
+    }
 }
 
 impl ProxyId {
@@ -30,6 +56,16 @@ impl ProxyId {
     #[inline]
     pub const fn to_bits(self) -> u64 {
         (self.generation as u64) << 32 | self.slot as u64
+    }
+
+    /// The id as a number in the order of ids.
+    pub(in crate::world) const fn to_key(self) -> u64 {
+        self.to_bits().rotate_left(32)
+    }
+
+    /// The id of such a number.
+    pub(in crate::world) const fn from_key(key: u64) -> Self {
+        Self::from_bits(key.rotate_left(32))
     }
 
     /// The id of a number. Any number is accepted; one that was never given out is a stale id.

@@ -6,6 +6,6 @@ mod slots;
 mod table;
 
 pub use filter::Filter;
-pub use id::ProxyId;
+pub use id::{ProxyId, sort_ids};
 pub(super) use slots::{Slots, flag};
 pub(super) use table::{Bodies, RANDOM_READ, differ};

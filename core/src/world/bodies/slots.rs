@@ -28,8 +28,12 @@ pub mod flag {
     pub const IN_TREE: u16 = 128;
     /// The body rests, and updates skip it until it changes.
     pub const ASLEEP: u16 = 256;
+    /// It is in the list of bodies that were given a box since the last update; only where fat AABBs are reported.
+    pub const MOVED: u16 = 1024;
     /// The body changed since bodies last fell asleep.
     pub const RECENT: u16 = CHANGED << 7;
+    /// What a slot keeps that is free: in which lists it is, and how.
+    pub const LISTED: u16 = CHANGED | IN_TREE | MOVED;
 }
 
 /// Which body is where. An id names a *slot*. All tables are in the order of *storage indices*, which
@@ -118,7 +122,7 @@ impl Slots {
             self.add(1)
         };
         // A new body in a slot that is still listed as changed is listed again only if the tree knows of the change.
-        self.flags[index as usize] &= flag::CHANGED | flag::IN_TREE;
+        self.flags[index as usize] &= flag::LISTED;
         self.activate(index);
         index
     }

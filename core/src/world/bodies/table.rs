@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::filter::Filter;
 use super::id::ProxyId;
 use super::slots::{Slots, flag};
-use crate::world::options::{Options, Report, displacement};
+use crate::world::options::{Options, Report};
 use crate::{Aabb, Scalar};
 
 /// Reading a row at random takes as long as reading this many rows in order (see `crate::memory`).
@@ -23,6 +23,15 @@ pub struct Bodies<const D: usize, T: Scalar> {
     pub boxes: Vec<Aabb<D, T>>,
     /// The boxes as given, where these are not the ones reported; else empty.
     pub shapes: Vec<Aabb<D, T>>,
+    /// From where displacements count: the boxes as given at the last update, or where bodies were teleported to since;
+    /// empty like `shapes`. Meaningless for bodies of [`flag::NEW`].
+    pub origins: Vec<Aabb<D, T>>,
+    /// The bodies of [`flag::MOVED`].
+    pub moved: Vec<u32>,
+    /// The bodies whose fat AABB is replaced at the next update if they rest, and some that were removed since the last.
+    pub too_wide: Vec<u32>,
+    /// How far all bodies were shifted since the last update, if fat AABBs are reported.
+    pub shifted: Option<[T; D]>,
     pub filters: Vec<Filter>,
     /// Whether a body ever had another filter than the default: if not, every pair is allowed.
     pub any_filter: bool,
@@ -71,14 +80,15 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
     pub fn shape(&self, index: u32) -> &Aabb<D, T> {
         match self.options.report {
             Report::Exact => &self.boxes[index as usize],
-            Report::Fat => &self.shapes[index as usize],
+            Report::Fat { .. } => &self.shapes[index as usize],
         }
     }
 
     /// Writes all that is known of a body whose index is that of an existing row or the next.
     pub fn put(&mut self, index: u32, shape: Aabb<D, T>, boxed: Aabb<D, T>, filter: Filter) {
-        if self.options.report == Report::Fat {
+        if self.options.report.is_fat() {
             put(&mut self.shapes, index, shape);
+            put(&mut self.origins, index, shape);
         }
         put(&mut self.boxes, index, boxed);
         put(&mut self.filters, index, filter);
@@ -92,10 +102,7 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
     /// Adds a body, for which there is a slot.
     pub fn add(&mut self, aabb: Aabb<D, T>, filter: Filter) -> ProxyId {
         let index = self.slots.take();
-        let boxed = match self.options.report {
-            Report::Exact => aabb,
-            Report::Fat => self.options.fatten(&aabb, [T::default(); D]),
-        };
+        let boxed = self.options.report.boxed(None, &aabb, &aabb);
         self.put(index, aabb, boxed, filter);
         self.slots.raise(index, flag::NEW);
         self.any_new = true;
@@ -114,11 +121,105 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
                     self.touch(index);
                 }
             }
-            Report::Fat => {
-                let before = core::mem::replace(&mut self.shapes[row], *aabb);
-                if !self.boxes[row].contains(aabb) {
-                    self.boxes[row] = self.options.fatten(aabb, displacement(&before, aabb));
-                    self.touch(index);
+            Report::Fat { .. } => {
+                self.shapes[row] = *aabb;
+                self.list_moved(index);
+                self.refatten(index);
+            }
+        }
+    }
+
+    /// Lists a body whose next displacement will count from another place.
+    fn list_moved(&mut self, index: u32) {
+        if !self.slots.has(index, flag::MOVED) {
+            self.slots.raise(index, flag::MOVED);
+            self.moved.push(index);
+        }
+    }
+
+    /// Writes from where the displacements of a body count.
+    pub fn put_origin(&mut self, index: u32, origin: Aabb<D, T>) {
+        self.origins[index as usize] = origin;
+        self.list_moved(index);
+    }
+
+    /// The fat AABB of a body: a fact about the last update, where the body is now, and teleports and shifts in between.
+    #[inline(never)]
+    fn fat(&self, index: u32) -> Aabb<D, T> {
+        let row = index as usize;
+        let shape = &self.shapes[row];
+        let is_new = self.slots.has(index, flag::NEW);
+        // The union of a sweep is no place where the body was.
+        let rests = is_new || self.slots.has(index, flag::SWEPT);
+        let had = || match &self.shifted {
+            Some(offset) => translate(&self.previous[row], offset),
+            None => self.previous[row],
+        };
+        let from = if rests { shape } else { &self.origins[row] };
+        self.options.report.boxed((!is_new).then(had), from, shape)
+    }
+
+    /// Gives a body the fat AABB that follows from its box.
+    #[inline(never)]
+    fn refatten(&mut self, index: u32) {
+        let fat = self.fat(index);
+        if differ(&self.boxes[index as usize], &fat) {
+            self.boxes[index as usize] = fat;
+            self.touch(index);
+        }
+    }
+
+    /// Whether the fat AABB of a body is another one than follows from its box: then it is replaced at the next update,
+    /// if the body rests.
+    pub fn is_too_wide(&self, index: u32) -> bool {
+        differ(&self.boxes[index as usize], &self.fat(index))
+    }
+
+    /// Replaces the fat AABBs that are too wide for bodies that rest since the last update.
+    pub fn refatten_too_wide(&mut self) {
+        while let Some(index) = self.too_wide.pop() {
+            if self.slots.has(index, flag::LIVE) {
+                self.refatten(index);
+            }
+        }
+    }
+
+    /// Makes displacements count from where the bodies are now. To be called when the last update is this one.
+    pub fn reset_origins(&mut self) {
+        self.shifted = None;
+        while let Some(index) = self.moved.pop() {
+            self.slots.lower(index, flag::MOVED);
+            if self.slots.has(index, flag::LIVE) {
+                self.origins[index as usize] = self.shapes[index as usize];
+                if self.is_too_wide(index) {
+                    self.too_wide.push(index);
+                }
+            }
+        }
+    }
+
+    /// Gives a body its new box, as if it had been there at the last update already.
+    pub fn teleport(&mut self, index: u32, aabb: &Aabb<D, T>) {
+        if let Some(origin) = self.origins.get_mut(index as usize) {
+            *origin = *aabb;
+        }
+        self.place(index, aabb);
+    }
+
+    /// Moves everything by a finite offset.
+    pub fn shift(&mut self, offset: &[T; D]) {
+        let Self { boxes, shapes, origins, rests, .. } = self;
+        for table in [boxes, shapes, origins, rests] {
+            table.iter_mut().for_each(|aabb| *aabb = translate(aabb, offset));
+        }
+        self.any_unlisted = true;
+        if self.options.report.is_fat() {
+            let before = self.shifted.unwrap_or([T::default(); D]);
+            let sum: [T; D] = core::array::from_fn(|axis| before[axis] + offset[axis]);
+            self.shifted = (sum != [T::default(); D]).then_some(sum);
+            for index in 0..self.slots.len() as u32 {
+                if self.slots.has(index, flag::LIVE) {
+                    self.refatten(index);
                 }
             }
         }
@@ -222,19 +323,18 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
         self.rests[index as usize] = to;
     }
 
+    /// Forgets that a body is swept, if it is.
+    pub fn cancel_sweep(&mut self, index: u32) {
+        self.slots.lower(index, flag::SWEPT);
+    }
+
     /// Puts swept bodies where their sweeps ended.
     pub fn settle(&mut self) {
         while let Some(index) = self.swept.pop() {
             if self.slots.has(index, flag::SWEPT) {
                 self.slots.lower(index, flag::SWEPT);
                 let to = self.rests[index as usize];
-                if self.options.report == Report::Fat {
-                    self.shapes[index as usize] = to;
-                    self.boxes[index as usize] = self.options.fatten(&to, [T::default(); D]);
-                    self.touch(index);
-                } else {
-                    self.place(index, &to);
-                }
+                self.teleport(index, &to);
             }
         }
     }
@@ -248,6 +348,12 @@ pub fn differ<const D: usize, T: Scalar>(a: &Aabb<D, T>, b: &Aabb<D, T>) -> bool
         (0..D).fold(0, |bits, axis| bits | (a[axis].to_raw() ^ b[axis].to_raw()))
     };
     corners(&a.min, &b.min) | corners(&a.max, &b.max) != 0
+}
+
+/// A box that was moved. Its corners stay in order, whatever the rounding.
+fn translate<const D: usize, T: Scalar>(aabb: &Aabb<D, T>, offset: &[T; D]) -> Aabb<D, T> {
+    let moved = |corner: &[T; D]| core::array::from_fn(|axis| corner[axis] + offset[axis]);
+    Aabb::new(moved(&aabb.min), moved(&aabb.max))
 }
 
 /// Writes to a table, which grows by one where the index is new.

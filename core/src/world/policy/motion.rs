@@ -1,7 +1,6 @@
 //! How far ahead fat AABBs reach.
 
 use crate::sampling::positions;
-use crate::world::options::Options;
 use crate::{Aabb, Scalar};
 
 /// Chooses fat AABBs by the motion of a sample of bodies.
@@ -64,11 +63,10 @@ impl Motion {
         &self,
         before: &Aabb<D, T>,
         now: &Aabb<D, T>,
-        options: &Options<T>,
     ) -> Aabb<D, T> {
         let is_jump = self.is_beyond(before, now, JUMP * self.size / self.lifetime);
         let steps = if is_jump { T::default() } else { T::from_f64(self.lifetime) };
-        fatten(before, now, steps, options)
+        fatten(before, now, steps, T::default())
     }
 
     /// Whether a body moved so far that its motion says nothing of the next step.
@@ -101,7 +99,6 @@ impl Motion {
         index: u32,
         before: &Aabb<D, T>,
         now: &Aabb<D, T>,
-        options: &Options<T>,
     ) -> Aabb<D, T> {
         let side = longest_side(now);
         let size = if side < f64::INFINITY { side.max(self.size) } else { self.size };
@@ -111,21 +108,21 @@ impl Motion {
         if steps < 1.0 {
             // A jump: where it goes from here is unknown.
             let landed = T::from_f64(LANDED * size);
-            let margin = options.margin + if landed < T::INFINITY { landed } else { T::default() };
-            return fatten(before, now, T::default(), &Options { margin, ..*options });
+            let margin = if landed < T::INFINITY { landed } else { T::default() };
+            return fatten(before, now, T::default(), margin);
         }
-        fatten(before, now, T::from_f64(steps), options)
+        fatten(before, now, T::from_f64(steps), T::default())
     }
 }
 
-/// A box that holds the next `steps` boxes if each side goes on as it did, and some slack. Holds
+/// A box that holds the next `steps` boxes if each side goes on as it did, some slack, and a finite margin. Holds
 /// `now`, whatever the rounding, and has no NaN where `now` has none.
 #[inline]
 fn fatten<const D: usize, T: Scalar>(
     before: &Aabb<D, T>,
     now: &Aabb<D, T>,
     steps: T,
-    options: &Options<T>,
+    margin: T,
 ) -> Aabb<D, T> {
     let zero = T::default();
     let size = |way: T| if way < zero { zero - way } else { way };
@@ -136,14 +133,8 @@ fn fatten<const D: usize, T: Scalar>(
         let down = now.min[axis] - before.min[axis];
         let up = now.max[axis] - before.max[axis];
         let slack = (size(down) + size(up)) * tenth;
-        let slack = slack + options.margin;
-        let slack = if slack < T::INFINITY {
-            slack
-        } else if options.margin < T::INFINITY {
-            options.margin
-        } else {
-            zero
-        };
+        let slack = slack + margin;
+        let slack = if slack < T::INFINITY { slack } else { margin };
         let (down, up) = (down * steps, up * steps);
         let down = if down < zero { down } else { zero };
         let up = if up > zero { up } else { zero };
@@ -205,17 +196,16 @@ mod tests {
             let pairs = ends.iter().flat_map(|&a| ends.iter().map(move |&b| (a, b)));
             pairs.filter(|(a, b)| a <= b).map(|(a, b)| Aabb::new([a], [b]))
         };
-        let options = Options { margin: 0.5, ..Options::default() };
         for before in intervals() {
             for now in intervals() {
                 for steps in [0.0, 1.0, 8.0, f32::MAX] {
-                    let fat = fatten(&before, &now, steps, &options);
+                    let fat = fatten(&before, &now, steps, 0.5);
                     assert!(fat.contains(&now), "{before:?} {now:?} {steps} {fat:?}");
                 }
                 let mut motion = Motion::default();
                 motion.sample(1, |_| (&before, &now));
-                assert!(motion.alone(7, &before, &now, &options).contains(&now));
-                assert!(motion.together(&before, &now, &options).contains(&now));
+                assert!(motion.alone(7, &before, &now).contains(&now));
+                assert!(motion.together(&before, &now).contains(&now));
             }
         }
     }

@@ -1,5 +1,6 @@
 //! What a ray or a moving box hits.
 
+use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
 use core::cell::Cell;
 use core::cmp::Ordering;
@@ -221,8 +222,12 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
             hits.push(hit);
             ControlFlow::Continue(f64::INFINITY)
         })?;
-        hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.id.cmp(&b.id)));
-        Ok(hits)
+        // Times, which are not negative, order as their bits do. As numbers they are sorted by what `nearest` needs anyway.
+        let key = |(at, hit): (usize, &Hit<D, T>)| {
+            (hit.t.to_bits(), u64::from(hit.id.slot()) << 32 | at as u64)
+        };
+        let order: BinaryHeap<_> = hits.iter().enumerate().map(key).collect();
+        Ok(order.into_sorted_vec().iter().map(|&(_, at)| hits[at as u32 as usize]).collect())
     }
 
     /// Calls `visit` with what a ray or a moving box hits, nearer parts of the world roughly first.

@@ -55,13 +55,11 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         for point in points {
             let start = lists.values.len();
             self.collect_nearest(point, k, max_distance * max_distance, &mut nearest);
-            lists.values.extend(nearest.drain().map(|(bits, slot)| Neighbor {
-                id: self.bodies.slots.id_of_slot(slot),
-                distance_squared: f64::from_bits(bits),
-            }));
-            lists.values[start..].sort_unstable_by(|a, b| {
-                a.distance_squared.total_cmp(&b.distance_squared).then(a.id.cmp(&b.id))
-            });
+            while let Some((bits, slot)) = nearest.pop() {
+                let id = self.bodies.slots.id_of_slot(slot as u32);
+                lists.values.push(Neighbor { id, distance_squared: f64::from_bits(bits) });
+            }
+            lists.values[start..].reverse();
             lists.end();
         }
         Ok(lists)
@@ -75,7 +73,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         point: &[T; D],
         k: usize,
         limit: f64,
-        nearest: &mut BinaryHeap<(u64, u32)>,
+        nearest: &mut BinaryHeap<(u64, u64)>,
     ) -> usize {
         if k == 0 {
             return 0;
@@ -91,7 +89,8 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
             seen += 1;
             let distance = distance_squared(point, self.bodies.shape(index));
             if distance <= farthest.get() && self.sees(index) {
-                nearest.push((distance.to_bits(), self.bodies.slots.slot_of[index as usize]));
+                let slot = self.bodies.slots.slot_of[index as usize];
+                nearest.push((distance.to_bits(), slot.into()));
                 if nearest.len() > k {
                     nearest.pop();
                 }

@@ -5,7 +5,7 @@ use core::ops::ControlFlow;
 
 use super::lists::Lists;
 use super::math::{check_each, fault_in, is_finite, is_length, is_within};
-use crate::world::bodies::{Bodies, Filter, ProxyId, flag};
+use crate::world::bodies::{Bodies, Filter, ProxyId, flag, sort_ids};
 use crate::world::tree::Tree;
 use crate::{Aabb, Error, Scalar};
 
@@ -177,7 +177,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
                 ControlFlow::Continue(())
             });
             if self.is_sorted {
-                lists.values[start..].sort_unstable();
+                sort_ids(&mut lists.values[start..]);
             }
             lists.end();
         }

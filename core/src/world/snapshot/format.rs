@@ -1,10 +1,12 @@
 //! The format of snapshots: the whole state as bytes.
 //!
 //! ```text
-//! "SaPw"  version u8  dimensions u8  scalar bytes u8  report u8   margin  prediction
+//! "SaPw"  version u8  dimensions u8  scalar bytes u8  report u8
+//! [margin  prediction  how far all was shifted since the last update]    if fat AABBs are reported
 //! count of slots, then of each slot
 //!     what it holds, bits of u8; generation
 //!     its box [its fat AABB, if these are reported]       if it lives
+//!     [from where its next displacement counts]          if that is another box
 //!     [where its sweep ends]                             if it is swept
 //!     [its filter]                                       if not the default
 //!     [its box at the last update]                       if another
@@ -37,6 +39,8 @@ pub mod holds {
     pub const OLD_BOX: u8 = 32;
     /// It had another filter at the last update.
     pub const OLD_FILTER: u8 = 64;
+    /// Its next displacement does not count from its box.
+    pub const ORIGIN: u8 = 128;
 }
 
 /// What kind of world a snapshot holds: which [`BroadPhase`](crate::BroadPhase) can be restored from it.

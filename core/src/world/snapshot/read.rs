@@ -13,15 +13,18 @@ pub fn read<const D: usize, T: Scalar>(bytes: &[u8]) -> Result<Bodies<D, T>, Sna
         return Err(SnapshotFault::OtherWorld { dimensions, scalar_bytes });
     }
     let mut reader = Reader { bytes: body };
-    let (margin, prediction) = (reader.scalar()?, reader.scalar()?);
-    let report = match report {
-        0 => Report::Exact,
-        1 => Report::Fat,
+    let mut bodies = Bodies::<D, T>::default();
+    match report {
+        0 => {}
+        1 => {
+            let (margin, prediction) = (reader.scalar()?, reader.scalar()?);
+            bodies.options = Options::default().report(Report::Fat { margin, prediction });
+            bodies.options.check().map_err(|_| SnapshotFault::Corrupt)?;
+            let offset = reader.corner()?;
+            bodies.shifted = (offset != [T::default(); D]).then_some(offset);
+        }
         _ => return Err(SnapshotFault::Corrupt),
-    };
-    let options = Options { margin, prediction, report };
-    options.check().map_err(|_| SnapshotFault::Corrupt)?;
-    let mut bodies = Bodies { options, ..Bodies::default() };
+    }
     let count = u32::try_from(reader.number()?).map_err(|_| SnapshotFault::Corrupt)?;
     for _ in 0..count {
         read_slot(&mut reader, &mut bodies)?;
@@ -44,7 +47,7 @@ fn read_slot<const D: usize, T: Scalar>(
     let is_live = has(holds::BODY);
     let is_known = (is_live || has(holds::LEAVING)) && !has(holds::NEW);
     let is_absurd = generation == 0
-        || held & 128 != 0
+        || has(holds::ORIGIN) && !(is_live && is_known && bodies.options.report.is_fat())
         || is_live && has(holds::LEAVING)
         || !is_live && (has(holds::SWEEP | holds::OLD_FILTER) || has(holds::OLD_BOX) != is_known)
         || !is_live && !is_known && has(holds::FILTER)
@@ -54,14 +57,17 @@ fn read_slot<const D: usize, T: Scalar>(
         return Err(SnapshotFault::Corrupt);
     }
     let nothing = Aabb::new([T::default(); D], [T::default(); D]);
-    let (mut shape, mut boxed) = (nothing, nothing);
+    let (mut shape, mut boxed, mut origin) = (nothing, nothing, nothing);
     let index = bodies.slots.add(generation);
     if is_live {
         bodies.slots.activate(index);
         shape = reader.aabb()?;
-        boxed = if bodies.options.report == Report::Fat { reader.aabb()? } else { shape };
+        boxed = if bodies.options.report.is_fat() { reader.aabb()? } else { shape };
         if !boxed.contains(&shape) {
             return Err(SnapshotFault::Corrupt);
+        }
+        if has(holds::ORIGIN) {
+            origin = reader.aabb()?;
         }
         if has(holds::SWEEP) {
             let to = reader.aabb()?;
@@ -77,6 +83,9 @@ fn read_slot<const D: usize, T: Scalar>(
     let old_box = if has(holds::OLD_BOX) { reader.aabb()? } else { boxed };
     bodies.put(index, shape, boxed, filter);
     bodies.previous[index as usize] = old_box;
+    if has(holds::ORIGIN) {
+        bodies.put_origin(index, origin);
+    }
     if has(holds::NEW) {
         bodies.slots.raise(index, flag::NEW);
         bodies.any_new = true;
@@ -87,6 +96,12 @@ fn read_slot<const D: usize, T: Scalar>(
     }
     if is_live && has(holds::NEW | holds::OLD_BOX | holds::OLD_FILTER) {
         bodies.touch(index);
+    }
+    if is_live && bodies.options.report.is_fat() && bodies.is_too_wide(index) {
+        if has(holds::NEW) {
+            return Err(SnapshotFault::Corrupt);
+        }
+        bodies.too_wide.push(index);
     }
     Ok(())
 }
@@ -127,11 +142,16 @@ impl Reader<'_> {
         Ok(T::from_raw(u64::from_le_bytes(word)))
     }
 
-    fn aabb<const D: usize, T: Scalar>(&mut self) -> Result<Aabb<D, T>, SnapshotFault> {
-        let mut aabb = Aabb::new([T::default(); D], [T::default(); D]);
-        for at in aabb.min.iter_mut().chain(&mut aabb.max) {
+    fn corner<const D: usize, T: Scalar>(&mut self) -> Result<[T; D], SnapshotFault> {
+        let mut corner = [T::default(); D];
+        for at in &mut corner {
             *at = self.scalar()?;
         }
+        Ok(corner)
+    }
+
+    fn aabb<const D: usize, T: Scalar>(&mut self) -> Result<Aabb<D, T>, SnapshotFault> {
+        let aabb = Aabb::new(self.corner()?, self.corner()?);
         aabb.check(0).map_err(|_| SnapshotFault::Corrupt)?;
         Ok(aabb)
     }

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::format::{MAGIC, VERSION, holds};
 use super::hash::hash;
-use crate::world::bodies::{Bodies, Filter, flag};
+use crate::world::bodies::{Bodies, Filter, differ, flag};
 use crate::world::options::Report;
 use crate::{Aabb, Scalar};
 
@@ -12,8 +12,12 @@ use crate::{Aabb, Scalar};
 pub fn write<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(64 + bodies.slots.len() * (2 * D * T::BYTES + 2));
     bytes.extend(MAGIC);
-    bytes.extend([VERSION, D as u8, T::BYTES as u8, bodies.options.report as u8]);
-    put_scalars(&mut bytes, &[bodies.options.margin, bodies.options.prediction]);
+    let report = bodies.options.report;
+    bytes.extend([VERSION, D as u8, T::BYTES as u8, u8::from(report.is_fat())]);
+    if let Report::Fat { margin, prediction } = report {
+        put_scalars(&mut bytes, &[margin, prediction]);
+        put_scalars(&mut bytes, &bodies.shifted.unwrap_or([T::default(); D]));
+    }
     put_number(&mut bytes, bodies.slots.len() as u64);
     for &index in &bodies.slots.index_of {
         put_slot(&mut bytes, bodies, index);
@@ -33,12 +37,16 @@ fn put_slot<const D: usize, T: Scalar>(bytes: &mut Vec<u8>, bodies: &Bodies<D, T
     let is_live = flags & flag::LIVE != 0;
     let (filter, old_box, old_filter) = if is_live {
         let filter = &bodies.filters[row];
-        let old_box = old_box.filter(|&old| *old != bodies.boxes[row]);
+        let old_box = old_box.filter(|&old| differ(old, &bodies.boxes[row]));
         (Some(filter), old_box, old_filter.filter(|&old| old != filter))
     } else {
         (old_filter, old_box, None)
     };
     let filter = filter.filter(|&filter| *filter != Filter::default());
+    let origin = bodies
+        .origins
+        .get(row)
+        .filter(|&origin| is_live && is_known && differ(origin, bodies.shape(index)));
     let bit = |is_set, bit| if is_set { bit } else { 0 };
     bytes.push(
         bit(is_live, holds::BODY)
@@ -47,14 +55,16 @@ fn put_slot<const D: usize, T: Scalar>(bytes: &mut Vec<u8>, bodies: &Bodies<D, T
             | bit(flags & flag::SWEPT != 0, holds::SWEEP)
             | bit(filter.is_some(), holds::FILTER)
             | bit(old_box.is_some(), holds::OLD_BOX)
-            | bit(old_filter.is_some(), holds::OLD_FILTER),
+            | bit(old_filter.is_some(), holds::OLD_FILTER)
+            | bit(origin.is_some(), holds::ORIGIN),
     );
     put_number(bytes, u64::from(bodies.slots.id(index).generation()));
     if is_live {
         put_box(bytes, bodies.shape(index));
-        if bodies.options.report == Report::Fat {
+        if bodies.options.report.is_fat() {
             put_box(bytes, &bodies.boxes[row]);
         }
+        origin.into_iter().for_each(|origin| put_box(bytes, origin));
         if flags & flag::SWEPT != 0 {
             put_box(bytes, &bodies.rests[row]);
         }

@@ -182,6 +182,21 @@ pub fn size<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> f64 {
     (0..D).map(|axis| finite(aabb.max[axis]) - finite(aabb.min[axis])).sum()
 }
 
+/// Sorts by keys that are not NaN, and then by number, by insertion: few, as a node has boxes. Each type that the standard
+/// library sorts takes a kilobyte of a WebAssembly file.
+#[inline(never)]
+pub fn sort_few(parts: &mut [(f64, usize)]) {
+    for end in 1..parts.len() {
+        let part = parts[end];
+        let mut at = end;
+        while at > 0 && part < parts[at - 1] {
+            parts[at] = parts[at - 1];
+            at -= 1;
+        }
+        parts[at] = part;
+    }
+}
+
 /// Divides a full node's boxes and one more in two halves: in the order of an axis or of size,
 /// whichever makes the smallest halves.
 pub fn split<const D: usize, T: Scalar>(
@@ -194,15 +209,15 @@ pub fn split<const D: usize, T: Scalar>(
         *entry = (node.items[lane], node.aabb(lane));
     }
     let halves = |order: usize| {
-        let mut sorted = entries;
         let key =
             |aabb: &Aabb<D, T>| if order < D { aabb.doubled_center(order) } else { size(aabb) };
-        sorted.sort_unstable_by(|a, b| key(&a.1).total_cmp(&key(&b.1)).then(a.0.cmp(&b.0)));
+        let mut sorted: [_; FAN + 1] = core::array::from_fn(|at| (key(&entries[at].1), at));
+        sort_few(&mut sorted);
         let half = Node { has_leaves: node.has_leaves, ..Node::new(node.is_leaf) };
         let mut halves = (half, half);
-        for (index, (item, aabb)) in sorted.iter().enumerate() {
+        for (index, &(_, at)) in sorted.iter().enumerate() {
             let half = if index < FAN.div_ceil(2) { &mut halves.0 } else { &mut halves.1 };
-            half.push(*item, aabb);
+            half.push(entries[at].0, &entries[at].1);
         }
         halves
     };

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
 use super::edit::Tree;
-use super::node::{FAN, NONE};
+use super::node::{FAN, NONE, sort_few};
 use crate::{Aabb, Scalar};
 
 /// Random reads are prefetched this many at a time, so that their cache misses overlap. 4 instead takes 1.00
@@ -182,7 +182,7 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
             }
         }
         let parts = &mut parts[..count];
-        parts.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        sort_few(parts);
         for &mut (_, lane) in parts {
             // What was seen since may exclude it now.
             if bound(&node.aabb(lane)).is_none() {

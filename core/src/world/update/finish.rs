@@ -36,15 +36,14 @@ pub fn finish<const D: usize, T: Scalar>(
     }
     // After an update from scratch no body falls asleep.
     let is_scattered = !tracking.candidates.are_sorted && tracking.fall_asleep(bodies, moved);
-    // The bits of an id with the slot above the generation: numbers in the order of ids.
-    let bits = |id: ProxyId| id.to_bits().rotate_left(32);
-    let removed = bodies.leaving.iter().map(|&index| bits(bodies.slots.id(index)));
+    let removed = bodies.leaving.iter().map(|&index| bodies.slots.id(index).to_key());
     let sorted = tracking.scratch.sorter.sort_keys(removed);
     events.removed.clear();
-    events.removed.extend(sorted.map(|bits| ProxyId::from_bits(bits.rotate_left(32))));
+    events.removed.extend(sorted.map(ProxyId::from_key));
     for index in bodies.leaving.drain(..) {
         bodies.slots.release(index, 0);
     }
+    bodies.reset_origins();
     bodies.settle();
     is_scattered
 }

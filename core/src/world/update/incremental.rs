@@ -203,7 +203,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             let ahead = if policy.is_tight() {
                 bodies.boxes[row]
             } else {
-                motion.alone(index, before, &bodies.boxes[row], &bodies.options)
+                motion.alone(index, before, &bodies.boxes[row])
             };
             (index, if extends { fat[row].union(&ahead) } else { ahead })
         }));

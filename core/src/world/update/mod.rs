@@ -42,6 +42,7 @@ pub fn update<const D: usize, T: Scalar>(
     give_back::note_usage(bodies, tracking, events);
     events.begun.clear();
     events.ended.clear();
+    bodies.refatten_too_wide();
     let mut order = Reorder::No;
     let changed = bodies.count_changes();
     if changed > 0 && tracking.policy.skips_tracking(changed, bodies.slots.live) {

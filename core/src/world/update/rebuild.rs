@@ -88,7 +88,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     #[inline(never)]
     fn fatten_all(&mut self, bodies: &Bodies<D, T>) -> bool {
         let Self { fat, motion, policy, .. } = self;
-        let Bodies { slots, boxes, previous, options, changed, .. } = bodies;
+        let Bodies { slots, boxes, previous, changed, .. } = bodies;
         motion.sample(changed.len(), |at| {
             let index = changed[at];
             // What had the slot of a new body before does not count as motion.
@@ -97,16 +97,15 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         });
         // Where few bodies move they should not all leave their fat AABBs at once.
         let are_few = !bodies.scans_all(changed.len());
-        let is_fat = !policy.is_tight()
-            && (are_few || motion.lifetime >= 2.0 || options.margin > T::default());
+        let is_fat = !policy.is_tight() && (are_few || motion.lifetime >= 2.0);
         if is_fat {
             fat.copy_from_slice(boxes);
             for &index in changed.iter().filter(|&&index| !slots.has(index, flag::NEW)) {
                 let (before, now) = (&previous[index as usize], &boxes[index as usize]);
                 fat[index as usize] = if are_few {
-                    motion.alone(index, before, now, options)
+                    motion.alone(index, before, now)
                 } else {
-                    motion.together(before, now, options)
+                    motion.together(before, now)
                 };
             }
         }

@@ -13,7 +13,7 @@ mod whole;
 use alloc::boxed::Box;
 
 use sweep_and_prune::{Filter, Report};
-use sweep_and_prune_bindings::{Id, Settings, filter};
+use sweep_and_prune_bindings::{Id, filter};
 
 use handle::{Handle, Number};
 use sweep_and_prune_wasm_runtime::call::{self, run, stack, truth};
@@ -35,9 +35,11 @@ extern "C" fn world_new(
     is_fat: u32,
 ) -> Option<Box<Handle>> {
     stack::check(stack::SMALL);
-    let report = if truth(is_fat)? { Report::Fat } else { Report::Exact };
-    let settings = Settings { margin, prediction, report };
-    let world = types::broad_phase(dimensions, truth(is_double)?, settings)?;
+    let report = match truth(is_fat)? {
+        true => Report::Fat { margin, prediction },
+        false => Report::Exact,
+    };
+    let world = types::broad_phase(dimensions, truth(is_double)?, report)?;
     Some(Box::new(Handle::new(world, dimensions)))
 }
 
@@ -111,11 +113,23 @@ extern "C" fn world_insert_many(
     })
 }
 
-/// Gives a body the box in the numbers.
+/// Gives a body the box in the numbers, to which it moved or, unless `teleports` is 0, did not.
 #[unsafe(no_mangle)]
-extern "C" fn world_set(handle: &mut Handle, id: f64) -> Code {
+extern "C" fn world_set(handle: &mut Handle, id: f64, teleports: u32) -> Code {
     run(handle, stack::SMALL, |handle| {
-        let result = handle.id(id, 0).and_then(|id| handle.world.set(id, &handle.numbers));
+        let result = handle.id(id, 0).and_then(|id| match teleports {
+            0 => handle.world.set(id, &handle.numbers),
+            _ => handle.world.teleport(id, &handle.numbers),
+        });
+        handle.answer(result)
+    })
+}
+
+/// Adds the first numbers, one an axis, to all boxes.
+#[unsafe(no_mangle)]
+extern "C" fn world_shift(handle: &mut Handle) -> Code {
+    run(handle, stack::SMALL, |handle| {
+        let result = handle.world.shift(&handle.numbers);
         handle.answer(result)
     })
 }
@@ -172,13 +186,14 @@ extern "C" fn world_filter(handle: &mut Handle, id: f64) -> Code {
     })
 }
 
-/// Leaves the box of a body in the numbers.
+/// Leaves the box of a body in the numbers: as set or, unless `reported` is 0, as its overlaps are reported.
 #[unsafe(no_mangle)]
-extern "C" fn world_box(handle: &mut Handle, id: f64) -> Code {
+extern "C" fn world_box(handle: &mut Handle, id: f64, reported: u32) -> Code {
     run(handle, stack::SMALL, |handle| {
         let width = handle.width();
-        let result =
-            handle.id(id, 0).and_then(|id| handle.world.corners(id, &mut handle.numbers[..width]));
+        let result = handle
+            .id(id, 0)
+            .and_then(|id| handle.world.corners(id, reported != 0, &mut handle.numbers[..width]));
         handle.answer(result)
     })
 }

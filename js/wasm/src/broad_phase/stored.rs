@@ -3,8 +3,8 @@
 
 use alloc::vec::Vec;
 
-use sweep_and_prune::{Error, SnapshotFault};
-use sweep_and_prune_bindings::{Kind, Settings};
+use sweep_and_prune::{Error, Report, SnapshotFault};
+use sweep_and_prune_bindings::Kind;
 
 use super::handle::World;
 use super::types::broad_phase;
@@ -57,7 +57,7 @@ pub(super) fn restore(bytes: &mut [u8], dimensions: u32) -> Result<World, Error>
         return Err(Error::InvalidSnapshot(fault));
     }
     let mut world =
-        broad_phase(dimensions, kind.is_double, Settings::default()).ok_or(Error::OutOfMemory)?;
+        broad_phase(dimensions, kind.is_double, Report::Exact).ok_or(Error::OutOfMemory)?;
     world.restore(bytes)?;
     Ok(world)
 }

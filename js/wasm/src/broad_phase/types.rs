@@ -6,20 +6,21 @@
 
 use alloc::boxed::Box;
 
-use sweep_and_prune_bindings::{Settings, TypedBroadPhase};
+use sweep_and_prune::Report;
+use sweep_and_prune_bindings::TypedBroadPhase;
 
 use super::handle::World;
 
 /// An empty broad phase for boxes of 1 to 3 dimensions; `None` for those that the file does not have, or
-/// for bad settings.
-pub(super) fn broad_phase(dimensions: u32, is_double: bool, settings: Settings) -> Option<World> {
+/// for a bad margin or prediction.
+pub(super) fn broad_phase(dimensions: u32, is_double: bool, report: Report<f64>) -> Option<World> {
     match (dimensions, is_double) {
         #[cfg(any(feature = "broad-phase", feature = "events-2d"))]
-        (1 | 2, false) => Some(Box::new(TypedBroadPhase::<2, f32>::new(settings).ok()?)),
+        (1 | 2, false) => Some(Box::new(TypedBroadPhase::<2, f32>::new(report).ok()?)),
         #[cfg(any(feature = "broad-phase", feature = "events-3d"))]
-        (3, false) => Some(Box::new(TypedBroadPhase::<3, f32>::new(settings).ok()?)),
+        (3, false) => Some(Box::new(TypedBroadPhase::<3, f32>::new(report).ok()?)),
         #[cfg(feature = "broad-phase")]
-        (1..=3, true) => Some(Box::new(TypedBroadPhase::<3, f64>::new(settings).ok()?)),
+        (1..=3, true) => Some(Box::new(TypedBroadPhase::<3, f64>::new(report).ok()?)),
         _ => None,
     }
 }
