@@ -11,6 +11,10 @@ const SCENES: [&str; 6] = ["uniform", "clustered", "mixed", "slab", "tower", "bo
 const MOST_OF_BOX_PRUNING: usize = 100_000;
 /// At least this number of calls is timed, however long they take, and at most the other.
 const CALLS: (usize, usize) = (7, 3000);
+/// Up to this many boxes, each call has a scene of its own, so that a branch predictor cannot learn the hits of one.
+const MOST_VARIED: usize = 10_000;
+/// The number of scenes of a kind.
+const VARIED: usize = 100;
 /// The frames of a world before it is timed.
 const WARM_UP: usize = 40;
 
@@ -127,34 +131,45 @@ fn converted<const D: usize>(boxes: &[old::Aabb<D>]) -> Vec<new::Aabb<D>> {
     boxes.iter().map(|it| new::Aabb::new(it.min, it.max)).collect()
 }
 
-/// Finds all pairs of boxes at rest, or of each frame of a motion. Boxes at rest are found once in another order before
-/// each timed call, as in the benchmark, so that nothing known from the last call helps.
-fn find<const D: usize>(
-    options: &Options,
-    mut boxes: Vec<old::Aabb<D>>,
-    shuffled: Option<Vec<old::Aabb<D>>>,
-    mut advance: impl FnMut(&mut Vec<old::Aabb<D>>),
-) -> Times {
+/// The boxes of the next call.
+enum Source<'a, const D: usize> {
+    /// Frame after frame of a motion, or scene after scene of a kind.
+    Next(&'a mut dyn FnMut() -> Vec<old::Aabb<D>>),
+    /// Many boxes at rest. They are found once in another order before each timed call, as in the benchmark, so that
+    /// nothing known from the last call helps.
+    AtRest(Vec<old::Aabb<D>>),
+}
+
+/// Finds all pairs in at least `least` calls.
+fn find<const D: usize>(options: &Options, least: usize, mut source: Source<D>) -> Times {
     let mut old = old::PairFinder::<D>::new().threads(options.threads);
     let mut new = new::PairFinder::<D>::new().threads(options.threads);
     let mut times = Times::default();
+    let mut boxes = match &source {
+        Source::Next(_) => Vec::new(),
+        Source::AtRest(boxes) => boxes.clone(),
+    };
+    let mut shuffled = boxes.clone();
+    Random::new(SEED).shuffle(&mut shuffled);
     let start = Instant::now();
     for round in 0..CALLS.1 {
-        if round >= CALLS.0 && start.elapsed().as_secs_f64() > options.seconds {
+        if round >= least && start.elapsed().as_secs_f64() > options.seconds {
             break;
         }
-        let same = converted(&boxes);
-        if let Some(shuffled) = &shuffled {
-            old.find(shuffled).expect("valid boxes");
-            new.find(&converted(shuffled)).expect("valid boxes");
+        match &mut source {
+            Source::Next(next) => boxes = next(),
+            Source::AtRest(_) => {
+                old.find(&shuffled).expect("valid boxes");
+                new.find(&converted(&shuffled)).expect("valid boxes");
+            }
         }
+        let same = converted(&boxes);
         let (by_old, by_new) = times.push(
             round,
             || old.find(&boxes).expect("valid boxes"),
             || new.find(&same).expect("valid boxes"),
         );
         assert!(by_old == by_new, "the revisions find other pairs or another order");
-        advance(&mut boxes);
     }
     times
 }
@@ -210,6 +225,17 @@ fn track<const D: usize>(options: &Options, motion: Motion, count: usize) -> (Ti
     (times, over_scratch)
 }
 
+/// The scenes of a kind. Those with the same boxes for every seed differ in their order.
+fn varied<const D: usize>(draw: impl Fn(u64) -> Vec<old::Aabb<D>>) -> Vec<Vec<old::Aabb<D>>> {
+    let mut scenes: Vec<_> = (SEED..).take(VARIED).map(draw).collect();
+    if scenes[0] == scenes[1] {
+        for (scene, seed) in scenes.iter_mut().zip(SEED..) {
+            Random::new(seed).shuffle(scene);
+        }
+    }
+    scenes
+}
+
 /// One line of the report: its name, and the ratios of minima, of medians and of totals.
 type Line = (String, [f64; 3]);
 
@@ -241,11 +267,17 @@ fn compare<const D: usize>(options: &Options, lines: &mut Vec<Line>) {
                 if !scene.dimensions().contains(&D) || too_many {
                     continue;
                 }
-                let at_rest =
-                    scene.boxes::<D, f32>(boxes, SEED).expect("a scene of these dimensions");
-                let mut shuffled = at_rest.clone();
-                Random::new(SEED).shuffle(&mut shuffled);
-                let times = find(options, at_rest, Some(shuffled), |_| {});
+                let draw = |seed| {
+                    scene.boxes::<D, f32>(boxes, seed).expect("a scene of these dimensions")
+                };
+                let times = if boxes > MOST_VARIED {
+                    find(options, CALLS.0, Source::AtRest(draw(SEED)))
+                } else {
+                    let scenes = varied(draw);
+                    let mut turns = scenes.iter().cycle();
+                    let mut next = || turns.next().expect("scenes").clone();
+                    find(options, VARIED, Source::Next(&mut next))
+                };
                 lines.push(report("finder", D, name, boxes, &times, ""));
             }
             for motion in [Motion::Drift, Motion::Fast, Motion::MostlyStill]
@@ -254,11 +286,11 @@ fn compare<const D: usize>(options: &Options, lines: &mut Vec<Line>) {
             {
                 let mut moving =
                     motion.start::<D, f32>(boxes, SEED).expect("one to three dimensions");
-                let first = moving.boxes().to_vec();
-                let times = find(options, first, None, |boxes| {
+                let mut next = || {
                     moving.advance();
-                    boxes.copy_from_slice(moving.boxes());
-                });
+                    moving.boxes().to_vec()
+                };
+                let times = find(options, CALLS.0, Source::Next(&mut next));
                 lines.push(report("finder", D, motion.name(), boxes, &times, ""));
             }
         }

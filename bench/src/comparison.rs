@@ -23,6 +23,11 @@ const ORACLE_LIMIT: usize = 10_000;
 const BATCHED: usize = 1000;
 /// After this time a library takes part in no more rounds, except for the first three.
 const PATIENCE: Duration = Duration::from_secs(2);
+/// A library that would take longer than this for all scenes of a round takes fewer scenes, and goes on with the others
+/// in the next round.
+const LONGEST_ROUND: Duration = Duration::from_secs(1);
+/// The fewest scenes of a round.
+const FEWEST_SCENES: u128 = 10;
 /// Sets of boxes with more pairs than about this are left out.
 const MOST_PAIRS: f64 = 5e7;
 /// How many times the limit a world may take to be checked, over many frames.
@@ -48,12 +53,12 @@ impl Kind {
         }
     }
 
-    /// A round's time from the times of its repeats. A world may do work now and then that pays for many frames, so all
-    /// frames count.
-    fn sum_up(self, nanoseconds: &[f64]) -> f64 {
+    /// A round's time from the times of its repeats. A world may do work now and then that pays for many frames, and
+    /// different scenes (`varied`) take different times, so all of them count.
+    fn sum_up(self, varied: bool, nanoseconds: &[f64]) -> f64 {
         match self {
-            Self::Pairs => median(nanoseconds),
-            Self::Worlds => nanoseconds.iter().sum::<f64>() / nanoseconds.len() as f64,
+            Self::Pairs if !varied => median(nanoseconds),
+            _ => nanoseconds.iter().sum::<f64>() / nanoseconds.len() as f64,
         }
     }
 }
@@ -68,6 +73,8 @@ pub struct Comparison<'a> {
     pub dimensions: usize,
     /// The number of boxes.
     pub boxes: usize,
+    /// How many scenes of a kind are drawn, if not the default number.
+    pub seeds: Option<usize>,
     /// Rounds in which each library is timed.
     pub rounds: usize,
     /// After this time a library is stopped.
@@ -175,8 +182,14 @@ impl Comparison<'_> {
                 return Ok(Err(format!("{too_slow}, as its time for {boxes} boxes shows")));
             }
         }
-        let mut worker =
-            Remote::start(self.kind, info.name, self.scene, self.dimensions, self.boxes)?;
+        let mut worker = Remote::start(
+            self.kind,
+            info.name,
+            self.scene,
+            self.dimensions,
+            self.boxes,
+            self.seeds,
+        )?;
         let limit = match self.kind {
             Kind::Pairs => self.limit,
             Kind::Worlds => WORLD_CHECK * self.limit + CHECK_OF_BOX * self.boxes as u32,
@@ -215,7 +228,7 @@ impl Comparison<'_> {
     /// How many frames are checked.
     fn frames_checked(&self) -> u64 {
         match self.kind {
-            Kind::Pairs => scene::frames_checked(self.scene) as u64,
+            Kind::Pairs => scene::frames_checked(self.scene, self.boxes) as u64,
             Kind::Worlds => worlds::FRAMES_CHECKED as u64,
         }
     }
@@ -259,6 +272,10 @@ impl Comparison<'_> {
         untimed: &mut Vec<(&'a LibraryInfo, String)>,
     ) -> Result<()> {
         let count = running.len();
+        let varied = match self.kind {
+            Kind::Pairs => scene::varied(self.scene, self.boxes, self.seeds),
+            Kind::Worlds => None,
+        };
         let mut lost = Vec::new();
         for at in (0..count).map(|at| (at + round) % count) {
             let library = &mut running[at];
@@ -269,14 +286,20 @@ impl Comparison<'_> {
             let round_time = self.kind.round();
             let (least, most) = self.kind.repeats();
             let once = library.first.as_nanos().max(1) * batch as u128;
-            let repeats = (round_time.as_nanos() / once).clamp(least, most);
+            let repeats = match varied {
+                Some(scenes) => {
+                    let all = scenes.div_ceil(batch) as u128;
+                    (LONGEST_ROUND.as_nanos() / once).max(FEWEST_SCENES).min(all)
+                }
+                None => (round_time.as_nanos() / once).clamp(least, most),
+            };
             let request = Request::Time { repeats: repeats as usize, batch };
             // The first call had the limit; here it only guards against hanging.
-            match library.worker.ask(&request, 10 * self.limit + 20 * round_time)? {
+            match library.worker.ask(&request, 20 * self.limit + 20 * round_time)? {
                 remote::Outcome::Reply(Reply::Timed { nanoseconds }) => {
                     let all = nanoseconds.iter().sum::<f64>() * batch as f64;
                     library.spent += Duration::from_nanos(all as u64);
-                    library.rounds.push((round, self.kind.sum_up(&nanoseconds)));
+                    library.rounds.push((round, self.kind.sum_up(varied.is_some(), &nanoseconds)));
                 }
                 other => lost.push((at, failure(other))),
             }

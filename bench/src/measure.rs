@@ -56,6 +56,10 @@ pub struct Options {
     /// Only the libraries whose names begin with one of these, and this one.
     #[arg(long, value_delimiter = ',')]
     libraries: Vec<String>,
+    /// Scenes of each kind up to 10,000 boxes, one for each seed: by default 200,000 boxes in all, but at least 100 scenes
+    /// and at most 2,000.
+    #[arg(long)]
+    seeds: Option<usize>,
     /// Rounds of a case.
     #[arg(long)]
     rounds: Option<usize>,
@@ -221,6 +225,7 @@ pub fn run(options: &Options) -> Result<()> {
             scene,
             dimensions,
             boxes,
+            seeds: options.seeds,
             rounds: planned.rounds,
             limit: Duration::from_secs_f64(options.limit),
             bar: &bar,

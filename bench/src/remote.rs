@@ -41,10 +41,12 @@ impl Remote {
         scene: &str,
         dimensions: usize,
         boxes: usize,
+        seeds: Option<usize>,
     ) -> Result<Self> {
         let mut child = Command::new(std::env::current_exe()?)
             .args(["worker", "--library", library, "--scene", scene])
             .args(["--dimensions", &dimensions.to_string(), "--boxes", &boxes.to_string()])
+            .args(seeds.map(|seeds| format!("--seeds={seeds}")))
             .args((kind == Kind::Worlds).then_some("--world"))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())

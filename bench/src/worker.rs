@@ -15,7 +15,7 @@ use crate::fingerprint::Fingerprint;
 use crate::libraries::{self, Finder};
 use crate::machine;
 use crate::protocol::{Job, MARK, Reply, Request};
-use crate::scene::Boxes;
+use crate::scene::{Boxes, WARM_UP};
 use crate::worlds::{self, Tracking};
 
 /// What to run.
@@ -29,6 +29,9 @@ pub struct Options {
     dimensions: usize,
     #[arg(long)]
     boxes: usize,
+    /// How many scenes of a kind to draw, if not the default number.
+    #[arg(long)]
+    seeds: Option<usize>,
     /// The library is a world and the scene a motion.
     #[arg(long)]
     world: bool,
@@ -49,7 +52,7 @@ pub fn run(options: &Options) -> Result<()> {
 }
 
 fn job(options: &Options) -> Result<Box<dyn Job>> {
-    let Options { library: name, scene, boxes, .. } = options;
+    let Options { library: name, scene, boxes, seeds, .. } = options;
     let unknown = || format!("there is no library '{name}'");
     let other = "not in this number of dimensions";
     if options.world {
@@ -62,8 +65,8 @@ fn job(options: &Options) -> Result<Box<dyn Job>> {
     }
     let library = libraries::all().into_iter().find(|it| it.name == name).with_context(unknown)?;
     Ok(match options.dimensions {
-        2 => Box::new(Finding::new(library.two.context(other)?(), scene, *boxes)?),
-        3 => Box::new(Finding::new(library.three.context(other)?(), scene, *boxes)?),
+        2 => Box::new(Finding::new(library.two.context(other)?(), scene, *boxes, *seeds)?),
+        3 => Box::new(Finding::new(library.three.context(other)?(), scene, *boxes, *seeds)?),
         _ => bail!(other),
     })
 }
@@ -82,8 +85,13 @@ struct Finding<const D: usize> {
 }
 
 impl<const D: usize> Finding<D> {
-    fn new(library: Box<dyn Finder<D>>, scene: &str, n: usize) -> Result<Self> {
-        Ok(Self { library, boxes: Boxes::new(scene, n)? })
+    fn new(
+        library: Box<dyn Finder<D>>,
+        scene: &str,
+        n: usize,
+        seeds: Option<usize>,
+    ) -> Result<Self> {
+        Ok(Self { library, boxes: Boxes::new(scene, n, seeds)? })
     }
 }
 
@@ -104,13 +112,30 @@ impl<const D: usize> Job for Finding<D> {
         Ok(Reply::Checked { fingerprint, nanoseconds, peak_bytes, exact_ns: None })
     }
 
-    /// Times calls on boxes in motion frame by frame, and on boxes at rest so that nothing known
-    /// from the last call helps.
+    /// Times calls on boxes in motion frame by frame, on one scene of a kind after another, and on boxes at rest so
+    /// that nothing known from the last call helps.
     fn time(&mut self, repeats: usize, batch: usize) -> Result<Reply> {
         let library = &mut *self.library;
         let mut nanoseconds = Vec::with_capacity(repeats);
+        if let Boxes::Varied { scenes, next, .. } = &mut self.boxes {
+            for _ in 0..WARM_UP {
+                black_box(library.find(&scenes[*next])?);
+                *next = (*next + 1) % scenes.len();
+            }
+        }
         for _ in 0..repeats {
             match &mut self.boxes {
+                Boxes::Varied { scenes, next, current } if batch == 1 => {
+                    current.clone_from(&scenes[*next]);
+                    *next = (*next + 1) % scenes.len();
+                    nanoseconds.push(mean_time(library, &[current])?);
+                }
+                Boxes::Varied { scenes, next, .. } => {
+                    let turns = scenes.iter().cycle().skip(*next).take(batch);
+                    let turns: Vec<&[Aabb<D>]> = turns.map(Vec::as_slice).collect();
+                    *next = (*next + batch) % scenes.len();
+                    nanoseconds.push(mean_time(library, &turns)?);
+                }
                 Boxes::InMotion(moving) => {
                     moving.advance();
                     nanoseconds.push(mean_time(library, &[moving.boxes()])?);

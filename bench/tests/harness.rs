@@ -15,6 +15,7 @@ const EVERYWHERE: &[&str] = &[
     "sweep-and-prune, 2 threads",
     "sweep-and-prune, two at once",
     "sweep-and-prune, fresh",
+    "one-axis sweep, vectorized",
     "plain sweep",
     "brute force",
     #[cfg(feature = "light")]
@@ -49,7 +50,8 @@ fn measure(file: &Path, arguments: &[&str]) -> (String, Value) {
 }
 
 fn measure_part(part: &str, file: &Path, arguments: &[&str]) -> (String, Value) {
-    let shared = ["measure", part, "--rounds", "2", "--output", file.to_str().unwrap()];
+    let shared =
+        ["measure", part, "--rounds", "2", "--seeds", "4", "--output", file.to_str().unwrap()];
     let said = bench(&[&shared, arguments].concat());
     (said, serde_json::from_slice(&fs::read(file).unwrap()).unwrap())
 }

@@ -1,6 +1,7 @@
 //! The libraries that find all pairs of a set of boxes: this repository's and the alternatives to it, each in
 //! its own short file, called as its own documentation recommends.
 
+mod one_axis;
 mod plain;
 pub mod this_crate;
 
@@ -30,7 +31,7 @@ pub use library::{
 pub fn all() -> Vec<Library> {
     let mut all =
         vec![this_crate::LIBRARY, this_crate::TWO_THREADS, this_crate::TWICE, this_crate::FRESH];
-    all.extend([plain::SWEEP, plain::BRUTE_FORCE]);
+    all.extend([one_axis::LIBRARY, plain::SWEEP, plain::BRUTE_FORCE]);
     #[cfg(feature = "light")]
     all.extend([
         broccoli::LIBRARY,
