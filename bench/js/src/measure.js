@@ -12,6 +12,10 @@ const WORKER = fileURLToPath(new URL("worker.js", import.meta.url));
 
 /** A library's turn in a round takes about so long, in milliseconds. */
 const TURN = 20;
+/** A library that takes longer than this (ms) for all scenes of a round takes fewer scenes. */
+const LONGEST_ROUND = 1000;
+/** The fewest scenes of a round. */
+const FEWEST_SCENES = 10;
 /** Shorter calls are timed together until they take so long. */
 const BATCH = 1;
 /** No library takes part in more rounds once it has taken so long, but for the first three. */
@@ -30,7 +34,7 @@ export const NATIVE_WORLD = "native, BroadPhase";
  * @typedef {import("./record.js").Entry} Entry
  * @typedef {{ name: string, alternative: boolean, package: string }} Library
  * @typedef {{ library: Library, remote: Remote, fingerprint: string, pairs: number, peak_bytes: number | null,
- *   estimate: number, rounds: number[], spent: number }} Running
+ *   estimate: number, varied: number, rounds: number[], spent: number }} Running
  */
 
 export class Measurement {
@@ -174,7 +178,7 @@ export class Measurement {
     const remote = this.#start(library.name, setting);
     try {
       await remote.ask("", 10_000 + 4 * limit);
-      const { fingerprint, pairs, peak_bytes, longest } = await remote.ask("check", 4 * limit);
+      const { fingerprint, pairs, peak_bytes, longest, varied } = await remote.ask("check", 4 * limit);
       this.#witnesses.push({ library, fingerprint, pairs });
       if (longest > 2 * limit) throw new NoAnswer(`over ${limit / 1000} s`);
       if (longest < LONG) await remote.ask("warm-up", 10_000 + limit);
@@ -182,7 +186,7 @@ export class Measurement {
       const estimate = median((await remote.ask(`time ${repeats} 1`, 10_000 + repeats * limit)).ms);
       this.#slow.set(key, { boxes: Number(boxes), took: estimate });
       if (estimate > limit) throw new NoAnswer(`over ${limit / 1000} s`);
-      return { library, remote, fingerprint, pairs, peak_bytes, estimate, rounds: [], spent: 0 };
+      return { library, remote, fingerprint, pairs, peak_bytes, estimate, varied, rounds: [], spent: 0 };
     } catch (error) {
       remote.stop();
       if (!(error instanceof NoAnswer)) throw error;
@@ -209,7 +213,7 @@ export class Measurement {
         await remote.ask("check", 20_000);
         const { ns } = await remote.ask("time 3 1", 20_000);
         const library = { name, alternative: false, package: "" };
-        return { library, remote, fingerprint: "", pairs: 0, peak_bytes: null, estimate: median(ns) / 1e6, rounds: [], spent: 0 };
+        return { library, remote, fingerprint: "", pairs: 0, peak_bytes: null, estimate: median(ns) / 1e6, varied: 0, rounds: [], spent: 0 };
       }),
     );
   }
@@ -228,13 +232,15 @@ export class Measurement {
         if (lost.has(one) || (round >= 3 && one.spent > PATIENCE)) continue;
         const estimate = Math.max(one.estimate, 0.01);
         const batch = Math.ceil(BATCH / estimate);
-        const repeats = Math.max(1, Math.round(TURN / (batch * estimate)));
+        const varied = Math.max(...running.map((each) => each.varied));
+        const scenes = Math.max(FEWEST_SCENES, Math.min(varied, Math.round(LONGEST_ROUND / estimate)));
+        const repeats = varied ? Math.ceil(scenes / batch) : Math.max(1, Math.round(TURN / (batch * estimate)));
         try {
           // The limit is for what takes too long once; here it only guards against hanging.
           const { ms, ns } = await one.remote.ask(`time ${repeats} ${batch}`, 10 * limit + 10_000);
           const all = ms ?? ns.map((/** @type {number} */ time) => time / 1e6);
           one.spent += all.reduce((/** @type {number} */ sum, /** @type {number} */ time) => sum + time, 0) * batch;
-          one.rounds[round] = median(all) * 1e6;
+          one.rounds[round] = (varied ? mean(all) : median(all)) * 1e6;
         } catch (error) {
           if (!(error instanceof NoAnswer)) throw error;
           lost.add(one);
@@ -279,4 +285,9 @@ function times({ rounds, peak_bytes }, own) {
     ratio: ratios.length > 0 ? median(ratios) : null,
     peak_bytes,
   };
+}
+
+/** The mean: different scenes take different times, so all of them count. */
+function mean(/** @type {number[]} */ numbers) {
+  return numbers.reduce((sum, number) => sum + number, 0) / numbers.length;
 }

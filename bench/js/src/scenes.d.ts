@@ -10,6 +10,7 @@ export interface Listed {
 export interface Scene {
   readonly isMoving: boolean;
   readonly frames: number;
+  readonly varied: number;
   readonly first: Float32Array;
   next(): Float32Array;
 }

@@ -44,7 +44,7 @@ export class Scenes {
       const at = this.#exports.rows(turn);
       return new Float32Array(this.#exports.memory.buffer, at, length).slice();
     };
-    return kind === 2 ? new InMotion(this.#exports, rows) : new AtRest(rows);
+    return kind === 2 ? new InMotion(this.#exports, rows) : new AtRest(rows, this.#exports.turns());
   }
 
   #bytes(/** @type {number} */ at, /** @type {number} */ length) {
@@ -52,31 +52,45 @@ export class Scenes {
   }
 }
 
-/** Boxes at rest, seen in two orders by turns: what was learnt in one call is worth nothing in the next. */
+/** Scenes of a kind, one after another, or many boxes at rest in two orders by turns. */
 class AtRest {
   isMoving = false;
-  frames = 1;
-  #orders;
+  /** How many are checked: one of those that differ only in the order of their boxes. */
+  frames;
+  /** How many are timed in a round, each once; 0 if any number of calls may be. */
+  varied;
+  #rows;
+  #turns;
   #turn = 0;
+  /** @type {Float32Array[]} */
+  #seen = [];
 
-  constructor(/** @type {(turn: number) => Float32Array} */ rows) {
-    this.#orders = [rows(0), rows(1)];
+  constructor(/** @type {(turn: number) => Float32Array} */ rows, /** @type {number} */ turns) {
+    this.#rows = rows;
+    this.#turns = turns;
+    this.varied = turns > 2 ? turns : 0;
+    this.frames = turns > 2 ? 4 : 1;
   }
 
   /** The first call's boxes. */
   get first() {
-    return this.#orders[0];
+    return this.#at(0);
   }
 
   /** The boxes of the next call. */
   next() {
-    return this.#orders[this.#turn++ % 2];
+    return this.#at(this.#turn++ % this.#turns);
+  }
+
+  #at(/** @type {number} */ turn) {
+    return (this.#seen[turn] ??= this.#rows(turn));
   }
 }
 
 /** Boxes in motion, frame after frame. */
 class InMotion {
   isMoving = true;
+  varied = 0;
   /** How many frames are checked. */
   frames = 4;
   #exports;

@@ -8,7 +8,7 @@ export interface Clock {
 
 export class Trial {
   static start(scene: Scene, dimensions: number, module: LibraryModule, clock: Clock): Promise<Trial>;
-  check(): { fingerprint: string; pairs: number; longest: number };
+  check(): { fingerprint: string; pairs: number; longest: number; varied: number };
   warmUp(): void;
   time(repeats: number, batch?: number): number[];
 }

@@ -11,7 +11,9 @@ import { libraries } from "../libraries/index.js";
 import { Candidates } from "../libraries/candidates.js";
 import { create as plainSweep } from "../libraries/plain-sweep.js";
 import { create as bruteForce } from "../libraries/brute-force.js";
+import { buildWasm } from "../src/build.js";
 import { Fingerprint } from "../src/fingerprint.js";
+import { Scenes } from "../src/scenes.js";
 
 const folder = mkdtempSync(join(tmpdir(), "bench-js-"));
 after(() => rmSync(folder, { recursive: true }));
@@ -44,6 +46,19 @@ test("every light library finds the right pairs and is timed, at rest and in mot
     );
   }
   for (const { package: name } of light) if (name) assert.match(versions[name === "sweep-and-prune" ? "sweep-and-prune" : name], /^\d/);
+});
+
+test("each call finds another scene of the kind, even where seeds do not change the boxes", async () => {
+  const scenes = await Scenes.start(readFileSync(buildWasm()));
+  for (const name of ["uniform", "box-pruning"]) {
+    const kind = scenes.open(name, 3, 200);
+    const seen = new Set(Array.from({ length: kind.varied }, () => kind.next().join()));
+    assert.deepEqual([kind.varied, seen.size], [100, 100], name);
+    assert.ok(seen.has(kind.next().join()), "the first scene follows the last");
+  }
+  const many = scenes.open("uniform", 3, 10_001);
+  assert.equal(many.varied, 0);
+  assert.notDeepEqual(many.next(), many.next());
 });
 
 test("a fingerprint tells sets of pairs apart, however they are ordered", () => {

@@ -11,16 +11,51 @@ use std::fmt::Write;
 use sweep_and_prune::Aabb;
 use sweep_and_prune_scenes::{Motion, Moving, Random, Scene};
 
-/// The seed of every scene, that of `bench/` too, so that two runs measure the same boxes.
+/// The seed of every scene, or of the first of several: that of `bench/` too, so that two runs measure the same boxes.
 const SEED: u64 = 1;
+/// Up to this many boxes, each call has another scene of the kind. A branch predictor learns the hits of one small
+/// scene that is found again and again.
+const MOST_VARIED: usize = 10_000;
+/// The number of scenes of a kind.
+const SCENES: usize = 100;
 
 /// Boxes in one of the two numbers of dimensions that are measured.
 pub enum Boxes<const D: usize> {
-    /// A scene, and the same boxes in another order: what was learnt of one is worth nothing for
-    /// the other.
-    AtRest([Vec<Aabb<D>>; 2]),
+    /// Scenes of a kind.
+    AtRest(Scenes<D>),
     /// A motion: its current frame.
     InMotion(Moving<D, f32>),
+}
+
+/// Scenes of a kind, which differ by their seeds, or one scene of many boxes in two orders. Each is drawn when it is
+/// needed for the first time.
+pub struct Scenes<const D: usize> {
+    scene: Scene,
+    n: usize,
+    drawn: Vec<Vec<Aabb<D>>>,
+}
+
+impl<const D: usize> Scenes<D> {
+    /// How many scenes or orders there are.
+    fn turns(&self) -> usize {
+        if self.n <= MOST_VARIED { SCENES } else { 2 }
+    }
+
+    fn turn(&mut self, turn: usize) -> &[Aabb<D>] {
+        let turn = turn % self.turns();
+        while self.drawn.len() <= turn {
+            let seed = SEED + self.drawn.len() as u64;
+            let varied = self.n <= MOST_VARIED;
+            let boxes = self.scene.boxes(self.n, if varied { seed } else { SEED });
+            let mut boxes = boxes.unwrap_or_default();
+            // What was learned of one order is worth nothing for another. Some kinds have the same boxes for every seed.
+            if self.drawn.first() == Some(&boxes) {
+                Random::new(seed).shuffle(&mut boxes);
+            }
+            self.drawn.push(boxes);
+        }
+        &self.drawn[turn]
+    }
 }
 
 impl<const D: usize> Boxes<D> {
@@ -30,17 +65,24 @@ impl<const D: usize> Boxes<D> {
         if let Some(motion) = Motion::from_name(name) {
             return Some(Self::InMotion(motion.start(n, SEED)?));
         }
-        let boxes = Scene::from_name(name)?.boxes::<D, f32>(n, SEED)?;
-        let mut shuffled = boxes.clone();
-        Random::new(SEED).shuffle(&mut shuffled);
-        Some(Self::AtRest([boxes, shuffled]))
+        let scene = Scene::from_name(name)?;
+        let first = scene.boxes(n, SEED)?;
+        Some(Self::AtRest(Scenes { scene, n, drawn: vec![first] }))
     }
 
-    /// The boxes of a call: of a scene in either order by turns, of a motion the current frame.
-    pub fn turn(&self, turn: usize) -> &[Aabb<D>] {
+    /// The boxes of a call: one scene or order after another, of a motion the current frame.
+    pub fn turn(&mut self, turn: usize) -> &[Aabb<D>] {
         match self {
-            Self::AtRest(orders) => &orders[turn % 2],
+            Self::AtRest(scenes) => scenes.turn(turn),
             Self::InMotion(moving) => moving.boxes(),
+        }
+    }
+
+    /// How many turns have different boxes; 1 of a motion.
+    fn turns(&self) -> usize {
+        match self {
+            Self::AtRest(scenes) => scenes.turns(),
+            Self::InMotion(_) => 1,
         }
     }
 
@@ -123,6 +165,16 @@ extern "C" fn open(dimensions: usize, n: usize) -> u32 {
             Some(Open::Two(Boxes::AtRest(_)) | Open::Three(Boxes::AtRest(_))) => 1,
             Some(_) => 2,
         }
+    })
+}
+
+/// How many turns have different boxes.
+#[unsafe(no_mangle)]
+extern "C" fn turns() -> usize {
+    SHARED.with_borrow(|shared| match &shared.open {
+        Some(Open::Two(boxes)) => boxes.turns(),
+        Some(Open::Three(boxes)) => boxes.turns(),
+        None => 0,
     })
 }
 
