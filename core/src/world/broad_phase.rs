@@ -10,7 +10,7 @@ use super::finder::Finder;
 use super::options::Options;
 use super::queries::Queries;
 use super::snapshot;
-use super::tracking::{Tracking, TreeState};
+use super::tracking::Tracking;
 use super::update::{restore, update};
 use crate::{Aabb, Error, Scalar};
 
@@ -202,7 +202,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         let mut others = Vec::new();
         if slots.has(index, flag::NEW) {
             // No update knew it.
-        } else if matches!(tracking.tree_state, TreeState::Fresh { .. }) {
+        } else if tracking.has_tree() && tracking.flying.is_empty() {
             let near = tracking.tree.overlapping(bodies.previous[index as usize]);
             others.extend(near.filter(|&other| {
                 other != index

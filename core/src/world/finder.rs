@@ -53,16 +53,41 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         filter_of: &dyn Fn(u32) -> Filter,
         most: usize,
     ) -> Option<&[[u32; 2]]> {
-        let Self { finder, sets, boxes, pairs, .. } = self;
         let flags = &bodies.slots.flags;
         let takes_part = |flags: u16| (flags & any != 0) & (flags & none == 0);
         if !bodies.any_filter && flags.iter().all(|&flags| takes_part(flags)) {
-            let pairs = found(finder.search(table).pairs_up_to(most))?;
+            let pairs = found(self.finder.search(table).pairs_up_to(most))?;
             self.found = pairs.len();
             return Some(pairs);
         }
         let all = (0..flags.len() as u32).filter(|&index| takes_part(flags[index as usize]));
-        sets.divide(all, filter_of);
+        self.sets.all.clear();
+        self.sets.all.extend(all);
+        self.find_in_sets(table, filter_of, most)
+    }
+
+    /// The same of some bodies that are there.
+    pub fn find_some(
+        &mut self,
+        some: &[u32],
+        bodies: &Bodies<D, T>,
+        most: usize,
+    ) -> Option<&[[u32; 2]]> {
+        self.sets.all.clear();
+        self.sets.all.extend_from_slice(some);
+        let filter_of = |index| bodies.filters[index as usize];
+        self.find_in_sets(&bodies.boxes, &filter_of, most)
+    }
+
+    #[inline(never)]
+    fn find_in_sets(
+        &mut self,
+        table: &[Aabb<D, T>],
+        filter_of: &dyn Fn(u32) -> Filter,
+        most: usize,
+    ) -> Option<&[[u32; 2]]> {
+        let Self { finder, sets, boxes, pairs, .. } = self;
+        sets.divide(filter_of);
         boxes.clear();
         boxes.extend(sets.bodies.iter().map(|&index| table[index as usize]));
         pairs.clear();

@@ -122,7 +122,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         apply(&mut bodies.slots.slot_of, order, words);
         let Bodies { slots, changed, leaving, swept, moved, too_wide, .. } = bodies;
         let lists = changed.iter_mut().chain(leaving).chain(swept).chain(moved).chain(too_wide);
-        for index in slots.index_of.iter_mut().chain(lists) {
+        for index in slots.index_of.iter_mut().chain(lists).chain(&mut self.flying) {
             *index = renamed[*index as usize];
         }
         self.candidates.rename(renamed);

@@ -30,7 +30,8 @@ pub struct Sets {
     allowed: [u64; SETS],
     /// The filters, and at the end what stands for all others.
     kinds: Vec<Kind>,
-    /// By body as they came in, the position of its filter.
+    /// The bodies that take part, and by their positions those of their filters.
+    pub all: Vec<u32>,
     kind_of: Vec<u8>,
 }
 
@@ -43,17 +44,14 @@ struct Kind {
 }
 
 impl Sets {
-    /// Divides bodies by the filters that they have.
+    /// Divides the bodies that take part by the filters that they have.
     #[inline(never)]
-    pub fn divide(
-        &mut self,
-        bodies: impl Iterator<Item = u32> + Clone,
-        filter_of: &dyn Fn(u32) -> Filter,
-    ) {
+    pub fn divide(&mut self, filter_of: &dyn Fn(u32) -> Filter) {
         let mut buckets = [u8::MAX; BUCKETS];
         self.kinds.clear();
         self.kind_of.clear();
-        for index in bodies.clone() {
+        for at in 0..self.all.len() {
+            let index = self.all[at];
             let kind = self.kind(&mut buckets, filter_of(index));
             self.kinds[usize::from(kind)].count += 1;
             self.kind_of.push(kind);
@@ -61,7 +59,7 @@ impl Sets {
         self.choose_sets();
         self.bodies.clear();
         for set in 0..NOWHERE {
-            let kinds = bodies.clone().zip(&self.kind_of);
+            let kinds = self.all.iter().zip(&self.kind_of);
             let of_set = kinds.filter(|(_, kind)| self.kinds[usize::from(**kind)].set == set);
             self.bodies.extend(of_set.map(|(index, _)| index));
             self.ends[usize::from(set)] = self.bodies.len();
@@ -142,8 +140,9 @@ mod tests {
     use super::*;
 
     fn divided(filters: &[Filter]) -> (Sets, Vec<[Vec<u32>; 2]>) {
-        let mut sets = Sets::default();
-        sets.divide(0..filters.len() as u32, &|index| filters[index as usize]);
+        let all = (0..filters.len() as u32).collect();
+        let mut sets = Sets { all, ..Sets::default() };
+        sets.divide(&|index| filters[index as usize]);
         let meetings =
             sets.meetings().map(|ranges| ranges.map(|range| sets.bodies[range].to_vec()));
         let meetings = meetings.collect();

@@ -22,6 +22,10 @@ pub struct Tracking<const D: usize, T: Scalar> {
     pub tree_state: TreeState,
     /// About how often the tree was searched since it was built.
     pub tree_uses: usize,
+    /// The bodies of `flag::FLYING`, and some that left or, within an update, flew before. Only while the tree holds all others.
+    pub flying: Vec<u32>,
+    /// Whether there were queries since the last update.
+    pub is_queried: bool,
     pub motion: Motion,
     pub policy: Policy,
     pub sleep: Sleep,

@@ -30,6 +30,8 @@ pub mod flag {
     pub const ASLEEP: u16 = 256;
     /// It is in the list of bodies that were given a box since the last update; only where fat AABBs are reported.
     pub const MOVED: u16 = 1024;
+    /// The body moves so far in each update that no fat AABB lasts: it is not in the tree.
+    pub const FLYING: u16 = 2048;
     /// The body changed since bodies last fell asleep.
     pub const RECENT: u16 = CHANGED << 7;
     /// What a slot keeps that is free: in which lists it is, and how.

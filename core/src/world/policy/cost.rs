@@ -17,6 +17,10 @@ pub const LOOK_UP: usize = 64;
 /// What finding all candidates costs for each body: there are more of them than pairs. Without it tracking
 /// would never cost more than from scratch. Kept from before.
 const REBUILD: usize = 2;
+/// What a body that flies costs, but for the leaves and bodies of the tree that are read for it, each of which costs 1.
+const FLIGHT: usize = 4;
+/// For how many updates no body flies once that cost too much.
+const GROUNDED: usize = 256;
 /// For how many updates tracking is skipped, at least and at most. Kept from before.
 const SKIPPED: [usize; 2] = [16, 128];
 /// How many times the cost of building a tree for a body a search costs more in a tree whose leaves are
@@ -55,6 +59,8 @@ pub struct Policy {
     skipped: usize,
     /// For how many more updates no new fat AABB is larger than its body.
     tight: usize,
+    /// For how many more updates no body flies.
+    grounded: usize,
     /// For how many it is so next time, within the limits.
     next_skipped: usize,
 }
@@ -72,6 +78,12 @@ impl Policy {
 
     fn limit(&self, bodies: usize, [by_body, by_pair]: [f64; 2]) -> usize {
         (by_body * bodies as f64 + by_pair * self.overlaps as f64) as usize
+    }
+
+    /// Whether fast bodies may fly, given how many of the bodies changed.
+    pub fn may_fly(&mut self, changed: usize, bodies: usize) -> bool {
+        self.grounded = self.grounded.saturating_sub(1);
+        self.grounded == 0 && changed * FLIGHT <= bodies
     }
 
     /// Notes how many pairs of boxes overlap.
@@ -110,10 +122,18 @@ impl Policy {
         self.next_skipped = 2 * self.skipped;
     }
 
-    /// Notes an update that looked up this many bodies.
-    pub fn note_incremental(&mut self, escaped: usize) {
-        self.cost = self.cost.saturating_add(escaped * LOOK_UP);
+    /// Notes an update that looked up this many bodies, and beside them `flights` that fly.
+    pub fn note_incremental(&mut self, escaped: usize, flights: usize) {
+        self.cost = self.cost.saturating_add(escaped * LOOK_UP + flights * FLIGHT);
         self.updates = self.updates.saturating_add(1);
+    }
+
+    /// Notes that `reads` leaves and bodies of the tree were read in an update in which `flights` bodies flew.
+    pub fn note_reads(&mut self, reads: usize, flights: usize, bodies: usize) {
+        // As many as finding all pairs from scratch costs.
+        if flights > 0 && flights * FLIGHT + reads > self.most_reads(bodies) {
+            self.grounded = GROUNDED;
+        }
     }
 
     /// Notes an update that found all candidates. `is_fat` says whether fat AABBs are larger than

@@ -25,6 +25,8 @@ const REACH_ALONE: f64 = 1.2;
 /// What moves further than this, in box sizes, jumps: its motion says nothing of the next step.
 /// With 1 drift takes 1.9 to 2.8 of the time.
 const JUMP: f64 = 2.0;
+/// What moves further than this in an update, in box sizes, is fast.
+const FAST: f64 = 0.3;
 /// How many updates a fat AABB lasts at most.
 const LONGEST: f64 = 80.0;
 /// The margin of a fat AABB after a jump, in box sizes.
@@ -90,6 +92,16 @@ impl Motion {
             let way = now.min[axis] - before.min[axis];
             beyond | !(way < limit && T::default() - way < limit)
         })
+    }
+
+    /// Whether a body moves so far that a fat AABB of its own would last a few updates at most.
+    pub fn is_fast<const D: usize, T: Scalar>(
+        &self,
+        before: &Aabb<D, T>,
+        now: &Aabb<D, T>,
+    ) -> bool {
+        let side = longest_side(now);
+        side < f64::INFINITY && self.is_beyond(before, now, FAST * side.max(self.size))
     }
 
     /// The fat AABB of a body that moves by itself. How long it lasts depends on the index, so that

@@ -39,8 +39,11 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         if self.root == NONE {
             return true;
         }
+        let bounds = self.nodes[self.root as usize].bounds();
         for (index, (_, area)) in queries.iter().enumerate() {
-            self.leaves_in(self.root, index as u32, area, scratch);
+            if bounds.overlaps_branch_free(area) {
+                self.leaves_in(self.root, index as u32, area, scratch);
+            }
             if scratch.len() > *most {
                 return false;
             }

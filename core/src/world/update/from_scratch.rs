@@ -9,18 +9,23 @@ use crate::world::bodies::{Bodies, flag};
 use crate::world::changes::Events;
 use crate::world::tracking::{Scratch, Tracking, TreeState};
 
-/// Reports what begins and ends, sorted, given the boxes and which bodies left.
+/// Reports what begins and ends, sorted, given the boxes and which bodies left. `keeps_build` says whether a tree that is being
+/// built will be needed.
 #[inline(never)]
 pub fn from_scratch<const D: usize, T: Scalar>(
     bodies: &mut Bodies<D, T>,
     tracking: &mut Tracking<D, T>,
     events: &mut Events,
+    keeps_build: bool,
 ) {
+    tracking.land_all(bodies);
     tracking.order_by_slot(bodies);
     tracking.candidates.sort(&bodies.slots, &mut tracking.scratch.sorter);
     tracking.wake_all(bodies);
     let has_tree = tracking.tree_state != TreeState::Unbuilt;
-    tracking.tree.forget_build();
+    if !keeps_build {
+        tracking.tree.forget_build();
+    }
     let Tracking { candidates, scratch, finder, .. } = &mut *tracking;
     let Scratch { sorter, before, .. } = scratch;
     core::mem::swap(before, &mut candidates.sorted);

@@ -34,6 +34,8 @@ pub fn incremental<const D: usize, T: Scalar>(
     bodies: &mut Bodies<D, T>,
     tracking: &mut Tracking<D, T>,
     events: &mut Events,
+    flights: usize,
+    is_tree_advanced: bool,
 ) -> bool {
     let Scratch { escaped, woken, .. } = &mut tracking.scratch;
     let lost = escaped.iter().chain(&bodies.leaving);
@@ -42,17 +44,17 @@ pub fn incremental<const D: usize, T: Scalar>(
     let (escaped, wakes) = (escaped.len(), !woken.is_empty());
     let has_tree = if escaped > 0 || wakes {
         tracking.tree_uses += escaped;
-        tracking.advance_tree(bodies)
+        if is_tree_advanced { tracking.has_tree() } else { tracking.advance_tree(bodies) }
     } else {
         tracking.tree_state != TreeState::Unbuilt
     };
-    let extends = !wakes && tracking.can_extend(bodies);
+    let extends = !wakes && flights == 0 && tracking.can_extend(bodies);
     let mut most = tracking.policy.most_reads(bodies.slots.live);
     if !has_tree {
         // What the finder finds is stored, all of it.
         most = most.min(bodies.slots.live);
     }
-    tracking.policy.note_incremental(escaped);
+    tracking.policy.note_incremental(escaped - flights, flights);
     tracking.scratch.mark(bodies, true);
     let mut is_right = !wakes || tracking.wake(bodies, &mut events.ended, &mut most, has_tree);
     if is_right {
@@ -61,8 +63,11 @@ pub fn incremental<const D: usize, T: Scalar>(
         if has_tree {
             tracking.move_in_tree(bodies);
         }
-        let look_ups = LookUps { count, extends, most, has_tree };
-        is_right = tracking.find_added(bodies, &mut events.begun, look_ups);
+        let look_ups = LookUps { count, extends, has_tree };
+        let before = most;
+        is_right = tracking.find_added(bodies, &mut events.begun, look_ups, &mut most)
+            && tracking.find_among_flying(bodies, &mut events.begun, most);
+        tracking.policy.note_reads(before - most, flights, bodies.slots.live);
     }
     if is_right {
         if !bodies.changed.is_empty() || !bodies.leaving.is_empty() {
@@ -82,8 +87,6 @@ struct LookUps {
     count: usize,
     /// Whether only those are wanted that are not candidates yet.
     extends: bool,
-    /// In how many steps, at most.
-    most: usize,
     /// Whether in the tree.
     has_tree: bool,
 }
@@ -200,7 +203,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             let is_new = bodies.slots.has(index, flag::NEW);
             let before = if is_new { &bodies.boxes[row] } else { &bodies.previous[row] };
             jumped += usize::from(motion.is_jump(before, &bodies.boxes[row]));
-            let ahead = if policy.is_tight() {
+            let ahead = if policy.is_tight() || bodies.slots.has(index, flag::FLYING) {
                 bodies.boxes[row]
             } else {
                 motion.alone(index, before, &bodies.boxes[row])
@@ -220,7 +223,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         [jumped, count]
     }
 
-    /// Removes bodies that left from the tree, and gives it the new fat AABBs.
+    /// Removes bodies that left or fly from the tree, and gives it the new fat AABBs.
     #[inline(never)]
     fn move_in_tree(&mut self, bodies: &Bodies<D, T>) {
         let Self { tree, scratch: Scratch { queries, .. }, .. } = self;
@@ -229,7 +232,13 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         }
         for chunk in queries.chunks(TOGETHER) {
             chunk.iter().for_each(|&(index, _)| tree.prefetch_leaf_of(index));
-            chunk.iter().for_each(|(index, aabb)| tree.set(*index, aabb));
+            for (index, aabb) in chunk {
+                if bodies.slots.has(*index, flag::FLYING) {
+                    tree.remove(*index);
+                } else {
+                    tree.set(*index, aabb);
+                }
+            }
         }
     }
 
@@ -240,7 +249,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         &mut self,
         bodies: &Bodies<D, T>,
         begun: &mut Vec<[u32; 2]>,
-        LookUps { count, extends, mut most, has_tree }: LookUps,
+        LookUps { count, extends, has_tree }: LookUps,
+        most: &mut usize,
     ) -> bool {
         let limit = self.policy.most_candidates(bodies.slots.live);
         let Self { tree, fat, candidates, finder, scratch, .. } = self;
@@ -249,12 +259,12 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         added.reserve(candidates.pairs.capacity() / 4);
         for batch in queries[..count].chunks(if has_tree { BATCH } else { usize::MAX }) {
             let is_found = if has_tree {
-                tree.overlapping_many(batch, leaves, found, &mut most)
+                tree.overlapping_many(batch, leaves, found, most)
             } else {
                 let has_fat =
                     |index: u32| bodies.slots.has(index, flag::LIVE) && !is_escaped[index as usize];
-                finder.find_near(batch, fat, &has_fat, found, &mut most)
-                    && finder.find_among(batch, found, &mut most)
+                finder.find_near(batch, fat, &has_fat, found, most)
+                    && finder.find_among(batch, found, most)
             };
             if !is_found || candidates.pairs.len() + added.len() > limit {
                 return false;
@@ -271,7 +281,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
                     let (first, second) = (index as usize, other as usize);
                     // The tree holds the new fat AABBs of marked bodies, and larger boxes of some others.
                     let is_near = if is_escaped[second] {
-                        index < other
+                        // The tree has no body that flies, so those are not found twice.
+                        index < other || bodies.slots.has(index, flag::FLYING)
                     } else {
                         aabb.overlaps_branch_free(&fat[second])
                     };

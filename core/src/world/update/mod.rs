@@ -5,9 +5,10 @@
 //! them, without those of sleeping bodies. A body that leaves its fat AABB gets a new one, which reaches
 //! ahead in the direction of its motion, and a tree finds what that overlaps (`incremental`), or the finder
 //! while there is no tree: one is built over several updates, since at once it would take several times as
-//! long as finding all pairs where few boxes overlap. When many leave theirs, the finder finds all candidates (`rebuild`). Where that happens again and again, fat
-//! AABBs do not pay, and for some updates all pairs of the boxes themselves are found and compared with
-//! those of the last update (`from_scratch`).
+//! long as finding all pairs where few boxes overlap. When many leave theirs, the finder finds all candidates
+//! (`rebuild`). Where that happens again and again, fat AABBs do not pay, and for some updates all pairs of the
+//! boxes themselves are found and compared with those of the last update (`from_scratch`). A few fast bodies
+//! among many that rest are kept out of the tree, and searched among themselves (`flights`).
 //!
 //! Neither fat AABBs nor the strategy can be seen in the results. A pair is live if the last update knew
 //! both bodies, their boxes overlapped and their filters allowed it: a fact about boxes and filters only.
@@ -16,6 +17,7 @@
 
 mod collect;
 mod finish;
+mod flights;
 mod from_scratch;
 mod give_back;
 mod incremental;
@@ -45,13 +47,19 @@ pub fn update<const D: usize, T: Scalar>(
     bodies.refatten_too_wide();
     let mut order = Reorder::No;
     let changed = bodies.count_changes();
-    if changed > 0 && tracking.policy.skips_tracking(changed, bodies.slots.live) {
-        from_scratch::from_scratch(bodies, tracking, events);
+    let live = bodies.slots.live;
+    let is_queried = core::mem::take(&mut tracking.is_queried);
+    let may_fly = changed > 0 && tracking.policy.may_fly(changed, live) && !is_queried;
+    let has_tree = may_fly && tracking.advance_tree(bodies);
+    if changed > 0 && !has_tree && tracking.policy.skips_tracking(changed, live) {
+        from_scratch::from_scratch(bodies, tracking, events, may_fly);
     } else if changed > 0 {
         collect::collect_escaped(bodies, tracking);
-        let moves = tracking.scratch.escaped.len() + bodies.leaving.len();
+        let flights = tracking.choose_flying(bodies, has_tree);
+        let escaped = tracking.scratch.escaped.len() - flights;
+        let moves = escaped + bodies.leaving.len();
         if rebuild_pays(moves, bodies.slots.live)
-            || !incremental::incremental(bodies, tracking, events)
+            || !incremental::incremental(bodies, tracking, events, flights, may_fly)
         {
             order = rebuild::rebuild(bodies, tracking, events);
         }

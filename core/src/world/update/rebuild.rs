@@ -18,6 +18,7 @@ pub fn rebuild<const D: usize, T: Scalar>(
     tracking: &mut Tracking<D, T>,
     events: &mut Events,
 ) -> Reorder {
+    tracking.land_all(bodies);
     let escaped = &tracking.scratch.escaped;
     let moved = escaped.len();
     let is_new = |&&index: &&u32| bodies.slots.has(index, flag::NEW);

@@ -6,12 +6,17 @@ use crate::world::policy::refit_pays;
 use crate::world::tracking::{Tracking, TreeState};
 
 impl<const D: usize, T: Scalar> Tracking<D, T> {
-    /// Makes the tree hold the fat AABBs of all bodies that are not new.
+    /// Makes the tree hold the fat AABBs of all bodies that are not new and do not fly.
     fn ready_tree(&mut self, bodies: &Bodies<D, T>) {
         while !self.advance_tree(bodies) {}
     }
 
-    /// Brings the tree closer to holding the fat AABBs of all bodies that are not new, by about as much work as finding
+    /// Whether the tree holds the fat AABBs of all bodies that are not new and do not fly.
+    pub fn has_tree(&self) -> bool {
+        matches!(self.tree_state, TreeState::Fresh { .. })
+    }
+
+    /// Brings the tree closer to holding the fat AABBs of all bodies that are not new and do not fly, by about as much work as finding
     /// all pairs from scratch is. Returns whether it holds them.
     #[inline(never)]
     pub fn advance_tree(&mut self, bodies: &Bodies<D, T>) -> bool {
@@ -43,7 +48,9 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         bodies.list_changed();
         // Where one query is asked, more may follow.
         self.tree_uses += bodies.slots.live / 4;
+        self.is_queried = true;
         self.ready_tree(bodies);
+        self.land_in_tree(bodies);
         let Self { tree, tree_state, fat, .. } = self;
         let TreeState::Fresh { known } = tree_state else { return };
         while let Some(&index) = bodies.changed.get(*known) {

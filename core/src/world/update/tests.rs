@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 use std::collections::BTreeSet;
 
+use crate::world::bodies::flag;
 use crate::world::tracking::TreeState;
 use crate::{Aabb, BroadPhase, Filter, ProxyId, find_pairs, find_pairs_between};
 
@@ -198,4 +199,46 @@ fn bodies_that_may_not_meet_are_not_searched_among_themselves() {
         assert!(tracking.scratch.found.len() <= world.len() + known.len(), "{frame}");
     }
     assert!(known.len() > 20, "{} pairs prove little", known.len());
+}
+
+#[test]
+fn few_fast_bodies_among_many_at_rest_are_not_in_the_tree() {
+    let (rest, fast) = (3_000, 100);
+    let place = |at| somewhere(at, 90.0, [1.0; 2]);
+    let mut world = World::new((0..rest + fast).map(place).collect());
+    // To and fro, by more than a box at a time, and each at a speed of its own.
+    let step = |frame: usize| {
+        move |at: usize| {
+            let way = if frame % 8 < 4 { 1.0 + noise(at) } else { -1.0 - noise(at) };
+            if at < rest { [0.0; 2] } else { [way, way * (noise(at * at) - 0.5)] }
+        }
+    };
+    for frame in 0..40 {
+        world.step(step(frame));
+    }
+    let tracking = &world.world.tracking;
+    assert_eq!((tracking.flying.len(), tracking.tree.count), (fast, rest));
+    let flies = |&index: &u32| world.world.bodies.slots.has(index, flag::FLYING);
+    assert!(tracking.candidates.pairs.iter().all(|pair| pair.iter().any(flies)));
+
+    // A query finds all, and where queries are asked in each frame, bodies stay in the tree.
+    for frame in 40..44 {
+        let found = world.world.queries().overlapping(&Aabb::new([-999.0; 2], [999.0; 2])).unwrap();
+        assert_eq!(found.len(), rest + fast);
+        assert_eq!(world.world.tracking.flying.len(), 0);
+        world.step(step(frame));
+    }
+    for frame in 44..48 {
+        world.step(step(frame));
+    }
+    assert_eq!(world.world.tracking.flying.len(), fast);
+    // Who leaves, and who rests, lands. One moves on, so that there is something to do.
+    world.world.remove(world.ids[rest + 1]).unwrap();
+    world.boxes[rest + 1] = Aabb::new([-9.0; 2], [-9.0; 2]);
+    for frame in 48..56 {
+        let way = step(frame)(rest + 2);
+        world.step(|at| if at == rest + 2 { way } else { [0.0; 2] });
+    }
+    let tracking = &world.world.tracking;
+    assert_eq!((tracking.flying.len(), tracking.tree.count), (1, rest + fast - 2));
 }

@@ -14,7 +14,7 @@ fn skipped(is_fat: bool, lifetime: usize, escaped: usize) -> usize {
         }
         let gives_up = age == 0 && policy.note_rebuild(BODIES, is_fat, false);
         if age > 0 {
-            policy.note_incremental(escaped);
+            policy.note_incremental(escaped, 0);
         }
         age = if gives_up { 0 } else { (age + 1) % lifetime };
         gives_up

@@ -1,0 +1,105 @@
+//! Bodies that fly: few among many that rest, and so fast that no fat AABB lasts.
+//!
+//! They are not in the tree. In each update the finder finds their pairs among themselves, and the tree those with
+//! others. Of what rests nothing is copied or scanned. A body that is no longer fast is put into the tree again.
+
+use alloc::vec::Vec;
+
+use crate::Scalar;
+use crate::world::bodies::{Bodies, flag};
+use crate::world::policy::LOOK_UP;
+use crate::world::tracking::{Tracking, TreeState};
+
+/// The flags of bodies that do not fly yet.
+const GROUNDED: u16 = flag::NEW | flag::ASLEEP;
+
+impl<const D: usize, T: Scalar> Tracking<D, T> {
+    /// Chooses which of the bodies that left their fat AABBs fly, if any may, and lists with those the other bodies that flew.
+    /// Returns how many fly.
+    #[inline(never)]
+    pub fn choose_flying(&mut self, bodies: &mut Bodies<D, T>, may_fly: bool) -> usize {
+        let Self { flying, motion, scratch, .. } = self;
+        let escaped = &mut scratch.escaped;
+        if !may_fly && flying.is_empty() {
+            return 0;
+        }
+        for &index in &*escaped {
+            bodies.slots.raise(index, flag::MARKED);
+        }
+        for &index in &*flying {
+            if bodies.slots.flags[index as usize] & (flag::LIVE | flag::MARKED) == flag::LIVE {
+                // It did not change, but its candidates may.
+                bodies.changed.push(index);
+                escaped.push(index);
+            }
+        }
+        // Not many at once, which would have all candidates found anew.
+        let mut landings = 1 + bodies.slots.live / LOOK_UP / 2;
+        let mut count = 0;
+        for &index in &*escaped {
+            let row = index as usize;
+            let flew = bodies.slots.has(index, flag::FLYING);
+            bodies.slots.lower(index, flag::MARKED | flag::FLYING);
+            if !may_fly || bodies.slots.has(index, GROUNDED) {
+                continue;
+            }
+            let is_fast = motion.is_fast(&bodies.previous[row], &bodies.boxes[row]);
+            if !is_fast && (!flew || landings > 0) {
+                landings -= usize::from(flew);
+                continue;
+            }
+            bodies.slots.raise(index, flag::FLYING);
+            count += 1;
+            if !flew {
+                flying.push(index);
+            }
+        }
+        count
+    }
+
+    /// Finds the pairs that bodies which fly have among themselves. Returns false if there are more than `most`.
+    #[inline(never)]
+    pub fn find_among_flying(
+        &mut self,
+        bodies: &Bodies<D, T>,
+        begun: &mut Vec<[u32; 2]>,
+        most: usize,
+    ) -> bool {
+        let Self { finder, flying, scratch, .. } = self;
+        let fly = |index: &u32| {
+            const FLY: u16 = flag::LIVE | flag::FLYING;
+            bodies.slots.flags[*index as usize] & FLY == FLY
+        };
+        flying.retain(fly);
+        if flying.is_empty() {
+            return true;
+        }
+        let Some(pairs) = finder.find_some(flying, bodies, most) else { return false };
+        for &pair in pairs {
+            scratch.added.push((pair, true));
+            if !bodies.was_live(pair) {
+                begun.push(pair);
+            }
+        }
+        true
+    }
+
+    /// Ends all flights. The tree then lacks bodies.
+    pub fn land_all(&mut self, bodies: &mut Bodies<D, T>) {
+        while let Some(index) = self.flying.pop() {
+            bodies.slots.lower(index, flag::FLYING);
+            self.tree_state = TreeState::Unbuilt;
+        }
+    }
+
+    /// Ends all flights, and puts the bodies into the tree.
+    pub fn land_in_tree(&mut self, bodies: &mut Bodies<D, T>) {
+        while let Some(index) = self.flying.pop() {
+            bodies.slots.lower(index, flag::FLYING);
+            // The pairs that a body had which left since are still listed.
+            if bodies.slots.has(index, flag::LIVE | flag::LEAVING) {
+                self.tree.set(index, &self.fat[index as usize]);
+            }
+        }
+    }
+}
