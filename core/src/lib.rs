@@ -6,6 +6,8 @@ extern crate alloc;
 #[cfg(feature = "std")]
 extern crate std;
 
+#[cfg(not(target_arch = "wasm32"))]
+mod compiled;
 mod error;
 mod geometry;
 mod memory;

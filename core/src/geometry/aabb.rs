@@ -32,7 +32,7 @@ use crate::error::Error;
 /// let [min, max]: [[f32; 2]; 2] = aabb.into();
 /// ```
 ///
-/// With the features `glam` and `mint` a pair of their vectors converts to a box and back. With
+/// With the features `glam030` to `glam034` and `mint` a pair of their vectors converts to a box and back. With
 /// `bytemuck` a `&[f32]` can be cast to a `&[Aabb<2>]`, and with `serde` a box is `{ min, max }`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
@@ -68,6 +68,35 @@ impl<const D: usize, T: Scalar> Aabb<D, T> {
             min: core::array::from_fn(|axis| center[axis] - half_extents[axis]),
             max: core::array::from_fn(|axis| center[axis] + half_extents[axis]),
         }
+    }
+
+    /// The smallest box that contains all these points, or `None` if there are none. With a NaN among the coordinates
+    /// the box is not valid.
+    ///
+    /// ```
+    /// use sweep_and_prune::Aabb;
+    ///
+    /// let triangle = [[0.0, 0.0], [4.0, 1.0], [1.0, 3.0]];
+    /// assert_eq!(Aabb::from_points(triangle), Some(Aabb::new([0.0, 0.0], [4.0, 3.0])));
+    /// ```
+    #[must_use]
+    pub fn from_points(points: impl IntoIterator<Item = [T; D]>) -> Option<Self> {
+        let mut points = points.into_iter();
+        let first = points.next()?;
+        let mut aabb = Self::new(first, first);
+        for point in points {
+            for (axis, &at) in point.iter().enumerate() {
+                let is_nan = at.partial_cmp(&at).is_none();
+                // A corner that is NaN stays so, since nothing is less or greater.
+                if at < aabb.min[axis] || is_nan {
+                    aabb.min[axis] = at;
+                }
+                if at > aabb.max[axis] || is_nan {
+                    aabb.max[axis] = at;
+                }
+            }
+        }
+        Some(aabb)
     }
 
     /// The point in the middle, rounded to the nearest `T`. NaN on an axis that reaches from
@@ -134,6 +163,65 @@ impl<const D: usize, T: Scalar> Aabb<D, T> {
         union
     }
 
+    /// The box of all points that lie in both boxes, or `None` if they do not overlap. Of boxes that touch it is flat.
+    ///
+    /// ```
+    /// use sweep_and_prune::Aabb;
+    ///
+    /// let a = Aabb::new([0.0, 0.0], [2.0, 2.0]);
+    /// let b = Aabb::new([1.0, 1.0], [3.0, 3.0]);
+    /// assert_eq!(a.intersection(&b), Some(Aabb::new([1.0, 1.0], [2.0, 2.0])));
+    /// assert_eq!(a.intersection(&b.translate([9.0, 0.0])), None);
+    /// ```
+    #[inline]
+    #[must_use]
+    pub fn intersection(&self, other: &Self) -> Option<Self> {
+        self.overlaps(other).then(|| {
+            let mut both = *self;
+            for axis in 0..D {
+                if other.min[axis] > both.min[axis] {
+                    both.min[axis] = other.min[axis];
+                }
+                if other.max[axis] < both.max[axis] {
+                    both.max[axis] = other.max[axis];
+                }
+            }
+            both
+        })
+    }
+
+    /// The box with each side moved outwards by `amount`, rounded to the nearest `T`. A negative amount shrinks it, and
+    /// inverts it if the amount is more than half of its size.
+    ///
+    /// ```
+    /// use sweep_and_prune::Aabb;
+    ///
+    /// let aabb = Aabb::new([0.0, 0.0], [2.0, 4.0]);
+    /// assert_eq!(aabb.grow(0.5), Aabb::new([-0.5, -0.5], [2.5, 4.5]));
+    /// ```
+    #[inline]
+    #[must_use]
+    pub fn grow(&self, amount: T) -> Self {
+        Self { min: self.min.map(|at| at - amount), max: self.max.map(|at| at + amount) }
+    }
+
+    /// The box moved by an offset. Both corners are rounded to the nearest `T`, so its size may change a little.
+    ///
+    /// ```
+    /// use sweep_and_prune::Aabb;
+    ///
+    /// let aabb = Aabb::new([0.0, 0.0], [2.0, 4.0]);
+    /// assert_eq!(aabb.translate([1.0, -1.0]), Aabb::new([1.0, -1.0], [3.0, 3.0]));
+    /// ```
+    #[inline]
+    #[must_use]
+    pub fn translate(&self, offset: [T; D]) -> Self {
+        Self {
+            min: core::array::from_fn(|axis| self.min[axis] + offset[axis]),
+            max: core::array::from_fn(|axis| self.max[axis] + offset[axis]),
+        }
+    }
+
     /// Whether the intervals of two boxes share a point on one axis. This is the overlap rule of
     /// the whole project: intervals are closed on both sides.
     ///
@@ -191,6 +279,7 @@ fn midpoint<T: Scalar>(min: T, max: T) -> T {
 /// # Errors
 /// [`Error::TooManyBoxes`], or [`Error::InvalidBox`] with the smallest index of an invalid box and its
 /// first invalid axis.
+#[cfg_attr(not(target_arch = "wasm32"), inline(never))]
 pub fn validate<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>]) -> Result<(), Error> {
     check_count(boxes.len())?;
     boxes.iter().enumerate().try_for_each(|(index, aabb)| aabb.check(index))

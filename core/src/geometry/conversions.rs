@@ -36,7 +36,7 @@ conversions! {
 }
 
 /// Conversions between a box and a tuple or an array of two of these vectors.
-#[cfg(any(feature = "glam", feature = "mint"))]
+#[allow(unused_macros, reason = "which are used depends on features")]
 macro_rules! corners {
     ($($vector:ty, $dimensions:literal, $scalar:ty;)*) => {
         conversions! {$(
@@ -46,13 +46,26 @@ macro_rules! corners {
     };
 }
 
-#[cfg(feature = "glam")]
-corners! {
-    glam::Vec2, 2, f32;
-    glam::Vec3, 3, f32;
-    glam::Vec3A, 3, f32;
-    glam::DVec2, 2, f64;
-    glam::DVec3, 3, f64;
+/// Conversions of one version of glam.
+macro_rules! glam {
+    ($($feature:literal, $glam:ident;)*) => {$(
+        #[cfg(feature = $feature)]
+        corners! {
+            $glam::Vec2, 2, f32;
+            $glam::Vec3, 3, f32;
+            $glam::Vec3A, 3, f32;
+            $glam::DVec2, 2, f64;
+            $glam::DVec3, 3, f64;
+        }
+    )*};
+}
+
+glam! {
+    "glam030", glam030;
+    "glam031", glam031;
+    "glam032", glam032;
+    "glam033", glam033;
+    "glam034", glam034;
 }
 
 #[cfg(feature = "mint")]

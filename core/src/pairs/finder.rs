@@ -20,6 +20,7 @@ use crate::{Aabb, Error, Scalar};
 /// # Errors
 /// [`Error::InvalidBox`] with the index of the first box that is inverted or NaN,
 /// [`Error::TooManyBoxes`], or [`Error::OutOfMemory`].
+#[cfg_attr(not(target_arch = "wasm32"), inline(never))]
 pub fn find_pairs<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>]) -> Result<Vec<[u32; 2]>, Error> {
     let mut few = Store::default();
     if find_few(boxes, &mut few) {
@@ -46,6 +47,7 @@ pub fn find_pairs<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>]) -> Result<Vec
 ///
 /// # Errors
 /// As [`find_pairs`]. [`Error::InvalidBox`] names the set: 0 for `a`, 1 for `b`.
+#[cfg_attr(not(target_arch = "wasm32"), inline(never))]
 pub fn find_pairs_between<const D: usize, T: Scalar>(
     a: &[Aabb<D, T>],
     b: &[Aabb<D, T>],
@@ -67,6 +69,7 @@ pub fn find_pairs_between<const D: usize, T: Scalar>(
 /// assert_eq!(count_pairs(&boxes)?, 499_500);
 /// # Ok::<(), sweep_and_prune::Error>(())
 /// ```
+#[cfg_attr(not(target_arch = "wasm32"), inline(never))]
 pub fn count_pairs<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>]) -> Result<u64, Error> {
     PairFinder::new().search(boxes).count()
 }
@@ -138,6 +141,7 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
     ///
     /// # Errors
     /// As [`find_pairs_between`].
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn find_between(
         &mut self,
         a: &[Aabb<D, T>],

@@ -112,6 +112,7 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
     ///
     /// # Errors
     /// As [`pairs`](Self::pairs).
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn count(self) -> Result<u64, Error> {
         let Self { buffers: Buffers { driver, count, .. }, boxes, against, progress } = self;
         count.count = 0;

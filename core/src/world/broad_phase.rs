@@ -144,6 +144,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Takes time in proportion to the bodies that changed and their neighbors. If all bodies fly, or some
     /// jump anywhere, it takes 1.2 to 2.3 times as long as finding all pairs (10,000 to 1,000,000 bodies).
     /// The result borrows the world mutably; [`changes`](Self::changes) gives the same by a shared borrow.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn update(&mut self) -> Changes<'_> {
         update(&mut self.bodies, &mut self.tracking, &mut self.events);
         self.changes()
@@ -169,6 +170,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// assert!(world.pairs().eq([[ids[0], ids[1]], [ids[0], ids[2]], [ids[1], ids[2]]]));
     /// # Ok::<(), sweep_and_prune::Error>(())
     /// ```
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn pairs(&self) -> impl ExactSizeIterator<Item = [ProxyId; 2]> + '_ {
         let slots = &self.bodies.slots;
         let mut pairs: Vec<_> = self.tracking.candidates.live_pairs(slots).collect();
@@ -195,6 +197,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     ///
     /// # Errors
     /// [`Error::StaleProxy`].
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn pairs_of(&self, id: ProxyId) -> Result<impl ExactSizeIterator<Item = ProxyId>, Error> {
         let Self { bodies, tracking, .. } = self;
         let slots = &bodies.slots;
@@ -238,6 +241,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// assert_eq!(queries.nearest([10.0, 1.0], 1, f64::INFINITY)?[0].id, tree);
     /// # Ok::<(), sweep_and_prune::Error>(())
     /// ```
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn queries(&mut self) -> Queries<'_, D, T> {
         self.tracking.ready_for_queries(&mut self.bodies);
         let Self { bodies, tracking, .. } = &*self;
@@ -248,6 +252,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// same calls, the same ids, events and results, bit for bit.
     ///
     /// Takes O(n) time; about `2 * D * size_of::<T>() + 2` bytes for each body at rest.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn snapshot(&self) -> Vec<u8> {
         snapshot::write(&self.bodies)
     }
@@ -259,6 +264,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// # Errors
     /// [`Error::InvalidSnapshot`] for bytes that are truncated, changed, of another version, of a
     /// world with other dimensions or coordinates, or no snapshot at all.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn from_snapshot(bytes: &[u8]) -> Result<Self, Error> {
         let bodies = snapshot::read(bytes).map_err(Error::InvalidSnapshot)?;
         let tracking = restore(&bodies);
@@ -280,6 +286,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// protection against forgery.
     ///
     /// Takes O(n) time and memory.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn state_hash(&self) -> u64 {
         snapshot::hash(&self.snapshot())
     }

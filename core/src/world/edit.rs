@@ -24,6 +24,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     ///
     /// # Errors
     /// As [`insert`](Self::insert).
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn insert_with(&mut self, aabb: Aabb<D, T>, filter: Filter) -> Result<ProxyId, Error> {
         aabb.check(0)?;
         self.bodies.slots.check_capacity(1)?;
@@ -34,6 +35,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     ///
     /// # Errors
     /// As [`insert`](Self::insert), with the position of the first bad box; then none was added.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn insert_many(
         &mut self,
         boxes: &[Aabb<D, T>],
@@ -48,6 +50,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     ///
     /// # Errors
     /// [`Error::StaleProxy`], [`Error::InvalidBox`].
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn set(&mut self, id: ProxyId, aabb: Aabb<D, T>) -> Result<(), Error> {
         self.set_many(&[id], &[aabb])
     }
@@ -113,6 +116,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     ///
     /// # Errors
     /// [`Error::StaleProxy`]; [`Error::InvalidBox`] with index 0 for `from` and 1 for `to`.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn set_swept(
         &mut self,
         id: ProxyId,
@@ -144,6 +148,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     ///
     /// # Errors
     /// As [`set`](Self::set).
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn teleport(&mut self, id: ProxyId, aabb: Aabb<D, T>) -> Result<(), Error> {
         let index = self.bodies.slots.check(id, 0)?;
         aabb.check(0)?;
@@ -172,6 +177,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     ///
     /// # Errors
     /// [`Error::InvalidOffset`] if a coordinate of the offset is not finite.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn shift(&mut self, offset: [T; D]) -> Result<(), Error> {
         let is_finite = |at: T| at > T::NEG_INFINITY && at < T::INFINITY;
         if let Some(axis) = offset.iter().position(|&at| !is_finite(at)) {
@@ -185,6 +191,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     ///
     /// # Errors
     /// [`Error::StaleProxy`].
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn set_filter(&mut self, id: ProxyId, filter: Filter) -> Result<(), Error> {
         let bodies = &mut self.bodies;
         let index = bodies.slots.check(id, 0)?;
@@ -212,6 +219,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// # Errors
     /// [`Error::StaleProxy`] with the position of the first id that is stale or occurs twice. Then none
     /// was removed.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn remove_many(&mut self, ids: &[ProxyId]) -> Result<(), Error> {
         let Bodies { slots, leaving, .. } = &mut self.bodies;
         let bad = ids.iter().position(|&id| match slots.check(id, 0) {
@@ -255,6 +263,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// assert!(world.update().ended().eq([[ids[0], ids[1]]]));
     /// # Ok::<(), sweep_and_prune::Error>(())
     /// ```
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn clear(&mut self) {
         let ids: Vec<_> = self.ids().collect();
         let removed = self.remove_many(&ids);

@@ -670,3 +670,14 @@ fn queries_do_not_find_what_they_exclude() {
     let hits = queries.cast_all(&Cast::ray([0.5], [1.0], 9.0)).unwrap();
     assert_eq!(hits.iter().map(|hit| hit.id).collect::<Vec<_>>(), [ids[1], reused]);
 }
+
+#[test]
+fn ids_print_as_slot_and_generation() {
+    let mut world = BroadPhase::<1>::new();
+    let aabb = Aabb::new([0.0], [1.0]);
+    let ids = [world.insert(aabb).unwrap(), world.insert(aabb).unwrap()];
+    world.remove(ids[1]).unwrap();
+    world.update();
+    let again = world.insert(aabb).unwrap();
+    assert_eq!(format!("{} {} {again}", ids[0], ids[1]), "0v1 1v1 1v2");
+}

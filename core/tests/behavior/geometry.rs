@@ -48,7 +48,7 @@ fn arrays_and_tuples_convert_to_boxes_and_back() {
 }
 
 /// Asserts that corners of type `V` convert to the box and back, as a tuple and as an array.
-#[cfg(any(feature = "glam", feature = "mint"))]
+#[cfg(any(feature = "glam030", feature = "glam034", feature = "mint"))]
 fn corners_convert<const D: usize, T, V>(min: V, max: V, aabb: Aabb<D, T>)
 where
     T: Scalar,
@@ -62,21 +62,38 @@ where
     assert_eq!((tuple, array), ((min, max), [min, max]));
 }
 
-#[cfg(feature = "glam")]
-#[test]
-fn glam_vectors_convert_to_boxes_and_back() {
-    use glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
+/// The test of each version of glam.
+macro_rules! glam_test {
+    ($($feature:literal, $glam:ident;)*) => {$(
+        #[cfg(feature = $feature)]
+        #[test]
+        fn $glam() {
+        use $glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
 
-    corners_convert(Vec2::new(0., 1.), Vec2::new(2., 3.), Aabb::new([0., 1.], [2., 3.]));
-    corners_convert(DVec2::new(0., 1.), DVec2::new(2., 3.), Aabb::new([0., 1.], [2., 3.]));
-    let cuboid = Aabb::new([0., 1., 2.], [3., 4., 5.]);
-    corners_convert(Vec3::new(0., 1., 2.), Vec3::new(3., 4., 5.), cuboid);
-    corners_convert(Vec3A::new(0., 1., 2.), Vec3A::new(3., 4., 5.), cuboid);
-    let cuboid = Aabb::new([0., 1., 2.], [3., 4., 5.]);
-    corners_convert(DVec3::new(0., 1., 2.), DVec3::new(3., 4., 5.), cuboid);
+            corners_convert(Vec2::new(0., 1.), Vec2::new(2., 3.), Aabb::new([0., 1.], [2., 3.]));
+            corners_convert(DVec2::new(0., 1.), DVec2::new(2., 3.), Aabb::new([0., 1.], [2., 3.]));
+            let cuboid = Aabb::new([0., 1., 2.], [3., 4., 5.]);
+            corners_convert(Vec3::new(0., 1., 2.), Vec3::new(3., 4., 5.), cuboid);
+            corners_convert(Vec3A::new(0., 1., 2.), Vec3A::new(3., 4., 5.), cuboid);
+            let cuboid = Aabb::new([0., 1., 2.], [3., 4., 5.]);
+            corners_convert(DVec3::new(0., 1., 2.), DVec3::new(3., 4., 5.), cuboid);
 
-    let ball = Aabb::from_center(Vec3::ONE.into(), Vec3::splat(0.5).into());
-    assert_eq!(ball, Aabb::new([0.5; 3], [1.5; 3]));
+            let ball = Aabb::from_center(Vec3::ONE.into(), Vec3::splat(0.5).into());
+            assert_eq!(ball, Aabb::new([0.5; 3], [1.5; 3]));
+        }
+    )*};
+}
+
+mod glam_vectors_convert_to_boxes_and_back {
+    use super::*;
+
+    glam_test! {
+        "glam030", glam030;
+        "glam031", glam031;
+        "glam032", glam032;
+        "glam033", glam033;
+        "glam034", glam034;
+    }
 }
 
 #[cfg(feature = "mint")]
@@ -172,4 +189,40 @@ fn validation_names_the_box_and_the_axis() {
     assert_ne!(error, Error::InvalidBox { set: 0, index: 1, axis: 1, min: zero, max: one });
     let error = Error::InvalidBox { set: 0, index: 2, axis: 0, min: two, max: one };
     assert_eq!(validate(&[good, good, inverted]), Err(error));
+}
+
+#[test]
+fn boxes_of_points_contain_each_and_nothing_beyond() {
+    assert_eq!(Aabb::<2>::from_points([]), None);
+    assert_eq!(Aabb::from_points([[3.0f32]]), Some(Aabb::new([3.0], [3.0])));
+    let points = [[1.0f32, 5.0], [-2.0, 4.0], [0.5, 7.0], [0.0, -1.0]];
+    assert_eq!(Aabb::from_points(points), Some(Aabb::new([-2.0, -1.0], [1.0, 7.0])));
+    for bad in 0..4 {
+        let mut points = points;
+        points[bad][1] = f32::NAN;
+        let aabb = Aabb::from_points(points).unwrap();
+        assert_eq!(aabb.invalid_axis(), Some(1), "NaN in point {bad}");
+    }
+}
+
+#[test]
+fn intersections_are_what_both_contain() {
+    let a = Aabb::new([0.0f64, 0.0], [2.0, 2.0]);
+    for (b, expected) in [
+        (Aabb::new([1.0, -1.0], [3.0, 1.0]), Some(Aabb::new([1.0, 0.0], [2.0, 1.0]))),
+        (Aabb::new([-1.0, -1.0], [9.0, 9.0]), Some(a)),
+        (Aabb::new([2.0, 0.5], [3.0, 1.0]), Some(Aabb::new([2.0, 0.5], [2.0, 1.0]))),
+        (Aabb::new([2.5, 0.0], [3.0, 1.0]), None),
+    ] {
+        assert_eq!(a.intersection(&b), expected);
+        assert_eq!(b.intersection(&a), expected);
+    }
+}
+
+#[test]
+fn boxes_grow_on_each_side_and_move_as_a_whole() {
+    let aabb = Aabb::new([0.0f32, 1.0, 2.0], [2.0, 4.0, 8.0]);
+    assert_eq!(aabb.grow(0.5), Aabb::new([-0.5, 0.5, 1.5], [2.5, 4.5, 8.5]));
+    assert_eq!(aabb.grow(-1.5).invalid_axis(), Some(0));
+    assert_eq!(aabb.translate([1.0, -1.0, 0.5]), Aabb::new([1.0, 0.0, 2.5], [3.0, 3.0, 8.5]));
 }

@@ -1,12 +1,14 @@
 //! The ids of bodies.
 
+use core::fmt;
+
 use alloc::vec::Vec;
 
 /// The id of a body in a [`BroadPhase`](crate::BroadPhase): a slot and a generation.
 ///
 /// A slot is reused after its body was removed, under the next generation, so an id never comes to
 /// mean another body of the same world. Ids are ordered by slot and then by generation; a pair holds the
-/// smaller first.
+/// smaller first. Printed, an id is its slot and its generation: `3v1`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ProxyId {
@@ -72,5 +74,11 @@ impl ProxyId {
     #[inline]
     pub const fn from_bits(bits: u64) -> Self {
         Self { slot: bits as u32, generation: (bits >> 32) as u32 }
+    }
+}
+
+impl fmt::Display for ProxyId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}v{}", self.slot, self.generation)
     }
 }

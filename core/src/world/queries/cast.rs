@@ -187,6 +187,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     /// [`Error::InvalidQuery`] if its box or direction is not finite, its box is inverted, or its
     /// limit is negative or NaN.
     #[doc(alias("ray_cast", "box_cast"))]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn cast(&self, cast: &Cast<D, T>) -> Result<Option<Hit<D, T>>, Error> {
         Ok(self.cast_many(core::slice::from_ref(cast))?[0])
     }
@@ -195,6 +196,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     ///
     /// # Errors
     /// [`Error::InvalidQuery`] with the index of the first bad one.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn cast_many(&self, casts: &[Cast<D, T>]) -> Result<Vec<Option<Hit<D, T>>>, Error> {
         check_each(casts, Cast::fault)?;
         let first_hit = |cast: &Cast<D, T>| {
@@ -216,12 +218,14 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     ///
     /// # Errors
     /// As [`cast`](Self::cast).
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn cast_all(&self, cast: &Cast<D, T>) -> Result<Vec<Hit<D, T>>, Error> {
         let mut hits = Vec::new();
-        self.cast_with(cast, |hit| {
+        check_each(core::slice::from_ref(cast), Cast::fault)?;
+        self.run_cast(cast, |hit| {
             hits.push(hit);
             ControlFlow::Continue(f64::INFINITY)
-        })?;
+        });
         // Times, which are not negative, order as their bits do. As numbers they are sorted by what `nearest` needs anyway.
         let key = |(at, hit): (usize, &Hit<D, T>)| {
             (hit.t.to_bits(), u64::from(hit.id.slot()) << 32 | at as u64)
@@ -238,13 +242,14 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     pub fn cast_with(
         &self,
         cast: &Cast<D, T>,
-        visit: impl FnMut(Hit<D, T>) -> ControlFlow<(), f64>,
+        mut visit: impl FnMut(Hit<D, T>) -> ControlFlow<(), f64>,
     ) -> Result<(), Error> {
         check_each(core::slice::from_ref(cast), Cast::fault)?;
-        self.run_cast(cast, visit);
+        self.run_cast(cast, &mut visit as &mut dyn FnMut(_) -> _);
         Ok(())
     }
 
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     fn run_cast(
         &self,
         cast: &Cast<D, T>,

@@ -29,6 +29,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     ///
     /// # Errors
     /// [`Error::InvalidQuery`] if the point is not finite, or the distance is negative or NaN.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn nearest(
         &self,
         point: [T; D],
@@ -42,6 +43,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     ///
     /// # Errors
     /// As [`nearest`](Self::nearest), with the index of the first bad point.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn nearest_many(
         &self,
         points: &[[T; D]],

@@ -73,6 +73,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
     ///
     /// # Errors
     /// [`Error::InvalidBox`].
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn overlapping(&self, area: &Aabb<D, T>) -> Result<Vec<ProxyId>, Error> {
         self.list(area, Self::overlapping_many)
     }
@@ -81,6 +82,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
     ///
     /// # Errors
     /// [`Error::InvalidBox`] with the index of the first bad one.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn overlapping_many(&self, areas: &[Aabb<D, T>]) -> Result<Lists<ProxyId>, Error> {
         crate::validate(areas)?;
         Ok(self.collect(areas, |area, visit| self.visit_box(area, visit)))
@@ -121,6 +123,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
     ///
     /// # Errors
     /// [`Error::InvalidQuery`] for a NaN.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn containing(&self, point: [T; D]) -> Result<Vec<ProxyId>, Error> {
         self.list(&point, Self::containing_many)
     }
@@ -129,6 +132,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
     ///
     /// # Errors
     /// [`Error::InvalidQuery`] with the index of the first bad one.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn containing_many(&self, points: &[[T; D]]) -> Result<Lists<ProxyId>, Error> {
         let is_number = |at: T| at <= T::INFINITY && at >= T::NEG_INFINITY;
         check_each(points, |point| fault_in("point", point, is_number))?;
@@ -139,6 +143,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
     ///
     /// # Errors
     /// [`Error::InvalidQuery`] if the center is not finite, or the radius negative or NaN.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn within(&self, center: [T; D], radius: T) -> Result<Vec<ProxyId>, Error> {
         self.list(&(center, radius), Self::within_many)
     }
@@ -147,6 +152,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
     ///
     /// # Errors
     /// [`Error::InvalidQuery`] with the index of the first bad one.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn within_many(&self, spheres: &[([T; D], T)]) -> Result<Lists<ProxyId>, Error> {
         check_each(spheres, |(center, radius)| {
             fault_in("center", center, is_finite).or(fault_in("radius", &[*radius], is_length))
@@ -185,6 +191,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
     }
 
     /// Shows the bodies whose boxes overlap a box: all boxes of a node are tested at once, by vectors.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     fn visit_box(&self, area: &Aabb<D, T>, visit: &mut dyn FnMut(ProxyId) -> ControlFlow<()>) {
         self.tree.visit_overlapping(area, &mut |index| {
             if self.bodies.shape(index).overlaps(area) && self.sees(index) {
