@@ -33,7 +33,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
                 escaped.push(index);
             }
         }
-        // Not many at once, which would have all candidates found anew.
+        // Not many at once: then the finder would find all candidates.
         let mut landings = 1 + bodies.slots.live / LOOK_UP / 2;
         let mut count = 0;
         for &index in &*escaped {
