@@ -243,8 +243,44 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// ```
     #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn queries(&mut self) -> Queries<'_, D, T> {
+        self.prepare_queries();
+        self.all_queries()
+    }
+
+    /// Prepares for queries, as [`queries`](Self::queries) does. Then, until the next change,
+    /// [`prepared_queries`](Self::prepared_queries) answers them by a shared borrow.
+    pub fn prepare_queries(&mut self) {
         self.tracking.ready_for_queries(&mut self.bodies);
-        let Self { bodies, tracking, .. } = &*self;
+    }
+
+    /// Answers queries by a shared borrow, so that threads can ask at the same time, and boxes, filters and pairs can be
+    /// read beside. `None` if the world is not prepared, which is certain only from
+    /// [`prepare_queries`](Self::prepare_queries) or [`queries`](Self::queries) until a body is inserted or changed, or the
+    /// next update.
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, BroadPhase};
+    ///
+    /// let mut world = BroadPhase::<2>::new();
+    /// let wall = world.insert(Aabb::new([5.0, 0.0], [6.0, 9.0]))?;
+    /// assert!(world.prepared_queries().is_none());
+    /// world.prepare_queries();
+    /// let area = world.aabb(wall)?;
+    /// let queries = world.prepared_queries().expect("nothing changed since");
+    /// std::thread::scope(|scope| {
+    ///     let half = scope.spawn(|| queries.overlapping(&area));
+    ///     assert_eq!(queries.containing([5.5, 1.0])?, [wall]);
+    ///     assert_eq!(half.join().expect("it does not panic")?, [wall]);
+    ///     Ok(())
+    /// })
+    /// # ?; Ok::<(), sweep_and_prune::Error>(())
+    /// ```
+    pub fn prepared_queries(&self) -> Option<Queries<'_, D, T>> {
+        self.tracking.is_ready_for_queries(&self.bodies).then(|| self.all_queries())
+    }
+
+    fn all_queries(&self) -> Queries<'_, D, T> {
+        let Self { bodies, tracking, .. } = self;
         Queries { bodies, tree: &tracking.tree, filter: None, excluded: &[], is_sorted: true }
     }
 
@@ -254,7 +290,29 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Takes O(n) time; about `2 * D * size_of::<T>() + 2` bytes for each body at rest.
     #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn snapshot(&self) -> Vec<u8> {
-        snapshot::write(&self.bodies)
+        let mut bytes = Vec::new();
+        self.snapshot_into(&mut bytes);
+        bytes
+    }
+
+    /// Replaces bytes by those of a [`snapshot`](Self::snapshot). Does not allocate if they have the capacity, as those of
+    /// an earlier snapshot of as many bodies most often do.
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, BroadPhase};
+    ///
+    /// let mut world = BroadPhase::<2>::new();
+    /// let mut saved = Vec::new();
+    /// for at in [0.0, 1.0] {
+    ///     world.insert(Aabb::new([at, at], [at + 1.0, at + 1.0]))?;
+    ///     world.snapshot_into(&mut saved);
+    ///     assert_eq!(saved, world.snapshot());
+    /// }
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
+    pub fn snapshot_into(&self, bytes: &mut Vec<u8>) {
+        bytes.clear();
+        snapshot::write(&self.bodies, bytes);
     }
 
     /// The world of a snapshot. Any bytes give a world or an error.

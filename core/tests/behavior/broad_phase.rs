@@ -316,6 +316,39 @@ fn a_fat_aabb_reaches_ahead_and_contains_its_body_at_the_edge_of_the_range() {
     assert!(fat.is_valid() && fat.contains(&far));
 }
 
+#[test]
+fn queries_are_answered_by_a_shared_borrow_until_something_changes() {
+    type Change = fn(&mut BroadPhase<2>, ProxyId);
+    let place = Aabb::new([5.0, 5.0], [6.0, 6.0]);
+    let changes: [Change; 6] = [
+        |world, _| _ = world.insert(Aabb::new([5.0, 5.0], [6.0, 6.0])).unwrap(),
+        |world, id| world.set(id, Aabb::new([5.0, 5.0], [6.0, 6.0])).unwrap(),
+        |world, id| world.teleport(id, Aabb::new([5.0, 5.0], [6.0, 6.0])).unwrap(),
+        |world, id| world.set_filter(id, Filter::STATIC).unwrap(),
+        |world, id| {
+            let aabb = world.aabb(id).unwrap();
+            world.set_swept(id, aabb, Aabb::new([5.0, 5.0], [6.0, 6.0])).unwrap();
+        },
+        |world, _| world.shift([5.0, 5.0]).unwrap(),
+    ];
+    for change in changes {
+        let mut world = BroadPhase::<2>::new();
+        let ids = world.insert_many(&row(20), Filter::default()).unwrap();
+        world.update();
+        world.prepare_queries();
+        assert!(world.prepared_queries().unwrap().containing([0.5, 0.5]).unwrap() == [ids[0]]);
+        change(&mut world, ids[0]);
+        assert!(world.prepared_queries().is_none());
+        world.prepare_queries();
+        let found = world.prepared_queries().unwrap().overlapping(&place).unwrap();
+        assert_eq!(found, world.queries().overlapping(&place).unwrap());
+        // Of a body that left nothing has to be prepared.
+        world.remove(ids[0]).unwrap();
+        let queries = world.prepared_queries().unwrap();
+        assert!(!queries.overlapping(&row(1)[0]).unwrap().contains(&ids[0]));
+    }
+}
+
 /// A world that reports the pairs of fat AABBs.
 fn fat_world<const D: usize, T: sweep_and_prune::Scalar>(
     margin: T,

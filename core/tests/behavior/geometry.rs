@@ -85,6 +85,7 @@ macro_rules! glam_test {
 }
 
 mod glam_vectors_convert_to_boxes_and_back {
+    #[allow(unused_imports, reason = "without a feature there is no test")]
     use super::*;
 
     glam_test! {

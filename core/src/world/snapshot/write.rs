@@ -8,23 +8,22 @@ use crate::world::bodies::{Bodies, Filter, differ, flag};
 use crate::world::options::Report;
 use crate::{Aabb, Scalar};
 
-/// The snapshot of a world.
-pub fn write<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(64 + bodies.slots.len() * (2 * D * T::BYTES + 2));
+/// Writes the snapshot of a world to bytes, of which there are none.
+pub fn write<const D: usize, T: Scalar>(bodies: &Bodies<D, T>, bytes: &mut Vec<u8>) {
+    bytes.reserve_exact(64 + bodies.slots.len() * (2 * D * T::BYTES + 2));
     bytes.extend(MAGIC);
     let report = bodies.options.report;
     bytes.extend([VERSION, D as u8, T::BYTES as u8, u8::from(report.is_fat())]);
     if let Report::Fat { margin, prediction } = report {
-        put_scalars(&mut bytes, &[margin, prediction]);
-        put_scalars(&mut bytes, &bodies.shifted.unwrap_or([T::default(); D]));
+        put_scalars(bytes, &[margin, prediction]);
+        put_scalars(bytes, &bodies.shifted.unwrap_or([T::default(); D]));
     }
-    put_number(&mut bytes, bodies.slots.len() as u64);
+    put_number(bytes, bodies.slots.len() as u64);
     for &index in &bodies.slots.index_of {
-        put_slot(&mut bytes, bodies, index);
+        put_slot(bytes, bodies, index);
     }
-    let sum = hash(&bytes);
+    let sum = hash(bytes);
     bytes.extend(sum.to_le_bytes());
-    bytes
 }
 
 fn put_slot<const D: usize, T: Scalar>(bytes: &mut Vec<u8>, bodies: &Bodies<D, T>, index: u32) {

@@ -43,6 +43,14 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         true
     }
 
+    /// Whether the tree holds every body, with a box that contains its own, and nothing changed that it does not know of.
+    pub fn is_ready_for_queries(&self, bodies: &Bodies<D, T>) -> bool {
+        self.tree_state == TreeState::Fresh { known: bodies.changed.len() }
+            && self.flying.is_empty()
+            && !self.is_fat_stale
+            && !bodies.any_unlisted
+    }
+
     /// Makes the tree hold every body, with a box that contains its own.
     pub fn ready_for_queries(&mut self, bodies: &mut Bodies<D, T>) {
         bodies.list_changed();
