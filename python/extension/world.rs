@@ -7,9 +7,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use sweep_and_prune::{Error, Filter, ProxyId, Report, SnapshotInfo};
-use sweep_and_prune_bindings::{
-    Answer, ArrayBroadPhase, Coordinates, Id, Kind, Query, filter,
-};
+use sweep_and_prune_bindings::{Answer, ArrayBroadPhase, Coordinates, Id, Kind, Query, filter};
 
 use crate::arrays::{Array, copy_boxes, copy_numbers, numbers, pairs};
 use crate::errors::{busy, raise};
@@ -210,9 +208,8 @@ impl World {
             let width = 2 * space.kind.dimensions;
             let mut coordinates = vec![0.0; width * ids.len()];
             let mut bodies = ids.iter().zip(coordinates.chunks_exact_mut(width));
-            let corners = |(&id, row): (&i64, &mut [f64])| {
-                space.world.corners(proxy(id), reported, row)
-            };
+            let corners =
+                |(&id, row): (&i64, &mut [f64])| space.world.corners(proxy(id), reported, row);
             let done = bodies.try_for_each(corners);
             done.map_err(|error| raise(py, error, "", ids))?;
             numbers(py, coordinates.into_iter())
