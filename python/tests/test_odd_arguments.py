@@ -107,7 +107,7 @@ def sensible(name: str, ids: Any) -> Any:
         **dict.fromkeys(("boxes", "a", "b", "starts", "ends"), ROWS),
         **dict.fromkeys(("box", "start", "end"), ROWS[0]),
         **dict.fromkeys(("points", "centers", "origins", "directions"), POINTS),
-        **dict.fromkeys(("point", "center", "origin", "direction"), POINTS[0]),
+        **dict.fromkeys(("point", "center", "origin", "direction", "offset"), POINTS[0]),
         **dict.fromkeys(("radius", "radii", "limit", "limits", "margin", "prediction", "max_distance"), 1.0),
         **dict.fromkeys(("threads", "k", "size", "index", "axis", "group", "category", "mask"), 1),
         **{"id": int(ids[0]), "ids": ids, "filter": sap.Filter(), "each": lambda chunk: None, "snapshot": b""},
