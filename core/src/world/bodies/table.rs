@@ -152,7 +152,7 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
         // The union of a sweep is no place where the body was.
         let rests = is_new || self.slots.has(index, flag::SWEPT);
         let had = || match &self.shifted {
-            Some(offset) => translate(&self.previous[row], offset),
+            Some(offset) => self.previous[row].translate(*offset),
             None => self.previous[row],
         };
         let from = if rests { shape } else { &self.origins[row] };
@@ -210,7 +210,7 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
     pub fn shift(&mut self, offset: &[T; D]) {
         let Self { boxes, shapes, origins, rests, .. } = self;
         for table in [boxes, shapes, origins, rests] {
-            table.iter_mut().for_each(|aabb| *aabb = translate(aabb, offset));
+            table.iter_mut().for_each(|aabb| *aabb = aabb.translate(*offset));
         }
         self.any_unlisted = true;
         if self.options.report.is_fat() {
@@ -348,12 +348,6 @@ pub fn differ<const D: usize, T: Scalar>(a: &Aabb<D, T>, b: &Aabb<D, T>) -> bool
         (0..D).fold(0, |bits, axis| bits | (a[axis].to_raw() ^ b[axis].to_raw()))
     };
     corners(&a.min, &b.min) | corners(&a.max, &b.max) != 0
-}
-
-/// A box that was moved. Its corners stay in order, whatever the rounding.
-fn translate<const D: usize, T: Scalar>(aabb: &Aabb<D, T>, offset: &[T; D]) -> Aabb<D, T> {
-    let moved = |corner: &[T; D]| core::array::from_fn(|axis| corner[axis] + offset[axis]);
-    Aabb::new(moved(&aabb.min), moved(&aabb.max))
 }
 
 /// Writes to a table, which grows by one where the index is new.
