@@ -70,6 +70,22 @@ test("the fastest is named by 60 measured steps, in each half of them, and by no
   expect(said(steps((step) => (step < 30 ? 1 : 3) + tick(step)), steps((step) => (step < 30 ? 2 : 1)))).toBe("No algorithm is the fastest all the time.");
 });
 
+test("no verdict moves what follows: there is room for the longest one at any width", async ({ page }) => {
+  const race = await new Race(page).open();
+  await race.root.getByRole("button", { name: "Pause" }).click();
+  await settled(page, () => race.root.getAttribute("data-step"), "no step after the one that was on its way");
+  const names = await race.lane(1).getByLabel("Algorithm", { exact: true }).locator("option").allTextContents();
+  const longest = names.sort((a, b) => b.length - a.length).slice(0, 2).map((name) => ({ name, times: Array.from({ length: 60 }, () => 0.1) }));
+  const text = `All 4 found the same 1,234,567 pairs, in this step and in all 12,345 so far. ${fastest(longest)}`;
+  for (const width of [1280, 1000, 820, 640, 390, 320]) {
+    await page.setViewportSize({ width, height: 900 });
+    const heights = await race.root.locator('[data-part="verdict"]').evaluate((verdict, text) => {
+      return ["Measuring", text].map((shown) => ((verdict.textContent = shown), verdict.getBoundingClientRect().height));
+    }, text);
+    expect(heights[1], `at ${width} pixels`).toBe(heights[0]);
+  }
+});
+
 test("other boxes clear what the one before showed, and names the fastest after some steps", async ({ page }) => {
   const race = await new Race(page).open();
   await expect(race.root.locator('[data-part="verdict"]')).toContainText(/Fastest: |No algorithm is the fastest|faster than the clock/);
