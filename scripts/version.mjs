@@ -18,6 +18,8 @@ export const VERSIONS = [
   ["Cargo.toml", /^(sweep-and-prune = .*version = ")(.*?)(")/m],
   ["Cargo.toml", /^(sweep-and-prune-scenes = .*version = ")(.*?)(")/m],
   ["python/Cargo.toml", /^(version = ")(.*?)(")/m],
+  ["integrations/bevy/Cargo.toml", /^(version = ")(.*?)(")/m],
+  ["integrations/bevy/Cargo.toml", /^(sweep-and-prune = .*version = ")(.*?)(")/m],
   ["python/conda/recipe.yaml", /^( *version: ")(.*?)(")/m],
   ["js/package.json", /^( *"version": ")(.*?)(")/m],
   ["classroom/demo/package.json", /^( *"version": ")(.*?)(")/m],
@@ -64,7 +66,7 @@ function write(next) {
   }
   const run = (...command) => execFileSync(command[0], command.slice(1), { cwd: root, stdio: "inherit" });
   run("npm", "install", "--package-lock-only", "--ignore-scripts", "--no-audit", "--no-fund");
-  for (const workspace of ["Cargo.toml", "python/Cargo.toml", "bench/Cargo.toml"]) {
+  for (const workspace of ["Cargo.toml", "python/Cargo.toml", "bench/Cargo.toml", "integrations/bevy/Cargo.toml"]) {
     run("cargo", "update", "--quiet", "--workspace", "--manifest-path", workspace);
   }
 }

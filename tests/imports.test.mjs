@@ -143,6 +143,18 @@ test("paths through re-exports, renames, globs and inline modules lead to the fi
   );
 });
 
+test("a file that an attribute names can be the file of several modules", () => {
+  const files = (of) => ({
+    "lib.rs": "mod one; mod other;",
+    "one.rs": '#[path = "of/a.rs"]\nmod a;\n#[path = "of/b.rs"]\npub mod b;',
+    "other.rs": '#[path = "of/a.rs"]\nmod a;\n#[path = "of/b.rs"]\npub mod b;',
+    "of/a.rs": "use super::b::B; pub struct A(B);",
+    "of/b.rs": of,
+  });
+  assert.deepEqual(rust(files("use super::a::A; pub struct B(A);")), [["of/a.rs", "of/b.rs"]]);
+  assert.deepEqual(rust(files("pub struct B;")), []);
+});
+
 test("methods of one type in two files that call each other are a cycle", () => {
   assert.deepEqual(
     rust({

@@ -110,7 +110,7 @@ export const EXCEPTIONS = [
 ];
 
 const SKIPPED =
-  /^((\w+\/)?LICENSE|tests\/(vocabulary|support\/)|\.tools|bench\/(js\/)?results\/)|package-lock\.json$|Cargo\.lock$|\.(png|svg|webp|ico|snap|json5?|wasm|gif)$/;
+  /^((\w+\/)*LICENSE|tests\/(vocabulary|support\/)|\.tools|bench\/(js\/)?results\/)|package-lock\.json$|Cargo\.lock$|\.(png|svg|webp|ico|snap|json5?|wasm|gif)$/;
 const KEPT_JSON = /package\.json$/;
 
 const isException = (path, not, line) =>

@@ -115,7 +115,11 @@ function parseUse(tokens, at) {
 
 /** Reads the module of a file, and all modules below it, into `modules`. */
 function readModule(file, parent, folder, modules) {
-  const tokens = tokenize(readFileSync(file, "utf8"));
+  const source = readFileSync(file, "utf8");
+  const tokens = tokenize(source);
+  // Modules whose files an attribute names: by the name of the module.
+  const named = source.matchAll(/^#\[path = "(.*)"\]\s*(?:pub )?mod (\w+);/gm);
+  const pathOf = new Map([...named].map(([, path, name]) => [name, join(dirname(file), path)]));
   const create = (parent) => ({
     file,
     parent,
@@ -166,7 +170,7 @@ function readModule(file, parent, folder, modules) {
     }
     if (token === "mod" && tokens[at + 2] === ";") {
       const name = tokens[at + 1];
-      const candidates = [join(folder, `${name}.rs`), join(folder, name, "mod.rs")];
+      const candidates = pathOf.has(name) ? [pathOf.get(name)] : [join(folder, `${name}.rs`), join(folder, name, "mod.rs")];
       const path = candidates.find((it) => exists(it));
       if (!path) throw new Error(`${file} declares mod ${name}, but neither ${candidates.join(" nor ")} exists.`);
       module.children.set(name, readModule(path, module, join(folder, name), modules));

@@ -1,0 +1,368 @@
+//! Scenes in which both broad phases have to add the same contact pairs in each step.
+
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::prelude::*;
+
+use super::avian::math::{Scalar, Vector};
+use super::avian::prelude::*;
+use super::oracle::Both;
+use super::{DEPTH, cuboid};
+use crate::support::Random;
+
+/// Makes the position of a scene one of as many dimensions as there are.
+fn at(x: f32, y: f32, z: f32) -> Transform {
+    Transform::from_xyz(x, y, z * DEPTH)
+}
+
+fn ground(world: &mut World) {
+    world.spawn((RigidBody::Static, cuboid([100.0, 1.0, 100.0]), at(0.0, -0.5, 0.0)));
+}
+
+/// A place in a cube above the ground.
+fn place(random: &mut Random, size: f32) -> Transform {
+    at(random.between(-size, size), random.between(0.0, size), random.between(-size, size))
+}
+
+/// A velocity of up to `along` on the x-axis and up to `across` on the others.
+fn velocity(random: &mut Random, along: f32, across: f32) -> Vector {
+    let mut velocity = Vector::splat(Scalar::from(random.between(-across, across)));
+    velocity.x = Scalar::from(random.between(-along, along));
+    velocity
+}
+
+/// Runs the steps of a scene. `act` changes the world before each step.
+fn run(mut both: Both, steps: usize, mut act: impl FnMut(&mut World, usize)) -> Both {
+    for step in 0..steps {
+        act(both.world(), step);
+        both.step();
+    }
+    let (ran, pairs) = both.done();
+    assert!(ran + 2 >= steps, "{ran} of {steps} steps");
+    assert!(pairs > 0, "a scene without contacts shows nothing");
+    both
+}
+
+#[test]
+fn falling_cubes() {
+    let mut both = Both::new::<()>();
+    let mut random = Random(1);
+    ground(both.world());
+    for _ in 0..150 {
+        let transform = place(&mut random, 6.0);
+        both.world().spawn((RigidBody::Dynamic, cuboid([0.8; 3]), transform));
+    }
+    run(both, 120, |_, _| {});
+}
+
+#[test]
+fn a_pyramid_of_which_one_cube_is_taken() {
+    let mut both = Both::new::<()>();
+    ground(both.world());
+    let mut cubes = Vec::new();
+    for row in 0..8_u8 {
+        for column in 0..8 - row {
+            let x = f32::from(column) + 0.5 * f32::from(row);
+            let cube =
+                (RigidBody::Dynamic, cuboid([0.9; 3]), at(x, 0.45 + 0.9 * f32::from(row), 0.0));
+            cubes.push(both.world().spawn(cube).id());
+        }
+    }
+    run(both, 100, |world, step| {
+        if step == 40 {
+            world.despawn(cubes[3]);
+        }
+    });
+}
+
+#[test]
+fn static_tiles_and_what_moves_over_them() {
+    let mut both = Both::new::<()>();
+    both.world().insert_resource(Gravity(Vector::ZERO));
+    let mut random = Random(2);
+    for tile in 0..400_u16 {
+        let (x, y) = (f32::from(tile % 20) - 10.0, f32::from(tile / 20) - 10.0);
+        both.world().spawn((RigidBody::Static, cuboid([1.0; 3]), at(x, y, 0.0)));
+    }
+    for moving in 0..40 {
+        let transform = place(&mut random, 9.0);
+        let body = if moving % 3 == 0 { RigidBody::Kinematic } else { RigidBody::Dynamic };
+        let velocity = velocity(&mut random, 8.0, 3.0);
+        both.world().spawn((body, cuboid([0.3; 3]), transform, LinearVelocity(velocity)));
+    }
+    run(both, 80, |_, _| {});
+}
+
+#[test]
+fn sensors_that_are_static_that_move_and_that_come_and_go() {
+    let mut both = Both::new::<()>();
+    let mut random = Random(3);
+    ground(both.world());
+    let bodies: Vec<_> = (0..60)
+        .map(|index| {
+            let body = [RigidBody::Static, RigidBody::Dynamic, RigidBody::Kinematic][index % 3];
+            let transform = place(&mut random, 3.0);
+            let mut entity = both.world().spawn((body, cuboid([1.0; 3]), transform));
+            if index % 2 == 0 {
+                entity.insert(Sensor);
+            }
+            if index % 5 == 0 {
+                entity.insert(CollisionEventsEnabled);
+            }
+            entity.id()
+        })
+        .collect();
+    run(both, 120, |world, step| {
+        if step > 20 {
+            let mut entity = world.entity_mut(bodies[random.below(bodies.len())]);
+            match random.below(3) {
+                0 => drop(entity.insert(Sensor)),
+                1 => drop(entity.remove::<Sensor>()),
+                _ => drop(entity.insert(place(&mut random, 3.0))),
+            }
+        }
+    });
+}
+
+#[derive(PhysicsLayer, Default)]
+enum Layer {
+    #[default]
+    Scenery,
+    Bullet,
+    Enemy,
+}
+
+#[test]
+fn bullets_that_do_not_meet_each_other_and_live_shortly() {
+    let mut both = Both::new::<()>();
+    let mut random = Random(4);
+    ground(both.world());
+    for _ in 0..40 {
+        let transform = place(&mut random, 8.0);
+        let layers = CollisionLayers::new(Layer::Enemy, LayerMask::ALL);
+        both.world().spawn((RigidBody::Dynamic, cuboid([1.0; 3]), transform, layers));
+    }
+    let mut flying = Vec::new();
+    let both = run(both, 100, |world, _| {
+        for _ in 0..5 {
+            let layers = CollisionLayers::new(Layer::Bullet, [Layer::Enemy, Layer::Scenery]);
+            let velocity = velocity(&mut random, 60.0, 30.0);
+            let bullet = (RigidBody::Dynamic, cuboid([0.2; 3]), at(0.0, 4.0, 0.0), layers);
+            flying.push(world.spawn((bullet, LinearVelocity(velocity), GravityScale(0.0))).id());
+        }
+        if flying.len() > 100 {
+            for bullet in flying.drain(..5) {
+                world.despawn(bullet);
+            }
+        }
+    });
+    // What comes and goes between steps is known without reading all colliders.
+    assert_eq!(both.search().counts().full_reads, 0);
+}
+
+#[test]
+fn joints_that_disable_collisions_until_they_do_not() {
+    let mut both = Both::new::<()>();
+    ground(both.world());
+    let links: Vec<_> = (0..20_u8)
+        .map(|link| {
+            let transform = at(0.6 * f32::from(link), 3.0, 0.0);
+            both.world().spawn((RigidBody::Dynamic, cuboid([0.8; 3]), transform)).id()
+        })
+        .collect();
+    let joints: Vec<_> = links
+        .windows(2)
+        .map(|pair| {
+            let joint = DistanceJoint::new(pair[0], pair[1]);
+            both.world().spawn((joint, JointCollisionDisabled)).id()
+        })
+        .collect();
+    run(both, 120, |world, step| {
+        if step % 10 == 5 {
+            world.entity_mut(joints[step / 10]).remove::<JointCollisionDisabled>();
+        }
+    });
+}
+
+#[test]
+fn layers_that_change() {
+    let mut both = Both::new::<()>();
+    let mut random = Random(5);
+    ground(both.world());
+    let bodies: Vec<_> = (0..80)
+        .map(|_| {
+            let transform = place(&mut random, 4.0);
+            both.world().spawn((RigidBody::Dynamic, cuboid([1.0; 3]), transform)).id()
+        })
+        .collect();
+    run(both, 100, |world, _| {
+        for _ in 0..3 {
+            let bits = [random.below(8) as u32, random.below(8) as u32 | 1];
+            let layers = CollisionLayers::from_bits(bits[0], bits[1]);
+            world.entity_mut(bodies[random.below(bodies.len())]).insert(layers);
+        }
+    });
+}
+
+/// A body of one of two teams.
+#[derive(Component)]
+struct Team(usize);
+
+#[derive(bevy::ecs::system::SystemParam)]
+struct Teams<'w, 's> {
+    teams: Query<'w, 's, &'static Team>,
+}
+
+impl CollisionHooks for Teams<'_, '_> {
+    fn filter_pairs(&self, one: Entity, other: Entity, _: &mut Commands) -> bool {
+        match self.teams.get_many([one, other]) {
+            Ok([one, other]) => one.0 != other.0,
+            _ => true,
+        }
+    }
+}
+
+#[test]
+fn hooks_that_refuse_pairs_and_change_their_minds() {
+    let mut both = Both::new::<Teams>();
+    let mut random = Random(6);
+    ground(both.world());
+    let bodies: Vec<_> = (0..80)
+        .map(|index| {
+            let transform = place(&mut random, 4.0);
+            let body = (RigidBody::Dynamic, cuboid([1.0; 3]), transform, Team(index % 2));
+            let mut entity = both.world().spawn(body);
+            match index % 4 {
+                0 | 1 => drop(entity.insert(ActiveCollisionHooks::FILTER_PAIRS)),
+                2 => drop(entity.insert(ActiveCollisionHooks::MODIFY_CONTACTS)),
+                _ => {}
+            }
+            entity.id()
+        })
+        .collect();
+    run(both, 120, |world, _| {
+        let mut entity = world.entity_mut(bodies[random.below(bodies.len())]);
+        match random.below(4) {
+            0 => drop(entity.insert(ActiveCollisionHooks::FILTER_PAIRS)),
+            1 => drop(entity.insert(ActiveCollisionHooks::empty())),
+            _ => drop(entity.insert(Team(random.below(2)))),
+        }
+    });
+}
+
+#[test]
+fn resting_bodies_take_no_work() {
+    let mut both = Both::new::<()>();
+    ground(both.world());
+    for tile in 0..100_u8 {
+        let (x, z) = (f32::from(tile % 10), f32::from(tile / 10));
+        both.world().spawn((RigidBody::Dynamic, cuboid([0.9; 3]), at(x, 0.45 + z, z)));
+    }
+    let both = run(both, 200, |_, _| {});
+    let before = both.search().counts();
+    let both = run(both, 200, |_, _| {});
+    let after = both.search().counts();
+    assert_eq!(after, before);
+    assert_eq!(both.search().len(), 101);
+    assert_eq!((after.full_reads, after.comparisons), (0, 1));
+}
+
+/// What a random step does to a collider or its body.
+fn disturb(world: &mut World, random: &mut Random, living: &mut Vec<Entity>) {
+    let index = random.below(living.len());
+    let target = living[index];
+    let kinds = [RigidBody::Static, RigidBody::Dynamic, RigidBody::Kinematic];
+    let mut entity = world.entity_mut(target);
+    match random.below(16) {
+        0 => {
+            world.despawn(target);
+            living.swap_remove(index);
+        }
+        1 => drop(entity.insert(ColliderDisabled)),
+        2 => drop(entity.remove::<ColliderDisabled>()),
+        3 => drop(entity.insert(Disabled)),
+        4 => drop(entity.remove::<Disabled>()),
+        5 => drop(entity.insert(RigidBodyDisabled)),
+        6 => drop(entity.remove::<RigidBodyDisabled>()),
+        7 => drop(entity.insert(kinds[random.below(3)])),
+        8 => drop(entity.insert(cuboid([random.between(0.2, 2.0); 3]))),
+        9 => drop(entity.insert(Sensor)),
+        10 => drop(entity.remove::<Sensor>()),
+        11 => drop(entity.insert(place(random, 5.0))),
+        12 => drop(entity.insert(CollisionLayers::from_bits(random.below(4) as u32, 3))),
+        13 => drop(entity.insert(ActiveCollisionHooks::FILTER_PAIRS)),
+        14 => drop(entity.insert(CollisionEventsEnabled)),
+        _ => {
+            let transform = place(random, 5.0);
+            living.push(spawn(world, random, transform));
+        }
+    }
+}
+
+/// A body with one collider, a body with three, or a collider without a body.
+fn spawn(world: &mut World, random: &mut Random, transform: Transform) -> Entity {
+    let kinds = [RigidBody::Static, RigidBody::Dynamic, RigidBody::Dynamic, RigidBody::Kinematic];
+    let kind = kinds[random.below(4)];
+    let side = random.between(0.3, 1.5);
+    let team = Team(random.below(2));
+    match random.below(5) {
+        0 => world.spawn((cuboid([side; 3]), transform, team)).id(),
+        1 => {
+            let child = |x: f32| (cuboid([side; 3]), at(x, 0.0, 0.0), Team(0));
+            world
+                .spawn((kind, cuboid([side; 3]), transform, team))
+                .with_children(|children| {
+                    children.spawn(child(side));
+                    children.spawn(child(-side));
+                })
+                .id()
+        }
+        _ => world.spawn((kind, cuboid([side; 3]), transform, team)).id(),
+    }
+}
+
+/// Which entities a system in the middle of a step disturbs.
+#[derive(Resource)]
+struct Disturbance {
+    random: Random,
+    living: Vec<Entity>,
+}
+
+fn disturb_within_a_step(world: &mut World) {
+    world.resource_scope(|world, mut disturbance: Mut<Disturbance>| {
+        let Disturbance { random, living } = &mut *disturbance;
+        if random.chance(30) {
+            disturb(world, random, living);
+        }
+    });
+}
+
+#[test]
+fn anything_that_can_happen_at_random() {
+    let seeds = if std::env::var_os("TEST_LONG").is_some() { 30 } else { 3 };
+    for seed in 0..seeds {
+        let mut both = Both::new::<Teams>();
+        // Events of collisions run here, for example.
+        both.app.add_systems(
+            PhysicsSchedule,
+            disturb_within_a_step.in_set(PhysicsStepSystems::Finalize).ambiguous_with_all(),
+        );
+        let mut random = Random(100 + seed);
+        ground(both.world());
+        let living: Vec<_> = (0..100)
+            .map(|_| {
+                let transform = place(&mut random, 5.0);
+                spawn(both.world(), &mut random, transform)
+            })
+            .collect();
+        both.world().insert_resource(Disturbance { random, living });
+        let both = run(both, 200, |world, step| {
+            world.resource_scope(|world, mut disturbance: Mut<Disturbance>| {
+                let Disturbance { random, living } = &mut *disturbance;
+                for _ in 0..step % 4 {
+                    disturb(world, random, living);
+                }
+            });
+        });
+        assert!(both.search().counts().full_reads > 0);
+    }
+}
