@@ -142,6 +142,21 @@ setup_chromium() {
   export CHROMIUM
 }
 
+# Two compilers with sanitizers, Valgrind, and what finds an installed package.
+setup_c() {
+  have gcc || install_packages gcc "build-essential|gcc|gcc|gcc|gcc"
+  have clang || install_packages clang clang
+  if ! echo 'int main(void) { return 0; }' | clang -fsanitize=address,undefined -x c - -o /dev/null 2>/dev/null; then
+    # Debian has the sanitizers of clang in a package of its own.
+    local version
+    version=$(clang -dumpversion)
+    install_packages "clang -fsanitize=address" "libclang-rt-${version%%.*}-dev|compiler-rt|compiler-rt|compiler-rt|llvm"
+  fi
+  have valgrind || install_packages valgrind valgrind
+  have cmake || install_packages cmake cmake
+  have pkg-config || install_packages pkg-config "pkg-config|pkgconf|pkgconf|pkgconf|pkgconf"
+}
+
 # A Python with what python/requirements.txt names, of our own: nothing is installed outside.
 setup_python() {
   python_environment python "$root/python/requirements.txt"

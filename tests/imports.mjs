@@ -30,6 +30,7 @@ export const FOLDERS = {
   "bench/js/src": 10,
   "bench/js/libraries": 20,
   "python/extension": 8,
+  "c/src": 11,
   "site/src": 90,
   "site/wasm/src": 4,
 };

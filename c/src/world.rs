@@ -1,0 +1,110 @@
+//! A broad phase with its threads, and what it has reported.
+
+use std::ptr::null;
+
+use sweep_and_prune::{BroadPhase, Options, Queries, Report, Scalar};
+
+use crate::common::{Wanted, id_pair, sap_changes, sap_id_pair};
+use crate::failure::Failure;
+use crate::handle::{Handle, read, write};
+use crate::threads::Threads;
+
+/// What the handle of a world holds.
+pub struct World<const D: usize, T: Scalar> {
+    pub bodies: BroadPhase<D, T>,
+    threads: Threads,
+    /// The pairs that the last update reported: first those that began.
+    changes: Vec<sap_id_pair>,
+    /// The last snapshot.
+    bytes: Vec<u8>,
+}
+
+impl<const D: usize, T: Scalar> World<D, T> {
+    /// An empty world.
+    pub fn new(report: Report<T>, threads: u32) -> Result<Self, Failure> {
+        let bodies = BroadPhase::with_options(Options::default().report(report))?;
+        Ok(Self::of(bodies, Threads::new(threads)?))
+    }
+
+    fn of(bodies: BroadPhase<D, T>, threads: Threads) -> Self {
+        let bodies = bodies.threads(threads.count());
+        Self { bodies, threads, changes: Vec::new(), bytes: Vec::new() }
+    }
+
+    /// The same world once more.
+    pub fn copy(&self) -> Result<Self, Failure> {
+        let threads = Threads::new(self.threads.count() as u32)?;
+        let copy = Self::of(self.bodies.clone(), threads);
+        Ok(Self { changes: self.changes.clone(), ..copy })
+    }
+
+    /// Becomes equal to another world.
+    pub fn assign(&mut self, from: &Self) {
+        self.bodies.clone_from(&from.bodies);
+        self.changes.clone_from(&from.changes);
+    }
+
+    /// Updates, and says what changed.
+    pub fn update(&mut self) -> sap_changes {
+        let Self { bodies, threads, changes, .. } = self;
+        threads.run(|| bodies.update());
+        changes.clear();
+        changes.extend(bodies.changes().begun().map(id_pair));
+        changes.extend(bodies.changes().ended().map(id_pair));
+        let (begun, ended) = self.changes.split_at(self.bodies.changes().begun().len());
+        let start = |pairs: &[sap_id_pair]| if pairs.is_empty() { null() } else { pairs.as_ptr() };
+        sap_changes {
+            begun: start(begun),
+            begun_count: begun.len(),
+            ended: start(ended),
+            ended_count: ended.len(),
+        }
+    }
+
+    /// The state as bytes, which are kept.
+    pub fn snapshot(&mut self) -> &[u8] {
+        self.bodies.snapshot_into(&mut self.bytes);
+        &self.bytes
+    }
+
+    /// Becomes the world of a snapshot.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Failure> {
+        self.bodies = BroadPhase::from_snapshot(bytes)?.threads(self.threads.count());
+        self.changes.clear();
+        Ok(())
+    }
+}
+
+/// Answers a query, beside other queries if the world is prepared.
+///
+/// # Safety As [`read`].
+pub unsafe fn ask<const D: usize, T: Scalar, H: Handle<State = World<D, T>>, R>(
+    world: *mut H,
+    wanted: &Wanted,
+    answer: impl FnOnce(Queries<'_, D, T>) -> Result<R, Failure>,
+) -> Result<R, Failure> {
+    let mut answer = Some(answer);
+    let mut try_to_answer = || {
+        let ask = |state: &World<D, T>| {
+            let Some(queries) = state.bodies.prepared_queries() else { return Ok(None) };
+            let Some(answer) = answer.take() else { return Ok(None) };
+            let queries = queries.excluding(&wanted.excluded);
+            let queries = wanted.filter.map_or(queries, |filter| queries.with_filter(filter));
+            answer(if wanted.unsorted { queries.unsorted() } else { queries }).map(Some)
+        };
+        // SAFETY: as promised above.
+        unsafe { read(world, ask) }
+    };
+    if let Some(answer) = try_to_answer()? {
+        return Ok(answer);
+    }
+    // SAFETY: as promised above.
+    unsafe {
+        write(world, |state| {
+            state.bodies.prepare_queries();
+            Ok(())
+        })?
+    };
+    // Only a call of another thread changes the world between these lines.
+    try_to_answer()?.ok_or(Failure::Busy)
+}
