@@ -9,4 +9,6 @@ pub mod avian2d;
 )]
 pub mod avian3d;
 
+pub mod index;
+
 pub use sweep_and_prune;
