@@ -19,7 +19,7 @@ use bevy_sweep_and_prune::avian3d::SweepAndPruneBroadPhasePlugin;
 type Scene = (&'static str, usize, usize, fn(&mut World));
 
 const SCENES: [Scene; 8] = [
-    ("1,000 cubes fall", 20, 200, |world| fall(world, 10)),
+    ("1,000 cubes fall", 20, 80, |world| fall(world, 10)),
     ("10,648 cubes fall", 20, 100, |world| fall(world, 22)),
     ("1,000 cubes drift", 20, 200, |world| drift(world, 1_000, 0, false)),
     ("10,000 cubes drift", 20, 100, |world| drift(world, 10_000, 0, false)),

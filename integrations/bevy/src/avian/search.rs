@@ -112,6 +112,10 @@ impl PairSearch {
     ) -> Vec<Candidate> {
         self.step += 1;
         self.is_after_search = true;
+        if moved.proxies().is_empty() {
+            // Nothing can be added. What ended or was removed is for the next step in which something moves.
+            return Vec::new();
+        }
         self.read_changes(trees, moved);
         self.colliders.world.update();
         // Only this plugin adds contact pairs. If more are gone than have ended, some were taken out.

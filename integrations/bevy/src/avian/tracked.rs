@@ -16,6 +16,8 @@ pub struct Tracked {
     /// The collider and its rigid body when it was inserted.
     pub collider: Entity,
     pub body: Option<Entity>,
+    /// The filter of its body.
+    pub filter: Filter,
     /// The last step in which Avian listed it as moved.
     pub moved_at: u64,
     /// Whether it was removed since the last update of the broad phase.
@@ -92,12 +94,15 @@ impl Colliders {
         };
         let filter = filter(proxy, key.tree_type());
         if let Some(id) = had {
-            let tracked = &self.tracked[id.slot() as usize];
+            let tracked = &mut self.tracked[id.slot() as usize];
             if (tracked.collider, tracked.body) == (proxy.collider, proxy.body) {
                 self.moving.push(id);
                 self.boxes.push(aabb);
-                let changed = self.world.set_filter(id, filter);
-                debug_assert!(changed.is_ok(), "the id of a body that is here");
+                if tracked.filter != filter {
+                    tracked.filter = filter;
+                    let changed = self.world.set_filter(id, filter);
+                    debug_assert!(changed.is_ok(), "the id of a body that is here");
+                }
                 return Some(id);
             }
             self.remove(id);
@@ -123,7 +128,7 @@ impl Colliders {
         let id = self.world.insert_with(aabb, filter).ok()?;
         let (slot, index) = (id.slot() as usize, key.id().index());
         let &ColliderTreeProxy { collider, body, .. } = proxy;
-        let tracked = Tracked { key, collider, body, moved_at: 0, is_removed: false };
+        let tracked = Tracked { key, collider, body, filter, moved_at: 0, is_removed: false };
         if slot >= self.tracked.len() {
             self.tracked.resize(slot + 1, tracked);
         }
