@@ -155,6 +155,7 @@ setup_c() {
   have valgrind || install_packages valgrind valgrind
   have cmake || install_packages cmake cmake
   have pkg-config || install_packages pkg-config "pkg-config|pkgconf|pkgconf|pkgconf|pkgconf"
+  pkg-config --exists bullet || install_packages bullet "libbullet-dev|bullet-devel|bullet|bullet-dev|bullet"
 }
 
 # A Python with what python/requirements.txt names, of our own: nothing is installed outside.
