@@ -2,6 +2,7 @@
 
 use std::marker::PhantomData;
 
+use bevy::ecs::component::ComponentInfo;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::system::{StaticSystemParam, SystemParamItem};
 use bevy::platform::time::Instant;
@@ -59,6 +60,22 @@ where
         // A collider is added to a tree.
         app.add_observer(add_on::<Insert, (ColliderTreeProxyKey, ColliderOf, RigidBody)>)
             .add_observer(add_on::<Remove, (ColliderOf, ColliderDisabled, Disabled)>);
+    }
+
+    fn finish(&self, app: &mut App) {
+        // What requires a key of Avian's trees is a type of colliders. Each time it is inserted, even in place of a
+        // collider, the trees add it.
+        let components = app.world().components();
+        let key = components.component_id::<ColliderTreeProxyKey>();
+        let is_collider = |info: &&ComponentInfo| {
+            info.required_components().iter_ids().any(|required| Some(required) == key)
+        };
+        let colliders: Vec<_> =
+            components.iter_registered().filter(is_collider).map(|info| info.id()).collect();
+        if !colliders.is_empty() {
+            let observer = |_: On<Insert>, mut search: ResMut<PairSearch>| search.may_add();
+            app.world_mut().spawn(Observer::new(observer).with_components(colliders));
+        }
     }
 }
 

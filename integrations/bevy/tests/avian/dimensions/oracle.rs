@@ -3,12 +3,14 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
+use bevy::app::PluginGroupBuilder;
 use bevy::ecs::system::SystemParamItem;
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
 
 use super::avian::collider_tree::ColliderTreeSystems;
 use super::avian::collision::contact_types::{ContactEdgeFlags, ContactPairFlags};
+use super::avian::dynamics::solver::islands::{IslandPlugin, IslandSleepingPlugin};
 use super::avian::prelude::*;
 use super::plugin::{PairSearch, SweepAndPruneBroadPhasePlugin};
 
@@ -38,8 +40,24 @@ impl Both {
     where
         for<'w, 's> SystemParamItem<'w, 's, H>: CollisionHooks,
     {
-        let mut app = App::new();
+        Self::with::<H>(PhysicsPlugins::default().with_collision_hooks::<H>().build())
+    }
+
+    /// Without islands of bodies, and so without bodies that sleep: Avian 0.7 fails assertions of its own in worlds that
+    /// change at random, whichever broad phase it has.
+    pub fn without_islands<H: CollisionHooks + 'static>() -> Self
+    where
+        for<'w, 's> SystemParamItem<'w, 's, H>: CollisionHooks,
+    {
         let physics = PhysicsPlugins::default().with_collision_hooks::<H>().build();
+        Self::with::<H>(physics.disable::<IslandPlugin>().disable::<IslandSleepingPlugin>())
+    }
+
+    fn with<H: CollisionHooks + 'static>(physics: PluginGroupBuilder) -> Self
+    where
+        for<'w, 's> SystemParamItem<'w, 's, H>: CollisionHooks,
+    {
+        let mut app = App::new();
         app.add_plugins((
             MinimalPlugins,
             TransformPlugin,

@@ -319,7 +319,11 @@ fn disturb(world: &mut World, random: &mut Random, living: &mut Vec<Entity>) {
         4 => drop(entity.remove::<Disabled>()),
         5 => drop(entity.insert(RigidBodyDisabled)),
         6 => drop(entity.remove::<RigidBodyDisabled>()),
-        7 => drop(entity.insert(kinds[random.below(3)])),
+        // Avian 0.7 fails an assertion of its own where a collider without a body gets a static one, or where the body is
+        // disabled and its other colliders are not.
+        7 if entity.contains::<RigidBody>() && !entity.contains::<Disabled>() => {
+            entity.insert(kinds[random.below(3)]);
+        }
         8 => drop(entity.insert(cuboid([random.between(0.2, 2.0); 3]))),
         9 => drop(entity.insert(Sensor)),
         10 => drop(entity.remove::<Sensor>()),
@@ -374,9 +378,9 @@ fn disturb_within_a_step(world: &mut World) {
 
 #[test]
 fn anything_that_can_happen_at_random() {
-    let seeds = if std::env::var_os("TEST_LONG").is_some() { 30 } else { 3 };
+    let seeds = if std::env::var_os("TEST_LONG").is_some() { 80 } else { 8 };
     for seed in 0..seeds {
-        let mut both = Both::new::<Teams>();
+        let mut both = Both::without_islands::<Teams>();
         // Events of collisions run here, for example.
         both.app.add_systems(
             PhysicsSchedule,
