@@ -97,3 +97,70 @@ fn fail<G>(error: TryLockError<G>) -> Failure {
         TryLockError::Poisoned(PoisonError { .. }) => Failure::Poisoned,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::ptr::{null, null_mut};
+
+    use super::*;
+    use crate::failure::{run, sap_error, sap_status};
+
+    struct Number;
+
+    impl Handle for Number {
+        type State = u32;
+        const NAME: &'static str = "Number";
+        const TAG: u64 = 1;
+    }
+
+    fn status(call: impl FnOnce() -> Result<(), Failure>) -> (sap_status, String) {
+        let mut error: sap_error =
+            sap_error { status: sap_status::SAP_OK, set: 0, index: 0, message: [0; 240] };
+        // SAFETY: it is an error.
+        let status = unsafe { run(&mut error, call) };
+        let text = error.message.iter().take_while(|&&byte| byte != 0).map(|&byte| byte as u8);
+        (status, String::from_utf8(text.collect()).unwrap())
+    }
+
+    // No call of C can make the library panic, as far as we know, so this is not among the tests in C.
+    #[test]
+    fn a_panic_is_a_status_and_poisons_what_it_may_have_left_half_done() {
+        let mut handle = create::<Number>(7);
+        // SAFETY: it is a handle.
+        let read = || unsafe {
+            read(handle, |number| {
+                assert_eq!(*number, 7);
+                Ok(())
+            })
+        };
+        assert_eq!(status(read).0, sap_status::SAP_OK);
+
+        // A panic while reading harms nothing.
+        // SAFETY: it is a handle.
+        let (failed, text) = status(|| unsafe { super::read(handle, |_| panic!("read {}", 1)) });
+        assert_eq!(failed, sap_status::SAP_ERROR_PANIC);
+        assert!(text.ends_with("please report it: read 1"), "{text}");
+        assert_eq!(status(read).0, sap_status::SAP_OK);
+
+        // SAFETY: it is a handle.
+        let (failed, _) = status(|| unsafe { write(handle, |_| panic!("write")) });
+        assert_eq!(failed, sap_status::SAP_ERROR_PANIC);
+        assert_eq!(status(read).0, sap_status::SAP_ERROR_POISONED);
+        // SAFETY: it is a handle.
+        let (failed, _) = status(|| unsafe { write(handle, |_| Ok(())) });
+        assert_eq!(failed, sap_status::SAP_ERROR_POISONED);
+        // SAFETY: it points to a pointer to a handle.
+        unsafe { destroy(&mut handle) };
+        assert!(handle.is_null());
+    }
+
+    #[test]
+    fn a_message_that_is_too_long_is_cut_off_between_characters() {
+        let long = "é".repeat(500);
+        let (_, text) = status(|| Err(Failure::Threads(long)));
+        assert!((230..240).contains(&text.len()) && text.ends_with('é'), "{text}");
+        // SAFETY: null is allowed in both places.
+        let failed = unsafe { run(null_mut(), || super::read(null::<Number>(), |_| Ok(()))) };
+        assert_eq!(failed, sap_status::SAP_ERROR_INVALID_ARGUMENT);
+    }
+}
