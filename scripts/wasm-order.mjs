@@ -1,0 +1,105 @@
+// Puts the functions of a WebAssembly module into an order in which those with much in common are near each other: gzip finds
+// what it has seen in the last 32 KB. The same code for several types of boxes becomes 3 to 4 % smaller.
+
+/** What gzip remembers, less what the function itself takes. */
+const MEMORY = 22_000;
+/** The length of the byte strings that are compared. */
+const LENGTH = 6;
+/** One in this many of them is compared, chosen by what it is: of 8, a file is 0.8 % larger; of 2, ordering takes twice the time. */
+const SAMPLE = 4;
+
+/** The bytes of a module, as `binaryen` writes it without names, with its functions in another order. */
+export function orderBySimilarity(binaryen, bytes, features) {
+  const bodies = bodiesOf(bytes);
+  const imported = WebAssembly.Module.imports(new WebAssembly.Module(bytes)).filter(({ kind }) => kind === "function").length;
+  const names = new Array(imported + bodies.length);
+  for (let at = 0; at < imported; at++) names[at] = `a${String(at).padStart(6, "0")}`;
+  similarNext(bodies).forEach((at, rank) => (names[imported + at] = `b${String(rank).padStart(6, "0")}`));
+  const module = binaryen.readBinary(Buffer.concat([bytes, nameSection(names)]));
+  module.setFeatures(features);
+  module.runPasses(["reorder-functions-by-name", "strip-debug"]);
+  const ordered = module.emitBinary();
+  module.dispose();
+  return Buffer.from(ordered);
+}
+
+/** The positions of bodies: each is followed by the one of which the largest part occurs in those just before. */
+function similarNext(bodies) {
+  const strings = bodies.map(sampled);
+  const left = new Set(bodies.keys());
+  const order = [];
+  // How many of the last functions have a string, and how long they are.
+  const remembered = new Map();
+  let [first, size] = [0, 0];
+  let next = 0;
+  while (next !== undefined) {
+    left.delete(next);
+    order.push(next);
+    size += bodies[next].length;
+    for (const string of strings[next]) remembered.set(string, (remembered.get(string) ?? 0) + 1);
+    for (; size > MEMORY && first < order.length - 1; first++) {
+      size -= bodies[order[first]].length;
+      for (const string of strings[order[first]]) {
+        const count = remembered.get(string) - 1;
+        if (count > 0) remembered.set(string, count);
+        else remembered.delete(string);
+      }
+    }
+    let most = -1;
+    next = undefined;
+    for (const at of left) {
+      let known = 0;
+      for (const string of strings[at]) known += remembered.has(string) ? 1 : 0;
+      const share = known / (strings[at].length + 3);
+      if (share > most) [most, next] = [share, at];
+    }
+  }
+  return order;
+}
+
+/** Some of the different strings of `LENGTH` bytes in a function, as numbers. */
+function sampled(body) {
+  const strings = new Set();
+  for (let at = 0; at + LENGTH <= body.length; at++) {
+    const string = body.readUIntLE(at, LENGTH);
+    if (Math.imul(string ^ (string / 2 ** 24), 0x9e3779b1) >>> 0 < 2 ** 32 / SAMPLE) strings.add(string);
+  }
+  return [...strings];
+}
+
+/** The bodies of the functions of a module. */
+function bodiesOf(bytes) {
+  let at = 8;
+  const number = () => {
+    let value = 0;
+    for (let shift = 0; ; shift += 7) {
+      const byte = bytes[at++];
+      value |= (byte & 127) << shift;
+      if (byte < 128) return value >>> 0;
+    }
+  };
+  const CODE = 10;
+  for (let section = bytes[at++], length = number(); section !== CODE; section = bytes[at++], length = number()) at += length;
+  const bodies = [];
+  for (let left = number(); left > 0; left--) {
+    const length = number();
+    bodies.push(bytes.subarray(at, at + length));
+    at += length;
+  }
+  return bodies;
+}
+
+/** The section that names the functions of a module. */
+function nameSection(names) {
+  const section = (id, content) => [id, ...leb(content.length), ...content];
+  const text = (name) => [...leb(name.length), ...Buffer.from(name)];
+  const all = names.flatMap((name, at) => [...leb(at), ...text(name)]);
+  return Buffer.from(section(0, [...text("name"), ...section(1, [...leb(names.length), ...all])]));
+}
+
+/** A number as WebAssembly writes it. */
+function leb(number) {
+  const bytes = [];
+  for (; number > 127; number >>>= 7) bytes.push((number & 127) | 128);
+  return [...bytes, number];
+}
