@@ -46,8 +46,11 @@ pub trait TrackBodies<I: Id>: Send {
     /// Changes the filter of a body.
     fn set_filter(&mut self, id: ProxyId, filter: Filter) -> Result<(), Error>;
 
-    /// The filter of a body.
-    fn filter(&self, id: ProxyId) -> Result<Filter, Error>;
+    /// The filter of a body, and whether it is enabled.
+    fn filter(&self, id: ProxyId) -> Result<(Filter, bool), Error>;
+
+    /// Disables a body, or enables it again.
+    fn set_enabled(&mut self, id: ProxyId, is_enabled: bool) -> Result<(), Error>;
 
     /// Writes the corners of the box of a body, as set or as its overlaps are reported.
     fn corners(&self, id: ProxyId, is_reported: bool, corners: &mut [f64]) -> Result<(), Error>;
@@ -72,6 +75,12 @@ pub trait TrackBodies<I: Id>: Send {
 /// A broad phase that also answers queries, lists its pairs, and is saved and restored.
 #[allow(clippy::missing_errors_doc)]
 pub trait AnyBroadPhase<I: Id>: TrackBodies<I> {
+    /// Excludes a pair, or includes it again.
+    fn set_excluded(&mut self, pair: [ProxyId; 2], is_excluded: bool) -> Result<(), Error>;
+
+    /// Whether a pair is excluded.
+    fn is_excluded(&self, pair: [ProxyId; 2]) -> Result<bool, Error>;
+
     /// Appends the ids of the pairs of the last update, two a pair, sorted.
     fn pairs(&self, ids: &mut Vec<I>);
 
@@ -187,8 +196,12 @@ impl<const D: usize, T: Scalar, I: Id> TrackBodies<I> for TypedBroadPhase<D, T> 
         self.world.set_filter(id, filter)
     }
 
-    fn filter(&self, id: ProxyId) -> Result<Filter, Error> {
-        self.world.filter(id)
+    fn filter(&self, id: ProxyId) -> Result<(Filter, bool), Error> {
+        Ok((self.world.filter(id)?, self.world.is_enabled(id)?))
+    }
+
+    fn set_enabled(&mut self, id: ProxyId, is_enabled: bool) -> Result<(), Error> {
+        self.world.set_enabled(id, is_enabled)
     }
 
     fn corners(&self, id: ProxyId, is_reported: bool, corners: &mut [f64]) -> Result<(), Error> {
@@ -227,6 +240,14 @@ impl<const D: usize, T: Scalar, I: Id> TrackBodies<I> for TypedBroadPhase<D, T> 
 }
 
 impl<const D: usize, T: Scalar, I: Id> AnyBroadPhase<I> for TypedBroadPhase<D, T> {
+    fn set_excluded(&mut self, [a, b]: [ProxyId; 2], is_excluded: bool) -> Result<(), Error> {
+        if is_excluded { self.world.exclude_pair(a, b) } else { self.world.include_pair(a, b) }
+    }
+
+    fn is_excluded(&self, [a, b]: [ProxyId; 2]) -> Result<bool, Error> {
+        self.world.is_excluded(a, b)
+    }
+
     fn pairs(&self, ids: &mut Vec<I>) {
         ids.extend(self.world.pairs().flatten().map(I::from_proxy));
     }

@@ -102,7 +102,10 @@ fn broad_phase_gives_what_the_core_gives<const D: usize, T: Scalar>() {
     assert_eq!(added, core.insert(end[0]).unwrap());
     erased.set_filter(added, filter).unwrap();
     core.set_filter(added, filter).unwrap();
-    assert_eq!(erased.filter(added), Ok(filter));
+    assert_eq!(erased.filter(added), Ok((filter, true)));
+    erased.set_enabled(added, false).unwrap();
+    assert_eq!(erased.filter(added), Ok((filter, false)));
+    erased.set_enabled(added, true).unwrap();
 
     events.clear();
     let begun = erased.update(&mut events);

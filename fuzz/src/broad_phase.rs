@@ -319,7 +319,35 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
             input.say(|| format!("set_filter {id:?} {filter:?}"));
             self.world.set_filter(id, filter).unwrap();
             self.model.set_filter(id, filter);
+            self.toggle(input);
         }
+    }
+
+    /// Disables or enables a body, or excludes or includes a pair. Which ones, the number of calls says, so that it takes no
+    /// byte of the input.
+    fn toggle(&mut self, input: &mut Input) {
+        let nth = |step: usize| {
+            let which = self.calls as usize * step % self.model.bodies.len().min(64);
+            self.model.bodies.keys().nth(which).copied().unwrap()
+        };
+        let (a, b) = (nth(1), nth(5));
+        if self.calls.is_multiple_of(3) {
+            let is_enabled = !self.model.bodies[&a].is_enabled;
+            input.say(|| format!("set_enabled {a:?} {is_enabled}"));
+            self.world.set_enabled(a, is_enabled).unwrap();
+            self.model.set_enabled(a, is_enabled);
+        } else if self.calls.is_multiple_of(4) {
+            input.say(|| format!("include_pair {a:?} {b:?}"));
+            self.world.include_pair(a, b).unwrap();
+            self.model.set_excluded(a, b, false);
+        } else {
+            input.say(|| format!("exclude_pair {a:?} {b:?}"));
+            self.world.exclude_pair(a, b).unwrap();
+            self.model.set_excluded(a, b, true);
+        }
+        let is_excluded = self.model.excluded.contains(&[a.min(b), a.max(b)]);
+        assert_eq!(self.world.is_excluded(a, b).unwrap(), is_excluded);
+        assert_eq!(self.world.is_excluded(b, a).unwrap(), is_excluded);
     }
 
     /// The filter of a query, if it has one.
@@ -554,6 +582,7 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
             assert_eq!(self.world.aabb(id).unwrap(), body.aabb);
             assert_eq!(self.world.reported_aabb(id).unwrap(), body.reported);
             assert_eq!(self.world.filter(id).unwrap(), body.filter);
+            assert_eq!(self.world.is_enabled(id).unwrap(), body.is_enabled);
         }
     }
 
@@ -584,6 +613,8 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
             refused(world.set_swept(gone, good, good), stale);
             refused(world.teleport(gone, good), stale);
             refused(world.set_filter(gone, Filter::ALL), stale);
+            refused(world.set_enabled(gone, false), stale);
+            refused(world.exclude_pair(gone, gone), stale);
             refused(world.remove(gone), stale);
             refused(world.aabb(gone), stale);
             assert!(world.pairs_of(gone).is_err() && !world.contains(gone));
@@ -591,6 +622,8 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
         if let Some(id) = self.model.bodies.keys().last().copied() {
             let foreign = ProxyId::from_bits(id.to_bits() + (1 << 32));
             let stale = |id: ProxyId| Error::StaleProxy { index: 1, id: id.to_bits() };
+            refused(world.exclude_pair(id, foreign), stale(foreign));
+            refused(world.include_pair(id, foreign), stale(foreign));
             refused(world.set_swept(id, good, inverted), invalid(1, inverted));
             refused(world.teleport(id, bad), invalid(0, bad));
             refused(world.set_many(&[id, id], &[good, bad]), invalid(1, bad));

@@ -1,6 +1,6 @@
 //! What `BroadPhase` should do, by brute force over a map of bodies.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use sweep_and_prune::{Aabb, BroadPhase, Cast, Filter, Options, ProxyId, Report, Scalar};
 
@@ -16,6 +16,8 @@ pub struct Body<const D: usize, T> {
     pub reported: Aabb<D, T>,
     /// Its filter.
     pub filter: Filter,
+    /// Whether it is enabled.
+    pub is_enabled: bool,
     /// What it had at the last update, if that knew it.
     last: Option<AtUpdate<D, T>>,
     /// Where its sweep ends, if it was swept since the last update.
@@ -39,6 +41,8 @@ pub struct Model<const D: usize, T> {
     pub bodies: BTreeMap<ProxyId, Body<D, T>>,
     /// The pairs of the last update, sorted.
     pub pairs: Vec<Pair>,
+    /// The excluded pairs of bodies that are there.
+    pub excluded: BTreeSet<Pair>,
     /// How far all was shifted since the last update.
     shifted: [T; D],
 }
@@ -47,10 +51,16 @@ impl<const D: usize, T: Scalar> Model<D, T> {
     /// A model without bodies.
     pub fn new(options: Options<T>) -> Self {
         let shifted = [T::default(); D];
-        Self { report: options.report, bodies: BTreeMap::new(), pairs: Vec::new(), shifted }
+        Self {
+            report: options.report,
+            bodies: BTreeMap::new(),
+            pairs: Vec::new(),
+            excluded: BTreeSet::new(),
+            shifted,
+        }
     }
 
-    /// The model of a world after an update, as the world describes itself.
+    /// The model of a world after an update, without excluded pairs, as the world describes itself.
     pub fn of(world: &BroadPhase<D, T>) -> Self {
         let body = |id| {
             let (aabb, reported) = (world.aabb(id).unwrap(), world.reported_aabb(id).unwrap());
@@ -59,6 +69,7 @@ impl<const D: usize, T: Scalar> Model<D, T> {
                 aabb,
                 reported,
                 filter,
+                is_enabled: world.is_enabled(id).unwrap(),
                 last: Some(AtUpdate { from: aabb, reported }),
                 rest: None,
             }
@@ -71,7 +82,7 @@ impl<const D: usize, T: Scalar> Model<D, T> {
 
     /// Adds a body, under the id that the world gave it.
     pub fn insert(&mut self, id: ProxyId, aabb: Aabb<D, T>, filter: Filter) {
-        let body = Body { aabb, reported: aabb, filter, last: None, rest: None };
+        let body = Body { aabb, reported: aabb, filter, is_enabled: true, last: None, rest: None };
         assert!(self.bodies.insert(id, body).is_none(), "{id:?} was given out twice");
         self.refatten(id);
     }
@@ -79,6 +90,7 @@ impl<const D: usize, T: Scalar> Model<D, T> {
     /// Removes a body.
     pub fn remove(&mut self, id: ProxyId) {
         self.bodies.remove(&id).unwrap();
+        self.excluded.retain(|pair| !pair.contains(&id));
     }
 
     fn body(&mut self, id: ProxyId) -> &mut Body<D, T> {
@@ -155,13 +167,32 @@ impl<const D: usize, T: Scalar> Model<D, T> {
         self.bodies.get_mut(&id).unwrap().filter = filter;
     }
 
+    /// Enables a body or disables it.
+    pub fn set_enabled(&mut self, id: ProxyId, is_enabled: bool) {
+        self.body(id).is_enabled = is_enabled;
+    }
+
+    /// Excludes a pair of two bodies, or includes it again.
+    pub fn set_excluded(&mut self, a: ProxyId, b: ProxyId, is_excluded: bool) {
+        let pair = [a.min(b), a.max(b)];
+        if is_excluded && a != b {
+            self.excluded.insert(pair);
+        } else {
+            self.excluded.remove(&pair);
+        }
+    }
+
     /// The pairs that the reported boxes have now, sorted.
     pub fn overlapping_pairs(&self) -> Vec<Pair> {
         let bodies: Vec<_> = self.bodies.iter().collect();
         let mut pairs = Vec::with_capacity(self.pairs.len());
         for (index, (a, first)) in bodies.iter().enumerate() {
             for (b, second) in &bodies[index + 1..] {
-                if first.reported.overlaps(&second.reported) && first.filter.allows(&second.filter)
+                if first.reported.overlaps(&second.reported)
+                    && first.is_enabled
+                    && second.is_enabled
+                    && first.filter.allows(&second.filter)
+                    && !self.excluded.contains(&[**a, **b])
                 {
                     pairs.push([**a, **b]);
                 }
@@ -200,7 +231,9 @@ impl<const D: usize, T: Scalar> Model<D, T> {
         &'a self,
         filter: &'a Option<Filter>,
     ) -> impl Iterator<Item = (ProxyId, &'a Aabb<D, T>)> + 'a {
-        let is_seen = |body: &Body<D, T>| filter.is_none_or(|filter| filter.allows(&body.filter));
+        let is_seen = |body: &Body<D, T>| {
+            body.is_enabled && filter.is_none_or(|filter| filter.allows(&body.filter))
+        };
         let seen = self.bodies.iter().filter(move |(_, body)| is_seen(body));
         seen.map(|(&id, body)| (id, &body.aabb))
     }

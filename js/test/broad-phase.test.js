@@ -193,6 +193,66 @@ test("masks, groups and static bodies decide which bodies pair", () => {
   world.free();
 });
 
+test("a disabled body pairs with none and is not found, and keeps its filter", () => {
+  const world = new BroadPhase({ dimensions: 1 });
+  const [a, b] = [world.insert(0, 1), world.insert(0, 1)];
+  const pairs = () => (world.update(), world.pairs().length / 2);
+  assert.equal(pairs(), 1);
+  world.setEnabled(a, false);
+  world.setFilter(a, { group: 3 });
+  assert.deepEqual([world.isEnabled(a), world.isEnabled(b), world.filter(a).group], [false, true, 3]);
+  assert.equal(pairs(), 0);
+  assert.deepEqual([...world.containing([0.5])], [b]);
+  assert.equal(world.rayCast([-1], [1])?.id, b);
+  assert.equal(BroadPhase.fromSnapshot(world.snapshot(), { dimensions: 1 }).isEnabled(a), false);
+  world.setEnabled(a, true);
+  assert.equal(pairs(), 1);
+  assert.throws(() => world.setEnabled(a, /** @type {any} */ (0)), /^TypeError: `enabled` must be true or false, not 0/);
+  world.free();
+});
+
+test("pairs are excluded one by one, and included again", () => {
+  const world = new BroadPhase({ dimensions: 1 });
+  const [a = NaN, b = NaN, c = NaN] = world.insertMany([0, 1, 0, 1, 0, 1]);
+  const pairs = () => (world.update(), [...world.pairs()]);
+  world.excludePair(b, a);
+  assert.deepEqual([world.isExcluded(a, b), world.isExcluded(b, c)], [true, false]);
+  assert.deepEqual(pairs(), [a, c, b, c]);
+  const restored = BroadPhase.fromSnapshot(world.snapshot(), { dimensions: 1 });
+  world.includePair(a, b);
+  restored.includePair(a, b);
+  assert.deepEqual(pairs(), [a, b, a, c, b, c]);
+  assert.deepEqual([...restored.update().begun], [a, b]);
+  world.excludePair(a, a);
+  assert.equal(world.isExcluded(a, a), false);
+  world.excludePair(a, c);
+  world.remove(c);
+  const again = world.insert(0, 1);
+  world.update();
+  assert.throws(() => world.includePair(a, c), (error) => error instanceof StaleProxyError && error.index === 1 && error.id === c);
+  assert.deepEqual(pairs(), [a, b, a, again, b, again]);
+  world.free();
+  restored.free();
+});
+
+test("pairs by body are those that `pairsOf` gives for each", () => {
+  const world = new BroadPhase({ dimensions: 2 });
+  const next = random(3);
+  const ids = world.insertMany(boxesSpread(next, 400, 2));
+  world.update();
+  world.removeMany(ids.filter(() => next() < 0.2));
+  world.update();
+  world.insertMany(boxesSpread(next, 50, 2));
+  world.update();
+  const { starts, others } = world.pairsByBody();
+  assert.ok(others.length > 200);
+  for (const id of world.ids()) {
+    const slot = slotOf(id);
+    assert.deepEqual(others.subarray(starts[slot], starts[slot + 1]), world.pairsOf(id));
+  }
+  world.free();
+});
+
 test("a swept body pairs with what it would have jumped over", () => {
   const world = new BroadPhase({ dimensions: 2 });
   const wall = world.insert(5, -5, 5.1, 5);

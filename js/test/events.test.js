@@ -52,10 +52,11 @@ for (const [Events, dimensions] of small) {
         if (frame % 16 === 5) both((world) => world.shift(box.slice(0, dimensions)));
         both((world) => world.setSwept(b, box, [...rows.subarray(width, 2 * width)]));
         both((world) => world.setFilter(b, { category: 2 * (frame % 2), group: frame % 3 - 1 }));
+        both((world) => world.setEnabled(ids[frame], frame % 3 > 0));
         const removed = frame % 5 === 0 ? ids.splice(0, 20) : [];
         both((world) => world.removeMany(removed));
         ids.push(both((world) => world.insert(...box)));
-        for (const call of ["box", "reportedBox", "filter", "contains"]) both((world) => world[call](a));
+        for (const call of ["box", "reportedBox", "filter", "contains", "isEnabled"]) both((world) => world[call](a));
         both((world) => world.set(ids[0], ...box.toReversed())); // inverted
         both((world) => world.remove(7)); // stale
         const changes = both((world) => world.update());

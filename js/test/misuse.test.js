@@ -41,7 +41,7 @@ for (const dimensions of /** @type {const} */ ([1, 2, 3])) {
         world.update();
         const calls = {
           ...{ insert: box, insertMany: [[...box, ...box], {}], set: [a, ...box], setMany: [[a, b], [...box, ...box]], setSwept: [a, box, box], teleport: [a, ...box], shift: [point] },
-          ...{ remove: [c], removeMany: [[c]], clear: [], setFilter: [a, {}], filter: [a], contains: [a], box: [a], reportedBox: [a], pairsOf: [a], buffers: [2] },
+          ...{ remove: [c], removeMany: [[c]], clear: [], setFilter: [a, {}], filter: [a], setEnabled: [a, false], isEnabled: [a], excludePair: [a, b], includePair: [a, b], isExcluded: [a, b], pairsByBody: [], contains: [a], box: [a], reportedBox: [a], pairsOf: [a], buffers: [2] },
           ...{ update: [], pairs: [{}], ids: [], snapshot: [], stateHash: [], overlapping: [box, {}], containing: [point, {}] },
           ...{ within: [point, 1, {}], nearest: [point, 1, 5, {}, { exclude: 1 }], rayCast: [point, direction, 5, {}, { exclude: 1 }], rayCastAll: [point, direction, 5, {}, { ignoreTouching: true }] },
           ...{ boxes: [[a, b]], restore: [new BroadPhase({ dimensions, precision }).snapshot()], clone: [], setData: [a, 1], "insert ": [box, { data: 1, mask: 2 }], "insertMany ": [[box], {}, [1]] },

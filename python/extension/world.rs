@@ -184,14 +184,56 @@ impl World {
         })
     }
 
-    fn filters(&self, ids: Array<'_>) -> PyResult<Vec<Words>> {
+    fn set_enabled(&self, ids: Array<'_>, enabled: bool) -> PyResult<()> {
+        let (py, ids) = (ids.py(), copy_numbers(&ids)?);
+        let ids = ids.as_slice()?;
+        self.with(|space| {
+            space.check_ids(py, ids)?;
+            let proxies = proxies(ids);
+            let done = space.run(py, proxies.len(), |world| {
+                proxies.iter().try_for_each(|&id| world.set_enabled(id, enabled))
+            })?;
+            done.map_err(|error| raise(py, error, "", ids))
+        })
+    }
+
+    /// Excludes or includes pairs, whose ids follow each other.
+    fn set_excluded(&self, ids: Array<'_>, excluded: bool) -> PyResult<()> {
+        let (py, ids) = (ids.py(), copy_numbers(&ids)?);
+        let ids = ids.as_slice()?;
+        self.with(|space| {
+            space.check_ids(py, ids)?;
+            let proxies = proxies(ids);
+            let (pairs, _) = proxies.as_chunks::<2>();
+            let done = space.run(py, proxies.len(), |world| {
+                pairs.iter().try_for_each(|&pair| world.set_excluded(pair, excluded))
+            })?;
+            done.map_err(|error| raise(py, error, "", ids))
+        })
+    }
+
+    fn is_excluded(&self, ids: Array<'_>) -> PyResult<bool> {
+        let (py, ids) = (ids.py(), copy_numbers(&ids)?);
+        let ids = ids.as_slice()?;
+        self.with(|space| {
+            space.check_ids(py, ids)?;
+            let proxies = proxies(ids);
+            let (pairs, _) = proxies.as_chunks::<2>();
+            let are = pairs.iter().map(|&pair| space.world.is_excluded(pair));
+            let are: Result<Vec<_>, Error> = are.collect();
+            let all = are.map_err(|error| raise(py, error, "", ids))?;
+            Ok(all.into_iter().all(|is_excluded| is_excluded))
+        })
+    }
+
+    fn filters(&self, ids: Array<'_>) -> PyResult<Vec<(u32, u32, i32, bool, bool)>> {
         let (py, ids) = (ids.py(), copy_numbers(&ids)?);
         let ids = ids.as_slice()?;
         self.with(|space| {
             space.check_ids(py, ids)?;
             let filters = ids.iter().map(|&id| {
-                let filter = space.world.filter(proxy(id))?;
-                Ok((filter.category, filter.mask, filter.group, filter.is_static))
+                let (filter, is_enabled) = space.world.filter(proxy(id))?;
+                Ok((filter.category, filter.mask, filter.group, filter.is_static, is_enabled))
             });
             let filters: Result<_, Error> = filters.collect();
             filters.map_err(|error| raise(py, error, "", ids))

@@ -110,7 +110,16 @@ def sensible(name: str, ids: Any) -> Any:
         **dict.fromkeys(("point", "center", "origin", "direction", "offset"), POINTS[0]),
         **dict.fromkeys(("radius", "radii", "limit", "limits", "margin", "prediction", "max_distance"), 1.0),
         **dict.fromkeys(("threads", "k", "size", "index", "axis", "group", "category", "mask"), 1),
-        **{"id": int(ids[0]), "ids": ids, "filter": sap.Filter(), "each": lambda chunk: None, "snapshot": b""},
+        **{
+            "id": int(ids[0]),
+            "first": int(ids[0]),
+            "second": int(ids[1]),
+            "enabled": False,
+            "ids": ids,
+            "filter": sap.Filter(),
+            "each": lambda chunk: None,
+            "snapshot": b"",
+        },
         **{"format": "xyxy", "closed": "both", "missing": "raise", "by": None, "index_dtype": np.int64},
         **{"how": "inner", "predicate": "intersects", "distance": None, "lsuffix": "left", "rsuffix": "right"},
         **dict.fromkeys(

@@ -33,6 +33,8 @@ class Worlds(RuleBasedStateMachine):
         self.ends: dict[int, Any] = {}
         self.filters: dict[int, sap.Filter] = {}
         self.known: set[tuple[int, int]] = set()
+        self.disabled: set[int] = set()
+        self.excluded: set[frozenset[int]] = set()
         self.gone: list[int] = []
 
     def draw_box(self, data: st.DataObject) -> Any:
@@ -110,12 +112,33 @@ class Worlds(RuleBasedStateMachine):
         self.filters.update(dict.fromkeys(ids, filter))
 
     @precondition(some)
+    @rule(data=st.data(), enabled=st.booleans())
+    def set_enabled(self, data: st.DataObject, enabled: bool) -> None:
+        ids = data.draw(st.lists(st.sampled_from(sorted(self.boxes)), max_size=3))
+        if len(ids) == 1:
+            self.world.set_enabled(ids[0], enabled)
+        else:
+            self.world.set_enabled_many(ids, enabled)
+        self.disabled = self.disabled - set(ids) if enabled else self.disabled | set(ids)
+
+    @precondition(some)
+    @rule(data=st.data(), excluded=st.booleans())
+    def set_excluded(self, data: st.DataObject, excluded: bool) -> None:
+        first, second = self.draw_id(data), self.draw_id(data)
+        (self.world.exclude_pair if excluded else self.world.include_pair)(first, second)
+        pair = {frozenset((first, second))} if first != second else set()
+        self.excluded = self.excluded | pair if excluded else self.excluded - pair
+        assert self.world.is_excluded(second, first) == (excluded and first != second)
+
+    @precondition(some)
     @rule(data=st.data())
     def remove(self, data: st.DataObject) -> None:
         ids = data.draw(st.lists(st.sampled_from(sorted(self.boxes)), unique=True, max_size=5))
         self.world.remove_many(ids)
         for id in ids:
             del self.boxes[id], self.filters[id]
+            self.disabled.discard(id)
+            self.excluded = {pair for pair in self.excluded if id not in pair}
             self.ends.pop(id, None)
         self.gone += ids
 
@@ -139,6 +162,8 @@ class Worlds(RuleBasedStateMachine):
             lambda: self.world.set_many([id, stale], [box, box]),
             lambda: self.world.set_swept_many([id, stale], [box, box], [box, box]),
             lambda: self.world.set_filter_many([id, stale], FILTERS[1]),
+            lambda: self.world.set_enabled_many([id, stale], False),
+            lambda: self.world.exclude_pair(id, stale),
             lambda: self.world.remove_many(np.array([id, stale], np.int64)),
             lambda: self.world.box_many([id, stale]),
         ):
@@ -181,6 +206,7 @@ class Worlds(RuleBasedStateMachine):
             assert np.array_equal(self.world.box_many(ids), np.array([self.boxes[id] for id in ids.tolist()]))
         for id in self.boxes:
             assert id in self.world and self.world.filter(id) == self.filters[id]
+            assert self.world.is_enabled(id) == (id not in self.disabled)
         assert not self.world.contains_many(np.array(self.gone, np.int64)).any()
 
     @rule(data=st.data(), filter=st.sampled_from([None, *FILTERS]))
@@ -193,7 +219,8 @@ class Worlds(RuleBasedStateMachine):
         assert np.array_equal(one, next(self.world.overlapping_many(boxes, filter).each()))
 
     def check(self, found: sap.Lists, boxes: Any, filter: sap.Filter | None) -> None:
-        ids = [id for id in self.boxes if (filter or sap.Filter(0xFFFF_FFFF)).allows(self.filters[id])]
+        allowed = (filter or sap.Filter(0xFFFF_FFFF)).allows
+        ids = [id for id in self.boxes if allowed(self.filters[id]) and id not in self.disabled]
         mine = np.array([self.boxes[id] for id in ids]).reshape(-1, boxes.shape[1])
         lists = [each.tolist() for each in found.each()]
         assert len(lists) == len(boxes)
@@ -206,7 +233,9 @@ class Worlds(RuleBasedStateMachine):
         mine = np.array([self.boxes[id] for id in ids]).reshape(-1, 2 * self.world.dimensions)
         touching = np.argwhere(np.triu(overlaps(mine, mine), 1))
         named = ((ids[a], ids[b]) for a, b in touching)
-        return {(a, b) for a, b in named if self.filters[a].allows(self.filters[b])}
+        apart = self.excluded
+        enabled = ((a, b) for a, b in named if not {a, b} & self.disabled and frozenset((a, b)) not in apart)
+        return {(a, b) for a, b in enabled if self.filters[a].allows(self.filters[b])}
 
 
 TestWorlds = Worlds.TestCase

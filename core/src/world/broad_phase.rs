@@ -2,8 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::bodies::{Bodies, Filter, ProxyId, flag, sort_ids};
-use super::candidates::PairSorter;
+use super::bodies::{Bodies, Filter, ProxyId, When, flag};
 use super::changes::{Changes, Events};
 #[cfg(feature = "parallel")]
 use super::finder::Finder;
@@ -136,7 +135,28 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// # Errors
     /// [`Error::StaleProxy`].
     pub fn filter(&self, id: ProxyId) -> Result<Filter, Error> {
-        Ok(self.bodies.filters[self.bodies.slots.check(id, 0)? as usize])
+        Ok(Filter { is_enabled: true, ..self.own_filter(id)? })
+    }
+
+    /// Whether a body is enabled, as it is until [`set_enabled`](Self::set_enabled) says otherwise.
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`].
+    pub fn is_enabled(&self, id: ProxyId) -> Result<bool, Error> {
+        Ok(self.own_filter(id)?.is_enabled)
+    }
+
+    fn own_filter(&self, id: ProxyId) -> Result<Filter, Error> {
+        Ok(*self.bodies.rules.filter_now(self.bodies.slots.check(id, 0)?))
+    }
+
+    /// Whether a pair is [excluded](Self::exclude_pair).
+    ///
+    /// # Errors
+    /// As [`exclude_pair`](Self::exclude_pair).
+    pub fn is_excluded(&self, a: ProxyId, b: ProxyId) -> Result<bool, Error> {
+        let pair = [self.bodies.slots.check(a, 0)?, self.bodies.slots.check(b, 1)?];
+        Ok(self.bodies.rules.excludes(&self.bodies.slots, pair, When::Now))
     }
 
     /// Finds the pairs that began and ended since the last update.
@@ -172,21 +192,13 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// ```
     #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn pairs(&self) -> impl ExactSizeIterator<Item = [ProxyId; 2]> + '_ {
-        let slots = &self.bodies.slots;
-        let mut pairs: Vec<_> = self.tracking.candidates.live_pairs(slots).collect();
-        slots.to_slots(&mut pairs);
-        PairSorter::default().sort(&mut pairs, slots.len());
-        pairs.into_iter().map(|pair| pair.map(|slot| slots.id_of_slot(slot)))
+        self.tracking.candidates.sorted_ids(&self.bodies.slots)
     }
 
     /// The pairs of [`pairs`](Self::pairs) in an order that is the same for the same calls, but not
     /// specified: a restored world may give another. Takes O(pairs) time and does not allocate.
     pub fn pairs_unsorted(&self) -> impl Iterator<Item = [ProxyId; 2]> + '_ {
-        let slots = &self.bodies.slots;
-        self.tracking.candidates.live_pairs(slots).map(|pair| {
-            let [a, b] = pair.map(|index| slots.id(index));
-            if a < b { [a, b] } else { [b, a] }
-        })
+        self.tracking.candidates.ids(&self.bodies.slots)
     }
 
     /// The bodies that overlapped this one at the last update, sorted.
@@ -213,16 +225,9 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
                     && bodies.was_live([index, other])
             }));
         } else {
-            let listed = tracking.candidates.live_pairs(slots);
-            others.extend(listed.filter_map(|[a, b]| match index {
-                _ if a == index => Some(b),
-                _ if b == index => Some(a),
-                _ => None,
-            }));
+            tracking.candidates.list_others(slots, index, &mut others);
         }
-        let mut others: Vec<_> = others.into_iter().map(|other| slots.id(other)).collect();
-        sort_ids(&mut others);
-        Ok(others.into_iter())
+        Ok(slots.sorted_ids(&others).into_iter())
     }
 
     /// Prepares for queries, which takes time if bodies changed since it last did, and answers them.

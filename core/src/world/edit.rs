@@ -195,13 +195,74 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     pub fn set_filter(&mut self, id: ProxyId, filter: Filter) -> Result<(), Error> {
         let bodies = &mut self.bodies;
         let index = bodies.slots.check(id, 0)?;
-        let before = core::mem::replace(&mut bodies.filters[index as usize], filter);
-        bodies.any_filter |= filter != Filter::default();
-        if before != filter {
-            if !bodies.slots.has(index, flag::NEW | flag::REFILTERED) {
-                bodies.keep_old_filter(index, before);
-            }
-            bodies.touch(index);
+        let is_enabled = bodies.rules.filter_now(index).is_enabled;
+        bodies.refilter(index, Filter { is_enabled, ..filter });
+        Ok(())
+    }
+
+    /// Disables a body, or enables it again. While it is disabled it pairs with no other, and queries do not find it; its
+    /// box and its filter can be set. Its pairs end or begin at the next update.
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, BroadPhase};
+    ///
+    /// let mut world = BroadPhase::<1>::new();
+    /// let ids = world.insert_many(&[Aabb::new([0.0], [1.0]); 2], Default::default())?;
+    /// world.update();
+    /// world.set_enabled(ids[1], false)?;
+    /// assert!(world.update().ended().eq([[ids[0], ids[1]]]));
+    /// assert_eq!(world.queries().containing([0.5])?, [ids[0]]);
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`].
+    pub fn set_enabled(&mut self, id: ProxyId, is_enabled: bool) -> Result<(), Error> {
+        let bodies = &mut self.bodies;
+        let index = bodies.slots.check(id, 0)?;
+        let filter = *bodies.rules.filter_now(index);
+        bodies.refilter(index, Filter { is_enabled, ..filter });
+        Ok(())
+    }
+
+    /// Excludes a pair, whatever the filters of its bodies allow: those of a joint, say. It ends at the next update if it
+    /// was there, and does not begin until it is [included](Self::include_pair) again. Its order does not matter; a body
+    /// that is removed is forgotten, and a pair of a body with itself is never there.
+    ///
+    /// Takes O(1) time, and where pairs are found a search of a hash table for each pair of two bodies that both have an
+    /// excluded pair.
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, BroadPhase};
+    ///
+    /// let mut world = BroadPhase::<1>::new();
+    /// let ids = world.insert_many(&[Aabb::new([0.0], [1.0]); 3], Default::default())?;
+    /// world.exclude_pair(ids[0], ids[1])?;
+    /// assert!(world.update().begun().eq([[ids[0], ids[2]], [ids[1], ids[2]]]));
+    /// world.include_pair(ids[0], ids[1])?;
+    /// assert!(world.update().begun().eq([[ids[0], ids[1]]]));
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::StaleProxy`] with index 0 for `a` and 1 for `b`.
+    pub fn exclude_pair(&mut self, a: ProxyId, b: ProxyId) -> Result<(), Error> {
+        self.set_excluded(a, b, true)
+    }
+
+    /// Includes a pair that was [excluded](Self::exclude_pair).
+    ///
+    /// # Errors
+    /// As [`exclude_pair`](Self::exclude_pair).
+    pub fn include_pair(&mut self, a: ProxyId, b: ProxyId) -> Result<(), Error> {
+        self.set_excluded(a, b, false)
+    }
+
+    #[inline(never)]
+    fn set_excluded(&mut self, a: ProxyId, b: ProxyId, is_excluded: bool) -> Result<(), Error> {
+        let pair = [self.bodies.slots.check(a, 0)?, self.bodies.slots.check(b, 1)?];
+        if a != b {
+            self.bodies.exclude(pair, is_excluded);
         }
         Ok(())
     }
@@ -235,6 +296,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         if let Some(index) = bad {
             return Err(Error::StaleProxy { index, id: ids[index].to_bits() });
         }
+        let mut exclude = false;
         for id in ids {
             let index = slots.index_of[id.slot() as usize];
             slots.retire(index);
@@ -245,7 +307,11 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             // No update knew it, so none has to report its end, and its slot is free at once: a world
             // that is edited and never updated does not grow.
             self.tracking.tree.remove(index);
+            exclude |= slots.has(index, flag::EXCLUDES);
             slots.release(index, flag::LISTED);
+        }
+        if exclude {
+            self.bodies.rules.forget_gone(&self.bodies.slots);
         }
         Ok(())
     }

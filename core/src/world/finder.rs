@@ -3,7 +3,7 @@
 use alloc::alloc::{Layout, handle_alloc_error};
 use alloc::vec::Vec;
 
-use super::bodies::{Bodies, Filter};
+use super::bodies::{Bodies, When};
 use super::policy::LOOK_UP;
 use super::sets::Sets;
 use crate::pairs::PairFinder;
@@ -42,7 +42,7 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
     }
 
     /// The pairs of overlapping boxes of a table, as indices, of bodies that have one of the flags of
-    /// `any` and none of `none`, as far as their filters allow. The boxes are valid. Within sets of bodies whose
+    /// `any` and none of `none`, that were allowed to pair at that moment. The boxes are valid. Within sets of bodies whose
     /// filters forbid all of them to pair nothing is searched. `None` if more than `most` are found, before filters.
     #[inline(never)]
     pub fn find(
@@ -50,12 +50,12 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         table: &[Aabb<D, T>],
         bodies: &Bodies<D, T>,
         [any, none]: [u16; 2],
-        filter_of: &dyn Fn(u32) -> Filter,
+        when: When,
         most: usize,
     ) -> Option<&[[u32; 2]]> {
         let flags = &bodies.slots.flags;
         let takes_part = |flags: u16| (flags & any != 0) & (flags & none == 0);
-        if !bodies.any_filter && flags.iter().all(|&flags| takes_part(flags)) {
+        if bodies.rules.allow_all() && flags.iter().all(|&flags| takes_part(flags)) {
             let pairs = found(self.finder.search(table).pairs_up_to(most))?;
             self.found = pairs.len();
             return Some(pairs);
@@ -63,7 +63,7 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         let all = (0..flags.len() as u32).filter(|&index| takes_part(flags[index as usize]));
         self.sets.all.clear();
         self.sets.all.extend(all);
-        self.find_in_sets(table, filter_of, most)
+        self.find_in_sets(table, bodies, when, most)
     }
 
     /// The same of some bodies that are there.
@@ -75,19 +75,19 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
     ) -> Option<&[[u32; 2]]> {
         self.sets.all.clear();
         self.sets.all.extend_from_slice(some);
-        let filter_of = |index| bodies.filters[index as usize];
-        self.find_in_sets(&bodies.boxes, &filter_of, most)
+        self.find_in_sets(&bodies.boxes, bodies, When::Now, most)
     }
 
     #[inline(never)]
     fn find_in_sets(
         &mut self,
         table: &[Aabb<D, T>],
-        filter_of: &dyn Fn(u32) -> Filter,
+        bodies: &Bodies<D, T>,
+        when: When,
         most: usize,
     ) -> Option<&[[u32; 2]]> {
         let Self { finder, sets, boxes, pairs, .. } = self;
-        sets.divide(filter_of);
+        sets.divide(&bodies.slots, &bodies.rules, when);
         boxes.clear();
         boxes.extend(sets.bodies.iter().map(|&index| table[index as usize]));
         pairs.clear();
@@ -99,10 +99,8 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
             }
             let all = found(search.pairs_up_to(most.saturating_sub(self.found)))?;
             self.found += all.len();
-            let (a, b) = (&sets.bodies[a], &sets.bodies[b]);
-            let named = all.iter().map(|&[at, other]| [a[at as usize], b[other as usize]]);
-            let allowed = named.filter(|&[a, b]| filter_of(a).allows(&filter_of(b)));
-            pairs.extend(allowed.map(|[a, b]| [a.min(b), a.max(b)]));
+            let lists = [&sets.bodies[a], &sets.bodies[b]];
+            bodies.rules.append_allowed(&bodies.slots, when, lists, all, pairs);
         }
         Some(pairs)
     }

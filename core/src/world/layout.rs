@@ -115,7 +115,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         for table in [boxes, shapes, origins, previous, rests, &mut self.fat] {
             apply(table, order, spare);
         }
-        for table in [&mut bodies.filters, &mut bodies.old_filters] {
+        for table in bodies.rules.tables() {
             apply(table, order, filters);
         }
         apply(&mut bodies.slots.flags, order, flags);

@@ -7,7 +7,7 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::bodies::Filter;
+use super::bodies::{Filter, Rules, Slots, When};
 
 /// How many filters are told apart: the first ones. All others count as one that allows everybody, in the first set.
 const FILTERS: usize = 48;
@@ -46,13 +46,13 @@ struct Kind {
 impl Sets {
     /// Divides the bodies that take part by the filters that they have.
     #[inline(never)]
-    pub fn divide(&mut self, filter_of: &dyn Fn(u32) -> Filter) {
+    pub fn divide(&mut self, slots: &Slots, rules: &Rules, when: When) {
         let mut buckets = [u8::MAX; BUCKETS];
         self.kinds.clear();
         self.kind_of.clear();
         for at in 0..self.all.len() {
             let index = self.all[at];
-            let kind = self.kind(&mut buckets, filter_of(index));
+            let kind = self.kind(&mut buckets, *rules.filter(slots, index, when));
             self.kinds[usize::from(kind)].count += 1;
             self.kind_of.push(kind);
         }
@@ -69,9 +69,11 @@ impl Sets {
     /// The position of a filter among the kinds. `buckets` has it by hash.
     #[inline(always)]
     fn kind(&mut self, buckets: &mut [u8; BUCKETS], filter: Filter) -> u8 {
-        let Filter { category, mask, group, is_static } = filter;
+        let Filter { category, mask, group, is_static, is_enabled } = filter;
         let bits = category ^ mask.rotate_left(11) ^ group.rotate_left(22) as u32;
-        let mut bucket = (bits ^ u32::from(is_static)).wrapping_mul(0x9E37_79B1) as usize >> 26;
+        let mut bucket = (bits ^ u32::from(is_static) ^ u32::from(is_enabled) << 1)
+            .wrapping_mul(0x9E37_79B1) as usize
+            >> 26;
         loop {
             let kind = buckets[bucket % BUCKETS];
             if kind == u8::MAX {
@@ -142,7 +144,9 @@ mod tests {
     fn divided(filters: &[Filter]) -> (Sets, Vec<[Vec<u32>; 2]>) {
         let all = (0..filters.len() as u32).collect();
         let mut sets = Sets { all, ..Sets::default() };
-        sets.divide(&|index| filters[index as usize]);
+        let mut rules = Rules::default();
+        (0..).zip(filters).for_each(|(index, &filter)| rules.put(index, filter));
+        sets.divide(&Slots::default(), &rules, When::Now);
         let meetings =
             sets.meetings().map(|ranges| ranges.map(|range| sets.bodies[range].to_vec()));
         let meetings = meetings.collect();
@@ -182,6 +186,7 @@ mod tests {
                     mask: draw(bits) as u32,
                     group: [0, 0, 0, 1, -1, -2, 2][draw(7) as usize] * (1 + draw(bits) as i32),
                     is_static: draw(4) == 0,
+                    is_enabled: draw(4) != 0,
                 })
                 .collect();
             check(&filters);

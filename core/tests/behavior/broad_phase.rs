@@ -110,7 +110,7 @@ fn tables_larger_than_the_cache_give_the_same_changes() {
 }
 
 #[test]
-fn a_sleeping_body_wakes_with_all_its_pairs() {
+fn a_sleeping_body_wakes_with_all_its_pairs_whatever_changes() {
     let mut random = Random::new(11);
     let mut world = BroadPhase::<2, f64>::new();
     let mut model = Model::new(Options::default());
@@ -159,6 +159,26 @@ fn a_sleeping_body_wakes_with_all_its_pairs() {
                 let aabb = draw(&mut random);
                 ids[any] = world.insert(aabb).unwrap();
                 model.insert(ids[any], aabb, Filter::default());
+            }
+            5 => {
+                let is_enabled = !model.bodies[&ids[any]].is_enabled;
+                world.set_enabled(ids[any], is_enabled).unwrap();
+                model.set_enabled(ids[any], is_enabled);
+            }
+            6 | 7 => {
+                // Two bodies that touch, or any two.
+                let near = model.pairs_of(ids[any]);
+                let other = near.first().copied().unwrap_or(ids[random.below(ids.len())]);
+                if ids.contains(&other) {
+                    world.exclude_pair(ids[any], other).unwrap();
+                    model.set_excluded(ids[any], other, true);
+                }
+            }
+            8 => {
+                if let Some(&[a, b]) = model.excluded.first() {
+                    world.include_pair(b, a).unwrap();
+                    model.set_excluded(a, b, false);
+                }
             }
             4 if step % 50 == 0 => world = BroadPhase::from_snapshot(&world.snapshot()).unwrap(),
             _ => {}
@@ -380,6 +400,39 @@ fn a_body_that_jumps_over_others_begins_no_pair_with_them() {
         let changes = world.update();
         assert_eq!((changes.begun().len(), changes.ended().len()), (1, 0));
     }
+}
+
+#[test]
+fn the_joints_of_a_chain_of_ten_thousand_are_excluded_included_and_forgotten() {
+    let link = |at: usize| Aabb::new([at as f32, 0.0], [at as f32 + 1.0, 1.0]);
+    let boxes: Vec<_> = (0..10_001).map(link).collect();
+    let mut world = BroadPhase::<2>::new();
+    let ids = world.insert_many(&boxes, Filter::default()).unwrap();
+    for pair in ids.windows(2) {
+        world.exclude_pair(pair[1], pair[0]).unwrap();
+    }
+    assert!(world.update().is_empty());
+    for pair in ids.windows(2).step_by(2) {
+        world.include_pair(pair[0], pair[1]).unwrap();
+    }
+    let restored = BroadPhase::<2>::from_snapshot(&world.snapshot()).unwrap();
+    for mut world in [world, restored] {
+        assert!(
+            world.update().begun().eq(ids.windows(2).step_by(2).map(|pair| [pair[0], pair[1]]))
+        );
+        // All are forgotten with their bodies.
+        world.clear();
+        world.update();
+        let new = world.insert_many(&boxes, Filter::default()).unwrap();
+        assert_eq!(world.update().begun().count(), 10_000);
+        assert!(!world.is_excluded(new[0], new[1]).unwrap());
+        assert_eq!(world.exclude_pair(ids[0], new[1]).unwrap_err(), stale(0, ids[0]));
+        assert_eq!(world.is_excluded(new[0], ids[1]).unwrap_err(), stale(1, ids[1]));
+    }
+}
+
+fn stale(index: usize, id: ProxyId) -> Error {
+    Error::StaleProxy { index, id: id.to_bits() }
 }
 
 #[test]

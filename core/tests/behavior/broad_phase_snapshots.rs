@@ -81,13 +81,16 @@ fn use_world<const D: usize, T: Scalar>(mut world: BroadPhase<D, T>) {
             for &b in &ids[at + 1..] {
                 let boxes = [a, b].map(|id| world.reported_aabb(id).unwrap());
                 if boxes[0].overlaps(&boxes[1])
+                    && [a, b].iter().all(|&id| world.is_enabled(id).unwrap())
+                    && !world.is_excluded(a, b).unwrap()
                     && world.filter(a).unwrap().allows(&world.filter(b).unwrap())
                 {
                     expected.insert([a, b]);
                 }
             }
             let area = world.aabb(a).unwrap();
-            assert!(world.queries().overlapping(&area).unwrap().contains(&a));
+            let found = world.queries().overlapping(&area).unwrap();
+            assert_eq!(found.contains(&a), world.is_enabled(a).unwrap());
         }
         let changes = world.update();
         assert!(changes.ended().all(|pair| live.remove(&pair)));

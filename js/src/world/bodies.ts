@@ -262,6 +262,28 @@ export abstract class Bodies<D extends Dimensions = Dimensions> {
   }
 
   /**
+   * Disables a body with `false`, or enables it again with `true`. While it is disabled it pairs with no other, and queries
+   * do not find it; its box and its filter can be set. Its pairs end or begin at the next update.
+   *
+   * @throws {@link StaleProxyError}; `TypeError` if `enabled` is not a boolean.
+   */
+  setEnabled(id: ProxyId, enabled: boolean): void {
+    checkId(id);
+    if (typeof enabled !== "boolean") throw new TypeError(`\`enabled\` must be true or false, not ${describe(enabled)}`);
+    this.memory.call((exports, world) => exports.world_set_enabled(world, id, +enabled), { ids: [id] });
+  }
+
+  /**
+   * Whether a body is enabled, as it is until {@link Bodies.setEnabled} says otherwise.
+   *
+   * @throws {@link StaleProxyError}.
+   */
+  isEnabled(id: ProxyId): boolean {
+    this.filter(id);
+    return this.memory.numbers()[4] === 1;
+  }
+
+  /**
    * The pairs that began and ended since the last update. They are sorted by slot (see
    * {@link slotOf}), and the body with the smaller slot is first in its pair. The time depends on how
    * many bodies changed and how many neighbors they have. If most bodies move far, it can exceed the

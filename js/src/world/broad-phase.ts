@@ -14,7 +14,7 @@ import { defaultFilter, type Filter, filterNames, type FilterWords, filterWords 
 import { StaleProxyError } from "./stale-proxy-error.js";
 import { Batches } from "./batches.js";
 import { newWorld, WorldMemory } from "./memory.js";
-import type { Box, BroadPhaseOptions, Changes, Corners, InsertOptions, Numbers, ProxyId, SortOptions } from "./types.js";
+import { type Box, type BroadPhaseOptions, type Changes, type Corners, type InsertOptions, type Numbers, type ProxyId, slotOf, type SortOptions } from "./types.js";
 
 /**
  * A persistent broad phase: it keeps bodies with boxes, and reports which overlaps began and which
@@ -200,6 +200,59 @@ export class BroadPhase<D extends Dimensions = Dimensions, Data = unknown> exten
     if (stale >= 0) throw new StaleProxyError(stale, given[stale]!);
     given.forEach((id, at) => boxes.set(this.box(id), width * at));
     return boxes;
+  }
+
+  /**
+   * Excludes a pair, whatever the filters of its bodies allow: those of a joint, say. It ends at the next update if it was
+   * there, and does not begin until it is {@link BroadPhase.includePair | included} again. A body that is removed is
+   * forgotten, and a pair of a body with itself is never there.
+   *
+   * @throws {@link StaleProxyError} with index 0 for `a` and 1 for `b`.
+   */
+  excludePair(a: ProxyId, b: ProxyId): void {
+    this.#exclude(a, b, 1);
+  }
+
+  /**
+   * Includes a pair that was {@link BroadPhase.excludePair | excluded}.
+   *
+   * @throws As {@link BroadPhase.excludePair}.
+   */
+  includePair(a: ProxyId, b: ProxyId): void {
+    this.#exclude(a, b, 0);
+  }
+
+  /**
+   * Whether a pair is {@link BroadPhase.excludePair | excluded}.
+   *
+   * @throws As {@link BroadPhase.excludePair}.
+   */
+  isExcluded(a: ProxyId, b: ProxyId): boolean {
+    this.#exclude(a, b, 2);
+    return this.memory.numbers()[0] === 1;
+  }
+
+  #exclude(a: ProxyId, b: ProxyId, excluded: number): void {
+    const ids = [checkId(a), checkId(b)];
+    this.memory.call((exports, world) => exports.world_exclude(world, a, b, excluded), { ids });
+  }
+
+  /**
+   * The pairs of {@link BroadPhase.pairs} by body: those of the body in slot `s` (see {@link slotOf}) are
+   * `others.subarray(starts[s], starts[s + 1])`, sorted by slot. Takes the time of listing all pairs, where asking
+   * {@link BroadPhase.pairsOf} for each body takes much more.
+   */
+  pairsByBody(): { starts: Uint32Array<ArrayBuffer>; others: Float64Array<ArrayBuffer> } {
+    const pairs = this.pairs();
+    const countIn = (ids: Float64Array): number => ids.reduce((most, id) => Math.max(most, slotOf(id) + 1), 0);
+    const count = Math.max(countIn(this.ids()), countIn(pairs));
+    const starts = allocate(() => new Uint32Array(count + 1));
+    const others = allocate(() => new Float64Array(pairs.length));
+    // First how many there are, then where each ends; filled from the end, what is left is where each starts.
+    pairs.forEach((id) => starts[slotOf(id)]!++);
+    for (let at = 1; at <= count; at++) starts[at]! += starts[at - 1]!;
+    for (let at = pairs.length - 1; at >= 0; at--) others[--starts[slotOf(pairs[at]!)]!] = pairs[at ^ 1]!;
+    return { starts, others };
   }
 
   /**

@@ -16,11 +16,13 @@ export interface WorldExports extends Exports {
   world_set_many(world: number, count: number): number;
   world_set_swept(world: number, id: number): number;
   world_set_filter(world: number, id: number, ...filter: FilterWords): number;
+  world_set_enabled(world: number, id: number, enabled: number): number;
   world_filter(world: number, id: number): number;
   world_box(world: number, id: number, reported: number): number;
   world_contains(world: number, id: number): number;
   world_remove_many(world: number, count: number): number;
   world_update(world: number): number;
+  world_exclude(world: number, a: number, b: number, excluded: number): number;
   world_pairs(world: number, sorted: number): number;
   world_pairs_of(world: number, id: number): number;
   world_ids(world: number): number;

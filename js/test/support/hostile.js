@@ -348,7 +348,7 @@ export class HostileWorld extends Hostile {
       this.restart();
     }
     this.arm();
-    const call = this.pick(/** @type {const} */ (["insert", "insert", "insertMany", "set", "teleport", "shift", "setMany", "setSwept", "setFilter", "removeMany", "overlapping", "overlapping", "containing", "many", "cast", "within", "nearest", "ids", "callback", "this", "update"]));
+    const call = this.pick(/** @type {const} */ (["insert", "insert", "insertMany", "set", "teleport", "shift", "setMany", "setSwept", "setFilter", "toggle", "removeMany", "overlapping", "overlapping", "containing", "many", "cast", "within", "nearest", "ids", "callback", "this", "update"]));
     try {
       this[`$${call}`]();
     } catch (error) {
@@ -493,6 +493,16 @@ export class HostileWorld extends Hostile {
     if (!this.#for([id], () => this.world.setFilter(this.#id(id), this.#filter(filter)))) return;
     this.#body(id).filter = filter;
     assert.deepEqual({ ...this.world.filter(id), mask: this.world.filter(id).mask >>> 0 }, filter);
+  }
+
+  /** Disables a body, and excludes a pair; and takes both back, since the model knows neither. */
+  $toggle() {
+    const [a, b] = [this.id(), this.id()];
+    if (!this.#for([a], () => this.world.setEnabled(this.#id(a), false))) return;
+    this.world.setEnabled(a, true);
+    if (!this.#for([a, b], () => this.world.excludePair(this.#id(a), this.#id(b)))) return;
+    if (a !== b) assert.ok(this.world.isExcluded(b, a));
+    this.world.includePair(a, b);
   }
 
   $removeMany() {

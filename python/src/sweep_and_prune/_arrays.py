@@ -179,6 +179,18 @@ def one_id(id: object) -> Ids:
     return np.array([_id(id, 0)], np.int64)
 
 
+def two_ids(a: object, b: object) -> Ids:
+    """Two ids as an array."""
+    return np.array([_id(a, 0), _id(b, 1)], np.int64)
+
+
+def truth(value: object, name: str) -> bool:
+    """An argument that is True or False."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise TypeError(f"{name} must be True or False, not a {type(value).__name__}")
+    return bool(value)
+
+
 def id_array(ids: ArrayLike, name: str = "ids") -> Ids:
     """Ids as an array."""
     array = as_array(ids, name)

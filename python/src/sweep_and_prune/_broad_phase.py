@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from ._arrays import Floats, Ids, box_rows, each, float_dtype, id_array, one_id, real, row, rows, whole
+from ._arrays import Floats, Ids, box_rows, each, float_dtype, id_array, one_id, real, row, rows, truth, two_ids, whole
 from ._columns import as_array
 from ._errors import InvalidQueryError, StaleProxyError
 from ._filter import Filter, words
@@ -597,7 +597,7 @@ class BroadPhase:
         >>> world.filter(world.insert([0, 1]))
         Filter(category=1, mask=4294967295, group=0, is_static=False)
         """
-        return Filter(*self._world.filters(one_id(id))[0])
+        return Filter(*self._world.filters(one_id(id))[0][:4])
 
     def set_filter(self, id: SupportsIndex, filter: Filter) -> None:
         """Changes which bodies a body may pair with; the next update reports the pairs that begin or end.
@@ -640,6 +640,126 @@ class BroadPhase:
         0
         """
         self._world.set_filter(id_array(ids), words(filter))
+
+    def set_enabled(self, id: SupportsIndex, enabled: bool) -> None:
+        """Disables a body, or enables it again.
+
+        While it is disabled it pairs with no other, and queries do not find it; its box and its filter can be set. Its
+        pairs end or begin at the next update.
+
+        Args:
+            id: the body.
+            enabled: whether it is enabled from now on.
+
+        Raises:
+            StaleProxyError: if the id names no body of this world.
+            TypeError: if `enabled` is not a bool.
+
+        >>> import sweep_and_prune as sap
+        >>> world = sap.BroadPhase(dimensions=1)
+        >>> a, b = world.insert([0, 2]), world.insert([1, 3])
+        >>> len(world.update().begun)
+        1
+        >>> world.set_enabled(a, False)
+        >>> len(world.update().ended)
+        1
+        """
+        self._world.set_enabled(one_id(id), truth(enabled, "enabled"))
+
+    def set_enabled_many(self, ids: ArrayLike, enabled: bool) -> None:
+        """Disables many bodies, or enables them again.
+
+        Args:
+            ids: `(n,)` ids.
+            enabled: whether they are enabled from now on.
+
+        Raises:
+            StaleProxyError: for the first id that is stale; then nothing has changed.
+            TypeError: if `enabled` is not a bool.
+
+        >>> import sweep_and_prune as sap
+        >>> world = sap.BroadPhase(dimensions=1)
+        >>> ids = world.insert_many([[0, 2], [1, 3]])
+        >>> world.set_enabled_many(ids, False)
+        >>> len(world.update().begun)
+        0
+        """
+        self._world.set_enabled(id_array(ids), truth(enabled, "enabled"))
+
+    def is_enabled(self, id: SupportsIndex) -> bool:
+        """Returns whether a body is enabled, as it is until `set_enabled` says otherwise.
+
+        Args:
+            id: the body.
+
+        Raises:
+            StaleProxyError: if the id names no body of this world.
+
+        >>> import sweep_and_prune as sap
+        >>> world = sap.BroadPhase(dimensions=1)
+        >>> world.is_enabled(world.insert([0, 2]))
+        True
+        """
+        return self._world.filters(one_id(id))[0][4]
+
+    def exclude_pair(self, first: SupportsIndex, second: SupportsIndex) -> None:
+        """Excludes a pair, whatever the filters of its bodies allow: those of a joint, say.
+
+        It ends at the next update if it was there, and does not begin until it is included again. A body that is
+        removed is forgotten, and a pair of a body with itself is never there.
+
+        Args:
+            first: a body.
+            second: another.
+
+        Raises:
+            StaleProxyError: if an id names no body of this world; its index is 0 for `first` and 1 for `second`.
+
+        >>> import sweep_and_prune as sap
+        >>> world = sap.BroadPhase(dimensions=1)
+        >>> a, b = world.insert([0, 2]), world.insert([1, 3])
+        >>> world.exclude_pair(a, b)
+        >>> len(world.update().begun)
+        0
+        """
+        self._world.set_excluded(two_ids(first, second), True)
+
+    def include_pair(self, first: SupportsIndex, second: SupportsIndex) -> None:
+        """Includes a pair that was excluded.
+
+        Args:
+            first: a body.
+            second: another.
+
+        Raises:
+            StaleProxyError: as `exclude_pair`.
+
+        >>> import sweep_and_prune as sap
+        >>> world = sap.BroadPhase(dimensions=1)
+        >>> a, b = world.insert([0, 2]), world.insert([1, 3])
+        >>> world.exclude_pair(a, b)
+        >>> world.include_pair(a, b)
+        >>> len(world.update().begun)
+        1
+        """
+        self._world.set_excluded(two_ids(first, second), False)
+
+    def is_excluded(self, first: SupportsIndex, second: SupportsIndex) -> bool:
+        """Returns whether a pair is excluded.
+
+        Args:
+            first: a body.
+            second: another.
+
+        Raises:
+            StaleProxyError: as `exclude_pair`.
+
+        >>> import sweep_and_prune as sap
+        >>> world = sap.BroadPhase(dimensions=1)
+        >>> world.is_excluded(world.insert([0, 2]), world.insert([1, 3]))
+        False
+        """
+        return self._world.is_excluded(two_ids(first, second))
 
     def update(self) -> Changes:
         """Reports the pairs that began and ended since the last update.
@@ -1219,8 +1339,7 @@ class BroadPhase:
     ) -> Found:
         """Answers queries whose numbers are in the rows of the parts, side by side."""
         rows = parts[0].rows if len(parts) == 1 else np.concatenate([part.rows for part in parts], axis=1)
-        if not isinstance(sorted, (bool, np.bool_)):
-            raise TypeError(f"sorted must be True or False, not a {type(sorted).__name__}")
+        sorted = truth(sorted, "sorted")
         checked, excluded = None if filter is None else words(filter), _excluded(exclude)
         try:
             found = self._world.query(
@@ -1333,9 +1452,7 @@ def _excluded(exclude: ArrayLike | None) -> Ids:
 
 def _cast_kind(all: bool, ignore_touching: bool) -> str:
     """The name of the query."""
-    if not isinstance(ignore_touching, (bool, np.bool_)):
-        raise TypeError(f"ignore_touching must be True or False, not a {type(ignore_touching).__name__}")
-    return ("cast_all" if all else "cast") + ("_entering" if ignore_touching else "")
+    return ("cast_all" if all else "cast") + ("_entering" if truth(ignore_touching, "ignore_touching") else "")
 
 
 def _normals(faces: NDArray[np.int64], dimensions: int) -> NDArray[np.float64]:

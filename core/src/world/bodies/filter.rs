@@ -37,22 +37,30 @@ pub struct Filter {
     pub group: i32,
     /// Whether it is a static body: two of these never pair.
     pub is_static: bool,
+    /// Whether the body may pair at all; see [`BroadPhase::set_enabled`](crate::BroadPhase::set_enabled). No filter that a
+    /// user holds says that it may not.
+    #[cfg_attr(feature = "serde", serde(skip, default = "enabled"))]
+    pub(crate) is_enabled: bool,
 }
 
 impl Filter {
     /// Category 1, all bits in the mask, no group, static.
-    pub const STATIC: Self = Self { category: 1, mask: u32::MAX, group: 0, is_static: true };
+    pub const STATIC: Self = Self::of(1, true);
 
     /// All categories and all bits in the mask, no group, dynamic: it pairs with every body whose
     /// category and mask are not 0.
-    pub const ALL: Self = Self { category: u32::MAX, mask: u32::MAX, group: 0, is_static: false };
+    pub const ALL: Self = Self::of(u32::MAX, false);
 
     setters! { category: u32, mask: u32, group: i32, is_static: bool }
+
+    const fn of(category: u32, is_static: bool) -> Self {
+        Self { category, mask: u32::MAX, group: 0, is_static, is_enabled: true }
+    }
 
     /// Whether two bodies with these filters may pair. Symmetric.
     #[inline]
     pub const fn allows(&self, other: &Self) -> bool {
-        if self.is_static && other.is_static {
+        if self.is_static && other.is_static || !self.is_enabled || !other.is_enabled {
             false
         } else if self.group == other.group && self.group != 0 {
             self.group > 0
@@ -63,12 +71,18 @@ impl Filter {
 
     /// Whether no filter at all allows a body with this one to pair.
     pub(crate) const fn allows_none(&self) -> bool {
-        self.group <= 0 && (self.category == 0 || self.mask == 0)
+        !self.is_enabled || self.group <= 0 && (self.category == 0 || self.mask == 0)
     }
 }
 
 impl Default for Filter {
     fn default() -> Self {
-        Self { category: 1, mask: u32::MAX, group: 0, is_static: false }
+        Self::of(1, false)
     }
+}
+
+/// What a filter that was serialized says.
+#[cfg(feature = "serde")]
+const fn enabled() -> bool {
+    true
 }

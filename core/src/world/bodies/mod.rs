@@ -1,11 +1,15 @@
 //! The bodies: their ids, filters and boxes, and what was done to them since the last update.
 
+mod exclusions;
 mod filter;
 mod id;
+mod rules;
 mod slots;
 mod table;
 
+pub(super) use exclusions::{BEFORE, NOW};
 pub use filter::Filter;
 pub use id::{ProxyId, sort_ids};
+pub(super) use rules::{Rules, When};
 pub(super) use slots::{Slots, flag};
 pub(super) use table::{Bodies, RANDOM_READ, differ};

@@ -4,7 +4,7 @@ use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
 use core::cmp::Reverse;
 
-use super::id::ProxyId;
+use super::id::{ProxyId, sort_ids};
 use crate::Error;
 use crate::geometry::check_count;
 
@@ -32,6 +32,8 @@ pub mod flag {
     pub const MOVED: u16 = 1024;
     /// The body moves so far in each update that no fat AABB lasts: it is not in the tree.
     pub const FLYING: u16 = 2048;
+    /// A pair of the body is, or was, excluded.
+    pub const EXCLUDES: u16 = 4096;
     /// The body changed since bodies last fell asleep.
     pub const RECENT: u16 = CHANGED << 7;
     /// What a slot keeps that is free: in which lists it is, and how.
@@ -92,6 +94,14 @@ impl Slots {
     #[inline]
     pub fn id(&self, index: u32) -> ProxyId {
         self.id_of_slot(self.slot_of[index as usize])
+    }
+
+    /// The ids of bodies, sorted.
+    #[inline(never)]
+    pub fn sorted_ids(&self, indices: &[u32]) -> Vec<ProxyId> {
+        let mut ids: Vec<_> = indices.iter().map(|&index| self.id(index)).collect();
+        sort_ids(&mut ids);
+        ids
     }
 
     /// Whether an id names a living body.
@@ -168,9 +178,13 @@ impl Slots {
 
     /// Turns pairs of indices into pairs of slots, smaller first.
     pub fn to_slots(&self, pairs: &mut [[u32; 2]]) {
-        for pair in pairs {
-            let [a, b] = pair.map(|index| self.slot_of[index as usize]);
-            *pair = [a.min(b), a.max(b)];
-        }
+        pairs.iter_mut().for_each(|pair| *pair = self.pair(*pair));
+    }
+
+    /// The slots of two indices, smaller first.
+    #[inline]
+    pub fn pair(&self, pair: [u32; 2]) -> [u32; 2] {
+        let [a, b] = pair.map(|index| self.slot_of[index as usize]);
+        [a.min(b), a.max(b)]
     }
 }

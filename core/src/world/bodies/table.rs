@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use super::filter::Filter;
 use super::id::ProxyId;
+use super::rules::{Rules, When};
 use super::slots::{Slots, flag};
 use crate::world::options::{Options, Report};
 use crate::{Aabb, Scalar};
@@ -32,15 +33,10 @@ pub struct Bodies<const D: usize, T: Scalar> {
     pub too_wide: Vec<u32>,
     /// How far all bodies were shifted since the last update, if fat AABBs are reported.
     pub shifted: Option<[T; D]>,
-    pub filters: Vec<Filter>,
-    /// Whether a body ever had another filter than the default: if not, every pair is allowed.
-    pub any_filter: bool,
+    /// Which bodies may pair.
+    pub rules: Rules,
     /// The boxes at the last update. Meaningless for bodies of [`flag::NEW`].
     pub previous: Vec<Aabb<D, T>>,
-    /// The filters at the last update, of bodies of [`flag::REFILTERED`]; only as long as needed.
-    pub old_filters: Vec<Filter>,
-    /// Whether there is a body of [`flag::REFILTERED`].
-    pub any_refiltered: bool,
     /// Whether there is a body of [`flag::NEW`].
     pub any_new: bool,
     /// The bodies of [`flag::CHANGED`], at least once each, and some that were removed since.
@@ -91,8 +87,7 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
             put(&mut self.origins, index, shape);
         }
         put(&mut self.boxes, index, boxed);
-        put(&mut self.filters, index, filter);
-        self.any_filter |= filter != Filter::default();
+        self.rules.put(index, filter);
         if self.previous.len() < self.boxes.len() {
             self.front += usize::from(self.front == self.previous.len());
             self.previous.push(boxed);
@@ -275,33 +270,28 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
     pub fn was_allowed(&self, [a, b]: [u32; 2]) -> bool {
         !self.slots.has(a, flag::NEW)
             && !self.slots.has(b, flag::NEW)
-            && (!self.any_filter || self.old_filter(a).allows(self.old_filter(b)))
+            && (self.rules.allow_all() || self.rules.allow(&self.slots, [a, b], When::LastUpdate))
     }
 
-    /// Whether the filters of two bodies allow them to pair.
+    /// Whether two bodies may pair.
     #[inline]
-    pub fn allows(&self, [a, b]: [u32; 2]) -> bool {
-        !self.any_filter || self.filters[a as usize].allows(&self.filters[b as usize])
+    pub fn allows(&self, pair: [u32; 2]) -> bool {
+        self.rules.allow_all() || self.rules.allow(&self.slots, pair, When::Now)
     }
 
-    /// The filter of a body at the last update.
-    pub fn old_filter(&self, index: u32) -> &Filter {
-        if self.slots.has(index, flag::REFILTERED) {
-            &self.old_filters[index as usize]
-        } else {
-            &self.filters[index as usize]
+    /// Gives a body another filter.
+    pub fn refilter(&mut self, index: u32, filter: Filter) {
+        if *self.rules.filter_now(index) != filter {
+            self.rules.refilter(&mut self.slots, index, filter);
+            self.touch(index);
         }
     }
 
-    /// Keeps the filter that a body had at the last update.
-    pub fn keep_old_filter(&mut self, index: u32, filter: Filter) {
-        self.slots.raise(index, flag::REFILTERED);
-        self.any_refiltered = true;
-        self.any_filter |= filter != Filter::default();
-        if self.old_filters.len() <= index as usize {
-            self.old_filters.resize(self.slots.len(), filter);
+    /// Excludes a pair of two bodies, or includes it again.
+    pub fn exclude(&mut self, pair: [u32; 2], is_excluded: bool) {
+        if self.rules.exclude(&mut self.slots, pair, is_excluded) {
+            pair.iter().for_each(|&index| self.touch(index));
         }
-        self.old_filters[index as usize] = filter;
     }
 
     /// Keeps where a sweep ends.

@@ -9,7 +9,7 @@ use alloc::vec::Vec;
 
 use super::sort::PairSorter;
 use crate::memory::reserve;
-use crate::world::bodies::{Slots, flag};
+use crate::world::bodies::{ProxyId, Slots, flag};
 
 #[derive(Clone, Debug, Default)]
 pub struct Candidates {
@@ -71,6 +71,36 @@ impl Candidates {
         let awake = self.pairs.iter().zip(&self.live).filter(|(_, is_live)| **is_live);
         let awake = awake.map(|(&pair, _)| pair).chain(self.asleep_pairs(slots));
         awake.chain(self.sorted.iter().copied())
+    }
+
+    /// The ids of the live pairs, smaller first, in no particular order.
+    pub fn ids<'a>(&'a self, slots: &'a Slots) -> impl Iterator<Item = [ProxyId; 2]> + 'a {
+        self.live_pairs(slots).map(|pair| {
+            let [a, b] = pair.map(|index| slots.id(index));
+            if a < b { [a, b] } else { [b, a] }
+        })
+    }
+
+    /// The ids of the live pairs, smaller first, sorted.
+    #[inline(never)]
+    pub fn sorted_ids<'a>(
+        &self,
+        slots: &'a Slots,
+    ) -> impl ExactSizeIterator<Item = [ProxyId; 2]> + use<'a> {
+        let mut pairs: Vec<_> = self.live_pairs(slots).collect();
+        slots.to_slots(&mut pairs);
+        PairSorter::default().sort(&mut pairs, slots.len());
+        pairs.into_iter().map(|pair| pair.map(|slot| slots.id_of_slot(slot)))
+    }
+
+    /// Lists the other bodies of the live pairs of one.
+    #[inline(never)]
+    pub fn list_others(&self, slots: &Slots, index: u32, others: &mut Vec<u32>) {
+        others.extend(self.live_pairs(slots).filter_map(|[a, b]| match index {
+            _ if a == index => Some(b),
+            _ if b == index => Some(a),
+            _ => None,
+        }));
     }
 
     /// The live pairs of bodies that are both asleep.

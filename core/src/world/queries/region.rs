@@ -219,7 +219,14 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
     /// Whether a body is there, which the tree alone does not say, and not filtered out.
     pub(super) fn sees(&self, index: u32) -> bool {
         self.bodies.slots.has(index, flag::LIVE)
-            && self.filter.is_none_or(|filter| filter.allows(&self.bodies.filters[index as usize]))
+            && (self.bodies.rules.allow_all() && self.filter.is_none() || self.filter_sees(index))
             && !(self.excluded.iter()).any(|&id| id == self.bodies.slots.id(index))
+    }
+
+    /// Whether a body is enabled, and the filter of the queries allows its own.
+    #[inline]
+    fn filter_sees(&self, index: u32) -> bool {
+        let own = self.bodies.rules.filter_now(index);
+        own.is_enabled && self.filter.is_none_or(|filter| filter.allows(own))
     }
 }

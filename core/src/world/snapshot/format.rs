@@ -1,7 +1,7 @@
 //! The format of snapshots: the whole state as bytes.
 //!
 //! ```text
-//! "SaPw"  version u8  dimensions u8  scalar bytes u8  report u8
+//! "SaPw"  version u8  dimensions u8  scalar bytes u8  bits of `world` u8
 //! [margin  prediction  how far all was shifted since the last update]    if fat AABBs are reported
 //! count of slots, then of each slot
 //!     what it holds, bits of u8; generation
@@ -11,6 +11,7 @@
 //!     [its filter]                                       if not the default
 //!     [its box at the last update]                       if another
 //!     [its filter at the last update]                    if another
+//! [count of excluded pairs, then of each: its slots, when]     if there are any
 //! hash of all this, u64
 //! ```
 //! Counts and generations are LEB128, all else is little-endian. Live pairs need not be written:
@@ -22,6 +23,20 @@ use crate::{Error, SnapshotFault};
 pub const MAGIC: [u8; 4] = *b"SaPw";
 pub const VERSION: u8 = 1;
 const HEADER: usize = 8;
+
+/// What a world reports and holds, in the header.
+pub mod world {
+    /// Fat AABBs are reported.
+    pub const FAT: u8 = 1;
+    /// There are excluded pairs.
+    pub const EXCLUSIONS: u8 = 2;
+}
+
+/// Bits of the last byte of a filter.
+pub mod filter {
+    pub const STATIC: u8 = 1;
+    pub const DISABLED: u8 = 2;
+}
 
 /// What a slot holds.
 pub mod holds {
@@ -64,7 +79,7 @@ impl SnapshotInfo {
     }
 }
 
-/// The kind of world, the byte that says what is reported, and what follows the header.
+/// The kind of world, the bits of [`world`], and what follows the header.
 pub fn read_header(bytes: &[u8]) -> Result<(SnapshotInfo, u8, &[u8]), SnapshotFault> {
     let known = MAGIC.len().min(bytes.len());
     if bytes[..known] != MAGIC[..known] {

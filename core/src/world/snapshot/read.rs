@@ -1,33 +1,42 @@
 //! Reads snapshots: any bytes give a world or an error.
 
-use super::format::{SnapshotInfo, holds, read_header};
+use alloc::vec::Vec;
+
+use super::format::{SnapshotInfo, filter as bits, holds, read_header, world};
 use super::hash::hash;
-use crate::world::bodies::{Bodies, Filter, flag};
+use crate::world::bodies::{BEFORE, Bodies, Filter, NOW, Rules, Slots, flag};
 use crate::world::options::{Options, Report};
 use crate::{Aabb, Scalar, SnapshotFault};
 
 /// The bodies of a snapshot.
 pub fn read<const D: usize, T: Scalar>(bytes: &[u8]) -> Result<Bodies<D, T>, SnapshotFault> {
-    let (SnapshotInfo { dimensions, scalar_bytes }, report, body) = read_header(bytes)?;
+    let (SnapshotInfo { dimensions, scalar_bytes }, held, body) = read_header(bytes)?;
     if (dimensions, scalar_bytes) != (D, T::BYTES) {
         return Err(SnapshotFault::OtherWorld { dimensions, scalar_bytes });
     }
     let mut reader = Reader { bytes: body };
     let mut bodies = Bodies::<D, T>::default();
-    match report {
-        0 => {}
-        1 => {
-            let (margin, prediction) = (reader.scalar()?, reader.scalar()?);
-            bodies.options = Options::default().report(Report::Fat { margin, prediction });
-            bodies.options.check().map_err(|_| SnapshotFault::Corrupt)?;
-            let offset = reader.corner()?;
-            bodies.shifted = (offset != [T::default(); D]).then_some(offset);
-        }
-        _ => return Err(SnapshotFault::Corrupt),
+    if held > world::FAT | world::EXCLUSIONS {
+        return Err(SnapshotFault::Corrupt);
+    }
+    if held & world::FAT != 0 {
+        let (margin, prediction) = (reader.scalar()?, reader.scalar()?);
+        bodies.options = Options::default().report(Report::Fat { margin, prediction });
+        bodies.options.check().map_err(|_| SnapshotFault::Corrupt)?;
+        let offset = reader.corner()?;
+        bodies.shifted = (offset != [T::default(); D]).then_some(offset);
     }
     let count = u32::try_from(reader.number()?).map_err(|_| SnapshotFault::Corrupt)?;
     for _ in 0..count {
         read_slot(&mut reader, &mut bodies)?;
+    }
+    if held & world::EXCLUSIONS != 0 {
+        let Bodies { slots, rules, .. } = &mut bodies;
+        for index in read_exclusions(&mut reader, slots, rules)? {
+            if bodies.slots.has(index, flag::LIVE) {
+                bodies.touch(index);
+            }
+        }
     }
     let sum = hash(&bytes[..bytes.len() - reader.bytes.len()]);
     if reader.take()? != sum.to_le_bytes() || !reader.bytes.is_empty() {
@@ -92,7 +101,7 @@ fn read_slot<const D: usize, T: Scalar>(
     }
     if has(holds::OLD_FILTER) {
         let old = reader.filter()?;
-        bodies.keep_old_filter(index, old);
+        bodies.rules.keep_old(&mut bodies.slots, index, old);
     }
     if is_live && has(holds::NEW | holds::OLD_BOX | holds::OLD_FILTER) {
         bodies.touch(index);
@@ -104,6 +113,31 @@ fn read_slot<const D: usize, T: Scalar>(
         bodies.too_wide.push(index);
     }
     Ok(())
+}
+
+/// Reads the excluded pairs, which are sorted, at least one. Returns the bodies whose pairs have to be looked at again.
+#[inline(never)]
+fn read_exclusions(
+    reader: &mut Reader<'_>,
+    slots: &mut Slots,
+    rules: &mut Rules,
+) -> Result<Vec<u32>, SnapshotFault> {
+    let mut last = 0;
+    let mut edited = Vec::new();
+    for _ in 0..reader.number()? {
+        let [a, b] = [reader.number()?, reader.number()?];
+        let [when] = reader.take()?;
+        let is_sound = a < b && b < slots.len() as u64 && (NOW..=NOW | BEFORE).contains(&when);
+        let pair = [a, b].map(|slot| slot as u32);
+        if !is_sound || a << 32 | b <= last || !rules.restore_exclusion(slots, pair, when) {
+            return Err(SnapshotFault::Corrupt);
+        }
+        last = a << 32 | b;
+        if when != NOW | BEFORE {
+            edited.extend(pair);
+        }
+    }
+    if last == 0 { Err(SnapshotFault::Corrupt) } else { Ok(edited) }
 }
 
 /// Takes bytes from the front, as long as there are any.
@@ -118,6 +152,7 @@ impl Reader<'_> {
         Ok(*taken)
     }
 
+    #[inline(never)]
     fn number(&mut self) -> Result<u64, SnapshotFault> {
         let mut number = 0;
         for shift in (0..64).step_by(7) {
@@ -156,12 +191,15 @@ impl Reader<'_> {
         Ok(aabb)
     }
 
+    #[inline(never)]
     fn filter(&mut self) -> Result<Filter, SnapshotFault> {
         let mut word = || Ok(u32::from_le_bytes(self.take()?));
         let (category, mask, group) = (word()?, word()?, word()? as i32);
         match self.take()? {
-            [is_static @ (0 | 1)] => {
-                Ok(Filter { category, mask, group, is_static: is_static == 1 })
+            [held] if held <= bits::STATIC | bits::DISABLED => {
+                let is_static = held & bits::STATIC != 0;
+                let is_enabled = held & bits::DISABLED == 0;
+                Ok(Filter { category, mask, group, is_static, is_enabled })
             }
             _ => Err(SnapshotFault::Corrupt),
         }

@@ -24,7 +24,7 @@ pub fn finish<const D: usize, T: Scalar>(
             previous[row] = boxes[row];
         }
     }
-    if core::mem::take(&mut bodies.any_refiltered) | core::mem::take(&mut bodies.any_new) {
+    if bodies.rules.finish() | core::mem::take(&mut bodies.any_new) {
         for &index in &bodies.changed {
             bodies.slots.lower(index, flag::NEW | flag::REFILTERED);
         }
@@ -40,8 +40,12 @@ pub fn finish<const D: usize, T: Scalar>(
     let sorted = tracking.scratch.sorter.sort_keys(removed);
     events.removed.clear();
     events.removed.extend(sorted.map(ProxyId::from_key));
+    let exclude = bodies.leaving.iter().any(|&index| bodies.slots.has(index, flag::EXCLUDES));
     for index in bodies.leaving.drain(..) {
         bodies.slots.release(index, 0);
+    }
+    if exclude {
+        bodies.rules.forget_gone(&bodies.slots);
     }
     bodies.reset_origins();
     bodies.settle();

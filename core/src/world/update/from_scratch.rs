@@ -5,7 +5,7 @@
 //! other names. No body sleeps. Fat AABBs are the boxes of the last update, written only when needed.
 
 use crate::Scalar;
-use crate::world::bodies::{Bodies, flag};
+use crate::world::bodies::{Bodies, When, flag};
 use crate::world::changes::Events;
 use crate::world::tracking::{Scratch, Tracking, TreeState};
 
@@ -35,8 +35,7 @@ pub fn from_scratch<const D: usize, T: Scalar>(
     for &index in &bodies.changed {
         bodies.slots.lower(index, flag::CHANGED | flag::IN_TREE);
     }
-    let filter_of = |index| bodies.filters[index as usize];
-    let all = finder.find(&bodies.boxes, bodies, [flag::LIVE, 0], &filter_of, usize::MAX);
+    let all = finder.find(&bodies.boxes, bodies, [flag::LIVE, 0], When::Now, usize::MAX);
     let pairs = all.unwrap_or_default();
     sorter.sort_into(pairs, &mut candidates.sorted, bodies.slots.len());
     sorter.differences(before, &candidates.sorted, &mut events.ended, &mut events.begun);

@@ -11,7 +11,7 @@ use core::hint::black_box;
 
 use crate::Scalar;
 use crate::memory::{prefetch_item, prefetch_pays, preload};
-use crate::world::bodies::{Bodies, RANDOM_READ, flag};
+use crate::world::bodies::{Bodies, RANDOM_READ, When, flag};
 use crate::world::candidates::{Candidates, push_wanted};
 use crate::world::changes::Events;
 use crate::world::layout;
@@ -117,7 +117,9 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         let Self { tree, fat, finder, scratch, .. } = self;
         let Scratch { queries, woken, leaves, found, is_escaped, .. } = scratch;
         queries.clear();
-        let may_pair = |index: &&u32| !bodies.old_filter(**index).allows_none();
+        let may_pair = |index: &&u32| {
+            !bodies.rules.filter(&bodies.slots, **index, When::LastUpdate).allows_none()
+        };
         let woken_boxes = woken.iter().filter(may_pair);
         queries.extend(woken_boxes.map(|&index| (index, bodies.previous[index as usize])));
         let are_asleep = |index| bodies.slots.has(index, flag::ASLEEP);
@@ -210,12 +212,12 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             };
             (index, if extends { fat[row].union(&ahead) } else { ahead })
         }));
-        if !bodies.any_filter {
+        if bodies.rules.allow_all() {
             return [jumped, queries.len()];
         }
         let mut count = 0;
         for at in 0..queries.len() {
-            if !bodies.filters[queries[at].0 as usize].allows_none() {
+            if !bodies.rules.filter_now(queries[at].0).allows_none() {
                 queries.swap(count, at);
                 count += 1;
             }

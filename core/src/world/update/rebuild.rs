@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use crate::Scalar;
 use crate::memory::preload;
-use crate::world::bodies::{Bodies, flag};
+use crate::world::bodies::{Bodies, When, flag};
 use crate::world::candidates::push_wanted;
 use crate::world::changes::Events;
 use crate::world::layout::{self, Reorder};
@@ -23,7 +23,7 @@ pub fn rebuild<const D: usize, T: Scalar>(
     let moved = escaped.len();
     let is_new = |&&index: &&u32| bodies.slots.has(index, flag::NEW);
     let new = if bodies.any_new { escaped.iter().filter(is_new).count() } else { 0 };
-    let are_same = bodies.leaving.is_empty() && !bodies.any_refiltered;
+    let are_same = bodies.leaving.is_empty() && !bodies.rules.any_changed();
 
     tracking.list_ended(bodies, are_same, &mut events.ended);
     tracking.wake_all(bodies);
@@ -117,8 +117,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     fn find_candidates(&mut self, bodies: &Bodies<D, T>) -> bool {
         let Self { fat, candidates, finder, policy, .. } = self;
         let most = policy.most_candidates(bodies.slots.live);
-        let filter_of = |index| bodies.filters[index as usize];
-        let Some(pairs) = finder.find(fat, bodies, [flag::LIVE, 0], &filter_of, most) else {
+        let Some(pairs) = finder.find(fat, bodies, [flag::LIVE, 0], When::Now, most) else {
             policy.note_excess();
             return false;
         };
@@ -130,8 +129,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     /// Replaces the candidates by the pairs of boxes.
     fn find_overlaps(&mut self, bodies: &Bodies<D, T>) {
         let Self { candidates, finder, policy, .. } = self;
-        let filter_of = |index| bodies.filters[index as usize];
-        let pairs = finder.find(&bodies.boxes, bodies, [flag::LIVE, 0], &filter_of, usize::MAX);
+        let pairs = finder.find(&bodies.boxes, bodies, [flag::LIVE, 0], When::Now, usize::MAX);
         candidates.replace(pairs.unwrap_or_default());
         policy.note_overlaps(finder.found);
     }
@@ -143,8 +141,7 @@ pub fn restore<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Tracking<D, 
     let mut tracking = Tracking { fat: bodies.previous.clone(), ..Tracking::default() };
     let Tracking { fat, candidates, finder, policy, .. } = &mut tracking;
     let known = [flag::LIVE | flag::LEAVING, flag::NEW];
-    let filter_of = |index| *bodies.old_filter(index);
-    let pairs = finder.find(fat, bodies, known, &filter_of, usize::MAX);
+    let pairs = finder.find(fat, bodies, known, When::LastUpdate, usize::MAX);
     candidates.replace(pairs.unwrap_or_default());
     candidates.live.resize(candidates.pairs.len(), true);
     policy.note_overlaps(finder.found);

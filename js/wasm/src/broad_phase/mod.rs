@@ -172,16 +172,28 @@ extern "C" fn world_set_filter(
     })
 }
 
-/// Leaves the filter of a body in the first four numbers.
+/// Disables a body, or enables it again.
+#[unsafe(no_mangle)]
+extern "C" fn world_set_enabled(handle: &mut Handle, id: f64, is_enabled: u32) -> Code {
+    let Some(is_enabled) = truth(is_enabled) else { return report(Code::Internal, [0, 0]) };
+    run(handle, stack::SMALL, |handle| {
+        let result = handle.id(id, 0).and_then(|id| handle.world.set_enabled(id, is_enabled));
+        handle.answer(result)
+    })
+}
+
+/// Leaves the filter of a body in the first four numbers, and in the next whether it is enabled.
 #[unsafe(no_mangle)]
 extern "C" fn world_filter(handle: &mut Handle, id: f64) -> Code {
     run(handle, stack::SMALL, |handle| {
-        let result = handle.id(id, 0).and_then(|id| handle.world.filter(id)).map(|filter| {
-            handle.numbers[0] = f64::from(filter.category);
-            handle.numbers[1] = f64::from(filter.mask);
-            handle.numbers[2] = f64::from(filter.group);
-            handle.numbers[3] = f64::from(u8::from(filter.is_static));
-        });
+        let result =
+            handle.id(id, 0).and_then(|id| handle.world.filter(id)).map(|(filter, is_enabled)| {
+                handle.numbers[0] = f64::from(filter.category);
+                handle.numbers[1] = f64::from(filter.mask);
+                handle.numbers[2] = f64::from(filter.group);
+                handle.numbers[3] = f64::from(u8::from(filter.is_static));
+                handle.numbers[4] = f64::from(u8::from(is_enabled));
+            });
         handle.answer(result)
     })
 }

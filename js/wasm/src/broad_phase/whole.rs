@@ -23,6 +23,20 @@ extern "C" fn world_bytes(handle: &mut Handle, count: usize) -> *mut u8 {
     })
 }
 
+/// Excludes a pair if `excluded` is 1, includes it if 0, and else changes nothing. Leaves in the first number whether it was
+/// excluded.
+#[unsafe(no_mangle)]
+extern "C" fn world_exclude(handle: &mut Handle, a: f64, b: f64, excluded: u32) -> Code {
+    run(handle, stack::SMALL, |handle| {
+        let result = handle.id(a, 0).and_then(|a| {
+            let pair = [a, handle.id(b, 1)?];
+            handle.numbers[0] = f64::from(u8::from(handle.world.is_excluded(pair)?));
+            if excluded > 1 { Ok(()) } else { handle.world.set_excluded(pair, excluded == 1) }
+        });
+        handle.answer(result)
+    })
+}
+
 /// Details: where the pairs of the last update are, and how many ids.
 #[unsafe(no_mangle)]
 extern "C" fn world_pairs(handle: &mut Handle, is_sorted: u32) -> Code {
