@@ -60,7 +60,7 @@ impl<const D: usize, T: Scalar> Model<D, T> {
         }
     }
 
-    /// The model of a world after an update, without excluded pairs, as the world describes itself.
+    /// The model of a world after an update, as the world describes itself.
     pub fn of(world: &BroadPhase<D, T>) -> Self {
         let body = |id| {
             let (aabb, reported) = (world.aabb(id).unwrap(), world.reported_aabb(id).unwrap());
@@ -77,6 +77,10 @@ impl<const D: usize, T: Scalar> Model<D, T> {
         let mut model = Self::new(world.options());
         model.bodies = world.ids().map(|id| (id, body(id))).collect();
         model.pairs = world.pairs().collect();
+        for (at, a) in world.ids().enumerate() {
+            let excluded = world.ids().skip(at + 1).filter(|&b| world.is_excluded(a, b).unwrap());
+            model.excluded.extend(excluded.map(|b| [a, b]));
+        }
         model
     }
 
