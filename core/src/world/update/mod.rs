@@ -31,7 +31,6 @@ pub use rebuild::restore;
 use super::bodies::Bodies;
 use super::changes::Events;
 use super::layout::Reorder;
-use super::policy::rebuild_pays;
 use super::tracking::Tracking;
 use crate::Scalar;
 
@@ -58,9 +57,11 @@ pub fn update<const D: usize, T: Scalar>(
         let flights = tracking.choose_flying(bodies, has_tree);
         let escaped = tracking.scratch.escaped.len() - flights;
         let moves = escaped + bodies.leaving.len();
-        if rebuild_pays(moves, bodies.slots.live)
-            || !incremental::incremental(bodies, tracking, events, flights, may_fly)
-        {
+        let rebuilds = tracking.policy.rebuild_pays(moves, changed, live);
+        if rebuilds && flights == 0 {
+            tracking.policy.note_no_flights();
+        }
+        if rebuilds || !incremental::incremental(bodies, tracking, events, flights, may_fly) {
             order = rebuild::rebuild(bodies, tracking, events);
         }
         for pairs in [&mut events.begun, &mut events.ended] {
