@@ -37,6 +37,7 @@ export {
   type Neighbor,
   type NeighborLists,
   type Numbers,
+  type PairsByBody,
   type Point,
   type Points,
   type ProxyId,

@@ -14,7 +14,7 @@ import { defaultFilter, type Filter, filterNames, type FilterWords, filterWords 
 import { StaleProxyError } from "./stale-proxy-error.js";
 import { Batches } from "./batches.js";
 import { newWorld, WorldMemory } from "./memory.js";
-import { type Box, type BroadPhaseOptions, type Changes, type Corners, type InsertOptions, type Numbers, type ProxyId, slotOf, type SortOptions } from "./types.js";
+import { type Box, type BroadPhaseOptions, type Changes, type Corners, type InsertOptions, type Numbers, type PairsByBody, type ProxyId, slotOf, type SortOptions } from "./types.js";
 
 /**
  * A persistent broad phase: it keeps bodies with boxes, and reports which overlaps began and which
@@ -238,11 +238,11 @@ export class BroadPhase<D extends Dimensions = Dimensions, Data = unknown> exten
   }
 
   /**
-   * The pairs of {@link BroadPhase.pairs} by body: those of the body in slot `s` (see {@link slotOf}) are
-   * `others.subarray(starts[s], starts[s + 1])`, sorted by slot. Takes the time of listing all pairs, where asking
+   * The pairs of {@link BroadPhase.pairs} by body: the ids of the bodies that pair with that in slot `s` (see {@link slotOf})
+   * are `others.subarray(starts[s], starts[s + 1])`, sorted by slot. Takes the time of listing all pairs, where asking
    * {@link BroadPhase.pairsOf} for each body takes much more.
    */
-  pairsByBody(): { starts: Uint32Array<ArrayBuffer>; others: Float64Array<ArrayBuffer> } {
+  pairsByBody(): PairsByBody {
     const pairs = this.pairs();
     const countIn = (ids: Float64Array): number => ids.reduce((most, id) => Math.max(most, slotOf(id) + 1), 0);
     const count = Math.max(countIn(this.ids()), countIn(pairs));

@@ -138,6 +138,14 @@ export type Points<D extends Dimensions = Dimensions> = Numbers | readonly Point
 /** Which bodies a query finds: those that may pair with a body of this filter, or those for which a function returns true. */
 export type QueryFilter = Partial<Filter> | ((id: ProxyId) => boolean);
 
+/** The pairs of all bodies, by body: what `pairsByBody` returns. */
+export interface PairsByBody {
+  /** By slot, where the other bodies of its body start in `others`; and at the end, how many there are in all. */
+  readonly starts: Uint32Array<ArrayBuffer>;
+  /** The ids of the other bodies, slot by slot. */
+  readonly others: Float64Array<ArrayBuffer>;
+}
+
 /** How ids are returned. */
 export interface SortOptions {
   /** Whether they are sorted by slot; true by default. */
