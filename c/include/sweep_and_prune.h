@@ -612,6 +612,30 @@ sap_status sap_world3f_set_filter(struct sap_world3f *world,
                                   const struct sap_filter *filter,
                                   struct sap_error *error);
 
+/// Disables a body (`false`), or enables it again. While it is disabled it pairs with no other, and queries do not find it; its
+/// box and its filter can be set. Its pairs end or begin at the next update.
+///
+/// Errors: `SAP_ERROR_STALE_ID`.
+sap_status sap_world3f_set_enabled(struct sap_world3f *world,
+                                   sap_id id,
+                                   bool is_enabled,
+                                   struct sap_error *error);
+
+/// Excludes a pair, whatever the filters of its bodies allow: those of a joint, say. It ends at the next update if it was there,
+/// and does not begin until it is included again. A body that is removed is forgotten, and a pair of a body with itself is never
+/// there.
+///
+/// Errors: `SAP_ERROR_STALE_ID` with index 0 for `a` and 1 for `b`.
+sap_status sap_world3f_exclude_pair(struct sap_world3f *world,
+                                    sap_id a,
+                                    sap_id b,
+                                    struct sap_error *error);
+
+/// Includes a pair that was excluded.
+///
+/// Errors: `SAP_ERROR_STALE_ID` with index 0 for `a` and 1 for `b`.
+sap_status sap_world3f_include_pair(struct sap_world3f *world, sap_id a, sap_id b, struct sap_error *error);
+
 /// Removes a body. The next update reports the end of its pairs.
 ///
 /// Errors: `SAP_ERROR_STALE_ID`.
@@ -668,6 +692,23 @@ sap_status sap_world3f_filter(const struct sap_world3f *world,
                               sap_id id,
                               struct sap_filter *filter,
                               struct sap_error *error);
+
+/// Whether a body is enabled, as it is until `sap_world3f_set_enabled` says otherwise.
+///
+/// Errors: `SAP_ERROR_STALE_ID`.
+sap_status sap_world3f_is_enabled(const struct sap_world3f *world,
+                                  sap_id id,
+                                  bool *is_enabled,
+                                  struct sap_error *error);
+
+/// Whether a pair is excluded.
+///
+/// Errors: `SAP_ERROR_STALE_ID` with index 0 for `a` and 1 for `b`.
+sap_status sap_world3f_is_excluded(const struct sap_world3f *world,
+                                   sap_id a,
+                                   sap_id b,
+                                   bool *is_excluded,
+                                   struct sap_error *error);
 
 /// The ids of all bodies, sorted by slot. Writes the first `capacity` of them to `ids`, which may be NULL if `capacity` is 0;
 /// `*count` is how many there are in all.
@@ -1013,6 +1054,30 @@ sap_status sap_world2f_set_filter(struct sap_world2f *world,
                                   const struct sap_filter *filter,
                                   struct sap_error *error);
 
+/// Disables a body (`false`), or enables it again. While it is disabled it pairs with no other, and queries do not find it; its
+/// box and its filter can be set. Its pairs end or begin at the next update.
+///
+/// Errors: `SAP_ERROR_STALE_ID`.
+sap_status sap_world2f_set_enabled(struct sap_world2f *world,
+                                   sap_id id,
+                                   bool is_enabled,
+                                   struct sap_error *error);
+
+/// Excludes a pair, whatever the filters of its bodies allow: those of a joint, say. It ends at the next update if it was there,
+/// and does not begin until it is included again. A body that is removed is forgotten, and a pair of a body with itself is never
+/// there.
+///
+/// Errors: `SAP_ERROR_STALE_ID` with index 0 for `a` and 1 for `b`.
+sap_status sap_world2f_exclude_pair(struct sap_world2f *world,
+                                    sap_id a,
+                                    sap_id b,
+                                    struct sap_error *error);
+
+/// Includes a pair that was excluded.
+///
+/// Errors: `SAP_ERROR_STALE_ID` with index 0 for `a` and 1 for `b`.
+sap_status sap_world2f_include_pair(struct sap_world2f *world, sap_id a, sap_id b, struct sap_error *error);
+
 /// Removes a body. The next update reports the end of its pairs.
 ///
 /// Errors: `SAP_ERROR_STALE_ID`.
@@ -1069,6 +1134,23 @@ sap_status sap_world2f_filter(const struct sap_world2f *world,
                               sap_id id,
                               struct sap_filter *filter,
                               struct sap_error *error);
+
+/// Whether a body is enabled, as it is until `sap_world2f_set_enabled` says otherwise.
+///
+/// Errors: `SAP_ERROR_STALE_ID`.
+sap_status sap_world2f_is_enabled(const struct sap_world2f *world,
+                                  sap_id id,
+                                  bool *is_enabled,
+                                  struct sap_error *error);
+
+/// Whether a pair is excluded.
+///
+/// Errors: `SAP_ERROR_STALE_ID` with index 0 for `a` and 1 for `b`.
+sap_status sap_world2f_is_excluded(const struct sap_world2f *world,
+                                   sap_id a,
+                                   sap_id b,
+                                   bool *is_excluded,
+                                   struct sap_error *error);
 
 /// The ids of all bodies, sorted by slot. Writes the first `capacity` of them to `ids`, which may be NULL if `capacity` is 0;
 /// `*count` is how many there are in all.
@@ -1414,6 +1496,30 @@ sap_status sap_world3d_set_filter(struct sap_world3d *world,
                                   const struct sap_filter *filter,
                                   struct sap_error *error);
 
+/// Disables a body (`false`), or enables it again. While it is disabled it pairs with no other, and queries do not find it; its
+/// box and its filter can be set. Its pairs end or begin at the next update.
+///
+/// Errors: `SAP_ERROR_STALE_ID`.
+sap_status sap_world3d_set_enabled(struct sap_world3d *world,
+                                   sap_id id,
+                                   bool is_enabled,
+                                   struct sap_error *error);
+
+/// Excludes a pair, whatever the filters of its bodies allow: those of a joint, say. It ends at the next update if it was there,
+/// and does not begin until it is included again. A body that is removed is forgotten, and a pair of a body with itself is never
+/// there.
+///
+/// Errors: `SAP_ERROR_STALE_ID` with index 0 for `a` and 1 for `b`.
+sap_status sap_world3d_exclude_pair(struct sap_world3d *world,
+                                    sap_id a,
+                                    sap_id b,
+                                    struct sap_error *error);
+
+/// Includes a pair that was excluded.
+///
+/// Errors: `SAP_ERROR_STALE_ID` with index 0 for `a` and 1 for `b`.
+sap_status sap_world3d_include_pair(struct sap_world3d *world, sap_id a, sap_id b, struct sap_error *error);
+
 /// Removes a body. The next update reports the end of its pairs.
 ///
 /// Errors: `SAP_ERROR_STALE_ID`.
@@ -1470,6 +1576,23 @@ sap_status sap_world3d_filter(const struct sap_world3d *world,
                               sap_id id,
                               struct sap_filter *filter,
                               struct sap_error *error);
+
+/// Whether a body is enabled, as it is until `sap_world3d_set_enabled` says otherwise.
+///
+/// Errors: `SAP_ERROR_STALE_ID`.
+sap_status sap_world3d_is_enabled(const struct sap_world3d *world,
+                                  sap_id id,
+                                  bool *is_enabled,
+                                  struct sap_error *error);
+
+/// Whether a pair is excluded.
+///
+/// Errors: `SAP_ERROR_STALE_ID` with index 0 for `a` and 1 for `b`.
+sap_status sap_world3d_is_excluded(const struct sap_world3d *world,
+                                   sap_id a,
+                                   sap_id b,
+                                   bool *is_excluded,
+                                   struct sap_error *error);
 
 /// The ids of all bodies, sorted by slot. Writes the first `capacity` of them to `ids`, which may be NULL if `capacity` is 0;
 /// `*count` is how many there are in all.
@@ -1815,6 +1938,30 @@ sap_status sap_world2d_set_filter(struct sap_world2d *world,
                                   const struct sap_filter *filter,
                                   struct sap_error *error);
 
+/// Disables a body (`false`), or enables it again. While it is disabled it pairs with no other, and queries do not find it; its
+/// box and its filter can be set. Its pairs end or begin at the next update.
+///
+/// Errors: `SAP_ERROR_STALE_ID`.
+sap_status sap_world2d_set_enabled(struct sap_world2d *world,
+                                   sap_id id,
+                                   bool is_enabled,
+                                   struct sap_error *error);
+
+/// Excludes a pair, whatever the filters of its bodies allow: those of a joint, say. It ends at the next update if it was there,
+/// and does not begin until it is included again. A body that is removed is forgotten, and a pair of a body with itself is never
+/// there.
+///
+/// Errors: `SAP_ERROR_STALE_ID` with index 0 for `a` and 1 for `b`.
+sap_status sap_world2d_exclude_pair(struct sap_world2d *world,
+                                    sap_id a,
+                                    sap_id b,
+                                    struct sap_error *error);
+
+/// Includes a pair that was excluded.
+///
+/// Errors: `SAP_ERROR_STALE_ID` with index 0 for `a` and 1 for `b`.
+sap_status sap_world2d_include_pair(struct sap_world2d *world, sap_id a, sap_id b, struct sap_error *error);
+
 /// Removes a body. The next update reports the end of its pairs.
 ///
 /// Errors: `SAP_ERROR_STALE_ID`.
@@ -1871,6 +2018,23 @@ sap_status sap_world2d_filter(const struct sap_world2d *world,
                               sap_id id,
                               struct sap_filter *filter,
                               struct sap_error *error);
+
+/// Whether a body is enabled, as it is until `sap_world2d_set_enabled` says otherwise.
+///
+/// Errors: `SAP_ERROR_STALE_ID`.
+sap_status sap_world2d_is_enabled(const struct sap_world2d *world,
+                                  sap_id id,
+                                  bool *is_enabled,
+                                  struct sap_error *error);
+
+/// Whether a pair is excluded.
+///
+/// Errors: `SAP_ERROR_STALE_ID` with index 0 for `a` and 1 for `b`.
+sap_status sap_world2d_is_excluded(const struct sap_world2d *world,
+                                   sap_id a,
+                                   sap_id b,
+                                   bool *is_excluded,
+                                   struct sap_error *error);
 
 /// The ids of all bodies, sorted by slot. Writes the first `capacity` of them to `ids`, which may be NULL if `capacity` is 0;
 /// `*count` is how many there are in all.

@@ -161,6 +161,11 @@ template <std::size_t Dimensions, class Scalar> struct kind;
         static constexpr auto teleport = sap_world##name##_teleport;                                                   \
         static constexpr auto shift = sap_world##name##_shift;                                                         \
         static constexpr auto set_filter = sap_world##name##_set_filter;                                               \
+        static constexpr auto set_enabled = sap_world##name##_set_enabled;                                             \
+        static constexpr auto exclude_pair = sap_world##name##_exclude_pair;                                           \
+        static constexpr auto include_pair = sap_world##name##_include_pair;                                           \
+        static constexpr auto is_enabled = sap_world##name##_is_enabled;                                               \
+        static constexpr auto is_excluded = sap_world##name##_is_excluded;                                             \
         static constexpr auto remove = sap_world##name##_remove;                                                       \
         static constexpr auto remove_many = sap_world##name##_remove_many;                                             \
         static constexpr auto clear = sap_world##name##_clear;                                                         \
@@ -401,6 +406,9 @@ public:
         const sap_filter c_filter = filter;
         detail::call(kind::set_filter, c(), body, &c_filter);
     }
+    void set_enabled(id body, bool is_enabled) { detail::call(kind::set_enabled, c(), body, is_enabled); }
+    void exclude_pair(id a, id b) { detail::call(kind::exclude_pair, c(), a, b); }
+    void include_pair(id a, id b) { detail::call(kind::include_pair, c(), a, b); }
     void remove(id body) { detail::call(kind::remove, c(), body); }
     void remove_many(span<const id> ids) { detail::call(kind::remove_many, c(), ids.data(), ids.size()); }
     void clear() { detail::call(kind::clear, c()); }
@@ -435,6 +443,17 @@ public:
         sap_filter found;
         detail::call(kind::filter, c(), body, &found);
         return {found.category, found.mask, found.group, found.is_static};
+    }
+
+    bool is_enabled(id body) const {
+        bool enabled;
+        detail::call(kind::is_enabled, c(), body, &enabled);
+        return enabled;
+    }
+    bool is_excluded(id a, id b) const {
+        bool excluded;
+        detail::call(kind::is_excluded, c(), a, b, &excluded);
+        return excluded;
     }
 
     // Lists. Each has a form that fills a vector of yours, whose memory is used again.

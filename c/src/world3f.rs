@@ -286,6 +286,57 @@ pub unsafe extern "C" fn sap_world3f_set_filter(
     }
 }
 
+/// Disables a body (`false`), or enables it again. While it is disabled it pairs with no other, and queries do not find it; its
+/// box and its filter can be set. Its pairs end or begin at the next update.
+///
+/// Errors: `SAP_ERROR_STALE_ID`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sap_world3f_set_enabled(
+    world: *mut sap_world3f,
+    id: sap_id,
+    is_enabled: bool,
+    error: *mut sap_error,
+) -> sap_status {
+    // SAFETY: C promises it, see lib.rs.
+    unsafe {
+        run(error, || write(world, |state| Ok(state.bodies.set_enabled(proxy(id), is_enabled)?)))
+    }
+}
+
+/// Excludes a pair, whatever the filters of its bodies allow: those of a joint, say. It ends at the next update if it was there,
+/// and does not begin until it is included again. A body that is removed is forgotten, and a pair of a body with itself is never
+/// there.
+///
+/// Errors: `SAP_ERROR_STALE_ID` with index 0 for `a` and 1 for `b`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sap_world3f_exclude_pair(
+    world: *mut sap_world3f,
+    a: sap_id,
+    b: sap_id,
+    error: *mut sap_error,
+) -> sap_status {
+    // SAFETY: C promises it, see lib.rs.
+    unsafe {
+        run(error, || write(world, |state| Ok(state.bodies.exclude_pair(proxy(a), proxy(b))?)))
+    }
+}
+
+/// Includes a pair that was excluded.
+///
+/// Errors: `SAP_ERROR_STALE_ID` with index 0 for `a` and 1 for `b`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sap_world3f_include_pair(
+    world: *mut sap_world3f,
+    a: sap_id,
+    b: sap_id,
+    error: *mut sap_error,
+) -> sap_status {
+    // SAFETY: C promises it, see lib.rs.
+    unsafe {
+        run(error, || write(world, |state| Ok(state.bodies.include_pair(proxy(a), proxy(b))?)))
+    }
+}
+
 /// Removes a body. The next update reports the end of its pairs.
 ///
 /// Errors: `SAP_ERROR_STALE_ID`.
@@ -441,6 +492,45 @@ pub unsafe extern "C" fn sap_world3f_filter(
         run(error, || {
             let filter = place(filter, "filter")?;
             read(world, |state| filter.set(from_filter(state.bodies.filter(proxy(id))?)))
+        })
+    }
+}
+
+/// Whether a body is enabled, as it is until `sap_world3f_set_enabled` says otherwise.
+///
+/// Errors: `SAP_ERROR_STALE_ID`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sap_world3f_is_enabled(
+    world: *const sap_world3f,
+    id: sap_id,
+    is_enabled: *mut bool,
+    error: *mut sap_error,
+) -> sap_status {
+    // SAFETY: C promises it, see lib.rs.
+    unsafe {
+        run(error, || {
+            let is_enabled = place(is_enabled, "is_enabled")?;
+            read(world, |state| is_enabled.set(state.bodies.is_enabled(proxy(id))?))
+        })
+    }
+}
+
+/// Whether a pair is excluded.
+///
+/// Errors: `SAP_ERROR_STALE_ID` with index 0 for `a` and 1 for `b`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sap_world3f_is_excluded(
+    world: *const sap_world3f,
+    a: sap_id,
+    b: sap_id,
+    is_excluded: *mut bool,
+    error: *mut sap_error,
+) -> sap_status {
+    // SAFETY: C promises it, see lib.rs.
+    unsafe {
+        run(error, || {
+            let is_excluded = place(is_excluded, "is_excluded")?;
+            read(world, |state| is_excluded.set(state.bodies.is_excluded(proxy(a), proxy(b))?))
         })
     }
 }

@@ -177,6 +177,12 @@ template <std::size_t D, class T> struct tests {
         world.set_filter(ids[3], sap::filter{2, 4, -1, true});
         CHECK(world.filter(ids[3]).is_static && world.filter(ids[3]).group == -1);
         world.set_filter(ids[3], old);
+        world.set_enabled(ids[3], false);
+        world.exclude_pair(ids[3], ids[4]);
+        CHECK(!world.is_enabled(ids[3]) && world.is_excluded(ids[4], ids[3]));
+        world.include_pair(ids[4], ids[3]);
+        world.set_enabled(ids[3], true);
+        CHECK(world.is_enabled(ids[3]) && !world.is_excluded(ids[3], ids[4]));
 
         world.prepare_queries();
         typename tests::world::point point{};

@@ -7,7 +7,7 @@ typedef struct {
     sap_id id;
     aabb_type box, swept_to;
     sap_filter filter;
-    bool is_swept;
+    bool is_swept, is_disabled;
 } body;
 
 static world_type *world, *other;
@@ -23,6 +23,8 @@ typedef struct {
 } pair;
 static pair live[LIST], now[LIST];
 static size_t live_count, now_count;
+static pair excluded_pairs[MOST];
+static size_t excluded_count;
 
 static int compare_pairs(const void *x, const void *y) {
     const pair *p = x, *q = y;
@@ -37,6 +39,12 @@ static pair pair_of(sap_id a, sap_id b) {
 
 static bool has(const pair *pairs, size_t length, pair wanted) {
     return length > 0 && bsearch(&wanted, pairs, length, sizeof wanted, compare_pairs) != NULL;
+}
+
+static size_t find_excluded(pair wanted) {
+    size_t i = 0;
+    while (i < excluded_count && compare_pairs(&excluded_pairs[i], &wanted) != 0) i++;
+    return i;
 }
 
 static bool may_pair(const sap_filter *a, const sap_filter *b) {
@@ -77,6 +85,9 @@ static sap_id bad_id(void) {
 static body *random_body(void) { return &bodies[below((uint32_t)count)]; }
 
 static void forget(size_t index) {
+    uint64_t gone = by_slot(bodies[index].id);
+    for (size_t i = excluded_count; i-- > 0;)
+        if (excluded_pairs[i].a == gone || excluded_pairs[i].b == gone) excluded_pairs[i] = excluded_pairs[--excluded_count];
     removed[removed_count < MOST ? removed_count++ : below(MOST)] = bodies[index].id;
     bodies[index] = bodies[--count];
 }
@@ -143,6 +154,30 @@ static void set_swept(void) {
     }
 }
 
+static void toggle(void) {
+    body *a = random_body(), *b = random_body();
+    bool found;
+    if (below(2) == 0) {
+        a->is_disabled = !a->is_disabled;
+        OK(WORLD(_set_enabled)(world, a->id, !a->is_disabled, &error));
+        OK(WORLD(_is_enabled)(world, a->id, &found, &error));
+        CHECK(found == !a->is_disabled);
+        return;
+    }
+    pair pair = pair_of(a->id, b->id);
+    size_t at = find_excluded(pair);
+    bool is_excluded = at < excluded_count;
+    OK(WORLD(_is_excluded)(world, b->id, a->id, &found, &error));
+    CHECK(found == is_excluded);
+    if (is_excluded) {
+        OK(WORLD(_include_pair)(world, a->id, b->id, &error));
+        excluded_pairs[at] = excluded_pairs[--excluded_count];
+    } else if (excluded_count < MOST) {
+        OK(WORLD(_exclude_pair)(world, a->id, b->id, &error));
+        if (a != b) excluded_pairs[excluded_count++] = pair;
+    }
+}
+
 static void shift(void) {
     scalar offset[DIMENSIONS];
     for (int axis = 0; axis < DIMENSIONS; axis++) offset[axis] = (scalar)below(5) - 2;
@@ -201,7 +236,8 @@ static void update(void) {
     now_count = 0;
     for (size_t a = 0; a < count; a++)
         for (size_t b = a + 1; b < count; b++)
-            if (overlap(&boxes[a], &boxes[b]) && may_pair(&bodies[a].filter, &bodies[b].filter))
+            if (overlap(&boxes[a], &boxes[b]) && may_pair(&bodies[a].filter, &bodies[b].filter) && !bodies[a].is_disabled &&
+                !bodies[b].is_disabled && find_excluded(pair_of(bodies[a].id, bodies[b].id)) == excluded_count)
                 now[now_count++] = pair_of(bodies[a].id, bodies[b].id);
     qsort(now, now_count, sizeof *now, compare_pairs);
     size_t begun = 0, ended = 0;
@@ -360,7 +396,7 @@ static void ask(void) {
     size_t overlapping = 0, containing = 0, within = 0, near_count = 0, hit_count = 0;
     for (size_t i = 0; i < count; i++) {
         const body *body = &bodies[i];
-        if (query.filter && !may_pair(query.filter, &body->filter)) continue;
+        if (body->is_disabled || (query.filter && !may_pair(query.filter, &body->filter))) continue;
         bool is_excluded = false;
         for (size_t k = 0; k < excluded_count; k++) is_excluded |= excluded[k] == body->id;
         if (is_excluded) continue;
@@ -487,6 +523,11 @@ static void hostile(void) {
     FAILS(SAP_ERROR_STALE_ID, WORLD(_set_swept)(world, id, &box, &box, &error));
     FAILS(SAP_ERROR_STALE_ID, WORLD(_teleport)(world, id, &box, &error));
     FAILS(SAP_ERROR_STALE_ID, WORLD(_set_filter)(world, id, NULL, &error));
+    FAILS(SAP_ERROR_STALE_ID, WORLD(_set_enabled)(world, id, false, &error));
+    FAILS(SAP_ERROR_STALE_ID, WORLD(_is_enabled)(world, id, &contains, &error));
+    FAILS(SAP_ERROR_STALE_ID, WORLD(_exclude_pair)(world, id, id, &error));
+    FAILS(SAP_ERROR_STALE_ID, WORLD(_include_pair)(world, id, id, &error));
+    FAILS(SAP_ERROR_STALE_ID, WORLD(_is_excluded)(world, id, id, &contains, &error));
     FAILS(SAP_ERROR_STALE_ID, WORLD(_remove)(world, id, &error));
     FAILS(SAP_ERROR_STALE_ID, WORLD(_remove_many)(world, &id, 1, &error));
     FAILS(SAP_ERROR_STALE_ID, WORLD(_aabb)(world, id, &out, &error));
@@ -496,6 +537,8 @@ static void hostile(void) {
     FAILS(SAP_ERROR_INVALID_BOX, WORLD(_insert)(world, &bad, NULL, NULL, &error));
     FAILS(SAP_ERROR_INVALID_BOX, WORLD(_insert_many)(world, &bad, 1, NULL, NULL, &error));
     if (good != 0) {
+        sap_error error;
+        CHECK(WORLD(_exclude_pair)(world, good, id, &error) == SAP_ERROR_STALE_ID && error.index == 1);
         FAILS(SAP_ERROR_INVALID_BOX, WORLD(_set)(world, good, &bad, &error));
         FAILS(SAP_ERROR_INVALID_BOX, WORLD(_set_swept)(world, good, &box, &bad, &error));
         FAILS(SAP_ERROR_INVALID_BOX, WORLD(_teleport)(world, good, &bad, &error));
@@ -536,6 +579,11 @@ static void bad_arguments(void) {
         FAILS(wanted, WORLD(_teleport)(w, 1, &box, &error));
         FAILS(wanted, WORLD(_shift)(w, point, &error));
         FAILS(wanted, WORLD(_set_filter)(w, 1, NULL, &error));
+        FAILS(wanted, WORLD(_set_enabled)(w, 1, true, &error));
+        FAILS(wanted, WORLD(_is_enabled)(w, 1, &contains, &error));
+        FAILS(wanted, WORLD(_exclude_pair)(w, 1, 1, &error));
+        FAILS(wanted, WORLD(_include_pair)(w, 1, 1, &error));
+        FAILS(wanted, WORLD(_is_excluded)(w, 1, 1, &contains, &error));
         FAILS(wanted, WORLD(_remove)(w, 1, &error));
         FAILS(wanted, WORLD(_remove_many)(w, &id, 1, &error));
         FAILS(wanted, WORLD(_clear)(w, &error));
@@ -640,6 +688,10 @@ int main(int argument_count, char **arguments) {
             else if (what < 58 && !is_fat) set_swept(); // after an update, its fat AABB is that of the next one
             else {
                 body *body = random_body();
+                if (what < 61) {
+                    toggle();
+                    continue;
+                }
                 if (what < 64) {
                     body->filter = random_filter();
                     OK(WORLD(_set_filter)(world, body->id, &body->filter, &error));
@@ -654,7 +706,7 @@ int main(int argument_count, char **arguments) {
         WORLD(_destroy)(&world);
         WORLD(_destroy)(&other);
         CHECK(world == NULL && other == NULL);
-        count = live_count = removed_count = 0;
+        count = live_count = removed_count = excluded_count = 0;
     }
     return 0;
 }
