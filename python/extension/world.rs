@@ -197,6 +197,17 @@ impl World {
         })
     }
 
+    fn are_enabled(&self, ids: Array<'_>) -> PyResult<Vec<bool>> {
+        let (py, ids) = (ids.py(), copy_numbers(&ids)?);
+        let ids = ids.as_slice()?;
+        self.with(|space| {
+            space.check_ids(py, ids)?;
+            let enabled = ids.iter().map(|&id| Ok(space.world.filter(proxy(id))?.1));
+            let enabled: Result<_, Error> = enabled.collect();
+            enabled.map_err(|error| raise(py, error, "", ids))
+        })
+    }
+
     /// Excludes or includes pairs, whose ids follow each other.
     fn set_excluded(&self, ids: Array<'_>, excluded: bool) -> PyResult<()> {
         let (py, ids) = (ids.py(), copy_numbers(&ids)?);
@@ -226,14 +237,14 @@ impl World {
         })
     }
 
-    fn filters(&self, ids: Array<'_>) -> PyResult<Vec<(u32, u32, i32, bool, bool)>> {
+    fn filters(&self, ids: Array<'_>) -> PyResult<Vec<Words>> {
         let (py, ids) = (ids.py(), copy_numbers(&ids)?);
         let ids = ids.as_slice()?;
         self.with(|space| {
             space.check_ids(py, ids)?;
             let filters = ids.iter().map(|&id| {
-                let (filter, is_enabled) = space.world.filter(proxy(id))?;
-                Ok((filter.category, filter.mask, filter.group, filter.is_static, is_enabled))
+                let (filter, _) = space.world.filter(proxy(id))?;
+                Ok((filter.category, filter.mask, filter.group, filter.is_static))
             });
             let filters: Result<_, Error> = filters.collect();
             filters.map_err(|error| raise(py, error, "", ids))

@@ -597,7 +597,7 @@ class BroadPhase:
         >>> world.filter(world.insert([0, 1]))
         Filter(category=1, mask=4294967295, group=0, is_static=False)
         """
-        return Filter(*self._world.filters(one_id(id))[0][:4])
+        return Filter(*self._world.filters(one_id(id))[0])
 
     def set_filter(self, id: SupportsIndex, filter: Filter) -> None:
         """Changes which bodies a body may pair with; the next update reports the pairs that begin or end.
@@ -700,7 +700,7 @@ class BroadPhase:
         >>> world.is_enabled(world.insert([0, 2]))
         True
         """
-        return self._world.filters(one_id(id))[0][4]
+        return self._world.are_enabled(one_id(id))[0]
 
     def exclude_pair(self, first: SupportsIndex, second: SupportsIndex) -> None:
         """Excludes a pair, whatever the filters of its bodies allow: those of a joint, say.
