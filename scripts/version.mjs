@@ -68,7 +68,7 @@ function write(next) {
   }
   const run = (...command) => execFileSync(command[0], command.slice(1), { cwd: root, stdio: "inherit" });
   run("npm", "install", "--package-lock-only", "--ignore-scripts", "--no-audit", "--no-fund");
-  for (const workspace of ["Cargo.toml", "python/Cargo.toml", "bench/Cargo.toml", "integrations/bevy/Cargo.toml"]) {
+  for (const workspace of ["Cargo.toml", "python/Cargo.toml", "c/Cargo.toml", "bench/Cargo.toml", "integrations/bevy/Cargo.toml"]) {
     run("cargo", "update", "--quiet", "--workspace", "--manifest-path", workspace);
   }
 }
