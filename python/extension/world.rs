@@ -20,6 +20,10 @@ fn filter_of((category, mask, group, is_static): Words) -> Filter {
     filter(category, mask, group, is_static)
 }
 
+fn words_of(filter: Filter) -> Words {
+    (filter.category, filter.mask, filter.group, filter.is_static)
+}
+
 /// An id in Python: slot and generation in one number, as [`ProxyId::to_bits`], but counted from
 /// the first generation. So the ids of a world from which nothing was removed are 0, 1, 2, and so
 /// on, which are rows of the user's arrays. -1 is no id.
@@ -172,82 +176,37 @@ impl World {
     }
 
     fn set_filter(&self, ids: Array<'_>, filter: Words) -> PyResult<()> {
-        let (py, ids) = (ids.py(), copy_numbers(&ids)?);
-        let (ids, filter) = (ids.as_slice()?, filter_of(filter));
-        self.with(|space| {
-            space.check_ids(py, ids)?;
-            let proxies = proxies(ids);
-            let done = space.run(py, proxies.len(), |world| {
-                proxies.iter().try_for_each(|&id| world.set_filter(id, filter))
-            })?;
-            done.map_err(|error| raise(py, error, "", ids))
-        })
+        let filter = filter_of(filter);
+        self.edit(ids, |world, ids| ids.iter().try_for_each(|&id| world.set_filter(id, filter)))
     }
 
     fn set_enabled(&self, ids: Array<'_>, enabled: bool) -> PyResult<()> {
-        let (py, ids) = (ids.py(), copy_numbers(&ids)?);
-        let ids = ids.as_slice()?;
-        self.with(|space| {
-            space.check_ids(py, ids)?;
-            let proxies = proxies(ids);
-            let done = space.run(py, proxies.len(), |world| {
-                proxies.iter().try_for_each(|&id| world.set_enabled(id, enabled))
-            })?;
-            done.map_err(|error| raise(py, error, "", ids))
-        })
+        self.edit(ids, |world, ids| ids.iter().try_for_each(|&id| world.set_enabled(id, enabled)))
     }
 
     fn are_enabled(&self, ids: Array<'_>) -> PyResult<Vec<bool>> {
-        let (py, ids) = (ids.py(), copy_numbers(&ids)?);
-        let ids = ids.as_slice()?;
-        self.with(|space| {
-            space.check_ids(py, ids)?;
-            let enabled = ids.iter().map(|&id| Ok(space.world.filter(proxy(id))?.1));
-            let enabled: Result<_, Error> = enabled.collect();
-            enabled.map_err(|error| raise(py, error, "", ids))
-        })
+        self.look_up(ids, |world, ids| ids.iter().map(|&id| Ok(world.filter(id)?.1)).collect())
     }
 
-    /// Excludes or includes pairs, whose ids follow each other.
+    /// Excludes or includes the pair of two ids.
     fn set_excluded(&self, ids: Array<'_>, excluded: bool) -> PyResult<()> {
-        let (py, ids) = (ids.py(), copy_numbers(&ids)?);
-        let ids = ids.as_slice()?;
-        self.with(|space| {
-            space.check_ids(py, ids)?;
-            let proxies = proxies(ids);
-            let (pairs, _) = proxies.as_chunks::<2>();
-            let done = space.run(py, proxies.len(), |world| {
-                pairs.iter().try_for_each(|&pair| world.set_excluded(pair, excluded))
-            })?;
-            done.map_err(|error| raise(py, error, "", ids))
+        self.edit(ids, |world, ids| {
+            ids.as_chunks().0.iter().try_for_each(|&pair| world.set_excluded(pair, excluded))
         })
     }
 
+    /// Whether the pair of two ids is excluded.
     fn is_excluded(&self, ids: Array<'_>) -> PyResult<bool> {
-        let (py, ids) = (ids.py(), copy_numbers(&ids)?);
-        let ids = ids.as_slice()?;
-        self.with(|space| {
-            space.check_ids(py, ids)?;
-            let proxies = proxies(ids);
-            let (pairs, _) = proxies.as_chunks::<2>();
-            let are = pairs.iter().map(|&pair| space.world.is_excluded(pair));
-            let are: Result<Vec<_>, Error> = are.collect();
-            let all = are.map_err(|error| raise(py, error, "", ids))?;
-            Ok(all.into_iter().all(|is_excluded| is_excluded))
-        })
+        let excluded = self.look_up(ids, |world, ids| {
+            ids.as_chunks().0.iter().map(|&pair| world.is_excluded(pair)).collect()
+        });
+        Ok(excluded? == [true])
     }
 
     fn filters(&self, ids: Array<'_>) -> PyResult<Vec<Words>> {
-        let (py, ids) = (ids.py(), copy_numbers(&ids)?);
-        let ids = ids.as_slice()?;
-        self.with(|space| {
-            space.check_ids(py, ids)?;
-            let filters = ids.iter().map(|&id| {
-                let (filter, _) = space.world.filter(proxy(id))?;
-                Ok((filter.category, filter.mask, filter.group, filter.is_static))
-            });
-            let filters: Result<_, Error> = filters.collect();
-            filters.map_err(|error| raise(py, error, "", ids))
+        self.look_up(ids, |world, ids| {
+            let filters = ids.iter().map(|&id| Ok(world.filter(id)?.0));
+            filters.map(|filter| filter.map(words_of)).collect()
         })
     }
 
@@ -384,6 +343,36 @@ impl World {
     fn with<R>(&self, call: impl FnOnce(&mut Space) -> PyResult<R>) -> PyResult<R> {
         let mut space = self.0.try_lock().map_err(|_| busy("BroadPhase"))?;
         call(&mut space)
+    }
+
+    /// Changes bodies by their ids. Nothing has changed if one of those is stale.
+    fn edit(
+        &self,
+        ids: Array<'_>,
+        change: impl FnOnce(&mut dyn ArrayBroadPhase<PythonId>, &[ProxyId]) -> Result<(), Error> + Send,
+    ) -> PyResult<()> {
+        let (py, ids) = (ids.py(), copy_numbers(&ids)?);
+        let ids = ids.as_slice()?;
+        self.with(|space| {
+            space.check_ids(py, ids)?;
+            let proxies = proxies(ids);
+            let done = space.run(py, proxies.len(), |world| change(world, &proxies))?;
+            done.map_err(|error| raise(py, error, "", ids))
+        })
+    }
+
+    /// What is known of bodies, by their ids.
+    fn look_up<V>(
+        &self,
+        ids: Array<'_>,
+        read: impl FnOnce(&dyn ArrayBroadPhase<PythonId>, &[ProxyId]) -> Result<Vec<V>, Error>,
+    ) -> PyResult<Vec<V>> {
+        let (py, ids) = (ids.py(), copy_numbers(&ids)?);
+        let ids = ids.as_slice()?;
+        self.with(|space| {
+            space.check_ids(py, ids)?;
+            read(&*space.world, &proxies(ids)).map_err(|error| raise(py, error, "", ids))
+        })
     }
 }
 
