@@ -51,6 +51,35 @@ class Playground {
   }
 }
 
+test("no description of a scene and a motion moves what follows: there is room for the longest at any width", async ({ page }) => {
+  const playground = await new Playground(page).open();
+  await playground.root.getByRole("button", { name: "Pause" }).click();
+  const scene = playground.root.getByLabel("Scene", { exact: true });
+  const motion = playground.root.getByLabel("Motion", { exact: true });
+  await scene.selectOption("more …");
+  const described = new Set<string>();
+  for (const name of await motion.locator("option").allTextContents()) {
+    await motion.selectOption(name);
+    described.add((await playground.part("about").textContent()) ?? "");
+  }
+  const [first = ""] = described;
+  const ofScene = first.slice(0, first.lastIndexOf(". ") + 1);
+  const motions = [...described].map((text) => text.slice(ofScene.length));
+  const scenes: string[] = [];
+  for (const name of await scene.locator("option").allTextContents()) {
+    await scene.selectOption(name);
+    scenes.push((await playground.part("about").textContent()) ?? "");
+  }
+  // Each with the motion that was chosen last: its place is taken by each other one.
+  const texts = scenes.flatMap((text) => motions.map((motion) => text.replace(motions.at(-1)!, motion)));
+  expect(texts.length).toBeGreaterThan(100);
+  for (const width of [1280, 1000, 820, 640, 390, 320]) {
+    await page.setViewportSize({ width, height: 900 });
+    const heights = await playground.part("about").evaluate((about, texts) => texts.map((text) => ((about.textContent = text), about.getBoundingClientRect().height)), texts);
+    expect(new Set(heights).size, `at ${width} pixels`).toBe(1);
+  }
+});
+
 test("boxes are read from CSV and JSON in the forms in which programs write them, and errors say where", () => {
   const rows = (text: string): number[][] => {
     const { dimensions, boxes } = readBoxes(text);

@@ -100,6 +100,7 @@ export class BoxPlayground extends PanelElement {
     this.#state = readAddress<Key>(this.#defaults);
     // The algorithms of the address have their places at once: nothing jumps when their names are known.
     const lanes = 1 + [2, 3, 4].filter((lane) => this.#state[keysOf(lane).algorithm as Key] !== NONE).length;
+    this.named("add-algorithm").hidden = lanes === MOST_LANES;
     if (lanes > 1) this.named("lanes").innerHTML = Array.from({ length: lanes }, (_, at) => laneMarkup(at + 1)).join("");
     void whenNear(this, this.signal).then(() => this.#open());
   }
