@@ -7,6 +7,10 @@ use crate::world::candidates::are_asleep;
 use crate::world::changes::Events;
 use crate::world::tracking::{Tracking, TreeState};
 
+/// A body with one of these flags does not fall asleep. One that flies is not in the tree, which is to find the pairs of
+/// bodies asleep when they wake.
+const AWAKE: u16 = flag::RECENT | flag::ASLEEP | flag::FLYING;
+
 /// Ends an update. Returns whether the awake bodies are scattered in memory.
 #[inline(never)]
 pub fn finish<const D: usize, T: Scalar>(
@@ -64,7 +68,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         }
         candidates.asleep.retain(|pair| are_asleep(slots, pair));
         for (row, flags) in slots.flags.iter_mut().enumerate() {
-            let rests = *flags & (flag::LIVE | flag::RECENT | flag::ASLEEP) == flag::LIVE;
+            let rests = *flags & (flag::LIVE | AWAKE) == flag::LIVE;
             if rests {
                 *flags |= flag::ASLEEP;
                 fat[row] = boxes[row];

@@ -242,3 +242,26 @@ fn few_fast_bodies_among_many_at_rest_are_not_in_the_tree() {
     let tracking = &world.world.tracking;
     assert_eq!((tracking.flying.len(), tracking.tree.count), (1, rest + fast - 2));
 }
+
+#[test]
+fn no_end_is_missed_in_a_heap_whose_bodies_fly_in_turn() {
+    // Others are fast in each frame, and more of them than may land, so that some rest while they fly.
+    let (side, moving) = (10, 40);
+    let place = |at: usize| [at % side, at / side % side, at / side / side].map(|at| at as f32);
+    let cube = |at: [f32; 3]| Aabb::new(at, at.map(|at| at + 1.001));
+    let count = side * side * side;
+    let mut world = World::new((0..count).map(|at| cube(place(at))).collect());
+    let mut flew = 0;
+    for frame in 0..60 {
+        for draw in frame * moving..(frame + 1) * moving {
+            let at = (noise(draw * draw + 3) * count as f32) as usize;
+            let way = |axis| 0.8 * (noise(draw * 7 + axis) - 0.5);
+            let base = place(at);
+            world.boxes[at] = cube(core::array::from_fn(|axis| base[axis] + way(axis)));
+            world.world.set(world.ids[at], world.boxes[at]).unwrap();
+        }
+        world.update();
+        flew += usize::from(world.world.tracking.flying.len() > moving);
+    }
+    assert!(flew > 0);
+}
