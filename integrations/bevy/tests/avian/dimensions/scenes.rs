@@ -378,7 +378,7 @@ fn disturb_within_a_step(world: &mut World) {
 
 #[test]
 fn anything_that_can_happen_at_random() {
-    let seeds = if std::env::var_os("TEST_LONG").is_some() { 80 } else { 8 };
+    let seeds = if std::env::var_os("TEST_LONG").is_some() { 80 } else { 5 };
     for seed in 0..seeds {
         let mut both = Both::without_islands::<Teams>();
         // Events of collisions run here, for example.
