@@ -191,8 +191,8 @@ def test_options_that_do_not_fit_are_refused(capsys: pytest.CaptureFixture[str])
             ["pairs", "a.parquet", "--memory-limit", "1GB", "--fraction", "0.5", "-o", "x"],
             "--fraction cannot be combined",
         ),
-        (["count", "a.bed", "--memory-limit", "1GB"], "a.bed: --memory-limit reads Parquet files and folders of them"),
-        (["count", "-", "--memory-limit", "1GB"], "-: --memory-limit reads Parquet files and folders of them"),
+        (["count", "a.npy", "--memory-limit", "1GB"], "a.npy: --memory-limit reads files of text, Parquet files and"),
+        (["count", "-", "--memory-limit", "1GB"], "-: --memory-limit reads files of text, Parquet files and folders"),
         (["count", "a.parquet", "--memory-limit", "1GB", "--each"], "--each cannot be combined"),
     ):
         if "--memory-limit" in arguments:

@@ -390,8 +390,8 @@ def test_more_boxes_than_fit_in_memory_go_through_files(capsys: pytest.CaptureFi
     ]
     assert "other boxes or other options" in refused(capsys, "pairs", a, *limited, "-o", "out", "--margin", "2")
     assert "-o FOLDER" in refused(capsys, "pairs", a, *limited)
-    assert "leave --by out" in refused(capsys, "pairs", a, *limited, "-o", "out", "--by", "xmin")
-    assert "b.csv: --memory-limit reads Parquet files" in refused(capsys, "count", write("b.csv"), *limited)
+    assert "other boxes or other options" in refused(capsys, "pairs", a, *limited, "-o", "out", "--by", "xmin")
+    assert "b.npy: --memory-limit reads files of text, Par" in refused(capsys, "count", write("b.npy"), *limited)
     assert "memory_limit is 1MB" in refused(capsys, "pairs", a, "--memory-limit", "1MB", "--workers", "1", "-o", "new")
     assert "memory_limit must be" in refused(capsys, "pairs", a, "--memory-limit", "much", "-o", "new")
 

@@ -205,7 +205,7 @@ def test_wrong_paths_and_columns_are_refused() -> None:
     for call in (sap.find_pairs, sap.count_pairs):
         with pytest.raises(TypeError, match=r"columns must be a list of names, .* not the text 'minx'"):
             call("a.parquet", columns="minx")
-        with pytest.raises(ValueError, match="boxes is an empty list: pass the path of one Parquet file or more"):
+        with pytest.raises(ValueError, match="boxes is an empty list: pass the path of one file or more"):
             call([])
         with pytest.raises(ValueError, match=r"boxes is 'a\\x00.parquet': a name cannot contain a zero byte"):
             call(["a.parquet", "a\0.parquet"])

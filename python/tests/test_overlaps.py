@@ -378,3 +378,15 @@ def test_intervals_that_are_no_boxes_are_refused_by_name(bad: list[float], by: s
             between(good, [*good, bad], **second)
         with pytest.raises(sap.InvalidBoxError, match=r"^a\[2\] "):
             between([*good, bad], np.empty((0, 2)), **none)
+
+
+def test_an_inverted_box_is_named_and_not_measured() -> None:
+    for given, row in (([[0, 1], [5, 3]], 1), ([[0.0, np.nan], [0, 1]], 0)):
+        with pytest.raises(sap.InvalidBoxError) as raised:
+            sap.measure_overlaps(given, None, [[0, 1]])
+        assert (raised.value.argument, raised.value.index) == ("boxes", row)
+        with pytest.raises(sap.InvalidBoxError) as raised:
+            sap.measure_overlaps([[0, 1]], given, [[0, 0], [0, 1]])
+        assert (raised.value.argument, raised.value.index) == ("b", row)
+    assert sap.measure_overlaps([[0, 1], [5, 3]], None, [[0, 0]]).size.tolist() == [1], "no pair names the other"
+    assert sap.measure_overlaps([[170, -170]], None, [[0, 0]], wrap=360).size.tolist() == [20]

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _crs
-from ._columns import Column
 from ._errors import InvalidBoxError, SweepAndPruneError
 from ._file_error import FileError, printable
 from ._intervals import cluster as find_clusters
@@ -25,7 +24,7 @@ from ._intervals import merge as find_merged
 from ._intervals import nearest as find_nearest
 from ._join import with_missing
 from ._output import output_file
-from ._overlaps import Overlaps, count_overlaps, measure_overlaps
+from ._overlaps import Overlaps, count_overlaps, measure_overlaps, plain_corners, share_of
 from ._pairs import (
     count_pairs,
     count_pairs_between,
@@ -38,7 +37,7 @@ from ._pairs import (
 from ._prepare import is_missing, refuse_inverted
 from ._progress import ProgressBar
 from ._signals import end_at_once, end_by_signals, remove_unfinished, signal_status
-from ._tables import FORMATS, READABLE, Source, kind_of_file, read
+from ._tables import FORMATS, READABLE, Source, columns_of_groups, is_text, kind_of_file, read
 from ._text import Cells
 from ._writers import WRITABLE, kind_of, writer
 
@@ -66,7 +65,6 @@ Exit status: 0 if all went well, 1 for an error in the data or a file, 2 for wro
 after SIGTERM, 129 after SIGHUP, 141 if the program that reads the output ended."""
 
 _SIDES = ("left", "right")
-_PER_SIDE = ("columns", "by", "id")
 _PAIRS_AT_ONCE = 2**20
 """Many, since there is work for each chunk; they take 16 MB."""
 _LABELLED_AT_ONCE = 2**15
@@ -246,9 +244,9 @@ _disk = _together(
     click.option(
         "--memory-limit",
         metavar="SIZE",
-        help="Take no more memory than this, such as 4GB: the boxes go through files (needs dask). Inputs are Parquet "
-        "files or folders of them; -o names a folder of Parquet files. A command that was interrupted continues when "
-        "it is repeated.",
+        help="Take no more memory than this, such as 4GB: the boxes go through files (needs dask). Inputs are files of "
+        "text, Parquet files or folders of them; -o names a folder of Parquet files. A command that was interrupted "
+        "continues when it is repeated.",
     ),
     click.option("--workers", type=int, metavar="N", help="With --memory-limit: processes; one for each processor."),
     click.option("--spill", metavar="FOLDER", help="With --memory-limit: where boxes go meanwhile; beside the pairs."),
@@ -316,9 +314,9 @@ def coverage(a: str, b: str, **options: Any) -> None:
 
     def answers(sets: list[Any], search: dict[str, Any]) -> list[tuple[str, NDArray[Any]]]:
         covered = find_coverage(*sets, missing=search["missing"], by=search.get("by"))
-        whole = measure_overlaps(sets[0], None, np.arange(len(covered)).repeat(2).reshape(-1, 2)).size
+        ends = plain_corners({"a": sets[0], "b": sets[1]}, "xyxy")[0]
         with np.errstate(all="ignore"):
-            share = np.asarray(covered / whole, np.float64)
+            share = share_of(covered, ends[:, 1] - ends[:, 0])
         return [("count", count_overlaps(*sets, **search)), ("covered", covered), ("fraction", share)]
 
     _write_answers(given, answers)
@@ -462,7 +460,7 @@ def _search(options: Options, sources: list[Source]) -> tuple[list[Any], dict[st
             f"{sources[0].name} and {sources[1].name} have different coordinate reference systems, {apart[0]} and "
             f"{apart[1]}: convert one of them"
         )
-    groups = _groups(sources, by)
+    groups = columns_of_groups(sources, by)
     closed = {options.closed or source.closed for source in sources}
     if len(closed) > 1:
         raise FileError("the formats of the files differ in whether ends belong to boxes: pass --closed")
@@ -482,45 +480,6 @@ def _of_sides(options: Options, name: str) -> list[list[str]]:
     if both and any(sides):
         raise FileError(f"pass --{name}, or --left-{name} and --right-{name}")
     return [side or both for side in sides]
-
-
-def _groups(sources: list[Source], by: Sequence[Sequence[str]]) -> list[list[Column]]:
-    """The columns to group by, of each file.
-
-    In a file of text, numbers are text, too: they are numbers if all values of the column are, and also those of the
-    other file.
-    """
-    groups = [[source.group(name) for name in names] for source, names in zip(sources, by)]
-    for at, columns in enumerate(zip(*groups)):
-        kinds = [column.kinds() for column in columns]
-        texts = [source.text for source in sources]
-        plain = [
-            kind == {"numbers"} if text is None else text.are_plain_numbers(names[at])
-            for text, kind, names in zip(texts, kinds, by)
-        ]
-        if all(plain):
-            for side, text in enumerate(texts):
-                if text is not None:
-                    groups[side][at] = sources[side].group_of_numbers(by[side][at])
-        elif {"text"} in kinds and {"numbers"} in kinds:
-            side = kinds.index({"text"})
-            if texts[side] is not None:  # of which not all are plain: this refuses those that are none
-                groups[side][at] = sources[side].group_of_numbers(by[side][at])
-        elif any(plain):
-            _refuse_fractions(sources, by, plain.index(True), at)
-    return groups
-
-
-def _refuse_fractions(sources: list[Source], by: Sequence[Sequence[str]], side: int, at: int) -> None:
-    """Refuses numbers such as 1.0 where the other file has text, since 1 may be meant."""
-    text, name = sources[side].text, by[side][at]
-    if text is not None and sources[1 - side].group(by[1 - side][at]).kinds():
-        fraction = next((cell for cell in text.text(name) if "." in cell), None)
-        if fraction is not None:
-            raise FileError(
-                f"{sources[side].name} has {fraction!r} in column {name}, and {sources[1 - side].name} has text there: "
-                "write the values alike in both files"
-            )
 
 
 def _counted(options: Options, sets: list[Any], search: dict[str, Any]) -> int:
@@ -693,10 +652,18 @@ def _write_columns(options: Options, kind: str, columns: list[tuple[str, NDArray
         file.write([values for _, values in columns])
 
 
-def _id_from_disk(options: Options) -> str | None:
-    if len(options.id) > 1:
+def _each_from_disk(options: Options, name: str) -> Any:
+    """An option for each file: a tuple if there are two."""
+    sides = [of_side or None for of_side in _of_sides(options, name)[: len(options.files)]]
+    return sides[0] if len(sides) == 1 else tuple(sides)
+
+
+def _id_from_disk(options: Options) -> Any:
+    sides = [*_of_sides(options, "id")[: len(options.files)]]
+    if any(len(of_side) > 1 for of_side in sides):
         raise FileError("--memory-limit takes one column of ids: pass one by --id")
-    return options.id[0] if options.id else None
+    names = [of_side[0] if of_side else None for of_side in sides]
+    return names[0] if len(names) == 1 else tuple(names)
 
 
 @contextmanager
@@ -710,27 +677,27 @@ def _from_disk(options: Options, to: str | None) -> Iterator[tuple[Any, dict[str
         raise FileError("--memory-limit needs Dask: pip install 'sweep-and-prune[dask]'") from None
     for path in options.files:
         kind = kind_of_file(path)
-        if path == "-" or (kind not in (None, "parquet") and not os.path.isdir(path)):
-            raise FileError(f"{path}: --memory-limit reads Parquet files and folders of them: convert it first")
-    refused = {"--threads": options.threads != 1, "--to": to, "--header": options.header is not None}
-    refused |= {
-        f"--{name}": getattr(options, name, None) for name in ("by", "fraction", "measure", "rows", "each", "wrap")
-    }
-    refused |= {f"--{side}-{name}": getattr(options, f"{side}_{name}", None) for side in _SIDES for name in _PER_SIDE}
+        if path == "-" or not (kind in (None, "parquet") or is_text(path) or os.path.isdir(path)):
+            raise FileError(
+                f"{path}: --memory-limit reads files of text, Parquet files and folders of them: convert it first"
+            )
+    refused = {"--threads": options.threads != 1, "--to": to}
+    refused |= {f"--{name}": getattr(options, name, None) for name in ("fraction", "measure", "rows", "each", "wrap")}
     refused |= {"--from": options.from_, "--how": getattr(options, "how", "inner") != "inner"}
     for name in (name for name, value in refused.items() if value):
         raise FileError(f"--memory-limit and {name} cannot be combined: leave {name} out")
     search = {
-        "columns": options.columns or None,
+        "columns": _each_from_disk(options, "columns"),
+        "by": _each_from_disk(options, "by"),
         "progress": not options.quiet,
         **{
             name: getattr(options, name)
-            for name in ("format", "missing", "closed", "margin", "memory_limit", "workers", "spill")
+            for name in ("format", "missing", "closed", "margin", "header", "memory_limit", "workers", "spill")
         },
     }
     try:
         yield dask, search
-    except (SweepAndPruneError, ValueError) as error:
+    except (SweepAndPruneError, TypeError, ValueError) as error:
         raise FileError(str(error)) from None
 
 

@@ -77,7 +77,11 @@ def cluster(
     labels = np.full(prepared.lengths[0], -1, np.int64)
     kept = prepared.kept[0]
     rows = np.arange(len(labels)) if kept is None else kept
-    labels[rows] = _clusters(prepared) if _are_intervals(prepared, by) else _components(prepared)[rows]
+    if _are_intervals(prepared, by):
+        check_intervals(prepared)
+        labels[rows] = _clusters(*line_keys(prepared.sets)[0])
+    else:
+        labels[rows] = _components(prepared)[rows]
     if kept is not None and len(rows) < len(labels):
         # Those that overlap nothing, since they are empty or have no group, are by themselves.
         alone = np.setdiff1d(np.flatnonzero(~is_missing(_corners_of(intervals, format))), rows)
@@ -119,8 +123,8 @@ def _components(prepared: Prepared) -> NDArray[np.int64]:
     return parents
 
 
-def _clusters(prepared: Prepared) -> NDArray[np.int64]:
-    ((starts, ends),) = line_keys(prepared)
+def _clusters(starts: Values, ends: Values) -> NDArray[np.int64]:
+    """For each interval the number of those that it is connected to, directly or through others."""
     order = np.argsort(starts, kind="stable")
     if len(order) == 0:
         return order
@@ -216,8 +220,7 @@ def coverage(
     _refuse_boxes(prepared, by)
     check_intervals(prepared)
     of_a, of_b = plain_corners({"a": a, "b": b}, "xyxy")
-    second = prepared._replace(sets=prepared.sets[1:], kept=prepared.kept[1:])
-    labels = _clusters(second)
+    labels = _clusters(*line_keys(prepared.sets[1:])[0])
     covered = np.zeros(len(of_a), (of_a[:, 1] - of_a[:, 0]).dtype)
     if len(labels) == 0:
         return covered
@@ -262,7 +265,8 @@ def nearest(
         b: another set of boxes.
         k: how many to find for each box of `a`, at most.
         max_distance: boxes farther away are left out; a number, or a duration for times. Boxes of two or three
-            dimensions need it.
+            dimensions need it. (The boxes nearest to points, however far away, are found by
+            `BroadPhase.nearest_many`.)
         how: `"inner"`: boxes of `a` without any have no pair. `"left"`: such a box has one pair with -1, whose distance
             is -1 for integers, and otherwise NaN or NaT.
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
@@ -290,7 +294,10 @@ def nearest(
     half = corners[0].shape[1] // 2
     is_line = half == 1
     if not is_line and max_distance is None:
-        raise ValueError("boxes of two or three dimensions need max_distance: those farther away are left out")
+        raise ValueError(
+            "boxes of two or three dimensions need max_distance: those farther away are left out; for points, "
+            "BroadPhase.nearest_many needs none"
+        )
     if not any(map(len, corners)):  # of what kind coordinates would be is not known
         return Nearest(np.empty((0, 2), np.int64), corners[0][:, 0])
     limit = None if max_distance is None else _limit(max_distance, corners[0])
@@ -342,7 +349,7 @@ def _reach(corners: list[Values], limit: Any) -> Any:
 
 def _beside(prepared: Prepared, k: int) -> list[NDArray[np.int64]]:
     """For each interval, the `k` that end nearest before it begins, and the `k` that begin nearest after its end."""
-    (low_a, high_a), (low_b, high_b) = line_keys(prepared)
+    (low_a, high_a), (low_b, high_b) = line_keys(prepared.sets)
     first, second = prepared.sets
     is_grouped = first.shape[1] == 4
     group_a, group_b = (boxes[:, 1] if is_grouped else np.zeros(len(boxes)) for boxes in (first, second))

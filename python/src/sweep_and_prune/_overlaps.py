@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from ._arrays import read_boxes, same_width
 from ._columns import in_one_unit, one_type
 from ._pairs import Groups, Margin, one_set, stream, two_sets
-from ._prepare import Prepared, one_kind
-from ._wrap import checked_wrap, length_on_circle, shared_length
+from ._prepare import Prepared, one_kind, refuse_inverted
+from ._wrap import checked_wrap, length_on_circle, shared_length, without_crossings
 
 Values = NDArray[Any]
 """Coordinates or sizes in the type that the boxes have: integers, floating point or times."""
@@ -93,7 +94,8 @@ def count_overlaps(
 
 def _counts_of_intervals(prepared: Prepared) -> NDArray[np.int64]:
     """Those that begin before the end of an interval, without those that end before its start."""
-    keys = line_keys(prepared)
+    check_intervals(prepared)
+    keys = line_keys(prepared.sets)
     (low, high), (starts, ends) = keys[0], keys[-1]
     begun = np.searchsorted(np.sort(starts), high, side="right")
     ended = np.searchsorted(np.sort(ends), low, side="left")
@@ -110,14 +112,8 @@ def check_intervals(prepared: Prepared) -> None:
         stream(prepared, lambda pairs: None, _CHUNK, np.int64)
 
 
-def line_keys(prepared: Prepared) -> list[tuple[Values, Values]]:
-    """Numbers for the starts and the ends of intervals, in the order of groups and then of coordinates.
-
-    Raises:
-        InvalidBoxError: as `check_intervals`.
-    """
-    check_intervals(prepared)
-    sets = prepared.sets
+def line_keys(sets: Sequence[Values]) -> list[tuple[Values, Values]]:
+    """Numbers for the starts and the ends of checked intervals, in the order of groups and then of coordinates."""
     if sets[0].shape[1] == 2:
         return [(boxes[:, 0], boxes[:, 1]) for boxes in sets]
     every = np.concatenate([boxes[:, [0, 2]] for boxes in sets])
@@ -136,7 +132,7 @@ def measure_overlaps(
     """Measures how much the boxes of each pair overlap.
 
     Where two boxes do not overlap, as with a `margin`, the size is 0. Infinite boxes have a NaN where infinity would be
-    divided by infinity.
+    divided by infinity, and so has an empty box, whose share would be 0 divided by 0.
 
     Args:
         a: `(n, 2 * D)` numbers, or another form that `find_pairs` accepts.
@@ -149,6 +145,7 @@ def measure_overlaps(
         Four arrays of length m: `size, fraction_a, fraction_b, iou`.
 
     Raises:
+        InvalidBoxError: for the first box of a pair that is inverted or has a NaN.
         ValueError, TypeError: for boxes that are not recognized, times in more than one dimension, or pairs that are
             not rows.
 
@@ -172,13 +169,16 @@ def measure_overlaps(
             wrong = int(side.min()) if side.min() < 0 else int(side.max())
             raise ValueError(f"pairs has the index {wrong}; it must be from 0 to {len(boxes) - 1}")
     first, second = corners[0][rows[:, 0]], corners[-1][rows[:, 1]]
+    names = list(sets)
+    for name, boxes, side in ((names[0], first, rows[:, 0]), (names[-1], second, rows[:, 1])):
+        refuse_inverted(boxes if wrap is None else without_crossings(boxes), name, side)
     with np.errstate(all="ignore"):
         sides = np.hstack([_larger(first, second), _smaller(first, second)])
         if wrap is not None:
             sides, first, second = _on_circle(sides, first, second, checked_wrap(wrap))
         shared, of_a, of_b = _size(sides), _size(first), _size(second)
         union = of_a + of_b - shared
-        return Overlaps(shared, _share(shared, of_a), _share(shared, of_b), _share(shared, union))
+        return Overlaps(shared, share_of(shared, of_a), share_of(shared, of_b), share_of(shared, union))
 
 
 def _on_circle(shared: Values, first: Values, second: Values, wrap: float) -> list[Values]:
@@ -216,7 +216,8 @@ def _size(boxes: Values) -> Values:
     return np.asarray(sides.astype(np.float64).prod(axis=1))
 
 
-def _share(part: Values, whole: Values) -> NDArray[np.float64]:
+def share_of(part: Values, whole: Values) -> NDArray[np.float64]:
+    """Parts divided by wholes; NaN for a whole of 0."""
     if whole.dtype.kind == "O":
         return np.array([one / other if other else np.nan for one, other in zip(part, whole)], np.float64)
     return np.asarray(part / whole, np.float64)

@@ -278,14 +278,14 @@ def _leave_out(masks: list[NDArray[np.bool_]], arrays: list[Any], kept: list[Row
 
 def one_kind(raw: list[Raw], names: list[str]) -> list[NDArray[Any]]:
     """Boxes whose coordinates can be compared: all of them numbers, durations, or times with or without a zone."""
-    are_one = len({_kind(one) for one in raw}) == 1
+    are_one = len({kind_of_boxes(one) for one in raw}) == 1
     has_values = [bool(len(one.array)) if are_one else _has_value(one.array) for one in raw]
     filled = [one for one, has in zip(raw, has_values) if has]
     for one, name in zip(raw, names):
         if one.array.dtype.kind not in "iufOmM":
             raise TypeError(f"{name} must be numbers, not of dtype {one.array.dtype}")
-    if len({_kind(one) for one in filled}) > 1:
-        first, second = map(_kind, raw)
+    if len({kind_of_boxes(one) for one in filled}) > 1:
+        first, second = map(kind_of_boxes, raw)
         raise TypeError(f"{names[0]} has {first} and {names[1]} has {second}, which do not compare: convert one")
     # The type of a set without values does not matter.
     dtype = filled[0].array.dtype if filled else np.dtype(np.float64)
@@ -305,7 +305,7 @@ def _has_value(array: NDArray[Any]) -> bool:
     return bool((array == array).any())
 
 
-def _kind(raw: Raw) -> str:
+def kind_of_boxes(raw: Raw) -> str:
     kind = {"M": "times", "m": "durations"}.get(raw.array.dtype.kind, "numbers")
     return f"{kind} with a time zone" if raw.is_zoned else kind
 
@@ -348,7 +348,7 @@ def _extended(arrays: list[NDArray[Any]], margin: object) -> list[NDArray[Any]]:
     """Comparable boxes whose max corners are moved by a margin, one for all axes or one for each."""
     half = arrays[0].shape[1] // 2
     if arrays[0].dtype.kind in "mM":
-        *arrays, add = _counts(in_one_unit([*arrays, _duration(margin)]))
+        *arrays, add = _counts(in_one_unit([*arrays, duration(margin)]))
     else:
         add = exact_numbers(margin, as_array(margin, "margin"))
         if add.dtype.kind not in "iuf" and not _are_integers(add):
@@ -386,7 +386,7 @@ def _is_duration(margin: object) -> bool:
     return column.kinds() == {"durations"}
 
 
-def _duration(margin: object) -> NDArray[Any]:
+def duration(margin: object) -> NDArray[Any]:
     """A margin for times, or one for each axis."""
     is_single = np.ndim(margin) == 0  # type: ignore[arg-type]
     column = read_column([margin] if is_single else margin, "margin")

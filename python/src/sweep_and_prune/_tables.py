@@ -9,7 +9,7 @@ import math
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from itertools import chain
 from pathlib import Path
 from typing import Any, Union
@@ -22,7 +22,7 @@ from . import _crs
 from ._columns import Column, read_column, side_by_side
 from ._file_error import FileError
 from ._inputs import Raw, box_columns, chosen_boxes, listed, raw_boxes, unknown_columns
-from ._text import GENOMIC, Lines, Text, corners_of_bare, read_genomic, read_table
+from ._text import GENOMIC, Lines, Text, corners_of_bare, genomic_parts, read_genomic, read_table, table_parts
 from ._writers import ARROW_ENDINGS, pyarrow_for
 
 _KINDS = {
@@ -45,6 +45,10 @@ _BYTES = 8 * 7
 _BYTES_OF_TEXT = 11
 """Of memory for each byte of text (measured: 400 MB for a million boxes in 36 MB)."""
 
+_PART_OF_TEXT = 2**23
+"""This many bytes are read at once where a file need not fit in memory."""
+_BYTES_OF_ROW = 64
+"""The size of a row of CSV that decides how many are read at once."""
 _READ_AT_ONCE = 2**22
 """This many bytes are read between two reports of progress."""
 
@@ -185,7 +189,7 @@ def read(
     kind = kind_of_file(path) or kind or ("csv" if path == "-" else None)
     if kind is None:
         raise FileError(f"{path} has an unknown ending: the known ones are {READABLE}; or pass --from")
-    try:
+    with _readable(name):
         if path == "-":
             if sys.stdin is None:
                 raise FileError("standard input is closed")
@@ -200,17 +204,46 @@ def read(
                 return _read_binary(name, io.BytesIO(file.read()), kind)
         if kind not in _OF_TEXT:
             return _read_binary(name, path, kind)
-        is_packed = _unpacked(path) != path
         # Of what is compressed, a box takes about a third.
-        size = os.path.getsize(path) * (3 if is_packed else 1)
+        size = os.path.getsize(path) * (3 if _unpacked(path) != path else 1)
         check_memory(path, f"{size / 1e9:.1f} GB of boxes", size * _BYTES_OF_TEXT)
-        with ExitStack() as files:
-            plain = files.enter_context(io.BufferedReader(_Watched(path, progress or (lambda _: None)), 2**16))
-            data: Any = files.enter_context(gzip.open(plain)) if is_packed else plain
-            if kind in GENOMIC:
-                return _read_lines(name, data.read(), kind)
-            lines = files.enter_context(io.TextIOWrapper(data, "utf-8-sig", newline=""))
-            return _read_text(name, lines, kind, header)
+        with _opened_text(path, kind, progress) as data:
+            return _read_lines(name, data.read(), kind) if kind in GENOMIC else _read_text(name, data, kind, header)
+
+
+def is_text(path: str) -> bool:
+    """Whether a file's name tells that it is of text."""
+    return kind_of_file(path) in _OF_TEXT
+
+
+def read_parts(path: str, header: bool | None, progress: Callable[[float], object] | None = None) -> Iterator[Source]:
+    """A file of text, a part at a time, as `read` would read all of it."""
+    kind, size = kind_of_file(path), _PART_OF_TEXT
+    assert kind in _OF_TEXT
+    with _readable(path), _opened_text(path, kind, progress) as data:
+        if kind in GENOMIC:
+            for table in genomic_parts(path, data, kind, size):
+                yield _source_of_lines(path, table)
+        else:
+            delimiter = "\t" if kind == "tsv" else ""
+            for table, is_bare in table_parts(path, data, delimiter, header, max(size // _BYTES_OF_ROW, 1)):
+                yield _source_of_text(path, table, is_bare)
+
+
+@contextmanager
+def _opened_text(path: str, kind: str, progress: Callable[[float], object] | None) -> Iterator[Any]:
+    """A file of text, unpacked: its bytes for the formats of genomics, or else its characters."""
+    with ExitStack() as files:
+        plain = files.enter_context(io.BufferedReader(_Watched(path, progress or (lambda _: None)), 2**16))
+        data: Any = files.enter_context(gzip.open(plain)) if _unpacked(path) != path else plain
+        yield data if kind in GENOMIC else files.enter_context(io.TextIOWrapper(data, "utf-8-sig", newline=""))
+
+
+@contextmanager
+def _readable(name: str) -> Iterator[None]:
+    """Says of any error in reading a file which one it is."""
+    try:
+        yield
     except OSError as error:
         raise FileError(f"{name} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
@@ -232,13 +265,20 @@ def _unpacked(path: str) -> str:
 
 
 def _read_lines(name: str, data: bytes, kind: str) -> Source:
-    source = Source(name, read_genomic(name, data, kind))
+    return _source_of_lines(name, read_genomic(name, data, kind))
+
+
+def _source_of_lines(name: str, table: Text) -> Source:
+    source = Source(name, table)
     source.closed, source.by, source.are_corners = "left", ["chrom"], True
     return source
 
 
 def _read_text(name: str, file: Any, kind: str, header: bool | None) -> Source:
-    table, is_bare = read_table(name, file, "\t" if kind == "tsv" else "", header)
+    return _source_of_text(name, *read_table(name, file, "\t" if kind == "tsv" else "", header))
+
+
+def _source_of_text(name: str, table: Text, is_bare: bool) -> Source:
     source = Source(name, table)
     source.is_bare = is_bare
     return source
@@ -439,6 +479,12 @@ def _read_arrow(name: str, file: _File, kind: str) -> Source:
             table = parquet.read()
     except arrow.ArrowInvalid as error:
         raise FileError(f"{name} cannot be read: {error}") from None
+    return source_of_table(name, table)
+
+
+def source_of_table(name: str, table: Any) -> Source:
+    """The boxes of a table of Arrow, with what its metadata say about geometries."""
+    arrow = pyarrow_for(name)
     geo = (table.schema.metadata or {}).get(b"geo")
     crs = _crs.of_geoparquet(table.schema.metadata)
     if geo is not None and "bbox" not in table.column_names:
@@ -468,6 +514,45 @@ def _bounds_of_binary(path: str, column: Any) -> NDArray[Any]:
         return np.asarray(shapely.bounds(shapely.from_wkb(values)))
     except shapely.errors.ShapelyError as error:
         raise FileError(f"{path} has a geometry that is not valid: {error}") from None
+
+
+def columns_of_groups(sources: list[Source], by: Sequence[Sequence[str]]) -> list[list[Column]]:
+    """The columns to group by, of each file.
+
+    In a file of text, numbers are text, too: they are numbers if all values of the column are, and also those of the
+    other file.
+    """
+    groups = [[source.group(name) for name in names] for source, names in zip(sources, by)]
+    for at, columns in enumerate(zip(*groups)):
+        kinds = [column.kinds() for column in columns]
+        texts = [source.text for source in sources]
+        plain = [
+            kind == {"numbers"} if text is None else text.are_plain_numbers(names[at])
+            for text, kind, names in zip(texts, kinds, by)
+        ]
+        if all(plain):
+            for side, text in enumerate(texts):
+                if text is not None:
+                    groups[side][at] = sources[side].group_of_numbers(by[side][at])
+        elif {"text"} in kinds and {"numbers"} in kinds:
+            side = kinds.index({"text"})
+            if texts[side] is not None:  # of which not all are plain: this refuses those that are none
+                groups[side][at] = sources[side].group_of_numbers(by[side][at])
+        elif any(plain):
+            _refuse_fractions(sources, by, plain.index(True), at)
+    return groups
+
+
+def _refuse_fractions(sources: list[Source], by: Sequence[Sequence[str]], side: int, at: int) -> None:
+    """Refuses numbers such as 1.0 where the other file has text, since 1 may be meant."""
+    text, name = sources[side].text, by[side][at]
+    if text is not None and sources[1 - side].group(by[1 - side][at]).kinds():
+        fraction = next((cell for cell in text.text(name) if "." in cell), None)
+        if fraction is not None:
+            raise FileError(
+                f"{sources[side].name} has {fraction!r} in column {name}, and {sources[1 - side].name} has text there: "
+                "write the values alike in both files"
+            )
 
 
 def check_memory(path: str, contents: str, needed: int) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import csv
 import math
 import re
+import sys
 from array import array
 from codecs import BOM_UTF8
 from collections.abc import Iterator, Sequence
@@ -140,15 +141,15 @@ class Text:
 class Lines(Text):
     """A table of text of which only the intervals were read; other cells are when they are asked for."""
 
-    def __init__(self, name: str, columns: list[str], data: bytes, found: Any) -> None:
-        """`found` is what `read_bed` returned for `data`."""
-        self._data = data
+    def __init__(self, name: str, columns: list[str], data: bytes, found: Any, before: int = 0) -> None:
+        """`found` is what `read_bed` returned for `data`, and `before` the number of lines before it in the file."""
+        self._data, self._before = data, before
         self._offsets, self.corners, self._codes, self._names = found
         super().__init__(name, columns, [], self._offsets)
 
     def line(self, index: int) -> int:
         """The line of the file that has a row."""
-        return self._data.count(b"\n", 0, int(self._offsets[index])) + 1
+        return self._before + self._data.count(b"\n", 0, int(self._offsets[index])) + 1
 
     def text(self, name: str) -> Sequence[str]:
         """The cells of a column, as they are in the file."""
@@ -235,25 +236,57 @@ def read_genomic(name: str, data: bytes, kind: str) -> Text:
     Raises:
         UnicodeDecodeError: if it is not text in UTF-8.
     """
-    data = data.removeprefix(BOM_UTF8)
+    return _part_of_genomic(name, data.removeprefix(BOM_UTF8), kind, [], 0)
+
+
+def genomic_parts(name: str, file: IO[bytes], kind: str, size: int) -> Iterator[Text]:
+    """A file of one of the formats of genomics, about `size` bytes at a time; all parts have the same columns.
+
+    Raises:
+        UnicodeDecodeError: if it is not text in UTF-8.
+    """
+    columns: list[str] = []
+    before = 0
+    data = file.read(size).removeprefix(BOM_UTF8)
+    while True:
+        more = file.read(size)
+        end = data.rfind(b"\n") + 1 if more else len(data)
+        if end or not more:
+            table = _part_of_genomic(name, data[:end], kind, columns, before)
+            if len(table) or not more:
+                columns = table.columns
+                yield table
+            lines = data[:end]
+            if not more or (b"##FASTA" in lines and not isinstance(table, Lines) and _has_sequences(lines)):
+                return
+            before += lines.count(b"\n") + lines.count(b"\r") - lines.count(b"\r\n")
+        data = data[end:] + more
+
+
+def _has_sequences(lines: bytes) -> bool:
+    return any(line.startswith(b"##FASTA") for line in lines.splitlines())
+
+
+def _part_of_genomic(name: str, data: bytes, kind: str, columns: list[str], before: int) -> Text:
+    """Lines of such a file, after `before` others. Without `columns`, the first line tells how many there are."""
     form = GENOMIC[kind]
     found = read_bed(data) if kind in BED_LIKE else None
     if found is not None and len(found[0]):
         first = int(found[0][0])
         cells = data[first : data.find(b"\n", first) if b"\n" in data[first:] else len(data)].count(b"\t") + 1
-        table: Text = Lines(name, form.columns[:cells], data, found)
+        table: Text = Lines(name, columns or form.columns[:cells], data, found, before)
         table.format = form
         return table
     with TextIOWrapper(BytesIO(data), "utf-8", newline="") as file:
-        return _read_genomic(name, file, kind)
+        return _read_genomic(name, file, kind, columns, before)
 
 
-def _read_genomic(name: str, file: IO[str], kind: str) -> Text:
+def _read_genomic(name: str, file: IO[str], kind: str, columns: Sequence[str] = (), before: int = 0) -> Text:
     form = GENOMIC[kind]
     cells: list[str] = []
     lines = array("Q")
-    columns: list[str] = []
-    for line, text in enumerate(file, 1):
+    columns = [form.columns[0], "pos", *columns[3:]] if kind == "vcf" and columns else list(columns)
+    for line, text in enumerate(file, before + 1):
         text = text.rstrip("\r\n")
         if text.startswith("##FASTA"):
             break  # what follows in GFF3 are sequences
@@ -297,6 +330,13 @@ def read_table(name: str, file: IO[str], delimiter: str, header: bool | None) ->
         delimiter: between cells; empty to find out.
         header: whether the first row names the columns; None to find out.
     """
+    return next(table_parts(name, file, delimiter, header, sys.maxsize))
+
+
+def table_parts(
+    name: str, file: IO[str], delimiter: str, header: bool | None, rows: int
+) -> Iterator[tuple[Text, bool]]:
+    """The same, at most `rows` rows at a time; at least one part."""
     text, skipped, first = _without_comments(file)
     if not delimiter:
         delimiter = max(",;\t", key=first.count)
@@ -328,11 +368,14 @@ def read_table(name: str, file: IO[str], delimiter: str, header: bool | None) ->
                 continue
             if len(row) < len(columns) or any(row[len(columns) :]):
                 raise FileError(f"{name}, line {here}: it has {len(row)} columns, where {len(columns)} are expected")
+            if len(lines) == rows:
+                yield Text(name, columns, cells, lines), not header
+                cells, lines = [], array("Q")
             cells += row[: len(columns)]
             lines.append(here)
     except csv.Error as error:
         raise FileError(f"{name}, line {begun + skipped}: {_fault(error)}") from None
-    return Text(name, columns, cells, lines), not header
+    yield Text(name, columns, cells, lines), not header
 
 
 def _without_comments(file: IO[str]) -> tuple[Iterator[str], int, str]:

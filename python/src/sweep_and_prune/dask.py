@@ -1,7 +1,7 @@
 """The join of more boxes than fit in memory: on one machine with files, or on a cluster of Dask.
 
-`find_pairs` and its relatives have the names and the rules of the package itself. They take Parquet files, Dask
-DataFrames and Dask arrays. Needs `pip install "sweep-and-prune[dask]"`.
+`find_pairs` and its relatives have the names and the rules of the package itself. They take files of Parquet and text,
+Dask DataFrames and Dask arrays. Needs `pip install "sweep-and-prune[dask]"`.
 
 ```python
 import sweep_and_prune.dask as sap
@@ -18,17 +18,25 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Sequence
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from datetime import timedelta
+from hashlib import sha256
 from pathlib import Path
-from typing import Any, Union
+from typing import Any, NamedTuple, Union
+
+import numpy as np
 
 from ._crs import difference
 from ._inputs import checked_format
-from ._partitioned.boxes import InvalidRowError
+from ._partitioned.boxes import InvalidRowError, list_files
 from ._partitioned.dataset import DatasetError, Manifest, read_manifest
 from ._partitioned.files import checked_path
-from ._partitioned.run import Job, Source, run, source_of_files
-from ._partitioned.workers import active_client
+from ._partitioned.plain import Options, Wanted, is_plain, plain_boxes
+from ._partitioned.plan import ARGUMENTS
+from ._partitioned.run import Job, Source, refuse_own_files, run, source_of_files
+from ._partitioned.workers import active_client, memory_of
 from ._progress import ProgressBar
 
 __all__ = [
@@ -43,6 +51,7 @@ __all__ = [
 ]
 
 Names = Union[Sequence[str], None]
+By = Union[str, list[str], None]
 Limit = Union[int, str, None]
 Progress = Union[bool, Callable[[float], object]]
 
@@ -57,6 +66,8 @@ def find_pairs(
     closed: str | None = None,
     missing: str = "raise",
     margin: Any = 0,
+    by: By = None,
+    header: bool | None = None,
     memory_limit: Limit = None,
     workers: int | None = None,
     spill: str | os.PathLike[str] | None = None,
@@ -77,10 +88,15 @@ def find_pairs(
     As a set, the pairs do not depend on cells, partitions, workers or failures. Time O(n log n + pairs). A box is
     written once, read once, and copied to each cell that it touches (1.02 times on average for small boxes).
 
+    Boxes of CSV, TSV, BED, narrowPeak, broadPeak, bedGraph, GTF, GFF3 and VCF files, boxes of times, and those in
+    groups (`by`) are first written to Parquet files of numbers, by one thread, which takes as much space again. Text is
+    read twice if there are groups. Times over 2^53 of their unit (104 days in nanoseconds), and boxes of three
+    dimensions in groups, are errors.
+
     Args:
-        boxes: a Dask DataFrame, a Dask array of shape `(n, 2 * D)`, or Parquet files: a path, a pattern such as
-            `"boxes-*.parquet"`, a folder, an address such as `"s3://bucket/boxes"`, or several of these. GeoParquet
-            is known, too: its column `bbox`, or the bounds of its geometries.
+        boxes: a Dask DataFrame, a Dask array of shape `(n, 2 * D)`, or files of Parquet or text: a path, a pattern such
+            as `"boxes-*.parquet"`, a folder of Parquet files, an address such as `"s3://bucket/boxes"`, or several of
+            these. GeoParquet is known, too: its column `bbox`, or the bounds of its geometries.
         out: a folder for the pairs. Until they are complete, it is called `out` + `".unfinished"`. Neither folder may
             have files of anything else: that is an error, and nothing is changed.
         ids: a column with an id for each box, whole numbers or text, each only once; by default, boxes are numbered
@@ -90,7 +106,10 @@ def find_pairs(
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`, as in `sweep_and_prune.find_pairs`; so the next three.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
-        margin: finds boxes within this distance on each axis, too.
+        margin: finds boxes within this distance on each axis, too; a `timedelta` for times.
+        by: only boxes of files with equal values in this column, or in each column of a list, pair. Boxes of BED and
+            the like pair within their chromosome.
+        header: whether the first row of a CSV file names its columns; by default, if it has text.
         memory_limit: for this process and its local workers together, in bytes or as text such as `"4GB"`; by default,
             half of the machine's memory. Workers of an active client have their own limits besides.
         workers: how many local workers; 0 for none but this process. By default, one for each processor, and none
@@ -118,8 +137,8 @@ def find_pairs(
        a  b
     0  0  2
     """
-    sources = _sources([boxes], [ids], columns, format, closed, missing, margin, ["boxes"], out)
-    return _found(sources, out, memory_limit, workers, spill, cells, overwrite, progress)
+    asked = _asked([boxes], ids, columns, by, format, closed, missing, margin, header)
+    return _found(asked, out, memory_limit, workers, spill, cells, overwrite, progress)
 
 
 def find_pairs_between(
@@ -128,11 +147,13 @@ def find_pairs_between(
     *,
     out: str | os.PathLike[str] | None = None,
     ids: str | tuple[str | None, str | None] | None = None,
-    columns: Names = None,
+    columns: Names | tuple[Names, Names] = None,
     format: str = "xyxy",
     closed: str | None = None,
     missing: str = "raise",
     margin: Any = 0,
+    by: By | tuple[By, By] = None,
+    header: bool | None = None,
     memory_limit: Limit = None,
     workers: int | None = None,
     spill: str | os.PathLike[str] | None = None,
@@ -145,15 +166,17 @@ def find_pairs_between(
     Otherwise as `find_pairs`. If one set is in double precision, both are compared in double precision.
 
     Args:
-        a: a Dask DataFrame, a Dask array or Parquet files.
+        a: a Dask DataFrame, a Dask array or files.
         b: another of these.
         out: a folder for the pairs.
         ids: a column with an id for each box; a tuple of two names if they differ.
-        columns: the columns of the boxes, in both sets.
+        columns: the columns of the boxes, in both sets; a tuple of two lists if they differ.
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
-        margin: finds boxes within this distance on each axis, too.
+        margin: finds boxes within this distance on each axis, too; a `timedelta` for times.
+        by: only boxes of files with equal values pair; a tuple of two if the columns differ.
+        header: whether the first row of a CSV file names its columns.
         memory_limit: for this process and its local workers together.
         workers: how many local workers; 0 for none but this process.
         spill: a folder for the boxes on their way to the cells.
@@ -175,9 +198,8 @@ def find_pairs_between(
        a  b
     0  1  0
     """
-    both = list(ids) if isinstance(ids, tuple) else [ids, ids]
-    sources = _sources([a, b], both, columns, format, closed, missing, margin, ["a", "b"], out)
-    return _found(sources, out, memory_limit, workers, spill, cells, overwrite, progress)
+    asked = _asked([a, b], ids, columns, by, format, closed, missing, margin, header)
+    return _found(asked, out, memory_limit, workers, spill, cells, overwrite, progress)
 
 
 def count_pairs(
@@ -188,6 +210,8 @@ def count_pairs(
     closed: str | None = None,
     missing: str = "raise",
     margin: Any = 0,
+    by: By = None,
+    header: bool | None = None,
     memory_limit: Limit = None,
     workers: int | None = None,
     spill: str | os.PathLike[str] | None = None,
@@ -197,12 +221,14 @@ def count_pairs(
     """Counts the pairs that `find_pairs` finds, without storing them. Computes at once.
 
     Args:
-        boxes: a Dask DataFrame, a Dask array or Parquet files.
+        boxes: a Dask DataFrame, a Dask array or files.
         columns: the columns of the boxes.
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
-        margin: counts boxes within this distance on each axis, too.
+        margin: counts boxes within this distance on each axis, too; a `timedelta` for times.
+        by: only boxes of files with equal values pair, as in `find_pairs`.
+        header: whether the first row of a CSV file names its columns.
         memory_limit: for this process and its local workers together.
         workers: how many local workers; 0 for none but this process.
         spill: a folder for the boxes on their way to the cells; by default, that of temporary files.
@@ -217,19 +243,21 @@ def count_pairs(
     >>> sap.count_pairs(dask.array.zeros((1000, 6), chunks=(100, 6)))
     499500
     """
-    sources = _sources([boxes], [None], columns, format, closed, missing, margin, ["boxes"], None)
-    return _counted(sources, memory_limit, workers, spill, cells, progress)
+    asked = _asked([boxes], None, columns, by, format, closed, missing, margin, header)
+    return _counted(asked, memory_limit, workers, spill, cells, progress)
 
 
 def count_pairs_between(
     a: Any,
     b: Any,
     *,
-    columns: Names = None,
+    columns: Names | tuple[Names, Names] = None,
     format: str = "xyxy",
     closed: str | None = None,
     missing: str = "raise",
     margin: Any = 0,
+    by: By | tuple[By, By] = None,
+    header: bool | None = None,
     memory_limit: Limit = None,
     workers: int | None = None,
     spill: str | os.PathLike[str] | None = None,
@@ -239,13 +267,15 @@ def count_pairs_between(
     """Counts the pairs that `find_pairs_between` finds, without storing them. Computes at once.
 
     Args:
-        a: a Dask DataFrame, a Dask array or Parquet files.
+        a: a Dask DataFrame, a Dask array or files.
         b: another of these.
-        columns: the columns of the boxes, in both sets.
+        columns: the columns of the boxes, in both sets; a tuple of two lists if they differ.
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
-        margin: counts boxes within this distance on each axis, too.
+        margin: counts boxes within this distance on each axis, too; a `timedelta` for times.
+        by: only boxes of files with equal values pair, as in `find_pairs`.
+        header: whether the first row of a CSV file names its columns.
         memory_limit: for this process and its local workers together.
         workers: how many local workers; 0 for none but this process.
         spill: a folder for the boxes on their way to the cells; by default, that of temporary files.
@@ -261,22 +291,35 @@ def count_pairs_between(
     >>> sap.count_pairs_between(a, b, margin=1)
     200
     """
-    sources = _sources([a, b], [None, None], columns, format, closed, missing, margin, ["a", "b"], None)
-    return _counted(sources, memory_limit, workers, spill, cells, progress)
+    asked = _asked([a, b], None, columns, by, format, closed, missing, margin, header)
+    return _counted(asked, memory_limit, workers, spill, cells, progress)
 
 
-def _sources(
+class _Asked(NamedTuple):
+    """What the user asked for, and for each set: what it is, its columns, those of its groups, and that of its ids."""
+
+    sets: list[Any]
+    names: tuple[str, ...]
+    columns: list[list[str] | None]
+    by: list[list[str]]
+    ids: list[str | None]
+    options: Options
+
+
+def _asked(
     sets: list[Any],
-    ids: list[str | None],
-    columns: Names,
+    ids: Any,
+    columns: Any,
+    by: Any,
     format: str,
     closed: str | None,
     missing: str,
     margin: Any,
-    names: list[str],
-    out: str | os.PathLike[str] | None,
-) -> list[Source]:
-    place = None if out is None else checked_path(out, "out")
+    header: bool | None,
+) -> _Asked:
+    names_of_sets = ARGUMENTS[len(sets) - 1]
+    for boxes, name in zip(sets, names_of_sets):
+        _refuse_other_boxes(boxes, name)
     checked_format(format)
     if missing not in ("raise", "skip"):
         raise ValueError(f'missing must be "raise" or "skip", not {missing!r}')
@@ -284,43 +327,121 @@ def _sources(
         raise ValueError(f'closed must be "both", "left", "right" or "neither", not {closed!r}')
     if isinstance(columns, (str, bytes)):
         raise TypeError(f"columns must be a list of names, such as [{columns!r}, ..], not the text {columns!r}")
+    are_names = columns is None or all(isinstance(one, str) for one in columns)
+    of_sides = [columns] * len(sets) if are_names else _of_sides("columns", columns, len(sets))
+    return _Asked(
+        sets,
+        names_of_sets,
+        [list(names) if names else None for names in of_sides],
+        [_names_of_groups(one) for one in _of_sides("by", by, len(sets))],
+        _of_sides("ids", ids, len(sets)),
+        Options(format, closed, missing, _checked_margin(margin), header),
+    )
+
+
+def _of_sides(name: str, given: Any, number: int) -> list[Any]:
+    """What an argument says for each set; of two sets, a tuple says it for each."""
+    if not isinstance(given, tuple):
+        return [given] * number
+    if len(given) != number or number == 1:
+        raise ValueError(f"{name} must be of one set or a tuple for two, not {given!r}")
+    return list(given)
+
+
+def _names_of_groups(by: Any) -> list[str]:
+    names = [] if by is None else [by] if isinstance(by, str) else by
+    if not (isinstance(names, list) and all(isinstance(name, str) for name in names)):
+        raise TypeError(f"by must be the name of a column, or a list of names, not {by!r}")
+    return names
+
+
+def _checked_margin(margin: Any) -> Any:
+    if isinstance(margin, (timedelta, np.timedelta64)):
+        return margin
     margins = [float(one) for one in margin] if hasattr(margin, "__len__") else float(margin)
-    options = {"format": format, "closed": closed, "missing": missing, "margin": margins or 0}
-    sources = [
-        _source(boxes, list(columns) if columns else None, of_set, name, options, place)
-        for boxes, of_set, name in zip(sets, ids, names)
+    return margins or 0
+
+
+@contextmanager
+def _sources(
+    asked: _Asked, out: Path | None, spill: Path | None, memory_limit: Limit, progress: Progress
+) -> Iterator[list[Source]]:
+    """The sets of boxes as a run reads them."""
+    if any(hasattr(boxes, "to_delayed") for boxes in asked.sets):
+        yield _checked([_source(asked, number, out) for number in range(len(asked.sets))])
+        return
+    wanted = [
+        Wanted(name, list_files(boxes), columns, ids, by)
+        for boxes, name, columns, ids, by in zip(asked.sets, asked.names, asked.columns, asked.ids, asked.by)
     ]
+    if is_plain(wanted, asked.options):
+        yield _checked([_source(asked, number, out) for number in range(len(asked.sets))])
+        return
+    if out is not None:
+        for boxes, one in zip(asked.sets, wanted):
+            refuse_own_files(boxes, one.files, out)
+    with _folder_for_plain(out, spill) as folder, _shown(progress, "reading boxes") as report:
+        with plain_boxes(wanted, asked.options, folder, memory_of(memory_limit), report) as sources:
+            report(1.0)
+            yield sources
+
+
+@contextmanager
+def _folder_for_plain(out: Path | None, spill: Path | None) -> Iterator[Path]:
+    """Where boxes of other files than Parquet go: the same folder for the same `out`, so that a run can continue."""
+    if out is None:
+        with tempfile.TemporaryDirectory(prefix="sweep-and-prune-", dir=spill) as folder:
+            yield Path(folder)
+    elif spill is None:
+        yield out.with_name(out.name + ".boxes")
+    else:
+        yield spill / f"sweep-and-prune-{sha256(os.path.abspath(out).encode()).hexdigest()[:32]}"
+
+
+def _checked(sources: list[Source]) -> list[Source]:
+    """Sets of boxes that can be compared, in one precision."""
     apart = difference(*(source.crs for source in sources)) if len(sources) == 2 else None
     if apart is not None:
         raise ValueError(
             f"a and b have different coordinate reference systems, {apart[0]} and {apart[1]}: convert one of them"
         )
-    return sources
+    # Ends and margins depend on the precision, so it is that of both sets before they are applied.
+    dtype = max(source.form.dtype for source in sources)
+    return [source._replace(form=source.form._replace(dtype=dtype)) for source in sources]
 
 
-def _source(
-    boxes: Any, columns: list[str] | None, ids: str | None, name: str, options: dict[str, Any], out: Path | None
-) -> Source:
+def _refuse_other_boxes(boxes: Any, name: str) -> None:
     if hasattr(boxes, "to_delayed"):
-        from ._partitioned.graph import source_of_collection
-
-        return source_of_collection(boxes, columns, ids, name, options)
+        return
     is_path = isinstance(boxes, (str, os.PathLike))
     if not is_path and not (
         isinstance(boxes, (list, tuple)) and all(isinstance(one, (str, os.PathLike)) for one in boxes)
     ):
         raise TypeError(
-            f"{name} must be a Dask DataFrame, a Dask array or paths of Parquet files, not a {type(boxes).__name__}; "
+            f"{name} must be a Dask DataFrame, a Dask array or paths of files, not a {type(boxes).__name__}; "
             "sweep_and_prune.find_pairs takes arrays and data frames in memory"
         )
-    paths = [checked_path(path, name) for path in ([boxes] if is_path else boxes)]
-    if not paths:
-        raise ValueError(f"{name} is an empty list: pass the path of one Parquet file or more")
+    if not [checked_path(path, name) for path in ([boxes] if is_path else boxes)]:
+        raise ValueError(f"{name} is an empty list: pass the path of one file or more")
+
+
+def _source(asked: _Asked, number: int, out: Path | None) -> Source:
+    """A set of boxes that a run reads as it is."""
+    boxes, columns, ids = asked.sets[number], asked.columns[number], asked.ids[number]
+    options = {name: getattr(asked.options, name) for name in ("format", "closed", "missing", "margin")}
+    if any(asked.by) or isinstance(options["margin"], (timedelta, np.timedelta64)):
+        raise ValueError(
+            "by and a timedelta as margin are for files: write the collection to Parquet files first (to_parquet)"
+        )
+    if hasattr(boxes, "to_delayed"):
+        from ._partitioned.graph import source_of_collection
+
+        return source_of_collection(boxes, columns, ids, asked.names[number], options)
     return source_of_files(boxes, columns, ids, options, out)
 
 
 def _found(
-    sources: list[Source],
+    asked: _Asked,
     out: str | os.PathLike[str] | None,
     memory_limit: Limit,
     workers: int | None,
@@ -337,29 +458,46 @@ def _found(
             )
         from ._partitioned.graph import lazy_pairs
 
-        return lazy_pairs(sources, _cells(cells), _threads())
-    with _shown(progress, "finding pairs") as report:
-        run(sources, Job(Path(out), memory_limit, workers, _folder(spill), overwrite, _cells(cells), report))
+        _refuse_lazy(asked)
+        with _sources(asked, None, None, None, False) as sources:
+            return lazy_pairs(sources, _cells(cells), _threads())
+    place, folder = checked_path(out, "out"), _folder(spill)
+    with _sources(asked, place, folder, memory_limit, progress) as sources:
+        with _shown(progress, "finding pairs") as report:
+            run(sources, Job(place, memory_limit, workers, folder, overwrite, _cells(cells), report))
     import dask.dataframe
 
     return dask.dataframe.read_parquet(os.fspath(out))
 
 
+def _refuse_lazy(asked: _Asked) -> None:
+    if any(hasattr(boxes, "to_delayed") for boxes in asked.sets):
+        return
+    wanted = [
+        Wanted(name, list_files(boxes), columns, None, by)
+        for boxes, name, columns, by in zip(asked.sets, asked.names, asked.columns, asked.by)
+    ]
+    if not is_plain(wanted, asked.options):
+        raise ValueError("boxes of text, of times or in groups go through files: pass out, a folder for the pairs")
+
+
 def _counted(
-    sources: list[Source],
+    asked: _Asked,
     memory_limit: Limit,
     workers: int | None,
     spill: str | os.PathLike[str] | None,
     cells: int | None,
     progress: Progress,
 ) -> int:
-    is_for_dask = active_client() is not None or any(source.partitions for source in sources)
-    if is_for_dask and memory_limit is None and workers is None and spill is None:
-        from ._partitioned.graph import lazy_count
+    folder = _folder(spill)
+    with _sources(asked, None, folder, memory_limit, progress) as sources:
+        is_for_dask = active_client() is not None or any(source.partitions for source in sources)
+        if is_for_dask and memory_limit is None and workers is None and spill is None:
+            from ._partitioned.graph import lazy_count
 
-        return lazy_count(sources, _cells(cells), _threads())
-    with _shown(progress, "counting") as report:
-        return run(sources, Job(None, memory_limit, workers, _folder(spill), False, _cells(cells), report)).pairs
+            return lazy_count(sources, _cells(cells), _threads())
+        with _shown(progress, "counting") as report:
+            return run(sources, Job(None, memory_limit, workers, folder, False, _cells(cells), report)).pairs
 
 
 def _shown(progress: Progress, what: str) -> ProgressBar:

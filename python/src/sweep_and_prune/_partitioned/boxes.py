@@ -16,8 +16,9 @@ from .. import _crs
 from .._arrays import read_boxes
 from .._columns import is_rounded, read_column, side_by_side
 from .._errors import InvalidBoxError
-from .._inputs import box_columns, listed, unknown_columns
+from .._inputs import Raw, box_columns, listed, unknown_columns
 from .._prepare import prepare, refuse_inverted
+from .._tables import is_text
 from .dataset import DatasetError
 from .search import Boxes
 
@@ -34,21 +35,32 @@ class InvalidRowError(InvalidBoxError):
     """The file or the partition."""
     row: int
     """The row there; the first is 0."""
+    line: int | None
+    """The line of a file of text; the first is 1."""
 
     def __init__(
-        self, place: str, row: int, index: int, axis: int, minimum: float, maximum: float, argument: str = "boxes"
+        self,
+        place: str,
+        row: int,
+        index: int,
+        axis: int,
+        minimum: float,
+        maximum: float,
+        argument: str = "boxes",
+        line: int | None = None,
     ) -> None:
         """Creates the error for a row of a file or a partition."""
         super().__init__(index, axis, argument, minimum, maximum)
-        self.args = (place, row, index, axis, minimum, maximum, argument)
-        self.place, self.row = place, row
+        self.args = (place, row, index, axis, minimum, maximum, argument, line)
+        self.place, self.row, self.line = place, row, line
 
     def __str__(self) -> str:
         """Names the file, the row, its values and what to do."""
         said = super().__str__().split(" ", 1)[1]
         if "NaN" in said:
             said += ', or pass missing="skip"'
-        return f"{self.place}, row {self.row} (the first is 0): the box {said}"
+        where = f"row {self.row} (the first is 0)" if self.line is None else f"line {self.line}"
+        return f"{self.place}, {where}: the box {said}"
 
 
 class Form(NamedTuple):
@@ -84,7 +96,7 @@ class Form(NamedTuple):
             argument: the name of the set.
         """
         try:
-            array = self._boxes(table, argument)
+            array = self.raw(table, argument).array
         except TypeError as error:
             raise DatasetError(f"{place}: {error}") from None
         if array.dtype.kind in "iuO":
@@ -96,6 +108,7 @@ class Form(NamedTuple):
         if array.dtype.kind != "f":
             raise DatasetError(f"{place}: coordinates must be numbers, not of type {array.dtype}; convert the columns")
         try:
+            array = array.astype(self.dtype, copy=False)
             prepared = prepare({argument: array}, "xyxy", self.closed, self.missing, None, self.margin)
             rows, kept = prepared.sets[0], prepared.kept[0]
             refuse_inverted(rows, argument, kept)
@@ -112,14 +125,14 @@ class Form(NamedTuple):
         rows = rows.astype(self.dtype, copy=False)
         if self.ids is None:
             return Boxes((np.arange(len(rows)) if kept is None else kept) + np.int64(first_index), rows)
-        ids = self._ids(table, place, first_row)
+        ids = self.ids_of(table, place, first_row)
         return Boxes(ids if kept is None else ids[kept], rows)
 
-    def _boxes(self, table: Any, argument: str) -> NDArray[Any]:
+    def raw(self, table: Any, argument: str) -> Raw:
         """The boxes of a table or an array, in the type that they have there."""
         if self.kind == "chosen":
             columns = [read_column(table[name], f"column {name}") for name in self.columns]
-            values, _ = side_by_side(columns, self.columns, argument)
+            values: Any = Raw(*side_by_side(columns, self.columns, argument))
         elif self.kind == "nested":
             values = table[self.columns[0]]
         elif self.kind == "geometry":
@@ -132,9 +145,10 @@ class Form(NamedTuple):
             values = np.asarray(shapely.bounds(shapes), np.float64).reshape(-1, 4)
         else:
             values = table
-        return read_boxes(values, argument, 0, self.format).array
+        return read_boxes(values, argument, 0, self.format)
 
-    def _ids(self, table: Any, place: str, first_row: int) -> NDArray[Any]:
+    def ids_of(self, table: Any, place: str, first_row: int) -> NDArray[Any]:
+        """The ids of the rows of a table."""
         column = table[self.ids]
         ids = np.asarray(column)
         missing = (
@@ -153,7 +167,7 @@ class Form(NamedTuple):
 
 
 class File(NamedTuple):
-    """A Parquet file."""
+    """A Parquet file, or one of text."""
 
     path: str
     rows: list[int]
@@ -178,7 +192,9 @@ class Chunk(NamedTuple):
 
 
 def list_files(paths: Any) -> list[File]:
-    """The Parquet files of a path, a pattern, a folder, or several of these, sorted within each.
+    """The files of a path, a pattern, a folder (of Parquet files), or several of these, sorted within each.
+
+    How many rows files of text have is not known yet.
 
     Raises:
         DatasetError: if a file is missing or damaged.
@@ -186,6 +202,9 @@ def list_files(paths: Any) -> list[File]:
     found = [name for path in _given(paths) for name in _expanded(path)]
     files = []
     for name in found:
+        if is_text(name):
+            files.append(File(name, [], _stamp(name)))
+            continue
         with opened(name) as file:
             metadata = file.metadata
             rows = [metadata.row_group(group).num_rows for group in range(metadata.num_row_groups)]
@@ -266,8 +285,13 @@ def form_of_files(
     columns: Sequence[str] | None,
     ids: str | None,
     options: dict[str, Any],
+    by: Sequence[str] = (),
 ) -> tuple[Form, Any]:
-    """How boxes are read from files (which columns, and in which precision), and their coordinate reference system."""
+    """How boxes are read from files (which columns, and in which precision), and their coordinate reference system.
+
+    Raises:
+        DatasetError: if a file has no such columns; so for those that `by` names, too.
+    """
     import pyarrow
 
     schemas = []
@@ -292,7 +316,7 @@ def form_of_files(
     is_single = kind != "geometry"
     id_types = set()
     for file, other in zip(files, schemas):
-        for name in names + ([ids] if ids is not None else []):
+        for name in [*names, *([ids] if ids is not None else []), *by]:
             number = other.names.count(name)
             if number != 1:
                 fault = f"{number} columns {name!r}: rename all but one" if number else f"no column {name!r}"

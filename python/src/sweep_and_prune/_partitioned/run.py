@@ -87,7 +87,7 @@ def source_of_files(
     """The boxes of Parquet files, whose pairs will be in `out`."""
     files = list_files(paths)
     if out is not None:
-        _refuse_own_files(paths, files, out)
+        refuse_own_files(paths, files, out)
     form, crs = form_of_files(files, columns, ids, options)
     return Source(files, [], [sum(file.rows) for file in files], form, None, crs)
 
@@ -123,7 +123,7 @@ def _place(out: Path) -> Path:
     return place
 
 
-def _refuse_own_files(paths: Any, files: list[File], out: Path) -> None:
+def refuse_own_files(paths: Any, files: list[File], out: Path) -> None:
     """Raises an error if the files of boxes are files of pairs of this call, now or when it is repeated."""
     place = _place(out)
     own = {Path(os.path.realpath(folder)) for folder in (place, work_of(place))}
