@@ -381,6 +381,7 @@ def test_intervals_that_are_no_boxes_are_refused_by_name(bad: list[float], by: s
 
 
 def test_an_inverted_box_is_named_and_not_measured() -> None:
+    given: Any
     for given, row in (([[0, 1], [5, 3]], 1), ([[0.0, np.nan], [0, 1]], 0)):
         with pytest.raises(sap.InvalidBoxError) as raised:
             sap.measure_overlaps(given, None, [[0, 1]])

@@ -393,7 +393,7 @@ def _noted(folder: Path, key: str) -> dict[str, Any] | None:
     try:
         noted = read_sealed(folder / _NOTE)
     except FileNotFoundError:
-        if os.path.lexists(folder) and os.listdir(folder) and not _are_ours(folder):
+        if os.path.lexists(folder) and os.listdir(folder) and not _are_of_run(folder):
             raise DatasetError(f"{folder} exists and has other files: rename it, or choose another out") from None
         return None
     except ValueError:
@@ -401,7 +401,7 @@ def _noted(folder: Path, key: str) -> dict[str, Any] | None:
     return noted if noted.pop("key", None) == key else None
 
 
-def _are_ours(folder: Path) -> bool:
+def _are_of_run(folder: Path) -> bool:
     return all(name.split(".")[0] in ("0", "1", "_boxes") for name in os.listdir(folder))
 
 
