@@ -271,7 +271,10 @@ impl<const D: usize, T: Scalar, I: Id> AnyBroadPhase<I> for TypedBroadPhase<D, T
         is_sorted: bool,
         answer: &mut Answer<I>,
     ) -> Result<(), Error> {
-        let queries = self.world.queries().excluding(excluded);
+        let is_wanted = |id| !excluded.contains(&id);
+        let queries = self.world.queries();
+        let queries =
+            if excluded.is_empty() { queries } else { queries.with_predicate(&is_wanted) };
         let queries = filter.map_or(queries, |filter| queries.with_filter(filter));
         ask(if is_sorted { queries } else { queries.unsorted() }, query, numbers, answer)
     }

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use sweep_and_prune::{Cast, Error, Hit, ProxyId, Queries, Scalar};
+use sweep_and_prune::{Cast, Error, Hit, Lists, ProxyId, Queries, Scalar};
 
 use crate::id::Id;
 use crate::rows::{aabb, point};
@@ -136,13 +136,20 @@ pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
 ) -> Result<(), Error> {
     answer.clear();
     let rows = Rows { numbers, width: query.width(D) };
-    let lists = match query {
-        Query::Overlapping => queries.overlapping_many(&rows.read(aabb::<D, T, f64>))?,
-        Query::Containing => queries.containing_many(&rows.read(point::<D, T, f64>))?,
-        Query::Within => queries.within_many(&rows.read(sphere::<D, T>))?,
+    let mut lists = Lists::new();
+    match query {
+        Query::Overlapping => {
+            queries.overlapping_many(&rows.read(aabb::<D, T, f64>), &mut lists)?;
+        }
+        Query::Containing => {
+            queries.containing_many(&rows.read(point::<D, T, f64>), &mut lists)?;
+        }
+        Query::Within => queries.within_many(&rows.read(sphere::<D, T>), &mut lists)?,
         Query::Cast | Query::CastEntering => {
             let casts = casts(&rows, query == Query::CastEntering);
-            for hit in queries.cast_many(&casts)? {
+            let mut hits = Vec::new();
+            queries.cast_many(&casts, &mut hits)?;
+            for hit in hits {
                 if let Some(hit) = hit {
                     answer.push_hit(&hit);
                 }
@@ -152,30 +159,23 @@ pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
         }
         Query::CastAll | Query::CastAllEntering => {
             let casts = casts(&rows, query == Query::CastAllEntering);
-            for (index, cast) in casts.iter().enumerate() {
-                let hits = queries.cast_all(cast).map_err(|error| match error {
-                    Error::InvalidQuery { argument, value, .. } => {
-                        Error::InvalidQuery { index, argument, value }
-                    }
-                    error => error,
-                })?;
-                for hit in hits {
-                    answer.push_hit(&hit);
-                }
-                answer.end();
-            }
+            let mut lists = Lists::new();
+            queries.cast_all_many(&casts, &mut lists)?;
+            lists.values().iter().for_each(|hit| answer.push_hit(hit));
+            answer.ends.extend_from_slice(lists.ends());
             return Ok(());
         }
         Query::Nearest { k, max_distance } => {
             let points = rows.read(point::<D, T, f64>);
-            let nearest = queries.nearest_many(&points, k, max_distance)?;
+            let mut nearest = Lists::new();
+            queries.nearest_many(&points, k, max_distance, &mut nearest)?;
             for near in nearest.values() {
                 answer.push(near.id, near.distance_squared);
             }
             answer.ends.extend_from_slice(nearest.ends());
             return Ok(());
         }
-    };
+    }
     answer.ids.extend(lists.values().iter().map(|&id| I::from_proxy(id)));
     answer.ends.extend_from_slice(lists.ends());
     Ok(())

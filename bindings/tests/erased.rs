@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use sweep_and_prune::{
-    Aabb, BroadPhase, Cast, Error, Filter, Hit, PairFinder, ProxyId, Report, Scalar,
+    Aabb, BroadPhase, Cast, Error, Filter, Hit, Lists, PairFinder, ProxyId, Report, Scalar,
     find_pairs_between,
 };
 use sweep_and_prune_bindings::{Answer, Coordinates, Kind, Query};
@@ -161,27 +161,31 @@ fn queries_give_what_the_core_gives<const D: usize, T: Scalar>(
     let areas = boxes::<D, T>(9);
     let areas = &areas[..40];
     let queries = core.queries();
-    let of = |lists: &sweep_and_prune::Lists<ProxyId>| Answer {
-        ids: bits(lists.values().iter().copied()),
-        values: Vec::new(),
-        faces: Vec::new(),
-        ends: lists.ends().to_vec(),
+    fn lists<V>(ask: impl Fn(&mut Lists<V>) -> Result<(), Error>) -> Lists<V> {
+        let mut lists = Lists::new();
+        ask(&mut lists).unwrap();
+        lists
+    }
+    let of = |ask: &dyn Fn(&mut Lists<ProxyId>) -> Result<(), Error>| {
+        let lists = lists(ask);
+        let ids = bits(lists.values().iter().copied());
+        Answer { ids, values: Vec::new(), faces: Vec::new(), ends: lists.ends().to_vec() }
     };
     assert_eq!(
         ask(Query::Overlapping, &numbers(areas)).unwrap(),
-        of(&queries.overlapping_many(areas).unwrap())
+        of(&|lists| queries.overlapping_many(areas, lists))
     );
 
     let points: Vec<[T; D]> = areas.iter().map(|aabb| aabb.min).collect();
     let flat: Vec<f64> = points.iter().flatten().map(|at| at.to_f64()).collect();
     assert_eq!(
         ask(Query::Containing, &flat).unwrap(),
-        of(&queries.containing_many(&points).unwrap())
+        of(&|lists| queries.containing_many(&points, lists))
     );
     // So far that the third neighbor of the first point is beyond.
-    let all = queries.nearest_many(&points, 3, f64::INFINITY).unwrap();
+    let all = lists(|lists| queries.nearest_many(&points, 3, f64::INFINITY, lists));
     let max_distance = 0.9 * all[0][2].distance_squared.sqrt();
-    let nearest = queries.nearest_many(&points, 3, max_distance).unwrap();
+    let nearest = lists(|lists| queries.nearest_many(&points, 3, max_distance, lists));
     assert!(nearest.values().len() < all.values().len(), "the distance limits nothing");
     let answer = ask(Query::Nearest { k: 3, max_distance }, &flat).unwrap();
     assert_eq!(answer.ids, bits(nearest.values().iter().map(|near| near.id)));
@@ -194,7 +198,10 @@ fn queries_give_what_the_core_gives<const D: usize, T: Scalar>(
         .iter()
         .flat_map(|(point, radius)| point.iter().chain([radius]).map(|at| at.to_f64()))
         .collect();
-    assert_eq!(ask(Query::Within, &flat).unwrap(), of(&queries.within_many(&spheres).unwrap()));
+    assert_eq!(
+        ask(Query::Within, &flat).unwrap(),
+        of(&|lists| queries.within_many(&spheres, lists))
+    );
 
     let casts: Vec<Cast<D, T>> = areas
         .iter()
@@ -207,7 +214,9 @@ fn queries_give_what_the_core_gives<const D: usize, T: Scalar>(
     };
     let mut flat: Vec<f64> = casts.iter().flat_map(row).collect();
     let first = ask(Query::Cast, &flat).unwrap();
-    let hits: Vec<_> = queries.cast_many(&casts).unwrap().into_iter().flatten().collect();
+    let mut hits = Vec::new();
+    queries.cast_many(&casts, &mut hits).unwrap();
+    let hits: Vec<_> = hits.into_iter().flatten().collect();
     assert_eq!(first.ids, bits(hits.iter().map(|hit| hit.id)));
     let all = ask(Query::CastAll, &flat).unwrap();
     let expected: Vec<_> = casts.iter().map(|cast| queries.cast_all(cast).unwrap()).collect();

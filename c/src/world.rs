@@ -88,7 +88,11 @@ pub unsafe fn ask<const D: usize, T: Scalar, H: Handle<State = World<D, T>>, R>(
         let ask = |state: &World<D, T>| {
             let Some(queries) = state.bodies.prepared_queries() else { return Ok(None) };
             let Some(answer) = answer.take() else { return Ok(None) };
-            let queries = queries.excluding(&wanted.excluded);
+            let is_wanted = |id| !wanted.excluded.contains(&id);
+            let queries = match wanted.excluded.is_empty() {
+                true => queries,
+                false => queries.with_predicate(&is_wanted),
+            };
             let queries = wanted.filter.map_or(queries, |filter| queries.with_filter(filter));
             answer(if wanted.unsorted { queries.unsorted() } else { queries }).map(Some)
         };

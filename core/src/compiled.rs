@@ -11,7 +11,7 @@
 use core::ops::ControlFlow;
 
 use crate::{
-    Aabb, BroadPhase, Cast, Filter, PairFinder, ProxyId, Scalar, count_pairs, find_pairs,
+    Aabb, BroadPhase, Cast, Filter, Lists, PairFinder, ProxyId, Scalar, count_pairs, find_pairs,
     find_pairs_between, validate,
 };
 
@@ -41,13 +41,19 @@ fn call_all<const D: usize, T: Scalar>(
     let _ = (world.remove_many(ids), world.update().is_empty(), world.pairs().len());
     let _ = (world.pairs_of(id).is_ok(), world.snapshot(), world.state_hash());
     let _ = (BroadPhase::<D, T>::from_snapshot(&[]), world.clear());
+    let saved = world.clone();
+    world.clone_from(&saved);
     let cast = Cast::ray(point, point, point[0]);
     let queries = world.queries();
-    let _ = (queries.overlapping(&aabb), queries.overlapping_many(boxes));
+    let (mut found, mut hits) = (Lists::new(), Lists::new());
+    let _ = (queries.overlapping(&aabb), queries.overlapping_many(boxes, &mut found));
     let _ = queries.visit_overlapping(&aabb, |_| ControlFlow::Break(()));
-    let _ = (queries.containing(point), queries.containing_many(&[point]));
-    let _ = (queries.within(point, point[0]), queries.within_many(&[(point, point[0])]));
-    let _ = (queries.nearest(point, 1, 0.0), queries.nearest_many(&[point], 1, 0.0));
-    let _ = (queries.cast(&cast), queries.cast_many(&[cast]), queries.cast_all(&cast));
+    let _ = (queries.containing(point), queries.containing_many(&[point], &mut found));
+    let near = [(point, point[0])];
+    let _ = (queries.within(point, point[0]), queries.within_many(&near, &mut found));
+    let _ = queries.nearest(point, 1, 0.0);
+    let _ = queries.nearest_many(&[point], 1, 0.0, &mut Lists::new());
+    let _ = (queries.cast(&cast), queries.cast_many(&[cast], &mut alloc::vec::Vec::new()));
+    let _ = (queries.cast_all(&cast), queries.cast_all_many(&[cast], &mut hits));
     let _ = queries.cast_with(&cast, |_| ControlFlow::Break(()));
 }

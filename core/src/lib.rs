@@ -6,6 +6,7 @@ extern crate alloc;
 #[cfg(feature = "std")]
 extern crate std;
 
+mod cloning;
 #[cfg(not(target_arch = "wasm32"))]
 mod compiled;
 mod error;

@@ -3,7 +3,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use sweep_and_prune::{Aabb, BroadPhase, Filter, ProxyId};
+use sweep_and_prune::{Aabb, BroadPhase, Cast, Filter, Lists, ProxyId};
 use sweep_and_prune_scenes::Motion;
 
 /// The system's allocator, which counts the calls and bytes of the current thread.
@@ -142,6 +142,67 @@ fn sweeping_without_updates_takes_no_memory() {
         world.set(id, aabb(1.0)).unwrap();
     });
     assert!(grown < FEW_BYTES, "{grown}");
+}
+
+#[test]
+fn saving_and_restoring_by_clone_from_allocates_nothing_and_continues_bit_for_bit() {
+    for motion in Motion::ALL {
+        let mut moving = motion.start::<3, f32>(2_000, 1).unwrap();
+        let mut world = BroadPhase::<3>::new();
+        let filter = Filter::default();
+        let ids: Vec<ProxyId> = world.insert_many(moving.boxes(), filter).unwrap();
+        let mut step = |world: &mut BroadPhase<3>| {
+            moving.advance();
+            world.set_many(&ids, moving.boxes()).unwrap();
+            world.update();
+            moving.boxes().to_vec()
+        };
+        (0..80).for_each(|_| _ = step(&mut world));
+        // Of all states that a world goes through: with a tree, without one, while one is built.
+        world.prepare_queries();
+        world.update();
+        let (mut saved, mut other) = (world.clone(), BroadPhase::new());
+        saved.clone_from(&world);
+        let before = ALLOCATIONS.get();
+        saved.clone_from(&world);
+        assert_eq!(ALLOCATIONS.get(), before, "{}", motion.name());
+        let frames: Vec<_> = (0..20).map(|_| step(&mut world)).collect();
+        let expected = world.state_hash();
+        world.clone_from(&saved);
+        other.clone_from(&saved);
+        for mut again in [world, other] {
+            assert_eq!(again.state_hash(), saved.state_hash());
+            assert!(again.pairs().eq(saved.pairs()));
+            for frame in &frames {
+                again.set_many(&ids, frame).unwrap();
+                again.update();
+            }
+            assert_eq!(again.state_hash(), expected, "{}", motion.name());
+        }
+    }
+}
+
+#[test]
+fn queries_to_lists_that_are_kept_allocate_nothing() {
+    let mut world = BroadPhase::<2>::new();
+    let boxes: Vec<_> = (0..100).map(|index| aabb(index as f32)).collect();
+    world.insert_many(&boxes, Filter::default()).unwrap();
+    let (mut ids, mut near) = (Lists::new(), Lists::new());
+    let (mut hit, mut hits) = (vec![], Lists::new());
+    let casts = [Cast::ray([-1.0, -1.0], [1.0, 1.0], 200.0), Cast::ray([-1.0; 2], [1.0; 2], 60.0)];
+    let queries = world.queries();
+    for frame in 0..3 {
+        let before = ALLOCATIONS.get();
+        queries.overlapping_many(&boxes[..50], &mut ids).unwrap();
+        queries.containing_many(&[[1.0, 1.0], [0.5, 0.5]], &mut ids).unwrap();
+        queries.within_many(&[([50.0, 50.0], 40.0)], &mut ids).unwrap();
+        queries.nearest_many(&[[50.0, 50.0], [0.0, 9.0]], 30, 100.0, &mut near).unwrap();
+        queries.cast_many(&casts, &mut hit).unwrap();
+        queries.cast_all_many(&casts, &mut hits).unwrap();
+        assert!(ids.values().len() > 40 && near.values().len() == 60);
+        assert_eq!((hits[0].len(), hits[1].len()), (100, 60));
+        assert!(frame == 0 || ALLOCATIONS.get() == before, "frame {frame} allocated");
+    }
 }
 
 /// How many bytes a world takes before a crowd, at the update after all its bodies were at one place, and `later` updates

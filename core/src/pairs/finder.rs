@@ -124,6 +124,14 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
         self
     }
 
+    /// Uses all threads of rayon's current pool, which has one for each processor unless you made it: see
+    /// [`threads`](Self::threads).
+    #[cfg(feature = "parallel")]
+    #[must_use]
+    pub fn all_threads(self) -> Self {
+        self.threads(rayon::current_num_threads())
+    }
+
     /// Finds the pairs of [`find_pairs`], in a buffer that stays valid until the next call.
     ///
     /// # Errors

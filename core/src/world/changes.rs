@@ -4,14 +4,21 @@ use alloc::vec::Vec;
 use core::slice;
 
 use super::bodies::{ProxyId, Slots};
+use crate::cloning::clone_fields;
 
 /// What the last update found, as slots.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Events {
     pub begun: Vec<[u32; 2]>,
     pub ended: Vec<[u32; 2]>,
     /// The bodies that were removed before that update, sorted: their slots may have new bodies.
     pub removed: Vec<ProxyId>,
+}
+
+clone_fields! {
+    [] Events {
+        begun, ended, removed,
+    }
 }
 
 /// The pairs that began and those that ended between two updates.

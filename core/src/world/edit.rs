@@ -114,6 +114,22 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// then `to`. So it pairs with what it would have jumped over (and, on a diagonal way, with what is
     /// beside it).
     ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, BroadPhase};
+    ///
+    /// let mut world = BroadPhase::<1>::new();
+    /// let bullet = world.insert(Aabb::new([0.0], [0.1]))?;
+    /// let wall = world.insert(Aabb::new([5.0], [5.2]))?;
+    /// world.update();
+    ///
+    /// let (from, to) = (world.aabb(bullet)?, Aabb::new([9.0], [9.1]));
+    /// world.set_swept(bullet, from, to)?;
+    /// assert!(world.update().begun().eq([[bullet, wall]])); // it went through the wall
+    /// assert_eq!(world.aabb(bullet)?, to);
+    /// assert!(world.update().ended().eq([[bullet, wall]]));
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Error::StaleProxy`]; [`Error::InvalidBox`] with index 0 for `from` and 1 for `to`.
     #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
@@ -188,6 +204,23 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     }
 
     /// Changes with which others a body may pair. Its pairs begin or end at the next update.
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, BroadPhase, Filter};
+    ///
+    /// const HERO: u32 = 1;
+    /// const GHOST: u32 = 2;
+    ///
+    /// let mut world = BroadPhase::<1>::new();
+    /// let hero = world.insert_with(Aabb::new([0.0], [1.0]), Filter::default().category(HERO))?;
+    /// let ghost = world.insert_with(Aabb::new([0.5], [2.0]), Filter::default().category(GHOST))?;
+    /// assert!(world.update().begun().eq([[hero, ghost]]));
+    ///
+    /// // The hero drinks a potion: ghosts do not touch it any more.
+    /// world.set_filter(hero, world.filter(hero)?.mask(!GHOST))?;
+    /// assert!(world.update().ended().eq([[hero, ghost]]));
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
     ///
     /// # Errors
     /// [`Error::StaleProxy`].

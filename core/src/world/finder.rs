@@ -156,6 +156,14 @@ impl<const D: usize, T: Scalar> Clone for Finder<D, T> {
     fn clone(&self) -> Self {
         Self::with_threads(self.threads)
     }
+
+    /// As many threads, and its own buffers.
+    fn clone_from(&mut self, source: &Self) {
+        if self.threads != source.threads {
+            *self = source.clone();
+        }
+        self.found = 0;
+    }
 }
 
 /// What the finder found. Its boxes are valid, so it fails only if memory is exhausted. A broad phase

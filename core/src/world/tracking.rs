@@ -8,10 +8,11 @@ use super::candidates::{Candidates, PairSorter};
 use super::finder::Finder;
 use super::policy::{Motion, Policy, Sleep, Usage};
 use super::tree::Tree;
+use crate::cloning::clone_fields;
 use crate::{Aabb, Scalar};
 
 /// Fat AABBs, their pairs, and a tree of them.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Tracking<const D: usize, T: Scalar> {
     /// By index. Meaningless for bodies of `flag::NEW`.
     pub fat: Vec<Aabb<D, T>>,
@@ -34,6 +35,13 @@ pub struct Tracking<const D: usize, T: Scalar> {
     pub finder: Finder<D, T>,
     pub usage: Usage,
     pub scratch: Scratch<D, T>,
+}
+
+clone_fields! {
+    [const D: usize, T: Scalar] Tracking<D, T> {
+        fat, is_fat_stale, candidates, tree, tree_state, tree_uses, flying, is_queried, motion,
+        policy, sleep, locality_decay, finder, usage, scratch,
+    }
 }
 
 /// What the tree holds.
@@ -102,4 +110,7 @@ impl<const D: usize, T: Scalar> Clone for Scratch<D, T> {
     fn clone(&self) -> Self {
         Self::default()
     }
+
+    /// Keeps its own buffers.
+    fn clone_from(&mut self, _source: &Self) {}
 }

@@ -742,7 +742,7 @@ fn a_ray_that_ignores_what_it_touches_is_stopped_by_a_flat_wall() {
 }
 
 #[test]
-fn queries_do_not_find_what_they_exclude() {
+fn queries_find_only_what_their_predicate_accepts() {
     let mut world = BroadPhase::<1>::new();
     let boxes: Vec<_> = (0..4).map(|at| Aabb::new([at as f32], [at as f32 + 1.0])).collect();
     let ids = world.insert_many(&boxes, Filter::default()).unwrap();
@@ -750,11 +750,25 @@ fn queries_do_not_find_what_they_exclude() {
     world.remove(stale).unwrap();
     let reused = world.insert(boxes[3]).unwrap();
     let without = [ids[0], ids[2], stale];
-    let queries = world.queries().excluding(&without);
+    let is_wanted = |id| !without.contains(&id);
+    let queries = world.queries().with_predicate(&is_wanted);
     assert_eq!(queries.overlapping(&Aabb::new([-9.0], [9.0])).unwrap(), [ids[1], reused]);
     assert_eq!(queries.nearest([0.0], 1, f64::INFINITY).unwrap()[0].id, ids[1]);
     let hits = queries.cast_all(&Cast::ray([0.5], [1.0], 9.0)).unwrap();
     assert_eq!(hits.iter().map(|hit| hit.id).collect::<Vec<_>>(), [ids[1], reused]);
+    assert_eq!(queries.containing([1.0]).unwrap(), [ids[1]]);
+    assert_eq!(queries.within([0.0], 1.0).unwrap(), [ids[1]]);
+    let mut seen = vec![];
+    let visit = |id| {
+        seen.push(id);
+        std::ops::ControlFlow::Continue(())
+    };
+    queries.visit_overlapping(&Aabb::new([0.0], [1.0]), visit).unwrap();
+    assert_eq!(seen, [ids[1]]);
+    // The last predicate counts, and none is asked about a body that the filter hides.
+    let panics = |_| unreachable!("the filter hides all bodies");
+    let hidden = queries.with_predicate(&panics).with_filter(Filter::ALL.mask(0));
+    assert_eq!(hidden.overlapping(&Aabb::new([-9.0], [9.0])).unwrap(), []);
 }
 
 #[test]

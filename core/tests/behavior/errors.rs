@@ -1,6 +1,8 @@
 //! Error messages name the argument, its value, the limit that the value broke, and what to do.
 
-use sweep_and_prune::{Aabb, BroadPhase, Cast, Error, Options, Report, SnapshotFault, find_pairs};
+use sweep_and_prune::{
+    Aabb, BroadPhase, Cast, Error, Lists, Options, Report, SnapshotFault, find_pairs,
+};
 
 fn message<T>(result: Result<T, Error>) -> String {
     result.map(|_| ()).unwrap_err().to_string()
@@ -54,7 +56,7 @@ fn a_message_about_a_query_names_the_argument_at_fault() {
     let at = |result: Result<_, Error>| message::<()>(result);
     let infinity = f32::INFINITY;
     assert_eq!(
-        at(queries.within_many(&[([0.0], 1.0), ([0.0], -2.0)]).map(|_| ())),
+        at(queries.within_many(&[([0.0], 1.0), ([0.0], -2.0)], &mut Lists::new())),
         "`radius` of query 1 is -2, but it must be 0 or more"
     );
     assert_eq!(
@@ -101,7 +103,13 @@ fn every_kind_of_cast_checks_its_argument() {
     let expected =
         |index: usize| format!("`direction` of query {index} is NaN, but it may not be NaN");
     assert_eq!(message(queries.cast(&bad)), expected(0));
-    assert_eq!(message(queries.cast_many(&[good, bad])), expected(1));
+    let (mut hits, mut lists) = (vec![], Lists::new());
+    queries.cast_many(&[good], &mut hits).unwrap();
+    queries.cast_all_many(&[good], &mut lists).unwrap();
+    let before = (hits.clone(), lists.clone());
+    assert_eq!(message(queries.cast_many(&[good, bad], &mut hits)), expected(1));
+    assert_eq!(message(queries.cast_all_many(&[good, bad], &mut lists)), expected(1));
+    assert_eq!((hits, lists), before, "a query that is refused changes no list");
     assert_eq!(message(queries.cast_all(&bad)), expected(0));
     let visit = |_| unreachable!("a cast that is refused hits nothing");
     assert_eq!(message(queries.cast_with(&bad, visit)), expected(0));

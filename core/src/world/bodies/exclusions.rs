@@ -1,5 +1,6 @@
 //! The pairs that users excluded one by one.
 
+use crate::cloning::clone_fields;
 use alloc::vec::Vec;
 
 /// Excluded now.
@@ -12,7 +13,7 @@ const FEWEST: usize = 16;
 const NOTHING: [u32; 2] = [0; 2];
 
 /// Pairs of slots, smaller first, that are excluded now or were at the last update.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Exclusions {
     /// A hash table with linear probing. Its length is 0 or a power of two, and at most half of it is taken.
     table: Vec<Entry>,
@@ -20,6 +21,12 @@ pub struct Exclusions {
     taken: usize,
     /// The pairs of which it changed since the last update whether they are excluded now, at least once each.
     edited: Vec<[u32; 2]>,
+}
+
+clone_fields! {
+    [] Exclusions {
+        table, taken, edited,
+    }
 }
 
 #[derive(Clone, Copy, Debug)]

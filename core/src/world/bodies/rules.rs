@@ -7,6 +7,7 @@ use alloc::vec::Vec;
 use super::exclusions::{BEFORE, Exclusions, NOW};
 use super::filter::Filter;
 use super::slots::{Slots, flag};
+use crate::cloning::clone_fields;
 
 /// Of which moment a fact is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,7 +19,7 @@ pub enum When {
 }
 
 /// The filters and the excluded pairs, now and at the last update. Bodies are named by their indices.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Rules {
     filters: Vec<Filter>,
     /// The filters at the last update, of bodies of [`flag::REFILTERED`]; only as long as needed.
@@ -28,6 +29,12 @@ pub struct Rules {
     has_any: bool,
     /// Whether there is a body of [`flag::REFILTERED`].
     any_refiltered: bool,
+}
+
+clone_fields! {
+    [] Rules {
+        filters, old_filters, exclusions, has_any, any_refiltered,
+    }
 }
 
 impl Rules {

@@ -6,6 +6,7 @@ use core::cmp::Reverse;
 
 use super::id::{ProxyId, sort_ids};
 use crate::Error;
+use crate::cloning::clone_fields;
 use crate::geometry::check_count;
 
 /// What is true of a body, as bits.
@@ -42,7 +43,7 @@ pub mod flag {
 
 /// Which body is where. An id names a *slot*. All tables are in the order of *storage indices*, which
 /// are reassigned now and then so that bodies that are near in space are near in memory.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Slots {
     /// By slot, how many bodies have had it.
     pub generations: Vec<u32>,
@@ -60,6 +61,12 @@ pub struct Slots {
     free: BinaryHeap<Reverse<u32>>,
     /// How many bodies live.
     pub live: usize,
+}
+
+clone_fields! {
+    [] Slots {
+        generations, living, index_of, slot_of, flags, is_reordered, free, live,
+    }
 }
 
 impl Slots {

@@ -6,6 +6,7 @@ use super::filter::Filter;
 use super::id::ProxyId;
 use super::rules::{Rules, When};
 use super::slots::{Slots, flag};
+use crate::cloning::clone_fields;
 use crate::world::options::{Options, Report};
 use crate::{Aabb, Scalar};
 
@@ -16,7 +17,7 @@ pub const RANDOM_READ: usize = 16;
 const SCAN_ALL: usize = 4;
 
 /// All bodies, by storage index, and what changed since the last update.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Bodies<const D: usize, T: Scalar> {
     pub options: Options<T>,
     pub slots: Slots,
@@ -51,6 +52,13 @@ pub struct Bodies<const D: usize, T: Scalar> {
     pub swept: Vec<u32>,
     /// Bodies that moved recently have smaller indices than this, with few exceptions.
     pub front: usize,
+}
+
+clone_fields! {
+    [const D: usize, T: Scalar] Bodies<D, T> {
+        options, slots, boxes, shapes, origins, moved, too_wide, shifted, rules, previous, any_new,
+        changed, any_unlisted, leaving, rests, swept, front,
+    }
 }
 
 impl<const D: usize, T: Scalar> Bodies<D, T> {

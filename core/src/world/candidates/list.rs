@@ -8,10 +8,11 @@
 use alloc::vec::Vec;
 
 use super::sort::PairSorter;
+use crate::cloning::clone_fields;
 use crate::memory::reserve;
 use crate::world::bodies::{ProxyId, Slots, flag};
 
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Candidates {
     /// Each candidate with an awake body once, as indices, smaller first. Filters allow them.
     pub pairs: Vec<[u32; 2]>,
@@ -24,6 +25,12 @@ pub struct Candidates {
     pub sorted: Vec<[u32; 2]>,
     /// Whether the pairs are in `sorted`.
     pub are_sorted: bool,
+}
+
+clone_fields! {
+    [] Candidates {
+        pairs, live, asleep, sorted, are_sorted,
+    }
 }
 
 impl Candidates {

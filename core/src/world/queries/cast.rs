@@ -1,11 +1,11 @@
 //! What a ray or a moving box hits.
 
-use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
 use core::cell::Cell;
-use core::cmp::Ordering;
 use core::ops::ControlFlow;
 
+use super::heap::{Ranked, rise, sort};
+use super::lists::Lists;
 use super::math::{Fault, check_each, fault_in, is_finite, is_length};
 use super::region::Queries;
 use crate::world::bodies::ProxyId;
@@ -180,6 +180,12 @@ pub struct Hit<const D: usize, T = f32> {
     pub starts_inside: bool,
 }
 
+impl<const D: usize, T> Ranked for Hit<D, T> {
+    fn rank(&self) -> (u64, u32) {
+        (self.t.to_bits(), self.id.slot())
+    }
+}
+
 impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     /// The body that a ray or a moving box hits first; of several at once that with the smallest id.
     ///
@@ -189,49 +195,82 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     #[doc(alias("ray_cast", "box_cast"))]
     #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn cast(&self, cast: &Cast<D, T>) -> Result<Option<Hit<D, T>>, Error> {
-        Ok(self.cast_many(core::slice::from_ref(cast))?[0])
+        check_each(core::slice::from_ref(cast), Cast::fault)?;
+        Ok(self.first_hit(cast))
     }
 
-    /// [`cast`](Self::cast) for each of many.
+    /// [`cast`](Self::cast) for each of many, in a list that is replaced and keeps its memory.
     ///
     /// # Errors
     /// [`Error::InvalidQuery`] with the index of the first bad one.
     #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
-    pub fn cast_many(&self, casts: &[Cast<D, T>]) -> Result<Vec<Option<Hit<D, T>>>, Error> {
+    pub fn cast_many(
+        &self,
+        casts: &[Cast<D, T>],
+        hits: &mut Vec<Option<Hit<D, T>>>,
+    ) -> Result<(), Error> {
         check_each(casts, Cast::fault)?;
-        let first_hit = |cast: &Cast<D, T>| {
-            let mut best = None;
-            self.run_cast(cast, |hit| {
-                let is_better =
-                    |best: Hit<D, T>| hit.t.total_cmp(&best.t).then(hit.id.cmp(&best.id));
-                if best.is_none_or(|best| is_better(best) == Ordering::Less) {
-                    best = Some(hit);
-                }
-                ControlFlow::Continue(hit.t)
-            });
-            best
-        };
-        Ok(casts.iter().map(first_hit).collect())
+        hits.clear();
+        hits.extend(casts.iter().map(|cast| self.first_hit(cast)));
+        Ok(())
+    }
+
+    fn first_hit(&self, cast: &Cast<D, T>) -> Option<Hit<D, T>> {
+        let mut best: Option<Hit<D, T>> = None;
+        self.run_cast(cast, |hit| {
+            if best.is_none_or(|best| hit.rank() < best.rank()) {
+                best = Some(hit);
+            }
+            ControlFlow::Continue(hit.t)
+        });
+        best
     }
 
     /// Everything that a ray or a moving box hits, sorted by t and then by id.
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, BroadPhase, Cast};
+    ///
+    /// let mut world = BroadPhase::<2>::new();
+    /// let targets = [Aabb::new([6.0, 0.0], [7.0, 1.0]), Aabb::new([2.0, 0.0], [3.0, 1.0])];
+    /// let ids = world.insert_many(&targets, Default::default())?;
+    /// // A shot that goes through: both targets, the nearer one first.
+    /// let hits = world.queries().cast_all(&Cast::ray([0.0, 0.5], [1.0, 0.0], 100.0))?;
+    /// let hits: Vec<_> = hits.iter().map(|hit| (hit.id, hit.t)).collect();
+    /// assert_eq!(hits, [(ids[1], 2.0), (ids[0], 6.0)]);
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
     ///
     /// # Errors
     /// As [`cast`](Self::cast).
     #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn cast_all(&self, cast: &Cast<D, T>) -> Result<Vec<Hit<D, T>>, Error> {
-        let mut hits = Vec::new();
-        check_each(core::slice::from_ref(cast), Cast::fault)?;
-        self.run_cast(cast, |hit| {
-            hits.push(hit);
-            ControlFlow::Continue(f64::INFINITY)
-        });
-        // Times, which are not negative, order as their bits do. As numbers they are sorted by what `nearest` needs anyway.
-        let key = |(at, hit): (usize, &Hit<D, T>)| {
-            (hit.t.to_bits(), u64::from(hit.id.slot()) << 32 | at as u64)
-        };
-        let order: BinaryHeap<_> = hits.iter().enumerate().map(key).collect();
-        Ok(order.into_sorted_vec().iter().map(|&(_, at)| hits[at as u32 as usize]).collect())
+        self.list(cast, Self::cast_all_many)
+    }
+
+    /// [`cast_all`](Self::cast_all) for each of many, in lists that are replaced and keep their memory.
+    ///
+    /// # Errors
+    /// [`Error::InvalidQuery`] with the index of the first bad one.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
+    pub fn cast_all_many(
+        &self,
+        casts: &[Cast<D, T>],
+        lists: &mut Lists<Hit<D, T>>,
+    ) -> Result<(), Error> {
+        check_each(casts, Cast::fault)?;
+        lists.clear();
+        for cast in casts {
+            let start = lists.values.len();
+            self.run_cast(cast, |hit| {
+                lists.values.push(hit);
+                rise(&mut lists.values[start..]);
+                ControlFlow::Continue(f64::INFINITY)
+            });
+            sort(&mut lists.values[start..]);
+            lists.end();
+        }
+        Ok(())
     }
 
     /// Calls `visit` with what a ray or a moving box hits, nearer parts of the world roughly first.

@@ -3,7 +3,20 @@
 use alloc::vec::Vec;
 use core::ops::Index;
 
-/// The results of many queries, a list for each.
+/// The results of many queries, a list for each. Passed to queries again, they keep their memory.
+///
+/// ```
+/// use sweep_and_prune::{Aabb, BroadPhase, Lists};
+///
+/// let mut world = BroadPhase::<1>::new();
+/// let ids = world.insert_many(&[Aabb::new([0.0], [1.0]); 2], Default::default())?;
+/// let mut lists = Lists::new();
+/// for _frame in 0..3 {
+///     world.queries().containing_many(&[[0.5], [7.0]], &mut lists)?;
+///     assert_eq!((&lists[0], &lists[1]), (&ids[..], &[][..]));
+/// }
+/// # Ok::<(), sweep_and_prune::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lists<V> {
     pub(super) ends: Vec<usize>,
@@ -11,8 +24,15 @@ pub struct Lists<V> {
 }
 
 impl<V> Lists<V> {
-    pub(super) fn new() -> Self {
+    /// No lists, without memory.
+    pub const fn new() -> Self {
         Self { ends: Vec::new(), values: Vec::new() }
+    }
+
+    /// Removes all lists and keeps the memory.
+    pub(super) fn clear(&mut self) {
+        self.ends.clear();
+        self.values.clear();
     }
 
     /// Ends the list of the values that were added since the last one.
@@ -43,6 +63,12 @@ impl<V> Lists<V> {
     /// Where each list ends in [`values`](Self::values); it begins where the one before ends.
     pub fn ends(&self) -> &[usize] {
         &self.ends
+    }
+}
+
+impl<V> Default for Lists<V> {
+    fn default() -> Self {
+        Self::new()
     }
 }
 

@@ -4,6 +4,7 @@
 //! world are skipped, and the same formula for one body.
 
 mod cast;
+mod heap;
 mod lists;
 mod math;
 mod nearest;

@@ -1,10 +1,10 @@
 //! What is nearest to a point.
 
-use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
 use core::cell::Cell;
 use core::ops::ControlFlow;
 
+use super::heap::{Ranked, rise, sink, sort};
 use super::lists::Lists;
 use super::math::{check_each, distance_squared, fault_in, is_finite, is_length};
 use super::region::Queries;
@@ -20,12 +20,33 @@ pub struct Neighbor {
     pub distance_squared: f64,
 }
 
+impl Ranked for Neighbor {
+    fn rank(&self) -> (u64, u32) {
+        (self.distance_squared.to_bits(), self.id.slot())
+    }
+}
+
 impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     /// The `k` bodies nearest to a point that are at most `max_distance` away, or all of those if there are
     /// fewer; sorted by distance and then by id. Only the parts of the world that are near enough are searched.
     ///
     /// Distances are compared as squares in `f64`: they overflow beyond 1e154, which coordinates of type `f32`
     /// cannot reach.
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, BroadPhase};
+    ///
+    /// let mut world = BroadPhase::<2>::new();
+    /// let near = world.insert(Aabb::new([3.0, 0.0], [4.0, 1.0]))?;
+    /// let far = world.insert(Aabb::new([0.0, 5.0], [1.0, 6.0]))?;
+    ///
+    /// let queries = world.queries();
+    /// let found = queries.nearest([0.0, 0.0], 2, 100.0)?;
+    /// assert_eq!([found[0].id, found[1].id], [near, far]);
+    /// assert_eq!([found[0].distance_squared, found[1].distance_squared], [9.0, 25.0]);
+    /// assert_eq!(queries.nearest([0.0, 0.0], 2, 4.0)?.len(), 1);
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
     ///
     /// # Errors
     /// [`Error::InvalidQuery`] if the point is not finite, or the distance is negative or NaN.
@@ -36,10 +57,12 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         k: usize,
         max_distance: f64,
     ) -> Result<Vec<Neighbor>, Error> {
-        self.list(&point, |queries, points| queries.nearest_many(points, k, max_distance))
+        self.list(&point, |queries, points, lists| {
+            queries.nearest_many(points, k, max_distance, lists)
+        })
     }
 
-    /// [`nearest`](Self::nearest) for each of many points.
+    /// [`nearest`](Self::nearest) for each of many points, in lists that are replaced and keep their memory.
     ///
     /// # Errors
     /// As [`nearest`](Self::nearest), with the index of the first bad point.
@@ -49,37 +72,33 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         points: &[[T; D]],
         k: usize,
         max_distance: f64,
-    ) -> Result<Lists<Neighbor>, Error> {
+        lists: &mut Lists<Neighbor>,
+    ) -> Result<(), Error> {
         check_each(&[max_distance], |limit| fault_in("max_distance", &[*limit], is_length))?;
         check_each(points, |point| fault_in("point", point, is_finite))?;
-        let mut lists = Lists::new();
-        let mut nearest = BinaryHeap::new();
+        lists.clear();
         for point in points {
             let start = lists.values.len();
-            self.collect_nearest(point, k, max_distance * max_distance, &mut nearest);
-            while let Some((bits, slot)) = nearest.pop() {
-                let id = self.bodies.slots.id_of_slot(slot as u32);
-                lists.values.push(Neighbor { id, distance_squared: f64::from_bits(bits) });
-            }
-            lists.values[start..].reverse();
+            self.collect_nearest(point, k, max_distance * max_distance, &mut lists.values);
+            sort(&mut lists.values[start..]);
             lists.end();
         }
-        Ok(lists)
+        Ok(())
     }
 
-    /// Fills an empty heap with the `k` nearest bodies whose squared distances are at most `limit`, the farthest
-    /// on top: the bits of the square (which order as squares do, none being negative) and the slot. Returns how
-    /// many bodies it looked at.
+    /// Adds to a list a heap of the `k` nearest bodies whose squared distances are at most `limit`, the farthest on top.
+    /// Returns how many bodies it looked at.
     fn collect_nearest(
         &self,
         point: &[T; D],
         k: usize,
         limit: f64,
-        nearest: &mut BinaryHeap<(u64, u64)>,
+        nearest: &mut Vec<Neighbor>,
     ) -> usize {
         if k == 0 {
             return 0;
         }
+        let start = nearest.len();
         // What is farther away than this does not matter: it is lowered once there are k.
         let farthest = Cell::new(limit);
         let mut seen = 0;
@@ -89,15 +108,18 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         };
         self.tree.search(bound, |index| {
             seen += 1;
-            let distance = distance_squared(point, self.bodies.shape(index));
-            if distance <= farthest.get() && self.sees(index) {
-                let slot = self.bodies.slots.slot_of[index as usize];
-                nearest.push((distance.to_bits(), slot.into()));
-                if nearest.len() > k {
-                    nearest.pop();
+            let distance_squared = distance_squared(point, self.bodies.shape(index));
+            if distance_squared <= farthest.get() && self.sees(index) {
+                let found = Neighbor { id: self.bodies.slots.id(index), distance_squared };
+                if nearest.len() - start < k {
+                    nearest.push(found);
+                    rise(&mut nearest[start..]);
+                } else if found.rank() < nearest[start].rank() {
+                    nearest[start] = found;
+                    sink(&mut nearest[start..]);
                 }
-                if let Some(&(bits, _)) = nearest.peek().filter(|_| nearest.len() == k) {
-                    farthest.set(f64::from_bits(bits));
+                if nearest.len() - start == k {
+                    farthest.set(nearest[start].distance_squared);
                 }
             }
             ControlFlow::Continue(())
@@ -118,7 +140,7 @@ mod tests {
         world.insert_many(&boxes, crate::Filter::default()).unwrap();
         let queries = world.queries();
         let seen = |k, max_distance: f64| {
-            let mut nearest = BinaryHeap::new();
+            let mut nearest = Vec::new();
             let seen =
                 queries.collect_nearest(&[5000.0], k, max_distance * max_distance, &mut nearest);
             (nearest.len(), seen)

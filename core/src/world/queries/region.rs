@@ -1,6 +1,7 @@
 //! Queries for all bodies in a region: a box, a point or a sphere.
 
 use alloc::vec::Vec;
+use core::fmt;
 use core::ops::ControlFlow;
 
 use super::lists::Lists;
@@ -14,35 +15,60 @@ use crate::{Aabb, Error, Scalar};
 /// They see the boxes as last set, updated or not, and all bodies unless they get a
 /// [filter](Self::with_filter). Lists are sorted by id, unless they need [not](Self::unsorted) be; bodies that are
 /// equally near are too.
-#[derive(Clone, Copy, Debug)]
+///
+/// Each query for a list returns a new one. The forms for many, as [`overlapping_many`](Self::overlapping_many), write to
+/// [`Lists`] of yours instead, which keep their memory: with them, queries in each frame do not allocate once the lists are
+/// large enough.
+#[derive(Clone, Copy)]
 pub struct Queries<'w, const D: usize, T: Scalar = f32> {
     pub(in crate::world) bodies: &'w Bodies<D, T>,
     pub(in crate::world) tree: &'w Tree<D, T>,
     pub(in crate::world) filter: Option<Filter>,
-    pub(in crate::world) excluded: &'w [ProxyId],
+    pub(in crate::world) predicate: Option<&'w (dyn Fn(ProxyId) -> bool + Sync)>,
     pub(in crate::world) is_sorted: bool,
 }
 
+impl<const D: usize, T: Scalar> fmt::Debug for Queries<'_, D, T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Queries")
+            .field("filter", &self.filter)
+            .field("has_predicate", &self.predicate.is_some())
+            .field("is_sorted", &self.is_sorted)
+            .finish_non_exhaustive()
+    }
+}
+
 impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
-    /// The same queries, which do not find these bodies: what asks, and what it carries. Each body that is found
-    /// is compared with all of them. A stale id excludes nothing.
+    /// The same queries, which find only the bodies of which a function of yours is true: not the one that asks, or only
+    /// those that your tables say are visible. It replaces an earlier one, and is called for no body that the filter hides.
+    ///
+    /// A query calls it for each body in reach, in no particular order, and perhaps for some that it does not find: for
+    /// [`cast`](Self::cast) bodies behind the one that is hit, for [`nearest`](Self::nearest) some that are farther.
     ///
     /// ```
     /// use sweep_and_prune::{Aabb, BroadPhase, Cast};
     ///
     /// let mut world = BroadPhase::<1>::new();
     /// let hero = world.insert(Aabb::new([0.0], [1.0]))?;
+    /// let glass = world.insert(Aabb::new([3.0], [4.0]))?;
     /// let wall = world.insert(Aabb::new([5.0], [6.0]))?;
+    /// let is_opaque = [true, false, true]; // by slot
+    ///
+    /// let blocks_view = |id| id != hero && is_opaque[id.slot() as usize];
+    /// let queries = world.queries().with_predicate(&blocks_view);
     /// let look = Cast::ray([0.5], [1.0], 100.0);
-    /// let hit = world.queries().excluding(&[hero]).cast(&look)?;
-    /// assert_eq!(hit.unwrap().id, wall);
+    /// assert_eq!(queries.cast(&look)?.unwrap().id, wall);
+    /// assert_eq!(queries.nearest([0.5], 1, f64::INFINITY)?[0].id, wall);
     /// # Ok::<(), sweep_and_prune::Error>(())
     /// ```
-    pub fn excluding<'q>(self, ids: &'q [ProxyId]) -> Queries<'q, D, T>
+    pub fn with_predicate<'q>(
+        self,
+        predicate: &'q (dyn Fn(ProxyId) -> bool + Sync),
+    ) -> Queries<'q, D, T>
     where
         'w: 'q,
     {
-        Queries { excluded: ids, ..self }
+        Queries { predicate: Some(predicate), ..self }
     }
 
     /// The same queries with a filter: they find what a body with this filter may pair with. Without one
@@ -78,14 +104,19 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         self.list(area, Self::overlapping_many)
     }
 
-    /// [`overlapping`](Self::overlapping) for each of many boxes.
+    /// [`overlapping`](Self::overlapping) for each of many boxes, in lists that are replaced and keep their memory.
     ///
     /// # Errors
     /// [`Error::InvalidBox`] with the index of the first bad one.
     #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
-    pub fn overlapping_many(&self, areas: &[Aabb<D, T>]) -> Result<Lists<ProxyId>, Error> {
+    pub fn overlapping_many(
+        &self,
+        areas: &[Aabb<D, T>],
+        lists: &mut Lists<ProxyId>,
+    ) -> Result<(), Error> {
         crate::validate(areas)?;
-        Ok(self.collect(areas, |area, visit| self.visit_box(area, visit)))
+        self.collect(areas, lists, |area, visit| self.visit_box(area, visit));
+        Ok(())
     }
 
     /// Calls `visit` with each body whose box overlaps a box, in no particular order, until it breaks. It
@@ -128,18 +159,34 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         self.list(&point, Self::containing_many)
     }
 
-    /// [`containing`](Self::containing) for each of many points.
+    /// [`containing`](Self::containing) for each of many points, in lists that are replaced and keep their memory.
     ///
     /// # Errors
     /// [`Error::InvalidQuery`] with the index of the first bad one.
     #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
-    pub fn containing_many(&self, points: &[[T; D]]) -> Result<Lists<ProxyId>, Error> {
+    pub fn containing_many(
+        &self,
+        points: &[[T; D]],
+        lists: &mut Lists<ProxyId>,
+    ) -> Result<(), Error> {
         let is_number = |at: T| at <= T::INFINITY && at >= T::NEG_INFINITY;
         check_each(points, |point| fault_in("point", point, is_number))?;
-        Ok(self.collect(points, |&point, visit| self.visit_box(&Aabb::new(point, point), visit)))
+        self.collect(points, lists, |&at, visit| self.visit_box(&Aabb::new(at, at), visit));
+        Ok(())
     }
 
     /// The bodies whose boxes are at most `radius` away from `center`, sorted.
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, BroadPhase};
+    ///
+    /// let mut world = BroadPhase::<2>::new();
+    /// let crates = [Aabb::new([3.0, 0.0], [4.0, 1.0]), Aabb::new([4.0, 4.0], [5.0, 5.0])];
+    /// let ids = world.insert_many(&crates, Default::default())?;
+    /// // An explosion at the origin: the second crate's corner is 5.66 away.
+    /// assert_eq!(world.queries().within([0.0, 0.0], 5.0)?, [ids[0]]);
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
     ///
     /// # Errors
     /// [`Error::InvalidQuery`] if the center is not finite, or the radius negative or NaN.
@@ -148,34 +195,43 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         self.list(&(center, radius), Self::within_many)
     }
 
-    /// [`within`](Self::within) for each of many spheres, each a center and a radius.
+    /// [`within`](Self::within) for each of many spheres, each a center and a radius, in lists that are replaced and keep
+    /// their memory.
     ///
     /// # Errors
     /// [`Error::InvalidQuery`] with the index of the first bad one.
     #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
-    pub fn within_many(&self, spheres: &[([T; D], T)]) -> Result<Lists<ProxyId>, Error> {
+    pub fn within_many(
+        &self,
+        spheres: &[([T; D], T)],
+        lists: &mut Lists<ProxyId>,
+    ) -> Result<(), Error> {
         check_each(spheres, |(center, radius)| {
             fault_in("center", center, is_finite).or(fault_in("radius", &[*radius], is_length))
         })?;
-        Ok(self.collect(spheres, |sphere, visit| self.visit_sphere(sphere, visit)))
+        self.collect(spheres, lists, |sphere, visit| self.visit_sphere(sphere, visit));
+        Ok(())
     }
 
     /// One query by way of the form for many.
     pub(super) fn list<Q, V: Copy>(
         &self,
         query: &Q,
-        many: impl Fn(&Self, &[Q]) -> Result<Lists<V>, Error>,
+        many: impl Fn(&Self, &[Q], &mut Lists<V>) -> Result<(), Error>,
     ) -> Result<Vec<V>, Error> {
-        Ok(many(self, core::slice::from_ref(query))?.values)
+        let mut lists = Lists::new();
+        many(self, core::slice::from_ref(query), &mut lists)?;
+        Ok(lists.values)
     }
 
     /// The bodies in each of many regions, which `search` shows to its visitor.
     fn collect<Q>(
         &self,
         regions: &[Q],
+        lists: &mut Lists<ProxyId>,
         search: impl Fn(&Q, &mut dyn FnMut(ProxyId) -> ControlFlow<()>),
-    ) -> Lists<ProxyId> {
-        let mut lists = Lists::new();
+    ) {
+        lists.clear();
         for region in regions {
             let start = lists.values.len();
             search(region, &mut |id| {
@@ -187,7 +243,6 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
             }
             lists.end();
         }
-        lists
     }
 
     /// Shows the bodies whose boxes overlap a box: all boxes of a node are tested at once, by vectors.
@@ -220,7 +275,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
     pub(super) fn sees(&self, index: u32) -> bool {
         self.bodies.slots.has(index, flag::LIVE)
             && (self.bodies.rules.allow_all() && self.filter.is_none() || self.filter_sees(index))
-            && !(self.excluded.iter()).any(|&id| id == self.bodies.slots.id(index))
+            && self.predicate.is_none_or(|is_wanted| is_wanted(self.bodies.slots.id(index)))
     }
 
     /// Whether a body is enabled, and the filter of the queries allows its own.

@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 
 use super::node::{FAN, LEAST, NONE, Node, split};
+use crate::cloning::clone_fields;
 use crate::{Aabb, Scalar};
 
 /// A body that is to be put into a leaf. What is read again and again is kept here, in few bytes.
@@ -24,7 +25,7 @@ pub struct Building {
 }
 
 /// The tree. Bodies are storage indices, and their boxes in it may be larger than they are.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Tree<const D: usize, T> {
     pub(super) nodes: Vec<Node<D, T>>,
     pub(super) free: Vec<u32>,
@@ -38,6 +39,12 @@ pub struct Tree<const D: usize, T> {
     pub(super) building: Option<Building>,
     /// The size of the leaves as built, and the number of bodies then.
     pub(super) built: (f64, usize),
+}
+
+clone_fields! {
+    [const D: usize, T: Scalar] Tree<D, T> {
+        nodes, free, root, leaves, count, entries, building, built,
+    }
 }
 
 impl<const D: usize, T: Scalar> Default for Tree<D, T> {
