@@ -46,7 +46,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
     /// [`cast`](Self::cast) bodies behind the one that is hit, for [`nearest`](Self::nearest) some that are farther.
     ///
     /// ```
-    /// use sweep_and_prune::{Aabb, BroadPhase, Cast};
+    /// use sweep_and_prune::{Aabb, BroadPhase, Cast, ProxyId};
     ///
     /// let mut world = BroadPhase::<1>::new();
     /// let hero = world.insert(Aabb::new([0.0], [1.0]))?;
@@ -54,7 +54,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
     /// let wall = world.insert(Aabb::new([5.0], [6.0]))?;
     /// let is_opaque = [true, false, true]; // by slot
     ///
-    /// let blocks_view = |id| id != hero && is_opaque[id.slot() as usize];
+    /// let blocks_view = |id: ProxyId| id != hero && is_opaque[id.slot() as usize];
     /// let queries = world.queries().with_predicate(&blocks_view);
     /// let look = Cast::ray([0.5], [1.0], 100.0);
     /// assert_eq!(queries.cast(&look)?.unwrap().id, wall);
