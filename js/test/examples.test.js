@@ -5,19 +5,21 @@ import { execFileSync } from "node:child_process";
 import { existsSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { once } from "node:events";
-import { join } from "node:path";
+import { basename, join } from "node:path";
 import { before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 import * as esbuild from "esbuild";
-import { startBrowser } from "./support/browser.js";
+import { resultOf, startBrowser } from "./support/browser.js";
 
 const folder = fileURLToPath(new URL("../examples", import.meta.url));
 const pages = fileURLToPath(new URL("../docs", import.meta.url));
 const examples = readdirSync(folder).filter((name) => name.endsWith(".js"));
 /** Those that need a browser. */
-const inBrowser = ["pairs-in-worker.js", "phaser-game.js", "pixi-game.js"];
+const inBrowser = ["excalibur-engine.js", "pairs-in-worker.js", "phaser-game.js", "pixi-game.js"];
 /** The workers that they start. */
 const workers = ["pairs-worker.js"];
+/** What they import. */
+const imported = ["cannon-adapter.js", "excalibur-adapter.js", "matter-adapter.js"];
 
 before(() => {
   const lock = readFileSync(join(folder, "package-lock.json"), "utf8");
@@ -35,7 +37,7 @@ function promised(code) {
   return [...code.matchAll(/console\.log\(.*\);\s*\/\/ (.*)/g)].map(([, said]) => said);
 }
 
-for (const name of examples.filter((name) => ![...inBrowser, ...workers].includes(name))) {
+for (const name of examples.filter((name) => ![...inBrowser, ...workers, ...imported].includes(name))) {
   test(`${name} prints what it says`, () => {
     const expected = promised(readFileSync(join(folder, name), "utf8"));
     assert.ok(expected.length > 0);
@@ -44,25 +46,34 @@ for (const name of examples.filter((name) => ![...inBrowser, ...workers].include
   });
 }
 
+/**
+ * A server of a page that runs the first of these modules; all of them are bundled with what they import.
+ *
+ * @param {string[]} modules
+ */
+async function serve(modules) {
+  // esbuild does not copy the files that a module names: the inline entries carry them.
+  const alias = { "sweep-and-prune": "sweep-and-prune/inline", "sweep-and-prune/broad-phase": "sweep-and-prune/broad-phase/inline" };
+  const nodePaths = [join(folder, "node_modules")];
+  const { outputFiles } = await esbuild.build({ entryPoints: modules, bundle: true, format: "esm", write: false, outdir: "/", alias, nodePaths, logLevel: "error" });
+  const files = new Map(outputFiles.map(({ path, contents }) => [path.slice(path.lastIndexOf("/")), contents]));
+  const server = createServer((request, response) => {
+    // A page with shared memory.
+    const isolated = { "cross-origin-opener-policy": "same-origin", "cross-origin-embedder-policy": "require-corp" };
+    const isPage = request.url === "/";
+    response.writeHead(200, { "content-type": isPage ? "text/html" : "text/javascript", ...isolated });
+    response.end(isPage ? `<!doctype html><script type="module" src="/${basename(modules[0] ?? "")}"></script>` : files.get(request.url ?? ""));
+  }).listen(0, "127.0.0.1");
+  await once(server, "listening");
+  const { port } = /** @type {import("node:net").AddressInfo} */ (server.address());
+  return { server, address: `http://127.0.0.1:${port}/` };
+}
+
 for (const name of inBrowser) {
   test(`${name} prints what it says, in Chromium`, async () => {
     const expected = promised(readFileSync(join(folder, name), "utf8"));
     assert.ok(expected.length > 0);
-    // esbuild does not copy the files that a module names: the inline entries carry them.
-    const alias = { "sweep-and-prune": "sweep-and-prune/inline", "sweep-and-prune/broad-phase": "sweep-and-prune/broad-phase/inline" };
-    const { outputFiles } = await esbuild.build({
-      entryPoints: [name, ...workers].map((name) => join(folder, name)), bundle: true, format: "esm", write: false, outdir: "/", alias, logLevel: "error",
-    });
-    const files = new Map(outputFiles.map(({ path, contents }) => [path.slice(path.lastIndexOf("/")), contents]));
-    const server = createServer((request, response) => {
-      // A page with shared memory.
-      const isolated = { "cross-origin-opener-policy": "same-origin", "cross-origin-embedder-policy": "require-corp" };
-      const isPage = request.url === "/";
-      response.writeHead(200, { "content-type": isPage ? "text/html" : "text/javascript", ...isolated });
-      response.end(isPage ? `<!doctype html><script type="module" src="/${name}"></script>` : files.get(request.url ?? ""));
-    }).listen(0, "127.0.0.1");
-    await once(server, "listening");
-    const { port } = /** @type {import("node:net").AddressInfo} */ (server.address());
+    const { server, address } = await serve([name, ...workers].map((name) => join(folder, name)));
     const browser = await startBrowser();
     try {
       const page = await browser.newPage();
@@ -72,7 +83,7 @@ for (const name of inBrowser) {
       page.on("console", (message) => message.type() === "warning" || printed.push(message.text()));
       page.on("pageerror", (error) => printed.push(String(error)));
       const done = page.waitForEvent("console", { predicate: () => printed.length >= expected.length, timeout: 600_000 });
-      await page.goto(`http://127.0.0.1:${port}/`);
+      await page.goto(address);
       await done;
       assert.deepEqual(printed.filter((line) => !line.includes("favicon") && !line.includes("404")), expected);
     } finally {
@@ -88,6 +99,20 @@ test("each page shows examples as they are, and each example has a page", () => 
   );
   const files = examples.map((name) => readFileSync(join(folder, name), "utf8"));
   assert.deepEqual(shown.sort(), files.sort());
+});
+
+test("in Excalibur pairs, queries and rays are those of brute force in 400 steps in which anything changes", async () => {
+  const { server, address } = await serve([fileURLToPath(new URL("support/excalibur-page.js", import.meta.url))]);
+  const browser = await startBrowser();
+  try {
+    const { differences, pairs, found, hits, colliders, ofExcalibur } = await resultOf(browser, address);
+    assert.deepEqual(differences, []);
+    assert.ok(pairs > 1_000 && found > 500 && hits > 200, `${pairs} pairs, ${found} found, ${hits} hits`);
+    assert.equal(colliders, ofExcalibur, "colliders that are tracked");
+  } finally {
+    await browser.close();
+    server.close();
+  }
 });
 
 test("the picture is what its script draws", () => {

@@ -1,0 +1,113 @@
+// Worlds of each engine, with its own broad phase and with another.
+import * as CANNON from "cannon-es";
+import * as ex from "excalibur";
+import Matter from "matter-js";
+import { SweepAndPruneBroadphase } from "../cannon-adapter.js";
+import { replaceBroadPhase } from "../excalibur-adapter.js";
+import { collisions } from "../matter-adapter.js";
+
+const MS = 1000 / 60;
+
+/** Numbers from 0 to 1, the same in each run. */
+function randomNumbers(seed) {
+  let state = seed;
+  return () => {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    return state / 2 ** 32;
+  };
+}
+
+/** By engine: the names of its broad phases, its own first, and how a world of one is made: a function that does a step and returns the number of contacts. */
+export const engines = {
+  matter: {
+    broadPhases: ["its own", "sweep-and-prune"],
+    create(scene, count, broadPhase) {
+      const own = Matter.Detector.collisions;
+      const engine = Matter.Engine.create({ gravity: { y: scene === "pile" ? 1 : 0 } });
+      const random = randomNumbers(count);
+      const side = 30 * Math.sqrt(count);
+      const wall = (x, y, width, height) => Matter.Bodies.rectangle(x, y, width, height, { isStatic: true, restitution: 1 });
+      const walls = [wall(side / 2, -50, side + 200, 100), wall(side / 2, side + 50, side + 200, 100), wall(-50, side / 2, 100, side), wall(side + 50, side / 2, 100, side)];
+      const flies = scene === "gas";
+      const bodies = Array.from({ length: count }, () => {
+        const body = Matter.Bodies.circle(random() * side, random() * side, flies ? 5 : 10, flies ? { restitution: 1, friction: 0, frictionAir: 0, slop: 0 } : {});
+        if (flies) Matter.Body.setVelocity(body, { x: 6 * random() - 3, y: 6 * random() - 3 });
+        return body;
+      });
+      Matter.Composite.add(engine.world, [...walls, ...bodies]);
+      return () => {
+        if (broadPhase !== "its own") Matter.Detector.collisions = collisions;
+        Matter.Engine.update(engine, MS);
+        Matter.Detector.collisions = own;
+        return engine.pairs.collisionActive.length + engine.pairs.collisionStart.length;
+      };
+    },
+  },
+  cannon: {
+    broadPhases: ["its sweep", "its default", "sweep-and-prune"],
+    create(scene, count, broadPhase) {
+      const broadphase = broadPhase === "its default" ? new CANNON.NaiveBroadphase() : new SweepAndPruneBroadphase();
+      const flies = scene === "gas";
+      const world = new CANNON.World({ gravity: new CANNON.Vec3(0, flies ? 0 : -9.82, 0), broadphase });
+      if (broadPhase === "its sweep") world.broadphase = new CANNON.SAPBroadphase(world);
+      world.solver.iterations = 5;
+      const random = randomNumbers(count);
+      const side = (flies ? 4 : 2.5) * Math.cbrt(count);
+      const wall = (axis, sign) => {
+        const body = new CANNON.Body({ mass: 0, shape: new CANNON.Plane() });
+        if (axis === "x") body.quaternion.setFromEuler(0, sign > 0 ? Math.PI / 2 : -Math.PI / 2, 0);
+        if (axis === "y") body.quaternion.setFromEuler(sign > 0 ? -Math.PI / 2 : Math.PI / 2, 0, 0);
+        if (axis === "z" && sign < 0) body.quaternion.setFromEuler(Math.PI, 0, 0);
+        body.position[axis] = sign > 0 ? 0 : side;
+        world.addBody(body);
+      };
+      for (const axis of ["x", "y", "z"]) for (const sign of [1, -1]) wall(axis, sign);
+      for (let i = 0; i < count; i++) {
+        const position = new CANNON.Vec3(random() * side, random() * side, random() * side);
+        const body = new CANNON.Body({ mass: 1, shape: new CANNON.Sphere(0.5 + 0.3 * random()), linearDamping: flies ? 0 : 0.01, position });
+        if (flies) body.velocity.set(20 * random() - 10, 20 * random() - 10, 20 * random() - 10);
+        world.addBody(body);
+      }
+      return () => {
+        world.step(1 / 60);
+        return world.contacts.length;
+      };
+    },
+  },
+  excalibur: {
+    broadPhases: ["its own", "sweep-and-prune"],
+    async create(scene, count, broadPhase) {
+      const flies = scene === "gas";
+      const engine = new ex.Engine({
+        width: 400, height: 300, suppressPlayButton: true, suppressConsoleBootMessage: true,
+        physics: { solver: flies ? ex.SolverStrategy.Arcade : ex.SolverStrategy.Realistic, gravity: ex.vec(0, flies ? 0 : 500) },
+      });
+      await engine.start();
+      engine.clock.stop();
+      const world = engine.currentScene;
+      if (broadPhase !== "its own") replaceBroadPhase(world);
+      const random = randomNumbers(count);
+      const side = 30 * Math.sqrt(count);
+      const wall = (x, y, width, height) => world.add(new ex.Actor({ x, y, width, height, collisionType: ex.CollisionType.Fixed }));
+      wall(side / 2, -50, side + 200, 100), wall(side / 2, side + 50, side + 200, 100), wall(-50, side / 2, 100, side), wall(side + 50, side / 2, 100, side);
+      for (let i = 0; i < count; i++) {
+        const vel = flies ? ex.vec(400 * random() - 200, 400 * random() - 200) : ex.vec(0, 0);
+        // What flies is told of contacts and goes on, as bullets and triggers do.
+        world.add(new ex.Actor({ x: random() * side, y: random() * side, radius: 10, vel, collisionType: flies ? ex.CollisionType.Passive : ex.CollisionType.Active }));
+      }
+      let contacts = 0;
+      const processor = world.physics.collisionProcessor;
+      const narrowphase = processor.narrowphase.bind(processor);
+      processor.narrowphase = (pairs, stats) => {
+        const found = narrowphase(pairs, stats);
+        contacts = found.length;
+        return found;
+      };
+      return () => {
+        contacts = 0;
+        world.world.update(ex.SystemType.Update, MS);
+        return contacts;
+      };
+    },
+  },
+};

@@ -1,0 +1,94 @@
+// Excalibur with the adapter of the examples, beside brute force and Excalibur's own collision processor, which is told the same.
+import * as ex from "excalibur";
+import { replaceBroadPhase } from "../../examples/excalibur-adapter.js";
+
+const keysOf = (pairs) => pairs.map(({ colliderA, colliderB }) => [colliderA.id.value, colliderB.id.value].sort((a, b) => a - b).join("-")).sort();
+const idsOf = (colliders) => colliders.map(({ id }) => id.value).sort((a, b) => a - b);
+
+let state = 7;
+const random = (limit) => {
+  state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+  return Math.floor((state / 2 ** 32) * limit);
+};
+
+const engine = new ex.Engine({ width: 400, height: 300, suppressPlayButton: true, suppressConsoleBootMessage: true });
+await engine.start();
+engine.clock.stop();
+const scene = engine.currentScene;
+replaceBroadPhase(scene);
+const replaced = scene.physics.collisionProcessor;
+const own = new ex.SparseHashGridCollisionProcessor(scene.physics.config.sparseHashGrid);
+const differences = [];
+/** Whether a type or a group of an actor has changed. */
+let hasChanged = false;
+let turn = 0;
+const counts = { pairs: 0, found: 0, hits: 0 };
+const compare = (what, a, b) => JSON.stringify(a) === JSON.stringify(b) || differences.push(`${what}: ${JSON.stringify(a)} instead of ${JSON.stringify(b)}`);
+for (const name of ["track", "untrack", "update"]) {
+  const call = replaced[name].bind(replaced);
+  replaced[name] = (...of) => (own[name](...of), call(...of));
+}
+const broadphase = replaced.broadphase.bind(replaced);
+replaced.broadphase = (...of) => {
+  const pairs = broadphase(...of);
+  // Brute force, and until then Excalibur's own pairs: it sees a changed type or group only when the actor moves. A shape that
+  // was replaced is still tracked in this step, here and there.
+  const [colliders] = of;
+  const isCurrent = ({ colliderA, colliderB }) => colliders.includes(colliderA) && colliders.includes(colliderB);
+  const all = colliders.flatMap((a, i) => colliders.slice(i + 1).map((b) => new ex.Pair(a, b)));
+  compare("pairs", keysOf(pairs.filter(isCurrent)), keysOf(all.filter(({ colliderA, colliderB }) => ex.Pair.canCollide(colliderA, colliderB) && colliderA.bounds.overlaps(colliderB.bounds))));
+  if (!hasChanged) compare("pairs of Excalibur", keysOf(pairs.filter(isCurrent)), keysOf(own.broadphase(...of).filter(isCurrent)));
+  ask(colliders);
+  counts.pairs += pairs.length;
+  return pairs;
+};
+
+/** A query and a ray, beside brute force. */
+function ask(colliders) {
+  turn++;
+  const [x, y] = [random(400), random(300)];
+  const where = [ex.vec(x, y), new ex.BoundingBox(x, y, x + 1 + random(80), y + 1 + random(80))][turn % 2];
+  const found = idsOf(replaced.query(where).filter((collider) => colliders.includes(collider)));
+  // Excalibur's own grid answers with all of some cells: what it finds in vain is left out.
+  const expected = idsOf(colliders.filter(({ bounds }) => (where instanceof ex.Vector ? bounds.contains(where) : bounds.left <= where.right && where.left <= bounds.right && bounds.top <= where.bottom && where.top <= bounds.bottom)));
+  compare("query", found, expected);
+  counts.found += found.length;
+  const ray = new ex.Ray(ex.vec(x, y), ex.vec(random(21) - 10, random(21) - 10.5));
+  const options = { searchAllColliders: turn % 3 === 0, collisionGroup: turn % 5 === 0 ? groups[1] : undefined, ignoreCollisionGroupAll: turn % 7 === 0, maxDistance: 20 + random(300) };
+  const hits = replaced.rayCast(ray, { ...options, filter: ({ collider }) => colliders.includes(collider) });
+  const all = colliders.filter(({ owner }) => {
+    const { group } = owner.get(ex.BodyComponent);
+    return ((options.collisionGroup ?? ex.CollisionGroup.All).category & group.category) !== 0 && !(options.ignoreCollisionGroupAll && group === ex.CollisionGroup.All);
+  }).flatMap((collider) => collider.rayCast(ray, options.maxDistance) ?? []).sort((a, b) => a.distance - b.distance);
+  compare("ray", hits.map(({ distance }) => distance), (options.searchAllColliders ? all : all.slice(0, 1)).map(({ distance }) => distance));
+  counts.hits += hits.length;
+}
+
+const groups = [ex.CollisionGroup.All, ex.CollisionGroupManager.create("one"), ex.CollisionGroupManager.create("two")];
+const types = [ex.CollisionType.Passive, ex.CollisionType.Passive, ex.CollisionType.Active, ex.CollisionType.Fixed, ex.CollisionType.PreventCollision];
+const actors = [];
+const actions = {
+  add() {
+    const actor = new ex.Actor({
+      x: random(400), y: random(300), vel: ex.vec(random(200) - 100, random(200) - 100), collisionType: types[random(types.length)], collisionGroup: groups[random(3)],
+      ...(random(2) ? { radius: 3 + random(20) } : { width: 5 + random(30), height: 5 + random(30) }),
+    });
+    if (random(6) === 0) actor.collider.useCompositeCollider([ex.Shape.Circle(10, ex.vec(-10, 0)), ex.Shape.Box(20, 6, ex.vec(0.5, 0.5), ex.vec(10, 0))]);
+    actors.push(actor);
+    scene.add(actor);
+  },
+  remove: () => actors.length > 0 && actors.splice(random(actors.length), 1)[0].kill(),
+  jump: () => actors.length > 0 && (actors[random(actors.length)].pos = ex.vec(random(400), random(300))),
+  type: () => actors.length > 0 && (actors[random(actors.length)].body.collisionType = types[random(types.length)]),
+  group: () => actors.length > 0 && (actors[random(actors.length)].body.group = groups[random(3)]),
+  shape: () => actors.length > 0 && actors[random(actors.length)].collider.useCircleCollider(2 + random(12)),
+};
+const calm = ["add", "add", "add", "remove", "jump", "shape"];
+const names = ["add", "add", "add", "remove", "jump", "type", "group", "shape"];
+for (let step = 0; step < 400; step++) {
+  hasChanged = step >= 200;
+  const offered = hasChanged ? names : calm;
+  for (let i = 0; i < 3; i++) actions[offered[random(offered.length)]]();
+  scene.world.update(ex.SystemType.Update, 1000 / 60);
+}
+globalThis.result = { differences: differences.slice(0, 5), ...counts, colliders: replaced.getColliders().length, ofExcalibur: own.getColliders().length };
