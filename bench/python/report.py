@@ -53,7 +53,9 @@ def with_torchvision(content: dict[str, Any], machine: str) -> list[str]:
     return ratios(content, machine, "Beside torchvision, in memory", "torchvision-")
 
 
-def ratios(content: dict[str, Any], machine: str, title: str = "In memory", prefix: str = "") -> list[str]:
+def ratios(
+    content: dict[str, Any], machine: str, title: str = "In memory", prefix: str = "", has_plots: bool = True
+) -> list[str]:
     lines = [f"## {title}: {content['machine']['cpu']}", "", where(content), ""]
     lines += [
         "Time of each library over that of sweep-and-prune on one thread, in the same round (median; above 1 is slower), "
@@ -69,9 +71,14 @@ def ratios(content: dict[str, Any], machine: str, title: str = "In memory", pref
                     f"| {seconds(result['median_seconds'])} | {size(result['peak_bytes'])} |"
                 )
             for library, found in one["wrong"].items():
-                lines.append(f"| {one['boxes']:,} | {one['found']:,} | {library} | finds {found:,}: not timed | | |")
-        lines += ["", f"![{case}]({plot(content, case, prefix, machine)})", ""]
+                shown = f"{found:,}" if isinstance(found, int) else found
+                lines.append(f"| {one['boxes']:,} | {one['found']:,} | {library} | finds {shown}: not timed | | |")
+        lines += ["", *([f"![{case}]({plot(content, case, prefix, machine)})", ""] if has_plots else [])]
     return lines
+
+
+def varied(content: dict[str, Any], machine: str) -> list[str]:
+    return ratios(content, machine, "Many scenes of a kind, each once in a round", has_plots=False)
 
 
 def plot(content: dict[str, Any], case: str, prefix: str, machine: str) -> str:
@@ -133,7 +140,7 @@ def disk(content: dict[str, Any], _: str) -> list[str]:
 
 def main() -> None:
     lines = ["# Results of the Python package", "", "Written by `report.py`; do not edit.", ""]
-    for kind, write in (("ratios", ratios), ("torchvision", with_torchvision), ("disk", disk)):
+    for kind, write in (("varied", varied), ("ratios", ratios), ("torchvision", with_torchvision), ("disk", disk)):
         for machine, content in newest(kind).items():
             lines += write(content, machine)
     Path(FOLDER / "RESULTS.md").write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")

@@ -42,6 +42,9 @@ pub trait ArrayPairFinder: AnyPairFinder {
     /// For a set other than 0 and 1.
     fn write_rows(&mut self, set: usize, coordinates: Coordinates<'_>) -> Result<usize, Error>;
 
+    /// The nanoseconds that a search takes on one thread, by the model of its plan.
+    fn expected_ns(&mut self, a: usize, b: Option<usize>) -> f64;
+
     /// All pairs; `None` if the search was cancelled.
     #[allow(clippy::missing_errors_doc)]
     fn find(
@@ -134,6 +137,10 @@ impl<const D: usize, T: Scalar> AnyPairFinder for TypedPairFinder<D, T> {
 impl<const D: usize, T: Scalar> ArrayPairFinder for TypedPairFinder<D, T> {
     fn write_rows(&mut self, set: usize, coordinates: Coordinates<'_>) -> Result<usize, Error> {
         self.sets[set].write(coordinates)
+    }
+
+    fn expected_ns(&mut self, a: usize, b: Option<usize>) -> f64 {
+        search(&mut self.finder, &self.sets, a, b).expected_ns()
     }
 
     fn find(

@@ -19,8 +19,18 @@ pub struct Finder(Mutex<Search>);
 struct Search {
     finder: Box<dyn ArrayPairFinder>,
     kind: Kind,
+    /// How many may be used, and how many the last search used.
+    most_threads: usize,
     threads: usize,
 }
+
+/// With fewer boxes than this the core uses one thread.
+const MIN_FOR_THREADS: usize = 4096;
+/// From this many boxes on, threads pay however few of them overlap.
+const SURE_FOR_THREADS: usize = 1 << 17;
+/// With less work threads do not pay: it takes 0.05 to 0.1 ms until another thread has begun and this one has heard that
+/// it is done. (By the model of the plan, for one thread.)
+const MIN_NS_FOR_THREADS: f64 = 1.0e6;
 
 /// How many boxes one or two sets have.
 #[derive(Clone, Copy)]
@@ -43,14 +53,13 @@ impl Finder {
         let kind = Kind { dimensions, is_double: double };
         let finder = kind.pair_finder(threads);
         let finder = finder.ok_or_else(|| PyValueError::new_err("dimensions must be 1, 2 or 3"))?;
-        Ok(Self(Mutex::new(Search { finder, kind, threads })))
+        Ok(Self(Mutex::new(Search { finder, kind, most_threads: threads, threads })))
     }
 
     /// Uses at most `threads` threads from now on.
     fn use_threads(&self, threads: usize) -> PyResult<()> {
         self.with(|search| {
-            search.threads = at_most(threads);
-            search.finder.use_threads(search.threads);
+            search.most_threads = at_most(threads);
             Ok(())
         })
     }
@@ -66,6 +75,7 @@ impl Finder {
         let (py, index) = (a.py(), Index::of(index)?);
         self.with(|search| {
             let sets = search.copy(&a, b.as_ref())?;
+            search.choose_threads(sets);
             let finder = &mut search.finder;
             let found = run(py, sets.boxes(), search.threads, progress.as_ref(), |progress| {
                 finder.find(sets.a, sets.b, progress).map(|found| found.unwrap_or(&[]))
@@ -95,6 +105,7 @@ impl Finder {
         let py = a.py();
         self.with(|search| {
             let sets = search.copy(&a, b.as_ref())?;
+            search.choose_threads(sets);
             let finder = &mut search.finder;
             let counted = run(py, sets.boxes(), search.threads, progress.as_ref(), |progress| {
                 finder.count(sets.a, sets.b, progress).map(|count| count.unwrap_or(0))
@@ -187,6 +198,20 @@ impl Search {
         let a = copy_boxes(a, self.kind, |count| finder.rows(0, count))?;
         let b = b.map(|b| copy_boxes(b, self.kind, |count| finder.rows(1, count))).transpose()?;
         Ok(Sets { a, b })
+    }
+
+    /// Uses several threads for what takes long enough.
+    fn choose_threads(&mut self, sets: Sets) {
+        let boxes = sets.boxes();
+        let pay = self.most_threads > 1
+            && boxes >= MIN_FOR_THREADS
+            && (boxes >= SURE_FOR_THREADS
+                || self.finder.expected_ns(sets.a, sets.b) >= MIN_NS_FOR_THREADS);
+        let threads = if pay { self.most_threads } else { 1 };
+        if threads != self.threads {
+            self.finder.use_threads(threads);
+            self.threads = threads;
+        }
     }
 
     /// After a signal or a panic, which may have left the finder's buffers half written.

@@ -23,17 +23,13 @@ use crate::exit;
 /// Fewer boxes than this take less time than releasing the GIL and waiting to acquire it again.
 const FEW: usize = 1024;
 
-/// With fewer boxes than this the core uses one thread. (On two cores, two threads cost 0.1 ms more at 10,000 boxes that
-/// hardly overlap; they save half of a search whose boxes overlap many others.)
-const MIN_FOR_THREADS: usize = 4096;
-
 /// Time between two checks for signals, and between two reports of progress.
 const INTERVAL: Duration = Duration::from_millis(20);
 
 /// A progress callback of the core; it may cancel the search.
 pub type Progress<'a> = &'a (dyn Fn(f64) -> ControlFlow<()> + Sync);
 
-/// Runs `work`, which looks at about `boxes` boxes. Unless there are few, it calls `report` now and then with the share of the
+/// Runs `work`, which looks at about `boxes` boxes and may use this many threads. Unless there are few, it calls `report` now and then with the share of the
 /// work that is done, from 0 to 1.
 ///
 /// # Errors
@@ -52,7 +48,7 @@ pub fn run<R: Send>(
     let watch = Watch::new(report);
     let done = if boxes < FEW {
         work(&|_| ControlFlow::Continue(()))
-    } else if let Some(pool) = (threads > 1 && boxes >= MIN_FOR_THREADS).then(pool).flatten() {
+    } else if let Some(pool) = (threads > 1).then(pool).flatten() {
         py.detach(|| on_pool(&pool, &watch, work))
     } else {
         py.detach(|| work(&|done| watch.check_now_and_then(done)))

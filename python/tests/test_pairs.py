@@ -69,14 +69,14 @@ def test_sizes_at_which_something_else_is_done(dimensions: int, dtype: Any, coun
 
 @kinds
 def test_threads_give_the_same_pairs_in_the_same_order(dimensions: int, dtype: Any) -> None:
-    boxes = random_boxes(30_000, dimensions, dtype)
+    boxes = random_boxes(140_000, dimensions, dtype)
     alone = sap.find_pairs(boxes)
     for threads in (2, 3, 8):
         assert np.array_equal(sap.find_pairs(boxes, threads=threads), alone)
         assert sap.count_pairs(boxes, threads=threads) == len(alone)
-    between = sap.find_pairs_between(boxes[:20_000], boxes[20_000:])
+    between = sap.find_pairs_between(boxes[:90_000], boxes[90_000:])
     finder = sap.PairFinder(dimensions, dtype, threads=2)
-    assert np.array_equal(finder.find_between(boxes[:20_000], boxes[20_000:]), between)
+    assert np.array_equal(finder.find_between(boxes[:90_000], boxes[90_000:]), between)
     assert np.array_equal(finder.find(boxes), alone)
     assert len(between) > 1000
 

@@ -183,7 +183,7 @@ def count_in_child(results: Any, boxes: Any) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="processes are not forked there")
 @pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
 def test_a_forked_process_has_threads_of_its_own() -> None:
-    boxes = random_boxes(20_000, 3, np.float32)
+    boxes = random_boxes(140_000, 3, np.float32)
     wanted = sap.count_pairs(boxes, threads=2)
     fork = multiprocessing.get_context("fork")
     results = fork.Queue()
@@ -193,3 +193,36 @@ def test_a_forked_process_has_threads_of_its_own() -> None:
     child.join(timeout=600)
     assert child.exitcode == 0 and child.pid != os.getpid()
     assert sap.count_pairs(boxes, threads=2) == wanted
+
+
+OF_EACH_SIZE = """
+import os, sys
+import numpy as np
+import sweep_and_prune as sap
+
+def threads():
+    return len(os.listdir("/proc/self/task"))
+
+low = np.random.default_rng(1).random((int(sys.argv[1]), 2))
+boxes = np.hstack([low, low + float(sys.argv[2])])
+before = threads()
+finder = sap.PairFinder(2, threads=2)
+for search in (finder.find, finder.count, lambda boxes: sap.find_pairs(boxes, threads=2)):
+    search(boxes)
+print(threads() - before)
+"""
+
+
+@pytest.mark.skipif(not os.path.exists("/proc/self/task"), reason="it does not tell how many threads there are")
+@pytest.mark.parametrize(
+    ("count", "size", "is_on_threads"),
+    [(20_000, 1e-3, False), (5000, 1e-3, False), (5000, 0.2, True), (140_000, 1e-6, True), (3000, 1.0, False)],
+)
+def test_threads_search_what_takes_long_enough(count: int, size: float, is_on_threads: bool) -> None:
+    """A short search is not worth waking a thread: then none is ever started."""
+    if (os.cpu_count() or 1) < 2:
+        pytest.skip("threads need processors")
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+    command = [sys.executable, "-c", OF_EACH_SIZE, str(count), str(size)]
+    done = subprocess.run(command, capture_output=True, text=True, env=environment, check=True)
+    assert (int(done.stdout) > 0) == is_on_threads, done.stdout

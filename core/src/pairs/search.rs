@@ -11,6 +11,7 @@ use super::kernel::{Kernel, PairOrder};
 #[cfg(feature = "std")]
 use super::parallel::Helpers;
 use super::parallel::Receiver;
+use super::plan::{Among, plan};
 use super::probe::Probe;
 #[cfg(feature = "std")]
 use super::probe::SortOnly;
@@ -82,6 +83,18 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
     pub fn progress(mut self, report: &'b (dyn Fn(f64) -> ControlFlow<()> + Sync)) -> Self {
         self.progress = Some(report);
         self
+    }
+
+    /// The nanoseconds that the search takes on one thread, by the model of its plan: of use to decide whether threads
+    /// pay. 0 if a set is empty. Takes as long as a plan, some microseconds.
+    #[doc(hidden)]
+    pub fn expected_ns(&self) -> f64 {
+        let sets = [self.boxes, self.against.unwrap_or(self.boxes)];
+        if sets.iter().any(|set| set.is_empty()) {
+            return 0.0;
+        }
+        let count = if self.against.is_some() { 2 } else { 1 };
+        plan(&sets[..count], Among::All { is_crowded: false }).1
     }
 
     /// Finds the pairs, in a buffer that stays valid until the next search. They and their order are

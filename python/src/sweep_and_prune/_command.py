@@ -364,6 +364,8 @@ def nearest(a: str, b: str, **options: Any) -> None:
     kind = kind_of(given.output, given.to)
     with _opened(given) as sources:
         sets, search = _search(given, sources)
+        if given.max_distance is None and plain_corners({"a": sets[0], "b": sets[1]}, "xyxy")[0].shape[1] > 2:
+            raise FileError("boxes of two or three dimensions need --max-distance: those farther away are left out")
         chosen = {name: search[name] for name in ("missing", "by") if name in search}
         found = find_nearest(sets[0], sets[1], given.k, max_distance=given.max_distance, how=given.how, **chosen)
         distances = found.distances
@@ -410,13 +412,25 @@ def _opened(options: Options) -> Iterator[list[Source]]:
     try:
         yield sources
     except InvalidBoxError as error:
-        source = sources[1] if error.argument == "b" else sources[0]
-        place = source.place(error.index) + _columns_at_fault(error, source, options)
-        what = str(error).split(" ", 1)[1].replace("remove it or replace it", "remove it, or pass --missing skip")
-        raise FileError(f"{place}: the box {what}") from None
+        raise FileError(_fault(error, sources[1] if error.argument == "b" else sources[0], options)) from None
     except (ValueError, TypeError) as error:
         names = " and ".join(source.name for source in sources)
         raise FileError(f"{names}: {error}") from None
+
+
+def _fault(error: InvalidBoxError, source: Source, options: Options) -> str:
+    """What is wrong with which row of a file, in the terms of the file."""
+    place = source.place(error.index)
+    names = _of_sides(options, "columns")[error.argument == "b"]
+    has_nan = error.minimum != error.minimum or error.maximum != error.maximum
+    if source.has_shapes and has_nan and not names:
+        return f"{place}: it has no geometry, or an empty one; remove it, or pass --missing skip"
+    if options.format != "xyxy" and not has_nan and not (source.are_corners and not names):
+        names = names or source.box_columns(options.format)
+        column = f", column {names[len(names) // 2 + error.axis]}" if len(names) > 1 else ""
+        return f"{place}{column}: the size is {float(error.maximum - error.minimum):g}; it must be 0 or more"
+    what = str(error).split(" ", 1)[1].replace("remove it or replace it", "remove it, or pass --missing skip")
+    return f"{place}{_columns_at_fault(error, source, options)}: the box {what}"
 
 
 def _is_same_file(read: str, written: str | None) -> bool:

@@ -66,6 +66,8 @@ class Source:
     """Whether the columns have no names in the file."""
     are_corners = False
     """Whether the format says where boxes begin and end, so that no other one can be chosen."""
+    has_shapes = False
+    """Whether the boxes are the bounds of geometries."""
     crs: Any = None
     """The coordinate reference system, if it is known."""
 
@@ -344,7 +346,7 @@ def _read_json(name: str, file: _File) -> Source:
     labels = _labels_of([feature.get("properties") or {} for feature in features])
     labels.setdefault("id", np.array([feature.get("id") for feature in features], object))
     source = Source(name, boxes, labels)
-    source.are_corners = True
+    source.are_corners = source.has_shapes = True
     source.crs = _crs.of_geojson(document) if isinstance(document, dict) else _crs.LONGITUDE_LATITUDE
     return source
 
@@ -357,7 +359,9 @@ def _document(name: str, text: str) -> Any:
         lines = [(at, line.strip("\x1e \t\r")) for at, line in enumerate(text.split("\n"), 1)]
         given = [(at, line) for at, line in lines if line]
         if error.msg != "Extra data" and not text.startswith("\x1e"):
-            raise FileError(f"{name}, line {error.lineno}: {error.msg}") from None
+            raise FileError(
+                f"{name}, line {error.lineno}: it is not JSON ({error.msg}); was the file cut off or damaged?"
+            ) from None
     documents = []
     for at, line in given:
         try:
@@ -453,7 +457,7 @@ def _read_gis(name: str, file: _File) -> Source:
 
 def _of_geometries(name: str, bounds: NDArray[Any], labels: dict[str, Any], crs: Any) -> Source:
     source = Source(name, bounds, labels)
-    source.are_corners, source.crs = True, crs
+    source.are_corners, source.has_shapes, source.crs = True, True, crs
     return source
 
 

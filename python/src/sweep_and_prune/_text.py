@@ -134,7 +134,9 @@ class Text:
         if found is None or (found in (math.inf, -math.inf) and "inf" not in cell.lower()):
             what = "is not a number" if found is None else "is too large a number"
             shown = cell if len(cell) <= 60 else f"{cell[:57]}..."
-            raise FileError(f"{self.name}, line {self.line(index)}, column {name}: {shown!r} {what}")
+            # The formats of genomics have no header, but tables are saved under their names.
+            way = ": is this a header? Remove the line" if self.format is not None and index == 0 else ""
+            raise FileError(f"{self.name}, line {self.line(index)}, column {name}: {shown!r} {what}{way}")
         return found
 
 
