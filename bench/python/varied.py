@@ -1,7 +1,7 @@
 """How long interval libraries and shapely take, compared with sweep-and-prune, on many scenes of a kind, each once in a
 round: `python varied.py`. Writes results/varied-...json after each case; `python report.py` makes tables of them.
 
-Whoever searches one scene again and again measures processors that have learned its pairs by heart. So each library
+A processor learns the pairs of one scene by heart if it is searched again and again. So each library
 meets each scene once in a round, and all libraries meet it one after the other, in an order by chance. A ratio is that
 of two times for one scene in one round; the result is the median of all ratios.
 

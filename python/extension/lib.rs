@@ -8,6 +8,7 @@ mod exit;
 mod finder;
 mod lines;
 mod order;
+mod ranks;
 mod run;
 mod world;
 
@@ -24,6 +25,8 @@ mod _native {
     use super::lines::read_bed;
     #[pymodule_export]
     use super::order::in_order;
+    #[pymodule_export]
+    use super::ranks::ranks;
     #[pymodule_export]
     use super::world::World;
 

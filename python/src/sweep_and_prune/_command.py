@@ -365,7 +365,8 @@ def nearest(a: str, b: str, **options: Any) -> None:
     with _opened(given) as sources:
         sets, search = _search(given, sources)
         if given.max_distance is None and plain_corners({"a": sets[0], "b": sets[1]}, "xyxy")[0].shape[1] > 2:
-            raise FileError("boxes of two or three dimensions need --max-distance: those farther away are left out")
+            name = sources[0].name
+            raise FileError(f"{name}: boxes of two or three dimensions need --max-distance: others are left out")
         chosen = {name: search[name] for name in ("missing", "by") if name in search}
         found = find_nearest(sets[0], sets[1], given.k, max_distance=given.max_distance, how=given.how, **chosen)
         distances = found.distances

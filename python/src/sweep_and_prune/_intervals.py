@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import read_boxes, whole
 from ._columns import read_column
-from ._overlaps import Values, check_intervals, line_keys, plain_corners
+from ._overlaps import Values, check_intervals, line_keys, plain_corners, ranks_of
 from ._pairs import Groups, Margin, find, one_set, stream, two_sets
 from ._prepare import Prepared, is_missing
 
@@ -355,10 +355,10 @@ def _beside(prepared: Prepared, k: int) -> list[NDArray[np.int64]]:
     group_a, group_b = (boxes[:, 1] if is_grouped else np.zeros(len(boxes)) for boxes in (first, second))
     of_b = np.arange(len(second))
     found = []
-    for keys, own, side, step in ((low_b, high_a, "right", 1), (high_b, low_a, "left", -1)):
+    for keys, own, step in ((low_b, high_a, 1), (high_b, low_a, -1)):
         # Of equal ones, those with smaller indices come first, in the direction of the search.
         order = np.lexsort((step * of_b, keys))
-        place = np.searchsorted(keys[order], own, side=side) + (0 if step == 1 else -1)  # type: ignore[call-overload]
+        place = ranks_of(own, keys[order], or_equal=step == 1) + (0 if step == 1 else -1)
         for _ in range(k):
             is_there = (place >= 0) & (place < len(order))
             rows = np.flatnonzero(is_there)

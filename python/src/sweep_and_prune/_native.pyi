@@ -1,12 +1,12 @@
 from collections.abc import Callable
-from typing import final
+from typing import Any, final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._arrays import Floats, Ids, Pairs
 
-__all__ = ["Finder", "World", "in_order", "read_bed", "stop_threads"]
+__all__ = ["Finder", "World", "in_order", "ranks", "read_bed", "stop_threads"]
 
 _Words = tuple[int, int, int, bool]
 
@@ -66,6 +66,7 @@ class World:
     def snapshot(self) -> bytes: ...
     def state_hash(self) -> int: ...
 
+def ranks(sorted: NDArray[Any], values: NDArray[Any], or_equal: bool) -> NDArray[np.int64]: ...
 def in_order(
     first: NDArray[np.int64], second: NDArray[np.int64], rows: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]: ...

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import read_boxes, same_width
 from ._columns import in_one_unit, one_type
+from ._native import ranks
 from ._pairs import Groups, Margin, one_set, stream, two_sets
 from ._prepare import Prepared, one_kind, refuse_inverted
 from ._wrap import checked_wrap, length_on_circle, shared_length, without_crossings
@@ -97,9 +98,16 @@ def _counts_of_intervals(prepared: Prepared) -> NDArray[np.int64]:
     check_intervals(prepared)
     keys = line_keys(prepared.sets)
     (low, high), (starts, ends) = keys[0], keys[-1]
-    begun = np.searchsorted(np.sort(starts), high, side="right")
-    ended = np.searchsorted(np.sort(ends), low, side="left")
-    return np.asarray(begun - ended - (len(prepared.sets) == 1), np.int64)
+    begun = ranks_of(high, np.sort(starts), or_equal=True)
+    begun -= ranks_of(low, np.sort(ends), or_equal=False)
+    begun -= len(prepared.sets) == 1
+    return begun
+
+
+def ranks_of(values: Values, ordered: Values, or_equal: bool) -> NDArray[np.int64]:
+    """How many numbers of a sorted array that no other thread knows are less than each value, or less or equal."""
+    kind = np.int64 if ordered.dtype.kind in "iu" else np.float64
+    return ranks(ordered.astype(kind, copy=False), values.astype(kind), or_equal)
 
 
 def check_intervals(prepared: Prepared) -> None:
