@@ -35,11 +35,14 @@ fn call_all<const D: usize, T: Scalar>(
     let mut finder = PairFinder::<D, T>::new();
     let _ = (count_pairs(boxes), finder.find(boxes).is_ok());
     let _ = finder.find_between(boxes, boxes).is_ok();
+    let _ = finder.search(boxes).for_each_chunk(|_| ControlFlow::Break(()));
     let _ = (world.insert_with(aabb, Filter::ALL), world.insert_many(boxes, Filter::ALL));
     let _ = (world.set(id, aabb), world.set_many(ids, boxes), world.set_swept(id, aabb, aabb));
     let _ = (world.teleport(id, aabb), world.shift(point), world.set_filter(id, Filter::ALL));
     let _ = (world.remove_many(ids), world.update().is_empty(), world.pairs().len());
     let _ = (world.pairs_of(id).is_ok(), world.snapshot(), world.state_hash());
+    let _ = (world.snapshot_into(&mut alloc::vec::Vec::new()), world.prepare_queries());
+    let _ = (world.set_enabled(id, false), world.exclude_pair(id, id), world.is_excluded(id, id));
     let _ = (BroadPhase::<D, T>::from_snapshot(&[]), world.clear());
     let saved = world.clone();
     world.clone_from(&saved);

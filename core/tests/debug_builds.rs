@@ -23,6 +23,15 @@ fn call_all<const D: usize, T: Scalar>() -> Result<(), Error> {
     let mut finder = PairFinder::new();
     assert_eq!(finder.find(&boxes)?.len(), 1);
     assert_eq!(finder.find_between(&boxes, &boxes)?.len(), 4);
+    assert_eq!(finder.search(&boxes).count()?, 1);
+    assert_eq!(finder.search(&boxes).against(&boxes).pairs()?.len(), 4);
+    let go_on = |_: f64| ControlFlow::Continue(());
+    let mut chunks = 0;
+    let _ = finder.search(&boxes).progress(&go_on).for_each_chunk(|_| {
+        chunks += 1;
+        ControlFlow::<()>::Continue(())
+    })?;
+    assert_eq!((chunks, finder.take_pairs().len()), (1, 4));
 
     let mut world = BroadPhase::<D, T>::new();
     let id = world.insert(boxes[0])?;
@@ -33,12 +42,19 @@ fn call_all<const D: usize, T: Scalar>() -> Result<(), Error> {
     world.set_swept(id, boxes[0], boxes[1])?;
     world.teleport(id, boxes[0])?;
     world.set_filter(id, Filter::ALL)?;
+    world.set_enabled(id, true)?;
+    world.exclude_pair(id, ids[0])?;
+    world.include_pair(id, ids[0])?;
+    assert!(!world.is_excluded(id, ids[0])?);
     world.shift(at(1.0))?;
     assert!(world.update().ended().len() == 0 && world.changes().begun().len() > 0);
     let saved = world.clone();
     world.clone_from(&saved);
     world = BroadPhase::from_snapshot(&world.snapshot())?;
     assert_eq!(world.state_hash(), saved.state_hash());
+    world.snapshot_into(&mut vec![]);
+    world.prepare_queries();
+    assert!(world.prepared_queries().is_some());
     assert_eq!(world.pairs().len(), world.pairs_unsorted().count());
     assert!(world.pairs_of(id)?.len() > 0);
 

@@ -182,14 +182,15 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
     ) -> Result<ControlFlow<B>, Error> {
         let Self { buffers: Buffers { driver, buffer, .. }, boxes, against, progress } = self;
         let mut end = ControlFlow::Continue(());
-        let each = |pairs: &[[u32; 2]]| match each(pairs) {
+        let mut each = |pairs: &[[u32; 2]]| match each(pairs) {
             ControlFlow::Continue(()) => ControlFlow::Continue(()),
             ControlFlow::Break(with) => {
                 end = ControlFlow::Break(with);
                 ControlFlow::Break(())
             }
         };
-        let result = run(driver, boxes, against, progress, &mut Stream { buffer, each });
+        let stream = &mut Stream { buffer, each: &mut each };
+        let result = run_to_stream(driver, boxes, against, progress, stream);
         match result {
             Err(Error::Cancelled) if end.is_break() => Ok(end),
             result => result.map(|()| end),
@@ -241,6 +242,18 @@ pub(super) fn store<const D: usize, T: Scalar>(
         buffers.store = Store::default();
     }
     result
+}
+
+/// A search for a function of the user, compiled once for all of them.
+#[inline(never)]
+fn run_to_stream<const D: usize, T: Scalar>(
+    driver: &mut Driver<D, T>,
+    boxes: &[Aabb<D, T>],
+    against: Option<&[Aabb<D, T>]>,
+    progress: Option<ProgressCallback<'_>>,
+    stream: &mut Stream<'_>,
+) -> Result<(), Error> {
+    run(driver, boxes, against, progress, stream)
 }
 
 /// Searches sets that may be invalid.

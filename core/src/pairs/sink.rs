@@ -134,14 +134,14 @@ impl Sink for Count {
     }
 }
 
-/// Hands chunks of pairs to a function, in order, and stores only one buffer.
-#[derive(Debug)]
-pub(super) struct Stream<'a, F> {
+/// Hands chunks of pairs to a function, in order, and stores only one buffer. It does not depend on the type of the
+/// function, so that a search is not compiled once more for each one, and in a user's debug build.
+pub(super) struct Stream<'a> {
     pub buffer: &'a mut Buffer,
-    pub each: F,
+    pub each: &'a mut dyn FnMut(&[[u32; 2]]) -> ControlFlow<()>,
 }
 
-impl<F: FnMut(&[[u32; 2]]) -> ControlFlow<()>> Sink for Stream<'_, F> {
+impl Sink for Stream<'_> {
     #[inline]
     fn spare(&mut self) -> Result<&mut [[u32; 2]], Stop> {
         self.buffer.spare()

@@ -172,6 +172,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     ///
     /// # Errors
     /// As [`exclude_pair`](Self::exclude_pair).
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn is_excluded(&self, a: ProxyId, b: ProxyId) -> Result<bool, Error> {
         let pair = [self.bodies.slots.check(a, 0)?, self.bodies.slots.check(b, 1)?];
         Ok(self.bodies.rules.excludes(&self.bodies.slots, pair, When::Now))
@@ -272,6 +273,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
 
     /// Prepares for queries, as [`queries`](Self::queries) does. Then, until the next change,
     /// [`prepared_queries`](Self::prepared_queries) answers them by a shared borrow.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn prepare_queries(&mut self) {
         self.tracking.ready_for_queries(&mut self.bodies);
     }
@@ -352,6 +354,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// }
     /// # Ok::<(), sweep_and_prune::Error>(())
     /// ```
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn snapshot_into(&self, bytes: &mut Vec<u8>) {
         bytes.clear();
         snapshot::write(&self.bodies, bytes);

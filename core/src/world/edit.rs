@@ -250,6 +250,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     ///
     /// # Errors
     /// [`Error::StaleProxy`].
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn set_enabled(&mut self, id: ProxyId, is_enabled: bool) -> Result<(), Error> {
         let bodies = &mut self.bodies;
         let index = bodies.slots.check(id, 0)?;

@@ -2,7 +2,6 @@
 
 use alloc::vec::Vec;
 use core::mem::take;
-use core::ops::ControlFlow;
 
 use super::threads::copy;
 use crate::memory::grow_to;
@@ -140,7 +139,7 @@ impl Receiver for Count {
 
 impl Chunk for Count {}
 
-impl<F: FnMut(&[[u32; 2]]) -> ControlFlow<()>> Receiver for Stream<'_, F> {
+impl Receiver for Stream<'_> {
     type Chunk = Count;
     const TAKES_CHUNKS: bool = false;
 }
