@@ -135,3 +135,13 @@ test("lists are copies, or with the option `views` views until the next call", (
   const [first, second] = [viewed.overlappingMany([0, 0, 1, 1]), viewed.overlappingMany([0, 0, 1, 1])];
   assert.equal(first.ids.buffer, second.ends.buffer);
 });
+
+test("a box of many that is inverted or too large is named by its query", () => {
+  const world = new BroadPhase({ dimensions: 2 });
+  world.insert([0, 0, 1, 1]);
+  const along = [1, 0, 1, 0];
+  assert.throws(() => world.boxCastMany([0, 0, 1, 1, 5, 5, 4, 6], along), { name: "RangeError", message: /^in query 1 a box is inverted/ });
+  assert.throws(() => world.rayCastMany([0, 0, 5, 1e300], along), { name: "RangeError", message: /^in query 1 .* too large for single precision/ });
+  assert.throws(() => world.boxCast([3, 3, 1, 1], [1, 0]), { name: "RangeError", message: /^a box is inverted/ });
+  assert.equal(world.boxCastMany([0, 0, 1, 1, 5, 5, 6, 6], along).ids.length, 2, "afterwards it answers as before");
+});
