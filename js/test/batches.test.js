@@ -115,7 +115,7 @@ test("errors name the argument, the query and the value", () => {
   assert.throws(() => world.nearestMany([0, Infinity]), /^RangeError: `points\[1\]` is Infinity; it must be finite/);
   assert.throws(() => world.rayCastMany([0, 0, 1, 1], [1, 0]), /^RangeError: `directions` has 1, and there are 2 queries/);
   assert.throws(() => world.rayCastMany([0, 0], [1, 0], [1, 2]), /^RangeError: `limits` has 2, and there are 1 queries/);
-  assert.throws(() => world.boxCastMany([3, 0, 1, 1], [1, 0]), /^RangeError: `box` is inverted/);
+  assert.throws(() => world.boxCastMany([3, 0, 1, 1], [1, 0]), /^RangeError: a box is inverted/);
   assert.throws(() => world.overlappingMany(box, /** @type {any} */ (() => true)), /^TypeError: `filter` must be an object here/);
   assert.throws(() => world.overlappingMany(box, /** @type {any} */ ({ sorted: false })), /^TypeError: `filter` has no `sorted`/);
   assert.throws(() => world.rayCastMany([0, 0], [1, 0], 1, {}, /** @type {any} */ ({ sorted: false })), /^TypeError: `options` has no `sorted`/);
