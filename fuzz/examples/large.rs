@@ -6,7 +6,7 @@
 //! 10 million operations, seed 1, at most 100,000 bodies, and updates that take at most 3 times as long as finding and
 //! sorting all pairs, if not said otherwise; with `inf` times no clock decides, only events and memory.
 //!
-//! A world has a few groups of bodies, with sizes over six decades, that drift, jitter, jump, rest or all move as one. At each
+//! A world has a few groups of bodies, with sizes over six decades or in heaps, that drift, jitter, jump, rest or all move as one. At each
 //! update its events are compared with the pairs that the finder finds before and after; its processor time with the time
 //! of finding and sorting them; and its memory with a limit. Now and then a restored or cloned world continues beside it.
 //! The same seed gives the same worlds. If a world is wrong, slow or large, its seed is printed, and the exit status is 1.
@@ -25,8 +25,11 @@ use sweep_and_prune_scenes::Random;
 const MOST_TIME: f64 = 3.0;
 /// Shorter updates are not compared: processor time has ticks, and the first calls of a world allocate.
 const SHORT: f64 = 300e-6;
-/// How many bytes a world may have, for each body and for the most pairs so far.
-const MOST_BYTES: [usize; 2] = [500, 200];
+/// How many bytes a world may have for each body, and for each byte of its box: the world, its tree and the finder each have
+/// tables of boxes, and in a heap of which a part moves one update uses all of them.
+const BODY_BYTES: [usize; 2] = [256, 16];
+/// How many bytes a world may have for each of the most pairs so far.
+const PAIR_BYTES: usize = 200;
 /// How many more it may have, whatever its bodies.
 const FEW_BYTES: usize = 500_000;
 /// With more pairs for each body a world ends: its time would say little about bodies.
@@ -95,13 +98,18 @@ struct Group {
 }
 
 impl Group {
-    fn random(random: &mut Random, most: usize) -> Self {
+    fn random(random: &mut Random, most: usize, dimensions: usize) -> Self {
         // Side by side, or at the same place.
         let corner = random.point().map(|at: f64| (3.0 * at).floor());
         let spread = std::array::from_fn(|_| [1.0, 1.0, 0.1, 0.0][random.below(4)]);
-        let size = 10f64.powf(-6.0 * random.unit());
-        let is_cube = random.below(2) == 0;
         let bodies = [1, 1 + random.below(20), most / 10, most / 3][random.below(4)];
+        // Of any size; or in a heap, where each touches several others and moves by a part of its size at most.
+        let in_heap = random.below(3) == 0;
+        let size = match in_heap {
+            true => (0.5 + random.unit()) / (bodies.max(1) as f64).powf(1.0 / dimensions as f64),
+            false => 10f64.powf(-6.0 * random.unit()),
+        };
+        let is_cube = in_heap || random.below(2) == 0;
         Self {
             bodies,
             corner,
@@ -111,8 +119,8 @@ impl Group {
             }),
             decades: [0.0, 0.3, 2.0, 6.0][random.below(4)],
             motion: MOTIONS[random.below(MOTIONS.len())],
-            speed: 10f64.powf(-6.0 * random.unit()),
-            moving: [1.0, 1.0, 0.3, 0.01][random.below(4)],
+            speed: if in_heap { size * random.unit() } else { 10f64.powf(-6.0 * random.unit()) },
+            moving: [1.0, 0.3, 0.03, 0.01][random.below(4)],
         }
     }
 
@@ -240,7 +248,7 @@ fn world<const D: usize, T: Scalar>(seed: u64, most: usize, most_time: f64) -> O
     let mut groups = vec![];
     let mut count = 0;
     while count < most / 2 || groups.len() < 2 {
-        let mut group = Group::random(&mut random, most);
+        let mut group = Group::random(&mut random, most, D);
         group.bodies = group.bodies.min(most - count);
         count += group.bodies;
         groups.push(group);
@@ -319,7 +327,8 @@ fn world<const D: usize, T: Scalar>(seed: u64, most: usize, most_time: f64) -> O
         held = (held + IN_USE.load(Ordering::Relaxed)).saturating_sub(before);
         let name = format!("seed {seed}");
         expected.check(&name, update, [changes.begun().slots(), changes.ended().slots()]);
-        let limit = MOST_BYTES[0] * bodies.len() + MOST_BYTES[1] * most_pairs + FEW_BYTES;
+        let most_body = BODY_BYTES[0] + BODY_BYTES[1] * size_of::<Aabb<D, T>>();
+        let limit = most_body * bodies.len() + PAIR_BYTES * most_pairs + FEW_BYTES;
         outcome.bytes = outcome.bytes.max(bytes as f64 / limit as f64);
         let mut times = time / from_scratch.max(SHORT);
         if times > most_time && held > held_before {
