@@ -115,7 +115,7 @@ test("errors name the argument, the query and the value", () => {
   assert.throws(() => world.nearestMany([0, Infinity]), /^RangeError: `points\[1\]` is Infinity; it must be finite/);
   assert.throws(() => world.rayCastMany([0, 0, 1, 1], [1, 0]), /^RangeError: `directions` has 1, and there are 2 queries/);
   assert.throws(() => world.rayCastMany([0, 0], [1, 0], [1, 2]), /^RangeError: `limits` has 2, and there are 1 queries/);
-  assert.throws(() => world.boxCastMany([3, 0, 1, 1], [1, 0]), /^RangeError: a box is inverted/);
+  assert.throws(() => world.boxCastMany([3, 0, 1, 1], [1, 0]), /^RangeError: `box` is inverted/);
   assert.throws(() => world.overlappingMany(box, /** @type {any} */ (() => true)), /^TypeError: `filter` must be an object here/);
   assert.throws(() => world.overlappingMany(box, /** @type {any} */ ({ sorted: false })), /^TypeError: `filter` has no `sorted`/);
   assert.throws(() => world.rayCastMany([0, 0], [1, 0], 1, {}, /** @type {any} */ ({ sorted: false })), /^TypeError: `options` has no `sorted`/);
@@ -140,8 +140,8 @@ test("a box of many that is inverted or too large is named by its query", () => 
   const world = new BroadPhase({ dimensions: 2 });
   world.insert([0, 0, 1, 1]);
   const along = [1, 0, 1, 0];
-  assert.throws(() => world.boxCastMany([0, 0, 1, 1, 5, 5, 4, 6], along), { name: "RangeError", message: /^in query 1 a box is inverted/ });
-  assert.throws(() => world.rayCastMany([0, 0, 5, 1e300], along), { name: "RangeError", message: /^in query 1 .* too large for single precision/ });
-  assert.throws(() => world.boxCast([3, 3, 1, 1], [1, 0]), { name: "RangeError", message: /^a box is inverted/ });
+  assert.throws(() => world.boxCastMany([0, 0, 1, 1, 5, 5, 4, 6], along), { name: "RangeError", message: /^the box of query 1 is inverted/ });
+  assert.throws(() => world.rayCastMany([0, 0, 5, 1e300], along), { name: "RangeError", message: /^the box of query 1 .* too large for single precision/ });
+  assert.throws(() => world.boxCast([3, 3, 1, 1], [1, 0]), { name: "RangeError", message: /^`box` is inverted/ });
   assert.equal(world.boxCastMany([0, 0, 1, 1, 5, 5, 6, 6], along).ids.length, 2, "afterwards it answers as before");
 });

@@ -103,7 +103,7 @@ test.describe("run it here", () => {
     await page.keyboard.press("Enter");
     await expect(page.locator("#here-status")).toHaveText("Cancelled.");
     await expect(page.getByRole("button", { name: "Run" })).toBeFocused();
-    expect(page.workers()).toEqual([]);
+    await expect.poll(() => page.workers(), "a worker that was ended goes a little later").toEqual([]);
 
     await open(page);
     await page.getByRole("button", { name: "Run" }).click();

@@ -91,7 +91,8 @@ export class WorldMemory {
     if (code === Code.StaleProxy) throw new StaleProxyError(engine.detail(0), passed?.ids?.[engine.detail(0)] ?? NaN);
     if (code === Code.InvalidArgument) {
       const [name, count] = passed?.boxes?.[0] ?? [];
-      throw new RangeError(`${name === "boxes" && count! > 1 ? `in query ${engine.detail(0)} ` : ""}a box is inverted, or a coordinate is too large for single precision`);
+      const box = name === "boxes" && count! > 1 ? `the box of query ${engine.detail(0)}` : "`box`";
+      throw new RangeError(`${box} is inverted, or a coordinate is too large for single precision`);
     }
     engine.check(code, passed, passed?.read ?? ((set, index, axis) => this.#corners(passed?.boxes === undefined, set, index, axis)));
   }
