@@ -54,7 +54,7 @@ export function inside(view: View, demo: SapDemo, acts: Acts): TemplateResult {
       <canvas></canvas>
       ${view.wrong ? html`<div class="wrong"><p role="alert">${view.wrong}</p>${view.hasFailed ? html`<button type="button" @click=${acts.load}>Try again</button>` : nothing}</div>` : nothing}
     </div>
-    <p id="keys" class="hidden">${keysOf(options, canPlay(run))}</p>
+    <p id="keys" class="hidden">${keysOf(options, canPlay(run, demo))}</p>
     ${run && options?.decorations.array ? array(run, acts) : nothing}
     ${hasControls ? html`<p class="said" part="said" aria-hidden="true" ?data-explains=${view.explains}></p>` : nothing}
     ${options?.predicts ? guessing({ ...view, guess: acts.guess, next: options.isStatic ? undefined : () => demo.step() }) : nothing}
@@ -72,7 +72,7 @@ function bar({ run, speed }: View, demo: SapDemo, acts: Acts): TemplateResult {
   return controls({
     isReady: timeline !== undefined,
     isPlaying: demo.isPlaying,
-    canPlay: canPlay(run),
+    canPlay: canPlay(run, demo),
     canGoBack: timeline?.hasPast === true,
     progress: timeline?.progress ?? { at: 0, of: 0 },
     speed,
@@ -87,9 +87,10 @@ function bar({ run, speed }: View, demo: SapDemo, acts: Acts): TemplateResult {
   });
 }
 
-/** Whether anything moves, or can be stepped through. */
-function canPlay(run: Run | undefined): boolean {
-  return !(run?.options.isStatic && run.timeline.isStopless);
+/** Whether anything moves, or can be stepped through; before it has loaded, as it will be, so that its height stays. */
+function canPlay(run: Run | undefined, demo: SapDemo): boolean {
+  if (!run) return !demo.hasAttribute("static") || demo.hasAttribute("decorations");
+  return !(run.options.isStatic && run.timeline.isStopless);
 }
 
 function array({ options, timeline }: Run, acts: Acts): TemplateResult {
