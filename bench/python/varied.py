@@ -84,21 +84,55 @@ def interval_map(boxes: Any) -> Any:
     """Superintervals has closed intervals."""
     from superintervals import IntervalMap
 
-    starts, ends = columns(boxes)
-    return IntervalMap.from_arrays(starts.astype(np.int32), ends.astype(np.int32) - 1, np.arange(len(boxes)))
+    return IntervalMap.from_arrays(*closed(boxes), np.arange(len(boxes)))
 
 
-def queries(boxes: Any) -> tuple[Any, Any]:
+def closed(boxes: Any) -> tuple[Any, Any]:
+    """Starts and ends of closed intervals, as superintervals takes them."""
     starts, ends = columns(boxes)
     return starts.astype(np.int32), ends.astype(np.int32) - 1
 
 
+# What several questions share: the input of a library, and the name of its function.
+
+
+def superintervals(function: str) -> Prepare:
+    def prepare(a: Any, b: Any) -> Any:
+        asked = closed(a)
+        return lambda: getattr(interval_map(b), function)(*asked)
+
+    return prepare
+
+
+def gtars(function: str) -> Prepare:
+    def prepare(a: Any, b: Any) -> Any:
+        first, second = region_set(a), region_set(b)
+        return lambda: getattr(first, function)(second)
+
+    return prepare
+
+
+def polars_bio(function: str) -> Prepare:
+    def prepare(a: Any, b: Any) -> Any:
+        import polars_bio
+
+        frames, ask = (polars_frame(a), polars_frame(b)), getattr(polars_bio, function)
+        return lambda: ask(*frames, output_type="polars.DataFrame")
+
+    return prepare
+
+
+def bioframe(function: str, **options: Any) -> Prepare:
+    def prepare(a: Any, b: Any) -> Any:
+        import bioframe
+
+        frames, ask = (pandas_frame(a), pandas_frame(b)), getattr(bioframe, function)
+        return lambda: ask(*frames, **options)
+
+    return prepare
+
+
 # Pairs of a read and a gene.
-
-
-def pairs_superintervals(a: Any, b: Any) -> Any:
-    asked = queries(a)
-    return lambda: interval_map(b).search_values_batch(*asked)
 
 
 def pairs_ncls(a: Any, b: Any) -> Any:
@@ -107,25 +141,6 @@ def pairs_ncls(a: Any, b: Any) -> Any:
     (starts, ends), asked, rows = columns(b), columns(a), np.arange(len(a))
     ids = np.arange(len(b))
     return lambda: NCLS(starts, ends, ids).all_overlaps_both(*asked, rows)
-
-
-def pairs_bioframe(a: Any, b: Any) -> Any:
-    import bioframe
-
-    frames = pandas_frame(a), pandas_frame(b)
-    return lambda: bioframe.overlap(*frames, how="inner", return_index=True, return_input=False)
-
-
-def pairs_polars_bio(a: Any, b: Any) -> Any:
-    import polars_bio
-
-    frames = polars_frame(a), polars_frame(b)
-    return lambda: polars_bio.overlap(*frames, output_type="polars.DataFrame")
-
-
-def pairs_gtars(a: Any, b: Any) -> Any:
-    first, second = region_set(a), region_set(b)
-    return lambda: first.find_overlaps(second)
 
 
 def pairs_of(name: str, found: Any) -> set[tuple[int, int]]:
@@ -144,56 +159,20 @@ def pairs_of(name: str, found: Any) -> set[tuple[int, int]]:
 # Counts for each read.
 
 
-def counts_superintervals(a: Any, b: Any) -> Any:
-    asked = queries(a)
-    return lambda: interval_map(b).count_batch(*asked)
-
-
 def counts_ncls(a: Any, b: Any) -> Any:
     find = pairs_ncls(a, b)
     return lambda: np.bincount(find()[0], minlength=len(a))
 
 
-def counts_bioframe(a: Any, b: Any) -> Any:
-    import bioframe
-
-    frames = pandas_frame(a), pandas_frame(b)
-    return lambda: bioframe.count_overlaps(*frames)["count"].to_numpy()
-
-
-def counts_polars_bio(a: Any, b: Any) -> Any:
-    import polars_bio
-
-    frames = polars_frame(a), polars_frame(b)
-    return lambda: polars_bio.count_overlaps(*frames, output_type="polars.DataFrame")
-
-
-def counts_gtars(a: Any, b: Any) -> Any:
-    first, second = region_set(a), region_set(b)
-    return lambda: first.count_overlaps(second)
-
-
 def counts_of(name: str, found: Any) -> list[int]:
     if name == "polars-bio":
         found = found.sort("row")["count"].to_list()
+    elif name == "bioframe":
+        found = found["count"].to_numpy()
     return [int(one) for one in found]
 
 
 # The nearest gene of each read.
-
-
-def nearest_bioframe(a: Any, b: Any) -> Any:
-    import bioframe
-
-    frames = pandas_frame(a), pandas_frame(b)
-    return lambda: bioframe.closest(*frames, return_input=False, return_index=True)
-
-
-def nearest_polars_bio(a: Any, b: Any) -> Any:
-    import polars_bio
-
-    frames = polars_frame(a), polars_frame(b)
-    return lambda: polars_bio.nearest(*frames, output_type="polars.DataFrame")
 
 
 def distances_of(name: str, found: Any) -> list[int]:
@@ -218,11 +197,11 @@ CASES: dict[str, tuple[Any, dict[str, Prepare], Callable[[str, Any], Any]]] = {
         {
             OWN: lambda a, b: lambda: sap.find_pairs_between(a, b, closed="left"),
             TWO: lambda a, b: lambda: sap.find_pairs_between(a, b, closed="left", threads=2),
-            "superintervals": pairs_superintervals,
-            "polars-bio": pairs_polars_bio,
-            "gtars": pairs_gtars,
+            "superintervals": superintervals("search_values_batch"),
+            "polars-bio": polars_bio("overlap"),
+            "gtars": gtars("find_overlaps"),
             "ncls": pairs_ncls,
-            "bioframe": pairs_bioframe,
+            "bioframe": bioframe("overlap", how="inner", return_index=True, return_input=False),
         },
         pairs_of,
     ),
@@ -230,11 +209,11 @@ CASES: dict[str, tuple[Any, dict[str, Prepare], Callable[[str, Any], Any]]] = {
         two_sets,
         {
             OWN: lambda a, b: lambda: sap.count_overlaps(a, b, closed="left"),
-            "superintervals": counts_superintervals,
-            "polars-bio": counts_polars_bio,
-            "gtars": counts_gtars,
+            "superintervals": superintervals("count_batch"),
+            "polars-bio": polars_bio("count_overlaps"),
+            "gtars": gtars("count_overlaps"),
             "ncls": counts_ncls,
-            "bioframe": counts_bioframe,
+            "bioframe": bioframe("count_overlaps"),
         },
         counts_of,
     ),
@@ -242,8 +221,8 @@ CASES: dict[str, tuple[Any, dict[str, Prepare], Callable[[str, Any], Any]]] = {
         two_sets,
         {
             OWN: lambda a, b: lambda: sap.nearest(a, b),
-            "polars-bio": nearest_polars_bio,
-            "bioframe": nearest_bioframe,
+            "polars-bio": polars_bio("nearest"),
+            "bioframe": bioframe("closest", return_input=False, return_index=True),
         },
         distances_of,
     ),

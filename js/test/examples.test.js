@@ -3,13 +3,11 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { existsSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
-import { createServer } from "node:http";
-import { once } from "node:events";
-import { basename, join } from "node:path";
+import { join } from "node:path";
 import { before, test } from "node:test";
 import { fileURLToPath } from "node:url";
-import * as esbuild from "esbuild";
 import { resultOf, startBrowser } from "./support/browser.js";
+import { serve } from "./support/serve.js";
 
 const folder = fileURLToPath(new URL("../examples", import.meta.url));
 const pages = fileURLToPath(new URL("../docs", import.meta.url));
@@ -44,29 +42,6 @@ for (const name of examples.filter((name) => ![...inBrowser, ...workers, ...impo
     const printed = execFileSync(process.execPath, [name], { cwd: folder, encoding: "utf8" });
     assert.deepEqual(printed.trim().split("\n"), expected);
   });
-}
-
-/**
- * A server of a page that runs the first of these modules; all of them are bundled with what they import.
- *
- * @param {string[]} modules
- */
-async function serve(modules) {
-  // esbuild does not copy the files that a module names: the inline entries carry them.
-  const alias = { "sweep-and-prune": "sweep-and-prune/inline", "sweep-and-prune/broad-phase": "sweep-and-prune/broad-phase/inline" };
-  const nodePaths = [join(folder, "node_modules")];
-  const { outputFiles } = await esbuild.build({ entryPoints: modules, bundle: true, format: "esm", write: false, outdir: "/", alias, nodePaths, logLevel: "error" });
-  const files = new Map(outputFiles.map(({ path, contents }) => [path.slice(path.lastIndexOf("/")), contents]));
-  const server = createServer((request, response) => {
-    // A page with shared memory.
-    const isolated = { "cross-origin-opener-policy": "same-origin", "cross-origin-embedder-policy": "require-corp" };
-    const isPage = request.url === "/";
-    response.writeHead(200, { "content-type": isPage ? "text/html" : "text/javascript", ...isolated });
-    response.end(isPage ? `<!doctype html><script type="module" src="/${basename(modules[0] ?? "")}"></script>` : files.get(request.url ?? ""));
-  }).listen(0, "127.0.0.1");
-  await once(server, "listening");
-  const { port } = /** @type {import("node:net").AddressInfo} */ (server.address());
-  return { server, address: `http://127.0.0.1:${port}/` };
 }
 
 for (const name of inBrowser) {

@@ -29,8 +29,8 @@ const INTERVAL: Duration = Duration::from_millis(20);
 /// A progress callback of the core; it may cancel the search.
 pub type Progress<'a> = &'a (dyn Fn(f64) -> ControlFlow<()> + Sync);
 
-/// Runs `work`, which looks at about `boxes` boxes and may use this many threads. Unless there are few, it calls `report` now and then with the share of the
-/// work that is done, from 0 to 1.
+/// Runs `work`, which looks at about `boxes` boxes and may use this many threads. Unless there are few, it calls `report` now
+/// and then with the share of the work that is done, from 0 to 1.
 ///
 /// # Errors
 /// What `report` raised, or a signal handler, usually `KeyboardInterrupt`: then the work was cancelled

@@ -25,7 +25,7 @@ use crate::{Aabb, Error, Scalar};
 /// hits, and which bodies are nearest.
 ///
 /// To go back to an earlier frame, keep clones: `saved.clone_from(&world)` and `world.clone_from(&saved)` copy into memory
-/// that is there, which takes less time than a new [`clone`](Clone::clone) or a [`snapshot`](Self::snapshot).
+/// that is there. A new [`clone`](Clone::clone) allocates, and a [`snapshot`](Self::snapshot) takes longer to restore.
 ///
 /// The same calls give the same results, bit for bit, on every platform. A call that returns an error
 /// changes nothing. Where memory runs out the program ends, as it does when a collection cannot grow.

@@ -4,18 +4,10 @@ import * as ex from "excalibur";
 import Matter from "matter-js";
 import { SweepAndPruneBroadphase } from "../cannon-adapter.js";
 import { replaceBroadPhase } from "../excalibur-adapter.js";
+import { random } from "../../test/support/boxes.js";
 import { collisions } from "../matter-adapter.js";
 
 const MS = 1000 / 60;
-
-/** Numbers from 0 to 1, the same in each run. */
-function randomNumbers(seed) {
-  let state = seed;
-  return () => {
-    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
-    return state / 2 ** 32;
-  };
-}
 
 /** By engine: the names of its broad phases, its own first, and how a world of one is made: a function that does a step and returns the number of contacts. */
 export const engines = {
@@ -24,14 +16,14 @@ export const engines = {
     create(scene, count, broadPhase) {
       const own = Matter.Detector.collisions;
       const engine = Matter.Engine.create({ gravity: { y: scene === "pile" ? 1 : 0 } });
-      const random = randomNumbers(count);
+      const next = random(count);
       const side = 30 * Math.sqrt(count);
       const wall = (x, y, width, height) => Matter.Bodies.rectangle(x, y, width, height, { isStatic: true, restitution: 1 });
       const walls = [wall(side / 2, -50, side + 200, 100), wall(side / 2, side + 50, side + 200, 100), wall(-50, side / 2, 100, side), wall(side + 50, side / 2, 100, side)];
       const flies = scene === "gas";
       const bodies = Array.from({ length: count }, () => {
-        const body = Matter.Bodies.circle(random() * side, random() * side, flies ? 5 : 10, flies ? { restitution: 1, friction: 0, frictionAir: 0, slop: 0 } : {});
-        if (flies) Matter.Body.setVelocity(body, { x: 6 * random() - 3, y: 6 * random() - 3 });
+        const body = Matter.Bodies.circle(next() * side, next() * side, flies ? 5 : 10, flies ? { restitution: 1, friction: 0, frictionAir: 0, slop: 0 } : {});
+        if (flies) Matter.Body.setVelocity(body, { x: 6 * next() - 3, y: 6 * next() - 3 });
         return body;
       });
       Matter.Composite.add(engine.world, [...walls, ...bodies]);
@@ -51,7 +43,7 @@ export const engines = {
       const world = new CANNON.World({ gravity: new CANNON.Vec3(0, flies ? 0 : -9.82, 0), broadphase });
       if (broadPhase === "its sweep") world.broadphase = new CANNON.SAPBroadphase(world);
       world.solver.iterations = 5;
-      const random = randomNumbers(count);
+      const next = random(count);
       const side = (flies ? 4 : 2.5) * Math.cbrt(count);
       const wall = (axis, sign) => {
         const body = new CANNON.Body({ mass: 0, shape: new CANNON.Plane() });
@@ -63,9 +55,9 @@ export const engines = {
       };
       for (const axis of ["x", "y", "z"]) for (const sign of [1, -1]) wall(axis, sign);
       for (let i = 0; i < count; i++) {
-        const position = new CANNON.Vec3(random() * side, random() * side, random() * side);
-        const body = new CANNON.Body({ mass: 1, shape: new CANNON.Sphere(0.5 + 0.3 * random()), linearDamping: flies ? 0 : 0.01, position });
-        if (flies) body.velocity.set(20 * random() - 10, 20 * random() - 10, 20 * random() - 10);
+        const position = new CANNON.Vec3(next() * side, next() * side, next() * side);
+        const body = new CANNON.Body({ mass: 1, shape: new CANNON.Sphere(0.5 + 0.3 * next()), linearDamping: flies ? 0 : 0.01, position });
+        if (flies) body.velocity.set(20 * next() - 10, 20 * next() - 10, 20 * next() - 10);
         world.addBody(body);
       }
       return () => {
@@ -86,14 +78,14 @@ export const engines = {
       engine.clock.stop();
       const world = engine.currentScene;
       if (broadPhase !== "its own") replaceBroadPhase(world);
-      const random = randomNumbers(count);
+      const next = random(count);
       const side = 30 * Math.sqrt(count);
       const wall = (x, y, width, height) => world.add(new ex.Actor({ x, y, width, height, collisionType: ex.CollisionType.Fixed }));
       wall(side / 2, -50, side + 200, 100), wall(side / 2, side + 50, side + 200, 100), wall(-50, side / 2, 100, side), wall(side + 50, side / 2, 100, side);
       for (let i = 0; i < count; i++) {
-        const vel = flies ? ex.vec(400 * random() - 200, 400 * random() - 200) : ex.vec(0, 0);
+        const vel = flies ? ex.vec(400 * next() - 200, 400 * next() - 200) : ex.vec(0, 0);
         // What flies is told of contacts and goes on, as bullets and triggers do.
-        world.add(new ex.Actor({ x: random() * side, y: random() * side, radius: 10, vel, collisionType: flies ? ex.CollisionType.Passive : ex.CollisionType.Active }));
+        world.add(new ex.Actor({ x: next() * side, y: next() * side, radius: 10, vel, collisionType: flies ? ex.CollisionType.Passive : ex.CollisionType.Active }));
       }
       let contacts = 0;
       const processor = world.physics.collisionProcessor;

@@ -1,15 +1,14 @@
 // Excalibur with the adapter of the examples, beside brute force and Excalibur's own collision processor, which is told the same.
 import * as ex from "excalibur";
 import { replaceBroadPhase } from "../../examples/excalibur-adapter.js";
+import { random } from "./boxes.js";
 
 const keysOf = (pairs) => pairs.map(({ colliderA, colliderB }) => [colliderA.id.value, colliderB.id.value].sort((a, b) => a - b).join("-")).sort();
 const idsOf = (colliders) => colliders.map(({ id }) => id.value).sort((a, b) => a - b);
 
-let state = 7;
-const random = (limit) => {
-  state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
-  return Math.floor((state / 2 ** 32) * limit);
-};
+const next = random(7);
+/** A whole number below a limit. */
+const below = (limit) => Math.floor(next() * limit);
 
 const engine = new ex.Engine({ width: 400, height: 300, suppressPlayButton: true, suppressConsoleBootMessage: true });
 await engine.start();
@@ -46,15 +45,15 @@ replaced.broadphase = (...of) => {
 /** A query and a ray, beside brute force. */
 function ask(colliders) {
   turn++;
-  const [x, y] = [random(400), random(300)];
-  const where = [ex.vec(x, y), new ex.BoundingBox(x, y, x + 1 + random(80), y + 1 + random(80))][turn % 2];
+  const [x, y] = [below(400), below(300)];
+  const where = [ex.vec(x, y), new ex.BoundingBox(x, y, x + 1 + below(80), y + 1 + below(80))][turn % 2];
   const found = idsOf(replaced.query(where).filter((collider) => colliders.includes(collider)));
   // Excalibur's own grid answers with all of some cells: what it finds in vain is left out.
   const expected = idsOf(colliders.filter(({ bounds }) => (where instanceof ex.Vector ? bounds.contains(where) : bounds.left <= where.right && where.left <= bounds.right && bounds.top <= where.bottom && where.top <= bounds.bottom)));
   compare("query", found, expected);
   counts.found += found.length;
-  const ray = new ex.Ray(ex.vec(x, y), ex.vec(random(21) - 10, random(21) - 10.5));
-  const options = { searchAllColliders: turn % 3 === 0, collisionGroup: turn % 5 === 0 ? groups[1] : undefined, ignoreCollisionGroupAll: turn % 7 === 0, maxDistance: 20 + random(300) };
+  const ray = new ex.Ray(ex.vec(x, y), ex.vec(below(21) - 10, below(21) - 10.5));
+  const options = { searchAllColliders: turn % 3 === 0, collisionGroup: turn % 5 === 0 ? groups[1] : undefined, ignoreCollisionGroupAll: turn % 7 === 0, maxDistance: 20 + below(300) };
   const hits = replaced.rayCast(ray, { ...options, filter: ({ collider }) => colliders.includes(collider) });
   const all = colliders.filter(({ owner }) => {
     const { group } = owner.get(ex.BodyComponent);
@@ -70,25 +69,25 @@ const actors = [];
 const actions = {
   add() {
     const actor = new ex.Actor({
-      x: random(400), y: random(300), vel: ex.vec(random(200) - 100, random(200) - 100), collisionType: types[random(types.length)], collisionGroup: groups[random(3)],
-      ...(random(2) ? { radius: 3 + random(20) } : { width: 5 + random(30), height: 5 + random(30) }),
+      x: below(400), y: below(300), vel: ex.vec(below(200) - 100, below(200) - 100), collisionType: types[below(types.length)], collisionGroup: groups[below(3)],
+      ...(below(2) ? { radius: 3 + below(20) } : { width: 5 + below(30), height: 5 + below(30) }),
     });
-    if (random(6) === 0) actor.collider.useCompositeCollider([ex.Shape.Circle(10, ex.vec(-10, 0)), ex.Shape.Box(20, 6, ex.vec(0.5, 0.5), ex.vec(10, 0))]);
+    if (below(6) === 0) actor.collider.useCompositeCollider([ex.Shape.Circle(10, ex.vec(-10, 0)), ex.Shape.Box(20, 6, ex.vec(0.5, 0.5), ex.vec(10, 0))]);
     actors.push(actor);
     scene.add(actor);
   },
-  remove: () => actors.length > 0 && actors.splice(random(actors.length), 1)[0].kill(),
-  jump: () => actors.length > 0 && (actors[random(actors.length)].pos = ex.vec(random(400), random(300))),
-  type: () => actors.length > 0 && (actors[random(actors.length)].body.collisionType = types[random(types.length)]),
-  group: () => actors.length > 0 && (actors[random(actors.length)].body.group = groups[random(3)]),
-  shape: () => actors.length > 0 && actors[random(actors.length)].collider.useCircleCollider(2 + random(12)),
+  remove: () => actors.length > 0 && actors.splice(below(actors.length), 1)[0].kill(),
+  jump: () => actors.length > 0 && (actors[below(actors.length)].pos = ex.vec(below(400), below(300))),
+  type: () => actors.length > 0 && (actors[below(actors.length)].body.collisionType = types[below(types.length)]),
+  group: () => actors.length > 0 && (actors[below(actors.length)].body.group = groups[below(3)]),
+  shape: () => actors.length > 0 && actors[below(actors.length)].collider.useCircleCollider(2 + below(12)),
 };
 const calm = ["add", "add", "add", "remove", "jump", "shape"];
 const names = ["add", "add", "add", "remove", "jump", "type", "group", "shape"];
 for (let step = 0; step < 400; step++) {
   hasChanged = step >= 200;
   const offered = hasChanged ? names : calm;
-  for (let i = 0; i < 3; i++) actions[offered[random(offered.length)]]();
+  for (let i = 0; i < 3; i++) actions[offered[below(offered.length)]]();
   scene.world.update(ex.SystemType.Update, 1000 / 60);
 }
 globalThis.result = { differences: differences.slice(0, 5), ...counts, colliders: replaced.getColliders().length, ofExcalibur: own.getColliders().length };

@@ -370,10 +370,7 @@ def _sources(
     if any(hasattr(boxes, "to_delayed") for boxes in asked.sets):
         yield _checked([_source(asked, number, out) for number in range(len(asked.sets))])
         return
-    wanted = [
-        Wanted(name, list_files(boxes), columns, ids, by)
-        for boxes, name, columns, ids, by in zip(asked.sets, asked.names, asked.columns, asked.ids, asked.by)
-    ]
+    wanted = _wanted(asked)
     if is_plain(wanted, asked.options):
         yield _checked([_source(asked, number, out) for number in range(len(asked.sets))])
         return
@@ -396,6 +393,14 @@ def _folder_for_plain(out: Path | None, spill: Path | None) -> Iterator[Path]:
         yield out.with_name(out.name + ".boxes")
     else:
         yield spill / f"sweep-and-prune-{sha256(os.path.abspath(out).encode()).hexdigest()[:32]}"
+
+
+def _wanted(asked: _Asked) -> list[Wanted]:
+    """The sets of boxes, which are all of files."""
+    return [
+        Wanted(name, list_files(boxes), columns, ids, by)
+        for boxes, name, columns, ids, by in zip(asked.sets, asked.names, asked.columns, asked.ids, asked.by)
+    ]
 
 
 def _checked(sources: list[Source]) -> list[Source]:
@@ -473,11 +478,7 @@ def _found(
 def _refuse_lazy(asked: _Asked) -> None:
     if any(hasattr(boxes, "to_delayed") for boxes in asked.sets):
         return
-    wanted = [
-        Wanted(name, list_files(boxes), columns, None, by)
-        for boxes, name, columns, by in zip(asked.sets, asked.names, asked.columns, asked.by)
-    ]
-    if not is_plain(wanted, asked.options):
+    if not is_plain(_wanted(asked), asked.options):
         raise ValueError("boxes of text, of times or in groups go through files: pass out, a folder for the pairs")
 
 

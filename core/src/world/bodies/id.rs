@@ -34,10 +34,11 @@ pub fn sort_ids(ids: &mut [ProxyId]) {
         return;
     }
     if !cfg!(target_arch = "wasm32") {
+        // In place: queries that write to kept lists do not allocate.
         ids.sort_unstable_by_key(|id| id.to_key());
         return;
     }
-    // A WebAssembly file has a sort of numbers anyway.
+    // A WebAssembly file has a sort of numbers anyway, and a second sort would make it larger.
     let mut keys: Vec<_> = ids.iter().map(|id| id.to_key()).collect();
     keys.sort_unstable();
     for (id, key) in ids.iter_mut().zip(keys) {
