@@ -142,6 +142,16 @@ setup_chromium() {
   export CHROMIUM
 }
 
+# Vulkan in software (Mesa's lavapipe), for the tests of what runs on a GPU.
+setup_vulkan() {
+  compgen -G '/usr/share/vulkan/icd.d/*.json' >/dev/null ||
+    install_packages Vulkan "mesa-vulkan-drivers|mesa-vulkan-drivers|vulkan-swrast|mesa-vulkan-swrast|molten-vk"
+  # The program that loads drivers.
+  compgen -G '/usr/lib*/libvulkan.so.1' >/dev/null || compgen -G '/usr/lib/*/libvulkan.so.1' >/dev/null ||
+    compgen -G "${HOMEBREW_PREFIX:-/opt/homebrew}/lib/libvulkan.*" >/dev/null ||
+    install_packages Vulkan "libvulkan1|vulkan-loader|vulkan-icd-loader|vulkan-loader|vulkan-loader"
+}
+
 # Two compilers with sanitizers, Valgrind, and what finds an installed package.
 setup_c() {
   have gcc || install_packages gcc "build-essential|gcc|gcc|gcc|gcc"

@@ -18,6 +18,8 @@ export const VERSIONS = [
   ["Cargo.toml", /^(sweep-and-prune = .*version = ")(.*?)(")/m],
   ["Cargo.toml", /^(sweep-and-prune-scenes = .*version = ")(.*?)(")/m],
   ["python/Cargo.toml", /^(version = ")(.*?)(")/m],
+  ["gpu/Cargo.toml", /^(version = ")(.*?)(")/m],
+  ["gpu/Cargo.toml", /^(sweep-and-prune = .*version = ")(.*?)(")/m],
   ["integrations/bevy/Cargo.toml", /^(version = ")(.*?)(")/m],
   ["integrations/bevy/Cargo.toml", /^(sweep-and-prune = .*version = ")(.*?)(")/m],
   ["python/conda/recipe.yaml", /^( *version: ")(.*?)(")/m],
@@ -33,6 +35,8 @@ export const VERSIONS = [
 /** Where the minimum Rust version stands. */
 export const RUST_VERSIONS = [
   ["Cargo.toml", /^(rust-version = ")(.*?)(")/m],
+  ["gpu/Cargo.toml", /^(rust-version = ")(.*?)(")/m],
+  ["gpu/README.md", /(Rust )([\d.]+)( or\s+later)/],
   ["python/Cargo.toml", /^(rust-version = ")(.*?)(")/m],
   ["python/conda/recipe.yaml", /(rust >=)(.*?)($)/m],
   ["c/Cargo.toml", /^(rust-version = ")(.*?)(")/m],
@@ -68,7 +72,7 @@ function write(next) {
   }
   const run = (...command) => execFileSync(command[0], command.slice(1), { cwd: root, stdio: "inherit" });
   run("npm", "install", "--package-lock-only", "--ignore-scripts", "--no-audit", "--no-fund");
-  for (const workspace of ["Cargo.toml", "python/Cargo.toml", "c/Cargo.toml", "bench/Cargo.toml", "integrations/bevy/Cargo.toml"]) {
+  for (const workspace of ["Cargo.toml", "python/Cargo.toml", "c/Cargo.toml", "bench/Cargo.toml", "gpu/Cargo.toml", "integrations/bevy/Cargo.toml"]) {
     run("cargo", "update", "--quiet", "--workspace", "--manifest-path", workspace);
   }
 }

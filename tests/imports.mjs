@@ -24,6 +24,7 @@ export const FOLDERS = {
   "bindings/wasm/src": 4,
   "js/src": 30,
   "js/wasm/src": 6,
+  "gpu/src": 11,
   "integrations/bevy/src": 3,
   "bench/src": 30,
   "bench/complexity/src": 6,

@@ -27,7 +27,7 @@ test("the lock files have that version, too", () => {
   const [version] = valuesOf(VERSIONS).values();
   const { packages } = JSON.parse(read("package-lock.json"));
   for (const workspace of ["js", "classroom/demo", "site"]) assert.equal(packages[workspace].version, version, workspace);
-  for (const lock of ["Cargo.lock", "python/Cargo.lock", "bench/Cargo.lock", "c/Cargo.lock", "integrations/bevy/Cargo.lock"]) {
+  for (const lock of ["Cargo.lock", "python/Cargo.lock", "bench/Cargo.lock", "c/Cargo.lock", "gpu/Cargo.lock", "integrations/bevy/Cargo.lock"]) {
     const [, locked] = read(lock).match(/^name = "sweep-and-prune"\nversion = "(.*)"/m) ?? [];
     assert.equal(locked, version, lock);
   }
@@ -43,7 +43,7 @@ test("release notes are the section of the changelog", () => {
 
 test("each package has the license texts of the repository", () => {
   for (const name of ["LICENSE-MIT", "LICENSE-APACHE"]) {
-    for (const folder of ["core", "python", "integrations/bevy"]) assert.equal(read(`${folder}/${name}`), read(name), `${folder}/${name}`);
+    for (const folder of ["core", "python", "gpu", "integrations/bevy"]) assert.equal(read(`${folder}/${name}`), read(name), `${folder}/${name}`);
   }
 });
 
