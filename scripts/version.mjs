@@ -26,6 +26,7 @@ export const VERSIONS = [
   ["c/Cargo.toml", /^(version = ")(.*?)(")/m],
   ["js/package.json", /^( *"version": ")(.*?)(")/m],
   ["classroom/demo/package.json", /^( *"version": ")(.*?)(")/m],
+  ["gpu/js/package.json", /^( *"version": ")(.*?)(")/m],
   ["site/package.json", /^( *"version": ")(.*?)(")/m],
   ["site/package.json", /^( *"sweep-and-prune": ")(.*?)(")/m],
   ["site/package.json", /^( *"sweep-and-prune-classroom": ")(.*?)(")/m],

@@ -25,6 +25,7 @@ export const FOLDERS = {
   "js/src": 30,
   "js/wasm/src": 6,
   "gpu/src": 11,
+  "gpu/js/src": 12,
   "integrations/bevy/src": 3,
   "bench/src": 30,
   "bench/complexity/src": 6,

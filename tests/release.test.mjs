@@ -26,7 +26,7 @@ for (const [what, places] of [["version", VERSIONS], ["minimum Rust version", RU
 test("the lock files have that version, too", () => {
   const [version] = valuesOf(VERSIONS).values();
   const { packages } = JSON.parse(read("package-lock.json"));
-  for (const workspace of ["js", "classroom/demo", "site"]) assert.equal(packages[workspace].version, version, workspace);
+  for (const workspace of ["js", "classroom/demo", "gpu/js", "site"]) assert.equal(packages[workspace].version, version, workspace);
   for (const lock of ["Cargo.lock", "python/Cargo.lock", "bench/Cargo.lock", "c/Cargo.lock", "gpu/Cargo.lock", "integrations/bevy/Cargo.lock"]) {
     const [, locked] = read(lock).match(/^name = "sweep-and-prune"\nversion = "(.*)"/m) ?? [];
     assert.equal(locked, version, lock);

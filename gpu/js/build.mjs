@@ -19,7 +19,7 @@ const shaders = {
 
 const end = begin(here);
 // In bytes after gzip.
-const entries = [{ name: "index", source: "src/index.ts", budget: 9_000 }];
+const entries = [{ name: "index", source: "src/index.ts", budget: 10_500 }];
 await buildModules(here, entries, { plugins: [shaders] });
 await buildDeclarations(here, entries);
 end();
