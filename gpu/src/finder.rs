@@ -123,14 +123,11 @@ impl<const D: usize> PairFinder<D> {
         self
     }
 
-    /// The size of a workgroup of the indirect dispatch in the [`Summary`]: one thread for each pair. 64 by default.
-    ///
-    /// # Panics
-    /// If `group_size` is 0.
+    /// The size of a workgroup of the indirect dispatch in the [`Summary`]: one thread for each pair. 64 by default; 0 counts
+    /// as 1.
     #[must_use]
     pub fn dispatch_group_size(mut self, group_size: u32) -> Self {
-        assert!(group_size > 0, "a workgroup has at least one thread");
-        self.group_size = group_size;
+        self.group_size = group_size.max(1);
         self
     }
 
