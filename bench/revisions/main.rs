@@ -3,7 +3,10 @@
 
 use std::time::Instant;
 
+use games::Game;
 use scenes::{Motion, Random, Scene};
+
+mod games;
 
 const SEED: u64 = 1;
 const SCENES: [&str; 6] = ["uniform", "clustered", "mixed", "slab", "tower", "box-pruning"];
@@ -32,7 +35,7 @@ impl Options {
         let mut options = Self {
             sizes: vec![1_000, 10_000, 100_000, 1_000_000],
             dimensions: vec![2, 3],
-            only: vec!["finder".into(), "world".into()],
+            only: vec!["finder".into(), "world".into(), "game".into()],
             scenes: Vec::new(),
             seconds: 0.7,
             threads: 1,
@@ -174,14 +177,43 @@ fn find<const D: usize>(options: &Options, least: usize, mut source: Source<D>) 
     times
 }
 
-/// Tracks the pairs of a motion. Also how long the new world takes in all, compared with the new finder from scratch.
-fn track<const D: usize>(options: &Options, motion: Motion, count: usize) -> (Times, f64) {
-    let mut moving = motion.start::<D, f32>(count, SEED).expect("one to three dimensions");
+/// Bodies that move, frame after frame.
+trait Moving<const D: usize> {
+    fn boxes(&self) -> &[old::Aabb<D>];
+    fn advance(&mut self);
+    fn is_static(&self, _body: usize) -> bool {
+        false
+    }
+}
+
+impl<const D: usize> Moving<D> for scenes::Moving<D> {
+    fn boxes(&self) -> &[old::Aabb<D>] {
+        self.boxes()
+    }
+
+    fn advance(&mut self) {
+        self.advance();
+    }
+}
+
+/// Tracks the pairs of bodies that move. Also how long the new world takes in all, compared with the new finder from
+/// scratch.
+fn track<const D: usize>(options: &Options, moving: &mut impl Moving<D>) -> (Times, f64) {
+    let count = moving.boxes().len();
     let (mut old, mut new) = (old::BroadPhase::<D>::new(), new::BroadPhase::<D>::new());
     let mut finder = new::PairFinder::<D>::new();
-    let old_ids = old.insert_many(moving.boxes(), Default::default()).expect("valid boxes");
-    let new_ids =
-        new.insert_many(&converted(moving.boxes()), Default::default()).expect("valid boxes");
+    let (old_ids, new_ids): (Vec<_>, Vec<_>) = (0..count)
+        .map(|body| {
+            let (aabb, is_static) = (moving.boxes()[body], moving.is_static(body));
+            let same = new::Aabb::new(aabb.min, aabb.max);
+            let (mut by_old, mut by_new) = (old::Filter::default(), new::Filter::default());
+            (by_old.is_static, by_new.is_static) = (is_static, is_static);
+            (
+                old.insert_with(aabb, by_old).expect("a valid box"),
+                new.insert_with(same, by_new).expect("a valid box"),
+            )
+        })
+        .unzip();
     old.update();
     new.update();
     let mut last = moving.boxes().to_vec();
@@ -236,6 +268,10 @@ fn varied<const D: usize>(draw: impl Fn(u64) -> Vec<old::Aabb<D>>) -> Vec<Vec<ol
     scenes
 }
 
+fn note(over_scratch: f64) -> String {
+    format!("; {over_scratch:.2} of the time from scratch")
+}
+
 /// One line of the report: its name, and the ratios of minima, of medians and of totals.
 type Line = (String, [f64; 3]);
 
@@ -267,9 +303,8 @@ fn compare<const D: usize>(options: &Options, lines: &mut Vec<Line>) {
                 if !scene.dimensions().contains(&D) || too_many {
                     continue;
                 }
-                let draw = |seed| {
-                    scene.boxes::<D, f32>(boxes, seed).expect("a scene of these dimensions")
-                };
+                let draw =
+                    |seed| scene.boxes::<D, f32>(boxes, seed).expect("a scene of these dimensions");
                 let times = if boxes > MOST_VARIED {
                     find(options, CALLS.0, Source::AtRest(draw(SEED)))
                 } else {
@@ -296,9 +331,16 @@ fn compare<const D: usize>(options: &Options, lines: &mut Vec<Line>) {
         }
         if options.wants_kind("world") {
             for motion in Motion::ALL.into_iter().filter(|motion| options.wants(motion.name())) {
-                let (times, over_scratch) = track::<D>(options, motion, boxes);
-                let note = format!("; {over_scratch:.2} of the time from scratch");
-                lines.push(report("world", D, motion.name(), boxes, &times, &note));
+                let mut moving =
+                    motion.start::<D, f32>(boxes, SEED).expect("one to three dimensions");
+                let (times, over_scratch) = track::<D>(options, &mut moving);
+                lines.push(report("world", D, motion.name(), boxes, &times, &note(over_scratch)));
+            }
+        }
+        if options.wants_kind("game") {
+            for game in games::ALL.iter().filter(|game| options.wants(game.name)) {
+                let (times, over_scratch) = track::<D>(options, &mut Game::new(game, boxes));
+                lines.push(report("game", D, game.name, boxes, &times, &note(over_scratch)));
             }
         }
     }

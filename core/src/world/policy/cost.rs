@@ -17,7 +17,8 @@
 pub const LOOK_UP: usize = 64;
 /// What finding all pairs costs for each pair, where that is more than for each body: where bodies touch several others.
 /// In a heap of 1,000 cubes of which 20 or 30 move in each update it takes 0.2 and 0.3 of the time with it, in one of 10,648
-/// cubes 0.25 if 320 move. With 1 teleport is tracked in 1D and 2D, and costs more there.
+/// cubes 0.25 if 320 move. With 0.4, 80 of 1,000 cubes that move a little take 0.6 of the time, but 800 of 10,000 take 1.3
+/// of it. With 1 teleport is tracked in 1D and 2D, and costs more there.
 const PAIR: f64 = 0.75;
 /// What finding all candidates costs for each body: there are more of them than pairs. Without it tracking
 /// would never cost more than from scratch. Kept from before.
@@ -39,13 +40,6 @@ const LARGE_LEAVES: usize = 3;
 pub fn refit_pays(growth: f64, searches: usize, bodies: usize) -> bool {
     (growth - 1.0) * (searches * LARGE_LEAVES) as f64 <= bodies as f64
 }
-
-/// How many candidates there may be for each body and for each pair of boxes that overlap. In drift and teleport of
-/// `scenes/` there are 2.0 to 2.7 for each pair. With more of them fat AABBs do not pay, and could take time and
-/// memory without a limit.
-const MOST_CANDIDATES: [f64; 2] = [0.5, 3.0];
-/// How many leaves and bodies of the tree an update may read, for each body and for each pair of boxes that overlap.
-const MOST_READS: [f64; 2] = [1.0, 1.0];
 
 /// What tracking cost since all fat AABBs were made, and whether to skip it.
 #[derive(Clone, Debug, Default)]
@@ -74,22 +68,26 @@ impl Policy {
     /// Whether finding all candidates is cheaper than looking up the bodies that left their fat AABBs. Where most of the bodies
     /// changed, looked up again and again they would have too many candidates.
     pub fn rebuild_pays(&self, escaped: usize, changed: usize, bodies: usize) -> bool {
-        let rebuild = if changed * 2 > bodies { bodies } else { self.scratch_cost(bodies) };
-        escaped * LOOK_UP > rebuild
+        escaped > self.most_look_ups(changed, bodies)
     }
 
-    /// How many candidates a number of bodies may have, before filters.
+    /// How many bodies may be looked up at most: with more of them finding all candidates is cheaper.
+    #[inline(never)]
+    pub fn most_look_ups(&self, changed: usize, bodies: usize) -> usize {
+        let rebuild = if changed * 2 > bodies { bodies } else { self.scratch_cost(bodies) };
+        rebuild / LOOK_UP
+    }
+
+    /// How many candidates a number of bodies may have, before filters. In drift and teleport of `scenes/` there are 2.0 to
+    /// 2.7 for each pair of boxes that overlap. With more than three fat AABBs do not pay, and could take time and memory
+    /// without a limit.
     pub fn most_candidates(&self, bodies: usize) -> usize {
-        self.limit(bodies, MOST_CANDIDATES)
+        bodies / 2 + 3 * self.overlaps
     }
 
     /// How many leaves and bodies of the tree an update may read.
     pub fn most_reads(&self, bodies: usize) -> usize {
-        self.limit(bodies, MOST_READS)
-    }
-
-    fn limit(&self, bodies: usize, [by_body, by_pair]: [f64; 2]) -> usize {
-        (by_body * bodies as f64 + by_pair * self.overlaps as f64) as usize
+        bodies + self.overlaps
     }
 
     /// Whether fast bodies may fly, given how many of the bodies changed.
@@ -148,8 +146,9 @@ impl Policy {
 
     /// Notes that `reads` leaves and bodies of the tree were read in an update in which `flights` bodies flew.
     pub fn note_reads(&mut self, reads: usize, flights: usize, bodies: usize) {
-        // As many as finding all pairs from scratch costs.
-        if flights > 0 && flights * FLIGHT + reads > self.most_reads(bodies) {
+        // What finding all pairs from scratch costs, in reads.
+        let from_scratch = bodies + bodies / 4 + self.overlaps / 10;
+        if flights > 0 && flights * FLIGHT + reads > from_scratch {
             self.grounded = GROUNDED;
         }
     }

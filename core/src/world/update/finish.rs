@@ -81,3 +81,22 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         sleep.scatters(slots.live - sleep.count, *front, slots.len())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Aabb, BroadPhase, Filter};
+
+    #[test]
+    fn a_body_that_flies_does_not_fall_asleep() {
+        let mut world = BroadPhase::<1>::new();
+        world.insert_many(&[Aabb::new([0.0], [1.0]); 4], Filter::default()).unwrap();
+        world.update();
+        let (bodies, tracking) = (&mut world.bodies, &mut world.tracking);
+        bodies.slots.raise(0, flag::FLYING);
+        for _ in 0..100 {
+            tracking.fall_asleep(bodies, 1);
+        }
+        assert!(bodies.slots.has(1, flag::ASLEEP) && !bodies.slots.has(0, flag::ASLEEP));
+    }
+}

@@ -7,8 +7,7 @@ use alloc::vec::Vec;
 
 use crate::Scalar;
 use crate::world::bodies::{Bodies, flag};
-use crate::world::policy::LOOK_UP;
-use crate::world::tracking::{Tracking, TreeState};
+use crate::world::tracking::{Scratch, Tracking, TreeState};
 
 /// The flags of bodies that do not fly yet.
 const GROUNDED: u16 = flag::NEW | flag::ASLEEP;
@@ -18,14 +17,14 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     /// Returns how many fly.
     #[inline(never)]
     pub fn choose_flying(&mut self, bodies: &mut Bodies<D, T>, may_fly: bool) -> usize {
-        let Self { flying, motion, scratch, .. } = self;
-        let escaped = &mut scratch.escaped;
+        let Self { flying, motion, policy, scratch: Scratch { escaped, .. }, .. } = self;
         if !may_fly && flying.is_empty() {
             return 0;
         }
         for &index in &*escaped {
             bodies.slots.raise(index, flag::MARKED);
         }
+        let moving = escaped.len();
         for &index in &*flying {
             if bodies.slots.flags[index as usize] & (flag::LIVE | flag::MARKED) == flag::LIVE {
                 // It did not change, but its candidates may.
@@ -33,22 +32,41 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
                 escaped.push(index);
             }
         }
-        // Not many at once: then the finder would find all candidates.
-        let mut landings = 1 + bodies.slots.live / LOOK_UP / 2;
-        let mut count = 0;
+        // Not too many are looked up at once: the finder would find all candidates, and no body would fly any more. So where
+        // some fly, slow ones fly as well, and land a few at a time; those that rest, which are last in the list, first.
+        let (mut slow, mut grounded) = (0, bodies.leaving.len());
         for &index in &*escaped {
             let row = index as usize;
-            let flew = bodies.slots.has(index, flag::FLYING);
-            bodies.slots.lower(index, flag::MARKED | flag::FLYING);
-            if !may_fly || bodies.slots.has(index, GROUNDED) {
+            let flags = &mut bodies.slots.flags[row];
+            let is_grounded = *flags & GROUNDED != 0;
+            grounded += usize::from(is_grounded);
+            if is_grounded || !motion.is_fast(&bodies.previous[row], &bodies.boxes[row]) {
+                // Only fast ones stay marked.
+                *flags &= !flag::MARKED;
+                slow += usize::from(*flags & flag::FLYING == 0);
+            }
+        }
+        let may_land_all = slow == escaped.len();
+        let most = policy.most_look_ups(bodies.changed.len(), bodies.slots.live);
+        let spared = (escaped.len() - moving).min(most / 2);
+        let looked_up = slow + bodies.leaving.len();
+        let stay = looked_up + spared <= most;
+        let looked_up = if stay { looked_up } else { grounded.max(most / 2) };
+        let mut landings = most.max(1).saturating_sub(looked_up);
+        let mut count = 0;
+        for &index in escaped.iter().rev() {
+            let flags = &mut bodies.slots.flags[index as usize];
+            let (flew, is_fast) = (*flags & flag::FLYING != 0, *flags & flag::MARKED != 0);
+            *flags &= !(flag::MARKED | flag::FLYING);
+            if !may_fly || *flags & GROUNDED != 0 {
                 continue;
             }
-            let is_fast = motion.is_fast(&bodies.previous[row], &bodies.boxes[row]);
-            if !is_fast && (!flew || landings > 0) {
+            let may_land = may_land_all || if flew { landings > 0 } else { stay };
+            if may_land && !is_fast {
                 landings -= usize::from(flew);
                 continue;
             }
-            bodies.slots.raise(index, flag::FLYING);
+            *flags |= flag::FLYING;
             count += 1;
             if !flew {
                 flying.push(index);

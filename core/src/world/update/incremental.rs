@@ -15,7 +15,6 @@ use crate::world::bodies::{Bodies, RANDOM_READ, When, flag};
 use crate::world::candidates::{Candidates, push_wanted};
 use crate::world::changes::Events;
 use crate::world::layout;
-use crate::world::policy::LOOK_UP;
 use crate::world::tracking::{Scratch, Tracking, TreeState};
 use crate::world::tree::{BATCH, TOGETHER};
 
@@ -199,7 +198,6 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         let mut jumped = 0;
         let Self { fat, motion, policy, scratch: Scratch { escaped, queries, .. }, .. } = self;
         queries.clear();
-        queries.reserve(bodies.slots.live / LOOK_UP + 1);
         queries.extend(escaped.iter().map(|&index| {
             let row = index as usize;
             let is_new = bodies.slots.has(index, flag::NEW);

@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 use std::collections::BTreeSet;
 
 use crate::world::bodies::flag;
+use crate::world::policy::LOOK_UP;
 use crate::world::tracking::TreeState;
 use crate::{Aabb, BroadPhase, Filter, ProxyId, find_pairs, find_pairs_between};
 
@@ -244,24 +245,49 @@ fn few_fast_bodies_among_many_at_rest_are_not_in_the_tree() {
 }
 
 #[test]
-fn no_end_is_missed_in_a_heap_whose_bodies_fly_in_turn() {
-    // Others are fast in each frame, and more of them than may land, so that some rest while they fly.
-    let (side, moving) = (10, 40);
-    let place = |at: usize| [at % side, at / side % side, at / side / side].map(|at| at as f32);
-    let cube = |at: [f32; 3]| Aabb::new(at, at.map(|at| at + 1.001));
-    let count = side * side * side;
-    let mut world = World::new((0..count).map(|at| cube(place(at))).collect());
-    let mut flew = 0;
+fn bodies_that_flew_land_where_they_rest_whatever_else_is_looked_up() {
+    // Some are fast, and then rest. As many others are slow as may be looked up in an update.
+    let (side, fast, slow) = (40, 250, 25);
+    let place = |at: usize| [at % side, at / side].map(|at| 1.5 * at as f32);
+    let boxed = |at: usize| Aabb::new(place(at), place(at).map(|at| at + 1.0));
+    let mut world = World::new((0..side * side).map(boxed).collect());
+    let mut flying = Vec::new();
     for frame in 0..60 {
-        for draw in frame * moving..(frame + 1) * moving {
-            let at = (noise(draw * draw + 3) * count as f32) as usize;
-            let way = |axis| 0.8 * (noise(draw * 7 + axis) - 0.5);
-            let base = place(at);
-            world.boxes[at] = cube(core::array::from_fn(|axis| base[axis] + way(axis)));
-            world.world.set(world.ids[at], world.boxes[at]).unwrap();
-        }
-        world.update();
-        flew += usize::from(world.world.tracking.flying.len() > moving);
+        let turn = if frame % 2 == 0 { 1.0 } else { -1.0 };
+        world.step(|at| match at / 5 {
+            nth if at % 5 == 0 && nth < fast && frame < 18 => [0.6 * turn, 0.6 * turn],
+            nth if at % 5 == 2 && nth < slow => [0.28 * turn, 0.0],
+            _ => [0.0; 2],
+        });
+        let all = |flags: &&u16| **flags & flag::FLYING != 0;
+        flying.push(world.world.bodies.slots.flags.iter().filter(all).count());
     }
-    assert!(flew > 0);
+    assert!(flying[15] >= fast && flying[59] == 0, "{flying:?}");
+    assert!(world.world.tracking.sleep.count > side * side / 2);
+}
+
+#[test]
+fn where_some_fly_slow_bodies_fly_too_and_land_a_few_at_a_time() {
+    // Of 5,500 bodies 500 move. Every other one of these is fast, and the others together leave fat AABBs that last four updates.
+    let (side, count, moving) = (80, 5_500, 500);
+    let place = |at: usize| [at % side, at / side].map(|at| 1.5 * at as f32);
+    let boxed = |at: usize| Aabb::new(place(at), place(at).map(|at| at + 1.0));
+    let mut world = World::new((0..count).map(boxed).collect());
+    let mut most_flying = 0;
+    for frame in 0..60 {
+        let turn = if frame % 20 < 10 { 1.0 } else { -1.0 };
+        let way = |at| if at % 22 == 0 { 0.5 } else { 0.25 + 0.01 * noise(at) };
+        world.step(|at| if at % 11 == 0 { [turn * way(at), 0.0] } else { [0.0; 2] });
+        let tracking = &world.world.tracking;
+        if frame > 10 {
+            // The finder never finds all candidates: then no body would fly, and the tree would have to be built again.
+            assert_ne!(tracking.tree_state, TreeState::Unbuilt, "{frame}");
+            let flags = world.world.bodies.slots.flags.iter();
+            let flying = flags.filter(|&flags| flags & flag::FLYING != 0).count();
+            let looked_up = tracking.scratch.queries.len() - flying;
+            assert!(looked_up <= count / LOOK_UP, "{frame}: {looked_up}");
+        }
+        most_flying = most_flying.max(tracking.flying.len());
+    }
+    assert!((3 * moving / 4..=moving).contains(&most_flying), "{most_flying}");
 }

@@ -44,3 +44,25 @@ fn new_bodies_are_tracked_as_soon_as_they_move() {
     assert!(!policy.note_rebuild(BODIES, false, true));
     assert!(!policy.note_rebuild(BODIES, true, false));
 }
+
+#[test]
+fn where_bodies_touch_more_of_them_are_looked_up_but_not_as_many_as_there_are_pairs() {
+    // Each touches ten others, as in a heap of cubes.
+    let mut policy = Policy::default();
+    let most = |policy: &Policy| policy.most_look_ups(BODIES / 10, BODIES);
+    assert_eq!(most(&policy), BODIES / LOOK_UP);
+    policy.note_overlaps(10 * BODIES);
+    assert!((100..130).contains(&most(&policy)), "{}", most(&policy));
+    // Where most bodies move, they are looked up again and again.
+    assert_eq!(policy.most_look_ups(BODIES, BODIES), BODIES / LOOK_UP);
+}
+
+#[test]
+fn bodies_that_fly_among_many_pairs_cost_too_much_before_they_read_as_many() {
+    for (reads, may_fly) in [(BODIES, true), (3 * BODIES, false)] {
+        let mut policy = Policy::default();
+        policy.note_overlaps(10 * BODIES);
+        policy.note_reads(reads, 10, BODIES);
+        assert_eq!(policy.may_fly(20, BODIES), may_fly, "{reads}");
+    }
+}
