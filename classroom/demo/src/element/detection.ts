@@ -156,6 +156,11 @@ export function shownKinds({ checks, sweep, array }: Decorations, detecting: Det
   return kinds;
 }
 
+/** Whether anything moves, or can be stepped through; while a ball is dragged that stays as it is. */
+export function canPlay(options: Options | undefined): boolean {
+  return !options?.isStatic || shownKinds(options.decorations, options.detecting).size > 0;
+}
+
 /** The positions at which to stop: after each event of these kinds, and at the end. The full sweep that swaps begin with is only its end. */
 export function stopsOf(detection: Detection, kinds: ReadonlySet<TraceEvent["kind"]>, isStart: boolean): number[] {
   const stops: number[] = [];

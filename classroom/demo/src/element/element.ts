@@ -289,7 +289,7 @@ export class SapDemoElement extends LitElement {
   override attributeChangedCallback(name: string, old: string | null, value: string | null): void {
     super.attributeChangedCallback(name, old, value);
     if (old === value || !(attributes as readonly string[]).includes(name)) return;
-    if (!this.#run && this.#wrong === "") return;
+    if (!this.#run && this.#wrong === "") return this.requestUpdate();
     if (name === "paused") return value === null ? this.play() : this.pause();
     // Several that change at once are read at once.
     if (!this.#hasChanged) queueMicrotask(() => this.#understand());
@@ -364,11 +364,11 @@ export class SapDemoElement extends LitElement {
     this.#speed = undefined;
   }
 
-  #readOptions(): Options | undefined {
+  #readOptions(refuse = (message: string): void => this.#refuse(message)): Options | undefined {
     try {
       return readOptions((name) => this.getAttribute(name), this.#program);
     } catch (error) {
-      this.#refuse(messageOf(error));
+      refuse(messageOf(error));
       return undefined;
     }
   }
@@ -562,16 +562,18 @@ export class SapDemoElement extends LitElement {
 
   override render(): TemplateResult {
     const run = this.#run;
+    const options = run?.options ?? this.#readOptions(() => undefined);
     return inside(
       {
         run,
+        options,
         wrong: this.#wrong,
         hasFailed: this.#hasFailed,
         label: this.#label,
-        hasControls: !this.#comparison && (run?.options.hasControls ?? !this.hasAttribute("no-controls")),
-        hasCounters: run?.options.hasCounters ?? !this.hasAttribute("no-counters"),
+        hasControls: !this.#comparison && options?.hasControls !== false,
+        hasCounters: options?.hasCounters !== false,
         explains: this.#explanation !== undefined,
-        speed: this.#speed ?? run?.options.speed ?? 1,
+        speed: this.#speed ?? options?.speed ?? 1,
         guesses: this.#guesses,
         swapLog: this.#swapLog,
         question: this.#question,

@@ -1,4 +1,5 @@
 import type { DemoDrag, SapDemo } from "./types.js";
+import { canPlay } from "./detection.js";
 import { Grab } from "./grab.js";
 import type { Keyboard } from "./keys.js";
 import { inWords } from "./narrate.js";
@@ -94,7 +95,7 @@ export class Hands {
       if (this.#demo.isPlaying) return this.#demo.pause();
       // Where nothing moves and nothing is stepped through, there is nothing to play.
       const run = this.#handled.run();
-      if (run && !(run.options.isStatic && run.timeline.isStopless)) this.#demo.play();
+      if (run && canPlay(run.options)) this.#demo.play();
       else this.#demo.step();
     },
     step: () => this.#demo.step(),

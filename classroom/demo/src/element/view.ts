@@ -1,9 +1,10 @@
 import { html, nothing, type TemplateResult } from "lit";
 import type { SapDemo } from "./types.js";
 import { counters } from "./counters.js";
+import { canPlay } from "./detection.js";
 import { ballAt } from "./draw-array.js";
 import { keysOf } from "./keys.js";
-import { hasSeed } from "./options.js";
+import { hasSeed, type Options } from "./options.js";
 import { heightOfArray } from "./paint.js";
 import type { Guesses, Question } from "./predict.js";
 import { NOTHING_COUNTED, type Run } from "./run.js";
@@ -14,6 +15,8 @@ import { controls, guessing, sharing, swapsSoFar } from "./templates.js";
 export interface View {
   /** Until it has begun there is none. */
   readonly run: Run | undefined;
+  /** What its attributes say, where they can be read: it is as high before it has begun as after. */
+  readonly options: Options | undefined;
   /** What keeps it from beginning, in words. */
   readonly wrong: string;
   /** Whether that is that its files did not load. */
@@ -45,8 +48,7 @@ export interface Acts {
 
 /** The inside of the element. */
 export function inside(view: View, demo: SapDemo, acts: Acts): TemplateResult {
-  const { run, hasControls } = view;
-  const options = run?.options;
+  const { run, options, hasControls } = view;
   return html`
     <slot name="heading">${options?.heading ? html`<p class="heading" part="heading">${options.heading}</p>` : nothing}</slot>
     <div class="frame">
@@ -54,25 +56,25 @@ export function inside(view: View, demo: SapDemo, acts: Acts): TemplateResult {
       <canvas></canvas>
       ${view.wrong ? html`<div class="wrong"><p role="alert">${view.wrong}</p>${view.hasFailed ? html`<button type="button" @click=${acts.load}>Try again</button>` : nothing}</div>` : nothing}
     </div>
-    <p id="keys" class="hidden">${keysOf(options, canPlay(run, demo))}</p>
-    ${run && options?.decorations.array ? array(run, acts) : nothing}
+    <p id="keys" class="hidden">${keysOf(options, canPlay(options))}</p>
+    ${options?.decorations.array ? array(options, run, acts) : nothing}
     ${hasControls ? html`<p class="said" part="said" aria-hidden="true" ?data-explains=${view.explains}></p>` : nothing}
     ${options?.predicts ? guessing({ ...view, guess: acts.guess, next: options.isStatic ? undefined : () => demo.step() }) : nothing}
     ${options?.hasSwapLog ? swapsSoFar(view.swapLog) : nothing}
     <p class="live hidden" role="status" aria-live="polite"></p>
-    ${view.hasCounters ? counters(run?.counts ?? NOTHING_COUNTED, options?.detecting) : nothing}
+    ${view.hasCounters ? counters(run?.counts ?? NOTHING_COUNTED, run?.options.detecting) : nothing}
     ${hasControls ? html`${bar(view, demo, acts)} ${view.shared ? sharing(view.shared.url, view.shared.code) : nothing}` : nothing}
     </div>
     <slot name="caption"></slot>
   `;
 }
 
-function bar({ run, speed }: View, demo: SapDemo, acts: Acts): TemplateResult {
-  const { timeline, options } = run ?? {};
+function bar({ run, options, speed }: View, demo: SapDemo, acts: Acts): TemplateResult {
+  const timeline = run?.timeline;
   return controls({
     isReady: timeline !== undefined,
     isPlaying: demo.isPlaying,
-    canPlay: canPlay(run, demo),
+    canPlay: canPlay(options),
     canGoBack: timeline?.hasPast === true,
     progress: timeline?.progress ?? { at: 0, of: 0 },
     speed,
@@ -87,14 +89,10 @@ function bar({ run, speed }: View, demo: SapDemo, acts: Acts): TemplateResult {
   });
 }
 
-/** Whether anything moves, or can be stepped through; before it has loaded, as it will be, so that its height stays. */
-function canPlay(run: Run | undefined, demo: SapDemo): boolean {
-  if (!run) return !demo.hasAttribute("static") || demo.hasAttribute("decorations");
-  return !(run.options.isStatic && run.timeline.isStopless);
-}
-
-function array({ options, timeline }: Run, acts: Acts): TemplateResult {
-  const height = heightOfArray(options, timeline.radii.length);
-  const point = ({ offsetX, offsetY, target }: PointerEvent): void => acts.point(ballAt(timeline.state.arrays, (target as HTMLElement).clientWidth, offsetX, offsetY));
+function array(options: Options, run: Run | undefined, acts: Acts): TemplateResult {
+  const { balls } = options.world;
+  const height = heightOfArray(options, typeof balls === "number" ? balls : balls.length);
+  const point = ({ offsetX, offsetY, target }: PointerEvent): void =>
+    acts.point(run && ballAt(run.timeline.state.arrays, (target as HTMLElement).clientWidth, offsetX, offsetY));
   return html`<canvas class="array" part="array" role="img" aria-label="The array of endpoints, in order" style="height:${height}px" @pointermove=${point} @pointerleave=${() => acts.point(undefined)}></canvas>`;
 }
