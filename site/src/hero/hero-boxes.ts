@@ -1,8 +1,8 @@
 import { Runner } from "sweep-and-prune-classroom";
 import { startAlgorithms } from "../classroom/start.ts";
 import { showLoadFailure } from "../load-failed.ts";
-import { onAwake } from "../panel/awake.ts";
 import { bruteForceTests, formatCount } from "../panel/counters.ts";
+import { PanelElement } from "../panel/panel-element.ts";
 import { onThemeChange } from "../shell/theme.ts";
 import { drawBoxes, type HeroColors } from "./draw-boxes.ts";
 import { MovingBoxes, WORLD_HEIGHT } from "./moving-boxes.ts";
@@ -38,7 +38,7 @@ interface Work {
  * `<hero-boxes>`: moving boxes, the pairs of them that the compiled library finds in each frame, and
  * how many tests that took. Its inside stands in index.html.
  */
-export class HeroBoxes extends HTMLElement {
+export class HeroBoxes extends PanelElement {
   readonly #runners = new Map<Method, Runner>();
   /** The milliseconds of one test of every pair. */
   #testMs: number | undefined;
@@ -49,49 +49,39 @@ export class HeroBoxes extends HTMLElement {
   /** Where the line stands, from 0 to 1. */
   #line = 0.12;
   #isLineTaken = false;
-  #isPlaying = !matchMedia("(prefers-reduced-motion: reduce)").matches;
-  #isAwake = false;
   #last: number | undefined;
   #request: number | undefined;
   #countersAt = -Infinity;
   #colors: HeroColors | undefined;
   #size = { width: 0, height: 0 };
-  #left = new AbortController();
 
-  connectedCallback(): void {
-    this.#left = new AbortController();
-    void startAlgorithms().then(() => this.#start(), (error: unknown) => showLoadFailure(this.#part("message"), error));
+  protected start(): void {
+    void startAlgorithms().then(() => this.#start(), (error: unknown) => showLoadFailure(this.named("message"), error));
   }
 
-  disconnectedCallback(): void {
-    this.#left.abort();
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
     if (this.#request !== undefined) cancelAnimationFrame(this.#request);
     for (const runner of this.#runners.values()) runner.free();
     this.#runners.clear();
   }
 
   #start(): void {
-    const { signal } = this.#left;
+    const { signal } = this;
     if (signal.aborted) return;
-    const resized = new ResizeObserver(() => this.#fit());
     this.#fit();
-    resized.observe(this.#canvas);
-    signal.addEventListener("abort", () => resized.disconnect());
+    this.onResize(["canvas"], () => this.#fit());
     onThemeChange(() => {
       this.#colors = undefined;
       this.#draw();
     }, signal);
     matchMedia("(forced-colors: active)").addEventListener("change", () => (this.#colors = undefined), { signal });
-    onAwake(this, (awake) => {
-      this.#isAwake = awake;
-      this.#last = undefined;
-      this.#wake();
-    }, signal);
+    this.followAwake();
     this.#bindControls();
     this.#bindPointer();
     for (const control of this.querySelectorAll<HTMLInputElement>(":disabled")) control.disabled = false;
     this.#detect();
-    this.#show(true);
+    this.show();
     this.dataset["ready"] = "";
   }
 
@@ -105,7 +95,7 @@ export class HeroBoxes extends HTMLElement {
   }
 
   get #count(): number {
-    return COUNTS[this.#part<HTMLInputElement>("boxes").valueAsNumber] ?? 400;
+    return COUNTS[this.named<HTMLInputElement>("boxes").valueAsNumber] ?? 400;
   }
 
   /** Whether every pair would take longer than a frame may: then the picture stands still, with the pairs that the sweep finds. */
@@ -114,13 +104,13 @@ export class HeroBoxes extends HTMLElement {
   }
 
   get #canvas(): HTMLCanvasElement {
-    return this.#part("canvas");
+    return this.named("canvas");
   }
 
   // Controls
 
   #bindControls(): void {
-    const slider = this.#part<HTMLInputElement>("boxes");
+    const slider = this.named<HTMLInputElement>("boxes");
     slider.max = String(COUNTS.length - 1);
     slider.addEventListener("input", () => this.#begin());
     for (const choice of this.querySelectorAll("[name=hero-method]")) {
@@ -129,20 +119,19 @@ export class HeroBoxes extends HTMLElement {
         if (this.#isTooMuch) this.#estimate();
         else this.#detect();
         this.#draw();
-        this.#show(true);
-        this.#wake();
+        this.show();
+        this.pace();
       });
     }
-    this.#part("play").addEventListener("click", () => {
-      this.#isPlaying = !this.#isPlaying;
+    this.onClick("play", () => {
+      this.setWanted(!this.wanted);
       this.#changed();
-      this.#wake();
     });
-    this.#part("new-world").addEventListener("click", () => {
+    this.onClick("new-world", () => {
       this.#seed = 1 + Math.floor(Math.random() * 999_999);
       this.#begin();
     });
-    const line = this.#part<HTMLInputElement>("line");
+    const line = this.named<HTMLInputElement>("line");
     line.addEventListener("input", () => this.#takeLine(line.valueAsNumber / 1000));
   }
 
@@ -173,7 +162,7 @@ export class HeroBoxes extends HTMLElement {
       if (this.#boxes.held === undefined) return;
       path.push({ x, y, at: event.timeStamp });
       this.#boxes.moveTo(this.#boxes.held, x, y);
-      if (!this.#isPlaying) this.#changed();
+      if (!this.wanted) this.#changed();
     });
     const letGo = (event: PointerEvent): void => {
       holdsLine = false;
@@ -192,7 +181,7 @@ export class HeroBoxes extends HTMLElement {
     this.#isLineTaken = true;
     this.#line = Math.min(Math.max(at, 0), 1);
     this.#draw();
-    this.#show(true);
+    this.show();
   }
 
   /** Other boxes: as many as the slider says, from the seed. */
@@ -201,7 +190,7 @@ export class HeroBoxes extends HTMLElement {
     for (const runner of this.#runners.values()) runner.free();
     this.#runners.clear();
     this.#changed();
-    this.#wake();
+    this.pace();
   }
 
   /** The width of the world: as high as ever, and as wide as the picture. */
@@ -220,8 +209,8 @@ export class HeroBoxes extends HTMLElement {
 
   // Time
 
-  #wake(): void {
-    const isRunning = this.#isPlaying && this.#isAwake && !this.#isTooMuch;
+  protected pace(): void {
+    const isRunning = this.wanted && this.awake && !this.#isTooMuch;
     if (isRunning && this.#request === undefined) this.#request = requestAnimationFrame(this.#frame);
     if (!isRunning && this.#request !== undefined) {
       cancelAnimationFrame(this.#request);
@@ -238,13 +227,13 @@ export class HeroBoxes extends HTMLElement {
     if (!this.#isLineTaken) this.#line = (this.#line + seconds / CROSSING_S) % 1;
     this.#detect();
     this.#draw();
-    this.#show(false);
+    if (now - this.#countersAt >= COUNTER_MS) this.show();
   };
 
   #changed(): void {
     this.#detect();
     this.#draw();
-    this.#show(true);
+    this.show();
   }
 
   /** Lets the chosen algorithm of the library find the pairs. */
@@ -294,10 +283,8 @@ export class HeroBoxes extends HTMLElement {
     return { overlap: word("overlap"), test: word("test"), line: word("sweep"), box: stage.backgroundColor, outline: stage.borderTopColor, stage: stage.backgroundColor };
   }
 
-  #show(isNow: boolean): void {
-    const now = performance.now();
-    if (!isNow && now - this.#countersAt < COUNTER_MS) return;
-    this.#countersAt = now;
+  protected show(): void {
+    this.#countersAt = performance.now();
     const { tests, comparisons, pairs, ms } = this.#work;
     const { count } = this.#boxes;
     const all = bruteForceTests(count);
@@ -311,25 +298,19 @@ export class HeroBoxes extends HTMLElement {
     this.#set("pairs", formatCount(pairs));
     this.#set("at-line", isEvery ? `tested against all ${formatCount(partners)} others` : `tested against ${formatCount(partners)} others that the line still touches`);
     this.#set("fewer", isEvery ? `${formatCount(count)} boxes make ${formatCount(all)} pairs` : `${formatCount(Math.floor(all / Math.max(tests, 1)))} times fewer than the ${formatCount(all)} pairs`);
-    this.#part("bar").style.inlineSize = `${Math.max((100 * tests) / all, 0.3)}%`;
-    this.#set("play", this.#isPlaying ? "Pause" : "Play");
-    const line = this.#part<HTMLInputElement>("line");
+    this.named("bar").style.inlineSize = `${Math.max((100 * tests) / all, 0.3)}%`;
+    this.showTransport();
+    const line = this.named<HTMLInputElement>("line");
     line.valueAsNumber = Math.round(1000 * this.#line);
     line.setAttribute("aria-valuetext", `${Math.round(100 * this.#line)} %, touching ${touched.length} of ${count} boxes`);
-    this.#part("boxes").setAttribute("aria-valuetext", formatCount(count));
+    this.named("boxes").setAttribute("aria-valuetext", formatCount(count));
     this.dataset["tests"] = String(tests);
     this.dataset["pairs"] = String(pairs);
   }
 
   #set(part: string, text: string): void {
-    const element = this.#part(part);
+    const element = this.named(part);
     if (element.textContent !== text) element.textContent = text;
-  }
-
-  #part<E extends HTMLElement = HTMLElement>(name: string): E {
-    const found = this.querySelector<E>(`[data-part="${name}"]`);
-    if (!found) throw new Error(`<hero-boxes> has no part "${name}"`);
-    return found;
   }
 }
 
