@@ -48,7 +48,6 @@ for (const dimensions of [2, 3]) {
     expect(seen.size, "they move").toBe(4);
     await expect(root.locator("[data-part=alarm]")).toBeEmpty();
     await expect(root.locator("[data-lane='1'] [data-counter=tests] dd")).toHaveText("4,950");
-    await expect(root.getByLabel("Motion")).toBeDisabled();
     expect(heard).toEqual([]);
   });
 }
@@ -91,6 +90,32 @@ test("the motion of the balls is loaded for their scene alone, and three.js for 
   await expect(picture).toBeHidden();
   await expect(root.locator("[data-part=surface]")).toBeVisible();
   await expect(root.getByLabel("Motion")).toBeEnabled();
+});
+
+test("balls fall more slowly on the Moon; lines are drawn for the pairs of discs; what brute force would test is said", async ({ page }) => {
+  const heights = async (query: string): Promise<number[]> => {
+    const { world } = await open(page, `&boxes=50&step=30${query}`);
+    return (await world()).boxes.map(([, bottom]) => bottom!);
+  };
+  const [earth, moon] = [await heights(""), await heights("&motion=on+the+Moon")];
+  expect(Math.max(...moon.map((bottom, ball) => earth[ball]! - bottom)), "no ball is higher on Earth").toBeLessThan(0);
+
+  const { root, step } = await open(page, "&boxes=200&step=60");
+  await expect(root.locator("[data-part=about]")).toContainText("Brute force would test 19,900 pairs in each step.");
+  await step(1);
+  await expect(root.locator("[data-part=moment]")).toHaveText(/^Step 61, moved in \d+\.\d ms$/);
+  const picture = root.getByRole("img", { name: "Discs falling into a box" });
+  const without = await picture.screenshot();
+  await root.getByLabel("Lines for pairs").check();
+  await expect.poll(async () => without.equals(await picture.screenshot())).toBe(false);
+  await root.getByLabel("Lines for pairs").uncheck();
+  await expect.poll(async () => without.equals(await picture.screenshot())).toBe(true);
+  await expect(root.getByRole("button", { name: "Show all" })).toBeHidden();
+  await root.getByLabel("Dimensions").selectOption("3");
+  await expect(root.getByLabel("Lines for pairs")).toBeHidden();
+  await root.getByLabel("Scene").selectOption("uniform");
+  await expect(root.getByRole("button", { name: "Show all" })).toBeVisible();
+  await expect(root.getByLabel("Motion")).toHaveValue("drift");
 });
 
 test("the picture has as many pixels as it is wide, also when the window changes", async ({ page }) => {

@@ -23,10 +23,10 @@ const places = (page: Page): Promise<{ name: string; top: number }[]> =>
     })),
   );
 
-type Places = Awaited<ReturnType<typeof places>>;
+type Tops = Awaited<ReturnType<typeof places>>;
 
 /** What stands elsewhere now, and by how many pixels. */
-const moved = (before: Places, now: Places): string[] =>
+const moved = (before: Tops, now: Tops): string[] =>
   now.flatMap(({ name, top }, index) => (Math.abs(top - before[index]!.top) > 1 ? [`${name}: ${top - before[index]!.top}`] : []));
 
 for (const width of [390, 560, 1280]) {

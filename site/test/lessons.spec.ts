@@ -130,6 +130,8 @@ test("d5 and d16 can be guessed: what is right is what is drawn, and a wrong gue
     const [, first = "", second = ""] = /(\(?\w\)?) and (\(?\w\)?) swap\./.exec((await group(d16).textContent())!)!;
     const right = first.startsWith("(") === second.startsWith("(") ? 2 : first.startsWith("(") ? 1 : 0;
     const choice = guess === 2 ? (right + 1) % 3 : right;
+    // What was there before the question is not what it is about: nothing is said of it.
+    await expect(d16.root.locator(".said")).toBeEmpty();
     // By keys as well as by hand.
     await d16.root.locator(".picture").focus();
     await page.keyboard.press(String(choice + 1));

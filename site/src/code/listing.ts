@@ -28,7 +28,7 @@ export function listing(name: string, follows: string | undefined): string {
   const { code, kinds } = readListing(name);
   const edit = follows && EDITABLE.has(name) ? `<button type="button" class="small" data-part="edit" aria-pressed="false">Edit</button>` : "";
   const follow = follows && kinds.some((kind) => kind.replace("added", "") !== "")
-    ? `<button type="button" class="small" data-part="follow" aria-pressed="true">Follow the demo</button>`
+    ? `<button type="button" class="small" data-part="follow" aria-pressed="true" aria-label="Follow the demo">Follow</button>`
     : "";
   return `
     <figure class="listing"${follows ? ` data-follows="${follows}"` : ""}${edit ? ` data-listing="${name}"` : ""}>

@@ -117,7 +117,8 @@ export class Experiment {
       if (at === 0) throw new RangeError("the experiment does not take that many boxes");
       new Float32Array(this.#memory.buffer, at, own.length).set(own);
     }
-    this.#area().set([dimensions, place(lists.scenes, scene), place(lists.motions, motion), boxes, seed, size, spread]);
+    // Boxes that are placed in each step, as those of balls, need no motion.
+    this.#area().set([dimensions, place(lists.scenes, scene), Math.max(place(lists.motions, motion), 0), boxes, seed, size, spread]);
     if (own) this.#attempt("experiment_place", Number(keep));
     else this.#attempt("experiment_begin");
     this.#dimensions = dimensions;

@@ -3,20 +3,24 @@
 import { Simulation } from "../balls/load.ts";
 import { radiusOf } from "../balls/setup.ts";
 import type { WorldOptions } from "./experiment.ts";
+import { GRAVITIES } from "./scene.ts";
 import type { Balls } from "./messages.ts";
 
 export class Falling {
   readonly #simulation: Simulation;
   readonly #dimensions: number;
   #isNew = true;
+  /** Milliseconds that the last step took. */
+  #ms = 0;
 
-  constructor({ dimensions, boxes, seed, size, spread }: WorldOptions) {
+  constructor({ dimensions, boxes, seed, size, spread, motion }: WorldOptions) {
     this.#dimensions = dimensions;
-    this.#simulation = new Simulation({ scene: "falling", dimensions, bodies: boxes, size: size * radiusOf(boxes, dimensions), spread: Math.min(spread, 100), seed, counting: false });
+    const gravity = GRAVITIES[motion] ?? 9.81;
+    this.#simulation = new Simulation({ scene: "falling", dimensions, bodies: boxes, size: size * radiusOf(boxes, dimensions), spread: Math.min(spread, 100), seed, gravity, counting: false });
   }
 
   advance(): void {
-    this.#simulation.step();
+    this.#ms = this.#simulation.step().totalMs;
   }
 
   /** The boxes of the balls, rows of min corner and max corner. */
@@ -37,7 +41,7 @@ export class Falling {
     const { positions, radii, bounds } = this.#simulation;
     const world = this.#isNew ? { ...bounds, radii: radii.slice() } : undefined;
     this.#isNew = false;
-    return { positions: positions.slice(), world };
+    return { positions: positions.slice(), world, ms: this.#ms };
   }
 
   free(): void {

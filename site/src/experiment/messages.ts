@@ -25,6 +25,8 @@ export type Lane = { readonly report: Report } | { readonly out: string };
 export interface Balls {
   /** The centers, one ball after another. */
   readonly positions: Float32Array;
+  /** Milliseconds that their motion took. */
+  readonly ms: number;
   /** The box that they are in, and how large they are: with the first frame of a run. */
   readonly world?: { readonly min: readonly number[]; readonly max: readonly number[]; readonly radii: Float32Array } | undefined;
 }

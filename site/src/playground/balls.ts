@@ -21,8 +21,8 @@ export class BallsPicture {
     this.#failed = failed;
   }
 
-  /** Shows balls, or hides the picture. */
-  show(balls: Balls | undefined, dimensions: 2 | 3): void {
+  /** Shows balls and, of discs, lines for pairs; without balls, hides the picture. */
+  show(balls: Balls | undefined, dimensions: 2 | 3, pairs?: Uint32Array): void {
     this.#place.hidden = balls === undefined;
     if (!balls) return;
     const world = balls.world ?? this.#last?.world;
@@ -30,7 +30,7 @@ export class BallsPicture {
     this.#last = { ...balls, world };
     if (dimensions !== this.#dimensions) return this.#open(dimensions);
     if (isNew) this.#begin();
-    this.#view?.draw(balls);
+    this.#view?.draw({ ...balls, pairs });
   }
 
   resize(): void {

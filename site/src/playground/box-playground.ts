@@ -1,12 +1,12 @@
 import { numberWithin, readAddress, writeAddress } from "../experiment/address.ts";
 import { type BoxColors, drawBoxes, type Window2, windowOf } from "../experiment/box-picture.ts";
 import type { Lists, RunnerOptions, WorldOptions } from "../experiment/experiment.ts";
-import { FALLING } from "../experiment/scene.ts";
+import { FALLING, GRAVITIES } from "../experiment/scene.ts";
 import type { ExperimentFrame, FromExperiment, ToExperiment } from "../experiment/messages.ts";
 import { ExperimentRecord, MEASURES, SHOWN } from "../experiment/record.ts";
 import { showLoadFailure } from "../load-failed.ts";
 import { messageOf } from "../message-of.ts";
-import { formatCount } from "../panel/counters.ts";
+import { bruteForceTests, formatCount } from "../panel/counters.ts";
 import { whenNear } from "../panel/awake.ts";
 import { PanelElement } from "../panel/panel-element.ts";
 import { LARGEST_SEED } from "../panel/parts.ts";
@@ -102,6 +102,7 @@ export class BoxPlayground extends PanelElement {
     const lanes = 1 + [2, 3, 4].filter((lane) => this.#state[keysOf(lane).algorithm as Key] !== NONE).length;
     this.named("add-algorithm").hidden = lanes === MOST_LANES;
     if (lanes > 1) this.named("lanes").innerHTML = Array.from({ length: lanes }, (_, at) => laneMarkup(at + 1)).join("");
+    this.#offerByScene();
     void whenNear(this, this.signal).then(() => this.#open());
   }
 
@@ -159,9 +160,9 @@ export class BoxPlayground extends PanelElement {
     const falling = { name: FALLING, description: "Balls fall into a box and bounce off each other; the algorithms search their boxes.", dimensions: [2, 3] } as const;
     const lists = { ...given, scenes: [falling, ...given.scenes] };
     this.#lists = lists;
-    this.#bindChoice("dimensions", undefined, () => this.#fill());
+    this.#bindChoice("dimensions");
     this.#bindChoice("scene");
-    this.#bindChoice("motion", lists.motions.map(({ name }) => name));
+    this.#bindChoice("motion");
     this.#lanes = new Lanes(this.named("lanes"), lists, (lanes) => this.#setLanes(lanes));
     this.#fill(this.#lanesOfAddress(lists));
     this.onClick("add-algorithm", () => this.#lanes.add(this.#world().dimensions));
@@ -202,15 +203,14 @@ export class BoxPlayground extends PanelElement {
     }
   }
 
-  #bindChoice(key: "dimensions" | "scene" | "motion", names?: readonly string[], before = (): void => {}): void {
+  #bindChoice(key: "dimensions" | "scene" | "motion"): void {
     const select = this.named<HTMLSelectElement>(key);
-    if (names) select.replaceChildren(...names.map((name) => new Option(name)));
     if (select.options.length > 0) this.#choose(key);
     select.addEventListener("change", () => {
       if (select.value === MORE) return this.#offerAllScenes();
       this.#state[key] = select.value;
       if (key === "dimensions" || key === "scene") this.#forgetOwn();
-      before();
+      if (key === "dimensions") this.#fill();
       this.#change(key, select.value);
     });
   }
@@ -223,8 +223,22 @@ export class BoxPlayground extends PanelElement {
     const names = there.map(({ name }) => name).filter((name) => this.#offersAll || SCENES.includes(name) || name === this.#state.scene);
     this.named("scene").replaceChildren(...(isOwn ? [new Option(OWN, "")] : []), ...names.map((name) => new Option(name)), ...(this.#offersAll ? [] : [new Option(MORE)]));
     if (!isOwn) this.#choose("scene");
+    const motions = this.#isFalling ? Object.keys(GRAVITIES) : (this.#lists?.motions ?? []).map(({ name }) => name);
+    this.named("motion").replaceChildren(...motions.map((name) => new Option(name)));
+    this.#choose("motion");
+    this.#offerByScene();
     this.#lanes.set(lanes, dimensions);
     this.#keepLanes(this.#lanes.all);
+  }
+
+  get #isFalling(): boolean {
+    return !this.#own && this.#state.scene === FALLING;
+  }
+
+  /** A picture of balls cannot be moved; lines are drawn between discs. */
+  #offerByScene(): void {
+    this.named("fit").hidden = this.#isFalling;
+    this.named("links").hidden = !this.#isFalling || this.#state.dimensions === "3";
   }
 
   /** All scenes from now on, with the chosen one still chosen. */
@@ -293,6 +307,7 @@ export class BoxPlayground extends PanelElement {
         this.#begin();
       },
     );
+    this.named("links").addEventListener("change", () => this.requestShow());
     this.onClick("fit", () => {
       this.#view = undefined;
       this.requestShow();
@@ -385,7 +400,8 @@ export class BoxPlayground extends PanelElement {
 
   #keep(key: Key, text: string): void {
     this.#state[key] = text;
-    writeAddress(this.#state, this.#defaults);
+    const motion = this.#isFalling ? Object.keys(GRAVITIES)[0]! : this.#defaults.motion;
+    writeAddress(this.#state, { ...this.#defaults, motion });
   }
 
   #change(key: Key, text: string): void {
@@ -496,7 +512,8 @@ export class BoxPlayground extends PanelElement {
     delete this.dataset["step"];
     const { scenes = [], motions = [] } = this.#lists ?? {};
     const about = [scenes.find(({ name }) => name === this.#state.scene), motions.find(({ name }) => name === this.#state.motion)];
-    this.named("about").textContent = about.map((item) => item?.description ?? "").join(" ");
+    const brute = `Brute force would test ${formatCount(bruteForceTests(this.#world().boxes))} pairs in each step.`;
+    this.named("about").textContent = [...about.flatMap((item) => item?.description ?? []), ...(this.#isFalling ? [brute] : [])].join(" ");
     this.#send({ type: "begin", run: ++this.#run, world: this.#world(), runners: lanes, steps });
     this.#describe();
   }
@@ -587,7 +604,7 @@ export class BoxPlayground extends PanelElement {
     const canvas = this.named<HTMLCanvasElement>("picture");
     const { clientWidth: width, clientHeight: height } = canvas;
     const { dimensions } = this.#world();
-    this.#balls.show(balls, dimensions);
+    this.#balls.show(balls, dimensions, this.find<HTMLInputElement>("[data-part=links] input").checked ? pairs : undefined);
     this.named("surface").hidden = balls !== undefined;
     if (balls) return;
     this.#view ??= windowOf(boxes, dimensions, width, height);
@@ -617,11 +634,10 @@ export class BoxPlayground extends PanelElement {
     const { step, lanes } = frame;
     const names = this.#lanes.all.map(({ algorithm }) => algorithm);
     this.dataset["step"] = String(step);
-    this.named("moment").textContent = `Step ${formatCount(step)}`;
+    this.named("moment").textContent = `Step ${formatCount(step)}${frame.balls && step > 0 ? `, moved in ${frame.balls.ms.toFixed(1)} ms` : ""}`;
     this.message(frame.balls ? this.#noPicture : "");
     this.#lanes.show(lanes, names.map((_, at) => this.#record.level(at, MEASURES[0])));
     this.named("verdict").textContent = names.length > 1 ? verdict(frame, this.#record, names) : "";
-    this.named<HTMLSelectElement>("motion").disabled = frame.balls !== undefined;
     for (const part of ["boxes", "size", "spread"]) this.named<HTMLInputElement>(part).disabled = this.#own !== undefined;
   }
 
@@ -635,9 +651,8 @@ export class BoxPlayground extends PanelElement {
   /** Tells what is going on: seldom enough to be read out. */
   #describe(): void {
     const { boxes, scene, motion, dimensions } = this.#world();
-    const isFalling = !this.#own && scene === FALLING;
     const balls = `falling ${dimensions === 2 ? "disc" : "sphere"}${boxes === 1 ? "" : "s"}`;
-    const what = `${formatCount(boxes)} ${isFalling ? balls : this.#own ? `boxes of your own, ${motion}` : `boxes, ${scene}, ${motion}`}`;
+    const what = `${formatCount(boxes)} ${this.#isFalling ? balls : this.#own ? `boxes of your own, ${motion}` : `boxes, ${scene}, ${motion}`}`;
     const names = this.#lanes.all.map(({ algorithm }) => algorithm);
     const where = `${what}, by ${names.join(", ")}.`;
     const lane = this.#frame?.lanes.find((lane) => "report" in lane);

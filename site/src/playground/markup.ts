@@ -3,6 +3,7 @@
 
 import type { Report } from "../experiment/experiment.ts";
 import { MEASURES } from "../experiment/record.ts";
+import { FALLING } from "../experiment/scene.ts";
 import { type Counter, counterRows, WORK } from "../panel/counters.ts";
 import { choice, seedField, slider, still, transport } from "../panel/parts.ts";
 
@@ -25,10 +26,10 @@ export const COUNTERS: readonly Counter<Shown>[] = [
 const SPHERES = "./playground.html?scene=falling+balls&amp;dimensions=3&amp;boxes=10000&amp;algorithm=find+pairs";
 
 export function expandPlayground(page: string): string {
-  return page.replace(/<box-playground([^>]*)><\/box-playground>/g, (_, attributes: string) => `<box-playground${attributes}>${markup(/\bcompact\b/.test(attributes))}</box-playground>`);
+  return page.replace(/<box-playground([^>]*)><\/box-playground>/g, (_, attributes: string) => `<box-playground${attributes}>${markup(/\bcompact\b/.test(attributes), attributes.includes(FALLING))}</box-playground>`);
 }
 
-function markup(isCompact: boolean): string {
+function markup(isCompact: boolean, isFalling: boolean): string {
   return `
     <div class="panel" role="group" aria-label="Playground">
       <div class="panel-stage">
@@ -47,7 +48,8 @@ function markup(isCompact: boolean): string {
         </div>
         <p class="verdict" data-part="verdict"></p>
       </div>
-      ${transport(`<button type="button" data-part="fit" disabled>Show all</button>`)}
+      ${transport(`<button type="button" data-part="fit" ${isFalling ? "hidden " : ""}disabled>Show all</button>
+        <label class="switch" data-part="links"${isFalling ? "" : " hidden"}><input type="checkbox" autocomplete="off" disabled /> <span>Lines for pairs</span></label>`)}
       <div class="panel-lanes">
         <div class="lanes" data-part="lanes">${laneMarkup(1)}</div>
         <p class="alarm" role="alert" data-part="alarm"></p>

@@ -45,7 +45,7 @@ export class DiscView implements View {
     this.#canvas.height = Math.round(height * pixelRatio());
   }
 
-  draw({ positions }: Picture): void {
+  draw({ positions, pairs = new Uint32Array() }: Picture): void {
     const context = this.#context;
     const { width, height } = this.#canvas;
     const [left = 0, bottom = 0] = this.#world.min;
@@ -75,6 +75,14 @@ export class DiscView implements View {
       context.fillStyle = this.#colors[shade] ?? this.#theme.edge;
       context.fill();
     });
+    context.beginPath();
+    for (let at = 0; at < pairs.length; at += 2) {
+      context.moveTo(x(pairs[at]!), y(pairs[at]!));
+      context.lineTo(x(pairs[at + 1]!), y(pairs[at + 1]!));
+    }
+    context.strokeStyle = this.#theme.line;
+    context.lineWidth = 1.5 * pixelRatio();
+    context.stroke();
   }
 }
 

@@ -22,6 +22,8 @@ export function shownHeight({ min, max }: World, radii: Float32Array): number {
 /** What one picture shows. `positions` holds the centers one body after another. */
 export interface Picture {
   readonly positions: Float32Array;
+  /** The pairs to draw lines between, if any: a0, b0, a1, b1, ... */
+  readonly pairs?: Uint32Array | undefined;
 }
 
 /** Draws the bodies of one simulation on one canvas. */

@@ -259,7 +259,7 @@ export class SapComparisonElement extends LitElement {
       ${headings.map((total) => {
         if (!total) return html`<div></div>`;
         const { count, name } = total.work;
-        return html`<div data-total=${tick === undefined ? nothing : count}><span>${total.heading}</span><i style="width:${(100 * count) / most}%"></i><b>${count.toLocaleString("en")} ${name}</b></div>`;
+        return html`<div data-total=${tick === undefined ? nothing : count}><span>${total.heading}</span><i style="width:${(100 * count) / most}%"></i><b>${count.toLocaleString("en")} ${count === 1 ? name.slice(0, -1) : name}</b></div>`;
       })}
     </div>`;
   }

@@ -487,6 +487,10 @@ export class SapDemoElement extends LitElement {
     return this.#isPlaying ? undefined : this.#run?.question;
   }
 
+  get #asked(): TraceEvent | undefined {
+    return this.#isPlaying ? undefined : this.#run?.asked;
+  }
+
   #guess(choice: number): void {
     const question = this.#question;
     if (!question || choice >= question.choices.length) return;
@@ -528,6 +532,7 @@ export class SapDemoElement extends LitElement {
       options: run.options,
       names: run.names,
       marked: [...this.#hands.selection.marked, ...[this.#pointed, this.#marked?.ball].filter((ball) => ball !== undefined)],
+      asked: this.#asked,
       emphasis: this.#marked?.color,
       explanation: this.#explanation,
       lineAt: run.playback.lineAt(this.#isPlaying),
@@ -547,7 +552,8 @@ export class SapDemoElement extends LitElement {
     const now = performance.now();
     if (!said || (this.#isPlaying && !run.timeline.event && now - this.#saidAt < COUNTERS_MS)) return;
     this.#saidAt = now;
-    const sentence = this.#sentence;
+    // What was there before the question is not what it is about.
+    const sentence = this.#asked ? "" : this.#sentence;
     if (said.textContent !== sentence) said.textContent = sentence;
   }
 

@@ -1,3 +1,4 @@
+import type { TraceEvent } from "../algorithms/trace.js";
 import type { Canvases } from "./canvas.js";
 import { hasFlags } from "./detection.js";
 import { drawScene } from "./draw.js";
@@ -14,6 +15,8 @@ interface Painting {
   readonly names: readonly string[];
   /** The balls to be marked. */
   readonly marked: readonly number[];
+  /** What stands out in the array in place of the last event, if a question is about it. */
+  readonly asked: TraceEvent | undefined;
   /** The color of what is to stand out. */
   readonly emphasis: string | undefined;
   readonly explanation: Explanation | undefined;
@@ -47,7 +50,7 @@ export function paint(root: ParentNode, canvases: Canvases, painting: Painting):
   const array = options.decorations.array && canvases.open(root.querySelector("canvas.array"));
   if (array) {
     const moved = timeline.isDetected && options.decorations.array?.isSortShown ? detection.swapped : nothingMoved;
-    drawArray(array.context, array.width, { ...common, labels: names, moved, lineEdge: ofFocus?.edge ?? state.line?.edge }, theme);
+    drawArray(array.context, array.width, { ...common, event: painting.asked ?? event, labels: names, moved, lineEdge: ofFocus?.edge ?? state.line?.edge }, theme);
   }
 }
 

@@ -119,6 +119,12 @@ export class Run {
     return asksOfScan(options) ? questionsOfScan(timeline, options.detecting.focus, this.#known)[this.#answered] : questionAt(timeline, this.#known);
   }
 
+  /** The comparison or swap that the question is about: what comes next in the array. */
+  get asked(): TraceEvent | undefined {
+    const [next] = this.timeline.coming;
+    return (next?.kind === "compare" || next?.kind === "swap") && this.question ? next : undefined;
+  }
+
   /** Shows what the question was about; the events that were played. */
   answer(): readonly TraceEvent[] {
     if (!asksOfScan(this.options)) return this.timeline.nextStop();
