@@ -530,7 +530,9 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
     fn pairs_of(&mut self, input: &mut Input) {
         if let Some(id) = self.id(input) {
             input.say(|| format!("pairs_of {id:?}"));
-            assert!(self.world.pairs_of(id).unwrap().eq(self.model.pairs_of(id)));
+            let others = self.model.pairs_of(id);
+            assert_eq!(self.world.pairs_by_body()[id.slot() as usize], others);
+            assert!(self.world.pairs_of(id).unwrap().eq(others));
         }
     }
 

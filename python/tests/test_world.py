@@ -186,9 +186,12 @@ class Worlds(RuleBasedStateMachine):
         self.known = now
         self.boxes.update(self.ends)
         self.ends.clear()
+        by_body = list(self.world.pairs_by_body().each())
+        assert sum(map(len, by_body)) == 2 * len(now)
         for id in self.boxes:
             others = {b if a == id else a for a, b in now if id in (a, b)}
             assert set(self.world.pairs_of(id).tolist()) == others
+            assert by_body[sap.slots_of(id)].tolist() == self.world.pairs_of(id).tolist()
 
     @rule()
     def save_and_restore(self) -> None:

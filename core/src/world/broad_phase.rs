@@ -7,7 +7,7 @@ use super::changes::{Changes, Events};
 #[cfg(feature = "parallel")]
 use super::finder::Finder;
 use super::options::Options;
-use super::queries::Queries;
+use super::queries::{Lists, Queries};
 use super::snapshot;
 use super::tracking::Tracking;
 use super::update::{restore, update};
@@ -220,11 +220,31 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         self.tracking.candidates.ids(&self.bodies.slots)
     }
 
+    /// The pairs of [`pairs`](Self::pairs) by body: the list of each slot ([`ProxyId::slot`]) has the bodies that pair with
+    /// the body there, sorted. Slots without one have empty lists.
+    ///
+    /// Takes O(pairs + slots) time and memory, where [`pairs_of`](Self::pairs_of) for each body takes much more.
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, BroadPhase};
+    ///
+    /// let mut world = BroadPhase::<1>::new();
+    /// let ids = world.insert_many(&[Aabb::new([0.0], [1.0]); 3], Default::default())?;
+    /// world.update();
+    /// let touching = world.pairs_by_body();
+    /// assert_eq!(&touching[ids[1].slot() as usize], [ids[0], ids[2]]);
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
+    pub fn pairs_by_body(&self) -> Lists<ProxyId> {
+        let (ends, others) = self.tracking.candidates.by_slot(&self.bodies.slots);
+        Lists::from_parts(ends, others)
+    }
+
     /// The bodies that overlapped this one at the last update, sorted.
     ///
     /// Takes O(log n) time and that of its neighbors if the tree is up to date, as it is after
-    /// [`queries`](Self::queries) until the next update; otherwise O(pairs) time. For many bodies iterate over
-    /// [`pairs`](Self::pairs) once.
+    /// [`queries`](Self::queries) until the next update; otherwise O(pairs) time. For many bodies take
+    /// [`pairs_by_body`](Self::pairs_by_body) once.
     ///
     /// # Errors
     /// [`Error::StaleProxy`].

@@ -5,6 +5,7 @@
 //! bodies asleep only the live ones are kept, to be listed to users: before such a pair begins or ends
 //! one of the bodies wakes, and the tree finds its candidates.
 
+use alloc::vec;
 use alloc::vec::Vec;
 
 use super::sort::PairSorter;
@@ -88,16 +89,42 @@ impl Candidates {
         })
     }
 
+    /// The live pairs as slots, smaller first, sorted.
+    fn sorted_slots(&self, slots: &Slots) -> Vec<[u32; 2]> {
+        let mut pairs: Vec<_> = self.live_pairs(slots).collect();
+        slots.to_slots(&mut pairs);
+        PairSorter::default().sort(&mut pairs, slots.len());
+        pairs
+    }
+
     /// The ids of the live pairs, smaller first, sorted.
     #[inline(never)]
     pub fn sorted_ids<'a>(
         &self,
         slots: &'a Slots,
     ) -> impl ExactSizeIterator<Item = [ProxyId; 2]> + use<'a> {
-        let mut pairs: Vec<_> = self.live_pairs(slots).collect();
-        slots.to_slots(&mut pairs);
-        PairSorter::default().sort(&mut pairs, slots.len());
-        pairs.into_iter().map(|pair| pair.map(|slot| slots.id_of_slot(slot)))
+        self.sorted_slots(slots).into_iter().map(|pair| pair.map(|slot| slots.id_of_slot(slot)))
+    }
+
+    /// By slot, the ids of the other bodies of its live pairs, sorted; and where those of each slot end.
+    pub fn by_slot(&self, slots: &Slots) -> (Vec<usize>, Vec<ProxyId>) {
+        let pairs = self.sorted_slots(slots);
+        let mut ends = vec![0; slots.len()];
+        pairs.as_flattened().iter().for_each(|&slot| ends[slot as usize] += 1);
+        let mut end = 0;
+        for count in &mut ends {
+            end += *count;
+            *count = end;
+        }
+        // Written from the end, so that what is left of each end is where the list starts.
+        let (mut starts, mut others) = (ends.clone(), vec![0; end]);
+        for &[a, b] in pairs.iter().rev() {
+            for (slot, other) in [(b, a), (a, b)] {
+                starts[slot as usize] -= 1;
+                others[starts[slot as usize]] = other;
+            }
+        }
+        (ends, others.into_iter().map(|slot| slots.id_of_slot(slot)).collect())
     }
 
     /// Lists the other bodies of the live pairs of one.

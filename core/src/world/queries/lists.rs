@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 use core::ops::Index;
 
-/// The results of many queries, a list for each. Passed to queries again, they keep their memory.
+/// The results of many queries, a list for each, or the pairs of each body. Passed to queries again, they keep their memory.
 ///
 /// ```
 /// use sweep_and_prune::{Aabb, BroadPhase, Lists};
@@ -29,6 +29,11 @@ impl<V> Lists<V> {
         Self { ends: Vec::new(), values: Vec::new() }
     }
 
+    /// Lists of these values, one after another, and where each ends.
+    pub(in crate::world) fn from_parts(ends: Vec<usize>, values: Vec<V>) -> Self {
+        Self { ends, values }
+    }
+
     /// Removes all lists and keeps the memory.
     pub(super) fn clear(&mut self) {
         self.ends.clear();
@@ -40,17 +45,17 @@ impl<V> Lists<V> {
         self.ends.push(self.values.len());
     }
 
-    /// How many lists there are: one a query.
+    /// How many lists there are: one a query or slot.
     pub fn len(&self) -> usize {
         self.ends.len()
     }
 
-    /// Whether no query was asked.
+    /// Whether there is no list.
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
     }
 
-    /// The lists in the order of the queries.
+    /// The lists in the order of the queries or slots.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &[V]> {
         (0..self.len()).map(|query| &self[query])
     }
