@@ -16,6 +16,12 @@ const names = (found) => world.dataOf(found).join(", ");
 console.log(names(world.overlapping([200, 70, 300, 290]))); // photo, caption
 console.log(names(world.containing([100, 310]))); // footer
 
+// A frame that selects only what is completely inside.
+const [minX, minY, maxX, maxY] = [30, 70, 370, 320];
+const isInside = ([left, top, right, bottom]) => minX <= left && minY <= top && right <= maxX && bottom <= maxY;
+const touched = world.overlapping([minX, minY, maxX, maxY]);
+console.log(names(touched), "|", names(touched.filter((id) => isInside(world.box(id))))); // photo, caption, footer | photo, caption
+
 // Snapping: the shapes within 8 of the dragged one, and the nearest edge among their left and right edges.
 const [, , caption] = ids;
 const dragged = [245, 90, 345, 290];

@@ -19,6 +19,15 @@ use crate::error::Error;
 /// assert!(player.overlaps(&ground)); // touching boxes overlap
 /// ```
 ///
+/// Where boxes that only touch must not pair, as the cells of a grid, each ends just below where the next one begins:
+///
+/// ```
+/// use sweep_and_prune::Aabb;
+///
+/// let cell = |x: f32| Aabb::new([x], [(x + 1.0).next_down()]);
+/// assert!(!cell(0.0).overlaps(&cell(1.0)));
+/// ```
+///
 /// Boxes are made from corners, from a center, or from arrays and tuples in the order of their
 /// coordinates in memory:
 ///

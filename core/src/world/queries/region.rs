@@ -95,7 +95,20 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         Self { is_sorted: false, ..self }
     }
 
-    /// The bodies whose boxes overlap a box, sorted.
+    /// The bodies whose boxes overlap a box, sorted. Those that are completely inside are some of them:
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, BroadPhase};
+    ///
+    /// let mut world = BroadPhase::<1>::new();
+    /// let ids = world.insert_many(&[Aabb::new([1.0], [2.0]), Aabb::new([4.0], [9.0])], Default::default())?;
+    /// let area = Aabb::new([0.0], [5.0]);
+    /// let mut found = world.queries().overlapping(&area)?;
+    /// assert_eq!(found, ids);
+    /// found.retain(|&id| world.aabb(id).is_ok_and(|inner| area.contains(&inner)));
+    /// assert_eq!(found, [ids[0]]);
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
     ///
     /// # Errors
     /// [`Error::InvalidBox`].
