@@ -327,6 +327,9 @@ fn world<const D: usize, T: Scalar>(seed: u64, most: usize, most_time: f64) -> O
         held = (held + IN_USE.load(Ordering::Relaxed)).saturating_sub(before);
         let name = format!("seed {seed}");
         expected.check(&name, update, [changes.begun().slots(), changes.ended().slots()]);
+        if update % 4 == 0 {
+            assert_eq!(world.broken_invariant(), None, "{name}, update {update}");
+        }
         let most_body = BODY_BYTES[0] + BODY_BYTES[1] * size_of::<Aabb<D, T>>();
         let limit = most_body * bodies.len() + PAIR_BYTES * most_pairs + FEW_BYTES;
         outcome.bytes = outcome.bytes.max(bytes as f64 / limit as f64);

@@ -85,6 +85,11 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
     }
 
     pub fn operation(&mut self, input: &mut Input) {
+        self.call(input);
+        assert_eq!(self.world.broken_invariant(), None);
+    }
+
+    fn call(&mut self, input: &mut Input) {
         self.calls += 1;
         match input.below(48) {
             0..=5 => {

@@ -6,6 +6,7 @@ use super::bodies::{Bodies, Filter, ProxyId, When, flag};
 use super::changes::{Changes, Events};
 #[cfg(feature = "parallel")]
 use super::finder::Finder;
+use super::invariants;
 use super::options::Options;
 use super::queries::{Lists, Queries};
 use super::snapshot;
@@ -218,6 +219,13 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// specified: a restored world may give another. Takes O(pairs) time and does not allocate.
     pub fn pairs_unsorted(&self) -> impl Iterator<Item = [ProxyId; 2]> + '_ {
         self.tracking.candidates.ids(&self.bodies.slots)
+    }
+
+    /// Which of the conditions that hold between calls does not, if any: for tests of this crate. Takes O(bodies + candidates)
+    /// time.
+    #[doc(hidden)]
+    pub fn broken_invariant(&self) -> Option<&'static str> {
+        invariants::broken(&self.bodies, &self.tracking)
     }
 
     /// The pairs of [`pairs`](Self::pairs) by body: the list of each slot ([`ProxyId::slot`]) has the bodies that pair with

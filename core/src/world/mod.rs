@@ -3,9 +3,10 @@
 //!
 //! ```text
 //! bodies -> tree -> candidates -> policy -> sets -> finder -> tracking -> layout -> update
-//!     -> queries, snapshot -> broad_phase -> edit
+//!     -> queries, snapshot, invariants -> broad_phase -> edit
 //! ```
-//! Each of these uses only those before it. `update/mod.rs` is the update on one page.
+//! Each of these uses only those before it. `update/mod.rs` is the update on one page; `invariants.rs` is the page of what
+//! holds between calls.
 
 mod bodies;
 mod broad_phase;
@@ -13,6 +14,7 @@ mod candidates;
 mod changes;
 mod edit;
 mod finder;
+mod invariants;
 mod layout;
 mod options;
 mod policy;

@@ -191,6 +191,7 @@ fn a_sleeping_body_wakes_with_all_its_pairs_whatever_changes() {
         assert_eq!(sorted(world.pairs()), model.pairs, "{step}");
         let any = ids[random.below(ids.len())];
         assert_eq!(sorted(world.pairs_of(any).unwrap()), model.pairs_of(any), "{step}");
+        assert_eq!(world.broken_invariant(), None, "{step}");
         let by_body = world.pairs_by_body();
         assert_eq!(by_body.values().len(), 2 * model.pairs.len(), "{step}");
         for &id in &ids {
