@@ -106,13 +106,13 @@ test("balls fall more slowly on the Moon; lines are drawn for the pairs of discs
   await expect(root.locator("[data-part=moment]")).toHaveText(/^Step 61, moved in \d+\.\d ms$/);
   const picture = root.getByRole("img", { name: "Discs falling into a box" });
   const without = await picture.screenshot();
-  await root.getByLabel("Lines for pairs").check();
+  await root.getByLabel("Pair lines").check();
   await expect.poll(async () => without.equals(await picture.screenshot())).toBe(false);
-  await root.getByLabel("Lines for pairs").uncheck();
+  await root.getByLabel("Pair lines").uncheck();
   await expect.poll(async () => without.equals(await picture.screenshot())).toBe(true);
   await expect(root.getByRole("button", { name: "Show all" })).toBeHidden();
   await root.getByLabel("Dimensions").selectOption("3");
-  await expect(root.getByLabel("Lines for pairs")).toBeHidden();
+  await expect(root.getByLabel("Pair lines")).toBeHidden();
   await root.getByLabel("Scene").selectOption("uniform");
   await expect(root.getByRole("button", { name: "Show all" })).toBeVisible();
   await expect(root.getByLabel("Motion")).toHaveValue("drift");

@@ -29,10 +29,13 @@ const finders = new WeakMap<GPUDevice, Map<number, Promise<PairFinder>>>();
  * the min corner and then the max corner, as in `sweep-and-prune`. Boxes that stay on the GPU are found faster with
  * {@link PairFinder}.
  *
- * @throws {@link GpuError}; `RangeError` for an invalid box, with its index, and for a length or an option.
+ * @throws {@link GpuError}; `RangeError` for an invalid box, with its index, and for a length or an option; `TypeError` for
+ * anything but a `Float32Array`.
  */
 export async function findPairs(boxes: Float32Array, options: GpuFindPairsOptions): Promise<Uint32Array> {
-  const { dimensions, fallback } = options;
+  // What TypeScript does not see.
+  const { dimensions, fallback } = options ?? {};
+  if (!(boxes instanceof Float32Array)) throw new TypeError("boxes must be a Float32Array");
   if (dimensions !== 2 && dimensions !== 3) throw new RangeError(`dimensions is ${dimensions}; it must be 2 or 3`);
   if (boxes.length % (2 * dimensions) !== 0) {
     throw new RangeError(`boxes has ${boxes.length} numbers; a box has ${2 * dimensions}`);
@@ -73,7 +76,11 @@ function defaultDevice(): Promise<GPUDevice> {
 function finderOf(device: GPUDevice, dimensions: 2 | 3): Promise<PairFinder> {
   const ofDevice = finders.get(device) ?? new Map<number, Promise<PairFinder>>();
   finders.set(device, ofDevice);
-  const finder = ofDevice.get(dimensions) ?? PairFinder.create(device, { dimensions });
+  const known = ofDevice.get(dimensions);
+  if (known) return known;
+  const finder = PairFinder.create(device, { dimensions });
   ofDevice.set(dimensions, finder);
+  // The next call tries again.
+  finder.catch(() => ofDevice.delete(dimensions));
   return finder;
 }

@@ -282,6 +282,8 @@ test("findPairs copies boxes to the GPU and pairs back", async () => {
       none: (await library.findPairs(new Float32Array(), { dimensions: 2 })).length,
       invalid: await errorOf(() => library.findPairs(new Float32Array([0, 0, 1, 1, 2, 0, 1, 1]), { dimensions: 2 })),
       length: await errorOf(() => library.findPairs(new Float32Array(5), { dimensions: 2 })),
+      array: await errorOf(() => library.findPairs([0, 0, 1, 1], { dimensions: 2 })),
+      dimensions: await errorOf(() => library.findPairs(boxes)),
     };
   });
   assert.deepEqual(results.pairs, [[0, 2], []]);
@@ -289,6 +291,8 @@ test("findPairs copies boxes to the GPU and pairs back", async () => {
   assert.equal(results.invalid?.name, "RangeError");
   assert.match(results.invalid?.message ?? "", /box 1 is invalid/);
   assert.match(results.length?.message ?? "", /boxes has 5 numbers; a box has 4/);
+  assert.match(results.array?.message ?? "", /boxes must be a Float32Array/);
+  assert.match(results.dimensions?.message ?? "", /dimensions is undefined; it must be 2 or 3/);
 });
 
 test("without a GPU there is an error, or the fallback that the caller chose", async () => {

@@ -42,7 +42,7 @@ export class NotInitializedError extends SweepAndPruneError {
 
   /** @internal */
   constructor(entry = "sweep-and-prune") {
-    super(`"${entry}" is not initialized: import \`init\` from "${entry}" and \`await init()\` before the first call; one \`init()\` starts all entry points that were imported before it`);
+    super(`"${entry}" is not initialized: import \`init\` from "${entry}" and \`await init()\` before the first call; one \`init()\` starts all entry points imported before it`);
   }
 }
 
@@ -67,6 +67,6 @@ export class InterruptedError extends SweepAndPruneError {
 
   /** @internal */
   constructor(what: string) {
-    super(`an earlier call of this ${what} ended halfway, as the stack ran out: its state is lost; free it, and make another one`);
+    super(`a call of this ${what} ended halfway, as the stack ran out: its state is lost; free it`);
   }
 }

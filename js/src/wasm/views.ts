@@ -67,7 +67,7 @@ export function guard<T extends Typed>(clock: Clock, view: T): T {
   const { calls } = clock;
   const check = (): void => {
     if (clock.calls !== calls) {
-      throw new TypeError("this view is stale: views are valid until the next call of sweep-and-prune; copy it first");
+      throw new TypeError("this view is stale: views are valid until the next call; copy it first");
     }
   };
   const proxy = new Proxy(view, {

@@ -49,7 +49,7 @@ function markup(isCompact: boolean, isFalling: boolean): string {
         <p class="verdict" data-part="verdict"></p>
       </div>
       ${transport(`<button type="button" data-part="fit" ${isFalling ? "hidden " : ""}disabled>Show all</button>
-        <label class="switch" data-part="links"${isFalling ? "" : " hidden"}><input type="checkbox" autocomplete="off" disabled /> <span>Lines for pairs</span></label>`)}
+        <label class="switch" data-part="links"${isFalling ? "" : " hidden"}><input type="checkbox" autocomplete="off" disabled /> <span>Pair lines</span></label>`)}
       <div class="panel-lanes">
         <div class="lanes" data-part="lanes">${laneMarkup(1)}</div>
         <p class="alarm" role="alert" data-part="alarm"></p>

@@ -198,6 +198,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         let mut jumped = 0;
         let Self { fat, motion, policy, scratch: Scratch { escaped, queries, .. }, .. } = self;
         queries.clear();
+        // Spare capacity, as the other list has: steady motion must not allocate.
+        queries.reserve(escaped.capacity());
         queries.extend(escaped.iter().map(|&index| {
             let row = index as usize;
             let is_new = bodies.slots.has(index, flag::NEW);
