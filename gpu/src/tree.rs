@@ -1,6 +1,6 @@
 //! The levels of the tree over the boxes.
 
-/// Children of a node, as in `wgsl/search.wgsl` and `wgsl/parents.wgsl`.
+/// Children of a node, as in `wgsl/common.wgsl`.
 const CHILDREN: u64 = 8;
 
 /// The entries of `Params::levels` in `wgsl/search.wgsl`.

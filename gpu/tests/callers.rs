@@ -126,20 +126,20 @@ fn wrong_buffers_are_rejected() {
     assert!(finder.find(&boxes).unwrap().read().unwrap() == core_pairs(&uniform(10)));
 }
 
-/// A device whose largest buffer has this many bytes.
-fn small_device(bytes: u64) -> (wgpu::Device, wgpu::Queue) {
+/// A device with these limits.
+fn device_with(required_limits: wgpu::Limits) -> (wgpu::Device, wgpu::Queue) {
     let instance =
         wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
     let adapter =
         pollster::block_on(instance.request_adapter(&Default::default())).expect("a device");
-    let limits = wgpu::Limits { max_storage_buffer_binding_size: bytes, ..Default::default() };
-    let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
+    let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
     pollster::block_on(adapter.request_device(&descriptor)).expect("a device")
 }
 
 #[test]
 fn the_limits_of_a_device_are_respected() {
-    let (device, queue) = small_device(1 << 16);
+    let limits = wgpu::Limits { max_storage_buffer_binding_size: 1 << 16, ..Default::default() };
+    let (device, queue) = device_with(limits);
     let mut finder = PairFinder::<3>::new(&device, &queue).unwrap().sorted(true);
     let (most_boxes, most_pairs) = (finder.most_boxes() as usize, finder.most_pairs());
     assert_eq!((most_boxes, most_pairs), (1778, 1 << 13));
@@ -166,14 +166,8 @@ fn the_limits_of_a_device_are_respected() {
 
 #[test]
 fn a_device_with_less_than_the_defaults_is_rejected() {
-    let instance =
-        wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-    let adapter =
-        pollster::block_on(instance.request_adapter(&Default::default())).expect("a device");
     let limits = wgpu::Limits { max_compute_invocations_per_workgroup: 128, ..Default::default() };
-    let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
-    let (device, queue) =
-        pollster::block_on(adapter.request_device(&descriptor)).expect("a device");
+    let (device, queue) = device_with(limits);
     let error = PairFinder::<2>::new(&device, &queue).unwrap_err();
     let limit = "maxComputeInvocationsPerWorkgroup";
     assert_eq!(error, Error::Limit { limit, needed: 256, granted: 128 });

@@ -8,9 +8,6 @@ struct Params {
   first_child: u32,
 }
 
-// As in search.wgsl.
-const CHILDREN = 8u;
-
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read_write> nodes: array<Bounds>;
 

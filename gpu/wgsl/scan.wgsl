@@ -14,10 +14,6 @@ const ITEMS = 4u;
 
 var<workgroup> shared_sums: array<u32, THREADS>;
 
-fn add(a: u32, b: u32) -> u32 {
-  return select(a + b, 0xffffffffu, a + b < a);
-}
-
 @compute @workgroup_size(THREADS)
 fn scan(
   @builtin(workgroup_id) group: vec3<u32>,

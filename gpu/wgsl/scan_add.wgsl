@@ -22,7 +22,5 @@ fn scan_add(
   if (i >= params.count) {
     return;
   }
-  let sum = numbers[i] + before[i / BLOCK];
-  // As in scan.wgsl.
-  numbers[i] = select(sum, 0xffffffffu, sum < numbers[i]);
+  numbers[i] = add(numbers[i], before[i / BLOCK]);
 }

@@ -16,9 +16,6 @@ struct Params {
   levels: array<vec4<u32>, 4>,
 }
 
-// As in parents.wgsl.
-const CHILDREN = 8u;
-
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> nodes: array<Bounds>;
 @group(0) @binding(2) var<storage, read> order: array<u32>;

@@ -1,4 +1,4 @@
-/** Children of a node, as in `wgsl/search.wgsl` and `wgsl/parents.wgsl`. */
+/** Children of a node, as in `wgsl/common.wgsl`. */
 const CHILDREN = 8;
 
 /** The entries of `Params.levels` in `wgsl/search.wgsl`. */
