@@ -88,14 +88,16 @@ pub(crate) fn read(
     });
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, bytes);
-    queue.submit([encoder.finish()]);
+    let submission_index = Some(queue.submit([encoder.finish()]));
     let (sender, receiver) = std::sync::mpsc::channel();
     copy.map_async(wgpu::MapMode::Read, .., move |result| {
         // The receiver waits below.
         let _ = sender.send(result);
     });
-    device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| Error::DeviceLost)?;
-    match receiver.try_recv() {
+    let wait = wgpu::PollType::Wait { submission_index, timeout: None };
+    device.poll(wait).map_err(|_| Error::DeviceLost)?;
+    // Another thread that waits for this device may be the one that calls back, and do so only after `poll` returns here.
+    match receiver.recv() {
         Ok(Ok(())) => {}
         _ => return Err(Error::DeviceLost),
     }

@@ -2,6 +2,9 @@
 
 mod support;
 
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
 use support::{UNTOUCHED, core_pairs, device, filled, finder, numbers, read, upload};
 use sweep_and_prune::Aabb;
 use sweep_and_prune_gpu::{Boxes, Error, PairFinder, Summary, open_device};
@@ -195,4 +198,39 @@ fn a_summary_has_sixteen_numbers() {
         error,
         Error::BufferTooSmall { buffer: "summary", needed: Summary::BYTES, size: 60 }
     );
+}
+
+/// Whoever waits for a device also calls back for the buffers of other threads, and may take its time between two.
+#[test]
+fn other_threads_wait_for_the_same_device() {
+    let boxes = uniform(200);
+    let expected = core_pairs(&boxes);
+    let (device, queue) = open_device().unwrap();
+    let mut finder = PairFinder::<3>::new(&device, &queue).unwrap().sorted(true);
+    let uploaded = Boxes::upload(&device, &queue, &boxes).unwrap();
+    let is_done = AtomicBool::new(false);
+    let wait = || {
+        while !is_done.load(Ordering::Relaxed) {
+            let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+                label: None,
+                size: 4,
+                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            buffer.map_async(wgpu::MapMode::Read, .., |_| {
+                std::thread::sleep(Duration::from_millis(1));
+            });
+            device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..8 {
+            scope.spawn(wait);
+        }
+        let found: Vec<_> = (0..50).map(|_| finder.find(&uploaded)?.read()).collect();
+        is_done.store(true, Ordering::Relaxed);
+        for pairs in found {
+            assert!(pairs.unwrap() == expected);
+        }
+    });
 }
