@@ -11,7 +11,7 @@ from contextlib import redirect_stderr, redirect_stdout
 from fractions import Fraction
 from pathlib import Path
 from random import Random
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from tables import (
@@ -33,6 +33,9 @@ from sweep_and_prune._command import main
 
 TABLES = int(os.environ.get("TABLES", 20_000 if "TEST_LONG" in os.environ else 400))
 SEED = int(os.environ.get("SEED", 1))
+TABLES_DRAWN = 4
+CALLS_OF_TABLES = 20
+"""With tables that were drawn together, each call with other ones and with other options."""
 NAMES = {
     1: ["start", "end"],
     2: ["minx", "miny", "maxx", "maxy"],
@@ -223,25 +226,59 @@ def wanted_of(a: Table, b: Table, closed: str, margin: Any, is_single: bool, rou
     return found
 
 
-def table_call(random: Random) -> None:
-    """One call with tables."""
+def counts_of(pairs: set[tuple[int, int]], rows: int, is_single: bool) -> list[int]:
+    """How many pairs each row of the first set has."""
+    return [sum(i == row or (is_single and j == row) for i, j in pairs) for row in range(rows)]
+
+
+def clusters_of(pairs: set[tuple[int, int]], has_box: list[bool]) -> list[int]:
+    """The cluster of each row, numbered in the order of their first rows; -1 for a row without a box."""
+    labels = [row if has else -1 for row, has in enumerate(has_box)]
+    for _ in labels:
+        for i, j in pairs:
+            labels[i] = labels[j] = min(labels[i], labels[j])
+    numbers = {label: number for number, label in enumerate(sorted({one for one in labels if one >= 0}))}
+    return [numbers.get(label, -1) for label in labels]
+
+
+class Drawn(NamedTuple):
+    """Tables that can be searched together."""
+
+    what: str
+    """What their coordinates are."""
+    groups: list[str]
+    """What each column of groups has."""
+    tables: list[Table]
+
+
+def drawn_tables(random: Random) -> Drawn:
+    """Tables of one sort of coordinates and groups, near each other, each of a library and of dtypes of its own."""
     what = random.choice(["numbers", "numbers", "numbers", "times", "zoned", "durations"])
     dimensions = random.choice([1, 1, 2, 2, 3])
     groups = random.choice(
         [[], [], ["numbers"], ["text"], ["times"], ["zoned"], ["truth"], ["numbers", "text"], ["numbers", "numbers"]]
     )
     center = some_center(random, what)
-    is_single = random.random() < 0.4
     single = what == "numbers" and "zoned" not in groups and random.random() < 0.15
-    if is_single and not single and random.random() < 0.1:
+    if not single and random.random() < 0.04:
         groups = ["mixed"]
     of_shapes = HAS_SHAPES and random.random() < 0.15
     if of_shapes:
         what, dimensions, center, single = "numbers", 2, some_center(random, "numbers"), False
         groups = [] if groups == ["mixed"] else groups
-    a = Table(random, what, center, dimensions, groups, single, None, of_shapes)
-    has_shapes = of_shapes and random.random() < 0.8
-    b = a if is_single else Table(random, what, center, dimensions, groups, single, a, has_shapes)
+    tables: list[Table] = []
+    for _ in range(TABLES_DRAWN):
+        has_shapes = of_shapes and (not tables or random.random() < 0.8)
+        like = tables[0] if tables else None
+        tables.append(Table(random, what, center, dimensions, groups, single, like, has_shapes))
+    return Drawn(what, groups, tables)
+
+
+def table_call(random: Random, drawn: Drawn) -> None:
+    """One call with one or two of these tables."""
+    what, groups = drawn.what, drawn.groups
+    is_single = groups == ["mixed"] or random.random() < 0.4
+    a, b = [random.choice(drawn.tables)] * 2 if is_single else random.sample(drawn.tables, 2)
     exact = what != "numbers" or (a.is_exact and b.is_exact)
     margin, amount = a_margin(random, what, exact)
     closed = random.choice(["both", "both", "left", "right", "neither"])
@@ -257,9 +294,25 @@ def table_call(random: Random) -> None:
         else [exact_sum, sum_of(float), sum_of(np.float32)]
     )
     allowed = [wanted_of(a, b, closed, amount, is_single, rounded) for rounded in sums]
-    said = f"\na: {a!r}\nb: {b!r}\n{options} wanted {allowed}"
+    sets = (a.given,) if is_single else (a.given, b.given)
+    ask = random.choice(["pairs", "pairs", "pairs", "count", "counts", "cluster" if is_single else "counts"])
+
+    class Said:
+        """What was called, which takes long to write."""
+
+        def __str__(self) -> str:
+            return f"\na: {a!r}\nb: {b!r}\n{options} {ask} wanted {allowed}"
+
+    said = Said()
     try:
-        pairs = sap.find_pairs(a.given, **options) if is_single else sap.find_pairs_between(a.given, b.given, **options)
+        if ask == "count":
+            count = sap.count_pairs(*sets, **options) if is_single else sap.count_pairs_between(*sets, **options)
+        elif ask == "counts":
+            counts = sap.count_overlaps(*sets, **options)
+        elif ask == "cluster":
+            labels = sap.cluster(*sets, **options)
+        else:
+            pairs = sap.find_pairs(*sets, **options) if is_single else sap.find_pairs_between(*sets, **options)
     except sap.InvalidBoxError:
         assert sap.InvalidBoxError in allowed, said
         return
@@ -274,6 +327,18 @@ def table_call(random: Random) -> None:
         raise AssertionError(f"{error}{said}") from error
     except Exception as error:
         raise AssertionError(f"{type(error)} {error}{said}") from error
+    if ask == "count":
+        assert any(wanted != sap.InvalidBoxError and count == len(wanted) for wanted in allowed), f"{count}{said}"
+        return
+    if ask == "counts":
+        of_rows = [counts_of(wanted, a.count, is_single) for wanted in allowed if wanted != sap.InvalidBoxError]
+        assert counts.tolist() in of_rows, f"{counts}{said}"
+        return
+    if ask == "cluster":
+        has_box = [None not in a.box(row) for row in range(a.count)]
+        of_rows = [clusters_of(wanted, has_box) for wanted in allowed if wanted != sap.InvalidBoxError]
+        assert labels.tolist() in of_rows, f"{labels}{said}"
+        return
     found = {(i, j) for i, j in pairs.tolist()}
     assert len(found) == len(pairs) and found in allowed, f"{sorted(found)}{said}"
     joinable = a.library == b.library and a.library in ("pandas", "polars") and not is_single
@@ -351,9 +416,13 @@ def no_unit_holds(table: Table) -> bool:
 
 
 def test_tables_of_every_library_pair_as_their_values_do() -> None:
-    for seed in range(SEED, SEED + TABLES):
+    # To draw a table takes as long as several calls.
+    for seed in range(SEED, SEED + math.ceil(TABLES / CALLS_OF_TABLES)):
+        random = Random(seed)
         try:
-            table_call(Random(seed))
+            drawn = drawn_tables(random)
+            for _ in range(CALLS_OF_TABLES):
+                table_call(random, drawn)
         except AssertionError as error:
             raise AssertionError(f"SEED={seed} TABLES=1: {error}") from error
 
