@@ -22,7 +22,7 @@ mod _native {
     #[pymodule_export]
     use super::finder::Finder;
     #[pymodule_export]
-    use super::lines::read_bed;
+    use super::lines::{read_cells, read_ends_of_variants, read_lines, read_names, read_numbers};
     #[pymodule_export]
     use super::order::in_order;
     #[pymodule_export]

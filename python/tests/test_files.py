@@ -8,7 +8,6 @@ import io
 import json
 import subprocess
 import sys
-from contextlib import suppress
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -84,7 +83,7 @@ def test_a_first_column_of_text_needs_no_guess(capsys: pytest.CaptureFixture[str
 def test_comments_are_left_out() -> None:
     Path("a.csv").write_text('# made by "x\n#\n#again, 5\nstart,end,name\n0,1,#1\n# 5, 6\n2,3,b\n')
     assert boxes_of("a.csv") == [[0, 1], [2, 3]]
-    assert read("a.csv").label("name").tolist() == ["#1", "b"]
+    assert read("a.csv").values.text("name") == ["#1", "b"]
     assert read("a.csv").place(1) == "a.csv, line 7"
     Path("a.tsv").write_text("#chrom\tstart\tend\n1\t0\t1\n")
     assert boxes_of("a.tsv") == [[0, 1]] and read("a.tsv").columns == ["chrom", "start", "end"]
@@ -347,58 +346,146 @@ def test_files_of_gis_are_read_with_their_attributes(capsys: pytest.CaptureFixtu
         assert boxes_of(name) == [[0, 0, 1, 1]]
 
 
-LINES = [
-    "chr1\t5\t9\tx\ty",
-    "chr2\t0\t1",
-    "chr1\t7\t7\t\t",
-    "# no\t1\t2",
-    "",
-    "track name=a",
-    "browser",
-    "1\t007\t10\té",
-]
-ODD_LINES = [
-    "chr1\t5\t9x",
-    "chr1\t-1\t9",
-    "chr1\t5",
-    "\t1\t2",
-    "chr1\t5\t9\rchr2\t1\t2",
-    "chr1\t1_0\t20",
-    "a\t 1\t2",
-    "a\t1\t2 ",
-]
-ODD_LINES += ["track\t1\t2", "trackx\t1\t2", "a\t1.5\t2", f"a\t1\t{10**18}", f"a\t1\t{10**30}", "a b\t1\t2\r"]
+GENES = "chr1\thavana\texon\t{}\t{}\t.\t+\t.\tgene_id {}"
+LINES = {
+    "bed": [
+        "chr1\t5\t9\tx\ty",
+        "chr2\t0\t1",
+        "chr1\t7\t7\t\t",
+        "# no\t1\t2",
+        "track name=a",
+        "browser",
+        "1\t007\t10\té",
+    ],
+    "gtf": [GENES.format(5, 9, '"a"; level 2'), GENES.format(1, 7, "b"), "#!x", "chr2\tx\tx\t3\t4\t1.5\t.\t."],
+    "gff3": [GENES.format(5, 9, "ID=a"), "##gff-version 3", "1\tx\tx\t3\t4\t\t-\t0\tID=g%20a;Parent=b"],
+    "vcf": [
+        "##fileformat=VCFv4.2",
+        "chr1\t5\trs1\tACG\tT\t1.5\tPASS\tDP=3;END=12;END=x",
+        "chr1\t5\trs1\té\tT\t.\tPASS\tXEND=3;END=\tGT\t0/1",
+        "2\t0\t\tA\tT",
+        "2\t10\t.\t\tT\t\t\tEND=7",
+    ],
+    "csv": [
+        "5,9,x",
+        "-1,+7,",
+        '"3", 4,"a,b"',
+        " 0,007,é",
+        "2,3,#x,,",
+        "#,5",
+        '3,4,inch 5"',
+        "1.5,2,y",
+        ",3,z",
+        "1e2,100.0,z",
+    ],
+}
+ODD_LINES = {
+    "bed": ["chr1\t5\t9x", "chr1\t-1\t9", "chr1\t5", "\t1\t2", "chr1\t5\t9\rchr2\t1\t2", "chr1\t1_0\t20", "a\t 1\t2"]
+    + ["a\t1\t2 ", "track\t1\t2", "trackx\t1\t2", "a\t1.5\t2", f"a\t1\t{10**18}", f"a\t1\t{10**30}", "a b\t1\t2\r"],
+    "gtf": [
+        "##FASTA",
+        "chr1\tx\tx\t3\t4",
+        GENES.format("x", 5, ""),
+        GENES.format(".", "", ""),
+        GENES.format(-5, 2**60, ""),
+    ],
+    "gff3": ["##FASTA", "##FASTA x", GENES.format("1_0", 5, ""), GENES.format("1e1", "\u0661", "ID=a"), "chr1 x"],
+    "vcf": ["1\t007\t.\tA\tT", "1\tx\t.\tA\tT\t.\t.\tEND=5", "1\t5\t.\tA", f"1\t5\t.\tA\tT\t.\t.\tEND={10**20}"]
+    + ["1\t-2\t.\tA\tT", "1\t+2\t.\tA\tT", "1\t5 \t.\tA\tT", f"1\t{10**19}\t.\tA\tT", "1\t-0\t.\tA\tT"],
+    "csv": [
+        '1,2,"a""b"',
+        '1,2,"a\nb"',
+        '1,2,"a',
+        '1,"2"x,a',
+        "1,2",
+        "1,2,a,b",
+        "1,2,a\r3,4,b",
+        "1_0,20,a",
+        "x,1,a",
+        "inf,-inf,a",
+    ]
+    + [
+        f"1,{2**53},a",
+        f"{2**53 + 1},1,a",
+        f"1,{10**18},",
+        f"{10**18 - 1},-{10**18 - 1},",
+        "1e16,1,",
+        "1e999,1,",
+        "\u0661,1,a",
+    ]
+    + [
+        "NA,5,a",
+        ".,nan,a",
+        "1 ,2,a",
+        "-0,0,",
+        "   ",
+        "0x10,1,a",
+        '"#",1',
+        "1,2," + "a" * 131_073,
+        "+-1,2,a",
+        "1.e2,.5,",
+        "e,1,",
+    ],
+}
 
 
-def test_lines_of_bed_are_read_as_cell_by_cell() -> None:
+@pytest.mark.parametrize("kind", [*LINES])
+def test_lines_are_read_as_cell_by_cell(kind: str) -> None:
     random = Random(2)
     fast = 0
     for _ in range(600):
-        lines = [random.choice(ODD_LINES if random.random() < 0.03 else LINES) for _ in range(random.randint(0, 12))]
+        chosen = [random.choice(LINES[kind]) for _ in range(random.randint(0, 12))]
+        lines = [
+            random.choice(ODD_LINES[kind]) if random.random() < 0.03 else random.choice([line, line, ""])
+            for line in chosen
+        ]
         end = random.choice(["\n", "\r\n"])
+        header = None
+        if kind == "csv":
+            header = random.choice([True, False])
+            lines = [*random.choice([[], ["# by x"]]), *(["start, end,name"] if header else []), *lines]
         data = (random.choice(["", "\ufeff"]) + end.join(lines) + random.choice(["", end])).encode()
+        tables: list[_text.Text] = []
 
-        def outcome(read: Any, given: Any = data) -> Any:
+        def fast_table(data: bytes = data, header: Any = header) -> Any:
+            if kind == "csv":
+                return _text.read_table("a.csv", data, ",", header)[0]
+            return _text.read_genomic("a.bed", data, kind)
+
+        def plain_table(data: bytes = data, header: Any = header) -> Any:
+            text = io.StringIO(data.decode("utf-8-sig"), newline="")
+            if kind == "csv":
+                return next(_text.table_parts("a.csv", text, ",", header, 1000))[0]
+            return _text._read_genomic("a.bed", text, kind)
+
+        def outcome(read: Any, tables: list[_text.Text] = tables) -> Any:
             try:
-                table = read("a.bed", given, "bed")
+                table = read()
+                tables.append(table)
                 count = np.arange(len(table))
-                cells = [np.asarray(table.label(name)[count]).tolist() for name in table.columns]
-                ends = [[repr(float(one)) for one in table[name]] for name in ("start", "end")]
-                kinds = [table.are_plain_numbers("chrom"), table.are_plain_numbers("end")]
-                codes = group_codes([[table.group("chrom")]], ["a"])[0].tolist()
-                if kinds[0]:
-                    codes.append(group_codes([[table.group_of_numbers("chrom")]], ["a"])[0].tolist())
-                return table.columns, cells, ends, [table.line(row) for row in count], kinds, codes
+                names = [*table.columns, *(["gene_id", "ID"] if kind in ("gtf", "gff3") else [])]
+                cells = [np.asarray(table.label(name)[count]).tolist() for name in names]
+                assert cells == [[*table.text(name)] for name in names]
+                codes = [group_codes([[table.group(name)]], ["a"])[0].tolist() for name in names]
+                plain = [table.are_plain_numbers(name) for name in names]
+                for name in [name for name, is_plain in zip(names, plain) if is_plain]:
+                    codes.append(group_codes([[table.group_of_numbers(name)]], ["a"])[0].tolist())
+                lines = [table.line(row) for row in count]
+                result = [table.columns, cells, plain, codes, lines]
+                for name in table.columns[:2] if kind == "csv" else ("start", "end"):
+                    numbers = table[name]
+                    result.append((str(numbers.dtype), [str(one) for one in numbers.tolist()]))
+                return result
             except FileError as error:
                 return str(error)
 
-        text = io.StringIO(data.decode("utf-8-sig"), newline="")
-        assert outcome(_text.read_genomic) == outcome(_text._read_genomic, text), data
-        with suppress(FileError):
-            fast += isinstance(_text.read_genomic("a.bed", data, "bed"), _text.Lines)
+        assert outcome(fast_table) == outcome(plain_table), data
+        fast += isinstance(tables[0], _text.Lines) if tables else 0
     assert fast > 300
     with pytest.raises(UnicodeDecodeError):
         _text.read_genomic("a.bed", b"a\t1\t2\t\xff\n", "bed")
+    with pytest.raises(UnicodeDecodeError):
+        _text.read_table("a.csv", b"start,end\n1,2\n3,\xff\n", ",", None)
 
 
 @pytest.mark.parametrize("name", ["a.bed", "a.bed.gz", "a.csv", "a.csv.gz"])

@@ -6,7 +6,8 @@ from numpy.typing import NDArray
 
 from ._arrays import Floats, Ids, Pairs
 
-__all__ = ["Finder", "World", "in_order", "ranks", "read_bed", "stop_threads"]
+__all__ = ["Finder", "World", "in_order", "ranks", "stop_threads"]
+__all__ += ["read_cells", "read_ends_of_variants", "read_lines", "read_names", "read_numbers"]
 
 _Words = tuple[int, int, int, bool]
 
@@ -70,7 +71,17 @@ def ranks(sorted: NDArray[Any], values: NDArray[Any], or_equal: bool) -> NDArray
 def in_order(
     first: NDArray[np.int64], second: NDArray[np.int64], rows: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]: ...
-def read_bed(
-    text: bytes,
-) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int32], list[str]] | None: ...
+def read_lines(text: bytes, skipped: int, columns: int, separator: int, is_csv: bool) -> NDArray[np.int64] | None: ...
+def read_numbers(
+    text: bytes, offsets: NDArray[np.int64], separator: int, is_csv: bool, place: int
+) -> NDArray[Any] | None: ...
+def read_names(
+    text: bytes, offsets: NDArray[np.int64], separator: int, is_csv: bool, place: int
+) -> tuple[NDArray[np.int64], list[str]] | None: ...
+def read_cells(
+    text: bytes, offsets: NDArray[np.int64], separator: int, is_csv: bool, place: int
+) -> list[str] | None: ...
+def read_ends_of_variants(
+    text: bytes, offsets: NDArray[np.int64], separator: int, is_csv: bool
+) -> NDArray[np.int64] | None: ...
 def stop_threads() -> None: ...

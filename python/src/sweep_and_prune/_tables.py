@@ -22,7 +22,7 @@ from . import _crs
 from ._columns import Column, read_column, side_by_side
 from ._file_error import FileError
 from ._inputs import Raw, box_columns, chosen_boxes, listed, raw_boxes, unknown_columns
-from ._text import GENOMIC, Lines, Text, corners_of_bare, genomic_parts, read_genomic, read_table, table_parts
+from ._text import GENOMIC, Text, corners_of_bare, genomic_parts, read_genomic, read_table, table_parts
 from ._writers import ARROW_ENDINGS, pyarrow_for
 
 _KINDS = {
@@ -87,8 +87,6 @@ class Source:
         """The corners of boxes, from columns with these names or else from those that are recognized."""
         if not columns and self.are_corners:
             format = "xyxy"
-        if not columns and isinstance(self.values, Lines):
-            return Raw(self.values.corners)
         if not columns and self.is_bare:
             columns = corners_of_bare(self.values)
         if not columns:
@@ -196,21 +194,18 @@ def read(
             if sys.stdin is None:
                 raise FileError("standard input is closed")
             opened: Any = sys.stdin.fileno()
-            if kind in GENOMIC:
-                with open(opened, "rb", closefd=False) as file:
-                    return _read_lines(name, file.read(), kind)
-            if kind in _OF_TEXT:
-                with open(opened, encoding="utf-8-sig", newline="", closefd=False) as file:
-                    return _read_text(name, file, kind, header)
             with open(opened, "rb", closefd=False) as file:
-                return _read_binary(name, io.BytesIO(file.read()), kind)
+                data = file.read()
+            if kind in _OF_TEXT:
+                return _read_text(name, data, kind, header)
+            return _read_binary(name, io.BytesIO(data), kind)
         if kind not in _OF_TEXT:
             return _read_binary(name, path, kind)
         # Of what is compressed, a box takes about a third.
         size = os.path.getsize(path) * (3 if _unpacked(path) != path else 1)
         check_memory(path, f"{size / 1e9:.1f} GB of boxes", size * _BYTES_OF_TEXT)
-        with _opened_text(path, kind, progress) as data:
-            return _read_lines(name, data.read(), kind) if kind in GENOMIC else _read_text(name, data, kind, header)
+        with _opened_text(path, progress) as file:
+            return _read_text(name, file.read(), kind, header)
 
 
 def is_text(path: str) -> bool:
@@ -222,23 +217,23 @@ def read_parts(path: str, header: bool | None, progress: Callable[[float], objec
     """A file of text, a part at a time, as `read` would read all of it."""
     kind, size = kind_of_file(path), _PART_OF_TEXT
     assert kind in _OF_TEXT
-    with _readable(path), _opened_text(path, kind, progress) as data:
+    with _readable(path), _opened_text(path, progress) as data:
         if kind in GENOMIC:
             for table in genomic_parts(path, data, kind, size):
                 yield _source_of_lines(path, table)
         else:
             delimiter = "\t" if kind == "tsv" else ""
-            for table, is_bare in table_parts(path, data, delimiter, header, max(size // _BYTES_OF_ROW, 1)):
+            text = io.TextIOWrapper(data, "utf-8-sig", newline="")
+            for table, is_bare in table_parts(path, text, delimiter, header, max(size // _BYTES_OF_ROW, 1)):
                 yield _source_of_text(path, table, is_bare)
 
 
 @contextmanager
-def _opened_text(path: str, kind: str, progress: Callable[[float], object] | None) -> Iterator[Any]:
-    """A file of text, unpacked: its bytes for the formats of genomics, or else its characters."""
+def _opened_text(path: str, progress: Callable[[float], object] | None) -> Iterator[Any]:
+    """The bytes of a file of text, unpacked."""
     with ExitStack() as files:
         plain = files.enter_context(io.BufferedReader(_Watched(path, progress or (lambda _: None)), 2**16))
-        data: Any = files.enter_context(gzip.open(plain)) if _unpacked(path) != path else plain
-        yield data if kind in GENOMIC else files.enter_context(io.TextIOWrapper(data, "utf-8-sig", newline=""))
+        yield files.enter_context(gzip.open(plain)) if _unpacked(path) != path else plain
 
 
 @contextmanager
@@ -266,18 +261,16 @@ def _unpacked(path: str) -> str:
     return path.removesuffix(".gz").removesuffix(".bgz")
 
 
-def _read_lines(name: str, data: bytes, kind: str) -> Source:
-    return _source_of_lines(name, read_genomic(name, data, kind))
-
-
 def _source_of_lines(name: str, table: Text) -> Source:
     source = Source(name, table)
     source.closed, source.by, source.are_corners = "left", ["chrom"], True
     return source
 
 
-def _read_text(name: str, file: Any, kind: str, header: bool | None) -> Source:
-    return _source_of_text(name, *read_table(name, file, "\t" if kind == "tsv" else "", header))
+def _read_text(name: str, data: bytes, kind: str, header: bool | None) -> Source:
+    if kind in GENOMIC:
+        return _source_of_lines(name, read_genomic(name, data, kind))
+    return _source_of_text(name, *read_table(name, data, "\t" if kind == "tsv" else "", header))
 
 
 def _source_of_text(name: str, table: Text, is_bare: bool) -> Source:

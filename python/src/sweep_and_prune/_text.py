@@ -11,8 +11,9 @@ import re
 import sys
 from array import array
 from codecs import BOM_UTF8
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
+from functools import partial
 from io import BytesIO, TextIOWrapper
 from itertools import chain
 from typing import IO, Any, NamedTuple
@@ -24,7 +25,7 @@ from numpy.typing import NDArray
 from ._columns import EXACT, Column, read_column
 from ._file_error import FileError
 from ._inputs import FORMATS, box_columns, listed
-from ._native import read_bed
+from ._native import read_cells, read_ends_of_variants, read_lines, read_names, read_numbers
 
 _MISSING = {"", "na", "n/a", "nan", "null", "none", "."}
 _CORNERS = (2, 4, 6)
@@ -65,7 +66,7 @@ GENOMIC = {
 class Text:
     """A table of text, whose columns become numbers when they are used."""
 
-    def __init__(self, name: str, columns: list[str], cells: list[str], lines: Sequence[int]) -> None:
+    def __init__(self, name: str, columns: list[str], cells: list[str], lines: Sequence[int] | NDArray[Any]) -> None:
         """`cells` are those of all rows, one row after the other."""
         self.name, self.columns, self._cells, self._lines = name, columns, cells, lines
         self.format: Format | None = None
@@ -75,12 +76,20 @@ class Text:
 
     def line(self, index: int) -> int:
         """The line of the file in which a row ends."""
-        return self._lines[index]
+        return int(self._lines[index])
 
     def text(self, name: str) -> Sequence[str]:
         """The cells of a column, as they are in the file."""
-        if self.columns.count(name) == 0 and self.format is not None and self.format.attributes:
+        if self._is_attribute(name):
+            assert self.format is not None
             return [_attribute(cell, name, self.format.attributes) for cell in self.text("attributes")]
+        return self._cells_of(name)
+
+    def _is_attribute(self, name: str) -> bool:
+        """Whether the last column names it, as in GTF and GFF3."""
+        return self.columns.count(name) == 0 and self.format is not None and bool(self.format.attributes)
+
+    def _cells_of(self, name: str) -> Sequence[str]:
         return self._cells[self.place(name) :: len(self.columns)]
 
     def place(self, name: str) -> int:
@@ -93,9 +102,7 @@ class Text:
 
     def group(self, name: str) -> Column:
         """The values of a column to group by, which are text; what is empty is missing."""
-        cells = np.array(self.text(name), object)
-        missing = cells == ""
-        return Column(cells, missing if missing.any() else None, name=f"column {name}")
+        return _group_of(self.text(name), name)
 
     def group_of_numbers(self, name: str) -> Column:
         """The same, if the values of the other file are numbers."""
@@ -141,72 +148,120 @@ class Text:
 
 
 class Lines(Text):
-    """A table of text of which only the intervals were read; other cells are when they are asked for."""
+    """A table of text of which only the rows were found; cells are read when they are asked for."""
 
-    def __init__(self, name: str, columns: list[str], data: bytes, found: Any, before: int = 0) -> None:
-        """`found` is what `read_bed` returned for `data`, and `before` the number of lines before it in the file."""
-        self._data, self._before = data, before
-        self._offsets, self.corners, self._codes, self._names = found
-        super().__init__(name, columns, [], self._offsets)
+    def __init__(
+        self,
+        name: str,
+        columns: list[str],
+        data: bytes,
+        offsets: NDArray[np.int64],
+        separator: str = "\t",
+        is_csv: bool = False,
+    ) -> None:
+        """`offsets` is what `read_lines` returned for `data`."""
+        self._data, self._form, self._offsets = data, (ord(separator), is_csv), offsets
+        self._named: dict[str, tuple[NDArray[np.int64], list[str]]] = {}
+        self.before = 0
+        self.ends: NDArray[np.int64] | None = None
+        super().__init__(name, columns, [], offsets)
+
+    before: int
+    """The number of lines before `data` in the file."""
+    ends: NDArray[np.int64] | None
+    """The ends of what variants replace, which are no column of VCF."""
 
     def line(self, index: int) -> int:
         """The line of the file that has a row."""
-        return self._before + self._data.count(b"\n", 0, int(self._offsets[index])) + 1
-
-    def text(self, name: str) -> Sequence[str]:
-        """The cells of a column, as they are in the file."""
-        found: list[str] = self.cells(name)[np.arange(len(self))].tolist()
-        return found
+        return self.before + self._data.count(b"\n", 0, int(self._offsets[index])) + 1
 
     def label(self, name: str) -> Any:
         """A column as it is written, whose cells are read when they are asked for."""
-        return self.cells(name)
-
-    def cells(self, name: str) -> Cells:
-        """A column whose cells are read when they are asked for."""
-        return Cells(self._data, self._offsets, self.place(name))
-
-    def __getitem__(self, name: str) -> NDArray[Any]:
-        known = {"start": 0, "end": 1}
-        return self.corners[:, known[name]] if name in known else super().__getitem__(name)
+        if self.ends is not None and name == "end":
+            return super().label(name)
+        convert = None
+        if self._is_attribute(name):
+            assert self.format is not None
+            convert, name = partial(_attribute, name=name, form=self.format.attributes), "attributes"
+        return Cells(self._data, self._offsets, self._form, self._in_line(name), convert)
 
     def are_plain_numbers(self, name: str) -> bool:
-        if name != "chrom":
-            return super().are_plain_numbers(name)
-        return len(self) > 0 and all(map(_PLAIN_NUMBER.fullmatch, self._names))
+        """Whether all values of a column are numbers that are no names, and some are there."""
+        present = [cell for cell in self._names(name)[1] if cell]
+        return bool(present) and all(map(_PLAIN_NUMBER.fullmatch, present))
 
     def group(self, name: str) -> Column:
-        if name != "chrom":
-            return super().group(name)
-        return Column(np.array(self._names, object), name=f"column {name}", codes=self._codes)
+        """The values of a column to group by, which are text; what is empty is missing."""
+        codes, names = self._names(name)
+        return _group_of(names, name)._replace(codes=codes)
 
     def group_of_numbers(self, name: str) -> Column:
-        if name != "chrom":
-            return super().group_of_numbers(name)
-        table = Text(
-            self.name,
-            [name],
-            self._names,
-            [self.line(int(np.argmax(self._codes == code))) for code in range(len(self._names))],
-        )
-        return table.group_of_numbers(name)._replace(codes=self._codes)
+        """The same, if the values of the other file are numbers."""
+        codes, names = self._names(name)
+        first = np.unique(codes, return_index=True)[1]
+        ends_of_lines = np.flatnonzero(np.frombuffer(self._data, np.uint8) == ord("\n"))
+        lines = self.before + np.searchsorted(ends_of_lines, self._offsets[first]) + 1
+        return Text(self.name, [name], names, lines).group_of_numbers(name)._replace(codes=codes)
+
+    def _names(self, name: str) -> tuple[NDArray[np.int64], list[str]]:
+        """The number of each cell of a column among its different ones, and these."""
+        if name not in self._named:
+            if self._is_attribute(name) or (self.ends is not None and name == "end"):
+                known: dict[str, int] = {}
+                codes = np.array([known.setdefault(cell, len(known)) for cell in self.text(name)], np.int64)
+                self._named[name] = codes, [*known]
+            else:
+                found = read_names(self._data, self._offsets, *self._form, self._in_line(name))
+                assert found is not None
+                self._named[name] = found
+        return self._named[name]
+
+    def _cells_of(self, name: str) -> Sequence[str]:
+        if self.ends is not None and name == "end":
+            return [*map(str, self.ends.tolist())]
+        found = read_cells(self._data, self._offsets, *self._form, self._in_line(name))
+        assert found is not None
+        return found
+
+    def _numbers(self, name: str) -> NDArray[Any]:
+        if self.ends is not None and name == "end":
+            return self.ends
+        found = None
+        if not self._is_attribute(name):
+            found = read_numbers(self._data, self._offsets, *self._form, self._in_line(name))
+        return super()._numbers(name) if found is None else found
+
+    def _in_line(self, name: str) -> int:
+        """The place of a column in lines of the file."""
+        place = self.place(name)
+        return place - (self.ends is not None and place > 1)
 
 
 class Cells:
     """The cells of a column of a table of text."""
 
-    def __init__(self, data: bytes, offsets: NDArray[np.int64], place: int) -> None:
-        self._data, self._offsets, self._place = data, offsets, place
+    def __init__(
+        self,
+        data: bytes,
+        offsets: NDArray[np.int64],
+        form: tuple[int, bool],
+        place: int,
+        convert: Callable[[str], str] | None,
+    ) -> None:
+        """`convert` makes of a cell what is wanted of it, if that is not all."""
+        self._data, self._offsets, self._form, self._place, self._convert = data, offsets, form, place, convert
 
     def __getitem__(self, rows: NDArray[Any]) -> NDArray[Any]:
         """The cells of some rows."""
-        data, place = self._data, self._place
-        cells = np.empty(len(rows), object)
-        for at, offset in enumerate(self._offsets[rows].tolist()):
-            end = data.find(b"\n", offset)
-            row = data[offset : end if end >= 0 else len(data)].rstrip(b"\r").split(b"\t", place + 1)
-            cells[at] = row[place].decode() if place < len(row) else ""
-        return cells
+        found = read_cells(self._data, self._offsets[rows], *self._form, self._place)
+        assert found is not None
+        return np.array(found if self._convert is None else [*map(self._convert, found)], object)
+
+
+def _group_of(cells: Sequence[str], name: str) -> Column:
+    values = np.array(cells, object)
+    missing = values == ""
+    return Column(values, missing if missing.any() else None, name=f"column {name}")
 
 
 def _attribute(cell: str, name: str, form: str) -> str:
@@ -272,12 +327,16 @@ def _has_sequences(lines: bytes) -> bool:
 def _part_of_genomic(name: str, data: bytes, kind: str, columns: list[str], before: int) -> Text:
     """Lines of such a file, after `before` others. Without `columns`, the first line tells how many there are."""
     form = GENOMIC[kind]
-    found = read_bed(data) if kind in BED_LIKE else None
-    if found is not None and len(found[0]):
-        first = int(found[0][0])
-        cells = data[first : data.find(b"\n", first) if b"\n" in data[first:] else len(data)].count(b"\t") + 1
-        table: Text = Lines(name, columns or form.columns[:cells], data, found, before)
-        table.format = form
+    offsets = read_lines(data, 0, form.least, ord("\t"), False)
+    is_vcf = kind == "vcf"
+    ends = read_ends_of_variants(data, offsets, ord("\t"), False) if is_vcf and offsets is not None else None
+    if offsets is not None and len(offsets) and (ends is not None or not is_vcf):
+        if not columns:
+            first = data[int(offsets[0]) :].split(b"\n", 1)[0]
+            columns = form.columns[: first.count(b"\t") + 1 if kind in BED_LIKE else None]
+            columns = _with_ends(columns) if is_vcf else columns
+        table = Lines(name, columns, data, offsets)
+        table.format, table.before, table.ends = form, before, ends
         return table
     with TextIOWrapper(BytesIO(data), "utf-8", newline="") as file:
         return _read_genomic(name, file, kind, columns, before)
@@ -307,10 +366,15 @@ def _read_genomic(name: str, file: IO[str], kind: str, columns: Sequence[str] = 
         lines.append(line)
     columns = columns or form.columns
     if kind == "vcf":
-        columns = ["chrom", "start", "end", *columns[2:]]
+        columns = _with_ends(columns)
     table = Text(name, columns, cells, lines)
     table.format = form
     return table
+
+
+def _with_ends(columns: list[str]) -> list[str]:
+    """The columns of VCF with the start and the end of what a variant replaces."""
+    return ["chrom", "start", "end", *columns[2:]]
 
 
 def _replaced(position: str, reference: str, info: str) -> tuple[str, str]:
@@ -323,61 +387,96 @@ def _replaced(position: str, reference: str, info: str) -> tuple[str, str]:
     return position, str(int(position) - 1 + len(reference))
 
 
-def read_table(name: str, file: IO[str], delimiter: str, header: bool | None) -> tuple[Text, bool]:
+class _Begun(NamedTuple):
+    """A file of rows of cells whose columns are known."""
+
+    name: str
+    reader: Any
+    """The rows that follow."""
+    delimiter: str
+    columns: list[str]
+    first: list[str] | None
+    """The first row if it is none of names."""
+    skipped: int
+    """How many comments there were before the first row."""
+
+
+def read_table(name: str, data: bytes, delimiter: str, header: bool | None) -> tuple[Text, bool]:
     """A file of rows of cells, and whether it has no header.
 
     Args:
         name: of the file, for messages.
-        file: its text.
+        data: what it has.
         delimiter: between cells; empty to find out.
         header: whether the first row names the columns; None to find out.
+
+    Raises:
+        UnicodeDecodeError: if it is not text in UTF-8.
     """
-    return next(table_parts(name, file, delimiter, header, sys.maxsize))
+    data = data.removeprefix(BOM_UTF8)
+    with TextIOWrapper(BytesIO(data), "utf-8", newline="") as file:
+        begun = _begin(name, file, delimiter, header)
+        has_header = begun.first is None
+        lines = begun.skipped + (begun.reader.line_num if has_header else 0)
+        offsets = read_lines(data, lines, len(begun.columns), ord(begun.delimiter), True)
+        if offsets is None:
+            return next(_parts(begun, sys.maxsize)), not has_header
+        return Lines(name, begun.columns, data, offsets, begun.delimiter, True), not has_header
 
 
 def table_parts(
     name: str, file: IO[str], delimiter: str, header: bool | None, rows: int
 ) -> Iterator[tuple[Text, bool]]:
     """The same, at most `rows` rows at a time; at least one part."""
+    begun = _begin(name, file, delimiter, header)
+    return ((table, begun.first is not None) for table in _parts(begun, rows))
+
+
+def _begin(name: str, file: IO[str], delimiter: str, header: bool | None) -> _Begun:
     text, skipped, first = _without_comments(file)
     if not delimiter:
         delimiter = max(",;\t", key=first.count)
         if delimiter not in first and " " in first.strip():
             delimiter = " "
     reader = csv.reader(text, delimiter=delimiter, skipinitialspace=True, strict=True)
-    begun = 1
-    # All cells are in one list: with a list for each row, reading takes twice as long.
-    cells: list[str] = []
-    lines = array("Q")
     try:
         first_row = next(filter(None, reader), [])
-        if not first_row:
-            raise FileError(f"{name} is empty")
-        if header is None:
-            header = _is_header(name, first_row)
-        if header:
-            columns = [cell.strip() for cell in first_row]
-            columns[0] = columns[0].lstrip("#").lstrip() if len(columns) > 1 else columns[0]
-        else:
-            columns = [str(place) for place in range(1, len(first_row) + 1)]
-            cells += first_row
-            lines.append(reader.line_num + skipped)
-        begun = reader.line_num + 1
+    except csv.Error as error:
+        raise FileError(f"{name}, line {1 + skipped}: {_fault(error)}") from None
+    if not first_row:
+        raise FileError(f"{name} is empty")
+    if header is None:
+        header = _is_header(name, first_row)
+    if not header:
+        columns = [str(place) for place in range(1, len(first_row) + 1)]
+        return _Begun(name, reader, delimiter, columns, first_row, skipped)
+    columns = [cell.strip() for cell in first_row]
+    columns[0] = columns[0].lstrip("#").lstrip() if len(columns) > 1 else columns[0]
+    return _Begun(name, reader, delimiter, columns, None, skipped)
+
+
+def _parts(begun: _Begun, rows: int) -> Iterator[Text]:
+    name, reader, _, columns, first_row, skipped = begun
+    # All cells are in one list: with a list for each row, reading takes twice as long.
+    cells = [*first_row] if first_row else []
+    lines = array("Q", [reader.line_num + skipped] if first_row else [])
+    line = reader.line_num + 1
+    try:
         for row in reader:
             here = reader.line_num + skipped
-            begun = reader.line_num + 1
+            line = reader.line_num + 1
             if not row or (row[0].startswith("#") and len(row) < len(columns)):
                 continue
             if len(row) < len(columns) or any(row[len(columns) :]):
                 raise FileError(f"{name}, line {here}: it has {len(row)} columns, where {len(columns)} are expected")
             if len(lines) == rows:
-                yield Text(name, columns, cells, lines), not header
+                yield Text(name, columns, cells, lines)
                 cells, lines = [], array("Q")
             cells += row[: len(columns)]
             lines.append(here)
     except csv.Error as error:
-        raise FileError(f"{name}, line {begun + skipped}: {_fault(error)}") from None
-    yield Text(name, columns, cells, lines), not header
+        raise FileError(f"{name}, line {line + skipped}: {_fault(error)}") from None
+    yield Text(name, columns, cells, lines)
 
 
 def _without_comments(file: IO[str]) -> tuple[Iterator[str], int, str]:
