@@ -65,7 +65,7 @@ def test_the_readme_shows_commands_that_there_are() -> None:
         name, *arguments = command.split(" > ")[0].split()
         command_line.commands[name].make_context(name, arguments)  # refuses what it does not know
     project = (PYTHON / "pyproject.toml").read_text()
-    assert 'sap = "sweep_and_prune._command:program"' in project
+    assert 'sap = "sweep_and_prune_command:program"' in project
 
 
 def test_importing_the_library_loads_little_besides() -> None:

@@ -78,6 +78,25 @@ def test_a_signal_that_is_ignored_stays_so() -> None:
     assert program.wait(600) == 0
 
 
+START = "import sys; from sweep_and_prune_command import program; sys.exit(program())"
+
+
+def test_ctrl_c_while_modules_are_loaded_gives_one_line() -> None:
+    Path("numpy.py").write_text(
+        "import os, signal; os.kill(os.getpid(), signal.SIGINT); print('not ended', flush=True)"
+    )
+    for ignored, status, printed, said in ((False, 130, "", "sap: cancelled\n"), (True, 1, "not ended\n", None)):
+        handler = signal.SIG_IGN if ignored else signal.SIG_DFL
+        done = subprocess.run(
+            [sys.executable, "-c", START],
+            capture_output=True,
+            text=True,
+            preexec_fn=lambda handler=handler: signal.signal(signal.SIGINT, handler),  # type: ignore[misc]
+        )
+        assert (done.returncode, done.stdout) == (status, printed), done.stderr
+        assert said is None or done.stderr == said
+
+
 AT_ONCE = """
 import os, signal
 from pathlib import Path
