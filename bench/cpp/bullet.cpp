@@ -25,11 +25,13 @@ std::uint32_t as_id(const void *pointer) {
 }
 
 btBroadphaseProxy *create_proxy(btBroadphaseInterface &broadphase, const Boxes &boxes,
-                                std::size_t id) {
-    return broadphase.createProxy(min_corner(boxes, id), max_corner(boxes, id),
-                                  BOX_SHAPE_PROXYTYPE, as_pointer(id),
-                                  btBroadphaseProxy::DefaultFilter, btBroadphaseProxy::AllFilter,
-                                  nullptr);
+                                std::size_t id, bool is_static = false) {
+    // As `btCollisionWorld::addCollisionObject` filters the two kinds of bodies.
+    using Filter = btBroadphaseProxy;
+    return broadphase.createProxy(
+        min_corner(boxes, id), max_corner(boxes, id), BOX_SHAPE_PROXYTYPE, as_pointer(id),
+        is_static ? Filter::StaticFilter : Filter::DefaultFilter,
+        is_static ? Filter::AllFilter ^ Filter::StaticFilter : Filter::AllFilter, nullptr);
 }
 
 void fill(btBroadphaseInterface &broadphase, const Boxes &boxes) {
@@ -105,7 +107,7 @@ struct BulletWorld {
     std::vector<btBroadphaseProxy *> proxies;
 };
 
-extern "C" BulletWorld *bench_bullet_world_new(const Boxes *boxes, bool sweep) {
+extern "C" BulletWorld *bench_bullet_world_new(const Boxes *boxes, std::size_t movers, bool sweep) {
     btVector3 low(0, 0, 0), high(0, 0, 0), width(0, 0, 0);
     for (std::size_t id = 0; id < boxes->count; ++id) {
         low.setMin(min_corner(*boxes, id));
@@ -125,7 +127,7 @@ extern "C" BulletWorld *bench_bullet_world_new(const Boxes *boxes, bool sweep) {
         world->broadphase = std::move(tree);
     }
     for (std::size_t id = 0; id < boxes->count; ++id) {
-        world->proxies.push_back(create_proxy(*world->broadphase, *boxes, id));
+        world->proxies.push_back(create_proxy(*world->broadphase, *boxes, id, id >= movers));
     }
     world->broadphase->calculateOverlappingPairs(nullptr);
     return world.release();

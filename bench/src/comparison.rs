@@ -15,10 +15,12 @@ use crate::record::{Case, Entry, Outcome, Times, median};
 use crate::remote::{self, Remote};
 
 use crate::worlds::FROM_SCRATCH;
-use crate::{machine, scene, worlds};
+use crate::{intervals, machine, scene, worlds};
 
 /// Up to this many boxes brute force is the reference; above, two libraries that agree.
 const ORACLE_LIMIT: usize = 10_000;
+/// The same for static boxes, which are not tested against each other.
+const STATICS_ORACLE_LIMIT: usize = 100_000;
 /// With fewer boxes than this, calls are timed in batches that have about this many boxes together.
 const BATCHED: usize = 1000;
 /// After this time a library takes part in no more rounds, except for the first three.
@@ -40,16 +42,16 @@ impl Kind {
     /// About how long a round of a library takes: short runs are repeated until they fill it.
     fn round(self) -> Duration {
         match self {
-            Self::Pairs => Duration::from_millis(20),
-            Self::Worlds => Duration::from_millis(60),
+            Self::Pairs | Self::Intervals => Duration::from_millis(20),
+            Self::Worlds | Self::Statics => Duration::from_millis(60),
         }
     }
 
     /// The least and the most repeats of a round.
     fn repeats(self) -> (u128, u128) {
         match self {
-            Self::Pairs => (1, 200),
-            Self::Worlds => (4, 400),
+            Self::Pairs | Self::Intervals => (1, 200),
+            Self::Worlds | Self::Statics => (4, 400),
         }
     }
 
@@ -67,11 +69,11 @@ impl Kind {
 pub struct Comparison<'a> {
     /// What the libraries do.
     pub kind: Kind,
-    /// The scene's name, or the motion's.
+    /// The name of the scene, of the motion, or of the draw of intervals and what is asked.
     pub scene: &'a str,
-    /// 2 or 3.
+    /// 2 or 3; 1 for intervals.
     pub dimensions: usize,
-    /// The number of boxes.
+    /// The number of boxes, of static boxes, or of intervals in the first set.
     pub boxes: usize,
     /// How many scenes of a kind are drawn, if not the default number.
     pub seeds: Option<usize>,
@@ -91,8 +93,10 @@ struct Running<'a> {
     info: &'a LibraryInfo,
     worker: Remote,
     first: Duration,
-    fingerprint: Fingerprint,
+    /// `None` if the library does not tell its pairs.
+    fingerprint: Option<Fingerprint>,
     peak_bytes: Option<u64>,
+    start_ns: Option<u64>,
     exact_ns: Option<u64>,
     rounds: Vec<(usize, f64)>,
     spent: Duration,
@@ -107,6 +111,8 @@ impl Comparison<'_> {
     ) -> Result<Result<Case, String>> {
         self.bar.set_message(format!("{} {}D {}", self.scene, self.dimensions, self.boxes));
         let expected = match self.dimensions {
+            // These draw as many pairs as they are meant to.
+            _ if matches!(self.kind, Kind::Statics | Kind::Intervals) => 0.0,
             2 => scene::estimated_pairs::<2>(self.scene, self.boxes)?,
             _ => scene::estimated_pairs::<3>(self.scene, self.boxes)?,
         };
@@ -130,9 +136,10 @@ impl Comparison<'_> {
             return Ok(Err("no two libraries agree".into()));
         };
         running.retain(|library| {
-            let right = library.fingerprint == fingerprint;
+            let Some(found) = library.fingerprint else { return true };
+            let right = found == fingerprint;
             if !right {
-                let found = library.fingerprint.pairs;
+                let found = found.pairs;
                 untimed.push((library.info, format!("other pairs, {found} of them")));
             }
             right
@@ -150,7 +157,7 @@ impl Comparison<'_> {
         let timed = running.into_iter().map(|library| Entry {
             name: library.info.name.into(),
             alternative: library.info.alternative,
-            outcome: Outcome::Timed(library.times(&own)),
+            outcome: Outcome::Timed(library.times(self.kind, &own)),
         });
         let untimed = untimed.into_iter().map(|(info, why)| Entry {
             name: info.name.into(),
@@ -191,14 +198,17 @@ impl Comparison<'_> {
             self.seeds,
         )?;
         let limit = match self.kind {
-            Kind::Pairs => self.limit,
-            Kind::Worlds => WORLD_CHECK * self.limit + CHECK_OF_BOX * self.boxes as u32,
+            Kind::Pairs | Kind::Intervals => self.limit,
+            Kind::Worlds | Kind::Statics => {
+                WORLD_CHECK * self.limit + CHECK_OF_BOX * self.boxes as u32
+            }
         };
         match worker.ask(&Request::Check, limit)? {
             remote::Outcome::Reply(Reply::Checked {
                 fingerprint,
                 nanoseconds,
                 peak_bytes,
+                start_ns,
                 exact_ns,
             }) => {
                 let first = Duration::from_nanos(nanoseconds);
@@ -209,6 +219,7 @@ impl Comparison<'_> {
                     first,
                     fingerprint,
                     peak_bytes,
+                    start_ns,
                     exact_ns,
                     rounds: Vec::new(),
                     spent: Duration::ZERO,
@@ -217,8 +228,10 @@ impl Comparison<'_> {
             remote::Outcome::Late => {
                 slow.insert(key, (self.boxes, Duration::MAX));
                 Ok(Err(match self.kind {
-                    Kind::Pairs => too_slow,
-                    Kind::Worlds => format!("over {} s for the first frames", limit.as_secs_f64()),
+                    Kind::Pairs | Kind::Intervals => too_slow,
+                    Kind::Worlds | Kind::Statics => {
+                        format!("over {} s for the first frames", limit.as_secs_f64())
+                    }
                 }))
             }
             other => Ok(Err(failure(other))),
@@ -228,25 +241,29 @@ impl Comparison<'_> {
     /// How many frames are checked.
     fn frames_checked(&self) -> u64 {
         match self.kind {
-            Kind::Pairs => scene::frames_checked(self.scene, self.boxes) as u64,
-            Kind::Worlds => worlds::FRAMES_CHECKED as u64,
+            Kind::Pairs | Kind::Intervals => scene::frames_checked(self.scene, self.boxes) as u64,
+            Kind::Worlds | Kind::Statics => worlds::FRAMES_CHECKED as u64,
         }
     }
 
     /// The right pairs, and in words how we know them; `None` if no two libraries agree.
     fn reference(&self, running: &[Running]) -> Result<Option<(String, Fingerprint)>> {
-        if self.boxes <= ORACLE_LIMIT {
+        let most = if self.kind == Kind::Statics { STATICS_ORACLE_LIMIT } else { ORACLE_LIMIT };
+        if self.boxes <= most {
             let right = match (self.kind, self.dimensions) {
                 (Kind::Pairs, 2) => scene::oracle::<2>(self.scene, self.boxes)?,
                 (Kind::Pairs, _) => scene::oracle::<3>(self.scene, self.boxes)?,
-                (Kind::Worlds, 2) => worlds::oracle::<2>(self.scene, self.boxes)?,
-                (Kind::Worlds, _) => worlds::oracle::<3>(self.scene, self.boxes)?,
+                (Kind::Intervals, _) => intervals::oracle(self.scene, self.boxes)?,
+                (Kind::Worlds | Kind::Statics, 2) => worlds::oracle::<2>(self.scene, self.boxes)?,
+                (Kind::Worlds | Kind::Statics, _) => worlds::oracle::<3>(self.scene, self.boxes)?,
             };
             return Ok(Some(("brute force".into(), right)));
         }
         // All settings of this library count as one witness.
         let witness = |one: &&Running| {
-            one.info.alternative || [THIS_CRATE, FROM_SCRATCH].contains(&one.info.name)
+            let speaks =
+                one.info.alternative || [THIS_CRATE, FROM_SCRATCH].contains(&one.info.name);
+            speaks && one.fingerprint.is_some()
         };
         let witnesses: Vec<_> = running.iter().filter(witness).rev().collect();
         if let [own] = witnesses[..] {
@@ -255,12 +272,12 @@ impl Comparison<'_> {
                 && on_two.is_some_and(|it| it.fingerprint == own.fingerprint)
             {
                 let how = "no alternative in time; one thread and two agree";
-                return Ok(Some((how.into(), own.fingerprint)));
+                return Ok(own.fingerprint.map(|right| (how.into(), right)));
             }
         }
         Ok(witnesses.iter().enumerate().find_map(|(at, one)| {
             let other = witnesses[at + 1..].iter().find(|it| it.fingerprint == one.fingerprint)?;
-            Some((format!("{} and {} agree", other.info.name, one.info.name), one.fingerprint))
+            Some((format!("{} and {} agree", other.info.name, one.info.name), one.fingerprint?))
         }))
     }
 
@@ -273,8 +290,8 @@ impl Comparison<'_> {
     ) -> Result<()> {
         let count = running.len();
         let varied = match self.kind {
-            Kind::Pairs => scene::varied(self.scene, self.boxes, self.seeds),
-            Kind::Worlds => None,
+            Kind::Pairs | Kind::Intervals => scene::varied(self.scene, self.boxes, self.seeds),
+            Kind::Worlds | Kind::Statics => None,
         };
         let mut lost = Vec::new();
         for at in (0..count).map(|at| (at + round) % count) {
@@ -324,7 +341,7 @@ fn failure(outcome: remote::Outcome) -> String {
 
 impl Running<'_> {
     /// The times over the rounds, against this library in the same rounds.
-    fn times(&self, own: &HashMap<usize, f64>) -> Times {
+    fn times(&self, kind: Kind, own: &HashMap<usize, f64>) -> Times {
         let rounds: Vec<_> = self.rounds.iter().map(|&(_, time)| time).collect();
         let ratios: Vec<_> =
             self.rounds.iter().filter_map(|(round, time)| Some(time / own.get(round)?)).collect();
@@ -334,6 +351,8 @@ impl Running<'_> {
             rounds_ns: rounds,
             ratio: (!ratios.is_empty()).then(|| median(&ratios)),
             peak_bytes: self.peak_bytes,
+            start_ns: self.start_ns.map(|ns| ns as f64),
+            longest_ns: kind.tracks().then_some(self.first.as_nanos() as f64),
             exact_ns: self.exact_ns.map(|ns| ns as f64),
         }
     }

@@ -17,8 +17,17 @@ pub struct Fingerprint {
 impl Fingerprint {
     /// O(pairs) time.
     pub fn of(pairs: &[[u32; 2]]) -> Self {
-        let hash = |&[a, b]: &[u32; 2]| mix(u64::from(a.min(b)) << 32 | u64::from(a.max(b)));
-        let sum = pairs.iter().map(hash).fold(0, u64::wrapping_add);
+        Self::with(pairs, |&[a, b]| [a.min(b), a.max(b)])
+    }
+
+    /// The fingerprint of pairs between two sets, which depends on the set of each index. O(pairs) time.
+    pub fn between(pairs: &[[u32; 2]]) -> Self {
+        Self::with(pairs, |&pair| pair)
+    }
+
+    fn with(pairs: &[[u32; 2]], order: impl Fn(&[u32; 2]) -> [u32; 2]) -> Self {
+        let hash = |[a, b]: [u32; 2]| mix(u64::from(a) << 32 | u64::from(b));
+        let sum = pairs.iter().map(order).map(hash).fold(0, u64::wrapping_add);
         Self { pairs: pairs.len() as u64, hash: sum }
     }
 }
@@ -53,5 +62,8 @@ mod tests {
         assert_ne!(pairs, of(&[[1, 3], [2, 4]]));
         assert_ne!(pairs, of(&[[1, 2], [1, 2]]));
         assert_ne!(of(&[[1, 2], [1, 2], [3, 4]]), of(&[[1, 2], [3, 4], [3, 4]]));
+        let between = Fingerprint::between;
+        assert_eq!(between(&[[1, 2], [4, 3]]), between(&[[4, 3], [1, 2]]));
+        assert_ne!(between(&[[1, 2]]), between(&[[2, 1]]));
     }
 }

@@ -4,9 +4,9 @@
 //! the results as JSON; `report` makes the table and the plots from all that were kept.
 //!
 //! The parts, in the order of the data: `scene` makes the boxes, `libraries` find their pairs and `worlds` track
-//! them, `worker` runs one library in a process of its own, `remote` talks to it by `protocol`, `comparison`
-//! compares the libraries, `roofline` compares this one with the machine, `measure` says what is compared,
-//! `record` is what is kept, `report` what is shown.
+//! them, `intervals` finds and counts pairs on a line, `worker` runs one library in a process of its own, `remote`
+//! talks to it by `protocol`, `comparison` compares the libraries, `roofline` compares this one with the machine,
+//! `measure` says what is compared, `record` is what is kept, `report` what is shown.
 
 use std::path::PathBuf;
 
@@ -15,6 +15,7 @@ use clap::{Parser, Subcommand};
 
 mod comparison;
 mod fingerprint;
+mod intervals;
 mod libraries;
 mod machine;
 mod measure;
@@ -61,8 +62,15 @@ fn main() -> Result<()> {
         Command::Libraries => {
             let finders = libraries::all().into_iter().map(|library| library.info());
             let trackers = worlds::all().into_iter().map(|library| library.info());
-            for (kind, infos) in [("pairs", finders.collect()), ("worlds", trackers.collect())] {
-                let infos: Vec<libraries::LibraryInfo> = infos;
+            let levels = worlds::with_statics().into_iter().map(|library| library.info());
+            let lines = intervals::all().into_iter().map(|library| library.info());
+            let parts: [(_, Vec<libraries::LibraryInfo>); 4] = [
+                ("pairs", finders.collect()),
+                ("worlds", trackers.collect()),
+                ("static boxes", levels.collect()),
+                ("intervals", lines.collect()),
+            ];
+            for (kind, infos) in parts {
                 println!("{kind}:");
                 for it in infos {
                     println!("  {} ({}): {}", it.name, it.version, it.how);

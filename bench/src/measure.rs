@@ -14,7 +14,7 @@ use crate::libraries::{self, LibraryInfo, ON_TWO_THREADS, THIS_CRATE, WITNESSES}
 use crate::protocol::Kind;
 use crate::record::{Case, Outcome, Record, put};
 use crate::report::time;
-use crate::{machine, roofline, scene, worlds};
+use crate::{intervals, machine, roofline, scene, worlds};
 
 /// The numbers of boxes of the small inputs.
 const SMALL: [usize; 8] = [0, 1, 2, 5, 10, 20, 50, 100];
@@ -34,6 +34,12 @@ pub struct Options {
     /// Tracking pairs from frame to frame.
     #[arg(long)]
     worlds: bool,
+    /// Tracking the pairs of 2,000 boxes that move among many static ones.
+    #[arg(long)]
+    statics: bool,
+    /// Finding and counting the pairs of intervals; only if named, since its libraries are compiled for this processor.
+    #[arg(long)]
+    intervals: bool,
     /// How close the stages of finding all pairs come to what the machine can do.
     #[arg(long)]
     roofline: bool,
@@ -75,6 +81,9 @@ pub struct Options {
     output: Option<PathBuf>,
 }
 
+/// How many seconds a library of intervals may take for each interval, if that is more than the limit.
+const LIMIT_OF_INTERVAL: f64 = 1e-5;
+
 /// One case to measure.
 struct Planned {
     kind: Kind,
@@ -89,7 +98,8 @@ struct Planned {
 impl Options {
     /// Whether no part is named, which asks for all.
     fn everything(&self) -> bool {
-        !(self.pairs || self.flat || self.small || self.worlds || self.roofline)
+        let boxes = self.pairs || self.flat || self.small || self.worlds || self.statics;
+        !(boxes || self.intervals || self.roofline)
     }
 
     /// The cases, in the order in which they are measured: part by part, the most asked for first,
@@ -119,6 +129,23 @@ impl Options {
                 // A million shows whether the time per body stays flat.
                 let libraries: &[&str] = if boxes > 100_000 { &[THIS_CRATE] } else { &[] };
                 self.add(&mut plan, Kind::Worlds, &motions, boxes, libraries, 5)?;
+            }
+        }
+        if all || self.statics {
+            for boxes in self.sizes(&[10_000, 100_000, 1_000_000, 2_000_000]) {
+                self.add(&mut plan, Kind::Statics, &[worlds::LEVEL.into()], boxes, &[], 5)?;
+            }
+        }
+        if self.intervals {
+            let names = self.scenes(intervals::names);
+            for boxes in self.sizes(&[1_000, 10_000, 100_000, 1_000_000]) {
+                let rounds = if boxes > 100_000 { 3 } else { 5 };
+                self.add(&mut plan, Kind::Intervals, &names, boxes, &[], rounds)?;
+            }
+            if self.scenes.is_empty() && self.sizes.is_empty() && !self.quick {
+                let names = ["pairs", "counts"]
+                    .map(|asked| format!("{} random {asked}", intervals::AILIST));
+                self.add(&mut plan, Kind::Intervals, &names, intervals::AILIST_READS, &[], 2)?;
             }
         }
         if all || self.flat {
@@ -151,8 +178,13 @@ impl Options {
             self.libraries.clone()
         };
         for scene in scenes {
-            for &dimensions in &self.dimensions {
-                if scene::exists(scene, dimensions)? {
+            let dimensions = if kind == Kind::Intervals { &[1][..] } else { &self.dimensions };
+            for &dimensions in dimensions {
+                let exists = match kind {
+                    Kind::Pairs | Kind::Worlds => scene::exists(scene, dimensions)?,
+                    Kind::Statics | Kind::Intervals => true,
+                };
+                if exists {
                     let (scene, libraries) = (scene.clone(), libraries.clone());
                     plan.push(Planned { kind, scene, dimensions, boxes, libraries, rounds });
                 }
@@ -188,9 +220,11 @@ pub fn run(options: &Options) -> Result<()> {
     );
     let finders: Vec<_> = libraries::all().iter().map(libraries::Library::info).collect();
     let trackers: Vec<_> = worlds::all().iter().map(libraries::Library::info).collect();
+    let levels: Vec<_> = worlds::with_statics().iter().map(libraries::Library::info).collect();
+    let lines: Vec<_> = intervals::all().iter().map(intervals::IntervalLibrary::info).collect();
     let mut plan = options.plan()?;
     let machine = machine::describe();
-    let (mut record, path) = open(options, &finders, &trackers, machine)?;
+    let (mut record, path) = open(options, [&finders, &trackers, &levels, &lines], machine)?;
     if options.resume {
         plan.retain(|planned| {
             let key = (planned.scene.as_str(), planned.dimensions, planned.boxes);
@@ -227,10 +261,18 @@ pub fn run(options: &Options) -> Result<()> {
             boxes,
             seeds: options.seeds,
             rounds: planned.rounds,
-            limit: Duration::from_secs_f64(options.limit),
+            limit: Duration::from_secs_f64(match kind {
+                Kind::Intervals => options.limit.max(boxes as f64 * LIMIT_OF_INTERVAL),
+                _ => options.limit,
+            }),
             bar: &bar,
         };
-        let infos = if kind == Kind::Worlds { &trackers } else { &finders };
+        let infos = match kind {
+            Kind::Pairs => &finders,
+            Kind::Worlds => &trackers,
+            Kind::Statics => &levels,
+            Kind::Intervals => &lines,
+        };
         let infos = infos.iter().filter(|info| planned.wants(info)).collect();
         match comparison.run(infos, &mut slow)? {
             Ok(case) => {
@@ -253,14 +295,15 @@ fn kept(record: &mut Record, kind: Kind) -> &mut Vec<Case> {
     match kind {
         Kind::Pairs => &mut record.cases,
         Kind::Worlds => &mut record.worlds,
+        Kind::Statics => &mut record.statics,
+        Kind::Intervals => &mut record.intervals,
     }
 }
 
 /// The record of this machine and day, with what is in it so far.
 fn open(
     options: &Options,
-    finders: &[LibraryInfo],
-    trackers: &[LibraryInfo],
+    infos: [&[LibraryInfo]; 4],
     machine: crate::record::Machine,
 ) -> Result<(Record, PathBuf)> {
     let date = chrono::Utc::now().format("%Y-%m-%d").to_string();
@@ -282,6 +325,8 @@ fn open(
         how: BTreeMap::new(),
         cases: Vec::new(),
         worlds: Vec::new(),
+        statics: Vec::new(),
+        intervals: Vec::new(),
         roofline: None,
     };
     if path.exists() {
@@ -289,12 +334,13 @@ fn open(
         let (date, machine, rustc) = (record.date, record.machine, record.rustc);
         record = Record { date, machine, rustc, ..kept };
     }
-    // Some libraries take part in both, called in different ways.
-    let finders = finders.iter().map(|it| (it.name.to_owned(), it));
-    let trackers = trackers.iter().map(|it| (format!("{}, world", it.name), it));
-    for (name, info) in finders.chain(trackers) {
-        record.versions.insert(name.clone(), info.version.clone());
-        record.how.insert(name, info.how.into());
+    // Some libraries take part in several parts, called in different ways.
+    for (infos, part) in infos.into_iter().zip(["", ", world", ", static boxes", ", intervals"]) {
+        for info in infos {
+            let name = format!("{}{part}", info.name);
+            record.versions.insert(name.clone(), info.version.clone());
+            record.how.insert(name, info.how.into());
+        }
     }
     Ok((record, path))
 }

@@ -6,12 +6,23 @@ use serde::{Deserialize, Serialize};
 use crate::fingerprint::Fingerprint;
 
 /// What the libraries do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
 pub enum Kind {
     /// They find all pairs of a set of boxes.
     Pairs,
     /// They track pairs from frame to frame.
     Worlds,
+    /// They track the pairs of the boxes that move among many static ones.
+    Statics,
+    /// They find the pairs of intervals, or count them.
+    Intervals,
+}
+
+impl Kind {
+    /// Whether the libraries keep their boxes from frame to frame.
+    pub fn tracks(self) -> bool {
+        matches!(self, Self::Worlds | Self::Statics)
+    }
 }
 
 /// What the harness asks of a worker.
@@ -35,13 +46,15 @@ pub enum Reply {
     Ready,
     /// The answer to [`Request::Check`].
     Checked {
-        /// The pairs.
-        fingerprint: Fingerprint,
+        /// The pairs; `None` if the library does not tell them.
+        fingerprint: Option<Fingerprint>,
         /// How long the longest of these first calls took.
         nanoseconds: u64,
         /// The most memory in use during the call, less what was in use before; `None` where
         /// the system does not tell.
         peak_bytes: Option<u64>,
+        /// Of a world, how long it takes to insert all boxes and to find their first pairs.
+        start_ns: Option<u64>,
         /// Of a world that reports the pairs of larger boxes, how long it takes to test them for overlap.
         exact_ns: Option<u64>,
     },

@@ -24,6 +24,12 @@ pub struct Record {
     /// Tracking pairs, by motion, dimensions and number of boxes. Times are per frame.
     #[serde(default)]
     pub worlds: Vec<Case>,
+    /// Tracking the pairs of boxes that move among many static ones, by the number of static boxes. Times are per frame.
+    #[serde(default)]
+    pub statics: Vec<Case>,
+    /// Finding or counting the pairs of intervals.
+    #[serde(default)]
+    pub intervals: Vec<Case>,
     /// How close finding all pairs comes to what the machine can do.
     #[serde(default)]
     pub roofline: Option<Roofline>,
@@ -142,6 +148,12 @@ pub struct Times {
     /// The most memory in use during the first call, of a world in the first frames, beyond the
     /// boxes.
     pub peak_bytes: Option<u64>,
+    /// Of a world, how long it takes to insert all boxes and to find their first pairs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start_ns: Option<f64>,
+    /// Of a world, the longest of the first updates, which are not among the rounds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub longest_ns: Option<f64>,
     /// Of a world that reports the pairs of larger or rounded boxes, how long it takes to test them for overlap.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub exact_ns: Option<f64>,

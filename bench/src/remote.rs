@@ -6,6 +6,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 use anyhow::{Result, bail};
+use clap::ValueEnum;
 
 use crate::machine;
 use crate::protocol::{Kind, MARK, Reply, Request};
@@ -47,7 +48,7 @@ impl Remote {
             .args(["worker", "--library", library, "--scene", scene])
             .args(["--dimensions", &dimensions.to_string(), "--boxes", &boxes.to_string()])
             .args(seeds.map(|seeds| format!("--seeds={seeds}")))
-            .args((kind == Kind::Worlds).then_some("--world"))
+            .args(kind.to_possible_value().map(|kind| format!("--kind={}", kind.get_name())))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::inherit())

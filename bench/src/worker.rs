@@ -13,10 +13,10 @@ use sweep_and_prune::Aabb;
 
 use crate::fingerprint::Fingerprint;
 use crate::libraries::{self, Finder};
-use crate::machine;
-use crate::protocol::{Job, MARK, Reply, Request};
+use crate::protocol::{Job, Kind, MARK, Reply, Request};
 use crate::scene::{Boxes, WARM_UP};
 use crate::worlds::{self, Tracking};
+use crate::{intervals, machine};
 
 /// What to run.
 #[derive(Args)]
@@ -32,9 +32,8 @@ pub struct Options {
     /// How many scenes of a kind to draw, if not the default number.
     #[arg(long)]
     seeds: Option<usize>,
-    /// The library is a world and the scene a motion.
-    #[arg(long)]
-    world: bool,
+    #[arg(long, value_enum)]
+    kind: Kind,
 }
 
 /// Serves requests until standard input ends.
@@ -55,8 +54,15 @@ fn job(options: &Options) -> Result<Box<dyn Job>> {
     let Options { library: name, scene, boxes, seeds, .. } = options;
     let unknown = || format!("there is no library '{name}'");
     let other = "not in this number of dimensions";
-    if options.world {
-        let world = worlds::all().into_iter().find(|it| it.name == name).with_context(unknown)?;
+    if options.kind == Kind::Intervals {
+        let library = intervals::all().into_iter().find(|it| it.name == name);
+        let make = library.with_context(unknown)?.make;
+        return Ok(Box::new(intervals::Finding::new(make, scene, *boxes, *seeds)?));
+    }
+    if options.kind.tracks() {
+        let is_level = options.kind == Kind::Statics;
+        let worlds = if is_level { worlds::with_statics() } else { worlds::all() };
+        let world = worlds.into_iter().find(|it| it.name == name).with_context(unknown)?;
         return Ok(match options.dimensions {
             2 => Box::new(Tracking::new(world.two.context(other)?, scene, *boxes)?),
             3 => Box::new(Tracking::new(world.three.context(other)?, scene, *boxes)?),
@@ -109,7 +115,8 @@ impl<const D: usize> Job for Finding<D> {
         let peak = machine::peak_memory().zip(before);
         let peak_bytes = peak.map(|(peak, start)| peak - start.min(peak));
         let nanoseconds = longest.as_nanos() as u64;
-        Ok(Reply::Checked { fingerprint, nanoseconds, peak_bytes, exact_ns: None })
+        let fingerprint = Some(fingerprint);
+        Ok(Reply::Checked { fingerprint, nanoseconds, peak_bytes, start_ns: None, exact_ns: None })
     }
 
     /// Times calls on boxes in motion frame by frame, on one scene of a kind after another, and on boxes at rest so

@@ -186,6 +186,63 @@ fn worlds_are_checked_event_by_event_and_reported() {
 }
 
 #[test]
+fn static_boxes_are_never_paired_with_each_other_and_the_time_to_insert_is_kept() {
+    let folder = folder("statics");
+    let file = folder.join("here.json");
+    let (_, record) = measure_part("--statics", &file, &["--sizes", "3000"]);
+    let levels = record["statics"].as_array().unwrap();
+    assert_eq!(levels.len(), 2);
+    let mut names = vec!["sweep-and-prune", "sweep-and-prune, resting"];
+    if cfg!(feature = "light") {
+        names.push("rapier");
+    }
+    if cfg!(feature = "cpp") {
+        names.push("Bullet tree");
+    }
+    for level in levels {
+        assert_eq!(level["reference"], "brute force");
+        assert!(level["pairs"].as_u64().is_some_and(|pairs| pairs > 500), "{level}");
+        for name in &names {
+            let results = level["results"].as_array().unwrap();
+            let entry = results.iter().find(|entry| entry["name"] == **name).unwrap();
+            let times = &entry["outcome"]["Timed"];
+            for field in ["median_ns", "start_ns"] {
+                assert!(times[field].as_f64().is_some_and(|ns| ns > 0.0), "{entry} in {level}");
+            }
+        }
+    }
+    bench(&["report", "--results", folder.to_str().unwrap()]);
+    let report = fs::read_to_string(folder.with_file_name("RESULTS.md")).unwrap();
+    assert!(report.contains("## Many static boxes"), "{report}");
+}
+
+#[test]
+fn intervals_are_checked_against_brute_force_and_both_questions_are_asked() {
+    let folder = folder("intervals");
+    let file = folder.join("here.json");
+    let (_, record) = measure_part("--intervals", &file, &["--sizes", "500"]);
+    let cases = record["intervals"].as_array().unwrap();
+    // Five draws, in two orders, with two questions.
+    assert_eq!(cases.len(), 20);
+    let names: &[&str] = if cfg!(feature = "light") {
+        &["sweep-and-prune", "coitrees", "superintervals"]
+    } else {
+        &["sweep-and-prune"]
+    };
+    for case in cases {
+        assert_eq!(case["reference"], "brute force");
+        for name in names {
+            let results = case["results"].as_array().unwrap();
+            let entry = results.iter().find(|entry| entry["name"] == **name).unwrap();
+            assert!(entry["outcome"]["Timed"].is_object(), "{entry} in {case}");
+        }
+    }
+    bench(&["report", "--results", folder.to_str().unwrap()]);
+    let report = fs::read_to_string(folder.with_file_name("RESULTS.md")).unwrap();
+    assert!(report.contains("| two-sets-long sorted counts | 500 |"), "{report}");
+}
+
+#[test]
 fn a_run_that_was_stopped_goes_on_where_it_was() {
     let folder = folder("resumed");
     let file = folder.join("here.json");

@@ -87,14 +87,16 @@ impl<Two, Three> Library<Two, Three> {
             name: self.name,
             how: self.how,
             alternative: self.alternative,
-            version: self.version(),
+            version: self.origin.version(),
             dimensions: exists.iter().filter(|(_, it)| *it).map(|&(count, _)| count).collect(),
         }
     }
+}
 
-    /// The version that was compiled in, or its origin.
-    fn version(&self) -> String {
-        match self.origin {
+impl Origin {
+    /// The version that was compiled in, or the origin.
+    pub fn version(&self) -> String {
+        match self {
             Origin::Here => "this repository".into(),
             Origin::Crate(name) => crate_version(name).unwrap_or("unknown").into(),
             Origin::Debian(package) => debian_version(package).unwrap_or_else(|| "unknown".into()),

@@ -9,6 +9,8 @@ pub mod this_crate;
 mod broccoli;
 #[cfg(feature = "cpp")]
 pub mod cpp;
+#[cfg(feature = "cpp")]
+pub mod dynamic_tree;
 #[cfg(feature = "light")]
 mod geo_index;
 mod library;
@@ -42,7 +44,10 @@ pub fn all() -> Vec<Library> {
         rstar::LIBRARY,
     ]);
     #[cfg(feature = "cpp")]
-    all.extend_from_slice(cpp::LIBRARIES);
+    {
+        all.extend([dynamic_tree::BOX2D, dynamic_tree::BOX3D]);
+        all.extend_from_slice(cpp::LIBRARIES);
+    }
     #[cfg(feature = "physx")]
     all.extend([physx::AUTOMATIC, physx::MULTIPLE]);
     all

@@ -35,11 +35,11 @@ pub fn scenes(cases: &[Case]) -> Vec<(String, usize)> {
             scenes.push(&case.scene);
         }
     }
-    let both = scenes.iter().flat_map(|&scene| [2, 3].map(|dimensions| (scene, dimensions)));
+    let all = scenes.iter().flat_map(|&scene| [1, 2, 3].map(|dimensions| (scene, dimensions)));
     let exists = |(scene, dimensions): &(&str, usize)| {
         cases.iter().any(|case| case.scene == *scene && case.dimensions == *dimensions)
     };
-    both.filter(exists).map(|(scene, dimensions)| (scene.to_owned(), dimensions)).collect()
+    all.filter(exists).map(|(scene, dimensions)| (scene.to_owned(), dimensions)).collect()
 }
 
 /// The libraries of some cases, in order of first appearance.

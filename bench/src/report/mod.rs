@@ -9,9 +9,11 @@ use crate::record::Record;
 
 mod cases;
 mod format;
+mod intervals;
 mod plot;
 mod readme;
 mod single;
+mod statics;
 mod table;
 mod worlds;
 

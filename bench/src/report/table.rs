@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use super::cases::{SMALL, advantage, find, is_open, names, scenes, sorted};
 use super::format::{count, rounded, significant, time};
-use super::{single, worlds};
+use super::{intervals, single, statics, worlds};
 use crate::libraries::THIS_CRATE;
 use crate::record::{Case, Entry, Outcome, Record, Times};
 
@@ -45,6 +45,8 @@ pub fn section(record: &Record, plots: &[String]) -> String {
     }
     text += &everything(record);
     text += &worlds::section(record);
+    text += &statics::section(record);
+    text += &intervals::section(record);
     text += &libraries(record);
     text
 }

@@ -11,7 +11,7 @@ use crate::libraries::cpp::{Boxes, Pairs};
 use crate::libraries::{Library, Origin};
 
 unsafe extern "C" {
-    fn bench_bullet_world_new(boxes: *const Boxes, sweep: bool) -> *mut c_void;
+    fn bench_bullet_world_new(boxes: *const Boxes, movers: usize, sweep: bool) -> *mut c_void;
     fn bench_bullet_world_delete(world: *mut c_void);
     fn bench_bullet_world_step(
         world: *mut c_void,
@@ -64,9 +64,9 @@ impl Drop for Bullet {
 }
 
 impl<const D: usize> World<D> for Bullet {
-    fn start<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<Found<'a>> {
+    fn start<'a>(&'a mut self, boxes: &'a [Aabb<D>], movers: usize) -> Result<Found<'a>> {
         // SAFETY: the boxes are valid for the call.
-        self.world = unsafe { bench_bullet_world_new(&Boxes::from(boxes), self.sweep) };
+        self.world = unsafe { bench_bullet_world_new(&Boxes::from(boxes), movers, self.sweep) };
         Ok(Found::Kept)
     }
 

@@ -113,12 +113,18 @@ impl Drop for PhysX {
 }
 
 impl<const D: usize> World<D> for PhysX {
-    fn start<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<Found<'a>> {
+    fn start<'a>(&'a mut self, boxes: &'a [Aabb<D>], movers: usize) -> Result<Found<'a>> {
         let created: Vec<u32> = (0..boxes.len() as u32).collect();
         // PhysX may read past the last box.
         self.bounds = boxes.iter().chain(boxes.last()).map(bounds).collect();
-        // SAFETY: it only computes a number.
-        let group = |&id: &u32| unsafe { phys_PxGetBroadPhaseDynamicFilterGroup(id) };
+        // SAFETY: each only computes a number.
+        let group = |&id: &u32| unsafe {
+            if (id as usize) < movers {
+                phys_PxGetBroadPhaseDynamicFilterGroup(id)
+            } else {
+                phys_PxGetBroadPhaseStaticFilterGroup()
+            }
+        };
         self.groups = created.iter().map(group).collect();
         self.distances = vec![0.0; boxes.len()];
         self.broad_phase = broad_phase(self.kind)?;

@@ -65,13 +65,22 @@ macro_rules! rapier {
             }
 
             impl World<$dimensions> for Rapier {
-                fn start<'a>(&'a mut self, boxes: &'a [Aabb<$dimensions>]) -> Result<Found<'a>> {
+                fn start<'a>(
+                    &'a mut self,
+                    boxes: &'a [Aabb<$dimensions>],
+                    movers: usize,
+                ) -> Result<Found<'a>> {
                     let widths = boxes.iter().map(|aabb| aabb.max[0] - aabb.min[0]);
                     self.parameters.length_unit = widths.sum::<f32>() / boxes.len().max(1) as f32;
                     for (index, aabb) in (0..).zip(boxes) {
-                        // Only `set_aabb` says where it is.
-                        let collider = ColliderBuilder::ball(0.0)
-                            .active_collision_types(ActiveCollisionTypes::all());
+                        // A collider without a body is static, and makes no pair with another static one unless its types
+                        // say so. Only `set_aabb` says where it is.
+                        let types = if (index as usize) < movers {
+                            ActiveCollisionTypes::all()
+                        } else {
+                            ActiveCollisionTypes::default()
+                        };
+                        let collider = ColliderBuilder::ball(0.0).active_collision_types(types);
                         self.handles.push(self.colliders.insert(collider));
                         self.place(index, aabb);
                     }

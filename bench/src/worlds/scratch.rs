@@ -1,6 +1,6 @@
 //! Worlds that keep nothing: all pairs are found from scratch in every frame.
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use sweep_and_prune::Aabb;
 
 use super::world::{Found, World, WorldLibrary};
@@ -43,7 +43,8 @@ pub const PARRY: WorldLibrary = from_scratch!(
 struct Scratch<const D: usize>(Box<dyn Finder<D>>);
 
 impl<const D: usize> World<D> for Scratch<D> {
-    fn start<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<Found<'a>> {
+    fn start<'a>(&'a mut self, boxes: &'a [Aabb<D>], movers: usize) -> Result<Found<'a>> {
+        ensure!(movers == boxes.len(), "it would also find the pairs of static boxes");
         Ok(Found::Pairs(self.0.find(boxes)?))
     }
 

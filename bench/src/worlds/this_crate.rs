@@ -16,9 +16,29 @@ pub const LIBRARY: WorldLibrary = Library {
     three: Some(|| Box::new(Tracker::<3>::default())),
 };
 
+/// Boxes that never move, inserted as static bodies.
+pub const STATIC: WorldLibrary = Library {
+    how: "`insert_many`, static boxes with `Filter::STATIC`; then `set_many` of the boxes that moved, `update`",
+    ..LIBRARY
+};
+
+/// Boxes that never move, inserted as bodies that could.
+pub const RESTING: WorldLibrary = Library {
+    name: "sweep-and-prune, resting",
+    how: "the same, but static boxes are dynamic bodies that rest; their filter lets no two of them pair",
+    two: Some(|| Box::new(Tracker::<2> { rests: true, ..Tracker::default() })),
+    three: Some(|| Box::new(Tracker::<3> { rests: true, ..Tracker::default() })),
+    ..LIBRARY
+};
+
+/// The category of bodies that rest.
+const RESTS: u32 = 2;
+
 #[derive(Default)]
 struct Tracker<const D: usize> {
     world: BroadPhase<D>,
+    /// Whether boxes that never move are dynamic bodies.
+    rests: bool,
     ids: Vec<ProxyId>,
     moved_ids: Vec<ProxyId>,
     moved_boxes: Vec<Aabb<D>>,
@@ -39,8 +59,12 @@ impl<const D: usize> Tracker<D> {
 }
 
 impl<const D: usize> World<D> for Tracker<D> {
-    fn start<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<Found<'a>> {
-        self.ids = self.world.insert_many(boxes, Filter::default())?;
+    fn start<'a>(&'a mut self, boxes: &'a [Aabb<D>], movers: usize) -> Result<Found<'a>> {
+        let (movers, statics) = boxes.split_at(movers);
+        self.ids = self.world.insert_many(movers, Filter::ALL)?;
+        let resting = Filter::default().category(RESTS).mask(!RESTS);
+        let filter = if self.rests { resting } else { Filter::STATIC };
+        self.ids.extend(self.world.insert_many(statics, filter)?);
         Ok(self.update())
     }
 

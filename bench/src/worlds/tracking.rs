@@ -9,6 +9,7 @@ use anyhow::{Context, Result, ensure};
 use sweep_and_prune::Aabb;
 use sweep_and_prune_scenes::{Motion, Moving};
 
+use super::level::{self, Level};
 use super::world::{Found, Maker, World};
 use crate::fingerprint::Fingerprint;
 use crate::machine;
@@ -27,32 +28,81 @@ pub const FRAMES_CHECKED: usize = CHECKED.div_ceil(EVERY);
 /// The number of frames over which the memory of a world is measured.
 const WEIGHED: usize = 3;
 
-/// A motion, and which boxes it moved last.
+/// The frames that a world tracks, and which boxes moved in the last one.
 struct Frames<const D: usize> {
-    moving: Moving<D, f32>,
+    source: Source<D>,
     last: Vec<Aabb<D>>,
     moved: Vec<u32>,
 }
 
+/// Where the boxes of a frame come from.
+enum Source<const D: usize> {
+    /// A motion, in which each box may move.
+    Motion(Moving<D, f32>),
+    /// Static boxes and some that move.
+    Level(Level<D>),
+}
+
+impl<const D: usize> Source<D> {
+    fn boxes(&self) -> &[Aabb<D>] {
+        match self {
+            Self::Motion(moving) => moving.boxes(),
+            Self::Level(level) => level.boxes(),
+        }
+    }
+}
+
 impl<const D: usize> Frames<D> {
-    fn new(motion: &str, n: usize) -> Result<Self> {
-        let found = Motion::from_name(motion);
-        let found = found.with_context(|| format!("there is no motion '{motion}'"))?;
-        let moving = found.start(n, SEED).context("motion needs 1 to 3 dimensions")?;
-        Ok(Self { moving, last: Vec::new(), moved: Vec::new() })
+    /// A motion of `n` boxes, or a level with `n` static ones.
+    fn new(name: &str, n: usize) -> Result<Self> {
+        let source = if name == level::NAME {
+            Source::Level(Level::new(n, SEED))
+        } else {
+            let motion = Motion::from_name(name);
+            let motion = motion.with_context(|| format!("there is no motion '{name}'"))?;
+            Source::Motion(motion.start(n, SEED).context("motion needs 1 to 3 dimensions")?)
+        };
+        Ok(Self { source, last: Vec::new(), moved: Vec::new() })
     }
 
     fn boxes(&self) -> &[Aabb<D>] {
-        self.moving.boxes()
+        self.source.boxes()
+    }
+
+    /// How many boxes may move; they are the first.
+    fn movers(&self) -> usize {
+        match &self.source {
+            Source::Motion(moving) => moving.boxes().len(),
+            Source::Level(_) => level::MOVERS,
+        }
     }
 
     fn advance(&mut self) {
-        self.last.clear();
-        self.last.extend_from_slice(self.moving.boxes());
-        self.moving.advance();
-        self.moved.clear();
-        let frames = self.last.iter().zip(self.moving.boxes()).zip(0..);
-        self.moved.extend(frames.filter(|((a, b), _)| a != b).map(|(_, index)| index));
+        let movers = self.movers();
+        let Self { source, last, moved } = self;
+        last.clear();
+        last.extend_from_slice(&source.boxes()[..movers]);
+        match source {
+            Source::Motion(moving) => moving.advance(),
+            Source::Level(level) => level.advance(),
+        }
+        moved.clear();
+        let frames = last.iter().zip(source.boxes()).zip(0..);
+        moved.extend(frames.filter(|((a, b), _)| a != b).map(|(_, index)| index));
+    }
+
+    /// All pairs of which one box may move.
+    fn brute_force(&self) -> Result<Vec<[u32; 2]>> {
+        let (boxes, movers) = (self.boxes(), self.movers());
+        if movers == boxes.len() {
+            return Ok(sweep_and_prune_scenes::brute_force(boxes)?);
+        }
+        let mut pairs = Vec::new();
+        for a in 0..movers {
+            let overlap = |&b: &usize| boxes[a].overlaps(&boxes[b]);
+            pairs.extend((a + 1..boxes.len()).filter(overlap).map(|b| [a as u32, b as u32]));
+        }
+        Ok(pairs)
     }
 }
 
@@ -75,7 +125,7 @@ impl<const D: usize> Tracking<D> {
         machine::reset_peak_memory();
         let before = machine::memory();
         let mut world = replace(&mut self.world, (self.make)());
-        world.start(self.frames.boxes())?;
+        world.start(self.frames.boxes(), self.frames.movers())?;
         for _ in 0..WEIGHED {
             self.frames.advance();
             world.step(self.frames.boxes(), &self.frames.moved)?;
@@ -89,7 +139,8 @@ impl<const D: usize> Job for Tracking<D> {
         let peak_bytes = self.weigh()?;
         let Self { world, frames, .. } = self;
         let mut live = Live::default();
-        live.take(world.start(frames.boxes())?)?;
+        let (found, start) = machine::clock(|| world.start(frames.boxes(), frames.movers()));
+        live.take(found?)?;
         let (mut fingerprint, mut longest) = (Fingerprint::default(), Duration::ZERO);
         let mut exact = Vec::new();
         for frame in 0..CHECKED {
@@ -108,8 +159,13 @@ impl<const D: usize> Job for Tracking<D> {
         }
         exact.sort_unstable();
         let exact_ns = exact.get(exact.len() / 2).copied();
-        let nanoseconds = longest.as_nanos() as u64;
-        Ok(Reply::Checked { fingerprint, nanoseconds, peak_bytes, exact_ns })
+        Ok(Reply::Checked {
+            fingerprint: live.is_known.then_some(fingerprint),
+            nanoseconds: longest.as_nanos() as u64,
+            peak_bytes,
+            start_ns: Some(start.as_nanos() as u64),
+            exact_ns,
+        })
     }
 
     fn time(&mut self, repeats: usize, _batch: usize) -> Result<Reply> {
@@ -127,10 +183,16 @@ impl<const D: usize> Job for Tracking<D> {
 }
 
 /// The pairs that a world has reported.
-#[derive(Default)]
 struct Live {
     pairs: HashSet<[u32; 2]>,
     kept: bool,
+    is_known: bool,
+}
+
+impl Default for Live {
+    fn default() -> Self {
+        Self { pairs: HashSet::new(), kept: false, is_known: true }
+    }
 }
 
 impl Live {
@@ -152,6 +214,7 @@ impl Live {
                 ensure!(self.pairs.len() == pairs.len(), "a pair was given twice");
             }
             Found::Kept => self.kept = true,
+            Found::Unknown => self.is_known = false,
         }
         Ok(())
     }
@@ -183,7 +246,7 @@ pub fn oracle<const D: usize>(motion: &str, n: usize) -> Result<Fingerprint> {
             frames.advance();
         }
         if frame % EVERY == 0 {
-            sum = sum + Fingerprint::of(&sweep_and_prune_scenes::brute_force(frames.boxes())?);
+            sum = sum + Fingerprint::of(&frames.brute_force()?);
         }
     }
     Ok(sum)
@@ -210,7 +273,7 @@ mod tests {
     fn pairs_of_larger_boxes_are_tested_once_more() -> Result<()> {
         struct Larger([[u32; 2]; 2]);
         impl World<1> for Larger {
-            fn start<'a>(&'a mut self, _: &'a [Aabb<1>]) -> Result<Found<'a>> {
+            fn start<'a>(&'a mut self, _: &'a [Aabb<1>], _: usize) -> Result<Found<'a>> {
                 Ok(Found::Kept)
             }
             fn step<'a>(&'a mut self, _: &'a [Aabb<1>], _: &[u32]) -> Result<Found<'a>> {
@@ -223,7 +286,7 @@ mod tests {
         let boxes = [[0.0, 2.0], [1.0, 3.0], [4.0, 5.0]].map(|[a, b]| Aabb::new([a], [b]));
         let mut world = Larger([[0, 1], [1, 2]]);
         let mut live = Live::default();
-        live.take(world.start(&boxes)?)?;
+        live.take(world.start(&boxes, boxes.len())?)?;
         let (pairs, took) = live.exact(&mut world, &boxes);
         assert_eq!(pairs, [[0, 1]]);
         assert!(took.is_some());

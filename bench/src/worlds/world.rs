@@ -7,8 +7,9 @@ use crate::libraries::Library;
 
 /// Tracks the pairs of boxes that move.
 pub trait World<const D: usize> {
-    /// Takes in the boxes of the first frame.
-    fn start<'a>(&'a mut self, boxes: &'a [Aabb<D>]) -> Result<Found<'a>>;
+    /// Takes in the boxes of the first frame. The first `movers` may move. The others are static: they never move, and no
+    /// two of them form a pair.
+    fn start<'a>(&'a mut self, boxes: &'a [Aabb<D>], movers: usize) -> Result<Found<'a>>;
 
     /// Continues with the next frame, in which the boxes at the indices `moved` (ascending) have changed. This is what is
     /// timed: until it is known which pairs there are, or which began and ended.
@@ -35,6 +36,9 @@ pub enum Found<'a> {
     /// All pairs, where [`World::kept`] finds them.
     #[allow(dead_code, reason = "only some features have such a world")]
     Kept,
+    /// The library does not say which pairs there are.
+    #[allow(dead_code, reason = "only some features have such a world")]
+    Unknown,
 }
 
 /// Makes a world.
