@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import sweep_and_prune as sap
+from sweep_and_prune import _intervals
 
 CALLS = int(os.environ.get("CALLS", 20_000 if "TEST_LONG" in os.environ else 600))
 SEED = int(os.environ.get("SEED", 1))
@@ -118,7 +119,7 @@ def one_call(random: Random) -> None:
             assert math.isnan(share) if whole == 0 else share == pytest.approx(float(Fraction(shared) / whole)), said
 
     k = random.choice([1, 1, 2, 20])
-    limit = random.choice([None, 0, 1, 3]) if half == 1 else random.choice([0, 1, 3, 6])
+    limit = random.choice([None, None, 0, 1, 3, 6])
     how = random.choice(["inner", "left"])
     near: list[Any] = []
     for i in range(len(a.rows)):
@@ -270,8 +271,8 @@ def test_what_is_wrong_is_said() -> None:
     for call in (sap.cluster, sap.merge):
         with pytest.raises(ValueError, match="format must be"):
             call(plane, format="wrong")
-    with pytest.raises(ValueError, match="boxes of two or three dimensions need max_distance"):
-        sap.nearest(plane, plane)
+    with pytest.raises(sap.InvalidBoxError, match=r"a\[1\] is inverted"):
+        sap.nearest([*plane, [2, 0, 1, 1]], plane)
     wrong: Any
     for wrong, kind in ((-1, ValueError), (float("nan"), TypeError), (math.inf, ValueError), ("x", TypeError)):
         with pytest.raises(kind, match="max_distance"):
@@ -314,6 +315,51 @@ def test_infinite_intervals_have_distances() -> None:
     found = sap.nearest(a, b, 3)
     assert found.pairs[:, 0].tolist() == [0, 0, 0, 1, 1, 1, 2, 2, 2]
     assert found.distances.tolist() == [0, 1, inf, 0, 0, 3, 0, 0, inf]
+
+
+@pytest.mark.parametrize("dimensions", [2, 3])
+def test_the_nearest_boxes_are_found_however_far_away_they_are(dimensions: int) -> None:
+    random = np.random.default_rng(dimensions)
+    for number in range(60):
+        sets = []
+        for count, place in ((30, 0), (40, random.choice([0, 5, 1e3, 1e9]))):
+            low = place + random.integers(0, 9, (count, dimensions)) * random.choice([1, 1.1])
+            sets.append(np.hstack([low, low + random.choice([0, 1, 50], (count, dimensions))]))
+        a, b = sets
+        a[0, random.integers(dimensions)] = b[0, random.integers(dimensions)] = -math.inf
+        a[1, dimensions:], a[2], b[1] = math.inf, math.inf, math.inf
+        groups = [random.integers(0, random.choice([1, 5]), len(of_set)) for of_set in sets]
+        k = int(random.choice([1, 3, 60]))
+        with np.errstate(invalid="ignore"):
+            gaps = np.maximum(a[:, None, :dimensions] - b[:, dimensions:], b[:, :dimensions] - a[:, None, dimensions:])
+        distances = np.sqrt((np.where(gaps > 0, gaps, 0.0) ** 2).sum(axis=2))
+        distances[groups[0][:, None] != groups[1]] = np.nan
+        wanted = [
+            (i, int(j))
+            for i, of_row in enumerate(distances)
+            for j in np.lexsort((range(len(b)), of_row))[:k]
+            if not np.isnan(of_row[j])
+        ]
+        found = sap.nearest(a, b, k, by=(groups[0], groups[1]))
+        assert list(map(tuple, found.pairs.tolist())) == wanted, number
+        assert found.distances.tolist() == [distances[pair] for pair in wanted]
+
+
+def test_few_boxes_are_looked_at_for_the_nearest_ones_far_away(monkeypatch: pytest.MonkeyPatch) -> None:
+    looked_at: list[int] = []
+    distances = _intervals._distances
+
+    def counted(corners: Any, pairs: Any) -> Any:
+        looked_at.append(len(pairs))
+        return distances(corners, pairs)
+
+    monkeypatch.setattr(_intervals, "_distances", counted)
+    low = np.random.default_rng(1).random((1000, 2))
+    a = np.hstack([low, low])
+    for apart in ([50, 50], [50, 0], [0, 0]):
+        looked_at.clear()
+        assert len(sap.nearest(a, a + [*apart, *apart]).pairs) == 1000
+        assert sum(looked_at) < 10_000  # of 1,000,000
 
 
 def frame(random: np.random.Generator, count: int) -> Any:

@@ -353,7 +353,7 @@ def merge(file: str, **options: Any) -> None:
 @_file("a")
 @_file("b")
 @click.option("-k", type=int, default=1, help="How many boxes of B to write for each of A.")
-@click.option("--max-distance", type=float, help="Leave out boxes farther away; needed in two and three dimensions.")
+@click.option("--max-distance", type=float, help="Leave out boxes farther away.")
 @click.option("--how", type=click.Choice(["inner", "left"]), default="inner", help="left: also boxes without any.")
 @_together(_boxes, _sides, _output)
 def nearest(a: str, b: str, **options: Any) -> None:
@@ -364,9 +364,6 @@ def nearest(a: str, b: str, **options: Any) -> None:
     kind = kind_of(given.output, given.to)
     with _opened(given) as sources:
         sets, search = _search(given, sources)
-        if given.max_distance is None and plain_corners({"a": sets[0], "b": sets[1]}, "xyxy")[0].shape[1] > 2:
-            name = sources[0].name
-            raise FileError(f"{name}: boxes of two or three dimensions need --max-distance: others are left out")
         chosen = {name: search[name] for name in ("missing", "by") if name in search}
         found = find_nearest(sets[0], sets[1], given.k, max_distance=given.max_distance, how=given.how, **chosen)
         distances = found.distances

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import read_boxes, whole
+from ._broad_phase import BroadPhase
 from ._columns import read_column
 from ._overlaps import Values, check_intervals, line_keys, plain_corners, ranks_of
 from ._pairs import Groups, Margin, find, one_set, stream, two_sets
-from ._prepare import Prepared, is_missing
+from ._prepare import Prepared, is_missing, refuse_inverted
 
 _CHUNK = 2**20
+_BLOCK = 2**12
+"""For this many boxes the nearest ones are looked for at once."""
 
 
 class Merged(NamedTuple):
@@ -264,9 +268,7 @@ def nearest(
         a: `(n, 2 * D)` numbers, or another form that `find_pairs` accepts.
         b: another set of boxes.
         k: how many to find for each box of `a`, at most.
-        max_distance: boxes farther away are left out; a number, or a duration for times. Boxes of two or three
-            dimensions need it. (The boxes nearest to points, however far away, are found by
-            `BroadPhase.nearest_many`.)
+        max_distance: boxes farther away are left out; a number, or a duration for times.
         how: `"inner"`: boxes of `a` without any have no pair. `"left"`: such a box has one pair with -1, whose distance
             is -1 for integers, and otherwise NaN or NaT.
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
@@ -278,7 +280,7 @@ def nearest(
         their type: they are exact for integers and times.
 
     Raises:
-        ValueError: for boxes of two or three dimensions without `max_distance`, and for unknown options.
+        ValueError: for unknown options.
         InvalidBoxError, TypeError: as `find_pairs_between`.
 
     >>> import sweep_and_prune as sap
@@ -293,17 +295,14 @@ def nearest(
     corners = plain_corners({"a": a, "b": b}, format)
     half = corners[0].shape[1] // 2
     is_line = half == 1
-    if not is_line and max_distance is None:
-        raise ValueError(
-            "boxes of two or three dimensions need max_distance: those farther away are left out; for points, "
-            "BroadPhase.nearest_many needs none"
-        )
     if not any(map(len, corners)):  # of what kind coordinates would be is not known
         return Nearest(np.empty((0, 2), np.int64), corners[0][:, 0])
     limit = None if max_distance is None else _limit(max_distance, corners[0])
-    reach = 0 if is_line else _reach(corners, limit)
-    prepared = two_sets(a, b, format, "both", missing, by, reach)
-    pairs = find(prepared, 1, np.int64)
+    if limit is None and not is_line:
+        pairs = _nearest_of_boxes(two_sets(a, b, format, "both", missing, by, 0), corners, k)
+    else:
+        prepared = two_sets(a, b, format, "both", missing, by, 0 if is_line else _reach(corners, limit))
+        pairs = find(prepared, 1, np.int64)
     if is_line:
         pairs = np.concatenate([pairs, *_beside(prepared, min(k, max(len(corners[1]), 1)))])
     distances = _distances(corners, pairs)
@@ -345,6 +344,83 @@ def _reach(corners: list[Values], limit: Any) -> Any:
         return math.floor(limit)
     finite = [np.abs(boxes[np.isfinite(boxes)]).max(initial=0) for boxes in corners]
     return float(limit + 4 * float(np.finfo(np.float32).eps) * (max(map(float, finite)) + limit))
+
+
+def _nearest_of_boxes(prepared: Prepared, corners: list[Values], k: int) -> NDArray[np.int64]:
+    """Pairs among which are the `k` nearest boxes of `b` for each box of `a`."""
+    half = corners[0].shape[1] // 2
+    rows = [np.arange(len(of_set)) if kept is None else kept for of_set, kept in zip(corners, prepared.kept)]
+    boxes = [of_set[kept].astype(np.float64) for of_set, kept in zip(corners, rows)]
+    for name, of_set, kept in zip("ab", boxes, rows):
+        refuse_inverted(of_set, name, kept)
+    # What is grouped has an axis of its groups or, in three dimensions, a list of them.
+    groups: list[NDArray[Any]] = [np.zeros(len(kept)) for kept in rows]
+    if prepared.groups is not None:
+        groups = prepared.groups
+    elif prepared.sets[0].shape[1] > 2 * half:
+        groups = [of_set[:, half] for of_set in prepared.sets]
+    # Sums, and integers beyond 2^53, are rounded.
+    largest = max(float(np.abs(of_set[np.isfinite(of_set)]).max(initial=0)) for of_set in boxes)
+    slack = 64 * float(np.finfo(float).eps) * largest
+    found = [np.empty((0, 2), np.int64)]
+    for of_a, of_b in _rows_of_groups(groups):
+        world = BroadPhase(dimensions=half)
+        ids = world.insert_many(boxes[1][of_b])
+        by_id = np.argsort(ids)
+        for block in np.array_split(of_a, range(_BLOCK, len(of_a), _BLOCK)):
+            asked, near, reach = _near_centers(world, boxes[0][block], k, slack)
+            pairs = np.stack([block[asked], of_b[by_id[np.searchsorted(ids[by_id], near)]]], axis=1)
+            found.append(pairs[_distances(boxes, pairs) <= reach[asked]])
+    return _translated(prepared, *np.concatenate(found).T)
+
+
+def _near_centers(
+    world: BroadPhase, boxes: Values, k: int, slack: float
+) -> tuple[NDArray[np.int64], NDArray[np.int64], Values]:
+    """Boxes and bodies that are near each other, and how near the `k` bodies nearest to each box are.
+
+    None of these is farther away than the `k`-th nearest to the center. They are looked for within that distance, or in
+    a circle around the center if it is smaller. (Many bodies far away, across a corner, would be within the distance on
+    each axis.)
+    """
+    half = boxes.shape[1] // 2
+    low, high = boxes[:, :half], boxes[:, half:]
+    reach = np.full(len(boxes), math.inf)
+    with np.errstate(all="ignore"):
+        centers = low + (high - low) / 2
+        centers = np.where(np.isfinite(centers), centers, np.clip(0.0, low, high))
+        is_finite = np.isfinite(centers).all(axis=1)
+        distances = world.nearest_many(centers[is_finite], k).distances
+        if distances.shape[1] == k:
+            reach[is_finite] = distances[:, -1]
+        reach = reach * (1 + 1e-9) + slack
+        radii = (reach + np.sqrt(((high - low) ** 2).sum(axis=1)) / 2) * (1 + 1e-9) + slack
+        within = np.hstack([low - reach[:, None], high + reach[:, None]])
+        of_circle = math.pi * radii**2 if half == 2 else 4 / 3 * math.pi * radii**3
+        is_round = np.isfinite(radii) & (of_circle < (within[:, half:] - within[:, :half]).prod(axis=1))
+    within[:, :half][np.isnan(within[:, :half])] = -math.inf
+    within[:, half:][np.isnan(within[:, half:])] = math.inf
+    asked, near = [], []
+    for rows, lists in (
+        (np.flatnonzero(is_round), world.within_many(centers[is_round], radii[is_round], sorted=False)),
+        (np.flatnonzero(~is_round), world.overlapping_many(within[~is_round], sorted=False)),
+    ):
+        asked.append(np.repeat(rows, np.diff(lists.ends, prepend=0)))
+        near.append(lists.ids)
+    return np.concatenate(asked), np.concatenate(near), reach
+
+
+def _rows_of_groups(groups: list[NDArray[Any]]) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64]]]:
+    """The rows of each group that both sets have."""
+    orders = [np.argsort(codes, kind="stable") for codes in groups]
+    of_both = np.intersect1d(groups[0], groups[1])
+    ends = [
+        [np.searchsorted(codes, of_both, side, sorter=order) for side in ("left", "right")]
+        for codes, order in zip(groups, orders)
+    ]
+    for group in range(len(of_both)):
+        first, second = (order[begin[group] : end[group]] for order, (begin, end) in zip(orders, ends))
+        yield first, second
 
 
 def _beside(prepared: Prepared, k: int) -> list[NDArray[np.int64]]:
