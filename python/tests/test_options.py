@@ -6,6 +6,7 @@ import gc
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from datetime import timedelta
 from typing import Any
 
@@ -16,6 +17,7 @@ from hypothesis import strategies as st
 from oracle import DIMENSIONS, FLOATS, Array, box_sets, in_order, pairs, pairs_between, random_boxes
 
 import sweep_and_prune as sap
+from sweep_and_prune import _prepare
 
 
 def within(a: Array, b: Array, margin: Any, closed: str = "both") -> Array:
@@ -270,3 +272,34 @@ def test_whole_intervals_of_different_groups_never_pair(offset: int, closed: str
         sap.InvalidBoxError, match=rf"boxes\[1\] is inverted on axis 0: min {offset + 5}(\.0)? is greater"
     ):
         sap.find_pairs(np.array([[0, 1], [5, 4]]) + offset, by=[1, 2], closed=closed)
+
+
+def test_plain_arrays_are_prepared_quickly_and_as_all_others_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    random = np.random.default_rng(4)
+    dtypes: Any = [np.int8, np.uint16, np.int32, np.int64, np.uint64, np.float16, np.float32, np.float64]
+    plain_rows, quick = _prepare._plain_rows, 0
+    for _ in range(2000):
+        sets = []
+        for _ in range(random.integers(1, 3)):
+            low = random.integers(0, 5, (random.integers(0, 4), 2))
+            boxes: Any = np.hstack([low, low + random.integers(random.choice([-1, 0, 1, 1]), 4, low.shape)])
+            boxes = boxes.astype(random.choice(dtypes))
+            if random.random() < 0.1 and boxes.dtype.itemsize == 8 and len(boxes):
+                boxes[0, 2:] = random.choice([2**53, 2**53 + 1, 2**62])
+            if random.random() < 0.05 and boxes.dtype.kind == "f" and len(boxes):
+                boxes[0, 1] = np.nan
+            sets.append(boxes)
+        closed: Any = random.choice(np.array(["both", "left", "right", "neither", None]))
+        outcomes: list[Any] = []
+        for rows in (plain_rows, lambda sets, is_closed: None):
+            monkeypatch.setattr(_prepare, "_plain_rows", rows)
+            try:
+                found = sap.find_pairs(*sets, closed=closed) if len(sets) == 1 else None
+                found = sap.find_pairs_between(*sets, closed=closed) if found is None else found
+                outcomes.append(found.tolist())
+            except (sap.InvalidBoxError, TypeError) as error:
+                outcomes.append(str(error))
+        assert outcomes[0] == outcomes[1], (sets, closed)
+        with suppress(Exception):
+            quick += plain_rows(dict(zip("ab", sets)), closed in ("both", None)) is not None
+    assert quick > 600

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Optional
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import Floats, box_rows, checked_closed, numbers, read_boxes, same_width
+from ._arrays import Floats, checked_closed, numbers, read_boxes, same_width
 from ._columns import (
     EXACT,
     Column,
@@ -113,15 +113,11 @@ def prepare(
     if not (isinstance(missing, str) and missing in ("raise", "skip")):
         raise ValueError(f'missing must be "raise" or "skip", not {missing!r}')
     has_margin = not is_zero(margin)
-    is_plain = format == "xyxy" and closed is None and missing == "raise" and by is None and not has_margin
-    is_plain &= wrap is None
-    if is_plain and all(type(boxes) is np.ndarray and boxes.dtype.kind == "f" for boxes in sets.values()):
-        rows = [box_rows(boxes, name) for name, boxes in sets.items()]  # the common case, quickly
-        if len(rows) == 2:
-            rows = list(same_width(*rows))
-            if rows[0].dtype != rows[1].dtype:
-                rows = [array.astype(np.float64, copy=False) for array in rows]
-        return Prepared(rows, [None for _ in rows], [*map(len, rows)])
+    is_plain = format == "xyxy" and missing == "raise" and by is None and wrap is None and not has_margin
+    if is_plain and all(type(boxes) is np.ndarray and boxes.dtype.kind in "iuf" for boxes in sets.values()):
+        rows = _plain_rows(sets, True if closed is None else checked_closed(closed))  # type: ignore[arg-type]
+        if rows is not None:  # the common case, quickly
+            return Prepared(rows, [None for _ in rows], [*map(len, rows)])
     sets = {name: with_rows(boxes) for name, boxes in sets.items()}
     is_closed = checked_closed(closed, *sets.values())
     names = list(sets)
@@ -171,6 +167,25 @@ def prepare(
     if not is_closed:
         rows = [_without_ends(array, are_whole) for array in rows]
     return _grouped(Prepared(rows, kept, lengths), of_group, fold and are_whole)
+
+
+def _plain_rows(sets: dict[str, NDArray[Any]], is_closed: bool) -> list[Floats] | None:
+    """Boxes that need no change but open ends; None if there may be one that is not valid, empty or not exact."""
+    arrays = [read_boxes(boxes, name).array for name, boxes in sets.items()]
+    if len(arrays) == 2:
+        arrays = list(same_width(*arrays))
+    are_whole = all(array.dtype.kind in "iu" for array in arrays)
+    if not (are_whole or all(array.dtype.kind == "f" for array in arrays)) or any(map(is_rounded, arrays)):
+        return None
+    # (The search itself refuses what is not valid, but does not know which numbers were passed.)
+    if not is_closed and not all(bool((low < high).all()) for array in arrays for low, high in _sides(array)):
+        return None
+    if is_closed and are_whole and not all(bool((low <= high).all()) for one in arrays for low, high in _sides(one)):
+        return None
+    rows = [numbers(array, name) for array, name in zip(arrays, sets)]
+    if len(rows) == 2 and rows[0].dtype != rows[1].dtype:  # both are compared in double precision
+        rows = [array.astype(np.float64, copy=False) for array in rows]
+    return rows if is_closed else [_without_ends(array, are_whole) for array in rows]
 
 
 def _grouped(prepared: Prepared, of_group: list[NDArray[np.int64]] | None, fold: bool = False) -> Prepared:
