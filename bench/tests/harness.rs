@@ -224,7 +224,7 @@ fn intervals_are_checked_against_brute_force_and_both_questions_are_asked() {
     let cases = record["intervals"].as_array().unwrap();
     // Five draws, in two orders, with two questions.
     assert_eq!(cases.len(), 20);
-    let names: &[&str] = if cfg!(feature = "light") {
+    let names: &[&str] = if cfg!(feature = "intervals") {
         &["sweep-and-prune", "coitrees", "superintervals"]
     } else {
         &["sweep-and-prune"]

@@ -6,9 +6,9 @@ mod finding;
 mod library;
 mod this_crate;
 
-#[cfg(feature = "light")]
+#[cfg(feature = "intervals")]
 mod coitrees;
-#[cfg(feature = "light")]
+#[cfg(feature = "intervals")]
 mod superintervals;
 
 pub use draw::{AILIST, AILIST_READS, names};
@@ -19,7 +19,7 @@ pub use library::IntervalLibrary;
 #[allow(unused_mut, reason = "without the features there are no alternatives to add")]
 pub fn all() -> Vec<IntervalLibrary> {
     let mut all = vec![this_crate::LIBRARY];
-    #[cfg(feature = "light")]
+    #[cfg(feature = "intervals")]
     all.extend([coitrees::LIBRARY, superintervals::LIBRARY]);
     all
 }
