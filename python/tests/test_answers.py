@@ -125,6 +125,31 @@ def test_the_answers_are_their_definitions(seed: int, capsys: pytest.CaptureFixt
         assert names == ["a", "b", "distance"] and rows == wanted
 
 
+def test_the_ids_of_coverage_are_those_of_the_first_file(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("g.gtf").write_text('1\tx\tgene\t1\t10\t.\t+\t.\tgene_id "a";\n')
+    Path("r.bed").write_text("1\t5\t7\n")
+    assert table(capsys, "coverage", "g.gtf", "r.bed", "--id", "gene_id")[1] == [["a", "1", "2", "0.2"]]
+    assert "pass --left-id" in refused(capsys, "coverage", "g.gtf", "r.bed", "--right-id", "chrom")
+
+
+def test_files_without_a_chromosome_in_common_are_noted(capsys: pytest.CaptureFixture[str]) -> None:
+    for name, chromosome in (("a", "chr1"), ("b", "1"), ("c", "chr1")):
+        Path(f"{name}.bed").write_text(f"{chromosome}\t5\t7\n")
+    for other, wanted in (
+        (
+            "b",
+            "sap: nothing overlaps: column chrom has no value that is in both files, such as 'chr1' in a.bed and",
+        ),
+        ("c", ""),
+    ):
+        assert main(["count", "a.bed"]) == 0 and main(["join", "a.bed", f"{other}.bed"]) == 0
+        said = capsys.readouterr().err
+        assert said.startswith(wanted) and said.count("\n") == (other == "b")
+    Path("d.bed").write_text("0\t5\t7\n1\t1\t2\n")
+    Path("e.bed").write_text("0\t5\t7\n2\t1\t2\n")
+    assert main(["join", "d.bed", "e.bed"]) == 0 and capsys.readouterr().err == ""
+
+
 def test_the_rows_of_a_large_join_are_sorted(capsys: pytest.CaptureFixture[str]) -> None:
     starts = np.random.default_rng(3).integers(0, 9000, 3000)
     np.save("a.npy", np.stack([starts, starts + 3], axis=1))

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _crs
+from ._columns import Column
 from ._errors import InvalidBoxError, SweepAndPruneError
 from ._file_error import FileError, printable
 from ._intervals import cluster as find_clusters
@@ -473,6 +474,8 @@ def _search(options: Options, sources: list[Source]) -> tuple[list[Any], dict[st
             f"{apart[1]}: convert one of them"
         )
     groups = columns_of_groups(sources, by)
+    if len(sources) == 2:
+        _note_other_names(sources, groups)
     closed = {options.closed or source.closed for source in sources}
     if len(closed) > 1:
         raise FileError("the formats of the files differ in whether ends belong to boxes: pass --closed")
@@ -483,6 +486,21 @@ def _search(options: Options, sources: list[Source]) -> tuple[list[Any], dict[st
     if any(by):
         search["by"] = groups[0] if len(groups) == 1 else tuple(groups)
     return sets, search
+
+
+def _note_other_names(sources: list[Source], groups: list[list[Column]]) -> None:
+    """Says so if two files of text have no group in common, such as chromosomes `chr1` and `1`."""
+    for columns in zip(*groups):
+        values = [column.values.tolist() for column in columns if column.codes is not None]
+        names = [[one for one in of_file if one != "" and one == one] for of_file in values]  # others are missing
+        if len(names) == 2 and all(names) and not {*names[0]} & {*names[1]}:
+            first, second = (repr(of_file[0])[:60] for of_file in names)
+            click.echo(
+                f"sap: nothing overlaps: {columns[0].name} has no value that is in both files, such as {first} in "
+                f"{sources[0].name} and {second} in {sources[1].name}",
+                err=True,
+            )
+            return
 
 
 def _of_sides(options: Options, name: str) -> list[list[str]]:
@@ -654,8 +672,10 @@ def _write_answers(
     kind = kind_of(options.output, options.to)
     with _opened(options) as sources:
         sets, search = _search(options, sources)
+        if getattr(options, "right_id", []):
+            raise FileError("a row is written for each box of the first file: pass --left-id")
         found = answers(sets, search)
-        _write_columns(options, kind, [*_labelled(options, sources, [np.arange(len(found[0][1]))]), *found])
+        _write_columns(options, kind, [*_labelled(options, sources[:1], [np.arange(len(found[0][1]))]), *found])
 
 
 def _write_columns(options: Options, kind: str, columns: list[tuple[str, NDArray[Any]]]) -> None:

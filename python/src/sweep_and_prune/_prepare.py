@@ -177,10 +177,8 @@ def _plain_rows(sets: dict[str, NDArray[Any]], is_closed: bool) -> list[Floats] 
     are_whole = all(array.dtype.kind in "iu" for array in arrays)
     if not (are_whole or all(array.dtype.kind == "f" for array in arrays)) or any(map(is_rounded, arrays)):
         return None
-    # (The search itself refuses what is not valid, but does not know which numbers were passed.)
+    # (The search itself refuses what is not valid, but does not see what is moved.)
     if not is_closed and not all(bool((low < high).all()) for array in arrays for low, high in _sides(array)):
-        return None
-    if is_closed and are_whole and not all(bool((low <= high).all()) for one in arrays for low, high in _sides(one)):
         return None
     rows = [numbers(array, name) for array, name in zip(arrays, sets)]
     if len(rows) == 2 and rows[0].dtype != rows[1].dtype:  # both are compared in double precision

@@ -468,7 +468,8 @@ def _parts(begun: _Begun, rows: int) -> Iterator[Text]:
             if not row or (row[0].startswith("#") and len(row) < len(columns)):
                 continue
             if len(row) < len(columns) or any(row[len(columns) :]):
-                raise FileError(f"{name}, line {here}: it has {len(row)} columns, where {len(columns)} are expected")
+                number = "1 column" if len(row) == 1 else f"{len(row)} columns"
+                raise FileError(f"{name}, line {here}: it has {number}, where {len(columns)} are expected")
             if len(lines) == rows:
                 yield Text(name, columns, cells, lines)
                 cells, lines = [], array("Q")
