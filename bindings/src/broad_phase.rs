@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use sweep_and_prune::{
-    BroadPhase, Error, Filter, Options, Pairs, ProxyId, Report, Scalar, validate,
+    BroadPhase, Changes, Error, Filter, Options, ProxyId, Report, Scalar, validate,
 };
 
 use crate::id::Id;
@@ -69,7 +69,10 @@ pub trait TrackBodies<I: Id>: Send {
 
     /// Updates. Appends the ids of the pairs that began, then the ids of the pairs that ended, two for each pair. Returns how
     /// many ids belong to pairs that began.
-    fn update(&mut self, ids: &mut Vec<I>) -> usize;
+    ///
+    /// After an error, also of what the caller does with the ids, the next call gets `is_due`. Then changes of the last
+    /// update that did not arrive come now, in place of an update.
+    fn update(&mut self, is_due: bool, ids: &mut Vec<I>) -> Result<usize, Error>;
 }
 
 /// A broad phase that also answers queries, lists its pairs, and is saved and restored.
@@ -127,6 +130,9 @@ pub trait ArrayBroadPhase<I: Id>: AnyBroadPhase<I> {
     /// # Errors
     /// [`Error::InvalidBox`].
     fn validate(&self, count: usize) -> Result<(), Error>;
+
+    /// Gives back memory that is not needed now.
+    fn shrink_to_fit(&mut self);
 
     /// Removes all bodies: for after a call that panicked, which may have left anything half done.
     fn reset(&mut self);
@@ -229,13 +235,12 @@ impl<const D: usize, T: Scalar, I: Id> TrackBodies<I> for TypedBroadPhase<D, T> 
         self.world.ids().for_each(each);
     }
 
-    fn update(&mut self, ids: &mut Vec<I>) -> usize {
-        let before = ids.len();
-        let changes = self.world.update();
-        append(changes.begun(), ids);
-        let begun = ids.len() - before;
-        append(changes.ended(), ids);
-        begun
+    fn update(&mut self, is_due: bool, ids: &mut Vec<I>) -> Result<usize, Error> {
+        // There are none after an update that failed, nor in a restored world.
+        if !is_due || self.world.changes().is_empty() {
+            self.world.try_update()?;
+        }
+        append_changes(self.world.changes(), ids).ok_or(Error::OutOfMemory)
     }
 }
 
@@ -302,16 +307,26 @@ impl<const D: usize, T: Scalar, I: Id> ArrayBroadPhase<I> for TypedBroadPhase<D,
         validate(self.rows.first(count))
     }
 
+    fn shrink_to_fit(&mut self) {
+        self.world.shrink_to_fit();
+    }
+
     fn reset(&mut self) {
         self.world = BroadPhase::with_options(self.world.options()).unwrap_or_default();
     }
 }
 
-/// Appends pairs of ids. One copy of it serves all dimensions.
+/// Appends the pairs that began and those that ended, if there is memory for their ids. Returns how many ids belong to pairs that
+/// began. One copy of it serves all dimensions.
 #[inline(never)]
-fn append<I: Id>(pairs: Pairs<'_>, ids: &mut Vec<I>) {
-    ids.reserve(2 * pairs.len());
-    for pair in pairs {
-        ids.extend(pair.map(I::from_proxy));
+fn append_changes<I: Id>(changes: Changes<'_>, ids: &mut Vec<I>) -> Option<usize> {
+    let (begun, ended) = (changes.begun(), changes.ended());
+    let count = 2 * begun.len();
+    ids.try_reserve(count + 2 * ended.len()).ok()?;
+    for pairs in [begun, ended] {
+        for pair in pairs {
+            ids.extend(pair.map(I::from_proxy));
+        }
     }
+    Some(count)
 }

@@ -81,7 +81,7 @@ fn broad_phase_gives_what_the_core_gives<const D: usize, T: Scalar>() {
     let ids = erased.insert_many(count, filter).unwrap();
     assert_eq!(ids, core.insert_many(&start, filter).unwrap());
     let mut events = Vec::new();
-    let begun = erased.update(&mut events);
+    let begun = erased.update(false, &mut events).unwrap();
     assert_eq!(begun, events.len());
     let expected = core.update();
     assert_eq!(events, bits(expected.begun().flatten()));
@@ -108,11 +108,28 @@ fn broad_phase_gives_what_the_core_gives<const D: usize, T: Scalar>() {
     erased.set_enabled(added, true).unwrap();
 
     events.clear();
-    let begun = erased.update(&mut events);
+    let begun = erased.update(false, &mut events).unwrap();
     let expected = core.update();
     assert_eq!(events[..begun], bits(expected.begun().flatten()));
     assert_eq!(events[begun..], bits(expected.ended().flatten()));
     assert!(0 < begun && begun < events.len());
+    // The same once more for a caller that could not take them. Where there are none, it updates.
+    let mut again = Vec::new();
+    assert_eq!(erased.update(true, &mut again), Ok(begun));
+    assert_eq!(again, events);
+    // Swept bodies come to rest.
+    for updates in 0..2 {
+        again.clear();
+        let begun = erased.update(false, &mut again).unwrap();
+        assert_eq!(again[..begun], bits(core.update().begun().flatten()));
+        assert!(updates == 0 || again.is_empty());
+    }
+    let paired = core.pairs().next().unwrap()[0];
+    erased.remove_many(&[paired]).unwrap();
+    core.remove_many(&[paired]).unwrap();
+    assert_eq!(erased.update(true, &mut again), Ok(0));
+    assert_eq!(again, bits(core.update().ended().flatten()));
+    assert!(!again.is_empty());
 
     let mut corners = vec![0.0; 2 * D];
     erased.corners(ids[5], false, &mut corners).unwrap();
@@ -145,7 +162,7 @@ fn broad_phase_gives_what_the_core_gives<const D: usize, T: Scalar>() {
         let mut answer = Answer { values: vec![7.0], ..Answer::default() };
         erased.query(query, numbers, None, &[], true, &mut answer).map(|()| answer)
     });
-    let stale = [ids[0], ids[310]];
+    let stale = [added, ids[310]];
     assert_eq!(
         erased.remove_many(&stale),
         Err(Error::StaleProxy { index: 1, id: stale[1].to_bits() })

@@ -655,6 +655,9 @@ sap_status sap_world3f_clear(struct sap_world3f *world, struct sap_error *error)
 /// Finds the pairs that began and those that ended since the last update. `changes` may be NULL if they are not needed.
 ///
 /// Takes time in proportion to the bodies that changed and their neighbors.
+///
+/// Errors: `SAP_ERROR_OUT_OF_MEMORY` if the pairs of a crowd do not fit; then the world is as before, and the next call finds what
+/// this one should have.
 sap_status sap_world3f_update(struct sap_world3f *world,
                               struct sap_changes *changes,
                               struct sap_error *error);
@@ -1097,6 +1100,9 @@ sap_status sap_world2f_clear(struct sap_world2f *world, struct sap_error *error)
 /// Finds the pairs that began and those that ended since the last update. `changes` may be NULL if they are not needed.
 ///
 /// Takes time in proportion to the bodies that changed and their neighbors.
+///
+/// Errors: `SAP_ERROR_OUT_OF_MEMORY` if the pairs of a crowd do not fit; then the world is as before, and the next call finds what
+/// this one should have.
 sap_status sap_world2f_update(struct sap_world2f *world,
                               struct sap_changes *changes,
                               struct sap_error *error);
@@ -1539,6 +1545,9 @@ sap_status sap_world3d_clear(struct sap_world3d *world, struct sap_error *error)
 /// Finds the pairs that began and those that ended since the last update. `changes` may be NULL if they are not needed.
 ///
 /// Takes time in proportion to the bodies that changed and their neighbors.
+///
+/// Errors: `SAP_ERROR_OUT_OF_MEMORY` if the pairs of a crowd do not fit; then the world is as before, and the next call finds what
+/// this one should have.
 sap_status sap_world3d_update(struct sap_world3d *world,
                               struct sap_changes *changes,
                               struct sap_error *error);
@@ -1981,6 +1990,9 @@ sap_status sap_world2d_clear(struct sap_world2d *world, struct sap_error *error)
 /// Finds the pairs that began and those that ended since the last update. `changes` may be NULL if they are not needed.
 ///
 /// Takes time in proportion to the bodies that changed and their neighbors.
+///
+/// Errors: `SAP_ERROR_OUT_OF_MEMORY` if the pairs of a crowd do not fit; then the world is as before, and the next call finds what
+/// this one should have.
 sap_status sap_world2d_update(struct sap_world2d *world,
                               struct sap_changes *changes,
                               struct sap_error *error);

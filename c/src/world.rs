@@ -2,7 +2,7 @@
 
 use std::ptr::null;
 
-use sweep_and_prune::{BroadPhase, Options, Queries, Report, Scalar};
+use sweep_and_prune::{BroadPhase, Error, Options, Queries, Report, Scalar};
 
 use crate::common::{Wanted, id_pair, sap_changes, sap_id_pair};
 use crate::failure::Failure;
@@ -15,6 +15,8 @@ pub struct World<const D: usize, T: Scalar> {
     threads: Threads,
     /// The pairs that the last update reported: first those that began.
     changes: Vec<sap_id_pair>,
+    /// Whether the last update found changes for which there was no memory. The next one reports these.
+    is_due: bool,
     /// The last snapshot.
     bytes: Vec<u8>,
 }
@@ -28,37 +30,45 @@ impl<const D: usize, T: Scalar> World<D, T> {
 
     fn of(bodies: BroadPhase<D, T>, threads: Threads) -> Self {
         let bodies = bodies.threads(threads.count());
-        Self { bodies, threads, changes: Vec::new(), bytes: Vec::new() }
+        Self { bodies, threads, changes: Vec::new(), is_due: false, bytes: Vec::new() }
     }
 
     /// The same world once more.
     pub fn copy(&self) -> Result<Self, Failure> {
         let threads = Threads::new(self.threads.count() as u32)?;
         let copy = Self::of(self.bodies.clone(), threads);
-        Ok(Self { changes: self.changes.clone(), ..copy })
+        Ok(Self { changes: self.changes.clone(), is_due: self.is_due, ..copy })
     }
 
     /// Becomes equal to another world.
     pub fn assign(&mut self, from: &Self) {
         self.bodies.clone_from(&from.bodies);
         self.changes.clone_from(&from.changes);
+        self.is_due = from.is_due;
     }
 
-    /// Updates, and says what changed.
-    pub fn update(&mut self) -> sap_changes {
-        let Self { bodies, threads, changes, .. } = self;
-        threads.run(|| bodies.update());
+    /// Updates, and says what changed. After an error the next update says it.
+    pub fn update(&mut self) -> Result<sap_changes, Failure> {
+        let Self { bodies, threads, changes, is_due, .. } = self;
+        if !*is_due {
+            threads.run(|| bodies.try_update().map(|_| ()))?;
+        }
+        let (begun, ended) = (bodies.changes().begun(), bodies.changes().ended());
         changes.clear();
-        changes.extend(bodies.changes().begun().map(id_pair));
-        changes.extend(bodies.changes().ended().map(id_pair));
+        *is_due = changes.try_reserve(begun.len() + ended.len()).is_err();
+        if *is_due {
+            return Err(Error::OutOfMemory.into());
+        }
+        changes.extend(begun.map(id_pair));
+        changes.extend(ended.map(id_pair));
         let (begun, ended) = self.changes.split_at(self.bodies.changes().begun().len());
         let start = |pairs: &[sap_id_pair]| if pairs.is_empty() { null() } else { pairs.as_ptr() };
-        sap_changes {
+        Ok(sap_changes {
             begun: start(begun),
             begun_count: begun.len(),
             ended: start(ended),
             ended_count: ended.len(),
-        }
+        })
     }
 
     /// The state as bytes, which are kept.
@@ -71,6 +81,7 @@ impl<const D: usize, T: Scalar> World<D, T> {
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Failure> {
         self.bodies = BroadPhase::from_snapshot(bytes)?.threads(self.threads.count());
         self.changes.clear();
+        self.is_due = false;
         Ok(())
     }
 }

@@ -389,6 +389,9 @@ pub unsafe extern "C" fn sap_world3f_clear(
 /// Finds the pairs that began and those that ended since the last update. `changes` may be NULL if they are not needed.
 ///
 /// Takes time in proportion to the bodies that changed and their neighbors.
+///
+/// Errors: `SAP_ERROR_OUT_OF_MEMORY` if the pairs of a crowd do not fit; then the world is as before, and the next call finds what
+/// this one should have.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sap_world3f_update(
     world: *mut sap_world3f,
@@ -399,7 +402,7 @@ pub unsafe extern "C" fn sap_world3f_update(
     unsafe {
         run(error, || {
             let place = optional_place(changes, "changes")?;
-            let changes = write(world, |state| Ok(state.update()))?;
+            let changes = write(world, |state| state.update())?;
             place.map_or(Ok(()), |place| place.set(changes))
         })
     }

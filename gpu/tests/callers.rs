@@ -200,7 +200,7 @@ fn a_summary_has_sixteen_numbers() {
     );
 }
 
-/// Whoever waits for a device also calls back for the buffers of other threads, and may take its time between two.
+/// A thread that waits for a device also calls back for the buffers of other threads, and may take its time between two.
 #[test]
 fn other_threads_wait_for_the_same_device() {
     let boxes = uniform(200);

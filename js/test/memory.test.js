@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { before, test } from "node:test";
 import { findPairs, init, OutOfMemoryError, PairFinder } from "sweep-and-prune";
+import { BroadPhase } from "sweep-and-prune/broad-phase";
 
 /** @type {WebAssembly.Global<"i32">} */
 let stackPointer;
@@ -73,4 +74,44 @@ test("a call nested in a callback that runs out of memory leaves the outer one w
   assert.throws(() => inner.find(tooMany), OutOfMemoryError);
   assert.equal(stackPointer.value, stackTop, "not that of the callback any more");
   for (const one of [finder, inner]) one.free();
+});
+
+test("a crowd whose pairs do not fit leaves the world as it was", () => {
+  const world = new BroadPhase({ dimensions: 1 });
+  const far = world.insertMany([[90, 91], [90, 92]]);
+  world.update();
+  const ids = world.insertMany(new Float32Array(2 * 24_000));
+  const hash = world.stateHash();
+  for (let i = 0; i < 2; i++) assert.throws(() => world.update(), OutOfMemoryError);
+  assert.equal(world.stateHash(), hash);
+  assert.deepEqual([...world.pairs()], [...far]);
+  world.removeMany(ids.subarray(1000));
+  assert.equal(world.update().begun.length, 1000 * 999);
+  assert.equal(world.pairs().length, 1000 * 999 + 2);
+  world.free();
+});
+
+test("changes for which JavaScript has no memory come with the next update", () => {
+  const world = new BroadPhase({ dimensions: 1 });
+  const ids = world.insertMany([[0, 1], [0, 1]]);
+  const { constructor } = Float64Array.prototype;
+  const fail = () => {
+    throw new RangeError("Array buffer allocation failed");
+  };
+  Object.defineProperty(Float64Array.prototype, "constructor", { get: fail, configurable: true });
+  try {
+    assert.throws(() => world.update(), OutOfMemoryError);
+  } finally {
+    Object.defineProperty(Float64Array.prototype, "constructor", { value: constructor, writable: true, configurable: true });
+  }
+  world.set(ids[1], 5, 6);
+  assert.deepEqual([...world.update().begun], [...ids]);
+  assert.deepEqual([...world.update().ended], [...ids]);
+  // A restored world has none that could come.
+  const saved = world.snapshot();
+  world.set(ids[1], 0, 1);
+  world.restore(saved);
+  world.set(ids[1], 0, 1);
+  assert.deepEqual([...world.update().begun], [...ids]);
+  world.free();
 });

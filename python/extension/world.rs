@@ -53,6 +53,8 @@ pub struct World(Mutex<Space>);
 struct Space {
     world: Box<dyn ArrayBroadPhase<PythonId>>,
     kind: Kind,
+    /// Whether the last update ended with an error, perhaps after it had found what changed: then the next one reports that.
+    is_due: bool,
 }
 
 #[pymethods]
@@ -259,9 +261,13 @@ impl World {
     fn update<'py>(&self, py: Python<'py>) -> PyResult<(Array<'py>, Array<'py>)> {
         self.with(|space| {
             let mut ids = Vec::new();
-            let begun = space.run(py, space.world.len(), |world| world.update(&mut ids))?;
+            let is_due = core::mem::replace(&mut space.is_due, true);
+            let found = space.run(py, space.world.len(), |world| world.update(is_due, &mut ids))?;
+            let begun = found.map_err(|error| raise(py, error, "", &[]))?;
             let (begun, ended) = ids.split_at(begun);
-            Ok((id_pairs(py, begun)?, id_pairs(py, ended)?))
+            let changes = (id_pairs(py, begun)?, id_pairs(py, ended)?);
+            space.is_due = false;
+            Ok(changes)
         })
     }
 
@@ -329,6 +335,10 @@ impl World {
         })
     }
 
+    fn shrink_to_fit(&self, py: Python<'_>) -> PyResult<()> {
+        self.with(|space| space.run(py, space.world.len(), |world| world.shrink_to_fit()))
+    }
+
     fn state_hash(&self, py: Python<'_>) -> PyResult<u64> {
         self.with(|space| space.run(py, space.world.len(), |world| world.state_hash()))
     }
@@ -381,7 +391,7 @@ impl Space {
         let world = kind.broad_phase(report);
         let world = world.ok_or_else(|| PyValueError::new_err("dimensions must be 1, 2 or 3"))?;
         let world = world.map_err(|error| raise(py, error, "", &[]))?;
-        Ok(Self { world, kind })
+        Ok(Self { world, kind, is_due: false })
     }
 
     fn copy(&mut self, boxes: &Array<'_>) -> PyResult<usize> {

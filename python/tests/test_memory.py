@@ -43,6 +43,36 @@ def test_too_little_memory_is_an_error_after_which_one_can_go_on() -> None:
     assert done.stdout.splitlines() == wanted, done.stderr
 
 
+CROWD = """
+import resource
+import numpy as np
+import sweep_and_prune as sap
+resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30))
+world = sap.BroadPhase(1)
+world.insert_many([[90, 91], [90, 92]])
+world.update()
+ids = world.insert_many(np.zeros((30_000, 2)))  # 450 million pairs: 3.6 GB
+before = world.state_hash()
+for _ in range(2):
+    try:
+        world.update()
+    except MemoryError as error:
+        print("memory" in str(error), world.state_hash() == before, world.pairs().tolist())
+world.remove_many(ids[3:])
+print(world.update().begun.tolist())
+world.shrink_to_fit()
+print(world.pairs().tolist())
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="memory is limited in the way of Linux")
+def test_a_crowd_whose_pairs_do_not_fit_leaves_the_world_as_it_was() -> None:
+    done = subprocess.run([sys.executable, "-c", CROWD], capture_output=True, text=True)
+    crowd = [[2, 3], [2, 4], [3, 4]]
+    wanted = ["True True [[0, 1]]"] * 2 + [str(crowd), str([[0, 1], *crowd])]
+    assert done.stdout.splitlines() == wanted, done.stderr
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="memory is read in the way of Linux")
 def test_memory_comes_back() -> None:
     def resident() -> int:

@@ -4,6 +4,17 @@ use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
 
 use super::pages::enlarge_pages;
+use crate::Error;
+
+/// There is not enough memory. An error without content takes less code than [`Error`].
+#[derive(Debug)]
+pub struct OutOfMemory;
+
+impl From<OutOfMemory> for Error {
+    fn from(_: OutOfMemory) -> Self {
+        Self::OutOfMemory
+    }
+}
 
 /// Grows `array` to at least `size` items, with slack (an eighth; for small arrays twice the size), so that sizes that
 /// vary a little from call to call do not reallocate each time. Never shrinks.
@@ -26,6 +37,19 @@ pub fn grow_to<V: Copy>(array: &mut Vec<V>, size: usize, value: V) -> Result<(),
     array.try_reserve_exact(size - array.len())?;
     enlarge_pages(array);
     array.resize(size, value);
+    Ok(())
+}
+
+/// Reserves capacity for `count` items in all, and an eighth more, so that numbers that vary a little do not reallocate.
+///
+/// # Errors
+/// [`OutOfMemory`]: then the table is as it was.
+#[inline(never)]
+pub fn reserve_for<V>(table: &mut Vec<V>, count: usize) -> Result<(), OutOfMemory> {
+    if table.capacity() < count {
+        table.try_reserve(count + count / 8 - table.len()).map_err(|_| OutOfMemory)?;
+        enlarge_pages(table);
+    }
     Ok(())
 }
 

@@ -8,5 +8,5 @@ mod grow;
 mod pages;
 mod prefetch;
 
-pub use grow::{grow, grow_to, reserve};
+pub use grow::{OutOfMemory, grow, grow_to, reserve, reserve_for};
 pub use prefetch::{prefetch, prefetch_item, prefetch_pays, preload};

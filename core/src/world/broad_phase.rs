@@ -1,5 +1,6 @@
 //! The persistent broad phase: its public interface.
 
+use alloc::alloc::{Layout, handle_alloc_error};
 use alloc::vec::Vec;
 
 use super::bodies::{Bodies, Filter, ProxyId, When, flag};
@@ -29,7 +30,8 @@ use crate::{Aabb, Error, Scalar};
 /// that is there. A new [`clone`](Clone::clone) allocates, and a [`snapshot`](Self::snapshot) takes longer to restore.
 ///
 /// The same calls give the same results, bit for bit, on every platform. A call that returns an error
-/// changes nothing. Where memory runs out the program ends, as it does when a collection cannot grow.
+/// changes nothing. Where memory runs out the program ends, as it does when a collection cannot grow; an update that finds
+/// more pairs than fit into memory is survived by [`try_update`](Self::try_update).
 ///
 /// ```
 /// use sweep_and_prune::{Aabb, BroadPhase};
@@ -184,10 +186,45 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Takes time in proportion to the bodies that changed and their neighbors. If all bodies fly, or some
     /// jump anywhere, it takes 1.2 to 2.3 times as long as finding all pairs (10,000 to 1,000,000 bodies).
     /// The result borrows the world mutably; [`changes`](Self::changes) gives the same by a shared borrow.
+    ///
+    /// If the pairs do not fit into memory the program ends: see [`try_update`](Self::try_update).
     #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn update(&mut self) -> Changes<'_> {
-        update(&mut self.bodies, &mut self.tracking, &mut self.events);
+        if self.try_update().is_err() {
+            handle_alloc_error(Layout::new::<[u32; 2]>());
+        }
         self.changes()
+    }
+
+    /// Updates as [`update`](Self::update) does, with an error where that ends the program: if the pairs of a crowd do not fit
+    /// into memory.
+    ///
+    /// After the error the world is as before, but that there are no [`changes`](Self::changes), and its buffers are freed. Once
+    /// the crowd is apart, removed or filtered, the next call finds what changed since the last update that succeeded.
+    ///
+    /// Memory for what is already there, the bodies and the pairs of the last update, is taken as collections take it:
+    /// without that the program ends.
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, BroadPhase, Filter};
+    ///
+    /// let mut world = BroadPhase::<2>::new();
+    /// let place = Aabb::new([0.0, 0.0], [1.0, 1.0]);
+    /// let ids = world.insert_many(&[place; 100], Filter::default())?;
+    /// if world.try_update().is_err() {
+    ///     // Too many at one place: half of them go.
+    ///     world.remove_many(&ids[50..])?;
+    ///     world.try_update()?;
+    /// }
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
+    pub fn try_update(&mut self) -> Result<Changes<'_>, Error> {
+        update(&mut self.bodies, &mut self.tracking, &mut self.events)?;
+        Ok(self.changes())
     }
 
     /// What the last [`update`](Self::update) found. Edits since do not change it; a restored world or
@@ -394,11 +431,11 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     ///
     /// # Errors
     /// [`Error::InvalidSnapshot`] for bytes that are truncated, changed, of another version, of a
-    /// world with other dimensions or coordinates, or no snapshot at all.
+    /// world with other dimensions or coordinates, or no snapshot at all. [`Error::OutOfMemory`] if the pairs do not fit.
     #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn from_snapshot(bytes: &[u8]) -> Result<Self, Error> {
         let bodies = snapshot::read(bytes).map_err(Error::InvalidSnapshot)?;
-        let tracking = restore(&bodies);
+        let tracking = restore(&bodies)?;
         Ok(Self { bodies, tracking, events: Events::default() })
     }
 

@@ -1,11 +1,11 @@
 //! Finds pairs of bodies with the pair finder.
 
-use alloc::alloc::{Layout, handle_alloc_error};
 use alloc::vec::Vec;
 
 use super::bodies::{Bodies, When};
 use super::policy::LOOK_UP;
 use super::sets::Sets;
+use crate::memory::OutOfMemory;
 use crate::pairs::PairFinder;
 use crate::{Aabb, Error, Scalar};
 
@@ -44,6 +44,9 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
     /// The pairs of overlapping boxes of a table, as indices, of bodies that have one of the flags of
     /// `any` and none of `none`, that were allowed to pair at that moment. The boxes are valid. Within sets of bodies whose
     /// filters forbid all of them to pair nothing is searched. `None` if more than `most` are found, before filters.
+    ///
+    /// # Errors
+    /// [`OutOfMemory`].
     #[inline(never)]
     pub fn find(
         &mut self,
@@ -52,13 +55,13 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         [any, none]: [u16; 2],
         when: When,
         most: usize,
-    ) -> Option<&[[u32; 2]]> {
+    ) -> Result<Option<&[[u32; 2]]>, OutOfMemory> {
         let flags = &bodies.slots.flags;
         let takes_part = |flags: u16| (flags & any != 0) & (flags & none == 0);
         if bodies.rules.allow_all() && flags.iter().all(|&flags| takes_part(flags)) {
             let pairs = found(self.finder.search(table).pairs_up_to(most))?;
-            self.found = pairs.len();
-            return Some(pairs);
+            self.found = pairs.map_or(0, <[_]>::len);
+            return Ok(pairs);
         }
         let all = (0..flags.len() as u32).filter(|&index| takes_part(flags[index as usize]));
         self.sets.all.clear();
@@ -67,12 +70,15 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
     }
 
     /// The same of some bodies that are there.
+    ///
+    /// # Errors
+    /// [`OutOfMemory`].
     pub fn find_some(
         &mut self,
         some: &[u32],
         bodies: &Bodies<D, T>,
         most: usize,
-    ) -> Option<&[[u32; 2]]> {
+    ) -> Result<Option<&[[u32; 2]]>, OutOfMemory> {
         self.sets.all.clear();
         self.sets.all.extend_from_slice(some);
         self.find_in_sets(&bodies.boxes, bodies, When::Now, most)
@@ -85,7 +91,7 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         bodies: &Bodies<D, T>,
         when: When,
         most: usize,
-    ) -> Option<&[[u32; 2]]> {
+    ) -> Result<Option<&[[u32; 2]]>, OutOfMemory> {
         let Self { finder, sets, boxes, pairs, .. } = self;
         sets.divide(&bodies.slots, &bodies.rules, when);
         boxes.clear();
@@ -97,17 +103,18 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
             if a != b {
                 search = search.against(&boxes[b.clone()]);
             }
-            let all = found(search.pairs_up_to(most.saturating_sub(self.found)))?;
+            let most = most.saturating_sub(self.found);
+            let Some(all) = found(search.pairs_up_to(most))? else { return Ok(None) };
             self.found += all.len();
             let lists = [&sets.bodies[a], &sets.bodies[b]];
-            bodies.rules.append_allowed(&bodies.slots, when, lists, all, pairs);
+            bodies.rules.append_allowed(&bodies.slots, when, lists, all, pairs)?;
         }
-        Some(pairs)
+        Ok(Some(pairs))
     }
 
     /// Lists for each box of `queries` which boxes of a table overlap it, of bodies that `takes_part` names, as pairs of
     /// its position and a body: what a tree lists, where there is none. `most` is how many may still be listed, about, and
-    /// becomes less; returns false, with none listed, if that is not enough.
+    /// becomes less; returns false, with none listed, if that is not enough, or if memory is not.
     #[inline(never)]
     pub fn find_near(
         &mut self,
@@ -124,14 +131,14 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         boxes.reserve(table.len() / LOOK_UP + 1);
         boxes.extend(queries.iter().map(|(_, aabb)| *aabb));
         let pairs = finder.search(boxes).against(table).pairs_up_to(*most);
-        let Some(pairs) = found(pairs) else { return false };
+        let Ok(Some(pairs)) = pairs else { return false };
         *most = most.saturating_sub(pairs.len());
         near.extend(pairs.iter().filter(|[_, body]| takes_part(*body)));
         true
     }
 
     /// Adds the pairs among the queries of the last [`find_near`](Self::find_near), each once: the position of the body
-    /// with the smaller index, and the other body. Returns false if there are more than `most`.
+    /// with the smaller index, and the other body. Returns false if there are more than `most`, or than fit into memory.
     #[inline(never)]
     pub fn find_among(
         &mut self,
@@ -140,8 +147,7 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         most: &mut usize,
     ) -> bool {
         let Self { finder, boxes, .. } = self;
-        let pairs = finder.search(boxes).pairs_up_to(*most);
-        let Some(pairs) = found(pairs) else { return false };
+        let Ok(Some(pairs)) = finder.search(boxes).pairs_up_to(*most) else { return false };
         *most = most.saturating_sub(pairs.len());
         near.extend(pairs.iter().map(|&[a, b]| {
             let [first, second] = [a, b].map(|at| queries[at as usize].0);
@@ -166,8 +172,7 @@ impl<const D: usize, T: Scalar> Clone for Finder<D, T> {
     }
 }
 
-/// What the finder found. Its boxes are valid, so it fails only if memory is exhausted. A broad phase
-/// that lacks pairs would be wrong, so then the program ends, as when a collection cannot grow.
-fn found<P>(result: Result<P, Error>) -> P {
-    result.unwrap_or_else(|_| handle_alloc_error(Layout::new::<[u32; 2]>()))
+/// What the finder found. Its boxes are valid, so it fails only if memory is exhausted.
+fn found<P>(result: Result<P, Error>) -> Result<P, OutOfMemory> {
+    result.map_err(|_| OutOfMemory)
 }

@@ -12,11 +12,12 @@ export interface Exports {
   status(): number;
 }
 
-/** The codes that bindings/wasm/src/status.rs gives. Any other is an internal error. */
+/** The codes that bindings/wasm/src/status.rs gives. */
 export const enum Code {
   Ok = 0,
   InvalidBox = 1,
   OutOfMemory = 2,
+  Internal = 3,
   StaleProxy = 4,
   InvalidArgument = 5,
   InvalidSnapshot = 6,
@@ -64,7 +65,8 @@ export class Engine<E extends Exports> {
   static async start<E extends Exports>(module: Module, known: string, isDevelopment: boolean): Promise<Engine<E>> {
     let engine: Engine<E>;
     const imports = {
-      fail: (isOutOfMemory: number) => engine.#fail(isOutOfMemory !== 0),
+      // Rust calls this when it cannot continue. Throwing skips its frames: see {@link call}.
+      fail: (isOutOfMemory: number) => engine.check(isOutOfMemory === 0 ? Code.Internal : Code.OutOfMemory),
       each: (at: number, count: number) => engine.each(at >>> 0, count >>> 0),
     };
     // Not `new WebAssembly.Instance`, which some browsers refuse on the main thread.
@@ -112,11 +114,6 @@ export class Engine<E extends Exports> {
       default:
         throw new SweepAndPruneError(`internal error ${code}: please report it`);
     }
-  }
-
-  /** Rust calls this when it cannot continue. Throwing skips its frames: see {@link call}. */
-  #fail(isOutOfMemory: boolean): never {
-    throw isOutOfMemory ? new OutOfMemoryError() : new SweepAndPruneError("internal error: please report it");
   }
 }
 

@@ -291,6 +291,9 @@ export abstract class Bodies<D extends Dimensions = Dimensions> {
    *
    * With the option `views` it returns the same object each time, whose arrays are valid until the next
    * call.
+   *
+   * If the pairs of a crowd do not fit into memory, it throws an `OutOfMemoryError`, and the world is as before. Once the
+   * crowd is apart, removed or filtered, the next call reports what changed.
    */
   update(): Changes {
     const changes = this.memory.isView ? this.#changes : { begun: none, ended: none };

@@ -21,7 +21,7 @@ export interface WorldExports extends Exports {
   world_box(world: number, id: number, reported: number): number;
   world_contains(world: number, id: number): number;
   world_remove_many(world: number, count: number): number;
-  world_update(world: number): number;
+  world_update(world: number, failures: number): number;
   world_exclude(world: number, a: number, b: number, excluded: number): number;
   world_pairs(world: number, sorted: number): number;
   world_pairs_of(world: number, id: number): number;

@@ -27,6 +27,8 @@ export class WorldMemory {
   readonly #numbersAt: number;
   #numbers = new Float64Array(0);
   #rows: Float32Array | Float64Array | undefined;
+  /** How many updates ended with an error one after another. What the last one found and could not give comes with the next. */
+  #failures = 0;
   #ids: Float64Array | undefined;
   /** The views that calls gave out last: the first array of a call, the second. */
   readonly #given: Float64Array[] = [];
@@ -75,14 +77,15 @@ export class WorldMemory {
     const handle = this.#handle;
     const { engine } = handle;
     engine.calls++;
+    let code: number;
     try {
-      const code = handle.call(call);
-      if (code !== Code.Ok) this.#refuse(code, passed);
+      code = handle.call(call);
     } catch (error) {
       // The call stopped halfway, so the state cannot be used any more.
-      if (error instanceof OutOfMemoryError) this.#handle.discard();
+      if (error instanceof OutOfMemoryError) handle.discard();
       throw error;
     }
+    if (code !== Code.Ok) this.#refuse(code, passed);
   }
 
   /** Throws the error of a call. */
@@ -120,16 +123,12 @@ export class WorldMemory {
 
   /** Updates, and writes what changed. */
   update(into: Changes): void {
-    this.call((exports, world) => exports.world_update(world));
-    try {
-      const { engine } = this;
-      const [at, total, begun] = [engine.detail(0), engine.detail(1), this.numbers()[0]!];
-      into.begun = this.give(at, begun);
-      into.ended = this.give(at + 8 * begun, total - begun, 1);
-    } catch (error) {
-      this.free(); // the next update would not report these changes
-      throw error;
-    }
+    this.call((exports, world) => exports.world_update(world, this.#failures++));
+    const { engine } = this;
+    const [at, total, begun] = [engine.detail(0), engine.detail(1), this.numbers()[0]!];
+    into.begun = this.give(at, begun);
+    into.ended = this.give(at + 8 * begun, total - begun, 1);
+    this.#failures = 0;
   }
 
   /** The numbers that go in and out, where they are now. */

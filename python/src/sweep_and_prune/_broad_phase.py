@@ -525,6 +525,22 @@ class BroadPhase:
         """
         self._world.remove(self._world.ids())
 
+    def shrink_to_fit(self) -> None:
+        """Gives back memory that is not needed now, and changes no result.
+
+        Updates give back the memory of a crowd by themselves, at most 128 updates after it is gone. Takes O(n + pairs) time, and
+        meanwhile as much memory again as the world needs.
+
+        >>> import sweep_and_prune as sap
+        >>> world = sap.BroadPhase(dimensions=1)
+        >>> ids = world.insert_many([[0, 2], [1, 3]])
+        >>> changes = world.update()
+        >>> world.shrink_to_fit()
+        >>> world.pairs()
+        array([[0, 1]])
+        """
+        self._world.shrink_to_fit()
+
     def box(self, id: SupportsIndex) -> Floats:
         """Returns the box of a body as last set; for a swept body, until the next update, the union of both boxes.
 
@@ -767,6 +783,10 @@ class BroadPhase:
         In each pair the smaller slot is first; the pairs are sorted by slot. A pair that began and ended between two
         updates is not reported. The time depends on the number of bodies that changed and on their neighbors. If most
         bodies move far, it can exceed the time of finding all pairs (see the benchmark).
+
+        Raises:
+            MemoryError: if the pairs of a crowd do not fit into memory. The world and its bodies are as before. Once the crowd
+                is apart, removed or filtered, the next call reports what changed.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)

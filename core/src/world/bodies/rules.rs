@@ -8,6 +8,10 @@ use super::exclusions::{BEFORE, Exclusions, NOW};
 use super::filter::Filter;
 use super::slots::{Slots, flag};
 use crate::cloning::clone_fields;
+use crate::memory::{OutOfMemory, reserve_for};
+
+/// How many pairs are filtered at a time.
+const CHUNK: usize = 1 << 14;
 
 /// Of which moment a fact is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,6 +96,9 @@ impl Rules {
 
     /// Appends the pairs that are allowed, smaller index first, of those between the bodies of two lists, given by their
     /// positions in these.
+    ///
+    /// # Errors
+    /// [`OutOfMemory`].
     #[inline(never)]
     pub fn append_allowed(
         &self,
@@ -100,10 +107,15 @@ impl Rules {
         [first, second]: [&[u32]; 2],
         positions: &[[u32; 2]],
         allowed: &mut Vec<[u32; 2]>,
-    ) {
-        let named = positions.iter().map(|&[a, b]| [first[a as usize], second[b as usize]]);
-        let kept = named.filter(|&pair| self.allow(slots, pair, when));
-        allowed.extend(kept.map(|[a, b]| [a.min(b), a.max(b)]));
+    ) -> Result<(), OutOfMemory> {
+        // A few at a time, since filters may forbid most of them.
+        for positions in positions.chunks(CHUNK) {
+            reserve_for(allowed, allowed.len() + positions.len())?;
+            let named = positions.iter().map(|&[a, b]| [first[a as usize], second[b as usize]]);
+            let kept = named.filter(|&pair| self.allow(slots, pair, when));
+            allowed.extend(kept.map(|[a, b]| [a.min(b), a.max(b)]));
+        }
+        Ok(())
     }
 
     /// Gives a body another filter, or the same to have its pairs looked at again. The body has to be touched.

@@ -180,7 +180,8 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
 
     /// Replaces the fat AABBs that are too wide for bodies that rest since the last update.
     pub fn refatten_too_wide(&mut self) {
-        while let Some(index) = self.too_wide.pop() {
+        for at in 0..self.too_wide.len() {
+            let index = self.too_wide[at];
             if self.slots.has(index, flag::LIVE) {
                 self.refatten(index);
             }
@@ -190,6 +191,7 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
     /// Makes displacements count from where the bodies are now. To be called when the last update is this one.
     pub fn reset_origins(&mut self) {
         self.shifted = None;
+        self.too_wide.clear();
         while let Some(index) = self.moved.pop() {
             self.slots.lower(index, flag::MOVED);
             if self.slots.has(index, flag::LIVE) {

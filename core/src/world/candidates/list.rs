@@ -10,7 +10,7 @@ use alloc::vec::Vec;
 
 use super::sort::PairSorter;
 use crate::cloning::clone_fields;
-use crate::memory::reserve;
+use crate::memory::{OutOfMemory, reserve_for};
 use crate::world::bodies::{ProxyId, Slots, flag};
 
 #[derive(Debug, Default)]
@@ -41,30 +41,61 @@ impl Candidates {
     }
 
     /// Moves the live pairs, as slots, to `sorted`, and drops all other candidates.
-    pub fn sort(&mut self, slots: &Slots, sorter: &mut PairSorter) {
+    ///
+    /// # Errors
+    /// [`OutOfMemory`]: then they are as before.
+    pub fn sort(&mut self, slots: &Slots, sorter: &mut PairSorter) -> Result<(), OutOfMemory> {
         if !self.are_sorted {
             let mut sorted = core::mem::take(&mut self.sorted);
+            let live = self.live.iter().filter(|is_live| **is_live).count();
+            sorter.reserve(&mut sorted, live + self.asleep.len())?;
             sorted.extend(self.live_pairs(slots));
             slots.to_slots(&mut sorted);
             sorter.sort(&mut sorted, slots.len());
             self.clear();
             (self.sorted, self.are_sorted) = (sorted, true);
         }
+        Ok(())
     }
 
     /// Makes the sorted pairs the candidates again.
-    pub fn unsort(&mut self) {
-        if core::mem::take(&mut self.are_sorted) {
-            self.pairs.append(&mut self.sorted);
+    ///
+    /// # Errors
+    /// [`OutOfMemory`]: then they are as before.
+    pub fn unsort(&mut self) -> Result<(), OutOfMemory> {
+        if self.are_sorted {
+            reserve_for(&mut self.live, self.sorted.len())?;
+            self.are_sorted = false;
+            core::mem::swap(&mut self.pairs, &mut self.sorted);
             self.live.resize(self.pairs.len(), true);
         }
+        Ok(())
+    }
+
+    /// Drops the candidates that are not live. Does not allocate.
+    #[inline(never)]
+    pub fn keep_live(&mut self) {
+        let mut kept = 0;
+        for at in 0..self.pairs.len() {
+            self.pairs[kept] = self.pairs[at];
+            kept += usize::from(self.live[at]);
+        }
+        self.pairs.truncate(kept);
+        self.live.truncate(kept);
+        self.live.fill(true);
     }
 
     /// Makes these pairs the candidates, not yet flagged.
-    pub fn replace(&mut self, pairs: &[[u32; 2]]) {
+    ///
+    /// # Errors
+    /// [`OutOfMemory`]: then they are as before.
+    #[inline(never)]
+    pub fn replace(&mut self, pairs: &[[u32; 2]]) -> Result<(), OutOfMemory> {
+        reserve_for(&mut self.pairs, pairs.len())?;
+        reserve_for(&mut self.live, pairs.len())?;
         self.clear();
-        reserve(&mut self.pairs, pairs.len());
         self.pairs.extend_from_slice(pairs);
+        Ok(())
     }
 
     /// Drops all candidates of the unsorted lists.
@@ -150,13 +181,24 @@ impl Candidates {
         }
     }
 
-    /// Reserves spare capacity for what moving bodies add, so that steady motion does not allocate.
-    pub fn reserve(&mut self) {
+    /// Reserves capacity for pairs that are added and for lists of positions, and spare capacity, so that steady motion does not
+    /// allocate.
+    ///
+    /// # Errors
+    /// [`OutOfMemory`].
+    pub fn reserve(
+        &mut self,
+        added: usize,
+        positions: [&mut Vec<usize>; 2],
+    ) -> Result<(), OutOfMemory> {
         let count = self.pairs.len();
-        if self.pairs.capacity() - count < count / 4 {
-            self.pairs.reserve(count);
+        if self.pairs.capacity() - count < added.max(count / 4) {
+            reserve_for(&mut self.pairs, count + added.max(count))?;
         }
-        self.live.reserve(self.pairs.capacity() - self.live.len());
+        let [tested, dropped] = positions;
+        reserve_for(&mut self.live, self.pairs.capacity())?;
+        reserve_for(tested, self.pairs.capacity() / 4)?;
+        reserve_for(dropped, self.pairs.capacity() / 4)
     }
 
     /// Writes a pair to a position that is free, or else to the end.
@@ -184,6 +226,20 @@ impl Candidates {
         }
         self.pairs.truncate(kept);
         self.live.truncate(kept);
+    }
+
+    /// Reserves memory for what [`put_to_sleep`](Self::put_to_sleep) will keep, if bodies without the flags `awake` fall asleep.
+    ///
+    /// # Errors
+    /// [`OutOfMemory`].
+    #[inline(never)]
+    pub fn reserve_asleep(&mut self, slots: &Slots, awake: u16) -> Result<(), OutOfMemory> {
+        let sleeps = |index: u32| slots.flags[index as usize] & awake & !flag::ASLEEP == 0;
+        let mut count = self.asleep.len();
+        for (&[a, b], &is_live) in self.pairs.iter().zip(&self.live) {
+            count += usize::from(is_live & sleeps(a) & sleeps(b));
+        }
+        reserve_for(&mut self.asleep, count)
     }
 
     /// Takes the pairs of bodies that are both asleep out of the list, and those that are no longer

@@ -2,6 +2,8 @@
 
 use alloc::vec::Vec;
 
+use crate::memory::{OutOfMemory, reserve_for};
+
 /// Shorter lists are sorted by the standard library.
 const RADIX_FROM: usize = 128;
 /// Longer lists do not fit the second-level cache together with their copy: then the copy is first
@@ -23,6 +25,30 @@ pub struct PairSorter {
 }
 
 impl PairSorter {
+    /// Reserves memory for sorting this many pairs into a list and comparing them with others.
+    ///
+    /// # Errors
+    /// [`OutOfMemory`].
+    pub fn reserve(&mut self, sorted: &mut Vec<[u32; 2]>, count: usize) -> Result<(), OutOfMemory> {
+        for list in [sorted, &mut self.buffer, &mut self.unsorted] {
+            reserve_for(list, count)?;
+        }
+        Ok(())
+    }
+
+    /// Reserves memory for the pairs that must begin, given how many were found and how many there were.
+    ///
+    /// # Errors
+    /// [`OutOfMemory`].
+    pub fn reserve_begun(
+        &mut self,
+        begun: &mut Vec<[u32; 2]>,
+        found: usize,
+        known: usize,
+    ) -> Result<(), OutOfMemory> {
+        self.reserve(begun, found.saturating_sub(known))
+    }
+
     /// Sorts pairs of numbers less than `bound`.
     pub fn sort(&mut self, pairs: &mut Vec<[u32; 2]>, bound: usize) {
         let mut unsorted = core::mem::take(&mut self.unsorted);

@@ -22,7 +22,6 @@ pub fn collect_escaped<const D: usize, T: Scalar>(
     tracking: &mut Tracking<D, T>,
 ) {
     tracking.refresh_fat(bodies);
-    tracking.candidates.unsort();
     let Tracking { fat, scratch: Scratch { escaped, .. }, .. } = tracking;
     escaped.clear();
     let read = bodies.rows_to_scan(bodies.changed.len());

@@ -67,6 +67,9 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             return false;
         }
         candidates.asleep.retain(|pair| are_asleep(slots, pair));
+        if candidates.reserve_asleep(slots, AWAKE).is_err() {
+            return false;
+        }
         for (row, flags) in slots.flags.iter_mut().enumerate() {
             let rests = *flags & (flag::LIVE | AWAKE) == flag::LIVE;
             if rests {

@@ -75,7 +75,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         count
     }
 
-    /// Finds the pairs that bodies which fly have among themselves. Returns false if there are more than `most`.
+    /// Finds the pairs that bodies which fly have among themselves. Returns false if there are more than `most`, or than fit into
+    /// memory.
     #[inline(never)]
     pub fn find_among_flying(
         &mut self,
@@ -92,7 +93,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         if flying.is_empty() {
             return true;
         }
-        let Some(pairs) = finder.find_some(flying, bodies, most) else { return false };
+        let Ok(Some(pairs)) = finder.find_some(flying, bodies, most) else { return false };
         for &pair in pairs {
             scratch.added.push((pair, true));
             if !bodies.was_live(pair) {

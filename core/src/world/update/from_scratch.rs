@@ -5,22 +5,26 @@
 //! other names. No body sleeps. Fat AABBs are the boxes of the last update, written only when needed.
 
 use crate::Scalar;
+use crate::memory::OutOfMemory;
 use crate::world::bodies::{Bodies, When, flag};
 use crate::world::changes::Events;
 use crate::world::tracking::{Scratch, Tracking, TreeState};
 
 /// Reports what begins and ends, sorted, given the boxes and which bodies left. `keeps_build` says whether a tree that is being
 /// built will be needed.
+///
+/// # Errors
+/// [`OutOfMemory`]: then the pairs are as before.
 #[inline(never)]
 pub fn from_scratch<const D: usize, T: Scalar>(
     bodies: &mut Bodies<D, T>,
     tracking: &mut Tracking<D, T>,
     events: &mut Events,
     keeps_build: bool,
-) {
+) -> Result<(), OutOfMemory> {
+    tracking.candidates.sort(&bodies.slots, &mut tracking.scratch.sorter)?;
     tracking.land_all(bodies);
     tracking.order_by_slot(bodies);
-    tracking.candidates.sort(&bodies.slots, &mut tracking.scratch.sorter);
     tracking.wake_all(bodies);
     let has_tree = tracking.tree_state != TreeState::Unbuilt;
     if !keeps_build {
@@ -28,15 +32,17 @@ pub fn from_scratch<const D: usize, T: Scalar>(
     }
     let Tracking { candidates, scratch, finder, .. } = &mut *tracking;
     let Scratch { sorter, before, .. } = scratch;
-    core::mem::swap(before, &mut candidates.sorted);
     if has_tree {
         bodies.list_changed();
     }
+    let all = finder.find(&bodies.boxes, bodies, [flag::LIVE, 0], When::Now, usize::MAX)?;
+    let pairs = all.unwrap_or_default();
+    sorter.reserve(before, pairs.len())?;
+    sorter.reserve_begun(&mut events.begun, pairs.len(), candidates.sorted.len())?;
+    core::mem::swap(before, &mut candidates.sorted);
     for &index in &bodies.changed {
         bodies.slots.lower(index, flag::CHANGED | flag::IN_TREE);
     }
-    let all = finder.find(&bodies.boxes, bodies, [flag::LIVE, 0], When::Now, usize::MAX);
-    let pairs = all.unwrap_or_default();
     sorter.sort_into(pairs, &mut candidates.sorted, bodies.slots.len());
     sorter.differences(before, &candidates.sorted, &mut events.ended, &mut events.begun);
     tracking.policy.note_overlaps(tracking.finder.found);
@@ -45,4 +51,5 @@ pub fn from_scratch<const D: usize, T: Scalar>(
         tracking.fat.clone_from(&bodies.boxes);
         tracking.note_new_fat(bodies);
     }
+    Ok(())
 }

@@ -25,15 +25,13 @@ pub fn note_usage<const D: usize, T: Scalar>(
     }
 }
 
-/// Frees each buffer that has capacity for more than this many pairs, and shrinks such lists to what they hold. Events of
-/// the last update are of no use any more.
+/// Frees each buffer that has capacity for more than this many pairs, and shrinks such lists to what they hold.
 fn give_back<const D: usize, T: Scalar>(
     tracking: &mut Tracking<D, T>,
     events: &mut Events,
     enough: usize,
 ) {
-    let Tracking { candidates, finder, scratch, .. } = tracking;
-    let Candidates { pairs, live, asleep, sorted, .. } = candidates;
+    let Candidates { pairs, live, asleep, sorted, .. } = &mut tracking.candidates;
     for list in [pairs, asleep, sorted] {
         if list.capacity() > enough {
             list.shrink_to_fit();
@@ -42,6 +40,17 @@ fn give_back<const D: usize, T: Scalar>(
     if live.capacity() > enough {
         live.shrink_to_fit();
     }
+    free_buffers(tracking, events, enough);
+}
+
+/// Frees each buffer that has capacity for more than this many pairs. Events of the last update are of no use any more.
+#[inline(never)]
+pub fn free_buffers<const D: usize, T: Scalar>(
+    tracking: &mut Tracking<D, T>,
+    events: &mut Events,
+    enough: usize,
+) {
+    let Tracking { finder, scratch, .. } = tracking;
     let Scratch { sorter, before, leaves, found, positions, dropped, added, .. } = scratch;
     let PairSorter { buffer, unsorted, .. } = sorter;
     let Events { begun, ended, .. } = events;

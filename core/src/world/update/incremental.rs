@@ -10,7 +10,7 @@ use alloc::vec::Vec;
 use core::hint::black_box;
 
 use crate::Scalar;
-use crate::memory::{prefetch_item, prefetch_pays, preload};
+use crate::memory::{OutOfMemory, prefetch_item, prefetch_pays, preload, reserve_for};
 use crate::world::bodies::{Bodies, RANDOM_READ, When, flag};
 use crate::world::candidates::{Candidates, push_wanted};
 use crate::world::changes::Events;
@@ -65,7 +65,8 @@ pub fn incremental<const D: usize, T: Scalar>(
         let look_ups = LookUps { count, extends, has_tree };
         let before = most;
         is_right = tracking.find_added(bodies, &mut events.begun, look_ups, &mut most)
-            && tracking.find_among_flying(bodies, &mut events.begun, most);
+            && tracking.find_among_flying(bodies, &mut events.begun, most)
+            && tracking.scratch.reserve(&mut tracking.candidates).is_ok();
         tracking.policy.note_reads(before - most, flights, bodies.slots.live);
     }
     if is_right {
@@ -170,7 +171,6 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             (false, _) => scratch.list_changed(bodies, candidates),
         }
         let Scratch { is_escaped, positions, dropped, .. } = scratch;
-        dropped.reserve(candidates.pairs.capacity() / 4);
         for &at in &*positions {
             let [a, b] = candidates.pairs[at];
             if drops && is_escaped[a as usize] | is_escaped[b as usize] {
@@ -244,8 +244,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         }
     }
 
-    /// Finds the candidates of the bodies that are looked up. Returns false if there are too many, or if they are not
-    /// found in `most` steps.
+    /// Finds the candidates of the bodies that are looked up. Returns false if there are too many, also for the memory, or if
+    /// they are not found in `most` steps.
     #[inline(never)]
     fn find_added(
         &mut self,
@@ -258,7 +258,9 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         let Self { tree, fat, candidates, finder, scratch, .. } = self;
         let Scratch { queries, leaves, found, is_escaped, added, .. } = scratch;
         added.clear();
-        added.reserve(candidates.pairs.capacity() / 4);
+        if reserve_for(added, candidates.pairs.capacity() / 4).is_err() {
+            return false;
+        }
         for batch in queries[..count].chunks(if has_tree { BATCH } else { usize::MAX }) {
             let is_found = if has_tree {
                 tree.overlapping_many(batch, leaves, found, most)
@@ -268,7 +270,10 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
                 finder.find_near(batch, fat, &has_fat, found, most)
                     && finder.find_among(batch, found, most)
             };
-            if !is_found || candidates.pairs.len() + added.len() > limit {
+            let is_found = is_found
+                && candidates.pairs.len() + added.len() <= limit
+                && reserve_for(added, added.len() + found.len()).is_ok();
+            if !is_found {
                 return false;
             }
             for found in found.chunks(TOGETHER) {
@@ -305,6 +310,10 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
                     added.push((pair, is_live));
                     let was_near = || bodies.previous[first].overlaps_branch_free(before);
                     if is_live && !(was_near() && bodies.was_allowed(pair)) {
+                        let count = begun.len() + 1;
+                        if reserve_for(begun, count).is_err() {
+                            return false;
+                        }
                         begun.push(pair);
                     }
                 }
@@ -318,7 +327,6 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     #[inline(never)]
     fn add_candidates(&mut self) {
         let Self { fat, candidates, scratch: Scratch { queries, dropped, added, .. }, .. } = self;
-        candidates.reserve();
         let mut free = dropped.iter();
         added.drain(..).for_each(|(pair, is_live)| candidates.put(free.next(), pair, is_live));
         candidates.remove(free.as_slice());
@@ -330,6 +338,11 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
 }
 
 impl<const D: usize, T: Scalar> Scratch<D, T> {
+    /// Reserves memory for the candidates that were found, and for testing all.
+    fn reserve(&mut self, candidates: &mut Candidates) -> Result<(), OutOfMemory> {
+        candidates.reserve(self.added.len(), [&mut self.positions, &mut self.dropped])
+    }
+
     /// Sets whether the bodies that escaped or left are marked.
     fn mark(&mut self, bodies: &Bodies<D, T>, is_marked: bool) {
         self.is_escaped.resize(bodies.slots.len(), false);
@@ -345,7 +358,6 @@ impl<const D: usize, T: Scalar> Scratch<D, T> {
         is_changed.resize(bodies.slots.len(), false);
         changed().for_each(|&index| is_changed[index as usize] = true);
         positions.clear();
-        positions.reserve(candidates.pairs.capacity() / 4);
         push_wanted(positions, &candidates.pairs, |at, [a, b]| {
             (at, is_changed[a as usize] | is_changed[b as usize])
         });
@@ -362,7 +374,6 @@ impl<const D: usize, T: Scalar> Scratch<D, T> {
         let is_far = prefetch_pays(boxes);
         let Self { is_escaped, positions, .. } = self;
         positions.clear();
-        positions.reserve(candidates.pairs.capacity() / 4);
         push_wanted(positions, &candidates.pairs, |at, [a, b]| {
             if is_far && let Some(&[_, later]) = candidates.pairs.get(at + AHEAD) {
                 // The first bodies of neighbors in the list are near each other in memory.

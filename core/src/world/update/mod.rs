@@ -23,6 +23,7 @@ mod give_back;
 mod incremental;
 mod rebuild;
 mod search_tree;
+mod take_back;
 #[cfg(test)]
 mod tests;
 
@@ -33,17 +34,39 @@ use super::changes::Events;
 use super::layout::Reorder;
 use super::tracking::Tracking;
 use crate::Scalar;
+use crate::memory::OutOfMemory;
 
 /// Finds the pairs that begin and end, and makes the world of now that of the last update.
+///
+/// # Errors
+/// [`OutOfMemory`]: then nothing has changed but that there are no events.
 pub fn update<const D: usize, T: Scalar>(
     bodies: &mut Bodies<D, T>,
     tracking: &mut Tracking<D, T>,
     events: &mut Events,
-) {
+) -> Result<(), OutOfMemory> {
     give_back::note_usage(bodies, tracking, events);
     events.begun.clear();
     events.ended.clear();
     bodies.refatten_too_wide();
+    let found = find_events(bodies, tracking, events);
+    if let Ok(mut order) = found {
+        if finish::finish(bodies, tracking, events) && order == Reorder::No {
+            order = Reorder::BySpace;
+        }
+        tracking.reorder(bodies, order);
+    } else {
+        take_back::take_back(bodies, tracking, events);
+    }
+    found.map(|_| ())
+}
+
+/// Finds the pairs that begin and end, by the way that is expected to be the fastest. Returns how to reorder storage.
+fn find_events<const D: usize, T: Scalar>(
+    bodies: &mut Bodies<D, T>,
+    tracking: &mut Tracking<D, T>,
+    events: &mut Events,
+) -> Result<Reorder, OutOfMemory> {
     let mut order = Reorder::No;
     let changed = bodies.count_changes();
     let live = bodies.slots.live;
@@ -51,8 +74,9 @@ pub fn update<const D: usize, T: Scalar>(
     let may_fly = changed > 0 && tracking.policy.may_fly(changed, live) && !is_queried;
     let has_tree = may_fly && tracking.advance_tree(bodies);
     if changed > 0 && !has_tree && tracking.policy.skips_tracking(changed, live) {
-        from_scratch::from_scratch(bodies, tracking, events, may_fly);
+        from_scratch::from_scratch(bodies, tracking, events, may_fly)?;
     } else if changed > 0 {
+        tracking.candidates.unsort()?;
         collect::collect_escaped(bodies, tracking);
         let flights = tracking.choose_flying(bodies, has_tree);
         let escaped = tracking.scratch.escaped.len() - flights;
@@ -62,15 +86,12 @@ pub fn update<const D: usize, T: Scalar>(
             tracking.policy.note_no_flights();
         }
         if rebuilds || !incremental::incremental(bodies, tracking, events, flights, may_fly) {
-            order = rebuild::rebuild(bodies, tracking, events);
+            order = rebuild::rebuild(bodies, tracking, events)?;
         }
         for pairs in [&mut events.begun, &mut events.ended] {
             bodies.slots.to_slots(pairs);
             tracking.scratch.sorter.sort(pairs, bodies.slots.len());
         }
     }
-    if finish::finish(bodies, tracking, events) && order == Reorder::No {
-        order = Reorder::BySpace;
-    }
-    tracking.reorder(bodies, order);
+    Ok(order)
 }

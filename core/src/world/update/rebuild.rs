@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use crate::Scalar;
-use crate::memory::preload;
+use crate::memory::{OutOfMemory, preload};
 use crate::world::bodies::{Bodies, When, flag};
 use crate::world::candidates::push_wanted;
 use crate::world::changes::Events;
@@ -12,12 +12,15 @@ use crate::world::tracking::Tracking;
 
 /// Reports what begins and ends, given which bodies changed, escaped and left. Returns how to reorder
 /// storage.
+///
+/// # Errors
+/// [`OutOfMemory`]: then the candidates are as before, but not the fat AABBs.
 #[inline(never)]
 pub fn rebuild<const D: usize, T: Scalar>(
     bodies: &mut Bodies<D, T>,
     tracking: &mut Tracking<D, T>,
     events: &mut Events,
-) -> Reorder {
+) -> Result<Reorder, OutOfMemory> {
     tracking.land_all(bodies);
     let escaped = &tracking.scratch.escaped;
     let moved = escaped.len();
@@ -26,25 +29,22 @@ pub fn rebuild<const D: usize, T: Scalar>(
     let are_same = bodies.leaving.is_empty() && !bodies.rules.any_changed();
 
     tracking.list_ended(bodies, are_same, &mut events.ended);
+    let is_fat = tracking.fatten_all(bodies);
+    let is_fat = tracking.find_candidates(bodies, is_fat, &mut events.begun)?;
     tracking.wake_all(bodies);
-    let is_fat = tracking.fatten_all(bodies) && tracking.find_candidates(bodies);
-    if !is_fat {
-        tracking.fat.copy_from_slice(&bodies.boxes);
-        tracking.find_overlaps(bodies);
-    }
     tracking.list_begun(bodies, are_same && new == 0, &mut events.begun);
     tracking.note_new_fat(bodies);
 
     let live = bodies.slots.live;
     let counts = [live, tracking.candidates.pairs.len()];
     let is_decayed = layout::note_rebuild(&mut tracking.locality_decay, [moved, new], counts);
-    if tracking.policy.note_rebuild(live, is_fat, (moved - new) * 2 < live) {
+    Ok(if tracking.policy.note_rebuild(live, is_fat, (moved - new) * 2 < live) {
         Reorder::Later
     } else if is_decayed {
         Reorder::BySpace
     } else {
         Reorder::No
-    }
+    })
 }
 
 impl<const D: usize, T: Scalar> Tracking<D, T> {
@@ -113,37 +113,51 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         is_fat
     }
 
-    /// Replaces the candidates by the pairs of fat AABBs, unless there are too many. Returns whether it did.
-    fn find_candidates(&mut self, bodies: &Bodies<D, T>) -> bool {
-        let Self { fat, candidates, finder, policy, .. } = self;
-        let most = policy.most_candidates(bodies.slots.live);
-        let Some(pairs) = finder.find(fat, bodies, [flag::LIVE, 0], When::Now, most) else {
+    /// Replaces the candidates by the pairs of fat AABBs, or by those of the boxes if the fat AABBs are to be no larger or would
+    /// have too many. Reserves memory for what begins. Returns whether the fat AABBs are larger.
+    fn find_candidates(
+        &mut self,
+        bodies: &Bodies<D, T>,
+        mut is_fat: bool,
+        begun: &mut Vec<[u32; 2]>,
+    ) -> Result<bool, OutOfMemory> {
+        let Self { fat, candidates, finder, policy, scratch, .. } = self;
+        loop {
+            if !is_fat {
+                fat.copy_from_slice(&bodies.boxes);
+            }
+            let most = if is_fat { policy.most_candidates(bodies.slots.live) } else { usize::MAX };
+            if let Some(pairs) = finder.find(fat, bodies, [flag::LIVE, 0], When::Now, most)? {
+                scratch.sorter.reserve_begun(begun, pairs.len(), candidates.len())?;
+                candidates.replace(pairs)?;
+                break;
+            }
             policy.note_excess();
-            return false;
-        };
-        candidates.replace(pairs);
-        policy.note_candidates(finder.found);
-        true
-    }
-
-    /// Replaces the candidates by the pairs of boxes.
-    fn find_overlaps(&mut self, bodies: &Bodies<D, T>) {
-        let Self { candidates, finder, policy, .. } = self;
-        let pairs = finder.find(&bodies.boxes, bodies, [flag::LIVE, 0], When::Now, usize::MAX);
-        candidates.replace(pairs.unwrap_or_default());
-        policy.note_overlaps(finder.found);
+            is_fat = false;
+        }
+        if is_fat {
+            policy.note_candidates(finder.found);
+        } else {
+            policy.note_overlaps(finder.found);
+        }
+        Ok(is_fat)
     }
 }
 
 /// The tracking state of bodies that were read from a snapshot: the candidates are the pairs of the last update, and the
 /// fat AABBs the boxes that bodies had then.
-pub fn restore<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Tracking<D, T> {
+///
+/// # Errors
+/// [`OutOfMemory`].
+pub fn restore<const D: usize, T: Scalar>(
+    bodies: &Bodies<D, T>,
+) -> Result<Tracking<D, T>, OutOfMemory> {
     let mut tracking = Tracking { fat: bodies.previous.clone(), ..Tracking::default() };
     let Tracking { fat, candidates, finder, policy, .. } = &mut tracking;
     let known = [flag::LIVE | flag::LEAVING, flag::NEW];
-    let pairs = finder.find(fat, bodies, known, When::LastUpdate, usize::MAX);
-    candidates.replace(pairs.unwrap_or_default());
+    let pairs = finder.find(fat, bodies, known, When::LastUpdate, usize::MAX)?;
+    candidates.replace(pairs.unwrap_or_default())?;
     candidates.live.resize(candidates.pairs.len(), true);
     policy.note_overlaps(finder.found);
-    tracking
+    Ok(tracking)
 }

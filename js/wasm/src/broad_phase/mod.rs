@@ -226,13 +226,15 @@ extern "C" fn world_remove_many(handle: &mut Handle, count: usize) -> Code {
 }
 
 /// Details: where the ids are, and how many: two for each pair that began, and then two for each pair that ended. The first
-/// number is how many ids belong to pairs that began.
+/// number is how many ids belong to pairs that began. If updates before it failed, these are the changes of the last
+/// one, if it had any.
 #[unsafe(no_mangle)]
-extern "C" fn world_update(handle: &mut Handle) -> Code {
+extern "C" fn world_update(handle: &mut Handle, failures: u32) -> Code {
     run(handle, stack::LARGE, |handle| {
         handle.answer.ids.clear();
-        handle.numbers[0] = handle.world.update(&mut handle.answer.ids) as f64;
-        handle.answer(Ok(()))
+        let begun = handle.world.update(failures > 0, &mut handle.answer.ids);
+        let result = begun.map(|count| handle.numbers[0] = count as f64);
+        handle.answer(result)
     })
 }
 
