@@ -199,8 +199,9 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// Updates as [`update`](Self::update) does, with an error where that ends the program: if the pairs of a crowd do not fit
     /// into memory.
     ///
-    /// After the error the world is as before, but that there are no [`changes`](Self::changes), and its buffers are freed. Once
-    /// the crowd is apart, removed or filtered, the next call finds what changed since the last update that succeeded.
+    /// After the error the world is as before, but that there are no [`changes`](Self::changes), its buffers are freed, and fat
+    /// AABBs that were much too wide are narrower already. Once the crowd is apart, removed or filtered, the next call finds what
+    /// changed since the last update that succeeded.
     ///
     /// Memory for what is already there, the bodies and the pairs of the last update, is taken as collections take it:
     /// without that the program ends.
