@@ -528,8 +528,8 @@ class BroadPhase:
     def shrink_to_fit(self) -> None:
         """Gives back memory that is not needed now, and changes no result.
 
-        Updates give back the memory of a crowd by themselves, at most 128 updates after it is gone. Takes O(n + pairs) time, and
-        meanwhile as much memory again as the world needs.
+        Updates give back the memory of a crowd by themselves, at most 128 updates after it is gone. Takes O(n + pairs)
+        time, and meanwhile as much memory again as the world needs.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -785,8 +785,8 @@ class BroadPhase:
         bodies move far, it can exceed the time of finding all pairs (see the benchmark).
 
         Raises:
-            MemoryError: if the pairs of a crowd do not fit into memory. The world and its bodies are as before. Once the crowd
-                is apart, removed or filtered, the next call reports what changed.
+            MemoryError: if the pairs of a crowd do not fit into memory. The world and its bodies are as before. Once the
+                crowd is apart, removed or filtered, the next call reports what changed.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
