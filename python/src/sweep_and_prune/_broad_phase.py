@@ -785,8 +785,8 @@ class BroadPhase:
         bodies move far, it can exceed the time of finding all pairs (see the benchmark).
 
         Raises:
-            MemoryError: if the pairs of a crowd do not fit into memory. The world and its bodies are as before. Once the
-                crowd is apart, removed or filtered, the next call reports what changed.
+            MemoryError: if the pairs of a crowd do not fit into memory. The world and its bodies are as before. Once
+                the crowd is apart, removed or filtered, the next call reports what changed.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
