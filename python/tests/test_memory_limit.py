@@ -206,7 +206,7 @@ def test_what_cannot_be_done_is_one_clear_error(capsys: pytest.CaptureFixture[st
     for command, said in (
         (["pairs", "bad.csv"], "bad.csv, line 302: the box is inverted on axis 0: min 300"),
         (["pairs", "word.csv"], "word.csv, line 302, column end: 'many' is not a number"),
-        (["pairs", "cut.csv"], "cut.csv, line 402: it has 1 columns, where 3 are expected"),
+        (["pairs", "cut.csv"], "cut.csv, line 402: it has 1 column, where 3 are expected"),
         (["pairs", "large.csv"], "large.csv: coordinates beyond 2^53 are not exact"),
         (["pairs", "a.bed"], "a.bed, line 301: chrom, start and end are expected"),
         (["pairs", "a.csv", "--by", "no"], "a.csv has no column 'no'"),
