@@ -84,7 +84,16 @@ struct Table<'a, 'b> {
     form: Form,
 }
 
-impl<'a> Table<'a, '_> {
+impl<'a, 'b> Table<'a, 'b> {
+    fn new(
+        text: &'a [u8],
+        offsets: &'b PyReadonlyArray1<'_, i64>,
+        separator: u8,
+        is_csv: bool,
+    ) -> PyResult<Self> {
+        Ok(Self { text, offsets: offsets.as_slice()?, form: Form { separator, is_csv } })
+    }
+
     /// Calls a function with the cells of a column; those that a line does not have are empty.
     fn column<R: Send>(
         &self,
@@ -175,8 +184,7 @@ pub fn read_numbers<'py>(
     is_csv: bool,
     place: usize,
 ) -> PyResult<Option<Array<'py>>> {
-    let form = Form { separator, is_csv };
-    let table = Table { text, offsets: offsets.as_slice()?, form };
+    let table = Table::new(text, &offsets, separator, is_csv)?;
     if let Some(found) =
         table.column(py, place, |cells| cells.map(whole).collect::<Option<Vec<_>>>())?
     {
@@ -217,8 +225,7 @@ pub fn read_names<'py>(
     is_csv: bool,
     place: usize,
 ) -> PyResult<Option<(Array<'py>, Vec<&'py str>)>> {
-    let form = Form { separator, is_csv };
-    let table = Table { text, offsets: offsets.as_slice()?, form };
+    let table = Table::new(text, &offsets, separator, is_csv)?;
     let found = table.column(py, place, |cells| {
         let (mut codes, mut names) = (Vec::new(), Vec::new());
         let mut known = HashMap::new();
@@ -249,8 +256,7 @@ pub fn read_cells<'py>(
     is_csv: bool,
     place: usize,
 ) -> PyResult<Option<Vec<&'py str>>> {
-    let form = Form { separator, is_csv };
-    let table = Table { text, offsets: offsets.as_slice()?, form };
+    let table = Table::new(text, &offsets, separator, is_csv)?;
     table.column(py, place, |cells| cells.map(|cell| str::from_utf8(cell).ok()).collect())
 }
 
@@ -264,8 +270,7 @@ pub fn read_ends_of_variants<'py>(
     separator: u8,
     is_csv: bool,
 ) -> PyResult<Option<Array<'py>>> {
-    let form = Form { separator, is_csv };
-    let table = Table { text, offsets: offsets.as_slice()?, form };
+    let table = Table::new(text, &offsets, separator, is_csv)?;
     let references = table.column(py, 3, |cells| {
         Some(cells.map(|cell| String::from_utf8_lossy(cell).chars().count()).collect::<Vec<_>>())
     })?;
