@@ -362,7 +362,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     ///     let half = scope.spawn(|| queries.overlapping(&area));
     ///     assert_eq!(queries.containing([5.5, 1.0])?, [wall]);
     ///     assert_eq!(half.join().expect("it does not panic")?, [wall]);
-    ///     Ok(())
+    ///     Ok::<(), sweep_and_prune::Error>(())
     /// })
     /// # ?; Ok::<(), sweep_and_prune::Error>(())
     /// ```

@@ -50,6 +50,12 @@ export function highlight(code: string, lang: Language, label: string, kinds: re
       if (events.length > 0) node.properties["data-kinds"] = events.join(" ");
       if (kind.includes("added")) node.properties["data-added"] = "";
     },
+    // Lines are blocks that end in their line break. Between them, a break stands at the end of the widest line that the
+    // browser has read so far, and moves while it reads.
+    code(node) {
+      node.children = node.children.filter((child) => child.type === "element");
+      for (const line of node.children.slice(0, -1)) if (line.type === "element") line.children.push({ type: "text", value: "\n" });
+    },
   };
   // Without a limit of time, or a line loses its colors if the machine is busy during the build.
   return highlighter.codeToHtml(code, { lang, theme: "css-variables", transformers: [marks], tokenizeTimeLimit: 0 });
