@@ -246,6 +246,20 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
         if self.any_unlisted { listed.max(self.slots.live) } else { listed }
     }
 
+    /// Whether most bodies are new and static: a level was loaded.
+    #[inline(never)]
+    pub fn is_level_new(&self) -> bool {
+        let is_new = |&&index: &&u32| self.is_static(index) && self.slots.has(index, flag::NEW);
+        self.any_new
+            && self.changed.len() * 2 > self.slots.live
+            && self.changed.iter().filter(is_new).count() * 2 > self.slots.live
+    }
+
+    /// Whether there is a body, and it is static.
+    pub fn is_static(&self, index: u32) -> bool {
+        self.slots.has(index, flag::LIVE) && self.rules.filter_now(index).is_static
+    }
+
     /// Lists the bodies whose boxes changed and are not listed yet, and some that are.
     pub fn list_changed(&mut self) {
         if core::mem::take(&mut self.any_unlisted) {

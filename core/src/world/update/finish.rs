@@ -11,12 +11,14 @@ use crate::world::tracking::{Tracking, TreeState};
 /// bodies asleep when they wake.
 const AWAKE: u16 = flag::RECENT | flag::ASLEEP | flag::FLYING;
 
-/// Ends an update. Returns whether the awake bodies are scattered in memory.
+/// Ends an update; where a level is new, its static bodies fall asleep at once. Returns whether the awake bodies are
+/// scattered in memory.
 #[inline(never)]
 pub fn finish<const D: usize, T: Scalar>(
     bodies: &mut Bodies<D, T>,
     tracking: &mut Tracking<D, T>,
     events: &mut Events,
+    is_level_new: bool,
 ) -> bool {
     // Boxes of bodies that did not change are the same or meaningless.
     let read = bodies.rows_to_scan(bodies.changed.len());
@@ -30,7 +32,9 @@ pub fn finish<const D: usize, T: Scalar>(
     }
     if bodies.rules.finish() | core::mem::take(&mut bodies.any_new) {
         for &index in &bodies.changed {
-            bodies.slots.lower(index, flag::NEW | flag::REFILTERED);
+            let rests = is_level_new && bodies.is_static(index);
+            let recent = if rests { flag::RECENT } else { 0 };
+            bodies.slots.lower(index, flag::NEW | flag::REFILTERED | recent);
         }
     }
     let moved = bodies.changed.len();
@@ -39,7 +43,8 @@ pub fn finish<const D: usize, T: Scalar>(
         *known = 0;
     }
     // After an update from scratch no body falls asleep.
-    let is_scattered = !tracking.candidates.are_sorted && tracking.fall_asleep(bodies, moved);
+    let is_scattered =
+        !tracking.candidates.are_sorted && tracking.fall_asleep(bodies, moved, is_level_new);
     let removed = bodies.leaving.iter().map(|&index| bodies.slots.id(index).to_key());
     let sorted = tracking.scratch.sorter.sort_keys(removed);
     events.removed.clear();
@@ -57,13 +62,15 @@ pub fn finish<const D: usize, T: Scalar>(
 }
 
 impl<const D: usize, T: Scalar> Tracking<D, T> {
-    /// Lets bodies that rested for long fall asleep, if it is time, after an update in which `moved`
+    /// Lets bodies that rested for long fall asleep, if it is time or `is_forced`, after an update in which `moved`
     /// bodies moved. Returns whether the awake bodies are scattered in memory.
     #[inline(never)]
-    fn fall_asleep(&mut self, bodies: &mut Bodies<D, T>, moved: usize) -> bool {
+    fn fall_asleep(&mut self, bodies: &mut Bodies<D, T>, moved: usize, is_forced: bool) -> bool {
         let Self { sleep, candidates, fat, .. } = self;
         let Bodies { slots, boxes, front, .. } = bodies;
-        if moved == 0 || !sleep.note(slots.live - sleep.count, moved, candidates.asleep.len()) {
+        let awake = slots.live - sleep.count;
+        let is_time = moved > 0 && sleep.note(awake, moved, candidates.asleep.len());
+        if !is_time && !is_forced {
             return false;
         }
         candidates.asleep.retain(|pair| are_asleep(slots, pair));
@@ -98,7 +105,7 @@ mod tests {
         let (bodies, tracking) = (&mut world.bodies, &mut world.tracking);
         bodies.slots.raise(0, flag::FLYING);
         for _ in 0..100 {
-            tracking.fall_asleep(bodies, 1);
+            tracking.fall_asleep(bodies, 1, false);
         }
         assert!(bodies.slots.has(1, flag::ASLEEP) && !bodies.slots.has(0, flag::ASLEEP));
     }

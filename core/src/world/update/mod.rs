@@ -5,7 +5,8 @@
 //! them, without those of sleeping bodies. A body that leaves its fat AABB gets a new one, which reaches
 //! ahead in the direction of its motion, and a tree finds what that overlaps (`incremental`), or the finder
 //! while there is no tree: one is built over several updates, since at once it would take several times as
-//! long as finding all pairs where few boxes overlap. When many leave theirs, the finder finds all candidates
+//! long as finding all pairs where few boxes overlap. Only where most bodies are new and static, since a level was loaded,
+//! the update puts these to sleep and builds it at once. When many leave theirs, the finder finds all candidates
 //! (`rebuild`). Where that happens again and again, fat AABBs do not pay, and for some updates all pairs of the
 //! boxes themselves are found and compared with those of the last update (`from_scratch`). A few fast bodies
 //! among many that rest are kept out of the tree, and searched among themselves (`flights`).
@@ -51,10 +52,15 @@ pub fn update<const D: usize, T: Scalar>(
     bodies.refatten_too_wide();
     let found = find_events(bodies, tracking, events);
     if let Ok(mut order) = found {
-        if finish::finish(bodies, tracking, events) && order == Reorder::No {
+        let is_level_new = bodies.is_level_new();
+        if finish::finish(bodies, tracking, events, is_level_new) && order == Reorder::No {
             order = Reorder::BySpace;
         }
         tracking.reorder(bodies, order);
+        // Loading takes long anyhow; each of the next frames would be late.
+        if is_level_new && order != Reorder::Later {
+            tracking.ready_tree(bodies);
+        }
     } else {
         take_back::take_back(bodies, tracking, events);
     }

@@ -7,7 +7,7 @@ use crate::world::tracking::{Tracking, TreeState};
 
 impl<const D: usize, T: Scalar> Tracking<D, T> {
     /// Makes the tree hold the fat AABBs of all bodies that are not new and do not fly.
-    fn ready_tree(&mut self, bodies: &Bodies<D, T>) {
+    pub fn ready_tree(&mut self, bodies: &Bodies<D, T>) {
         while !self.advance_tree(bodies) {}
     }
 

@@ -291,3 +291,27 @@ fn where_some_fly_slow_bodies_fly_too_and_land_a_few_at_a_time() {
     }
     assert!((3 * moving / 4..=moving).contains(&most_flying), "{most_flying}");
 }
+
+#[test]
+fn a_level_that_is_loaded_is_at_rest_in_the_next_update() {
+    let statics = 6_000;
+    let boxes: Vec<_> = (0..statics).map(|at| somewhere(at, 50.0, [1.0; 3])).collect();
+    let mut world = BroadPhase::<3>::new();
+    world.insert_many(&boxes, Filter::STATIC).unwrap();
+    let movers: Vec<_> = (0..5_000).map(|at| somewhere(statics + at, 50.0, [1.0; 3])).collect();
+    world.insert_many(&movers, Filter::default()).unwrap();
+    assert!(world.update().begun().len() > 0);
+    let tracking = &world.tracking;
+    assert_eq!(tracking.sleep.count, statics);
+    assert!(tracking.has_tree());
+    let front = world.bodies.front;
+    assert!(front < statics, "{front} bodies are read to find those that move");
+
+    // Where fewer are static, the tree may not be needed.
+    let mut world = BroadPhase::<3>::new();
+    world.insert_many(&boxes[..statics / 2], Filter::STATIC).unwrap();
+    world.insert_many(&movers, Filter::default()).unwrap();
+    world.update();
+    assert_eq!(world.tracking.sleep.count, 0);
+    assert!(!world.tracking.has_tree());
+}
