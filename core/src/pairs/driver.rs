@@ -336,6 +336,6 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
 }
 
 /// Whether all boxes of a set are valid. No branch depends on a box.
-fn is_valid<const D: usize, T: Scalar, S: Source<D, T>>(set: &&[S]) -> bool {
+pub(super) fn is_valid<const D: usize, T: Scalar, S: Source<D, T>>(set: &&[S]) -> bool {
     set.iter().fold(true, |valid, each| valid & each.aabb().is_valid())
 }

@@ -46,6 +46,9 @@
 //! **Two sets on a line** (`lookup.rs`): the smaller one is sorted, and boxes of the larger one look up those that
 //! they overlap, unless many of those overlap each other.
 //!
+//! **Counts on a line** (`ranks.rs`): how many boxes begin before each one ends, and end before it begins, tells how many
+//! pairs there are. No pair is found.
+//!
 //! **Few boxes against many**: boxes of the larger set are copied only to columns that hold boxes of the
 //! smaller one. The number of columns is limited by the number of boxes, since empty ones cost time too.
 //!
@@ -92,6 +95,7 @@ mod parallel;
 mod placements;
 mod plan;
 mod probe;
+mod ranks;
 mod search;
 mod sink;
 mod sizes;

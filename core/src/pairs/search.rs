@@ -6,7 +6,7 @@ use core::mem::replace;
 use core::ops::ControlFlow;
 
 use super::brute::{is_brute_force, is_few, send_few};
-use super::driver::Driver;
+use super::driver::{Driver, is_valid};
 use super::kernel::{Kernel, PairOrder};
 #[cfg(feature = "std")]
 use super::parallel::Helpers;
@@ -15,6 +15,7 @@ use super::plan::{Among, plan};
 use super::probe::Probe;
 #[cfg(feature = "std")]
 use super::probe::SortOnly;
+use super::ranks::Ranks;
 use super::sink::{Buffer, Count, Store, Stream};
 use super::task::{Progress, ProgressCallback, Stop, Task};
 use crate::geometry::check_count;
@@ -26,6 +27,7 @@ pub(super) struct Buffers<const D: usize, T: Scalar> {
     pub driver: Driver<D, T>,
     pub store: Store,
     count: Count,
+    ranks: Ranks<T>,
     buffer: Buffer,
 }
 
@@ -35,6 +37,7 @@ impl<const D: usize, T: Scalar> Buffers<D, T> {
             driver: Driver::new(Kernel::best()),
             store: Store::default(),
             count: Count::default(),
+            ranks: Ranks::default(),
             buffer: Buffer::default(),
         }
     }
@@ -121,14 +124,20 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
         }
     }
 
-    /// Counts the pairs without storing them.
+    /// Counts the pairs without storing them. In 1D without finding them: O(n) time where boxes are spread,
+    /// however many pairs there are.
     ///
     /// # Errors
     /// As [`pairs`](Self::pairs).
     #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn count(self) -> Result<u64, Error> {
-        let Self { buffers: Buffers { driver, count, .. }, boxes, against, progress } = self;
+        let Self { buffers: Buffers { driver, count, ranks, .. }, boxes, against, progress } = self;
         count.count = 0;
+        let both = [boxes, against.unwrap_or(boxes)];
+        let sets = if against.is_some() { &both[..] } else { &both[..1] };
+        if D == 1 && !is_brute_force(sets) && sets.iter().all(|set| !set.is_empty()) {
+            return count_on_line(driver, ranks, sets, progress);
+        }
         run(driver, boxes, against, progress, count)?;
         Ok(count.count)
     }
@@ -275,6 +284,23 @@ fn run<const D: usize, T: Scalar, P: Probe, O: Receiver>(
         return send_few(sets, pair_order, sink).map_err(error);
     }
     run_many(driver, sets, pair_order, progress, sink)
+}
+
+/// Counts the pairs within a set of boxes on a line, or between two.
+#[inline(never)]
+fn count_on_line<const D: usize, T: Scalar>(
+    driver: &mut Driver<D, T>,
+    ranks: &mut Ranks<T>,
+    sets: &[&[Aabb<D, T>]],
+    progress: Option<ProgressCallback<'_>>,
+) -> Result<u64, Error> {
+    sets.iter().try_for_each(|set| check_count(set.len()))?;
+    if !sets.iter().all(is_valid) {
+        check(sets)?;
+    }
+    let progress = progress.map(Progress::new);
+    let task = Task::new(PairOrder::BySet, progress.as_ref());
+    ranks.pairs(sets, task, &driver.helpers).map_err(error)
 }
 
 /// Checks what the driver does not check, and searches.

@@ -1,4 +1,5 @@
-//! Two sets on a line, where boxes of the larger one look up those of the smaller one: the pairs of brute force.
+//! Boxes on a line: those of the larger of two sets look up those of the smaller one, and counts are differences of ranks. The
+//! pairs of brute force.
 
 use std::ops::ControlFlow;
 
@@ -14,8 +15,12 @@ fn pairwise<T: Scalar>(a: &[Aabb<1, T>], b: &[Aabb<1, T>]) -> Vec<[u32; 2]> {
     (0..a.len()).flat_map(partners).collect()
 }
 
-/// All ways to receive the pairs, with either set first.
+/// The count within each set, and all ways to receive the pairs between both, with either set first.
 fn check<T: Scalar>(a: &[Aabb<1, T>], b: &[Aabb<1, T>]) {
+    for set in [a, b] {
+        let ordered = pairwise(set, set).len();
+        assert_eq!(PairFinder::new().search(set).count(), Ok((ordered - set.len()) as u64 / 2));
+    }
     for (a, b) in [(a, b), (b, a)] {
         let mut finder = PairFinder::new();
         let found = finder.find_between(a, b).unwrap().to_vec();
@@ -92,6 +97,26 @@ fn intervals_of_all_lengths_are_found() {
     check(&intervals(10_000, 0.0001, &mut random), &many);
 }
 
+/// Far edges, edges that are equal, and clusters: some cells have nearly all edges.
+#[test]
+fn edges_anywhere_are_counted() {
+    let mut random = random();
+    let far = [1e3, 1e30, f64::MAX, f64::INFINITY];
+    for count in [0, 1, 2, 3, 40] {
+        for far in far {
+            let mut many = intervals(2000, 0.001, &mut random);
+            many.extend((0..count).map(|at| Aabb::new([far - f64::from(at)], [far])));
+            many.extend((0..count).map(|_| Aabb::new([-far], [-far / 2.0])));
+            check(&many, &intervals(700, 0.001, &mut random));
+        }
+    }
+    let clusters = (0..900).map(|at| Aabb::new([f64::from(at % 3)], [f64::from(at % 5)]));
+    let clusters: Vec<_> = clusters.filter(Aabb::is_valid).collect();
+    check(&clusters, &intervals(500, 0.1, &mut random));
+    check(&[Aabb::new([1.0], [1.0]); 300], &[Aabb::new([-0.0], [1.0]); 200]);
+    check(&[Aabb::new([-0.0], [0.0]); 300], &[Aabb::new([0.0], [-0.0]); 200]);
+}
+
 /// Enough to look up on threads.
 #[test]
 #[cfg(feature = "parallel")]
@@ -102,7 +127,9 @@ fn threads_find_the_same_in_the_same_order() {
         let one = PairFinder::new().find_between(a, b).unwrap().to_vec();
         assert!(one.len() > 50_000);
         for threads in [2, 5] {
-            assert!(PairFinder::new().threads(threads).find_between(a, b).unwrap() == one);
+            let mut finder = PairFinder::new().threads(threads);
+            assert!(finder.find_between(a, b).unwrap() == one);
+            assert_eq!(finder.search(a).against(b).count(), Ok(one.len() as u64));
         }
     }
 }
@@ -120,6 +147,8 @@ fn an_invalid_interval_is_named_before_any_pair() {
             let is_named =
                 matches!(result, Err(Error::InvalidBox { set: s, index: 177, .. }) if s == set);
             assert!(is_named, "{result:?}");
+            let count = PairFinder::new().search(&sets[0]).against(&sets[1]).count();
+            assert_eq!(count, result.map(|_| 0));
         }
     }
 }
@@ -133,6 +162,9 @@ fn lookups_can_be_cancelled() {
         |done: f64| if done > 0.4 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
     let result = finder.search(&few).against(&many).progress(&report).count();
     assert_eq!(result, Err(Error::Cancelled));
+    let go_on = |_| ControlFlow::<()>::Continue(());
+    let result = finder.search(&few).against(&many).progress(&report).for_each(go_on);
+    assert_eq!(result.unwrap_err(), Error::Cancelled);
     let found = finder.find_between(&few, &many).unwrap().len();
     assert_eq!(found, pairwise(&few, &many).len());
 }
