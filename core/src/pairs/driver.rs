@@ -15,6 +15,7 @@ use super::brute::{brute_force, is_brute_force};
 use super::columns::{Columns, Filled, fill};
 use super::crowding::{FEW_PROBES, better_plan, count_tests, most_records};
 use super::grid::Grid;
+use super::in_order::{Spans, is_sorted};
 use super::kernel::{Cursor, Kernel, SortedBoxes};
 use super::lookup::{Table, may_pay};
 use super::parallel::{Helpers, Receiver};
@@ -52,6 +53,7 @@ pub(super) struct Driver<const D: usize, T: Scalar, P = ()> {
     sorter: Sorter<T>,
     sorted: [SortedBoxes<T>; 2],
     table: Table,
+    spans: Spans,
     pub placements: Placements,
     /// Spare columns and groups by size, one for each level at which plans were ever nested, if memory allows.
     columns: Vec<[Columns<D, T>; 2]>,
@@ -69,6 +71,7 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
             sorter: Sorter::default(),
             sorted: Default::default(),
             table: Table::default(),
+            spans: Spans::default(),
             placements: Placements::default(),
             columns: Vec::new(),
             groups: Vec::new(),
@@ -80,9 +83,9 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
     /// The same buffers with another probe, and without helpers.
     #[cfg(feature = "std")]
     pub fn with_probe<Q: Probe>(self) -> Driver<D, T, Q> {
-        let Self { kernel, sorter, sorted, table, placements, columns, groups, .. } = self;
+        let Self { kernel, sorter, sorted, table, spans, placements, columns, groups, .. } = self;
         let (helpers, probe) = (Helpers::new(), Q::default());
-        Driver { kernel, sorter, sorted, table, placements, columns, groups, helpers, probe }
+        Driver { kernel, sorter, sorted, table, spans, placements, columns, groups, helpers, probe }
     }
 
     /// Sends all pairs within one set, or between two, to the sink. Sets that are searched by
@@ -102,12 +105,40 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
                 if P::SWEEPS { sweep.run(sets, Cursor::default(), sink) } else { Ok(()) }
             });
         }
-        if D == 1 && task.depth == 0 && sets.len() == 2 && self.look_up(sets, task, sink)? {
-            return Ok(());
+        if D == 1 && task.depth == 0 && P::SWEEPS {
+            let is_sorted = sets.iter().all(|set| is_sorted(set));
+            if is_sorted && self.search_in_order(sets, task, sink)?
+                || sets.len() == 2 && self.look_up(sets, task, sink)?
+            {
+                return Ok(());
+            }
         }
         let may_nest = task.depth < MOST_NESTED_PLANS;
         let among = if may_nest { Among::All { is_crowded: false } } else { Among::Cuts };
         self.run_plan(plan(sets, among).0, sets, task, sink)
+    }
+
+    /// Finds the pairs of boxes on a line that come sorted. False, with nothing sent, if it is better to sweep.
+    fn search_in_order<S: Source<D, T>, O: Receiver>(
+        &mut self,
+        sets: &[&[S]],
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<bool, Stop> {
+        if !sets.iter().all(is_valid) {
+            return Err(Stop::Invalid);
+        }
+        let Some(in_order) = self.spans.fill(sets)? else { return Ok(false) };
+        let boxes = 0..in_order.len();
+        match self.helpers.threads::<O>(boxes.len()) {
+            Some(threads) if boxes.len() >= MIN_LOOKUPS_FOR_THREADS => {
+                threads.in_chunks(boxes, LOOKUPS_AT_A_TIME, sink, |boxes, sink| {
+                    in_order.run(boxes, task, sink)
+                })?;
+            }
+            _ => in_order.run(boxes, task, sink)?,
+        }
+        Ok(true)
     }
 
     /// Has the boxes of the larger of two sets on a line look up those of the smaller one. False, with nothing
@@ -120,7 +151,7 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
     ) -> Result<bool, Stop> {
         let swap = sets[0].len() <= sets[1].len();
         let [smaller, larger] = if swap { [sets[0], sets[1]] } else { [sets[1], sets[0]] };
-        if !P::SWEEPS || !may_pay(smaller, larger) {
+        if !may_pay(smaller, larger) {
             return Ok(false);
         }
         if !sets.iter().all(is_valid) {

@@ -58,7 +58,9 @@ pub(super) fn may_pay<const D: usize, T: Scalar, S: Source<D, T>>(
     if len > MOST_CACHED_BOXES.max(larger.len() / MIN_SET_RATIO).min(MOST_SORTED_BOXES) {
         return false;
     }
-    let sample = || positions(len, SAMPLED_BOXES).map(|at| smaller[at].aabb());
+    // All of the sample are compared with each other, which takes no longer than to read the smaller set.
+    let sampled = len.isqrt().min(SAMPLED_BOXES);
+    let sample = || positions(len, sampled).map(|at| smaller[at].aabb());
     let overlaps = |a: &Aabb<D, T>| sample().filter(|b| a.overlaps(b)).count();
     let (overlaps, drawn) = (sample().map(overlaps).sum::<usize>(), sample().len());
     // Half of the boxes that overlap a box begin before it. Each overlaps itself, too.
@@ -152,10 +154,12 @@ impl<T: Scalar> Lookup<'_, T> {
                         (out, count) = (sink.spare()?, 0);
                     }
                     let to = &mut out[count..count + TESTED_AT_A_TIME];
+                    let tested = next..next + TESTED_AT_A_TIME;
+                    let [left, right] = [&left[tested.clone()], &right[tested.clone()]];
+                    let ids = &self.boxes.id[tested];
                     let mut found = 0;
-                    for at in next..next + TESTED_AT_A_TIME {
-                        let other = self.boxes.id[at];
-                        to[found] = if swap { [other, id] } else { [id, other] };
+                    for at in 0..TESTED_AT_A_TIME {
+                        to[found] = if swap { [ids[at], id] } else { [id, ids[at]] };
                         // Behind the last box the left edges are NaN.
                         let begins = left[at] <= aabb.max[0];
                         // Not `&&`: which of them overlap is unpredictable.

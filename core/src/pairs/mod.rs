@@ -46,6 +46,8 @@
 //! **Two sets on a line** (`lookup.rs`): the smaller one is sorted, and boxes of the larger one look up those that
 //! they overlap, unless many of those overlap each other.
 //!
+//! **Boxes on a line that come sorted** (`in_order.rs`) are read where they are.
+//!
 //! **Counts on a line** (`ranks.rs`): how many boxes begin before each one ends, and end before it begins, tells how many
 //! pairs there are. No pair is found.
 //!
@@ -89,6 +91,7 @@ mod finder;
 mod grid;
 #[cfg(all(test, feature = "std"))]
 mod hard_scenes;
+mod in_order;
 mod kernel;
 mod lookup;
 mod parallel;

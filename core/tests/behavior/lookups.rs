@@ -1,5 +1,5 @@
-//! Boxes on a line: those of the larger of two sets look up those of the smaller one, and counts are differences of ranks. The
-//! pairs of brute force.
+//! Boxes on a line: of two sets, boxes of the larger one look up the smaller one; sorted boxes are read in order; counts are
+//! differences of ranks. The pairs of brute force.
 
 use std::ops::ControlFlow;
 
@@ -15,12 +15,32 @@ fn pairwise<T: Scalar>(a: &[Aabb<1, T>], b: &[Aabb<1, T>]) -> Vec<[u32; 2]> {
     (0..a.len()).flat_map(partners).collect()
 }
 
-/// The count within each set, and all ways to receive the pairs between both, with either set first.
+/// The boxes by left edge.
+fn in_order<T: Scalar>(boxes: &[Aabb<1, T>]) -> Vec<Aabb<1, T>> {
+    let mut boxes = boxes.to_vec();
+    boxes.sort_by(|a, b| a.min[0].order(b.min[0]));
+    boxes
+}
+
+/// The pairs within each set and between both, as they come and in order.
 fn check<T: Scalar>(a: &[Aabb<1, T>], b: &[Aabb<1, T>]) {
-    for set in [a, b] {
-        let ordered = pairwise(set, set).len();
-        assert_eq!(PairFinder::new().search(set).count(), Ok((ordered - set.len()) as u64 / 2));
+    let sorted = [in_order(a), in_order(b)];
+    for set in [a, b, &sorted[0], &sorted[1]] {
+        let within = pairwise(set, set).into_iter().filter(|[a, b]| a < b);
+        let within: Vec<_> = within.collect();
+        let mut finder = PairFinder::new();
+        assert_eq!(finder.search(set).count(), Ok(within.len() as u64));
+        let mut found = finder.find(set).unwrap().to_vec();
+        found.sort_unstable();
+        assert!(found == within);
     }
+    check_between(a, b);
+    check_between(&sorted[0], &sorted[1]);
+    check_between(&sorted[0], b);
+}
+
+/// All ways to receive the pairs between two sets, with either one first.
+fn check_between<T: Scalar>(a: &[Aabb<1, T>], b: &[Aabb<1, T>]) {
     for (a, b) in [(a, b), (b, a)] {
         let mut finder = PairFinder::new();
         let found = finder.find_between(a, b).unwrap().to_vec();
@@ -123,7 +143,8 @@ fn edges_anywhere_are_counted() {
 fn threads_find_the_same_in_the_same_order() {
     let mut random = random();
     let (a, b) = (intervals(3000, 0.0005, &mut random), intervals(140_001, 0.00005, &mut random));
-    for (a, b) in [(&a, &b), (&b, &a)] {
+    let sorted = [in_order(&b), in_order(&intervals(150_000, 0.00001, &mut random))];
+    for (a, b) in [(&a, &b), (&b, &a), (&sorted[0], &sorted[1])] {
         let one = PairFinder::new().find_between(a, b).unwrap().to_vec();
         assert!(one.len() > 50_000);
         for threads in [2, 5] {

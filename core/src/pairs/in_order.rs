@@ -1,0 +1,151 @@
+//! Pairs of boxes on a line that come sorted by left edge, as files of intervals mostly do. Nothing is copied or sorted.
+//!
+//! ```text
+//! between two sets:
+//!     for each box of the smaller set
+//!         first = the first box of the larger set, from that of the box before on, that does not end before it
+//!         begun = the first box of the larger set, from that of the box before on, that does not begin before it
+//!         report the boxes from first up to begun that reach it
+//!         report the boxes from begun on until one begins after it ends
+//! within one set:
+//!     for each box, report the boxes behind it until one begins after it ends
+//! ```
+//!
+//! Only the boxes from `first` up to `begun` are tested. One long box keeps `first` where it is: then there may be too many.
+
+use alloc::collections::TryReserveError;
+use alloc::vec::Vec;
+use core::ops::{ControlFlow, Range};
+
+use super::sink::Sink;
+use super::source::Source;
+use super::task::{Progress, Stop, Task};
+use crate::Scalar;
+use crate::memory::grow;
+
+/// The most tests for each box of both sets, in the mean. With more, boxes are sorted and swept.
+const MEAN_TESTS: usize = 2;
+
+/// Where the boxes of the larger set are that each box of the smaller one is tested against: `first` and `begun`.
+#[derive(Debug, Default)]
+pub(super) struct Spans {
+    all: Vec<[u32; 2]>,
+}
+
+/// Sorted sets, and what pairs with what.
+pub(super) struct InOrder<'a, S> {
+    smaller: &'a [S],
+    larger: &'a [S],
+    /// For each box of the smaller set; `None` within one set.
+    spans: Option<&'a [[u32; 2]]>,
+    /// Whether pairs begin with the box of the larger set.
+    swap: bool,
+}
+
+/// Whether boxes come sorted by left edge. Looks no further than to the first that does not.
+pub(super) fn is_sorted<const D: usize, T: Scalar, S: Source<D, T>>(set: &[S]) -> bool {
+    set.is_sorted_by(|a, b| a.aabb().min[0] <= b.aabb().min[0])
+}
+
+impl Spans {
+    /// For one or two sets that are valid and sorted, how to search them. None if too much would be tested.
+    pub fn fill<'a, const D: usize, T: Scalar, S: Source<D, T>>(
+        &'a mut self,
+        sets: &[&'a [S]],
+    ) -> Result<Option<InOrder<'a, S>>, TryReserveError> {
+        let [first, second] = match *sets {
+            [first, second] => [first, second],
+            _ => {
+                return Ok(Some(InOrder {
+                    smaller: sets[0],
+                    larger: sets[0],
+                    spans: None,
+                    swap: false,
+                }));
+            }
+        };
+        let swap = first.len() > second.len();
+        let [smaller, larger] = if swap { [second, first] } else { [first, second] };
+        grow(&mut self.all, smaller.len(), [0; 2])?;
+        let spans = &mut self.all[..smaller.len()];
+        let (mut first, mut begun, mut tests) = (0, 0, 0);
+        for (span, each) in spans.iter_mut().zip(smaller) {
+            let start = each.aabb().min[0];
+            while first < larger.len() && larger[first].aabb().max[0] < start {
+                first += 1;
+            }
+            begun = begun.max(first);
+            while begun < larger.len() && larger[begun].aabb().min[0] < start {
+                begun += 1;
+            }
+            tests += begun - first;
+            *span = [first as u32, begun as u32];
+        }
+        let is_crowded = tests > MEAN_TESTS * (smaller.len() + larger.len());
+        Ok((!is_crowded).then_some(InOrder { smaller, larger, spans: Some(spans), swap }))
+    }
+}
+
+impl<S> InOrder<'_, S> {
+    /// How many boxes [`run`](Self::run) goes through.
+    pub fn len(&self) -> usize {
+        self.smaller.len()
+    }
+
+    /// Sends the pairs of a range of the boxes to the sink.
+    pub fn run<const D: usize, T: Scalar, O: Sink>(
+        &self,
+        range: Range<usize>,
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<(), Stop>
+    where
+        S: Source<D, T>,
+    {
+        let Self { smaller, larger, .. } = *self;
+        let share = range.len() as f64 / smaller.len() as f64;
+        let (mut out, mut count) = (sink.spare()?, 0);
+        for i in range {
+            let aabb = smaller[i].aabb();
+            let [first, begun] = match self.spans {
+                Some(spans) => spans[i].map(|at| at as usize),
+                None => [i + 1; 2],
+            };
+            let pair = |j: usize| {
+                let [a, b] = [i as u32, j as u32];
+                if self.swap { [b, a] } else { [a, b] }
+            };
+            let begin = larger[begun..].iter();
+            let end = begun + begin.take_while(|other| other.aabb().min[0] <= aabb.max[0]).count();
+            let mut at = first;
+            while at < end {
+                if out.len() == count {
+                    sink.take(count)?;
+                    if task.progress.map(Progress::report) == Some(ControlFlow::Break(())) {
+                        return Err(Stop::Cancelled);
+                    }
+                    (out, count) = (sink.spare()?, 0);
+                }
+                let spare = out.len() - count;
+                if at < begun {
+                    let tested = at..begun.min(at + spare);
+                    at = tested.end;
+                    for j in tested {
+                        out[count] = pair(j);
+                        // Without a branch: which of them reach it is unpredictable.
+                        count += usize::from(aabb.min[0] <= larger[j].aabb().max[0]);
+                    }
+                } else {
+                    let found = at..end.min(at + spare);
+                    at = found.end;
+                    for (to, j) in out[count..].iter_mut().zip(found.clone()) {
+                        *to = pair(j);
+                    }
+                    count += found.len();
+                }
+            }
+        }
+        sink.take(count)?;
+        task.done(share)
+    }
+}
