@@ -37,6 +37,12 @@ fn search<const D: usize, T: Scalar>(input: &mut Input) -> u64 {
         }
         sets[set].push(aabb);
     }
+    if kind > 7 {
+        // On a line such boxes are searched in another way.
+        for set in &mut sets {
+            set.sort_by(|a, b| a.min[0].order(b.min[0]));
+        }
+    }
     let [mut first, mut second] = sets;
     let mut expected = pairs(&first, &second, has_two_sets);
     while expected.len() > MOST_PAIRS {
