@@ -149,3 +149,38 @@ impl<S> InOrder<'_, S> {
         task.done(share)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use super::*;
+    use crate::Aabb;
+
+    #[test]
+    fn a_long_box_that_all_are_tested_against_is_noticed() {
+        let short = |at: usize| Aabb::<1>::new([at as f32], [at as f32]);
+        let short: Vec<_> = (0..2000).map(short).collect();
+        let mut larger = short.clone();
+        larger.push(Aabb::new([3000.0], [4000.0]));
+        let is_searched = |larger: &[Aabb<1>], smaller: &[Aabb<1>]| {
+            assert!(is_sorted(larger) && is_sorted(smaller));
+            Spans::default().fill(&[larger, smaller]).expect("memory").is_some()
+        };
+        assert!(is_searched(&larger, &short));
+        larger[0].max[0] = 1.5;
+        assert!(is_searched(&larger, &short));
+        larger[0].max[0] = 2000.0;
+        assert!(!is_searched(&larger, &short));
+    }
+
+    #[test]
+    fn boxes_are_sorted_only_if_all_are() {
+        let mut boxes: Vec<_> =
+            (0..100).map(|at| Aabb::<1>::new([0.5 * at as f32], [1e3])).collect();
+        boxes[50] = boxes[49];
+        assert!(is_sorted(&boxes));
+        boxes.swap(98, 99);
+        assert!(!is_sorted(&boxes));
+    }
+}
