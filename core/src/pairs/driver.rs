@@ -18,6 +18,7 @@ use super::grid::Grid;
 use super::in_order::{Spans, is_sorted};
 use super::kernel::{Cursor, Kernel, SortedBoxes};
 use super::lookup::{Table, may_pay};
+use super::one_by_one::one_by_one;
 use super::parallel::{Helpers, Receiver};
 use super::placements::Placements;
 use super::plan::{Among, Plan, SizeSplit, plan};
@@ -40,11 +41,6 @@ const UNDIVIDED_ONE_IN: usize = 8;
 const MIN_TESTS_FOR_THREADS: u64 = 1 << 20;
 /// A thread takes this many probes of a sweep at a time, so that their pairs stay in its cache.
 const PROBES_AT_A_TIME: usize = 256;
-/// With fewer boxes that look up others, threads do not pay. (On two cores, two threads take 1.4 to 2 times as long at
-/// 10,000, 1.0 to 1.5 times at 100,000, and 0.8 to 0.9 at 200,000.)
-const MIN_LOOKUPS_FOR_THREADS: usize = 1 << 17;
-/// A thread looks up this many boxes at a time, so that their pairs stay in its cache.
-const LOOKUPS_AT_A_TIME: usize = 4096;
 
 /// The buffers of one thread, kept between calls.
 #[derive(Debug)]
@@ -105,11 +101,16 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
                 if P::SWEEPS { sweep.run(sets, Cursor::default(), sink) } else { Ok(()) }
             });
         }
+        let mut task = task;
         if D == 1 && task.depth == 0 && P::SWEEPS {
-            let is_sorted = sets.iter().all(|set| is_sorted(set));
-            if is_sorted && self.search_in_order(sets, task, sink)?
-                || sets.len() == 2 && self.look_up(sets, task, sink)?
-            {
+            if sets.iter().all(|set| is_sorted(set)) {
+                check(sets, task)?;
+                task.is_checked = true;
+                if self.search_in_order(sets, task, sink)? {
+                    return Ok(());
+                }
+            }
+            if sets.len() == 2 && self.look_up(sets, task, sink)? {
                 return Ok(());
             }
         }
@@ -118,26 +119,15 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
         self.run_plan(plan(sets, among).0, sets, task, sink)
     }
 
-    /// Finds the pairs of boxes on a line that come sorted. False, with nothing sent, if it is better to sweep.
+    /// Finds the pairs of valid boxes on a line that come sorted. False, with nothing sent, if it is better to sweep.
     fn search_in_order<S: Source<D, T>, O: Receiver>(
         &mut self,
         sets: &[&[S]],
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<bool, Stop> {
-        if !sets.iter().all(is_valid) {
-            return Err(Stop::Invalid);
-        }
         let Some(in_order) = self.spans.fill(sets)? else { return Ok(false) };
-        let boxes = 0..in_order.len();
-        match self.helpers.threads::<O>(boxes.len()) {
-            Some(threads) if boxes.len() >= MIN_LOOKUPS_FOR_THREADS => {
-                threads.in_chunks(boxes, LOOKUPS_AT_A_TIME, sink, |boxes, sink| {
-                    in_order.run(boxes, task, sink)
-                })?;
-            }
-            _ => in_order.run(boxes, task, sink)?,
-        }
+        one_by_one(&in_order, &self.helpers, task, sink)?;
         Ok(true)
     }
 
@@ -154,21 +144,12 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
         if !may_pay(smaller, larger) {
             return Ok(false);
         }
-        if !sets.iter().all(is_valid) {
-            return Err(Stop::Invalid);
-        }
+        check(sets, task)?;
         self.sorter.sort(smaller, 0, &mut self.sorted[0])?;
         self.probe.sorted(smaller.len());
-        let Some(lookup) = self.table.fill(&self.sorted[0], larger)? else { return Ok(false) };
-        let boxes = 0..larger.len();
-        match self.helpers.threads::<O>(larger.len()) {
-            Some(threads) if larger.len() >= MIN_LOOKUPS_FOR_THREADS => {
-                threads.in_chunks(boxes, LOOKUPS_AT_A_TIME, sink, |boxes, sink| {
-                    lookup.run(larger, boxes, swap, task, sink)
-                })?;
-            }
-            _ => lookup.run(larger, boxes, swap, task, sink)?,
-        }
+        let lookup = self.table.fill(&self.sorted[0], larger, swap)?;
+        let Some(lookup) = lookup else { return Ok(false) };
+        one_by_one(&lookup, &self.helpers, task, sink)?;
         Ok(true)
     }
 
@@ -194,10 +175,7 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
-        // Nested searches have valid boxes.
-        if task.depth == 0 && !sets.iter().all(is_valid) {
-            return Err(Stop::Invalid);
-        }
+        check(sets, task)?;
         self.sort_and_sweep(sets, axis, usize::MAX, task, sink)?;
         task.done(1.0)
     }
@@ -364,6 +342,15 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
     fn sweep<'a>(&self, others: usize, task: Task<'a>) -> Sweep<'a> {
         Sweep { kernel: self.kernel, others, task }
     }
+}
+
+/// # Errors
+/// [`Stop::Invalid`] if a box is invalid, and this was not known to be otherwise.
+fn check<const D: usize, T: Scalar, S: Source<D, T>>(
+    sets: &[&[S]],
+    task: Task<'_>,
+) -> Result<(), Stop> {
+    if task.is_checked || sets.iter().all(is_valid) { Ok(()) } else { Err(Stop::Invalid) }
 }
 
 /// Whether all boxes of a set are valid. No branch depends on a box.

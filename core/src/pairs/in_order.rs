@@ -17,6 +17,7 @@ use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
 use core::ops::{ControlFlow, Range};
 
+use super::one_by_one::OneByOne;
 use super::sink::Sink;
 use super::source::Source;
 use super::task::{Progress, Stop, Task};
@@ -86,24 +87,13 @@ impl Spans {
     }
 }
 
-impl<S> InOrder<'_, S> {
-    /// How many boxes [`run`](Self::run) goes through.
-    pub fn len(&self) -> usize {
+impl<const D: usize, T: Scalar, S: Source<D, T>> OneByOne<D, T> for InOrder<'_, S> {
+    fn len(&self) -> usize {
         self.smaller.len()
     }
 
-    /// Sends the pairs of a range of the boxes to the sink.
-    pub fn run<const D: usize, T: Scalar, O: Sink>(
-        &self,
-        range: Range<usize>,
-        task: Task<'_>,
-        sink: &mut O,
-    ) -> Result<(), Stop>
-    where
-        S: Source<D, T>,
-    {
+    fn run<O: Sink>(&self, range: Range<usize>, task: Task<'_>, sink: &mut O) -> Result<(), Stop> {
         let Self { smaller, larger, .. } = *self;
-        let share = range.len() as f64 / smaller.len() as f64;
         let (mut out, mut count) = (sink.spare()?, 0);
         for i in range {
             let aabb = smaller[i].aabb();
@@ -145,8 +135,7 @@ impl<S> InOrder<'_, S> {
                 }
             }
         }
-        sink.take(count)?;
-        task.done(share)
+        sink.take(count)
     }
 }
 

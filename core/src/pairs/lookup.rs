@@ -20,6 +20,7 @@ use core::ops::{ControlFlow, Range};
 
 use super::grid::BLOCK;
 use super::kernel::{PAD, SortedBoxes};
+use super::one_by_one::OneByOne;
 use super::sink::Sink;
 use super::sort::intervals;
 use super::source::Source;
@@ -73,21 +74,25 @@ pub(super) struct Table {
     first: Vec<u32>,
 }
 
-/// The sorted boxes and their table.
-pub(super) struct Lookup<'a, T> {
+/// The sorted boxes and their table, and the boxes that look them up.
+pub(super) struct Lookup<'a, S, T> {
     boxes: &'a SortedBoxes<T>,
     first: &'a [u32],
     quantizer: Quantizer<T>,
+    larger: &'a [S],
+    /// Whether pairs begin with the sorted box.
+    swap: bool,
 }
 
 impl Table {
     /// For sorted boxes, at least one, which boxes of a larger set look up. None if too many tests would
-    /// fail.
+    /// fail. `swap`: the sorted ones are the first set.
     pub fn fill<'a, const D: usize, T: Scalar, S: Source<D, T>>(
         &'a mut self,
         boxes: &'a SortedBoxes<T>,
-        larger: &[S],
-    ) -> Result<Option<Lookup<'a, T>>, TryReserveError> {
+        larger: &'a [S],
+        swap: bool,
+    ) -> Result<Option<Lookup<'a, S, T>>, TryReserveError> {
         let (left, right) = (&boxes.left[..boxes.len()], &boxes.right[..boxes.len()]);
         let end = right.iter().fold(right[0], |end, &right| if right > end { right } else { end });
         let cells = 2 * left.len().next_power_of_two();
@@ -117,21 +122,17 @@ impl Table {
         let sample = positions(larger.len(), SAMPLED_BOXES);
         let few = MEAN_FAILED_TESTS * sample.len();
         let is_crowded = sample.map(failed).sum::<usize>() > few;
-        Ok((!is_crowded).then_some(Lookup { boxes, first, quantizer }))
+        Ok((!is_crowded).then_some(Lookup { boxes, first, quantizer, larger, swap }))
     }
 }
 
-impl<T: Scalar> Lookup<'_, T> {
-    /// Sends the pairs of a range of the larger set with the sorted boxes to the sink. `swap`: the sorted ones are
-    /// the first set.
-    pub fn run<const D: usize, S: Source<D, T>, O: Sink>(
-        &self,
-        larger: &[S],
-        range: Range<usize>,
-        swap: bool,
-        task: Task<'_>,
-        sink: &mut O,
-    ) -> Result<(), Stop> {
+impl<const D: usize, T: Scalar, S: Source<D, T>> OneByOne<D, T> for Lookup<'_, S, T> {
+    fn len(&self) -> usize {
+        self.larger.len()
+    }
+
+    fn run<O: Sink>(&self, range: Range<usize>, task: Task<'_>, sink: &mut O) -> Result<(), Stop> {
+        let Self { larger, swap, .. } = *self;
         let [left, right] = [&self.boxes.left, &self.boxes.right].map(|edges| &edges[..]);
         let mut first = [0; BLOCK];
         let (mut out, mut count) = (sink.spare()?, 0);
@@ -170,9 +171,6 @@ impl<T: Scalar> Lookup<'_, T> {
                     next += TESTED_AT_A_TIME;
                 }
             }
-            if task.progress.is_some() {
-                task.done(block.len() as f64 / larger.len() as f64)?;
-            }
         }
         sink.take(count)
     }
@@ -189,7 +187,7 @@ mod tests {
     fn pays(smaller: &[Aabb<1>], larger: &[Aabb<1>]) -> bool {
         let mut sorted = SortedBoxes::default();
         Sorter::default().sort(smaller, 0, &mut sorted).unwrap();
-        may_pay(smaller, larger) && Table::default().fill(&sorted, larger).unwrap().is_some()
+        may_pay(smaller, larger) && Table::default().fill(&sorted, larger, true).unwrap().is_some()
     }
 
     #[test]

@@ -94,6 +94,7 @@ mod hard_scenes;
 mod in_order;
 mod kernel;
 mod lookup;
+mod one_by_one;
 mod parallel;
 mod placements;
 mod plan;

@@ -54,16 +54,19 @@ pub(super) struct Task<'a> {
     pub depth: u32,
     /// How many boxes the innermost of them had.
     pub boxes: usize,
+    /// Whether all boxes are known to be valid.
+    pub is_checked: bool,
 }
 
 impl<'a> Task<'a> {
     pub fn new(pair_order: PairOrder, progress: Option<&'a Progress<'a>>) -> Self {
-        Self { pair_order, progress, share: 1.0, depth: 0, boxes: usize::MAX }
+        Self { pair_order, progress, share: 1.0, depth: 0, boxes: usize::MAX, is_checked: false }
     }
 
-    /// A task nested in this one, with a share of its work. Its plan has this many boxes.
+    /// A task nested in this one, with a share of its work. Its plan has this many boxes, all valid.
     pub fn nested(self, share: f64, boxes: usize) -> Self {
-        Self { depth: self.depth + 1, share: self.share * share, boxes, ..self }
+        let depth = self.depth + 1;
+        Self { depth, share: self.share * share, boxes, is_checked: true, ..self }
     }
 
     /// Adds a share of the task to the progress.

@@ -2,6 +2,7 @@
 //! differences of ranks. The pairs of brute force.
 
 use std::ops::ControlFlow;
+use std::sync::Mutex;
 
 use proptest::prelude::*;
 use sweep_and_prune::{Aabb, Error, PairFinder, Scalar};
@@ -188,4 +189,32 @@ fn lookups_can_be_cancelled() {
     assert_eq!(result.unwrap_err(), Error::Cancelled);
     let found = finder.find_between(&few, &many).unwrap().len();
     assert_eq!(found, pairwise(&few, &many).len());
+}
+
+#[test]
+fn progress_is_heard_of_on_the_way() {
+    let mut random = random();
+    let shuffled = intervals(60_000, 0.00001, &mut random);
+    let sorted = in_order(&shuffled);
+    let (few, few_sorted) = (&shuffled[..6000], in_order(&shuffled[..6000]));
+    let searches = [(&sorted[..], None), (&sorted, Some(&few_sorted[..])), (&shuffled, Some(few))];
+    for (first, second) in searches {
+        let shares = Mutex::new(Vec::new());
+        let report = |share: f64| {
+            shares.lock().unwrap().push(share);
+            ControlFlow::Continue(())
+        };
+        let mut finder = PairFinder::new();
+        let search = finder.search(first).progress(&report);
+        let go_on = |_: &[[u32; 2]]| ControlFlow::<()>::Continue(());
+        let found = match second {
+            Some(second) => search.against(second).for_each_chunk(go_on),
+            None => search.for_each_chunk(go_on),
+        };
+        assert!(found.is_ok());
+        let mut shares = shares.into_inner().unwrap();
+        shares.dedup();
+        assert!(shares.is_sorted() && shares.last() >= Some(&0.99), "{shares:?}");
+        assert!(shares.iter().filter(|&&share| share < 0.9).count() > 1, "{shares:?}");
+    }
 }
