@@ -6,9 +6,11 @@
 
 use alloc::vec::Vec;
 
-/// Asks for large pages behind the spare capacity of an array. The system may
-/// refuse, and nothing differs but time. Only whole large pages are asked for, so that no memory is
-/// taken that would not be anyway.
+/// Asks for large pages behind an array that is to fill its capacity, if they are at least as large as one. The system may
+/// refuse, and nothing differs but time.
+///
+/// All pages of the array are named: if only some were, the system could not move it to where it can grow, and growing it
+/// would copy it to new memory (300 million pairs were found in 10 s instead of 5).
 #[cfg(all(
     feature = "std",
     target_os = "linux",
@@ -20,17 +22,17 @@ pub fn enlarge_pages<V>(array: &mut Vec<V>) {
     unsafe extern "C" {
         fn madvise(address: *mut c_void, length: usize, advice: c_int) -> c_int;
     }
+    const PAGE: usize = 4 << 10;
     const LARGE: usize = 2 << 20;
     const MADV_HUGEPAGE: c_int = 14;
 
-    let spare = array.spare_capacity_mut().as_mut_ptr_range();
-    let start = spare.start.cast::<u8>();
-    let skipped = start.addr().next_multiple_of(LARGE) - start.addr();
-    let pages = (spare.end.addr() - spare.start.addr()).saturating_sub(skipped) / LARGE;
-    if pages > 0 {
-        // SAFETY: the range lies in the array's own allocation, and the advice changes neither what
-        // it holds nor whether it may be used. Whether it is followed does not matter.
-        unsafe { madvise(start.add(skipped).cast(), pages * LARGE, MADV_HUGEPAGE) };
+    let length = array.capacity() * size_of::<V>();
+    if length >= 2 * LARGE {
+        let before = array.as_ptr().addr() % PAGE;
+        let start = array.as_mut_ptr().cast::<u8>().wrapping_sub(before);
+        // SAFETY: each page of the range holds at least one byte of the array's own allocation, and the advice changes
+        // neither what the pages hold nor whether they may be used. Whether it is followed does not matter.
+        unsafe { madvise(start.cast(), (before + length).next_multiple_of(PAGE), MADV_HUGEPAGE) };
     }
 }
 
