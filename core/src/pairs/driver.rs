@@ -17,7 +17,7 @@ use super::crowding::{FEW_PROBES, better_plan, count_tests, most_records};
 use super::grid::Grid;
 use super::in_order::{Spans, is_sorted};
 use super::kernel::{Cursor, Kernel, SortedBoxes};
-use super::lookup::{Table, may_pay};
+use super::lookup::{Table, may_pay, move_long};
 use super::one_by_one::one_by_one;
 use super::parallel::{Helpers, Receiver};
 use super::placements::Placements;
@@ -48,7 +48,8 @@ pub(super) struct Driver<const D: usize, T: Scalar, P = ()> {
     pub kernel: Kernel,
     sorter: Sorter<T>,
     sorted: [SortedBoxes<T>; 2],
-    table: Table,
+    /// For lookups among boxes, or first among the short ones and then among the long ones.
+    tables: [Table; 2],
     spans: Spans,
     pub placements: Placements,
     /// Spare columns and groups by size, one for each level at which plans were ever nested, if memory allows.
@@ -66,7 +67,7 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
             kernel,
             sorter: Sorter::default(),
             sorted: Default::default(),
-            table: Table::default(),
+            tables: Default::default(),
             spans: Spans::default(),
             placements: Placements::default(),
             columns: Vec::new(),
@@ -79,9 +80,20 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
     /// The same buffers with another probe, and without helpers.
     #[cfg(feature = "std")]
     pub fn with_probe<Q: Probe>(self) -> Driver<D, T, Q> {
-        let Self { kernel, sorter, sorted, table, spans, placements, columns, groups, .. } = self;
+        let Self { kernel, sorter, sorted, tables, spans, placements, columns, groups, .. } = self;
         let (helpers, probe) = (Helpers::new(), Q::default());
-        Driver { kernel, sorter, sorted, table, spans, placements, columns, groups, helpers, probe }
+        Driver {
+            kernel,
+            sorter,
+            sorted,
+            tables,
+            spans,
+            placements,
+            columns,
+            groups,
+            helpers,
+            probe,
+        }
     }
 
     /// Sends all pairs within one set, or between two, to the sink. Sets that are searched by
@@ -145,11 +157,21 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
             return Ok(false);
         }
         check(sets, task)?;
-        self.sorter.sort(smaller, 0, &mut self.sorted[0])?;
+        let Self { sorter, sorted: [short, long], tables: [of_short, of_long], helpers, .. } = self;
+        sorter.sort(smaller, 0, short)?;
         self.probe.sorted(smaller.len());
-        let lookup = self.table.fill(&self.sorted[0], larger, swap)?;
-        let Some(lookup) = lookup else { return Ok(false) };
-        one_by_one(&lookup, &self.helpers, task, sink)?;
+        if let Some(lookup) = of_short.fill(short, larger, swap)? {
+            one_by_one(&lookup, helpers, task, sink)?;
+            return Ok(true);
+        }
+        if !move_long(short, long)? {
+            return Ok(false);
+        }
+        let lookups = [of_short.fill(short, larger, swap)?, of_long.fill(long, larger, swap)?];
+        let [Some(first), Some(second)] = lookups else { return Ok(false) };
+        let half = Task { share: task.share / 2.0, ..task };
+        one_by_one(&first, helpers, half, sink)?;
+        one_by_one(&second, helpers, half, sink)?;
         Ok(true)
     }
 

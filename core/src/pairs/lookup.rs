@@ -11,6 +11,9 @@
 //!         report the pair if they overlap
 //! ```
 //!
+//! One long box hides where those behind it end. So if too many tests would fail, the few long ones get a table of their
+//! own.
+//!
 //! All sorted boxes that begin within a box are its pairs, so a test can only fail for a sorted box that begins before
 //! it.
 
@@ -46,6 +49,10 @@ const MOST_FAILED_TESTS: usize = 1024;
 const MEAN_FAILED_TESTS: usize = 16;
 /// The size of that sample.
 const SAMPLED_BOXES: usize = 64;
+/// Boxes are long if so many others begin within one, where all are spread evenly.
+const OTHERS_IN_LONG: f64 = 16.0;
+/// Long boxes are few if there are at least this many others for each.
+const OTHERS_FOR_EACH_LONG: usize = 8;
 /// How many sorted boxes are tested at a time, without a branch. Behind the last box there is padding for this many.
 const TESTED_AT_A_TIME: usize = 4;
 const _: () = assert!(TESTED_AT_A_TIME <= PAD);
@@ -66,6 +73,34 @@ pub(super) fn may_pay<const D: usize, T: Scalar, S: Source<D, T>>(
     let (overlaps, drawn) = (sample().map(overlaps).sum::<usize>(), sample().len());
     // Half of the boxes that overlap a box begin before it. Each overlaps itself, too.
     (overlaps - overlaps.min(drawn)) / 2 * len <= 2 * MEAN_FAILED_TESTS * drawn * drawn
+}
+
+/// Moves the long ones of sorted boxes, at least one, to another list. Returns false, with all where they were, if there is
+/// none, or if they are not few.
+pub(super) fn move_long<T: Scalar>(
+    boxes: &mut SortedBoxes<T>,
+    long: &mut SortedBoxes<T>,
+) -> Result<bool, TryReserveError> {
+    let len = boxes.len();
+    let length = |from: T, to: T| to.to_f64() - from.to_f64();
+    let limit = OTHERS_IN_LONG * length(boxes.left[0], boxes.left[len - 1]) / len as f64;
+    let is_long =
+        |boxes: &SortedBoxes<T>, at: usize| length(boxes.left[at], boxes.right[at]) > limit;
+    let count = (0..len).filter(|&at| is_long(boxes, at)).count();
+    if count == 0 || len - count < OTHERS_FOR_EACH_LONG * count {
+        return Ok(false);
+    }
+    long.reset(count, 0)?;
+    let (mut moved, mut kept) = (0, 0);
+    for at in 0..len {
+        let (left, right, id) = (boxes.left[at], boxes.right[at], boxes.id[at]);
+        let (to, end) =
+            if is_long(boxes, at) { (&mut *long, &mut moved) } else { (&mut *boxes, &mut kept) };
+        (to.left[*end], to.right[*end], to.id[*end]) = (left, right, id);
+        *end += 1;
+    }
+    boxes.reset(kept, 0)?;
+    Ok(true)
 }
 
 /// Where to begin among the sorted boxes, for each cell of the line.
@@ -209,6 +244,24 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn a_few_long_boxes_have_a_table_of_their_own() {
+        let at = |at: usize, length: usize| Aabb::new([at as f32], [(at + length) as f32]);
+        let smaller: Vec<_> =
+            (0..1000).map(|i| at(i, if i % 200 == 7 { 400 } else { i % 3 })).collect();
+        let larger: Vec<_> = (0..9000).map(|i| at(i % 1000, 0)).collect();
+        assert!(!pays(&smaller, &larger));
+        let (mut short, mut long) = (SortedBoxes::default(), SortedBoxes::default());
+        Sorter::default().sort(&smaller, 0, &mut short).unwrap();
+        assert!(move_long(&mut short, &mut long).unwrap());
+        assert!(short.is_ready(0) && long.is_ready(0) && [short.len(), long.len()] == [995, 5]);
+        assert_eq!(long.id[..5], [7, 207, 407, 607, 807]);
+        for boxes in [&short, &long] {
+            assert!(Table::default().fill(boxes, &larger, true).unwrap().is_some());
+        }
+        assert!(!move_long(&mut long, &mut short).unwrap());
     }
 
     #[test]
