@@ -66,6 +66,15 @@ pub trait ArrayPairFinder: AnyPairFinder {
         progress: Progress<'_>,
     ) -> Result<Option<u64>, Error>;
 
+    /// How many boxes each box of set 0 overlaps; `None` if the search was cancelled. Stores no pairs.
+    #[allow(clippy::missing_errors_doc)]
+    fn counts(
+        &mut self,
+        a: usize,
+        b: Option<usize>,
+        progress: Progress<'_>,
+    ) -> Result<Option<Vec<u32>>, Error>;
+
     /// Uses at most `threads` threads from now on: without the feature `parallel`, one. Keeps what it can of the buffers.
     fn use_threads(&mut self, threads: usize);
 
@@ -159,6 +168,15 @@ impl<const D: usize, T: Scalar> ArrayPairFinder for TypedPairFinder<D, T> {
         progress: Progress<'_>,
     ) -> Result<Option<u64>, Error> {
         unless_cancelled(search(&mut self.finder, &self.sets, a, b).progress(progress).count())
+    }
+
+    fn counts(
+        &mut self,
+        a: usize,
+        b: Option<usize>,
+        progress: Progress<'_>,
+    ) -> Result<Option<Vec<u32>>, Error> {
+        unless_cancelled(search(&mut self.finder, &self.sets, a, b).progress(progress).counts())
     }
 
     fn take_pairs(&mut self) -> Vec<[u32; 2]> {

@@ -133,6 +133,14 @@ impl<const D: usize, T: Scalar> Case<'_, D, T> {
 
     fn count(&self, finder: &mut PairFinder<D, T>) {
         assert_eq!(self.search(finder).count().unwrap(), self.found.len() as u64);
+        let mut counts = vec![0; self.boxes.len()];
+        for &[first, second] in self.found {
+            counts[first as usize] += 1;
+            if self.against.is_none() {
+                counts[second as usize] += 1;
+            }
+        }
+        assert_eq!(self.search(finder).counts().unwrap(), counts);
     }
 
     /// Streams the pairs in chunks, and one by one until one in this many.
@@ -192,6 +200,7 @@ impl<const D: usize, T: Scalar> Case<'_, D, T> {
             Case { boxes: &sets[0], against: self.against.map(|_| &sets[1][..]), found, calls };
         assert_eq!(case.search(finder).pairs(), Err(error));
         assert_eq!(case.search(finder).count(), Err(error));
+        assert_eq!(case.search(finder).counts(), Err(error));
     }
 
     /// Searches a part of the boxes: a search of all boxes afterwards finds other buffers.

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use sweep_and_prune::Error;
 use sweep_and_prune_bindings::{ArrayPairFinder, Kind};
 
-use crate::arrays::{Array, Index, MANY, copy_boxes};
+use crate::arrays::{Array, Index, MANY, copy_boxes, numbers};
 use crate::errors::{busy, raise};
 use crate::run::{attach, call_back, processors, run};
 
@@ -112,6 +112,24 @@ impl Finder {
             });
             match counted {
                 Ok(Ok(count)) => Ok(count),
+                Ok(Err(error)) => Err(raise_for(py, error, sets)),
+                Err(error) => Err(search.fail(error)),
+            }
+        })
+    }
+
+    /// How many boxes each box of `a` overlaps.
+    #[pyo3(signature = (a, b=None))]
+    fn counts<'py>(&self, a: Array<'py>, b: Option<Array<'py>>) -> PyResult<Array<'py>> {
+        let py = a.py();
+        self.with(|search| {
+            let sets = search.copy(&a, b.as_ref())?;
+            let finder = &mut search.finder;
+            let counted = run(py, sets.boxes(), 1, None, |progress| {
+                finder.counts(sets.a, sets.b, progress).map(Option::unwrap_or_default)
+            });
+            match counted {
+                Ok(Ok(counts)) => numbers(py, counts.into_iter().map(i64::from)),
                 Ok(Err(error)) => Err(raise_for(py, error, sets)),
                 Err(error) => Err(search.fail(error)),
             }

@@ -1,4 +1,4 @@
-//! Counts the pairs of boxes on a line without finding them, in linear time however many there are.
+//! Counts the pairs of boxes on a line, of all boxes or of each, without finding them: in linear time however many there are.
 //!
 //! Two boxes are apart if one ends before the other begins. So it is enough to look up ranks among edges:
 //!
@@ -20,6 +20,7 @@ use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
 use core::ops::Range;
 
+use super::driver::is_valid;
 use super::grid::BLOCK;
 use super::parallel::Helpers;
 use super::sink::{Count, Sink};
@@ -46,171 +47,227 @@ const MIN_BOXES_FOR_THREADS: usize = 1 << 17;
 /// A thread looks up this many boxes at a time.
 const BOXES_AT_A_TIME: usize = 1 << 14;
 
-/// The edges of a set on one side, by cell.
+/// The edges of a set, ready to be looked up.
 #[derive(Debug, Default)]
 pub(super) struct Ranks<T> {
-    edges: Vec<T>,
+    begins: Edges<T>,
+    ends: Edges<T>,
+}
+
+/// The left edges of a set, or the right ones, by cell.
+#[derive(Debug, Default)]
+struct Edges<T> {
+    all: Vec<T>,
     /// Where each cell begins, and where the last one ends.
-    begins: Vec<u32>,
+    cells: Vec<u32>,
 }
 
-/// Which edges are ranked, and what is looked up among them.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Side {
-    /// Left edges, among which right edges are looked up: how many are not greater.
-    Begins,
-    /// Right edges, among which left edges are looked up: how many are less.
-    Ends,
-}
-
-/// The ranked edges of one set.
+/// What gives the rank of a coordinate among edges.
 struct Ranked<'a, T> {
     edges: &'a [T],
-    begins: &'a [u32],
+    cells: &'a [u32],
     quantizer: Quantizer<T>,
-    side: Side,
+}
+
+/// A set of boxes to look up, and the edges of another set, or the same.
+struct Line<'a, const D: usize, T> {
+    boxes: &'a [Aabb<D, T>],
+    begins: Ranked<'a, T>,
+    /// `None` if only those that begin in time are counted.
+    ends: Option<Ranked<'a, T>>,
 }
 
 impl<T: Scalar> Ranks<T> {
-    /// How many pairs there are within a set of valid boxes, or between two.
+    /// How many pairs there are within a set of boxes, or between two. No set is empty.
     ///
     /// # Errors
-    /// [`Stop::Memory`], [`Stop::Cancelled`].
+    /// A [`Stop`].
     pub fn pairs<const D: usize, W>(
         &mut self,
         sets: &[&[Aabb<D, T>]],
         task: Task<'_>,
         helpers: &Helpers<W>,
     ) -> Result<u64, Stop> {
-        let [larger, smaller] = match *sets {
-            [first, second] if first.len() < second.len() => [second, first],
-            [first, .., second] => [first, second],
-            _ => [sets[0]; 2],
-        };
-        let task = Task { share: task.share / sets.len() as f64, ..task };
-        let begin = self.rank(smaller, Side::Begins)?.sum_all(larger, task, helpers)?;
-        let not_pairs = if sets.len() == 2 {
-            self.rank(smaller, Side::Ends)?.sum_all(larger, task, helpers)?
-        } else {
-            let count = larger.len() as u64;
-            count * (count + 1) / 2
-        };
-        Ok(begin - not_pairs)
+        match *sets {
+            [first, second] => {
+                let swap = first.len() < second.len();
+                let [larger, smaller] = if swap { [second, first] } else { [first, second] };
+                self.line(larger, smaller, true)?.sum_all(task, helpers)
+            }
+            _ => {
+                let begun = self.line(sets[0], sets[0], false)?.sum_all(task, helpers)?;
+                let count = sets[0].len() as u64;
+                Ok(begun - count * (count + 1) / 2)
+            }
+        }
     }
 
-    /// Ranks edges of valid boxes, at least one. O(n) time where edges are spread, O(n log n) at most.
+    /// Counts for each box of the first set those of the second that overlap it; within one set, the other boxes. No
+    /// set is empty.
+    ///
+    /// # Errors
+    /// A [`Stop`].
+    pub fn counts<const D: usize>(
+        &mut self,
+        sets: &[&[Aabb<D, T>]],
+        task: Task<'_>,
+    ) -> Result<Vec<u32>, Stop> {
+        let (boxes, others) = (sets[0], sets[sets.len() - 1]);
+        let mut counts = Vec::new();
+        counts.try_reserve_exact(boxes.len())?;
+        let itself = u32::from(sets.len() == 1);
+        let line = self.line(boxes, others, true)?;
+        line.each(0..boxes.len(), task, |count| counts.push(count - itself))?;
+        Ok(counts)
+    }
+
+    /// Ranks the edges of `others`, which `boxes` will look up.
+    ///
+    /// # Errors
+    /// [`Stop::Memory`], and [`Stop::Invalid`] if one of `others` is.
+    fn line<'a, const D: usize>(
+        &'a mut self,
+        boxes: &'a [Aabb<D, T>],
+        others: &[Aabb<D, T>],
+        has_ends: bool,
+    ) -> Result<Line<'a, D, T>, Stop> {
+        if !is_valid(&others) {
+            return Err(Stop::Invalid);
+        }
+        let begins = self.begins.rank(others, |aabb| aabb.min[0])?;
+        let ends = has_ends.then(|| self.ends.rank(others, |aabb| aabb.max[0])).transpose()?;
+        Ok(Line { boxes, begins, ends })
+    }
+}
+
+impl<T: Scalar> Edges<T> {
+    /// Ranks an edge of each box, at least one. O(n) time where edges are spread, O(n log n) at most.
     ///
     /// # Errors
     /// If there is not enough memory.
     fn rank<const D: usize>(
         &mut self,
         boxes: &[Aabb<D, T>],
-        side: Side,
+        edge: impl Fn(&Aabb<D, T>) -> T,
     ) -> Result<Ranked<'_, T>, TryReserveError> {
-        let edge = |aabb: &Aabb<D, T>| if side == Side::Begins { aabb.min[0] } else { aabb.max[0] };
         let count = boxes.len().next_power_of_two().min(MOST_CELLS);
         let quantizer = intervals(reach(boxes.len(), |at| edge(&boxes[at])), count);
         let cell = |at: T| T::Arithmetic::cell(at, &quantizer) as usize;
-        grow(&mut self.begins, count + 1, 0)?;
-        grow(&mut self.edges, boxes.len() + COMPARED_EDGES, T::default())?;
-        let begins = &mut self.begins[..=count];
-        begins.fill(0);
-        boxes.iter().for_each(|aabb| begins[cell(edge(aabb))] += 1);
+        grow(&mut self.cells, count + 1, 0)?;
+        grow(&mut self.all, boxes.len() + COMPARED_EDGES, T::default())?;
+        let cells = &mut self.cells[..=count];
+        cells.fill(0);
+        boxes.iter().for_each(|aabb| cells[cell(edge(aabb))] += 1);
         let (mut total, mut most) = (0, 0);
-        for begin in &mut *begins {
+        for begin in &mut *cells {
             most = most.max(*begin);
             total += *begin;
             *begin = total;
         }
         // From the end of each cell to where it begins.
-        for edge in boxes.iter().map(edge) {
-            let begin = &mut begins[cell(edge)];
+        for edge in boxes.iter().map(&edge) {
+            let begin = &mut cells[cell(edge)];
             *begin -= 1;
-            self.edges[*begin as usize] = edge;
+            self.all[*begin as usize] = edge;
         }
         if most as usize > COMPARED_EDGES {
-            for cell in begins.windows(2).filter(|cell| is_crowded(cell[0], cell[1])) {
-                let edges = &mut self.edges[cell[0] as usize..cell[1] as usize];
+            for cell in cells.windows(2).filter(|cell| is_crowded(cell[0], cell[1])) {
+                let edges = &mut self.all[cell[0] as usize..cell[1] as usize];
                 edges.sort_unstable_by(|a, b| a.order(*b));
             }
         }
-        let edges = &mut self.edges[..boxes.len() + COMPARED_EDGES];
+        let edges = &mut self.all[..boxes.len() + COMPARED_EDGES];
         // Not less than anything, nor equal.
         edges[boxes.len()..].fill(T::from_f64(f64::NAN));
-        Ok(Ranked { edges, begins, quantizer, side })
+        Ok(Ranked { edges, cells, quantizer })
+    }
+}
+
+impl<const D: usize, T: Scalar> Line<'_, D, T> {
+    /// The sum of the counts of all boxes.
+    ///
+    /// # Errors
+    /// A [`Stop`].
+    fn sum_all<W>(&self, task: Task<'_>, helpers: &Helpers<W>) -> Result<u64, Stop> {
+        let all = 0..self.boxes.len();
+        match helpers.threads::<Count>(all.len()) {
+            // Elsewhere the sum of a chunk may not fit.
+            Some(threads) if all.len() >= MIN_BOXES_FOR_THREADS && usize::BITS == 64 => {
+                let mut count = Count::default();
+                threads.in_chunks(all, BOXES_AT_A_TIME, &mut count, |range, sink| {
+                    sink.take(self.sum(range, task)? as usize)
+                })?;
+                Ok(count.count)
+            }
+            _ => self.sum(all, task),
+        }
+    }
+
+    /// The sum of the counts of a range of boxes.
+    ///
+    /// # Errors
+    /// [`Stop::Invalid`], [`Stop::Cancelled`].
+    fn sum(&self, range: Range<usize>, task: Task<'_>) -> Result<u64, Stop> {
+        let mut sum = 0;
+        self.each(range, task, |count| sum += u64::from(count))?;
+        Ok(sum)
+    }
+
+    /// Passes on for each box of a range how many others begin before its end, or there, without those that end before it
+    /// begins.
+    ///
+    /// # Errors
+    /// [`Stop::Invalid`], [`Stop::Cancelled`].
+    #[inline(always)]
+    fn each(
+        &self,
+        range: Range<usize>,
+        task: Task<'_>,
+        mut take: impl FnMut(u32),
+    ) -> Result<(), Stop> {
+        let mut counts = [0; BLOCK];
+        for block in self.boxes[range].chunks(BLOCK) {
+            if !is_valid(&block) {
+                return Err(Stop::Invalid);
+            }
+            let ends = block.iter().map(|aabb| aabb.max[0]);
+            self.begins.look_up(ends, |edge, end| edge <= end, |at, rank| counts[at] = rank);
+            if let Some(ranked) = &self.ends {
+                let begins = block.iter().map(|aabb| aabb.min[0]);
+                ranked.look_up(begins, |edge, begin| edge < begin, |at, rank| counts[at] -= rank);
+            }
+            counts[..block.len()].iter().for_each(|&count| take(count));
+            if task.progress.is_some() {
+                task.done(block.len() as f64 / self.boxes.len() as f64)?;
+            }
+        }
+        Ok(())
     }
 }
 
 impl<T: Scalar> Ranked<'_, T> {
-    /// The sum of the ranks of all boxes.
-    ///
-    /// # Errors
-    /// [`Stop::Memory`], [`Stop::Cancelled`].
-    fn sum_all<const D: usize, W>(
-        &self,
-        boxes: &[Aabb<D, T>],
-        task: Task<'_>,
-        helpers: &Helpers<W>,
-    ) -> Result<u64, Stop> {
-        let all = 0..boxes.len();
-        match helpers.threads::<Count>(boxes.len()) {
-            // Elsewhere the sum of a chunk may not fit.
-            Some(threads) if boxes.len() >= MIN_BOXES_FOR_THREADS && usize::BITS == 64 => {
-                let mut count = Count::default();
-                threads.in_chunks(all, BOXES_AT_A_TIME, &mut count, |range, sink| {
-                    sink.take(self.sum(boxes, range, task)? as usize)
-                })?;
-                Ok(count.count)
-            }
-            _ => self.sum(boxes, all, task),
-        }
-    }
-
-    /// The sum of the ranks of a range of boxes.
-    ///
-    /// # Errors
-    /// [`Stop::Cancelled`].
-    fn sum<const D: usize>(
-        &self,
-        boxes: &[Aabb<D, T>],
-        range: Range<usize>,
-        task: Task<'_>,
-    ) -> Result<u64, Stop> {
-        let mut sum = 0;
-        let mut looked_up = [T::default(); BLOCK];
-        let mut cells = [0; BLOCK];
-        for block in boxes[range].chunks(BLOCK) {
-            let begins = self.side == Side::Begins;
-            for (at, aabb) in looked_up.iter_mut().zip(block) {
-                *at = if begins { aabb.max[0] } else { aabb.min[0] };
-            }
-            for (cell, at) in cells.iter_mut().zip(&looked_up) {
-                *cell = T::Arithmetic::cell(*at, &self.quantizer);
-            }
-            let looked_up = cells.iter().zip(&looked_up).take(block.len());
-            sum += if begins {
-                looked_up.map(|(&cell, &at)| self.count(cell, |edge| edge <= at)).sum::<u64>()
-            } else {
-                looked_up.map(|(&cell, &at)| self.count(cell, |edge| edge < at)).sum::<u64>()
-            };
-            if task.progress.is_some() {
-                task.done(block.len() as f64 / boxes.len() as f64)?;
-            }
-        }
-        Ok(sum)
-    }
-
-    /// How many edges are less than a coordinate of a cell.
+    /// Passes on for each of a block of coordinates how many edges are less than it.
     #[inline(always)]
-    fn count(&self, cell: u32, is_less: impl Fn(T) -> bool) -> u64 {
-        let [begin, end] = [self.begins[cell as usize], self.begins[cell as usize + 1]];
-        let edges = &self.edges[begin as usize..];
-        let less = if is_crowded(begin, end) {
-            edges[..(end - begin) as usize].partition_point(|&edge| is_less(edge))
-        } else {
-            edges[..COMPARED_EDGES].iter().map(|&edge| usize::from(is_less(edge))).sum()
-        };
-        u64::from(begin) + less as u64
+    fn look_up(
+        &self,
+        coordinates: impl Iterator<Item = T> + Clone,
+        is_less: impl Fn(T, T) -> bool,
+        mut take: impl FnMut(usize, u32),
+    ) {
+        let mut cells = [0; BLOCK];
+        for (cell, at) in cells.iter_mut().zip(coordinates.clone()) {
+            *cell = T::Arithmetic::cell(at, &self.quantizer);
+        }
+        for (place, (&cell, at)) in cells.iter().zip(coordinates).enumerate() {
+            let [begin, end] = [self.cells[cell as usize], self.cells[cell as usize + 1]];
+            let edges = &self.edges[begin as usize..];
+            let less = if is_crowded(begin, end) {
+                edges[..(end - begin) as usize].partition_point(|&edge| is_less(edge, at)) as u32
+            } else {
+                edges[..COMPARED_EDGES].iter().map(|&edge| u32::from(is_less(edge, at))).sum()
+            };
+            take(place, begin + less);
+        }
     }
 }
 
@@ -254,9 +311,9 @@ mod tests {
         for far in [1.0, 1e20, 1e300, f64::INFINITY] {
             let edges = (0..10_000).map(place).chain([far, -far]);
             let boxes: Vec<_> = edges.map(|at| Aabb::new([at], [at])).collect();
-            let mut ranks = Ranks::default();
-            let ranked = ranks.rank(&boxes, Side::Ends).expect("memory");
-            let counts = ranked.begins.windows(2).map(|cell| cell[1] - cell[0]);
+            let mut edges = Edges::default();
+            let ranked = edges.rank(&boxes, |aabb| aabb.max[0]).expect("memory");
+            let counts = ranked.cells.windows(2).map(|cell| cell[1] - cell[0]);
             assert!(counts.max() < Some(16), "{far}");
         }
     }

@@ -1,12 +1,13 @@
 //! One search: its options, and the ways to receive its pairs.
 
+use alloc::vec::Vec;
 use core::fmt;
 #[cfg(feature = "std")]
 use core::mem::replace;
 use core::ops::ControlFlow;
 
 use super::brute::{is_brute_force, is_few, send_few};
-use super::driver::{Driver, is_valid};
+use super::driver::Driver;
 use super::kernel::{Kernel, PairOrder};
 #[cfg(feature = "std")]
 use super::parallel::Helpers;
@@ -136,10 +137,51 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
         let both = [boxes, against.unwrap_or(boxes)];
         let sets = if against.is_some() { &both[..] } else { &both[..1] };
         if D == 1 && !is_brute_force(sets) && sets.iter().all(|set| !set.is_empty()) {
-            return count_on_line(driver, ranks, sets, progress);
+            return on_line(sets, progress, |task| ranks.pairs(sets, task, &driver.helpers));
         }
         run(driver, boxes, against, progress, count)?;
         Ok(count.count)
+    }
+
+    /// Counts for each box of the first set the boxes of the other set that overlap it; within one set, the other boxes. Stores
+    /// no pairs. In 1D it does not find them either: O(n) time where boxes are spread, however many pairs there are. One thread.
+    ///
+    /// # Errors
+    /// As [`pairs`](Self::pairs).
+    ///
+    /// ```
+    /// use sweep_and_prune::{Aabb, PairFinder};
+    ///
+    /// let reads = [Aabb::new([0.0], [5.0]), Aabb::new([6.0], [9.0]), Aabb::new([20.0], [30.0])];
+    /// let genes = [Aabb::new([1.0], [2.0]), Aabb::new([4.0], [7.0])];
+    /// let mut finder = PairFinder::new();
+    /// assert_eq!(finder.search(&reads).against(&genes).counts()?, [2, 1, 0]);
+    /// assert_eq!(finder.search(&genes).counts()?, [0, 0]);
+    /// # Ok::<(), sweep_and_prune::Error>(())
+    /// ```
+    pub fn counts(self) -> Result<Vec<u32>, Error> {
+        let is_one = self.against.is_none();
+        if D == 1 {
+            let both = [self.boxes, self.against.unwrap_or(self.boxes)];
+            let sets = if is_one { &both[..1] } else { &both[..] };
+            if sets.iter().all(|set| !set.is_empty()) {
+                let Buffers { ranks, .. } = self.buffers;
+                return on_line(sets, self.progress, |task| ranks.counts(sets, task));
+            }
+        }
+        let mut counts = Vec::new();
+        counts.try_reserve_exact(self.boxes.len()).map_err(|_| Error::OutOfMemory)?;
+        counts.resize(self.boxes.len(), 0);
+        let end = self.for_each_chunk(|pairs| {
+            for &[a, b] in pairs {
+                counts[a as usize] += 1;
+                if is_one {
+                    counts[b as usize] += 1;
+                }
+            }
+            ControlFlow::<()>::Continue(())
+        });
+        end.map(|_| counts)
     }
 
     /// Calls `each` with every pair, in the order of [`pairs`](Self::pairs), until it breaks. Stores
@@ -286,21 +328,19 @@ fn run<const D: usize, T: Scalar, P: Probe, O: Receiver>(
     run_many(driver, sets, pair_order, progress, sink)
 }
 
-/// Counts the pairs within a set of boxes on a line, or between two.
+/// Counts something of one or two sets of boxes on a line, which may be invalid.
 #[inline(never)]
-fn count_on_line<const D: usize, T: Scalar>(
-    driver: &mut Driver<D, T>,
-    ranks: &mut Ranks<T>,
+fn on_line<const D: usize, T: Scalar, R>(
     sets: &[&[Aabb<D, T>]],
     progress: Option<ProgressCallback<'_>>,
-) -> Result<u64, Error> {
+    count: impl FnOnce(Task<'_>) -> Result<R, Stop>,
+) -> Result<R, Error> {
     sets.iter().try_for_each(|set| check_count(set.len()))?;
-    if !sets.iter().all(is_valid) {
-        check(sets)?;
-    }
     let progress = progress.map(Progress::new);
-    let task = Task::new(PairOrder::BySet, progress.as_ref());
-    ranks.pairs(sets, task, &driver.helpers).map_err(error)
+    count(Task::new(PairOrder::BySet, progress.as_ref())).map_err(|stop| {
+        let invalid = if stop == Stop::Invalid { check(sets) } else { Ok(()) };
+        invalid.err().unwrap_or_else(|| error(stop))
+    })
 }
 
 /// Checks what the driver does not check, and searches.

@@ -31,6 +31,8 @@ fn check<T: Scalar>(a: &[Aabb<1, T>], b: &[Aabb<1, T>]) {
         let within: Vec<_> = within.collect();
         let mut finder = PairFinder::new();
         assert_eq!(finder.search(set).count(), Ok(within.len() as u64));
+        let both = within.iter().flatten();
+        assert_eq!(finder.search(set).counts(), Ok(counted(both, set.len())));
         let mut found = finder.find(set).unwrap().to_vec();
         found.sort_unstable();
         assert!(found == within);
@@ -38,6 +40,13 @@ fn check<T: Scalar>(a: &[Aabb<1, T>], b: &[Aabb<1, T>]) {
     check_between(a, b);
     check_between(&sorted[0], &sorted[1]);
     check_between(&sorted[0], b);
+}
+
+/// How often each index comes.
+fn counted<'a>(indices: impl Iterator<Item = &'a u32>, len: usize) -> Vec<u32> {
+    let mut counts = vec![0; len];
+    indices.for_each(|&index| counts[index as usize] += 1);
+    counts
 }
 
 /// All ways to receive the pairs between two sets, with either one first.
@@ -49,6 +58,8 @@ fn check_between<T: Scalar>(a: &[Aabb<1, T>], b: &[Aabb<1, T>]) {
         sorted.sort_unstable();
         assert!(sorted == pairwise(a, b), "{} {}", a.len(), b.len());
         assert_eq!(finder.search(a).against(b).count(), Ok(found.len() as u64));
+        let firsts = found.iter().map(|[first, _]| first);
+        assert_eq!(finder.search(a).against(b).counts(), Ok(counted(firsts, a.len())));
         let mut streamed = Vec::new();
         let take = |pairs: &[[u32; 2]]| {
             streamed.extend_from_slice(pairs);
@@ -138,6 +149,18 @@ fn edges_anywhere_are_counted() {
     check(&[Aabb::new([-0.0], [0.0]); 300], &[Aabb::new([0.0], [-0.0]); 200]);
 }
 
+#[test]
+fn few_boxes_and_none_are_counted() {
+    let boxes = [Aabb::new([0.0], [2.0]), Aabb::new([2.0], [3.0]), Aabb::new([5.0], [5.0])];
+    for end in 0..=3 {
+        check(&boxes[..end], &boxes);
+        check(&boxes, &boxes[end..]);
+    }
+    let invalid = Aabb::new([1.0], [0.0]);
+    let counts = PairFinder::new().search(&[boxes[0], invalid]).counts();
+    assert!(matches!(counts, Err(Error::InvalidBox { set: 0, index: 1, .. })), "{counts:?}");
+}
+
 /// Enough to look up on threads.
 #[test]
 #[cfg(feature = "parallel")]
@@ -171,6 +194,8 @@ fn an_invalid_interval_is_named_before_any_pair() {
             assert!(is_named, "{result:?}");
             let count = PairFinder::new().search(&sets[0]).against(&sets[1]).count();
             assert_eq!(count, result.map(|_| 0));
+            let counts = PairFinder::new().search(&sets[0]).against(&sets[1]).counts();
+            assert_eq!(counts, result.map(|_| Vec::new()));
         }
     }
 }

@@ -165,6 +165,9 @@ fn check<const D: usize, T: Scalar>(name: &str, boxes: &[Aabb<D, T>]) {
         ControlFlow::<()>::Continue(())
     });
     assert!(flow == Ok(ControlFlow::Continue(())) && streamed == found, "{name}, {D}D, streamed");
+    let mut counts = vec![0; boxes.len()];
+    found.iter().flatten().for_each(|&index| counts[index as usize] += 1);
+    assert!(PairFinder::new().search(boxes).counts() == Ok(counts), "{name}, {D}D, counts");
 }
 
 fn check_between<const D: usize, T: Scalar>(name: &str, a: &[Aabb<D, T>], b: &[Aabb<D, T>]) {
@@ -178,6 +181,9 @@ fn check_between<const D: usize, T: Scalar>(name: &str, a: &[Aabb<D, T>], b: &[A
         assert!(finder.find_between(a, b).unwrap() == found, "{name}, {D}D, {with}");
         assert_eq!(finder.search(a).against(b).count(), Ok(found.len() as u64), "{name}, {with}");
     }
+    let mut counts = vec![0; a.len()];
+    found.iter().for_each(|&[first, _]| counts[first as usize] += 1);
+    assert!(PairFinder::new().search(a).against(b).counts() == Ok(counts), "{name}, {D}D, counts");
     let mut streamed = Vec::new();
     let flow = PairFinder::new().search(a).against(b).for_each(|pair| {
         streamed.push(pair);
@@ -443,6 +449,7 @@ fn refuses_one_bad_axis<const D: usize, T: Scalar>() {
             for (_, mut finder) in finders::<D, T>() {
                 assert_eq!(finder.find(&boxes), Err(error));
                 assert_eq!(finder.search(&boxes).count(), Err(error));
+                assert_eq!(finder.search(&boxes).counts(), Err(error));
                 assert_eq!(finder.find_between(&boxes, &boxes[..900]), Err(error));
             }
         }

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._arrays import read_boxes, same_width
 from ._columns import in_one_unit, one_type
 from ._native import ranks
-from ._pairs import Groups, Margin, one_set, stream, two_sets
+from ._pairs import Groups, Margin, counts_of, one_set, stream, two_sets
 from ._prepare import Prepared, one_kind, refuse_inverted
 from ._wrap import checked_wrap, length_on_circle, shared_length, without_crossings
 
@@ -49,8 +49,8 @@ def count_overlaps(
 ) -> NDArray[np.int64]:
     """Counts for each box of `a` the boxes of `b` that overlap it; without `b`, the other boxes of `a`.
 
-    No pairs are stored. For intervals not even looked at: their starts and ends are sorted, so that the time is
-    O(n log n) however many overlap. For boxes of two or three dimensions, the time is that of `find_pairs`.
+    No pairs are stored. Those of intervals are not even looked at: the time is O(n) where intervals are spread, and
+    O(n log n) at most, however many overlap. For boxes of two or three dimensions, it is that of `find_pairs`.
 
     Args:
         a: `(n, 2 * D)` numbers, or another form that `find_pairs` accepts.
@@ -75,25 +75,35 @@ def count_overlaps(
     array([1, 1, 0])
     """
     if b is None:
-        prepared = one_set(a, format, closed, missing, by, margin, wrap)
+        prepared = one_set(a, format, closed, missing, by, margin, wrap, fold=True)
     else:
-        prepared = two_sets(a, b, format, closed, missing, by, margin, wrap)
-    rows = prepared.lengths[0]
-    counts = np.zeros(rows, np.int64)
-    if prepared.sets[0].shape[1] == (2 if by is None else 4) and wrap is None:
-        counts[slice(None) if prepared.kept[0] is None else prepared.kept[0]] = _counts_of_intervals(prepared)
-        return counts
+        prepared = two_sets(a, b, format, closed, missing, by, margin, wrap, fold=True)
+    if not prepared.is_filtered:
+        are_grouped_intervals = by is not None and prepared.sets[0].shape[1] == 4  # the second axis is the group
+        found = _counts_of_groups(prepared) if are_grouped_intervals else counts_of(prepared)
+        return _of_all_rows(found, prepared)
+    counts = np.zeros(prepared.lengths[0], np.int64)
 
     def add(pairs: NDArray[Any]) -> None:
-        counts[:] += np.bincount(pairs[:, 0], minlength=rows)
+        counts[:] += np.bincount(pairs[:, 0], minlength=len(counts))
         if b is None:
-            counts[:] += np.bincount(pairs[:, 1], minlength=rows)
+            counts[:] += np.bincount(pairs[:, 1], minlength=len(counts))
 
     stream(prepared, add, _CHUNK, np.int64)
     return counts
 
 
-def _counts_of_intervals(prepared: Prepared) -> NDArray[np.int64]:
+def _of_all_rows(counts: NDArray[np.int64], prepared: Prepared) -> NDArray[np.int64]:
+    """The counts of all rows that were passed, given those of the ones that were kept."""
+    kept = prepared.kept[0]
+    if kept is None:
+        return counts
+    every = np.zeros(prepared.lengths[0], np.int64)
+    every[kept] = counts
+    return every
+
+
+def _counts_of_groups(prepared: Prepared) -> NDArray[np.int64]:
     """Those that begin before the end of an interval, without those that end before its start."""
     check_intervals(prepared)
     keys = line_keys(prepared.sets)

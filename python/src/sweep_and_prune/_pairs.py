@@ -10,7 +10,7 @@ from threading import Thread, local
 from typing import Any, TypeVar, Union
 
 import numpy as np
-from numpy.typing import ArrayLike, DTypeLike
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ._arrays import Floats, Pairs, box_rows, float_dtype, index_dtype, thread_count, whole
 from ._native import Finder
@@ -657,6 +657,11 @@ def _count(prepared: Prepared, threads: int | None, progress: Progress | None) -
         return len(find(prepared, threads, np.int64, progress))
     count = _search(prepared, threads, lambda finder: finder.count(*_arguments(prepared), _checked(progress)))
     return _done(count, progress)
+
+
+def counts_of(prepared: Prepared) -> NDArray[np.int64]:
+    """For each box of the first set that is searched, how many others it overlaps. No pair is filtered."""
+    return _search(prepared, 1, lambda finder: finder.counts(*_arguments(prepared)))
 
 
 def stream(prepared: Prepared, each: _Each, size: int, dtype: DTypeLike) -> bool:
