@@ -8,7 +8,8 @@
 //! long as finding all pairs where few boxes overlap. Only where most bodies are new and static, since a level was loaded,
 //! the update puts these to sleep and builds it at once. When many leave theirs, the finder finds all candidates
 //! (`rebuild`). Where that happens again and again, fat AABBs do not pay, and for some updates all pairs of the
-//! boxes themselves are found and compared with those of the last update (`from_scratch`). A few fast bodies
+//! boxes themselves are found and compared with those of the last update (`from_scratch`); so it is where updates keep reading
+//! more of the tree than that takes, in heaps. A few fast bodies
 //! among many that rest are kept out of the tree, and searched among themselves (`flights`).
 //!
 //! Neither fat AABBs nor the strategy can be seen in the results. A pair is live if the last update knew
@@ -82,7 +83,7 @@ fn find_events<const D: usize, T: Scalar>(
     if changed > 0 && !has_tree && tracking.policy.skips_tracking(changed, live) {
         from_scratch::from_scratch(bodies, tracking, events, may_fly)?;
     } else if changed > 0 {
-        tracking.candidates.unsort()?;
+        tracking.candidates.list()?;
         collect::collect_escaped(bodies, tracking);
         let flights = tracking.choose_flying(bodies, has_tree);
         let escaped = tracking.scratch.escaped.len() - flights;
@@ -93,6 +94,8 @@ fn find_events<const D: usize, T: Scalar>(
         }
         if rebuilds || !incremental::incremental(bodies, tracking, events, flights, may_fly) {
             order = rebuild::rebuild(bodies, tracking, events)?;
+        } else if tracking.policy.reads_too_much(changed, live) {
+            order = Reorder::Later;
         }
         for pairs in [&mut events.begun, &mut events.ended] {
             bodies.slots.to_slots(pairs);

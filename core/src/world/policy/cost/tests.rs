@@ -66,3 +66,35 @@ fn bodies_that_fly_among_many_pairs_cost_too_much_before_they_read_as_many() {
         assert_eq!(policy.may_fly(20, BODIES), may_fly, "{reads}");
     }
 }
+
+/// How many of these updates, each with so many reads and as many changes, tracking takes before it is skipped.
+fn updates_that_read(reads: impl IntoIterator<Item = usize>) -> (usize, Policy) {
+    let mut policy = Policy::default();
+    policy.note_overlaps(10 * BODIES);
+    for (update, reads) in reads.into_iter().enumerate() {
+        policy.note_reads(reads, 0, BODIES);
+        if policy.reads_too_much(BODIES / 20, BODIES) {
+            return (update + 1, policy);
+        }
+    }
+    (usize::MAX, policy)
+}
+
+#[test]
+fn where_updates_keep_reading_too_much_tracking_is_skipped() {
+    let dear = 2 * BODIES;
+    let (updates, mut policy) = updates_that_read([dear; 99]);
+    assert_eq!(updates, DEAR_UPDATES);
+    assert!(policy.skips_tracking(BODIES / 20, BODIES) && !policy.may_fly(1, BODIES));
+    // Fewer bodies change.
+    assert!(!policy.skips_tracking(BODIES / 50, BODIES));
+    assert!(!policy.skips_tracking(BODIES / 20, BODIES));
+
+    assert_eq!(updates_that_read([BODIES; 99]).0, usize::MAX);
+    let falling = (0..99).map(|update| dear * (100 - update) / 50);
+    assert_eq!(updates_that_read(falling.take(DEAR_UPDATES)).0, DEAR_UPDATES);
+    let falling = (0..99).map(|update| dear * (40_usize.saturating_sub(update)) / 20);
+    assert_eq!(updates_that_read(falling).0, usize::MAX);
+    let interrupted = (0..99).map(|update| if update % 10 == 9 { 0 } else { dear });
+    assert_eq!(updates_that_read(interrupted).0, usize::MAX);
+}
