@@ -185,7 +185,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     ///
     /// Takes time in proportion to the bodies that changed and their neighbors. If all bodies fly, or some
     /// jump anywhere, it takes 1.2 to 2.3 times as long as finding all pairs (10,000 to 1,000,000 bodies). After a level
-    /// was loaded, if most bodies are new and static, the next update takes about 3 times as long as finding all pairs,
+    /// was loaded, if most bodies are new and static, the next update takes 2 to 3 times as long as finding all pairs,
     /// so that no later one is late.
     /// The result borrows the world mutably; [`changes`](Self::changes) gives the same by a shared borrow.
     ///

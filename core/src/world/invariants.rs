@@ -14,19 +14,18 @@
 //! | `FLYING`, `flying` | an update in which it was fast | an update in which it is slow, or queries | the tree is fresh and does not hold it |
 //! | `fat` | an update in which it left its own | the same | contains the box of the last update, unless `is_fat_stale` |
 //! | `tree_state` | updates and queries | updates that replace all fat AABBs | unless unbuilt, the tree holds all bodies that are not `NEW` and do not fly |
-//! | `candidates.pairs` | updates | updates | pairs of fat AABBs that overlap, at least one body of each awake, with a flag that says whether they are a pair |
-//! | `candidates.asleep` | the end of an update | updates in which one wakes | those whose bodies are still both asleep are pairs |
-//! | `candidates.sorted` | updates from scratch | the next other update | all pairs, sorted; no other list, no body asleep, and indices are slots |
+//! | `candidates.listed()` | updates | updates | pairs of fat AABBs that overlap, at least one body of each awake, with a flag that says whether they are a pair |
+//! | `candidates.asleep_pairs()` | the end of an update | updates in which one wakes | they are pairs |
+//! | `candidates.sorted()` | updates from scratch | the next other update | all pairs, sorted; none is listed, no body asleep, and indices are slots |
 //! | `MARKED`, `is_escaped`, `is_changed` | one call | the same call | nothing between calls |
 //!
 //! The fuzzer asks [`broken`] after each call, and the tests of the model after each update. It takes O(bodies + candidates)
 //! time, so debug builds of users do not ask it.
 
 use alloc::vec;
-use alloc::vec::Vec;
 
 use super::bodies::{Bodies, Slots, flag};
-use super::candidates::{Candidates, are_asleep};
+use super::candidates::are_asleep;
 use super::tracking::{Tracking, TreeState};
 use crate::Scalar;
 
@@ -166,19 +165,15 @@ fn fat_aabbs<const D: usize, T: Scalar>(
 fn pairs<const D: usize, T: Scalar>(bodies: &Bodies<D, T>, tracking: &Tracking<D, T>) -> Claims<7> {
     let slots = &bodies.slots;
     let Tracking { candidates, fat, is_fat_stale, sleep, .. } = tracking;
-    let Candidates { pairs, live, asleep, sorted, are_sorted } = candidates;
-    let others = pairs.len() + live.len() + asleep.len();
-    let ascends = |pairs: &Vec<[u32; 2]>| pairs.iter().all(|[a, b]| a < b);
+    let (pairs, live, sorted) = (candidates.listed(), candidates.live(), candidates.sorted());
+    let ascends = |pairs: &[[u32; 2]]| pairs.iter().all(|[a, b]| a < b);
     let is_known = |index: u32| slots.has(index, flag::LIVE | flag::LEAVING);
     let is_near = |&[a, b]: &[u32; 2]| fat[a as usize].overlaps(&fat[b as usize]);
     [
         (
             "pairs are sorted, or listed",
-            if *are_sorted {
-                others == 0 && sleep.count == 0 && !slots.is_reordered
-            } else {
-                sorted.is_empty()
-            },
+            !candidates.is_sorted()
+                || candidates.asleep() == 0 && sleep.count == 0 && !slots.is_reordered,
         ),
         ("sorted pairs ascend", sorted.is_sorted_by(|a, b| a < b)),
         ("in each pair the smaller index is first", ascends(pairs) && ascends(sorted)),

@@ -90,7 +90,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         let is_awake =
             |&index: &u32| flags[index as usize] & (flag::LIVE | flag::ASLEEP) == flag::LIVE;
         let all = 0..bodies.slots.len() as u32;
-        let paired = || candidates.pairs.iter().flatten().copied();
+        let paired = || candidates.listed().iter().flatten().copied();
         order.clear();
         renamed.clear();
         renamed.resize(bodies.slots.len(), NONE);

@@ -62,8 +62,8 @@ pub struct Scratch<const D: usize, T: Scalar> {
     pub sorter: PairSorter,
     /// The bodies that need a new fat AABB.
     pub escaped: Vec<u32>,
-    /// The live pairs of the last update, sorted.
-    pub before: Vec<[u32; 2]>,
+    /// The live pairs, sorted.
+    pub sorted: Vec<[u32; 2]>,
     /// By index: bodies that escaped or left, and bodies that changed.
     pub is_escaped: Vec<bool>,
     pub is_changed: Vec<bool>,

@@ -70,12 +70,12 @@ fn updates<const D: usize, T: Scalar>(
         let tracking = &world.tracking;
         let is_reordered = order != world.bodies.slots.slot_of;
         *match tracking.tree_state {
-            _ if tracking.candidates.are_sorted => &mut from_scratch,
+            _ if tracking.candidates.is_sorted() => &mut from_scratch,
             _ if fat == tracking.fat => &mut only_tested,
             TreeState::Fresh { .. } => &mut looked_up,
             _ => &mut rebuilt,
         } += 1;
-        candidates += tracking.candidates.pairs.len();
+        candidates += tracking.candidates.listed().len();
         asleep += tracking.sleep.count;
         reordered += usize::from(is_reordered);
         if update % 40 == 0 {
@@ -235,8 +235,8 @@ fn check_reserved(motion: Motion) {
         world.update();
     }
     let Tracking { candidates, scratch, .. } = &world.tracking;
-    let pairs = candidates.pairs.capacity();
-    let reserved = [candidates.live.capacity(), scratch.positions.capacity()];
+    let pairs = candidates.capacity();
+    let reserved = [scratch.dropped.capacity(), scratch.positions.capacity()];
     assert!(reserved[0] < pairs + pairs / 2, "{reserved:?} for {pairs} pairs");
     assert!(reserved[1] < pairs, "{reserved:?} for {pairs} pairs");
     if motion == Motion::MostlyStill {

@@ -15,66 +15,125 @@ use crate::world::bodies::{ProxyId, Slots, flag};
 
 #[derive(Debug, Default)]
 pub struct Candidates {
-    /// Each candidate with an awake body once, as indices, smaller first. Filters allow them.
-    pub pairs: Vec<[u32; 2]>,
-    /// By pair, whether it was live at the last update.
-    pub live: Vec<bool>,
+    form: Form,
+    /// As [`Form`] says, each once.
+    pairs: Vec<[u32; 2]>,
+    /// By listed pair, whether it was live at the last update. Sorted ones all are, and have no flags.
+    live: Vec<bool>,
     /// The live pairs of bodies that are both asleep, and some of which one woke or was removed since.
-    pub asleep: Vec<[u32; 2]>,
-    /// After an update from scratch all live pairs, sorted; then the other lists are empty, no body is
-    /// asleep, and indices are slots.
-    pub sorted: Vec<[u32; 2]>,
-    /// Whether the pairs are in `sorted`.
-    pub are_sorted: bool,
+    asleep: Vec<[u32; 2]>,
+}
+
+/// Which pairs there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Form {
+    /// Each candidate with an awake body, as indices, smaller first. Filters allow them.
+    #[default]
+    Listed,
+    /// After an update from scratch: all live pairs, as slots, sorted. No body is asleep, and indices are slots.
+    Sorted,
 }
 
 clone_fields! {
     [] Candidates {
-        pairs, live, asleep, sorted, are_sorted,
+        form, pairs, live, asleep,
     }
 }
 
 impl Candidates {
-    /// How many pairs are listed.
+    /// How many pairs are kept.
     pub fn len(&self) -> usize {
-        self.pairs.len() + self.asleep.len() + self.sorted.len()
+        self.pairs.len() + self.asleep.len()
     }
 
-    /// Moves the live pairs, as slots, to `sorted`, and drops all other candidates.
+    /// The candidates with an awake body; none if all live pairs are [sorted](Self::sorted).
+    #[inline]
+    pub fn listed(&self) -> &[[u32; 2]] {
+        if self.is_sorted() { &[] } else { &self.pairs }
+    }
+
+    /// Whether each of the listed candidates was live at the last update.
+    #[inline]
+    pub fn live(&self) -> &[bool] {
+        &self.live
+    }
+
+    /// The live pairs, if they are sorted; otherwise none.
+    pub fn sorted(&self) -> &[[u32; 2]] {
+        if self.is_sorted() { &self.pairs } else { &[] }
+    }
+
+    /// Whether all live pairs are [sorted](Self::sorted), and none is listed.
+    pub fn is_sorted(&self) -> bool {
+        self.form == Form::Sorted
+    }
+
+    /// For how many pairs there is capacity.
+    pub fn capacity(&self) -> usize {
+        self.pairs.capacity()
+    }
+
+    /// Sorts the live pairs, as slots, and drops all other candidates. `spare` is a buffer.
     ///
     /// # Errors
     /// [`OutOfMemory`]: then they are as before.
-    pub fn sort(&mut self, slots: &Slots, sorter: &mut PairSorter) -> Result<(), OutOfMemory> {
-        if !self.are_sorted {
-            let mut sorted = core::mem::take(&mut self.sorted);
+    pub fn sort(
+        &mut self,
+        slots: &Slots,
+        sorter: &mut PairSorter,
+        spare: &mut Vec<[u32; 2]>,
+    ) -> Result<(), OutOfMemory> {
+        if !self.is_sorted() {
             let live = self.live.iter().filter(|is_live| **is_live).count();
-            sorter.reserve(&mut sorted, live + self.asleep.len())?;
-            sorted.extend(self.live_pairs(slots));
-            slots.to_slots(&mut sorted);
-            sorter.sort(&mut sorted, slots.len());
+            sorter.reserve(spare, live + self.asleep.len())?;
+            spare.clear();
+            spare.extend(self.live_pairs(slots));
+            slots.to_slots(spare);
+            sorter.sort(spare, slots.len());
             self.clear();
-            (self.sorted, self.are_sorted) = (sorted, true);
+            core::mem::swap(&mut self.pairs, spare);
+            self.form = Form::Sorted;
         }
         Ok(())
     }
 
-    /// Makes the sorted pairs the candidates again.
+    /// Makes these the sorted pairs, and leaves the ones before in their place. Only after [`sort`](Self::sort).
+    pub fn swap_sorted(&mut self, pairs: &mut Vec<[u32; 2]>) {
+        debug_assert!(self.is_sorted(), "pairs are swapped that are not sorted");
+        core::mem::swap(&mut self.pairs, pairs);
+    }
+
+    /// Lists the sorted pairs.
     ///
     /// # Errors
     /// [`OutOfMemory`]: then they are as before.
-    pub fn unsort(&mut self) -> Result<(), OutOfMemory> {
-        if self.are_sorted {
-            reserve_for(&mut self.live, self.sorted.len())?;
-            self.are_sorted = false;
-            core::mem::swap(&mut self.pairs, &mut self.sorted);
+    pub fn list(&mut self) -> Result<(), OutOfMemory> {
+        if self.is_sorted() {
+            reserve_for(&mut self.live, self.pairs.len())?;
             self.live.resize(self.pairs.len(), true);
+            self.form = Form::Listed;
         }
         Ok(())
+    }
+
+    /// Shrinks each list that has capacity for more than this many pairs.
+    pub fn shrink(&mut self, enough: usize) {
+        for list in [&mut self.pairs, &mut self.asleep] {
+            if list.capacity() > enough {
+                list.shrink_to_fit();
+            }
+        }
+        if self.live.capacity() > enough {
+            self.live.shrink_to_fit();
+        }
     }
 
     /// Drops the candidates that are not live. Does not allocate.
     #[inline(never)]
     pub fn keep_live(&mut self) {
+        if self.is_sorted() {
+            return;
+        }
         let mut kept = 0;
         for at in 0..self.pairs.len() {
             self.pairs[kept] = self.pairs[at];
@@ -85,7 +144,7 @@ impl Candidates {
         self.live.fill(true);
     }
 
-    /// Makes these pairs the candidates, not yet flagged.
+    /// Makes these pairs the candidates, which are to be flagged by [`flag_all`](Self::flag_all).
     ///
     /// # Errors
     /// [`OutOfMemory`]: then they are as before.
@@ -98,8 +157,30 @@ impl Candidates {
         Ok(())
     }
 
-    /// Drops all candidates of the unsorted lists.
-    pub fn clear(&mut self) {
+    /// Flags the candidates. `test` says of each whether it is live, and whether it is to be listed.
+    pub fn flag_all(
+        &mut self,
+        listed: &mut Vec<[u32; 2]>,
+        mut test: impl FnMut([u32; 2]) -> [bool; 2],
+    ) {
+        let Self { pairs, live, .. } = self;
+        live.resize(pairs.len(), false);
+        push_wanted(listed, pairs, |at, pair| {
+            let [is_live, is_wanted] = test(pair);
+            live[at] = is_live;
+            (pair, is_wanted)
+        });
+    }
+
+    /// Flags the candidate at this position.
+    #[inline]
+    pub fn set_live(&mut self, position: usize, is_live: bool) {
+        self.live[position] = is_live;
+    }
+
+    /// Drops all.
+    fn clear(&mut self) {
+        self.form = Form::Listed;
         self.pairs.clear();
         self.live.clear();
         self.asleep.clear();
@@ -109,7 +190,8 @@ impl Candidates {
     pub fn live_pairs<'a>(&'a self, slots: &'a Slots) -> impl Iterator<Item = [u32; 2]> + 'a {
         let awake = self.pairs.iter().zip(&self.live).filter(|(_, is_live)| **is_live);
         let awake = awake.map(|(&pair, _)| pair).chain(self.asleep_pairs(slots));
-        awake.chain(self.sorted.iter().copied())
+        // What is sorted has no flags.
+        awake.chain(self.sorted().iter().copied())
     }
 
     /// The ids of the live pairs, smaller first, in no particular order.
@@ -173,8 +255,21 @@ impl Candidates {
         self.asleep.iter().copied().filter(|pair| are_asleep(slots, pair))
     }
 
-    /// Follows a new storage order.
+    /// How many pairs there are of bodies that are both asleep, and were since one of them woke.
+    pub fn asleep(&self) -> usize {
+        self.asleep.len()
+    }
+
+    /// Drops the pairs of which a body woke or was removed.
+    pub fn forget_awake(&mut self, slots: &Slots) {
+        self.asleep.retain(|pair| are_asleep(slots, pair));
+    }
+
+    /// Follows a new storage order. Sorted pairs are slots, which stay.
     pub fn rename(&mut self, renamed: &[u32]) {
+        if self.is_sorted() {
+            return;
+        }
         for pair in self.pairs.iter_mut().chain(&mut self.asleep) {
             let [a, b] = pair.map(|index| renamed[index as usize]);
             *pair = [a.min(b), a.max(b)];

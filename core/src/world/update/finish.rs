@@ -3,7 +3,6 @@
 
 use crate::Scalar;
 use crate::world::bodies::{Bodies, ProxyId, flag};
-use crate::world::candidates::are_asleep;
 use crate::world::changes::Events;
 use crate::world::tracking::{Tracking, TreeState};
 
@@ -44,7 +43,7 @@ pub fn finish<const D: usize, T: Scalar>(
     }
     // After an update from scratch no body falls asleep.
     let is_scattered =
-        !tracking.candidates.are_sorted && tracking.fall_asleep(bodies, moved, is_level_new);
+        !tracking.candidates.is_sorted() && tracking.fall_asleep(bodies, moved, is_level_new);
     let removed = bodies.leaving.iter().map(|&index| bodies.slots.id(index).to_key());
     let sorted = tracking.scratch.sorter.sort_keys(removed);
     events.removed.clear();
@@ -69,11 +68,11 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         let Self { sleep, candidates, fat, .. } = self;
         let Bodies { slots, boxes, front, .. } = bodies;
         let awake = slots.live - sleep.count;
-        let is_time = moved > 0 && sleep.note(awake, moved, candidates.asleep.len());
+        let is_time = moved > 0 && sleep.note(awake, moved, candidates.asleep());
         if !is_time && !is_forced {
             return false;
         }
-        candidates.asleep.retain(|pair| are_asleep(slots, pair));
+        candidates.forget_awake(slots);
         if candidates.reserve_asleep(slots, AWAKE).is_err() {
             return false;
         }

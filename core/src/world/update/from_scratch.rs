@@ -22,7 +22,8 @@ pub fn from_scratch<const D: usize, T: Scalar>(
     events: &mut Events,
     keeps_build: bool,
 ) -> Result<(), OutOfMemory> {
-    tracking.candidates.sort(&bodies.slots, &mut tracking.scratch.sorter)?;
+    let Scratch { sorter, sorted, .. } = &mut tracking.scratch;
+    tracking.candidates.sort(&bodies.slots, sorter, sorted)?;
     tracking.land_all(bodies);
     tracking.order_by_slot(bodies);
     tracking.wake_all(bodies);
@@ -31,20 +32,21 @@ pub fn from_scratch<const D: usize, T: Scalar>(
         tracking.tree.forget_build();
     }
     let Tracking { candidates, scratch, finder, .. } = &mut *tracking;
-    let Scratch { sorter, before, .. } = scratch;
+    let Scratch { sorter, sorted, .. } = scratch;
     if has_tree {
         bodies.list_changed();
     }
     let all = finder.find(&bodies.boxes, bodies, [flag::LIVE, 0], When::Now, usize::MAX)?;
     let pairs = all.unwrap_or_default();
-    sorter.reserve(before, pairs.len())?;
-    sorter.reserve_begun(&mut events.begun, pairs.len(), candidates.sorted.len())?;
-    core::mem::swap(before, &mut candidates.sorted);
+    let before = candidates.sorted();
+    sorter.reserve(sorted, pairs.len())?;
+    sorter.reserve_begun(&mut events.begun, pairs.len(), before.len())?;
     for &index in &bodies.changed {
         bodies.slots.lower(index, flag::CHANGED | flag::IN_TREE);
     }
-    sorter.sort_into(pairs, &mut candidates.sorted, bodies.slots.len());
-    sorter.differences(before, &candidates.sorted, &mut events.ended, &mut events.begun);
+    sorter.sort_into(pairs, sorted, bodies.slots.len());
+    sorter.differences(before, sorted, &mut events.ended, &mut events.begun);
+    candidates.swap_sorted(sorted);
     tracking.policy.note_overlaps(tracking.finder.found);
     tracking.is_fat_stale = true;
     if has_tree {

@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 
 use crate::Scalar;
 use crate::world::bodies::Bodies;
-use crate::world::candidates::{Candidates, PairSorter};
+use crate::world::candidates::PairSorter;
 use crate::world::changes::Events;
 use crate::world::tracking::{Scratch, Tracking};
 
@@ -31,15 +31,7 @@ fn give_back<const D: usize, T: Scalar>(
     events: &mut Events,
     enough: usize,
 ) {
-    let Candidates { pairs, live, asleep, sorted, .. } = &mut tracking.candidates;
-    for list in [pairs, asleep, sorted] {
-        if list.capacity() > enough {
-            list.shrink_to_fit();
-        }
-    }
-    if live.capacity() > enough {
-        live.shrink_to_fit();
-    }
+    tracking.candidates.shrink(enough);
     free_buffers(tracking, events, enough);
 }
 
@@ -51,10 +43,10 @@ pub fn free_buffers<const D: usize, T: Scalar>(
     enough: usize,
 ) {
     let Tracking { finder, scratch, .. } = tracking;
-    let Scratch { sorter, before, leaves, found, positions, dropped, added, .. } = scratch;
+    let Scratch { sorter, sorted, leaves, found, positions, dropped, added, .. } = scratch;
     let PairSorter { buffer, unsorted, .. } = sorter;
     let Events { begun, ended, .. } = events;
-    for buffer in [before, leaves, found, buffer, unsorted, begun, ended] {
+    for buffer in [sorted, leaves, found, buffer, unsorted, begun, ended] {
         if buffer.capacity() > enough {
             *buffer = Vec::new();
         }

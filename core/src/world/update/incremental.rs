@@ -165,27 +165,27 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     #[inline(never)]
     fn test_candidates(&mut self, bodies: &Bodies<D, T>, events: &mut Events, drops: bool) {
         let Self { candidates, scratch, .. } = self;
-        match (bodies.changed.len() * SELECT > candidates.pairs.len(), drops) {
+        match (bodies.changed.len() * SELECT > candidates.listed().len(), drops) {
             (true, true) => scratch.list_flips::<true>(bodies, candidates),
             (true, false) => scratch.list_flips::<false>(bodies, candidates),
             (false, _) => scratch.list_changed(bodies, candidates),
         }
         let Scratch { is_escaped, positions, dropped, .. } = scratch;
         for &at in &*positions {
-            let [a, b] = candidates.pairs[at];
+            let [a, b] = candidates.listed()[at];
             if drops && is_escaped[a as usize] | is_escaped[b as usize] {
                 dropped.push(at);
                 continue;
             }
             let is_live = bodies.boxes[a as usize].overlaps_branch_free(&bodies.boxes[b as usize]);
-            if candidates.live[at] != is_live {
-                candidates.live[at] = is_live;
+            if candidates.live()[at] != is_live {
+                candidates.set_live(at, is_live);
                 if is_live { &mut events.begun } else { &mut events.ended }.push([a, b]);
             }
         }
         for &at in &*dropped {
-            let pair = candidates.pairs[at];
-            if candidates.live[at] && !bodies.is_live(pair) {
+            let pair = candidates.listed()[at];
+            if candidates.live()[at] && !bodies.is_live(pair) {
                 events.ended.push(pair);
             }
         }
@@ -258,7 +258,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         let Self { tree, fat, candidates, finder, scratch, .. } = self;
         let Scratch { queries, leaves, found, is_escaped, added, .. } = scratch;
         added.clear();
-        if reserve_for(added, candidates.pairs.capacity() / 4).is_err() {
+        if reserve_for(added, candidates.capacity() / 4).is_err() {
             return false;
         }
         for batch in queries[..count].chunks(if has_tree { BATCH } else { usize::MAX }) {
@@ -271,7 +271,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
                     && finder.find_among(batch, found, most)
             };
             let is_found = is_found
-                && candidates.pairs.len() + added.len() <= limit
+                && candidates.listed().len() + added.len() <= limit
                 && reserve_for(added, added.len() + found.len()).is_ok();
             if !is_found {
                 return false;
@@ -358,7 +358,7 @@ impl<const D: usize, T: Scalar> Scratch<D, T> {
         is_changed.resize(bodies.slots.len(), false);
         changed().for_each(|&index| is_changed[index as usize] = true);
         positions.clear();
-        push_wanted(positions, &candidates.pairs, |at, [a, b]| {
+        push_wanted(positions, candidates.listed(), |at, [a, b]| {
             (at, is_changed[a as usize] | is_changed[b as usize])
         });
         changed().for_each(|&index| is_changed[index as usize] = false);
@@ -368,20 +368,21 @@ impl<const D: usize, T: Scalar> Scratch<D, T> {
     /// of marked bodies.
     fn list_flips<const DROPS: bool>(&mut self, bodies: &Bodies<D, T>, candidates: &Candidates) {
         let boxes = &bodies.boxes;
-        if candidates.pairs.len() * RANDOM_READ > boxes.len() {
+        if candidates.listed().len() * RANDOM_READ > boxes.len() {
             preload(boxes);
         }
         let is_far = prefetch_pays(boxes);
+        let (pairs, live) = (candidates.listed(), candidates.live());
         let Self { is_escaped, positions, .. } = self;
         positions.clear();
-        push_wanted(positions, &candidates.pairs, |at, [a, b]| {
-            if is_far && let Some(&[_, later]) = candidates.pairs.get(at + AHEAD) {
+        push_wanted(positions, pairs, |at, [a, b]| {
+            if is_far && let Some(&[_, later]) = pairs.get(at + AHEAD) {
                 // The first bodies of neighbors in the list are near each other in memory.
                 prefetch_item(boxes, later as usize);
             }
             let is_live = boxes[a as usize].overlaps_branch_free(&boxes[b as usize]);
             let is_dropped = DROPS && is_escaped[a as usize] | is_escaped[b as usize];
-            (at, (is_live != candidates.live[at]) | is_dropped)
+            (at, (is_live != live[at]) | is_dropped)
         });
     }
 }

@@ -36,7 +36,7 @@ pub fn rebuild<const D: usize, T: Scalar>(
     tracking.note_new_fat(bodies);
 
     let live = bodies.slots.live;
-    let counts = [live, tracking.candidates.pairs.len()];
+    let counts = [live, tracking.candidates.listed().len()];
     let is_decayed = layout::note_rebuild(&mut tracking.locality_decay, [moved, new], counts);
     Ok(if tracking.policy.note_rebuild(live, is_fat, (moved - new) * 2 < live) {
         Reorder::Later
@@ -55,9 +55,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         let is_apart =
             |[a, b]: [u32; 2]| !boxes[a as usize].overlaps_branch_free(&boxes[b as usize]);
         if are_same {
-            push_wanted(ended, &candidates.pairs, |at, pair| {
-                (pair, candidates.live[at] & is_apart(pair))
-            });
+            let live = candidates.live();
+            push_wanted(ended, candidates.listed(), |at, pair| (pair, live[at] & is_apart(pair)));
             ended.extend(candidates.asleep_pairs(&bodies.slots).filter(|&pair| is_apart(pair)));
         } else {
             let live = candidates.live_pairs(&bodies.slots);
@@ -70,12 +69,10 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         let (boxes, previous) = (&bodies.boxes, &bodies.previous);
         preload(boxes);
         preload(previous);
-        let (pairs, live) = (&self.candidates.pairs, &mut self.candidates.live);
-        live.resize(pairs.len(), false);
-        push_wanted(begun, pairs, |at, pair| {
+        self.candidates.flag_all(begun, |pair| {
             let [a, b] = pair.map(|index| index as usize);
-            live[at] = boxes[a].overlaps_branch_free(&boxes[b]);
-            (pair, live[at] & !previous[a].overlaps_branch_free(&previous[b]))
+            let is_live = boxes[a].overlaps_branch_free(&boxes[b]);
+            [is_live, is_live & !previous[a].overlaps_branch_free(&previous[b])]
         });
         if !are_same {
             begun.clear();
@@ -157,7 +154,7 @@ pub fn restore<const D: usize, T: Scalar>(
     let known = [flag::LIVE | flag::LEAVING, flag::NEW];
     let pairs = finder.find(fat, bodies, known, When::LastUpdate, usize::MAX)?;
     candidates.replace(pairs.unwrap_or_default())?;
-    candidates.live.resize(candidates.pairs.len(), true);
+    candidates.flag_all(&mut Vec::new(), |_| [true, false]);
     policy.note_overlaps(finder.found);
     Ok(tracking)
 }

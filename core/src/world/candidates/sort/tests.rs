@@ -29,6 +29,22 @@ fn any_list_is_sorted_as_the_standard_library_sorts_it() {
 }
 
 #[test]
+fn many_pairs_of_one_body_among_few_of_others_are_sorted() {
+    let mut random = random_pairs();
+    for (bound, of_each) in [(10_000, [16, 17, 40]), (3000, [300, 2, 1000])] {
+        for (hub, count) in [0, 17, bound as u32 - 1].into_iter().zip(of_each) {
+            let mut pairs = random(bound, bound as u64);
+            pairs.extend(random(count, bound as u64).iter().map(|&[_, other]| [hub, other]));
+            pairs.sort_by_key(|pair| pair[1] ^ 77);
+            let mut expected = pairs.clone();
+            expected.sort();
+            PairSorter::default().sort(&mut pairs, bound);
+            assert_eq!(pairs, expected);
+        }
+    }
+}
+
+#[test]
 fn differences_are_what_only_one_list_has() {
     let mut random = random_pairs();
     let mut sorter = PairSorter::default();
