@@ -149,6 +149,20 @@ fn edges_anywhere_are_counted() {
     check(&[Aabb::new([-0.0], [0.0]); 300], &[Aabb::new([0.0], [-0.0]); 200]);
 }
 
+/// More than are looked up on both sides at once.
+#[test]
+fn hundreds_of_thousands_are_counted() {
+    let mut random = random();
+    let (a, b) = (intervals(270_000, 1e-5, &mut random), intervals(280_000, 1e-5, &mut random));
+    let mut finder = PairFinder::new();
+    for (a, b) in [(&a, &b), (&b, &a)] {
+        let pairs = finder.find_between(a, b).unwrap().to_vec();
+        assert_eq!(finder.search(a).against(b).count(), Ok(pairs.len() as u64));
+        let counts = counted(pairs.iter().map(|[first, _]| first), a.len());
+        assert!(finder.search(a).against(b).counts() == Ok(counts));
+    }
+}
+
 #[test]
 fn few_boxes_and_none_are_counted() {
     let boxes = [Aabb::new([0.0], [2.0]), Aabb::new([2.0], [3.0]), Aabb::new([5.0], [5.0])];
