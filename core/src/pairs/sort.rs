@@ -169,7 +169,9 @@ pub(super) fn intervals<T: Scalar>(ends: [T; 2], count: usize) -> Quantizer<T> {
     let [low, high] =
         ends.map(|end| (end * unit.to_f64()).clamp(-T::Arithmetic::LIMIT, T::Arithmetic::LIMIT));
     let last = (count - 1) as f64;
-    let [origin, scale, last] = [low, last / (high - low), last].map(T::from_f64);
+    // From 0.0 to -0.0 it is -0.0, by which cells would fall.
+    let extent = (high - low).abs();
+    let [origin, scale, last] = [low, last / extent, last].map(T::from_f64);
     Quantizer { unit, origin, scale, last }
 }
 

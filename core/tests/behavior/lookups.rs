@@ -149,6 +149,23 @@ fn edges_anywhere_are_counted() {
     check(&[Aabb::new([-0.0], [0.0]); 300], &[Aabb::new([0.0], [-0.0]); 200]);
 }
 
+/// From 0.0 to -0.0 there is no way, but its length has a sign.
+#[test]
+fn zeros_of_both_signs_are_found() {
+    let mut random = random();
+    let point = |at: f64| Aabb::new([at], [at]);
+    let mut end = || (4.0 * random() - 2.0).round();
+    let around = (0..900).map(|_| [end(), end()]).map(|[a, b]| Aabb::new([a.min(b)], [a.max(b)]));
+    let around: Vec<_> = around.collect();
+    check(&[Aabb::new([0.0], [-0.0]); 300], &around);
+    for far in [-1.0, -1e9, f64::NEG_INFINITY] {
+        let zeros = (0..12).map(|at| point(if at < 6 { 0.0 } else { -0.0 }));
+        let zeros: Vec<_> = [point(far), point(1.0)].into_iter().chain(zeros).collect();
+        check(&zeros, &around);
+        check(&zeros, &[point(far)]);
+    }
+}
+
 /// More than are looked up on both sides at once.
 #[test]
 fn hundreds_of_thousands_are_counted() {
