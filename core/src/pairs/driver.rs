@@ -160,18 +160,23 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
         let Self { sorter, sorted: [short, long], tables: [of_short, of_long], helpers, .. } = self;
         sorter.sort(smaller, 0, short)?;
         self.probe.sorted(smaller.len());
-        if let Some(lookup) = of_short.fill(short, larger, swap)? {
-            one_by_one(&lookup, helpers, task, sink)?;
-            return Ok(true);
+        let (lookups, share) = match of_short.fill(short, larger, swap)? {
+            Some(lookup) => ([Some(lookup), None], task.share),
+            None => {
+                if !move_long(short, long)? {
+                    return Ok(false);
+                }
+                let first = of_short.fill(short, larger, swap)?;
+                let second = of_long.fill(long, larger, swap)?;
+                if first.is_none() || second.is_none() {
+                    return Ok(false);
+                }
+                ([first, second], task.share / 2.0)
+            }
+        };
+        for lookup in lookups.iter().flatten() {
+            one_by_one(lookup, helpers, Task { share, ..task }, sink)?;
         }
-        if !move_long(short, long)? {
-            return Ok(false);
-        }
-        let lookups = [of_short.fill(short, larger, swap)?, of_long.fill(long, larger, swap)?];
-        let [Some(first), Some(second)] = lookups else { return Ok(false) };
-        let half = Task { share: task.share / 2.0, ..task };
-        one_by_one(&first, helpers, half, sink)?;
-        one_by_one(&second, helpers, half, sink)?;
         Ok(true)
     }
 

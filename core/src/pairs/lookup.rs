@@ -77,6 +77,7 @@ pub(super) fn may_pay<const D: usize, T: Scalar, S: Source<D, T>>(
 
 /// Moves the long ones of sorted boxes, at least one, to another list. Returns false, with all where they were, if there is
 /// none, or if they are not few.
+#[inline(never)]
 pub(super) fn move_long<T: Scalar>(
     boxes: &mut SortedBoxes<T>,
     long: &mut SortedBoxes<T>,
