@@ -58,7 +58,7 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
     ) -> Result<Option<&[[u32; 2]]>, OutOfMemory> {
         let flags = &bodies.slots.flags;
         let takes_part = |flags: u16| (flags & any != 0) & (flags & none == 0);
-        if bodies.rules.allow_all() && flags.iter().all(|&flags| takes_part(flags)) {
+        if bodies.rules.are_alike(when) && flags.iter().all(|&flags| takes_part(flags)) {
             let pairs = found(self.finder.search(table).pairs_up_to(most))?;
             self.found = pairs.map_or(0, <[_]>::len);
             return Ok(pairs);
@@ -98,7 +98,7 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         boxes.extend(sets.bodies.iter().map(|&index| table[index as usize]));
         pairs.clear();
         self.found = 0;
-        for [a, b] in sets.meetings() {
+        for ([a, b], are_all) in sets.meetings() {
             let mut search = finder.search(&boxes[a.clone()]);
             if a != b {
                 search = search.against(&boxes[b.clone()]);
@@ -107,7 +107,7 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
             let Some(all) = found(search.pairs_up_to(most))? else { return Ok(None) };
             self.found += all.len();
             let lists = [&sets.bodies[a], &sets.bodies[b]];
-            bodies.rules.append_allowed(&bodies.slots, when, lists, all, pairs)?;
+            bodies.rules.append_allowed(&bodies.slots, when, lists, all, are_all, pairs)?;
         }
         Ok(Some(pairs))
     }

@@ -41,6 +41,8 @@ struct Kind {
     filter: Filter,
     count: usize,
     set: u8,
+    /// The kinds that bodies of this one may pair with, as bits.
+    allowed: u64,
 }
 
 impl Sets {
@@ -50,9 +52,13 @@ impl Sets {
         let mut buckets = [u8::MAX; BUCKETS];
         self.kinds.clear();
         self.kind_of.clear();
+        // Bodies are often inserted together with others of the same filter.
+        let mut last = (Filter::default(), u8::MAX);
         for at in 0..self.all.len() {
-            let index = self.all[at];
-            let kind = self.kind(&mut buckets, *rules.filter(slots, index, when));
+            let filter = *rules.filter(slots, self.all[at], when);
+            let is_same = last.1 != u8::MAX && filter == last.0;
+            let kind = if is_same { last.1 } else { self.kind(&mut buckets, filter) };
+            last = (filter, kind);
             self.kinds[usize::from(kind)].count += 1;
             self.kind_of.push(kind);
         }
@@ -83,7 +89,7 @@ impl Sets {
                 }
                 // The last kind allows everybody.
                 let filter = if count == FILTERS { Filter::ALL } else { filter };
-                self.kinds.push(Kind { filter, count: 0, set: NOWHERE });
+                self.kinds.push(Kind { filter, count: 0, set: NOWHERE, allowed: 0 });
                 if count < FILTERS {
                     buckets[bucket % BUCKETS] = count as u8;
                 }
@@ -121,19 +127,30 @@ impl Sets {
                 let set = (1..SETS).find(is_apart).unwrap_or(0);
                 self.members[set] |= 1 << kind;
                 self.allowed[set] |= allowed;
-                self.kinds[kind].set = set as u8;
+                (self.kinds[kind].set, self.kinds[kind].allowed) = (set as u8, allowed);
             }
         }
     }
 
-    /// The sets whose bodies may meet, two each or one twice, as ranges of `bodies`.
-    pub fn meetings(&self) -> impl Iterator<Item = [Range<usize>; 2]> + '_ {
+    /// Whether filters surely allow each body of one set to pair with each of the other.
+    fn allow_all(&self, [set, other]: [usize; 2]) -> bool {
+        let others = self.members[other];
+        self.kinds.len() <= FILTERS
+            && self
+                .kinds
+                .iter()
+                .all(|kind| usize::from(kind.set) != set || kind.allowed & others == others)
+    }
+
+    /// The sets whose bodies may meet, two each or one twice, as ranges of `bodies`; and whether filters allow all of their
+    /// bodies to pair.
+    pub fn meetings(&self) -> impl Iterator<Item = ([Range<usize>; 2], bool)> + '_ {
         let range = |set: usize| if set == 0 { 0 } else { self.ends[set - 1] }..self.ends[set];
         let all = (0..SETS * SETS).map(|both| [both / SETS, both % SETS]);
         let meet = |&[set, other]: &[usize; 2]| {
             set <= other && self.allowed[set] & self.members[other] != 0
         };
-        all.filter(meet).map(move |sets| sets.map(range))
+        all.filter(meet).map(move |sets| (sets.map(range), self.allow_all(sets)))
     }
 }
 
@@ -147,8 +164,13 @@ mod tests {
         let mut rules = Rules::default();
         (0..).zip(filters).for_each(|(index, &filter)| rules.put(index, filter));
         sets.divide(&Slots::default(), &rules, When::Now);
-        let meetings =
-            sets.meetings().map(|ranges| ranges.map(|range| sets.bodies[range].to_vec()));
+        let meetings = sets.meetings().map(|(ranges, are_all)| {
+            let meeting = ranges.map(|range| sets.bodies[range].to_vec());
+            let allows = |a: u32, b: u32| filters[a as usize].allows(&filters[b as usize]);
+            let all = || meeting[0].iter().flat_map(|&a| meeting[1].iter().map(move |&b| (a, b)));
+            assert!(!are_all || all().all(|(a, b)| allows(a, b)));
+            meeting
+        });
         let meetings = meetings.collect();
         (sets, meetings)
     }

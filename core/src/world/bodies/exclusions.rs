@@ -37,6 +37,11 @@ struct Entry {
 }
 
 impl Exclusions {
+    /// Whether surely no pair is excluded, nor was at the last update.
+    pub fn is_empty(&self) -> bool {
+        self.taken == 0
+    }
+
     /// Whether a pair is excluded: `NOW`, or at the last update (`BEFORE`).
     #[inline(never)]
     pub fn excludes(&self, pair: [u32; 2], when: u8) -> bool {

@@ -48,6 +48,21 @@ impl Rules {
         !self.has_any
     }
 
+    /// Whether any body may pair with any at that moment, because all have the same filter and no pair is excluded.
+    #[inline(never)]
+    pub fn are_alike(&self, when: When) -> bool {
+        let Some(first) = self.filters.first() else { return true };
+        first.allows(first)
+            && (when == When::Now || !self.any_refiltered)
+            && !self.any_excluded()
+            && self.filters.iter().all(|filter| filter == first)
+    }
+
+    /// Whether some pair is excluded, or was at the last update.
+    pub fn any_excluded(&self) -> bool {
+        !self.exclusions.is_empty()
+    }
+
     /// Whether a filter or an excluded pair changed since the last update.
     pub fn any_changed(&self) -> bool {
         self.any_refiltered
@@ -95,7 +110,7 @@ impl Rules {
     }
 
     /// Appends the pairs that are allowed, smaller index first, of those between the bodies of two lists, given by their
-    /// positions in these.
+    /// positions in these. `are_all` says that filters allow all of them.
     ///
     /// # Errors
     /// [`OutOfMemory`].
@@ -106,13 +121,15 @@ impl Rules {
         when: When,
         [first, second]: [&[u32]; 2],
         positions: &[[u32; 2]],
+        are_all: bool,
         allowed: &mut Vec<[u32; 2]>,
     ) -> Result<(), OutOfMemory> {
+        let are_all = are_all && !self.any_excluded();
         // A few at a time, since filters may forbid most of them.
         for positions in positions.chunks(CHUNK) {
             reserve_for(allowed, allowed.len() + positions.len())?;
             let named = positions.iter().map(|&[a, b]| [first[a as usize], second[b as usize]]);
-            let kept = named.filter(|&pair| self.allow(slots, pair, when));
+            let kept = named.filter(|&pair| are_all || self.allow(slots, pair, when));
             allowed.extend(kept.map(|[a, b]| [a.min(b), a.max(b)]));
         }
         Ok(())

@@ -110,7 +110,7 @@ impl Candidates {
     pub fn list(&mut self) -> Result<(), OutOfMemory> {
         if self.is_sorted() {
             reserve_for(&mut self.live, self.pairs.len())?;
-            self.live.resize(self.pairs.len(), true);
+            self.flag_all_live();
             self.form = Form::Listed;
         }
         Ok(())
@@ -144,7 +144,7 @@ impl Candidates {
         self.live.fill(true);
     }
 
-    /// Makes these pairs the candidates, which are to be flagged by [`flag_all`](Self::flag_all).
+    /// Makes these pairs the candidates, which are to be flagged.
     ///
     /// # Errors
     /// [`OutOfMemory`]: then they are as before.
@@ -170,6 +170,11 @@ impl Candidates {
             live[at] = is_live;
             (pair, is_wanted)
         });
+    }
+
+    /// Flags all candidates as live.
+    pub fn flag_all_live(&mut self) {
+        self.live.resize(self.pairs.len(), true);
     }
 
     /// Flags the candidate at this position.

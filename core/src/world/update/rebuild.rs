@@ -154,7 +154,7 @@ pub fn restore<const D: usize, T: Scalar>(
     let known = [flag::LIVE | flag::LEAVING, flag::NEW];
     let pairs = finder.find(fat, bodies, known, When::LastUpdate, usize::MAX)?;
     candidates.replace(pairs.unwrap_or_default())?;
-    candidates.flag_all(&mut Vec::new(), |_| [true, false]);
+    candidates.flag_all_live();
     policy.note_overlaps(finder.found);
     Ok(tracking)
 }
