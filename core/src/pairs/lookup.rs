@@ -49,7 +49,7 @@ const MOST_FAILED_TESTS: usize = 1024;
 const MEAN_FAILED_TESTS: usize = 16;
 /// The size of that sample.
 const SAMPLED_BOXES: usize = 64;
-/// Boxes are long if so many others begin within one, where all are spread evenly.
+/// Boxes are long if this many others begin within one, where all are spread evenly.
 const OTHERS_IN_LONG: f64 = 16.0;
 /// Long boxes are few if there are at least this many others for each.
 const OTHERS_FOR_EACH_LONG: usize = 8;

@@ -7,7 +7,7 @@ use core::ops::ControlFlow;
 use super::kernel::PAD;
 use super::parallel::Kept;
 use super::task::Stop;
-use crate::memory::{enlarge_pages, grow_to};
+use crate::memory::grow_to;
 
 /// The most pairs that are stored between two calls of the progress callback.
 const MOST_PAIRS_AT_A_TIME: usize = 1 << 16;
@@ -75,12 +75,10 @@ impl Store {
         let len = self.buffer.len();
         let more = if len < LARGE { len + 4 * PAD } else { len / 8 };
         if self.buffer.capacity() - len < more {
-            let doubled = self.buffer.try_reserve_exact(len + 4 * PAD);
-            doubled.or_else(|_| self.buffer.try_reserve_exact(more))?;
-            enlarge_pages(&mut self.buffer);
+            // If that is too much, less may be there.
+            _ = self.buffer.try_reserve_exact(len + 4 * PAD);
         }
-        self.buffer.resize(len + more, [0; 2]);
-        Ok(())
+        grow_to(&mut self.buffer, len + more, [0; 2])
     }
 
     #[inline]

@@ -165,7 +165,8 @@ fn fat_aabbs<const D: usize, T: Scalar>(
 fn pairs<const D: usize, T: Scalar>(bodies: &Bodies<D, T>, tracking: &Tracking<D, T>) -> Claims<7> {
     let slots = &bodies.slots;
     let Tracking { candidates, fat, is_fat_stale, sleep, .. } = tracking;
-    let (pairs, live, sorted) = (candidates.listed(), candidates.live(), candidates.sorted());
+    let (live, sorted) = (candidates.live(), candidates.sorted());
+    let pairs = if candidates.is_sorted() { &[][..] } else { candidates.listed() };
     let ascends = |pairs: &[[u32; 2]]| pairs.iter().all(|[a, b]| a < b);
     let is_known = |index: u32| slots.has(index, flag::LIVE | flag::LEAVING);
     let is_near = |&[a, b]: &[u32; 2]| fat[a as usize].overlaps(&fat[b as usize]);

@@ -52,13 +52,8 @@ impl Sets {
         let mut buckets = [u8::MAX; BUCKETS];
         self.kinds.clear();
         self.kind_of.clear();
-        // Bodies are often inserted together with others of the same filter.
-        let mut last = (Filter::default(), u8::MAX);
         for at in 0..self.all.len() {
-            let filter = *rules.filter(slots, self.all[at], when);
-            let is_same = last.1 != u8::MAX && filter == last.0;
-            let kind = if is_same { last.1 } else { self.kind(&mut buckets, filter) };
-            last = (filter, kind);
+            let kind = self.kind(&mut buckets, *rules.filter(slots, self.all[at], when));
             self.kinds[usize::from(kind)].count += 1;
             self.kind_of.push(kind);
         }
@@ -133,6 +128,7 @@ impl Sets {
     }
 
     /// Whether filters surely allow each body of one set to pair with each of the other.
+    #[inline(never)]
     fn allow_all(&self, [set, other]: [usize; 2]) -> bool {
         let others = self.members[other];
         self.kinds.len() <= FILTERS

@@ -75,7 +75,7 @@ fn updates<const D: usize, T: Scalar>(
             TreeState::Fresh { .. } => &mut looked_up,
             _ => &mut rebuilt,
         } += 1;
-        candidates += tracking.candidates.listed().len();
+        candidates += tracking.candidates.live().len();
         asleep += tracking.sleep.count;
         reordered += usize::from(is_reordered);
         if update % 40 == 0 {

@@ -46,10 +46,11 @@ impl Candidates {
         self.pairs.len() + self.asleep.len()
     }
 
-    /// The candidates with an awake body; none if all live pairs are [sorted](Self::sorted).
+    /// The candidates with an awake body. Only while none is [sorted](Self::sorted).
     #[inline]
     pub fn listed(&self) -> &[[u32; 2]] {
-        if self.is_sorted() { &[] } else { &self.pairs }
+        debug_assert!(!self.is_sorted(), "what is sorted is not listed");
+        &self.pairs
     }
 
     /// Whether each of the listed candidates was live at the last update.

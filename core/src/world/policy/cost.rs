@@ -29,10 +29,10 @@ const FLIGHT: usize = 4;
 const GROUNDED: usize = 256;
 /// For how many updates tracking is skipped, at least and at most. Kept from before.
 const SKIPPED: [usize; 2] = [16, 128];
-/// In a heap an update that reads more of the tree than this many leaves and bodies, for each body and for each pair, takes
-/// longer than one from scratch. (Heaps of 10,000 boxes in 2D and 3D in which 2 to 6 % move.)
-const DEAR_READS: [f64; 2] = [0.25, 0.1];
-/// After so many of these in a row, of which the second half read nearly as much as the first, tracking is skipped. (Where
+/// In a heap an update takes longer than one from scratch if it reads more leaves and bodies of the tree than one for this
+/// many bodies and one for this many pairs. (Heaps of 10,000 boxes in 2D and 3D in which 2 to 6 % move.)
+const DEAR_READS: [usize; 2] = [4, 10];
+/// After this many of these in a row, of which the second half read nearly as much as the first, tracking is skipped. (Where
 /// bodies tremble in turn, each is looked up as it moves for the first time, and then seldom.)
 const DEAR_UPDATES: usize = 16;
 /// How many times the cost of building a tree for a body a search costs more in a tree whose leaves are
@@ -60,7 +60,7 @@ pub struct Policy {
     /// How many updates in a row read too much, and how much their first half and the others did.
     dear: usize,
     dear_reads: [usize; 2],
-    /// If tracking is skipped because of these: only while at least so many bodies change.
+    /// If tracking is skipped because of these: only while at least this many bodies change.
     dear_changes: usize,
     /// For how many more updates tracking is skipped.
     skipped: usize,
@@ -146,6 +146,7 @@ impl Policy {
     }
 
     /// Skips tracking from now on.
+    #[inline(never)]
     fn skip(&mut self) {
         (self.cost, self.updates, self.dear_changes) = (0, 0, 0);
         self.skipped = self.next_skipped.clamp(SKIPPED[0], SKIPPED[1]);
@@ -170,10 +171,9 @@ impl Policy {
 
     /// Whether updates have read so much of the tree, again and again, that tracking is skipped from now on. To be asked after
     /// each update that looked up bodies, with the number of those that changed.
+    #[inline(never)]
     pub fn reads_too_much(&mut self, changed: usize, bodies: usize) -> bool {
-        let [of_bodies, of_pairs] = DEAR_READS;
-        let most = of_bodies * bodies as f64 + of_pairs * self.overlaps as f64;
-        if self.reads as f64 <= most {
+        if self.reads <= bodies / DEAR_READS[0] + self.overlaps / DEAR_READS[1] {
             (self.dear, self.dear_reads) = (0, [0; 2]);
             return false;
         }

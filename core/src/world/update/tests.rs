@@ -49,7 +49,7 @@ impl<const D: usize> World<D> {
         assert!(changes.begun().slots().iter().eq(pairs.difference(&self.pairs)));
         assert!(changes.ended().slots().iter().eq(self.pairs.difference(&pairs)));
         self.pairs = pairs;
-        self.world.tracking.candidates.listed().len()
+        self.world.tracking.candidates.live().len()
     }
 }
 
@@ -96,7 +96,7 @@ fn a_restored_world_whose_bodies_jumped_has_the_candidates_of_its_last_update() 
         world.world.set(id, *aabb).unwrap();
     }
     world.world = BroadPhase::from_snapshot(&world.world.snapshot()).unwrap();
-    assert_eq!(world.world.tracking.candidates.listed().len(), world.pairs.len());
+    assert_eq!(world.world.tracking.candidates.live().len(), world.pairs.len());
     world.update();
 }
 
@@ -195,7 +195,7 @@ fn bodies_that_may_not_meet_are_not_searched_among_themselves() {
         let tracking = &world.tracking;
         let most = 2 * (enemies + known.len());
         assert!(tracking.finder.found <= most, "{frame}: {} found", tracking.finder.found);
-        assert!(tracking.candidates.listed().len() <= most, "{frame}");
+        assert!(tracking.candidates.live().len() <= most, "{frame}");
         // What a tree lists it lists before filters, but an update reads no more of it than there are bodies.
         assert!(tracking.scratch.found.len() <= world.len() + known.len(), "{frame}");
     }

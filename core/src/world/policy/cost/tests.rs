@@ -67,7 +67,7 @@ fn bodies_that_fly_among_many_pairs_cost_too_much_before_they_read_as_many() {
     }
 }
 
-/// How many of these updates, each with so many reads and as many changes, tracking takes before it is skipped.
+/// How many of these updates, each with these reads and a twentieth of the bodies changed, tracking takes before it is skipped.
 fn updates_that_read(reads: impl IntoIterator<Item = usize>) -> (usize, Policy) {
     let mut policy = Policy::default();
     policy.note_overlaps(10 * BODIES);
