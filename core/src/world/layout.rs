@@ -94,13 +94,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         order.clear();
         renamed.clear();
         renamed.resize(bodies.slots.len(), NONE);
-        let mut add = |old: u32| {
-            let new = &mut renamed[old as usize];
-            if *new == NONE {
-                *new = order.len() as u32;
-                order.push(old);
-            }
-        };
+        let mut add = |old: u32| add(order, renamed, old);
         paired().filter(is_awake).for_each(&mut add);
         all.clone().filter(is_awake).for_each(&mut add);
         paired().for_each(&mut add);
@@ -127,6 +121,16 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         }
         self.candidates.rename(renamed);
         self.tree.rename(renamed);
+    }
+}
+
+/// Appends a body to the order, unless it is there.
+#[cfg_attr(target_arch = "wasm32", inline(never))]
+fn add(order: &mut Vec<u32>, renamed: &mut [u32], old: u32) {
+    let new = &mut renamed[old as usize];
+    if *new == NONE {
+        *new = order.len() as u32;
+        order.push(old);
     }
 }
 

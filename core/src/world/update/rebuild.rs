@@ -59,8 +59,11 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             push_wanted(ended, candidates.listed(), |at, pair| (pair, live[at] & is_apart(pair)));
             ended.extend(candidates.asleep_pairs(&bodies.slots).filter(|&pair| is_apart(pair)));
         } else {
-            let live = candidates.live_pairs(&bodies.slots);
-            ended.extend(live.filter(|&pair| !bodies.is_live(pair)));
+            candidates.for_each_live(&bodies.slots, &mut |pair| {
+                if !bodies.is_live(pair) {
+                    ended.push(pair);
+                }
+            });
         }
     }
 
@@ -76,8 +79,11 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         });
         if !are_same {
             begun.clear();
-            let live = self.candidates.live_pairs(&bodies.slots);
-            begun.extend(live.filter(|&pair| !bodies.was_live(pair)));
+            self.candidates.for_each_live(&bodies.slots, &mut |pair| {
+                if !bodies.was_live(pair) {
+                    begun.push(pair);
+                }
+            });
         }
     }
 
