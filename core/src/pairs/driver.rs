@@ -13,7 +13,7 @@ use core::ops::Range;
 
 use super::brute::{brute_force, is_brute_force};
 use super::columns::{Columns, Filled, fill};
-use super::crowding::{FEW_PROBES, better_plan, count_tests, most_records};
+use super::crowding::{are_sparse, better_plan, most_records, tests};
 use super::grid::Grid;
 use super::in_order::{Spans, is_sorted};
 use super::kernel::{Cursor, Kernel, SortedBoxes};
@@ -319,8 +319,10 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
         }
         let sorted = &self.sorted[..sets.len()];
         self.probe.sorted(boxes);
-        if task.depth < MOST_NESTED_PLANS
-            && let Some(plan) = better_plan(sets, sorted, axis, among)
+        let tests = tests(sorted, boxes);
+        if let Some(tests) = tests
+            && task.depth < MOST_NESTED_PLANS
+            && let Some(plan) = better_plan(sets, sorted, tests, axis, among)
         {
             return self.run_plan(plan, sets, task.nested(0.0, boxes), sink);
         }
@@ -328,12 +330,16 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
         if !P::SWEEPS {
             return Ok(());
         }
-        let sweep = self.sweep(D - 1, task);
+        let mut sweep = self.sweep(D - 1, task);
+        if tests.is_some_and(|tests| are_sparse::<T>(tests, boxes)) {
+            sweep.kernel = sweep.kernel.with_fewer_lanes();
+        }
         match self.helpers.threads::<O>(boxes) {
-            Some(threads) if count_tests(sorted, FEW_PROBES) >= MIN_TESTS_FOR_THREADS => threads
-                .in_chunks(0..boxes, PROBES_AT_A_TIME, sink, |probes, sink| {
+            Some(threads) if tests >= Some(MIN_TESTS_FOR_THREADS) => {
+                threads.in_chunks(0..boxes, PROBES_AT_A_TIME, sink, |probes, sink| {
                     sweep.run(sorted, Cursor::of(sorted, probes), sink)
-                }),
+                })
+            }
             _ => sweep.run(sorted, Cursor::default(), sink),
         }
     }

@@ -63,21 +63,33 @@ impl<const D: usize, T: Scalar> Buffers<D, T> {
 #[must_use = "a search does nothing before `pairs`, `count`, `for_each` or `for_each_chunk`"]
 pub struct Search<'f, 'b, const D: usize, T: Scalar = f32> {
     buffers: &'f mut Buffers<D, T>,
-    boxes: &'b [Aabb<D, T>],
-    against: Option<&'b [Aabb<D, T>]>,
+    sets: Sets<'b, D, T>,
     progress: Option<ProgressCallback<'b>>,
+}
+
+/// The boxes of one set, or of two.
+#[derive(Clone, Copy)]
+struct Sets<'b, const D: usize, T: Scalar> {
+    both: [&'b [Aabb<D, T>]; 2],
+    count: usize,
+}
+
+impl<'b, const D: usize, T: Scalar> Sets<'b, D, T> {
+    fn as_slice(&self) -> &[&'b [Aabb<D, T>]] {
+        &self.both[..self.count]
+    }
 }
 
 impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
     #[inline]
     pub(super) fn new(buffers: &'f mut Buffers<D, T>, boxes: &'b [Aabb<D, T>]) -> Self {
-        Self { buffers, boxes, against: None, progress: None }
+        Self { buffers, sets: Sets { both: [boxes, &[]], count: 1 }, progress: None }
     }
 
     /// Searches for pairs of a box of the first set and a box of this one, instead of pairs within
     /// the first: `[index in the first set, index in this one]`.
     pub fn against(mut self, others: &'b [Aabb<D, T>]) -> Self {
-        self.against = Some(others);
+        self.sets = Sets { both: [self.sets.both[0], others], count: 2 };
         self
     }
 
@@ -93,12 +105,11 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
     /// pay. 0 if a set is empty. Takes as long as a plan, some microseconds.
     #[doc(hidden)]
     pub fn expected_ns(&self) -> f64 {
-        let sets = [self.boxes, self.against.unwrap_or(self.boxes)];
+        let sets = self.sets.as_slice();
         if sets.iter().any(|set| set.is_empty()) {
             return 0.0;
         }
-        let count = if self.against.is_some() { 2 } else { 1 };
-        plan(&sets[..count], Among::All { is_crowded: false }).1
+        plan(sets, Among::All { is_crowded: false }).1
     }
 
     /// Finds the pairs, in a buffer that stays valid until the next search. They and their order are
@@ -107,17 +118,17 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
     /// # Errors
     /// [`Error::InvalidBox`], [`Error::TooManyBoxes`], [`Error::OutOfMemory`], [`Error::Cancelled`].
     pub fn pairs(self) -> Result<&'f [[u32; 2]], Error> {
-        let Self { buffers, boxes, against, progress } = self;
-        store(buffers, boxes, against, progress)?;
+        let Self { buffers, sets, progress } = self;
+        store(buffers, sets.as_slice(), progress)?;
         Ok(buffers.store.pairs())
     }
 
     /// Finds the pairs as [`pairs`](Self::pairs) does, or gives up as soon as it has found more than so
     /// many, but for a buffer on each thread; then there are none.
     pub(crate) fn pairs_up_to(self, most: usize) -> Result<Option<&'f [[u32; 2]]>, Error> {
-        let Self { buffers, boxes, against, .. } = self;
+        let Self { buffers, sets, .. } = self;
         buffers.store.most = most;
-        let result = store(buffers, boxes, against, None);
+        let result = store(buffers, sets.as_slice(), None);
         buffers.store.most = usize::MAX;
         match result {
             Err(Error::Cancelled) => Ok(None),
@@ -132,14 +143,13 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
     /// As [`pairs`](Self::pairs).
     #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn count(self) -> Result<u64, Error> {
-        let Self { buffers: Buffers { driver, count, ranks, .. }, boxes, against, progress } = self;
+        let Self { buffers: Buffers { driver, count, ranks, .. }, sets, progress } = self;
+        let sets = sets.as_slice();
         count.count = 0;
-        let both = [boxes, against.unwrap_or(boxes)];
-        let sets = if against.is_some() { &both[..] } else { &both[..1] };
         if D == 1 && !is_brute_force(sets) && sets.iter().all(|set| !set.is_empty()) {
             return on_line(sets, progress, |task| ranks.pairs(sets, task, &driver.helpers));
         }
-        run(driver, boxes, against, progress, count)?;
+        run(driver, sets, progress, count)?;
         Ok(count.count)
     }
 
@@ -160,18 +170,16 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
     /// # Ok::<(), sweep_and_prune::Error>(())
     /// ```
     pub fn counts(self) -> Result<Vec<u32>, Error> {
-        let is_one = self.against.is_none();
-        if D == 1 {
-            let both = [self.boxes, self.against.unwrap_or(self.boxes)];
-            let sets = if is_one { &both[..1] } else { &both[..] };
-            if sets.iter().all(|set| !set.is_empty()) {
-                let Buffers { ranks, .. } = self.buffers;
-                return on_line(sets, self.progress, |task| ranks.counts(sets, task));
-            }
+        let copied = self.sets;
+        let sets = copied.as_slice();
+        if D == 1 && sets.iter().all(|set| !set.is_empty()) {
+            let Buffers { ranks, .. } = self.buffers;
+            return on_line(sets, self.progress, |task| ranks.counts(sets, task));
         }
         let mut counts = Vec::new();
-        counts.try_reserve_exact(self.boxes.len()).map_err(|_| Error::OutOfMemory)?;
-        counts.resize(self.boxes.len(), 0);
+        counts.try_reserve_exact(sets[0].len()).map_err(|_| Error::OutOfMemory)?;
+        counts.resize(sets[0].len(), 0);
+        let is_one = sets.len() == 1;
         let end = self.for_each_chunk(|pairs| {
             for &[a, b] in pairs {
                 counts[a as usize] += 1;
@@ -231,7 +239,7 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
         self,
         mut each: impl FnMut(&[[u32; 2]]) -> ControlFlow<B>,
     ) -> Result<ControlFlow<B>, Error> {
-        let Self { buffers: Buffers { driver, buffer, .. }, boxes, against, progress } = self;
+        let Self { buffers: Buffers { driver, buffer, .. }, sets, progress } = self;
         let mut end = ControlFlow::Continue(());
         let mut each = |pairs: &[[u32; 2]]| match each(pairs) {
             ControlFlow::Continue(()) => ControlFlow::Continue(()),
@@ -241,7 +249,7 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
             }
         };
         let stream = &mut Stream { buffer, each: &mut each };
-        let result = run_to_stream(driver, boxes, against, progress, stream);
+        let result = run_to_stream(driver, sets.as_slice(), progress, stream);
         match result {
             Err(Error::Cancelled) if end.is_break() => Ok(end),
             result => result.map(|()| end),
@@ -261,7 +269,7 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
         let other = Driver::new(driver.kernel);
         let mut sorting = replace(driver, other).with_probe::<SortOnly>();
         let mut count = Count::default();
-        let result = run(&mut sorting, self.boxes, self.against, self.progress, &mut count);
+        let result = run(&mut sorting, self.sets.as_slice(), self.progress, &mut count);
         *driver = sorting.with_probe();
         driver.helpers = helpers;
         result
@@ -270,9 +278,10 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
 
 impl<const D: usize, T: Scalar> fmt::Debug for Search<'_, '_, D, T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let against = self.sets.as_slice().get(1);
         f.debug_struct("Search")
-            .field("boxes", &self.boxes.len())
-            .field("against", &self.against.map(<[_]>::len))
+            .field("boxes", &self.sets.both[0].len())
+            .field("against", &against.map(|set| set.len()))
             .field("progress", &self.progress.is_some())
             .finish_non_exhaustive()
     }
@@ -282,12 +291,11 @@ impl<const D: usize, T: Scalar> fmt::Debug for Search<'_, '_, D, T> {
 #[inline(never)]
 pub(super) fn store<const D: usize, T: Scalar>(
     buffers: &mut Buffers<D, T>,
-    boxes: &[Aabb<D, T>],
-    against: Option<&[Aabb<D, T>]>,
+    sets: &[&[Aabb<D, T>]],
     progress: Option<ProgressCallback<'_>>,
 ) -> Result<(), Error> {
     buffers.store.clear();
-    let result = run(&mut buffers.driver, boxes, against, progress, &mut buffers.store);
+    let result = run(&mut buffers.driver, sets, progress, &mut buffers.store);
     if result == Err(Error::OutOfMemory) {
         // Others may need what was reserved for pairs.
         buffers.store = Store::default();
@@ -299,29 +307,22 @@ pub(super) fn store<const D: usize, T: Scalar>(
 #[inline(never)]
 fn run_to_stream<const D: usize, T: Scalar>(
     driver: &mut Driver<D, T>,
-    boxes: &[Aabb<D, T>],
-    against: Option<&[Aabb<D, T>]>,
+    sets: &[&[Aabb<D, T>]],
     progress: Option<ProgressCallback<'_>>,
     stream: &mut Stream<'_>,
 ) -> Result<(), Error> {
-    run(driver, boxes, against, progress, stream)
+    run(driver, sets, progress, stream)
 }
 
 /// Searches sets that may be invalid.
 #[inline]
 fn run<const D: usize, T: Scalar, P: Probe, O: Receiver>(
     driver: &mut Driver<D, T, P>,
-    boxes: &[Aabb<D, T>],
-    against: Option<&[Aabb<D, T>]>,
+    sets: &[&[Aabb<D, T>]],
     progress: Option<ProgressCallback<'_>>,
     sink: &mut O,
 ) -> Result<(), Error> {
-    let both = [boxes, against.unwrap_or(&[])];
-    let (sets, pair_order) = if against.is_some() {
-        (&both[..], PairOrder::BySet)
-    } else {
-        (&both[..1], PairOrder::Ascending)
-    };
+    let pair_order = if sets.len() == 1 { PairOrder::Ascending } else { PairOrder::BySet };
     if is_few(sets) && sets.iter().all(|set| set.iter().all(Aabb::is_valid)) {
         return send_few(sets, pair_order, sink).map_err(error);
     }

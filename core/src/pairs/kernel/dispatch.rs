@@ -73,7 +73,7 @@ impl Kernel {
             #[cfg(target_arch = "x86_64")]
             has!("avx2", "bmi1", "popcnt").then_some(Kernel(Instructions::Avx2)),
             #[cfg(target_arch = "x86_64")]
-            has!("avx512f", "bmi1", "popcnt").then_some(Kernel(Instructions::Avx512)),
+            has!("avx512f", "avx2", "bmi1", "popcnt").then_some(Kernel(Instructions::Avx512)),
             #[cfg(target_arch = "aarch64")]
             Some(Kernel(Instructions::Neon)),
             #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
@@ -98,6 +98,16 @@ impl Kernel {
             #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
             Instructions::Simd128 => "simd128",
         }
+    }
+
+    /// The one for sweeps with few tests per box: with fewer lanes, if these have few to test.
+    #[inline]
+    pub(crate) fn with_fewer_lanes(self) -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if self.0 == Instructions::Avx512 {
+            return Kernel(Instructions::Avx2);
+        }
+        self
     }
 
     /// Without `std` there is no choice, and the compiler leaves out the other kernels.
@@ -204,4 +214,20 @@ sweeps! {
     Neon => neon::Neon<neon::float32x4_t>, neon::Neon<neon::float64x2_t>;
     #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
     Simd128 => wasm::F32x8, wasm::F64x4;
+}
+
+#[cfg(all(test, feature = "std"))]
+mod tests {
+    use std::vec::Vec;
+
+    use super::*;
+
+    #[test]
+    fn fewer_lanes_are_those_of_a_kernel_that_the_processor_has() {
+        let available: Vec<_> = Kernel::available().collect();
+        for (at, kernel) in available.iter().enumerate() {
+            let fewer = kernel.with_fewer_lanes();
+            assert!(available[..=at].contains(&fewer), "{}: {}", kernel.name(), fewer.name());
+        }
+    }
 }

@@ -29,6 +29,7 @@
 //! | `SPARSE_COLUMNS_PER_BOX` | more columns for fewer columns that both sets share |
 //! | `MOST_COLUMNS_PER_BOX`, `MOST_COLUMNS`, `MOST_CELLS_PER_AXIS` | a limit on what the model leaves out: empty columns |
 //! | `RECORDS_PER_SLAB` | more slabs for columns that fit the second-level cache |
+//! | `LEAST_UNCUT_TO_SLAB` | slabs that fit this cache, and that threads share, for no copies |
 
 mod choose;
 mod cost;
