@@ -1,6 +1,8 @@
 //! The choice of a plan: the cheapest cut of space, or a split of the boxes by size if that costs less.
 
-use super::cost::{Cut, PlannedSearch, RECORD_NS, Shape, chance, chance_to_share, cost};
+use super::cost::{
+    Cut, PlannedSearch, RECORD_NS, Shape, UNPLACED_NS, chance, chance_to_share, cost,
+};
 use super::distribution::Distribution;
 use super::float::{greater, greatest, lesser, whole};
 use super::overlaps::{NO_LIMITS, Overlaps, is_unexpected};
@@ -160,9 +162,20 @@ fn cheapest_sweep(search: &PlannedSearch<'_>) -> (Cut, f64) {
 /// The cheapest cut, and its cost.
 fn cheapest_cut(search: &PlannedSearch<'_>) -> (Cut, f64) {
     let PlannedSearch { distribution, shapes, .. } = *search;
+    let boxes: f64 = shapes.iter().map(|shape| shape.count).sum();
+    let unplaced = UNPLACED_NS[distribution.dimensions - 1];
+    // No cut of one set costs less.
+    let least_of_cuts = if shapes.len() == 1 { RECORD_NS * boxes } else { 0.0 };
     let mut best = (Cut::uncut(0), f64::INFINITY);
     for sweep in 0..distribution.dimensions {
-        let (mut cut, mut cost) = refined(search, Cut::uncut(sweep));
+        let uncut = Cut::uncut(sweep);
+        let (mut cut, mut cost) = (uncut, cost(search, &uncut) - unplaced * boxes);
+        if cost > least_of_cuts {
+            let (finer, finer_cost) = refined(search, uncut);
+            if finer_cost < cost {
+                (cut, cost) = (finer, finer_cost);
+            }
+        }
         if let [first, second] = shapes {
             // Of few boxes against many most columns hold none, once there are many more
             // columns than boxes; until then more columns do not pay.

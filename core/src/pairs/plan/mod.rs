@@ -20,7 +20,7 @@
 //! |---|---|
 //! | `MOST_SAMPLED`, `SAMPLED_ONE_IN`, `LEAST_SAMPLED` | a sharper picture of the boxes for time to draw and sort it |
 //! | `RESOLUTIONS`, `LEAST_SURE_CHANCE` | seeing small clusters for mistaking noise for clusters |
-//! | `RECORD_NS`, `PLACE_NS`, `TEST_NS`, `COLUMN_NS` | the model: fewer tests in narrow columns for more copies and columns |
+//! | `RECORD_NS`, `PLACE_NS`, `UNPLACED_NS`, `TEST_NS`, `COLUMN_NS` | the model: fewer tests in narrow columns for more copies and columns |
 //! | `CHEAPER_COST_SHARE` | a slightly cheaper plan for one that stays the same from call to call |
 //! | `DEAR_COST_RATIO`, `MIN_BOXES_TO_GLANCE` | a closer look, and splits by size, for the time to plan |
 //! | `GLANCED_BOXES`, `GLANCE_OVERLAP_RATIO`, `GLANCE_OVERLAP_MARGIN` | noticing that the model is wrong for needless closer looks |
