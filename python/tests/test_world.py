@@ -669,12 +669,12 @@ def test_messages_name_the_argument_its_value_and_the_rule() -> None:
     ids = world.insert_many([[0, 0, 1, 1], [2, 2, 3, 3]])
     nan = np.nan
     cases: list[tuple[Any, str]] = [
-        (lambda: world.insert([3, 0, 2, 1]), "box is inverted on axis 0: min 3.0 is greater than max 2.0"),
-        (lambda: world.set(0, [0, nan, 1, 1]), "box has a NaN on axis 1 (min nan, max 1.0)"),
+        (lambda: world.insert([3, 0, 2, 1]), "box is inverted on axis 0: min 3 is greater than max 2"),
+        (lambda: world.set(0, [0, nan, 1, 1]), "box has a NaN on axis 1 (min nan, max 1)"),
         (lambda: world.set_many(ids, [[0, 0, 1, 1], [0, 2, 1, 1]]), "boxes[1] is inverted on axis 1"),
         (lambda: world.set_swept(0, [0, 0, 1, 1], [1, 0, 0, 1]), "end is inverted on axis 0"),
         (lambda: world.set_swept_many([0], [[1, 0, 0, 1]], [[0, 0, 1, 1]]), "starts[0] is inverted on axis 0"),
-        (lambda: world.overlapping([1, 1, 0, 0]), "box is inverted on axis 0: min 1.0 is greater than max 0.0"),
+        (lambda: world.overlapping([1, 1, 0, 0]), "box is inverted on axis 0: min 1 is greater than max 0"),
         (lambda: world.overlapping_many([[1, 1, 2, 2], [1, 1, 2, 0]]), "boxes[1] is inverted on axis 1"),
         (lambda: world.containing([nan, 0]), "point is [nan, 0.0]; it must be not NaN"),
         (lambda: world.within([0, 0], -1), "radius is -1.0; it must be 0 or more"),

@@ -1,11 +1,14 @@
-//! The columns of one search, as the kernels read them: `columns.txt`. What draws them shows what the finder really does.
+//! The columns of one search, as the kernels read them: `columns.txt`. What draws them shows what the finder really does,
+//! but for the plan: it would not cut as few boxes as fit into a picture.
 
 use std::fmt::Write;
 use std::string::String;
 use std::vec::Vec;
 
 use super::driver::Driver;
+use super::grid::{Cells, Grid};
 use super::kernel::{Kernel, PairOrder, SortedBoxes};
+use super::plan::Plan;
 use super::probe::Probe;
 use super::sink::Store;
 use super::task::Task;
@@ -38,9 +41,12 @@ fn columns_are_those_that_are_recorded() {
     let boxes = boxes.iter().map(|aabb| Aabb::new(aabb.min, aabb.max)).collect::<Vec<_>>();
     let mut driver = Driver::<2, f32, Record>::new(Kernel::best());
     let mut store = Store::default();
-    driver
-        .run(&[&boxes[..]], Task::new(PairOrder::Ascending, None), &mut store)
-        .expect("the boxes are valid");
+    let [low, high] = boxes.iter().fold([f64::INFINITY, -f64::INFINITY], |[low, high], aabb| {
+        [low.min(aabb.min[1].into()), high.max(aabb.max[1].into())]
+    });
+    let plan = Plan::Cut(Grid::new::<2>(0, [Cells::one(0), Cells::new(1, 1.0, low, high, 3)]));
+    let task = Task::new(PairOrder::Ascending, None);
+    driver.run_plan(plan, &[&boxes[..]], task, &mut store).expect("the boxes are valid");
     let Record(mut record) = driver.probe;
     for [a, b] in store.pairs() {
         writeln!(record, "pair {a} {b}").expect("a string grows");

@@ -180,7 +180,7 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
         Ok(true)
     }
 
-    fn run_plan<S: Source<D, T>, O: Receiver>(
+    pub fn run_plan<S: Source<D, T>, O: Receiver>(
         &mut self,
         plan: Plan<T>,
         sets: &[&[S]],

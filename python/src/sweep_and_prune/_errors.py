@@ -16,7 +16,7 @@ class SweepAndPruneError(Exception):
     ...     sap.find_pairs([[0, 0, 1, 1], [3, 0, 2, 1]])
     ... except sap.SweepAndPruneError as error:
     ...     print(error)
-    boxes[1] is inverted on axis 0: min 3.0 is greater than max 2.0; pass the min corner first, then the max corner
+    boxes[1] is inverted on axis 0: min 3 is greater than max 2; pass the min corner first, then the max corner
     """
 
 
@@ -59,10 +59,10 @@ class InvalidBoxError(SweepAndPruneError, ValueError):
         """Names the box, its values and what to do."""
         box = _place(self.argument, self.index)
         if self.minimum != self.minimum or self.maximum != self.maximum:  # NaN, or NaT
-            values = f"min {self.minimum}, max {self.maximum}"
+            values = f"min {_shown(self.minimum)}, max {_shown(self.maximum)}"
             return f"{box} has a NaN on axis {self.axis} ({values}): remove it or replace it"
         return (
-            f"{box} is inverted on axis {self.axis}: min {self.minimum} is greater than max {self.maximum}; "
+            f"{box} is inverted on axis {self.axis}: min {_shown(self.minimum)} is greater than max {_shown(self.maximum)}; "
             "pass the min corner first, then the max corner"
         )
 
@@ -137,6 +137,11 @@ class SnapshotError(SweepAndPruneError, ValueError):
     ...     print(error)
     these bytes are not a snapshot
     """
+
+
+def _shown(value: float) -> float:
+    """A whole number as people write it, without a point: positions on a genome are whole."""
+    return int(value) if isinstance(value, float) and value.is_integer() and abs(value) < 2**53 else value
 
 
 def _place(argument: str, index: int) -> str:
