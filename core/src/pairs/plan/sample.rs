@@ -13,9 +13,6 @@ const SAMPLED_ONE_IN: usize = 32;
 /// The smallest sample.
 const LEAST_SAMPLED: usize = 24;
 
-/// Up to this many values are sorted by counting.
-const FEW_TO_SORT: usize = 48;
-
 /// The most axes. Plans have this many in all dimensions, so that their code is compiled once.
 pub const AXES: usize = 3;
 
@@ -104,13 +101,10 @@ fn magnitude<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> f64 {
     greatest(magnitudes.filter(|at| at.is_finite()))
 }
 
-/// Sorts at most [`MOST_SAMPLED`] values; zeros of both signs are equal. Many as whole numbers, which is faster and, in
+/// Sorts at most [`MOST_SAMPLED`] values by `f64::total_cmp`: as whole numbers, which is faster and, in
 /// WebAssembly, shares the code of the sort of keys.
-fn sort(values: &mut [f64]) {
+pub fn sort(values: &mut [f64]) {
     const SIGN: u64 = 1 << 63;
-    if values.len() <= FEW_TO_SORT {
-        return sort_few(values);
-    }
     let mut keys = [0; MOST_SAMPLED];
     let keys = &mut keys[..values.len()];
     for (key, value) in keys.iter_mut().zip(&*values) {
@@ -121,17 +115,4 @@ fn sort(values: &mut [f64]) {
     for (value, &key) in values.iter_mut().zip(&*keys) {
         *value = f64::from_bits(if key & SIGN == 0 { !key } else { key ^ SIGN });
     }
-}
-
-/// Sorts by counting for each value those before it, which takes no branch that depends on them. A NaN may displace others: no
-/// plan of invalid boxes is followed to its end.
-fn sort_few(values: &mut [f64]) {
-    let mut sorted = [0.0; FEW_TO_SORT];
-    for (i, &value) in values.iter().enumerate() {
-        let (first, rest) = values.split_at(i);
-        let before = first.iter().filter(|&&other| other <= value).count()
-            + rest.iter().filter(|&&other| other < value).count();
-        sorted[before] = value;
-    }
-    values.copy_from_slice(&sorted[..values.len()]);
 }
