@@ -1,11 +1,12 @@
 //! The choice of a plan: the cheapest cut of space, or a split of the boxes by size if that costs less.
 
 use super::cost::{
-    Cut, PlannedSearch, RECORD_NS, Shape, UNPLACED_NS, chance, chance_to_share, cost,
+    COLUMN_NS, Cut, PLAN_NS, PlannedSearch, RECORD_NS, Shape, TEST_NS, UNPLACED_NS, chance,
+    chance_to_share, cost,
 };
 use super::distribution::Distribution;
 use super::float::{greater, greatest, lesser, whole};
-use super::overlaps::{NO_LIMITS, Overlaps, is_unexpected};
+use super::overlaps::{NO_LIMITS, Overlaps, chance_to_overlap, is_unexpected};
 use super::sample::{AXES, Sample};
 
 // Which plan is taken decides the order of the pairs, so these limits do not depend on the machine. They were
@@ -35,7 +36,7 @@ const RECORDS_PER_SLAB: f64 = 4096.0;
 /// Fewer boxes that are not cut on other axes are not cut into slabs either, which would copy them once more. (Slab in the
 /// plane, tower in the plane and in space: 0.74 to 0.78 of the time with 10,000 to 100,000 boxes, 0.95 with 200,000. But
 /// threads share slabs, and not the sort of one column.)
-const LEAST_UNCUT_TO_SLAB: f64 = 65536.0;
+const LEAST_UNCUT_TO_SLAB: f64 = 131_072.0;
 
 /// Which plans are considered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,6 +125,34 @@ pub fn cheapest(distribution: &Distribution, samples: &[&Sample], among: Among) 
     best
 }
 
+/// The axis on which to sweep few boxes at once, and the cost, if no cut is cheaper.
+pub fn sweep_of_few(samples: &[&Sample], among: Among) -> Option<(usize, f64)> {
+    let boxes: f64 = samples.iter().map(|sample| sample.count).sum();
+    if boxes >= MIN_BOXES_TO_GLANCE
+        || !matches!(among, Among::All { is_crowded: false } | Among::Cuts)
+    {
+        return None;
+    }
+    let pairs = match samples {
+        [one] => 0.5 * one.count * one.count,
+        _ => samples[0].count * samples[1].count,
+    };
+    let dimensions = samples[0].dimensions;
+    let tests = |axis| pairs * chance_to_overlap(samples, axis) * TEST_NS;
+    let axes = (0..dimensions).map(|axis| (axis, tests(axis)));
+    let (axis, tests) =
+        axes.reduce(|best, next| if next.1 < CHEAPER_COST_SHARE * best.1 { next } else { best })?;
+    let unplaced = UNPLACED_NS[dimensions - 1] * boxes;
+    let cost = RECORD_NS * boxes - unplaced + tests;
+    (!may_pay(tests, unplaced + PLAN_NS)).then_some((axis, cost))
+}
+
+/// Whether to cut space may pay, where the tests of all boxes at once take this many nanoseconds, and a cut as many more
+/// than its own: k columns cost at least those columns and a k-th of the tests, least if both are equal.
+fn may_pay(tests: f64, more: f64) -> bool {
+    tests > more && (tests - more) * (tests - more) > 4.0 * COLUMN_NS * tests
+}
+
 /// A search of some shapes, after a closer look.
 fn closer<'a>(
     distribution: &'a Distribution,
@@ -164,13 +193,12 @@ fn cheapest_cut(search: &PlannedSearch<'_>) -> (Cut, f64) {
     let PlannedSearch { distribution, shapes, .. } = *search;
     let boxes: f64 = shapes.iter().map(|shape| shape.count).sum();
     let unplaced = UNPLACED_NS[distribution.dimensions - 1];
-    // No cut of one set costs less.
-    let least_of_cuts = if shapes.len() == 1 { RECORD_NS * boxes } else { 0.0 };
     let mut best = (Cut::uncut(0), f64::INFINITY);
     for sweep in 0..distribution.dimensions {
         let uncut = Cut::uncut(sweep);
         let (mut cut, mut cost) = (uncut, cost(search, &uncut) - unplaced * boxes);
-        if cost > least_of_cuts {
+        let tests = cost - (RECORD_NS - unplaced) * boxes;
+        if shapes.len() > 1 || may_pay(tests, unplaced * boxes) {
             let (finer, finer_cost) = refined(search, uncut);
             if finer_cost < cost {
                 (cut, cost) = (finer, finer_cost);

@@ -1,10 +1,12 @@
 //! The distribution of the boxes of the samples: how far they reach, how they cluster.
 
 use super::float::{floor, greater, lesser};
-use super::sample::{AXES, Sample};
+use super::sample::{AXES, MOST_SAMPLED, Sample, sort};
 
 /// How many resolutions the histogram of an axis has: 1, 2, 4, ... 2^(RESOLUTIONS - 1) cells. Small samples use fewer.
 const RESOLUTIONS: usize = 11;
+/// The most cells.
+const MOST_CELLS: usize = 1 << (RESOLUTIONS - 1);
 /// The smallest chance that a sample can tell from none.
 const LEAST_SURE_CHANCE: f64 = 1.0 / 2048.0;
 
@@ -38,11 +40,21 @@ impl Distribution {
             spread: [0.0; AXES],
             ties: [0.0; AXES],
         };
+        let mut sorted = [[0.0; MOST_SAMPLED]; 2];
+        let mut counts = [[0; MOST_CELLS]; 2];
         for axis in 0..distribution.dimensions {
-            distribution.ties[axis] = ties(samples, axis);
+            for (sorted, sample) in sorted.iter_mut().zip(samples) {
+                let sorted = &mut sorted[..sample.len];
+                sorted.copy_from_slice(&sample.min[axis][..sample.len]);
+                sort(sorted);
+            }
+            let [first, last] = &sorted;
+            distribution.ties[axis] = match samples {
+                [one] => ties(&first[..one.len], None),
+                _ => ties(&first[..samples[0].len], Some(&last[..samples[1].len])),
+            };
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-            for sample in samples {
-                let sorted = &sample.sorted[axis][..sample.len];
+            for (sorted, sample) in sorted.iter().zip(samples) {
                 let tail = sample.len / 20;
                 let (least, most) = (sorted[tail], sorted[sample.len - 1 - tail]);
                 let margin = 0.125 * (most - least);
@@ -53,7 +65,7 @@ impl Distribution {
             (distribution.low[axis], distribution.high[axis]) = (low, high);
             let extent = high - low;
             distribution.share_cell[axis] =
-                chances_to_share_a_cell(samples, axis, levels, low, extent);
+                chances_to_share_a_cell(samples, axis, levels, low, extent, &mut counts);
             // As fine as the sample can tell.
             let level = (0..levels)
                 .rev()
@@ -111,18 +123,19 @@ fn chances_to_share_a_cell(
     levels: usize,
     low: f64,
     extent: f64,
+    counts: &mut [[u32; MOST_CELLS]; 2],
 ) -> [f64; RESOLUTIONS] {
     let finest = 1 << (levels - 1);
-    let mut counts = [[0u32; 1 << (RESOLUTIONS - 1)]; 2];
     let scale = if extent > 0.0 { finest as f64 / extent } else { 0.0 };
     for (counts, sample) in counts.iter_mut().zip(samples) {
+        counts[..finest].fill(0);
         for at in &sample.min[axis][..sample.len] {
             let cell = ((at - low) * scale) as usize; // below and beyond: the outermost
             counts[cell.min(finest - 1)] += 1;
         }
     }
     let mut chances = [1.0; RESOLUTIONS];
-    let [first, second] = &mut counts;
+    let [first, second] = counts;
     let len = samples[0].len as f64;
     for level in (0..levels).rev() {
         let cells = 1 << level;
@@ -142,18 +155,17 @@ fn chances_to_share_a_cell(
     chances
 }
 
-/// The chance that two boxes begin at the same coordinate.
-fn ties(samples: &[&Sample], axis: usize) -> f64 {
-    let [first, last] = [samples[0], samples[samples.len() - 1]];
+/// The chance that two boxes begin at the same coordinate: of one sample, or of each of two. The coordinates are sorted.
+fn ties(sorted: &[f64], others: Option<&[f64]>) -> f64 {
     let mut pairs = 0;
     let mut begin = 0;
-    for (i, at) in first.sorted[axis][..first.len].iter().enumerate() {
+    for (i, at) in sorted.iter().enumerate() {
         // In one sample, those before it; of another, all.
-        let others = &last.sorted[axis][..if samples.len() == 1 { i } else { last.len }];
+        let others = others.unwrap_or(&sorted[..i]);
         begin += others[begin..].iter().take_while(|&other| other < at).count();
         pairs += others[begin..].iter().take_while(|&other| other == at).count();
     }
-    let all =
-        if samples.len() == 1 { first.len * (first.len - 1) / 2 } else { first.len * last.len };
+    let len = sorted.len();
+    let all = others.map_or(len * len.saturating_sub(1) / 2, |others| len * others.len());
     pairs as f64 / all.max(1) as f64
 }

@@ -2,7 +2,10 @@
 //! the boxes and a model of the cost.
 //!
 //! ```text
-//! draw a sample; estimate its distribution
+//! draw a sample
+//! if there are few boxes, and by their overlaps in the sample no cut pays
+//!     sweep them at once, on the axis on which the fewest overlap
+//! estimate the distribution of the sample
 //! for each sweep axis
 //!     cut the other axes finer, the axis first whose columns save most, until the cost no longer falls
 //! take the cheapest cut
@@ -20,7 +23,7 @@
 //! |---|---|
 //! | `MOST_SAMPLED`, `SAMPLED_ONE_IN`, `LEAST_SAMPLED` | a sharper picture of the boxes for time to draw and sort it |
 //! | `RESOLUTIONS`, `LEAST_SURE_CHANCE` | seeing small clusters for mistaking noise for clusters |
-//! | `RECORD_NS`, `PLACE_NS`, `UNPLACED_NS`, `TEST_NS`, `COLUMN_NS` | the model: fewer tests in narrow columns for more copies and columns |
+//! | `RECORD_NS`, `PLACE_NS`, `UNPLACED_NS`, `PLAN_NS`, `TEST_NS`, `COLUMN_NS` | the model: fewer tests in narrow columns for more copies and columns |
 //! | `CHEAPER_COST_SHARE` | a slightly cheaper plan for one that stays the same from call to call |
 //! | `DEAR_COST_RATIO`, `MIN_BOXES_TO_GLANCE` | a closer look, and splits by size, for the time to plan |
 //! | `GLANCED_BOXES`, `GLANCE_OVERLAP_RATIO`, `GLANCE_OVERLAP_MARGIN` | noticing that the model is wrong for needless closer looks |
@@ -39,13 +42,13 @@ mod overlaps;
 mod sample;
 
 pub(super) use choose::{Among, SizeSplit};
-use choose::{Choice, cheapest};
+use choose::{Choice, cheapest, sweep_of_few};
 use cost::Cut;
 pub(super) use cost::TEST_NS;
 use distribution::Distribution;
 pub(super) use float::greater;
 use float::lesser;
-use sample::{Sample, unit};
+use sample::{Sample, scale};
 
 use super::grid::{Cells, Grid};
 use super::source::Source;
@@ -76,17 +79,23 @@ pub(super) fn plan<const D: usize, T: Scalar, S: Source<D, T>>(
     sets: &[&[S]],
     among: Among,
 ) -> (Plan<T>, f64) {
-    let unit = unit(sets);
     let mut first = Sample::empty(D);
-    first.draw(sets[0], unit);
+    first.draw(sets[0]);
     let mut second;
+    let unit;
     let samples: &[&Sample] = if let Some(&source) = sets.get(1) {
         second = Sample::empty(D);
-        second.draw(source, unit);
+        second.draw(source);
+        unit = scale(&mut [&mut first, &mut second]);
         &[&first, &second]
     } else {
+        unit = scale(&mut [&mut first]);
         &[&first]
     };
+    if let Some((axis, cost)) = sweep_of_few(samples, among) {
+        let cells = core::array::from_fn(Cells::one);
+        return (Plan::Cut(Grid::new::<D>(axis, cells)), cost);
+    }
     let distribution = Distribution::new(samples);
     let (choice, cost) = cheapest(&distribution, samples, among);
     let plan = match choice {

@@ -70,6 +70,20 @@ fn count(rows: &[Members; MOST_COMPARED], first: Members, last: Members, is_one:
         .map(|count| f64::from(count.saturating_sub(with_itself)) * times)
 }
 
+/// The chance that two boxes overlap on an axis, by those of one sample or of two.
+#[inline(never)]
+pub fn chance_to_overlap(samples: &[&Sample], axis: usize) -> f64 {
+    let [first, last] = [samples[0], samples[samples.len() - 1]].map(|sample| edges(sample, axis));
+    let (mut overlaps, mut pairs) = (0, 0);
+    for (i, (&min, &max)) in first.min.iter().zip(first.max).enumerate() {
+        let begin = if samples.len() == 1 { i + 1 } else { 0 };
+        let others = last.min[begin..].iter().zip(&last.max[begin..]);
+        pairs += others.len();
+        overlaps += others.map(|(from, to)| u64::from((*from <= max) & (min <= *to))).sum::<u64>();
+    }
+    overlaps as f64 / pairs.max(1) as f64
+}
+
 /// How many boxes of a sample a glance compares.
 const GLANCED_BOXES: usize = 24;
 /// A glance asks for a closer look if boxes overlap more than this many times as often as expected, plus

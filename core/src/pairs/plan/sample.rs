@@ -1,10 +1,10 @@
 //! A sample of a set of boxes, from which the plan is made.
 
 use super::float::greatest;
+use crate::Scalar;
 use crate::geometry::Arithmetic;
 use crate::pairs::source::Source;
 use crate::sampling::positions;
-use crate::{Aabb, Scalar};
 
 /// The most boxes in a sample.
 pub const MOST_SAMPLED: usize = 256;
@@ -23,11 +23,9 @@ pub struct Sample {
     pub count: f64,
     /// Boxes in the sample.
     pub len: usize,
-    /// Corners by axis, times the unit, clamped to the limit of the coordinate type.
+    /// Corners by axis; times the unit, once they are [scaled](scale).
     pub min: [[f64; MOST_SAMPLED]; AXES],
     pub max: [[f64; MOST_SAMPLED]; AXES],
-    /// The coordinates of `min`, sorted.
-    pub sorted: [[f64; MOST_SAMPLED]; AXES],
 }
 
 impl Sample {
@@ -38,28 +36,30 @@ impl Sample {
             len: 0,
             min: [[0.0; MOST_SAMPLED]; AXES],
             max: [[0.0; MOST_SAMPLED]; AXES],
-            sorted: [[0.0; MOST_SAMPLED]; AXES],
         }
     }
 
     /// Draws from a set. (Into an empty sample: one that is returned is copied once more.)
-    pub fn draw<const D: usize, T: Scalar, S: Source<D, T>>(&mut self, source: &[S], unit: T) {
+    pub fn draw<const D: usize, T: Scalar, S: Source<D, T>>(&mut self, source: &[S]) {
         self.count = source.len() as f64;
-        let limit = T::Arithmetic::LIMIT;
-        let limited = |at: T| (at.to_f64() * unit.to_f64()).clamp(-limit, limit);
-        for i in drawn(source) {
+        let len = (source.len() / SAMPLED_ONE_IN).clamp(LEAST_SAMPLED, MOST_SAMPLED);
+        for i in positions(source.len(), len) {
             let aabb = source[i].aabb();
             for axis in 0..D {
-                self.min[axis][self.len] = limited(aabb.min[axis]);
-                self.max[axis][self.len] = limited(aabb.max[axis]);
+                self.min[axis][self.len] = aabb.min[axis].to_f64();
+                self.max[axis][self.len] = aabb.max[axis].to_f64();
             }
             self.len += 1;
         }
-        for (sorted, min) in self.sorted.iter_mut().zip(&self.min).take(D) {
-            let sorted = &mut sorted[..self.len];
-            sorted.copy_from_slice(&min[..self.len]);
-            sort(sorted);
-        }
+    }
+
+    /// The corners of the boxes: `min` and `max` of each axis.
+    fn edges(&mut self) -> impl Iterator<Item = &mut [f64]> {
+        let Self { dimensions, len, min, max, .. } = self;
+        min.iter_mut()
+            .take(*dimensions)
+            .chain(max.iter_mut().take(*dimensions))
+            .map(|edges| &mut edges[..*len])
     }
 
     /// The size of a box on an axis.
@@ -84,21 +84,21 @@ impl Sample {
     }
 }
 
-/// The [unit](Arithmetic::unit) in which the boxes that are drawn from some sets are planned.
-pub fn unit<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[&[S]]) -> T {
-    let magnitude = |set: &&[S]| greatest(drawn(set).map(|i| magnitude(set[i].aabb())));
-    T::Arithmetic::unit(greatest(sets.iter().map(magnitude)))
-}
-
-/// The positions of the boxes in the sample of a set.
-fn drawn<const D: usize, T: Scalar, S: Source<D, T>>(source: &[S]) -> impl Iterator<Item = usize> {
-    positions(source.len(), (source.len() / SAMPLED_ONE_IN).clamp(LEAST_SAMPLED, MOST_SAMPLED))
-}
-
-/// The greatest absolute coordinate that is finite.
-fn magnitude<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> f64 {
-    let magnitudes = aabb.min.iter().chain(&aabb.max).map(|at| at.to_f64().abs());
-    greatest(magnitudes.filter(|at| at.is_finite()))
+/// Multiplies the corners of some samples by their [unit](Arithmetic::unit), and clamps them to the limit of the coordinate
+/// type. Returns the unit.
+pub fn scale<T: Scalar>(samples: &mut [&mut Sample]) -> T {
+    let finite = |at: &f64| at.is_finite().then_some(at.abs());
+    let of_sample = |sample: &mut &mut Sample| {
+        greatest(sample.edges().map(|edges| greatest(edges.iter().filter_map(finite))))
+    };
+    let unit = T::Arithmetic::unit(greatest(samples.iter_mut().map(of_sample)));
+    let limit = T::Arithmetic::LIMIT;
+    for sample in samples {
+        for at in sample.edges().flatten() {
+            *at = (*at * unit.to_f64()).clamp(-limit, limit);
+        }
+    }
+    unit
 }
 
 /// Sorts at most [`MOST_SAMPLED`] values by `f64::total_cmp`: as whole numbers, which is faster and, in
