@@ -108,9 +108,9 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
             return Ok(());
         }
         if is_brute_force(sets) {
-            let sweep = self.sweep(D, task);
+            let sweep = self.sweep(true, task);
             return brute_force(sets, task, &mut self.sorted, sink, |sets, sink| {
-                if P::SWEEPS { sweep.run(sets, Cursor::default(), sink) } else { Ok(()) }
+                if P::SWEEPS { sweep.run::<D, T, _>(sets, Cursor::default(), sink) } else { Ok(()) }
             });
         }
         let mut task = task;
@@ -330,17 +330,17 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
         if !P::SWEEPS {
             return Ok(());
         }
-        let mut sweep = self.sweep(D - 1, task);
+        let mut sweep = self.sweep(false, task);
         if tests.is_some_and(|tests| are_sparse::<T>(tests, boxes)) {
             sweep.kernel = sweep.kernel.with_fewer_lanes();
         }
         match self.helpers.threads::<O>(boxes) {
             Some(threads) if tests >= Some(MIN_TESTS_FOR_THREADS) => {
                 threads.in_chunks(0..boxes, PROBES_AT_A_TIME, sink, |probes, sink| {
-                    sweep.run(sorted, Cursor::of(sorted, probes), sink)
+                    sweep.run::<D, T, _>(sorted, Cursor::of(sorted, probes), sink)
                 })
             }
-            _ => sweep.run(sorted, Cursor::default(), sink),
+            _ => sweep.run::<D, T, _>(sorted, Cursor::default(), sink),
         }
     }
 
@@ -372,8 +372,8 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
         result
     }
 
-    fn sweep<'a>(&self, others: usize, task: Task<'a>) -> Sweep<'a> {
-        Sweep { kernel: self.kernel, others, task }
+    fn sweep<'a>(&self, all_axes: bool, task: Task<'a>) -> Sweep<'a> {
+        Sweep { kernel: self.kernel, all_axes, task }
     }
 }
 

@@ -5,6 +5,7 @@ use core::fmt;
 #[cfg(feature = "std")]
 use core::mem::replace;
 use core::ops::ControlFlow;
+use core::slice;
 
 use super::brute::{is_brute_force, is_few, send_few};
 use super::driver::Driver;
@@ -71,25 +72,25 @@ pub struct Search<'f, 'b, const D: usize, T: Scalar = f32> {
 #[derive(Clone, Copy)]
 struct Sets<'b, const D: usize, T: Scalar> {
     both: [&'b [Aabb<D, T>]; 2],
-    count: usize,
+    are_two: bool,
 }
 
 impl<'b, const D: usize, T: Scalar> Sets<'b, D, T> {
     fn as_slice(&self) -> &[&'b [Aabb<D, T>]] {
-        &self.both[..self.count]
+        if self.are_two { &self.both } else { slice::from_ref(&self.both[0]) }
     }
 }
 
 impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
     #[inline]
     pub(super) fn new(buffers: &'f mut Buffers<D, T>, boxes: &'b [Aabb<D, T>]) -> Self {
-        Self { buffers, sets: Sets { both: [boxes, &[]], count: 1 }, progress: None }
+        Self { buffers, sets: Sets { both: [boxes, &[]], are_two: false }, progress: None }
     }
 
     /// Searches for pairs of a box of the first set and a box of this one, instead of pairs within
     /// the first: `[index in the first set, index in this one]`.
     pub fn against(mut self, others: &'b [Aabb<D, T>]) -> Self {
-        self.sets = Sets { both: [self.sets.both[0], others], count: 2 };
+        self.sets = Sets { both: [self.sets.both[0], others], are_two: true };
         self
     }
 

@@ -11,15 +11,15 @@ use crate::Scalar;
 #[derive(Clone, Copy)]
 pub(super) struct Sweep<'a> {
     pub kernel: Kernel,
-    /// How many axes are tested beside the sweep axis.
-    pub others: usize,
+    /// Whether all axes are tested, as by brute force, or only those beside the sweep axis.
+    pub all_axes: bool,
     pub task: Task<'a>,
 }
 
 impl Sweep<'_> {
     /// Sends the pairs within one set, or between two, to the sink: those of the probes from a cursor
     /// to its end, with all boxes ahead of them.
-    pub fn run<T: Scalar, O: Sink>(
+    pub fn run<const D: usize, T: Scalar, O: Sink>(
         self,
         sets: &[SortedBoxes<T>],
         mut cursor: Cursor,
@@ -27,8 +27,13 @@ impl Sweep<'_> {
     ) -> Result<(), Stop> {
         loop {
             let out = sink.spare()?;
-            let count =
-                self.kernel.sweep(sets, self.others, self.task.pair_order, &mut cursor, out);
+            let count = self.kernel.sweep::<D, T>(
+                sets,
+                self.all_axes,
+                self.task.pair_order,
+                &mut cursor,
+                out,
+            );
             sink.take(count)?;
             if cursor.is_done() {
                 return Ok(());

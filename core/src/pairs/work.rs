@@ -214,7 +214,8 @@ fn chunks_of_a_sweep_of_two_sets_hold_all_pairs() {
     let sets = [sorted(400, 1), sorted(700, 2)];
     let mut out = std::vec![[0; 2]; 10_000];
     let mut sweep = |sets: &[SortedBoxes<f32>], mut cursor: Cursor| {
-        let count = Kernel::best().sweep(sets, 2, PairOrder::BySet, &mut cursor, &mut out);
+        let count =
+            Kernel::best().sweep::<2, _>(sets, true, PairOrder::BySet, &mut cursor, &mut out);
         out[..count].to_vec()
     };
     let all = sweep(&sets, Cursor::default());

@@ -117,29 +117,30 @@ impl Kernel {
     }
 
     /// Writes the pairs within a set, or those of one box of each of two sets, by the probes' order and
-    /// then by their partners', until all are written or `out` is full, and returns how many. `others`
-    /// axes are tested beside the sweep axis. Within a set the smaller id comes first in any case.
+    /// then by their partners', until all are written or `out` is full, and returns how many. Tested are the
+    /// axes beside the sweep axis, or as many as boxes have, if `all_axes`. Within a set the smaller id comes first in any case.
     ///
     /// # Panics
     /// If `out` is shorter than [`PAD`], the boxes are not ready, or the cursor is from another sweep.
     /// These are the conditions under which the unchecked accesses of the loop are in bounds.
-    pub(crate) fn sweep<T: Scalar>(
+    pub(crate) fn sweep<const D: usize, T: Scalar>(
         self,
         sets: &[SortedBoxes<T>],
-        others: usize,
+        all_axes: bool,
         pair_order: PairOrder,
         cursor: &mut Cursor,
         out: &mut [[u32; 2]],
     ) -> usize {
-        assert!(out.len() >= PAD && sets.iter().all(|set| set.is_ready(others)));
+        let tested = if all_axes { D } else { D - 1 };
+        assert!(out.len() >= PAD && sets.iter().all(|set| set.is_ready(tested)));
         assert!(cursor.fits(sets));
         let (first, second) = (&sets[0], sets.get(1));
         if T::BYTES == 4 {
             let sets = (typed(first), second.map(typed));
-            single(self.instructions(), sets, others, pair_order, cursor, out)
+            single::<D>(self.instructions(), sets, all_axes, pair_order, cursor, out)
         } else {
             let sets = (typed(first), second.map(typed));
-            double(self.instructions(), sets, others, pair_order, cursor, out)
+            double::<D>(self.instructions(), sets, all_axes, pair_order, cursor, out)
         }
     }
 }
@@ -159,10 +160,10 @@ macro_rules! sweeps {
     };
     (@$sweep:ident, $scalar:ty,
      $($(#[$cfg:meta])* $instructions:ident => $vector:ty $(, $feature:literal)?;)*) => {
-        fn $sweep(
+        fn $sweep<const D: usize>(
             instructions: Instructions,
             (first, second): (&SortedBoxes<$scalar>, Option<&SortedBoxes<$scalar>>),
-            others: usize,
+            all_axes: bool,
             pair_order: PairOrder,
             cursor: &mut Cursor,
             out: &mut [[u32; 2]],
@@ -173,29 +174,32 @@ macro_rules! sweeps {
                     /// The instructions are present; the rest is as [`Kernel::sweep`] asserts.
                     $(#[target_feature(enable = $feature)])?
                     #[inline(never)] // One function for all sweeps takes a kilobyte more in WebAssembly.
-                    unsafe fn compiled<const TWO: bool>(
+                    unsafe fn compiled<const TWO: bool, const K: usize>(
                         first: &SortedBoxes<$scalar>,
                         second: &SortedBoxes<$scalar>,
-                        others: usize,
                         pair_order: PairOrder,
                         cursor: &mut Cursor,
                         out: &mut [[u32; 2]],
                     ) -> usize {
                         // SAFETY: the caller has the instructions, and sets and a cursor that fit each other.
                         unsafe {
-                            scan::sweep::<_, $vector, TWO>(first, second, others, pair_order, cursor, out)
+                            scan::sweep::<_, $vector, TWO, K>(first, second, pair_order, cursor, out)
                         }
                     }
+                    // So a build for boxes of one number of dimensions has the loops of two numbers of axes.
+                    let run = match (all_axes, D, second.is_some()) {
+                        (false, 1, false) => compiled::<false, 0>,
+                        (false, 1, true) => compiled::<true, 0>,
+                        (false, 2, false) => compiled::<false, 1>,
+                        (false, 2, true) => compiled::<true, 1>,
+                        (false, _, false) => compiled::<false, 2>,
+                        (false, _, true) => compiled::<true, 2>,
+                        (true, _, false) => compiled::<false, D>,
+                        (true, _, true) => compiled::<true, D>,
+                    };
                     // SAFETY: a `Kernel` exists only where its instructions do, and its method, the
                     // only caller, has checked the boxes, the cursor and the output.
-                    unsafe {
-                        match second {
-                            None => compiled::<false>(first, first, others, pair_order, cursor, out),
-                            Some(second) => {
-                                compiled::<true>(first, second, others, pair_order, cursor, out)
-                            }
-                        }
-                    }
+                    unsafe { run(first, second.unwrap_or(first), pair_order, cursor, out) }
                 })*
             }
         }

@@ -91,40 +91,15 @@ fn probes_of<T: Scalar>(first: &SortedBoxes<T>, second: &SortedBoxes<T>, probes:
 }
 
 /// Writes the pairs of one set or of two to `out` and returns how many; `cursor.done` tells whether that
-/// was all. The scan of a box stops where `out` has no space for a full vector. The second set is looked at
-/// if there are `TWO`. (The sets are parameters of their own: of references in an array the compiler does not
+/// was all. The scan of a box stops where `out` has no space for a full vector. `K` axes are tested beside the sweep axis. The
+/// second set is looked at if there are `TWO`: then the probe is the box that comes first in sweep order, that of the first
+/// set where both begin together. (The sets are parameters of their own: of references in an array the compiler does not
 /// know that nothing else writes to them, which took 7 % at 1,000 boxes.)
 ///
 /// # Safety
-/// The instructions of `V` are present; the sets are ready for `others` axes, at most three, which are
-/// tested beside the sweep axis; the cursor fits the sets; `out.len() >= V::LANES`.
+/// The instructions of `V` are present; the sets are ready for `K` axes; the cursor fits the sets; `out.len() >= V::LANES`.
 #[inline(always)]
-pub(super) unsafe fn sweep<T: Scalar, V: Vector<T>, const TWO: bool>(
-    first: &SortedBoxes<T>,
-    second: &SortedBoxes<T>,
-    others: usize,
-    pair_order: PairOrder,
-    cursor: &mut Cursor,
-    out: &mut [[u32; 2]],
-) -> usize {
-    // SAFETY: the caller has the instructions, and the sets are ready for `others` axes.
-    unsafe {
-        match others {
-            0 => sweep_on::<T, V, TWO, 0>(first, second, pair_order, cursor, out),
-            1 => sweep_on::<T, V, TWO, 1>(first, second, pair_order, cursor, out),
-            2 => sweep_on::<T, V, TWO, 2>(first, second, pair_order, cursor, out),
-            _ => sweep_on::<T, V, TWO, 3>(first, second, pair_order, cursor, out),
-        }
-    }
-}
-
-/// [`sweep`] with `K` axes tested beside the sweep axis. Between two sets the probe is the box that comes
-/// first in sweep order, that of the first set where both begin together.
-///
-/// # Safety
-/// As [`sweep`].
-#[inline(always)]
-unsafe fn sweep_on<T: Scalar, V: Vector<T>, const TWO: bool, const K: usize>(
+pub(super) unsafe fn sweep<T: Scalar, V: Vector<T>, const TWO: bool, const K: usize>(
     a: &SortedBoxes<T>,
     b: &SortedBoxes<T>,
     pair_order: PairOrder,

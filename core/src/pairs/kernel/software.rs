@@ -106,11 +106,10 @@ mod tests {
             // is from this sweep, and the output is long enough.
             let count = unsafe {
                 match sets {
-                    [a, b] => scan::sweep::<_, V, true>(a, b, 2, order, &mut cursor, &mut out),
-                    _ => scan::sweep::<_, V, false>(
+                    [a, b] => scan::sweep::<_, V, true, 2>(a, b, order, &mut cursor, &mut out),
+                    _ => scan::sweep::<_, V, false, 2>(
                         &sets[0],
                         &sets[0],
-                        2,
                         order,
                         &mut cursor,
                         &mut out,
@@ -155,7 +154,7 @@ mod tests {
         let (long, short) = ([sorted_boxes(600, 8)], [sorted_boxes(16, 5)]);
         let (mut out, mut cursor) = (vec![[0; 2]; PAD], Cursor::default());
         let mut sweep = |boxes, cursor: &mut Cursor| {
-            Kernel::SCALAR.sweep(boxes, 2, PairOrder::Ascending, cursor, &mut out);
+            Kernel::SCALAR.sweep::<2, _>(boxes, true, PairOrder::Ascending, cursor, &mut out);
         };
         while cursor.fits(&short) && !cursor.is_done() {
             sweep(&long, &mut cursor);

@@ -34,7 +34,7 @@ const MOST_COLUMNS: f64 = (1 << 24) as f64;
 /// Records in a slab: they, their keys and the sorted boxes fit the second-level cache.
 const RECORDS_PER_SLAB: f64 = 4096.0;
 /// Fewer boxes that are not cut on other axes are not cut into slabs either, which would copy them once more. (Slab in the
-/// plane, tower in the plane and in space: 0.74 to 0.78 of the time with 10,000 to 100,000 boxes, 0.95 with 200,000. But
+/// plane, tower in the plane and in space: 0.73 to 0.81 of the time with 10,000 to 100,000 boxes, 0.95 with 200,000. But
 /// threads share slabs, and not the sort of one column.)
 const LEAST_UNCUT_TO_SLAB: f64 = 131_072.0;
 
@@ -128,9 +128,8 @@ pub fn cheapest(distribution: &Distribution, samples: &[&Sample], among: Among) 
 /// The axis on which to sweep few boxes at once, and the cost, if no cut is cheaper.
 pub fn sweep_of_few(samples: &[&Sample], among: Among) -> Option<(usize, f64)> {
     let boxes: f64 = samples.iter().map(|sample| sample.count).sum();
-    if boxes >= MIN_BOXES_TO_GLANCE
-        || !matches!(among, Among::All { is_crowded: false } | Among::Cuts)
-    {
+    let is_crowded = matches!(among, Among::All { is_crowded: true } | Among::Sweeps);
+    if boxes >= MIN_BOXES_TO_GLANCE || is_crowded {
         return None;
     }
     let pairs = match samples {
@@ -138,19 +137,19 @@ pub fn sweep_of_few(samples: &[&Sample], among: Among) -> Option<(usize, f64)> {
         _ => samples[0].count * samples[1].count,
     };
     let dimensions = samples[0].dimensions;
-    let tests = |axis| pairs * chance_to_overlap(samples, axis) * TEST_NS;
-    let axes = (0..dimensions).map(|axis| (axis, tests(axis)));
-    let (axis, tests) =
-        axes.reduce(|best, next| if next.1 < CHEAPER_COST_SHARE * best.1 { next } else { best })?;
+    let (mut axis, mut least) = (0, f64::INFINITY);
+    for next in 0..dimensions {
+        let chance = chance_to_overlap(samples, next);
+        if chance < CHEAPER_COST_SHARE * least {
+            (axis, least) = (next, chance);
+        }
+    }
+    let tests = pairs * least * TEST_NS;
     let unplaced = UNPLACED_NS[dimensions - 1] * boxes;
-    let cost = RECORD_NS * boxes - unplaced + tests;
-    (!may_pay(tests, unplaced + PLAN_NS)).then_some((axis, cost))
-}
-
-/// Whether to cut space may pay, where the tests of all boxes at once take this many nanoseconds, and a cut as many more
-/// than its own: k columns cost at least those columns and a k-th of the tests, least if both are equal.
-fn may_pay(tests: f64, more: f64) -> bool {
-    tests > more && (tests - more) * (tests - more) > 4.0 * COLUMN_NS * tests
+    // k columns cost at least those columns and a k-th of the tests: least if both are equal.
+    let saved = tests - unplaced - PLAN_NS;
+    let may_pay = saved > 0.0 && saved * saved > 4.0 * COLUMN_NS * tests;
+    (!may_pay).then_some((axis, RECORD_NS * boxes - unplaced + tests))
 }
 
 /// A search of some shapes, after a closer look.
@@ -192,17 +191,14 @@ fn cheapest_sweep(search: &PlannedSearch<'_>) -> (Cut, f64) {
 fn cheapest_cut(search: &PlannedSearch<'_>) -> (Cut, f64) {
     let PlannedSearch { distribution, shapes, .. } = *search;
     let boxes: f64 = shapes.iter().map(|shape| shape.count).sum();
-    let unplaced = UNPLACED_NS[distribution.dimensions - 1];
+    let unplaced = UNPLACED_NS[distribution.dimensions - 1] * boxes;
     let mut best = (Cut::uncut(0), f64::INFINITY);
     for sweep in 0..distribution.dimensions {
         let uncut = Cut::uncut(sweep);
-        let (mut cut, mut cost) = (uncut, cost(search, &uncut) - unplaced * boxes);
-        let tests = cost - (RECORD_NS - unplaced) * boxes;
-        if shapes.len() > 1 || may_pay(tests, unplaced * boxes) {
-            let (finer, finer_cost) = refined(search, uncut);
-            if finer_cost < cost {
-                (cut, cost) = (finer, finer_cost);
-            }
+        let uncut_cost = cost(search, &uncut) - unplaced;
+        let (mut cut, mut cost) = refined(search, uncut);
+        if uncut_cost < cost {
+            (cut, cost) = (uncut, uncut_cost);
         }
         if let [first, second] = shapes {
             // Of few boxes against many most columns hold none, once there are many more

@@ -20,7 +20,7 @@ const PLACE_NS: f64 = 6.0;
 /// mixed sizes 1.1 times as slow.)
 pub const UNPLACED_NS: [f64; AXES] = [4.0, 4.0, 1.0];
 /// Nanoseconds to plan a cut of few boxes. (In the plane 1.2 to 1.5 us, in space 1.6 to 2.3. Where none is planned, 300 boxes take
-/// 0.74 to 0.88 of the time, 1,000 in the plane 0.91 to 0.96, and 1,000 in space up to 1.04.)
+/// 0.75 to 0.9 of the time, 1,000 in the plane 0.91 to 0.98, and 1,000 in space up to 1.05.)
 pub const PLAN_NS: f64 = 2000.0;
 /// Nanoseconds to test one pair: between what 16 lanes and what 4 lanes take.
 pub const TEST_NS: f64 = 0.25;

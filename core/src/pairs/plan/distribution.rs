@@ -48,11 +48,7 @@ impl Distribution {
                 sorted.copy_from_slice(&sample.min[axis][..sample.len]);
                 sort(sorted);
             }
-            let [first, last] = &sorted;
-            distribution.ties[axis] = match samples {
-                [one] => ties(&first[..one.len], None),
-                _ => ties(&first[..samples[0].len], Some(&last[..samples[1].len])),
-            };
+            distribution.ties[axis] = ties(&sorted, samples);
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
             for (sorted, sample) in sorted.iter().zip(samples) {
                 let tail = sample.len / 20;
@@ -155,17 +151,18 @@ fn chances_to_share_a_cell(
     chances
 }
 
-/// The chance that two boxes begin at the same coordinate: of one sample, or of each of two. The coordinates are sorted.
-fn ties(sorted: &[f64], others: Option<&[f64]>) -> f64 {
+/// The chance that two boxes begin at the same coordinate; the coordinates of each sample are sorted.
+fn ties(sorted: &[[f64; MOST_SAMPLED]; 2], samples: &[&Sample]) -> f64 {
+    let [first, last] = [samples[0], samples[samples.len() - 1]];
     let mut pairs = 0;
     let mut begin = 0;
-    for (i, at) in sorted.iter().enumerate() {
+    for (i, at) in sorted[0][..first.len].iter().enumerate() {
         // In one sample, those before it; of another, all.
-        let others = others.unwrap_or(&sorted[..i]);
+        let others = &sorted[samples.len() - 1][..if samples.len() == 1 { i } else { last.len }];
         begin += others[begin..].iter().take_while(|&other| other < at).count();
         pairs += others[begin..].iter().take_while(|&other| other == at).count();
     }
-    let len = sorted.len();
-    let all = others.map_or(len * len.saturating_sub(1) / 2, |others| len * others.len());
+    let all =
+        if samples.len() == 1 { first.len * (first.len - 1) / 2 } else { first.len * last.len };
     pairs as f64 / all.max(1) as f64
 }

@@ -81,16 +81,19 @@ pub(super) fn plan<const D: usize, T: Scalar, S: Source<D, T>>(
 ) -> (Plan<T>, f64) {
     let mut first = Sample::empty(D);
     first.draw(sets[0]);
-    let mut second;
-    let unit;
-    let samples: &[&Sample] = if let Some(&source) = sets.get(1) {
-        second = Sample::empty(D);
-        second.draw(source);
-        unit = scale(&mut [&mut first, &mut second]);
-        &[&first, &second]
-    } else {
-        unit = scale(&mut [&mut first]);
-        &[&first]
+    let Some(&set) = sets.get(1) else { return plan_of::<D, T>(&mut [&mut first], among) };
+    let mut second = Sample::empty(D);
+    second.draw(set);
+    plan_of::<D, T>(&mut [&mut first, &mut second], among)
+}
+
+/// The plan of the sets from which these samples were drawn.
+#[inline(never)]
+fn plan_of<const D: usize, T: Scalar>(samples: &mut [&mut Sample], among: Among) -> (Plan<T>, f64) {
+    let unit = scale(samples);
+    let samples: &[&Sample] = match samples {
+        [first, second] => &[first, second],
+        _ => &[samples[0]],
     };
     if let Some((axis, cost)) = sweep_of_few(samples, among) {
         let cells = core::array::from_fn(Cells::one);

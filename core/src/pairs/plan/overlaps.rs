@@ -40,11 +40,11 @@ fn edges(sample: &Sample, axis: usize) -> Edges<'_> {
     Edges { min: &sample.min[axis][..sample.len], max: &sample.max[axis][..sample.len] }
 }
 
-/// For each box of the first sample, which boxes of the last it overlaps. At most `most` boxes of each sample are compared.
+/// For each box of the first sample, which boxes of the last it overlaps.
 #[inline(never)]
-fn compare(first: Edges<'_>, last: Edges<'_>, most: usize) -> [Members; MOST_COMPARED] {
+fn compare(first: Edges<'_>, last: Edges<'_>) -> [Members; MOST_COMPARED] {
     let mut rows = [0; MOST_COMPARED];
-    let [first_step, last_step] = [first, last].map(|edges| step(edges.min.len(), most));
+    let [first_step, last_step] = [first, last].map(|edges| step(edges.min.len(), MOST_COMPARED));
     for (row, i) in rows.iter_mut().zip((0..first.min.len()).step_by(first_step)) {
         for k in (0..last.min.len()).step_by(last_step).rev() {
             let overlap = (last.min[k] <= first.max[i]) & (first.min[i] <= last.max[k]);
@@ -70,35 +70,40 @@ fn count(rows: &[Members; MOST_COMPARED], first: Members, last: Members, is_one:
         .map(|count| f64::from(count.saturating_sub(with_itself)) * times)
 }
 
-/// The chance that two boxes overlap on an axis, by those of one sample or of two.
-#[inline(never)]
-pub fn chance_to_overlap(samples: &[&Sample], axis: usize) -> f64 {
-    let [first, last] = [samples[0], samples[samples.len() - 1]].map(|sample| edges(sample, axis));
-    let (mut overlaps, mut pairs) = (0, 0);
-    for (i, (&min, &max)) in first.min.iter().zip(first.max).enumerate() {
-        let begin = if samples.len() == 1 { i + 1 } else { 0 };
-        let others = last.min[begin..].iter().zip(&last.max[begin..]);
-        pairs += others.len();
-        overlaps += others.map(|(from, to)| u64::from((*from <= max) & (min <= *to))).sum::<u64>();
-    }
-    overlaps as f64 / pairs.max(1) as f64
-}
-
 /// How many boxes of a sample a glance compares.
-const GLANCED_BOXES: usize = 24;
+const GLANCED_BOXES: usize = 32;
 /// A glance asks for a closer look if boxes overlap more than this many times as often as expected, plus
 /// [`GLANCE_OVERLAP_MARGIN`].
 const GLANCE_OVERLAP_RATIO: f64 = 3.0;
 /// See [`GLANCE_OVERLAP_RATIO`].
 const GLANCE_OVERLAP_MARGIN: f64 = 8.0;
 
+/// The pairs of some boxes of one sample, or of each of two, and how many overlap on an axis.
+#[inline(never)]
+fn glance(samples: &[&Sample], axis: usize) -> [f64; 2] {
+    let [first, last] = [samples[0], samples[samples.len() - 1]].map(|sample| edges(sample, axis));
+    let [first_step, last_step] = [first, last].map(|edges| step(edges.min.len(), GLANCED_BOXES));
+    let (mut pairs, mut overlaps) = (0, 0);
+    for i in (0..first.min.len()).step_by(first_step) {
+        let begin = if samples.len() == 1 { i + first_step } else { 0 };
+        for k in (begin..last.min.len()).step_by(last_step) {
+            pairs += 1;
+            overlaps += u32::from((last.min[k] <= first.max[i]) & (first.min[i] <= last.max[k]));
+        }
+    }
+    [pairs, overlaps].map(f64::from)
+}
+
+/// The chance that two boxes overlap on an axis, by a glance.
+pub fn chance_to_overlap(samples: &[&Sample], axis: usize) -> f64 {
+    let [pairs, overlaps] = glance(samples, axis);
+    overlaps / greater(pairs, 1.0)
+}
+
 /// Whether a glance finds far more overlaps on an axis than the model expects. `chance` is that of two boxes to overlap
 /// (sweep axis) or to share a column (other axes).
 pub fn is_unexpected(samples: &[&Sample], axis: usize, chance: f64) -> bool {
-    let [first, last] = [samples[0], samples[samples.len() - 1]];
-    let rows = compare(edges(first, axis), edges(last, axis), GLANCED_BOXES);
-    let all = Members::MAX >> (MOST_COMPARED - GLANCED_BOXES);
-    let [pairs, overlaps] = count(&rows, all, all, samples.len() == 1);
+    let [pairs, overlaps] = glance(samples, axis);
     overlaps > GLANCE_OVERLAP_RATIO * chance * pairs + GLANCE_OVERLAP_MARGIN
 }
 
@@ -117,7 +122,7 @@ pub struct Overlaps {
 impl Overlaps {
     pub fn new(samples: &[&Sample]) -> Self {
         let [first, last] = [samples[0], samples[samples.len() - 1]];
-        let rows = |axis| compare(edges(first, axis), edges(last, axis), MOST_COMPARED);
+        let rows = |axis| compare(edges(first, axis), edges(last, axis));
         let mut overlaps = Self { rows: [[0; MOST_COMPARED]; AXES] };
         (0..first.dimensions).for_each(|axis| overlaps.rows[axis] = rows(axis));
         overlaps

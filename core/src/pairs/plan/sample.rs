@@ -1,6 +1,6 @@
 //! A sample of a set of boxes, from which the plan is made.
 
-use super::float::greatest;
+use super::float::{greater, lesser};
 use crate::Scalar;
 use crate::geometry::Arithmetic;
 use crate::pairs::source::Source;
@@ -53,15 +53,6 @@ impl Sample {
         }
     }
 
-    /// The corners of the boxes: `min` and `max` of each axis.
-    fn edges(&mut self) -> impl Iterator<Item = &mut [f64]> {
-        let Self { dimensions, len, min, max, .. } = self;
-        min.iter_mut()
-            .take(*dimensions)
-            .chain(max.iter_mut().take(*dimensions))
-            .map(|edges| &mut edges[..*len])
-    }
-
     /// The size of a box on an axis.
     pub fn size(&self, axis: usize, i: usize) -> f64 {
         self.max[axis][i] - self.min[axis][i]
@@ -87,18 +78,26 @@ impl Sample {
 /// Multiplies the corners of some samples by their [unit](Arithmetic::unit), and clamps them to the limit of the coordinate
 /// type. Returns the unit.
 pub fn scale<T: Scalar>(samples: &mut [&mut Sample]) -> T {
-    let finite = |at: &f64| at.is_finite().then_some(at.abs());
-    let of_sample = |sample: &mut &mut Sample| {
-        greatest(sample.edges().map(|edges| greatest(edges.iter().filter_map(finite))))
-    };
-    let unit = T::Arithmetic::unit(greatest(samples.iter_mut().map(of_sample)));
+    let mut most = 0.0;
+    for_each_edge(samples, |at| {
+        if at.is_finite() && at.abs() > most {
+            most = at.abs();
+        }
+    });
+    let unit = T::Arithmetic::unit(most);
     let limit = T::Arithmetic::LIMIT;
+    for_each_edge(samples, |at| *at = lesser(greater(*at * unit.to_f64(), -limit), limit));
+    unit
+}
+
+fn for_each_edge(samples: &mut [&mut Sample], mut each: impl FnMut(&mut f64)) {
     for sample in samples {
-        for at in sample.edges().flatten() {
-            *at = (*at * unit.to_f64()).clamp(-limit, limit);
+        for corners in [&mut sample.min, &mut sample.max] {
+            for edges in &mut corners[..sample.dimensions] {
+                edges[..sample.len].iter_mut().for_each(&mut each);
+            }
         }
     }
-    unit
 }
 
 /// Sorts at most [`MOST_SAMPLED`] values by `f64::total_cmp`: as whole numbers, which is faster and, in
