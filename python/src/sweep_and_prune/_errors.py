@@ -61,8 +61,9 @@ class InvalidBoxError(SweepAndPruneError, ValueError):
         if self.minimum != self.minimum or self.maximum != self.maximum:  # NaN, or NaT
             values = f"min {_shown(self.minimum)}, max {_shown(self.maximum)}"
             return f"{box} has a NaN on axis {self.axis} ({values}): remove it or replace it"
+        low, high = _shown(self.minimum), _shown(self.maximum)
         return (
-            f"{box} is inverted on axis {self.axis}: min {_shown(self.minimum)} is greater than max {_shown(self.maximum)}; "
+            f"{box} is inverted on axis {self.axis}: min {low} is greater than max {high}; "
             "pass the min corner first, then the max corner"
         )
 
