@@ -300,7 +300,7 @@ def test_an_invalid_box_is_named_by_its_file_and_row(cells: int, monkeypatch: py
     with pytest.raises(sap.InvalidRowError) as caught:
         sap.find_pairs("*.parquet", out="out", workers=0, cells=cells)
     assert str(caught.value) == (
-        f"2.parquet, row 555 (the first is 0): the box has a NaN on axis 1 (min nan, max {BOXES[2555, 3]}): "
+        f"2.parquet, row 555 (the first is 0): the box has a NaN on axis 1 (min nan, max {int(BOXES[2555, 3])}): "
         'remove it or replace it, or pass missing="skip"'
     )
     assert (caught.value.index, caught.value.row, caught.value.place) == (2555, 555, "2.parquet")
