@@ -17,13 +17,13 @@ const MIN_BOXES_TO_PLAN: usize = 2048;
 
 /// With fewer boxes, a second plan never pays after the sort.
 const MIN_BOXES_TO_PROBE: usize = 512;
+/// Nor does it if a sweep has fewer tests per box than this. (At 0.25 ns a test, this many cost as much as placing and
+/// sorting the box.)
+const CROWDED_TESTS_PER_BOX: u64 = 96;
 /// Bytes of the left edges that a probe tests, on average, below which a vector of 32 bytes is faster than one of 64: a
 /// quarter of its lanes. (2.2 tests per box take 0.87 to 0.91 of the time, 4.2 the same, 8.6 take 1.1 times as long: tower
 /// and slab, mixed, and uniform boxes in the plane.)
 const SPARSE_BYTES_PER_BOX: usize = 16;
-/// Nor does it if a sweep has fewer tests per box than this. (At 0.25 ns a test, this many cost as much as placing and
-/// sorting the box.)
-const CROWDED_TESTS_PER_BOX: u64 = 96;
 /// How many probes suffice to show that boxes are not crowded.
 const FEW_PROBES: u64 = 32;
 /// How many probes decide whether crowded boxes are planned again.

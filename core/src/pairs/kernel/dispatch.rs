@@ -100,7 +100,7 @@ impl Kernel {
         }
     }
 
-    /// The one for sweeps with few tests per box: with fewer lanes, if these have few to test.
+    /// The kernel for sweeps in which few boxes are ahead of each: most of 16 lanes would have nothing to test.
     #[inline]
     pub(crate) fn with_fewer_lanes(self) -> Self {
         #[cfg(target_arch = "x86_64")]
