@@ -17,10 +17,12 @@ import statistics
 import time
 from collections.abc import Callable
 from datetime import date
+from itertools import chain
 from typing import Any
 
 import numpy as np
 from common import machine, note, revision, versions, write_results
+from numpy.typing import NDArray
 
 import sweep_and_prune as sap
 
@@ -30,6 +32,7 @@ PACKAGES = (
     "numpy shapely pandas polars polars-bio superintervals gtars ncls bioframe ruranges pyranges1 sweep-and-prune"
 ).split()
 Scene = tuple[Any, Any]
+Values = NDArray[np.int64]
 Prepare = Callable[[Any, Any], Callable[[], Any]]
 """Prepares a library's input for two sets; what it returns answers the question."""
 
@@ -143,17 +146,21 @@ def pairs_ncls(a: Any, b: Any) -> Any:
     return lambda: NCLS(starts, ends, ids).all_overlaps_both(*asked, rows)
 
 
-def pairs_of(name: str, found: Any) -> set[tuple[int, int]]:
-    """The pairs in what a library returned."""
+def pairs_of(name: str, found: Any) -> Values:
+    """The pairs in what a library returned, each as one number, in order."""
     if name in ("superintervals", "gtars"):
-        return {(row, int(other)) for row, others in enumerate(found) for other in others}
-    if name == "bioframe":
-        return set(zip(found["index"].tolist(), found["index_"].tolist()))
-    if name == "polars-bio":
-        return set(zip(found["row_1"].to_list(), found["row_2"].to_list()))
+        rows = np.repeat(np.arange(len(found)), [len(others) for others in found])
+        others = np.fromiter(chain.from_iterable(found), np.int64, len(rows))
+    elif name == "bioframe":
+        rows, others = found["index"].to_numpy(), found["index_"].to_numpy()
+    elif name == "polars-bio":
+        rows, others = found["row_1"].to_numpy(), found["row_2"].to_numpy()
+    else:
+        rows, others = np.asarray(found) if name in ("ncls", "shapely STRtree") else found.T
     if name == "shapely STRtree":
-        return {(i, j) for i, j in np.transpose(found).tolist() if i < j}
-    return set(map(tuple, np.asarray(found).T.tolist() if name == "ncls" else found.tolist()))
+        is_once = rows < others
+        rows, others = rows[is_once], others[is_once]
+    return np.sort(rows.astype(np.int64) << 32 | others.astype(np.int64))
 
 
 # Counts for each read.
@@ -164,24 +171,24 @@ def counts_ncls(a: Any, b: Any) -> Any:
     return lambda: np.bincount(find()[0], minlength=len(a))
 
 
-def counts_of(name: str, found: Any) -> list[int]:
+def counts_of(name: str, found: Any) -> Values:
     if name == "polars-bio":
-        found = found.sort("row")["count"].to_list()
+        found = found.sort("row")["count"]
     elif name == "bioframe":
-        found = found["count"].to_numpy()
-    return [int(one) for one in found]
+        found = found["count"]
+    return np.asarray(found, np.int64)
 
 
 # The nearest gene of each read.
 
 
-def distances_of(name: str, found: Any) -> list[int]:
+def distances_of(name: str, found: Any) -> Values:
     """How far the nearest one is. Of several that are equally near, libraries choose different ones."""
     if name == "bioframe":
-        return [int(one) for one in found.sort_values("index")["distance"]]
+        return np.asarray(found.sort_values("index")["distance"], np.int64)
     if name == "polars-bio":
-        return [int(one) for one in found.sort("row_1")["distance"]]
-    return [int(one) for one in found.distances]
+        return np.asarray(found.sort("row_1")["distance"], np.int64)
+    return np.asarray(found.distances, np.int64)
 
 
 def tree(a: Any, _: Any) -> Any:
@@ -191,7 +198,7 @@ def tree(a: Any, _: Any) -> Any:
     return lambda: shapely.STRtree(shapes).query(shapes)
 
 
-CASES: dict[str, tuple[Any, dict[str, Prepare], Callable[[str, Any], Any]]] = {
+CASES: dict[str, tuple[Any, dict[str, Prepare], Callable[[str, Any], Values]]] = {
     "pairs of intervals": (
         two_sets,
         {
@@ -247,7 +254,7 @@ def compared(case: str, scenes: list[Scene]) -> tuple[dict[str, Prepare], dict[s
             for scene in scenes[:3]:
                 wanted = answers_of(OWN, libraries[OWN](*scene)())
                 found = answers_of(OWN if name == TWO else name, prepare(*scene)())
-                if found != wanted:
+                if not np.array_equal(found, wanted):
                     wrong[name] = "something else"
                 sizes.append(len(wanted))
         except ImportError as error:

@@ -32,6 +32,10 @@ const SURE_FOR_THREADS: usize = 1 << 17;
 /// it is done. (By the model of the plan, for one thread.)
 const MIN_NS_FOR_THREADS: f64 = 1.0e6;
 
+/// From this many pairs of a search on threads on, freed memory returns to the system: at most 64 MB stay. To look for it
+/// takes as long as a search of a million boxes where the rest of the process has freed much, too.
+const MANY_TO_TRIM: usize = 1 << 23;
+
 /// How many boxes one or two sets have.
 #[derive(Clone, Copy)]
 struct Sets {
@@ -84,7 +88,7 @@ impl Finder {
                 Ok(Ok(found)) if found.len() < MANY => index.pairs(py, found),
                 Ok(Ok(_)) => {
                     let found = search.finder.take_pairs();
-                    if search.threads > 1 {
+                    if search.threads > 1 && found.len() >= MANY_TO_TRIM {
                         return_freed_memory();
                     }
                     index.many_pairs(py, found)

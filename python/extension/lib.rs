@@ -24,7 +24,7 @@ mod _native {
     #[pymodule_export]
     use super::lines::{read_cells, read_ends_of_variants, read_lines, read_names, read_numbers};
     #[pymodule_export]
-    use super::order::in_order;
+    use super::order::{in_order, nearest_of_rows};
     #[pymodule_export]
     use super::ranks::ranks;
     #[pymodule_export]

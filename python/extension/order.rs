@@ -1,7 +1,9 @@
 //! Sorts pairs by their rows.
 
+use std::cmp::Ordering;
+
 use numpy::ndarray::ArrayView1;
-use numpy::{PyArray1, PyArrayMethods};
+use numpy::{Element, PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyMemoryError};
 use pyo3::prelude::*;
 
@@ -95,6 +97,71 @@ fn sort_bucket(bucket: &mut [[u32; 2]], ends: &mut [usize], partners: &mut [u32]
         }
         begin = end;
     }
+}
+
+/// Where the pairs of the `k` nearest partners of each row stand: by rows, then by distance and partner. First rows are less
+/// than `rows`; distances are `f64` or `i64`, without NaN. The arrays are the package's own: nothing writes to them during
+/// the call. O(pairs + rows) time where each row has few partners.
+#[pyfunction]
+pub fn nearest_of_rows<'py>(
+    first: &Bound<'py, PyArray1<i64>>,
+    second: &Bound<'py, PyArray1<i64>>,
+    distances: &Bound<'py, PyAny>,
+    rows: usize,
+    k: usize,
+) -> PyResult<Array<'py>> {
+    match distances.cast::<PyArray1<f64>>() {
+        Ok(distances) => nearest_by(first, second, distances, rows, k),
+        Err(_) => nearest_by(first, second, distances.cast::<PyArray1<i64>>()?, rows, k),
+    }
+}
+
+fn nearest_by<'py, T: Element + Copy + PartialOrd + Sync>(
+    first: &Bound<'py, PyArray1<i64>>,
+    second: &Bound<'py, PyArray1<i64>>,
+    distances: &Bound<'py, PyArray1<T>>,
+    rows: usize,
+    k: usize,
+) -> PyResult<Array<'py>> {
+    let py = first.py();
+    let (first, second) = (first.try_readonly()?, second.try_readonly()?);
+    let distances = distances.try_readonly()?;
+    let (first, second, distances) = (first.as_array(), second.as_array(), distances.as_slice()?);
+    let count = first.len().min(second.len()).min(distances.len());
+    let mut places = filled(0, count)?;
+    let mut ends = filled(0, rows)?;
+    let kept = run(py, count, 1, None, |_| {
+        by_rows(first, &mut places, &mut ends)?;
+        let compare = |&a: &usize, &b: &usize| {
+            let by_distance = distances[a].partial_cmp(&distances[b]).unwrap_or(Ordering::Equal);
+            by_distance.then_with(|| second[a].cmp(&second[b]))
+        };
+        let (mut begin, mut kept) = (0, 0);
+        for &end in &ends {
+            places[begin..end].sort_unstable_by(compare);
+            let last = end.min(begin.saturating_add(k));
+            places.copy_within(begin..last, kept);
+            kept += last - begin;
+            begin = end;
+        }
+        Some(kept)
+    })?;
+    places.truncate(kept.ok_or_else(|| PyIndexError::new_err("a row is out of range"))?);
+    numbers(py, places.into_iter().map(|place| place as i64))
+}
+
+/// Writes where the pairs of each row stand, and where those of each row end. `None` if a row is out of range.
+fn by_rows(first: ArrayView1<'_, i64>, places: &mut [usize], ends: &mut [usize]) -> Option<()> {
+    for &row in first.iter().take(places.len()) {
+        *ends.get_mut(usize::try_from(row).ok()?)? += 1;
+    }
+    to_places(ends);
+    for (place, &row) in first.iter().take(places.len()).enumerate() {
+        let end = &mut ends[row as usize];
+        places[*end] = place;
+        *end += 1;
+    }
+    Some(())
 }
 
 /// Turns counts into the places where each begins. When all have been placed, these are where each ends.

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._arrays import read_boxes, whole
 from ._broad_phase import BroadPhase
 from ._columns import read_column
+from ._native import nearest_of_rows
 from ._overlaps import Values, check_intervals, line_keys, plain_corners, ranks_of
 from ._pairs import Groups, Margin, find, one_set, stream, two_sets
 from ._prepare import Prepared, is_missing, refuse_inverted
@@ -304,17 +305,14 @@ def nearest(
         prepared = two_sets(a, b, format, "both", missing, by, 0 if is_line else _reach(corners, limit))
         pairs = find(prepared, 1, np.int64)
     if is_line:
-        pairs = np.concatenate([pairs, *_beside(prepared, min(k, max(len(corners[1]), 1)))])
+        are_short = np.bincount(pairs[:, 0], minlength=len(corners[0])) < k
+        pairs = np.concatenate([pairs, *_beside(prepared, are_short, min(k, max(len(corners[1]), 1)))])
     distances = _distances(corners, pairs)
     if limit is not None:
         is_near = distances <= limit
         pairs, distances = pairs[is_near], distances[is_near]
-    ranks = np.unique(distances, return_inverse=True)[1].reshape(-1) if distances.dtype.kind == "O" else distances
-    order = np.lexsort((pairs[:, 1], ranks, pairs[:, 0]))
+    order = nearest_of_rows(pairs[:, 0], pairs[:, 1], _sort_keys(distances), len(corners[0]), k)
     pairs, distances = pairs[order], distances[order]
-    begins = np.flatnonzero(np.diff(pairs[:, 0], prepend=-1))
-    place = np.arange(len(pairs)) - np.repeat(begins, np.diff(begins, append=len(pairs)))
-    pairs, distances = pairs[place < k], distances[place < k]
     if how == "left":
         alone = np.setdiff1d(np.arange(len(corners[0])), pairs[:, 0])
         pairs = np.concatenate([pairs, np.stack([alone, np.full(len(alone), -1)], axis=1)])
@@ -423,27 +421,40 @@ def _rows_of_groups(groups: list[NDArray[Any]]) -> Iterator[tuple[NDArray[np.int
         yield first, second
 
 
-def _beside(prepared: Prepared, k: int) -> list[NDArray[np.int64]]:
-    """For each interval, the `k` that end nearest before it begins, and the `k` that begin nearest after its end."""
+def _beside(prepared: Prepared, are_short: NDArray[np.bool_], k: int) -> list[NDArray[np.int64]]:
+    """The `k` that end nearest before an interval begins, and the `k` that begin nearest after its end.
+
+    They are looked up for the rows of `a` that lack partners.
+    """
     (low_a, high_a), (low_b, high_b) = line_keys(prepared.sets)
     first, second = prepared.sets
     is_grouped = first.shape[1] == 4
     group_a, group_b = (boxes[:, 1] if is_grouped else np.zeros(len(boxes)) for boxes in (first, second))
     of_b = np.arange(len(second))
+    short = np.flatnonzero(are_short if prepared.kept[0] is None else are_short[prepared.kept[0]])
     found = []
     for keys, own, step in ((low_b, high_a, 1), (high_b, low_a, -1)):
         # Of equal ones, those with smaller indices come first, in the direction of the search.
         order = np.lexsort((step * of_b, keys))
-        place = ranks_of(own, keys[order], or_equal=step == 1) + (0 if step == 1 else -1)
+        place = ranks_of(own[short], keys[order], or_equal=step == 1) + (0 if step == 1 else -1)
+        rows = short
         for _ in range(k):
             is_there = (place >= 0) & (place < len(order))
-            rows = np.flatnonzero(is_there)
-            rows = rows[group_a[rows] == group_b[order[place[rows]]]]
+            rows, place = rows[is_there], place[is_there]
+            is_same = group_a[rows] == group_b[order[place]]
+            rows, place = rows[is_same], place[is_same]
             if len(rows) == 0:
                 break
-            found.append(_translated(prepared, rows, order[place[rows]]))
+            found.append(_translated(prepared, rows, order[place]))
             place = place + step
     return found
+
+
+def _sort_keys(distances: Values) -> Values:
+    """Numbers in the order of distances."""
+    if distances.dtype.kind == "O":
+        return np.unique(distances, return_inverse=True)[1].reshape(-1)
+    return distances.view(np.int64) if distances.dtype.kind == "m" else distances
 
 
 def _translated(prepared: Prepared, rows_of_a: Any, rows_of_b: Any) -> NDArray[np.int64]:
@@ -452,12 +463,16 @@ def _translated(prepared: Prepared, rows_of_a: Any, rows_of_b: Any) -> NDArray[n
 
 
 def _distances(corners: list[Values], pairs: NDArray[np.int64]) -> Values:
-    first, second = corners[0][pairs[:, 0]], corners[1][pairs[:, 1]]
-    half = first.shape[1] // 2
-    with np.errstate(invalid="ignore"):
-        gaps = np.maximum(first[:, :half] - second[:, half:], second[:, :half] - first[:, half:])
-    zero = np.zeros((), gaps.dtype)
-    gaps = np.where(gaps > zero, gaps, zero)  # also for infinite ends, whose difference is NaN
+    half = corners[0].shape[1] // 2
+    of_axes = []
+    for axis in range(half):
+        (low_a, high_a), (low_b, high_b) = (
+            (boxes[:, axis][rows], boxes[:, axis + half][rows]) for boxes, rows in zip(corners, pairs.T)
+        )
+        with np.errstate(invalid="ignore"):
+            gaps = np.maximum(low_a - high_b, low_b - high_a)
+        zero = np.zeros((), gaps.dtype)
+        of_axes.append(np.where(gaps > zero, gaps, zero))  # also for infinite ends, whose difference is NaN
     if half == 1:
-        return np.asarray(gaps[:, 0])
-    return np.asarray(np.sqrt((gaps.astype(np.float64) ** 2).sum(axis=1)))
+        return of_axes[0]
+    return np.asarray(np.sqrt(sum(gaps.astype(np.float64) ** 2 for gaps in of_axes)))

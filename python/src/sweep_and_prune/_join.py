@@ -648,7 +648,7 @@ def _frame_of_polars(
         at = polars.Series(of_frame).set(polars.Series(of_frame < 0), None)
         names = {name: f"{name}_{suffix}" if suffix else name for name in frame.columns if name in common}
         taken.append(frame.select(polars.all().gather(at)).rename(names))
-    return polars.concat(taken, how="horizontal")
+    return polars.DataFrame([column for frame in taken for column in frame.get_columns()])
 
 
 def with_missing(rows: list[Indices], kept: int | bool, count: int) -> list[Indices]:

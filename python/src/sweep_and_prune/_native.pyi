@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from ._arrays import Floats, Ids, Pairs
 
-__all__ = ["Finder", "World", "in_order", "ranks", "stop_threads"]
+__all__ = ["Finder", "World", "in_order", "nearest_of_rows", "ranks", "stop_threads"]
 __all__ += ["read_cells", "read_ends_of_variants", "read_lines", "read_names", "read_numbers"]
 
 _Words = tuple[int, int, int, bool]
@@ -73,6 +73,9 @@ def ranks(sorted: NDArray[Any], values: NDArray[Any], or_equal: bool) -> NDArray
 def in_order(
     first: NDArray[np.int64], second: NDArray[np.int64], rows: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]: ...
+def nearest_of_rows(
+    first: NDArray[np.int64], second: NDArray[np.int64], distances: NDArray[Any], rows: int, k: int
+) -> NDArray[np.int64]: ...
 def read_lines(text: bytes, skipped: int, columns: int, separator: int, is_csv: bool) -> NDArray[np.int64] | None: ...
 def read_numbers(
     text: bytes, offsets: NDArray[np.int64], separator: int, is_csv: bool, place: int
