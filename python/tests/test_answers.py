@@ -138,7 +138,7 @@ def test_files_without_a_chromosome_in_common_are_noted(capsys: pytest.CaptureFi
     for other, wanted in (
         (
             "b",
-            "sap: nothing overlaps: column chrom has no value that is in both files, such as 'chr1' in a.bed and",
+            "sap: no boxes pair: column chrom has no value that is in both files, such as 'chr1' in a.bed and",
         ),
         ("c", ""),
     ):

@@ -30,7 +30,6 @@ from ._pairs import (
     count_pairs,
     count_pairs_between,
     find_pairs,
-    find_pairs_between,
     iter_chunks,
     iter_chunks_between,
     release_buffers,
@@ -66,6 +65,9 @@ Exit status: 0 if all went well, 1 for an error in the data or a file, 2 for wro
 after SIGTERM, 129 after SIGHUP, 141 if the program that reads the output ended."""
 
 _SIDES = ("left", "right")
+_CHROMOSOMES = ("chrom", "chr", "chromosome", "seqname", "seqnames", "seqid", "contig")
+_COMMANDS_ELSEWHERE = {"intersect": "join", "overlap": "join", "window": "join --distance", "closest": "nearest"}
+"""What bedtools and its kind call a command, and what it is here."""
 _PAIRS_AT_ONCE = 2**20
 """Many, since there is work for each chunk; they take 16 MB."""
 _LABELLED_AT_ONCE = 2**15
@@ -105,6 +107,12 @@ class _Sap(click.Group):
     def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
         """Reads the arguments before the command, and shows the help."""
         return _guarded(context, lambda: super(_Sap, self).parse_args(context, args))
+
+    def resolve_command(self, context: click.Context, args: list[str]) -> Any:
+        """Finds a command by its name, or says what it is called here."""
+        if args and args[0] in _COMMANDS_ELSEWHERE:
+            context.fail(f"No such command {args[0]!r}: here it is sap {_COMMANDS_ELSEWHERE[args[0]]}.")
+        return super().resolve_command(context, args)
 
     def invoke(self, context: click.Context) -> None:
         """Runs a command."""
@@ -176,7 +184,10 @@ def _together(*options: Callable[[_Function], _Function]) -> Callable[[_Function
 
 
 def _names(context: click.Context, parameter: click.Parameter, text: str | None) -> list[str]:
-    return [name.strip() for name in text.split(",")] if text else []
+    names = [] if text is None else [name.strip() for name in text.split(",")]
+    if not all(names):
+        raise click.BadParameter("a name is empty")
+    return names
 
 
 _FORMATS = click.Choice(["xyxy", "xywh", "cxcywh"])
@@ -206,9 +217,17 @@ _boxes = _together(
     click.option("--threads", type=int, default=1, metavar="N", help="-1 for one on each processor."),
     click.option("--quiet", is_flag=True, help="Show no progress."),
 )
-_output = _together(
+_destination = _together(
     click.option("-o", "--output", metavar="FILE", help="Where to write; standard output by default."),
-    click.option("--to", type=click.Choice(WRITABLE), help="The format; by default the file's name tells it, or csv."),
+    click.option(
+        "--to",
+        type=click.Choice(WRITABLE),
+        help="The format; by default the file's name tells it, or csv. bed: no header, no quotes, and a point where "
+        "nothing is, as other programs for .bed read it.",
+    ),
+)
+_output = _together(
+    _destination,
     click.option(
         "--id",
         metavar="A,B,..",
@@ -334,12 +353,13 @@ def cluster(file: str, **options: Any) -> None:
 
 @sap.command()
 @_file("file")
-@_together(_boxes, _output)
+@_together(_boxes, _destination)
 def merge(file: str, **options: Any) -> None:
-    """Writes the union of connected intervals, or the bounds of connected boxes, with their group and number."""
+    """Writes the union of connected intervals, or the bounds of connected boxes, with their group and number.
+
+    Intervals of .bed that only touch are not connected; with --closed both they are.
+    """
     given = Options(files=[file], **options)
-    if given.id or given.rows:
-        raise FileError("merged intervals have no rows of their own: leave out --id and --rows")
     kind = kind_of(given.output, given.to)
     with _opened(given) as sources:
         sets, search = _search(given, sources)
@@ -347,7 +367,9 @@ def merge(file: str, **options: Any) -> None:
         groups = [(name, sources[0].label(name)[merged.first]) for name in given.by or sources[0].by]
         half = merged.intervals.shape[1] // 2
         names = ["start", "end"] if half == 1 else [f"{end}{axis}" for end in ("min", "max") for axis in "xyz"[:half]]
-        _write_columns(given, kind, [*groups, *zip(names, merged.intervals.T), ("count", merged.counts)])
+        found = [*zip(names, merged.intervals.T), ("count", merged.counts)]
+        # In .bed the start and the end follow the first group.
+        _write_columns(given, kind, [*groups[:1], *found, *groups[1:]] if kind == "bed" else [*groups, *found])
 
 
 @sap.command()
@@ -365,7 +387,7 @@ def nearest(a: str, b: str, **options: Any) -> None:
     kind = kind_of(given.output, given.to)
     with _opened(given) as sources:
         sets, search = _search(given, sources)
-        chosen = {name: search[name] for name in ("missing", "by") if name in search}
+        chosen = {name: search[name] for name in ("missing", "by", "closed") if name in search}
         found = find_nearest(sets[0], sets[1], given.k, max_distance=given.max_distance, how=given.how, **chosen)
         distances = found.distances
         if distances.dtype.kind in "iuO":  # what has no distance is written as nothing
@@ -476,6 +498,8 @@ def _search(options: Options, sources: list[Source]) -> tuple[list[Any], dict[st
     groups = columns_of_groups(sources, by)
     if len(sources) == 2:
         _note_other_names(sources, groups)
+    if not any(by):
+        _note_chromosomes(options, sources)
     closed = {options.closed or source.closed for source in sources}
     if len(closed) > 1:
         raise FileError("the formats of the files differ in whether ends belong to boxes: pass --closed")
@@ -489,15 +513,43 @@ def _search(options: Options, sources: list[Source]) -> tuple[list[Any], dict[st
 
 
 def _note_other_names(sources: list[Source], groups: list[list[Column]]) -> None:
-    """Says so if two files of text have no group in common, such as chromosomes `chr1` and `1`."""
+    """Says so if two files have no group in common, or if groups differ by what is before them: `chr1` and `1`."""
     for columns in zip(*groups):
         values = [column.values.tolist() for column in columns if column.codes is not None]
         names = [[one for one in of_file if one != "" and one == one] for of_file in values]  # others are missing
-        if len(names) == 2 and all(names) and not {*names[0]} & {*names[1]}:
-            first, second = (repr(of_file[0])[:60] for of_file in names)
+        if len(names) < 2 or not all(names):
+            continue
+        first, second = names[0][0], names[1][0]
+        fault = f"{columns[0].name} has values that differ in what is before them"
+        alike = next(_alike(*names), None)
+        if alike is not None:
+            first, second = alike
+        are_apart = not {*names[0]} & {*names[1]}
+        if are_apart:
+            fault = f"no boxes pair: {columns[0].name} has no value that is in both files"
+        if are_apart or alike:
+            shown = [repr(one)[:60] for one in (first, second)]
+            places = f"{shown[0]} in {sources[0].name} and {shown[1]} in {sources[1].name}"
+            click.echo(f"sap: {fault}, such as {places}", err=True)
+            return
+
+
+def _alike(first: list[Any], second: list[Any]) -> Iterator[tuple[str, str]]:
+    """Chromosomes that only one of two files has, and that the other has with, or without, `chr` before them."""
+    names = [{one for one in of_file if isinstance(one, str)} for of_file in (first, second)]
+    for one in first:
+        if one in names[0] and one not in names[1]:
+            others = (f"chr{one}", one.removeprefix("chr"))
+            yield from ((one, other) for other in others if other in names[1] - names[0])
+
+
+def _note_chromosomes(options: Options, sources: list[Source]) -> None:
+    """Says so if intervals have chromosomes that the search does not ask for."""
+    for source in sources:
+        names = [name for name in source.columns if name.lower() in _CHROMOSOMES]
+        if source.text is not None and names and len(source.box_columns(options.format)) == 2:
             click.echo(
-                f"sap: nothing overlaps: {columns[0].name} has no value that is in both files, such as {first} in "
-                f"{sources[0].name} and {second} in {sources[1].name}",
+                f"sap: {source.name} has a column {names[0]}, across whose values intervals pair: pass --by {names[0]}",
                 err=True,
             )
             return
@@ -551,49 +603,83 @@ def _write_pairs(options: Options) -> None:
                 raise KeyboardInterrupt("cancelled; the same command continues") from None
         return
     kind = kind_of(options.output, options.to)
-    with _opened(options) as sources:
-        sets, search = _search(options, sources)
-        if how != "inner" or options.fraction or options.measure:
-            _write_columns(options, kind, _chosen_pairs(options, how, sources, sets, search))
-            return
-        labels = _Labels(options, sources)
-        names, examples = zip(*labels.examples())
-        number = _counted(options, sets, search)
-        opened = writer(options.output, kind, number, names, examples)
-        with opened as file, _progress("writing", options) as progress:
-            for chunk in _chunks(sets, search, number, progress, labels.pairs_at_once):
-                file.write([column for _, column in labels.of([chunk[:, 0], chunk[:, 1]])])
-
-
-def _chosen_pairs(
-    options: Options, how: str, sources: list[Source], sets: list[Any], search: dict[str, Any]
-) -> list[tuple[str, NDArray[Any]]]:
-    """The pairs that overlap enough, what they measure, and boxes without any."""
-    find: Any = find_pairs if len(sets) == 1 else find_pairs_between
-    with _progress("finding", options) as progress:
-        pairs = find(*sets, threads=options.threads, progress=progress, **search)
-    first, second = sets[0], sets[1] if len(sets) == 2 else None
-    if options.fraction:
-        shares, least = measure_overlaps(first, second, pairs, wrap=options.wrap), _fractions(options.fraction)
-        pairs = pairs[(shares.fraction_a >= least[0]) & (shares.fraction_b >= least[1])]
-    if how in ("semi", "anti"):
-        if options.measure:
-            raise FileError(f"--how {how} writes boxes, not pairs: leave out --measure")
-        matches = np.zeros(len(sources[0]), bool)
-        matches[pairs[:, 0]] = True
-        return _labelled(options, sources, [np.flatnonzero(matches == (how == "semi"))])
-    rows = [pairs[:, 0], pairs[:, 1]]
-    if how != "inner":
-        kept = how == "right"
-        order = np.lexsort((rows[not kept], rows[kept]))
-        rows = with_missing([rows[0][order], rows[1][order]], kept, len(sources[kept]))
-    columns = _labelled(options, sources, rows)
-    is_pair = (rows[0] >= 0) & (rows[1] >= 0)
-    found = measure_overlaps(first, second, np.stack(rows, axis=1)[is_pair], wrap=options.wrap)
+    least = _fractions(options.fraction)
     for name in options.measure:
         if name not in Overlaps._fields:
             raise FileError(f"--measure must be of {', '.join(Overlaps._fields)}, not {name}")
-        values = getattr(found, name)
+    if how in ("semi", "anti") and options.measure:
+        raise FileError(f"--how {how} writes boxes, not pairs: leave out --measure")
+    with _opened(options) as sources:
+        sets, search = _search(options, sources)
+        found = _Found(options, sets, search, least)
+        if how in ("semi", "anti"):
+            _write_columns(options, kind, _with_any(options, how, sources, found))
+        elif how != "inner":
+            _write_columns(options, kind, _with_alone(options, int(how == "right"), sources, found))
+        else:
+            _write_found(options, kind, sources, found)
+
+
+class _Found:
+    """The pairs that overlap enough, a chunk at a time: there may be more than fit in memory."""
+
+    def __init__(self, options: Options, sets: list[Any], search: dict[str, Any], least: list[float] | None) -> None:
+        self._options, self._sets, self._search, self._least = options, sets, search, least
+        self.count = _counted(options, sets, search)
+        """How many pairs there are, those included that overlap too little."""
+        if least is not None or options.measure:
+            self._corners = plain_corners(dict(zip("ab", sets)), "xyxy")  # once for all chunks
+
+    def __iter__(self) -> Iterator[NDArray[Any]]:
+        with _progress("writing", self._options) as progress:
+            for pairs in _chunks(self._sets, self._search, self.count, progress):
+                if self._least is not None:
+                    shares = self.measured(pairs)
+                    pairs = pairs[(shares.fraction_a >= self._least[0]) & (shares.fraction_b >= self._least[1])]
+                yield pairs
+
+    def measured(self, pairs: NDArray[Any]) -> Overlaps:
+        """How much the boxes of pairs overlap."""
+        second = self._corners[1] if len(self._sets) == 2 else None
+        return measure_overlaps(self._corners[0], second, pairs, wrap=self._options.wrap)
+
+    def columns(self, pairs: NDArray[Any]) -> list[tuple[str, NDArray[Any]]]:
+        """What is to be written of how much the boxes of pairs overlap."""
+        measured = self.measured(pairs) if self._options.measure else None
+        return [(name, getattr(measured, name)) for name in self._options.measure]
+
+
+def _write_found(options: Options, kind: str, sources: list[Source], found: _Found) -> None:
+    labels = _Labels(options, sources, kind)
+    names, examples = zip(*labels.examples(), *found.columns(np.empty((0, 2), np.int64)))
+    count = found.count
+    if kind == "npy" and options.fraction:  # whose first bytes say how many rows there are
+        count = sum(map(len, found))
+    with writer(options.output, kind, count, names, examples) as file:
+        for chunk in found:
+            measured = found.columns(chunk)
+            for first in range(0, len(chunk), labels.pairs_at_once):
+                part = slice(first, first + labels.pairs_at_once)
+                columns = [*labels.of([*chunk[part].T]), *((name, values[part]) for name, values in measured)]
+                file.write([values for _, values in columns])
+
+
+def _with_any(options: Options, how: str, sources: list[Source], found: _Found) -> list[tuple[str, NDArray[Any]]]:
+    """The boxes of the first file with a pair, or without one."""
+    matches = np.zeros(len(sources[0]), bool)
+    for pairs in found:
+        matches[pairs[:, 0]] = True
+    return _labelled(options, sources[:1], [np.flatnonzero(matches == (how == "semi"))])
+
+
+def _with_alone(options: Options, kept: int, sources: list[Source], found: _Found) -> list[tuple[str, NDArray[Any]]]:
+    """All pairs, what they measure, and the boxes of one file without any; `kept` says of which."""
+    pairs = np.concatenate([np.empty((0, 2), np.int64), *found])
+    order = np.lexsort((pairs[:, 1 - kept], pairs[:, kept]))
+    rows = with_missing([*pairs[order].T], kept, len(sources[kept]))
+    columns = _labelled(options, sources, rows)
+    is_pair = (rows[0] >= 0) & (rows[1] >= 0)
+    for name, values in found.columns(np.stack(rows, axis=1)[is_pair]):
         if not is_pair.all():
             filled = np.full(len(is_pair), None, object)
             filled[is_pair] = values
@@ -602,7 +688,9 @@ def _chosen_pairs(
     return columns
 
 
-def _fractions(text: str) -> list[float]:
+def _fractions(text: str | None) -> list[float] | None:
+    if text is None:
+        return None
     try:
         given = [float(part) for part in text.split(",")]
     except ValueError:
@@ -615,8 +703,9 @@ def _fractions(text: str) -> list[float]:
 class _Labels:
     """What is written for rows of the files: their numbers, some of their columns, or all."""
 
-    def __init__(self, options: Options, sources: list[Source]) -> None:
+    def __init__(self, options: Options, sources: list[Source], kind: str) -> None:
         names = _of_sides(options, "id")
+        label = Source.typed_label if kind in ("parquet", "arrow") else Source.label
         if options.rows:
             if any(names):
                 raise FileError("pass --id or --rows: all columns, or some")
@@ -627,7 +716,7 @@ class _Labels:
         self._columns: list[list[tuple[str, Any]]] = []
         for side, source, of_side in zip("ab", [sources[0], sources[-1]], [names[0], names[len(sources) - 1]]):
             is_one = len(of_side) == 1 and not options.rows
-            labels = [(side if is_one else f"{side}_{name}", source.label(name)) for name in of_side]
+            labels = [(side if is_one else f"{side}_{name}", label(source, name)) for name in of_side]
             self._columns.append([*labels] or [(side, None)])
 
     @property
@@ -662,7 +751,7 @@ def _taken(values: Any, rows: NDArray[Any]) -> NDArray[Any]:
 
 
 def _labelled(options: Options, sources: list[Source], rows: list[NDArray[Any]]) -> list[tuple[str, NDArray[Any]]]:
-    return _Labels(options, sources).of(rows)
+    return _Labels(options, sources, kind_of(options.output, options.to)).of(rows)
 
 
 def _write_answers(

@@ -132,6 +132,13 @@ class Source:
             values = values.to_pylist()
         return np.asarray(values, object if isinstance(values, list) else None)
 
+    def typed_label(self, name: str) -> Any:
+        """A column as it is written where columns have types: one of text that has plain numbers becomes numbers."""
+        text = self.text
+        if text is not None and name not in self.by and text.are_plain_numbers(name):
+            return text.plain_numbers(name)
+        return self.label(name)
+
     def _labels(self, name: str) -> Any:
         return self.labels[name] if name in self.labels else self._column(name)
 

@@ -121,6 +121,10 @@ class Text:
         present = [cell for cell in self.text(name) if cell]
         return bool(present) and all(map(_PLAIN_NUMBER.fullmatch, present))
 
+    def plain_numbers(self, name: str) -> NDArray[Any]:
+        """The numbers of a column as they are in the file."""
+        return self._numbers(name)
+
     def _numbers(self, name: str) -> NDArray[Any]:
         cells = self.text(name)
         if _is_plain("".join(cells)):

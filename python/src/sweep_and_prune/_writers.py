@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ._file_error import FileError, printable
 from ._output import output_file
 
-WRITABLE = ("csv", "tsv", "npy", "parquet", "arrow")
+WRITABLE = ("csv", "tsv", "bed", "npy", "parquet", "arrow")
 ARROW_ENDINGS = (".arrow", ".feather", ".ipc")
 
 
@@ -27,28 +27,51 @@ class Writer(Protocol):
 
 
 class _TextWriter:
-    def __init__(self, file: IO[bytes], delimiter: str, names: Sequence[str]) -> None:
-        self._file, self._delimiter = file, delimiter
-        self._file.write((delimiter.join(_quoted(name, delimiter) for name in names) + "\n").encode())
+    """Rows of cells: with a header and quotes where they are needed, or as in .bed without both."""
+
+    def __init__(self, file: IO[bytes], kind: str, names: Sequence[str]) -> None:
+        self._file, self._delimiter = file, "," if kind == "csv" else "\t"
+        self._cell = {"csv": _cell_of_csv, "tsv": _cell_of_tsv, "bed": _cell_of_bed}[kind]
+        if kind != "bed":
+            self._file.write((self._delimiter.join(map(self._cell, names)) + "\n").encode())
 
     def write(self, columns: Sequence[NDArray[Any]]) -> None:
-        delimiter = self._delimiter
+        delimiter, cell = self._delimiter, self._cell
         lists = [column.tolist() for column in columns]
         if len(lists) == 2 and all(column.dtype.kind in "iu" for column in columns):
             lines = [f"{i}{delimiter}{j}\n" for i, j in zip(*lists)]
         else:
-            lines = [delimiter.join([_quoted(cell, delimiter) for cell in row]) + "\n" for row in zip(*lists)]
+            lines = [delimiter.join(map(cell, row)) + "\n" for row in zip(*lists)]
         self._file.write("".join(lines).encode())
 
     def close(self) -> None:
         self._file.flush()
 
 
-def _quoted(value: object, delimiter: str) -> str:
-    text = "" if value is None or value != value else str(value)
-    if delimiter in text or '"' in text or "\n" in text or "\r" in text:
-        return '"' + text.replace('"', '""') + '"'
-    return text
+def _cell_of_csv(value: object) -> str:
+    text = _text_of(value)
+    return _quoted(text) if "," in text or '"' in text or "\n" in text or "\r" in text else text
+
+
+def _cell_of_tsv(value: object) -> str:
+    """A quote is one of text, unless it is the first character: programs that know no quotes read most rows, too."""
+    text = _text_of(value)
+    return _quoted(text) if "\t" in text or text.startswith('"') or "\n" in text or "\r" in text else text
+
+
+def _cell_of_bed(value: object) -> str:
+    text = _text_of(value)
+    if "\t" in text or "\n" in text or "\r" in text:
+        raise FileError(f"--to bed cannot hold a cell with a tab or a line end: {printable(text[:60])!r}; write tsv")
+    return text or "."
+
+
+def _text_of(value: object) -> str:
+    return "" if value is None or value != value else str(value)
+
+
+def _quoted(text: str) -> str:
+    return '"' + text.replace('"', '""') + '"'
 
 
 class _NumpyWriter:
@@ -169,8 +192,8 @@ def _closing(
     made: Writer
     if kind == "npy":
         made = _NumpyWriter(file, count, len(names))
-    elif kind in ("csv", "tsv"):
-        made = _TextWriter(file, "," if kind == "csv" else "\t", names)
+    elif kind in ("csv", "tsv", "bed"):
+        made = _TextWriter(file, kind, names)
     else:
         made = _ArrowWriter(file, kind, names, is_pipe, examples)
     yield made
@@ -186,5 +209,5 @@ def kind_of(path: str | None, kind: str | None) -> str:
     suffix = Path(path).suffix.lower()
     known = "arrow" if suffix in ARROW_ENDINGS else suffix[1:]
     if known not in WRITABLE:
-        raise FileError(f"{path} has an unknown ending: use .csv, .tsv, .npy, .parquet or .arrow, or pass --to")
+        raise FileError(f"{path} has an unknown ending: use .csv, .tsv, .bed, .npy, .parquet or .arrow, or pass --to")
     return known
