@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -95,6 +96,59 @@ def test_ctrl_c_while_modules_are_loaded_gives_one_line() -> None:
         )
         assert (done.returncode, done.stdout) == (status, printed), done.stderr
         assert said is None or done.stderr == said
+
+
+def test_ctrl_c_that_a_library_swallows_while_it_is_loaded_ends_the_program() -> None:
+    Path("a.csv").write_text("start,end\n0,1\n")
+    Path("dask").mkdir()
+    Path("dask/__init__.py").write_text(SWALLOWS)
+    done = subprocess.run(
+        [*SAP, "pairs", "a.csv", "--memory-limit", "1GB", "-o", "out"],
+        capture_output=True,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
+    assert (done.returncode, done.stdout) == (130, "")
+    assert done.stderr.strip() == "sap: cancelled"
+
+
+@pytest.mark.skipif(find_spec("distributed") is None, reason="needs dask")
+def test_ctrl_c_of_a_terminal_does_not_reach_the_workers() -> None:
+    program = subprocess.Popen(
+        [sys.executable, "-c", WITH_WORKERS],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
+    assert program.stdout is not None and program.stdout.readline() == "started\n"
+    os.killpg(program.pid, signal.SIGINT)
+    _, said = program.communicate(timeout=600)
+    assert (program.returncode, said) == (0, "")
+
+
+SWALLOWS = """
+import os
+try:
+    os.kill(os.getpid(), 2)
+except BaseException:
+    pass
+"""
+WITH_WORKERS = """
+import time
+from sweep_and_prune._partitioned.workers import started
+
+if __name__ == "__main__":
+    try:
+        with started("4GB", 2) as workers:
+            workers.client.wait_for_workers(2)
+            workers.client.run(abs, 0)  # they have begun
+            print("started", flush=True)
+            time.sleep(600)
+    except KeyboardInterrupt:
+        pass
+"""
 
 
 AT_ONCE = """

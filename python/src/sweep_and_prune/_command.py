@@ -36,7 +36,7 @@ from ._pairs import (
 )
 from ._prepare import is_missing, refuse_inverted
 from ._progress import ProgressBar
-from ._signals import end_at_once, end_by_signals, remove_unfinished, signal_status
+from ._signals import end_at_once, end_by_signals, held_back, remove_unfinished, signal_status
 from ._tables import FORMATS, READABLE, Source, columns_of_groups, is_text, kind_of_file, read
 from ._text import Cells
 from ._writers import WRITABLE, kind_of, writer
@@ -791,9 +791,12 @@ def _id_from_disk(options: Options) -> Any:
 def _from_disk(options: Options, to: str | None) -> Iterator[tuple[Any, dict[str, Any]]]:
     """What finds pairs of boxes that need not fit in memory, and the options for it."""
     try:
-        import distributed  # noqa: F401
+        with held_back():
+            import dask.dataframe  # noqa: F401
+            import distributed  # noqa: F401
+            import pyarrow.parquet  # noqa: F401
 
-        from . import dask
+            from . import dask as on_disk
     except ImportError:
         raise FileError("--memory-limit needs Dask: pip install 'sweep-and-prune[dask]'") from None
     for path in options.files:
@@ -817,7 +820,7 @@ def _from_disk(options: Options, to: str | None) -> Iterator[tuple[Any, dict[str
         },
     }
     try:
-        yield dask, search
+        yield on_disk, search
     except (SweepAndPruneError, TypeError, ValueError) as error:
         raise FileError(str(error)) from None
 

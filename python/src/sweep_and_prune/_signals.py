@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import os
 import signal
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from types import FrameType
 
 _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no SIGHUP
@@ -17,6 +18,7 @@ _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no SIGHUP
 _unfinished: list[str] = []
 _came: int | None = None
 _is_at_end = False
+_is_held_back = False
 
 
 def remove_at_end(path: str) -> None:
@@ -47,6 +49,19 @@ def end_at_once() -> None:
     _is_at_end = True
 
 
+@contextmanager
+def held_back() -> Iterator[None]:
+    """What the first signal raises is raised after this: some libraries swallow it while they are imported."""
+    global _is_held_back
+    _is_held_back = True
+    try:
+        yield
+    finally:
+        _is_held_back = False
+        if _came is not None:
+            raise KeyboardInterrupt
+
+
 def signal_status() -> int:
     """The exit status after the signal that came, as 130 for Ctrl-C; 0 if none did."""
     return 0 if _came is None else 128 + _came
@@ -55,6 +70,8 @@ def signal_status() -> int:
 def _end(number: int, _frame: FrameType | None) -> None:
     global _came
     is_first, _came = _came is None, number
+    if is_first and _is_held_back:
+        return
     if is_first and not _is_at_end:
         raise KeyboardInterrupt
     remove_unfinished()

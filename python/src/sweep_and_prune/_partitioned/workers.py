@@ -11,6 +11,7 @@ from threading import Event, Thread
 from typing import Any, NamedTuple
 
 from .._errors import SweepAndPruneError
+from . import uninterrupted
 from .dataset import DatasetError
 from .tasks import guarded
 
@@ -176,6 +177,7 @@ def started(limit: int | str | float | None, number: int | None) -> Iterator[Wor
                 memory_limit=0,
                 dashboard_address=":0",
                 silence_logs=50,
+                preload=[uninterrupted.__name__],
             ) as cluster,
             Client(cluster, set_as_default=False) as client,
             _kept_alive(cluster, client, number),
