@@ -119,9 +119,12 @@ def test_the_answers_are_their_definitions(seed: int, capsys: pytest.CaptureFixt
         names, rows = table(capsys, "nearest", *files, "-k", str(k), "--how", "left", "--id", "name", *reach)
         wanted = []
         for x in a:
-            near = sorted((max(0, -shared(x, y)), at, y[3]) for at, y in enumerate(b) if x[0] == y[0])
+            # What overlaps comes before what only touches.
+            near = sorted(
+                (max(-1, -shared(x, y)) - (shared(x, y) > 0), at, y[3]) for at, y in enumerate(b) if x[0] == y[0]
+            )
             near = [one for one in near if one[0] <= limit][:k]
-            wanted += [[x[3], name, str(distance)] for distance, _, name in near] or [[x[3], "", ""]]
+            wanted += [[x[3], name, str(max(distance, 0))] for distance, _, name in near] or [[x[3], "", ""]]
         assert names == ["a", "b", "distance"] and rows == wanted
 
 
@@ -145,6 +148,13 @@ def test_files_without_a_chromosome_in_common_are_noted(capsys: pytest.CaptureFi
         assert main(["count", "a.bed"]) == 0 and main(["join", "a.bed", f"{other}.bed"]) == 0
         said = capsys.readouterr().err
         assert said.startswith(wanted) and said.count("\n") == (other == "b")
+    Path("m.bed").write_text("chrM\t5\t7\n1\t1\t2\n")
+    Path("n.bed").write_text("chrM\t5\t7\nchr1\t1\t2\nchr2\t1\t2\n")
+    assert main(["join", "m.bed", "n.bed", "--how", "anti"]) == 0
+    wanted = (
+        "sap: column chrom has values that differ in what is before them, such as '1' in m.bed and 'chr1' in n.bed\n"
+    )
+    assert capsys.readouterr().err == wanted
     Path("d.bed").write_text("0\t5\t7\n1\t1\t2\n")
     Path("e.bed").write_text("0\t5\t7\n2\t1\t2\n")
     assert main(["join", "d.bed", "e.bed"]) == 0 and capsys.readouterr().err == ""
@@ -228,3 +238,90 @@ def test_options_that_do_not_fit_are_refused(capsys: pytest.CaptureFixture[str])
     names, rows = table(capsys, "merge", "b.npy")
     assert names == ["minx", "miny", "maxx", "maxy", "count"] and rows == [[*"00392"], [*"55661"]]
     assert "b.npy: " in refused(capsys, "coverage", "b.npy", "b.npy")
+
+
+def test_intervals_with_chromosomes_that_no_one_asks_for_are_noted(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("a.csv").write_text("Chr,start,end\n1,0,5\n2,3,8\n")
+    assert main(["count", "a.csv"]) == 0
+    captured = capsys.readouterr()
+    assert captured.out == "1\n" and captured.err.endswith("intervals pair: pass --by Chr\n")
+    assert main(["count", "a.csv", "--by", "Chr"]) == 0 and capsys.readouterr() == ("0\n", "")
+    Path("b.csv").write_text("chr,x1,y1,x2,y2\n1,0,0,5,5\n")
+    assert main(["count", "b.csv"]) == 0 and capsys.readouterr().err == ""
+
+
+def test_pairs_that_overlap_enough_are_written_in_chunks(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    starts = np.random.default_rng(5).integers(0, 60, 60)
+    np.save("a.npy", np.stack([starts, starts + 9], axis=1))
+    options = ["--fraction", "0.4", "--measure", "size"]
+    at_once = table(capsys, "pairs", "a.npy", *options)[1]
+    monkeypatch.setattr("sweep_and_prune._command._PAIRS_AT_ONCE", 7)
+    widths = []
+    write = importlib.import_module("sweep_and_prune._writers")._TextWriter.write
+
+    def watched(self: Any, columns: Any) -> None:
+        widths.append(len(columns[0]))
+        write(self, columns)
+
+    monkeypatch.setattr("sweep_and_prune._writers._TextWriter.write", watched)
+    assert sorted(table(capsys, "pairs", "a.npy", *options)[1]) == sorted(at_once) and len(at_once) > 100
+    assert max(widths) <= 7
+    assert all(int(size) >= 4 for *_, size in at_once)
+    assert main(["pairs", "a.npy", *options, "-o", "p.npy"]) == 0
+    assert sorted(np.load("p.npy").tolist()) == sorted([*map(int, row)] for row in at_once)
+
+
+def test_what_cannot_be_measured_is_refused_before_the_search(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    np.save("a.npy", np.zeros((9, 2)))
+    monkeypatch.setattr("sweep_and_prune._command.read", None)
+    for option in (["--measure", "IoU"], ["--fraction", "2"], ["--fraction", "0.5,x"]):
+        assert option[0] in refused(capsys, "pairs", "a.npy", *option)
+
+
+def test_rows_of_bed_are_written_as_bed(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("a.bed").write_text("1\t0\t9\ta\t.\t+\n1\t20\t29\tb\t.\t-\n")
+    Path("b.bed").write_text("1\t5\t7\n")
+    assert main(["join", "a.bed", "b.bed", "--how", "semi", "--rows", "-o", "s.bed"]) == 0
+    assert Path("s.bed").read_text() == "1\t0\t9\ta\t.\t+\n"
+    assert main(["join", "a.bed", "b.bed", "--how", "left", "--rows", "--to", "bed"]) == 0
+    assert capsys.readouterr().out.splitlines()[1] == "1\t20\t29\tb\t.\t-\t.\t.\t."
+    assert main(["merge", "a.bed", "--by", "chrom,strand", "--to", "bed"]) == 0
+    assert capsys.readouterr().out == "1\t0\t9\t1\t+\n1\t20\t29\t1\t-\n"
+    Path("c.csv").write_text('start,end,note\n0,9,"a\tb"\n')
+    assert "cannot hold a cell with a tab" in refused(capsys, "join", "c.csv", "c.csv", "--rows", "-o", "c.bed")
+
+
+def test_quotes_within_a_cell_stay_as_they_are_in_tsv(capsys: pytest.CaptureFixture[str]) -> None:
+    attributes = 'gene_id "a, b"; note "x";'
+    Path("g.gtf").write_text(f"1\tx\tgene\t1\t10\t.\t+\t.\t{attributes}\n")
+    assert main(["count", "g.gtf", "--each", "--id", "attributes", "--to", "tsv"]) == 0
+    assert capsys.readouterr().out == f"a\tcount\n{attributes}\t0\n"
+    Path("q.csv").write_text('start,end,note\n0,9,"""a"" b"\n0,9,"c\td"\n0,9," e"\n')
+    assert main(["count", "q.csv", "--each", "--id", "start,end,note", "-o", "n.tsv"]) == 0
+    with open("n.tsv", newline="") as file:
+        assert [row[2] for row in csv.reader(file, delimiter="\t")] == ["a_note", '"a" b', "c\td", "e"]
+
+
+def test_numbers_of_text_are_numbers_in_files_with_types(capsys: pytest.CaptureFixture[str]) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet")
+    Path("a.bed").write_text("1\t5\t7\tx\t0.5\t+\n1\t6\t9\t007\t1\t-\n")
+    for arguments in (["pairs", "a.bed"], ["coverage", "a.bed", "a.bed"], ["count", "a.bed", "--each"]):
+        assert main([*arguments, "--rows", "-o", "p.parquet"]) == 0
+        schema = parquet.read_schema("p.parquet")
+        kinds = [str(schema.field(f"a_{name}").type) for name in ("chrom", "start", "end", "name", "score")]
+        assert kinds == ["string", "int64", "int64", "string", "double"]
+
+
+def test_commands_of_bedtools_and_empty_names_are_told_apart(capsys: pytest.CaptureFixture[str]) -> None:
+    a_file(Random(1), "a.bed")
+    assert main(["intersect", "a.bed", "a.bed"]) == 2 and "here it is sap join" in capsys.readouterr().err
+    assert main(["count", "a.bed", "--by", ""]) == 2 and "a name is empty" in capsys.readouterr().err
+    Path("b.csv").write_text("start,end,name\n0,4,x\n")
+    Path("c.csv").write_text("start,end\n1,2\n")
+    assert "pass --left-id and --right-id" in refused(capsys, "join", "b.csv", "c.csv", "--id", "name")
+    assert table(capsys, "join", "b.csv", "c.csv", "--how", "semi", "--id", "name")[1] == [["x"]]
+    assert "pass --right-by" in refused(capsys, "join", "b.csv", "c.csv", "--left-by", "name")

@@ -297,7 +297,10 @@ def pairs(file: str, **options: Any) -> None:
 )
 @_together(_boxes, _wrap, _sides, _overlap, _output, _disk)
 def join(a: str, b: str, **options: Any) -> None:
-    """Writes all pairs of a box of one file and a box of another."""
+    """Writes all pairs of a box of one file and a box of another.
+
+    Geometries are their bounding boxes here. In Python, sweep_and_prune.join tests the shapes themselves.
+    """
     _write_pairs(Options(files=[a, b], **options))
 
 
@@ -486,7 +489,9 @@ def _search(options: Options, sources: list[Source]) -> tuple[list[Any], dict[st
     sets = [source.boxes(of_side, options.format) for source, of_side in zip(sources, columns)]
     by = [of_side or source.by for source, of_side in zip(sources, _of_sides(options, "by"))]
     if any(by) and not all(by):
-        raise FileError(f"{sources[by.index([])].name} has no groups, but the other file has: pass --by")
+        side = by.index([])
+        way = f"--{_SIDES[side]}-by" if getattr(options, f"{_SIDES[1 - side]}_by", []) else "--by"
+        raise FileError(f"{sources[side].name} has no groups, but the other file has: pass {way}")
     if len({len(of_side) for of_side in by}) > 1:
         raise FileError("--left-by and --right-by must name as many columns")
     apart = _crs.difference(*(source.crs for source in sources)) if len(sources) == 2 else None
@@ -716,7 +721,15 @@ class _Labels:
         self._columns: list[list[tuple[str, Any]]] = []
         for side, source, of_side in zip("ab", [sources[0], sources[-1]], [names[0], names[len(sources) - 1]]):
             is_one = len(of_side) == 1 and not options.rows
-            labels = [(side if is_one else f"{side}_{name}", label(source, name)) for name in of_side]
+            try:
+                labels = [(side if is_one else f"{side}_{name}", label(source, name)) for name in of_side]
+            except FileError as error:
+                way = (
+                    "; pass --left-id and --right-id for columns of one file"
+                    if options.id and len(sources) == 2
+                    else ""
+                )
+                raise FileError(f"{error.message}{way}") from None
             self._columns.append([*labels] or [(side, None)])
 
     @property
@@ -822,7 +835,7 @@ def _from_disk(options: Options, to: str | None) -> Iterator[tuple[Any, dict[str
     try:
         yield on_disk, search
     except (SweepAndPruneError, TypeError, ValueError) as error:
-        raise FileError(str(error)) from None
+        raise FileError(str(error).replace("overwrite=True", "--overwrite")) from None
 
 
 def _describe(options: Options, sources: list[Source]) -> None:

@@ -81,7 +81,7 @@ class _NumpyWriter:
 
     def write(self, columns: Sequence[NDArray[Any]]) -> None:
         if any(column.dtype.kind not in "iu" for column in columns):
-            raise FileError("an array of NumPy holds whole numbers only: write another format, or leave out --id")
+            raise FileError("an array of NumPy holds whole numbers only: write another format")
         if any(column.dtype.kind == "u" and int(column.max(initial=0)) >= 2**63 for column in columns):
             raise FileError("an array of NumPy holds numbers below 2^63 only: write another format")
         rows = np.stack([column.astype("<i8") for column in columns], axis=1)
