@@ -139,8 +139,11 @@ impl Policy {
         self.tight > 0
     }
 
-    /// Notes that fat AABBs have too many candidates.
-    pub fn note_excess(&mut self) {
+    /// Notes that fat AABBs have too many candidates, or that looking up bodies of which this many fly was given up.
+    pub fn note_excess(&mut self, flights: usize) {
+        if flights > 0 {
+            self.grounded = GROUNDED;
+        }
         self.skip();
         self.tight = self.skipped;
     }

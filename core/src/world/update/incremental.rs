@@ -75,7 +75,7 @@ pub fn incremental<const D: usize, T: Scalar>(
         }
         tracking.add_candidates();
     } else {
-        tracking.give_up(bodies, events);
+        tracking.give_up(bodies, events, flights);
     }
     tracking.scratch.mark(bodies, false);
     is_right
@@ -148,7 +148,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     }
 
     /// Lets the bodies sleep on that were woken, and forgets what would have been reported.
-    fn give_up(&mut self, bodies: &mut Bodies<D, T>, events: &mut Events) {
+    fn give_up(&mut self, bodies: &mut Bodies<D, T>, events: &mut Events, flights: usize) {
         events.begun.clear();
         events.ended.clear();
         let Self { sleep, scratch: Scratch { woken, .. }, tree_state, policy, .. } = self;
@@ -157,7 +157,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         woken.iter().for_each(|&index| bodies.slots.raise(index, flag::ASLEEP));
         // It holds some of the fat AABBs that were not made.
         *tree_state = TreeState::Unbuilt;
-        policy.note_excess();
+        policy.note_excess(flights);
     }
 
     /// Tests the candidates of the bodies that changed, and if `drops` lists the positions of those of

@@ -135,7 +135,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
                 candidates.replace(pairs)?;
                 break;
             }
-            policy.note_excess();
+            policy.note_excess(0);
             is_fat = false;
         }
         if is_fat {
