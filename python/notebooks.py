@@ -6,8 +6,10 @@ is a file that the code saves, or that this script draws.
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
+import sys
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -50,14 +52,18 @@ def notebook(page: Path) -> Any:
     return made
 
 
-def code(page: Path) -> str:
-    """The code of a page."""
-    return "\n".join(cell.source for cell in notebook(page).cells if cell.cell_type == "code")
+def codes(page: Path) -> list[str]:
+    """The code of each cell of a page. That of commands begins with `%%bash`."""
+    return [cell.source for cell in notebook(page).cells if cell.cell_type == "code"]
 
 
 def said(page: Path) -> list[str]:
-    """What the comments say that the code prints."""
-    return re.findall(r"^\s*print\(.*\)\s+# (.*)$", code(page), re.MULTILINE)
+    """What the comments say that the code prints. Those of commands stand below them."""
+    found = []
+    for code in codes(page):
+        pattern = r"^# (.*)$" if code.startswith("%%bash\n") else r"^\s*print\(.*\)\s+# (.*)$"
+        found += re.findall(pattern, code, re.MULTILINE)
+    return found
 
 
 def pictures(page: Path) -> list[str]:
@@ -68,7 +74,10 @@ def run(page: Path, folder: Path) -> list[str]:
     """Runs a page in a folder, where its pictures appear, and returns the lines that it prints."""
     (folder / "matplotlibrc").write_text(STYLE, encoding="utf-8")
     executed = notebook(page)
-    nbclient.NotebookClient(executed, timeout=600, resources={"metadata": {"path": str(folder)}}).execute()
+    client = nbclient.NotebookClient(executed, timeout=600, resources={"metadata": {"path": str(folder)}})
+    # The command line is that of the package which Python imports.
+    programs = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+    client.execute(env={**os.environ, "PATH": programs})
     outputs = [output for cell in executed.cells for output in cell.get("outputs", [])]
     printed = "".join(output.text for output in outputs if output.output_type == "stream" and output.name == "stdout")
     if page.stem == "from-array-to-cluster":

@@ -14,10 +14,11 @@ corner = corner.reshape(-1, 2) + random.normal(0, 0.5, (frames * objects, 2))
 boxes = np.hstack([corner, corner + 20])
 
 # A detection of frame f meets those of frame f + 1: their groups are equal.
-now, later = sap.find_pairs_between(boxes, boxes, by=(frame + 1, frame)).T
-overlap = (np.minimum(boxes[now, 2:], boxes[later, 2:]) - np.maximum(boxes[now, :2], boxes[later, :2])).prod(axis=1)
+pairs = sap.find_pairs_between(boxes, boxes, by=(frame + 1, frame))
+overlap = sap.measure_overlaps(boxes, boxes, pairs).size
+now, later = pairs.T
 
-# Each detection is continued by the one that it overlaps most.
+# Each detection is continued by the one that it overlaps most. Several may be continued by the same one.
 order = np.lexsort([-overlap, now])
 now, later = now[order], later[order]
 first = np.append(True, now[1:] != now[:-1])
