@@ -60,7 +60,7 @@ def test_the_readme_names_no_path_that_the_wheel_lacks() -> None:
 
 def test_the_readme_shows_commands_that_there_are() -> None:
     commands = re.findall(r"^sap (.*)$", README, re.MULTILINE)
-    assert len(commands) == 7
+    assert len(commands) == 8
     for command in commands:
         name, *arguments = command.split(" > ")[0].split()
         command_line.commands[name].make_context(name, arguments)  # refuses what it does not know
