@@ -12,14 +12,13 @@ count = 20_000
 objects = random.integers(0, 2000, count)  # ten detections of each object
 image, label = objects // 20, objects % 3
 corner = np.stack([objects * 37 % 600, objects * 91 % 400], axis=1) + random.normal(0, 4, (count, 2))
-sides = random.normal(80, 4, (count, 2))
-columns = ["image_id", "category_id", "x", "y", "width", "height"]  # as in COCO
-detections = dict(zip(columns, [image, label, *corner.T, *sides.T]))
+boxes = np.hstack([corner, random.normal(80, 4, (count, 2))])  # x, y, width, height, as in COCO
 scores = random.random(count)
 
-pairs = sap.find_pairs(detections, format="xywh", by=["image_id", "category_id"])
+# Values of `by` may be anything; here, records of an image and a class.
+pairs = sap.find_pairs(boxes, format="xywh", by=np.rec.fromarrays([image, label]))
 a, b = pairs.T
-iou = sap.measure_overlaps(detections, None, pairs, format="xywh").iou
+iou = sap.measure_overlaps(boxes, None, pairs, format="xywh").iou
 print(f"{len(a)} pairs overlap, of {count * (count - 1) // 2}; their mean IoU is {iou.mean():.2f}")
 
 # A detection that no better one overlaps stays, and removes those that it overlaps; then the same with what is left.
