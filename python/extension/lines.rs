@@ -4,6 +4,8 @@
 //! and says what is wrong with it.
 
 use std::collections::HashMap;
+use std::iter::repeat;
+use std::ops::RangeInclusive;
 
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
@@ -111,26 +113,32 @@ impl<'a, 'b> Table<'a, 'b> {
     }
 }
 
-/// Where each row of a table begins, after some lines that are skipped. Each has at least `columns` cells, and in CSV no
-/// more, except for empty ones. Comments and empty lines are left out.
+/// Where each row of a table begins, after some lines that are skipped. Each has from `least` to `most` cells, and in CSV
+/// more if these are empty. Comments and empty lines are left out.
 ///
-/// `None` if it is not text in UTF-8, if some line has fewer cells, a carriage return alone, a quote within a quoted cell,
-/// or is followed by sequences. O(bytes).
+/// `None` if it is not text in UTF-8, if some line has fewer cells or more, a carriage return alone, a quote within a
+/// quoted cell, or is followed by sequences. O(bytes).
 #[pyfunction]
 pub fn read_lines<'py>(
     py: Python<'py>,
     text: &'py [u8],
     skipped: usize,
-    columns: usize,
+    least: usize,
+    most: usize,
     separator: u8,
     is_csv: bool,
 ) -> PyResult<Option<Array<'py>>> {
     let form = Form { separator, is_csv };
-    let found = run(py, text.len() / 32, 1, None, |_| rows(text, skipped, columns, form))?;
+    let found = run(py, text.len() / 32, 1, None, |_| rows(text, skipped, least..=most, form))?;
     found.map(|found| numbers(py, found.into_iter())).transpose()
 }
 
-fn rows(text: &[u8], skipped: usize, columns: usize, form: Form) -> Option<Vec<i64>> {
+fn rows(
+    text: &[u8],
+    skipped: usize,
+    widths: RangeInclusive<usize>,
+    form: Form,
+) -> Option<Vec<i64>> {
     let text = str::from_utf8(text).ok()?;
     let mut offsets = Vec::with_capacity(text.split('\n').count());
     // A carriage return alone ends a line, too. (To look for it in each short line takes longer.)
@@ -152,15 +160,22 @@ fn rows(text: &[u8], skipped: usize, columns: usize, form: Form) -> Option<Vec<i
         if number < skipped || line.is_empty() || is_comment {
             continue;
         }
-        let mut cells = Cells::new(line.as_bytes(), form);
-        if cells.by_ref().take(columns).count() < columns {
-            if form.is_csv && line.starts_with('#') && !cells.is_odd {
-                continue;
+        if form.is_csv {
+            let mut cells = Cells::new(line.as_bytes(), form);
+            if cells.by_ref().take(*widths.start()).count() < *widths.start() {
+                if line.starts_with('#') && !cells.is_odd {
+                    continue;
+                }
+                return None;
             }
-            return None;
-        }
-        if form.is_csv && (cells.any(|cell| !cell.is_empty()) || cells.is_odd) {
-            return None;
+            if cells.any(|cell| !cell.is_empty()) || cells.is_odd {
+                return None;
+            }
+        } else {
+            let separators = line.bytes().filter(|byte| *byte == form.separator).count();
+            if !widths.contains(&(separators + 1)) {
+                return None;
+            }
         }
         offsets.push(i64::try_from(here).ok()?);
     }
@@ -260,8 +275,8 @@ pub fn read_cells<'py>(
     table.column(py, place, |cells| cells.map(|cell| str::from_utf8(cell).ok()).collect())
 }
 
-/// The end of what each variant of VCF replaces, from 0 and not included: that of its reference, or the one that its
-/// information names. `None` if some position is no number. O(bytes).
+/// The end of what each variant of VCF replaces, from 0 and not included: the one that its information names, the one of
+/// an allele of a length that it names, or that of its reference. `None` if some position is no number. O(bytes).
 #[pyfunction]
 pub fn read_ends_of_variants<'py>(
     py: Python<'py>,
@@ -274,14 +289,24 @@ pub fn read_ends_of_variants<'py>(
     let references = table.column(py, 3, |cells| {
         Some(cells.map(|cell| String::from_utf8_lossy(cell).chars().count()).collect::<Vec<_>>())
     })?;
-    let named = table.column(py, 7, |cells| cells.map(named_end).collect::<Option<Vec<_>>>())?;
+    let alleles = table.column(py, 4, |cells| Some(cells.collect::<Vec<_>>()))?;
+    let named = table.column(py, 7, |cells| {
+        let of_rows = cells.zip(alleles.unwrap_or_default());
+        of_rows.map(|(information, alleles)| named_end(alleles, information)).collect()
+    })?;
+    let named: Option<Vec<Named>> = named;
     let positions = table.column(py, 1, |cells| cells.map(position).collect::<Option<Vec<_>>>())?;
     let (Some(references), Some(named), Some(positions)) = (references, named, positions) else {
         return Ok(None);
     };
-    let ends = positions.iter().zip(references).zip(named).map(|((position, length), named)| {
-        named.or_else(|| position.checked_sub(1)?.checked_add(i64::try_from(length).ok()?))
-    });
+    let ends =
+        positions.iter().zip(references).zip(named).map(
+            |((position, length), named)| match named {
+                Named::End(end) => Some(end),
+                Named::Size(size) => position.checked_add(size),
+                Named::Nothing => position.checked_sub(1)?.checked_add(i64::try_from(length).ok()?),
+            },
+        );
     let ends: Option<Vec<i64>> = ends.collect();
     ends.map(|ends| numbers(py, ends.into_iter())).transpose()
 }
@@ -293,10 +318,50 @@ fn position(cell: &[u8]) -> Option<i64> {
     if is_plain { whole(cell) } else { None }
 }
 
-/// The number after `END=`, if there is one. `None` if it is too large.
-fn named_end(information: &[u8]) -> Option<Option<i64>> {
-    let parts = information.split(|byte| *byte == b';');
-    let ends = parts.filter_map(|part| part.strip_prefix(b"END="));
-    let mut digits = ends.filter(|end| !end.is_empty() && end.iter().all(u8::is_ascii_digit));
-    digits.next().map(whole).map_or(Some(None), |end| end.map(Some))
+/// What the information of a variant says about its end.
+enum Named {
+    End(i64),
+    /// The length of what follows its position.
+    Size(i64),
+    Nothing,
+}
+
+/// `None` if a number is too large.
+fn named_end(alleles: &[u8], information: &[u8]) -> Option<Named> {
+    let values = |name: &'static [u8]| {
+        information.split(|byte| *byte == b';').filter_map(move |part| part.strip_prefix(name))
+    };
+    let mut ends = values(b"END=").filter(|end| is_digits(end));
+    if let Some(end) = ends.next() {
+        return whole(end).map(Named::End);
+    }
+    let are_sized = || alleles.split(|byte| *byte == b',').map(is_sized);
+    let Some(sizes) = values(b"SVLEN=").next().filter(|_| are_sized().any(|is_sized| is_sized))
+    else {
+        return Some(Named::Nothing);
+    };
+    let sizes = || sizes.split(|byte| *byte == b',');
+    // (A length may be written for all alleles at once.)
+    let is_of_each = sizes().count() == are_sized().count();
+    let own = sizes()
+        .zip(are_sized().chain(repeat(true)))
+        .filter(|(_, is_sized)| *is_sized || !is_of_each);
+    let digits =
+        own.map(|(size, _)| if let [b'-' | b'+', digits @ ..] = size { digits } else { size });
+    let mut greatest = None;
+    for size in digits.filter(|digits| is_digits(digits)) {
+        greatest = greatest.max(Some(whole(size)?));
+    }
+    Some(greatest.map_or(Named::Nothing, Named::Size))
+}
+
+fn is_digits(cell: &[u8]) -> bool {
+    !cell.is_empty() && cell.iter().all(u8::is_ascii_digit)
+}
+
+/// Whether an allele has a length on the reference.
+fn is_sized(allele: &[u8]) -> bool {
+    [&b"<DEL"[..], b"<DUP", b"<INV", b"<CNV"]
+        .iter()
+        .any(|kind| matches!(allele.strip_prefix(*kind), Some([b':' | b'>', ..])))
 }

@@ -228,7 +228,7 @@ def test_missing_numbers_are_refused_with_their_line_or_left_out(capsys: pytest.
         ("a.csv", "", "a.csv is empty"),
         ("a.bed", "chr1\t5\n", "a.bed, line 1: chrom, start and end are expected"),
         ("a.json", "{", "a.json, line 1: "),
-        ("a.json", "[]", "a.json is not a FeatureCollection"),
+        ("a.json", "[5]", "a.json is not a FeatureCollection"),
         ("a.json", '{"features": [null]}', "a.json, feature 0 (the first is 0) is not valid GeoJSON"),
         (
             "a.json",
@@ -254,7 +254,8 @@ def test_what_is_wrong_with_a_file_is_said(
 def test_what_is_wrong_with_the_arguments_is_said(capsys: pytest.CaptureFixture[str]) -> None:
     write("a.csv")
     write("a.npy")
-    assert "no-file.csv cannot be read: No such file" in refused(capsys, "pairs", "no-file.csv")
+    for name in ("no-file.csv", "no-file", "no-file.xyz"):
+        assert f"{name} cannot be read: No such file" in refused(capsys, "pairs", name)
     assert "a.csv has no column 'q'; its columns are xmin" in refused(capsys, "pairs", "a.csv", "--by", "q")
     assert "a.csv has no column 'q'" in refused(capsys, "pairs", "a.csv", "--columns", "xmin,q")
     assert "margin is -1.0" in refused(capsys, "count", "a.npy", "--margin", "-1")

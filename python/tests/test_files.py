@@ -108,7 +108,7 @@ GENES = (
 OF_GTF = 'gene_id "g 1"; exon_number 2;', 'exon_number 3; note "a; gene_id 5"; gene_id "g2";'
 OF_GFF3 = "ID=e1;gene_id=g%201;Parent=a,b", "gene_id=g2 ;ID=e2"
 GENOMIC = {
-    "a.bed": ("browser position chr1\ntrack name=x\n#c\nchr1\t10\t20\nchr1\t20\t21\textra\nchr2\t0\t20\n", []),
+    "a.bed": ("browser position chr1\ntrack name=x\n#c\nchr1\t10\t20\nchr1\t20\t21\nchr2\t0\t20\n", []),
     "a.bed.gz": ("chr1\t10\t20\r\nchr1\t20\t21\r\nchr2\t0\t20\r\n", []),
     "a.bed.bgz": ("chr1\t10\t20\nchr1\t20\t21\nchr2\t0\t20\n", []),
     "a.narrowPeak": (
@@ -119,6 +119,7 @@ GENOMIC = {
         "chr1\t10\t20\tp\t9\t.\t1\t2\t3\nchr1\t20\t21\tq\t9\t.\t1\t2\t3\nchr2\t0\t20\tr\t9\t.\t1\t2\t3\n",
         [],
     ),
+    "a.bg": ("chr1\t10\t20\t0.5\nchr1\t20\t21\t7\nchr2\t0\t20\t8\n", [("value", ["0.5", "7", "8"])]),
     "a.bedGraph": ("chr1\t10\t20\t0.5\nchr1\t20\t21\t7\nchr2\t0\t20\t8\n", [("value", ["0.5", "7", "8"])]),
     "a.gtf": (GENES.format(*OF_GTF), [("gene_id", ["g 1", "g2", ""]), ("exon_number", ["2", "3", ""])]),
     "a.gff3": (
@@ -145,7 +146,7 @@ def test_formats_of_genomics_have_the_intervals_of_bed(name: str, capsys: pytest
     Path("b.bed").write_text("chr1\t19\t20\tx\nchr2\t20\t30\ty\nchr1\t20\t21\tz\n")
     assert said(capsys, "join", name, "b.bed") == "a,b\n0,0\n1,2\n"
     assert said(capsys, "count", name, "b.bed", "--closed", "both") == "5\n"
-    if not name.endswith("gz"):
+    if not name.endswith(("gz", "bg")):
         kind = name.split(".")[1].lower()
         done = subprocess.run([*SAP, "join", "-", "b.bed", "--from", kind], input=data, capture_output=True)
         assert (done.stdout, done.stderr) == (b"a,b\n0,0\n1,2\n", b"")
@@ -163,7 +164,16 @@ def test_formats_of_genomics_have_the_intervals_of_bed(name: str, capsys: pytest
         ("a.vcf", "chr1\t5\tx\tAC\n", "a.vcf, line 1: chrom, pos, id, ref and alt are expected, separated by tabs"),
         ("a.gff3", "c\tx\texon\t9\t5\t.\t+\t.\t\n", "a.gff3, line 1, columns start and end: the box is inverted"),
         ("a.bedGraph", "chr1 0 10 5\n", "a.bedGraph, line 1: chrom, start and end are expected, separated by tabs"),
-        ("a.bed", "chrom\tstart\tend\n", "a.bed, line 1, column start: 'start' is not a number"),
+        ("a.bed", "chrom\tstart\tend\n", "a.bed, line 1, column start: 'start' is not a number: is this a header?"),
+        ("a.bed", "chr1\tabc\t5\n", "a.bed, line 1, column start: 'abc' is not a number\n"),
+        (
+            "a.bed",
+            "chr1\tx\texon\t1\t9\t.\t+\t.\t\n",
+            "a.bed, line 1, column start: 'x' is not a number: is this GTF or GFF? Name it .gtf or .gff3",
+        ),
+        ("a.gtf", "c\tx\texon\t0\t5\t.\t+\t.\t\n", "a.gtf, line 1, column start: it is 0; positions in this format"),
+        ("a.gff3", "c\tx\tx\t1\t5\t.\t+\t.\nc\tx\tx\t-2\t5\t.\t+\t.\n", "a.gff3, line 2, column start: it is -2; pos"),
+        ("a.vcf", "chr1\t-1\tx\tA\tC\n", "a.vcf, line 1, column start: it is -1; positions in this format"),
     ],
 )
 def test_what_is_wrong_with_a_file_of_genomics_is_said(
@@ -171,6 +181,151 @@ def test_what_is_wrong_with_a_file_of_genomics_is_said(
 ) -> None:
     Path(name).write_text(text)
     assert refused(capsys, "count", name).startswith(message)
+
+
+@pytest.mark.parametrize("size", [10, 1000])
+@pytest.mark.parametrize("text", ["c\t1\t5{more}\n", "c\t1\t5{more}\r\n", "c\t1\t5{more}\r"])
+def test_lines_of_genomics_have_as_many_columns_as_the_first(size: int, text: str) -> None:
+    def read_all(*more: str) -> list[list[str]]:
+        data = ("#c\n" + "".join(text.format(more=one) for one in more)).encode()
+        parts = [_text.read_genomic("a.bed", data, "bed")]
+        in_parts = [*_text.genomic_parts("a.bed", io.BytesIO(data), "bed", size)]
+        assert [part.columns for part in in_parts] == [parts[0].columns] * len(in_parts)
+        return [[*part.columns] for part in parts]
+
+    assert read_all("", "", "") == [["chrom", "start", "end"]]
+    assert read_all(*["\tn\t0\t+" + 7 * "\tx"] * 2)[0][5:] == ["strand", *_text.GENOMIC["bed"].columns[6:], "13"]
+    for first, other in (("", "\tname"), ("\tname", ""), ("\tname", "\tname\t0\t+")):
+        counts = [3 + one.count("\t") for one in (other, first)]
+        for read_some in (_text.read_genomic, lambda *given: [*_text.genomic_parts(*given, size)]):
+            data: Any = ("#c\n" + "".join(text.format(more=one) for one in (first, first, first, other))).encode()
+            with pytest.raises(FileError) as error:
+                read_some("a.bed", data if read_some is _text.read_genomic else io.BytesIO(data), "bed")
+            assert error.value.message == f"a.bed, line 5: it has {counts[0]} columns, where {counts[1]} are expected"
+
+
+def test_rows_of_genomics_have_all_columns(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("b.bed").write_text("c\t0\t90\n")
+    for name, line, columns in (
+        ("a.narrowPeak", "c\t5\t9\tp\t9\t.\t1\t2\t3\t4\tX\tY", ["peak", "11", "12"]),
+        ("a.bedGraph", "c\t5\t9\t1\tX", ["value", "5"]),
+        ("a.gtf", 'c\tx\texon\t5\t9\t.\t+\t.\tgene_id "a";\tX', ["attributes", "10"]),
+        ("a.vcf", "c\t5\tid\tA\tC\t.\t.\tDP=3\tGT\t0/1\t1/1", ["info", "format", "10", "11"]),
+    ):
+        Path(name).write_text(f"{line}\n")
+        assert read(name).columns[-len(columns) :] == columns
+        header, row = said(capsys, "join", name, "b.bed", "--rows", "--to", "tsv").split("\n")[:2]
+        assert header.count("\t") == row.count("\t")
+        written = line.replace('gene_id "a";', '"gene_id ""a"";"').split("\t")
+        assert [cell for cell in written if cell not in row.split("\t")] == []
+
+
+def test_columns_of_a_file_without_a_header_have_numbers(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("a.bed").write_text("c\t0\t5\tx\nc\t5\t9\tx\n")
+    Path("a.gtf").write_text("c\ty\texon\t1\t5\t.\t+\t.\t\nc\ty\texon\t5\t9\t.\t+\t.\t\n")
+    Path("a.vcf").write_text("c\t5\tid\tAC\tC\nc\t6\tid\tA\tC\n")
+    Path("a.csv").write_text("start,end\n0,5\n")
+    np.save("a.npy", np.array([[7, 0, 0, 5, 5], [7, 1, 1, 6, 6], [8, 0, 0, 5, 5]]))
+    assert boxes_of("a.bed", "2", "3") == [[0, 5], [5, 9]] and boxes_of("a.gtf", "4", "5") == [[0, 5], [4, 9]]
+    assert said(capsys, "pairs", "a.vcf", "--id", "2,4") == "a_2,a_4,b_2,b_4\n5,AC,6,A\n"
+    assert said(capsys, "count", "a.bed", "--by", "4", "--closed", "both") == "1\n"
+    assert said(capsys, "pairs", "a.npy", "--columns", "2,3,4,5", "--by", "1") == "a,b\n0,1\n"
+    assert "a.npy has no column 6; it has 5 columns" in refused(capsys, "count", "a.npy", "--columns", "1,6")
+    assert "a.bed has no column '5'" in refused(capsys, "count", "a.bed", "--columns", "2,5")
+    message = refused(capsys, "count", "a.csv", "--columns", "1,2")
+    assert message == "a.csv has no column '1'; numbers are for files without a header; its columns are start, end\n"
+
+
+@pytest.mark.parametrize("name", ["a.gtf", "a.gff3"])
+def test_an_attribute_that_no_row_has_is_refused(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    Path(name).write_text(GENOMIC[name][0])
+    for command in (["pairs", name, "--id", "gene_idd"], ["count", name, "--by", "chrom,gene_i"]):
+        message = refused(capsys, *command)
+        assert message.startswith(f"{name} has no column and no attribute '{command[-1].split(',')[-1]}'; its columns")
+        assert "gene_id" in message.split("attributes, ")[1]
+    assert said(capsys, "pairs", name, "--id", "gene_id") == "a,b\n"
+    with open(name, "rb") as file:
+        codes = [part.group("gene_id").kinds() for part in _text.genomic_parts(name, file, name[2:], 10)]
+    assert set() in codes and {"text"} in codes, "a part may have none"
+    with open(name, "rb") as file, pytest.raises(FileError, match=f"{name} has no column and no attribute 'gene_idd'"):
+        for part in _text.genomic_parts(name, file, name[2:], 10):
+            part.label("gene_idd")
+    Path(name).write_text("")
+    assert said(capsys, "pairs", name, "--id", "gene_idd") == "a,b\n"
+
+
+@pytest.mark.parametrize("is_fast", [True, False])
+@pytest.mark.parametrize(
+    ("alleles", "info", "end"),
+    [
+        ("<DEL>", "SVTYPE=DEL;SVLEN=-100", 150),
+        ("<DUP:TANDEM>", "SVLEN=100", 150),
+        ("<INV>", "SVLEN=+20", 70),
+        ("<CNV:TR>,<DEL>", "SVLEN=-100,-200", 250),
+        ("<DEL>,<DEL>", "SVLEN=-100", 150),
+        ("<INS>,<DEL>", "SVLEN=500,-20", 70),
+        ("<DEL>", "END=60;SVLEN=-100", 60),
+        ("<DEL>", "XSVLEN=9;SVLEN=.", 51),
+        ("<INS>", "SVLEN=100", 51),
+        ("<DELX>", "SVLEN=100", 51),
+        ("A", "SVLEN=100", 51),
+        ("<DEL>", f"SVLEN={10**20}", 50 + 10**20),
+    ],
+)
+def test_a_variant_may_name_its_length(alleles: str, info: str, end: int, is_fast: bool) -> None:
+    before = "" if is_fast else "#\r"  # such an end of a line is left to the slow reader
+    data = f"{before}c\t50\tx\tNN\t{alleles}\t.\t.\t{info}\n".encode()
+    table = _text.read_genomic("a.vcf", data, "vcf")
+    assert isinstance(table, _text.Lines) == (is_fast and end < 10**18)
+    assert [*table["start"].tolist(), *table["end"].tolist()] == [49, end]
+
+
+def test_a_point_is_no_group_in_genomics(capsys: pytest.CaptureFixture[str]) -> None:
+    rows = [("c", 0, 9, "a", 1, "."), ("c", 0, 9, "b", ".", "."), ("c", 0, 9, "c", 1, "+"), ("c", 0, 9, "d", 1, "+")]
+    Path("a.bed").write_text("".join("\t".join(map(str, row)) + "\n" for row in rows))
+    Path("a.csv").write_text("start,end,score,strand\n0,9,1.0,.\n0,9,1.0,.\n")
+    for file in (["a.bed"], ["a.bed", "a.bed", "--how", "anti"]):
+        command = "pairs" if len(file) == 1 else "join"
+        found = said(capsys, command, *file, "--by", "chrom,strand", "--id" if len(file) == 1 else "--left-id", "name")
+        assert found == ("a,b\nc,d\n" if len(file) == 1 else "a\na\nb\n")
+    assert said(capsys, "count", "a.bed", "a.csv", "--by", "score", "--closed", "both") == "6\n"
+    assert said(capsys, "count", "a.csv", "--by", "strand") == "1\n", "elsewhere it may be a name"
+
+
+def test_compressed_files_are_told_by_their_names(capsys: pytest.CaptureFixture[str]) -> None:
+    documents = {"a.json": b"[]", "a.bed": b"c\t0\t5\nc\t1\t5\n", "a.csv": b"start,end\n0,5\n"}
+    for name, data in documents.items():
+        Path(name).write_bytes(gzip.compress(data))
+        assert refused(capsys, "count", name) == f"{name} is compressed with gzip: name it {name}.gz\n"
+        Path(name).rename(f"{name}.gz")
+        said(capsys, "count", f"{name}.gz")
+    data = Path("a.csv.gz").read_bytes()
+    done = subprocess.run([*SAP, "count", "-"], input=data, capture_output=True)
+    assert done.stderr == b"sap: standard input is compressed with gzip: unpack it, as by gzip -dc\n"
+    Path("a.npy.gz").write_bytes(data)
+    assert "a.npy.gz is compressed, and only text is read so" in refused(capsys, "count", "a.npy.gz")
+
+
+def test_a_header_of_a_format_without_one_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("a.bed").write_text("c\t0\t5\n")
+    message = refused(capsys, "count", "a.bed", "--header")
+    assert message == "a.bed is of a format whose lines have no header: leave out --header\n"
+    assert said(capsys, "count", "a.bed", "--no-header") == "0\n"
+
+
+# Arrays of NumPy.
+
+
+def test_what_is_wrong_with_an_array_of_numpy_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+    np.save("a.npy", np.array([[0, 1], [None, 2]], object), allow_pickle=True)
+    assert refused(capsys, "count", "a.npy").startswith("a.npy holds Python objects, not numbers")
+    np.save("a.npy", np.zeros((99, 4)))
+    np.savez("a.npz", np.zeros((99, 4)))
+    for name in ("a.npy", "a.npz"):
+        Path(name).write_bytes(Path(name).read_bytes()[:300])
+        assert refused(capsys, "count", name).startswith(f"{name} is not all of an array of NumPy: was the file cut")
+    done = subprocess.run([*SAP, "count", "-", "--from", "npy"], input=Path("a.npy").read_bytes(), capture_output=True)
+    assert b"standard input is not all of an array of NumPy" in done.stderr
 
 
 # JSON.
@@ -203,7 +358,10 @@ def test_geojson_is_read_in_each_of_its_forms(capsys: pytest.CaptureFixture[str]
     )
     assert (done.stdout, done.stderr) == ("1\n", "")
     Path("a.geojsonl").write_text(texts["a.geojsonl"] + '{"x":\n')
-    assert refused(capsys, "count", "a.geojsonl").startswith("a.geojsonl, line 4: ")
+    assert refused(capsys, "count", "a.geojsonl").startswith("a.geojsonl, line 4: it is not JSON (")
+    Path("a.geojson").write_text(json.dumps(collection) + "garbage")
+    assert refused(capsys, "count", "a.geojson") == "a.geojson, line 1: it is not JSON (Extra data)\n"
+    Path("a.geojson").write_text(json.dumps(collection))
     Path("a.topojson").write_text('{"type": "Topology", "objects": {}, "arcs": []}')
     assert "a.topojson is TopoJSON: convert it to GeoJSON first" in refused(capsys, "count", "a.topojson")
     message = refused(capsys, "count", "a.geojson", "--format", "xywh")
@@ -225,9 +383,83 @@ def test_detections_of_coco_pair_within_their_image(capsys: pytest.CaptureFixtur
     assert sorted(said(capsys, "join", "a.json", "b.csv", "--format", "xywh", "--by", "image_id").split()[1:]) == [
         *("1,1", "2,0", "3,1"),
     ]
-    annotations[2]["bbox"] = [1, 2, 3]
-    Path("a.json").write_text(json.dumps({"annotations": annotations}))
-    assert "annotation 2 (the first is 0) has no image_id and bbox of 4 numbers" in refused(capsys, "count", "a.json")
+    assert said(capsys, "join", "a.json", "a.json", "--left-id", "bbox", "--right-id", "id").split("\n")[1] == (
+        '"[0, 0, 2, 2]",10'
+    )
+    header = said(capsys, "pairs", "a.json", "--rows").split("\n")[0]
+    assert header.startswith("a_bbox,a_category_id,a_id,a_image_id,a_segmentation,b_bbox")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"bbox": [1, 2, 3]}, "its bbox has 3 items, not 4 numbers"),
+        ({"bbox": [1, 2, "3", 4]}, 'its bbox has "3", which is not a number'),
+        ({"bbox": "1,2,3,4"}, 'its bbox is "1,2,3,4", not a list of 4 numbers'),
+        ({"bbox": ...}, "it has no bbox"),
+        ({"bbox": None}, "the box has a NaN on axis 0 (min nan, max nan): remove it, or pass --missing skip"),
+        ({"bbox": [0, 1, None, 4]}, "the box has a NaN on axis 0 (min 0, max nan): remove it, or pass --missing skip"),
+        ({"image_id": ...}, "it has no image_id"),
+        ({"image_id": None}, "its image_id is null, not a number or text"),
+        ({"image_id": [7]}, "its image_id is [7], not a number or text"),
+    ],
+)
+def test_what_is_wrong_with_a_detection_is_said(
+    change: dict[str, Any], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    good = {"image_id": 7, "bbox": [0, 0, 2, 2]}
+    bad = {key: value for key, value in {**good, **change}.items() if value is not ...}
+    for rows in ([good, bad, good], [bad, good, good]):
+        for document in (rows, {"annotations": rows}):
+            Path("a.json").write_text(json.dumps(document))
+            found = refused(capsys, "count", "a.json")
+            assert found == f"a.json, annotation {rows.index(bad)} (the first is 0): {message}\n"
+        if "NaN" in message:
+            assert said(capsys, "count", "a.json", "--missing", "skip") == "1\n"
+
+
+def test_a_detector_may_find_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("b.json").write_text(json.dumps([{"image_id": 7, "bbox": [0, 0, 2, 2]}]))
+    for document in ([], {"images": [], "annotations": []}):
+        Path("a.json").write_text(json.dumps(document))
+        assert said(capsys, "pairs", "a.json") == "a,b\n"
+        assert said(capsys, "join", "a.json", "b.json") == said(capsys, "join", "b.json", "a.json") == "a,b\n"
+
+
+def test_ids_that_are_written_otherwise_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    def write(name: str, *ids: Any) -> None:
+        Path(name).write_text(json.dumps([{"image_id": one, "bbox": [0, 0, 2, 2]} for one in ids]))
+
+    write("mixed.json", 1, "2", 3)
+    write("numbers.json", 1, 2, 3)
+    write("both.json", 12, "12")
+    write("text.json", "1", "2", "12a")
+    write("words.json", 12, "12a")
+    Path("text.csv").write_text("image_id,x,y,width,height\n12,0,0,1,1\n12a,0,0,1,1\n")
+    Path("padded.csv").write_text("image_id,x,y,width,height\n0001,0,0,1,1\n12,0,0,1,1\n")
+    Path("plain.csv").write_text("image_id,x,y,width,height\n1,0,0,1,1\n12,0,0,1,1\n")
+    options = ["--by", "image_id", "--format", "xywh"]
+    assert said(capsys, "count", "words.json", "words.json") == "2\n", "of one kind each"
+    assert said(capsys, "count", "text.json", "plain.csv", *options) == "1\n"
+    assert said(capsys, "count", "mixed.json") == "0\n"
+    for files, own, other in (
+        (["mixed.json", "numbers.json"], "'2'", "2"),
+        (["words.json", "text.csv", *options], "12", "'12'"),
+        (["both.json"], "'12'", "12"),
+        (["padded.csv", "plain.csv", *options], "'0001'", "'1'"),
+        (["plain.csv", "padded.csv", *options], "'1'", "'0001'"),
+        (["text.json", "padded.csv", *options], "'1'", "'0001'"),
+    ):
+        message = refused(capsys, "count", *files)
+        places = [files[0], files[1] if len(files) > 1 else files[0]]
+        assert message == (
+            f"{places[0]} has {own} in column image_id, and {places[1]} has {other} there: write the values alike\n"
+        )
+    arrow = pytest.importorskip("pyarrow")
+    table = arrow.table({"image_id": ["0001"], "x": [0], "y": [0], "w": [5], "h": [5]})
+    importlib.import_module("pyarrow.parquet").write_table(table, "a.parquet")
+    message = refused(capsys, "count", "a.parquet", "plain.csv", *options)
+    assert message.startswith("a.parquet has '0001' in column image_id, and plain.csv has '1' there")
 
 
 def test_columns_of_trackers_are_chosen_by_number(capsys: pytest.CaptureFixture[str]) -> None:
@@ -350,19 +582,20 @@ GENES = "chr1\thavana\texon\t{}\t{}\t.\t+\t.\tgene_id {}"
 LINES = {
     "bed": [
         "chr1\t5\t9\tx\ty",
-        "chr2\t0\t1",
+        "chr2\t0\t1\t.\t.",
         "chr1\t7\t7\t\t",
         "# no\t1\t2",
         "track name=a",
         "browser",
-        "1\t007\t10\té",
+        "1\t007\t10\té\t1",
     ],
     "gtf": [GENES.format(5, 9, '"a"; level 2'), GENES.format(1, 7, "b"), "#!x", "chr2\tx\tx\t3\t4\t1.5\t.\t."],
     "gff3": [GENES.format(5, 9, "ID=a"), "##gff-version 3", "1\tx\tx\t3\t4\t\t-\t0\tID=g%20a;Parent=b"],
     "vcf": [
         "##fileformat=VCFv4.2",
         "chr1\t5\trs1\tACG\tT\t1.5\tPASS\tDP=3;END=12;END=x",
-        "chr1\t5\trs1\té\tT\t.\tPASS\tXEND=3;END=\tGT\t0/1",
+        "chr1\t5\trs1\té\tT\t.\tPASS\tXEND=3;END=",
+        "2\t9\t.\tN\t<DEL>,<INS>\t.\t.\tSVLEN=-9,20",
         "2\t0\t\tA\tT",
         "2\t10\t.\t\tT\t\t\tEND=7",
     ],
@@ -380,7 +613,17 @@ LINES = {
     ],
 }
 ODD_LINES = {
-    "bed": ["chr1\t5\t9x", "chr1\t-1\t9", "chr1\t5", "\t1\t2", "chr1\t5\t9\rchr2\t1\t2", "chr1\t1_0\t20", "a\t 1\t2"]
+    "bed": [
+        "chr1\t5\t9",
+        "chr1\t5\t9x",
+        "chr1\t5\t9x\t\t",
+        "chr1\t-1\t9",
+        "chr1\t5",
+        "\t1\t2",
+        "chr1\t5\t9\rchr2\t1\t2",
+        "chr1\t1_0\t20",
+        "a\t 1\t2",
+    ]
     + ["a\t1\t2 ", "track\t1\t2", "trackx\t1\t2", "a\t1.5\t2", f"a\t1\t{10**18}", f"a\t1\t{10**30}", "a b\t1\t2\r"],
     "gtf": [
         "##FASTA",
@@ -444,6 +687,8 @@ def test_lines_are_read_as_cell_by_cell(kind: str) -> None:
         if kind == "csv":
             header = random.choice([True, False])
             lines = [*random.choice([[], ["# by x"]]), *(["start, end,name"] if header else []), *lines]
+        elif random.random() < 0.3:
+            lines = [f"{line}\tmore\t" if "\t" in line else line for line in lines]
         data = (random.choice(["", "\ufeff"]) + end.join(lines) + random.choice(["", end])).encode()
         tables: list[_text.Text] = []
 

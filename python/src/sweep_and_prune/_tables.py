@@ -22,13 +22,23 @@ from . import _crs
 from ._columns import Column, read_column, side_by_side
 from ._file_error import FileError
 from ._inputs import Raw, box_columns, chosen_boxes, listed, raw_boxes, unknown_columns
-from ._text import GENOMIC, Text, corners_of_bare, genomic_parts, read_genomic, read_table, table_parts
+from ._text import (
+    GENOMIC,
+    Text,
+    corners_of_bare,
+    genomic_parts,
+    no_column,
+    number,
+    read_genomic,
+    read_table,
+    table_parts,
+)
 from ._writers import ARROW_ENDINGS, pyarrow_for
 
 _KINDS = {
     **{".csv": "csv", ".txt": "csv", ".tsv": "tsv", ".npy": "npy", ".npz": "npy"},
     **{".bed": "bed", ".narrowpeak": "narrowpeak", ".broadpeak": "broadpeak", ".bedgraph": "bedgraph"},
-    **{".bdg": "bedgraph", ".gtf": "gtf", ".gff": "gff3", ".gff3": "gff3", ".vcf": "vcf"},
+    **{".bdg": "bedgraph", ".bg": "bedgraph", ".gtf": "gtf", ".gff": "gff3", ".gff3": "gff3", ".vcf": "vcf"},
     **dict.fromkeys((".json", ".geojson", ".geojsonl", ".geojsons", ".ndjson", ".jsonl", ".topojson"), "json"),
     **{".parquet": "parquet", ".geoparquet": "parquet", **dict.fromkeys(ARROW_ENDINGS, "arrow")},
     **{".shp": "gis", ".gpkg": "gis", ".fgb": "gis"},
@@ -36,6 +46,8 @@ _KINDS = {
 FORMATS = tuple(kind for kind in dict.fromkeys(_KINDS.values()) if kind != "gis")
 """The formats that `--from` names."""
 _OF_TEXT = ("csv", "tsv", *GENOMIC)
+_GZIP = b"\x1f\x8b"
+"""What a compressed file begins with."""
 READABLE = (
     ".csv, .tsv, .bed, .narrowPeak, .broadPeak, .bedGraph, .gtf, .gff3, .vcf, .npy, .npz, .json, .geojson, .geojsonl, "
     ".parquet, .arrow, .feather, .shp, .gpkg, .fgb"
@@ -51,6 +63,8 @@ _BYTES_OF_ROW = 64
 """The size of a row of CSV that decides how many are read at once."""
 _READ_AT_ONCE = 2**22
 """This many bytes are read between two reports of progress."""
+_OF_NUMPY, _OF_ARCHIVE = b"\x93NUMPY", b"PK"
+"""What an array of NumPy begins with, and several of them."""
 
 _File = Union[str, io.BytesIO]
 
@@ -70,6 +84,8 @@ class Source:
     """Whether the boxes are the bounds of geometries."""
     crs: Any = None
     """The coordinate reference system, if it is known."""
+    row = "row"
+    """What a row is called in messages."""
 
     def __init__(self, name: str, values: Any, labels: dict[str, Any] | None = None) -> None:
         self.name, self.values, self.labels = name, values, labels or {}
@@ -112,21 +128,25 @@ class Source:
         return [] if self._are_boxes else box_columns(self.columns, format)
 
     def group(self, name: str) -> Column:
-        """The values of a column to group by; those of a file of text are text, and what is empty is missing."""
+        """The values of a column to group by.
+
+        Those of a file of text are text, and what is empty is missing. In the formats of genomics "." is missing, too,
+        so that a row without a strand pairs with none.
+        """
         if isinstance(self.values, Text):
-            return self.values.group(name)
+            return self.values.group(self.values.named(name))
         return read_column(self._labels(name), f"column {name}")
 
     def group_of_numbers(self, name: str) -> Column:
         """The same, if the values of the other file are numbers."""
-        if isinstance(self.values, Text) and name in self.values.columns:
-            return self.values.group_of_numbers(name)
+        if isinstance(self.values, Text):
+            return self.values.group_of_numbers(self.values.named(name))
         return read_column(self._column(name), f"column {name}")
 
     def label(self, name: str) -> Any:
         """A column of any type as it is written: an array, or something that has an array of some rows at `[rows]`."""
         if isinstance(self.values, Text):
-            return self.values.label(name)
+            return self.values.label(self.values.named(name))
         values = self._labels(name)
         if getattr(values, "null_count", 0):  # as an array of NumPy, integers would become floating point
             values = values.to_pylist()
@@ -140,21 +160,29 @@ class Source:
         return self.label(name)
 
     def _labels(self, name: str) -> Any:
-        return self.labels[name] if name in self.labels else self._column(name)
+        if name not in self.labels:
+            return self._column(name)
+        values = self.labels[name]
+        is_nested = isinstance(values, np.ndarray) and any(isinstance(one, (list, dict)) for one in values.tolist())
+        return _objects([_written(one) for one in values.tolist()]) if is_nested else values
 
     def _column(self, name: str) -> Any:
-        number = self.columns.count(name)
-        is_attribute = number == 0 and self.text is not None and self.text.format is not None
-        if not is_attribute and (number != 1 or not hasattr(self.values, "columns")):
-            fault = f"{number} columns {name!r}: rename all but one" if number > 1 else f"no column {name!r}"
-            raise FileError(f"{self.name} has {fault}; {listed(self.columns)}")
+        """The numbers of a column."""
+        if isinstance(self.values, Text):
+            return self.values[self.values.named(name)]
+        if isinstance(self.values, np.ndarray) and self.values.ndim == 2 and name.isdecimal() and not self.labels:
+            if 1 <= int(name) <= self.values.shape[1]:  # it has no header
+                return self.values[:, int(name) - 1]
+            raise FileError(f"{self.name} has no column {name}; it has {self.values.shape[1]} columns")
+        if self.columns.count(name) != 1 or not hasattr(self.values, "columns"):
+            raise no_column(self.name, self.columns, name)
         return self.values[name]
 
     def place(self, index: int) -> str:
         """Where a row is."""
         if isinstance(self.values, Text):
             return f"{self.name}, line {self.values.line(index)}"
-        return f"{self.name}, row {index} (the first is 0)"
+        return f"{self.name}, {self.row} {index} (the first is 0)"
 
 
 class _Watched(io.RawIOBase):
@@ -195,7 +223,10 @@ def read(
     name = "standard input" if path == "-" else path
     kind = kind_of_file(path) or kind or ("csv" if path == "-" else None)
     if kind is None:
+        with _readable(name):
+            os.stat(path)
         raise FileError(f"{path} has an unknown ending: the known ones are {READABLE}; or pass --from")
+    _refuse_header(name, kind, header)
     with _readable(name):
         if path == "-":
             if sys.stdin is None:
@@ -203,16 +234,28 @@ def read(
             opened: Any = sys.stdin.fileno()
             with open(opened, "rb", closefd=False) as file:
                 data = file.read()
+            if data.startswith(_GZIP):
+                raise FileError(f"{name} is compressed with gzip: unpack it, as by gzip -dc")
             if kind in _OF_TEXT:
                 return _read_text(name, data, kind, header)
             return _read_binary(name, io.BytesIO(data), kind)
+        if kind == "json":
+            with _opened_text(path, progress) as file:
+                return _read_json(path, file.read())
         if kind not in _OF_TEXT:
+            if _unpacked(path) != path:
+                raise FileError(f"{path} is compressed, and only text is read so: unpack it first")
             return _read_binary(name, path, kind)
         # Of what is compressed, a box takes about a third.
         size = os.path.getsize(path) * (3 if _unpacked(path) != path else 1)
         check_memory(path, f"{size / 1e9:.1f} GB of boxes", size * _BYTES_OF_TEXT)
         with _opened_text(path, progress) as file:
             return _read_text(name, file.read(), kind, header)
+
+
+def _refuse_header(name: str, kind: str, header: bool | None) -> None:
+    if header and kind in GENOMIC:
+        raise FileError(f"{name} is of a format whose lines have no header: leave out --header")
 
 
 def is_text(path: str) -> bool:
@@ -224,6 +267,7 @@ def read_parts(path: str, header: bool | None, progress: Callable[[float], objec
     """A file of text, a part at a time, as `read` would read all of it."""
     kind, size = kind_of_file(path), _PART_OF_TEXT
     assert kind in _OF_TEXT
+    _refuse_header(path, kind, header)
     with _readable(path), _opened_text(path, progress) as data:
         if kind in GENOMIC:
             for table in genomic_parts(path, data, kind, size):
@@ -240,7 +284,10 @@ def _opened_text(path: str, progress: Callable[[float], object] | None) -> Itera
     """The bytes of a file of text, unpacked."""
     with ExitStack() as files:
         plain = files.enter_context(io.BufferedReader(_Watched(path, progress or (lambda _: None)), 2**16))
-        yield files.enter_context(gzip.open(plain)) if _unpacked(path) != path else plain
+        is_packed = _unpacked(path) != path
+        if not is_packed and plain.peek(len(_GZIP)).startswith(_GZIP):
+            raise FileError(f"{path} is compressed with gzip: name it {path}.gz")
+        yield files.enter_context(gzip.open(plain)) if is_packed else plain
 
 
 @contextmanager
@@ -290,17 +337,20 @@ def _read_binary(name: str, file: _File, kind: str) -> Source:
     if kind == "npy":
         return Source(name, _read_numpy(name, file))
     if kind == "json":
-        return _read_json(name, file)
+        assert isinstance(file, io.BytesIO)
+        return _read_json(name, file.getvalue())
     if kind == "gis":
         return _read_gis(name, file)
     return _read_arrow(name, file, kind)
 
 
 def _read_numpy(name: str, file: _File) -> NDArray[Any]:
+    begins = b""
     try:
         opened = open(file, "rb") if isinstance(file, str) else file
         with opened:  # NumPy leaves a damaged archive open that it opened
-            if opened.read(2) == b"PK":
+            begins = opened.read(len(_OF_NUMPY))
+            if begins.startswith(_OF_ARCHIVE):
                 opened.seek(0)
                 with np.load(opened, allow_pickle=False) as arrays:
                     return _boxes_of_archive(name, arrays)
@@ -309,7 +359,11 @@ def _read_numpy(name: str, file: _File) -> NDArray[Any]:
                 return np.asarray(np.load(opened, allow_pickle=False))
         loaded = np.load(file, mmap_mode="r", allow_pickle=False)
     except (ValueError, EOFError, BadZipFile) as error:
-        raise FileError(f"{name} is not an array of NumPy: {error}") from None
+        if begins.startswith((_OF_NUMPY, _OF_ARCHIVE)):
+            if "object" in str(error).lower():
+                raise FileError(f"{name} holds Python objects, not numbers: save it as an array of numbers") from None
+            raise FileError(f"{name} is not all of an array of NumPy: was the file cut off? ({error})") from None
+        raise FileError(f"{name} is not an array of NumPy") from None
     check_memory(name, f"{loaded.shape[0] if loaded.ndim else 0} boxes", loaded.size * _BYTES)
     return np.asarray(loaded)
 
@@ -321,16 +375,16 @@ def _boxes_of_archive(path: str, arrays: Any) -> NDArray[Any]:
     return np.asarray(arrays["boxes" if "boxes" in names else names[0]])
 
 
-def _read_json(name: str, file: _File) -> Source:
+def _read_json(name: str, data: bytes) -> Source:
     """GeoJSON: a collection, a feature, a geometry, or one of these on each line; or COCO's detections."""
-    with open(file, "rb") if isinstance(file, str) else file as opened:
-        text = opened.read().decode("utf-8-sig")
-    document = _document(name, text)
+    document = _document(name, data.decode("utf-8-sig"))
     if isinstance(document, dict) and document.get("type") == "Topology":
         raise FileError(f"{name} is TopoJSON: convert it to GeoJSON first, as by ogr2ogr or mapshaper")
-    is_coco = isinstance(document, dict) and isinstance(document.get("annotations"), list)
-    if is_coco or (isinstance(document, list) and document and _has_box(document[0])):
-        return _read_coco(name, document["annotations"] if is_coco else document)
+    if isinstance(document, dict) and isinstance(document.get("annotations"), list):
+        return _read_coco(name, document["annotations"])
+    items = [document] if isinstance(document, dict) else document
+    if isinstance(items, list) and (not items or _is_detection(items[0])):  # a detector may have found nothing
+        return _read_coco(name, items)
     features = _features(document)
     if features is None:
         raise FileError(f"{name} is not a FeatureCollection of GeoJSON, nor annotations of COCO")
@@ -346,7 +400,7 @@ def _read_json(name: str, file: _File) -> Source:
     labels = _labels_of([feature.get("properties") or {} for feature in features])
     labels.setdefault("id", np.array([feature.get("id") for feature in features], object))
     source = Source(name, boxes, labels)
-    source.are_corners = source.has_shapes = True
+    source.are_corners, source.has_shapes, source.row = True, True, "feature"
     source.crs = _crs.of_geojson(document) if isinstance(document, dict) else _crs.LONGITUDE_LATITUDE
     return source
 
@@ -367,7 +421,7 @@ def _document(name: str, text: str) -> Any:
         try:
             documents.append(json.loads(line))
         except json.JSONDecodeError as error:
-            raise FileError(f"{name}, line {at}: {error.msg}") from None
+            raise FileError(f"{name}, line {at}: it is not JSON ({error.msg})") from None
     return documents
 
 
@@ -394,27 +448,58 @@ def _labels_of(rows: list[dict[str, Any]]) -> dict[str, Any]:
 def _objects(values: list[Any]) -> NDArray[Any]:
     array = np.empty(len(values), object)
     for at, value in enumerate(values):  # an assignment of all would look into those that are lists
-        array[at] = json.dumps(value) if isinstance(value, (list, dict)) else value
+        array[at] = value
     return array
 
 
-def _has_box(item: Any) -> bool:
-    return isinstance(item, dict) and "bbox" in item and "image_id" in item
+def _written(value: Any) -> Any:
+    """A value of JSON in a cell."""
+    return json.dumps(value) if isinstance(value, (list, dict)) else value
+
+
+def _is_detection(item: Any) -> bool:
+    return isinstance(item, dict) and _features(item) is None and not {"bbox", "image_id"}.isdisjoint(item)
 
 
 def _read_coco(name: str, annotations: list[Any]) -> Source:
     """Detections of COCO, whose boxes are a corner and a size. They pair within their image."""
     for index, item in enumerate(annotations):
-        box = item.get("bbox") if _has_box(item) else None
-        if not (isinstance(box, list) and len(box) == 4 and all(type(one) in (int, float) for one in box)):
-            raise FileError(f"{name}, annotation {index} (the first is 0) has no image_id and bbox of 4 numbers")
+        fault = _fault_of_detection(item)
+        if fault:
+            raise FileError(f"{name}, annotation {index} (the first is 0): {fault}")
     names = ["x", "y", "width", "height"]
-    ends = [read_column([item["bbox"][end] for item in annotations], name) for end, name in enumerate(names)]
+    given = [item["bbox"] or [None] * 4 for item in annotations]
+    ends = [read_column([box[end] for box in given], name) for end, name in enumerate(names)]
     boxes = raw_boxes(Raw(*side_by_side(ends, names, name)), name, "xywh")
-    kept = [{key: item[key] for key in item if key not in ("segmentation", "bbox")} for item in annotations]
-    source = Source(name, boxes, _labels_of(kept))
-    source.by, source.are_corners = ["image_id"], True
+    source = Source(name, boxes, _labels_of(annotations) or {"image_id": np.empty(0, object)})
+    source.by, source.are_corners, source.row = ["image_id"], True, "annotation"
     return source
+
+
+def _fault_of_detection(item: Any) -> str:
+    """What is wrong with an annotation of COCO. Numbers may be missing in its box, or all of it."""
+    if not isinstance(item, dict):
+        return f"it is {_shown(item)}, not an object with an image_id and a bbox"
+    for key in ("image_id", "bbox"):
+        if key not in item:
+            return f"it has no {key}"
+    image, box = item["image_id"], item["bbox"]
+    if type(image) not in (int, float, str):
+        return f"its image_id is {_shown(image)}, not a number or text"
+    if box is None:
+        return ""
+    if not isinstance(box, list):
+        return f"its bbox is {_shown(box)}, not a list of 4 numbers"
+    if len(box) != 4:
+        return f"its bbox has {len(box)} items, not 4 numbers"
+    wrong = [one for one in box if one is not None and type(one) not in (int, float)]
+    return f"its bbox has {_shown(wrong[0])}, which is not a number" if wrong else ""
+
+
+def _shown(value: Any) -> str:
+    """A value of JSON as a message shows it."""
+    text = json.dumps(value, ensure_ascii=False)
+    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def _bounds(geometry: Any) -> tuple[float, float, float, float]:
@@ -531,7 +616,7 @@ def columns_of_groups(sources: list[Source], by: Sequence[Sequence[str]]) -> lis
         kinds = [column.kinds() for column in columns]
         texts = [source.text for source in sources]
         plain = [
-            kind == {"numbers"} if text is None else text.are_plain_numbers(names[at])
+            kind == {"numbers"} if text is None else text.are_plain_numbers(text.named(names[at]))
             for text, kind, names in zip(texts, kinds, by)
         ]
         if all(plain):
@@ -542,21 +627,48 @@ def columns_of_groups(sources: list[Source], by: Sequence[Sequence[str]]) -> lis
             side = kinds.index({"text"})
             if texts[side] is not None:  # of which not all are plain: this refuses those that are none
                 groups[side][at] = sources[side].group_of_numbers(by[side][at])
-        elif any(plain):
-            _refuse_fractions(sources, by, plain.index(True), at)
+        elif any("text" in kind for kind in kinds):
+            _refuse_written_otherwise(sources, [names[at] for names in by], columns)
     return groups
 
 
-def _refuse_fractions(sources: list[Source], by: Sequence[Sequence[str]], side: int, at: int) -> None:
-    """Refuses numbers such as 1.0 where the other file has text, since 1 may be meant."""
-    text, name = sources[side].text, by[side][at]
-    if text is not None and sources[1 - side].group(by[1 - side][at]).kinds():
-        fraction = next((cell for cell in text.text(name) if "." in cell), None)
-        if fraction is not None:
-            raise FileError(
-                f"{sources[side].name} has {fraction!r} in column {name}, and {sources[1 - side].name} has text there: "
-                "write the values alike in both files"
-            )
+def _refuse_written_otherwise(sources: list[Source], names: list[str], columns: Sequence[Column]) -> None:
+    """Refuses a number that is another text in the other file, such as 1.0 or 01 for 1: they may be meant to be equal.
+
+    In one file, the numbers of a column (as JSON has them) are compared with its text.
+    """
+    whose = [(source.name, name) for source, name in zip(sources, names)]
+    if len(columns) == 2:
+        sides = [_different(column) for column in columns]
+    elif "numbers" in columns[0].kinds():
+        found = _different(columns[0])
+        sides = [{one: None for one in found if isinstance(one, str) is is_text} for is_text in (True, False)]
+        whose *= 2
+    else:
+        return
+    alone = [[value for value in side if value not in other] for side, other in zip(sides, sides[::-1])]
+    for side, (values, other) in enumerate(zip(alone, sides[::-1])):
+        lookalikes = {_number_of(value): value for value in (other if values else ())}
+        lookalikes.pop(None, None)
+        for value in values:
+            alike = lookalikes.get(_number_of(value))
+            if alike is not None:
+                (own, column), (others, _) = whose[side], whose[1 - side]
+                raise FileError(
+                    f"{own} has {value!r} in column {column}, and {others} has {alike!r} there: write the values alike"
+                )
+
+
+def _different(column: Column) -> dict[Any, None]:
+    """The different values of a column, in the order in which they appear."""
+    values = column.values if column.missing is None else column.values[~column.missing]
+    return dict.fromkeys(values.tolist())
+
+
+def _number_of(value: Any) -> Any:
+    """The number that a value is, or is written as; None if there is none."""
+    found = number(value) if isinstance(value, str) else value if type(value) in (int, float) else None
+    return found if found == found else None
 
 
 def check_memory(path: str, contents: str, needed: int) -> None:

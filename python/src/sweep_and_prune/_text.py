@@ -33,19 +33,39 @@ _PLAIN_NUMBER = re.compile(r"\s*-?(0|[1-9][0-9]*)(\.[0-9]+)?\s*")
 """A number that is no name: not as 007 or 1e5 may be."""
 _OF_GTF = re.compile(r'\s*([^\s;"]+)\s+(?:"([^"]*)"|([^;"]*?))\s*(?:;|$)')
 _OF_GFF3 = re.compile(r"\s*([^;=]+)=([^;]*)")
-BED_LIKE = ("bed", "narrowpeak", "broadpeak", "bedgraph")
+_BEFORE_ROW = r"#|(?:track|browser)(?: |\r?$)|\r?$"
+"""What begins a line of genomics that has no interval."""
+_NO_ROW = re.compile(_BEFORE_ROW)
+_ROW = re.compile(rf"^(?!{_BEFORE_ROW}).*".encode(), re.MULTILINE)
+_SIZED = re.compile("<(?:DEL|DUP|INV|CNV)[:>]")
+"""An allele of VCF that has a length on the reference."""
+_SIZE = re.compile("[+-]?([0-9]+)")
+_ROWS_AT_ONCE = 2**10
+"""This many rows are looked through at once for an attribute that is probably in the first ones."""
 
 
 class Format(NamedTuple):
-    """A format of genomics: lines of fixed columns, separated by tabs, without a header or quotes."""
+    """A format of genomics: lines of columns that are separated by tabs, without a header or quotes."""
 
     columns: list[str]
+    """The names of the first columns; further ones have their numbers as names."""
     least: int
     """How many columns each line has at least."""
-    starts_at_one: bool = False
-    """Whether the first position is 1, and ends belong to intervals."""
+    fixed: int = 0
+    """How many columns there are in any file, of which lines may lack the last ones. The first line tells of others."""
+    least_position: int | None = None
+    """None if positions count from 0; else they count from 1, and ends belong to intervals."""
     attributes: str = ""
     """How the last column names more values: as in GTF or as in GFF3."""
+
+    def names(self, width: int) -> list[str]:
+        """The names of the columns of a file whose first line has `width` ones; 0 if it has no line."""
+        width = max(width or self.fixed or len(self.columns), self.fixed)
+        return [*self.columns[:width], *map(str, range(len(self.columns) + 1, width + 1))]
+
+    def widths(self, width: int) -> tuple[int, int]:
+        """How many columns each line of this file has, at least and at most: none is lost, and none is made up."""
+        return (self.least, self.fixed) if width <= self.fixed else (width, width)
 
 
 _BED = ["chrom", "start", "end", "name", "score", "strand", "thickStart", "thickEnd", "itemRgb", "blockCount"]
@@ -57,9 +77,10 @@ GENOMIC = {
     "narrowpeak": Format([*_PEAK, "peak"], 3),
     "broadpeak": Format(_PEAK, 3),
     "bedgraph": Format([*_BED[:3], "value"], 3),
-    "gtf": Format(_GENES, 8, True, "gtf"),
-    "gff3": Format(_GENES, 8, True, "gff3"),
-    "vcf": Format(["chrom", "pos", "id", "ref", "alt", "qual", "filter", "info"], 5, True),
+    "gtf": Format(_GENES, 8, 9, 1, "gtf"),
+    "gff3": Format(_GENES, 8, 9, 1, "gff3"),
+    # (Position 0 is that of a telomere.)
+    "vcf": Format(["chrom", "pos", "id", "ref", "alt", "qual", "filter", "info", "format"], 5, 8, 0),
 }
 
 
@@ -70,6 +91,15 @@ class Text:
         """`cells` are those of all rows, one row after the other."""
         self.name, self.columns, self._cells, self._lines = name, columns, cells, lines
         self.format: Format | None = None
+        self.attributes: dict[str, bool] = {}
+        self.is_part = False
+
+    format: Format | None
+    """What it is if it has no header, but columns of a format of genomics."""
+    attributes: dict[str, bool]
+    """Whether a row has each attribute that was asked for, in this or another part of the file."""
+    is_part: bool
+    """Whether it may be a part of a file."""
 
     def __len__(self) -> int:
         return len(self._lines)
@@ -82,27 +112,59 @@ class Text:
         """The cells of a column, as they are in the file."""
         if self._is_attribute(name):
             assert self.format is not None
-            return [_attribute(cell, name, self.format.attributes) for cell in self.text("attributes")]
+            return [_attribute(cell, name, self.format.attributes) or "" for cell in self.text("attributes")]
         return self._cells_of(name)
 
     def _is_attribute(self, name: str) -> bool:
-        """Whether the last column names it, as in GTF and GFF3."""
-        return self.columns.count(name) == 0 and self.format is not None and bool(self.format.attributes)
+        """Whether the last column names it, as in GTF and GFF3. One that no row has is refused: it is misspelled."""
+        form = "" if self.format is None else self.format.attributes
+        if not form or name in self.columns:
+            return False
+        if not self.attributes.get(name):
+            found = any(_attribute(cell, name, form) is not None for cell in self._cells_until_found())
+            if not found and not self.is_part and len(self):
+                raise self.no_attribute(name)
+            self.attributes[name] = found
+        return True
+
+    def no_attribute(self, name: str) -> FileError:
+        """The error that no row has an attribute."""
+        pattern = _OF_GFF3 if self.format is not None and self.format.attributes == "gff3" else _OF_GTF
+        of_first = [found[1] for found in pattern.finditer(next(self._cells_until_found(), ""))]
+        known = [*self.columns, *dict.fromkeys(of_first)]
+        return no_column(self.name, known, name, "no column and no attribute")
+
+    def _cells_until_found(self) -> Iterator[str]:
+        """The cells of attributes."""
+        return iter(self.text("attributes"))
 
     def _cells_of(self, name: str) -> Sequence[str]:
         return self._cells[self.place(name) :: len(self.columns)]
 
     def place(self, name: str) -> int:
         """Which column has a name."""
-        number = self.columns.count(name)
-        if number != 1:
-            fault = f"{number} columns {name!r}: rename all but one" if number > 1 else f"no column {name!r}"
-            raise FileError(f"{self.name} has {fault}; {listed(self.columns)}")
+        if self.columns.count(name) != 1:
+            raise no_column(self.name, self.columns, name)
         return self.columns.index(name)
 
+    def named(self, name: str) -> str:
+        """The name of a column that is given by its name, or by its number from 1 in a file of genomics."""
+        if self.format is None or name in self.columns or not name.isdecimal() or not name.isascii():
+            return name
+        in_file = [one for one in self.columns if self.format is not GENOMIC["vcf"] or one != "end"]
+        return in_file[int(name) - 1] if 1 <= int(name) <= len(in_file) else name
+
+    def _is_missing(self, cell: str) -> bool:
+        """Whether a cell of a column to group by has no value. In the formats of genomics this is a point."""
+        return not cell or (cell == "." and self.format is not None)
+
     def group(self, name: str) -> Column:
-        """The values of a column to group by, which are text; what is empty is missing."""
-        return _group_of(self.text(name), name)
+        """The values of a column to group by, which are text; what is empty is missing, and "." in genomics."""
+        return self._group_of(self.text(name), name)
+
+    def _group_of(self, cells: Sequence[str], name: str) -> Column:
+        missing = np.fromiter(map(self._is_missing, cells), bool, len(cells))
+        return Column(np.array(cells, object), missing if missing.any() else None, name=f"column {name}")
 
     def group_of_numbers(self, name: str) -> Column:
         """The same, if the values of the other file are numbers."""
@@ -114,11 +176,21 @@ class Text:
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         numbers = self._numbers(name)
-        return numbers - 1 if self.format is not None and self.format.starts_at_one and name == "start" else numbers
+        least = None if self.format is None else self.format.least_position
+        if least is None or name != "start":
+            return numbers
+        wrong = np.flatnonzero(numbers < least)
+        if len(wrong):
+            place = f"{self.name}, line {self.line(int(wrong[0]))}, column start"
+            raise FileError(f"{place}: it is {numbers[wrong[0]]:g}; positions in this format count from 1")
+        return numbers - 1
 
     def are_plain_numbers(self, name: str) -> bool:
         """Whether all values of a column are numbers that are no names, and some are there."""
-        present = [cell for cell in self.text(name) if cell]
+        return self._are_plain(self.text(name))
+
+    def _are_plain(self, cells: Sequence[str]) -> bool:
+        present = [cell for cell in cells if not self._is_missing(cell)]
         return bool(present) and all(map(_PLAIN_NUMBER.fullmatch, present))
 
     def plain_numbers(self, name: str) -> NDArray[Any]:
@@ -145,10 +217,20 @@ class Text:
         if found is None or (found in (math.inf, -math.inf) and "inf" not in cell.lower()):
             what = "is not a number" if found is None else "is too large a number"
             shown = cell if len(cell) <= 60 else f"{cell[:57]}..."
-            # The formats of genomics have no header, but tables are saved under their names.
-            way = ": is this a header? Remove the line" if self.format is not None and index == 0 else ""
+            way = self._other_format() if self.format is not None and index == 0 else ""
             raise FileError(f"{self.name}, line {self.line(index)}, column {name}: {shown!r} {what}{way}")
         return found
+
+    def _other_format(self) -> str:
+        """What the first row seems to be, if it is none of a format of genomics."""
+        row = [str(self.label(name)[np.zeros(1, np.int64)][0]) for name in self.columns]
+        are_numbers = [number(cell) is not None for cell in row]
+        if not any(are_numbers):  # tables are saved under the names of these formats, too
+            return ": is this a header? Remove the line"
+        is_bed = self.format is not None and self.format.least_position is None
+        if is_bed and len(row) > 4 and not are_numbers[1] and row[3].isdecimal() and row[4].isdecimal():
+            return ": is this GTF or GFF? Name it .gtf or .gff3, or pass --from gtf for standard input"
+        return ""
 
 
 class Lines(Text):
@@ -186,18 +268,17 @@ class Lines(Text):
         convert = None
         if self._is_attribute(name):
             assert self.format is not None
-            convert, name = partial(_attribute, name=name, form=self.format.attributes), "attributes"
+            convert, name = partial(_label_of, name=name, form=self.format.attributes), "attributes"
         return Cells(self._data, self._offsets, self._form, self._in_line(name), convert)
 
     def are_plain_numbers(self, name: str) -> bool:
         """Whether all values of a column are numbers that are no names, and some are there."""
-        present = [cell for cell in self._names(name)[1] if cell]
-        return bool(present) and all(map(_PLAIN_NUMBER.fullmatch, present))
+        return self._are_plain(self._names(name)[1])
 
     def group(self, name: str) -> Column:
-        """The values of a column to group by, which are text; what is empty is missing."""
+        """The values of a column to group by, which are text; what is empty is missing, and "." in genomics."""
         codes, names = self._names(name)
-        return _group_of(names, name)._replace(codes=codes)
+        return self._group_of(names, name)._replace(codes=codes)
 
     def group_of_numbers(self, name: str) -> Column:
         """The same, if the values of the other file are numbers."""
@@ -219,6 +300,15 @@ class Lines(Text):
                 assert found is not None
                 self._named[name] = found
         return self._named[name]
+
+    def _cells_until_found(self) -> Iterator[str]:
+        """The cells of attributes, a part at a time: most often the first rows have what is looked for."""
+        for at in range(0, len(self), _ROWS_AT_ONCE):
+            found = read_cells(
+                self._data, self._offsets[at : at + _ROWS_AT_ONCE], *self._form, self._in_line("attributes")
+            )
+            assert found is not None
+            yield from found
 
     def _cells_of(self, name: str) -> Sequence[str]:
         if self.ends is not None and name == "end":
@@ -262,19 +352,25 @@ class Cells:
         return np.array(found if self._convert is None else [*map(self._convert, found)], object)
 
 
-def _group_of(cells: Sequence[str], name: str) -> Column:
-    values = np.array(cells, object)
-    missing = values == ""
-    return Column(values, missing if missing.any() else None, name=f"column {name}")
-
-
-def _attribute(cell: str, name: str, form: str) -> str:
-    """A value that the last column of GTF or GFF3 names; empty if it does not."""
+def _attribute(cell: str, name: str, form: str) -> str | None:
+    """A value that the last column of GTF or GFF3 names, if it does."""
     pattern = _OF_GFF3 if form == "gff3" else _OF_GTF
     for found in pattern.finditer(cell):
         if found[1] == name:
             return unquote(found[2].strip()) if form == "gff3" else found[2] if found[2] is not None else found[3]
-    return ""
+    return None
+
+
+def _label_of(cell: str, name: str, form: str) -> str:
+    return _attribute(cell, name, form) or ""
+
+
+def no_column(file: str, columns: Sequence[str], name: str, none: str = "no column") -> FileError:
+    """The error that a file has not one column of this name."""
+    number = columns.count(name)
+    fault = f"{number} columns {name!r}: rename all but one" if number > 1 else f"{none} {name!r}"
+    way = "; numbers are for files without a header" if name.isdecimal() and number == 0 else ""
+    return FileError(f"{file} has {fault}{way}; {listed(columns)}")
 
 
 def _is_plain(text: str) -> bool:
@@ -297,7 +393,7 @@ def read_genomic(name: str, data: bytes, kind: str) -> Text:
     Raises:
         UnicodeDecodeError: if it is not text in UTF-8.
     """
-    return _part_of_genomic(name, data.removeprefix(BOM_UTF8), kind, [], 0)
+    return _part_of_genomic(name, data.removeprefix(BOM_UTF8), kind, 0, 0)
 
 
 def genomic_parts(name: str, file: IO[bytes], kind: str, size: int) -> Iterator[Text]:
@@ -306,89 +402,113 @@ def genomic_parts(name: str, file: IO[bytes], kind: str, size: int) -> Iterator[
     Raises:
         UnicodeDecodeError: if it is not text in UTF-8.
     """
-    columns: list[str] = []
-    before = 0
+    width = before = 0
+    attributes: dict[str, bool] = {}
     data = file.read(size).removeprefix(BOM_UTF8)
     while True:
         more = file.read(size)
         end = data.rfind(b"\n") + 1 if more else len(data)
         if end or not more:
-            table = _part_of_genomic(name, data[:end], kind, columns, before)
+            table = _part_of_genomic(name, data[:end], kind, width, before)
+            table.attributes, table.is_part = attributes, True
             if len(table) or not more:
-                columns = table.columns
+                width = len(table.columns) - (kind == "vcf") if len(table) else width
                 yield table
             lines = data[:end]
             if not more or (b"##FASTA" in lines and not isinstance(table, Lines) and _has_sequences(lines)):
-                return
+                break
             before += lines.count(b"\n") + lines.count(b"\r") - lines.count(b"\r\n")
         data = data[end:] + more
+    for attribute in (one for one, is_there in attributes.items() if width and not is_there):
+        raise table.no_attribute(attribute)
 
 
 def _has_sequences(lines: bytes) -> bool:
     return any(line.startswith(b"##FASTA") for line in lines.splitlines())
 
 
-def _part_of_genomic(name: str, data: bytes, kind: str, columns: list[str], before: int) -> Text:
-    """Lines of such a file, after `before` others. Without `columns`, the first line tells how many there are."""
+def _part_of_genomic(name: str, data: bytes, kind: str, width: int, before: int) -> Text:
+    """Lines of such a file, after `before` others. Its first line tells its `width`, which is 0 until then."""
     form = GENOMIC[kind]
-    offsets = read_lines(data, 0, form.least, ord("\t"), False)
+    first = _ROW.search(data)
+    of_first = width or (first[0].count(b"\t") + 1 if first else 0)
     is_vcf = kind == "vcf"
-    ends = read_ends_of_variants(data, offsets, ord("\t"), False) if is_vcf and offsets is not None else None
-    if offsets is not None and len(offsets) and (ends is not None or not is_vcf):
-        if not columns:
-            first = data[int(offsets[0]) :].split(b"\n", 1)[0]
-            columns = form.columns[: first.count(b"\t") + 1 if kind in BED_LIKE else None]
-            columns = _with_ends(columns) if is_vcf else columns
-        table = Lines(name, columns, data, offsets)
+    offsets = ends = None
+    if first and of_first >= form.least:
+        offsets = read_lines(data, 0, *form.widths(of_first), ord("\t"), False)
+        ends = read_ends_of_variants(data, offsets, ord("\t"), False) if is_vcf and offsets is not None else None
+    if offsets is not None and (ends is not None or not is_vcf):
+        table = Lines(name, _columns_of(kind, of_first), data, offsets)
         table.format, table.before, table.ends = form, before, ends
         return table
     with TextIOWrapper(BytesIO(data), "utf-8", newline="") as file:
-        return _read_genomic(name, file, kind, columns, before)
+        return _read_genomic(name, file, kind, width, before)
 
 
-def _read_genomic(name: str, file: IO[str], kind: str, columns: Sequence[str] = (), before: int = 0) -> Text:
+def _columns_of(kind: str, width: int) -> list[str]:
+    """The names of the columns of a file; for VCF with the start and the end of what a variant replaces."""
+    names = GENOMIC[kind].names(width)
+    return ["chrom", "start", "end", *names[2:]] if kind == "vcf" else names
+
+
+def _read_genomic(name: str, file: IO[str], kind: str, width: int = 0, before: int = 0) -> Text:
     form = GENOMIC[kind]
     cells: list[str] = []
     lines = array("Q")
-    columns = [form.columns[0], "pos", *columns[3:]] if kind == "vcf" and columns else list(columns)
     for line, text in enumerate(file, before + 1):
         text = text.rstrip("\r\n")
         if text.startswith("##FASTA"):
             break  # what follows in GFF3 are sequences
-        if not text or text.startswith("#") or re.match(r"(track|browser)( |$)", text):
+        if _NO_ROW.match(text):
             continue
         row = text.split("\t")
         if len(row) < form.least:
             *first, last = form.columns[: form.least]
             raise FileError(f"{name}, line {line}: {', '.join(first)} and {last} are expected, separated by tabs")
-        if not columns:  # only the least ones are in each row
-            columns = form.columns[: len(row) if kind in BED_LIKE else None]
-        row = (row + [""] * len(columns))[: len(columns)]
+        width = width or len(row)
+        least, most = form.widths(width)
+        if not least <= len(row) <= most:
+            raise _other_width(name, line, len(row), least if len(row) < least else most)
+        row += [""] * (max(width, form.fixed) - len(row))
         if kind == "vcf":
-            row[1:2] = _replaced(*(row[at] for at in (1, 3, 7)))
+            row[1:2] = _replaced(*(row[at] for at in (1, 3, 4, 7)))
         cells += row
         lines.append(line)
-    columns = columns or form.columns
-    if kind == "vcf":
-        columns = _with_ends(columns)
-    table = Text(name, columns, cells, lines)
+    table = Text(name, _columns_of(kind, width), cells, lines)
     table.format = form
     return table
 
 
-def _with_ends(columns: list[str]) -> list[str]:
-    """The columns of VCF with the start and the end of what a variant replaces."""
-    return ["chrom", "start", "end", *columns[2:]]
+def _other_width(name: str, line: int, found: int, expected: int) -> FileError:
+    number = "1 column" if found == 1 else f"{found} columns"
+    return FileError(f"{name}, line {line}: it has {number}, where {expected} are expected")
 
 
-def _replaced(position: str, reference: str, info: str) -> tuple[str, str]:
-    """The start, from 1, and the end of what a variant replaces: its reference, or all up to an end that it names."""
+def _replaced(position: str, reference: str, alleles: str, info: str) -> tuple[str, str]:
+    """The start, from 1, and the end of what a variant replaces.
+
+    It is all up to an end that the variant names, or a deletion, duplication, inversion or change of copies of the
+    length that it names, after its position; else its reference.
+    """
     named = re.search(r"(?:^|;)END=([0-9]+)(?:;|$)", info)
     if named:
         return position, named[1]
     if not _PLAIN_NUMBER.fullmatch(position):
         return position, position  # reading the numbers says so
-    return position, str(int(position) - 1 + len(reference))
+    size = _size_of(alleles, info)
+    return position, str(int(position) + (len(reference) - 1 if size is None else size))
+
+
+def _size_of(alleles: str, info: str) -> int | None:
+    """The greatest length that a variant names of its alleles that have one on the reference."""
+    named = re.search(r"(?:^|;)SVLEN=([^;]*)", info)
+    are_sized = [bool(_SIZED.match(allele)) for allele in alleles.split(",")]
+    if not named or not any(are_sized):
+        return None
+    values = named[1].split(",")
+    # (A length may be written for all alleles at once.)
+    own = [value for value, is_sized in zip(values, are_sized) if is_sized] if len(values) == len(are_sized) else values
+    return max((int(found[1]) for found in map(_SIZE.fullmatch, own) if found), default=None)
 
 
 class _Begun(NamedTuple):
@@ -422,7 +542,8 @@ def read_table(name: str, data: bytes, delimiter: str, header: bool | None) -> t
         begun = _begin(name, file, delimiter, header)
         has_header = begun.first is None
         lines = begun.skipped + (begun.reader.line_num if has_header else 0)
-        offsets = read_lines(data, lines, len(begun.columns), ord(begun.delimiter), True)
+        width = len(begun.columns)
+        offsets = read_lines(data, lines, width, width, ord(begun.delimiter), True)
         if offsets is None:
             return next(_parts(begun, sys.maxsize)), not has_header
         return Lines(name, begun.columns, data, offsets, begun.delimiter, True), not has_header
@@ -472,8 +593,7 @@ def _parts(begun: _Begun, rows: int) -> Iterator[Text]:
             if not row or (row[0].startswith("#") and len(row) < len(columns)):
                 continue
             if len(row) < len(columns) or any(row[len(columns) :]):
-                number = "1 column" if len(row) == 1 else f"{len(row)} columns"
-                raise FileError(f"{name}, line {here}: it has {number}, where {len(columns)} are expected")
+                raise _other_width(name, here, len(row), len(columns))
             if len(lines) == rows:
                 yield Text(name, columns, cells, lines)
                 cells, lines = [], array("Q")
