@@ -183,25 +183,26 @@ def test_what_is_wrong_with_a_file_of_genomics_is_said(
     assert refused(capsys, "count", name).startswith(message)
 
 
-@pytest.mark.parametrize("size", [10, 1000])
-@pytest.mark.parametrize("text", ["c\t1\t5{more}\n", "c\t1\t5{more}\r\n", "c\t1\t5{more}\r"])
-def test_lines_of_genomics_have_as_many_columns_as_the_first(size: int, text: str) -> None:
-    def read_all(*more: str) -> list[list[str]]:
-        data = ("#c\n" + "".join(text.format(more=one) for one in more)).encode()
-        parts = [_text.read_genomic("a.bed", data, "bed")]
-        in_parts = [*_text.genomic_parts("a.bed", io.BytesIO(data), "bed", size)]
-        assert [part.columns for part in in_parts] == [parts[0].columns] * len(in_parts)
-        return [[*part.columns] for part in parts]
+@pytest.mark.parametrize("size", [10, 1000, None])
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_lines_of_genomics_have_as_many_columns_as_the_first(size: int | None, end: str) -> None:
+    def columns(*more: str) -> list[str]:
+        data = "".join(f"{line}{end}" for line in ("#c", *(f"c\t1\t5{one}" for one in more))).encode()
+        if size is None:
+            return _text.read_genomic("a.bed", data, "bed").columns
+        parts = [*_text.genomic_parts("a.bed", io.BytesIO(data), "bed", size)]
+        assert sum(map(len, parts)) == len(more)
+        (found,) = {(*part.columns,) for part in parts}
+        return [*found]
 
-    assert read_all("", "", "") == [["chrom", "start", "end"]]
-    assert read_all(*["\tn\t0\t+" + 7 * "\tx"] * 2)[0][5:] == ["strand", *_text.GENOMIC["bed"].columns[6:], "13"]
-    for first, other in (("", "\tname"), ("\tname", ""), ("\tname", "\tname\t0\t+")):
-        counts = [3 + one.count("\t") for one in (other, first)]
-        for read_some in (_text.read_genomic, lambda *given: [*_text.genomic_parts(*given, size)]):
-            data: Any = ("#c\n" + "".join(text.format(more=one) for one in (first, first, first, other))).encode()
-            with pytest.raises(FileError) as error:
-                read_some("a.bed", data if read_some is _text.read_genomic else io.BytesIO(data), "bed")
-            assert error.value.message == f"a.bed, line 5: it has {counts[0]} columns, where {counts[1]} are expected"
+    assert columns("", "", "") == ["chrom", "start", "end"]
+    all_of_bed = "\tn\t0\t+" + 6 * "\tx"
+    assert columns(*[f"{all_of_bed}\t13\t14"] * 2) == [*_text.GENOMIC["bed"].columns, "13", "14"]
+    for first, other in (("", "\tn"), ("\tn", ""), ("\tn", "\tn\t0\t+"), (all_of_bed, f"{all_of_bed}\t13"), ("", "\t")):
+        found, wanted = (3 + one.count("\t") for one in (other, first))
+        with pytest.raises(FileError) as error:
+            columns(first, first, first, other)
+        assert error.value.message == f"a.bed, line 5: it has {found} columns, where {wanted} are expected"
 
 
 def test_rows_of_genomics_have_all_columns(capsys: pytest.CaptureFixture[str]) -> None:
@@ -420,8 +421,8 @@ def test_what_is_wrong_with_a_detection_is_said(
 
 def test_a_detector_may_find_nothing(capsys: pytest.CaptureFixture[str]) -> None:
     Path("b.json").write_text(json.dumps([{"image_id": 7, "bbox": [0, 0, 2, 2]}]))
-    for document in ([], {"images": [], "annotations": []}):
-        Path("a.json").write_text(json.dumps(document))
+    for document in ("[]", '{"images": [], "annotations": []}'):
+        Path("a.json").write_text(document)
         assert said(capsys, "pairs", "a.json") == "a,b\n"
         assert said(capsys, "join", "a.json", "b.json") == said(capsys, "join", "b.json", "a.json") == "a,b\n"
 
