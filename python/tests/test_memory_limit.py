@@ -199,6 +199,8 @@ def test_what_cannot_be_done_is_one_clear_error(capsys: pytest.CaptureFixture[st
     Path("cut.csv").write_text(Path("a.csv").read_text() + "7\n")
     Path("large.csv").write_text("start,end\n0,9007199254740993\n")
     Path("a.bed").write_text("1\t0\t5\n" * 300 + "1\t5\n")
+    Path("wide.bed").write_text("1\t0\t5\n" * 300 + "1\t5\t9\tname\n")
+    Path("a.gtf").write_text('1\tx\texon\t1\t5\t.\t+\t.\tgene_id "a";\n' * 300)
     Path("b.npy").write_bytes(b"")
     Path("empty.csv").write_text("start,end\n")
     Path("plain.csv").write_text("a,0,1\nb,5,6\n")
@@ -209,6 +211,9 @@ def test_what_cannot_be_done_is_one_clear_error(capsys: pytest.CaptureFixture[st
         (["pairs", "cut.csv"], "cut.csv, line 402: it has 1 column, where 3 are expected"),
         (["pairs", "large.csv"], "large.csv: coordinates beyond 2^53 are not exact"),
         (["pairs", "a.bed"], "a.bed, line 301: chrom, start and end are expected"),
+        (["pairs", "wide.bed"], "wide.bed, line 301: it has 4 columns, where 3 are expected"),
+        (["pairs", "a.gtf", "--by", "gene_i"], "a.gtf has no column and no attribute 'gene_i'"),
+        (["pairs", "a.gtf", "--id", "gene_i"], "a.gtf has no column and no attribute 'gene_i'"),
         (["pairs", "a.csv", "--by", "no"], "a.csv has no column 'no'"),
         (["pairs", "b.npy"], "b.npy: --memory-limit reads files of text, Parquet files and folders of them"),
         (["pairs", "plain.csv"], "pass --header if it names the columns, or --no-header"),

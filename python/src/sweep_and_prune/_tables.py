@@ -134,19 +134,19 @@ class Source:
         so that a row without a strand pairs with none.
         """
         if isinstance(self.values, Text):
-            return self.values.group(self.values.named(name))
+            return self.values.group(name)
         return read_column(self._labels(name), f"column {name}")
 
     def group_of_numbers(self, name: str) -> Column:
         """The same, if the values of the other file are numbers."""
         if isinstance(self.values, Text):
-            return self.values.group_of_numbers(self.values.named(name))
+            return self.values.group_of_numbers(name)
         return read_column(self._column(name), f"column {name}")
 
     def label(self, name: str) -> Any:
         """A column of any type as it is written: an array, or something that has an array of some rows at `[rows]`."""
         if isinstance(self.values, Text):
-            return self.values.label(self.values.named(name))
+            return self.values.label(name)
         values = self._labels(name)
         if getattr(values, "null_count", 0):  # as an array of NumPy, integers would become floating point
             values = values.to_pylist()
@@ -169,7 +169,7 @@ class Source:
     def _column(self, name: str) -> Any:
         """The numbers of a column."""
         if isinstance(self.values, Text):
-            return self.values[self.values.named(name)]
+            return self.values[name]
         if isinstance(self.values, np.ndarray) and self.values.ndim == 2 and name.isdecimal() and not self.labels:
             if 1 <= int(name) <= self.values.shape[1]:  # it has no header
                 return self.values[:, int(name) - 1]
@@ -616,7 +616,7 @@ def columns_of_groups(sources: list[Source], by: Sequence[Sequence[str]]) -> lis
         kinds = [column.kinds() for column in columns]
         texts = [source.text for source in sources]
         plain = [
-            kind == {"numbers"} if text is None else text.are_plain_numbers(text.named(names[at]))
+            kind == {"numbers"} if text is None else text.are_plain_numbers(names[at])
             for text, kind, names in zip(texts, kinds, by)
         ]
         if all(plain):

@@ -110,6 +110,7 @@ class Text:
 
     def text(self, name: str) -> Sequence[str]:
         """The cells of a column, as they are in the file."""
+        name = self.named(name)
         if self._is_attribute(name):
             assert self.format is not None
             return [_attribute(cell, name, self.format.attributes) or "" for cell in self.text("attributes")]
@@ -175,6 +176,7 @@ class Text:
         return np.array(self.text(name), object)
 
     def __getitem__(self, name: str) -> NDArray[Any]:
+        name = self.named(name)
         numbers = self._numbers(name)
         least = None if self.format is None else self.format.least_position
         if least is None or name != "start":
@@ -182,7 +184,7 @@ class Text:
         wrong = np.flatnonzero(numbers < least)
         if len(wrong):
             place = f"{self.name}, line {self.line(int(wrong[0]))}, column start"
-            raise FileError(f"{place}: it is {numbers[wrong[0]]:g}; positions in this format count from 1")
+            raise FileError(f"{place}: it is {numbers[wrong[0]]}; positions in this format count from 1")
         return numbers - 1
 
     def are_plain_numbers(self, name: str) -> bool:
@@ -263,6 +265,7 @@ class Lines(Text):
 
     def label(self, name: str) -> Any:
         """A column as it is written, whose cells are read when they are asked for."""
+        name = self.named(name)
         if self.ends is not None and name == "end":
             return super().label(name)
         convert = None
@@ -290,6 +293,7 @@ class Lines(Text):
 
     def _names(self, name: str) -> tuple[NDArray[np.int64], list[str]]:
         """The number of each cell of a column among its different ones, and these."""
+        name = self.named(name)
         if name not in self._named:
             if self._is_attribute(name) or (self.ends is not None and name == "end"):
                 known: dict[str, int] = {}
@@ -318,6 +322,7 @@ class Lines(Text):
         return found
 
     def _numbers(self, name: str) -> NDArray[Any]:
+        name = self.named(name)
         if self.ends is not None and name == "end":
             return self.ends
         found = None
