@@ -127,12 +127,14 @@ def one_call(random: Random) -> None:
         for j in b.present() if not a.missing[i] else []:
             square = sum(gap * gap for gap in gaps(a.rows[i], b.rows[j]))
             if a.groups[i] == b.groups[j] and (limit is None or square <= limit * limit):
-                squares.append((square, j))
-        near += [(i, j, square) for square, j in sorted(squares)[:k]]
+                apart = -1 if overlap(a.rows[i], b.rows[j], closed, 0) else square  # before what merely touches
+                squares.append((apart, j, square))
+        near += [(i, j, square) for _, j, square in sorted(squares)[:k]]
         if not squares and how == "left":
             near.append((i, -1, None))
     reach = np.timedelta64(limit, "s") if kind == "times" and limit is not None else limit
-    nearest = sap.nearest(a.given, b.given, k, max_distance=reach, how=how, missing="skip", **of_two)  # type: ignore
+    asked = {"max_distance": reach, "how": how, "closed": closed, "missing": "skip", **of_two}
+    nearest = sap.nearest(a.given, b.given, k, **asked)
     assert [tuple(pair) for pair in nearest.pairs.tolist()] == [(i, j) for i, j, _ in near], said
     for distance, (_, j, square) in zip(plain(nearest.distances), near):
         if j == -1:
@@ -367,6 +369,19 @@ def frame(random: np.random.Generator, count: int) -> Any:
     start = random.integers(0, 3000, count)
     chrom = random.choice(["chr1", "chr2", "chrX"], count)
     return pandas.DataFrame({"chrom": chrom, "start": start, "end": start + random.integers(1, 40, count)})
+
+
+def test_what_overlaps_is_nearer_than_what_merely_touches() -> None:
+    pandas = pytest.importorskip("pandas")
+    a, b = [[0, 10], [5, 5]], [[10, 20], [5, 7], [5, 5]]
+    for closed, near in (("both", [[0, 0], [1, 1]]), ("left", [[0, 1], [1, 1]]), ("neither", [[0, 1], [1, 1]])):
+        assert sap.nearest(a, b, closed=closed).pairs.tolist() == near
+    # The empty one overlaps nothing, but its distance is 0.
+    assert sap.nearest(a[:1], b, 3, max_distance=0, closed="right").pairs[:, 1].tolist() == [1, 0, 2]
+    of_pandas = [pandas.IntervalIndex.from_arrays(*zip(*rows), closed="left") for rows in (a[:1], b)]
+    assert sap.nearest(*of_pandas).pairs.tolist() == [[0, 1]]
+    with pytest.raises(ValueError, match="closed must be"):
+        sap.nearest(a, b, closed="half")
 
 
 @pytest.mark.filterwarnings("ignore")  # bioframe's own

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import read_boxes, whole
+from ._arrays import checked_closed, read_boxes, whole
 from ._broad_phase import BroadPhase
 from ._columns import read_column
 from ._native import nearest_of_rows
@@ -256,13 +256,15 @@ def nearest(
     max_distance: float | None = None,
     how: str = "inner",
     format: str = "xyxy",
+    closed: str | None = None,
     missing: str = "raise",
     by: Groups | tuple[Groups, Groups] | None = None,
 ) -> Nearest:
     """Finds for each box of `a` the `k` nearest boxes of `b`.
 
-    The distance of two boxes is the length of the shortest line between them: 0 if they overlap or touch. Of boxes that
-    are equally near, those with smaller indices are taken. For intervals the time is O(n log n + n k + overlapping
+    The distance of two boxes is the length of the shortest line between them: 0 if they overlap or touch. Those that
+    overlap are nearer than those that merely touch, if `closed` says that there is a difference. Of boxes that are
+    equally near, those with smaller indices are taken. For intervals the time is O(n log n + n k + overlapping
     pairs). In two and three dimensions, all boxes within `max_distance` on each axis are looked at.
 
     Args:
@@ -273,12 +275,14 @@ def nearest(
         how: `"inner"`: boxes of `a` without any have no pair. `"left"`: such a box has one pair with -1, whose distance
             is -1 for integers, and otherwise NaN or NaT.
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
+        closed: which ends belong to a box, as in `find_pairs`. By default both: boxes that touch overlap. Otherwise they
+            come after all that overlap, and so do empty boxes, which overlap nothing; their distance is still 0.
         missing: `"raise"` or `"skip"`: a box with a NaN is near nothing.
         by: only boxes with equal values are near each other, as in `find_pairs_between`.
 
     Returns:
-        `pairs, distances`, sorted by the rows of `a`, then by distance and the rows of `b`. Distances of intervals have
-        their type: they are exact for integers and times.
+        `pairs, distances`, sorted by the rows of `a`, then by distance (of those at 0, the ones that overlap are first)
+        and by the rows of `b`. Distances of intervals have their type: they are exact for integers and times.
 
     Raises:
         ValueError: for unknown options.
@@ -289,10 +293,13 @@ def nearest(
     >>> found = sap.nearest(genes, peaks, 2)
     >>> found.pairs.tolist(), found.distances.tolist()
     ([[0, 0], [0, 1], [1, 2], [1, 1]], [2, 34, 0, 5])
+    >>> sap.nearest([[0, 10]], [[10, 20], [5, 7]], closed="left").pairs.tolist()  # the first only touches it
+    [[0, 1]]
     """
     if how not in ("inner", "left"):
         raise ValueError(f'how must be "inner" or "left", not {how!r}')
     k = whole(k, "k", 1, 2**31 - 1)
+    is_closed = checked_closed(closed, a, b)
     corners = plain_corners({"a": a, "b": b}, format)
     half = corners[0].shape[1] // 2
     is_line = half == 1
@@ -311,7 +318,10 @@ def nearest(
     if limit is not None:
         is_near = distances <= limit
         pairs, distances = pairs[is_near], distances[is_near]
-    order = nearest_of_rows(pairs[:, 0], pairs[:, 1], _sort_keys(distances), len(corners[0]), k)
+    keys = _sort_keys(distances)
+    if not is_closed:
+        keys = np.where(_overlap_without_ends(corners, pairs), keys.dtype.type(-1), keys)  # before those that touch
+    order = nearest_of_rows(pairs[:, 0], pairs[:, 1], keys, len(corners[0]), k)
     pairs, distances = pairs[order], distances[order]
     if how == "left":
         alone = np.setdiff1d(np.arange(len(corners[0])), pairs[:, 0])
@@ -455,6 +465,18 @@ def _sort_keys(distances: Values) -> Values:
     if distances.dtype.kind == "O":
         return np.unique(distances, return_inverse=True)[1].reshape(-1)
     return distances.view(np.int64) if distances.dtype.kind == "m" else distances
+
+
+def _overlap_without_ends(corners: list[Values], pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Whether the boxes of each pair overlap, and do not merely touch. Empty boxes overlap nothing."""
+    half = corners[0].shape[1] // 2
+    overlap = np.ones(len(pairs), bool)
+    for axis in range(half):
+        (low_a, high_a), (low_b, high_b) = (
+            (boxes[:, axis][rows], boxes[:, axis + half][rows]) for boxes, rows in zip(corners, pairs.T)
+        )
+        overlap &= np.asarray(np.maximum(low_a, low_b) < np.minimum(high_a, high_b), bool)
+    return overlap
 
 
 def _translated(prepared: Prepared, rows_of_a: Any, rows_of_b: Any) -> NDArray[np.int64]:
