@@ -115,7 +115,9 @@ def test_misuse_is_refused() -> None:
         ((left, right, "outer"), {}, ValueError, "how must be"),
         ((left, right, "inner", "near"), {}, ValueError, "predicate must be one of"),
         ((left, right, "inner", "within"), {}, ValueError, "needs geometries"),
-        ((left, right), {"by": "gene"}, ValueError, "by names 'gene', which is not a column of left"),
+        ((left, right), {"by": "gene"}, ValueError, "by is 'gene', but the columns of left are"),
+        ((left, right), {"by": ("name", "name")}, ValueError, "left_by and right_by"),
+        ((left, right), {"by": (left["name"], right["name"])}, ValueError, "left_by and right_by"),
         ((left, right), {"distance": -1}, ValueError, "margin"),
         ((left, right), {"lsuffix": "", "rsuffix": ""}, ValueError, "lsuffix and rsuffix are empty"),
         ((left.assign(index_right=1), right), {}, ValueError, "'index_right' cannot be a column"),
@@ -123,6 +125,47 @@ def test_misuse_is_refused() -> None:
     ):
         with pytest.raises(error, match=message):
             sap.join(*arguments, **options)
+
+
+def test_two_columns_of_one_name_are_refused() -> None:
+    polars = pytest.importorskip("polars")
+    left, right = intervals(5, 1), intervals(4, 2)
+    for kind in (lambda frame: frame, polars.from_pandas):
+        for sides, suffixes in (
+            ((left.assign(start_left=1), right), {}),
+            ((left, right.assign(start_left=1)), {}),
+            ((left, right), {"lsuffix": "left", "rsuffix": "left"}),
+        ):
+            with pytest.raises(
+                ValueError, match=r"two columns .(start|index_left)_left., one of which is .(start|index_left). of left"
+            ):
+                sap.join(*map(kind, sides), **suffixes)
+        assert "start_left" in sap.join(kind(left.assign(start_left=1)), kind(right), lsuffix="of_left").columns
+
+
+def test_the_libraries_of_two_frames_are_named() -> None:
+    polars = pytest.importorskip("polars")
+    left = intervals(5, 1)
+    with pytest.raises(TypeError, match="not a DataFrame of pandas and a DataFrame of polars"):
+        sap.join(left, polars.from_pandas(left))
+
+
+def test_names_of_columns_may_be_numbers() -> None:
+    left, right = (intervals(9, seed).assign(name=["a", "b", "b"] * 3) for seed in (1, 2))
+    wanted = sap.join(left, right, by="name")
+    names = list(left.columns)
+    numbered = [frame.set_axis(range(len(names)), axis=1) for frame in (left, right)]
+    at = [names.index("start"), names.index("end")]
+    for by in (names.index("name"), [names.index("name")], np.int64(names.index("name"))):
+        found = sap.join(*numbered, by=by, left_columns=at, right_columns=at)
+        assert found.to_numpy().tolist() == wanted.to_numpy().tolist()
+    boxes = left[["start", "end"]]
+    known = boxes.assign(**{"7": 1}).set_axis(["start", "end", 7], axis=1)
+    assert sap.find_pairs(known, by=7).tolist() == sap.find_pairs(boxes).tolist()
+    assert sap.count_pairs_between(known, known, by=7) == sap.count_pairs_between(boxes, boxes)
+    for call in (lambda: sap.find_pairs(known, by=8), lambda: sap.find_pairs(known, by="7")):
+        with pytest.raises(ValueError, match="but the columns of boxes are start, end, 7"):
+            call()
 
 
 def shapes(count: int, seed: int) -> Any:
@@ -307,7 +350,7 @@ def test_geometries_are_checked() -> None:
     ):
         with pytest.raises(ValueError, match=message):
             sap.join(left, right, **options)
-    with pytest.raises(TypeError, match="GeoDataFrame and DataFrame"):
+    with pytest.raises(TypeError, match="a GeoDataFrame of geopandas and a DataFrame of pandas"):
         sap.join(left, pandas.DataFrame(right))
 
 

@@ -128,20 +128,26 @@ def _is_pair_of_arrays(values: Any) -> bool:
 
 
 def _column_names(values: Any) -> list[str] | None:
-    """The names of the columns of a data frame or a table; None for anything else."""
+    """The names of the columns that may have boxes, of a data frame or a table; None for anything else."""
     if hasattr(type(values), "total_bounds") and hasattr(type(values), "bounds"):  # GeoSeries, GeoDataFrame
         return ["minx", "miny", "maxx", "maxy"]
+    labels = _labels(values)
+    return None if labels is None else [*map(str, labels)]
+
+
+def _labels(values: Any) -> list[Any] | None:
+    """The names of the columns of a data frame or a table, in pandas of any type; None for anything else."""
     if isinstance(values, np.ndarray):
         return None if values.dtype.names is None else list(values.dtype.names)
     if isinstance(values, dict):
-        return [*map(str, values)]
+        return list(values)
     if isinstance(values, (list, tuple)):
         return None
     for attribute in ("column_names", "columns"):  # pyarrow; pandas, polars
         names = getattr(values, attribute, None)
         if names is not None and not callable(names) and hasattr(values, "__getitem__"):
             try:
-                return [str(column) for column in names]
+                return list(names)
             except TypeError:
                 return None
     return None
@@ -149,18 +155,12 @@ def _column_names(values: Any) -> list[str] | None:
 
 def has_columns(values: Any) -> bool:
     """Whether it is a data frame, a table, a dict or a structured array, whose columns have names."""
-    return bool(_own_columns(values))
+    return bool(_labels(values))
 
 
-def _own_columns(values: Any) -> list[str]:
-    if hasattr(type(values), "total_bounds"):  # the columns of a GeoDataFrame, not those of its bounds
-        return [*map(str, getattr(values, "columns", ()))]
-    return _column_names(values) or []
-
-
-def named_column(values: Any, column: str, name: str) -> Column:
+def named_column(values: Any, column: Any, name: str) -> Column:
     """A column of a data frame, a table, a dict or a structured array, which `by` names."""
-    columns = _own_columns(values)
+    columns = _labels(values) or []
     if columns.count(column) != 1:
         fault = f"{name} has several columns of that name: rename or drop one" if column in columns else ""
         raise ValueError(f"by is {column!r}, but {fault or listed(columns, name)}")

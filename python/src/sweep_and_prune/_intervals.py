@@ -61,7 +61,7 @@ def cluster(
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`.
         closed: which ends belong to an interval. By default both: intervals that touch are connected.
         missing: `"raise"` or `"skip"`: an interval with a NaN is in no cluster.
-        by: only intervals with equal values are connected.
+        by: only intervals with equal values are connected, as in `find_pairs`.
         margin: intervals within this distance are connected, too.
 
     Returns:
@@ -159,7 +159,7 @@ def merge(
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`; the result has corners.
         closed: which ends belong to an interval. By default both: intervals that touch are merged.
         missing: `"raise"` or `"skip"`: an interval with a NaN is left out.
-        by: only intervals with equal values are merged.
+        by: only intervals with equal values are merged, as in `find_pairs`.
         margin: intervals within this distance are merged, too.
 
     Returns:
@@ -275,8 +275,8 @@ def nearest(
         how: `"inner"`: boxes of `a` without any have no pair. `"left"`: such a box has one pair with -1, whose distance
             is -1 for integers, and otherwise NaN or NaT.
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
-        closed: which ends belong to a box, as in `find_pairs`. By default both: boxes that touch overlap. Otherwise they
-            come after all that overlap, and so do empty boxes, which overlap nothing; their distance is still 0.
+        closed: which ends belong to a box, as in `find_pairs`. By default both: boxes that touch overlap. Otherwise
+            they come after all that overlap, and so do empty boxes, which overlap nothing; their distance is still 0.
         missing: `"raise"` or `"skip"`: a box with a NaN is near nothing.
         by: only boxes with equal values are near each other, as in `find_pairs_between`.
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from collections import Counter
+from collections.abc import Callable, Hashable, Sequence
+from typing import Any, NamedTuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -43,6 +44,8 @@ _BLOCK = 20_000
 _MOST_TURNS = 100
 """With `wrap`, geometries are moved by at most this many turns of the circle."""
 
+Names = Union[Hashable, Sequence[Hashable]]
+"""The name of a column, or a list of names. (Those of pandas may be of any type.)"""
 Indices = NDArray[np.int64]
 Groups = NDArray[np.float64]
 
@@ -54,12 +57,12 @@ def join(
     predicate: str = "intersects",
     *,
     distance: ArrayLike | None = None,
-    by: str | list[str] | None = None,
-    on_attribute: str | list[str] | None = None,
-    left_by: str | list[str] | None = None,
-    right_by: str | list[str] | None = None,
-    left_columns: list[str] | None = None,
-    right_columns: list[str] | None = None,
+    by: Names | None = None,
+    on_attribute: Names | None = None,
+    left_by: Names | None = None,
+    right_by: Names | None = None,
+    left_columns: Sequence[Hashable] | None = None,
+    right_columns: Sequence[Hashable] | None = None,
     fraction: float | tuple[float, float] | None = None,
     measures: list[str] | None = None,
     wrap: float | None = None,
@@ -91,12 +94,15 @@ def join(
         predicate: `predicate(left, right)` of shapely: `"intersects"`, `"contains"`, `"within"`, `"covers"`,
             `"covered_by"`, `"contains_properly"`, `"crosses"`, `"overlaps"`, `"touches"` or `"dwithin"`. Boxes
             without geometries know only `"intersects"`.
-        distance: with `"dwithin"`: the largest distance, in the units of the coordinates; a number, or one for each
-            left row. With boxes it is the `margin` of `find_pairs_between`.
-        by: names of columns that both frames have: only rows with equal values match, and the result has these
-            columns once. A missing value equals none.
+        distance: of geometries, with `"dwithin"` and only then: the largest distance, in the units of the coordinates;
+            a number, or one for each left row. Of boxes without geometries it is the `margin` of `find_pairs_between`,
+            on each axis, and goes with `"intersects"`.
+        by: the name of a column that both frames have, or a list of names: only rows with equal values match, and the
+            result has these columns once. A missing value equals none. A tuple, which is one for each set in
+            `find_pairs_between`, is refused: pass `left_by` and `right_by`.
         on_attribute: what `geopandas.sjoin` calls `by`.
-        left_by: with `right_by`, names of columns of the left frame; the result has the columns of both.
+        left_by: with `right_by`, the name or a list of names of columns of the left frame; the result has the columns
+            of both.
         right_by: names of as many columns of the right frame, which must be equal to those.
         left_columns: of boxes without geometries: the columns of the left boxes, min corner and then max corner. By
             default, those with known names.
@@ -144,7 +150,7 @@ def join(
             if way:
                 kind = type(frame).__name__
                 raise TypeError(f"{name} is a {kind}, which has no rows yet: pass what its {way}() returns")
-        kinds = " and ".join(type(frame).__name__ for frame in (left, right))
+        kinds = " and ".join(map(_kind, (left, right)))
         raise TypeError(f"left and right must be two DataFrames of pandas or polars or two GeoDataFrames, not {kinds}")
     if how not in ("inner", "left", "right", "semi", "anti"):
         raise ValueError(f'how must be "inner", "left", "right", "semi" or "anti", not {how!r}')
@@ -155,6 +161,11 @@ def join(
             raise TypeError(f"{name} must be a string, not {suffix!r}")
     if by is not None and on_attribute is not None:
         raise ValueError("by and on_attribute are the same: pass one of them")
+    if isinstance(by, tuple):  # one for each set elsewhere, but a list in geopandas, and so in `on_attribute`
+        raise ValueError(
+            "by must be a name or a list of names of columns that both frames have, not a tuple: "
+            "pass a column of each frame as left_by and right_by"
+        )
     columns = _listed_names(on_attribute if by is None else by)
     of_sides = [_listed_names(left_by), _listed_names(right_by)]
     if len(of_sides[0]) != len(of_sides[1]):
@@ -237,8 +248,10 @@ def _chosen(frame: Any, names: Any, name: str, format: str) -> Raw:
     return chosen_boxes(frame.__getitem__, names, name, format)
 
 
-def _listed_names(names: str | list[str] | None) -> list[str]:
-    return [] if names is None else [names] if isinstance(names, str) else list(names)
+def _listed_names(names: Any) -> list[Any]:
+    """The names in a list, or a single one."""
+    is_one = isinstance(names, str) or not hasattr(names, "__iter__")
+    return [] if names is None else [names] if is_one else list(names)
 
 
 def _two_fractions(fraction: Any) -> tuple[float, float]:
@@ -280,6 +293,14 @@ def _with_measures(joined: Any, names: list[str], rows: list[Indices], measured:
     return joined
 
 
+def _kind(frame: Any) -> str:
+    """What a frame is, in words: data frames of several libraries have the same name."""
+    kind = type(frame)
+    return (
+        f"a {kind.__name__} of {kind.__module__.split('.')[0]}" if hasattr(frame, "columns") else f"a {kind.__name__}"
+    )
+
+
 def _is_polars(frame: Any) -> bool:
     """Whether it is a `DataFrame` of polars, and not a lazy one."""
     return type(frame).__module__.split(".")[0] == "polars" and hasattr(frame, "height")
@@ -295,15 +316,11 @@ def _check_distance(predicate: str, distance: ArrayLike | None) -> None:
         raise ValueError('distance must be passed with predicate="dwithin", and only with it')
 
 
-def _groups(left: Any, right: Any, of_left: list[str], of_right: list[str]) -> tuple[Groups, Groups] | None:
+def _groups(left: Any, right: Any, of_left: list[Any], of_right: list[Any]) -> tuple[Groups, Groups] | None:
     """A number for the values of each row in some columns."""
     if not of_left:
         return None
     named = ("left", left, of_left), ("right", right, of_right)
-    for name, frame, columns in named:
-        absent = [column for column in columns if column not in frame.columns]
-        if absent:
-            raise ValueError(f"by names {absent[0]!r}, which is not a column of {name}")
     sides = [[named_column(frame, column, name) for column in columns] for name, frame, columns in named]
     left_codes, right_codes = group_codes(sides, ["left", "right"])
     # A row whose value is missing matches none.
@@ -611,6 +628,7 @@ def _frame(left: Any, right: Any, rows: list[Indices], how: str, columns: list[s
             for label in labels[side]
         ]
 
+    _refuse_doubled(labels, [renamed(0), renamed(1)])
     index, depth = frames[kept].index, len(indices[kept])
     frames[other] = frames[other].reset_index(names=indices[other])
     taken = []
@@ -643,12 +661,28 @@ def _frame_of_polars(
     common = set(frames[0].columns) & set(frames[1].columns)
     if common and not any(suffixes):
         raise ValueError(f"lsuffix and rsuffix are empty, but both frames have columns {sorted(common)}")
+    renamed = [
+        {name: f"{name}_{suffix}" if suffix and name in common else name for name in frame.columns}
+        for frame, suffix in zip(frames, suffixes)
+    ]
+    _refuse_doubled([frame.columns for frame in frames], [list(names.values()) for names in renamed])
     taken = []
-    for frame, of_frame, suffix in zip(frames, rows, suffixes):
+    for frame, of_frame, names in zip(frames, rows, renamed):
         at = polars.Series(of_frame).set(polars.Series(of_frame < 0), None)
-        names = {name: f"{name}_{suffix}" if suffix else name for name in frame.columns if name in common}
         taken.append(frame.select(polars.all().gather(at)).rename(names))
     return polars.DataFrame([column for frame in taken for column in frame.get_columns()])
+
+
+def _refuse_doubled(names: list[list[Any]], renamed: list[list[Any]]) -> None:
+    """Refuses a name with a suffix that another column of the result has."""
+    counts = Counter([*renamed[0], *renamed[1]])
+    for side, suffix, old_names, new_names in zip(("left", "right"), ("lsuffix", "rsuffix"), names, renamed):
+        for old, new in zip(old_names, new_names):
+            if old != new and counts[new] > 1:
+                raise ValueError(
+                    f"the result would have two columns {new!r}, one of which is {old!r} of {side} with its suffix: "
+                    f"rename one, or pass another {suffix}"
+                )
 
 
 def with_missing(rows: list[Indices], kept: int | bool, count: int) -> list[Indices]:

@@ -58,7 +58,7 @@ def count_overlaps(
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`: a box with a NaN overlaps nothing.
-        by: only boxes with equal values count, as in `find_pairs` and `find_pairs_between`.
+        by: only boxes with equal values count, as in `find_pairs_between`; without `b`, as in `find_pairs`.
         margin: counts boxes within this distance on each axis, too.
         wrap: the length of axis 0 if it is a circle, as in `find_pairs`.
 
@@ -179,6 +179,7 @@ def measure_overlaps(
     sets: dict[str, Any] = {"boxes": a} if b is None else {"a": a, "b": b}
     corners = plain_corners(sets, format)
     rows = np.asarray(pairs)
+    rows = rows.reshape(0, 2) if rows.shape == (0,) else rows
     if rows.ndim != 2 or rows.shape[1] != 2 or (rows.dtype.kind not in "iu" and rows.size):
         raise ValueError(f"pairs must be (m, 2) indices of rows, not of shape {rows.shape} and dtype {rows.dtype}")
     rows = rows.astype(np.int64)

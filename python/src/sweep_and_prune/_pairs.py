@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ._arrays import Floats, Pairs, box_rows, float_dtype, index_dtype, thread_count, whole
 from ._native import Finder
-from ._prepare import Prepared, is_zero, prepare
+from ._prepare import NAME, Prepared, is_zero, prepare
 
 Margin = Union[ArrayLike, timedelta]
 """A distance: a number, one for each axis, or a `timedelta`."""
@@ -64,7 +64,8 @@ def find_pairs(
             series of intervals; tensors.
         threads: how many to use at most, from 4,096 boxes on; -1 for one on each processor.
         dtype: the type of the indices: `int64`, `int32`, `uint32` or `uint64`.
-        format: `"xyxy"`: min corner, max corner. `"xywh"`: min corner, size. `"cxcywh"`: center, size.
+        format: `"xyxy"`: min corner, max corner. `"xywh"`: min corner, size. `"cxcywh"`: center, size. (Six columns of an
+            array are boxes in space in each: if two of them are a score and a class, slice them off first.)
         closed: which ends belong to a box: `"both"` (the default: touching boxes overlap), `"left"`, `"right"` or
             `"neither"` (touching boxes do not overlap, and empty boxes overlap nothing). By default, an
             `IntervalIndex` decides.
@@ -132,7 +133,8 @@ def find_pairs_between(
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
         by: only boxes with equal values pair: a pair of arrays, `(n,)` and `(k,)`; or of data frames the name of a
-            column of both, or a list of names, or a pair of these. A box whose value is missing pairs with none.
+            column of both, or a list of names, or a pair of these. A tuple is always a pair: `("x", "y")` compares
+            column x of `a` with column y of `b`. A box whose value is missing pairs with none.
         margin: finds boxes within this distance on each axis, too.
         wrap: the length of axis 0 if it is a circle, as in `find_pairs`.
         progress: called with the share of the work that is done, from 0 to 1.
@@ -178,7 +180,7 @@ def count_pairs(
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
-        by: `(n,)` values, or the name of a column: only boxes with equal values pair.
+        by: `(n,)` values, or columns, as in `find_pairs`: only boxes with equal values pair.
         margin: counts boxes within this distance on each axis, too.
         wrap: the length of axis 0 if it is a circle, as in `find_pairs`.
         progress: called with the share of the work that is done, from 0 to 1.
@@ -217,7 +219,7 @@ def count_pairs_between(
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
-        by: a pair of arrays, or the name of a column: only boxes with equal values pair.
+        by: a pair of arrays, or columns of both, as in `find_pairs_between`: only boxes with equal values pair.
         margin: counts boxes within this distance on each axis, too.
         wrap: the length of axis 0 if it is a circle, as in `find_pairs`.
         progress: called with the share of the work that is done, from 0 to 1.
@@ -260,7 +262,7 @@ def for_each_chunk(
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
-        by: `(n,)` values, or the name of a column: only boxes with equal values pair.
+        by: `(n,)` values, or columns, as in `find_pairs`: only boxes with equal values pair.
         margin: finds boxes within this distance on each axis, too.
 
     Returns:
@@ -310,7 +312,7 @@ def for_each_chunk_between(
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
-        by: a pair of arrays, or the name of a column: only boxes with equal values pair.
+        by: a pair of arrays, or columns of both, as in `find_pairs_between`: only boxes with equal values pair.
         margin: finds boxes within this distance on each axis, too.
 
     Returns:
@@ -354,7 +356,7 @@ def iter_chunks(
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
-        by: `(n,)` values, or the name of a column: only boxes with equal values pair.
+        by: `(n,)` values, or columns, as in `find_pairs`: only boxes with equal values pair.
         margin: finds boxes within this distance on each axis, too.
         wrap: the length of axis 0 if it is a circle, as in `find_pairs`.
 
@@ -401,7 +403,7 @@ def iter_chunks_between(
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`, for both sets.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
         missing: `"raise"` or `"skip"`.
-        by: a pair of arrays, or the name of a column: only boxes with equal values pair.
+        by: a pair of arrays, or columns of both, as in `find_pairs_between`: only boxes with equal values pair.
         margin: finds boxes within this distance on each axis, too.
         wrap: the length of axis 0 if it is a circle, as in `find_pairs`.
 
@@ -771,7 +773,7 @@ def two_sets(
     wrap: float | None = None,
     fold: bool = False,
 ) -> Prepared:
-    if isinstance(by, str) or (isinstance(by, list) and by and all(type(one) is str for one in by)):
+    if isinstance(by, NAME) or (isinstance(by, list) and by and all(type(one) is str for one in by)):
         by = (by, by)  # columns of both
     if by is not None and not (isinstance(by, (tuple, list)) and len(by) == 2):
         raise ValueError(

@@ -38,6 +38,9 @@ from ._wrap import (
     without_crossings,
 )
 
+NAME = (str, int, np.integer)
+"""The types of what `by` may name a column with. (Those of a table without a header have numbers in pandas.)"""
+
 _BLOCK = 2**18
 """How many pairs are translated at once: a second array of all of them would take as much memory as the result."""
 
@@ -490,7 +493,7 @@ def _groups(by: list[Any], sets: dict[str, Any], counts: list[int]) -> list[NDAr
 
 def _group_columns(by: Any, boxes: Any, name: str) -> list[Column]:
     """The columns that make the groups of a set: those that are named, or values for each box."""
-    if isinstance(by, str):
+    if isinstance(by, NAME):
         return [named_column(boxes, by, name)]
     if isinstance(by, list) and by and all(isinstance(one, Column) for one in by):
         return by  # those of a file, which have been read already
