@@ -259,7 +259,7 @@ def test_what_is_wrong_with_the_arguments_is_said(capsys: pytest.CaptureFixture[
     assert "a.csv has no column 'q'; its columns are xmin" in refused(capsys, "pairs", "a.csv", "--by", "q")
     assert "a.csv has no column 'q'" in refused(capsys, "pairs", "a.csv", "--columns", "xmin,q")
     assert "margin is -1.0" in refused(capsys, "count", "a.npy", "--margin", "-1")
-    assert "threads must be from" in refused(capsys, "count", "a.npy", "--threads", "0")
+    assert "threads must be -1 or from" in refused(capsys, "count", "a.npy", "--threads", "0")
     assert "has an unknown ending" in refused(capsys, "pairs", "a.npy", "-o", "pairs.xyz")
     assert "cannot be written" in refused(capsys, "pairs", "a.npy", "-o", "no/such/folder.csv")
     Path("r.bed").write_text("chr1\t0\t10\n")

@@ -114,6 +114,104 @@ def test_columns_of_other_dimensions_and_formats() -> None:
         sap.find_pairs(sized)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize(
+    ("names", "others", "format"),
+    [
+        ("x1 y1 x2 y2", "start end", "xyxy"),
+        ("minx miny maxx maxy", "xmin ymin xmax ymax", "xyxy"),
+        ("x1 y1 x2 y2", "x0 y0 x1 y1", "xyxy"),
+        ("x1 x2", "start end", "xyxy"),
+        ("minx miny minz maxx maxy maxz", "left top right bottom", "xyxy"),
+        ("x y w h", "left top width height", "xywh"),
+        ("start end", "bbox", "xyxy"),
+    ],
+)
+def test_two_sets_of_known_columns_are_refused(names: str, others: str, format: str) -> None:
+    frame: Any = {name: [0] for name in f"score {names} {others}".split()}
+    said = f"the columns {', '.join(names.split())} and {', '.join(others.split())} are all known as boxes"
+    with pytest.raises(ValueError, match=said):
+        sap.find_pairs(frame, format=format)
+    one: Any = {name: frame[name] for name in names.split()}
+    assert sap.count_pairs(one, format=format) == 0
+
+
+def test_one_set_of_known_columns_is_found_beside_similar_ones() -> None:
+    x, y, width, height = np.hstack([BOXES[:, :2], BOXES[:, 2:] - BOXES[:, :2]]).T
+    of_image: Any = dict(x=x, y=y, w=width, h=height, width=np.zeros(60), height=np.zeros(60))
+    assert same(sap.find_pairs(of_image, format="xywh"))
+    of_mot: Any = dict(frame=x, bb_left=x, bb_top=y, bb_width=width, bb_height=height)
+    assert same(sap.find_pairs(of_mot, format="xywh"))
+    of_yolo: Any = dict(x_center=x + width / 2, y_center=y + height / 2, width=width, height=height, x=x, y=y)
+    assert same(sap.find_pairs(of_yolo, format="cxcywh"))
+
+
+def test_columns_of_lists() -> None:
+    arrow, pandas = pytest.importorskip("pyarrow"), pytest.importorskip("pandas")
+    polars = pytest.importorskip("polars")
+    rows: Any = BOXES.tolist()
+    gaps: Any = [None if index == 3 else row for index, row in enumerate(rows)]
+    for gaps_too in (False, True):
+        given, wanted = (gaps, PAIRS[(PAIRS != 3).all(axis=1)]) if gaps_too else (rows, PAIRS)
+        for column in (
+            pandas.Series(given),
+            polars.Series(given, dtype=polars.List(polars.Float64)),
+            arrow.array(given),
+            arrow.array([[], *given], arrow.large_list(arrow.float64()))[1:],
+            arrow.chunked_array([given[:20], given[20:]]),
+        ):
+            assert same(sap.find_pairs(column, missing="skip"), wanted)
+        of_library = pandas.DataFrame, polars.DataFrame, arrow.table, lambda frame: frame
+        for make in of_library if not gaps_too else of_library[:3]:
+            assert same(sap.find_pairs(make({"n": list(range(60)), "bbox": given}), missing="skip"), wanted)
+    for uneven in (arrow.array([[0, 0, 1, 1], None, [0, 1]]), np.array([[0, 0, 1, 1], None, [0, 1]], object)):
+        with pytest.raises(ValueError, match=r"boxes\[2\] has 2 values, but boxes\[0\] has 4"):
+            sap.find_pairs(uneven)
+
+
+def test_lists_with_missing_numbers() -> None:
+    rows: Any = [[0, 0, 1, None], [0, 0, 1, 1], [2**53 + 1, 0, 2**53 + 2, 1], [1, 1, 2, 2]]
+    assert sap.find_pairs(rows, missing="skip").tolist() == [[1, 3]]
+    with pytest.raises(sap.InvalidBoxError, match=r"boxes\[0\] has a NaN on axis 1"):
+        sap.find_pairs(rows)
+
+
+def test_what_is_nearly_boxes_is_refused_with_a_way_out() -> None:
+    dicts: Any = [{"x1": 0}]
+    sized: Any = dict(x=[0], y=[0], w=[1], h=[1])
+    call: Any
+    for call, message in (
+        (lambda: sap.find_pairs(dicts), r"list of dicts: pass .* pandas\.DataFrame\(boxes\)"),
+        (lambda: sap.find_pairs([[0, 0, 1, 1], [0, 0, 1]]), r"boxes\[1\] has 3 values, but boxes\[0\] has 4"),
+        (lambda: sap.find_pairs([[0, 1]] * 3, by=[[1, 1, 1], [2, 2, 2]]), r"list\(zip\(key, other_key\)\)"),
+        (lambda: sap.find_pairs([[0, 1]] * 3, by=np.zeros((2, 3))), r"list\(zip\(key, other_key\)\)"),
+        (lambda: sap.find_pairs([[0, 1]], threads=-2), "threads must be -1 or from 1 to 1024, not -2"),
+        (lambda: sap.BroadPhase(2).insert_many(sized), "y, w, h; pass min and max corners"),
+        (lambda: sap.PairFinder(2).find(sized), "y, w, h; pass min and max corners"),
+    ):
+        with pytest.raises((TypeError, ValueError), match=message):
+            call()
+    assert sap.find_pairs([[0, 1]] * 3, by=list(zip([1, 1, 1], [2, 2, 3]))).tolist() == [[0, 1]]
+    assert sap.find_pairs([[0, 1]] * 2, threads=np.int64(-1)).tolist() == [[0, 1]]  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("dtype", [np.int64, np.float32, np.float64])
+@pytest.mark.parametrize("format", ["xywh", "cxcywh"])
+def test_a_negative_size_is_refused_even_on_a_circle(dtype: Any, format: str) -> None:
+    boxes = np.array([[0, 0, 1, 1], [5, 5, 1, -3]], dtype)
+    options: Any
+    for options in ({}, {"wrap": 360}, {"missing": "skip"}, {"closed": "left"}):
+        with pytest.raises(sap.InvalidBoxError, match=r"^boxes\[1\] has the size -3 on axis 1; it must be 0 or more$"):
+            sap.find_pairs(boxes, format=format, **options)
+    around = [[0, 1], [5, -3]]
+    for call in (
+        lambda: sap.find_pairs(around, format=format, wrap=360),
+        lambda: sap.measure_overlaps(around, None, [[0, 1]], format=format, wrap=360),
+        lambda: sap.merge(around, format=format),
+    ):
+        with pytest.raises(sap.InvalidBoxError, match=r"\[1\] has the size -3 on axis 0; it must be 0 or more"):
+            call()
+
+
 def test_missing_boxes_are_refused_or_left_out() -> None:
     boxes = BOXES.copy()
     boxes[[3, 40], [0, 3]] = np.nan

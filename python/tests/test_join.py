@@ -131,6 +131,8 @@ def test_two_columns_of_one_name_are_refused() -> None:
     polars = pytest.importorskip("polars")
     left, right = intervals(5, 1), intervals(4, 2)
     for kind in (lambda frame: frame, polars.from_pandas):
+        sides: Any
+        suffixes: Any
         for sides, suffixes in (
             ((left.assign(start_left=1), right), {}),
             ((left, right.assign(start_left=1)), {}),
@@ -160,9 +162,10 @@ def test_names_of_columns_may_be_numbers() -> None:
         found = sap.join(*numbered, by=by, left_columns=at, right_columns=at)
         assert found.to_numpy().tolist() == wanted.to_numpy().tolist()
     boxes = left[["start", "end"]]
-    known = boxes.assign(**{"7": 1}).set_axis(["start", "end", 7], axis=1)
+    known = pandas.concat([boxes, pandas.Series(1, boxes.index, name=7)], axis=1)
     assert sap.find_pairs(known, by=7).tolist() == sap.find_pairs(boxes).tolist()
     assert sap.count_pairs_between(known, known, by=7) == sap.count_pairs_between(boxes, boxes)
+    call: Any
     for call in (lambda: sap.find_pairs(known, by=8), lambda: sap.find_pairs(known, by="7")):
         with pytest.raises(ValueError, match="but the columns of boxes are start, end, 7"):
             call()

@@ -252,7 +252,7 @@ def test_on_attribute_is_by() -> None:
         sap.join(frame, frame, left_by="kind")
     for columns, said in ((["start", "q"], "left has no such column; its columns are start, end, kind"), ("start", "")):
         with pytest.raises((ValueError, TypeError), match=f"left_columns .*{said}"):
-            sap.join(frame, frame, left_columns=columns)  # type: ignore[arg-type]
+            sap.join(frame, frame, left_columns=columns)
     with pytest.raises(ValueError, match='how="anti" returns rows of the left frame, not pairs: leave out measures'):
         sap.join(frame, frame, "anti", measures=["size"])
     for fraction in (-1, 2, (0.5, 0.5, 0.5), float("nan")):
@@ -439,6 +439,11 @@ def test_intervals_that_are_no_boxes_are_refused_by_name(bad: list[float], by: s
             between(good, [*good, bad], **second)
         with pytest.raises(sap.InvalidBoxError, match=r"^a\[2\] "):
             between([*good, bad], np.empty((0, 2)), **none)
+
+
+def test_no_pairs_may_be_an_empty_list() -> None:
+    found = sap.measure_overlaps([[0, 1]], None, [])
+    assert [len(part) for part in found] == [0, 0, 0, 0] and found.size.dtype == np.int64
 
 
 def test_an_inverted_box_is_named_and_not_measured() -> None:

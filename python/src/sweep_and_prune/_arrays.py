@@ -63,19 +63,19 @@ def thread_count(threads: object) -> int:
     """How many threads to use at most: -1 is one for each processor, and None is one, as in joblib."""
     if threads is None:
         return 1
-    if type(threads) is int and threads == -1:
+    if isinstance(threads, (int, np.integer)) and threads == -1:
         return _MAX_THREADS  # the compiled part takes no more than there are processors
-    return whole(threads, "threads", 1, _MAX_THREADS)
+    return whole(threads, "threads", 1, _MAX_THREADS, "-1 or ")
 
 
-def whole(value: object, name: str, least: int, most: int) -> int:
-    """A whole number in a range."""
+def whole(value: object, name: str, least: int, most: int, others: str = "") -> int:
+    """A whole number in a range. What else the caller takes is only for the message."""
     try:
         number = operator.index(None if isinstance(value, np.bool_) else value)  # type: ignore[arg-type]
     except TypeError:
         raise TypeError(f"{name} must be a whole number, not {_described(value)}") from None
     if not least <= number <= most:
-        raise ValueError(f"{name} must be from {least} to {most}, not {number}")
+        raise ValueError(f"{name} must be {others}from {least} to {most}, not {number}")
     return number
 
 
@@ -110,10 +110,9 @@ def box_rows(
     name: str,
     dtype: np.dtype[Any] | None = None,
     dimensions: int = 0,
-    format: str = "xyxy",
 ) -> Floats:
-    """Boxes as rows. Their number of dimensions must be `dimensions`, unless that is 0."""
-    array = read_boxes(boxes, name, dimensions, format).array
+    """Corners of boxes as rows. Their number of dimensions must be `dimensions`, unless that is 0."""
+    array = read_boxes(boxes, name, dimensions, None).array
     if array.dtype.kind == "O":  # numbers of Python, which are converted as all others are
         try:
             array = array.astype(np.float64)
@@ -122,8 +121,8 @@ def box_rows(
     return numbers(array, name, dtype)
 
 
-def read_boxes(boxes: ArrayLike, name: str, dimensions: int = 0, format: str = "xyxy") -> Raw:
-    """Boxes as rows, in the type in which they were passed."""
+def read_boxes(boxes: ArrayLike, name: str, dimensions: int = 0, format: str | None = "xyxy") -> Raw:
+    """Boxes as rows, in the type in which they were passed. With the format None, these are corners."""
     raw = raw_boxes(boxes, name, format)
     array = raw.array
     if array.ndim == 1 and array.size == 0:

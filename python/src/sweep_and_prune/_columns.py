@@ -119,8 +119,20 @@ def as_array(values: Any, name: str) -> NDArray[Any]:
         with warnings.catch_warnings():
             warnings.simplefilter("error")  # NumPy up to 1.23 only warns of rows of different lengths
             return np.asarray(values)
-    except Warning as warning:
-        raise ValueError(f"{name} must be an array: {warning}") from None
+    except (Warning, ValueError) as error:
+        if isinstance(values, (list, tuple)):
+            _refuse_unequal(values, name)
+        if isinstance(error, Warning):
+            raise ValueError(f"{name} must be an array: {error}") from None
+        raise
+
+
+def _refuse_unequal(rows: Sequence[Any], name: str) -> None:
+    """Refuses the first row whose length is not that of the first one."""
+    sizes = [f"{len(row)} values" if hasattr(row, "__len__") else "one value" for row in rows]
+    for index, size in enumerate(sizes):
+        if size != sizes[0]:
+            raise ValueError(f"{name}[{index}] has {size}, but {name}[0] has {sizes[0]}")
 
 
 def exact_numbers(values: Any, array: NDArray[Any]) -> NDArray[Any]:
@@ -130,9 +142,12 @@ def exact_numbers(values: Any, array: NDArray[Any]) -> NDArray[Any]:
     if array.dtype.kind == "O" or (is_double and bool((np.abs(array) >= EXACT).any())):
         objects = np.array(values, object)
         items = objects.ravel().tolist()
-        if all(issubclass(one, (int, float, np.integer, np.floating)) for one in set(map(type, items)) - {bool}):
+        types = set(map(type, items))
+        has_missing, numbers = type(None) in types, types - {bool, type(None)}
+        are_numbers = all(issubclass(one, (int, float, np.integer, np.floating)) for one in numbers)
+        if are_numbers and (numbers or not has_missing):
             exact = _with_nan(_of_objects(items))
-            return exact.reshape(objects.shape) if exact.dtype.kind in "iuO" else array
+            return exact.reshape(objects.shape) if exact.dtype.kind in "iuO" or has_missing else array
     return array
 
 

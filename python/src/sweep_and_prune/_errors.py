@@ -41,6 +41,8 @@ class InvalidBoxError(SweepAndPruneError, ValueError):
     """The min of the box on this axis, in the precision in which boxes are compared."""
     maximum: float
     """The max of the box on this axis."""
+    is_size: bool
+    """Whether the box was passed with a size, which is negative, and not with a max corner."""
 
     def __init__(
         self,
@@ -49,11 +51,12 @@ class InvalidBoxError(SweepAndPruneError, ValueError):
         argument: str = "boxes",
         minimum: float = math.nan,
         maximum: float = math.nan,
+        is_size: bool = False,
     ) -> None:
         """Creates the error for the box at `index`."""
-        super().__init__(index, axis, argument, minimum, maximum)
+        super().__init__(index, axis, argument, minimum, maximum, is_size)
         self.index, self.axis, self.argument = index, axis, argument
-        self.minimum, self.maximum = minimum, maximum
+        self.minimum, self.maximum, self.is_size = minimum, maximum, is_size
 
     def __str__(self) -> str:
         """Names the box, its values and what to do."""
@@ -61,6 +64,10 @@ class InvalidBoxError(SweepAndPruneError, ValueError):
         if self.minimum != self.minimum or self.maximum != self.maximum:  # NaN, or NaT
             values = f"min {_shown(self.minimum)}, max {_shown(self.maximum)}"
             return f"{box} has a NaN on axis {self.axis} ({values}): remove it or replace it"
+        if self.is_size:
+            size = _shown(self.maximum - self.minimum)
+            said = f"{size:g}" if isinstance(size, float) else size  # a rounded difference
+            return f"{box} has the size {said} on axis {self.axis}; it must be 0 or more"
         low, high = _shown(self.minimum), _shown(self.maximum)
         return (
             f"{box} is inverted on axis {self.axis}: min {low} is greater than max {high}; "
@@ -142,7 +149,8 @@ class SnapshotError(SweepAndPruneError, ValueError):
 
 def _shown(value: float) -> float:
     """A whole number as people write it, without a point: positions on a genome are whole."""
-    return int(value) if isinstance(value, float) and value.is_integer() and abs(value) < 2**53 else value
+    is_whole = hasattr(value, "is_integer") and value.is_integer() and abs(value) < 2**53
+    return int(value) if is_whole else value
 
 
 def _place(argument: str, index: int) -> str:

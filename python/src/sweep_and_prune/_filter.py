@@ -7,7 +7,18 @@ from typing import NamedTuple
 from ._arrays import whole
 
 
-class Filter(NamedTuple):
+class _Fields(NamedTuple):
+    category: int = 1
+    """What the body is: 32 bits."""
+    mask: int = 0xFFFF_FFFF
+    """The categories that it pairs with: 32 bits. `~2` is all but the second."""
+    group: int = 0
+    """0, or a 32-bit number. Between two bodies of the same group it overrides category and mask."""
+    is_static: bool = False
+    """Whether it is a static body: two static bodies never pair."""
+
+
+class Filter(_Fields):
     """Decides which bodies may pair.
 
     Two bodies pair if their boxes overlap and
@@ -26,14 +37,13 @@ class Filter(NamedTuple):
     (True, False, False)
     """
 
-    category: int = 1
-    """What the body is: 32 bits."""
-    mask: int = 0xFFFF_FFFF
-    """The categories that it pairs with: 32 bits. `~2` is all but the second."""
-    group: int = 0
-    """0, or a 32-bit number. Between two bodies of the same group it overrides category and mask."""
-    is_static: bool = False
-    """Whether it is a static body: two static bodies never pair."""
+    __slots__ = ()
+
+    def __new__(cls, category: int = 1, mask: int = 0xFFFF_FFFF, group: int = 0, is_static: bool = False) -> Filter:
+        """Creates a filter. Numbers that do not fit in 32 bits are refused here, not where it is used."""
+        filter = super().__new__(cls, category, mask, group, is_static)
+        words(filter)
+        return filter
 
     def allows(self, other: Filter) -> bool:
         """Tells whether two bodies with these filters may pair. Symmetric."""

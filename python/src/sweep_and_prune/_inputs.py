@@ -19,9 +19,9 @@ _INTERVALS += [("starttime", "endtime"), ("startdate", "enddate")]
 _MOST_LISTED = 20
 
 
-def _spellings(format: str) -> list[tuple[list[str], list[str]]]:
+def _spellings(format: str | None) -> list[tuple[list[str], list[str]]]:
     """The names of columns for the first and for the second half of a row, in the order in which they are tried."""
-    if format == "xyxy":
+    if format in (None, "xyxy"):
         found = [
             ([pattern.format(axis) for axis in _AXES], [other.format(axis) for axis in _AXES])
             for pattern, other in (("min{}", "max{}"), ("{}min", "{}max"), ("{}1", "{}2"), ("{}0", "{}1"))
@@ -29,8 +29,11 @@ def _spellings(format: str) -> list[tuple[list[str], list[str]]]:
         found += [(["left", "top"], ["right", "bottom"]), (["west", "south"], ["east", "north"])]
         return [*found, *(([start], [end]) for start, end in _INTERVALS)]
     sizes = (["w", "h", "d"], ["width", "height", "depth"])
-    starts = (["x", "y", "z"], ["left", "top"]) if format == "xywh" else (["cx", "cy", "cz"], ["x", "y", "z"])
-    return [(start, size) for start in starts for size in sizes]
+    if format == "xywh":
+        of_mot = (["bbleft", "bbtop"], ["bbwidth", "bbheight"])
+        return [*((start, size) for start in (["x", "y", "z"], ["left", "top"]) for size in sizes), of_mot]
+    centers = (["cx", "cy", "cz"], ["xcenter", "ycenter", "zcenter"], ["x", "y", "z"])
+    return [(center, size) for center in centers for size in sizes]
 
 
 def checked_format(format: object) -> str:
@@ -56,10 +59,15 @@ class Raw(NamedTuple):
     """Two-dimensional if the form is known; of Python's own numbers if no other type has them exactly."""
     is_zoned: bool = False
     """Whether they are times with a time zone, in UTC here."""
+    are_sized: bool = False
+    """Whether each was a size and a corner or a center: where the max is less than the min, the size is negative."""
 
 
-def raw_boxes(values: Any, name: str, format: str = "xyxy") -> Raw:
-    """Boxes as an array. Forms that are not known are left to the caller."""
+def raw_boxes(values: Any, name: str, format: str | None = "xyxy") -> Raw:
+    """Boxes as an array, in one of the `FORMATS`; None is `"xyxy"` where the user cannot choose another.
+
+    Forms that are not known are left to the caller.
+    """
     if type(values) is np.ndarray and values.dtype.kind in "iuf" and values.ndim == 2 and format == "xyxy":
         return Raw(values)  # the common case, without further questions
     if isinstance(values, Raw):  # columns of a file, which have been read already
@@ -82,6 +90,8 @@ def raw_boxes(values: Any, name: str, format: str = "xyxy") -> Raw:
     nested = _from_arrow(values, name, format)
     if nested is not None:
         return _corners(nested, format, name)
+    if isinstance(values, list) and values and all(isinstance(one, dict) for one in values):
+        raise TypeError(f"{name} is a list of dicts: pass a data frame of them, such as pandas.DataFrame({name})")
     array = as_array(values, name)
     if array.dtype.kind in "OS" and array.ndim == 1 and array.size and isinstance(array[0], bytes):
         raise TypeError(f"{name} is bytes, not numbers: for well-known binary (WKB), pass shapely.from_wkb({name})")
@@ -93,6 +103,8 @@ def raw_boxes(values: Any, name: str, format: str = "xyxy") -> Raw:
     if array.ndim == 0:
         raise TypeError(f"{name} must be an array with a row for each box, not a {type(values).__name__}")
     if array.dtype.kind == "O" and array.ndim == 1:
+        if _are_lists(array):
+            return raw_boxes(_of_one_length(array), name, format)
         array = _from_geometries(array)
     if array.dtype.kind == "O" and not is_exact and (array.ndim > 1 or array.size == 0):
         raise TypeError(f"{name} must be numbers, not of dtype object: convert them to one type of numbers")
@@ -173,8 +185,20 @@ def chosen_boxes(column: Callable[[str], Any], names: Sequence[str], what: str, 
     return _corners(Raw(*side_by_side(read, names, what)), format, what)
 
 
-def _from_arrow(values: Any, name: str, format: str) -> Raw | None:
-    """Boxes of an Arrow array of lists of fixed size or of structs; None for anything else."""
+def _are_lists(array: NDArray[Any]) -> bool:
+    """Whether these are lists, as in a column that has a list for each row. Some may be None."""
+    kinds = set(map(type, array.tolist())) - {type(None)}
+    return bool(kinds) and all(issubclass(kind, (list, tuple, np.ndarray)) for kind in kinds)
+
+
+def _of_one_length(lists: NDArray[Any]) -> list[list[Any]]:
+    """Lists, with as many missing values in place of one that is None."""
+    nothing = [None] * max(len(one) for one in lists if one is not None)
+    return [nothing if one is None else list(one) for one in lists]
+
+
+def _from_arrow(values: Any, name: str, format: str | None) -> Raw | None:
+    """Boxes of an Arrow array of lists or of structs; None for anything else."""
     array = arrow_array(values)
     if array is None:
         return None
@@ -183,6 +207,8 @@ def _from_arrow(values: Any, name: str, format: str) -> Raw | None:
     if pyarrow.types.is_struct(array.type):
         fields = [field.name for field in array.type]
         return _from_columns(dict(zip(fields, array.flatten())), fields, name, format)
+    if pyarrow.types.is_list(array.type) or pyarrow.types.is_large_list(array.type):
+        array = _of_one_size(array, name)
     if not pyarrow.types.is_fixed_size_list(array.type):
         return None
     width = array.type.list_size
@@ -205,26 +231,53 @@ def _from_arrow(values: Any, name: str, format: str) -> Raw | None:
     return Raw(*side_by_side([part._replace(is_zoned=column.is_zoned) for part in parts], names, name))
 
 
-def box_columns(columns: Sequence[str], format: str) -> list[str]:
-    """The columns that are recognized as boxes: min corner and then max corner, or one column of nested boxes."""
+def _are_alike(parts: list[str], others: list[str]) -> bool:
+    """Whether columns of boxes differ only in their first or in their second half: then the first spelling counts.
+
+    (A frame may have x, y, w, h, and width, height of the image.)
+    """
+    half = len(parts) // 2
+    return len(parts) == len(others) > 2 and (parts[:half] == others[:half] or parts[half:] == others[half:])
+
+
+def _of_one_size(array: Any, name: str) -> Any:
+    """Arrow's lists of any sizes as lists of a fixed size."""
+    import pyarrow
+
+    is_there = ~array.is_null().to_numpy(zero_copy_only=False)
+    rows, sizes = np.flatnonzero(is_there), np.diff(array.offsets.to_numpy())[is_there]
+    size = int(sizes[0]) if len(sizes) else 4
+    other = int(np.argmax(sizes != size)) if len(sizes) else 0
+    if len(sizes) and sizes[other] != size:
+        raise ValueError(f"{name}[{rows[other]}] has {sizes[other]} values, but {name}[{rows[0]}] has {size}")
+    lists = pyarrow.FixedSizeListArray.from_arrays(array.flatten(), size)  # which leaves out those that are null
+    return lists.take(pyarrow.array(np.cumsum(is_there) - 1, mask=~is_there)) if array.null_count else lists
+
+
+def box_columns(columns: Sequence[str], format: str | None) -> list[str]:
+    """The columns that are recognized as boxes: min corner and then max corner, or one column of nested boxes.
+
+    Raises:
+        ValueError: if there are boxes or intervals in other columns, too.
+    """
     known: dict[str, list[str]] = {}
     for column in columns:
         known.setdefault(column.lower().replace("_", ""), []).append(column)
+    found = []
     for first, second in _spellings(format):
         ends = [(part in known) + (other in known) for part, other in zip(first, second)]
         count = ends.count(2)
         if count and ends == [2] * count + [0] * (len(ends) - count):  # no axis has one end only
-            if (first[0], second[0]) in _INTERVALS:
-                _refuse_other_intervals(known)
-            return [_only(known[part]) for part in first[:count] + second[:count]]
-    return [_only(known["bbox"])] if "bbox" in known and len(columns) > 1 else []  # as in GeoParquet
-
-
-def _refuse_other_intervals(known: dict[str, list[str]]) -> None:
-    found = [(start, end) for start, end in _INTERVALS if start in known and end in known]
-    if len(found) > 1:
-        named = [f"{known[start][0]}, {known[end][0]}" for start, end in found]
-        raise ValueError(f"the columns {' and '.join(named)} are both known as intervals: choose two of them")
+            found.append(first[:count] + second[:count])
+    if not found:
+        return [_only(known["bbox"])] if "bbox" in known and len(columns) > 1 else []  # as in GeoParquet
+    if len(found[0]) == 2 and "bbox" in known:
+        found.append(["bbox"])
+    apart = [found[0], *(parts for parts in found[1:] if not _are_alike(parts, found[0]))]
+    if len(apart) > 1:
+        named = " and ".join(", ".join(known[part][0] for part in parts) for parts in apart)
+        raise ValueError(f"the columns {named} are all known as boxes: choose one of them by columns, or drop others")
+    return [_only(known[part]) for part in found[0]]
 
 
 def _only(names: list[str]) -> str:
@@ -241,7 +294,7 @@ def unknown_columns(columns: list[str], otherwise: str, option: str = 'format="{
     return f"pass {option.format(formats[0])}" if formats else otherwise
 
 
-def _from_columns(values: Any, columns: list[str], name: str, format: str) -> Raw:
+def _from_columns(values: Any, columns: list[str], name: str, format: str | None) -> Raw:
     if hasattr(type(values), "total_bounds"):  # asked of the class: the frame would compute them
         values = values.bounds
         if isinstance(values, np.ndarray):  # those of an array of geometries
@@ -249,7 +302,9 @@ def _from_columns(values: Any, columns: list[str], name: str, format: str) -> Ra
     names = box_columns(columns, format) or _geometry_column(values)
     if len(names) > 1:
         raw = Raw(*side_by_side([read_column(values[column], f"column {column}") for column in names], names, name))
-        if format == "xyxy" and len(names) == 4 and names[1].lower() == "top":  # the y axis may point up or down
+        if (
+            format in (None, "xyxy") and len(names) == 4 and names[1].lower() == "top"
+        ):  # the y axis may point up or down
             raw.array[:, [1, 3]] = np.sort(raw.array[:, [1, 3]], axis=1)
         return raw
     if names:
@@ -258,10 +313,14 @@ def _from_columns(values: Any, columns: list[str], name: str, format: str) -> Ra
         nested = _from_arrow(values[names[0]], name, format)
         if nested is not None:
             return nested
-    wanted = {"xyxy": "minx, miny, maxx, maxy", "xywh": "x, y, w, h", "cxcywh": "cx, cy, w, h"}[format]
+        lists = as_array(values[names[0]], f"column {names[0]}")
+        if lists.ndim > 1 or _are_lists(lists):
+            return raw_boxes(lists, f"column {names[0]}")
+    wanted = {"xywh": "x, y, w, h", "cxcywh": "cx, cy, w, h"}.get(format or "", "minx, miny, maxx, maxy")
+    way = _other_way(values)
     raise ValueError(
         f"{name} has no columns that are known as boxes, such as {wanted}: {listed(columns)}; "
-        + unknown_columns(columns, _other_way(values))
+        + (unknown_columns(columns, way) if format is not None else f"pass min and max corners; {way}")
     )
 
 
@@ -314,10 +373,10 @@ def _from_geometries(array: NDArray[Any]) -> NDArray[Any]:
     return np.asarray(shapely.bounds(array)) if are_geometries.all() and len(array) else array
 
 
-def _corners(raw: Raw, format: str, name: str) -> Raw:
+def _corners(raw: Raw, format: str | None, name: str) -> Raw:
     """The corners of boxes that are given by a size. Integers are added exactly."""
     array = raw.array
-    if format == "xyxy" or array.ndim != 2 or array.shape[1] % 2:
+    if format in (None, "xyxy") or array.ndim != 2 or array.shape[1] % 2:
         return raw
     if array.dtype.kind not in "iufO":
         raise TypeError(f"{name} must be numbers, not of dtype {array.dtype}")
@@ -326,7 +385,8 @@ def _corners(raw: Raw, format: str, name: str) -> Raw:
         array = array.astype(object if array.dtype.kind == "O" or is_rounded(array) else np.int64)
         low, size = array[:, :half], array[:, half:]
         corners = np.hstack([low, low + size])
-        return Raw(corners if corners.dtype.kind == "O" or is_rounded(corners) else corners.astype(np.float64))
+        is_exact = corners.dtype.kind == "O" or is_rounded(corners)
+        return Raw(corners if is_exact else corners.astype(np.float64), are_sized=True)
     if array.dtype.kind == "O" or is_rounded(array):
         raise ValueError(
             f'{name} has numbers beyond 2^53, whose halves floating point rounds: pass corners instead of "{format}"'
@@ -334,5 +394,6 @@ def _corners(raw: Raw, format: str, name: str) -> Raw:
     if array.dtype.kind != "f" or array.dtype.itemsize == 2:  # half precision would round, and overflow
         array = array.astype(np.float64)
     start, size = array[:, :half], array[:, half:]
-    low = start if format == "xywh" else start - size / 2
-    return Raw(np.hstack([low, low + size]))
+    with np.errstate(over="ignore", invalid="ignore"):  # what begins at -inf and is infinitely long has no end
+        low = start if format == "xywh" else start - size / 2
+        return Raw(np.hstack([low, low + size]), are_sized=True)

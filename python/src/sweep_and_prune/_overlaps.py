@@ -190,6 +190,8 @@ def measure_overlaps(
     first, second = corners[0][rows[:, 0]], corners[-1][rows[:, 1]]
     names = list(sets)
     for name, boxes, side in ((names[0], first, rows[:, 0]), (names[-1], second, rows[:, 1])):
+        if format != "xyxy":
+            refuse_inverted(boxes, name, side, is_size=True)
         refuse_inverted(boxes if wrap is None else without_crossings(boxes), name, side)
     with np.errstate(all="ignore"):
         sides = np.hstack([_larger(first, second), _smaller(first, second)])

@@ -64,8 +64,8 @@ def find_pairs(
             series of intervals; tensors.
         threads: how many to use at most, from 4,096 boxes on; -1 for one on each processor.
         dtype: the type of the indices: `int64`, `int32`, `uint32` or `uint64`.
-        format: `"xyxy"`: min corner, max corner. `"xywh"`: min corner, size. `"cxcywh"`: center, size. (Six columns of an
-            array are boxes in space in each: if two of them are a score and a class, slice them off first.)
+        format: `"xyxy"`: min corner, max corner. `"xywh"`: min corner, size. `"cxcywh"`: center, size. In each,
+            six columns of an array are boxes in space: slice off scores and classes first.
         closed: which ends belong to a box: `"both"` (the default: touching boxes overlap), `"left"`, `"right"` or
             `"neither"` (touching boxes do not overlap, and empty boxes overlap nothing). By default, an
             `IntervalIndex` decides.

@@ -136,6 +136,9 @@ def prepare(
         arrays, kept = _leave_out([is_missing(array) for array in arrays], arrays, kept)
     if has_margin and not any(map(len, arrays)) and _is_duration(margin):
         arrays = [array.astype("m8[s]") for array in arrays]  # nothing else tells that these would be times
+    for one, array, name, own in zip(raw, arrays, names, kept):
+        if one.are_sized:  # here, since a box whose max is less than its min is one that crosses the end of a circle
+            refuse_inverted(array, name, own, is_size=True)
     are_grouped = of_group is None or all(bool((group >= 0).all()) for group in of_group)
     are_whole = all(array.dtype.kind in "iu" for array in arrays) and not has_margin
     are_times = arrays[0].dtype.kind in "mM"
@@ -450,7 +453,7 @@ def _is_empty(array: NDArray[Any]) -> NDArray[np.bool_]:
     return empty
 
 
-def refuse_inverted(array: NDArray[Any], name: str, kept: Rows) -> None:
+def refuse_inverted(array: NDArray[Any], name: str, kept: Rows, is_size: bool = False) -> None:
     half = array.shape[1] // 2
     with np.errstate(invalid="ignore"):  # Python's numbers may have a NaN among them
         if all(bool((low <= high).all()) for low, high in _sides(array)):
@@ -459,7 +462,8 @@ def refuse_inverted(array: NDArray[Any], name: str, kept: Rows) -> None:
     index = int(np.argmax(invalid.any(axis=1)))
     axis = int(np.argmax(invalid[index]))
     low, high = array[index, axis], array[index, axis + half]
-    raise InvalidBoxError(index if kept is None else int(kept[index]), axis, name, low, high)
+    is_size = is_size and bool(low > high)  # and not a NaN
+    raise InvalidBoxError(index if kept is None else int(kept[index]), axis, name, low, high, is_size)
 
 
 def _without_ends(boxes: Floats, are_whole: bool) -> Floats:
@@ -480,7 +484,9 @@ def _without_ends(boxes: Floats, are_whole: bool) -> Floats:
 
 def _groups(by: list[Any], sets: dict[str, Any], counts: list[int]) -> list[NDArray[np.int64]]:
     """A number for the group of each box, -1 for none."""
-    sides = [_group_columns(of_set, boxes, name) for of_set, (name, boxes) in zip(by, sets.items())]
+    sides = [
+        _group_columns(of_set, boxes, name, count) for of_set, (name, boxes), count in zip(by, sets.items(), counts)
+    ]
     if len({len(columns) for columns in sides}) > 1:
         raise ValueError(f"by must have as many columns for a as for b, not {' and '.join(map(str, map(len, sides)))}")
     for columns, name, count in zip(sides, sets, counts):
@@ -491,7 +497,14 @@ def _groups(by: list[Any], sets: dict[str, Any], counts: list[int]) -> list[NDAr
     return group_codes(sides, list(sets))
 
 
-def _group_columns(by: Any, boxes: Any, name: str) -> list[Column]:
+def _are_several(by: Any, count: int) -> bool:
+    """Whether these are several keys with a value for each box, and not the values of one."""
+    if not isinstance(by, (list, tuple, np.ndarray)) or len(by) in (0, count):
+        return False
+    return all(hasattr(key, "__len__") and not isinstance(key, (str, bytes)) and len(key) == count for key in by)
+
+
+def _group_columns(by: Any, boxes: Any, name: str, count: int) -> list[Column]:
     """The columns that make the groups of a set: those that are named, or values for each box."""
     if isinstance(by, NAME):
         return [named_column(boxes, by, name)]
@@ -499,4 +512,9 @@ def _group_columns(by: Any, boxes: Any, name: str) -> list[Column]:
         return by  # those of a file, which have been read already
     if isinstance(by, (list, tuple)) and by and all(type(one) is str for one in by) and has_columns(boxes):
         return [named_column(boxes, one, name) for one in by]
+    if _are_several(by, count):
+        raise ValueError(
+            f"by must have one value for each box of {name}, not {len(by)} times as many: "
+            "for two keys, pass list(zip(key, other_key))"
+        )
     return [read_column(by, "by")]
