@@ -441,6 +441,28 @@ def test_intervals_that_are_no_boxes_are_refused_by_name(bad: list[float], by: s
             between([*good, bad], np.empty((0, 2)), **none)
 
 
+@pytest.mark.filterwarnings("error")
+def test_infinite_and_huge_boxes_need_no_warning() -> None:
+    inf, huge = math.inf, 1e308
+    assert sap.coverage([[0, inf], [-inf, inf], [5, 6]], [[inf, inf], [-inf, 5.5]]).tolist() == [5.5, inf, 0.5]
+    assert sap.nearest([[huge, huge]], [[-huge, -huge]]).distances.tolist() == [inf]
+    plane = [[huge, 0, huge, 0]], [[0, huge, 0, huge]]
+    assert sap.nearest(*plane).pairs.tolist() == sap.nearest(*plane, max_distance=huge).pairs.tolist() + [[0, 0]]
+    with pytest.raises(sap.InvalidBoxError, match="has a NaN on axis 0"):
+        sap.find_pairs([[-inf, 0, inf, 5]], format="xywh")
+
+
+@pytest.mark.parametrize("dtype", ["f2", "u1", "i1", "u2", "u8"])
+def test_small_and_unsigned_types_do_not_overflow(dtype: str) -> None:
+    high = {"f2": 60_000, "u8": 2**64 - 1}.get(dtype) or int(np.iinfo(dtype).max)
+    low = -high if dtype == "f2" else 0 if dtype[0] == "u" else -high - 1
+    a, b = np.array([[low, high], [low, low]], dtype), np.array([[low, high], [high, high]], dtype)
+    assert sap.coverage(a[:1], b).tolist() == [high - low]
+    assert sap.nearest(a[1:], b[1:]).distances.tolist() == [high - low]
+    assert sap.measure_overlaps(a, b, [[0, 0], [1, 1]]).size.tolist() == [high - low, 0]
+    assert sap.find_pairs(b, margin=b.dtype.type(1)).tolist() == [[0, 1]]
+
+
 def test_no_pairs_may_be_an_empty_list() -> None:
     found = sap.measure_overlaps([[0, 1]], None, [])
     assert [len(part) for part in found] == [0, 0, 0, 0] and found.size.dtype == np.int64

@@ -226,7 +226,7 @@ def coverage(
     check_intervals(prepared)
     of_a, of_b = plain_corners({"a": a, "b": b}, "xyxy")
     labels = _clusters(*line_keys(prepared.sets[1:])[0])
-    covered = np.zeros(len(of_a), (of_a[:, 1] - of_a[:, 0]).dtype)
+    covered = np.zeros(len(of_a), (of_a[:0, 1] - of_a[:0, 0]).dtype)
     if len(labels) == 0:
         return covered
     order = np.argsort(labels, kind="stable")
@@ -241,8 +241,11 @@ def coverage(
 
     def add(pairs: NDArray[Any]) -> None:
         first, other = pairs.T
-        shared = np.minimum(of_a[first, 1], merged[1][other]) - np.maximum(of_a[first, 0], merged[0][other])
-        np.add.at(covered, first, shared)
+        low, high = np.maximum(of_a[first, 0], merged[0][other]), np.minimum(of_a[first, 1], merged[1][other])
+        with np.errstate(over="ignore", invalid="ignore"):
+            shared = high - low
+            shared[low == high] = np.zeros((), shared.dtype)  # also for infinite ends, whose difference is NaN
+            np.add.at(covered, first, shared)
 
     stream(search, add, _CHUNK, np.int64)
     return covered
@@ -351,7 +354,9 @@ def _reach(corners: list[Values], limit: Any) -> Any:
     if corners[0].dtype.kind != "f":
         return math.floor(limit)
     finite = [np.abs(boxes[np.isfinite(boxes)]).max(initial=0) for boxes in corners]
-    return float(limit + 4 * float(np.finfo(np.float32).eps) * (max(map(float, finite)) + limit))
+    limit = float(limit)
+    reach = limit + 4 * float(np.finfo(np.float32).eps) * (max(map(float, finite)) + limit)
+    return min(reach, float(np.finfo(float).max))
 
 
 def _nearest_of_boxes(prepared: Prepared, corners: list[Values], k: int) -> NDArray[np.int64]:
@@ -491,10 +496,11 @@ def _distances(corners: list[Values], pairs: NDArray[np.int64]) -> Values:
         (low_a, high_a), (low_b, high_b) = (
             (boxes[:, axis][rows], boxes[:, axis + half][rows]) for boxes, rows in zip(corners, pairs.T)
         )
-        with np.errstate(invalid="ignore"):
+        with np.errstate(over="ignore", invalid="ignore"):
             gaps = np.maximum(low_a - high_b, low_b - high_a)
         zero = np.zeros((), gaps.dtype)
         of_axes.append(np.where(gaps > zero, gaps, zero))  # also for infinite ends, whose difference is NaN
     if half == 1:
         return of_axes[0]
-    return np.asarray(np.sqrt(sum(gaps.astype(np.float64) ** 2 for gaps in of_axes)))
+    with np.errstate(over="ignore"):
+        return np.asarray(np.sqrt(sum(gaps.astype(np.float64) ** 2 for gaps in of_axes)))
