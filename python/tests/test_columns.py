@@ -16,6 +16,7 @@ import pytest
 from oracle import in_order
 
 import sweep_and_prune as sap
+from sweep_and_prune import _columns
 from sweep_and_prune._command import main
 
 LARGE = 2**53
@@ -159,6 +160,46 @@ def test_names_of_groups_mean_the_same_everywhere() -> None:
             sap.find_pairs(table, by=by)
     with pytest.raises(ValueError, match="by must have as many columns for a as for b, not 2 and 1"):
         sap.find_pairs_between(table, other, by=(["chrom", "strand"], "chrom"))
+
+
+def test_text_and_categories_are_looked_at_once_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    arrow, pandas = pytest.importorskip("pyarrow"), pytest.importorskip("pandas")
+    polars = pytest.importorskip("polars")
+    looked_at: list[int] = []
+    codes_of_values = _columns._codes_of_values
+
+    def counted(arrays: Any) -> Any:
+        looked_at.append(sum(map(len, arrays)))
+        return codes_of_values(arrays)
+
+    monkeypatch.setattr(_columns, "_codes_of_values", counted)
+    random = np.random.default_rng(3)
+    boxes = np.sort(random.integers(0, 99, (200, 2)), axis=1)
+    names = [["chr1", "chr2", None, "X"][at] for at in random.integers(0, 4, 200)]
+    wanted = between(boxes, boxes[:50], by=(names, names[:50]))
+    assert sum(looked_at) > 100
+    makers: list[Any] = [
+        *(lambda kind=kind: pandas.Series(names, dtype=kind) for kind in ("str", object, "category")),
+        lambda: pandas.Categorical(names, categories=["unused", "X", "chr2", "chr1"]),
+        lambda: pandas.Series(names, dtype=pandas.ArrowDtype(arrow.string())),
+        lambda: polars.Series(names),
+        lambda: polars.Series(names, dtype=polars.Categorical),
+        lambda: arrow.array(names),
+        lambda: arrow.chunked_array([names[:70], names[70:]], arrow.large_string()),
+        lambda: arrow.array(names).dictionary_encode(),
+    ]
+    for make in makers:
+        looked_at.clear()
+        assert between(boxes, boxes[:50], by=(make(), make()[:50])) == wanted
+        assert 0 < sum(looked_at) < 10
+        assert between(boxes, boxes[:50], by=(make(), names[:50])) == wanted
+        assert sap.count_pairs(boxes[:0], by=make()[:0]) == 0
+        with pytest.raises(TypeError, match="by has text in a, but numbers in b, which are never equal"):
+            sap.find_pairs_between(boxes, boxes, by=(make(), range(200)))
+    mixed: Any = pandas.Series(["1", 1, 1.0, True], dtype=object)
+    assert (
+        sap.find_pairs(boxes[[0] * 4], by=mixed).tolist() == sap.find_pairs(boxes[[0] * 4], by=mixed.tolist()).tolist()
+    )
 
 
 def test_a_box_without_a_group_is_checked_all_the_same() -> None:

@@ -444,7 +444,8 @@ def test_intervals_that_are_no_boxes_are_refused_by_name(bad: list[float], by: s
 @pytest.mark.filterwarnings("error")
 def test_infinite_and_huge_boxes_need_no_warning() -> None:
     inf, huge = math.inf, 1e308
-    assert sap.coverage([[0, inf], [-inf, inf], [5, 6]], [[inf, inf], [-inf, 5.5]]).tolist() == [5.5, inf, 0.5]
+    rows: Any = [[0, inf], [-inf, inf], [5, 6]]
+    assert sap.coverage(rows, [[inf, inf], [-inf, 5.5]]).tolist() == [5.5, inf, 0.5]
     assert sap.nearest([[huge, huge]], [[-huge, -huge]]).distances.tolist() == [inf]
     plane = [[huge, 0, huge, 0]], [[0, huge, 0, huge]]
     assert sap.nearest(*plane).pairs.tolist() == sap.nearest(*plane, max_distance=huge).pairs.tolist() + [[0, 0]]

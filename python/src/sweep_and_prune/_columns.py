@@ -99,6 +99,48 @@ def _read(values: Any, name: str) -> Column:
     return _of_array(as_array(values, name), name)
 
 
+def read_groups(values: Any, name: str) -> Column:
+    """As `read_column`, for values that are only compared: text and categories are numbered by the library itself."""
+    found = _numbered(values)
+    if found is None:
+        return read_column(values, name)
+    distinct, codes = read_column(found[0], name), found[1]
+    is_used = np.bincount(codes + 1, minlength=distinct.rows + 1).astype(bool)
+    missing = ~is_used[1:] if distinct.missing is None else distinct.missing | ~is_used[1:]
+    # A code of -1 takes the last one, which is missing.
+    last = np.zeros(1, distinct.values.dtype)
+    return distinct._replace(
+        values=np.concatenate([distinct.values, last]), missing=np.append(missing, True), codes=codes
+    )
+
+
+def _numbered(values: Any) -> tuple[Any, NDArray[np.int64]] | None:
+    """The distinct values of a column of text or of categories, and which of them each row has; -1 for none."""
+    library = type(values).__module__.split(".")[0]
+    if library == "pandas" and hasattr(values, "dtype"):
+        if hasattr(values.dtype, "categories"):
+            array = getattr(values, "array", values)
+            return array.categories, np.asarray(array.codes, np.int64)
+        import pandas
+
+        if not hasattr(values.dtype, "pyarrow_dtype") and pandas.api.types.infer_dtype(values) == "string":
+            codes, distinct = pandas.factorize(values)
+            return np.asarray(distinct, object), np.asarray(codes, np.int64)
+    array = arrow_array(values) if library in ("pandas", "polars", "pyarrow") else None
+    if array is None:
+        return None
+    import pyarrow
+
+    types = pyarrow.types
+    if str(array.type) == "string_view":  # that of polars
+        array = array.cast(pyarrow.large_string())
+    if types.is_string(array.type) or types.is_large_string(array.type):
+        array = array.dictionary_encode()
+    if not types.is_dictionary(array.type):
+        return None
+    return array.dictionary, array.indices.cast(pyarrow.int64()).fill_null(-1).to_numpy(zero_copy_only=False)
+
+
 def as_array(values: Any, name: str) -> NDArray[Any]:
     """Anything like an array as an array. Tensors are detached and brought to the CPU; masked values are refused."""
     if type(values) is np.ndarray:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ._columns import Column, arrow_array, as_array, exact_numbers, is_rounded, read_column, side_by_side
+from ._columns import Column, arrow_array, as_array, exact_numbers, is_rounded, read_column, read_groups, side_by_side
 
 _AXES = "xyz"
 FORMATS = ("xyxy", "xywh", "cxcywh")
@@ -176,7 +176,7 @@ def named_column(values: Any, column: Any, name: str) -> Column:
     if columns.count(column) != 1:
         fault = f"{name} has several columns of that name: rename or drop one" if column in columns else ""
         raise ValueError(f"by is {column!r}, but {fault or listed(columns, name)}")
-    return read_column(values[column], f"column {column}")
+    return read_groups(values[column], f"column {column}")
 
 
 def chosen_boxes(column: Callable[[str], Any], names: Sequence[str], what: str, format: str = "xyxy") -> Raw:

@@ -23,6 +23,7 @@ from ._columns import (
     is_rounded,
     one_type,
     read_column,
+    read_groups,
 )
 from ._crs import difference
 from ._errors import InvalidBoxError
@@ -517,4 +518,4 @@ def _group_columns(by: Any, boxes: Any, name: str, count: int) -> list[Column]:
             f"by must have one value for each box of {name}, not {len(by)} times as many: "
             "for two keys, pass list(zip(key, other_key))"
         )
-    return [read_column(by, "by")]
+    return [read_groups(by, "by")]
