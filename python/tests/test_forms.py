@@ -163,6 +163,7 @@ def test_columns_of_lists() -> None:
         of_library = pandas.DataFrame, polars.DataFrame, arrow.table, lambda frame: frame
         for make in of_library if not gaps_too else of_library[:3]:
             assert same(sap.find_pairs(make({"n": list(range(60)), "bbox": given}), missing="skip"), wanted)
+            assert same(sap.find_pairs(make({"bbox": given}), missing="skip"), wanted)
     for uneven in (arrow.array([[0, 0, 1, 1], None, [0, 1]]), np.array([[0, 0, 1, 1], None, [0, 1]], object)):
         with pytest.raises(ValueError, match=r"boxes\[2\] has 2 values, but boxes\[0\] has 4"):
             sap.find_pairs(uneven)
@@ -184,8 +185,9 @@ def test_what_is_nearly_boxes_is_refused_with_a_way_out() -> None:
         (lambda: sap.find_pairs([[0, 0, 1, 1], [0, 0, 1]]), r"boxes\[1\] has 3 values, but boxes\[0\] has 4"),
         (lambda: sap.find_pairs([[0, 1]] * 3, by=[[1, 1, 1], [2, 2, 2]]), r"list\(zip\(key, other_key\)\)"),
         (lambda: sap.find_pairs([[0, 1]] * 3, by=np.zeros((2, 3))), r"list\(zip\(key, other_key\)\)"),
+        (lambda: sap.find_pairs([[0, 1]] * 3, by=Frame(x=[1, 1, 1])), r"list\(zip\(key, other_key\)\)"),
         (lambda: sap.find_pairs([[0, 1]], threads=-2), "threads must be -1 or from 1 to 1024, not -2"),
-        (lambda: sap.BroadPhase(2).insert_many(sized), "y, w, h; pass min and max corners"),
+        (lambda: sap.BroadPhase(2).insert_many(sized), "y, w, h; pass min and max corners$"),
         (lambda: sap.PairFinder(2).find(sized), "y, w, h; pass min and max corners"),
     ):
         with pytest.raises((TypeError, ValueError), match=message):

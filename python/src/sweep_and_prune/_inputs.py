@@ -270,13 +270,13 @@ def box_columns(columns: Sequence[str], format: str | None) -> list[str]:
         if count and ends == [2] * count + [0] * (len(ends) - count):  # no axis has one end only
             found.append(first[:count] + second[:count])
     if not found:
-        return [_only(known["bbox"])] if "bbox" in known and len(columns) > 1 else []  # as in GeoParquet
+        return [_only(known["bbox"])] if "bbox" in known else []  # as in GeoParquet
     if len(found[0]) == 2 and "bbox" in known:
         found.append(["bbox"])
     apart = [found[0], *(parts for parts in found[1:] if not _are_alike(parts, found[0]))]
     if len(apart) > 1:
         named = " and ".join(", ".join(known[part][0] for part in parts) for parts in apart)
-        raise ValueError(f"the columns {named} are all known as boxes: choose one of them by columns, or drop others")
+        raise ValueError(f"the columns {named} are all known as boxes: drop all but those of one, or choose by columns")
     return [_only(known[part]) for part in found[0]]
 
 
@@ -317,11 +317,10 @@ def _from_columns(values: Any, columns: list[str], name: str, format: str | None
         if lists.ndim > 1 or _are_lists(lists):
             return raw_boxes(lists, f"column {names[0]}")
     wanted = {"xywh": "x, y, w, h", "cxcywh": "cx, cy, w, h"}.get(format or "", "minx, miny, maxx, maxy")
-    way = _other_way(values)
-    raise ValueError(
-        f"{name} has no columns that are known as boxes, such as {wanted}: {listed(columns)}; "
-        + (unknown_columns(columns, way) if format is not None else f"pass min and max corners; {way}")
-    )
+    way = unknown_columns(columns, _other_way(values))
+    if format is None and way.startswith("pass format"):
+        way = "pass min and max corners"
+    raise ValueError(f"{name} has no columns that are known as boxes, such as {wanted}: {listed(columns)}; {way}")
 
 
 def _schema(values: Any) -> Any:

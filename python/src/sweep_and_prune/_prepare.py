@@ -513,9 +513,9 @@ def _group_columns(by: Any, boxes: Any, name: str, count: int) -> list[Column]:
         return by  # those of a file, which have been read already
     if isinstance(by, (list, tuple)) and by and all(type(one) is str for one in by) and has_columns(boxes):
         return [named_column(boxes, one, name) for one in by]
-    if _are_several(by, count):
+    if has_columns(by) or _are_several(by, count):
         raise ValueError(
-            f"by must have one value for each box of {name}, not {len(by)} times as many: "
+            f"by must have one value for each box of {name}, not several columns of them: "
             "for two keys, pass list(zip(key, other_key))"
         )
     return [read_groups(by, "by")]
