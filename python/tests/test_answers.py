@@ -221,7 +221,6 @@ def test_options_that_do_not_fit_are_refused(capsys: pytest.CaptureFixture[str])
         (["coverage", "a.npy", "a.npy", "--margin", "1"], "leave out --margin"),
         (["nearest", "a.npy", "a.npy", "--margin", "1"], "pass --max-distance"),
         (["nearest", "a.npy", "a.npy", "-k", "0"], "k must be from 1"),
-        (["merge", "a.bed", "--rows"], "leave out --id and --rows"),
         (
             ["pairs", "a.parquet", "--memory-limit", "1GB", "--fraction", "0.5", "-o", "x"],
             "--fraction cannot be combined",
@@ -261,11 +260,11 @@ def test_pairs_that_overlap_enough_are_written_in_chunks(
     widths = []
     write = importlib.import_module("sweep_and_prune._writers")._TextWriter.write
 
-    def watched(self: Any, columns: Any) -> None:
+    def noted(self: Any, columns: Any) -> None:
         widths.append(len(columns[0]))
         write(self, columns)
 
-    monkeypatch.setattr("sweep_and_prune._writers._TextWriter.write", watched)
+    monkeypatch.setattr("sweep_and_prune._writers._TextWriter.write", noted)
     assert sorted(table(capsys, "pairs", "a.npy", *options)[1]) == sorted(at_once) and len(at_once) > 100
     assert max(widths) <= 7
     assert all(int(size) >= 4 for *_, size in at_once)

@@ -38,7 +38,7 @@ from ._prepare import is_missing, refuse_inverted
 from ._progress import ProgressBar
 from ._signals import end_at_once, end_by_signals, held_back, remove_unfinished, signal_status
 from ._tables import FORMATS, READABLE, Source, columns_of_groups, is_text, kind_of_file, read
-from ._text import Cells
+from ._text import GENOMIC, Cells
 from ._writers import WRITABLE, kind_of, writer
 
 _EPILOG = f"""\b
@@ -432,7 +432,10 @@ def _opened(options: Options) -> Iterator[list[Source]]:
     sources = []
     for path in options.files:
         with _progress("reading", options) as progress:
-            sources.append(read(path, options.from_, options.header, progress))
+            # With a file of genomics, which has no header, the option is for the other one.
+            is_for_all = all(kind_of_file(other) in GENOMIC for other in options.files)
+            header = options.header if is_for_all or kind_of_file(path) not in GENOMIC else None
+            sources.append(read(path, options.from_, header, progress))
     try:
         yield sources
     except InvalidBoxError as error:
@@ -453,6 +456,14 @@ def _fault(error: InvalidBoxError, source: Source, options: Options) -> str:
         names = names or source.box_columns(options.format)
         column = f", column {names[len(names) // 2 + error.axis]}" if len(names) > 1 else ""
         return f"{place}{column}: the size is {float(error.maximum - error.minimum):g}; it must be 0 or more"
+    genomic = source.text.format if source.text is not None and not names else None
+    if genomic is not None and has_nan:
+        return (
+            f"{place}{_columns_at_fault(error, source, options)}: there is no number; remove it, or pass --missing skip"
+        )
+    if genomic is not None:
+        start = int(error.minimum) + (genomic.least_position is not None)  # as in the file
+        return f"{place}: the end, {error.maximum:.0f}, is before the start, {start}"
     what = str(error).split(" ", 1)[1].replace("remove it or replace it", "remove it, or pass --missing skip")
     return f"{place}{_columns_at_fault(error, source, options)}: the box {what}"
 
@@ -520,8 +531,7 @@ def _search(options: Options, sources: list[Source]) -> tuple[list[Any], dict[st
 def _note_other_names(sources: list[Source], groups: list[list[Column]]) -> None:
     """Says so if two files have no group in common, or if groups differ by what is before them: `chr1` and `1`."""
     for columns in zip(*groups):
-        values = [column.values.tolist() for column in columns if column.codes is not None]
-        names = [[one for one in of_file if one != "" and one == one] for of_file in values]  # others are missing
+        names = [_present(column) for column in columns if column.codes is not None]
         if len(names) < 2 or not all(names):
             continue
         first, second = names[0][0], names[1][0]
@@ -537,6 +547,12 @@ def _note_other_names(sources: list[Source], groups: list[list[Column]]) -> None
             places = f"{shown[0]} in {sources[0].name} and {shown[1]} in {sources[1].name}"
             click.echo(f"sap: {fault}, such as {places}", err=True)
             return
+
+
+def _present(column: Column) -> list[Any]:
+    """The different values of a column."""
+    values = column.values if column.missing is None else column.values[~column.missing]
+    return [one for one in values.tolist() if one == one]
 
 
 def _alike(first: list[Any], second: list[Any]) -> Iterator[tuple[str, str]]:

@@ -179,6 +179,11 @@ def named_column(values: Any, column: Any, name: str) -> Column:
     return read_groups(values[column], f"column {column}")
 
 
+def every_column(values: Any) -> list[Column]:
+    """The columns of a data frame, a table, a dict or a structured array, all of which are keys of groups."""
+    return [named_column(values, column, "by") for column in _labels(values) or []]
+
+
 def chosen_boxes(column: Callable[[str], Any], names: Sequence[str], what: str, format: str = "xyxy") -> Raw:
     """The corners of boxes in columns with these names, which a function looks up."""
     read = [read_column(column(name), f"column {name}") for name in names]

@@ -27,7 +27,7 @@ from ._columns import (
 )
 from ._crs import difference
 from ._errors import InvalidBoxError
-from ._inputs import Raw, checked_format, crs_of, has_columns, named_column, with_rows
+from ._inputs import Raw, checked_format, crs_of, every_column, has_columns, named_column, with_rows
 from ._wrap import (
     checked_wrap,
     cut,
@@ -513,9 +513,11 @@ def _group_columns(by: Any, boxes: Any, name: str, count: int) -> list[Column]:
         return by  # those of a file, which have been read already
     if isinstance(by, (list, tuple)) and by and all(type(one) is str for one in by) and has_columns(boxes):
         return [named_column(boxes, one, name) for one in by]
-    if has_columns(by) or _are_several(by, count):
+    if has_columns(by):
+        return every_column(by)
+    if _are_several(by, count):
         raise ValueError(
-            f"by must have one value for each box of {name}, not several columns of them: "
-            "for two keys, pass list(zip(key, other_key))"
+            f"by must have one value for each box of {name}, not several arrays of them: pass a dict or a data frame of "
+            "these keys"
         )
     return [read_groups(by, "by")]
