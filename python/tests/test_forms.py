@@ -179,21 +179,24 @@ def test_lists_with_missing_numbers() -> None:
 def test_what_is_nearly_boxes_is_refused_with_a_way_out() -> None:
     dicts: Any = [{"x1": 0}]
     sized: Any = dict(x=[0], y=[0], w=[1], h=[1])
-    keys: Any = {"x": [1, 1, 1]}
     call: Any
     for call, message in (
         (lambda: sap.find_pairs(dicts), r"list of dicts: pass .* pandas\.DataFrame\(boxes\)"),
         (lambda: sap.find_pairs([[0, 0, 1, 1], [0, 0, 1]]), r"boxes\[1\] has 3 values, but boxes\[0\] has 4"),
-        (lambda: sap.find_pairs([[0, 1]] * 3, by=[[1, 1, 1], [2, 2, 2]]), r"list\(zip\(key, other_key\)\)"),
-        (lambda: sap.find_pairs([[0, 1]] * 3, by=np.zeros((2, 3))), r"list\(zip\(key, other_key\)\)"),
-        (lambda: sap.find_pairs([[0, 1]] * 3, by=keys), r"list\(zip\(key, other_key\)\)"),
+        (lambda: sap.find_pairs([[0, 1]] * 3, by=[[1, 1, 1], [2, 2, 2]]), "not several arrays of them: pass a dict"),
+        (lambda: sap.find_pairs([[0, 1]] * 3, by=np.zeros((2, 3))), "not several arrays of them: pass a dict"),
         (lambda: sap.find_pairs([[0, 1]], threads=-2), "threads must be -1 or from 1 to 1024, not -2"),
         (lambda: sap.BroadPhase(2).insert_many(sized), "y, w, h; pass min and max corners$"),
         (lambda: sap.PairFinder(2).find(sized), "y, w, h; pass min and max corners"),
     ):
         with pytest.raises((TypeError, ValueError), match=message):
             call()
-    assert sap.find_pairs([[0, 1]] * 3, by=list(zip([1, 1, 1], [2, 2, 3]))).tolist() == [[0, 1]]
+    for keys in (
+        [(1, 2), (1, 2), (1, 3)],
+        {"key": [1, 1, 1], 2: [2, 2, 3]},
+        np.array([(1, 2.5)] * 2 + [(1, 3)], "i8,f4"),
+    ):
+        assert sap.find_pairs([[0, 1]] * 3, by=keys).tolist() == [[0, 1]]
     assert sap.find_pairs([[0, 1]] * 2, threads=np.int64(-1)).tolist() == [[0, 1]]  # type: ignore[arg-type]
 
 

@@ -26,8 +26,8 @@ def test_relations_of_duckdb_are_tables() -> None:
     assert sap.count_pairs(large) == 0
     with pytest.raises(TypeError, match=r"left is a DuckDBPyRelation, .*: pass what its df\(\) returns"):
         sap.join(relation, relation)
-    with pytest.raises(ValueError, match="by must have one column, not 3"):
-        sap.find_pairs([[0, 9]] * 3, by=relation)
+    assert sap.find_pairs([[0, 9]] * 3, by=relation).tolist() == []
+    assert sap.find_pairs([[0, 9]] * 2, by=duckdb.sql("select 1 as a, 'x' as b from range(2)")).tolist() == [[0, 1]]
 
 
 def test_lazy_frames_are_refused_with_what_to_pass() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from datetime import timedelta
 from queue import Empty, Queue
@@ -18,8 +18,8 @@ from ._prepare import NAME, Prepared, is_zero, prepare
 
 Margin = Union[ArrayLike, timedelta]
 """A distance: a number, one for each axis, or a `timedelta`."""
-Groups = Union[ArrayLike, Sequence[object]]
-"""What boxes are grouped by: a value for each box, or the names of columns."""
+Groups = Union[ArrayLike, Sequence[object], Mapping[Any, Any]]
+"""What boxes are grouped by: a value for each box, columns of such values, or the names of columns."""
 Progress = Callable[[float], object]
 """A function of the share of the work that is done, from 0 to 1."""
 
@@ -70,8 +70,9 @@ def find_pairs(
             `"neither"` (touching boxes do not overlap, and empty boxes overlap nothing). By default, an
             `IntervalIndex` decides.
         missing: `"raise"` refuses a box with a NaN, `"skip"` leaves it out: it has no pairs.
-        by: only boxes with equal values pair: `(n,)` values of any type; or of a data frame the name of a column, or a
-            list of names. A box whose value is missing pairs with none.
+        by: only boxes with equal values pair: `(n,)` values of any type; a data frame, dict or structured array of
+            several keys; or the name of a column of the boxes' own data frame, or a list of names. A box whose value
+            is missing pairs with none.
         margin: finds boxes within this distance of each other on each axis, too. One number for all axes, or D of
             them; a `timedelta` for times. On each axis `min <= other max + margin` holds for both boxes, where the
             sum is rounded to the precision of the boxes.

@@ -517,7 +517,7 @@ def _group_columns(by: Any, boxes: Any, name: str, count: int) -> list[Column]:
         return every_column(by)
     if _are_several(by, count):
         raise ValueError(
-            f"by must have one value for each box of {name}, not several arrays of them: pass a dict or a data frame of "
-            "these keys"
+            f"by must have one value for each box of {name}, not several arrays of them: pass a dict or a data frame "
+            "of these keys"
         )
     return [read_groups(by, "by")]
