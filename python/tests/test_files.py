@@ -743,3 +743,56 @@ def test_reading_a_file_of_text_reports_how_far_it_is(name: str) -> None:
     shares: list[float] = []
     assert len(read(name, progress=shares.append)) == 500_000
     assert shares == sorted(shares) and len(shares) >= 3 and shares[0] < 0.7 and shares[-1] == 0.99
+
+
+@pytest.mark.parametrize(
+    "geometry",
+    [
+        {"type": "Polygon", "coordinates": [[0, 0], [1, 0], [1, 1], [0, 0]]},
+        {"type": "MultiPolygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]},
+        {"type": "Point", "coordinates": [[1, 1]]},
+        {"type": "MultiPoint", "coordinates": [1, 1]},
+        {"type": "LineString", "coordinates": [[[0, 0], [1, 1]]]},
+        {"type": "Circle", "coordinates": [0, 0]},
+        {"coordinates": [0, 0]},
+        {"type": "Point", "coordinates": [1, None]},
+        {"type": "Point", "coordinates": [1]},
+        {"type": "GeometryCollection"},
+        {"type": "GeometryCollection", "geometries": [{"type": "Point", "coordinates": [[1, 1]]}]},
+    ],
+)
+def test_geometries_of_another_form_than_their_type_are_refused(
+    geometry: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    features = [{"type": "Feature", "properties": {}, "geometry": geometry}]
+    Path("a.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": features}))
+    assert "feature 0 (the first is 0) is not valid GeoJSON" in refused(capsys, "count", "a.geojson")
+
+
+def test_columns_in_an_order_that_contradicts_their_names_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("a.csv").write_text("lon,lat,minx,maxx,miny,maxy\n10,48,0,1,2,3\n")
+    assert "pass --columns lon,lat,lon,lat" in refused(capsys, "count", "a.csv", "--columns", "lon,lat")
+    assert main(["count", "a.csv", "--columns", "lon,lat,lon,lat"]) == 0 and capsys.readouterr().out == "0\n"
+    message = refused(capsys, "count", "a.csv", "--columns", "minx,maxx,miny,maxy")
+    assert message.endswith("their names say minx,miny,maxx,maxy: pass them in this order\n")
+    assert main(["count", "a.csv", "--columns", "minx,miny,maxx,maxy"]) == 0
+
+
+def test_six_columns_without_names_may_have_scores(capsys: pytest.CaptureFixture[str]) -> None:
+    rows = [[7, 5, 5, 2, 2, 0.5], [7, 6, 6, 2, 2, 0.9]]
+    Path("a.txt").write_text("\n".join(" ".join(map(str, row)) for row in rows))
+    np.save("a.npy", rows)
+    for name in ("a.txt", "a.npy"):
+        assert "6 columns without names" in refused(capsys, "count", name, "--format", "cxcywh")
+        assert main(["count", name, "--format", "cxcywh", "--columns", "2,3,4,5"]) == 0
+        assert capsys.readouterr().out == "1\n"
+
+
+def test_a_file_of_several_layers_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    geopandas = pytest.importorskip("geopandas")
+    pytest.importorskip("pyogrio")
+    frame = geopandas.GeoDataFrame(geometry=geopandas.points_from_xy([0, 1], [0, 1]), crs=3857)
+    frame.to_file("a.gpkg", layer="one")
+    assert main(["count", "a.gpkg"]) == 0 and capsys.readouterr().out == "0\n"
+    frame.to_file("a.gpkg", layer="two")
+    assert "has several layers (one, two)" in refused(capsys, "count", "a.gpkg")

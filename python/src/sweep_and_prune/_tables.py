@@ -9,7 +9,7 @@ import math
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from itertools import chain
 from pathlib import Path
 from typing import Any, Union
@@ -61,6 +61,17 @@ _PART_OF_TEXT = 2**23
 """This many bytes are read at once where a file need not fit in memory."""
 _BYTES_OF_ROW = 64
 """The size of a row of CSV that decides how many are read at once."""
+_DEPTHS = {"Point": 0, "MultiPoint": 1, "LineString": 1, "MultiLineString": 2, "Polygon": 2, "MultiPolygon": 3}
+"""How many lists there are around each position of a geometry of GeoJSON."""
+_POINTS = {
+    ("x", "y"),
+    ("lon", "lat"),
+    ("lat", "lon"),
+    ("lng", "lat"),
+    ("longitude", "latitude"),
+    ("latitude", "longitude"),
+}
+"""Names of two columns that are a point, and no interval."""
 _READ_AT_ONCE = 2**22
 """This many bytes are read between two reports of progress."""
 _OF_NUMPY, _OF_ARCHIVE = b"\x93NUMPY", b"PK"
@@ -103,6 +114,11 @@ class Source:
         """The corners of boxes, from columns with these names or else from those that are recognized."""
         if not columns and self.are_corners:
             format = "xyxy"
+        if not columns and format != "xyxy" and self._width == 6:
+            raise FileError(
+                f"{self.name} has 6 columns without names, which may be boxes in space, or boxes in the plane with a "
+                "score and a class: pass --columns 1,2,3,4,5,6, or those of the boxes"
+            )
         if not columns and self.is_bare:
             columns = corners_of_bare(self.values)
         if not columns:
@@ -110,7 +126,27 @@ class Source:
                 way = unknown_columns(self.columns, "choose them by --columns", "--format {}")
                 raise FileError(f"{self.name} has no columns that are known as boxes: {way}; {listed(self.columns)}")
             return raw_boxes(self.values, "boxes", format)
+        self._refuse_order(columns, format)
         return chosen_boxes(self._column, columns, self.name, format)
+
+    @property
+    def _width(self) -> int:
+        """How many columns there are if they have no names; else 0."""
+        if self.is_bare:
+            return len(self.columns)
+        shape = np.shape(self.values) if isinstance(self.values, np.ndarray) else ()
+        return shape[1] if len(shape) == 2 and not self.are_corners else 0
+
+    def _refuse_order(self, columns: Sequence[str], format: str) -> None:
+        """Refuses columns whose names say that they are something else in this order."""
+        if tuple(name.lower() for name in columns) in _POINTS:
+            both = ",".join(columns)
+            raise FileError(f"{both} of {self.name} are points: pass --columns {both},{both}")
+        with suppress(ValueError):  # two names of one coordinate
+            known = box_columns([*columns], format)
+            if sorted(known) == sorted(columns) and known != [*columns]:
+                given = ",".join(columns)
+                raise FileError(f"--columns {given}: their names say {','.join(known)}: pass them in this order")
 
     @property
     def text(self) -> Text | None:
@@ -392,7 +428,7 @@ def _read_json(name: str, data: bytes) -> Source:
     for index, feature in enumerate(features):
         try:
             bounds.append(_bounds(feature.get("geometry")))
-        except (AttributeError, IndexError, TypeError, ValueError):
+        except (AttributeError, IndexError, KeyError, TypeError, ValueError):
             raise FileError(f"{name}, feature {index} (the first is 0) is not valid GeoJSON") from None
     names = ["minx", "miny", "maxx", "maxy"]
     ends = [read_column([of_shape[end] for of_shape in bounds], name) for end, name in enumerate(names)]
@@ -513,17 +549,21 @@ def _bounds(geometry: Any) -> tuple[float, float, float, float]:
 
 
 def _points(geometry: Any) -> Iterator[tuple[float, float]]:
-    for part in geometry.get("geometries", []):
-        yield from _points(part)
-    waiting = [geometry.get("coordinates") or []]
-    while waiting:
-        item = waiting.pop()
-        if not isinstance(item, list):
+    if geometry["type"] == "GeometryCollection":
+        for part in geometry["geometries"]:
+            yield from _points(part)
+        return
+    items = [geometry["coordinates"] or []]
+    for _ in range(_DEPTHS[geometry["type"]]):
+        if not all(isinstance(item, list) for item in items):
             raise TypeError("coordinates are lists")
-        if item and isinstance(item[0], (int, float)):
-            yield item[0], item[1]
-        else:
-            waiting.extend(item)
+        items = [*chain.from_iterable(items)]
+    for position in items:
+        if position:  # a point without coordinates is empty
+            x, y = position[:2]
+            if not (isinstance(position, list) and isinstance(x, (int, float)) and isinstance(y, (int, float))):
+                raise TypeError("a position has numbers")
+            yield x, y
 
 
 def _read_gis(name: str, file: _File) -> Source:
@@ -532,6 +572,14 @@ def _read_gis(name: str, file: _File) -> Source:
         import geopandas
     except ImportError:
         raise FileError(f"{name} needs geopandas: pip install 'sweep-and-prune[join]'") from None
+    if isinstance(file, str):
+        import pyogrio
+
+        layers = [layer for layer, kind in pyogrio.list_layers(file) if kind is not None]
+        if len(layers) > 1:
+            raise FileError(
+                f"{name} has several layers ({', '.join(layers)}): write one to a file of its own, as ogr2ogr does"
+            )
     frame = geopandas.read_file(file)
     if not hasattr(frame, "total_bounds"):
         raise FileError(f"{name} has no geometries")
