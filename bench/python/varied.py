@@ -115,6 +115,19 @@ def gtars(function: str) -> Prepare:
     return prepare
 
 
+def ruranges(function: str, **options: Any) -> Prepare:
+    """The library below pyranges1. (It needs Python 3.12.)"""
+
+    def prepare(a: Any, b: Any) -> Any:
+        from ruranges import numpy as functions
+
+        (starts, ends), (starts2, ends2) = columns(a), columns(b)
+        ask = getattr(functions, function)
+        return lambda: ask(starts=starts, ends=ends, starts2=starts2, ends2=ends2, **options)
+
+    return prepare
+
+
 def polars_bio(function: str) -> Prepare:
     def prepare(a: Any, b: Any) -> Any:
         import polars_bio
@@ -156,7 +169,7 @@ def pairs_of(name: str, found: Any) -> Values:
     elif name == "polars-bio":
         rows, others = found["row_1"].to_numpy(), found["row_2"].to_numpy()
     else:
-        rows, others = np.asarray(found) if name in ("ncls", "shapely STRtree") else found.T
+        rows, others = np.asarray(found) if name in ("ncls", "ruranges", "shapely STRtree") else found.T
     if name == "shapely STRtree":
         is_once = rows < others
         rows, others = rows[is_once], others[is_once]
@@ -188,6 +201,9 @@ def distances_of(name: str, found: Any) -> Values:
         return np.asarray(found.sort_values("index")["distance"], np.int64)
     if name == "polars-bio":
         return np.asarray(found.sort("row_1")["distance"], np.int64)
+    if name == "ruranges":
+        rows, _, distances = found
+        return np.maximum(distances[np.argsort(rows)].astype(np.int64) - 1, 0)  # 1 is that of neighbors that touch
     return np.asarray(found.distances, np.int64)
 
 
@@ -208,6 +224,7 @@ CASES: dict[str, tuple[Any, dict[str, Prepare], Callable[[str, Any], Values]]] =
             "polars-bio": polars_bio("overlap"),
             "gtars": gtars("find_overlaps"),
             "ncls": pairs_ncls,
+            "ruranges": ruranges("overlaps"),
             "bioframe": bioframe("overlap", how="inner", return_index=True, return_input=False),
         },
         pairs_of,
@@ -220,6 +237,7 @@ CASES: dict[str, tuple[Any, dict[str, Prepare], Callable[[str, Any], Values]]] =
             "polars-bio": polars_bio("count_overlaps"),
             "gtars": gtars("count_overlaps"),
             "ncls": counts_ncls,
+            "ruranges": ruranges("count_overlaps"),
             "bioframe": bioframe("count_overlaps"),
         },
         counts_of,
@@ -229,6 +247,7 @@ CASES: dict[str, tuple[Any, dict[str, Prepare], Callable[[str, Any], Values]]] =
         {
             OWN: lambda a, b: lambda: sap.nearest(a, b),
             "polars-bio": polars_bio("nearest"),
+            "ruranges": ruranges("nearest", ties="first"),
             "bioframe": bioframe("closest", return_input=False, return_index=True),
         },
         distances_of,

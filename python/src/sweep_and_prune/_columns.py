@@ -123,7 +123,9 @@ def _numbered(values: Any) -> tuple[Any, NDArray[np.int64]] | None:
             return array.categories, np.asarray(array.codes, np.int64)
         import pandas
 
-        if not hasattr(values.dtype, "pyarrow_dtype") and pandas.api.types.infer_dtype(values) == "string":
+        if not hasattr(values.dtype, "pyarrow_dtype"):
+            if pandas.api.types.infer_dtype(values) != "string":
+                return None
             codes, distinct = pandas.factorize(values)
             return np.asarray(distinct, object), np.asarray(codes, np.int64)
     array = arrow_array(values) if library in ("pandas", "polars", "pyarrow") else None
