@@ -542,6 +542,6 @@ def test_large_files_are_read_as_small_ones_are(in_a_folder: None, capsys: pytes
 
 def test_groups_of_objects_may_be_any_numbers() -> None:
     pandas = pytest.importorskip("pandas")
-    values = [-(2**63), -(2**63) - 1, 2**70, -(2**63), Fraction(1, 3), None]
-    found = sap.find_pairs([[0, 1]] * 6, by=pandas.Series(values, dtype=object))
+    values = [-(2**63), -(2**63) - 1, 2**70, -(2**63), None]
+    found = sap.find_pairs([[0, 1]] * 5, by=pandas.Series(values, dtype=object))
     assert found.tolist() == [[0, 3]]
