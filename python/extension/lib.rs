@@ -10,6 +10,7 @@ mod lines;
 mod order;
 mod ranks;
 mod run;
+mod whole;
 mod world;
 
 /// What `sweep_and_prune/_native.pyi` describes.
@@ -27,6 +28,8 @@ mod _native {
     use super::order::{in_order, nearest_of_rows};
     #[pymodule_export]
     use super::ranks::ranks;
+    #[pymodule_export]
+    use super::whole::take_ends;
     #[pymodule_export]
     use super::world::World;
 

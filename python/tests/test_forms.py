@@ -470,3 +470,19 @@ def test_frames_of_polars() -> None:
 def test_tensors_of_torch() -> None:
     torch = pytest.importorskip("torch")
     assert same(sap.find_pairs(torch.tensor(BOXES, requires_grad=True)))
+
+
+@pytest.mark.parametrize("dtype", ["i8", "i4", "u1", "u8", ">i4"])
+@pytest.mark.parametrize("dimensions", DIMENSIONS)
+def test_whole_numbers_without_ends_in_any_order_of_memory(dimensions: int, dtype: str) -> None:
+    boxes = np.arange(14 * dimensions).reshape(7, 2 * dimensions).astype(dtype) % 50
+    boxes[:, dimensions:] += 40
+    boxes[3] = boxes[2] + np.array(40, dtype)  # touches, in one corner
+    wanted = sap.find_pairs(boxes.tolist(), closed="left").tolist()
+    for form in (boxes, np.asfortranarray(boxes), np.repeat(boxes, 2, axis=0)[::2], boxes[:, ::-1][:, ::-1]):
+        assert sap.find_pairs(form, closed="left").tolist() == wanted
+        assert sorted(sap.find_pairs_between(form, form, closed="neither").tolist()) == sorted(
+            [*wanted, *([b, a] for a, b in wanted), *([row, row] for row in range(7))]
+        )
+    assert sap.count_pairs(np.array([[2**53, 2**53 + 1], [2**53 + 1, 2**53 + 2]]), closed="left") == 0
+    assert sap.count_pairs(np.array([[0, 0], [0, 2]]), closed="left") == 0

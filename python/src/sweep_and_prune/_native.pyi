@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from ._arrays import Floats, Ids, Pairs
 
-__all__ = ["Finder", "World", "in_order", "nearest_of_rows", "ranks", "stop_threads"]
+__all__ = ["Finder", "World", "in_order", "nearest_of_rows", "ranks", "stop_threads", "take_ends"]
 __all__ += ["read_cells", "read_ends_of_variants", "read_lines", "read_names", "read_numbers"]
 
 _Words = tuple[int, int, int, bool]
@@ -69,6 +69,7 @@ class World:
     def shrink_to_fit(self) -> None: ...
     def state_hash(self) -> int: ...
 
+def take_ends(boxes: Floats) -> bool: ...
 def ranks(sorted: NDArray[Any], values: NDArray[Any], or_equal: bool) -> NDArray[np.int64]: ...
 def in_order(
     first: NDArray[np.int64], second: NDArray[np.int64], rows: int

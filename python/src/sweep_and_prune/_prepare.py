@@ -28,6 +28,7 @@ from ._columns import (
 from ._crs import difference
 from ._errors import InvalidBoxError
 from ._inputs import Raw, checked_format, crs_of, every_column, has_columns, named_column, with_rows
+from ._native import take_ends
 from ._wrap import (
     checked_wrap,
     cut,
@@ -182,6 +183,9 @@ def _plain_rows(sets: dict[str, NDArray[Any]], is_closed: bool) -> list[Floats] 
     if len(arrays) == 2:
         arrays = list(same_width(*arrays))
     are_whole = all(array.dtype.kind in "iu" for array in arrays)
+    if are_whole and not is_closed:
+        copies: list[Floats] = [array.astype(np.float64, order="C") for array in arrays]
+        return copies if all(map(take_ends, copies)) else None
     if not (are_whole or all(array.dtype.kind == "f" for array in arrays)) or any(map(is_rounded, arrays)):
         return None
     # (The search itself refuses what is not valid, but does not see what is moved.)
@@ -190,7 +194,7 @@ def _plain_rows(sets: dict[str, NDArray[Any]], is_closed: bool) -> list[Floats] 
     rows = [numbers(array, name) for array, name in zip(arrays, sets)]
     if len(rows) == 2 and rows[0].dtype != rows[1].dtype:  # both are compared in double precision
         rows = [array.astype(np.float64, copy=False) for array in rows]
-    return rows if is_closed else [_without_ends(array, are_whole) for array in rows]
+    return rows if is_closed else [_without_ends(array, are_whole=False) for array in rows]
 
 
 def _grouped(prepared: Prepared, of_group: list[NDArray[np.int64]] | None, fold: bool = False) -> Prepared:
