@@ -143,17 +143,17 @@ impl<T: Scalar> Ranks<T> {
         let all = 0..boxes.len();
         if others.len() <= MOST_LOOKED_UP_ON_BOTH_SIDES {
             let line = self.line(boxes, others, Side::Both)?;
-            line.each(all, task, |count| counts.push(count - itself))?;
+            line.each(all, task, |found| counts.extend(found.iter().map(|count| count - itself)))?;
             return Ok(counts);
         }
         let task = Task { share: task.share / 2.0, ..task };
         let begun = self.line(boxes, others, Side::Begins)?;
-        begun.each(all.clone(), task, |begun| counts.push(begun - itself))?;
-        let mut next = counts.iter_mut();
-        self.line(boxes, others, Side::Ends)?.each(all, task, |ended| {
-            if let Some(count) = next.next() {
-                *count -= ended;
-            }
+        begun.each(all.clone(), task, |found| {
+            counts.extend(found.iter().map(|begun| begun - itself))
+        })?;
+        let mut rest = counts.iter_mut();
+        self.line(boxes, others, Side::Ends)?.each(all, task, |found| {
+            found.iter().zip(&mut rest).for_each(|(ended, count)| *count -= ended);
         })?;
         Ok(counts)
     }
@@ -252,11 +252,13 @@ impl<const D: usize, T: Scalar> Line<'_, D, T> {
     /// [`Stop::Invalid`], [`Stop::Cancelled`].
     fn sum(&self, range: Range<usize>, task: Task<'_>) -> Result<u64, Stop> {
         let mut sum = 0;
-        self.each(range, task, |count| sum += u64::from(count))?;
+        self.each(range, task, |found| {
+            sum += found.iter().map(|&count| u64::from(count)).sum::<u64>()
+        })?;
         Ok(sum)
     }
 
-    /// Passes on what is counted for each box of a range.
+    /// Passes on what is counted for each box of a range, block by block.
     ///
     /// # Errors
     /// [`Stop::Invalid`], [`Stop::Cancelled`].
@@ -265,7 +267,7 @@ impl<const D: usize, T: Scalar> Line<'_, D, T> {
         &self,
         range: Range<usize>,
         task: Task<'_>,
-        mut take: impl FnMut(u32),
+        mut take: impl FnMut(&[u32]),
     ) -> Result<(), Stop> {
         let mut counts = [0; BLOCK];
         for block in self.boxes[range].chunks(BLOCK) {
@@ -287,7 +289,7 @@ impl<const D: usize, T: Scalar> Line<'_, D, T> {
                     ranked.look_up(begins, |edge, at| edge < at, |at, rank| counts[at] -= rank);
                 }
             }
-            counts[..block.len()].iter().for_each(|&count| take(count));
+            take(&counts[..block.len()]);
             if task.progress.is_some() {
                 task.done(block.len() as f64 / self.boxes.len() as f64)?;
             }

@@ -72,7 +72,7 @@ function codeBelow(file: string, heading: string): string {
 
 /** The table below a heading, whose cells are code. */
 function tableBelow(file: string, heading: string): string {
-  const [head = [], , ...rows] = below(file, heading).filter((line) => line.startsWith("|")).map((line) => line.slice(2, -2).split(" | "));
+  const [head = [], , ...rows] = below(file, heading).filter((line) => line.startsWith("|")).map((line) => line.slice(1, -1).split("|").map((cell) => cell.trim()));
   const cell = (text: string): string => text.replaceAll("<", "&lt;").replace(/`([^`]*)`/g, "<code>$1</code>");
   return `<div class="table-scroll" tabindex="0" role="region" aria-label="${heading} and sap">
         <table><thead><tr>${head.map((text) => `<th scope="col">${cell(text)}</th>`).join("")}</tr></thead>
