@@ -12,11 +12,10 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Array, numbers};
 use crate::run::run;
+use crate::whole::EXACT;
 
 /// More digits than this might not fit in an `i64`.
 const MOST_DIGITS: usize = 18;
-/// Double precision has all integers up to this one.
-const EXACT: f64 = 9_007_199_254_740_992.0;
 /// Python's reader of CSV refuses longer cells.
 const LONGEST_LINE: usize = 131_072;
 

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use crate::run::run;
 
 /// Double precision has all integers up to this one. Others may have been rounded to it.
-const EXACT: f64 = 9_007_199_254_740_992.0;
+pub const EXACT: f64 = 9_007_199_254_740_992.0;
 
 /// Takes the ends from boxes of whole numbers: max corners become the next smaller whole ones, so that boxes that touched do not
 /// overlap. The array is the package's own: nothing else reads or writes it during the call. One pass takes the time of one of

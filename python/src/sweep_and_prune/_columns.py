@@ -57,9 +57,14 @@ class Column(NamedTuple):
         """How many rows it has."""
         return len(self.values if self.codes is None else self.codes)
 
+    @property
+    def present(self) -> NDArray[Any]:
+        """The values without those that are missing."""
+        return self.values if self.missing is None else self.values[~self.missing]
+
     def kinds(self) -> set[str]:
         """What the values are, in words; an empty set if there are none."""
-        values = self.values if self.missing is None else self.values[~self.missing]
+        values = self.present
         if len(values) == 0:
             return set()
         if values.dtype.kind == "O":

@@ -430,10 +430,10 @@ def _opened(options: Options) -> Iterator[list[Source]]:
     if options.files.count("-") > 1:
         raise FileError("standard input can be read once: pass one file by its name")
     sources = []
+    # With a file of genomics, which has no header, the option is for the other one.
+    is_for_all = all(kind_of_file(path) in GENOMIC for path in options.files)
     for path in options.files:
         with _progress("reading", options) as progress:
-            # With a file of genomics, which has no header, the option is for the other one.
-            is_for_all = all(kind_of_file(other) in GENOMIC for other in options.files)
             header = options.header if is_for_all or kind_of_file(path) not in GENOMIC else None
             sources.append(read(path, options.from_, header, progress))
     try:
@@ -531,7 +531,8 @@ def _search(options: Options, sources: list[Source]) -> tuple[list[Any], dict[st
 def _note_other_names(sources: list[Source], groups: list[list[Column]]) -> None:
     """Says so if two files have no group in common, or if groups differ by what is before them: `chr1` and `1`."""
     for columns in zip(*groups):
-        names = [_present(column) for column in columns if column.codes is not None]
+        present = [column.present.tolist() for column in columns if column.codes is not None]
+        names = [[one for one in of_file if one == one] for of_file in present]
         if len(names) < 2 or not all(names):
             continue
         first, second = names[0][0], names[1][0]
@@ -547,12 +548,6 @@ def _note_other_names(sources: list[Source], groups: list[list[Column]]) -> None
             places = f"{shown[0]} in {sources[0].name} and {shown[1]} in {sources[1].name}"
             click.echo(f"sap: {fault}, such as {places}", err=True)
             return
-
-
-def _present(column: Column) -> list[Any]:
-    """The different values of a column."""
-    values = column.values if column.missing is None else column.values[~column.missing]
-    return [one for one in values.tolist() if one == one]
 
 
 def _alike(first: list[Any], second: list[Any]) -> Iterator[tuple[str, str]]:

@@ -477,9 +477,7 @@ def _overlap_without_ends(corners: list[Values], pairs: NDArray[np.int64]) -> ND
     half = corners[0].shape[1] // 2
     overlap = np.ones(len(pairs), bool)
     for axis in range(half):
-        (low_a, high_a), (low_b, high_b) = (
-            (boxes[:, axis][rows], boxes[:, axis + half][rows]) for boxes, rows in zip(corners, pairs.T)
-        )
+        (low_a, high_a), (low_b, high_b) = _ends_of(corners, pairs, axis)
         overlap &= np.asarray(np.maximum(low_a, low_b) < np.minimum(high_a, high_b), bool)
     return overlap
 
@@ -489,13 +487,17 @@ def _translated(prepared: Prepared, rows_of_a: Any, rows_of_b: Any) -> NDArray[n
     return np.stack(columns, axis=1).astype(np.int64)
 
 
+def _ends_of(corners: list[Values], pairs: NDArray[np.int64], axis: int) -> list[tuple[Values, Values]]:
+    """Where the boxes of each pair begin and end on an axis, for each of the two sets."""
+    half = corners[0].shape[1] // 2
+    return [(boxes[:, axis][rows], boxes[:, axis + half][rows]) for boxes, rows in zip(corners, pairs.T)]
+
+
 def _distances(corners: list[Values], pairs: NDArray[np.int64]) -> Values:
     half = corners[0].shape[1] // 2
     of_axes = []
     for axis in range(half):
-        (low_a, high_a), (low_b, high_b) = (
-            (boxes[:, axis][rows], boxes[:, axis + half][rows]) for boxes, rows in zip(corners, pairs.T)
-        )
+        (low_a, high_a), (low_b, high_b) = _ends_of(corners, pairs, axis)
         with np.errstate(over="ignore", invalid="ignore"):
             gaps = np.maximum(low_a - high_b, low_b - high_a)
         zero = np.zeros((), gaps.dtype)

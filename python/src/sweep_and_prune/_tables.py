@@ -709,8 +709,7 @@ def _refuse_written_otherwise(sources: list[Source], names: list[str], columns: 
 
 def _different(column: Column) -> dict[Any, None]:
     """The different values of a column, in the order in which they appear."""
-    values = column.values if column.missing is None else column.values[~column.missing]
-    return dict.fromkeys(values.tolist())
+    return dict.fromkeys(column.present.tolist())
 
 
 def _number_of(value: Any) -> Any:
