@@ -7,6 +7,7 @@
 //! single lines are prefetched.
 
 use core::hint::black_box;
+use core::ops::Range;
 
 /// Bytes of a cache line.
 const LINE: usize = 64;
@@ -32,6 +33,16 @@ pub fn prefetch_pays<V>(table: &[V]) -> bool {
 #[inline(always)]
 pub fn prefetch_item<V>(table: &[V], at: usize) {
     prefetch(table.as_ptr().wrapping_add(at));
+}
+
+/// Prefetches the cache lines of a range of items, which may be out of bounds. The processor itself prefetches what is read in
+/// order, but not far enough where other memory is read in no order beside it.
+#[inline(always)]
+pub fn prefetch_range<V>(table: &[V], range: Range<usize>) {
+    let start = table.as_ptr().wrapping_add(range.start).cast::<u8>();
+    for line in 0..(range.len() * size_of::<V>()).div_ceil(LINE) {
+        prefetch(start.wrapping_add(line * LINE));
+    }
 }
 
 /// Prefetches the cache line of an address, which may be any.

@@ -24,12 +24,13 @@ use core::ops::{ControlFlow, Range};
 use super::grid::BLOCK;
 use super::kernel::{PAD, SortedBoxes};
 use super::one_by_one::OneByOne;
+use super::ranks::AHEAD;
 use super::sink::Sink;
 use super::sort::intervals;
 use super::source::Source;
 use super::task::{Progress, Stop, Task};
 use crate::geometry::{Arithmetic, Quantizer};
-use crate::memory::grow;
+use crate::memory::{grow, prefetch_item, prefetch_range};
 use crate::sampling::positions;
 use crate::{Aabb, Scalar};
 
@@ -174,9 +175,17 @@ impl<const D: usize, T: Scalar, S: Source<D, T>> OneByOne<D, T> for Lookup<'_, S
         let (mut out, mut count) = (sink.spare()?, 0);
         for start in range.clone().step_by(BLOCK) {
             let block = &larger[start..range.end.min(start + BLOCK)];
+            prefetch_range(larger, start + AHEAD..start + AHEAD + BLOCK);
             for (first, each) in first.iter_mut().zip(block) {
                 let at = each.aabb().min[0];
                 *first = self.first[T::Arithmetic::cell(at, &self.quantizer) as usize];
+            }
+            if self.boxes.len() > MOST_CACHED_BOXES {
+                for &first in &first[..block.len()] {
+                    prefetch_item(left, first as usize);
+                    prefetch_item(right, first as usize);
+                    prefetch_item(&self.boxes.id, first as usize);
+                }
             }
             for (id, (each, &first)) in (start as u32..).zip(block.iter().zip(&first)) {
                 let aabb = each.aabb();

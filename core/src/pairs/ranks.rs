@@ -27,7 +27,7 @@ use super::sink::{Count, Sink};
 use super::sort::intervals;
 use super::task::{Stop, Task};
 use crate::geometry::{Arithmetic, Quantizer};
-use crate::memory::grow;
+use crate::memory::{grow, prefetch_item, prefetch_pays, prefetch_range};
 use crate::sampling::positions;
 use crate::{Aabb, Scalar};
 
@@ -42,6 +42,8 @@ const FAR_EDGES: usize = 2;
 /// Edges are far away if without them the sample reaches over less than one part in this many.
 const FAR: f64 = 8.0;
 
+/// So far ahead boxes are prefetched that will be looked up. (A million in no order take 0.8 of the time, ten million 0.6.)
+pub(super) const AHEAD: usize = 4 * BLOCK;
 /// Among more boxes, the two edges are looked up one after the other: the tables of both do not fit a cache. (9.9 million among
 /// 1.2 million took 0.72 s instead of 0.36; 1 million among 100,000 take 0.7 of the time on both sides at once.)
 const MOST_LOOKED_UP_ON_BOTH_SIDES: usize = 1 << 18;
@@ -270,7 +272,9 @@ impl<const D: usize, T: Scalar> Line<'_, D, T> {
         mut take: impl FnMut(&[u32]),
     ) -> Result<(), Stop> {
         let mut counts = [0; BLOCK];
-        for block in self.boxes[range].chunks(BLOCK) {
+        let starts = range.clone().step_by(BLOCK);
+        for (start, block) in starts.zip(self.boxes[range].chunks(BLOCK)) {
+            prefetch_range(self.boxes, start + AHEAD..start + AHEAD + BLOCK);
             if !is_valid(&block) {
                 return Err(Stop::Invalid);
             }
@@ -311,8 +315,16 @@ impl<T: Scalar> Ranked<'_, T> {
         for (cell, at) in cells.iter_mut().zip(coordinates.clone()) {
             *cell = T::Arithmetic::cell(at, &self.quantizer);
         }
-        for (place, (&cell, at)) in cells.iter().zip(coordinates).enumerate() {
-            let [begin, end] = [self.cells[cell as usize], self.cells[cell as usize + 1]];
+        // In steps of their own, so that more of a large table is waited for at the same time. (A million among 100,000 take 0.8
+        // of the time.)
+        let mut parts = [[0; 2]; BLOCK];
+        for (part, &cell) in parts.iter_mut().zip(&cells) {
+            *part = [self.cells[cell as usize], self.cells[cell as usize + 1]];
+        }
+        if prefetch_pays(self.edges) {
+            parts.iter().for_each(|part| prefetch_item(self.edges, part[0] as usize));
+        }
+        for (place, (&[begin, end], at)) in parts.iter().zip(coordinates).enumerate() {
             let edges = &self.edges[begin as usize..];
             let less = if is_crowded(begin, end) {
                 edges[..(end - begin) as usize].partition_point(|&edge| is_less(edge, at)) as u32
