@@ -49,7 +49,7 @@ pub(super) struct Driver<const D: usize, T: Scalar, P = ()> {
     sorter: Sorter<T>,
     sorted: [SortedBoxes<T>; 2],
     /// For lookups among boxes, or first among the short ones and then among the long ones.
-    tables: [Table; 2],
+    tables: [Table<T>; 2],
     spans: Spans,
     pub placements: Placements,
     /// Spare columns and groups by size, one for each level at which plans were ever nested, if memory allows.

@@ -30,7 +30,7 @@ use super::sort::intervals;
 use super::source::Source;
 use super::task::{Progress, Stop, Task};
 use crate::geometry::{Arithmetic, Quantizer};
-use crate::memory::{grow, prefetch_item, prefetch_range};
+use crate::memory::{grow, prefetch_range};
 use crate::sampling::positions;
 use crate::{Aabb, Scalar};
 
@@ -107,13 +107,23 @@ pub(super) fn move_long<T: Scalar>(
 
 /// Where to begin among the sorted boxes, for each cell of the line.
 #[derive(Debug, Default)]
-pub(super) struct Table {
+pub(super) struct Table<T> {
     first: Vec<u32>,
+    intervals: Vec<Interval<T>>,
+}
+
+/// A sorted box. All of it is read together, most often from one cache line.
+#[derive(Clone, Copy, Debug, Default)]
+struct Interval<T> {
+    left: T,
+    right: T,
+    id: u32,
 }
 
 /// The sorted boxes and their table, and the boxes that look them up.
 pub(super) struct Lookup<'a, S, T> {
-    boxes: &'a SortedBoxes<T>,
+    /// With padding behind the last, whose left edges are NaN.
+    sorted: &'a [Interval<T>],
     first: &'a [u32],
     quantizer: Quantizer<T>,
     larger: &'a [S],
@@ -121,12 +131,12 @@ pub(super) struct Lookup<'a, S, T> {
     swap: bool,
 }
 
-impl Table {
+impl<T: Scalar> Table<T> {
     /// For sorted boxes, at least one, which boxes of a larger set look up. None if too many tests would
     /// fail. `swap`: the sorted ones are the first set.
-    pub fn fill<'a, const D: usize, T: Scalar, S: Source<D, T>>(
+    pub fn fill<'a, const D: usize, S: Source<D, T>>(
         &'a mut self,
-        boxes: &'a SortedBoxes<T>,
+        boxes: &SortedBoxes<T>,
         larger: &'a [S],
         swap: bool,
     ) -> Result<Option<Lookup<'a, S, T>>, TryReserveError> {
@@ -159,7 +169,17 @@ impl Table {
         let sample = positions(larger.len(), SAMPLED_BOXES);
         let few = MEAN_FAILED_TESTS * sample.len();
         let is_crowded = sample.map(failed).sum::<usize>() > few;
-        Ok((!is_crowded).then_some(Lookup { boxes, first, quantizer, larger, swap }))
+        if is_crowded {
+            return Ok(None);
+        }
+        let padded = left.len() + TESTED_AT_A_TIME;
+        grow(&mut self.intervals, padded, Interval::default())?;
+        let sorted = &mut self.intervals[..padded];
+        for (i, interval) in sorted.iter_mut().enumerate() {
+            let (left, right, id) = (boxes.left[i], boxes.right[i], boxes.id[i]);
+            *interval = Interval { left, right, id };
+        }
+        Ok(Some(Lookup { sorted, first, quantizer, larger, swap }))
     }
 }
 
@@ -169,9 +189,42 @@ impl<const D: usize, T: Scalar, S: Source<D, T>> OneByOne<D, T> for Lookup<'_, S
     }
 
     fn run<O: Sink>(&self, range: Range<usize>, task: Task<'_>, sink: &mut O) -> Result<(), Stop> {
-        let Self { larger, swap, .. } = *self;
-        let [left, right] = [&self.boxes.left, &self.boxes.right].map(|edges| &edges[..]);
+        if self.swap {
+            self.look_up(range, task, sink, |id, other| [other, id])
+        } else {
+            self.look_up(range, task, sink, |id, other| [id, other])
+        }
+    }
+}
+
+impl<S, T: Scalar> Lookup<'_, S, T> {
+    #[inline(always)]
+    fn look_up<const D: usize, O: Sink>(
+        &self,
+        range: Range<usize>,
+        task: Task<'_>,
+        sink: &mut O,
+        pair: impl Fn(u32, u32) -> [u32; 2],
+    ) -> Result<(), Stop>
+    where
+        S: Source<D, T>,
+    {
+        let Self { larger, sorted, .. } = *self;
+        // Tests some sorted boxes. Returns how many pairs it wrote, and whether all of these boxes begin within this one.
+        let test = |each: &S, id: usize, next: u32, to: &mut [[u32; 2]]| {
+            let (begin, end) = (each.aabb().min[0], each.aabb().max[0]);
+            let (mut found, mut begins) = (0, false);
+            for other in &sorted[next as usize..][..TESTED_AT_A_TIME] {
+                to[found] = pair(id as u32, other.id);
+                // Behind the last box the left edges are NaN.
+                begins = other.left <= end;
+                // Not `&&`: which of them overlap is unpredictable.
+                found += usize::from(begins & (begin <= other.right));
+            }
+            (found, begins)
+        };
         let mut first = [0; BLOCK];
+        let mut waiting = [0; BLOCK];
         let (mut out, mut count) = (sink.spare()?, 0);
         for start in range.clone().step_by(BLOCK) {
             let block = &larger[start..range.end.min(start + BLOCK)];
@@ -180,45 +233,55 @@ impl<const D: usize, T: Scalar, S: Source<D, T>> OneByOne<D, T> for Lookup<'_, S
                 let at = each.aabb().min[0];
                 *first = self.first[T::Arithmetic::cell(at, &self.quantizer) as usize];
             }
-            if self.boxes.len() > MOST_CACHED_BOXES {
+            if sorted.len() > MOST_CACHED_BOXES {
                 for &first in &first[..block.len()] {
-                    prefetch_item(left, first as usize);
-                    prefetch_item(right, first as usize);
-                    prefetch_item(&self.boxes.id, first as usize);
+                    prefetch_range(sorted, first as usize..first as usize + TESTED_AT_A_TIME);
                 }
             }
-            for (id, (each, &first)) in (start as u32..).zip(block.iter().zip(&first)) {
-                let aabb = each.aabb();
-                let mut next = first as usize;
+            // Those that have to test more than a few wait, since a branch on it would be unpredictable. (10,000 to a million boxes
+            // in no order take 0.9 of the time.)
+            let mut left = 0;
+            for (at, (each, next)) in block.iter().zip(&mut first).enumerate() {
+                if out.len() - count < TESTED_AT_A_TIME {
+                    (out, count) = (next_spare(sink, count, task)?, 0);
+                }
+                let to = &mut out[count..count + TESTED_AT_A_TIME];
+                let (found, begins) = test(each, start + at, *next, to);
+                count += found;
+                *next += TESTED_AT_A_TIME as u32;
+                waiting[left] = at as u8;
+                left += usize::from(begins);
+            }
+            for &at in &waiting[..left] {
+                let (each, id) = (&block[at as usize], start + at as usize);
+                let mut next = first[at as usize];
                 let mut is_done = false;
                 while !is_done {
                     if out.len() - count < TESTED_AT_A_TIME {
-                        sink.take(count)?;
-                        if task.progress.map(Progress::report) == Some(ControlFlow::Break(())) {
-                            return Err(Stop::Cancelled);
-                        }
-                        (out, count) = (sink.spare()?, 0);
+                        (out, count) = (next_spare(sink, count, task)?, 0);
                     }
                     let to = &mut out[count..count + TESTED_AT_A_TIME];
-                    let tested = next..next + TESTED_AT_A_TIME;
-                    let [left, right] = [&left[tested.clone()], &right[tested.clone()]];
-                    let ids = &self.boxes.id[tested];
-                    let mut found = 0;
-                    for at in 0..TESTED_AT_A_TIME {
-                        to[found] = if swap { [ids[at], id] } else { [id, ids[at]] };
-                        // Behind the last box the left edges are NaN.
-                        let begins = left[at] <= aabb.max[0];
-                        // Not `&&`: which of them overlap is unpredictable.
-                        found += usize::from(begins & (aabb.min[0] <= right[at]));
-                        is_done = !begins;
-                    }
-                    count += found;
-                    next += TESTED_AT_A_TIME;
+                    let (found, begins) = test(each, id, next, to);
+                    (count, is_done) = (count + found, !begins);
+                    next += TESTED_AT_A_TIME as u32;
                 }
             }
         }
         sink.take(count)
     }
+}
+
+/// Hands over the pairs that were written, and returns where to write more.
+fn next_spare<'s, O: Sink>(
+    sink: &'s mut O,
+    count: usize,
+    task: Task<'_>,
+) -> Result<&'s mut [[u32; 2]], Stop> {
+    sink.take(count)?;
+    if task.progress.map(Progress::report) == Some(ControlFlow::Break(())) {
+        return Err(Stop::Cancelled);
+    }
+    sink.spare()
 }
 
 #[cfg(test)]
