@@ -14,9 +14,11 @@ use numpy::{
 use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
+use pyo3::types::PySlice;
 use sweep_and_prune_bindings::Kind;
 
 use crate::run::call;
+use crate::whole::convert;
 
 pub type Array<'py> = Bound<'py, PyAny>;
 
@@ -27,16 +29,56 @@ pub fn copy_boxes(
     kind: Kind,
     rows: impl FnOnce(usize) -> Option<*mut u8>,
 ) -> PyResult<usize> {
-    let shape = match *array.cast::<PyUntypedArray>()?.shape() {
-        [count, width] if width == 2 * kind.dimensions => [count, width],
-        _ => return Err(PyValueError::new_err("rows of the right width are expected")),
-    };
-    let memory = rows(shape[0]).ok_or_else(|| PyMemoryError::new_err("no memory for the boxes"))?;
+    let (shape, memory) = reserve(array, kind, rows)?;
     match kind.is_double {
         true => copy_rows::<f64>(array, shape, memory.cast())?,
         false => copy_rows::<f32>(array, shape, memory.cast())?,
     }
     Ok(shape[0])
+}
+
+/// Copies boxes of integers to rows of double precision as [`copy_boxes`] does, and changes them as [`convert`] does. `None`,
+/// with rows that are changed in part, if it finds numbers or boxes that it refuses.
+pub fn convert_boxes(
+    array: &Array<'_>,
+    kind: Kind,
+    take_ends: bool,
+    rows: impl FnOnce(usize) -> Option<*mut u8>,
+) -> PyResult<Option<usize>> {
+    let ([count, width], memory) = reserve(array, kind, rows)?;
+    if !kind.is_double {
+        return Ok(None);
+    }
+    for start in (0..count).step_by(ROWS_AT_A_TIME) {
+        let end = count.min(start + ROWS_AT_A_TIME);
+        let part = PySlice::new(array.py(), start as isize, end as isize, 1);
+        let memory = memory.cast::<f64>().wrapping_add(start * width);
+        copy_rows(&array.get_item(part)?, [end - start, width], memory)?;
+        // SAFETY: these rows were written just now, and nothing else refers to them.
+        #[allow(unsafe_code)]
+        let numbers = unsafe { std::slice::from_raw_parts_mut(memory, (end - start) * width) };
+        if !convert(numbers, width, take_ends) {
+            return Ok(None);
+        }
+    }
+    Ok(Some(count))
+}
+
+/// So many rows are converted at a time: they stay in the cache until they are checked.
+const ROWS_AT_A_TIME: usize = 1 << 13;
+
+/// The shape of an array of boxes, and memory for them.
+fn reserve(
+    array: &Array<'_>,
+    kind: Kind,
+    rows: impl FnOnce(usize) -> Option<*mut u8>,
+) -> PyResult<([usize; 2], *mut u8)> {
+    let shape = match *array.cast::<PyUntypedArray>()?.shape() {
+        [count, width] if width == 2 * kind.dimensions => [count, width],
+        _ => return Err(PyValueError::new_err("rows of the right width are expected")),
+    };
+    let memory = rows(shape[0]).ok_or_else(|| PyMemoryError::new_err("no memory for the boxes"))?;
+    Ok((shape, memory))
 }
 
 fn copy_rows<T: Element>(array: &Array<'_>, shape: [usize; 2], memory: *mut T) -> PyResult<()> {

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use sweep_and_prune::Error;
 use sweep_and_prune_bindings::{ArrayPairFinder, Kind};
 
-use crate::arrays::{Array, Index, MANY, copy_boxes, numbers};
+use crate::arrays::{Array, Index, MANY, convert_boxes, copy_boxes, numbers};
 use crate::errors::{busy, raise};
 use crate::run::{attach, call_back, processors, run};
 
@@ -68,30 +68,31 @@ impl Finder {
         })
     }
 
-    #[pyo3(signature = (a, b=None, index="int64", progress=None))]
+    /// All pairs. With `take_ends`, boxes are integers that are converted as `whole.rs` says. None if they cannot be.
     fn find<'py>(
         &self,
         a: Array<'py>,
         b: Option<Array<'py>>,
+        take_ends: Option<bool>,
         index: &str,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Array<'py>> {
+    ) -> PyResult<Option<Array<'py>>> {
         let (py, index) = (a.py(), Index::of(index)?);
         self.with(|search| {
-            let sets = search.copy(&a, b.as_ref())?;
+            let Some(sets) = search.copy(&a, b.as_ref(), take_ends)? else { return Ok(None) };
             search.choose_threads(sets);
             let finder = &mut search.finder;
             let found = run(py, sets.boxes(), search.threads, progress.as_ref(), |progress| {
                 finder.find(sets.a, sets.b, progress).map(|found| found.unwrap_or(&[]))
             });
             match found {
-                Ok(Ok(found)) if found.len() < MANY => index.pairs(py, found),
+                Ok(Ok(found)) if found.len() < MANY => index.pairs(py, found).map(Some),
                 Ok(Ok(_)) => {
                     let found = search.finder.take_pairs();
                     if search.threads > 1 && found.len() >= MANY_TO_TRIM {
                         return_freed_memory();
                     }
-                    index.many_pairs(py, found)
+                    index.many_pairs(py, found).map(Some)
                 }
                 Ok(Err(error)) => Err(raise_for(py, error, sets)),
                 Err(error) => Err(search.fail(error)),
@@ -99,41 +100,46 @@ impl Finder {
         })
     }
 
-    #[pyo3(signature = (a, b=None, progress=None))]
+    /// How many pairs there are; None as in `find`.
     fn count(
         &self,
         a: Array<'_>,
         b: Option<Array<'_>>,
+        take_ends: Option<bool>,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<u64> {
+    ) -> PyResult<Option<u64>> {
         let py = a.py();
         self.with(|search| {
-            let sets = search.copy(&a, b.as_ref())?;
+            let Some(sets) = search.copy(&a, b.as_ref(), take_ends)? else { return Ok(None) };
             search.choose_threads(sets);
             let finder = &mut search.finder;
             let counted = run(py, sets.boxes(), search.threads, progress.as_ref(), |progress| {
                 finder.count(sets.a, sets.b, progress).map(|count| count.unwrap_or(0))
             });
             match counted {
-                Ok(Ok(count)) => Ok(count),
+                Ok(Ok(count)) => Ok(Some(count)),
                 Ok(Err(error)) => Err(raise_for(py, error, sets)),
                 Err(error) => Err(search.fail(error)),
             }
         })
     }
 
-    /// How many boxes each box of `a` overlaps.
-    #[pyo3(signature = (a, b=None))]
-    fn counts<'py>(&self, a: Array<'py>, b: Option<Array<'py>>) -> PyResult<Array<'py>> {
+    /// How many boxes each box of `a` overlaps; None as in `find`.
+    fn counts<'py>(
+        &self,
+        a: Array<'py>,
+        b: Option<Array<'py>>,
+        take_ends: Option<bool>,
+    ) -> PyResult<Option<Array<'py>>> {
         let py = a.py();
         self.with(|search| {
-            let sets = search.copy(&a, b.as_ref())?;
+            let Some(sets) = search.copy(&a, b.as_ref(), take_ends)? else { return Ok(None) };
             let finder = &mut search.finder;
             let counted = run(py, sets.boxes(), 1, None, |progress| {
                 finder.counts(sets.a, sets.b, progress).map(Option::unwrap_or_default)
             });
             match counted {
-                Ok(Ok(counts)) => numbers(py, counts.into_iter().map(i64::from)),
+                Ok(Ok(counts)) => numbers(py, counts.into_iter().map(i64::from)).map(Some),
                 Ok(Err(error)) => Err(raise_for(py, error, sets)),
                 Err(error) => Err(search.fail(error)),
             }
@@ -151,7 +157,7 @@ impl Finder {
     ) -> PyResult<bool> {
         let (py, index) = (a.py(), Index::of(index)?);
         self.with(|search| {
-            let sets = search.copy(&a, b.as_ref())?;
+            let Some(sets) = search.copy(&a, b.as_ref(), None)? else { return Ok(true) };
             let (finder, each) = (&mut search.finder, each.unbind());
             let streamed = run(py, sets.boxes(), 1, None, |_| {
                 let mut buffer: Vec<[u32; 2]> = Vec::new();
@@ -215,11 +221,23 @@ impl Finder {
 }
 
 impl Search {
-    fn copy(&mut self, a: &Array<'_>, b: Option<&Array<'_>>) -> PyResult<Sets> {
-        let finder = &mut self.finder;
-        let a = copy_boxes(a, self.kind, |count| finder.rows(0, count))?;
-        let b = b.map(|b| copy_boxes(b, self.kind, |count| finder.rows(1, count))).transpose()?;
-        Ok(Sets { a, b })
+    /// Copies the boxes to the finder's rows. `None` if integers cannot be converted.
+    fn copy(
+        &mut self,
+        a: &Array<'_>,
+        b: Option<&Array<'_>>,
+        take_ends: Option<bool>,
+    ) -> PyResult<Option<Sets>> {
+        let Self { finder, kind, .. } = self;
+        let mut copy = |set, boxes: &Array<'_>| match take_ends {
+            None => copy_boxes(boxes, *kind, |count| finder.rows(set, count)).map(Some),
+            Some(take_ends) => {
+                convert_boxes(boxes, *kind, take_ends, |count| finder.rows(set, count))
+            }
+        };
+        let Some(a) = copy(0, a)? else { return Ok(None) };
+        let Some(b) = b else { return Ok(Some(Sets { a, b: None })) };
+        Ok(copy(1, b)?.map(|b| Sets { a, b: Some(b) }))
     }
 
     /// Uses several threads for what takes long enough.

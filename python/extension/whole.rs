@@ -13,7 +13,7 @@ pub const EXACT: f64 = 9_007_199_254_740_992.0;
 /// overlap. The array is the package's own: nothing else reads or writes it during the call. One pass takes the time of one of
 /// the five that NumPy needs.
 ///
-/// False, with boxes that are changed in part, if a box has no length on some axis, or numbers that may be rounded.
+/// What is returned, see [`convert`].
 #[pyfunction]
 pub fn take_ends(boxes: &Bound<'_, PyArray2<f64>>) -> PyResult<bool> {
     let (py, width) = (boxes.py(), boxes.shape()[1]);
@@ -22,13 +22,19 @@ pub fn take_ends(boxes: &Bound<'_, PyArray2<f64>>) -> PyResult<bool> {
     }
     let mut boxes = boxes.try_readwrite()?;
     let numbers = boxes.as_slice_mut()?;
-    run(py, numbers.len(), 1, None, |_| match width {
-        2 => Some(take_ends_of::<2>(numbers)),
-        4 => Some(take_ends_of::<4>(numbers)),
-        6 => Some(take_ends_of::<6>(numbers)),
-        _ => None,
-    })?
-    .ok_or_else(|| PyValueError::new_err("rows of 2, 4 or 6 numbers are expected"))
+    run(py, numbers.len(), 1, None, |_| convert(numbers, width, true))
+}
+
+/// Checks rows of whole numbers, and takes their ends if they have to be taken. False, with rows that are changed in part, if
+/// there are numbers that may be rounded, or if ends are taken and a box has no length on some axis.
+pub fn convert(numbers: &mut [f64], width: usize, take_ends: bool) -> bool {
+    match (width, take_ends) {
+        (2, true) => take_ends_of::<2>(numbers),
+        (4, true) => take_ends_of::<4>(numbers),
+        (6, true) => take_ends_of::<6>(numbers),
+        // Without branches, so that compilers vectorize it.
+        _ => !take_ends && numbers.iter().fold(true, |all, &number| all & (number.abs() < EXACT)),
+    }
 }
 
 fn take_ends_of<const W: usize>(numbers: &mut [f64]) -> bool {
@@ -36,7 +42,6 @@ fn take_ends_of<const W: usize>(numbers: &mut [f64]) -> bool {
     for row in numbers.as_chunks_mut::<W>().0 {
         for axis in 0..W / 2 {
             let (low, high) = (row[axis], row[axis + W / 2]);
-            // Without branches, so that compilers vectorize it.
             are_sound &= (low < high) & (low > -EXACT) & (high < EXACT);
             row[axis + W / 2] = high - 1.0;
         }

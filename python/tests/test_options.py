@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from oracle import DIMENSIONS, FLOATS, Array, box_sets, in_order, pairs, pairs_between, random_boxes
 
 import sweep_and_prune as sap
-from sweep_and_prune import _prepare
+from sweep_and_prune import _pairs, _prepare
 
 
 def within(a: Array, b: Array, margin: Any, closed: str = "both") -> Array:
@@ -277,7 +277,7 @@ def test_whole_intervals_of_different_groups_never_pair(offset: int, closed: str
 def test_plain_arrays_are_prepared_quickly_and_as_all_others_are(monkeypatch: pytest.MonkeyPatch) -> None:
     random = np.random.default_rng(4)
     dtypes: Any = [np.int8, np.uint16, np.int32, np.int64, np.uint64, np.float16, np.float32, np.float64]
-    plain_rows, quick = _prepare._plain_rows, 0
+    plain, direct = _prepare._plain, 0
     for _ in range(2000):
         sets = []
         for _ in range(random.integers(1, 3)):
@@ -291,15 +291,21 @@ def test_plain_arrays_are_prepared_quickly_and_as_all_others_are(monkeypatch: py
             sets.append(boxes)
         closed: Any = random.choice(np.array(["both", "left", "right", "neither", None]))
         outcomes: list[Any] = []
-        for rows in (plain_rows, lambda sets, is_closed: None):
-            monkeypatch.setattr(_prepare, "_plain_rows", rows)
+        for plain_or_none in (plain, lambda sets: None):
+            monkeypatch.setattr(_prepare, "_plain", plain_or_none)
             try:
                 found = sap.find_pairs(*sets, closed=closed) if len(sets) == 1 else None
                 found = sap.find_pairs_between(*sets, closed=closed) if found is None else found
+                chunks: list[Any] = []
+                for_each: Any = sap.for_each_chunk if len(sets) == 1 else sap.for_each_chunk_between
+                for_each(*sets, chunks.extend, closed=closed)
+                assert np.array(chunks).tolist() == found.tolist()
                 outcomes.append(found.tolist())
             except (sap.InvalidBoxError, TypeError) as error:
                 outcomes.append((str(error), repr(vars(error))))
         assert outcomes[0] == outcomes[1], (sets, closed)
+        monkeypatch.setattr(_prepare, "_plain", plain)
         with suppress(Exception):
-            quick += plain_rows(dict(zip("ab", sets)), closed in ("both", None)) is not None
-    assert quick > 600
+            prepared = _prepare.prepare(dict(zip("ab", sets)), closed=closed, fold=True)
+            direct += prepared.whole is not None and _pairs.counts_of(prepared)[0] is prepared
+    assert direct > 300

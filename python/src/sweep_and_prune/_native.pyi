@@ -15,15 +15,23 @@ _Words = tuple[int, int, int, bool]
 class Finder:
     def __new__(cls, dimensions: int, double: bool, threads: int) -> Finder: ...
     def use_threads(self, threads: int) -> None: ...
+    # With `take_ends`, boxes are integers, and nothing is returned if some are not exact: see `whole.rs`.
     def find(
         self,
-        a: Floats,
-        b: Floats | None = None,
-        index: str = "int64",
-        progress: Callable[[float], object] | None = None,
+        a: NDArray[Any],
+        b: NDArray[Any] | None,
+        take_ends: bool | None,
+        index: str,
+        progress: Callable[[float], object] | None,
     ) -> Pairs: ...
-    def count(self, a: Floats, b: Floats | None = None, progress: Callable[[float], object] | None = None) -> int: ...
-    def counts(self, a: Floats, b: Floats | None = None) -> NDArray[np.int64]: ...
+    def count(
+        self,
+        a: NDArray[Any],
+        b: NDArray[Any] | None,
+        take_ends: bool | None,
+        progress: Callable[[float], object] | None,
+    ) -> int: ...
+    def counts(self, a: NDArray[Any], b: NDArray[Any] | None, take_ends: bool | None) -> NDArray[np.int64]: ...
     def for_each_chunk(
         self, a: Floats, b: Floats | None, each: Callable[[Pairs], object], size: int, index: str
     ) -> bool: ...

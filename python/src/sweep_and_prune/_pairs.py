@@ -501,7 +501,7 @@ class PairFinder:
         2
         """
         return _done(
-            self._finder.find(self._rows(boxes, "boxes", margin), None, self._index, _checked(progress)), progress
+            self._finder.find(self._rows(boxes, "boxes", margin), None, None, self._index, _checked(progress)), progress
         )
 
     def find_between(
@@ -523,7 +523,7 @@ class PairFinder:
         array([[1, 0]])
         """
         rows = self._rows(a, "a", margin), self._rows(b, "b", margin)
-        return _done(self._finder.find(*rows, self._index, _checked(progress)), progress)
+        return _done(self._finder.find(*rows, None, self._index, _checked(progress)), progress)
 
     def count(self, boxes: ArrayLike, *, margin: Margin = 0, progress: Progress | None = None) -> int:
         """Counts the pairs that `find` finds, without storing them.
@@ -540,7 +540,7 @@ class PairFinder:
         >>> sap.PairFinder(dimensions=1).count([[0, 2], [5, 6], [2, 3]])
         1
         """
-        return _done(self._finder.count(self._rows(boxes, "boxes", margin), None, _checked(progress)), progress)
+        return _done(self._finder.count(self._rows(boxes, "boxes", margin), None, None, _checked(progress)), progress)
 
     def count_between(self, a: ArrayLike, b: ArrayLike, *, margin: Margin = 0, progress: Progress | None = None) -> int:
         """Counts the pairs that `find_between` finds, without storing them.
@@ -559,7 +559,8 @@ class PairFinder:
         2
         """
         return _done(
-            self._finder.count(self._rows(a, "a", margin), self._rows(b, "b", margin), _checked(progress)), progress
+            self._finder.count(self._rows(a, "a", margin), self._rows(b, "b", margin), None, _checked(progress)),
+            progress,
         )
 
     def for_each_chunk(
@@ -650,26 +651,36 @@ _Each = Callable[[Pairs], object]
 
 
 def find(prepared: Prepared, threads: int | None, dtype: DTypeLike, progress: Progress | None = None) -> Pairs:
-    index = index_dtype(dtype)
-    found = _search(prepared, threads, lambda finder: finder.find(*_arguments(prepared), index, _checked(progress)))
+    index, report = index_dtype(dtype), _checked(progress)
+    prepared, found = _found(prepared, threads, lambda finder, *given: finder.find(*given, index, report))
     return _done(prepared.translate(found), progress)
 
 
 def _count(prepared: Prepared, threads: int | None, progress: Progress | None) -> int:
     if prepared.is_filtered:
         return len(find(prepared, threads, np.int64, progress))
-    count = _search(prepared, threads, lambda finder: finder.count(*_arguments(prepared), _checked(progress)))
+    report = _checked(progress)
+    count: int = _found(prepared, threads, lambda finder, *given: finder.count(*given, report))[1]
     return _done(count, progress)
 
 
-def counts_of(prepared: Prepared) -> NDArray[np.int64]:
-    """For each box of the first set that is searched, how many others it overlaps. No pair is filtered."""
-    return _search(prepared, 1, lambda finder: finder.counts(*_arguments(prepared)))
+def counts_of(prepared: Prepared) -> tuple[Prepared, NDArray[np.int64]]:
+    """For each box of the first set that is searched, how many others it overlaps; and what was searched. No pair is
+    filtered."""
+    return _found(prepared, 1, lambda finder, *given: finder.counts(*given))
+
+
+def _found(prepared: Prepared, threads: int | None, call: Callable[..., _Result | None]) -> tuple[Prepared, _Result]:
+    """What a call of a finder returns, and what was searched: floating point, if integers have to be."""
+    take_ends = None if prepared.whole is None else prepared.whole.take_ends
+    found = _search(prepared, threads, lambda finder: call(finder, *_arguments(prepared), take_ends))
+    return (prepared, found) if found is not None else _found(prepared.in_floats(), threads, call)
 
 
 def stream(prepared: Prepared, each: _Each, size: int, dtype: DTypeLike) -> bool:
     index = index_dtype(dtype)
     each, size = _chunks(each, size)
+    prepared = prepared.in_floats()
 
     def translated(found: Pairs) -> object:
         pairs = prepared.translate(found)
@@ -791,7 +802,7 @@ def release_buffers() -> None:
 def _search(prepared: Prepared, threads: int | None, call: Callable[[Finder], _Result]) -> _Result:
     """What a call of a finder returns: of the one that this thread used last, if it is of the same kind."""
     rows, count = prepared.sets[0], thread_count(threads)
-    kind = (rows.shape[1] // 2, rows.dtype.itemsize == 8)
+    kind = (rows.shape[1] // 2, rows.dtype != np.float32)
     # Taken out, since what the call calls may search, too.
     last_kind, finder = vars(_idle).pop("last", (None, None))
     if finder is None or last_kind != kind:

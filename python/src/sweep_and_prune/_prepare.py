@@ -4,8 +4,9 @@ integers beyond 2^53 become plain boxes in floating point that have exactly the 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from fractions import Fraction
+from functools import partial
 from typing import Any, NamedTuple, Optional
 
 import numpy as np
@@ -49,10 +50,20 @@ _BLOCK = 2**18
 Rows = Optional[NDArray[np.int64]]
 
 
+class Whole(NamedTuple):
+    """How the compiled part converts integers while it copies them."""
+
+    take_ends: bool
+    """Whether max corners become the next smaller whole numbers, so that boxes that touched do not overlap."""
+    in_floats: Callable[[], Prepared]
+    """Prepares what is searched instead if numbers may be rounded, or boxes have no length and lose their ends."""
+
+
 class Prepared(NamedTuple):
     """Boxes to search, and how their pairs are translated back."""
 
-    sets: list[Floats]
+    sets: list[NDArray[Any]]
+    """In floating point, or as the user passed them if they are `whole`."""
     kept: list[Rows]
     """The row of each box in what the user passed; None if no row was left out."""
     lengths: list[int]
@@ -61,6 +72,12 @@ class Prepared(NamedTuple):
     """Groups that have to be compared after the search, because there is no axis left for them."""
     crossing: list[NDArray[np.int64]] | None = None
     """On a circle: the boxes of each set that cross its end. Their second parts follow all boxes of `sets`."""
+    whole: Whole | None = None
+    """How integers become floating point, if `sets` has them."""
+
+    def in_floats(self) -> Prepared:
+        """The same with `sets` that are in floating point."""
+        return self if self.whole is None else self.whole.in_floats()
 
     @property
     def is_filtered(self) -> bool:
@@ -113,6 +130,7 @@ def prepare(
     """Brings sets of boxes, by the names of their arguments, into the form that is searched.
 
     With `fold`, whole intervals in groups may stay intervals: those of each group are moved to a place of their own.
+    And integers may stay as they are passed: see `Prepared.whole`.
     """
     checked_format(format)
     if not (isinstance(missing, str) and missing in ("raise", "skip")):
@@ -120,9 +138,15 @@ def prepare(
     has_margin = not is_zero(margin)
     is_plain = format == "xyxy" and missing == "raise" and by is None and wrap is None and not has_margin
     if is_plain and all(type(boxes) is np.ndarray and boxes.dtype.kind in "iuf" for boxes in sets.values()):
-        rows = _plain_rows(sets, True if closed is None else checked_closed(closed))  # type: ignore[arg-type]
-        if rows is not None:  # the common case, quickly
-            return Prepared(rows, [None for _ in rows], [*map(len, rows)])
+        is_closed = True if closed is None else checked_closed(closed)
+        plain = _plain(sets)  # type: ignore[arg-type]
+        if plain is not None:  # the common case, quickly
+            if fold and plain[0].dtype.kind != "f":
+                whole = Whole(not is_closed, partial(prepare, sets, closed=closed))
+                return Prepared(plain, [None for _ in plain], [*map(len, plain)], whole=whole)
+            rows = _plain_rows(plain, is_closed)
+            if rows is not None:
+                return Prepared(rows, [None for _ in rows], [*map(len, rows)])
     sets = {name: with_rows(boxes) for name, boxes in sets.items()}
     is_closed = checked_closed(closed, *sets.values())
     names = list(sets)
@@ -177,21 +201,27 @@ def prepare(
     return _grouped(Prepared(rows, kept, lengths), of_group, fold and are_whole)
 
 
-def _plain_rows(sets: dict[str, NDArray[Any]], is_closed: bool) -> list[Floats] | None:
-    """Boxes that need no change but open ends; None if there may be one that is not valid, empty or not exact."""
+def _plain(sets: dict[str, NDArray[Any]]) -> list[NDArray[Any]] | None:
+    """Boxes of which all are integers, or all floating point; None for others."""
     arrays = [read_boxes(boxes, name).array for name, boxes in sets.items()]
     if len(arrays) == 2:
         arrays = list(same_width(*arrays))
-    are_whole = all(array.dtype.kind in "iu" for array in arrays)
+    kinds = {array.dtype.kind for array in arrays}
+    return arrays if kinds <= {"i", "u"} or kinds == {"f"} else None
+
+
+def _plain_rows(arrays: list[NDArray[Any]], is_closed: bool) -> list[Floats] | None:
+    """Boxes that need no change but open ends; None if there may be one that is not valid, empty or not exact."""
+    are_whole = arrays[0].dtype.kind != "f"
     if are_whole and not is_closed:
         copies: list[Floats] = [array.astype(np.float64, order="C") for array in arrays]
         return copies if all(map(take_ends, copies)) else None
-    if not (are_whole or all(array.dtype.kind == "f" for array in arrays)) or any(map(is_rounded, arrays)):
+    if any(map(is_rounded, arrays)):
         return None
     # (The search itself refuses what is not valid, but does not see what is moved.)
     if not is_closed and not all(bool((low < high).all()) for array in arrays for low, high in _sides(array)):
         return None
-    rows = [numbers(array, name) for array, name in zip(arrays, sets)]
+    rows = [numbers(array, "boxes") for array in arrays]
     if len(rows) == 2 and rows[0].dtype != rows[1].dtype:  # both are compared in double precision
         rows = [array.astype(np.float64, copy=False) for array in rows]
     return rows if is_closed else [_without_ends(array, are_whole=False) for array in rows]
