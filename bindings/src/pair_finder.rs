@@ -54,6 +54,16 @@ pub trait ArrayPairFinder: AnyPairFinder {
         progress: Progress<'_>,
     ) -> Result<Option<&[[u32; 2]]>, Error>;
 
+    /// Calls `each` with chunks of pairs, in their order, until it breaks. Stores no pairs. `None` if the search was cancelled.
+    #[allow(clippy::missing_errors_doc)]
+    fn stream(
+        &mut self,
+        a: usize,
+        b: Option<usize>,
+        progress: Progress<'_>,
+        each: &mut dyn FnMut(&[[u32; 2]]) -> ControlFlow<()>,
+    ) -> Result<Option<ControlFlow<()>>, Error>;
+
     /// The pairs of the last call of [`find`](ArrayPairFinder::find), without a copy.
     fn take_pairs(&mut self) -> Vec<[u32; 2]>;
 
@@ -177,6 +187,17 @@ impl<const D: usize, T: Scalar> ArrayPairFinder for TypedPairFinder<D, T> {
         progress: Progress<'_>,
     ) -> Result<Option<Vec<u32>>, Error> {
         unless_cancelled(search(&mut self.finder, &self.sets, a, b).progress(progress).counts())
+    }
+
+    fn stream(
+        &mut self,
+        a: usize,
+        b: Option<usize>,
+        progress: Progress<'_>,
+        each: &mut dyn FnMut(&[[u32; 2]]) -> ControlFlow<()>,
+    ) -> Result<Option<ControlFlow<()>>, Error> {
+        let search = search(&mut self.finder, &self.sets, a, b).progress(progress);
+        unless_cancelled(search.for_each_chunk(each))
     }
 
     fn take_pairs(&mut self) -> Vec<[u32; 2]> {

@@ -186,6 +186,12 @@ pub fn pairs<'py, V: Element + Copy>(
     Ok(array)
 }
 
+/// An array of pairs in the memory in which they are.
+pub fn owned_by_rust<V: Element>(py: Python<'_>, pairs: Vec<[V; 2]>) -> PyResult<Array<'_>> {
+    let shape = [pairs.len(), 2];
+    Ok(PyArray1::from_vec(py, pairs.into_flattened()).reshape(shape)?.into_any())
+}
+
 /// A new array of numbers.
 pub fn numbers<'py, V: Element + Copy>(
     py: Python<'py>,

@@ -1,14 +1,16 @@
 //! Finds pairs: a pair finder whose dimensions and precision are chosen at run time.
 
+use std::collections::TryReserveError;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 
+use numpy::Element;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use sweep_and_prune::Error;
 use sweep_and_prune_bindings::{ArrayPairFinder, Kind};
 
-use crate::arrays::{Array, Index, MANY, convert_boxes, copy_boxes, numbers};
+use crate::arrays::{Array, Index, MANY, convert_boxes, copy_boxes, numbers, owned_by_rust, pairs};
 use crate::errors::{busy, raise};
 use crate::run::{attach, call_back, processors, run};
 
@@ -19,6 +21,8 @@ pub struct Finder(Mutex<Search>);
 struct Search {
     finder: Box<dyn ArrayPairFinder>,
     kind: Kind,
+    /// The pairs of the last search on one thread, unless they were many.
+    few: Vec<[u32; 2]>,
     /// How many may be used, and how many the last search used.
     most_threads: usize,
     threads: usize,
@@ -26,6 +30,8 @@ struct Search {
 
 /// With fewer boxes than this the core uses one thread.
 const MIN_FOR_THREADS: usize = 4096;
+/// From this many boxes on, one thread's pairs are collected as they are found.
+const MIN_TO_COLLECT: usize = 4096;
 /// From this many boxes on, threads pay however few of them overlap.
 const SURE_FOR_THREADS: usize = 1 << 17;
 /// With less work threads do not pay: it takes 0.05 to 0.1 ms until another thread has begun and this one has heard that
@@ -57,7 +63,13 @@ impl Finder {
         let kind = Kind { dimensions, is_double: double };
         let finder = kind.pair_finder(threads);
         let finder = finder.ok_or_else(|| PyValueError::new_err("dimensions must be 1, 2 or 3"))?;
-        Ok(Self(Mutex::new(Search { finder, kind, most_threads: threads, threads })))
+        Ok(Self(Mutex::new(Search {
+            finder,
+            kind,
+            few: Vec::new(),
+            most_threads: threads,
+            threads,
+        })))
     }
 
     /// Uses at most `threads` threads from now on.
@@ -68,12 +80,13 @@ impl Finder {
         })
     }
 
-    /// All pairs. With `take_ends`, boxes are integers that are converted as `whole.rs` says. None if they cannot be.
+    /// All pairs, in an array that owns its memory if that `is_owned`. With `take_ends`, boxes are integers that are converted as `whole.rs` says. None if they cannot be.
     fn find<'py>(
         &self,
         a: Array<'py>,
         b: Option<Array<'py>>,
         take_ends: Option<bool>,
+        is_owned: bool,
         index: &str,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Option<Array<'py>>> {
@@ -81,6 +94,16 @@ impl Finder {
         self.with(|search| {
             let Some(sets) = search.copy(&a, b.as_ref(), take_ends)? else { return Ok(None) };
             search.choose_threads(sets);
+            if search.threads == 1 && sets.boxes() >= MIN_TO_COLLECT && !is_owned {
+                let progress = progress.as_ref();
+                return match index {
+                    Index::Int32 => search.collect(py, sets, progress, |index| index as i32),
+                    Index::Uint32 => search.collect(py, sets, progress, |index| index),
+                    Index::Int64 => search.collect(py, sets, progress, i64::from),
+                    Index::Uint64 => search.collect(py, sets, progress, u64::from),
+                }
+                .map(Some);
+            }
             let finder = &mut search.finder;
             let found = run(py, sets.boxes(), search.threads, progress.as_ref(), |progress| {
                 finder.find(sets.a, sets.b, progress).map(|found| found.unwrap_or(&[]))
@@ -238,6 +261,45 @@ impl Search {
         let Some(a) = copy(0, a)? else { return Ok(None) };
         let Some(b) = b else { return Ok(Some(Sets { a, b: None })) };
         Ok(copy(1, b)?.map(|b| Sets { a, b: Some(b) }))
+    }
+
+    /// All pairs on one thread. Many are converted as they are found: their memory is new, and to write to new memory takes
+    /// longer than to find the pairs. (13 million pairs of 11 million intervals take 0.5 of the time.)
+    fn collect<'py, V: Element + Copy>(
+        &mut self,
+        py: Python<'py>,
+        sets: Sets,
+        progress: Option<&Py<PyAny>>,
+        convert: impl Fn(u32) -> V + Copy + Send + Sync,
+    ) -> PyResult<Array<'py>> {
+        let Self { finder, few, .. } = self;
+        few.clear();
+        let mut many: Vec<[V; 2]> = Vec::new();
+        let found = run(py, sets.boxes(), 1, progress, |progress| {
+            let mut take = |chunk: &[[u32; 2]]| {
+                if many.is_empty() && few.len() + chunk.len() <= MANY {
+                    few.try_reserve(chunk.len())?;
+                    few.extend_from_slice(chunk);
+                } else {
+                    many.try_reserve(few.len() + chunk.len())?;
+                    let pairs = few.drain(..).chain(chunk.iter().copied());
+                    many.extend(pairs.map(|pair| pair.map(convert)));
+                }
+                Ok::<_, TryReserveError>(())
+            };
+            let mut has_memory = true;
+            let end = finder.stream(sets.a, sets.b, progress, &mut |chunk| {
+                has_memory = take(chunk).is_ok();
+                if has_memory { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+            });
+            end.and(if has_memory { Ok(()) } else { Err(Error::OutOfMemory) })
+        });
+        match found {
+            Ok(Ok(())) if many.is_empty() => pairs(py, few.iter().map(|pair| pair.map(convert))),
+            Ok(Ok(())) => owned_by_rust(py, many),
+            Ok(Err(error)) => Err(raise_for(py, error, sets)),
+            Err(error) => Err(self.fail(error)),
+        }
     }
 
     /// Uses several threads for what takes long enough.

@@ -21,6 +21,7 @@ class Finder:
         a: NDArray[Any],
         b: NDArray[Any] | None,
         take_ends: bool | None,
+        is_owned: bool,
         index: str,
         progress: Callable[[float], object] | None,
     ) -> Pairs: ...

@@ -501,7 +501,8 @@ class PairFinder:
         2
         """
         return _done(
-            self._finder.find(self._rows(boxes, "boxes", margin), None, None, self._index, _checked(progress)), progress
+            self._finder.find(self._rows(boxes, "boxes", margin), None, None, False, self._index, _checked(progress)),
+            progress,
         )
 
     def find_between(
@@ -523,7 +524,7 @@ class PairFinder:
         array([[1, 0]])
         """
         rows = self._rows(a, "a", margin), self._rows(b, "b", margin)
-        return _done(self._finder.find(*rows, None, self._index, _checked(progress)), progress)
+        return _done(self._finder.find(*rows, None, False, self._index, _checked(progress)), progress)
 
     def count(self, boxes: ArrayLike, *, margin: Margin = 0, progress: Progress | None = None) -> int:
         """Counts the pairs that `find` finds, without storing them.
@@ -652,7 +653,9 @@ _Each = Callable[[Pairs], object]
 
 def find(prepared: Prepared, threads: int | None, dtype: DTypeLike, progress: Progress | None = None) -> Pairs:
     index, report = index_dtype(dtype), _checked(progress)
-    prepared, found = _found(prepared, threads, lambda finder, *given: finder.find(*given, index, report))
+    prepared, found = _found(
+        prepared, threads, lambda finder, one: finder.find(*_arguments(one), one.is_translated, index, report)
+    )
     return _done(prepared.translate(found), progress)
 
 
@@ -660,20 +663,21 @@ def _count(prepared: Prepared, threads: int | None, progress: Progress | None) -
     if prepared.is_filtered:
         return len(find(prepared, threads, np.int64, progress))
     report = _checked(progress)
-    count: int = _found(prepared, threads, lambda finder, *given: finder.count(*given, report))[1]
+    count: int = _found(prepared, threads, lambda finder, one: finder.count(*_arguments(one), report))[1]
     return _done(count, progress)
 
 
 def counts_of(prepared: Prepared) -> tuple[Prepared, NDArray[np.int64]]:
     """For each box of the first set that is searched, how many others it overlaps; and what was searched. No pair is
     filtered."""
-    return _found(prepared, 1, lambda finder, *given: finder.counts(*given))
+    return _found(prepared, 1, lambda finder, one: finder.counts(*_arguments(one)))
 
 
-def _found(prepared: Prepared, threads: int | None, call: Callable[..., _Result | None]) -> tuple[Prepared, _Result]:
+def _found(
+    prepared: Prepared, threads: int | None, call: Callable[[Finder, Prepared], _Result | None]
+) -> tuple[Prepared, _Result]:
     """What a call of a finder returns, and what was searched: floating point, if integers have to be."""
-    take_ends = None if prepared.whole is None else prepared.whole.take_ends
-    found = _search(prepared, threads, lambda finder: call(finder, *_arguments(prepared), take_ends))
+    found = _search(prepared, threads, lambda finder: call(finder, prepared))
     return (prepared, found) if found is not None else _found(prepared.in_floats(), threads, call)
 
 
@@ -690,7 +694,7 @@ def stream(prepared: Prepared, each: _Each, size: int, dtype: DTypeLike) -> bool
     return _search(
         prepared,
         1,
-        lambda finder: finder.for_each_chunk(*_arguments(prepared), each if is_plain else translated, size, index),
+        lambda finder: finder.for_each_chunk(*_arguments(prepared)[:2], each if is_plain else translated, size, index),
     )
 
 
@@ -757,8 +761,9 @@ def _done(result: _Result, progress: Progress | None) -> _Result:
     return result
 
 
-def _arguments(prepared: Prepared) -> tuple[Floats, Floats | None]:
-    return prepared.sets[0], prepared.sets[1] if len(prepared.sets) == 2 else None
+def _arguments(prepared: Prepared) -> tuple[NDArray[Any], NDArray[Any] | None, bool | None]:
+    sets, whole = prepared.sets, prepared.whole
+    return sets[0], sets[1] if len(sets) == 2 else None, None if whole is None else whole.take_ends
 
 
 def one_set(

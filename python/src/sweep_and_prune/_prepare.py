@@ -84,9 +84,14 @@ class Prepared(NamedTuple):
         """Whether some pairs that are found are none of those that are wanted."""
         return self.groups is not None or self.crossing is not None
 
+    @property
+    def is_translated(self) -> bool:
+        """Whether pairs that are found are not yet those that the user wants."""
+        return self.is_filtered or any(rows is not None for rows in self.kept)
+
     def translate(self, pairs: NDArray[Any]) -> NDArray[Any]:
         """The pairs in rows of what the user passed, in the memory of `pairs`, which is written to and shortened."""
-        if self.is_filtered or any(rows is not None for rows in self.kept):
+        if self.is_translated:
             left = self._translate_in_place(pairs)
             if left < len(pairs):
                 pairs.resize((left, 2), refcheck=False)
