@@ -64,7 +64,7 @@ pub fn convert_boxes(
     Ok(Some(count))
 }
 
-/// So many rows are converted at a time: they stay in the cache until they are checked.
+/// Rows that are converted at a time: few enough that they stay in the cache until they are checked.
 const ROWS_AT_A_TIME: usize = 1 << 13;
 
 /// The shape of an array of boxes, and memory for them.

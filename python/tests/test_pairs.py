@@ -153,6 +153,28 @@ def test_streams_hold_no_more_than_a_chunk() -> None:
     assert largest == 65_536 * 16
 
 
+@pytest.mark.parametrize("dtype", [np.int64, np.int32, np.uint32, np.uint64])
+@pytest.mark.parametrize("count", [200, 240, 4500])
+def test_many_pairs_are_complete_and_in_order(count: int, dtype: Any) -> None:
+    """From 2^20 pairs of 4,096 boxes on, they are converted as they are found."""
+    left = np.arange(5000)[::-1]
+    boxes = np.stack([left, left + np.where(left < count, 10_000, 0)], axis=1)  # the first ones overlap all that follow
+    found = sap.find_pairs(boxes, dtype=dtype)
+    assert found.dtype == dtype and found.flags.writeable and found.flags.c_contiguous
+    chunks: list[Any] = []
+    assert sap.for_each_chunk(boxes, chunks.append)
+    assert np.array_equal(found, np.concatenate(chunks))
+    first, second = np.triu_indices(5000, 1)
+    wanted = np.stack([first, second], axis=1)[left[second] < count]  # the second one begins first
+    assert np.array_equal(in_order(found), wanted)
+    # Of these, some are left out.
+    by = np.where(left % 7 == 0, 1, 0)
+    wanted = wanted[by[wanted[:, 0]] == by[wanted[:, 1]]]
+    assert np.array_equal(
+        in_order(sap.find_pairs(np.hstack([boxes[:, [0, 0, 0]], boxes[:, [1, 1, 1]]]), by=by)), wanted
+    )
+
+
 def test_results_are_ordinary_arrays_of_your_own() -> None:
     boxes = np.zeros((3, 2))
     found = sap.find_pairs(boxes)

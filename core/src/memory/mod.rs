@@ -9,4 +9,6 @@ mod pages;
 mod prefetch;
 
 pub use grow::{OutOfMemory, grow, grow_to, reserve, reserve_for};
-pub use prefetch::{prefetch, prefetch_item, prefetch_pays, prefetch_range, preload};
+pub use prefetch::{
+    prefetch, prefetch_ahead, prefetch_item, prefetch_pays, prefetch_range, preload,
+};

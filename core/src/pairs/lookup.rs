@@ -24,13 +24,12 @@ use core::ops::{ControlFlow, Range};
 use super::grid::BLOCK;
 use super::kernel::{PAD, SortedBoxes};
 use super::one_by_one::OneByOne;
-use super::ranks::AHEAD;
 use super::sink::Sink;
 use super::sort::intervals;
 use super::source::Source;
 use super::task::{Progress, Stop, Task};
 use crate::geometry::{Arithmetic, Quantizer};
-use crate::memory::{grow, prefetch_range};
+use crate::memory::{grow, prefetch_ahead, prefetch_range};
 use crate::sampling::positions;
 use crate::{Aabb, Scalar};
 
@@ -228,7 +227,7 @@ impl<S, T: Scalar> Lookup<'_, S, T> {
         let (mut out, mut count) = (sink.spare()?, 0);
         for start in range.clone().step_by(BLOCK) {
             let block = &larger[start..range.end.min(start + BLOCK)];
-            prefetch_range(larger, start + AHEAD..start + AHEAD + BLOCK);
+            prefetch_ahead(larger, start..start + block.len());
             for (first, each) in first.iter_mut().zip(block) {
                 let at = each.aabb().min[0];
                 *first = self.first[T::Arithmetic::cell(at, &self.quantizer) as usize];
