@@ -134,14 +134,19 @@ impl Index {
         }
     }
 
-    /// A new array of many pairs. Converted pairs are freed at once, so that both together take little more memory than
-    /// the array.
-    pub fn many_pairs<'py>(self, py: Python<'py>, found: Vec<[u32; 2]>) -> PyResult<Array<'py>> {
+    /// Many pairs in an array, which owns its memory if it `is_owned`. Converted pairs are freed at once, so that both together
+    /// take little more memory than the array.
+    pub fn many_pairs<'py>(
+        self,
+        py: Python<'py>,
+        found: Vec<[u32; 2]>,
+        is_owned: bool,
+    ) -> PyResult<Array<'py>> {
         match self {
-            Self::Int32 => many_pairs(py, found, |index| index as i32),
-            Self::Uint32 => many_pairs(py, found, |index| index),
-            Self::Int64 => many_pairs(py, found, i64::from),
-            Self::Uint64 => many_pairs(py, found, u64::from),
+            Self::Int32 => many_pairs(py, found, is_owned, |index| index as i32),
+            Self::Uint32 => many_pairs(py, found, is_owned, |index| index),
+            Self::Int64 => many_pairs(py, found, is_owned, i64::from),
+            Self::Uint64 => many_pairs(py, found, is_owned, u64::from),
         }
     }
 }
@@ -151,25 +156,44 @@ pub const MANY: usize = 1 << 20;
 
 fn many_pairs<'py, V: Element + Copy>(
     py: Python<'py>,
-    mut found: Vec<[u32; 2]>,
+    found: Vec<[u32; 2]>,
+    is_owned: bool,
     convert: impl Fn(u32) -> V,
 ) -> PyResult<Array<'py>> {
-    let array = empty::<V>(py, (found.len(), 2))?;
-    {
+    let count = found.len();
+    if is_owned {
+        let array = empty::<V>(py, (count, 2))?;
         let mut into = array.cast::<PyArray2<V>>()?.try_readwrite().map_err(|_| borrowed())?;
         let into = into.as_slice_mut().map_err(|_| borrowed())?.as_chunks_mut().0;
-        while !found.is_empty() {
-            let rest = found.len().saturating_sub(MANY);
-            let chunk = into[rest..].iter_mut().zip(&found[rest..]);
-            chunk.for_each(|(into, pair)| *into = pair.map(&convert));
-            found.truncate(rest);
-            // Elsewhere this might copy, which takes memory instead of freeing it.
-            if cfg!(target_os = "linux") {
-                found.shrink_to_fit();
-            }
+        convert_and_free(found, |at, pair| into[at] = pair.map(&convert));
+        return Ok(array);
+    }
+    let mut pairs = Vec::new();
+    let reserved = pairs.try_reserve_exact(count);
+    reserved.map_err(|_| PyMemoryError::new_err("no memory for the pairs"))?;
+    let into = pairs.spare_capacity_mut();
+    convert_and_free(found, |at, pair| {
+        into[at].write(pair.map(&convert));
+    });
+    // SAFETY: all of them were written just now.
+    #[allow(unsafe_code)]
+    unsafe {
+        pairs.set_len(count);
+    }
+    owned_by_rust(py, pairs)
+}
+
+/// Passes on all pairs and their places, and frees them from the end on.
+fn convert_and_free(mut found: Vec<[u32; 2]>, mut convert: impl FnMut(usize, [u32; 2])) {
+    while !found.is_empty() {
+        let rest = found.len().saturating_sub(MANY);
+        (rest..).zip(&found[rest..]).for_each(|(at, &pair)| convert(at, pair));
+        found.truncate(rest);
+        // Elsewhere this might copy, which takes memory instead of freeing it.
+        if cfg!(target_os = "linux") {
+            found.shrink_to_fit();
         }
     }
-    Ok(array)
 }
 
 /// A new array of pairs.

@@ -115,7 +115,7 @@ impl Finder {
                     if search.threads > 1 && found.len() >= MANY_TO_TRIM {
                         return_freed_memory();
                     }
-                    index.many_pairs(py, found).map(Some)
+                    index.many_pairs(py, found, is_owned).map(Some)
                 }
                 Ok(Err(error)) => Err(raise_for(py, error, sets)),
                 Err(error) => Err(search.fail(error)),
