@@ -339,7 +339,7 @@ def test_sizes_are_added_exactly() -> None:
 
 def test_truth_values_are_no_numbers() -> None:
     with pytest.raises(TypeError, match="column start must have numbers, not truth values"):
-        sap.find_pairs({"start": np.array([True]), "end": np.array([2])})  # type: ignore[arg-type]
+        sap.find_pairs({"start": np.array([True]), "end": np.array([2])})
 
 
 def test_two_columns_for_one_coordinate_are_refused() -> None:

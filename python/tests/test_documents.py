@@ -202,4 +202,4 @@ def test_the_reference_names_everything_and_loads_nothing_from_elsewhere(tmp_pat
     assert 'href="tracks.ipynb"' in tracks
     assert json.loads((tmp_path / "guide/tracks.ipynb").read_text())["cells"][1]["cell_type"] == "code"
     assert 'src="data:image/svg+xml' in tracks and 'href="game_loop.html"' not in tracks
-    assert "boxes: ArrayLike" in re.sub(r"<[^>]*>", "", page).replace("\xa0", " ")
+    assert "boxes: Boxes" in re.sub(r"<[^>]*>", "", page).replace("\xa0", " ")

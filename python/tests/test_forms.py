@@ -85,7 +85,7 @@ def test_columns_are_recognized_by_their_names(names: str) -> None:
         assert same(sap.find_pairs(frame))  # type: ignore[arg-type]
         assert same(sap.PairFinder(2).find(frame))  # type: ignore[arg-type]
         assert len(sap.BroadPhase(2).insert_many(frame)) == 60  # type: ignore[arg-type]
-        assert same(sap.find_pairs(frame.data))  # type: ignore[arg-type]
+        assert same(sap.find_pairs(frame.data))
     rows = np.array([tuple(box) for box in BOXES], [(name, float) for name in names.split()])
     assert same(sap.find_pairs(rows)) and same(sap.find_pairs(rows.view(np.recarray)))
 
@@ -102,7 +102,7 @@ def test_columns_of_other_dimensions_and_formats() -> None:
     intervals = Frame(chrom=["a"] * 60, start=x, end=x + width)
     assert same(sap.find_pairs(intervals), pairs(np.stack([x, x + width], 1)))  # type: ignore[arg-type]
     of_ucsc = {"chromStart": x, "chromEnd": x + width}
-    assert same(sap.find_pairs(of_ucsc), pairs(np.stack([x, x + width], 1)))  # type: ignore[arg-type]
+    assert same(sap.find_pairs(of_ucsc), pairs(np.stack([x, x + width], 1)))
     with pytest.raises(ValueError, match="no columns that are known as boxes"):
         sap.find_pairs(Frame(xmin=x, xmax=x, ymin=y))  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="column start must have numbers, not text"):

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import operator
-from typing import Any, Union
+from collections.abc import Mapping
+from typing import Any, Protocol, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -13,6 +14,15 @@ from ._columns import as_array
 from ._errors import StaleProxyError
 from ._inputs import Raw, intervals, raw_boxes
 
+
+class ArrowData(Protocol):
+    """A table of any library that gives its columns to others by Arrow's C interface."""
+
+    def __arrow_c_stream__(self, requested_schema: Any = None) -> Any: ...
+
+
+Boxes = Union[ArrayLike, Mapping[Any, Any], ArrowData]
+"""Boxes in any form that `find_pairs` accepts: an array of rows, a table, a dict of columns, geometries, intervals."""
 Floats = Union[NDArray[np.float32], NDArray[np.float64]]
 """Coordinates, in single or in double precision."""
 Pairs = NDArray[Any]
@@ -106,7 +116,7 @@ def numbers(values: ArrayLike, name: str, dtype: np.dtype[Any] | None = None) ->
 
 
 def box_rows(
-    boxes: ArrayLike,
+    boxes: Boxes,
     name: str,
     dtype: np.dtype[Any] | None = None,
     dimensions: int = 0,
@@ -121,7 +131,7 @@ def box_rows(
     return numbers(array, name, dtype)
 
 
-def read_boxes(boxes: ArrayLike, name: str, dimensions: int = 0, format: str | None = "xyxy") -> Raw:
+def read_boxes(boxes: Boxes, name: str, dimensions: int = 0, format: str | None = "xyxy") -> Raw:
     """Boxes as rows, in the type in which they were passed. With the format None, these are corners."""
     raw = raw_boxes(boxes, name, format)
     array = raw.array

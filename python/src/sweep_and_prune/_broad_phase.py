@@ -8,7 +8,22 @@ from typing import Any, NamedTuple, SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from ._arrays import Floats, Ids, box_rows, each, float_dtype, id_array, one_id, real, row, rows, truth, two_ids, whole
+from ._arrays import (
+    Boxes,
+    Floats,
+    Ids,
+    box_rows,
+    each,
+    float_dtype,
+    id_array,
+    one_id,
+    real,
+    row,
+    rows,
+    truth,
+    two_ids,
+    whole,
+)
 from ._columns import as_array
 from ._errors import InvalidQueryError, StaleProxyError
 from ._filter import Filter, words
@@ -294,7 +309,7 @@ class BroadPhase:
         """
         return int(self._world.insert(self._row(box, "box"), words(filter), "box")[0])
 
-    def insert_many(self, boxes: ArrayLike, filter: Filter | None = None) -> Ids:
+    def insert_many(self, boxes: Boxes, filter: Filter | None = None) -> Ids:
         """Adds many bodies that share a filter.
 
         Args:
@@ -336,7 +351,7 @@ class BroadPhase:
         """
         self._world.set(one_id(id), self._row(box, "box"), "box")
 
-    def set_many(self, ids: ArrayLike, boxes: ArrayLike) -> None:
+    def set_many(self, ids: ArrayLike, boxes: Boxes) -> None:
         """Sets the boxes of many bodies.
 
         If an id occurs twice, the last box counts.
@@ -435,7 +450,7 @@ class BroadPhase:
         """
         self._world.teleport(one_id(id), _double(self._row(box, "box")), "box")
 
-    def teleport_many(self, ids: ArrayLike, boxes: ArrayLike) -> None:
+    def teleport_many(self, ids: ArrayLike, boxes: Boxes) -> None:
         """Gives many bodies new boxes, each as `teleport` does.
 
         Args:
@@ -878,7 +893,7 @@ class BroadPhase:
         return self._ask("overlapping", filter, Part("box", self._row(box, "box")), sorted=sorted, exclude=exclude).ids
 
     def overlapping_many(
-        self, boxes: ArrayLike, filter: Filter | None = None, *, sorted: bool = True, exclude: ArrayLike | None = None
+        self, boxes: Boxes, filter: Filter | None = None, *, sorted: bool = True, exclude: ArrayLike | None = None
     ) -> Lists:
         """Finds the bodies that overlap each of many boxes.
 
@@ -1272,7 +1287,7 @@ class BroadPhase:
 
     def box_cast_many(
         self,
-        boxes: ArrayLike,
+        boxes: Boxes,
         directions: ArrayLike,
         limits: ArrayLike = np.inf,
         filter: Filter | None = None,
@@ -1348,7 +1363,7 @@ class BroadPhase:
     def _row(self, box: ArrayLike, name: str) -> Floats:
         return row(box, name, self._dtype, 2 * self._dimensions)
 
-    def _rows(self, boxes: ArrayLike, name: str) -> Floats:
+    def _rows(self, boxes: Boxes, name: str) -> Floats:
         return box_rows(boxes, name, self._dtype, self._dimensions)
 
     def _point(self, point: ArrayLike, name: str) -> Floats:

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from ._arrays import checked_closed, read_boxes, whole
+from ._arrays import Boxes, checked_closed, read_boxes, whole
 from ._broad_phase import BroadPhase
 from ._columns import read_column
 from ._native import nearest_of_rows
@@ -43,7 +43,7 @@ class Nearest(NamedTuple):
 
 
 def cluster(
-    intervals: ArrayLike,
+    intervals: Boxes,
     *,
     format: str = "xyxy",
     closed: str | None = None,
@@ -141,7 +141,7 @@ def _clusters(starts: Values, ends: Values) -> NDArray[np.int64]:
 
 
 def merge(
-    intervals: ArrayLike,
+    intervals: Boxes,
     *,
     format: str = "xyxy",
     closed: str | None = None,
@@ -193,8 +193,8 @@ def merge(
 
 
 def coverage(
-    a: ArrayLike,
-    b: ArrayLike,
+    a: Boxes,
+    b: Boxes,
     *,
     missing: str = "raise",
     by: Groups | tuple[Groups, Groups] | None = None,
@@ -252,8 +252,8 @@ def coverage(
 
 
 def nearest(
-    a: ArrayLike,
-    b: ArrayLike,
+    a: Boxes,
+    b: Boxes,
     k: int = 1,
     *,
     max_distance: float | None = None,

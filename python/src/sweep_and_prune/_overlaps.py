@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import read_boxes, same_width
+from ._arrays import Boxes, read_boxes, same_width
 from ._columns import in_one_unit, one_type
 from ._native import ranks
 from ._pairs import Groups, Margin, counts_of, one_set, stream, two_sets
@@ -37,8 +37,8 @@ class Overlaps(NamedTuple):
 
 
 def count_overlaps(
-    a: ArrayLike,
-    b: ArrayLike | None = None,
+    a: Boxes,
+    b: Boxes | None = None,
     *,
     format: str = "xyxy",
     closed: str | None = None,
@@ -145,7 +145,7 @@ def line_keys(sets: Sequence[Values]) -> list[tuple[Values, Values]]:
 
 
 def measure_overlaps(
-    a: ArrayLike, b: ArrayLike | None, pairs: ArrayLike, *, format: str = "xyxy", wrap: float | None = None
+    a: Boxes, b: Boxes | None, pairs: ArrayLike, *, format: str = "xyxy", wrap: float | None = None
 ) -> Overlaps:
     """Measures how much the boxes of each pair overlap.
 

@@ -12,7 +12,7 @@ from typing import Any, TypeVar, Union
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from ._arrays import Floats, Pairs, box_rows, float_dtype, index_dtype, thread_count, whole
+from ._arrays import Boxes, Floats, Pairs, box_rows, float_dtype, index_dtype, thread_count, whole
 from ._native import Finder
 from ._prepare import NAME, Prepared, is_zero, prepare
 
@@ -33,7 +33,7 @@ _idle = local()
 
 
 def find_pairs(
-    boxes: ArrayLike,
+    boxes: Boxes,
     *,
     threads: int | None = 1,
     dtype: DTypeLike = np.int64,
@@ -107,8 +107,8 @@ def find_pairs(
 
 
 def find_pairs_between(
-    a: ArrayLike,
-    b: ArrayLike,
+    a: Boxes,
+    b: Boxes,
     *,
     threads: int | None = 1,
     dtype: DTypeLike = np.int64,
@@ -160,7 +160,7 @@ def find_pairs_between(
 
 
 def count_pairs(
-    boxes: ArrayLike,
+    boxes: Boxes,
     *,
     threads: int | None = 1,
     format: str = "xyxy",
@@ -199,8 +199,8 @@ def count_pairs(
 
 
 def count_pairs_between(
-    a: ArrayLike,
-    b: ArrayLike,
+    a: Boxes,
+    b: Boxes,
     *,
     threads: int | None = 1,
     format: str = "xyxy",
@@ -237,7 +237,7 @@ def count_pairs_between(
 
 
 def for_each_chunk(
-    boxes: ArrayLike,
+    boxes: Boxes,
     each: Callable[[Pairs], object],
     *,
     size: int = _CHUNK,
@@ -288,8 +288,8 @@ def for_each_chunk(
 
 
 def for_each_chunk_between(
-    a: ArrayLike,
-    b: ArrayLike,
+    a: Boxes,
+    b: Boxes,
     each: Callable[[Pairs], object],
     *,
     size: int = _CHUNK,
@@ -333,7 +333,7 @@ def for_each_chunk_between(
 
 
 def iter_chunks(
-    boxes: ArrayLike,
+    boxes: Boxes,
     *,
     size: int = _CHUNK,
     dtype: DTypeLike = np.int64,
@@ -380,8 +380,8 @@ def iter_chunks(
 
 
 def iter_chunks_between(
-    a: ArrayLike,
-    b: ArrayLike,
+    a: Boxes,
+    b: Boxes,
     *,
     size: int = _CHUNK,
     dtype: DTypeLike = np.int64,
@@ -483,7 +483,7 @@ class PairFinder:
         """The precision in which boxes are compared."""
         return self._dtype
 
-    def find(self, boxes: ArrayLike, *, margin: Margin = 0, progress: Progress | None = None) -> Pairs:
+    def find(self, boxes: Boxes, *, margin: Margin = 0, progress: Progress | None = None) -> Pairs:
         """Finds all pairs of boxes that overlap, as `find_pairs` does.
 
         Args:
@@ -505,9 +505,7 @@ class PairFinder:
             progress,
         )
 
-    def find_between(
-        self, a: ArrayLike, b: ArrayLike, *, margin: Margin = 0, progress: Progress | None = None
-    ) -> Pairs:
+    def find_between(self, a: Boxes, b: Boxes, *, margin: Margin = 0, progress: Progress | None = None) -> Pairs:
         """Finds all pairs of a box of `a` and a box of `b` that overlap, as `find_pairs_between` does.
 
         Args:
@@ -526,7 +524,7 @@ class PairFinder:
         rows = self._rows(a, "a", margin), self._rows(b, "b", margin)
         return _done(self._finder.find(*rows, None, False, self._index, _checked(progress)), progress)
 
-    def count(self, boxes: ArrayLike, *, margin: Margin = 0, progress: Progress | None = None) -> int:
+    def count(self, boxes: Boxes, *, margin: Margin = 0, progress: Progress | None = None) -> int:
         """Counts the pairs that `find` finds, without storing them.
 
         Args:
@@ -543,7 +541,7 @@ class PairFinder:
         """
         return _done(self._finder.count(self._rows(boxes, "boxes", margin), None, None, _checked(progress)), progress)
 
-    def count_between(self, a: ArrayLike, b: ArrayLike, *, margin: Margin = 0, progress: Progress | None = None) -> int:
+    def count_between(self, a: Boxes, b: Boxes, *, margin: Margin = 0, progress: Progress | None = None) -> int:
         """Counts the pairs that `find_between` finds, without storing them.
 
         Args:
@@ -565,7 +563,7 @@ class PairFinder:
         )
 
     def for_each_chunk(
-        self, boxes: ArrayLike, each: Callable[[Pairs], object], *, size: int = _CHUNK, margin: Margin = 0
+        self, boxes: Boxes, each: Callable[[Pairs], object], *, size: int = _CHUNK, margin: Margin = 0
     ) -> bool:
         """Calls a function with the pairs that `find` finds, in the same order, one chunk at a time.
 
@@ -594,8 +592,8 @@ class PairFinder:
 
     def for_each_chunk_between(
         self,
-        a: ArrayLike,
-        b: ArrayLike,
+        a: Boxes,
+        b: Boxes,
         each: Callable[[Pairs], object],
         *,
         size: int = _CHUNK,
@@ -639,7 +637,7 @@ class PairFinder:
         """Shows the arguments with which it was created."""
         return f"PairFinder(dimensions={self._dimensions}, dtype={self._dtype})"
 
-    def _rows(self, boxes: ArrayLike, name: str, margin: Margin) -> Floats:
+    def _rows(self, boxes: Boxes, name: str, margin: Margin) -> Floats:
         rows = box_rows(boxes, name, self._dtype, self._dimensions)
         if is_zero(margin):
             return rows
@@ -767,7 +765,7 @@ def _arguments(prepared: Prepared) -> tuple[NDArray[Any], NDArray[Any] | None, b
 
 
 def one_set(
-    boxes: ArrayLike,
+    boxes: Boxes,
     format: str,
     closed: str | None,
     missing: str,
@@ -780,8 +778,8 @@ def one_set(
 
 
 def two_sets(
-    a: ArrayLike,
-    b: ArrayLike,
+    a: Boxes,
+    b: Boxes,
     format: str,
     closed: str | None,
     missing: str,

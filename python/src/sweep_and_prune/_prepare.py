@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any, NamedTuple, Optional
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ._arrays import Floats, checked_closed, numbers, read_boxes, same_width
 from ._columns import (
@@ -123,7 +123,7 @@ class Prepared(NamedTuple):
 
 
 def prepare(
-    sets: dict[str, ArrayLike],
+    sets: dict[str, Any],
     format: str = "xyxy",
     closed: str | None = None,
     missing: str = "raise",
@@ -144,7 +144,7 @@ def prepare(
     is_plain = format == "xyxy" and missing == "raise" and by is None and wrap is None and not has_margin
     if is_plain and all(type(boxes) is np.ndarray and boxes.dtype.kind in "iuf" for boxes in sets.values()):
         is_closed = True if closed is None else checked_closed(closed)
-        plain = _plain(sets)  # type: ignore[arg-type]
+        plain = _plain(sets)
         if plain is not None:  # the common case, quickly
             if fold and plain[0].dtype.kind != "f":
                 whole = Whole(not is_closed, partial(prepare, sets, closed=closed))
