@@ -15,8 +15,9 @@ array([[0, 2]])
   boxes, and `-0.0` equals `0.0`. There is no epsilon.
 - Each pair occurs once, the smaller index first, in an order that is the same on every machine.
 - A box that is inverted or has a NaN is rejected with an error that names it. After an error nothing has changed.
-- The arrays that are passed are copied, and those that are returned are yours. In signatures `Pairs` are arrays of
-  indices (`int64` by default), `Ids` arrays of `int64`, `Floats` arrays of `float32` or `float64`.
+- The arrays that are passed are copied, and those that are returned are yours. In signatures `Boxes` are boxes in
+  any form that `find_pairs` accepts, `Pairs` arrays of indices (`int64` by default), `Ids` arrays of `int64`, `Floats`
+  arrays of `float32` or `float64`.
 
 | you have | call |
 |---|---|
