@@ -75,7 +75,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
                 aabb.check(position)?;
             }
         }
-        if !bodies.swept.is_empty() {
+        if !bodies.sweeps.is_empty() {
             for id in ids {
                 bodies.cancel_sweep(bodies.slots.index_of[id.slot() as usize]);
             }
@@ -141,7 +141,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     ) -> Result<(), Error> {
         let index = self.bodies.slots.check(id, 0)?;
         validate(&[from, to])?;
-        self.bodies.sweep_to(index, to);
+        self.bodies.sweeps.add(&mut self.bodies.slots, index, to);
         self.bodies.place(index, &from.union(&to));
         Ok(())
     }

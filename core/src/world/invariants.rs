@@ -8,7 +8,7 @@
 //! | `any_unlisted` | edits of all boxes at once | the next update or query, which compares all boxes | nothing: boxes may have changed without the flag |
 //! | `NEW`, `any_new` | insertion | the next update | `CHANGED`; in no pair yet; `previous` and `fat` are meaningless |
 //! | `REFILTERED` | `set_filter` | the next update | `CHANGED`; the filter of the last update is kept beside |
-//! | `SWEPT`, `swept`, `rests` | `sweep` | the next update, or another edit of the box | `LIVE` |
+//! | `SWEPT`, `sweeps` | `sweep` | the next update, or another edit of the box | `LIVE` |
 //! | `MOVED`, `moved` | edits of the box, where fat AABBs are reported | the next update | nothing without fat AABBs |
 //! | `ASLEEP`, `sleep.count` | the end of an update, if the body rested for long | an update in which it changed or left, or in which all wake | not `FLYING`; its box is that of the last update, or it is `CHANGED` |
 //! | `FLYING`, `flying` | an update in which it was fast | an update in which it is slow, or queries | the tree is fresh and does not hold it |
@@ -66,7 +66,8 @@ fn slots<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Claims<4> {
 }
 
 fn tables<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Claims<4> {
-    let Bodies { options, slots, boxes, shapes, origins, previous, .. } = bodies;
+    let Bodies { options, slots, boxes, displacements, previous, .. } = bodies;
+    let (shapes, origins) = (displacements.shapes(), displacements.origins());
     let has_shapes = options.report.is_fat();
     let shaped = if has_shapes { slots.len() } else { 0 };
     let is_inside = |index: usize| boxes[index].contains(&shapes[index]);
@@ -86,7 +87,7 @@ fn tables<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Claims<4> {
 
 fn lists<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Claims<8> {
     let Bodies { slots, boxes, previous, any_new, any_unlisted, .. } = bodies;
-    let Bodies { changed, leaving, moved, swept, rests, .. } = bodies;
+    let Bodies { changed, leaving, displacements, sweeps, .. } = bodies;
     let is_leaving =
         |&index: &u32| slots.has(index, flag::LEAVING) && !slots.has(index, flag::LIVE);
     let has = |index, flags| slots.has(index, flags);
@@ -107,12 +108,15 @@ fn lists<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Claims<8> {
             *any_unlisted
                 || living(bodies).all(|index| has(index, flag::CHANGED) || is_same(index)),
         ),
-        ("bodies that were given a box are listed", all_listed(slots, moved, flag::MOVED)),
+        (
+            "bodies that were given a box are listed",
+            all_listed(slots, displacements.moved(), flag::MOVED),
+        ),
         (
             "swept bodies are listed, and have a place to rest",
-            all_listed(slots, swept, flag::SWEPT)
+            all_listed(slots, sweeps.listed(), flag::SWEPT)
                 && living(bodies)
-                    .all(|index| !has(index, flag::SWEPT) || (index as usize) < rests.len()),
+                    .all(|index| !has(index, flag::SWEPT) || sweeps.end(index).is_some()),
         ),
     ]
 }

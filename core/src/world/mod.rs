@@ -2,7 +2,7 @@
 //! and end.
 //!
 //! ```text
-//! bodies -> tree -> candidates -> policy -> sets -> finder -> tracking -> layout -> update
+//! bodies -> tree -> candidates -> policy -> sets -> finder, permutation -> tracking -> layout -> update
 //!     -> queries, snapshot, invariants -> broad_phase -> edit
 //! ```
 //! Each of these uses only those before it. `update/mod.rs` is the update on one page; `invariants.rs` is the page of what
@@ -17,6 +17,7 @@ mod finder;
 mod invariants;
 mod layout;
 mod options;
+mod permutation;
 mod policy;
 mod queries;
 #[cfg(feature = "serde")]

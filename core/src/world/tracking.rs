@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 use super::bodies::{Bodies, flag};
 use super::candidates::{Candidates, PairSorter};
 use super::finder::Finder;
+use super::permutation::Permutation;
 use super::policy::{Motion, Policy, Sleep, Usage};
 use super::tree::Tree;
 use crate::cloning::clone_fields;
@@ -78,13 +79,7 @@ pub struct Scratch<const D: usize, T: Scalar> {
     pub queries: Vec<(u32, Aabb<D, T>)>,
     pub leaves: Vec<[u32; 2]>,
     pub found: Vec<[u32; 2]>,
-    /// For reordering storage.
-    pub boxes: Vec<Aabb<D, T>>,
-    pub order: Vec<u32>,
-    pub renamed: Vec<u32>,
-    pub words: Vec<u32>,
-    pub filters: Vec<crate::Filter>,
-    pub flags: Vec<u16>,
+    pub permutation: Permutation<D, T>,
 }
 
 impl<const D: usize, T: Scalar> Tracking<D, T> {

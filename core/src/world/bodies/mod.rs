@@ -1,10 +1,12 @@
 //! The bodies: their ids, filters and boxes, and what was done to them since the last update.
 
+mod displacements;
 mod exclusions;
 mod filter;
 mod id;
 mod rules;
 mod slots;
+mod sweeps;
 mod table;
 
 pub(super) use exclusions::{BEFORE, NOW};

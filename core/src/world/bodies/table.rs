@@ -2,10 +2,12 @@
 
 use alloc::vec::Vec;
 
+use super::displacements::Displacements;
 use super::filter::Filter;
 use super::id::ProxyId;
 use super::rules::{Rules, When};
 use super::slots::{Slots, flag};
+use super::sweeps::Sweeps;
 use crate::cloning::clone_fields;
 use crate::world::options::{Options, Report};
 use crate::{Aabb, Scalar};
@@ -23,17 +25,9 @@ pub struct Bodies<const D: usize, T: Scalar> {
     pub slots: Slots,
     /// The boxes whose overlaps are reported.
     pub boxes: Vec<Aabb<D, T>>,
-    /// The boxes as given, where these are not the ones reported; else empty.
-    pub shapes: Vec<Aabb<D, T>>,
-    /// From where displacements count: the boxes as given at the last update, or where bodies were teleported to since;
-    /// empty like `shapes`. Meaningless for bodies of [`flag::NEW`].
-    pub origins: Vec<Aabb<D, T>>,
-    /// The bodies of [`flag::MOVED`].
-    pub moved: Vec<u32>,
-    /// The bodies whose fat AABB is replaced at the next update if they rest, and some that were removed since the last.
-    pub too_wide: Vec<u32>,
-    /// How far all bodies were shifted since the last update, if fat AABBs are reported.
-    pub shifted: Option<[T; D]>,
+    /// The boxes as given, where these are not the ones reported.
+    pub displacements: Displacements<D, T>,
+    pub sweeps: Sweeps<D, T>,
     /// Which bodies may pair.
     pub rules: Rules,
     /// The boxes at the last update. Meaningless for bodies of [`flag::NEW`].
@@ -46,18 +40,14 @@ pub struct Bodies<const D: usize, T: Scalar> {
     pub any_unlisted: bool,
     /// The bodies of [`flag::LEAVING`].
     pub leaving: Vec<u32>,
-    /// Where bodies of [`flag::SWEPT`] are after the next update; only as long as needed.
-    pub rests: Vec<Aabb<D, T>>,
-    /// The bodies of [`flag::SWEPT`], and others, some twice.
-    pub swept: Vec<u32>,
     /// Bodies that moved recently have smaller indices than this, with few exceptions.
     pub front: usize,
 }
 
 clone_fields! {
     [const D: usize, T: Scalar] Bodies<D, T> {
-        options, slots, boxes, shapes, origins, moved, too_wide, shifted, rules, previous, any_new,
-        changed, any_unlisted, leaving, rests, swept, front,
+        options, slots, boxes, displacements, sweeps, rules, previous, any_new, changed, any_unlisted,
+        leaving, front,
     }
 }
 
@@ -84,15 +74,14 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
     pub fn shape(&self, index: u32) -> &Aabb<D, T> {
         match self.options.report {
             Report::Exact => &self.boxes[index as usize],
-            Report::Fat { .. } => &self.shapes[index as usize],
+            Report::Fat { .. } => &self.displacements.shapes()[index as usize],
         }
     }
 
     /// Writes all that is known of a body whose index is that of an existing row or the next.
     pub fn put(&mut self, index: u32, shape: Aabb<D, T>, boxed: Aabb<D, T>, filter: Filter) {
         if self.options.report.is_fat() {
-            put(&mut self.shapes, index, shape);
-            put(&mut self.origins, index, shape);
+            self.displacements.put(index, shape);
         }
         put(&mut self.boxes, index, boxed);
         self.rules.put(index, filter);
@@ -125,40 +114,25 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
                 }
             }
             Report::Fat { .. } => {
-                self.shapes[row] = *aabb;
-                self.list_moved(index);
+                self.displacements.move_to(&mut self.slots, index, aabb);
                 self.refatten(index);
             }
         }
-    }
-
-    /// Lists a body whose next displacement will count from another place.
-    fn list_moved(&mut self, index: u32) {
-        if !self.slots.has(index, flag::MOVED) {
-            self.slots.raise(index, flag::MOVED);
-            self.moved.push(index);
-        }
-    }
-
-    /// Writes from where the displacements of a body count.
-    pub fn put_origin(&mut self, index: u32, origin: Aabb<D, T>) {
-        self.origins[index as usize] = origin;
-        self.list_moved(index);
     }
 
     /// The fat AABB of a body: a fact about the last update, where the body is now, and teleports and shifts in between.
     #[inline(never)]
     fn fat(&self, index: u32) -> Aabb<D, T> {
         let row = index as usize;
-        let shape = &self.shapes[row];
+        let shape = &self.displacements.shapes()[row];
         let is_new = self.slots.has(index, flag::NEW);
         // The union of a sweep is no place where the body was.
         let rests = is_new || self.slots.has(index, flag::SWEPT);
-        let had = || match &self.shifted {
-            Some(offset) => self.previous[row].translate(*offset),
+        let had = || match self.displacements.shifted() {
+            Some(offset) => self.previous[row].translate(offset),
             None => self.previous[row],
         };
-        let from = if rests { shape } else { &self.origins[row] };
+        let from = if rests { shape } else { &self.displacements.origins()[row] };
         self.options.report.boxed((!is_new).then(had), from, shape)
     }
 
@@ -180,8 +154,8 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
 
     /// Replaces the fat AABBs that are too wide for bodies that rest since the last update.
     pub fn refatten_too_wide(&mut self) {
-        for at in 0..self.too_wide.len() {
-            let index = self.too_wide[at];
+        for at in 0..self.displacements.too_wide().len() {
+            let index = self.displacements.too_wide()[at];
             if self.slots.has(index, flag::LIVE) {
                 self.refatten(index);
             }
@@ -190,38 +164,27 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
 
     /// Makes displacements count from where the bodies are now. To be called when the last update is this one.
     pub fn reset_origins(&mut self) {
-        self.shifted = None;
-        self.too_wide.clear();
-        while let Some(index) = self.moved.pop() {
-            self.slots.lower(index, flag::MOVED);
-            if self.slots.has(index, flag::LIVE) {
-                self.origins[index as usize] = self.shapes[index as usize];
-                if self.is_too_wide(index) {
-                    self.too_wide.push(index);
-                }
+        self.displacements.begin();
+        while let Some(index) = self.displacements.land(&mut self.slots) {
+            if self.is_too_wide(index) {
+                self.displacements.note_too_wide(index);
             }
         }
     }
 
     /// Gives a body its new box, as if it had been there at the last update already.
     pub fn teleport(&mut self, index: u32, aabb: &Aabb<D, T>) {
-        if let Some(origin) = self.origins.get_mut(index as usize) {
-            *origin = *aabb;
-        }
+        self.displacements.teleport(index, aabb);
         self.place(index, aabb);
     }
 
     /// Moves everything by a finite offset.
     pub fn shift(&mut self, offset: &[T; D]) {
-        let Self { boxes, shapes, origins, rests, .. } = self;
-        for table in [boxes, shapes, origins, rests] {
-            table.iter_mut().for_each(|aabb| *aabb = aabb.translate(*offset));
-        }
+        self.boxes.iter_mut().for_each(|aabb| *aabb = aabb.translate(*offset));
+        self.sweeps.shift(offset);
         self.any_unlisted = true;
         if self.options.report.is_fat() {
-            let before = self.shifted.unwrap_or([T::default(); D]);
-            let sum: [T; D] = core::array::from_fn(|axis| before[axis] + offset[axis]);
-            self.shifted = (sum != [T::default(); D]).then_some(sum);
+            self.displacements.shift(offset);
             for index in 0..self.slots.len() as u32 {
                 if self.slots.has(index, flag::LIVE) {
                     self.refatten(index);
@@ -318,25 +281,6 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
         }
     }
 
-    /// Keeps where a sweep ends.
-    pub fn sweep_to(&mut self, index: u32, to: Aabb<D, T>) {
-        if !self.slots.has(index, flag::SWEPT) {
-            if self.swept.len() > self.slots.len() {
-                // Bodies that were set after they were swept are still listed: drop them.
-                let all = 0..self.slots.len() as u32;
-                let slots = &self.slots;
-                self.swept.clear();
-                self.swept.extend(all.filter(|&index| slots.has(index, flag::SWEPT)));
-            }
-            self.slots.raise(index, flag::SWEPT);
-            self.swept.push(index);
-        }
-        if self.rests.len() <= index as usize {
-            self.rests.resize(self.slots.len(), to);
-        }
-        self.rests[index as usize] = to;
-    }
-
     /// Forgets that a body is swept, if it is.
     pub fn cancel_sweep(&mut self, index: u32) {
         self.slots.lower(index, flag::SWEPT);
@@ -344,12 +288,8 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
 
     /// Puts swept bodies where their sweeps ended.
     pub fn settle(&mut self) {
-        while let Some(index) = self.swept.pop() {
-            if self.slots.has(index, flag::SWEPT) {
-                self.slots.lower(index, flag::SWEPT);
-                let to = self.rests[index as usize];
-                self.teleport(index, &to);
-            }
+        while let Some((index, end)) = self.sweeps.pop(&mut self.slots) {
+            self.teleport(index, &end);
         }
     }
 }
@@ -365,7 +305,7 @@ pub fn differ<const D: usize, T: Scalar>(a: &Aabb<D, T>, b: &Aabb<D, T>) -> bool
 }
 
 /// Writes to a table, which grows by one where the index is new.
-fn put<V>(table: &mut Vec<V>, index: u32, value: V) {
+pub fn put<V>(table: &mut Vec<V>, index: u32, value: V) {
     match table.get_mut(index as usize) {
         Some(row) => *row = value,
         None => table.push(value),

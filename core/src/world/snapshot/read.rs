@@ -23,8 +23,7 @@ pub fn read<const D: usize, T: Scalar>(bytes: &[u8]) -> Result<Bodies<D, T>, Sna
         let (margin, prediction) = (reader.scalar()?, reader.scalar()?);
         bodies.options = Options::default().report(Report::Fat { margin, prediction });
         bodies.options.check().map_err(|_| SnapshotFault::Corrupt)?;
-        let offset = reader.corner()?;
-        bodies.shifted = (offset != [T::default(); D]).then_some(offset);
+        bodies.displacements.put_shift(reader.corner()?);
     }
     let count = u32::try_from(reader.number()?).map_err(|_| SnapshotFault::Corrupt)?;
     for _ in 0..count {
@@ -80,7 +79,7 @@ fn read_slot<const D: usize, T: Scalar>(
         }
         if has(holds::SWEEP) {
             let to = reader.aabb()?;
-            bodies.sweep_to(index, to);
+            bodies.sweeps.add(&mut bodies.slots, index, to);
         }
     } else if has(holds::LEAVING) {
         bodies.slots.raise(index, flag::LEAVING);
@@ -93,7 +92,7 @@ fn read_slot<const D: usize, T: Scalar>(
     bodies.put(index, shape, boxed, filter);
     bodies.previous[index as usize] = old_box;
     if has(holds::ORIGIN) {
-        bodies.put_origin(index, origin);
+        bodies.displacements.put_origin(&mut bodies.slots, index, origin);
     }
     if has(holds::NEW) {
         bodies.slots.raise(index, flag::NEW);
@@ -110,7 +109,7 @@ fn read_slot<const D: usize, T: Scalar>(
         if has(holds::NEW) {
             return Err(SnapshotFault::Corrupt);
         }
-        bodies.too_wide.push(index);
+        bodies.displacements.note_too_wide(index);
     }
     Ok(())
 }

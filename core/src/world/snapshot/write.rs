@@ -18,7 +18,7 @@ pub fn write<const D: usize, T: Scalar>(bodies: &Bodies<D, T>, bytes: &mut Vec<u
     bytes.extend([VERSION, D as u8, T::BYTES as u8, held]);
     if let Report::Fat { margin, prediction } = report {
         put_scalars(bytes, &[margin, prediction]);
-        put_scalars(bytes, &bodies.shifted.unwrap_or([T::default(); D]));
+        put_scalars(bytes, &bodies.displacements.shifted().unwrap_or([T::default(); D]));
     }
     put_number(bytes, bodies.slots.len() as u64);
     for &index in &bodies.slots.index_of {
@@ -59,7 +59,8 @@ fn put_slot<const D: usize, T: Scalar>(bytes: &mut Vec<u8>, bodies: &Bodies<D, T
     };
     let filter = filter.filter(|&filter| *filter != Filter::default());
     let origin = bodies
-        .origins
+        .displacements
+        .origins()
         .get(row)
         .filter(|&origin| is_live && is_known && differ(origin, bodies.shape(index)));
     bytes.push(
@@ -79,9 +80,8 @@ fn put_slot<const D: usize, T: Scalar>(bytes: &mut Vec<u8>, bodies: &Bodies<D, T
             put_box(bytes, &bodies.boxes[row]);
         }
         origin.into_iter().for_each(|origin| put_box(bytes, origin));
-        if flags & flag::SWEPT != 0 {
-            put_box(bytes, &bodies.rests[row]);
-        }
+        let end = bodies.sweeps.end(index).filter(|_| flags & flag::SWEPT != 0);
+        end.into_iter().for_each(|end| put_box(bytes, end));
     }
     filter.into_iter().for_each(|filter| put_filter(bytes, filter));
     old_box.into_iter().for_each(|aabb| put_box(bytes, aabb));
