@@ -2,8 +2,8 @@
 
 use alloc::vec::Vec;
 
+use super::rows::put_row;
 use super::slots::{Slots, flag};
-use super::table::put;
 use crate::cloning::clone_fields;
 use crate::{Aabb, Scalar};
 
@@ -50,8 +50,8 @@ impl<const D: usize, T: Scalar> Displacements<D, T> {
 
     /// Writes the row of a new body, whose index is that of an existing row or the next.
     pub fn put(&mut self, index: u32, shape: Aabb<D, T>) {
-        put(&mut self.shapes, index, shape);
-        put(&mut self.origins, index, shape);
+        put_row(&mut self.shapes, index, shape);
+        put_row(&mut self.origins, index, shape);
     }
 
     /// Gives a body another box.

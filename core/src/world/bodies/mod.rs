@@ -4,6 +4,7 @@ mod displacements;
 mod exclusions;
 mod filter;
 mod id;
+mod rows;
 mod rules;
 mod slots;
 mod sweeps;

@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 
 use super::exclusions::{BEFORE, Exclusions, NOW};
 use super::filter::Filter;
+use super::rows::put_row;
 use super::slots::{Slots, flag};
 use crate::cloning::clone_fields;
 use crate::memory::{OutOfMemory, reserve_for};
@@ -72,10 +73,7 @@ impl Rules {
     #[inline(never)]
     pub fn put(&mut self, index: u32, filter: Filter) {
         self.has_any |= filter != Filter::default();
-        match self.filters.get_mut(index as usize) {
-            Some(row) => *row = filter,
-            None => self.filters.push(filter),
-        }
+        put_row(&mut self.filters, index, filter);
     }
 
     /// The filter of a body.

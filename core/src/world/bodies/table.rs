@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use super::displacements::Displacements;
 use super::filter::Filter;
 use super::id::ProxyId;
+use super::rows::put_row;
 use super::rules::{Rules, When};
 use super::slots::{Slots, flag};
 use super::sweeps::Sweeps;
@@ -83,7 +84,7 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
         if self.options.report.is_fat() {
             self.displacements.put(index, shape);
         }
-        put(&mut self.boxes, index, boxed);
+        put_row(&mut self.boxes, index, boxed);
         self.rules.put(index, filter);
         if self.previous.len() < self.boxes.len() {
             self.front += usize::from(self.front == self.previous.len());
@@ -302,12 +303,4 @@ pub fn differ<const D: usize, T: Scalar>(a: &Aabb<D, T>, b: &Aabb<D, T>) -> bool
         (0..D).fold(0, |bits, axis| bits | (a[axis].to_raw() ^ b[axis].to_raw()))
     };
     corners(&a.min, &b.min) | corners(&a.max, &b.max) != 0
-}
-
-/// Writes to a table, which grows by one where the index is new.
-pub fn put<V>(table: &mut Vec<V>, index: u32, value: V) {
-    match table.get_mut(index as usize) {
-        Some(row) => *row = value,
-        None => table.push(value),
-    }
 }
