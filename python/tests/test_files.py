@@ -172,6 +172,7 @@ def test_formats_of_genomics_have_the_intervals_of_bed(name: str, capsys: pytest
             "chr1\tx\texon\t1\t9\t.\t+\t.\t\n",
             "a.bed, line 1, column start: 'x' is not a number: is this GTF or GFF? Name it .gtf or .gff3",
         ),
+        ("a.bed", "c\t-3\t5\n", "a.bed, line 1, column start: it is -3; positions in this format count from 0"),
         ("a.gtf", "c\tx\texon\t0\t5\t.\t+\t.\t\n", "a.gtf, line 1, column start: it is 0; positions in this format"),
         ("a.gff3", "c\tx\tx\t1\t5\t.\t+\t.\nc\tx\tx\t-2\t5\t.\t+\t.\n", "a.gff3, line 2, column start: it is -2; pos"),
         ("a.vcf", "chr1\t-1\tx\tA\tC\n", "a.vcf, line 1, column start: it is -1; positions in this format"),

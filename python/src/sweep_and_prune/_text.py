@@ -178,14 +178,15 @@ class Text:
     def __getitem__(self, name: str) -> NDArray[Any]:
         name = self.named(name)
         numbers = self._numbers(name)
-        least = None if self.format is None else self.format.least_position
-        if least is None or name != "start":
+        if self.format is None or name != "start":
             return numbers
-        wrong = np.flatnonzero(numbers < least)
+        least = self.format.least_position
+        first = 0 if least is None else 1
+        wrong = np.flatnonzero(numbers < (first if least is None else least))
         if len(wrong):
             place = f"{self.name}, line {self.line(int(wrong[0]))}, column start"
-            raise FileError(f"{place}: it is {numbers[wrong[0]]}; positions in this format count from 1")
-        return numbers - 1
+            raise FileError(f"{place}: it is {numbers[wrong[0]]}; positions in this format count from {first}")
+        return numbers - first if first else numbers
 
     def are_plain_numbers(self, name: str) -> bool:
         """Whether all values of a column are numbers that are no names, and some are there."""
