@@ -133,28 +133,14 @@ impl Index {
             Self::Uint64 => pairs(py, found.map(|pair| pair.map(u64::from))),
         }
     }
-
-    /// Many pairs in an array, which owns its memory if it `is_owned`. Converted pairs are freed at once, so that both together
-    /// take little more memory than the array.
-    pub fn many_pairs<'py>(
-        self,
-        py: Python<'py>,
-        found: Vec<[u32; 2]>,
-        is_owned: bool,
-    ) -> PyResult<Array<'py>> {
-        match self {
-            Self::Int32 => many_pairs(py, found, is_owned, |index| index as i32),
-            Self::Uint32 => many_pairs(py, found, is_owned, |index| index),
-            Self::Int64 => many_pairs(py, found, is_owned, i64::from),
-            Self::Uint64 => many_pairs(py, found, is_owned, u64::from),
-        }
-    }
 }
 
 /// From this many pairs on, their memory is given away instead of kept for the next call.
 pub const MANY: usize = 1 << 20;
 
-fn many_pairs<'py, V: Element + Copy>(
+/// Many pairs in an array, which owns its memory if it `is_owned`. Converted pairs are freed at once, so that both together
+/// take little more memory than the array.
+pub fn many_pairs<'py, V: Element + Copy>(
     py: Python<'py>,
     found: Vec<[u32; 2]>,
     is_owned: bool,

@@ -10,7 +10,9 @@ use pyo3::prelude::*;
 use sweep_and_prune::Error;
 use sweep_and_prune_bindings::{ArrayPairFinder, Kind};
 
-use crate::arrays::{Array, Index, MANY, convert_boxes, copy_boxes, numbers, owned_by_rust, pairs};
+use crate::arrays::{
+    Array, Index, MANY, convert_boxes, copy_boxes, many_pairs, numbers, owned_by_rust, pairs,
+};
 use crate::errors::{busy, raise};
 use crate::run::{attach, call_back, processors, run};
 
@@ -80,7 +82,8 @@ impl Finder {
         })
     }
 
-    /// All pairs, in an array that owns its memory if that `is_owned`. With `take_ends`, boxes are integers that are converted as `whole.rs` says. None if they cannot be.
+    /// All pairs, in an array that owns its memory if it `is_owned`. With `take_ends`, boxes are integers that are converted
+    /// as `whole.rs` says; None if they cannot be.
     fn find<'py>(
         &self,
         a: Array<'py>,
@@ -94,32 +97,14 @@ impl Finder {
         self.with(|search| {
             let Some(sets) = search.copy(&a, b.as_ref(), take_ends)? else { return Ok(None) };
             search.choose_threads(sets);
-            if search.threads == 1 && sets.boxes() >= MIN_TO_COLLECT && !is_owned {
-                let progress = progress.as_ref();
-                return match index {
-                    Index::Int32 => search.collect(py, sets, progress, |index| index as i32),
-                    Index::Uint32 => search.collect(py, sets, progress, |index| index),
-                    Index::Int64 => search.collect(py, sets, progress, i64::from),
-                    Index::Uint64 => search.collect(py, sets, progress, u64::from),
-                }
-                .map(Some);
+            let progress = progress.as_ref();
+            match index {
+                Index::Int32 => search.find(py, sets, is_owned, progress, |index| index as i32),
+                Index::Uint32 => search.find(py, sets, is_owned, progress, |index| index),
+                Index::Int64 => search.find(py, sets, is_owned, progress, i64::from),
+                Index::Uint64 => search.find(py, sets, is_owned, progress, u64::from),
             }
-            let finder = &mut search.finder;
-            let found = run(py, sets.boxes(), search.threads, progress.as_ref(), |progress| {
-                finder.find(sets.a, sets.b, progress).map(|found| found.unwrap_or(&[]))
-            });
-            match found {
-                Ok(Ok(found)) if found.len() < MANY => index.pairs(py, found).map(Some),
-                Ok(Ok(_)) => {
-                    let found = search.finder.take_pairs();
-                    if search.threads > 1 && found.len() >= MANY_TO_TRIM {
-                        return_freed_memory();
-                    }
-                    index.many_pairs(py, found, is_owned).map(Some)
-                }
-                Ok(Err(error)) => Err(raise_for(py, error, sets)),
-                Err(error) => Err(search.fail(error)),
-            }
+            .map(Some)
         })
     }
 
@@ -261,6 +246,38 @@ impl Search {
         let Some(a) = copy(0, a)? else { return Ok(None) };
         let Some(b) = b else { return Ok(Some(Sets { a, b: None })) };
         Ok(copy(1, b)?.map(|b| Sets { a, b: Some(b) }))
+    }
+
+    /// All pairs, whose indices `convert` converts.
+    fn find<'py, V: Element + Copy>(
+        &mut self,
+        py: Python<'py>,
+        sets: Sets,
+        is_owned: bool,
+        progress: Option<&Py<PyAny>>,
+        convert: impl Fn(u32) -> V + Copy + Send + Sync,
+    ) -> PyResult<Array<'py>> {
+        if self.threads == 1 && sets.boxes() >= MIN_TO_COLLECT && !is_owned {
+            return self.collect(py, sets, progress, convert);
+        }
+        let finder = &mut self.finder;
+        let found = run(py, sets.boxes(), self.threads, progress, |progress| {
+            finder.find(sets.a, sets.b, progress).map(|found| found.unwrap_or(&[]))
+        });
+        match found {
+            Ok(Ok(found)) if found.len() < MANY => {
+                pairs(py, found.iter().map(|pair| pair.map(convert)))
+            }
+            Ok(Ok(_)) => {
+                let found = self.finder.take_pairs();
+                if self.threads > 1 && found.len() >= MANY_TO_TRIM {
+                    return_freed_memory();
+                }
+                many_pairs(py, found, is_owned, convert)
+            }
+            Ok(Err(error)) => Err(raise_for(py, error, sets)),
+            Err(error) => Err(self.fail(error)),
+        }
     }
 
     /// All pairs on one thread. Many are converted as they are found: their memory is new, and to write to new memory takes

@@ -462,7 +462,7 @@ def _fault(error: InvalidBoxError, source: Source, options: Options) -> str:
             f"{place}{_columns_at_fault(error, source, options)}: there is no number; remove it, or pass --missing skip"
         )
     if genomic is not None:
-        start = int(error.minimum) + (genomic.least_position is not None)  # as in the file
+        start = int(error.minimum) + genomic.first_position  # as in the file
         return f"{place}: the end, {error.maximum:.0f}, is before the start, {start}"
     what = str(error).split(" ", 1)[1].replace("remove it or replace it", "remove it, or pass --missing skip")
     return f"{place}{_columns_at_fault(error, source, options)}: the box {what}"

@@ -80,8 +80,10 @@ def count_overlaps(
         prepared = two_sets(a, b, format, closed, missing, by, margin, wrap, fold=True)
     if not prepared.is_filtered:
         are_grouped_intervals = by is not None and prepared.sets[0].shape[1] == 4  # the second axis is the group
-        prepared, found = (prepared, _counts_of_groups(prepared)) if are_grouped_intervals else counts_of(prepared)
-        return _of_all_rows(found, prepared)
+        if are_grouped_intervals:
+            return _of_all_rows(_counts_of_groups(prepared), prepared)
+        searched, found = counts_of(prepared)
+        return _of_all_rows(found, searched)
     counts = np.zeros(prepared.lengths[0], np.int64)
 
     def add(pairs: NDArray[Any]) -> None:

@@ -146,12 +146,11 @@ def prepare(
         is_closed = True if closed is None else checked_closed(closed)
         plain = _plain(sets)
         if plain is not None:  # the common case, quickly
-            if fold and plain[0].dtype.kind != "f":
-                whole = Whole(not is_closed, partial(prepare, sets, closed=closed))
-                return Prepared(plain, [None for _ in plain], [*map(len, plain)], whole=whole)
-            rows = _plain_rows(plain, is_closed)
+            are_kept = fold and plain[0].dtype.kind != "f"
+            whole = Whole(not is_closed, partial(prepare, sets, closed=closed)) if are_kept else None
+            rows = plain if are_kept else _plain_rows(plain, is_closed)
             if rows is not None:
-                return Prepared(rows, [None for _ in rows], [*map(len, rows)])
+                return Prepared(rows, [None for _ in rows], [*map(len, rows)], whole=whole)
     sets = {name: with_rows(boxes) for name, boxes in sets.items()}
     is_closed = checked_closed(closed, *sets.values())
     names = list(sets)

@@ -53,8 +53,10 @@ class Format(NamedTuple):
     """How many columns each line has at least."""
     fixed: int = 0
     """How many columns there are in any file, of which lines may lack the last ones. The first line tells of others."""
-    least_position: int | None = None
-    """None if positions count from 0; else they count from 1, and ends belong to intervals."""
+    first_position: int = 0
+    """From what positions count: from 0, or from 1, and then ends belong to intervals."""
+    least_position: int = 0
+    """The least position that a line may have."""
     attributes: str = ""
     """How the last column names more values: as in GTF or as in GFF3."""
 
@@ -77,10 +79,10 @@ GENOMIC = {
     "narrowpeak": Format([*_PEAK, "peak"], 3),
     "broadpeak": Format(_PEAK, 3),
     "bedgraph": Format([*_BED[:3], "value"], 3),
-    "gtf": Format(_GENES, 8, 9, 1, "gtf"),
-    "gff3": Format(_GENES, 8, 9, 1, "gff3"),
+    "gtf": Format(_GENES, 8, 9, 1, 1, "gtf"),
+    "gff3": Format(_GENES, 8, 9, 1, 1, "gff3"),
     # (Position 0 is that of a telomere.)
-    "vcf": Format(["chrom", "pos", "id", "ref", "alt", "qual", "filter", "info", "format"], 5, 8, 0),
+    "vcf": Format(["chrom", "pos", "id", "ref", "alt", "qual", "filter", "info", "format"], 5, 8, 1, 0),
 }
 
 
@@ -180,9 +182,8 @@ class Text:
         numbers = self._numbers(name)
         if self.format is None or name != "start":
             return numbers
-        least = self.format.least_position
-        first = 0 if least is None else 1
-        wrong = np.flatnonzero(numbers < (first if least is None else least))
+        first = self.format.first_position
+        wrong = np.flatnonzero(numbers < self.format.least_position)
         if len(wrong):
             place = f"{self.name}, line {self.line(int(wrong[0]))}, column start"
             raise FileError(f"{place}: it is {numbers[wrong[0]]}; positions in this format count from {first}")
@@ -230,7 +231,7 @@ class Text:
         are_numbers = [number(cell) is not None for cell in row]
         if not any(are_numbers):  # tables are saved under the names of these formats, too
             return ": is this a header? Remove the line"
-        is_bed = self.format is not None and self.format.least_position is None
+        is_bed = self.format is not None and self.format.first_position == 0
         if is_bed and len(row) > 4 and not are_numbers[1] and row[3].isdecimal() and row[4].isdecimal():
             return ": is this GTF or GFF? Name it .gtf or .gff3, or pass --from gtf for standard input"
         return ""
