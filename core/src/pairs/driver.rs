@@ -12,12 +12,13 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::brute::{brute_force, is_brute_force};
+use super::buckets::{Buckets, look_up_in_buckets};
 use super::columns::{Columns, Filled, fill};
 use super::crowding::{are_sparse, better_plan, most_records, tests};
 use super::grid::Grid;
 use super::in_order::{Spans, is_sorted};
 use super::kernel::{Cursor, Kernel, SortedBoxes};
-use super::lookup::{Table, may_pay, move_long};
+use super::lookup::{Lookup, Table, may_pay, move_long};
 use super::one_by_one::one_by_one;
 use super::parallel::{Helpers, Receiver};
 use super::placements::Placements;
@@ -50,6 +51,7 @@ pub(super) struct Driver<const D: usize, T: Scalar, P = ()> {
     sorted: [SortedBoxes<T>; 2],
     /// For lookups among boxes, or first among the short ones and then among the long ones.
     tables: [Table<T>; 2],
+    buckets: Buckets<D, T>,
     spans: Spans,
     pub placements: Placements,
     /// Spare columns and groups by size, one for each level at which plans were ever nested, if memory allows.
@@ -68,6 +70,7 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
             sorter: Sorter::default(),
             sorted: Default::default(),
             tables: Default::default(),
+            buckets: Buckets::default(),
             spans: Spans::default(),
             placements: Placements::default(),
             columns: Vec::new(),
@@ -80,13 +83,25 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
     /// The same buffers with another probe, and without helpers.
     #[cfg(feature = "std")]
     pub fn with_probe<Q: Probe>(self) -> Driver<D, T, Q> {
-        let Self { kernel, sorter, sorted, tables, spans, placements, columns, groups, .. } = self;
+        let Self {
+            kernel,
+            sorter,
+            sorted,
+            tables,
+            buckets,
+            spans,
+            placements,
+            columns,
+            groups,
+            ..
+        } = self;
         let (helpers, probe) = (Helpers::new(), Q::default());
         Driver {
             kernel,
             sorter,
             sorted,
             tables,
+            buckets,
             spans,
             placements,
             columns,
@@ -157,7 +172,8 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
             return Ok(false);
         }
         check(sets, task)?;
-        let Self { sorter, sorted: [short, long], tables: [of_short, of_long], helpers, .. } = self;
+        let Self { sorter, sorted, tables, buckets, helpers, .. } = self;
+        let ([short, long], [of_short, of_long]) = (sorted, tables);
         sorter.sort(smaller, 0, short)?;
         self.probe.sorted(smaller.len());
         let (lookups, share) = match of_short.fill(short, larger, swap)? {
@@ -174,8 +190,21 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
                 ([first, second], task.share / 2.0)
             }
         };
-        for lookup in lookups.iter().flatten() {
-            one_by_one(lookup, helpers, Task { share, ..task }, sink)?;
+        for indexed in lookups.iter().flatten() {
+            let task = Task { share, ..task };
+            if indexed.takes_any_order() {
+                one_by_one(&Lookup { indexed, boxes: larger }, helpers, task, sink)?;
+            } else {
+                look_up_in_buckets(
+                    indexed,
+                    larger,
+                    buckets,
+                    helpers,
+                    |helper| &mut helper.buckets,
+                    task,
+                    sink,
+                )?;
+            }
         }
         Ok(true)
     }

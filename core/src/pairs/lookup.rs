@@ -11,6 +11,8 @@
 //!         report the pair if they overlap
 //! ```
 //!
+//! Where the table does not fit a cache, the boxes of the larger set are first put in order, roughly: `buckets.rs`.
+//!
 //! One long box hides where those behind it end. So if too many tests would fail, the few long ones get a table of their
 //! own.
 //!
@@ -29,20 +31,23 @@ use super::sort::intervals;
 use super::source::Source;
 use super::task::{Progress, Stop, Task};
 use crate::geometry::{Arithmetic, Quantizer};
-use crate::memory::{grow, prefetch_ahead, prefetch_range};
+use crate::memory::{grow, prefetch_ahead, prefetch_range, preload};
 use crate::sampling::positions;
 use crate::{Aabb, Scalar};
 
-// Chosen on uniform intervals and on clusters, 1,100 to 2,250,000, one core of an AMD EPYC (Zen 4). At one to ten,
-// lookups take 0.55 (11,000 boxes), 0.56 (110,000) and 0.84 (1,100,000) of the time of a sweep; where a table was
-// made and not used, 1.06.
+// Chosen on uniform intervals and on clusters, one core of an AMD EPYC (Zen 4 and Zen 5). At one to ten, lookups take 0.55
+// (11,000 boxes), 0.56 (110,000) and 0.84 (1,100,000) of the time of a sweep; where a table was made and not used, 1.06.
 
 /// The most boxes of the smaller set that stay in the second-level cache with their table.
 const MOST_CACHED_BOXES: usize = 1 << 14;
-/// Above [`MOST_CACHED_BOXES`], the larger set must be at least this many times as large.
-const MIN_SET_RATIO: usize = 8;
-/// The most boxes of the smaller set.
-const MOST_SORTED_BOXES: usize = 1 << 18;
+/// Above [`MOST_CACHED_BOXES`], the larger set must be at least this many times as large. (At one to four, lookups take 0.6 to
+/// 0.9 of the time of a sweep, 100,000 to 10 million boxes; at one to two, up to 1.2.)
+const MIN_SET_RATIO: usize = 4;
+/// The most boxes of the smaller set that are looked up in any order: see `buckets.rs`. (In buckets, 250,000 took 1.4 of the
+/// time, and a million 0.6 to 0.7.)
+const MOST_IN_ANY_ORDER: usize = 1 << 18;
+/// The most cells that a [`Quantizer`] can have.
+const MOST_CELLS: usize = 1 << 22;
 /// The most tests that may fail for any one box. With more, all boxes are swept.
 const MOST_FAILED_TESTS: usize = 1024;
 /// The most tests that may fail per box, on average over a sample. With more, all boxes are swept.
@@ -63,7 +68,7 @@ pub(super) fn may_pay<const D: usize, T: Scalar, S: Source<D, T>>(
     larger: &[S],
 ) -> bool {
     let len = smaller.len();
-    if len > MOST_CACHED_BOXES.max(larger.len() / MIN_SET_RATIO).min(MOST_SORTED_BOXES) {
+    if len > MOST_CACHED_BOXES.max(larger.len() / MIN_SET_RATIO) {
         return false;
     }
     // All of the sample are compared with each other, which takes no longer than to read the smaller set.
@@ -119,15 +124,20 @@ struct Interval<T> {
     id: u32,
 }
 
-/// The sorted boxes and their table, and the boxes that look them up.
-pub(super) struct Lookup<'a, S, T> {
+/// The sorted boxes and their table.
+pub(super) struct Indexed<'a, T> {
     /// With padding behind the last, whose left edges are NaN.
     sorted: &'a [Interval<T>],
     first: &'a [u32],
     quantizer: Quantizer<T>,
-    larger: &'a [S],
     /// Whether pairs begin with the sorted box.
     swap: bool,
+}
+
+/// Boxes that look up sorted ones, in the order in which they come.
+pub(super) struct Lookup<'a, S, T> {
+    pub indexed: &'a Indexed<'a, T>,
+    pub boxes: &'a [S],
 }
 
 impl<T: Scalar> Table<T> {
@@ -136,12 +146,12 @@ impl<T: Scalar> Table<T> {
     pub fn fill<'a, const D: usize, S: Source<D, T>>(
         &'a mut self,
         boxes: &SortedBoxes<T>,
-        larger: &'a [S],
+        larger: &[S],
         swap: bool,
-    ) -> Result<Option<Lookup<'a, S, T>>, TryReserveError> {
+    ) -> Result<Option<Indexed<'a, T>>, TryReserveError> {
         let (left, right) = (&boxes.left[..boxes.len()], &boxes.right[..boxes.len()]);
         let end = right.iter().fold(right[0], |end, &right| if right > end { right } else { end });
-        let cells = 2 * left.len().next_power_of_two();
+        let cells = (2 * left.len().next_power_of_two()).min(MOST_CELLS);
         let quantizer = intervals([left[0], end], cells);
         grow(&mut self.first, cells, 0)?;
         let first = &mut self.first[..cells];
@@ -178,43 +188,85 @@ impl<T: Scalar> Table<T> {
             let (left, right, id) = (boxes.left[i], boxes.right[i], boxes.id[i]);
             *interval = Interval { left, right, id };
         }
-        Ok(Some(Lookup { sorted, first, quantizer, larger, swap }))
+        Ok(Some(Indexed { sorted, first, quantizer, swap }))
     }
 }
 
 impl<const D: usize, T: Scalar, S: Source<D, T>> OneByOne<D, T> for Lookup<'_, S, T> {
     fn len(&self) -> usize {
-        self.larger.len()
+        self.boxes.len()
     }
 
     fn run<O: Sink>(&self, range: Range<usize>, task: Task<'_>, sink: &mut O) -> Result<(), Stop> {
-        if self.swap {
-            self.look_up(range, task, sink, |id, other| [other, id])
-        } else {
-            self.look_up(range, task, sink, |id, other| [id, other])
-        }
+        self.indexed.look_up(self.boxes, range, task, sink)
     }
 }
 
-impl<S, T: Scalar> Lookup<'_, S, T> {
+impl<T: Scalar> Indexed<'_, T> {
+    /// Whether the sorted boxes are few enough to be looked up in any order.
+    pub fn takes_any_order(&self) -> bool {
+        self.len() <= MOST_IN_ANY_ORDER
+    }
+
+    /// How many sorted boxes there are.
+    pub fn len(&self) -> usize {
+        self.sorted.len() - TESTED_AT_A_TIME
+    }
+
+    /// How many cells there are, a power of two.
+    pub fn cells(&self) -> usize {
+        self.first.len()
+    }
+
+    /// The cell from which a box looks.
     #[inline(always)]
-    fn look_up<const D: usize, O: Sink>(
+    pub fn cell<const D: usize>(&self, aabb: &Aabb<D, T>) -> usize {
+        T::Arithmetic::cell(aabb.min[0], &self.quantizer) as usize
+    }
+
+    /// Brings into a cache what boxes look up from these cells.
+    pub fn preload(&self, cells: Range<usize>) {
+        let first = &self.first[cells];
+        preload(first);
+        if let [from, .., to] = *first {
+            preload(&self.sorted[from as usize..to as usize]);
+        }
+    }
+
+    /// Sends the pairs of a range of boxes to the sink.
+    ///
+    /// # Errors
+    /// [`Stop::Memory`], [`Stop::Cancelled`].
+    pub fn look_up<const D: usize, S: Source<D, T>, O: Sink>(
         &self,
+        boxes: &[S],
+        range: Range<usize>,
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<(), Stop> {
+        if self.swap {
+            self.send(boxes, range, task, sink, |id, other| [other, id])
+        } else {
+            self.send(boxes, range, task, sink, |id, other| [id, other])
+        }
+    }
+
+    #[inline(always)]
+    fn send<const D: usize, S: Source<D, T>, O: Sink>(
+        &self,
+        boxes: &[S],
         range: Range<usize>,
         task: Task<'_>,
         sink: &mut O,
         pair: impl Fn(u32, u32) -> [u32; 2],
-    ) -> Result<(), Stop>
-    where
-        S: Source<D, T>,
-    {
-        let Self { larger, sorted, .. } = *self;
+    ) -> Result<(), Stop> {
+        let sorted = self.sorted;
         // Tests some sorted boxes. Returns how many pairs it wrote, and whether all of these boxes begin within this one.
-        let test = |each: &S, id: usize, next: u32, to: &mut [[u32; 2]]| {
+        let test = |each: &S, at: usize, next: u32, to: &mut [[u32; 2]]| {
             let (begin, end) = (each.aabb().min[0], each.aabb().max[0]);
             let (mut found, mut begins) = (0, false);
             for other in &sorted[next as usize..][..TESTED_AT_A_TIME] {
-                to[found] = pair(id as u32, other.id);
+                to[found] = pair(each.id(at), other.id);
                 // Behind the last box the left edges are NaN.
                 begins = other.left <= end;
                 // Not `&&`: which of them overlap is unpredictable.
@@ -226,11 +278,10 @@ impl<S, T: Scalar> Lookup<'_, S, T> {
         let mut waiting = [0; BLOCK];
         let (mut out, mut count) = (sink.spare()?, 0);
         for start in range.clone().step_by(BLOCK) {
-            let block = &larger[start..range.end.min(start + BLOCK)];
-            prefetch_ahead(larger, start..start + block.len());
+            let block = &boxes[start..range.end.min(start + BLOCK)];
+            prefetch_ahead(boxes, start..start + block.len());
             for (first, each) in first.iter_mut().zip(block) {
-                let at = each.aabb().min[0];
-                *first = self.first[T::Arithmetic::cell(at, &self.quantizer) as usize];
+                *first = self.first[self.cell(each.aabb())];
             }
             if sorted.len() > MOST_CACHED_BOXES {
                 for &first in &first[..block.len()] {
@@ -252,7 +303,7 @@ impl<S, T: Scalar> Lookup<'_, S, T> {
                 left += usize::from(begins);
             }
             for &at in &waiting[..left] {
-                let (each, id) = (&block[at as usize], start + at as usize);
+                let (each, place) = (&block[at as usize], start + at as usize);
                 let mut next = first[at as usize];
                 let mut is_done = false;
                 while !is_done {
@@ -260,7 +311,7 @@ impl<S, T: Scalar> Lookup<'_, S, T> {
                         (out, count) = (next_spare(sink, count, task)?, 0);
                     }
                     let to = &mut out[count..count + TESTED_AT_A_TIME];
-                    let (found, begins) = test(each, id, next, to);
+                    let (found, begins) = test(each, place, next, to);
                     (count, is_done) = (count + found, !begins);
                     next += TESTED_AT_A_TIME as u32;
                 }

@@ -44,7 +44,8 @@
 //! **Long columns** are also cut along the sweep axis, into slabs that fit the caches.
 //!
 //! **Two sets on a line** (`lookup.rs`): the smaller one is sorted, and boxes of the larger one look up those that
-//! they overlap, unless many of those overlap each other.
+//! they overlap, unless many of those overlap each other. If the smaller one does not fit a cache, boxes of the larger one
+//! are copied to buckets first (`buckets.rs`).
 //!
 //! **Boxes on a line that come sorted** (`in_order.rs`) are read where they are.
 //!
@@ -81,6 +82,7 @@
 //! join processing* (a pair is reported where the lower corner of its intersection lies).
 
 mod brute;
+mod buckets;
 mod columns;
 #[cfg(all(test, feature = "std"))]
 mod columns_record;

@@ -125,6 +125,8 @@ fn searches_do_the_work_that_is_recorded() {
     searches!(&mut report, Scene::Uniform, 2, f32, 128, [0]);
     searches!(&mut report, Scene::Uniform, 2, f32, 129, [0]);
     searches!(&mut report, Scene::Uniform, 2, f32, 3000, [32, 33]);
+    // More than fit a cache.
+    searches!(&mut report, Scene::Uniform, 1, f64, 1_400_000, [270_000]);
     groups(&mut report);
     compare_with_record("src/pairs/work.txt", &report);
 }

@@ -166,6 +166,50 @@ fn zeros_of_both_signs_are_found() {
     }
 }
 
+/// More than fit a cache: boxes of the larger set are put in order a chunk at a time, and there are two chunks.
+#[test]
+fn millions_are_found() {
+    let mut random = random();
+    let apart = [intervals(270_000, 3e-6, &mut random), intervals(1_200_000, 1e-6, &mut random)];
+    // Many coincide, and half of the larger set is at one place.
+    let point = |at: f64| Aabb::new([at], [at]);
+    let mut somewhere = || (1e5 * random()).floor() * random().round();
+    let ties = [
+        (0..270_000).map(|at| point(f64::from(at))).collect(),
+        (0..1_200_000).map(|_| point(somewhere())).collect(),
+    ];
+    for [few, many] in [&apart, &ties] {
+        for (a, b) in [(few, many), (many, few)] {
+            let mut finder = PairFinder::new();
+            let shares = Mutex::new(Vec::new());
+            let report = |share: f64| {
+                shares.lock().unwrap().push(share);
+                ControlFlow::Continue(())
+            };
+            let found = finder.search(a).against(b).progress(&report).pairs().unwrap().to_vec();
+            let shares = shares.into_inner().unwrap();
+            assert!(shares.is_sorted() && shares.len() > 100 && shares.last() >= Some(&0.99));
+            assert!(found.len() > 300_000);
+            assert!(found.iter().all(|&[i, j]| a[i as usize].overlaps(&b[j as usize])));
+            let mut sorted = found.clone();
+            sorted.sort_unstable();
+            assert!(sorted.windows(2).all(|pairs| pairs[0] != pairs[1]));
+            // Counts come from ranks.
+            let firsts = found.iter().map(|[first, _]| first);
+            assert!(finder.search(a).against(b).counts() == Ok(counted(firsts, a.len())));
+            let mut streamed = Vec::new();
+            let take = |pairs: &[[u32; 2]]| {
+                streamed.extend_from_slice(pairs);
+                ControlFlow::<()>::Continue(())
+            };
+            assert!(finder.search(a).against(b).for_each_chunk(take).unwrap().is_continue());
+            assert!(streamed == found);
+            #[cfg(feature = "parallel")]
+            assert!(PairFinder::new().threads(3).find_between(a, b).unwrap() == found);
+        }
+    }
+}
+
 /// More than are looked up on both sides at once.
 #[test]
 fn hundreds_of_thousands_are_counted() {

@@ -62,6 +62,18 @@ impl Threads {
 }
 
 impl<W> Team<W> {
+    pub fn in_chunks<B, O: Receiver>(
+        &mut self,
+        _items: Range<usize>,
+        _chunk: usize,
+        _own: &mut B,
+        _buffer: fn(&mut W) -> &mut B,
+        _sink: &mut O,
+        _find: impl Fn(&mut B, Range<usize>, &mut O) -> Result<(), Stop>,
+    ) -> Result<(), Stop> {
+        match self.0 {}
+    }
+
     pub fn fill<const D: usize, T: Scalar, S: Source<D, T>>(
         &mut self,
         _columns: &mut Columns<D, T>,

@@ -85,21 +85,29 @@ impl Threads {
         sink: &mut O,
         find: impl Fn(Range<usize>, &mut Job<'_, '_, O::Chunk>) -> Result<(), Stop> + Sync,
     ) -> Result<(), Stop> {
-        let jobs: Vec<_> = (0..items.len().div_ceil(chunk)).collect();
-        let gather = Gather::new(sink, jobs.len());
-        let do_all = || {
-            gather.do_all(&jobs, |job, sink| {
-                let start = items.start + job * chunk;
-                find(start..items.end.min(start + chunk), sink)
-            });
-        };
-        on_threads(do_all, 1..self.0, |_| do_all());
-        let found = gather.end()?;
-        sink.join(found)
+        let others = (1..self.0).map(|_| ());
+        in_chunks(items, chunk, (), others, sink, |(), range, sink| find(range, sink))
     }
 }
 
 impl<W: Send> Team<W> {
+    /// As [`Threads::in_chunks`]. Each thread has a buffer: this one `own`, each helper one of its own.
+    ///
+    /// # Errors
+    /// Those of `find`, or [`Stop::Memory`].
+    pub fn in_chunks<B: Send, O: Receiver>(
+        &mut self,
+        items: Range<usize>,
+        chunk: usize,
+        own: &mut B,
+        buffer: fn(&mut W) -> &mut B,
+        sink: &mut O,
+        find: impl Fn(&mut B, Range<usize>, &mut Job<'_, '_, O::Chunk>) -> Result<(), Stop> + Sync,
+    ) -> Result<(), Stop> {
+        let others = self.0.iter_mut().map(buffer);
+        in_chunks(items, chunk, own, others, sink, |buffer, range, sink| find(buffer, range, sink))
+    }
+
     /// Fills columns as [`Columns::fill`] does. Each thread lists a chunk of the boxes in its own placements.
     ///
     /// # Errors
@@ -150,4 +158,29 @@ impl<W: Send> Team<W> {
         let found = gather.end()?;
         sink.join(found)
     }
+}
+
+/// Has each thread, with its buffer, take the next `chunk` of the items and find their pairs, until none are left.
+///
+/// # Errors
+/// Those of `find`, or [`Stop::Memory`].
+fn in_chunks<B: Send, O: Receiver>(
+    items: Range<usize>,
+    chunk: usize,
+    own: B,
+    others: impl Iterator<Item = B>,
+    sink: &mut O,
+    find: impl Fn(&mut B, Range<usize>, &mut Job<'_, '_, O::Chunk>) -> Result<(), Stop> + Sync,
+) -> Result<(), Stop> {
+    let jobs: Vec<_> = (0..items.len().div_ceil(chunk)).collect();
+    let gather = Gather::new(sink, jobs.len());
+    let do_all = |mut buffer: B| {
+        gather.do_all(&jobs, |job, sink| {
+            let start = items.start + job * chunk;
+            find(&mut buffer, start..items.end.min(start + chunk), sink)
+        });
+    };
+    on_threads(|| do_all(own), others, do_all);
+    let found = gather.end()?;
+    sink.join(found)
 }
