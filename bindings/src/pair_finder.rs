@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
-use sweep_and_prune::{Error, PairFinder, Scalar, Search};
+use sweep_and_prune::{Error, InParts, PairFinder, Scalar, Search};
 
 use crate::rows::{Coordinates, Rows};
 
@@ -60,6 +60,25 @@ pub trait ArrayPairFinder: AnyPairFinder {
         &mut self,
         a: usize,
         b: Option<usize>,
+        progress: Progress<'_>,
+        each: &mut dyn FnMut(&[[u32; 2]]) -> ControlFlow<()>,
+    ) -> Result<Option<ControlFlow<()>>, Error>;
+
+    /// Prepares the search for pairs of `smaller` rows of one set and a larger set that comes in parts. The first rows of the
+    /// other set are the sample of the larger one. Returns how many boxes each part has to have, but for the last; None if
+    /// these sets have to be searched in another way.
+    #[allow(clippy::missing_errors_doc)]
+    fn prepare_parts(&mut self, smaller: usize, larger: InParts) -> Result<Option<usize>, Error>;
+
+    /// Calls `each` with chunks of the pairs of the next part, whose boxes are the first `count` rows of the larger set. `first`
+    /// is the index of the first of them. Nothing else has been searched for since
+    /// [`prepare_parts`](ArrayPairFinder::prepare_parts). `None` if the search was cancelled, or if a box is invalid.
+    #[allow(clippy::missing_errors_doc)]
+    fn stream_part(
+        &mut self,
+        larger: InParts,
+        count: usize,
+        first: usize,
         progress: Progress<'_>,
         each: &mut dyn FnMut(&[[u32; 2]]) -> ControlFlow<()>,
     ) -> Result<Option<ControlFlow<()>>, Error>;
@@ -131,6 +150,14 @@ fn search<'a, const D: usize, T: Scalar>(
     }
 }
 
+/// The smaller set, and the larger one, which comes in parts.
+fn sets_by_size<const D: usize, T>(
+    [first, second]: &[Rows<D, T>; 2],
+    larger: InParts,
+) -> (&Rows<D, T>, &Rows<D, T>) {
+    if larger.is_first { (second, first) } else { (first, second) }
+}
+
 fn unless_cancelled<R>(result: Result<R, Error>) -> Result<Option<R>, Error> {
     match result {
         Err(Error::Cancelled) => Ok(None),
@@ -198,6 +225,27 @@ impl<const D: usize, T: Scalar> ArrayPairFinder for TypedPairFinder<D, T> {
     ) -> Result<Option<ControlFlow<()>>, Error> {
         let search = search(&mut self.finder, &self.sets, a, b).progress(progress);
         unless_cancelled(search.for_each_chunk(each))
+    }
+
+    fn prepare_parts(&mut self, smaller: usize, larger: InParts) -> Result<Option<usize>, Error> {
+        let Self { finder, sets, .. } = self;
+        let (others, sample) = sets_by_size(sets, larger);
+        let sample = sample.first(larger.sample().len());
+        finder.prepare_parts(others.first(smaller), larger, sample)
+    }
+
+    fn stream_part(
+        &mut self,
+        larger: InParts,
+        count: usize,
+        first: usize,
+        progress: Progress<'_>,
+        each: &mut dyn FnMut(&[[u32; 2]]) -> ControlFlow<()>,
+    ) -> Result<Option<ControlFlow<()>>, Error> {
+        let Self { finder, sets, .. } = self;
+        let part = sets_by_size(sets, larger).1.first(count);
+        let searched = finder.for_each_chunk_of_part(larger, part, first, progress, each);
+        unless_cancelled(searched).map(Option::flatten)
     }
 
     fn take_pairs(&mut self) -> Vec<[u32; 2]> {

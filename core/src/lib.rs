@@ -19,6 +19,8 @@ mod world;
 
 pub use error::{Error, SnapshotFault, Value};
 pub use geometry::{Aabb, Scalar, validate};
+#[doc(hidden)]
+pub use pairs::InParts;
 pub use pairs::{Kernel, PairFinder, Search, count_pairs, find_pairs, find_pairs_between};
 pub use world::{
     BroadPhase, Cast, Changes, Filter, Hit, Lists, Neighbor, Options, Pairs, ProxyId, Queries,

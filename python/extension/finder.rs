@@ -1,6 +1,9 @@
 //! Finds pairs: a pair finder whose dimensions and precision are chosen at run time.
 
-use std::collections::TryReserveError;
+mod collected;
+mod parts;
+
+use std::mem::take;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 
@@ -10,9 +13,8 @@ use pyo3::prelude::*;
 use sweep_and_prune::Error;
 use sweep_and_prune_bindings::{ArrayPairFinder, Kind};
 
-use crate::arrays::{
-    Array, Index, MANY, convert_boxes, copy_boxes, many_pairs, numbers, owned_by_rust, pairs,
-};
+use self::collected::Collected;
+use crate::arrays::{Array, Index, MANY, convert_boxes, copy_boxes, many_pairs, numbers, pairs};
 use crate::errors::{busy, raise};
 use crate::run::{attach, call_back, processors, run};
 
@@ -43,6 +45,14 @@ const MIN_NS_FOR_THREADS: f64 = 1.0e6;
 /// From this many pairs of a search on threads on, freed memory returns to the system: at most 64 MB stay. To look for it
 /// takes as long as a search of a million boxes where the rest of the process has freed much, too.
 const MANY_TO_TRIM: usize = 1 << 23;
+
+/// The arrays of one or two sets. With `take_ends`, they are of integers, which are converted as `whole.rs` says.
+#[derive(Clone, Copy)]
+struct Arrays<'a, 'py> {
+    a: &'a Array<'py>,
+    b: Option<&'a Array<'py>>,
+    take_ends: Option<bool>,
+}
 
 /// How many boxes one or two sets have.
 #[derive(Clone, Copy)]
@@ -93,18 +103,16 @@ impl Finder {
         index: &str,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Option<Array<'py>>> {
-        let (py, index) = (a.py(), Index::of(index)?);
+        let index = Index::of(index)?;
         self.with(|search| {
-            let Some(sets) = search.copy(&a, b.as_ref(), take_ends)? else { return Ok(None) };
-            search.choose_threads(sets);
+            let arrays = Arrays { a: &a, b: b.as_ref(), take_ends };
             let progress = progress.as_ref();
             match index {
-                Index::Int32 => search.find(py, sets, is_owned, progress, |index| index as i32),
-                Index::Uint32 => search.find(py, sets, is_owned, progress, |index| index),
-                Index::Int64 => search.find(py, sets, is_owned, progress, i64::from),
-                Index::Uint64 => search.find(py, sets, is_owned, progress, u64::from),
+                Index::Int32 => search.find(arrays, is_owned, progress, |index| index as i32),
+                Index::Uint32 => search.find(arrays, is_owned, progress, |index| index),
+                Index::Int64 => search.find(arrays, is_owned, progress, i64::from),
+                Index::Uint64 => search.find(arrays, is_owned, progress, u64::from),
             }
-            .map(Some)
         })
     }
 
@@ -118,7 +126,9 @@ impl Finder {
     ) -> PyResult<Option<u64>> {
         let py = a.py();
         self.with(|search| {
-            let Some(sets) = search.copy(&a, b.as_ref(), take_ends)? else { return Ok(None) };
+            let Some(sets) = search.copy(Arrays { a: &a, b: b.as_ref(), take_ends })? else {
+                return Ok(None);
+            };
             search.choose_threads(sets);
             let finder = &mut search.finder;
             let counted = run(py, sets.boxes(), search.threads, progress.as_ref(), |progress| {
@@ -141,7 +151,9 @@ impl Finder {
     ) -> PyResult<Option<Array<'py>>> {
         let py = a.py();
         self.with(|search| {
-            let Some(sets) = search.copy(&a, b.as_ref(), take_ends)? else { return Ok(None) };
+            let Some(sets) = search.copy(Arrays { a: &a, b: b.as_ref(), take_ends })? else {
+                return Ok(None);
+            };
             let finder = &mut search.finder;
             let counted = run(py, sets.boxes(), 1, None, |progress| {
                 finder.counts(sets.a, sets.b, progress).map(Option::unwrap_or_default)
@@ -165,7 +177,9 @@ impl Finder {
     ) -> PyResult<bool> {
         let (py, index) = (a.py(), Index::of(index)?);
         self.with(|search| {
-            let Some(sets) = search.copy(&a, b.as_ref(), None)? else { return Ok(true) };
+            let Some(sets) = search.copy(Arrays { a: &a, b: b.as_ref(), take_ends: None })? else {
+                return Ok(true);
+            };
             let (finder, each) = (&mut search.finder, each.unbind());
             let streamed = run(py, sets.boxes(), 1, None, |_| {
                 let mut buffer: Vec<[u32; 2]> = Vec::new();
@@ -230,41 +244,48 @@ impl Finder {
 
 impl Search {
     /// Copies the boxes to the finder's rows. `None` if integers cannot be converted.
-    fn copy(
-        &mut self,
-        a: &Array<'_>,
-        b: Option<&Array<'_>>,
-        take_ends: Option<bool>,
-    ) -> PyResult<Option<Sets>> {
-        let Self { finder, kind, .. } = self;
-        let mut copy = |set, boxes: &Array<'_>| match take_ends {
-            None => copy_boxes(boxes, *kind, |count| finder.rows(set, count)).map(Some),
-            Some(take_ends) => {
-                convert_boxes(boxes, *kind, take_ends, |count| finder.rows(set, count))
-            }
-        };
-        let Some(a) = copy(0, a)? else { return Ok(None) };
+    fn copy(&mut self, Arrays { a, b, take_ends }: Arrays<'_, '_>) -> PyResult<Option<Sets>> {
+        let Some(a) = self.copy_set(0, a, take_ends)? else { return Ok(None) };
         let Some(b) = b else { return Ok(Some(Sets { a, b: None })) };
-        Ok(copy(1, b)?.map(|b| Sets { a, b: Some(b) }))
+        Ok(self.copy_set(1, b, take_ends)?.map(|b| Sets { a, b: Some(b) }))
     }
 
-    /// All pairs, whose indices `convert` converts.
+    /// Copies the boxes of a set to its rows, and returns how many there are. `None` if integers cannot be converted.
+    fn copy_set(
+        &mut self,
+        set: usize,
+        boxes: &Array<'_>,
+        take_ends: Option<bool>,
+    ) -> PyResult<Option<usize>> {
+        let rows = |count| self.finder.rows(set, count);
+        match take_ends {
+            None => copy_boxes(boxes, self.kind, rows).map(Some),
+            Some(take_ends) => convert_boxes(boxes, self.kind, take_ends, rows),
+        }
+    }
+
+    /// All pairs, whose indices `convert` converts. `None` if integers cannot be converted.
     fn find<'py, V: Element + Copy>(
         &mut self,
-        py: Python<'py>,
-        sets: Sets,
+        arrays: Arrays<'_, 'py>,
         is_owned: bool,
         progress: Option<&Py<PyAny>>,
         convert: impl Fn(u32) -> V + Copy + Send + Sync,
-    ) -> PyResult<Array<'py>> {
+    ) -> PyResult<Option<Array<'py>>> {
+        let py = arrays.a.py();
+        if !is_owned && let Some(found) = self.find_in_parts(arrays, progress, convert)? {
+            return Ok(Some(found));
+        }
+        let Some(sets) = self.copy(arrays)? else { return Ok(None) };
+        self.choose_threads(sets);
         if self.threads == 1 && sets.boxes() >= MIN_TO_COLLECT && !is_owned {
-            return self.collect(py, sets, progress, convert);
+            return self.collect(py, sets, progress, convert).map(Some);
         }
         let finder = &mut self.finder;
         let found = run(py, sets.boxes(), self.threads, progress, |progress| {
             finder.find(sets.a, sets.b, progress).map(|found| found.unwrap_or(&[]))
         });
-        match found {
+        let pairs = match found {
             Ok(Ok(found)) if found.len() < MANY => {
                 pairs(py, found.iter().map(|pair| pair.map(convert)))
             }
@@ -277,11 +298,11 @@ impl Search {
             }
             Ok(Err(error)) => Err(raise_for(py, error, sets)),
             Err(error) => Err(self.fail(error)),
-        }
+        };
+        pairs.map(Some)
     }
 
-    /// All pairs on one thread. Many are converted as they are found: their memory is new, and to write to new memory takes
-    /// longer than to find the pairs. (13 million pairs of 11 million intervals take 0.5 of the time.)
+    /// All pairs on one thread.
     fn collect<'py, V: Element + Copy>(
         &mut self,
         py: Python<'py>,
@@ -289,31 +310,14 @@ impl Search {
         progress: Option<&Py<PyAny>>,
         convert: impl Fn(u32) -> V + Copy + Send + Sync,
     ) -> PyResult<Array<'py>> {
-        let Self { finder, few, .. } = self;
-        few.clear();
-        let mut many: Vec<[V; 2]> = Vec::new();
+        let mut collected = Collected::new(take(&mut self.few), convert);
+        let finder = &mut self.finder;
         let found = run(py, sets.boxes(), 1, progress, |progress| {
-            let mut take = |chunk: &[[u32; 2]]| {
-                if many.is_empty() && few.len() + chunk.len() <= MANY {
-                    few.try_reserve(chunk.len())?;
-                    few.extend_from_slice(chunk);
-                } else {
-                    many.try_reserve(few.len() + chunk.len())?;
-                    let pairs = few.drain(..).chain(chunk.iter().copied());
-                    many.extend(pairs.map(|pair| pair.map(convert)));
-                }
-                Ok::<_, TryReserveError>(())
-            };
-            let mut has_memory = true;
-            let end = finder.stream(sets.a, sets.b, progress, &mut |chunk| {
-                has_memory = take(chunk).is_ok();
-                if has_memory { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-            });
-            end.and(if has_memory { Ok(()) } else { Err(Error::OutOfMemory) })
+            finder.stream(sets.a, sets.b, progress, &mut |found| collected.take(found))
         });
         match found {
-            Ok(Ok(())) if many.is_empty() => pairs(py, few.iter().map(|pair| pair.map(convert))),
-            Ok(Ok(())) => owned_by_rust(py, many),
+            Ok(Ok(_)) if collected.has_memory() => collected.into_array(py, &mut self.few),
+            Ok(Ok(_)) => Err(raise_for(py, Error::OutOfMemory, sets)),
             Ok(Err(error)) => Err(raise_for(py, error, sets)),
             Err(error) => Err(self.fail(error)),
         }

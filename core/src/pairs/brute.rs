@@ -23,9 +23,15 @@ const BOXES_AT_A_TIME: usize = 4096;
 
 /// Whether every box is tested against every other, with nothing sorted.
 pub(super) fn is_brute_force<const D: usize, T: Scalar, S: Source<D, T>>(sets: &[&[S]]) -> bool {
-    let [first, last] = [sets[0].len(), sets[sets.len() - 1].len()];
-    first.max(last) <= MOST_BRUTE_FORCE_BOXES
-        || (sets.len() == 2 && first.min(last) <= MOST_BOXES_AGAINST_MANY)
+    match *sets {
+        [first, second] => is_brute_force_between(first.len(), second.len()),
+        _ => sets[0].len() <= MOST_BRUTE_FORCE_BOXES,
+    }
+}
+
+/// Whether that is so between two sets of so many boxes.
+pub(super) fn is_brute_force_between(first: usize, second: usize) -> bool {
+    first.max(second) <= MOST_BRUTE_FORCE_BOXES || first.min(second) <= MOST_BOXES_AGAINST_MANY
 }
 
 /// Whether boxes are so few that they are tested one by one.

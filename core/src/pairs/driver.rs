@@ -12,13 +12,13 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::brute::{brute_force, is_brute_force};
-use super::buckets::{Buckets, look_up_in_buckets};
+use super::buckets::{Buckets, chunk_of, look_up_in_buckets};
 use super::columns::{Columns, Filled, fill};
 use super::crowding::{are_sparse, better_plan, most_records, tests};
 use super::grid::Grid;
 use super::in_order::{Spans, is_sorted};
 use super::kernel::{Cursor, Kernel, SortedBoxes};
-use super::lookup::{Lookup, Table, may_pay, move_long};
+use super::lookup::{Lookup, SAMPLED_BOXES, Table, may_pay, move_long, sampled};
 use super::one_by_one::one_by_one;
 use super::parallel::{Helpers, Receiver};
 use super::placements::Placements;
@@ -38,6 +38,8 @@ const MOST_NESTED_PLANS: u32 = 12;
 /// other, took 24 times as long as uniform boxes. Now they take 3 times as long.)
 const UNDIVIDED_ONE_IN: usize = 8;
 
+/// How many boxes come at a time if they look up others in any order.
+const BOXES_IN_ANY_ORDER: usize = 1 << 20;
 /// With fewer tests, threads do not pay for the sweep of a single column.
 const MIN_TESTS_FOR_THREADS: u64 = 1 << 20;
 /// A thread takes this many probes of a sweep at a time, so that their pairs stay in its cache.
@@ -168,45 +170,72 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
     ) -> Result<bool, Stop> {
         let swap = sets[0].len() <= sets[1].len();
         let [smaller, larger] = if swap { [sets[0], sets[1]] } else { [sets[1], sets[0]] };
-        if !may_pay(smaller, larger) {
+        if !may_pay(smaller, larger.len()) {
             return Ok(false);
         }
         check(sets, task)?;
-        let Self { sorter, sorted, tables, buckets, helpers, .. } = self;
-        let ([short, long], [of_short, of_long]) = (sorted, tables);
+        let mut begins = [T::default(); SAMPLED_BOXES];
+        let places = sampled(larger.len());
+        let begins = &mut begins[..places.len()];
+        begins.iter_mut().zip(places).for_each(|(to, at)| *to = larger[at].aabb().min[0]);
+        if !self.prepare_lookups(smaller, begins)? {
+            return Ok(false);
+        }
+        self.look_up_prepared(larger, 0, swap, task, sink)?;
+        Ok(true)
+    }
+
+    /// Sorts the smaller of two valid sets on a line, and fills the tables that boxes of the larger one look up; `begins` are
+    /// the left edges of a sample of these. False if it is better to sweep.
+    pub fn prepare_lookups<S: Source<D, T>>(
+        &mut self,
+        smaller: &[S],
+        begins: &[T],
+    ) -> Result<bool, Stop> {
+        let Self { sorter, sorted: [short, long], tables: [of_short, of_long], .. } = self;
         sorter.sort(smaller, 0, short)?;
         self.probe.sorted(smaller.len());
-        let (lookups, share) = match of_short.fill(short, larger, swap)? {
-            Some(lookup) => ([Some(lookup), None], task.share),
-            None => {
-                if !move_long(short, long)? {
-                    return Ok(false);
-                }
-                let first = of_short.fill(short, larger, swap)?;
-                let second = of_long.fill(long, larger, swap)?;
-                if first.is_none() || second.is_none() {
-                    return Ok(false);
-                }
-                ([first, second], task.share / 2.0)
-            }
-        };
-        for indexed in lookups.iter().flatten() {
-            let task = Task { share, ..task };
+        of_long.clear();
+        Ok(of_short.fill(short, begins)?
+            || move_long(short, long)?
+                && of_short.fill(short, begins)?
+                && of_long.fill(long, begins)?)
+    }
+
+    /// Has valid boxes look up those for which tables are filled. The index of the first box is `first`; `swap`: pairs begin
+    /// with the box that is looked up.
+    pub fn look_up_prepared<S: Source<D, T>, O: Receiver>(
+        &mut self,
+        boxes: &[S],
+        first: usize,
+        swap: bool,
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<(), Stop> {
+        let Self { tables, buckets, helpers, .. } = self;
+        let tables = || tables.iter().filter_map(|table| table.indexed(swap));
+        let task = Task { share: task.share / tables().count() as f64, ..task };
+        for indexed in &mut tables() {
+            let lookup = Lookup { indexed: &indexed, boxes, first };
             if indexed.takes_any_order() {
-                one_by_one(&Lookup { indexed, boxes: larger }, helpers, task, sink)?;
+                one_by_one(&lookup, helpers, task, sink)?;
             } else {
-                look_up_in_buckets(
-                    indexed,
-                    larger,
-                    buckets,
-                    helpers,
-                    |helper| &mut helper.buckets,
-                    task,
-                    sink,
-                )?;
+                look_up_in_buckets(lookup, buckets, helpers, Self::buckets, task, sink)?;
             }
         }
-        Ok(true)
+        Ok(())
+    }
+
+    /// How many boxes have to come at a time to look up those for which tables are filled, so that their pairs come in the same
+    /// order as if all came at once. None if only that keeps the order.
+    pub fn boxes_at_a_time(&self) -> Option<usize> {
+        let [of_all, of_long] = &self.tables;
+        let indexed = of_all.indexed(false).filter(|_| of_long.indexed(false).is_none())?;
+        Some(if indexed.takes_any_order() { BOXES_IN_ANY_ORDER } else { chunk_of(&indexed) })
+    }
+
+    fn buckets(&mut self) -> &mut Buckets<D, T> {
+        &mut self.buckets
     }
 
     pub fn run_plan<S: Source<D, T>, O: Receiver>(

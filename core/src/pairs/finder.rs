@@ -92,7 +92,7 @@ pub fn count_pairs<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>]) -> Result<u6
 /// # Ok::<(), sweep_and_prune::Error>(())
 /// ```
 #[derive(Debug)]
-pub struct PairFinder<const D: usize, T: Scalar = f32>(Buffers<D, T>);
+pub struct PairFinder<const D: usize, T: Scalar = f32>(pub(super) Buffers<D, T>);
 
 impl<const D: usize, T: Scalar> PairFinder<D, T> {
     /// A finder with empty buffers, one thread, and the best kernel of this processor.

@@ -53,7 +53,7 @@ const MOST_FAILED_TESTS: usize = 1024;
 /// The most tests that may fail per box, on average over a sample. With more, all boxes are swept.
 const MEAN_FAILED_TESTS: usize = 16;
 /// The size of that sample.
-const SAMPLED_BOXES: usize = 64;
+pub(super) const SAMPLED_BOXES: usize = 64;
 /// Boxes are long if this many others begin within one, where all are spread evenly.
 const OTHERS_IN_LONG: f64 = 16.0;
 /// Long boxes are few if there are at least this many others for each.
@@ -62,13 +62,14 @@ const OTHERS_FOR_EACH_LONG: usize = 8;
 const TESTED_AT_A_TIME: usize = 4;
 const _: () = assert!(TESTED_AT_A_TIME <= PAD);
 
-/// Whether sorting the smaller set is likely to pay: in a sample its boxes do not overlap each other too much.
+/// Whether sorting the smaller set is likely to pay, with so many boxes of the larger one: in a sample its boxes do not overlap
+/// each other too much.
 pub(super) fn may_pay<const D: usize, T: Scalar, S: Source<D, T>>(
     smaller: &[S],
-    larger: &[S],
+    larger: usize,
 ) -> bool {
     let len = smaller.len();
-    if len > MOST_CACHED_BOXES.max(larger.len() / MIN_SET_RATIO) {
+    if len > MOST_CACHED_BOXES.max(larger / MIN_SET_RATIO) {
         return false;
     }
     // All of the sample are compared with each other, which takes no longer than to read the smaller set.
@@ -114,6 +115,16 @@ pub(super) fn move_long<T: Scalar>(
 pub(super) struct Table<T> {
     first: Vec<u32>,
     intervals: Vec<Interval<T>>,
+    /// What it was filled with.
+    filled: Option<Filled<T>>,
+}
+
+/// How many sorted boxes a table has, and its cells.
+#[derive(Clone, Copy, Debug)]
+struct Filled<T> {
+    len: usize,
+    cells: usize,
+    quantizer: Quantizer<T>,
 }
 
 /// A sorted box. All of it is read together, most often from one cache line.
@@ -124,7 +135,7 @@ struct Interval<T> {
     id: u32,
 }
 
-/// The sorted boxes and their table.
+/// The sorted boxes and their table, ready to be looked up.
 pub(super) struct Indexed<'a, T> {
     /// With padding behind the last, whose left edges are NaN.
     sorted: &'a [Interval<T>],
@@ -134,21 +145,19 @@ pub(super) struct Indexed<'a, T> {
     swap: bool,
 }
 
-/// Boxes that look up sorted ones, in the order in which they come.
+/// Boxes that look up sorted ones, in the order in which they come. The index of the first one is `first`.
+#[derive(Clone, Copy)]
 pub(super) struct Lookup<'a, S, T> {
     pub indexed: &'a Indexed<'a, T>,
     pub boxes: &'a [S],
+    pub first: usize,
 }
 
 impl<T: Scalar> Table<T> {
-    /// For sorted boxes, at least one, which boxes of a larger set look up. None if too many tests would
-    /// fail. `swap`: the sorted ones are the first set.
-    pub fn fill<'a, const D: usize, S: Source<D, T>>(
-        &'a mut self,
-        boxes: &SortedBoxes<T>,
-        larger: &[S],
-        swap: bool,
-    ) -> Result<Option<Indexed<'a, T>>, TryReserveError> {
+    /// Fills it with sorted boxes, at least one, which boxes of a larger set look up; `begins` are the left edges of a sample
+    /// of these. False, with an empty table, if too many tests would fail.
+    pub fn fill(&mut self, boxes: &SortedBoxes<T>, begins: &[T]) -> Result<bool, TryReserveError> {
+        self.filled = None;
         let (left, right) = (&boxes.left[..boxes.len()], &boxes.right[..boxes.len()]);
         let end = right.iter().fold(right[0], |end, &right| if right > end { right } else { end });
         let cells = (2 * left.len().next_power_of_two()).min(MOST_CELLS);
@@ -168,18 +177,14 @@ impl<T: Scalar> Table<T> {
         }
         first[done..].fill(left.len() as u32);
         if failed > MOST_FAILED_TESTS {
-            return Ok(None);
+            return Ok(false);
         }
         let before = |at: T| left.partition_point(|&left| left < at);
-        let failed = |position: usize| {
-            let at = larger[position].aabb().min[0];
-            before(at).saturating_sub(first[cell(at)] as usize)
-        };
-        let sample = positions(larger.len(), SAMPLED_BOXES);
-        let few = MEAN_FAILED_TESTS * sample.len();
-        let is_crowded = sample.map(failed).sum::<usize>() > few;
+        let failed = |&at: &T| before(at).saturating_sub(first[cell(at)] as usize);
+        let is_crowded =
+            begins.iter().map(failed).sum::<usize>() > MEAN_FAILED_TESTS * begins.len();
         if is_crowded {
-            return Ok(None);
+            return Ok(false);
         }
         let padded = left.len() + TESTED_AT_A_TIME;
         grow(&mut self.intervals, padded, Interval::default())?;
@@ -188,8 +193,26 @@ impl<T: Scalar> Table<T> {
             let (left, right, id) = (boxes.left[i], boxes.right[i], boxes.id[i]);
             *interval = Interval { left, right, id };
         }
-        Ok(Some(Indexed { sorted, first, quantizer, swap }))
+        self.filled = Some(Filled { len: left.len(), cells, quantizer });
+        Ok(true)
     }
+
+    /// Empties it.
+    pub fn clear(&mut self) {
+        self.filled = None;
+    }
+
+    /// The sorted boxes, unless it is empty. `swap`: they are the first set.
+    pub fn indexed(&self, swap: bool) -> Option<Indexed<'_, T>> {
+        let Filled { len, cells, quantizer } = self.filled?;
+        let sorted = &self.intervals[..len + TESTED_AT_A_TIME];
+        Some(Indexed { sorted, first: &self.first[..cells], quantizer, swap })
+    }
+}
+
+/// The positions of the boxes of a larger set of which a sample is drawn.
+pub(super) fn sampled(count: usize) -> impl ExactSizeIterator<Item = usize> {
+    positions(count, SAMPLED_BOXES)
 }
 
 impl<const D: usize, T: Scalar, S: Source<D, T>> OneByOne<D, T> for Lookup<'_, S, T> {
@@ -198,7 +221,7 @@ impl<const D: usize, T: Scalar, S: Source<D, T>> OneByOne<D, T> for Lookup<'_, S
     }
 
     fn run<O: Sink>(&self, range: Range<usize>, task: Task<'_>, sink: &mut O) -> Result<(), Stop> {
-        self.indexed.look_up(self.boxes, range, task, sink)
+        self.indexed.look_up(self.boxes, self.first, range, task, sink)
     }
 }
 
@@ -233,21 +256,22 @@ impl<T: Scalar> Indexed<'_, T> {
         }
     }
 
-    /// Sends the pairs of a range of boxes to the sink.
+    /// Sends the pairs of a range of boxes to the sink. The index of the first of all is `first`.
     ///
     /// # Errors
     /// [`Stop::Memory`], [`Stop::Cancelled`].
     pub fn look_up<const D: usize, S: Source<D, T>, O: Sink>(
         &self,
         boxes: &[S],
+        first: usize,
         range: Range<usize>,
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
         if self.swap {
-            self.send(boxes, range, task, sink, |id, other| [other, id])
+            self.send(boxes, first, range, task, sink, |id, other| [other, id])
         } else {
-            self.send(boxes, range, task, sink, |id, other| [id, other])
+            self.send(boxes, first, range, task, sink, |id, other| [id, other])
         }
     }
 
@@ -255,6 +279,7 @@ impl<T: Scalar> Indexed<'_, T> {
     fn send<const D: usize, S: Source<D, T>, O: Sink>(
         &self,
         boxes: &[S],
+        first_index: usize,
         range: Range<usize>,
         task: Task<'_>,
         sink: &mut O,
@@ -266,7 +291,7 @@ impl<T: Scalar> Indexed<'_, T> {
             let (begin, end) = (each.aabb().min[0], each.aabb().max[0]);
             let (mut found, mut begins) = (0, false);
             for other in &sorted[next as usize..][..TESTED_AT_A_TIME] {
-                to[found] = pair(each.id(at), other.id);
+                to[found] = pair(each.id(first_index + at), other.id);
                 // Behind the last box the left edges are NaN.
                 begins = other.left <= end;
                 // Not `&&`: which of them overlap is unpredictable.
@@ -341,11 +366,15 @@ mod tests {
     use super::super::sort::Sorter;
     use super::*;
 
+    fn begins(larger: &[Aabb<1>]) -> Vec<f32> {
+        sampled(larger.len()).map(|at| larger[at].min[0]).collect()
+    }
+
     /// Whether boxes look up those of a smaller set.
     fn pays(smaller: &[Aabb<1>], larger: &[Aabb<1>]) -> bool {
         let mut sorted = SortedBoxes::default();
         Sorter::default().sort(smaller, 0, &mut sorted).unwrap();
-        may_pay(smaller, larger) && Table::default().fill(&sorted, larger, true).unwrap().is_some()
+        may_pay(smaller, larger.len()) && Table::default().fill(&sorted, &begins(larger)).unwrap()
     }
 
     #[test]
@@ -382,7 +411,7 @@ mod tests {
         assert!(short.is_ready(0) && long.is_ready(0) && [short.len(), long.len()] == [995, 5]);
         assert_eq!(long.id[..5], [7, 207, 407, 607, 807]);
         for boxes in [&short, &long] {
-            assert!(Table::default().fill(boxes, &larger, true).unwrap().is_some());
+            assert!(Table::default().fill(boxes, &begins(&larger)).unwrap());
         }
         assert!(!move_long(&mut long, &mut short).unwrap());
     }
@@ -391,12 +420,11 @@ mod tests {
     fn no_pattern_in_the_order_of_the_smaller_set_hides_that_its_boxes_overlap() {
         let apart = |i| Aabb::new([-2.0 * i as f32], [1.0 - 2.0 * i as f32]);
         let together = |i| Aabb::new([i as f32], [10_000.0 + i as f32]);
-        let larger = [Aabb::new([0.0], [1.0]); 20_000];
         for period in (2..100).chain([1000]) {
             for apart_at in [0, 1, period / 2] {
                 let at = |i| if i % period == apart_at { apart(i) } else { together(i) };
                 let smaller: Vec<_> = (0..4000).map(at).collect();
-                assert!(!may_pay(&smaller, &larger), "every {period}th, the {apart_at}th first");
+                assert!(!may_pay(&smaller, 20_000), "every {period}th, the {apart_at}th first");
             }
         }
     }

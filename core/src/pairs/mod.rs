@@ -98,6 +98,7 @@ mod kernel;
 mod lookup;
 mod one_by_one;
 mod parallel;
+mod parts;
 mod placements;
 mod plan;
 mod probe;
@@ -114,4 +115,5 @@ pub(crate) mod work;
 
 pub use finder::{PairFinder, count_pairs, find_pairs, find_pairs_between};
 pub use kernel::Kernel;
+pub use parts::InParts;
 pub use search::Search;

@@ -30,7 +30,7 @@ pub(super) struct Buffers<const D: usize, T: Scalar> {
     pub store: Store,
     count: Count,
     ranks: Ranks<T>,
-    buffer: Buffer,
+    pub buffer: Buffer,
 }
 
 impl<const D: usize, T: Scalar> Buffers<D, T> {
@@ -368,7 +368,7 @@ fn run_many<const D: usize, T: Scalar, P: Probe, O: Receiver>(
 }
 
 /// The error of a search of valid boxes.
-fn error(stop: Stop) -> Error {
+pub(super) fn error(stop: Stop) -> Error {
     match stop {
         Stop::Memory => Error::OutOfMemory,
         Stop::Invalid | Stop::TooMany | Stop::Cancelled => Error::Cancelled,

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 
 use proptest::prelude::*;
-use sweep_and_prune::{Aabb, Error, PairFinder, Scalar};
+use sweep_and_prune::{Aabb, Error, InParts, PairFinder, Scalar};
 use sweep_and_prune_scenes::testing::valid_box;
 
 fn pairwise<T: Scalar>(a: &[Aabb<1, T>], b: &[Aabb<1, T>]) -> Vec<[u32; 2]> {
@@ -69,7 +69,32 @@ fn check_between<T: Scalar>(a: &[Aabb<1, T>], b: &[Aabb<1, T>]) {
         assert!(streamed == found);
         #[cfg(feature = "parallel")]
         assert!(PairFinder::new().threads(3).find_between(a, b).unwrap() == found);
+        check_in_parts(a, b);
     }
+}
+
+/// The pairs between two sets of which the larger one comes in parts; none if they cannot be found so. They must be those of
+/// one search, in its order.
+fn check_in_parts<T: Scalar>(a: &[Aabb<1, T>], b: &[Aabb<1, T>]) -> Option<Vec<[u32; 2]>> {
+    let is_first = a.len() > b.len();
+    let (smaller, larger) = if is_first { (b, a) } else { (a, b) };
+    let parts = InParts { boxes: larger.len(), is_first };
+    let sample: Vec<_> = parts.sample().map(|at| larger[at]).collect();
+    let mut finder = PairFinder::new();
+    let at_a_time = finder.prepare_parts(smaller, parts, &sample).unwrap()?;
+    let mut found = Vec::new();
+    for (number, part) in larger.chunks(at_a_time).enumerate() {
+        let go_on = |_| ControlFlow::Continue(());
+        let mut take = |pairs: &[[u32; 2]]| {
+            found.extend_from_slice(pairs);
+            ControlFlow::Continue(())
+        };
+        let first = number * at_a_time;
+        let end = finder.for_each_chunk_of_part(parts, part, first, &go_on, &mut take);
+        assert_eq!(end, Ok(Some(ControlFlow::Continue(()))));
+    }
+    assert!(found == PairFinder::new().find_between(a, b).unwrap());
+    Some(found)
 }
 
 /// Numbers from 0 to 1, always the same.
@@ -206,8 +231,49 @@ fn millions_are_found() {
             assert!(streamed == found);
             #[cfg(feature = "parallel")]
             assert!(PairFinder::new().threads(3).find_between(a, b).unwrap() == found);
+            assert!(check_in_parts(a, b).is_some());
         }
     }
+}
+
+/// Two parts, of which one is short; sets that are searched in another way; a part that is invalid.
+#[test]
+fn a_larger_set_may_come_in_parts() {
+    let mut random = random();
+    let (few, many) = (intervals(5000, 1e-4, &mut random), intervals(40_000, 1e-4, &mut random));
+    assert!(check_in_parts(&few, &many).is_some() && check_in_parts(&many, &few).is_some());
+    let sorted = [in_order(&few), in_order(&many)];
+    assert!(check_in_parts(&sorted[0], &many).is_some());
+    assert!(check_in_parts(&few, &sorted[1]).is_some());
+    assert!(check_in_parts(&sorted[0], &sorted[1]).is_none());
+    assert!(check_in_parts(&few[..20], &many).is_none());
+    assert!(check_in_parts(&few, &few).is_none());
+    let crowded = intervals(5000, 1.0, &mut random);
+    assert!(check_in_parts(&crowded, &many).is_none());
+    let mut long = few.clone();
+    long[7] = Aabb::new([0.0], [2.0]);
+    // The long one has a table of its own, which all of the larger set looks up after the other.
+    assert!(check_in_parts(&long, &many).is_none());
+
+    let parts = InParts { boxes: many.len(), is_first: true };
+    let sample: Vec<_> = parts.sample().map(|at| many[at]).collect();
+    let mut finder = PairFinder::new();
+    let go_on = |_| ControlFlow::Continue(());
+    let invalid = Aabb::new([1.0], [0.0]);
+    assert_eq!(finder.prepare_parts(&few, parts, &[invalid]), Ok(None));
+    let few_and_invalid = [&few[..], &[invalid]].concat();
+    assert_eq!(finder.prepare_parts(&few_and_invalid, parts, &sample), Ok(None));
+    assert!(finder.prepare_parts(&few, parts, &sample).unwrap().is_some());
+    let mut nothing = |_: &[[u32; 2]]| panic!("a pair was sent");
+    let part = [many[0], invalid];
+    assert_eq!(finder.for_each_chunk_of_part(parts, &part, 0, &go_on, &mut nothing), Ok(None));
+    let mut stop = |_: &[[u32; 2]]| ControlFlow::Break(());
+    let end = finder.for_each_chunk_of_part(parts, &many, 0, &go_on, &mut stop);
+    assert_eq!(end, Ok(Some(ControlFlow::Break(()))));
+    let cancel = |_| ControlFlow::Break(());
+    let mut take = |_: &[[u32; 2]]| ControlFlow::Continue(());
+    let end = finder.for_each_chunk_of_part(parts, &many, 0, &cancel, &mut take);
+    assert_eq!(end, Err(Error::Cancelled));
 }
 
 /// More than are looked up on both sides at once.
