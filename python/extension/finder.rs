@@ -1,8 +1,5 @@
 //! Finds pairs: a pair finder whose dimensions and precision are chosen at run time.
 
-mod collected;
-mod parts;
-
 use std::mem::take;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -11,61 +8,23 @@ use numpy::Element;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use sweep_and_prune::Error;
-use sweep_and_prune_bindings::{ArrayPairFinder, Kind};
+use sweep_and_prune_bindings::Kind;
 
-use self::collected::Collected;
-use crate::arrays::{Array, Index, MANY, convert_boxes, copy_boxes, many_pairs, numbers, pairs};
-use crate::errors::{busy, raise};
-use crate::run::{attach, call_back, processors, run};
+use crate::arrays::{Array, Index, MANY, many_pairs, numbers, pairs};
+use crate::collected::Collected;
+use crate::errors::busy;
+use crate::run::{attach, call_back, run};
+use crate::search::{Arrays, Search, Sets, at_most, raise_for};
 
 /// A pair finder, which one call uses at a time.
 #[pyclass(frozen, module = "sweep_and_prune._native")]
 pub struct Finder(Mutex<Search>);
 
-struct Search {
-    finder: Box<dyn ArrayPairFinder>,
-    kind: Kind,
-    /// The pairs of the last search on one thread, unless they were many.
-    few: Vec<[u32; 2]>,
-    /// How many may be used, and how many the last search used.
-    most_threads: usize,
-    threads: usize,
-}
-
-/// With fewer boxes than this the core uses one thread.
-const MIN_FOR_THREADS: usize = 4096;
 /// From this many boxes on, one thread's pairs are collected as they are found.
 const MIN_TO_COLLECT: usize = 4096;
-/// From this many boxes on, threads pay however few of them overlap.
-const SURE_FOR_THREADS: usize = 1 << 17;
-/// With less work threads do not pay: it takes 0.05 to 0.1 ms until another thread has begun and this one has heard that
-/// it is done. (By the model of the plan, for one thread.)
-const MIN_NS_FOR_THREADS: f64 = 1.0e6;
-
 /// From this many pairs of a search on threads on, freed memory returns to the system: at most 64 MB stay. To look for it
 /// takes as long as a search of a million boxes where the rest of the process has freed much, too.
 const MANY_TO_TRIM: usize = 1 << 23;
-
-/// The arrays of one or two sets. With `take_ends`, they are of integers, which are converted as `whole.rs` says.
-#[derive(Clone, Copy)]
-struct Arrays<'a, 'py> {
-    a: &'a Array<'py>,
-    b: Option<&'a Array<'py>>,
-    take_ends: Option<bool>,
-}
-
-/// How many boxes one or two sets have.
-#[derive(Clone, Copy)]
-struct Sets {
-    a: usize,
-    b: Option<usize>,
-}
-
-impl Sets {
-    fn boxes(self) -> usize {
-        self.a + self.b.unwrap_or(0)
-    }
-}
 
 #[pymethods]
 impl Finder {
@@ -217,16 +176,6 @@ impl Finder {
     }
 }
 
-/// The error names the argument: `boxes`, or `a` or `b` where there are two.
-fn raise_for(py: Python<'_>, error: Error, sets: Sets) -> PyErr {
-    let argument = match error {
-        Error::InvalidBox { set: 1, .. } => "b",
-        _ if sets.b.is_some() => "a",
-        _ => "boxes",
-    };
-    raise(py, error, argument, &[])
-}
-
 /// Calls `each` with a chunk, and returns whether it wants another one.
 fn wants_more<'py>(each: &Array<'py>, chunk: Array<'py>) -> PyResult<bool> {
     let answer = call_back(each, (chunk,))?;
@@ -243,27 +192,6 @@ impl Finder {
 }
 
 impl Search {
-    /// Copies the boxes to the finder's rows. `None` if integers cannot be converted.
-    fn copy(&mut self, Arrays { a, b, take_ends }: Arrays<'_, '_>) -> PyResult<Option<Sets>> {
-        let Some(a) = self.copy_set(0, a, take_ends)? else { return Ok(None) };
-        let Some(b) = b else { return Ok(Some(Sets { a, b: None })) };
-        Ok(self.copy_set(1, b, take_ends)?.map(|b| Sets { a, b: Some(b) }))
-    }
-
-    /// Copies the boxes of a set to its rows, and returns how many there are. `None` if integers cannot be converted.
-    fn copy_set(
-        &mut self,
-        set: usize,
-        boxes: &Array<'_>,
-        take_ends: Option<bool>,
-    ) -> PyResult<Option<usize>> {
-        let rows = |count| self.finder.rows(set, count);
-        match take_ends {
-            None => copy_boxes(boxes, self.kind, rows).map(Some),
-            Some(take_ends) => convert_boxes(boxes, self.kind, take_ends, rows),
-        }
-    }
-
     /// All pairs, whose indices `convert` converts. `None` if integers cannot be converted.
     fn find<'py, V: Element + Copy>(
         &mut self,
@@ -322,31 +250,6 @@ impl Search {
             Err(error) => Err(self.fail(error)),
         }
     }
-
-    /// Uses several threads for what takes long enough.
-    fn choose_threads(&mut self, sets: Sets) {
-        let boxes = sets.boxes();
-        let pay = self.most_threads > 1
-            && boxes >= MIN_FOR_THREADS
-            && (boxes >= SURE_FOR_THREADS
-                || self.finder.expected_ns(sets.a, sets.b) >= MIN_NS_FOR_THREADS);
-        let threads = if pay { self.most_threads } else { 1 };
-        if threads != self.threads {
-            self.finder.use_threads(threads);
-            self.threads = threads;
-        }
-    }
-
-    /// After a signal or a panic, which may have left the finder's buffers half written.
-    fn fail(&mut self, error: PyErr) -> PyErr {
-        self.finder.reset();
-        error
-    }
-}
-
-/// More threads than can run at once do not help.
-fn at_most(threads: usize) -> usize {
-    if threads > 1 { threads.min(processors()) } else { 1 }
 }
 
 /// Threads store pairs in small chunks, which the allocator of glibc keeps when they are freed.

@@ -3,13 +3,16 @@
 //! documentation.
 
 mod arrays;
+mod collected;
 mod errors;
 mod exit;
 mod finder;
 mod lines;
 mod order;
+mod parts;
 mod ranks;
 mod run;
+mod search;
 mod whole;
 mod world;
 

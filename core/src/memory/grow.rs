@@ -62,3 +62,15 @@ pub fn reserve<V>(table: &mut Vec<V>, more: usize) {
         enlarge_pages(table);
     }
 }
+
+/// The one item of a list, which is made if it is not there.
+///
+/// # Errors
+/// If there is not enough memory.
+pub fn only_item<V: Default>(list: &mut Vec<V>) -> Result<&mut V, TryReserveError> {
+    if list.is_empty() {
+        list.try_reserve_exact(1)?;
+        list.push(V::default());
+    }
+    Ok(&mut list[0])
+}

@@ -29,7 +29,7 @@ pub(super) fn is_brute_force<const D: usize, T: Scalar, S: Source<D, T>>(sets: &
     }
 }
 
-/// Whether that is so between two sets of so many boxes.
+/// Whether that is so between two sets of these numbers of boxes.
 pub(super) fn is_brute_force_between(first: usize, second: usize) -> bool {
     first.max(second) <= MOST_BRUTE_FORCE_BOXES || first.min(second) <= MOST_BOXES_AGAINST_MANY
 }

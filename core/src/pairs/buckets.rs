@@ -12,10 +12,8 @@
 
 use alloc::vec::Vec;
 use core::mem::replace;
-use core::ops::Range;
 
 use super::lookup::{Indexed, Lookup};
-use super::parallel::{Helpers, Receiver};
 use super::sink::Sink;
 use super::source::{Record, Source};
 use super::task::{Stop, Task};
@@ -32,8 +30,8 @@ const MOST_BUCKETS: usize = 1 << 10;
 
 /// The records of a chunk, by bucket.
 #[derive(Debug, Default)]
-pub(super) struct Buckets<const D: usize, T> {
-    records: Vec<Record<D, T>>,
+pub(super) struct Buckets<T> {
+    records: Vec<Record<1, T>>,
     /// Where those of each bucket end.
     ends: Vec<u32>,
 }
@@ -43,52 +41,12 @@ pub(super) fn chunk_of<T: Scalar>(indexed: &Indexed<'_, T>) -> usize {
     LEAST_CHUNK.max(indexed.len())
 }
 
-/// Has boxes look up sorted ones, on several threads if there are helpers, and sends the pairs to the sink. `own` and
-/// `buckets` are the buckets of this thread and of a helper.
-///
-/// # Errors
-/// [`Stop::Memory`], [`Stop::Cancelled`].
-pub(super) fn look_up_in_buckets<
-    const D: usize,
-    T: Scalar,
-    S: Source<D, T>,
-    W: Send,
-    O: Receiver,
->(
-    Lookup { indexed, boxes, first }: Lookup<'_, S, T>,
-    own: &mut Buckets<D, T>,
-    helpers: &mut Helpers<W>,
-    buckets: fn(&mut W) -> &mut Buckets<D, T>,
-    task: Task<'_>,
-    sink: &mut O,
-) -> Result<(), Stop> {
-    let (all, chunk) = (0..boxes.len(), chunk_of(indexed));
-    let one = |range: Range<usize>| {
-        let share = task.share * range.len() as f64 / boxes.len() as f64;
-        let (first, boxes) = (first + range.start, &boxes[range]);
-        (Lookup { indexed, boxes, first }, Task { share, ..task })
-    };
-    let mut team = helpers.team::<O>(boxes.len());
-    let found = match &mut team {
-        Some(team) => team.in_chunks(all, chunk, own, buckets, sink, |own, range, sink| {
-            let (chunk, task) = one(range);
-            own.look_up(chunk, task, sink)
-        }),
-        None => all.step_by(chunk).try_for_each(|start| {
-            let (chunk, task) = one(start..boxes.len().min(start + chunk));
-            own.look_up(chunk, task, sink)
-        }),
-    };
-    helpers.rest(team);
-    found
-}
-
-impl<const D: usize, T: Scalar> Buckets<D, T> {
+impl<T: Scalar> Buckets<T> {
     /// Has the boxes of a chunk look up the sorted ones.
     ///
     /// # Errors
     /// [`Stop::Memory`], [`Stop::Cancelled`].
-    fn look_up<S: Source<D, T>, O: Sink>(
+    pub fn look_up<const D: usize, S: Source<D, T>, O: Sink>(
         &mut self,
         chunk: Lookup<'_, S, T>,
         task: Task<'_>,
@@ -110,17 +68,17 @@ impl<const D: usize, T: Scalar> Buckets<D, T> {
         Ok(())
     }
 
-    /// Copies the boxes of a chunk to the buckets of so many cells each. Returns the records and where those of each bucket end.
+    /// Copies the boxes of a chunk to buckets, each of which has this many `cells`. Returns the records and where those of each bucket end.
     ///
     /// # Errors
     /// [`Stop::Memory`].
-    fn fill<S: Source<D, T>>(
+    fn fill<const D: usize, S: Source<D, T>>(
         &mut self,
         Lookup { indexed, boxes, first }: Lookup<'_, S, T>,
         cells: usize,
-    ) -> Result<(&[Record<D, T>], &[u32]), Stop> {
-        let nothing = Aabb::new([T::default(); D], [T::default(); D]);
-        grow(&mut self.records, boxes.len(), nothing.record(0))?;
+    ) -> Result<(&[Record<1, T>], &[u32]), Stop> {
+        let record = |begin, end, id| Record { aabb: Aabb::new([begin], [end]), id, dedup: 0 };
+        grow(&mut self.records, boxes.len(), record(T::default(), T::default(), 0))?;
         let count = indexed.cells() / cells;
         grow(&mut self.ends, count, 0)?;
         let (records, ends) = (&mut self.records[..boxes.len()], &mut self.ends[..count]);
@@ -136,7 +94,8 @@ impl<const D: usize, T: Scalar> Buckets<D, T> {
         }
         for (at, each) in (first..).zip(boxes) {
             let end = &mut ends[bucket(each)];
-            records[*end as usize] = each.record(at);
+            let aabb = each.aabb();
+            records[*end as usize] = record(aabb.min[0], aabb.max[0], each.id(at));
             *end += 1;
         }
         Ok((records, ends))

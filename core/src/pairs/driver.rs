@@ -9,10 +9,11 @@
 //! by size first.
 
 use alloc::vec::Vec;
+use core::mem::take;
 use core::ops::Range;
 
 use super::brute::{brute_force, is_brute_force};
-use super::buckets::{Buckets, chunk_of, look_up_in_buckets};
+use super::buckets::{Buckets, chunk_of};
 use super::columns::{Columns, Filled, fill};
 use super::crowding::{are_sparse, better_plan, most_records, tests};
 use super::grid::Grid;
@@ -30,6 +31,7 @@ use super::source::Source;
 use super::sweep::Sweep;
 use super::task::{Stop, Task};
 use crate::Scalar;
+use crate::memory::only_item;
 
 /// The deepest that plans nest.
 const MOST_NESTED_PLANS: u32 = 12;
@@ -45,16 +47,23 @@ const MIN_TESTS_FOR_THREADS: u64 = 1 << 20;
 /// A thread takes this many probes of a sweep at a time, so that their pairs stay in its cache.
 const PROBES_AT_A_TIME: usize = 256;
 
+/// What only searches of boxes on a line need.
+#[derive(Debug, Default)]
+struct OnLine<T> {
+    /// For lookups among boxes, or first among the short ones and then among the long ones.
+    tables: [Table<T>; 2],
+    buckets: Buckets<T>,
+    spans: Spans,
+}
+
 /// The buffers of one thread, kept between calls.
 #[derive(Debug)]
 pub(super) struct Driver<const D: usize, T: Scalar, P = ()> {
     pub kernel: Kernel,
     sorter: Sorter<T>,
     sorted: [SortedBoxes<T>; 2],
-    /// For lookups among boxes, or first among the short ones and then among the long ones.
-    tables: [Table<T>; 2],
-    buckets: Buckets<D, T>,
-    spans: Spans,
+    /// None or one, so that drivers of other boxes are small.
+    on_line: Vec<OnLine<T>>,
     pub placements: Placements,
     /// Spare columns and groups by size, one for each level at which plans were ever nested, if memory allows.
     columns: Vec<[Columns<D, T>; 2]>,
@@ -71,9 +80,7 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
             kernel,
             sorter: Sorter::default(),
             sorted: Default::default(),
-            tables: Default::default(),
-            buckets: Buckets::default(),
-            spans: Spans::default(),
+            on_line: Vec::new(),
             placements: Placements::default(),
             columns: Vec::new(),
             groups: Vec::new(),
@@ -85,32 +92,9 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
     /// The same buffers with another probe, and without helpers.
     #[cfg(feature = "std")]
     pub fn with_probe<Q: Probe>(self) -> Driver<D, T, Q> {
-        let Self {
-            kernel,
-            sorter,
-            sorted,
-            tables,
-            buckets,
-            spans,
-            placements,
-            columns,
-            groups,
-            ..
-        } = self;
+        let Self { kernel, sorter, sorted, on_line, placements, columns, groups, .. } = self;
         let (helpers, probe) = (Helpers::new(), Q::default());
-        Driver {
-            kernel,
-            sorter,
-            sorted,
-            tables,
-            buckets,
-            spans,
-            placements,
-            columns,
-            groups,
-            helpers,
-            probe,
-        }
+        Driver { kernel, sorter, sorted, on_line, placements, columns, groups, helpers, probe }
     }
 
     /// Sends all pairs within one set, or between two, to the sink. Sets that are searched by
@@ -155,7 +139,9 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<bool, Stop> {
-        let Some(in_order) = self.spans.fill(sets)? else { return Ok(false) };
+        let Some(in_order) = only_item(&mut self.on_line)?.spans.fill(sets)? else {
+            return Ok(false);
+        };
         one_by_one(&in_order, &self.helpers, task, sink)?;
         Ok(true)
     }
@@ -192,7 +178,8 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
         smaller: &[S],
         begins: &[T],
     ) -> Result<bool, Stop> {
-        let Self { sorter, sorted: [short, long], tables: [of_short, of_long], .. } = self;
+        let Self { sorter, sorted: [short, long], on_line, .. } = self;
+        let [of_short, of_long] = &mut only_item(on_line)?.tables;
         sorter.sort(smaller, 0, short)?;
         self.probe.sorted(smaller.len());
         of_long.clear();
@@ -212,30 +199,55 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
-        let Self { tables, buckets, helpers, .. } = self;
-        let tables = || tables.iter().filter_map(|table| table.indexed(swap));
+        let filled = take(&mut only_item(&mut self.on_line)?.tables);
+        let tables = || filled.iter().filter_map(|table| table.indexed(swap));
         let task = Task { share: task.share / tables().count() as f64, ..task };
-        for indexed in &mut tables() {
+        let found = tables().try_for_each(|indexed| {
             let lookup = Lookup { indexed: &indexed, boxes, first };
             if indexed.takes_any_order() {
-                one_by_one(&lookup, helpers, task, sink)?;
+                one_by_one(&lookup, &self.helpers, task, sink)
             } else {
-                look_up_in_buckets(lookup, buckets, helpers, Self::buckets, task, sink)?;
+                self.look_up_in_buckets(lookup, task, sink)
             }
-        }
-        Ok(())
+        });
+        only_item(&mut self.on_line)?.tables = filled;
+        found
+    }
+
+    /// Has boxes look up others a chunk at a time, on several threads if there are helpers.
+    fn look_up_in_buckets<S: Source<D, T>, O: Receiver>(
+        &mut self,
+        Lookup { indexed, boxes, first }: Lookup<'_, S, T>,
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<(), Stop> {
+        let (all, chunk) = (0..boxes.len(), chunk_of(indexed));
+        let part = |range: Range<usize>| {
+            let share = task.share * range.len() as f64 / boxes.len() as f64;
+            let (first, boxes) = (first + range.start, &boxes[range]);
+            (Lookup { indexed, boxes, first }, Task { share, ..task })
+        };
+        let mut team = self.helpers.team::<O>(boxes.len());
+        let found = match &mut team {
+            Some(team) => team.in_chunks(all, chunk, self, sink, |driver, range, sink| {
+                let (lookup, task) = part(range);
+                only_item(&mut driver.on_line)?.buckets.look_up(lookup, task, sink)
+            }),
+            None => all.step_by(chunk).try_for_each(|start| {
+                let (lookup, task) = part(start..boxes.len().min(start + chunk));
+                only_item(&mut self.on_line)?.buckets.look_up(lookup, task, sink)
+            }),
+        };
+        self.helpers.rest(team);
+        found
     }
 
     /// How many boxes have to come at a time to look up those for which tables are filled, so that their pairs come in the same
     /// order as if all came at once. None if only that keeps the order.
     pub fn boxes_at_a_time(&self) -> Option<usize> {
-        let [of_all, of_long] = &self.tables;
+        let [of_all, of_long] = &self.on_line.first()?.tables;
         let indexed = of_all.indexed(false).filter(|_| of_long.indexed(false).is_none())?;
         Some(if indexed.takes_any_order() { BOXES_IN_ANY_ORDER } else { chunk_of(&indexed) })
-    }
-
-    fn buckets(&mut self) -> &mut Buckets<D, T> {
-        &mut self.buckets
     }
 
     pub fn run_plan<S: Source<D, T>, O: Receiver>(

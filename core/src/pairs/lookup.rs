@@ -62,7 +62,7 @@ const OTHERS_FOR_EACH_LONG: usize = 8;
 const TESTED_AT_A_TIME: usize = 4;
 const _: () = assert!(TESTED_AT_A_TIME <= PAD);
 
-/// Whether sorting the smaller set is likely to pay, with so many boxes of the larger one: in a sample its boxes do not overlap
+/// Whether sorting the smaller set is likely to pay, where the larger one has `larger` boxes: in a sample its boxes do not overlap
 /// each other too much.
 pub(super) fn may_pay<const D: usize, T: Scalar, S: Source<D, T>>(
     smaller: &[S],
@@ -256,36 +256,25 @@ impl<T: Scalar> Indexed<'_, T> {
         }
     }
 
-    /// Sends the pairs of a range of boxes to the sink. The index of the first of all is `first`.
+    /// Sends the pairs of a range of boxes to the sink. The index of the first of all is `first_index`.
     ///
     /// # Errors
     /// [`Stop::Memory`], [`Stop::Cancelled`].
     pub fn look_up<const D: usize, S: Source<D, T>, O: Sink>(
         &self,
         boxes: &[S],
-        first: usize,
-        range: Range<usize>,
-        task: Task<'_>,
-        sink: &mut O,
-    ) -> Result<(), Stop> {
-        if self.swap {
-            self.send(boxes, first, range, task, sink, |id, other| [other, id])
-        } else {
-            self.send(boxes, first, range, task, sink, |id, other| [id, other])
-        }
-    }
-
-    #[inline(always)]
-    fn send<const D: usize, S: Source<D, T>, O: Sink>(
-        &self,
-        boxes: &[S],
         first_index: usize,
         range: Range<usize>,
         task: Task<'_>,
         sink: &mut O,
-        pair: impl Fn(u32, u32) -> [u32; 2],
     ) -> Result<(), Stop> {
         let sorted = self.sorted;
+        // Without a branch, and without this code once more for the other order.
+        let turn = if self.swap { u32::BITS } else { 0 };
+        let pair = |id: u32, other: u32| {
+            let both = (u64::from(id) | u64::from(other) << u32::BITS).rotate_left(turn);
+            [both as u32, (both >> u32::BITS) as u32]
+        };
         // Tests some sorted boxes. Returns how many pairs it wrote, and whether all of these boxes begin within this one.
         let test = |each: &S, at: usize, next: u32, to: &mut [[u32; 2]]| {
             let (begin, end) = (each.aabb().min[0], each.aabb().max[0]);

@@ -62,14 +62,13 @@ impl Threads {
 }
 
 impl<W> Team<W> {
-    pub fn in_chunks<B, O: Receiver>(
+    pub fn in_chunks<O: Receiver>(
         &mut self,
         _items: Range<usize>,
         _chunk: usize,
-        _own: &mut B,
-        _buffer: fn(&mut W) -> &mut B,
+        _own: &mut W,
         _sink: &mut O,
-        _find: impl Fn(&mut B, Range<usize>, &mut O) -> Result<(), Stop>,
+        _find: impl Fn(&mut W, Range<usize>, &mut O) -> Result<(), Stop>,
     ) -> Result<(), Stop> {
         match self.0 {}
     }

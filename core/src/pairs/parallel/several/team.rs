@@ -91,21 +91,21 @@ impl Threads {
 }
 
 impl<W: Send> Team<W> {
-    /// As [`Threads::in_chunks`]. Each thread has a buffer: this one `own`, each helper one of its own.
+    /// As [`Threads::in_chunks`], by this thread's `own` worker and the team.
     ///
     /// # Errors
     /// Those of `find`, or [`Stop::Memory`].
-    pub fn in_chunks<B: Send, O: Receiver>(
+    pub fn in_chunks<O: Receiver>(
         &mut self,
         items: Range<usize>,
         chunk: usize,
-        own: &mut B,
-        buffer: fn(&mut W) -> &mut B,
+        own: &mut W,
         sink: &mut O,
-        find: impl Fn(&mut B, Range<usize>, &mut Job<'_, '_, O::Chunk>) -> Result<(), Stop> + Sync,
+        find: impl Fn(&mut W, Range<usize>, &mut Job<'_, '_, O::Chunk>) -> Result<(), Stop> + Sync,
     ) -> Result<(), Stop> {
-        let others = self.0.iter_mut().map(buffer);
-        in_chunks(items, chunk, own, others, sink, |buffer, range, sink| find(buffer, range, sink))
+        in_chunks(items, chunk, own, self.0.iter_mut(), sink, |worker, range, sink| {
+            find(worker, range, sink)
+        })
     }
 
     /// Fills columns as [`Columns::fill`] does. Each thread lists a chunk of the boxes in its own placements.
@@ -160,24 +160,24 @@ impl<W: Send> Team<W> {
     }
 }
 
-/// Has each thread, with its buffer, take the next `chunk` of the items and find their pairs, until none are left.
+/// Has each thread, as one worker, take the next `chunk` of the items and find their pairs, until none are left.
 ///
 /// # Errors
 /// Those of `find`, or [`Stop::Memory`].
-fn in_chunks<B: Send, O: Receiver>(
+fn in_chunks<W: Send, O: Receiver>(
     items: Range<usize>,
     chunk: usize,
-    own: B,
-    others: impl Iterator<Item = B>,
+    own: W,
+    others: impl Iterator<Item = W>,
     sink: &mut O,
-    find: impl Fn(&mut B, Range<usize>, &mut Job<'_, '_, O::Chunk>) -> Result<(), Stop> + Sync,
+    find: impl Fn(&mut W, Range<usize>, &mut Job<'_, '_, O::Chunk>) -> Result<(), Stop> + Sync,
 ) -> Result<(), Stop> {
     let jobs: Vec<_> = (0..items.len().div_ceil(chunk)).collect();
     let gather = Gather::new(sink, jobs.len());
-    let do_all = |mut buffer: B| {
+    let do_all = |mut worker: W| {
         gather.do_all(&jobs, |job, sink| {
             let start = items.start + job * chunk;
-            find(&mut buffer, start..items.end.min(start + chunk), sink)
+            find(&mut worker, start..items.end.min(start + chunk), sink)
         });
     };
     on_threads(|| do_all(own), others, do_all);

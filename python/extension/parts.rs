@@ -9,10 +9,10 @@ use pyo3::prelude::*;
 use pyo3::types::PySlice;
 use sweep_and_prune::{Error, InParts};
 
-use super::collected::Collected;
-use super::{Arrays, Search, Sets, raise_for};
 use crate::arrays::Array;
+use crate::collected::Collected;
 use crate::run::run;
+use crate::search::{Arrays, Search, Sets, raise_for};
 
 /// With fewer boxes in the larger set, all are one part.
 const MIN_BOXES: usize = 1 << 21;
