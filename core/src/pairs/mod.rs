@@ -45,7 +45,7 @@
 //!
 //! **Two sets on a line** (`lookup.rs`): the smaller one is sorted, and boxes of the larger one look up those that
 //! they overlap, unless many of those overlap each other. If the smaller one does not fit a cache, boxes of the larger one
-//! are copied to buckets first (`buckets.rs`).
+//! are copied to buckets first (`buckets.rs`). The larger one may come in parts (`parts.rs`).
 //!
 //! **Boxes on a line that come sorted** (`in_order.rs`) are read where they are.
 //!
