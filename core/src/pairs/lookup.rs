@@ -268,13 +268,24 @@ impl<T: Scalar> Indexed<'_, T> {
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
+        if self.swap {
+            self.send(boxes, first_index, range, task, sink, |id, other| [other, id])
+        } else {
+            self.send(boxes, first_index, range, task, sink, |id, other| [id, other])
+        }
+    }
+
+    #[inline(always)]
+    fn send<const D: usize, S: Source<D, T>, O: Sink>(
+        &self,
+        boxes: &[S],
+        first_index: usize,
+        range: Range<usize>,
+        task: Task<'_>,
+        sink: &mut O,
+        pair: impl Fn(u32, u32) -> [u32; 2],
+    ) -> Result<(), Stop> {
         let sorted = self.sorted;
-        // Without a branch, and without this code once more for the other order.
-        let turn = if self.swap { u32::BITS } else { 0 };
-        let pair = |id: u32, other: u32| {
-            let both = (u64::from(id) | u64::from(other) << u32::BITS).rotate_left(turn);
-            [both as u32, (both >> u32::BITS) as u32]
-        };
         // Tests some sorted boxes. Returns how many pairs it wrote, and whether all of these boxes begin within this one.
         let test = |each: &S, at: usize, next: u32, to: &mut [[u32; 2]]| {
             let (begin, end) = (each.aabb().min[0], each.aabb().max[0]);
