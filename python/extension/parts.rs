@@ -35,7 +35,8 @@ impl Search {
         let larger = InParts { boxes: first.max(second), is_first: first > second };
         let are_for_parts = self.kind.dimensions == 1
             && self.most_threads <= MOST_THREADS
-            && larger.boxes >= MIN_BOXES;
+            && larger.boxes >= MIN_BOXES
+            && larger.suit(sets.boxes() - larger.boxes);
         if !are_for_parts {
             return Ok(None);
         }

@@ -68,7 +68,8 @@ impl<T: Scalar> Buckets<T> {
         Ok(())
     }
 
-    /// Copies the boxes of a chunk to buckets, each of which has this many `cells`. Returns the records and where those of each bucket end.
+    /// Copies the boxes of a chunk to buckets, each of which has this many `cells`. Returns the records and where those of each
+    /// bucket end.
     ///
     /// # Errors
     /// [`Stop::Memory`].

@@ -160,10 +160,7 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
             return Ok(false);
         }
         check(sets, task)?;
-        let mut begins = [T::default(); SAMPLED_BOXES];
-        let places = sampled(larger.len());
-        let begins = &mut begins[..places.len()];
-        begins.iter_mut().zip(places).for_each(|(to, at)| *to = larger[at].aabb().min[0]);
+        let begins = sampled(larger.len()).map(|at| larger[at].aabb().min[0]);
         if !self.prepare_lookups(smaller, begins)? {
             return Ok(false);
         }
@@ -176,8 +173,12 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
     pub fn prepare_lookups<S: Source<D, T>>(
         &mut self,
         smaller: &[S],
-        begins: &[T],
+        begins: impl ExactSizeIterator<Item = T>,
     ) -> Result<bool, Stop> {
+        let mut sample = [T::default(); SAMPLED_BOXES];
+        let len = begins.len().min(SAMPLED_BOXES);
+        sample.iter_mut().zip(begins).for_each(|(to, begin)| *to = begin);
+        let begins = &sample[..len];
         let Self { sorter, sorted: [short, long], on_line, .. } = self;
         let [of_short, of_long] = &mut only_item(on_line)?.tables;
         sorter.sort(smaller, 0, short)?;

@@ -62,6 +62,11 @@ const OTHERS_FOR_EACH_LONG: usize = 8;
 const TESTED_AT_A_TIME: usize = 4;
 const _: () = assert!(TESTED_AT_A_TIME <= PAD);
 
+/// Whether a set of `smaller` boxes is small enough that sorting it may pay, where the larger one has `larger` boxes.
+pub(super) fn are_few(smaller: usize, larger: usize) -> bool {
+    smaller <= MOST_CACHED_BOXES.max(larger / MIN_SET_RATIO)
+}
+
 /// Whether sorting the smaller set is likely to pay, where the larger one has `larger` boxes: in a sample its boxes do not overlap
 /// each other too much.
 pub(super) fn may_pay<const D: usize, T: Scalar, S: Source<D, T>>(
@@ -69,7 +74,7 @@ pub(super) fn may_pay<const D: usize, T: Scalar, S: Source<D, T>>(
     larger: usize,
 ) -> bool {
     let len = smaller.len();
-    if len > MOST_CACHED_BOXES.max(larger / MIN_SET_RATIO) {
+    if !are_few(len, larger) {
         return false;
     }
     // All of the sample are compared with each other, which takes no longer than to read the smaller set.

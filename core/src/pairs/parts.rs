@@ -8,10 +8,9 @@ use super::driver::is_valid;
 use super::finder::PairFinder;
 use super::in_order::is_sorted;
 use super::kernel::PairOrder;
-use super::lookup::{SAMPLED_BOXES, may_pay, sampled};
-use super::search::{Buffers, error};
-use super::sink::Stream;
-use super::task::{Progress, ProgressCallback, Stop, Task};
+use super::lookup::{are_few, may_pay, sampled};
+use super::search::{Buffers, error, stream_to};
+use super::task::{Progress, ProgressCallback, Task};
 use crate::geometry::check_count;
 use crate::{Aabb, Error, Scalar};
 
@@ -29,6 +28,13 @@ impl InParts {
     /// The positions of its boxes of which [`PairFinder::prepare_parts`] needs a sample.
     pub fn sample(self) -> impl ExactSizeIterator<Item = usize> {
         sampled(self.boxes)
+    }
+
+    /// Whether there are enough for this number of others; if not, [`PairFinder::prepare_parts`] returns None.
+    pub fn suit(self, others: usize) -> bool {
+        others < self.boxes
+            && !is_brute_force_between(others, self.boxes)
+            && are_few(others, self.boxes)
     }
 }
 
@@ -48,20 +54,18 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
         sample: &[Aabb<D, T>],
     ) -> Result<Option<usize>, Error> {
         [smaller.len(), larger.boxes].into_iter().try_for_each(check_count)?;
-        let are_valid = is_valid(&smaller) && is_valid(&sample);
         let is_lookup = D == 1
-            && are_valid
-            && smaller.len() < larger.boxes
-            && !is_brute_force_between(smaller.len(), larger.boxes)
+            && larger.suit(smaller.len())
+            && is_valid(&smaller)
+            && is_valid(&sample)
             && !(is_sorted(smaller) && is_sorted(sample))
             && may_pay(smaller, larger.boxes);
-        if !is_lookup || sample.len() > SAMPLED_BOXES {
+        if !is_lookup {
             return Ok(None);
         }
-        let mut begins = [T::default(); SAMPLED_BOXES];
-        begins.iter_mut().zip(sample).for_each(|(to, aabb)| *to = aabb.min[0]);
         let driver = &mut self.0.driver;
-        let is_ready = driver.prepare_lookups(smaller, &begins[..sample.len()]).map_err(error)?;
+        let begins = sample.iter().map(|aabb| aabb.min[0]);
+        let is_ready = driver.prepare_lookups(smaller, begins).map_err(error)?;
         Ok(driver.boxes_at_a_time().filter(|_| is_ready))
     }
 
@@ -84,17 +88,11 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
             return Ok(None);
         }
         let Buffers { driver, buffer, .. } = &mut self.0;
-        let mut end = ControlFlow::Continue(());
-        let mut each = |pairs: &[[u32; 2]]| {
-            end = each(pairs);
-            end
-        };
         let progress = Progress::new(progress);
         let task = Task::new(PairOrder::BySet, Some(&progress));
-        let stream = &mut Stream { buffer, each: &mut each };
-        match driver.look_up_prepared(part, first, !larger.is_first, task, stream) {
-            Err(Stop::Cancelled) if end.is_break() => Ok(Some(end)),
-            result => result.map(|()| Some(end)).map_err(error),
-        }
+        let end = stream_to(each, buffer, |stream| {
+            driver.look_up_prepared(part, first, !larger.is_first, task, stream).map_err(error)
+        });
+        end.map(Some)
     }
 }

@@ -238,23 +238,10 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
     /// ```
     pub fn for_each_chunk<B>(
         self,
-        mut each: impl FnMut(&[[u32; 2]]) -> ControlFlow<B>,
+        each: impl FnMut(&[[u32; 2]]) -> ControlFlow<B>,
     ) -> Result<ControlFlow<B>, Error> {
         let Self { buffers: Buffers { driver, buffer, .. }, sets, progress } = self;
-        let mut end = ControlFlow::Continue(());
-        let mut each = |pairs: &[[u32; 2]]| match each(pairs) {
-            ControlFlow::Continue(()) => ControlFlow::Continue(()),
-            ControlFlow::Break(with) => {
-                end = ControlFlow::Break(with);
-                ControlFlow::Break(())
-            }
-        };
-        let stream = &mut Stream { buffer, each: &mut each };
-        let result = run_to_stream(driver, sets.as_slice(), progress, stream);
-        match result {
-            Err(Error::Cancelled) if end.is_break() => Ok(end),
-            result => result.map(|()| end),
-        }
+        stream_to(each, buffer, |stream| run_to_stream(driver, sets.as_slice(), progress, stream))
     }
 
     /// Does all that [`count`](Self::count) does on one thread for more than a few hundred boxes, apart from
@@ -302,6 +289,26 @@ pub(super) fn store<const D: usize, T: Scalar>(
         buffers.store = Store::default();
     }
     result
+}
+
+/// Has `search` stream its pairs to `each` until that breaks, and returns how it ended.
+pub(super) fn stream_to<B>(
+    mut each: impl FnMut(&[[u32; 2]]) -> ControlFlow<B>,
+    buffer: &mut Buffer,
+    search: impl FnOnce(&mut Stream<'_>) -> Result<(), Error>,
+) -> Result<ControlFlow<B>, Error> {
+    let mut end = ControlFlow::Continue(());
+    let mut each = |pairs: &[[u32; 2]]| match each(pairs) {
+        ControlFlow::Continue(()) => ControlFlow::Continue(()),
+        ControlFlow::Break(with) => {
+            end = ControlFlow::Break(with);
+            ControlFlow::Break(())
+        }
+    };
+    match search(&mut Stream { buffer, each: &mut each }) {
+        Err(Error::Cancelled) if end.is_break() => Ok(end),
+        result => result.map(|()| end),
+    }
 }
 
 /// A search for a function of the user, compiled once for all of them.

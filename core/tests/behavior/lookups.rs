@@ -49,6 +49,21 @@ fn counted<'a>(indices: impl Iterator<Item = &'a u32>, len: usize) -> Vec<u32> {
     counts
 }
 
+/// The pairs between two sets, received in chunks.
+fn streamed<T: Scalar>(
+    finder: &mut PairFinder<1, T>,
+    a: &[Aabb<1, T>],
+    b: &[Aabb<1, T>],
+) -> Vec<[u32; 2]> {
+    let mut streamed = Vec::new();
+    let take = |pairs: &[[u32; 2]]| {
+        streamed.extend_from_slice(pairs);
+        ControlFlow::<()>::Continue(())
+    };
+    assert!(finder.search(a).against(b).for_each_chunk(take).unwrap().is_continue());
+    streamed
+}
+
 /// All ways to receive the pairs between two sets, with either one first.
 fn check_between<T: Scalar>(a: &[Aabb<1, T>], b: &[Aabb<1, T>]) {
     for (a, b) in [(a, b), (b, a)] {
@@ -60,13 +75,7 @@ fn check_between<T: Scalar>(a: &[Aabb<1, T>], b: &[Aabb<1, T>]) {
         assert_eq!(finder.search(a).against(b).count(), Ok(found.len() as u64));
         let firsts = found.iter().map(|[first, _]| first);
         assert_eq!(finder.search(a).against(b).counts(), Ok(counted(firsts, a.len())));
-        let mut streamed = Vec::new();
-        let take = |pairs: &[[u32; 2]]| {
-            streamed.extend_from_slice(pairs);
-            ControlFlow::<()>::Continue(())
-        };
-        assert!(finder.search(a).against(b).for_each_chunk(take).unwrap().is_continue());
-        assert!(streamed == found);
+        assert!(streamed(&mut finder, a, b) == found);
         #[cfg(feature = "parallel")]
         assert!(PairFinder::new().threads(3).find_between(a, b).unwrap() == found);
         check_in_parts(a, b);
@@ -222,13 +231,7 @@ fn millions_are_found() {
             // Counts come from ranks.
             let firsts = found.iter().map(|[first, _]| first);
             assert!(finder.search(a).against(b).counts() == Ok(counted(firsts, a.len())));
-            let mut streamed = Vec::new();
-            let take = |pairs: &[[u32; 2]]| {
-                streamed.extend_from_slice(pairs);
-                ControlFlow::<()>::Continue(())
-            };
-            assert!(finder.search(a).against(b).for_each_chunk(take).unwrap().is_continue());
-            assert!(streamed == found);
+            assert!(streamed(&mut finder, a, b) == found);
             #[cfg(feature = "parallel")]
             assert!(PairFinder::new().threads(3).find_between(a, b).unwrap() == found);
             assert!(check_in_parts(a, b).is_some());
