@@ -166,6 +166,7 @@ setup_c() {
   have cmake || install_packages cmake cmake
   have pkg-config || install_packages pkg-config "pkg-config|pkgconf|pkgconf|pkgconf|pkgconf"
   pkg-config --exists bullet || install_packages bullet "libbullet-dev|bullet-devel|bullet|bullet-dev|bullet"
+  pkg-config --exists fcl || install_packages fcl "libfcl-dev|fcl-devel|fcl|fcl-dev|fcl"
 }
 
 # A Python with what python/requirements.txt names, of our own: nothing is installed outside.

@@ -30,15 +30,15 @@ pub struct Rules {
     /// The filters at the last update, of bodies of [`flag::REFILTERED`]; only as long as needed.
     old_filters: Vec<Filter>,
     exclusions: Exclusions,
-    /// Whether a body ever had another filter than the default, or a pair was excluded.
-    has_any: bool,
+    /// Whether a body ever had another filter than the first one or one that forbids its like, or a pair was excluded.
+    are_mixed: bool,
     /// Whether there is a body of [`flag::REFILTERED`].
     any_refiltered: bool,
 }
 
 clone_fields! {
     [] Rules {
-        filters, old_filters, exclusions, has_any, any_refiltered,
+        filters, old_filters, exclusions, are_mixed, any_refiltered,
     }
 }
 
@@ -46,17 +46,18 @@ impl Rules {
     /// Whether any body may pair with any.
     #[inline]
     pub fn allow_all(&self) -> bool {
-        !self.has_any
+        !self.are_mixed
     }
 
     /// Whether any body may pair with any at that moment, because all have the same filter and no pair is excluded.
     #[inline(never)]
     pub fn are_alike(&self, when: When) -> bool {
         let Some(first) = self.filters.first() else { return true };
-        first.allows(first)
-            && (when == When::Now || !self.any_refiltered)
-            && !self.any_excluded()
-            && self.filters.iter().all(|filter| filter == first)
+        self.allow_all()
+            || first.allows(first)
+                && (when == When::Now || !self.any_refiltered)
+                && !self.any_excluded()
+                && self.filters.iter().all(|filter| filter == first)
     }
 
     /// Whether some pair is excluded, or was at the last update.
@@ -72,7 +73,8 @@ impl Rules {
     /// Writes the filter of a body whose index is that of an existing row or the next.
     #[inline(never)]
     pub fn put(&mut self, index: u32, filter: Filter) {
-        self.has_any |= filter != Filter::default();
+        let first = self.filters.first().unwrap_or(&filter);
+        self.are_mixed |= filter != *first || !filter.allows(&filter);
         put_row(&mut self.filters, index, filter);
     }
 
@@ -137,7 +139,7 @@ impl Rules {
     #[inline(never)]
     pub fn refilter(&mut self, slots: &mut Slots, index: u32, filter: Filter) {
         let before = core::mem::replace(&mut self.filters[index as usize], filter);
-        self.has_any = true;
+        self.are_mixed = true;
         if !slots.has(index, flag::NEW | flag::REFILTERED) {
             self.keep_old(slots, index, before);
         }
@@ -148,7 +150,7 @@ impl Rules {
     pub fn keep_old(&mut self, slots: &mut Slots, index: u32, filter: Filter) {
         slots.raise(index, flag::REFILTERED);
         self.any_refiltered = true;
-        self.has_any |= filter != Filter::default();
+        self.are_mixed = true;
         if self.old_filters.len() <= index as usize {
             self.old_filters.resize(slots.len(), filter);
         }
@@ -193,7 +195,7 @@ impl Rules {
         if when & NOW != 0 && !are(flag::LIVE) || when & BEFORE != 0 && !are_known {
             return false;
         }
-        self.has_any = true;
+        self.are_mixed = true;
         self.exclusions.set(pair, when);
         for index in pair {
             slots.raise(index, flag::EXCLUDES);
