@@ -10,12 +10,11 @@ const RADIX_FROM: usize = 128;
 /// overwritten in order, which is fast and caches it for the scattered writes (an update from scratch of
 /// 100,000 bodies takes 0.94 of the time).
 const PRELOAD_FROM: usize = 1 << 15;
-/// Bits that a pass sorts by, at most: as many counters as the first-level cache holds. The first number of a pair
-/// is sorted by in one pass if there are as many pairs as counters.
+/// Bits that a pass sorts by, at most: as many counters as the first-level cache holds. If there are as many pairs as
+/// counters, the first number is sorted by in one pass, and the second if it has no more bits than [`ONE_PASS`].
 const DIGIT: u32 = 11;
-/// Up to so many counters, also if the first-level cache does not hold them, the second number is sorted by in one pass, too, and
-/// both are counted in one (updates from scratch of 10,000 bodies take 0.94 of the time).
-const TWO_PASSES_UP_TO: usize = 1 << 15;
+/// Measured on updates from scratch of 10,000 bodies, which take 0.95 of the time.
+const ONE_PASS: u32 = 15;
 
 /// Sorts pairs, longer lists by radix (least digit first), since slots are small numbers. Keeps its
 /// buffers.
@@ -69,7 +68,7 @@ impl PairSorter {
             return;
         }
         let bits = usize::BITS - bound.saturating_sub(1).leading_zeros();
-        self.starts.reserve((2 * bound).min(1 << 16));
+        self.starts.reserve(bound.min(1 << 16));
         for buffer in [&mut *sorted, &mut self.buffer] {
             if from.len() > PRELOAD_FROM {
                 buffer.clear();
@@ -77,40 +76,23 @@ impl PairSorter {
             buffer.resize(from.len(), [0; 2]);
         }
         let most = DIGIT.max(from.len().ilog2() + 1);
-        if bound <= TWO_PASSES_UP_TO && bits <= most {
-            self.sort_in_two_passes(from, sorted, bound);
-            return;
-        }
         let mut is_first = true;
-        for (side, most) in [(1, DIGIT), (0, most)] {
+        for (side, most) in [(1, if bits > ONE_PASS { DIGIT } else { most }), (0, most)] {
             let passes = bits.div_ceil(most).max(1);
             let digit = bits.div_ceil(passes);
             for pass in 0..passes {
                 self.starts.clear();
-                self.starts.resize(1 << digit, 0);
+                self.starts.resize(bound.min(1 << digit), 0);
                 let from = if is_first { from } else { &self.buffer };
-                distribute(from, sorted, &mut self.starts, |pair| pair[side] >> (pass * digit));
+                let mask = (1 << digit) - 1;
+                distribute(from, sorted, &mut self.starts, |pair| {
+                    pair[side] >> (pass * digit) & mask
+                });
                 core::mem::swap(sorted, &mut self.buffer);
                 is_first = false;
             }
         }
         core::mem::swap(sorted, &mut self.buffer);
-    }
-
-    /// Sorts pairs of numbers less than `bound` from one list into another as long, by one pass for each of the two numbers.
-    fn sort_in_two_passes(&mut self, from: &[[u32; 2]], to: &mut [[u32; 2]], bound: usize) {
-        self.starts.clear();
-        self.starts.resize(2 * bound, 0);
-        let (first, second) = self.starts.split_at_mut(bound);
-        for &[a, b] in from {
-            first[a as usize] += 1;
-            second[b as usize] += 1;
-        }
-        sum_up(first);
-        sum_up(second);
-        let buffer = &mut self.buffer[..from.len()];
-        place(from, buffer, second, |pair| pair[1] as usize);
-        place(buffer, to, first, |pair| pair[0] as usize);
     }
 
     /// Sorts numbers that stand for pairs or ids. All short lists are sorted as such numbers, because each type that
@@ -156,38 +138,22 @@ impl PairSorter {
     }
 }
 
-/// A stable counting sort by the low bits of a key, of which there are as many values as `starts`.
+/// A stable counting sort by a key, of which there are as many values as `starts`.
 fn distribute(
     from: &[[u32; 2]],
     to: &mut [[u32; 2]],
     starts: &mut [u32],
     key: impl Fn(&[u32; 2]) -> u32,
 ) {
-    let mask = starts.len() - 1;
     for pair in from {
-        starts[key(pair) as usize & mask] += 1;
+        starts[key(pair) as usize] += 1;
     }
-    sum_up(starts);
-    place(from, to, starts, |pair| key(pair) as usize & mask);
-}
-
-/// Replaces counts by the sums of those before.
-fn sum_up(counts: &mut [u32]) {
     let mut sum = 0;
-    for count in counts {
-        sum += core::mem::replace(count, sum);
+    for start in &mut *starts {
+        sum += core::mem::replace(start, sum);
     }
-}
-
-/// Writes each pair to where those of its key start, and the next of them behind it.
-fn place(
-    from: &[[u32; 2]],
-    to: &mut [[u32; 2]],
-    starts: &mut [u32],
-    key: impl Fn(&[u32; 2]) -> usize,
-) {
     for pair in from {
-        let start = &mut starts[key(pair)];
+        let start = &mut starts[key(pair) as usize];
         to[*start as usize] = *pair;
         *start += 1;
     }
