@@ -51,10 +51,12 @@ impl PairSorter {
         self.reserve(begun, found.saturating_sub(known))
     }
 
-    /// Sorts pairs of numbers less than `bound`.
+    /// Sorts pairs of numbers less than `bound`. Copies them, so that each list keeps its own memory: with that of a short one a
+    /// long one would have to grow again.
     pub fn sort(&mut self, pairs: &mut Vec<[u32; 2]>, bound: usize) {
         let mut unsorted = core::mem::take(&mut self.unsorted);
-        core::mem::swap(&mut unsorted, pairs);
+        unsorted.clear();
+        unsorted.extend_from_slice(pairs);
         self.sort_into(&unsorted, pairs, bound);
         self.unsorted = unsorted;
     }
@@ -67,7 +69,8 @@ impl PairSorter {
             sorted.extend(self.sort_keys(from.iter().map(|&pair| key(pair))).map(pair));
             return;
         }
-        let bits = usize::BITS - bound.saturating_sub(1).leading_zeros();
+        let bits = usize::BITS - (bound.saturating_sub(1) | 1).leading_zeros();
+        self.starts.clear();
         self.starts.reserve(bound.min(1 << 16));
         for buffer in [&mut *sorted, &mut self.buffer] {
             if from.len() > PRELOAD_FROM {
@@ -76,9 +79,14 @@ impl PairSorter {
             buffer.resize(from.len(), [0; 2]);
         }
         let most = DIGIT.max(from.len().ilog2() + 1);
+        let passes =
+            [if bits > ONE_PASS { DIGIT } else { most }, most].map(|most| bits.div_ceil(most));
+        // So that each list ends with its own memory.
+        if (passes[0] ^ passes[1]) & 1 == 0 {
+            core::mem::swap(sorted, &mut self.buffer);
+        }
         let mut is_first = true;
-        for (side, most) in [(1, if bits > ONE_PASS { DIGIT } else { most }), (0, most)] {
-            let passes = bits.div_ceil(most).max(1);
+        for (side, passes) in [1, 0].into_iter().zip(passes) {
             let digit = bits.div_ceil(passes);
             for pass in 0..passes {
                 self.starts.clear();
