@@ -104,19 +104,19 @@ static void check_least(distance_of kind, const std::vector<object *> &a, const 
 static void moving_objects(std::size_t count, S density, S longest, std::size_t steps, unsigned seed) {
     scene<S> all(count, 1, density, longest, seed), others(count / 4, 1, density / 4, longest, seed + 1);
     auto &objects = all.objects;
-    sap::fcl_manager<S> ours, theirs(2);
+    sap::fcl_manager<S> adapter, second(2);
     fcl::NaiveCollisionManager<S> naive;
     fcl::SSaPCollisionManager<S> simple;
     fcl::SaPCollisionManager<S> sweep;
     fcl::IntervalTreeCollisionManager<S> intervals;
     fcl::DynamicAABBTreeCollisionManager<S> tree;
     fcl::DynamicAABBTreeCollisionManager_Array<S> array;
-    const std::vector<manager *> managers{&ours, &naive, &simple, &sweep, &intervals, &tree, &array};
+    const std::vector<manager *> managers{&adapter, &naive, &simple, &sweep, &intervals, &tree, &array};
     for (auto *manager : managers) {
         manager->registerObjects(objects);
         manager->setup();
     }
-    theirs.registerObjects(others.objects);
+    second.registerObjects(others.objects);
     std::size_t most = 0;
     for (std::size_t step = 0; step < steps; step++) {
         // All, a few, or none.
@@ -129,7 +129,7 @@ static void moving_objects(std::size_t count, S density, S longest, std::size_t 
                 if (objects[a]->getAABB().overlap(objects[b]->getAABB())) expected.insert(std::minmax(objects[a], objects[b]));
         most = std::max(most, expected.size());
         for (auto *manager : managers)
-            CHECK(pairs_of(manager == &ours, false, [&](noted *data) { manager->collide(data, note); }) == expected);
+            CHECK(pairs_of(manager == &adapter, false, [&](noted *data) { manager->collide(data, note); }) == expected);
 
         // The same contacts.
         std::vector<std::size_t> contacts;
@@ -149,7 +149,7 @@ static void moving_objects(std::size_t count, S density, S longest, std::size_t 
             if (one != asked && one->getAABB().overlap(asked->getAABB())) met.insert({one, asked});
         for (auto *manager : managers) {
             // The order of the two is not the same in all of FCL's managers.
-            if (manager == &ours) {
+            if (manager == &adapter) {
                 CHECK(pairs_of(true, true, [&](noted *data) { manager->collide(asked, data, note); }) == met);
             } else {
                 CHECK(pairs_of(false, false, [&](noted *data) { manager->collide(asked, data, note); }).size() == met.size());
@@ -161,28 +161,28 @@ static void moving_objects(std::size_t count, S density, S longest, std::size_t 
         for (object *a : objects)
             for (object *b : others.objects)
                 if (a->getAABB().overlap(b->getAABB())) between.insert({a, b});
-        CHECK(pairs_of(true, true, [&](noted *data) { ours.collide(&theirs, data, note); }) == between);
-        CHECK(pairs_of(true, true, [&](noted *data) { theirs.collide(&ours, data, note); }).size() == between.size());
+        CHECK(pairs_of(true, true, [&](noted *data) { adapter.collide(&second, data, note); }) == between);
+        CHECK(pairs_of(true, true, [&](noted *data) { second.collide(&adapter, data, note); }).size() == between.size());
         fcl::SSaPCollisionManager<S> foreign;
         foreign.registerObjects(others.objects);
         foreign.setup();
-        CHECK(pairs_of(true, true, [&](noted *data) { ours.collide(&foreign, data, note); }) == between);
-        CHECK(pairs_of(true, false, [&](noted *data) { ours.collide(&ours, data, note); }) == expected);
+        CHECK(pairs_of(true, true, [&](noted *data) { adapter.collide(&foreign, data, note); }) == between);
+        CHECK(pairs_of(true, false, [&](noted *data) { adapter.collide(&adapter, data, note); }) == expected);
 
         for (const auto kind : {distance_of::aabbs, distance_of::shapes, distance_of::farther, distance_of::nothing}) {
             if (kind != distance_of::aabbs && step % 10) continue; // which takes long by brute force
-            check_least(kind, objects, {asked}, [&](nearest &data) { ours.distance(asked, &data, measure); });
-            check_least(kind, objects, objects, [&](nearest &data) { ours.distance(&data, measure); });
-            check_least(kind, objects, others.objects, [&](nearest &data) { ours.distance(&theirs, &data, measure); });
-            check_least(kind, others.objects, objects, [&](nearest &data) { theirs.distance(&ours, &data, measure); });
+            check_least(kind, objects, {asked}, [&](nearest &data) { adapter.distance(asked, &data, measure); });
+            check_least(kind, objects, objects, [&](nearest &data) { adapter.distance(&data, measure); });
+            check_least(kind, objects, others.objects, [&](nearest &data) { adapter.distance(&second, &data, measure); });
+            check_least(kind, others.objects, objects, [&](nearest &data) { second.distance(&adapter, &data, measure); });
             if (kind != distance_of::nothing) // each pair of them may come again
-                check_least(kind, objects, others.objects, [&](nearest &data) { ours.distance(&foreign, &data, measure); });
+                check_least(kind, objects, others.objects, [&](nearest &data) { adapter.distance(&foreign, &data, measure); });
         }
 
         // Callbacks stop it.
         noted first;
         first.left = 1;
-        ours.collide(&first, note);
+        adapter.collide(&first, note);
         CHECK(first.found.size() == std::min<std::size_t>(1, expected.size()));
     }
     CHECK(most > count / 10);
