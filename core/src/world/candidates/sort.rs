@@ -92,7 +92,7 @@ impl PairSorter {
                 self.starts.clear();
                 self.starts.resize(bound.min(1 << digit), 0);
                 let from = if is_first { from } else { &self.buffer };
-                let mask = (1 << digit) - 1;
+                let mask = u32::MAX >> (u32::BITS - digit);
                 distribute(from, sorted, &mut self.starts, |pair| {
                     pair[side] >> (pass * digit) & mask
                 });
