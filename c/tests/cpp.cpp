@@ -6,13 +6,7 @@
 
 #include <sweep_and_prune.hpp>
 
-#define CHECK(condition)                                                                           \
-    do {                                                                                           \
-        if (!(condition)) {                                                                        \
-            std::fprintf(stderr, "%s:%d: not true: %s\n", __FILE__, __LINE__, #condition);         \
-            std::exit(1);                                                                          \
-        }                                                                                          \
-    } while (0)
+#include "check.h"
 
 template <class F> sap_status status_of(F call) {
     try {

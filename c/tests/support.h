@@ -9,6 +9,8 @@
 
 #include <sweep_and_prune.h>
 
+#include "check.h"
+
 #define JOIN_EXPANDED(a, b, c) a##b##c
 #define JOIN(a, b, c) JOIN_EXPANDED(a, b, c)
 #define FINDER(function) JOIN(sap_finder, KIND, function)
@@ -21,15 +23,6 @@ typedef JOIN(sap_options, KIND, ) options_type;
 typedef JOIN(sap_cast, KIND, ) cast_type;
 typedef JOIN(sap_hit, KIND, ) hit_type;
 typedef SCALAR scalar;
-
-// Ends the test unless a condition holds.
-#define CHECK(condition)                                                                           \
-    do {                                                                                           \
-        if (!(condition)) {                                                                        \
-            fprintf(stderr, "%s:%d: not true: %s\n", __FILE__, __LINE__, #condition);              \
-            exit(1);                                                                               \
-        }                                                                                          \
-    } while (0)
 
 // Ends the test unless a call succeeds. The call names `&error`.
 #define OK(call)                                                                                   \

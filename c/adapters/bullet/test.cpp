@@ -6,16 +6,9 @@
 #include <random>
 #include <set>
 
+#include "../../tests/check.h"
 #include "scene.hpp"
 #include "sweep_and_prune_bullet.hpp"
-
-#define CHECK(condition)                                                                           \
-    do {                                                                                           \
-        if (!(condition)) {                                                                        \
-            std::fprintf(stderr, "%s:%d: not true: %s\n", __FILE__, __LINE__, #condition);         \
-            std::exit(1);                                                                          \
-        }                                                                                          \
-    } while (0)
 
 using pairs = std::set<std::pair<const void *, const void *>>;
 

@@ -9,7 +9,6 @@
 // interval tree of FCL 0.7 may end the process if some of its objects are updated.)
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <string>
 
 #include <fcl/broadphase/broadphase_SSaP.h>
@@ -17,22 +16,12 @@
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree_array.h>
 
+#include "../timing.hpp"
 #include "scene.hpp"
 #include "sweep_and_prune_fcl.hpp"
 
 using S = double;
 using object = fcl::CollisionObject<S>;
-
-static double now() {
-    timespec time;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return 1e3 * double(time.tv_sec) + 1e-6 * double(time.tv_nsec);
-}
-
-static double median(std::vector<double> times) {
-    std::sort(times.begin(), times.end());
-    return times[times.size() / 2];
-}
 
 static bool count(object *a, object *b, void *data) {
     *static_cast<std::size_t *>(data) += a->getAABB().overlap(b->getAABB()) && a != b;

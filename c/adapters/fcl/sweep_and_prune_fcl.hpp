@@ -3,8 +3,9 @@
 //     sap::fcl_manager<double> manager; // a fcl::BroadPhaseCollisionManager<double>
 //
 // Objects take part with the AABB that they had when they were registered, or at the last `update` of them. Callbacks get pairs whose
-// AABBs overlap, each once, in an order that is the same on every platform: by the order in which objects were registered, where
-// none was unregistered. The callbacks may use the manager. Between two changes several threads may ask at the same time.
+// AABBs overlap, each once, in an order that is the same on every platform. Those of one manager are sorted by the order in which
+// objects were registered, where none was unregistered. Callbacks may ask the manager; one that changes it has to end the search.
+// Between two changes several threads may ask at the same time.
 //
 // Errors are exceptions of the type sap::error, after which nothing has changed: an AABB that is NaN or empty (an object without
 // geometry has such a one).
@@ -44,13 +45,13 @@ public:
     fcl_manager(const fcl_manager &) = delete;
     fcl_manager &operator=(const fcl_manager &) = delete;
 
-    /// Adds objects. Those that are registered stay as they are.
+    /// Adds all.objects. Those that are registered stay as they are.
     void registerObjects(const std::vector<object *> &added) override {
         std::vector<object *> fresh;
         std::vector<aabb> fresh_boxes;
         std::unordered_map<const object *, std::size_t> places;
         for (object *one : added) {
-            if (index_of.count(one) || !places.emplace(one, objects.size() + fresh.size()).second) continue;
+            if (index_of.count(one) || !places.emplace(one, all.objects.size() + fresh.size()).second) continue;
             fresh.push_back(one);
             fresh_boxes.push_back(box_of(*one));
         }
@@ -58,10 +59,10 @@ public:
         note_change();
         for (std::size_t i = 0; i < fresh.size(); i++) {
             if (by_slot.size() <= slot(made[i])) by_slot.resize(slot(made[i]) + 1);
-            by_slot[slot(made[i])] = objects.size() + i;
+            by_slot[slot(made[i])] = all.objects.size() + i;
         }
-        objects.insert(objects.end(), fresh.begin(), fresh.end());
-        boxes.insert(boxes.end(), fresh_boxes.begin(), fresh_boxes.end());
+        all.objects.insert(all.objects.end(), fresh.begin(), fresh.end());
+        all.boxes.insert(all.boxes.end(), fresh_boxes.begin(), fresh_boxes.end());
         ids.insert(ids.end(), made.begin(), made.end());
         index_of.insert(places.begin(), places.end());
     }
@@ -76,23 +77,23 @@ public:
         world.remove(ids[index]);
         note_change();
         index_of.erase(found);
-        if (index + 1 < objects.size()) {
-            objects[index] = objects.back();
-            boxes[index] = boxes.back();
+        if (index + 1 < all.objects.size()) {
+            all.objects[index] = all.objects.back();
+            all.boxes[index] = all.boxes.back();
             ids[index] = ids.back();
-            index_of[objects[index]] = index;
+            index_of[all.objects[index]] = index;
             by_slot[slot(ids[index])] = index;
         }
-        objects.pop_back();
-        boxes.pop_back();
+        all.objects.pop_back();
+        all.boxes.pop_back();
         ids.pop_back();
     }
 
     /// Nothing is left to do: what a query needs is made when it is asked.
     void setup() override {}
 
-    /// Reads the AABBs of all objects.
-    void update() override { read(objects); }
+    /// Reads the AABBs of all all.objects.
+    void update() override { read(all.objects); }
     void update(object *moved) override { read({moved}); }
     /// Reads the AABBs of these objects; those that are not registered are left out.
     void update(const std::vector<object *> &moved) override { read(moved); }
@@ -100,17 +101,17 @@ public:
     void clear() override {
         world.clear();
         note_change();
-        objects.clear();
-        boxes.clear();
+        all.objects.clear();
+        all.boxes.clear();
         ids.clear();
         by_slot.clear();
         index_of.clear();
     }
 
     /// The objects, in the order in which they were registered where none was unregistered.
-    void getObjects(std::vector<object *> &list) const override { list = objects; }
-    bool empty() const override { return objects.empty(); }
-    std::size_t size() const override { return objects.size(); }
+    void getObjects(std::vector<object *> &list) const override { list = all.objects; }
+    bool empty() const override { return all.objects.empty(); }
+    std::size_t size() const override { return all.objects.size(); }
 
     void collide(object *asked, void *data, collision_callback callback) const override {
         if (!empty()) each_overlapping(box_of(*asked), asked, [&](object *found) { return callback(found, asked, data); });
@@ -124,26 +125,25 @@ public:
     /// Objects of this manager come first. The other one may be of any kind.
     void collide(base *other, void *data, collision_callback callback) const override {
         if (other == this) return collide(data, callback);
-        const auto *const theirs = dynamic_cast<const fcl_manager *>(other);
-        if (!theirs) {
-            std::vector<object *> list;
-            other->getObjects(list);
-            for (object *one : list)
-                if (each_overlapping(box_of(*one), one, [&](object *found) { return callback(found, one, data); })) return;
-        } else if (is_much_smaller(*theirs, *this)) {
-            for (std::size_t i = 0; i < theirs->size(); i++)
-                if (each_overlapping(theirs->boxes[i], theirs->objects[i],
-                                     [&](object *found) { return callback(found, theirs->objects[i], data); }))
-                    return;
-        } else if (is_much_smaller(*this, *theirs)) {
+        members copied;
+        const auto *const alike = dynamic_cast<const fcl_manager *>(other);
+        const members &theirs = alike ? alike->all : copy_members(*other, copied);
+        if (alike && is_much_smaller(all, theirs)) {
             for (std::size_t i = 0; i < size(); i++)
-                if (theirs->each_overlapping(boxes[i], objects[i],
-                                             [&](object *found) { return callback(objects[i], found, data); }))
+                if (alike->each_overlapping(all.boxes[i], all.objects[i],
+                                             [&](object *found) { return callback(all.objects[i], found, data); }))
+                    return;
+        } else if (!alike || is_much_smaller(theirs, all)) {
+            for (std::size_t i = 0; i < theirs.objects.size(); i++)
+                if (each_overlapping(theirs.boxes[i], theirs.objects[i],
+                                     [&](object *found) { return callback(found, theirs.objects[i], data); }))
                     return;
         } else {
             sap::finder<3, S> finder;
-            for (const auto &pair : finder.find(boxes, theirs->boxes))
-                if (objects[pair.a] != theirs->objects[pair.b] && callback(objects[pair.a], theirs->objects[pair.b], data)) return;
+            for (const auto &pair : finder.find(all.boxes, theirs.boxes)) {
+                object *const a = all.objects[pair.a], *const b = theirs.objects[pair.b];
+                if (a != b && callback(a, b, data)) return;
+            }
         }
     }
 
@@ -156,8 +156,8 @@ public:
     void distance(void *data, distance_callback callback) const override {
         S least = std::numeric_limits<S>::max();
         for (std::size_t i = 0; i < size(); i++)
-            if (each_near(boxes[i], objects[i], least, [&](object *found, std::size_t index) {
-                    return index > i && callback(objects[i], found, data, least);
+            if (each_near(all.boxes[i], all.objects[i], least, [&](object *found, std::size_t index) {
+                    return index > i && callback(all.objects[i], found, data, least);
                 }))
                 return;
     }
@@ -166,23 +166,38 @@ public:
     void distance(base *other, void *data, distance_callback callback) const override {
         if (other == this) return distance(data, callback);
         S least = std::numeric_limits<S>::max();
-        const auto *const theirs = dynamic_cast<const fcl_manager *>(other);
-        if (theirs && size() < theirs->size()) {
+        members copied;
+        const auto *const alike = dynamic_cast<const fcl_manager *>(other);
+        const members &theirs = alike ? alike->all : copy_members(*other, copied);
+        if (alike && size() < alike->size()) {
             for (std::size_t i = 0; i < size(); i++)
-                if (theirs->each_near(boxes[i], objects[i], least,
-                                      [&](object *found, std::size_t) { return callback(objects[i], found, data, least); }))
+                if (alike->each_near(all.boxes[i], all.objects[i], least, [&](object *found, std::size_t) {
+                        return callback(all.objects[i], found, data, least);
+                    }))
                     return;
-            return;
+        } else {
+            for (std::size_t i = 0; i < theirs.objects.size(); i++)
+                if (each_near(theirs.boxes[i], theirs.objects[i], least, [&](object *found, std::size_t) {
+                        return callback(found, theirs.objects[i], data, least);
+                    }))
+                    return;
         }
-        std::vector<object *> list;
-        other->getObjects(list);
-        for (std::size_t i = 0; i < list.size(); i++)
-            if (each_near(theirs ? theirs->boxes[i] : box_of(*list[i]), list[i], least,
-                          [&](object *found, std::size_t) { return callback(found, list[i], data, least); }))
-                return;
     }
 
 private:
+    /// Objects and their AABBs.
+    struct members {
+        std::vector<object *> objects;
+        std::vector<aabb> boxes;
+    };
+
+    /// Copies what a manager of another kind has to an empty list.
+    static const members &copy_members(const base &other, members &list) {
+        other.getObjects(list.objects);
+        for (const object *one : list.objects) list.boxes.push_back(box_of(*one));
+        return list;
+    }
+
     static typename world_type::options options(std::uint32_t threads) {
         typename world_type::options options{};
         options.threads = threads;
@@ -218,10 +233,12 @@ private:
         return box;
     }
     /// Whether looking up each object of the smaller manager in the larger one takes less time than finding all pairs of both.
-    static bool is_much_smaller(const fcl_manager &smaller, const fcl_manager &larger) { return 32 * smaller.size() < larger.size(); }
+    static bool is_much_smaller(const members &smaller, const members &larger) {
+        return 32 * smaller.objects.size() < larger.objects.size();
+    }
 
     static std::size_t slot(sap::id id) { return static_cast<std::uint32_t>(id); }
-    object *object_of(sap::id id) const { return objects[by_slot[slot(id)]]; }
+    object *object_of(sap::id id) const { return all.objects[by_slot[slot(id)]]; }
 
     void read(const std::vector<object *> &moved) {
         std::vector<sap::id> moved_ids;
@@ -229,13 +246,13 @@ private:
         std::vector<std::size_t> places;
         for (std::size_t i = 0; i < moved.size(); i++) {
             std::size_t index = i;
-            if (&moved != &objects) {
+            if (&moved != &all.objects) {
                 const auto found = index_of.find(moved[i]);
                 if (found == index_of.end()) continue;
                 index = found->second;
             }
             const aabb box = box_of(*moved[i]);
-            if (is_equal(box, boxes[index])) continue;
+            if (is_equal(box, all.boxes[index])) continue;
             moved_ids.push_back(ids[index]);
             moved_boxes.push_back(box);
             places.push_back(index);
@@ -243,7 +260,7 @@ private:
         if (moved_ids.empty()) return;
         world.set_many(moved_ids, moved_boxes);
         note_change();
-        for (std::size_t i = 0; i < places.size(); i++) boxes[places[i]] = moved_boxes[i];
+        for (std::size_t i = 0; i < places.size(); i++) all.boxes[places[i]] = moved_boxes[i];
     }
 
     void note_change() { is_update_due = are_queries_due = true; }
@@ -314,7 +331,7 @@ private:
         std::size_t first = none;
         if (least == unknown && left > 0) {
             first = by_slot[slot(nearest(center, 1, self).front().id)];
-            if (distance_between(boxes[first], box) < least && callback(objects[first], first)) return true;
+            if (distance_between(all.boxes[first], box) < least && callback(all.objects[first], first)) return true;
             left--;
         }
         std::vector<std::pair<S, std::size_t>> ring; // the objects that are seen for the first time
@@ -329,13 +346,13 @@ private:
             ring.clear();
             for (const sap::id found : overlapping(searched, self)) {
                 const std::size_t index = by_slot[slot(found)];
-                if (index == first || (seen && overlap(boxes[index], *seen))) continue;
-                ring.push_back({distance_between(boxes[index], box), index});
+                if (index == first || (seen && overlap(all.boxes[index], *seen))) continue;
+                ring.push_back({distance_between(all.boxes[index], box), index});
             }
             std::sort(ring.begin(), ring.end());
             for (const auto &[distance, index] : ring) {
                 if (distance >= least) break;
-                if (callback(objects[index], index)) return true;
+                if (callback(all.objects[index], index)) return true;
             }
             if (reach >= least) return false;
             left -= ring.size();
@@ -345,8 +362,7 @@ private:
     }
 
     mutable world_type world;
-    std::vector<object *> objects;
-    std::vector<aabb> boxes; // as the world has them
+    members all; // with the AABBs that the world has
     std::vector<sap::id> ids;
     std::vector<std::size_t> by_slot; // the index of what has a slot
     std::unordered_map<const object *, std::size_t> index_of;

@@ -19,16 +19,9 @@
 #include <fcl/broadphase/default_broadphase_callbacks.h>
 #include <fcl/geometry/shape/halfspace.h>
 
+#include "../../tests/check.h"
 #include "scene.hpp"
 #include "sweep_and_prune_fcl.hpp"
-
-#define CHECK(condition)                                                                           \
-    do {                                                                                           \
-        if (!(condition)) {                                                                        \
-            std::fprintf(stderr, "%s:%d: not true: %s\n", __FILE__, __LINE__, #condition);         \
-            std::exit(1);                                                                          \
-        }                                                                                          \
-    } while (0)
 
 // Some of FCL's managers leak.
 extern "C" const char *__lsan_default_suppressions() { return "leak:libfcl"; }
@@ -305,20 +298,18 @@ static void extremes() {
 
 // The order of pairs is that of registering, wherever the objects are in memory.
 static void order() {
-    scene<S> all(300, 1, 2, 4, 6);
     std::vector<std::vector<std::pair<std::size_t, std::size_t>>> orders;
-    for (const unsigned moved : {0u, 1u}) {
-        scene<S> same(300, 1, 2, 4, 6);
-        std::vector<std::unique_ptr<object>> copies;
+    const scene<S> same(300, 1, 2, 4, 6);
+    const std::size_t count = same.objects.size();
+    for (const bool is_reversed : {false, true}) {
+        std::vector<std::unique_ptr<object>> copies(count);
+        for (std::size_t made = 0; made < count; made++) {
+            const std::size_t i = is_reversed ? count - 1 - made : made;
+            copies[i] = std::make_unique<object>(*same.objects[i]);
+            copies[i]->setUserData(reinterpret_cast<void *>(i));
+        }
         std::vector<object *> objects;
-        for (std::size_t i = 0; i < same.objects.size(); i++) {
-            const std::size_t from = moved ? same.objects.size() - 1 - i : i;
-            copies.push_back(std::make_unique<object>(*same.objects[from]));
-        }
-        for (std::size_t i = 0; i < copies.size(); i++) {
-            objects.push_back(copies[moved ? copies.size() - 1 - i : i].get());
-            objects.back()->setUserData(reinterpret_cast<void *>(i));
-        }
+        for (const auto &copy : copies) objects.push_back(copy.get());
         sap::fcl_manager<S> manager;
         manager.registerObjects(objects);
         orders.emplace_back();
