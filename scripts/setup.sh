@@ -85,11 +85,26 @@ setup_rust() {
   # rust-toolchain.toml names the toolchain, its components and its wasm32 target.
   local libraries
   libraries=$(RUSTUP_AUTO_INSTALL=0 rustc --print target-libdir --target wasm32-unknown-unknown 2>/dev/null) || true
-  if ! { [ -d "$libraries" ] && RUSTUP_AUTO_INSTALL=0 cargo fmt --version && RUSTUP_AUTO_INSTALL=0 cargo clippy --version; } >/dev/null 2>&1; then
-    say "Installing the Rust toolchain of rust-toolchain.toml ..."
-    quietly rustup toolchain install --no-self-update ||
-      fail "The Rust toolchain of rust-toolchain.toml could not be installed: is the network reachable?"
-  fi
+  { [ -d "$libraries" ] && has_toolchain; } || install_toolchain rust-toolchain.toml
+}
+
+# Whether the toolchain of this folder is there.
+has_toolchain() {
+  { RUSTUP_AUTO_INSTALL=0 cargo fmt --version && RUSTUP_AUTO_INSTALL=0 cargo clippy --version; } >/dev/null 2>&1
+}
+
+# Installs the toolchain of this folder, which a file names.
+install_toolchain() {
+  say "Installing the Rust toolchain of $1 ..."
+  quietly rustup toolchain install --no-self-update ||
+    fail "The Rust toolchain of $1 could not be installed: is the network reachable?"
+}
+
+# The plugins for Bevy need a later Rust than the rest.
+setup_bevy() {
+  cd integrations/bevy
+  has_toolchain || install_toolchain integrations/bevy/rust-toolchain.toml
+  cd "$root"
 }
 
 node_is_recent() {

@@ -1,16 +1,23 @@
 //! Measures Avian with its own broad phase and with this one: the search for pairs, and the whole step.
 //!
 //! ```sh
-//! cargo run --release --no-default-features --features 3d,testing-f32 --example measure [SCENE...]
+//! cargo run --release --features testing-f32 --example measure [SCENE...]
 //! ```
 //!
 //! Two apps have the same scene and take turns, step by step. Printed are medians over the steps, and the median of the
 //! quotients of both apps in a step.
 
+#[cfg(feature = "bevy-0.19")]
+extern crate bevy_0_19 as bevy;
+
 use std::time::{Duration, Instant};
 
-use avian3d::collision::CollisionDiagnostics;
-use avian3d::prelude::*;
+#[cfg(feature = "avian3d-0.8")]
+use ::avian3d as avian;
+#[cfg(feature = "avian3d-0.7")]
+use ::avian3d_0_7 as avian;
+use avian::collision::CollisionDiagnostics;
+use avian::prelude::*;
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
 use bevy_sweep_and_prune::avian3d::SweepAndPruneBroadPhasePlugin;

@@ -1,8 +1,11 @@
 //! Creatures that notice each other, without physics: a spatial index over their boxes.
 //!
 //! ```sh
-//! cargo run --release --no-default-features --example spatial_index
+//! cargo run --release --no-default-features --features bevy-0.20 --example spatial_index
 //! ```
+
+#[cfg(feature = "bevy-0.19")]
+extern crate bevy_0_19 as bevy;
 
 use bevy::app::{AppExit, ScheduleRunnerPlugin};
 use bevy::prelude::*;

@@ -1,5 +1,8 @@
 //! The spatial index against brute force: its pairs, messages and queries after random changes.
 
+#[cfg(feature = "bevy-0.19")]
+extern crate bevy_0_19 as bevy;
+
 use std::collections::BTreeSet;
 
 use bevy::ecs::entity_disabling::Disabled;

@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use bevy::ecs::component::ComponentInfo;
+use bevy::ecs::component::ComponentId;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::system::{StaticSystemParam, SystemParamItem};
 use bevy::platform::time::Instant;
@@ -14,13 +14,30 @@ use super::avian::collider_tree::{
 };
 use super::avian::collision::CollisionDiagnostics;
 use super::avian::collision::contact_types::{ContactEdge, ContactEdgeFlags, ContactPairFlags};
-use super::avian::dynamics::solver::joint_graph::JointGraph;
 use super::avian::prelude::{
     BroadPhaseSystems, ColliderDisabled, ColliderOf, CollisionHooks, CollisionLayers, ContactGraph,
     PhysicsSchedule, PhysicsStepSystems, RigidBody, Sensor,
 };
+use super::joint_graph::JointGraph;
 use super::search::{Candidate, PairSearch};
 use super::tracked::proxy;
+use crate::versions::on;
+
+/// An observer that has the collider of an event read again.
+macro_rules! touch_on {
+    ($event:ident, $components:ty) => {
+        |trigger: on!($event, $components), mut search: ResMut<PairSearch>| {
+            search.touch(trigger.event_target());
+        }
+    };
+}
+
+/// An observer of events that may add a collider.
+macro_rules! add_on {
+    ($event:ident, $components:ty) => {
+        |_: on!($event, $components), mut search: ResMut<PairSearch>| search.may_add()
+    };
+}
 
 /// Finds the pairs of colliders with overlapping boxes by sweep and prune, in place of Avian's
 /// `BvhBroadPhasePlugin<H>`, which must be disabled. `H` is the same type of [`CollisionHooks`] as in
@@ -51,15 +68,15 @@ where
             ),
         );
         // A collider leaves the trees, or its filter changes there.
-        app.add_observer(touch_on::<Remove, ColliderTreeProxyKey>)
-            .add_observer(touch_on::<Add, ColliderDisabled>)
-            .add_observer(touch_on::<Add, Disabled>)
-            .add_observer(touch_on::<Insert, CollisionLayers>)
-            .add_observer(touch_on::<Add, Sensor>)
-            .add_observer(touch_on::<Remove, Sensor>);
+        app.add_observer(touch_on!(Remove, ColliderTreeProxyKey))
+            .add_observer(touch_on!(Add, ColliderDisabled))
+            .add_observer(touch_on!(Add, Disabled))
+            .add_observer(touch_on!(Insert, CollisionLayers))
+            .add_observer(touch_on!(Add, Sensor))
+            .add_observer(touch_on!(Remove, Sensor));
         // A collider is added to a tree.
-        app.add_observer(add_on::<Insert, (ColliderTreeProxyKey, ColliderOf, RigidBody)>)
-            .add_observer(add_on::<Remove, (ColliderOf, ColliderDisabled, Disabled)>);
+        app.add_observer(add_on!(Insert, (ColliderTreeProxyKey, ColliderOf, RigidBody)))
+            .add_observer(add_on!(Remove, (ColliderOf, ColliderDisabled, Disabled)));
     }
 
     fn finish(&self, app: &mut App) {
@@ -67,24 +84,17 @@ where
         // collider, the trees add it.
         let components = app.world().components();
         let key = components.component_id::<ColliderTreeProxyKey>();
-        let is_collider = |info: &&ComponentInfo| {
-            info.required_components().iter_ids().any(|required| Some(required) == key)
+        let is_collider = |&id: &ComponentId| {
+            let info = components.get_info(id);
+            info.is_some_and(|info| info.required_components().iter_ids().any(|it| Some(it) == key))
         };
-        let colliders: Vec<_> =
-            components.iter_registered().filter(is_collider).map(|info| info.id()).collect();
+        let ids = (0..components.len()).map(ComponentId::new);
+        let colliders: Vec<_> = ids.filter(is_collider).collect();
         if !colliders.is_empty() {
-            let observer = |_: On<Insert>, mut search: ResMut<PairSearch>| search.may_add();
-            app.world_mut().spawn(Observer::new(observer).with_components(colliders));
+            let observer = Observer::new(add_on!(Insert, ()));
+            app.world_mut().spawn(observer.with_components(colliders));
         }
     }
-}
-
-fn touch_on<E: EntityEvent, B: Bundle>(trigger: On<E, B>, mut search: ResMut<PairSearch>) {
-    search.touch(trigger.event_target());
-}
-
-fn add_on<E: EntityEvent, B: Bundle>(_: On<E, B>, mut search: ResMut<PairSearch>) {
-    search.may_add();
 }
 
 fn end_step(mut search: ResMut<PairSearch>) {

@@ -2,8 +2,8 @@
 
 use super::avian::collider_tree::{ColliderTreeProxy, ColliderTreeProxyFlags, ColliderTrees};
 use super::avian::data_structures::pair_key::PairKey;
-use super::avian::dynamics::solver::joint_graph::JointGraph;
 use super::avian::prelude::ContactGraph;
+use super::joint_graph::JointGraph;
 use super::tracked::{Tracked, proxy};
 
 /// What becomes of an overlapping pair.

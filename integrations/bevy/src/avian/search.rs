@@ -5,8 +5,8 @@ use bevy::ecs::resource::Resource;
 
 use super::avian::collider_tree::{ColliderTrees, MovedProxies};
 use super::avian::data_structures::pair_key::PairKey;
-use super::avian::dynamics::solver::joint_graph::JointGraph;
 use super::avian::prelude::ContactGraph;
+use super::joint_graph::JointGraph;
 use super::rule::{Rule, Verdict, key};
 use super::tracked::{Colliders, Tracked};
 

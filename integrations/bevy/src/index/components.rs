@@ -1,8 +1,9 @@
 //! What an entity has to be in the index.
 
 use bevy::ecs::component::Component;
-use bevy::math::bounding::{Aabb2d, Aabb3d};
 use sweep_and_prune::{Aabb, Filter};
+
+use crate::versions::{Aabb2d, Aabb3d};
 
 /// The box of an entity in the index, in units of the world. The index is brought up to date by change detection: set
 /// it only where it differs.

@@ -1,14 +1,12 @@
 //! The plugin that keeps the index up to date.
 
 use bevy::app::{App, Plugin, PostUpdate};
-use bevy::ecs::bundle::Bundle;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::event::EntityEvent;
 use bevy::ecs::intern::Interned;
 use bevy::ecs::lifecycle::{Add, Remove};
 use bevy::ecs::message::MessageWriter;
-use bevy::ecs::observer::On;
 use bevy::ecs::query::{Changed, Or};
 use bevy::ecs::schedule::{IntoScheduleConfigs, ScheduleLabel, SystemSet};
 use bevy::ecs::system::{Query, ResMut};
@@ -16,6 +14,16 @@ use bevy::ecs::system::{Query, ResMut};
 use super::components::{BoundingBox, IndexFilter};
 use super::messages::{OverlapBegan, OverlapEnded};
 use super::resource::SpatialIndex;
+use crate::versions::on;
+
+/// An observer that has the entity of an event read again.
+macro_rules! touch_on {
+    ($event:ident, $components:ty) => {
+        |trigger: on!($event, $components), mut index: ResMut<SpatialIndex<D>>| {
+            index.touch(trigger.event_target());
+        }
+    };
+}
 
 /// Keeps a [`SpatialIndex`] of all entities with a [`BoundingBox`] of `D` dimensions, and writes an
 /// [`OverlapBegan`] and an [`OverlapEnded`] message for each pair whose overlap begins or ends.
@@ -67,10 +75,10 @@ impl<const D: usize> Plugin for SpatialIndexPlugin<D> {
             .add_message::<OverlapBegan<D>>()
             .add_message::<OverlapEnded<D>>()
             .add_systems(self.schedule, update_index::<D>.in_set(SpatialIndexSystems))
-            .add_observer(touch_on::<Remove, BoundingBox<D>, D>)
-            .add_observer(touch_on::<Remove, IndexFilter, D>)
-            .add_observer(touch_on::<Add, Disabled, D>)
-            .add_observer(touch_on::<Remove, Disabled, D>);
+            .add_observer(touch_on!(Remove, BoundingBox<D>))
+            .add_observer(touch_on!(Remove, IndexFilter))
+            .add_observer(touch_on!(Add, Disabled))
+            .add_observer(touch_on!(Remove, Disabled));
     }
 }
 
@@ -79,13 +87,6 @@ type Row<'a, const D: usize> = (&'a BoundingBox<D>, Option<&'a IndexFilter>);
 
 /// An entity that was changed.
 type IsChanged<const D: usize> = Or<(Changed<BoundingBox<D>>, Changed<IndexFilter>)>;
-
-fn touch_on<E: EntityEvent, B: Bundle, const D: usize>(
-    trigger: On<E, B>,
-    mut index: ResMut<SpatialIndex<D>>,
-) {
-    index.touch(trigger.event_target());
-}
 
 fn update_index<const D: usize>(
     mut index: ResMut<SpatialIndex<D>>,

@@ -1,9 +1,18 @@
 //! The tests with avian3d.
 
+#[cfg(feature = "avian3d-0.8")]
 use ::avian3d as avian;
-use avian::math::Scalar;
+#[cfg(feature = "avian3d-0.7")]
+use ::avian3d_0_7 as avian;
+#[cfg(feature = "avian3d-0.7")]
+use avian::math::{Scalar, Vector};
 use avian::prelude::Collider;
 use bevy_sweep_and_prune::avian3d as plugin;
+
+#[cfg(feature = "avian3d-0.8")]
+type Scalar = f32;
+#[cfg(feature = "avian3d-0.8")]
+type Vector = bevy::math::Vec3;
 
 fn cuboid([width, height, depth]: [f32; 3]) -> Collider {
     Collider::cuboid(Scalar::from(width), Scalar::from(height), Scalar::from(depth))

@@ -3,10 +3,9 @@
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 
-use super::avian::math::{Scalar, Vector};
 use super::avian::prelude::*;
 use super::oracle::Both;
-use super::{DEPTH, cuboid};
+use super::{DEPTH, Scalar, Vector, cuboid};
 use crate::support::Random;
 
 /// Makes the position of a scene one of as many dimensions as there are.
