@@ -9,10 +9,10 @@
 #ifndef SWEEP_AND_PRUNE_BULLET_HPP
 #define SWEEP_AND_PRUNE_BULLET_HPP
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>
@@ -27,8 +27,7 @@ class bullet_broadphase : public btBroadphaseInterface {
 
     struct proxy_type : btBroadphaseProxy {
         using btBroadphaseProxy::btBroadphaseProxy;
-        sap::id id = no_id;
-        std::size_t index = 0; // in `proxies`
+        sap::id id = no_id; // of a proxy that exists
     };
 
 public:
@@ -40,14 +39,16 @@ public:
 
     btBroadphaseProxy *createProxy(const btVector3 &min, const btVector3 &max, int, void *object, int group, int mask,
                                    btDispatcher *) override {
-        auto made = std::make_unique<proxy_type>(min, max, object, group, mask);
-        made->id = world.insert(box_of(min, max), filter_of(*made));
-        made->m_uniqueId = ++last_unique_id;
-        made->index = proxies.size();
-        if (by_slot.size() <= slot(made->id)) by_slot.resize(slot(made->id) + 1, nullptr);
-        by_slot[slot(made->id)] = made.get();
-        proxies.push_back(std::move(made));
-        return proxies.back().get();
+        proxy_type made(min, max, object, group, mask);
+        made.id = world.insert(box_of(min, max), filter_of(made));
+        made.m_uniqueId = ++last_unique_id;
+        try {
+            while (blocks.size() <= slot(made.id) / block_size) blocks.push_back(std::make_unique<block>());
+        } catch (...) {
+            world.remove(made.id);
+            throw;
+        }
+        return &(at(slot(made.id)) = made);
     }
 
     void destroyProxy(btBroadphaseProxy *proxy, btDispatcher *dispatcher) override {
@@ -55,11 +56,7 @@ public:
         flush();
         cache.removeOverlappingPairsContainingProxy(proxy, dispatcher);
         world.remove(gone.id);
-        by_slot[slot(gone.id)] = nullptr;
-        const std::size_t index = gone.index;
-        std::swap(proxies[index], proxies.back());
-        proxies[index]->index = index;
-        proxies.pop_back();
+        gone.id = no_id;
     }
 
     void setAabb(btBroadphaseProxy *proxy, const btVector3 &min, const btVector3 &max, btDispatcher *) override {
@@ -81,7 +78,7 @@ public:
         const bool wants_all = cache.getOverlapFilterCallback() != nullptr;
         if (wants_all != ignores_masks) {
             ignores_masks = wants_all;
-            for (const auto &proxy : proxies) world.set_filter(proxy->id, filter_of(*proxy));
+            for_each_proxy([&](const proxy_type &proxy) { world.set_filter(proxy.id, filter_of(proxy)); });
         }
         flush();
         const auto changes = world.update();
@@ -123,22 +120,27 @@ public:
 
     /// The smallest box that contains all boxes. Takes O(n) time.
     void getBroadphaseAabb(btVector3 &min, btVector3 &max) const override {
-        min.setValue(0, 0, 0);
-        max.setValue(0, 0, 0);
-        if (proxies.empty()) return;
-        min = proxies[0]->m_aabbMin;
-        max = proxies[0]->m_aabbMax;
-        for (const auto &proxy : proxies) {
-            min.setMin(proxy->m_aabbMin);
-            max.setMax(proxy->m_aabbMax);
+        bool any = false;
+        for_each_proxy([&](const proxy_type &proxy) {
+            if (!any) {
+                min = proxy.m_aabbMin;
+                max = proxy.m_aabbMax;
+                any = true;
+            }
+            min.setMin(proxy.m_aabbMin);
+            max.setMax(proxy.m_aabbMax);
+        });
+        if (!any) {
+            min.setValue(0, 0, 0);
+            max.setValue(0, 0, 0);
         }
     }
 
     /// Makes an empty broad phase as good as new, so that the same scene gives the same pairs in the same order.
     void resetPool(btDispatcher *) override {
-        if (!proxies.empty()) return;
+        if (world.size() > 0) return;
         world = world_type(options(threads));
-        by_slot.clear();
+        blocks.clear();
         last_unique_id = 0;
     }
 
@@ -162,8 +164,19 @@ private:
         if (ignores_masks) return {};
         return {static_cast<std::uint32_t>(proxy.m_collisionFilterGroup), static_cast<std::uint32_t>(proxy.m_collisionFilterMask), 0, false};
     }
-    /// The proxy of an id, or null if it was destroyed. A slot of a body that an update knew is free only after the next one.
-    proxy_type *find(sap::id id) const { return by_slot[slot(id)]; }
+    /// The proxy of a slot, or where it will be.
+    proxy_type &at(std::size_t slot) const { return (*blocks[slot / block_size])[slot % block_size]; }
+    /// The proxy of an id, or null if it was destroyed.
+    proxy_type *find(sap::id id) const {
+        proxy_type &proxy = at(slot(id));
+        return proxy.id == id ? &proxy : nullptr;
+    }
+    template <class Call>
+    void for_each_proxy(Call call) const {
+        for (const auto &block : blocks)
+            for (const proxy_type &proxy : *block)
+                if (proxy.id != no_id) call(proxy);
+    }
     /// Sets the boxes that Bullet set: all at once takes less time than one by one.
     void flush() {
         if (moved_ids.empty()) return;
@@ -175,8 +188,10 @@ private:
     world_type world;
     std::uint32_t threads;
     btHashedOverlappingPairCache cache;
-    std::vector<std::unique_ptr<proxy_type>> proxies;
-    std::vector<proxy_type *> by_slot;
+    /// The proxies by slot: they keep their addresses. Close to each other, because Bullet sets all boxes in each step.
+    static constexpr std::size_t block_size = 256;
+    using block = std::array<proxy_type, block_size>;
+    std::vector<std::unique_ptr<block>> blocks;
     std::vector<sap::id> moved_ids;
     std::vector<aabb> moved_boxes;
     std::vector<sap::id> ids;
