@@ -46,11 +46,32 @@ macro_rules! add_on {
 /// It adds the same contact pairs in the same steps. Their order is another, and the same in every run, on any number
 /// of threads. A pair has its colliders in the order of their trees (dynamic, kinematic, static), unless only the later
 /// one moved.
-pub struct SweepAndPruneBroadPhasePlugin<H: CollisionHooks = ()>(PhantomData<H>);
+///
+/// With the feature `parallel` the search uses all threads of rayon's pool where most colliders move, unless
+/// [`threads`](Self::threads) says otherwise.
+pub struct SweepAndPruneBroadPhasePlugin<H: CollisionHooks = ()> {
+    #[cfg(feature = "parallel")]
+    threads: Option<usize>,
+    hooks: PhantomData<H>,
+}
+
+impl<H: CollisionHooks> SweepAndPruneBroadPhasePlugin<H> {
+    /// Uses at most this many threads; 0 counts as one.
+    #[cfg(feature = "parallel")]
+    #[must_use]
+    pub fn threads(mut self, threads: usize) -> Self {
+        self.threads = Some(threads);
+        self
+    }
+}
 
 impl<H: CollisionHooks> Default for SweepAndPruneBroadPhasePlugin<H> {
     fn default() -> Self {
-        Self(PhantomData)
+        Self {
+            #[cfg(feature = "parallel")]
+            threads: None,
+            hooks: PhantomData,
+        }
     }
 }
 
@@ -59,6 +80,9 @@ where
     for<'w, 's> SystemParamItem<'w, 's, H>: CollisionHooks,
 {
     fn build(&self, app: &mut App) {
+        #[cfg(feature = "parallel")]
+        app.insert_resource(PairSearch::with_threads(self.threads));
+        #[cfg(not(feature = "parallel"))]
         app.init_resource::<PairSearch>();
         app.add_systems(
             PhysicsSchedule,

@@ -60,6 +60,18 @@ pub struct Counts {
 }
 
 impl PairSearch {
+    /// A search that uses at most this many threads, or all.
+    #[cfg(feature = "parallel")]
+    pub(super) fn with_threads(threads: Option<usize>) -> Self {
+        let mut search = Self::default();
+        let world = std::mem::take(&mut search.colliders.world);
+        search.colliders.world = match threads {
+            Some(threads) => world.threads(threads),
+            None => world.all_threads(),
+        };
+        search
+    }
+
     /// How many colliders have a box.
     pub fn len(&self) -> usize {
         self.colliders.world.len()

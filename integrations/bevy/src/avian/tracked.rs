@@ -36,6 +36,8 @@ pub struct Colliders {
     /// Buffers: bodies that move, and their boxes.
     moving: Vec<ProxyId>,
     boxes: Vec<Aabb<DIMENSIONS>>,
+    /// A buffer: the boxes that the trees have of those that Avian listed as moved.
+    read_boxes: Vec<Option<Aabb<DIMENSIONS>>>,
     /// Whether a body was removed since moves were applied: it may be among those that move.
     any_removed: bool,
     /// How many colliders the trees have and the broad phase does not, because their boxes are not valid.
@@ -45,11 +47,15 @@ pub struct Colliders {
 impl Colliders {
     /// Gives the colliders that Avian listed as moved their new boxes, and inserts those that are new.
     pub fn move_to(&mut self, keys: &[ColliderTreeProxyKey], trees: &ColliderTrees, step: u64) {
-        for &key in keys {
-            if let Some(id) = self.read(key, trees) {
+        // All boxes first: the tree has them in another order, and processors wait for several of them at once.
+        let mut read = std::mem::take(&mut self.read_boxes);
+        read.extend(keys.iter().map(|&key| stored_box(key, trees)));
+        for (&key, aabb) in keys.iter().zip(read.drain(..)) {
+            if let Some(id) = self.read(key, aabb, trees) {
                 self.tracked[id.slot() as usize].moved_at = step;
             }
         }
+        self.read_boxes = read;
         self.apply_moves();
     }
 
@@ -57,7 +63,8 @@ impl Colliders {
     pub fn refresh(&mut self, colliders: &[Entity], trees: &ColliderTrees) {
         for collider in colliders {
             if let Some(&id) = self.of_entity.get(collider) {
-                self.read(self.tracked[id.slot() as usize].key, trees);
+                let key = self.tracked[id.slot() as usize].key;
+                self.read(key, stored_box(key, trees), trees);
             }
         }
         self.apply_moves();
@@ -75,17 +82,26 @@ impl Colliders {
             let proxies = &trees.tree_for_type(kind).proxies;
             let last = proxies.iter().map(|(index, _)| index + 1).max().unwrap_or(0);
             for index in 0..known.max(last) {
-                self.read(ColliderTreeProxyKey::new((index as u32).into(), kind), trees);
+                let key = ColliderTreeProxyKey::new((index as u32).into(), kind);
+                self.read(key, stored_box(key, trees), trees);
             }
         }
         self.apply_moves();
         self.without_box = count(trees).saturating_sub(self.world.len());
     }
 
-    /// Makes the body at a key what the tree has there. Its new box counts from `apply_moves` on.
-    fn read(&mut self, key: ColliderTreeProxyKey, trees: &ColliderTrees) -> Option<ProxyId> {
+    /// Makes the body at a key what the tree has there, with this [box](stored_box). Its new box counts from `apply_moves`
+    /// on.
+    fn read(
+        &mut self,
+        key: ColliderTreeProxyKey,
+        aabb: Option<Aabb<DIMENSIONS>>,
+        trees: &ColliderTrees,
+    ) -> Option<ProxyId> {
         let had = self.ids[key.tree_type() as usize].get(key.id().index()).copied().flatten();
-        let found = proxy(key, trees).and_then(|proxy| Some((proxy, valid_box(key, trees)?)));
+        // A box that is not valid, as that of a collider without a shape, overlaps nothing.
+        let aabb = aabb.filter(|aabb| sweep_and_prune::validate(&[*aabb]).is_ok());
+        let found = proxy(key, trees).zip(aabb);
         let Some((proxy, aabb)) = found else {
             if let Some(id) = had {
                 self.remove(id);
@@ -177,14 +193,11 @@ pub fn proxy(key: ColliderTreeProxyKey, trees: &ColliderTrees) -> Option<&Collid
     trees.tree_for_type(key.tree_type()).get_proxy(key.id())
 }
 
-/// The enlarged box that a tree has at a key. Trees have `f32` boxes in each precision of Avian. `None` if it is not
-/// valid, as the box of a collider without a shape is: it overlaps nothing.
-fn valid_box(key: ColliderTreeProxyKey, trees: &ColliderTrees) -> Option<Aabb<DIMENSIONS>> {
+/// The enlarged box that a tree has at a key. Trees have `f32` boxes in each precision of Avian.
+fn stored_box(key: ColliderTreeProxyKey, trees: &ColliderTrees) -> Option<Aabb<DIMENSIONS>> {
     let aabb = trees.tree_for_type(key.tree_type()).get_proxy_aabb(key.id())?;
     let [min, max] = [aabb.min, aabb.max].map(|corner| corner.to_array());
-    let aabb =
-        Aabb::new(std::array::from_fn(|axis| min[axis]), std::array::from_fn(|axis| max[axis]));
-    sweep_and_prune::validate(&[aabb]).is_ok().then_some(aabb)
+    Some(Aabb::new(std::array::from_fn(|axis| min[axis]), std::array::from_fn(|axis| max[axis])))
 }
 
 /// What keeps pairs out of the search: layers, and static colliders that are not sensors among themselves.

@@ -108,7 +108,7 @@ fn the_same_with_any_number_of_threads_and_with_other_entities() {
     let hash = |threads: &str, other_entities: bool| {
         let mut command = Command::new(std::env::current_exe().expect("this test"));
         command.args([&format!("{module}::{name}"), "--exact", "--nocapture"]);
-        command.env("SIMULATE_THREADS", threads);
+        command.env("SIMULATE_THREADS", threads).env("RAYON_NUM_THREADS", threads);
         if other_entities {
             command.env("SIMULATE_OTHER_ENTITIES", "1");
         }
