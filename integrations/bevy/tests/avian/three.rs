@@ -27,3 +27,5 @@ mod determinism;
 mod oracle;
 #[path = "dimensions/scenes.rs"]
 mod scenes;
+#[path = "dimensions/sizes.rs"]
+mod sizes;

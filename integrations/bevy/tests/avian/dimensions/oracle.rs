@@ -43,7 +43,7 @@ impl Both {
         Self::with::<H>(PhysicsPlugins::default().with_collision_hooks::<H>().build())
     }
 
-    /// Without islands of bodies, and so without bodies that sleep: Avian 0.7 fails assertions of its own in worlds that
+    /// Without islands of bodies, and so without bodies that sleep: Avian fails assertions of its own in worlds that
     /// change at random, whichever broad phase it has.
     pub fn without_islands<H: CollisionHooks + 'static>() -> Self
     where

@@ -9,28 +9,28 @@ use super::{DEPTH, Scalar, Vector, cuboid};
 use crate::support::Random;
 
 /// Makes the position of a scene one of as many dimensions as there are.
-fn at(x: f32, y: f32, z: f32) -> Transform {
+pub fn at(x: f32, y: f32, z: f32) -> Transform {
     Transform::from_xyz(x, y, z * DEPTH)
 }
 
-fn ground(world: &mut World) {
+pub fn ground(world: &mut World) {
     world.spawn((RigidBody::Static, cuboid([100.0, 1.0, 100.0]), at(0.0, -0.5, 0.0)));
 }
 
 /// A place in a cube above the ground.
-fn place(random: &mut Random, size: f32) -> Transform {
+pub fn place(random: &mut Random, size: f32) -> Transform {
     at(random.between(-size, size), random.between(0.0, size), random.between(-size, size))
 }
 
 /// A velocity of up to `along` on the x-axis and up to `across` on the others.
-fn velocity(random: &mut Random, along: f32, across: f32) -> Vector {
+pub fn velocity(random: &mut Random, along: f32, across: f32) -> Vector {
     let mut velocity = Vector::splat(Scalar::from(random.between(-across, across)));
     velocity.x = Scalar::from(random.between(-along, along));
     velocity
 }
 
 /// Runs the steps of a scene. `act` changes the world before each step.
-fn run(mut both: Both, steps: usize, mut act: impl FnMut(&mut World, usize)) -> Both {
+pub fn run(mut both: Both, steps: usize, mut act: impl FnMut(&mut World, usize)) -> Both {
     for step in 0..steps {
         act(both.world(), step);
         both.step();
@@ -125,7 +125,7 @@ fn sensors_that_are_static_that_move_and_that_come_and_go() {
 }
 
 #[derive(PhysicsLayer, Default)]
-enum Layer {
+pub enum Layer {
     #[default]
     Scenery,
     Bullet,
