@@ -43,14 +43,17 @@ impl Both {
         Self::with::<H>(PhysicsPlugins::default().with_collision_hooks::<H>().build())
     }
 
-    /// Without islands of bodies, and so without bodies that sleep: Avian fails assertions of its own in worlds that
-    /// change at random, whichever broad phase it has.
-    pub fn without_islands<H: CollisionHooks + 'static>() -> Self
+    /// For a world that changes at random. There Avian 0.7 fails assertions of its own, whichever broad phase it has, unless it
+    /// is without islands of bodies, and so without bodies that sleep.
+    pub fn for_random_changes<H: CollisionHooks + 'static>() -> Self
     where
         for<'w, 's> SystemParamItem<'w, 's, H>: CollisionHooks,
     {
-        let physics = PhysicsPlugins::default().with_collision_hooks::<H>().build();
-        Self::with::<H>(physics.disable::<IslandPlugin>().disable::<IslandSleepingPlugin>())
+        let mut physics = PhysicsPlugins::default().with_collision_hooks::<H>().build();
+        if cfg!(feature = "bevy-0.19") {
+            physics = physics.disable::<IslandPlugin>().disable::<IslandSleepingPlugin>();
+        }
+        Self::with::<H>(physics)
     }
 
     fn with<H: CollisionHooks + 'static>(physics: PluginGroupBuilder) -> Self

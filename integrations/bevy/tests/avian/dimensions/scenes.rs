@@ -379,7 +379,7 @@ fn disturb_within_a_step(world: &mut World) {
 fn anything_that_can_happen_at_random() {
     let seeds = if std::env::var_os("TEST_LONG").is_some() { 80 } else { 5 };
     for seed in 0..seeds {
-        let mut both = Both::without_islands::<Teams>();
+        let mut both = Both::for_random_changes::<Teams>();
         // Events of collisions run here, for example.
         both.app.add_systems(
             PhysicsSchedule,
