@@ -100,7 +100,9 @@ where
             .add_observer(touch_on!(Remove, Sensor));
         // A collider is added to a tree.
         app.add_observer(add_on!(Insert, (ColliderTreeProxyKey, ColliderOf, RigidBody)))
-            .add_observer(add_on!(Remove, (ColliderOf, ColliderDisabled, Disabled)));
+            .add_observer(add_on!(Remove, ColliderOf))
+            // Also where the component is inserted once more, and so is not removed: Avian adds the collider then, too.
+            .add_observer(add_on!(Discard, (ColliderDisabled, Disabled)));
     }
 
     fn finish(&self, app: &mut App) {
