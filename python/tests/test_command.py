@@ -486,7 +486,7 @@ def test_devices_pipes_and_descriptors_are_written_to_directly() -> None:
     Path("device.csv").symlink_to(name)
     assert main(["pairs", "a.npy", "-o", "device.csv"]) == 0
     assert os.path.samestat(before, os.stat(name)) and os.read(terminal, 3) == b"a,b"
-    assert main(["pairs", "a.npy", "-o", "/dev/null", "--to", "arrow"]) == 0
+    assert main(["pairs", "a.npy", "-o", "/dev/null", "--to", "npy"]) == 0
     assert Path("/dev/null").is_char_device()
     with open("both.csv", "w") as file:
         print("above", file=file, flush=True)

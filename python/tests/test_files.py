@@ -350,7 +350,7 @@ def test_geojson_is_read_in_each_of_its_forms(capsys: pytest.CaptureFixture[str]
         "a.json": json.dumps(features),
     }
     for name, text in texts.items():
-        Path(name).write_text(text, encoding="utf-8", newline="")
+        Path(name).write_bytes(text.encode())
         assert boxes_of(name) == [[0, 1, 0, 1], [0, 1, 0, 1], [2, 1, 2, 1]]
         assert said(capsys, "pairs", name, "--id", "n") == "a,b\na,b\n"
     for name, document in (("one.geojson", features[2]), ("shape.geojson", features[2]["geometry"])):

@@ -400,7 +400,7 @@ def text_call(random: Random, path: Path) -> None:
     if damage == "quote":
         at = written.index("\n") + 1
         written = written[:at] + '0,1,"' + written[at:].replace('"', "")
-    path.write_text(written, encoding="utf-8", newline="")
+    path.write_bytes(written.encode())
     wanted = sum(pair_up(a, b, "both", 0, None) for i, a in enumerate(boxes) for b in boxes[:i])
     with redirect_stdout(io.StringIO()) as output, redirect_stderr(io.StringIO()) as errors:
         status = main(["count", str(path)])
