@@ -183,7 +183,9 @@ def test_no_call_is_left_out() -> None:
 
 
 # Older versions of NumPy warn where newer ones raise.
-@pytest.mark.filterwarnings("ignore:Creating an ndarray from ragged", "ignore:The truth value of an empty array", "ignore:elementwise comparison")
+@pytest.mark.filterwarnings(
+    "ignore:Creating an ndarray from ragged", "ignore:The truth value of an empty array", "ignore:elementwise"
+)
 @pytest.mark.parametrize(("name", "make"), list(calls()), ids=[name for name, _ in calls()])
 def test_odd_values(name: str, make: Any) -> None:
     function, ids = make()
