@@ -547,8 +547,8 @@ def is_rounded(array: NDArray[Any]) -> bool:
     """Whether it has integers that double precision may round."""
     if array.dtype.kind not in "iu" or array.dtype.itemsize < 8 or array.size == 0:
         return False
-    # (Methods of small arrays take longer than the functions that they call. NumPy before 2.0 rounds an unsigned number to
-    # compare it with one of Python's.)
+    # (Methods of small arrays take longer than the functions that they call. NumPy before 2.0 rounds an unsigned number
+    # to compare it with one of Python's.)
     return int(np.maximum.reduce(array, None)) > EXACT or int(np.minimum.reduce(array, None)) < -EXACT
 
 
