@@ -2,7 +2,7 @@
 
 import { existsSync, readFileSync } from "node:fs";
 import type { Plugin } from "vite";
-import { highlight } from "../code/listing.ts";
+import { highlight, type Language } from "../code/listing.ts";
 
 const EXAMPLES = {
   rust: {
@@ -56,18 +56,19 @@ const copyable = (code: string, what: string): string =>
 /** What stands below a heading of a document of this repository: its lines, up to the next heading. */
 function below(file: string, heading: string): string[] {
   const lines = readFileSync(new URL(`../../../${file}`, import.meta.url), "utf8").split("\n");
-  const at = lines.indexOf(`## ${heading}`);
+  const at = lines.findIndex((line) => line === `## ${heading}` || line === `# ${heading}`);
   if (at < 0) throw new Error(`${file} has no heading "${heading}"`);
   const end = lines.findIndex((line, place) => place > at && line.startsWith("## "));
   return lines.slice(at + 1, end < 0 ? undefined : end);
 }
 
-/** The first code below a heading. */
+/** The first code below a heading, without the lines that documentation of Rust hides. */
 function codeBelow(file: string, heading: string): string {
   const lines = below(file, heading);
   const begin = lines.findIndex((line) => line.startsWith("```"));
-  const code = lines.slice(begin + 1, lines.indexOf("```", begin + 1)).join("\n");
-  return copyable(highlight(code, "javascript", `sweep-and-prune with ${heading}`), "the example");
+  const language = lines[begin]!.slice(3) as Language;
+  const shown = lines.slice(begin + 1, lines.indexOf("```", begin + 1)).filter((line) => language !== "rust" || !line.startsWith("# "));
+  return copyable(highlight(shown.join("\n"), language, `sweep-and-prune: ${heading}`), "the example");
 }
 
 /** The table below a heading, whose cells are code. */

@@ -5,9 +5,10 @@
 import { readFileSync } from "node:fs";
 import { createCssVariablesTheme, createHighlighter, type ShikiTransformer } from "shiki";
 
-type Language = "javascript" | "rust" | "python" | "shell";
+const LANGUAGES = ["javascript", "rust", "python", "shell", "c", "cpp"] as const;
+export type Language = (typeof LANGUAGES)[number];
 const colors = createCssVariablesTheme({ name: "css-variables", variablePrefix: "--code-" });
-const highlighter = await createHighlighter({ langs: ["javascript", "rust", "python", "shell"], themes: [colors] });
+const highlighter = await createHighlighter({ langs: [...LANGUAGES], themes: [colors] });
 
 /** Tags at the end of a line, with the slashes before them if nothing else stands behind those. */
 const TAGS = /\s*(?:\/\/)?((?:\s+@[a-z]+)+)\s*$/;
