@@ -264,6 +264,7 @@ def test_geometries_of_different_coordinates_are_refused() -> None:
     assert sap.count_pairs_between(a, a) == sap.count_pairs_between(a, geopandas.GeoSeries.from_xy([0], [0])) == 1
 
 
+@pytest.mark.filterwarnings("ignore:The 'generic' unit")
 def test_durations_are_boxes_and_months_are_not() -> None:
     hours = np.array([[0, 1], [2, 3]], "m8[h]")
     assert sap.count_pairs(hours) == 0

@@ -120,14 +120,19 @@ class _Sap(click.Group):
 
 
 class _Closed(io.RawIOBase):
-    """Standard output that was closed before the program began: only what is written to it is an error."""
+    """Standard output that was closed before the program began: only what is written to it is an error, once."""
+
+    _is_said = False
 
     def writable(self) -> bool:
         """Says so, since a text file asks."""
         return True
 
-    def write(self, _: Any) -> int:
-        """Fails."""
+    def write(self, data: Any) -> int:
+        """Fails. What is left is forgotten: Python writes it when the file goes, and reports errors of that."""
+        if self._is_said:
+            return len(data)
+        self._is_said = True
         raise OSError(errno.EBADF, "it is closed")
 
 

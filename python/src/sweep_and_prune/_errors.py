@@ -149,8 +149,9 @@ class SnapshotError(SweepAndPruneError, ValueError):
 
 def _shown(value: float) -> float:
     """A whole number as people write it, without a point: positions on a genome are whole."""
-    is_whole = hasattr(value, "is_integer") and value.is_integer() and abs(value) < 2**53
-    return int(value) if is_whole else value
+    # (NumPy's durations are whole numbers to it, and do not compare with numbers.)
+    is_number = hasattr(value, "is_integer") and getattr(getattr(value, "dtype", None), "kind", "f") in "fiu"
+    return int(value) if is_number and value.is_integer() and abs(value) < 2**53 else value
 
 
 def _place(argument: str, index: int) -> str:
