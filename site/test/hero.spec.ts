@@ -2,6 +2,7 @@
 import { expect, type Locator, type Page, test } from "@playwright/test";
 import { frames } from "./support/frames.ts";
 import { complaints } from "./support/pages.ts";
+import { RETRIED } from "./support/retried.ts";
 
 interface Hero {
   hero: Locator;
@@ -168,7 +169,7 @@ test.describe("without scripts", () => {
     await page.goto("/");
     const image = page.locator(".hero-stage img");
     await expect.poll(() => image.evaluate((element: HTMLImageElement) => element.naturalWidth)).toBeGreaterThan(100);
-    const svg = await (await request.get("/still/hero.svg")).text();
+    const svg = await (await request.get("/still/hero.svg", RETRIED)).text();
     const boxesOf = (kind: string): number[][] =>
       [...(new RegExp(`class="${kind}" d="([^"]*)"`).exec(svg)?.[1] ?? "").matchAll(/M([\d.]+) ([\d.]+)H([\d.]+)V([\d.]+)/g)].map((match) => match.slice(1).map(Number));
     const overlapping = boxesOf("overlap");

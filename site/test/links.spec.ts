@@ -2,15 +2,16 @@
 import { expect, test } from "@playwright/test";
 import type { SapDemo } from "sweep-and-prune-classroom/demo";
 import { MOVED, PAGES } from "./support/pages.ts";
+import { RETRIED } from "./support/retried.ts";
 
 // An embedded demo is a part of another page, and the old addresses lead to the playground.
 const LINKED = PAGES.filter((path) => path !== "/embed.html" && !(path in MOVED));
 
 test("every page has a title, a description, an address and a picture of its own kind", async ({ page, request }) => {
   const titles = new Set<string>();
-  const map = await (await request.get("/sitemap.xml")).text();
+  const map = await (await request.get("/sitemap.xml", RETRIED)).text();
   for (const path of LINKED) {
-    const html = await (await request.get(path)).text();
+    const html = await (await request.get(path, RETRIED)).text();
     await page.setContent(html.replace(/<script[\s\S]*?<\/script>/g, ""));
     const content = (selector: string): Promise<string | null> => page.locator(selector).getAttribute(selector.startsWith("link") ? "href" : "content");
     const title = await page.title();
@@ -24,7 +25,7 @@ test("every page has a title, a description, an address and a picture of its own
     expect(map).toContain(`<loc>${canonical}</loc>`);
     expect(await content('meta[property="og:image"]')).toMatch(/^https:\/\/.*\/preview\.png$/);
   }
-  const picture = await (await request.get("/preview.png")).body();
+  const picture = await (await request.get("/preview.png", RETRIED)).body();
   expect([picture.readUInt32BE(16), picture.readUInt32BE(20)], "width and height of the picture").toEqual([1200, 630]);
   expect(picture.length).toBeLessThan(300_000);
 });

@@ -2,6 +2,7 @@ import { readFileSync } from "node:fs";
 import { gzipSync } from "node:zlib";
 import { expect, test } from "@playwright/test";
 import { complaints, cutOff, MOVED, overflow, PAGES, requestsElsewhere, scrolledThrough, tabbedThrough, tooSmall, violations, watchShifts } from "./support/pages.ts";
+import { RETRIED } from "./support/retried.ts";
 
 // What holds on every page of the site, whichever there are.
 
@@ -88,7 +89,7 @@ test("every link of every page leads somewhere", async ({ page, request }) => {
       }
       if (seen.has(pathname)) continue;
       seen.add(pathname);
-      if (!(await request.get(pathname)).ok()) broken.push(`${path}: ${pathname}`);
+      if (!(await request.get(pathname, RETRIED)).ok()) broken.push(`${path}: ${pathname}`);
     }
   }
   expect(broken).toEqual([]);
