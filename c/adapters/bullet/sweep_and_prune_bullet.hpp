@@ -120,20 +120,18 @@ public:
 
     /// The smallest box that contains all boxes. Takes O(n) time.
     void getBroadphaseAabb(btVector3 &min, btVector3 &max) const override {
-        bool any = false;
+        if (world.size() == 0) {
+            min.setValue(0, 0, 0);
+            max.setValue(0, 0, 0);
+            return;
+        }
+        constexpr btScalar infinity = std::numeric_limits<btScalar>::infinity();
+        min.setValue(infinity, infinity, infinity);
+        max.setValue(-infinity, -infinity, -infinity);
         for_each_proxy([&](const proxy_type &proxy) {
-            if (!any) {
-                min = proxy.m_aabbMin;
-                max = proxy.m_aabbMax;
-                any = true;
-            }
             min.setMin(proxy.m_aabbMin);
             max.setMax(proxy.m_aabbMax);
         });
-        if (!any) {
-            min.setValue(0, 0, 0);
-            max.setValue(0, 0, 0);
-        }
     }
 
     /// Makes an empty broad phase as good as new, so that the same scene gives the same pairs in the same order.
