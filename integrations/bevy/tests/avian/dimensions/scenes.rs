@@ -301,6 +301,42 @@ fn bodies_that_are_disabled_for_a_while() {
     assert_eq!(both.search().counts().full_reads, 0);
 }
 
+/// Which collider a system after the search of a step disables.
+#[derive(Resource)]
+struct DisabledNext(Option<Entity>);
+
+/// Avian puts a collider that is disabled once more into its trees again.
+#[test]
+fn a_collider_that_is_disabled_once_more_after_the_search() {
+    let mut both = Both::new::<()>();
+    both.app.insert_resource(DisabledNext(None)).add_systems(
+        PhysicsSchedule,
+        (|mut commands: Commands, mut next: ResMut<DisabledNext>| {
+            if let Some(collider) = next.0.take() {
+                commands.entity(collider).insert(ColliderDisabled);
+            }
+        })
+        .in_set(PhysicsStepSystems::Finalize)
+        .ambiguous_with_all(),
+    );
+    ground(both.world());
+    let resting = (RigidBody::Static, cuboid([1.0; 3]), at(0.0, 5.0, 0.0));
+    let resting = both.world().spawn(resting).id();
+    let moving = (RigidBody::Kinematic, Sensor, cuboid([1.0; 3]), at(50.0, 5.0, 0.0));
+    let moving = both.world().spawn(moving).id();
+    run(both, 40, |world, step| {
+        match step {
+            5 | 10 => drop(world.entity_mut(resting).insert(ColliderDisabled)),
+            // A disabled collider stays in its tree until it is disabled again.
+            15 => drop(world.entity_mut(resting).insert(RigidBody::Dynamic)),
+            20 => world.resource_mut::<DisabledNext>().0 = Some(resting),
+            _ => {}
+        }
+        let x = if step < 25 { 50.0 } else { 0.5 };
+        world.entity_mut(moving).insert(at(x, 5.0, 0.0));
+    });
+}
+
 /// What a random step does to a collider or its body.
 fn disturb(world: &mut World, random: &mut Random, living: &mut Vec<Entity>) {
     let index = random.below(living.len());
