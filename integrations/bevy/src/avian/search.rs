@@ -1,5 +1,7 @@
 //! The search for pairs in each step.
 
+use std::collections::HashSet;
+
 use bevy::ecs::entity::Entity;
 use bevy::ecs::resource::Resource;
 
@@ -221,8 +223,9 @@ impl PairSearch {
 
     /// Examines the pairs that begin, and those that wait and have a collider that moved.
     fn examine(&mut self, rule: &Rule) {
-        let Self { colliders, waiting, candidates, step, counts, .. } = self;
+        let Self { colliders, waiting, leaving, candidates, step, counts, .. } = self;
         let tracked = &colliders.tracked;
+        let mut known = HashSet::new();
         let mut examine = |pair: [u32; 2]| {
             let [one, other] = pair.map(|slot| &tracked[slot as usize]);
             counts.examined += 1;
@@ -231,6 +234,9 @@ impl PairSearch {
                 let [first, second] = if is_reversed { [pair[1], pair[0]] } else { pair };
                 let asks_hook = verdict == Verdict::AskHook;
                 candidates.push(Candidate { first, second, asks_hook });
+            }
+            if verdict == Verdict::Known {
+                known.insert(key(one, other));
             }
             verdict == Verdict::NotNow
         };
@@ -241,6 +247,10 @@ impl PairSearch {
         waiting.extend(begun.slots().iter().copied().filter(|&pair| examine(pair)));
         if waiting.len() > before {
             waiting.sort_unstable();
+        }
+        // A collider that left its tree for another one: its old pair ended, and its new one has the same contact.
+        if !known.is_empty() {
+            leaving.retain(|key| !known.contains(key));
         }
     }
 }

@@ -337,6 +337,32 @@ fn a_collider_that_is_disabled_once_more_after_the_search() {
     });
 }
 
+/// A collider that is inserted once more leaves its tree and comes back in one step: its contact pair stays, and ends with it
+/// in the next step, in which another contact pair of the body ends though its colliders still overlap.
+#[test]
+fn a_collider_that_is_inserted_once_more_before_its_body_is_disabled() {
+    let mut both = Both::new::<()>();
+    ground(both.world());
+    let body = |x: f32| (RigidBody::Static, cuboid([1.0; 3]), at(x, 5.0, 0.0));
+    let [removed, body] = [50.0, 0.0].map(|x| both.world().spawn(body(x)).id());
+    both.world().entity_mut(body).with_child((cuboid([1.0; 3]), at(0.8, 0.0, 0.0)));
+    let moving = (RigidBody::Kinematic, Sensor, cuboid([1.0; 3]), at(0.4, 5.0, 0.0));
+    let moving = both.world().spawn(moving).id();
+    run(both, 20, |world, step| {
+        match step {
+            10 => {
+                // So that the collider gets another place in its tree.
+                world.despawn(removed);
+                world.entity_mut(body).insert(cuboid([1.5; 3]));
+            }
+            11 => drop(world.entity_mut(body).insert(Disabled)),
+            _ => {}
+        }
+        let x = if step % 2 == 0 { 0.4 } else { 0.5 };
+        world.entity_mut(moving).insert(at(x, 5.0, 0.0));
+    });
+}
+
 /// What a random step does to a collider or its body.
 fn disturb(world: &mut World, random: &mut Random, living: &mut Vec<Entity>) {
     let index = random.below(living.len());
