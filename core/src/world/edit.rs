@@ -84,7 +84,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             |bodies: &Bodies<D, T>, id: &ProxyId| bodies.slots.index_of[id.slot() as usize];
         // Of many boxes the update finds out which differ from those of the last one.
         if bodies.scans_all(ids.len()) && !bodies.options.report.is_fat() {
-            bodies.any_unlisted = true;
+            bodies.edits.touch_all();
             let is_far = bodies.slots.is_reordered && prefetch_pays(&bodies.boxes);
             for (position, (id, aabb)) in rows.enumerate() {
                 if is_far && let Some(later) = ids.get(position + AHEAD) {
@@ -96,7 +96,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             return Ok(());
         }
         preload(&bodies.boxes[..bodies.rows_to_scan(ids.len())]);
-        bodies.changed.reserve(ids.len());
+        bodies.edits.reserve(ids.len());
         let is_far = prefetch_pays(&bodies.boxes);
         for (position, (id, aabb)) in rows.enumerate() {
             // Rows are in the order of space, ids are not: rows are read all over the tables.
@@ -316,7 +316,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// was removed.
     #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn remove_many(&mut self, ids: &[ProxyId]) -> Result<(), Error> {
-        let Bodies { slots, leaving, .. } = &mut self.bodies;
+        let Bodies { slots, edits, .. } = &mut self.bodies;
         let bad = ids.iter().position(|&id| match slots.check(id, 0) {
             Ok(index) if !slots.has(index, flag::MARKED) => {
                 slots.raise(index, flag::MARKED);
@@ -335,7 +335,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             let index = slots.index_of[id.slot() as usize];
             slots.retire(index);
             if !slots.has(index, flag::NEW) {
-                leaving.push(index);
+                edits.note_leaving(index);
                 continue;
             }
             // No update knew it, so none has to report its end, and its slot is free at once: a world

@@ -3,10 +3,10 @@
 //! | state | set by | cleared by | implies |
 //! |---|---|---|---|
 //! | `LIVE` | insertion | removal | its slot has an id that is valid |
-//! | `LEAVING`, `leaving` | removal | the next update | not `LIVE`; its pairs end at the next update |
-//! | `CHANGED`, `changed` | every edit of a box, filter or exclusion | the next update | without it the box is that of the last update, unless `any_unlisted` |
-//! | `any_unlisted` | edits of all boxes at once | the next update or query, which compares all boxes | nothing: boxes may have changed without the flag |
-//! | `NEW`, `any_new` | insertion | the next update | `CHANGED`; in no pair yet; `previous` and `fat` are meaningless |
+//! | `LEAVING`, `edits.leaving()` | removal | the next update | not `LIVE`; its pairs end at the next update |
+//! | `CHANGED`, `edits.changed()` | every edit of a box, filter or exclusion | the next update | without it the box is that of the last update, unless `edits.any_unlisted()` |
+//! | `edits.any_unlisted()` | edits of all boxes at once | the next update or query, which compares all boxes | nothing: boxes may have changed without the flag |
+//! | `NEW`, `edits.any_new()` | insertion | the next update | `CHANGED`; in no pair yet; `previous` and `fat` are meaningless |
 //! | `REFILTERED` | `set_filter` | the next update | `CHANGED`; the filter of the last update is kept beside |
 //! | `SWEPT`, `sweeps` | `sweep` | the next update, or another edit of the box | `LIVE` |
 //! | `MOVED`, `moved` | edits of the box, where fat AABBs are reported | the next update | nothing without fat AABBs |
@@ -86,26 +86,28 @@ fn tables<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Claims<4> {
 }
 
 fn lists<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Claims<8> {
-    let Bodies { slots, boxes, previous, any_new, any_unlisted, .. } = bodies;
-    let Bodies { changed, leaving, displacements, sweeps, .. } = bodies;
+    let Bodies { slots, boxes, previous, edits, displacements, sweeps, .. } = bodies;
     let is_leaving =
         |&index: &u32| slots.has(index, flag::LEAVING) && !slots.has(index, flag::LIVE);
     let has = |index, flags| slots.has(index, flags);
     let is_same = |index: u32| boxes[index as usize] == previous[index as usize];
     [
-        ("bodies that leave are listed", all_listed(slots, leaving, flag::LEAVING)),
-        ("listed bodies that leave are gone", leaving.iter().all(is_leaving)),
-        ("bodies that changed are listed", all_listed(slots, changed, flag::CHANGED)),
+        ("bodies that leave are listed", all_listed(slots, edits.leaving(), flag::LEAVING)),
+        ("listed bodies that leave are gone", edits.leaving().iter().all(is_leaving)),
+        ("bodies that changed are listed", all_listed(slots, edits.changed(), flag::CHANGED)),
         (
             "new or refiltered bodies changed",
             living(bodies).all(|index| {
                 !has(index, flag::NEW | flag::REFILTERED) || has(index, flag::CHANGED)
             }),
         ),
-        ("a new body is noted", *any_new || living(bodies).all(|index| !has(index, flag::NEW))),
+        (
+            "a new body is noted",
+            edits.any_new() || living(bodies).all(|index| !has(index, flag::NEW)),
+        ),
         (
             "a body that did not change is where it was",
-            *any_unlisted
+            edits.any_unlisted()
                 || living(bodies).all(|index| has(index, flag::CHANGED) || is_same(index)),
         ),
         (

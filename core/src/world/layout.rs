@@ -96,7 +96,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     /// Moves all rows to their new indices.
     fn apply_order(&mut self, bodies: &mut Bodies<D, T>) {
         let permutation = &mut self.scratch.permutation;
-        let Bodies { slots, boxes, previous, changed, leaving, displacements, sweeps, .. } = bodies;
+        let Bodies { slots, boxes, previous, edits, displacements, sweeps, .. } = bodies;
         let ([shapes, origins], [moved, too_wide]) = displacements.stored();
         let (ends, swept) = sweeps.stored();
         for table in [boxes, shapes, origins, previous, ends, &mut self.fat] {
@@ -107,6 +107,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         }
         permutation.move_flags(&mut slots.flags);
         permutation.move_words(&mut slots.slot_of);
+        let [changed, leaving] = edits.lists();
         let flying = &mut self.flying;
         for list in [&mut slots.index_of, changed, leaving, swept, moved, too_wide, flying] {
             permutation.rename(list);

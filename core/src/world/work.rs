@@ -139,8 +139,8 @@ fn if_more_than_a_quarter_changes_the_update_finds_out_which() {
         let (mut world, ids) = world_of(100);
         let boxes: Vec<_> = (0..moved).map(|index| at(index + 1000)).collect();
         world.set_many(&ids[..moved], &boxes).expect("the bodies are there");
-        assert_eq!(world.bodies.any_unlisted, is_left_to_the_update, "{moved}");
-        assert_eq!(world.bodies.changed.len(), if is_left_to_the_update { 0 } else { 25 });
+        assert_eq!(world.bodies.edits.any_unlisted(), is_left_to_the_update, "{moved}");
+        assert_eq!(world.bodies.edits.changed().len(), if is_left_to_the_update { 0 } else { 25 });
     }
 }
 
@@ -151,7 +151,7 @@ fn a_removed_body_is_not_listed_as_changed() {
     world.set_many(&ids, &boxes).expect("the bodies are there");
     world.remove(ids[3]).expect("the body is there");
     world.queries();
-    assert_eq!(world.bodies.changed.len(), 99);
+    assert_eq!(world.bodies.edits.changed().len(), 99);
 }
 
 #[test]
@@ -160,12 +160,12 @@ fn a_new_body_in_a_listed_slot_and_a_body_that_moves_twice_are_listed_once() {
     for place in [100, 200] {
         world.set(ids[0], at(place)).expect("the body is there");
     }
-    assert_eq!(world.bodies.changed.len(), 1);
+    assert_eq!(world.bodies.edits.changed().len(), 1);
     for _ in 0..3 {
         let id = world.insert(at(300)).expect("the box is valid");
         world.remove(id).expect("the body is there");
     }
-    assert_eq!(world.bodies.changed.len(), 2);
+    assert_eq!(world.bodies.edits.changed().len(), 2);
 }
 
 #[test]
@@ -175,7 +175,7 @@ fn the_list_of_changes_is_compacted_when_it_is_twice_as_long_as_the_bodies() {
     for call in 0..1000 {
         world.set(ids[call % 100], at(call + 1000)).expect("the body is there");
         world.queries();
-        longest = longest.max(world.bodies.changed.len());
+        longest = longest.max(world.bodies.edits.changed().len());
     }
     assert_eq!(longest, 200);
 }

@@ -1,6 +1,7 @@
 //! The bodies: their ids, filters and boxes, and what was done to them since the last update.
 
 mod displacements;
+mod edits;
 mod exclusions;
 mod filter;
 mod id;

@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 
 use super::displacements::Displacements;
+use super::edits::Edits;
 use super::filter::Filter;
 use super::id::ProxyId;
 use super::rows::put_row;
@@ -33,22 +34,15 @@ pub struct Bodies<const D: usize, T: Scalar> {
     pub rules: Rules,
     /// The boxes at the last update. Meaningless for bodies of [`flag::NEW`].
     pub previous: Vec<Aabb<D, T>>,
-    /// Whether there is a body of [`flag::NEW`].
-    pub any_new: bool,
-    /// The bodies of [`flag::CHANGED`], at least once each, and some that were removed since.
-    pub changed: Vec<u32>,
-    /// Whether boxes of other bodies may differ from those of the last update too.
-    pub any_unlisted: bool,
-    /// The bodies of [`flag::LEAVING`].
-    pub leaving: Vec<u32>,
+    /// What was done since the last update.
+    pub edits: Edits,
     /// Bodies that moved recently have smaller indices than this, with few exceptions.
     pub front: usize,
 }
 
 clone_fields! {
     [const D: usize, T: Scalar] Bodies<D, T> {
-        options, slots, boxes, displacements, sweeps, rules, previous, any_new, changed, any_unlisted,
-        leaving, front,
+        options, slots, boxes, displacements, sweeps, rules, previous, edits, front,
     }
 }
 
@@ -97,8 +91,7 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
         let index = self.slots.take();
         let boxed = self.options.report.boxed(None, &aabb, &aabb);
         self.put(index, aabb, boxed, filter);
-        self.slots.raise(index, flag::NEW);
-        self.any_new = true;
+        self.edits.note_new(&mut self.slots, index);
         self.touch(index);
         self.slots.id(index)
     }
@@ -183,7 +176,7 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
     pub fn shift(&mut self, offset: &[T; D]) {
         self.boxes.iter_mut().for_each(|aabb| *aabb = aabb.translate(*offset));
         self.sweeps.shift(offset);
-        self.any_unlisted = true;
+        self.edits.touch_all();
         if self.options.report.is_fat() {
             self.displacements.shift(offset);
             for index in 0..self.slots.len() as u32 {
@@ -197,26 +190,23 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
     /// Has the next update look at a body, and the next query too.
     #[inline]
     pub fn touch(&mut self, index: u32) {
-        let flags = &mut self.slots.flags[index as usize];
-        if *flags & (flag::CHANGED | flag::IN_TREE) != flag::CHANGED {
-            self.changed.push(index);
-            *flags = (*flags | flag::CHANGED) & !flag::IN_TREE;
-        }
+        self.edits.touch(&mut self.slots, index);
     }
 
     /// About how many bodies changed or were removed.
     pub fn count_changes(&self) -> usize {
-        let listed = self.changed.len() + self.leaving.len();
-        if self.any_unlisted { listed.max(self.slots.live) } else { listed }
+        let listed = self.edits.changed().len() + self.edits.leaving().len();
+        if self.edits.any_unlisted() { listed.max(self.slots.live) } else { listed }
     }
 
     /// Whether most bodies are new and static: a level was loaded.
     #[inline(never)]
     pub fn is_level_new(&self) -> bool {
         let is_new = |&&index: &&u32| self.is_static(index) && self.slots.has(index, flag::NEW);
-        self.any_new
-            && self.changed.len() * 2 > self.slots.live
-            && self.changed.iter().filter(is_new).count() * 2 > self.slots.live
+        let changed = self.edits.changed();
+        self.edits.any_new()
+            && changed.len() * 2 > self.slots.live
+            && changed.iter().filter(is_new).count() * 2 > self.slots.live
     }
 
     /// Whether there is a body, and it is static.
@@ -226,7 +216,7 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
 
     /// Lists the bodies whose boxes changed and are not listed yet, and some that are.
     pub fn list_changed(&mut self) {
-        if core::mem::take(&mut self.any_unlisted) {
+        if self.edits.take_unlisted() {
             for index in 0..self.slots.len() {
                 let flags = self.slots.flags[index];
                 // The previous box of a new body is that of the body that had the slot before.

@@ -83,7 +83,7 @@ fn read_slot<const D: usize, T: Scalar>(
         }
     } else if has(holds::LEAVING) {
         bodies.slots.raise(index, flag::LEAVING);
-        bodies.leaving.push(index);
+        bodies.edits.note_leaving(index);
     } else {
         bodies.slots.release(index, 0);
     }
@@ -95,8 +95,7 @@ fn read_slot<const D: usize, T: Scalar>(
         bodies.displacements.put_origin(&mut bodies.slots, index, origin);
     }
     if has(holds::NEW) {
-        bodies.slots.raise(index, flag::NEW);
-        bodies.any_new = true;
+        bodies.edits.note_new(&mut bodies.slots, index);
     }
     if has(holds::OLD_FILTER) {
         let old = reader.filter()?;

@@ -24,10 +24,12 @@ pub fn collect_escaped<const D: usize, T: Scalar>(
     tracking.refresh_fat(bodies);
     let Tracking { fat, scratch: Scratch { escaped, .. }, .. } = tracking;
     escaped.clear();
-    let read = bodies.rows_to_scan(bodies.changed.len());
-    let scans_all = bodies.scans_all(bodies.changed.len());
-    let Bodies { slots, boxes, previous, changed, any_unlisted, .. } = bodies;
-    if core::mem::take(any_unlisted) || scans_all {
+    let read = bodies.rows_to_scan(bodies.edits.changed().len());
+    let scans_all = bodies.scans_all(bodies.edits.changed().len());
+    let Bodies { slots, boxes, previous, edits, .. } = bodies;
+    let scans_all = edits.take_unlisted() || scans_all;
+    let changed = edits.changed_mut();
+    if scans_all {
         changed.clear();
         for start in (0..slots.len()).step_by(CHUNK) {
             let rows = start..slots.len().min(start + CHUNK);

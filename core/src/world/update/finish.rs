@@ -20,38 +20,37 @@ pub fn finish<const D: usize, T: Scalar>(
     is_level_new: bool,
 ) -> bool {
     // Boxes of bodies that did not change are the same or meaningless.
-    let read = bodies.rows_to_scan(bodies.changed.len());
-    let Bodies { boxes, previous, changed, any_unlisted, .. } = bodies;
-    let read = if core::mem::take(any_unlisted) { previous.len() } else { read };
+    let read = bodies.rows_to_scan(bodies.edits.changed().len());
+    let Bodies { boxes, previous, edits, .. } = bodies;
+    let read = if edits.take_unlisted() { previous.len() } else { read };
     previous[..read].copy_from_slice(&boxes[..read]);
     if read < previous.len() {
-        for row in changed.iter().map(|&index| index as usize).filter(|&row| row >= read) {
+        for row in edits.changed().iter().map(|&index| index as usize).filter(|&row| row >= read) {
             previous[row] = boxes[row];
         }
     }
-    if bodies.rules.finish() | core::mem::take(&mut bodies.any_new) {
-        for &index in &bodies.changed {
+    if bodies.rules.finish() | bodies.edits.any_new() {
+        for &index in bodies.edits.changed() {
             let rests = is_level_new && bodies.is_static(index);
             let recent = if rests { flag::RECENT } else { 0 };
             bodies.slots.lower(index, flag::NEW | flag::REFILTERED | recent);
         }
     }
-    let moved = bodies.changed.len();
-    bodies.changed.clear();
+    let moved = bodies.edits.changed().len();
+    bodies.edits.forget_changed();
     if let TreeState::Fresh { known } = &mut tracking.tree_state {
         *known = 0;
     }
     // After an update from scratch no body falls asleep.
     let is_scattered =
         !tracking.candidates.is_sorted() && tracking.fall_asleep(bodies, moved, is_level_new);
-    let removed = bodies.leaving.iter().map(|&index| bodies.slots.id(index).to_key());
+    let removed = bodies.edits.leaving().iter().map(|&index| bodies.slots.id(index).to_key());
     let sorted = tracking.scratch.sorter.sort_keys(removed);
     events.removed.clear();
     events.removed.extend(sorted.map(ProxyId::from_key));
-    let exclude = bodies.leaving.iter().any(|&index| bodies.slots.has(index, flag::EXCLUDES));
-    for index in bodies.leaving.drain(..) {
-        bodies.slots.release(index, 0);
-    }
+    let exclude =
+        bodies.edits.leaving().iter().any(|&index| bodies.slots.has(index, flag::EXCLUDES));
+    bodies.edits.release_leaving(&mut bodies.slots);
     if exclude {
         bodies.rules.forget_gone(&bodies.slots);
     }

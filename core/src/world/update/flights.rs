@@ -28,13 +28,13 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         for &index in &*flying {
             if bodies.slots.flags[index as usize] & (flag::LIVE | flag::MARKED) == flag::LIVE {
                 // It did not change, but its candidates may.
-                bodies.changed.push(index);
+                bodies.edits.changed_mut().push(index);
                 escaped.push(index);
             }
         }
         // Not too many are looked up at once: the finder would find all candidates, and no body would fly any more. So where
         // some fly, slow ones fly as well, and land a few at a time; those that rest, which are last in the list, first.
-        let (mut slow, mut grounded) = (0, bodies.leaving.len());
+        let (mut slow, mut grounded) = (0, bodies.edits.leaving().len());
         for &index in &*escaped {
             let row = index as usize;
             let flags = &mut bodies.slots.flags[row];
@@ -47,9 +47,9 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             }
         }
         let may_land_all = slow == escaped.len();
-        let most = policy.most_look_ups(bodies.changed.len(), bodies.slots.live);
+        let most = policy.most_look_ups(bodies.edits.changed().len(), bodies.slots.live);
         let spared = (escaped.len() - moving).min(most / 2);
-        let looked_up = slow + bodies.leaving.len();
+        let looked_up = slow + bodies.edits.leaving().len();
         let stay = looked_up + spared <= most;
         let looked_up = if stay { looked_up } else { grounded.max(most / 2) };
         let mut landings = most.max(1).saturating_sub(looked_up);

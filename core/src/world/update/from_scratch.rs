@@ -41,7 +41,7 @@ pub fn from_scratch<const D: usize, T: Scalar>(
     let before = candidates.sorted();
     sorter.reserve(sorted, pairs.len())?;
     sorter.reserve_begun(&mut events.begun, pairs.len(), before.len())?;
-    for &index in &bodies.changed {
+    for &index in bodies.edits.changed() {
         bodies.slots.lower(index, flag::CHANGED | flag::IN_TREE);
     }
     sorter.sort_into(pairs, sorted, bodies.slots.len());

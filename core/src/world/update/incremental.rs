@@ -37,7 +37,7 @@ pub fn incremental<const D: usize, T: Scalar>(
     is_tree_advanced: bool,
 ) -> bool {
     let Scratch { escaped, woken, .. } = &mut tracking.scratch;
-    let lost = escaped.iter().chain(&bodies.leaving);
+    let lost = escaped.iter().chain(bodies.edits.leaving());
     woken.clear();
     woken.extend(lost.filter(|&&index| bodies.slots.has(index, flag::ASLEEP)));
     let (escaped, wakes) = (escaped.len(), !woken.is_empty());
@@ -66,11 +66,11 @@ pub fn incremental<const D: usize, T: Scalar>(
         let before = most;
         is_right = tracking.find_added(bodies, &mut events.begun, look_ups, &mut most)
             && tracking.find_among_flying(bodies, &mut events.begun, most)
-            && tracking.scratch.reserve(&mut tracking.candidates).is_ok();
+            && tracking.scratch.reserve(&mut tracking.candidates, &mut events.begun).is_ok();
         tracking.policy.note_reads(before - most, flights, bodies.slots.live);
     }
     if is_right {
-        if !bodies.changed.is_empty() || !bodies.leaving.is_empty() {
+        if !bodies.edits.changed().is_empty() || !bodies.edits.leaving().is_empty() {
             tracking.test_candidates(bodies, events, !extends);
         }
         tracking.add_candidates();
@@ -95,8 +95,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     /// Whether the fat AABBs of the bodies that left theirs can be extended, so that candidates are only
     /// added: if most bodies move, and none of these went far.
     fn can_extend(&self, bodies: &Bodies<D, T>) -> bool {
-        bodies.changed.len() * 2 > bodies.slots.live
-            && bodies.leaving.is_empty()
+        bodies.edits.changed().len() * 2 > bodies.slots.live
+            && bodies.edits.leaving().is_empty()
             && self.scratch.escaped.iter().all(|&index| {
                 let row = index as usize;
                 !bodies.slots.has(index, flag::NEW | flag::REFILTERED)
@@ -165,7 +165,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     #[inline(never)]
     fn test_candidates(&mut self, bodies: &Bodies<D, T>, events: &mut Events, drops: bool) {
         let Self { candidates, scratch, .. } = self;
-        match (bodies.changed.len() * SELECT > candidates.listed().len(), drops) {
+        match (bodies.edits.changed().len() * SELECT > candidates.listed().len(), drops) {
             (true, true) => scratch.list_flips::<true>(bodies, candidates),
             (true, false) => scratch.list_flips::<false>(bodies, candidates),
             (false, _) => scratch.list_changed(bodies, candidates),
@@ -229,7 +229,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     #[inline(never)]
     fn move_in_tree(&mut self, bodies: &Bodies<D, T>) {
         let Self { tree, scratch: Scratch { queries, .. }, .. } = self;
-        for &index in &bodies.leaving {
+        for &index in bodies.edits.leaving() {
             tree.remove(index);
         }
         for chunk in queries.chunks(TOGETHER) {
@@ -338,15 +338,20 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
 }
 
 impl<const D: usize, T: Scalar> Scratch<D, T> {
-    /// Reserves memory for the candidates that were found, and for testing all.
-    fn reserve(&mut self, candidates: &mut Candidates) -> Result<(), OutOfMemory> {
+    /// Reserves memory for the candidates that were found, for testing all, and for sorting what begins with those found.
+    fn reserve(
+        &mut self,
+        candidates: &mut Candidates,
+        begun: &mut Vec<[u32; 2]>,
+    ) -> Result<(), OutOfMemory> {
+        self.sorter.reserve(begun, begun.len())?;
         candidates.reserve(self.added.len(), [&mut self.positions, &mut self.dropped])
     }
 
     /// Sets whether the bodies that escaped or left are marked.
     fn mark(&mut self, bodies: &Bodies<D, T>, is_marked: bool) {
         self.is_escaped.resize(bodies.slots.len(), false);
-        for &index in self.escaped.iter().chain(&bodies.leaving) {
+        for &index in self.escaped.iter().chain(bodies.edits.leaving()) {
             self.is_escaped[index as usize] = is_marked;
         }
     }
@@ -354,7 +359,7 @@ impl<const D: usize, T: Scalar> Scratch<D, T> {
     /// Lists the positions of the candidates of bodies that changed or left.
     fn list_changed(&mut self, bodies: &Bodies<D, T>, candidates: &Candidates) {
         let Self { is_changed, positions, .. } = self;
-        let changed = || bodies.changed.iter().chain(&bodies.leaving);
+        let changed = || bodies.edits.changed().iter().chain(bodies.edits.leaving());
         is_changed.resize(bodies.slots.len(), false);
         changed().for_each(|&index| is_changed[index as usize] = true);
         positions.clear();

@@ -25,8 +25,8 @@ pub fn rebuild<const D: usize, T: Scalar>(
     let escaped = &tracking.scratch.escaped;
     let moved = escaped.len();
     let is_new = |&&index: &&u32| bodies.slots.has(index, flag::NEW);
-    let new = if bodies.any_new { escaped.iter().filter(is_new).count() } else { 0 };
-    let are_same = bodies.leaving.is_empty() && !bodies.rules.any_changed();
+    let new = if bodies.edits.any_new() { escaped.iter().filter(is_new).count() } else { 0 };
+    let are_same = bodies.edits.leaving().is_empty() && !bodies.rules.any_changed();
 
     tracking.list_ended(bodies, are_same, &mut events.ended);
     let is_fat = tracking.fatten_all(bodies);
@@ -92,7 +92,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     #[inline(never)]
     fn fatten_all(&mut self, bodies: &Bodies<D, T>) -> bool {
         let Self { fat, motion, policy, .. } = self;
-        let Bodies { slots, boxes, previous, changed, .. } = bodies;
+        let Bodies { slots, boxes, previous, edits, .. } = bodies;
+        let changed = edits.changed();
         motion.sample(changed.len(), |at| {
             let index = changed[at];
             // What had the slot of a new body before does not count as motion.

@@ -45,10 +45,10 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
 
     /// Whether the tree holds every body, with a box that contains its own, and nothing changed that it does not know of.
     pub fn is_ready_for_queries(&self, bodies: &Bodies<D, T>) -> bool {
-        self.tree_state == TreeState::Fresh { known: bodies.changed.len() }
+        self.tree_state == TreeState::Fresh { known: bodies.edits.changed().len() }
             && self.flying.is_empty()
             && !self.is_fat_stale
-            && !bodies.any_unlisted
+            && !bodies.edits.any_unlisted()
     }
 
     /// Makes the tree hold every body, with a box that contains its own.
@@ -61,7 +61,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         self.land_in_tree(bodies);
         let Self { tree, tree_state, fat, .. } = self;
         let TreeState::Fresh { known } = tree_state else { return };
-        while let Some(&index) = bodies.changed.get(*known) {
+        while let Some(&index) = bodies.edits.changed().get(*known) {
             *known += 1;
             let row = index as usize;
             // Also for a free slot: a body that takes it has to be listed again.
@@ -76,11 +76,12 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             }
         }
         // A body that changes between queries is listed each time: without updates the list would grow.
-        if bodies.changed.len() > 2 * bodies.slots.len() {
+        if bodies.edits.changed().len() > 2 * bodies.slots.len() {
             let all = 0..bodies.slots.len() as u32;
-            bodies.changed.clear();
-            bodies.changed.extend(all.filter(|&index| bodies.slots.has(index, flag::CHANGED)));
-            *known = bodies.changed.len();
+            let changed = bodies.edits.changed_mut();
+            changed.clear();
+            changed.extend(all.filter(|&index| bodies.slots.has(index, flag::CHANGED)));
+            *known = bodies.edits.changed().len();
         }
     }
 
@@ -92,12 +93,12 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         if *tree_state == TreeState::Unbuilt {
             return;
         }
-        for &index in &bodies.leaving {
+        for &index in bodies.edits.leaving() {
             tree.remove(index);
         }
         let moved = &mut scratch.escaped;
         moved.clear();
-        moved.extend(bodies.changed.iter().copied().filter(|&index| {
+        moved.extend(bodies.edits.changed().iter().copied().filter(|&index| {
             let row = index as usize;
             bodies.slots.has(index, flag::LIVE)
                 && (bodies.slots.has(index, flag::NEW)

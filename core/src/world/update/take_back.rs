@@ -18,7 +18,7 @@ pub fn take_back<const D: usize, T: Scalar>(
     events: &mut Events,
 ) {
     free_buffers(tracking, events, 0);
-    for &index in &bodies.changed {
+    for &index in bodies.edits.changed() {
         if bodies.slots.has(index, flag::LIVE) {
             bodies.slots.raise(index, flag::CHANGED);
         }
