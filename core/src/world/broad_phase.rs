@@ -304,8 +304,8 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         let mut others = Vec::new();
         if slots.has(index, flag::NEW) {
             // No update knew it.
-        } else if tracking.has_tree() && tracking.flying.is_empty() {
-            let near = tracking.tree.overlapping(bodies.previous[index as usize]);
+        } else if tracking.tree.is_fresh() && tracking.flying.is_empty() {
+            let near = tracking.tree.tree().overlapping(bodies.previous[index as usize]);
             others.extend(near.filter(|&other| {
                 other != index
                     && slots.has(other, flag::LIVE | flag::LEAVING)
@@ -374,7 +374,13 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
 
     fn all_queries(&self) -> Queries<'_, D, T> {
         let Self { bodies, tracking, .. } = self;
-        Queries { bodies, tree: &tracking.tree, filter: None, predicate: None, is_sorted: true }
+        Queries {
+            bodies,
+            tree: tracking.tree.tree(),
+            filter: None,
+            predicate: None,
+            is_sorted: true,
+        }
     }
 
     /// The whole state as bytes. A world [restored](Self::from_snapshot) from them gives, for the

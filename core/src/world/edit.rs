@@ -340,7 +340,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
             }
             // No update knew it, so none has to report its end, and its slot is free at once: a world
             // that is edited and never updated does not grow.
-            self.tracking.tree.remove(index);
+            self.tracking.tree.tree_mut().remove(index);
             exclude |= slots.has(index, flag::EXCLUDES);
             slots.release(index, flag::LISTED);
         }

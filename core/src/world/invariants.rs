@@ -13,7 +13,7 @@
 //! | `ASLEEP`, `sleep.count` | the end of an update, if the body rested for long | an update in which it changed or left, or in which all wake | not `FLYING`; its box is that of the last update, or it is `CHANGED` |
 //! | `FLYING`, `flying` | an update in which it was fast | an update in which it is slow, or queries | the tree is fresh and does not hold it |
 //! | `fat` | an update in which it left its own | the same | contains the box of the last update, unless `is_fat_stale` |
-//! | `tree_state` | updates and queries | updates that replace all fat AABBs | unless unbuilt, the tree holds all bodies that are not `NEW` and do not fly |
+//! | `tree` | updates and queries | updates that replace all fat AABBs | unless unbuilt, the tree holds all bodies that are not `NEW` and do not fly |
 //! | `candidates.listed()` | updates | updates | pairs of fat AABBs that overlap, at least one body of each awake, with a flag that says whether they are a pair |
 //! | `candidates.asleep_pairs()` | the end of an update | updates in which one wakes | they are pairs |
 //! | `candidates.sorted()` | updates from scratch | the next other update | all pairs, sorted; none is listed, no body asleep, and indices are slots |
@@ -26,7 +26,7 @@ use alloc::vec;
 
 use super::bodies::{Bodies, Slots, flag};
 use super::candidates::are_asleep;
-use super::tracking::{Tracking, TreeState};
+use super::tracking::Tracking;
 use crate::Scalar;
 
 /// What is not true of a world though it should be, if anything.
@@ -137,11 +137,11 @@ fn rest<const D: usize, T: Scalar>(bodies: &Bodies<D, T>, tracking: &Tracking<D,
         ("bodies that fly are listed", all_listed(slots, flying, flag::FLYING)),
         (
             "while bodies fly the tree is fresh",
-            !living(bodies).any(|index| fly(&index)) || tracking.has_tree(),
+            !living(bodies).any(|index| fly(&index)) || tracking.tree.is_fresh(),
         ),
         (
             "the tree holds no body that flies",
-            !living(bodies).filter(fly).any(|index| tree.holds(index)),
+            !living(bodies).filter(fly).any(|index| tree.tree().holds(index)),
         ),
     ]
 }
@@ -151,10 +151,10 @@ fn fat_aabbs<const D: usize, T: Scalar>(
     tracking: &Tracking<D, T>,
 ) -> Claims<3> {
     let slots = &bodies.slots;
-    let Tracking { fat, is_fat_stale, tree, tree_state, .. } = tracking;
+    let Tracking { fat, is_fat_stale, tree, .. } = tracking;
     let known = || living(bodies).filter(|&index| !slots.has(index, flag::NEW));
     let is_inside = |index: u32| fat[index as usize].contains(&bodies.previous[index as usize]);
-    let is_held = |index| slots.has(index, flag::FLYING) || tree.holds(index);
+    let is_held = |index| slots.has(index, flag::FLYING) || tree.tree().holds(index);
     [
         (
             "bodies that an update knew have fat AABBs",
@@ -163,7 +163,7 @@ fn fat_aabbs<const D: usize, T: Scalar>(
         ("a fat AABB contains the box of the last update", *is_fat_stale || known().all(is_inside)),
         (
             "a tree holds all bodies that an update knew and that do not fly",
-            *tree_state == TreeState::Unbuilt || known().all(is_held),
+            !tree.is_built() || known().all(is_held),
         ),
     ]
 }

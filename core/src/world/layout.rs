@@ -2,7 +2,7 @@
 //! the candidates reads memory in order. It changes nothing but the time.
 
 use super::bodies::{Bodies, flag};
-use super::tracking::{Scratch, Tracking, TreeState};
+use super::tracking::{Scratch, Tracking};
 use crate::Scalar;
 
 // Measured on mostly-still in 3D, together with branch-free tests: an update takes 0.27 of finding all pairs
@@ -58,7 +58,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             }
             Reorder::Later => {
                 self.locality_decay = usize::MAX;
-                self.tree_state = TreeState::Unbuilt;
+                self.tree.abandon();
             }
         }
     }
@@ -113,6 +113,6 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             permutation.rename(list);
         }
         self.candidates.rename(permutation.new_indices());
-        self.tree.rename(permutation.new_indices());
+        self.tree.tree_mut().rename(permutation.new_indices());
     }
 }

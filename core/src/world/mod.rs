@@ -2,8 +2,8 @@
 //! and end.
 //!
 //! ```text
-//! bodies -> tree -> candidates -> policy -> sets -> finder, permutation -> tracking -> layout -> update
-//!     -> queries, snapshot, invariants -> broad_phase -> edit
+//! bodies -> tree -> candidates -> policy -> search_tree, sets -> finder, permutation -> tracking -> layout
+//!     -> update -> queries, snapshot, invariants -> broad_phase -> edit
 //! ```
 //! Each of these uses only those before it. `update/mod.rs` is the update on one page; `invariants.rs` is the page of what
 //! holds between calls.
@@ -20,6 +20,7 @@ mod options;
 mod permutation;
 mod policy;
 mod queries;
+mod search_tree;
 #[cfg(feature = "serde")]
 mod serde;
 mod sets;

@@ -8,7 +8,7 @@ use super::candidates::{Candidates, PairSorter};
 use super::finder::Finder;
 use super::permutation::Permutation;
 use super::policy::{Motion, Policy, Sleep, Usage};
-use super::tree::Tree;
+use super::search_tree::SearchTree;
 use crate::cloning::clone_fields;
 use crate::{Aabb, Scalar};
 
@@ -20,10 +20,7 @@ pub struct Tracking<const D: usize, T: Scalar> {
     /// Whether the fat AABBs should be the boxes of the last update, and are not yet.
     pub is_fat_stale: bool,
     pub candidates: Candidates,
-    pub tree: Tree<D, T>,
-    pub tree_state: TreeState,
-    /// About how often the tree was searched since it was built.
-    pub tree_uses: usize,
+    pub tree: SearchTree<D, T>,
     /// The bodies of `flag::FLYING`, and some that left or, within an update, flew before. Only while the tree holds all others.
     pub flying: Vec<u32>,
     /// Whether there were queries since the last update.
@@ -40,21 +37,9 @@ pub struct Tracking<const D: usize, T: Scalar> {
 
 clone_fields! {
     [const D: usize, T: Scalar] Tracking<D, T> {
-        fat, is_fat_stale, candidates, tree, tree_state, tree_uses, flying, is_queried, motion,
+        fat, is_fat_stale, candidates, tree, flying, is_queried, motion,
         policy, sleep, locality_decay, finder, usage, scratch,
     }
-}
-
-/// What the tree holds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum TreeState {
-    /// All fat AABBs, and the boxes of this many of the changed bodies, the first ones.
-    Fresh { known: usize },
-    /// The right bodies with old boxes.
-    Old,
-    /// Nothing of use.
-    #[default]
-    Unbuilt,
 }
 
 /// Buffers, kept so that steady motion does not allocate.

@@ -8,7 +8,8 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
-use super::tracking::{Tracking, TreeState};
+use super::search_tree::TreeState;
+use super::tracking::Tracking;
 use super::{BroadPhase, Filter, ProxyId};
 use crate::pairs::work::compare_with_record;
 use crate::{Aabb, Scalar};
@@ -31,8 +32,9 @@ enum Life {
 
 /// A hash of what decides how long the next updates take.
 fn state<const D: usize, T: Scalar>(world: &BroadPhase<D, T>) -> u64 {
-    let Tracking { fat, candidates, tree, tree_state, motion, policy, sleep, .. } = &world.tracking;
-    let tree = (tree, tree_state, world.tracking.tree_uses);
+    let Tracking { fat, candidates, tree, motion, policy, sleep, .. } = &world.tracking;
+    let (tree_state, uses) = tree.state();
+    let tree = (tree.tree(), tree_state, uses);
     let slots = (&world.bodies.slots.slot_of, &world.bodies.slots.flags, world.bodies.front);
     hash(
         format!("{fat:?} {candidates:?} {tree:?} {motion:?} {policy:?} {sleep:?} {slots:?}")
@@ -69,7 +71,7 @@ fn updates<const D: usize, T: Scalar>(
         world.update();
         let tracking = &world.tracking;
         let is_reordered = order != world.bodies.slots.slot_of;
-        *match tracking.tree_state {
+        *match tracking.tree.state().0 {
             _ if tracking.candidates.is_sorted() => &mut from_scratch,
             _ if fat == tracking.fat => &mut only_tested,
             TreeState::Fresh { .. } => &mut looked_up,
@@ -189,7 +191,7 @@ fn the_tree_is_built_again_if_more_than_half_of_the_bodies_jumped() {
             world.set(id, at(1000 + id.slot() as usize)).expect("the body is there");
         }
         world.tracking.note_new_fat(&world.bodies);
-        assert_eq!(world.tracking.tree_state, expected, "{moved}");
+        assert_eq!(world.tracking.tree.state().0, expected, "{moved}");
     }
 }
 

@@ -82,6 +82,13 @@ impl Edits {
         &mut self.changed
     }
 
+    /// Lists each body of [`flag::CHANGED`] once.
+    pub fn list_once(&mut self, slots: &Slots) {
+        let all = 0..slots.len() as u32;
+        self.changed.clear();
+        self.changed.extend(all.filter(|&index| slots.has(index, flag::CHANGED)));
+    }
+
     /// All lists, for other indices.
     pub fn lists(&mut self) -> [&mut Vec<u32>; 2] {
         [&mut self.changed, &mut self.leaving]

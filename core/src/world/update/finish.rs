@@ -4,7 +4,7 @@
 use crate::Scalar;
 use crate::world::bodies::{Bodies, ProxyId, flag};
 use crate::world::changes::Events;
-use crate::world::tracking::{Tracking, TreeState};
+use crate::world::tracking::Tracking;
 
 /// A body with one of these flags does not fall asleep. One that flies is not in the tree, which is to find the pairs of
 /// bodies asleep when they wake.
@@ -38,9 +38,7 @@ pub fn finish<const D: usize, T: Scalar>(
     }
     let moved = bodies.edits.changed().len();
     bodies.edits.forget_changed();
-    if let TreeState::Fresh { known } = &mut tracking.tree_state {
-        *known = 0;
-    }
+    tracking.tree.forget_changes();
     // After an update from scratch no body falls asleep.
     let is_scattered =
         !tracking.candidates.is_sorted() && tracking.fall_asleep(bodies, moved, is_level_new);

@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 
 use crate::Scalar;
 use crate::world::bodies::{Bodies, flag};
-use crate::world::tracking::{Scratch, Tracking, TreeState};
+use crate::world::tracking::{Scratch, Tracking};
 
 /// The flags of bodies that do not fly yet.
 const GROUNDED: u16 = flag::NEW | flag::ASLEEP;
@@ -107,7 +107,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     pub fn land_all(&mut self, bodies: &mut Bodies<D, T>) {
         while let Some(index) = self.flying.pop() {
             bodies.slots.lower(index, flag::FLYING);
-            self.tree_state = TreeState::Unbuilt;
+            self.tree.abandon();
         }
     }
 
@@ -117,7 +117,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             bodies.slots.lower(index, flag::FLYING);
             // The pairs that a body had which left since are still listed.
             if bodies.slots.has(index, flag::LIVE | flag::LEAVING) {
-                self.tree.set(index, &self.fat[index as usize]);
+                self.tree.tree_mut().set(index, &self.fat[index as usize]);
             }
         }
     }

@@ -8,7 +8,7 @@ use crate::Scalar;
 use crate::memory::OutOfMemory;
 use crate::world::bodies::{Bodies, When, flag};
 use crate::world::changes::Events;
-use crate::world::tracking::{Scratch, Tracking, TreeState};
+use crate::world::tracking::{Scratch, Tracking};
 
 /// Reports what begins and ends, sorted, given the boxes and which bodies left. `keeps_build` says whether a tree that is being
 /// built will be needed.
@@ -27,9 +27,9 @@ pub fn from_scratch<const D: usize, T: Scalar>(
     tracking.land_all(bodies);
     tracking.order_by_slot(bodies);
     tracking.wake_all(bodies);
-    let has_tree = tracking.tree_state != TreeState::Unbuilt;
+    let has_tree = tracking.tree.is_built();
     if !keeps_build {
-        tracking.tree.forget_build();
+        tracking.tree.tree_mut().forget_build();
     }
     let Tracking { candidates, scratch, finder, .. } = &mut *tracking;
     let Scratch { sorter, sorted, .. } = scratch;

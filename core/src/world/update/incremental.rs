@@ -15,7 +15,7 @@ use crate::world::bodies::{Bodies, RANDOM_READ, When, flag};
 use crate::world::candidates::{Candidates, push_wanted};
 use crate::world::changes::Events;
 use crate::world::layout;
-use crate::world::tracking::{Scratch, Tracking, TreeState};
+use crate::world::tracking::{Scratch, Tracking};
 use crate::world::tree::{BATCH, TOGETHER};
 
 /// How many candidates ahead boxes are prefetched: measured on drift and mostly-still in 3D at 1,000,000.
@@ -42,10 +42,10 @@ pub fn incremental<const D: usize, T: Scalar>(
     woken.extend(lost.filter(|&&index| bodies.slots.has(index, flag::ASLEEP)));
     let (escaped, wakes) = (escaped.len(), !woken.is_empty());
     let has_tree = if escaped > 0 || wakes {
-        tracking.tree_uses += escaped;
-        if is_tree_advanced { tracking.has_tree() } else { tracking.advance_tree(bodies) }
+        tracking.tree.note_uses(escaped);
+        if is_tree_advanced { tracking.tree.is_fresh() } else { tracking.advance_tree(bodies) }
     } else {
-        tracking.tree_state != TreeState::Unbuilt
+        tracking.tree.is_built()
     };
     let extends = !wakes && flights == 0 && tracking.can_extend(bodies);
     let mut most = tracking.policy.most_reads(bodies.slots.live);
@@ -125,7 +125,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         let are_asleep = |index| bodies.slots.has(index, flag::ASLEEP);
         for batch in queries.chunks(if has_tree { BATCH } else { usize::MAX }) {
             let is_found = if has_tree {
-                tree.overlapping_many(batch, leaves, found, most)
+                tree.tree().overlapping_many(batch, leaves, found, most)
             } else {
                 finder.find_near(batch, fat, &are_asleep, found, most)
             };
@@ -151,12 +151,12 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     fn give_up(&mut self, bodies: &mut Bodies<D, T>, events: &mut Events, flights: usize) {
         events.begun.clear();
         events.ended.clear();
-        let Self { sleep, scratch: Scratch { woken, .. }, tree_state, policy, .. } = self;
+        let Self { sleep, scratch: Scratch { woken, .. }, tree, policy, .. } = self;
         sleep.count += woken.len();
         sleep.woke -= woken.len();
         woken.iter().for_each(|&index| bodies.slots.raise(index, flag::ASLEEP));
         // It holds some of the fat AABBs that were not made.
-        *tree_state = TreeState::Unbuilt;
+        tree.abandon();
         policy.note_excess(flights);
     }
 
@@ -229,6 +229,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     #[inline(never)]
     fn move_in_tree(&mut self, bodies: &Bodies<D, T>) {
         let Self { tree, scratch: Scratch { queries, .. }, .. } = self;
+        let tree = tree.tree_mut();
         for &index in bodies.edits.leaving() {
             tree.remove(index);
         }
@@ -263,7 +264,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         }
         for batch in queries[..count].chunks(if has_tree { BATCH } else { usize::MAX }) {
             let is_found = if has_tree {
-                tree.overlapping_many(batch, leaves, found, most)
+                tree.tree().overlapping_many(batch, leaves, found, most)
             } else {
                 let has_fat =
                     |index: u32| bodies.slots.has(index, flag::LIVE) && !is_escaped[index as usize];

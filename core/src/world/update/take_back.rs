@@ -7,7 +7,7 @@ use super::give_back::free_buffers;
 use crate::Scalar;
 use crate::world::bodies::{Bodies, flag};
 use crate::world::changes::Events;
-use crate::world::tracking::{Tracking, TreeState};
+use crate::world::tracking::Tracking;
 
 /// Makes the next update find what this one should have, by what does not allocate: only the pairs of the last update are kept
 /// as candidates, and the boxes of then as fat AABBs.
@@ -26,5 +26,5 @@ pub fn take_back<const D: usize, T: Scalar>(
     tracking.land_all(bodies);
     tracking.candidates.keep_live();
     tracking.is_fat_stale = true;
-    tracking.tree_state = TreeState::Unbuilt;
+    tracking.tree.abandon();
 }

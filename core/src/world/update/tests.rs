@@ -5,7 +5,6 @@ use std::collections::BTreeSet;
 
 use crate::world::bodies::flag;
 use crate::world::policy::LOOK_UP;
-use crate::world::tracking::TreeState;
 use crate::{Aabb, BroadPhase, Filter, ProxyId, find_pairs, find_pairs_between};
 
 /// A world, its bodies, and the pairs of the last update.
@@ -152,11 +151,11 @@ fn a_tree_is_built_over_several_updates_while_bodies_come_go_and_move() {
             world.ids.push(world.world.insert(*world.boxes.last().unwrap()).unwrap());
         }
         world.update();
-        unbuilt += usize::from(world.world.tracking.tree_state == TreeState::Unbuilt);
+        unbuilt += usize::from(!world.world.tracking.tree.is_built());
     }
     // The first one lists the bodies and cuts them once, the next two five times each: 2,000 go into 167 leaves.
     assert_eq!(unbuilt, 3);
-    let tree = &world.world.tracking.tree;
+    let tree = world.world.tracking.tree.tree();
     assert_eq!(tree.count, world.world.len());
     assert!((0..world.boxes.len() as u32).all(|body| tree.holds(body)));
 }
@@ -218,7 +217,7 @@ fn few_fast_bodies_among_many_at_rest_are_not_in_the_tree() {
         world.step(step(frame));
     }
     let tracking = &world.world.tracking;
-    assert_eq!((tracking.flying.len(), tracking.tree.count), (fast, rest));
+    assert_eq!((tracking.flying.len(), tracking.tree.tree().count), (fast, rest));
     let flies = |&index: &u32| world.world.bodies.slots.has(index, flag::FLYING);
     assert!(tracking.candidates.listed().iter().all(|pair| pair.iter().any(flies)));
 
@@ -241,7 +240,7 @@ fn few_fast_bodies_among_many_at_rest_are_not_in_the_tree() {
         world.step(|at| if at == rest + 2 { way } else { [0.0; 2] });
     }
     let tracking = &world.world.tracking;
-    assert_eq!((tracking.flying.len(), tracking.tree.count), (1, rest + fast - 2));
+    assert_eq!((tracking.flying.len(), tracking.tree.tree().count), (1, rest + fast - 2));
 }
 
 #[test]
@@ -281,7 +280,7 @@ fn where_some_fly_slow_bodies_fly_too_and_land_a_few_at_a_time() {
         let tracking = &world.world.tracking;
         if frame > 10 {
             // The finder never finds all candidates: then no body would fly, and the tree would have to be built again.
-            assert_ne!(tracking.tree_state, TreeState::Unbuilt, "{frame}");
+            assert!(tracking.tree.is_built(), "{frame}");
             let flags = world.world.bodies.slots.flags.iter();
             let flying = flags.filter(|&flags| flags & flag::FLYING != 0).count();
             let looked_up = tracking.scratch.queries.len() - flying;
@@ -303,7 +302,7 @@ fn a_level_that_is_loaded_is_at_rest_in_the_next_update() {
     assert!(world.update().begun().len() > 0);
     let tracking = &world.tracking;
     assert_eq!(tracking.sleep.count, statics);
-    assert!(tracking.has_tree());
+    assert!(tracking.tree.is_fresh());
     let front = world.bodies.front;
     assert!(front < statics, "{front} bodies are read to find those that move");
 
@@ -313,5 +312,5 @@ fn a_level_that_is_loaded_is_at_rest_in_the_next_update() {
     world.insert_many(&movers, Filter::default()).unwrap();
     world.update();
     assert_eq!(world.tracking.sleep.count, 0);
-    assert!(!world.tracking.has_tree());
+    assert!(!world.tracking.tree.is_fresh());
 }
