@@ -1,6 +1,6 @@
 //! The definition: one box at a time. Every other kernel gives the same pairs in the same order.
 
-use super::vector::{Reporter, Vector};
+use super::vector::{Packs, Reporter, Vector};
 
 /// A vector of one.
 #[derive(Clone, Copy)]
@@ -37,17 +37,17 @@ unsafe impl<T: Copy + PartialOrd> Vector<T> for One<T> {
         u32::from(mask)
     }
 
-    const PACKS: bool = true;
+    const PACKS: Packs = Packs::Always;
 
     #[inline(always)]
     unsafe fn pack(
-        hit: bool,
+        hits: u32,
         probe: &Reporter,
         id: *const u32,
         dedup: *const u32,
         out: *mut [u32; 2],
     ) -> usize {
-        if !hit {
+        if hits == 0 {
             return 0;
         }
         // SAFETY: the caller has an id and a bitmap, and space for a pair.

@@ -1,14 +1,19 @@
 //! Software vectors of any number of lanes: they run the loop as NEON, AVX-512 and the others do, on
 //! any machine.
 
-use super::vector::{Reporter, Vector};
+use super::vector::{Packs, Reporter, Vector};
 
-/// `N` lanes. If `PACKS`, hits become pairs at once, as on AVX2 and AVX-512; otherwise they are noted.
+/// `N` lanes. `PACKS` is [`NEVER`], [`DENSE`] (as in WebAssembly) or [`ALWAYS`] (as on AVX2 and AVX-512).
 #[derive(Clone, Copy)]
-pub struct Lanes<T, const N: usize, const PACKS: bool>([T; N]);
+pub struct Lanes<T, const N: usize, const PACKS: usize>([T; N]);
+
+/// When vectors pack: a parameter of a type cannot be a [`Packs`].
+pub const NEVER: usize = 0;
+pub const DENSE: usize = 1;
+pub const ALWAYS: usize = 2;
 
 // SAFETY: reads N coordinates, ids and bitmaps, writes at most N pairs; needs no instructions.
-unsafe impl<T: Copy + PartialOrd, const N: usize, const PACKS: bool> Vector<T>
+unsafe impl<T: Copy + PartialOrd, const N: usize, const PACKS: usize> Vector<T>
     for Lanes<T, N, PACKS>
 {
     const LANES: usize = N;
@@ -36,7 +41,7 @@ unsafe impl<T: Copy + PartialOrd, const N: usize, const PACKS: bool> Vector<T>
         mask
     }
 
-    const PACKS: bool = PACKS;
+    const PACKS: Packs = [Packs::Never, Packs::Dense, Packs::Always][PACKS];
 
     unsafe fn pack(
         hits: u32,
@@ -138,14 +143,18 @@ mod tests {
 
     #[test]
     fn all_numbers_of_lanes_give_the_pairs_of_scalar_code_in_its_order() {
-        lanes_agree::<Lanes<f32, 2, false>>("2 lanes, noted");
-        lanes_agree::<Lanes<f32, 4, false>>("4 lanes, noted");
-        lanes_agree::<Lanes<f32, 8, false>>("8 lanes, noted");
-        lanes_agree::<Lanes<f32, 16, false>>("16 lanes, noted");
-        lanes_agree::<Lanes<f32, 2, true>>("2 lanes, packed");
-        lanes_agree::<Lanes<f32, 4, true>>("4 lanes, packed");
-        lanes_agree::<Lanes<f32, 8, true>>("8 lanes, packed");
-        lanes_agree::<Lanes<f32, 16, true>>("16 lanes, packed");
+        lanes_agree::<Lanes<f32, 2, NEVER>>("2 lanes, noted");
+        lanes_agree::<Lanes<f32, 4, NEVER>>("4 lanes, noted");
+        lanes_agree::<Lanes<f32, 8, NEVER>>("8 lanes, noted");
+        lanes_agree::<Lanes<f32, 16, NEVER>>("16 lanes, noted");
+        lanes_agree::<Lanes<f32, 2, DENSE>>("2 lanes, packed where dense");
+        lanes_agree::<Lanes<f32, 2, ALWAYS>>("2 lanes, packed");
+        lanes_agree::<Lanes<f32, 4, DENSE>>("4 lanes, packed where dense");
+        lanes_agree::<Lanes<f32, 4, ALWAYS>>("4 lanes, packed");
+        lanes_agree::<Lanes<f32, 8, DENSE>>("8 lanes, packed where dense");
+        lanes_agree::<Lanes<f32, 8, ALWAYS>>("8 lanes, packed");
+        lanes_agree::<Lanes<f32, 16, DENSE>>("16 lanes, packed where dense");
+        lanes_agree::<Lanes<f32, 16, ALWAYS>>("16 lanes, packed");
     }
 
     #[test]

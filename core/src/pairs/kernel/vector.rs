@@ -23,14 +23,14 @@ pub(super) unsafe trait Vector<T: Copy>: Copy {
     /// One bit a lane, the first lane lowest.
     unsafe fn bits(mask: Self::Mask) -> u32;
 
-    /// Whether it can [`pack`](Self::pack).
-    const PACKS: bool = false;
+    /// Whether it can [`pack`](Self::pack), and when that pays.
+    const PACKS: Packs = Packs::Never;
 
     /// Writes the pairs of the lanes in `hits` whose dedup bitmaps share no bit with the probe's, in lane
     /// order. Returns how many. Up to `LANES` pairs may be overwritten at `out`.
     #[inline(always)]
     unsafe fn pack(
-        _hits: Self::Mask,
+        _hits: u32,
         _probe: &Reporter,
         _ids: *const u32,
         _dedup: *const u32,
@@ -85,11 +85,11 @@ macro_rules! vector {
             }
 
             $(
-                const PACKS: bool = true;
+                const PACKS: Packs = Packs::Always;
 
                 #[inline(always)]
                 unsafe fn pack(
-                    hits: $mask,
+                    hits: u32,
                     probe: &Reporter,
                     ids: *const u32,
                     dedup: *const u32,
@@ -100,7 +100,7 @@ macro_rules! vector {
                     unsafe {
                         let ids = { let $from = ids; $numbers };
                         let dedup = { let $from = dedup; $numbers };
-                        $pack(Self::bits(hits), ids, dedup, probe, out, $lanes)
+                        $pack(hits, ids, dedup, probe, out, $lanes)
                     }
                 }
             )?
@@ -110,6 +110,15 @@ macro_rules! vector {
 
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 pub(super) use vector;
+
+/// When a vector packs the pairs of its lanes, in place of writing them one by one.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Packs {
+    Never,
+    /// Where vectors with hits have several.
+    Dense,
+    Always,
+}
 
 /// The order of the two ids of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

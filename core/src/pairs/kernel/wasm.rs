@@ -3,7 +3,7 @@
 
 use core::arch::wasm32::*;
 
-use super::vector::Vector;
+use super::vector::{Packs, Reporter, Vector};
 use crate::geometry::Quantizer;
 
 /// Eight `f32`.
@@ -47,6 +47,27 @@ macro_rules! vector {
             unsafe fn bits(mask: [v128; 2]) -> u32 {
                 $bits(mask[0], mask[1])
             }
+
+            const PACKS: Packs = Packs::Dense;
+
+            #[inline(always)]
+            unsafe fn pack(
+                hits: u32,
+                probe: &Reporter,
+                ids: *const u32,
+                dedup: *const u32,
+                out: *mut [u32; 2],
+            ) -> usize {
+                let mut count = 0;
+                for lane in (0..$lanes).step_by(4) {
+                    // SAFETY: the caller has LANES ids and bitmaps, and space for LANES pairs.
+                    unsafe {
+                        let (ids, dedup) = (ids.add(lane), dedup.add(lane));
+                        count += pack_four(hits >> lane, probe, ids, dedup, out.add(count));
+                    }
+                }
+                count
+            }
         }
     };
 }
@@ -63,6 +84,61 @@ fn bits_of_eight(low: v128, high: v128) -> u32 {
 fn bits_of_four(low: v128, high: v128) -> u32 {
     u32::from(i32x4_bitmask(i32x4_shuffle::<0, 2, 4, 6>(low, high)))
 }
+
+/// The pairs of the lanes in the lowest four bits of `hits`, packed to the front without a branch.
+///
+/// # Safety
+/// Four ids and bitmaps, and space for four pairs.
+#[inline(always)]
+unsafe fn pack_four(
+    hits: u32,
+    probe: &Reporter,
+    ids: *const u32,
+    dedup: *const u32,
+    out: *mut [u32; 2],
+) -> usize {
+    // SAFETY: four numbers are one vector, and so are two pairs.
+    unsafe {
+        let (ids, own) = (v128_load(ids.cast()), u32x4_splat(probe.id));
+        let shared = v128_and(v128_load(dedup.cast()), u32x4_splat(probe.dedup));
+        let reported_here = i32x4_bitmask(i32x4_eq(shared, u32x4_splat(0)));
+        let reported = hits as usize & usize::from(reported_here);
+        let front = v128_load(FRONT[reported].as_ptr().cast());
+        let (first, second) = if probe.ascending {
+            (u32x4_min(ids, own), u32x4_max(ids, own))
+        } else if probe.in_first {
+            (ids, own)
+        } else {
+            (own, ids)
+        };
+        let (first, second) = (i8x16_swizzle(first, front), i8x16_swizzle(second, front));
+        v128_store(out.cast(), i32x4_shuffle::<0, 4, 1, 5>(first, second));
+        v128_store(out.add(2).cast(), i32x4_shuffle::<2, 6, 3, 7>(first, second));
+        reported.count_ones() as usize
+    }
+}
+
+/// The bytes of the lanes in a mask of four, from the front.
+static FRONT: [[u8; 16]; 16] = {
+    let mut table = [[0; 16]; 16];
+    let mut mask = 0;
+    while mask < table.len() {
+        let (mut lane, mut at) = (0, 0);
+        while lane < 4 {
+            if mask >> lane & 1 == 1 {
+                let mut byte = 0;
+                while byte < 4 {
+                    table[mask][4 * at + byte] = (4 * lane + byte) as u8;
+                    byte += 1;
+                }
+                at += 1;
+            }
+            lane += 1;
+        }
+        mask += 1;
+    }
+    table
+};
 
 /// Adds `step` times the first cell of each interval to its column, and computes how many more cells
 /// it touches. False if an interval is inverted or NaN. The compiler makes vectors of the loop in

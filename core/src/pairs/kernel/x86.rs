@@ -3,7 +3,7 @@
 use core::arch::x86_64::*;
 pub(super) use core::arch::x86_64::{__m128, __m128d, __m256, __m256d, __m512, __m512d};
 
-use super::vector::{Reporter, Vector, vector};
+use super::vector::{Packs, Reporter, Vector, vector};
 
 /// A vector of SSE2, part of every x86-64 processor.
 #[derive(Clone, Copy)]
