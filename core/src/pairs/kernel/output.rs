@@ -36,21 +36,25 @@ struct Note {
     dedup: u32,
 }
 
-/// Notes are packed where the last ones had more pairs than this, a note. Measured in WebAssembly on all scenes, 60,000
-/// boxes: with 2 a lattice takes 1.03 of the time, with 1 uniform boxes take up to 1.05.
-const DENSE: f32 = 1.5;
+/// Notes are packed where the last ones had more than 3 / 2 pairs each. Measured in WebAssembly on all scenes, 60,000 boxes: with
+/// 2 a lattice takes 1.03 of the time, with 1 uniform boxes take up to 1.05.
+const DENSE: [usize; 2] = [3, 2];
 
 /// Flag in the high bit of `dedup`, which the dedup bits never reach: the other box belongs to the first of two sets.
 const IN_FIRST: u32 = 1 << 31;
 
 /// Space for notes, and for two more: these are read before it is known that they are no notes.
 /// It is apart from [`Output`], so that the compiler can keep the output in registers.
-pub(super) struct Notes([MaybeUninit<Note>; MOST_NOTES + 2]);
+pub(super) struct Notes {
+    list: [MaybeUninit<Note>; MOST_NOTES + 2],
+    /// Whether the last ones had several pairs each.
+    are_dense: bool,
+}
 
 impl Notes {
     #[inline(always)]
     pub fn new() -> Self {
-        Self([const { MaybeUninit::uninit() }; MOST_NOTES + 2])
+        Self { list: [const { MaybeUninit::uninit() }; MOST_NOTES + 2], are_dense: false }
     }
 }
 
@@ -61,8 +65,6 @@ pub(super) struct Output<'a, T, V> {
     noted: usize,
     /// How many notes fit before a flush.
     most: usize,
-    /// Whether the last notes had several pairs each.
-    is_dense: bool,
     vector: PhantomData<(T, V)>,
 }
 
@@ -71,7 +73,7 @@ impl<'a, T: Copy, V: Vector<T>> Output<'a, T, V> {
     #[inline(always)]
     pub fn new(pairs: &'a mut [[u32; 2]]) -> Self {
         let most = MOST_NOTES.min(pairs.len() / V::LANES);
-        Self { pairs, written: 0, noted: 0, most, is_dense: false, vector: PhantomData }
+        Self { pairs, written: 0, noted: 0, most, vector: PhantomData }
     }
 
     /// Takes the hits in the vector at a position.
@@ -99,7 +101,7 @@ impl<'a, T: Copy, V: Vector<T>> Output<'a, T, V> {
             } else {
                 let dedup = probe.dedup | if probe.in_first { IN_FIRST } else { 0 };
                 let note = Note { at: at as u32, bits, id: probe.id, dedup };
-                notes.0.get_unchecked_mut(self.noted).write(note);
+                notes.list.get_unchecked_mut(self.noted).write(note);
                 self.noted += usize::from(bits != 0);
             }
         }
@@ -128,13 +130,7 @@ impl<'a, T: Copy, V: Vector<T>> Output<'a, T, V> {
             // vectors full of pairs.
             unsafe {
                 let out = self.pairs.as_mut_ptr().add(self.written);
-                let written = if V::PACKS == Packs::Dense && self.is_dense {
-                    pack::<T, V, N>(notes, self.noted, sets, ascending, out)
-                } else {
-                    write(notes, self.noted, sets, ascending, out)
-                };
-                self.written += written;
-                self.is_dense = written as f32 > DENSE * self.noted as f32;
+                self.written += write::<T, V, N>(notes, self.noted, sets, ascending, out);
             }
             self.noted = 0;
             self.most = MOST_NOTES.min((self.pairs.len() - self.written) / V::LANES);
@@ -157,10 +153,34 @@ impl<'a, T: Copy, V: Vector<T>> Output<'a, T, V> {
 /// bit. Returns how many. One that is no pair may be written behind them.
 ///
 /// # Safety
-/// `noted` notes were written, at most [`MOST_NOTES`]. The lanes of all bits are positions in their sets, and
-/// there is space at `out` for as many pairs as there are bits.
+/// The instructions of `V` are present. `noted` notes were written, at most [`MOST_NOTES`], each of a vector of its set, and there is
+/// space at `out` for as many pairs as these have lanes.
 #[inline(never)]
-unsafe fn write<T, const N: usize>(
+unsafe fn write<T: Copy, V: Vector<T>, const N: usize>(
+    notes: &mut Notes,
+    noted: usize,
+    sets: [&SortedBoxes<T>; N],
+    ascending: bool,
+    out: *mut [u32; 2],
+) -> usize {
+    // SAFETY: as promised by our caller, to both.
+    let count = unsafe {
+        if V::PACKS == Packs::Dense && notes.are_dense {
+            pack::<T, V>(notes, noted, [sets[0], sets[N - 1]], N == 1 || ascending, out)
+        } else {
+            write_each(notes, noted, sets, ascending, out)
+        }
+    };
+    notes.are_dense = count * DENSE[1] > noted * DENSE[0];
+    count
+}
+
+/// Writes the pairs one by one.
+///
+/// # Safety
+/// That of [`write`].
+#[inline(always)]
+unsafe fn write_each<T, const N: usize>(
     notes: &mut Notes,
     noted: usize,
     sets: [&SortedBoxes<T>; N],
@@ -168,9 +188,9 @@ unsafe fn write<T, const N: usize>(
     out: *mut [u32; 2],
 ) -> usize {
     let none = Note { at: 0, bits: 0, id: 0, dedup: 0 };
-    notes.0[noted].write(none);
-    notes.0[noted + 1].write(none);
-    let mut note = notes.0.as_ptr().cast::<Note>();
+    notes.list[noted].write(none);
+    notes.list[noted + 1].write(none);
+    let mut note = notes.list.as_ptr().cast::<Note>();
     // SAFETY: all notes up to `noted` are written, and the two behind them are written above. `count` is less than the number
     // of bits so far.
     unsafe {
@@ -206,29 +226,27 @@ unsafe fn write<T, const N: usize>(
     }
 }
 
-/// Writes what [`write`] does, all lanes of a note at once.
+/// Writes the pairs of a note at once, and then those of the next. One set is given twice.
 ///
 /// # Safety
-/// The instructions of `V` are present, `noted` notes were written, at most [`MOST_NOTES`], each of a whole vector of its set, and
-/// there is space at `out` for as many pairs as these have lanes.
+/// That of [`write`].
 #[inline(never)]
-unsafe fn pack<T: Copy, V: Vector<T>, const N: usize>(
+unsafe fn pack<T: Copy, V: Vector<T>>(
     notes: &Notes,
     noted: usize,
-    sets: [&SortedBoxes<T>; N],
+    sets: [&SortedBoxes<T>; 2],
     ascending: bool,
     out: *mut [u32; 2],
 ) -> usize {
     let mut count = 0;
-    for note in &notes.0[..noted] {
+    for at in 0..noted {
         // SAFETY: the note is written, its lanes are positions of its set, and of the space for `noted` vectors of pairs no more
         // than those before it have taken theirs.
         unsafe {
-            let Note { at, bits, id, dedup } = note.assume_init();
+            let Note { at, bits, id, dedup } = notes.list.get_unchecked(at).assume_init();
             let in_first = dedup & IN_FIRST != 0;
-            let boxes = sets[usize::from(N == 2 && !in_first)];
-            let probe =
-                Reporter { id, dedup: dedup & !IN_FIRST, ascending: N == 1 || ascending, in_first };
+            let boxes = sets[usize::from(!in_first)];
+            let probe = Reporter { id, dedup: dedup & !IN_FIRST, ascending, in_first };
             let (ids, dedup) =
                 (boxes.id.as_ptr().add(at as usize), boxes.dedup.as_ptr().add(at as usize));
             count += V::pack(bits, &probe, ids, dedup, out.add(count));

@@ -47,14 +47,20 @@ pub fn free_buffers<const D: usize, T: Scalar>(
     let PairSorter { buffer, unsorted, .. } = sorter;
     let Events { begun, ended, .. } = events;
     for buffer in [sorted, leaves, found, buffer, unsorted, begun, ended] {
-        if buffer.capacity() > enough {
-            *buffer = Vec::new();
-        }
+        free(buffer, enough);
     }
-    if added.capacity().max(positions.capacity()) > enough {
-        (*added, *positions, *dropped) = (Vec::new(), Vec::new(), Vec::new());
-    }
+    free(added, enough);
+    free(positions, enough);
+    free(dropped, enough);
     if finder.capacity() > enough {
         finder.forget();
+    }
+}
+
+/// Frees a buffer that has capacity for more than this many items.
+#[inline(never)]
+fn free<T>(buffer: &mut Vec<T>, enough: usize) {
+    if buffer.capacity() > enough {
+        *buffer = Vec::new();
     }
 }
