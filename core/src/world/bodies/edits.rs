@@ -77,7 +77,7 @@ impl Edits {
         core::mem::take(&mut self.any_unlisted)
     }
 
-    /// The list of bodies that changed, to be written anew.
+    /// The list of bodies that changed, for a caller that finds out itself which these are.
     pub fn changed_mut(&mut self) -> &mut Vec<u32> {
         &mut self.changed
     }
