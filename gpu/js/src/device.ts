@@ -1,8 +1,12 @@
 import { GpuError } from "./errors.js";
 import { READ, Usage } from "./usage.js";
 
+/** The feature of devices that say when something began and ended. */
+export const TIMES = "timestamp-query" as const;
+
 /**
- * Opens the fastest GPU for computing, with the largest buffers that it grants. A page that draws has a device already
+ * Opens the fastest GPU for computing, with the largest buffers that it grants, and with the feature `timestamp-query` where it
+ * has that. A page that draws has a device already
  * and passes that to {@link PairFinder.create}.
  *
  * @throws {@link GpuError} `NO_WEBGPU`, `NO_ADAPTER` or `NO_DEVICE`.
@@ -15,8 +19,10 @@ export async function openDevice(): Promise<GPUDevice> {
   const adapter = await gpu.requestAdapter({ powerPreference: "high-performance" });
   if (!adapter) throw new GpuError("NO_ADAPTER", "the browser found no GPU that WebGPU can use");
   const { maxStorageBufferBindingSize, maxBufferSize } = adapter.limits;
+  const requiredLimits = { maxStorageBufferBindingSize, maxBufferSize };
+  const requiredFeatures = [TIMES].filter((feature) => adapter.features.has(feature));
   try {
-    return await adapter.requestDevice({ label: "sweep-and-prune", requiredLimits: { maxStorageBufferBindingSize, maxBufferSize } });
+    return await adapter.requestDevice({ label: "sweep-and-prune", requiredLimits, requiredFeatures });
   } catch (error) {
     throw new GpuError("NO_DEVICE", `the GPU could not be opened: ${error}`);
   }

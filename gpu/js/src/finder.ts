@@ -1,9 +1,10 @@
 import { checkBoxes, checkBuffer, type GpuBoxes } from "./boxes.js";
 import { Buffers, mostBytes } from "./buffers.js";
-import { checked, read, watch } from "./device.js";
+import { checked, read, TIMES, watch } from "./device.js";
 import { GpuError } from "./errors.js";
 import { compileKernels, type Kernels } from "./kernels.js";
 import { scan, scanLevels, sort, tableLength } from "./sort.js";
+import { type StageTime, StageTimer } from "./stages.js";
 import { type Bound, Steps } from "./steps.js";
 import { type Summary, SUMMARY_BYTES, summaryOf } from "./summary.js";
 import { levels, mostLeaves } from "./tree.js";
@@ -31,6 +32,12 @@ export interface GpuPairFinderOptions {
 
   /** The vertices of the indirect draw in the summary, which draws one instance for each pair. Default 2, for a line. */
   readonly drawVertices?: number;
+
+  /**
+   * Whether each search measures its stages, for {@link PairFinder.stageTimes}. Each stage is then a pass of its own, between
+   * which the device may pause. Default false.
+   */
+  readonly timed?: boolean;
 }
 
 /** The pairs of a search, in buffers of the finder, which its next search overwrites. */
@@ -67,13 +74,16 @@ export class PairFinder {
   readonly #kernels: Kernels;
   readonly #buffers: Buffers;
   readonly #options: Required<GpuPairFinderOptions>;
+  /** Missing if nothing is measured, or the device cannot. */
+  readonly #timer: StageTimer | undefined;
   /** Searches use the same buffers, so they are done one after the other. */
   #last: Promise<unknown> = Promise.resolve();
 
-  private constructor(device: GPUDevice, kernels: Kernels, options: Required<GpuPairFinderOptions>) {
+  private constructor(device: GPUDevice, kernels: Kernels, timer: StageTimer | undefined, options: Required<GpuPairFinderOptions>) {
     this.#device = device;
     this.#kernels = kernels;
     this.#buffers = new Buffers(device);
+    this.#timer = timer;
     this.#options = options;
   }
 
@@ -83,7 +93,7 @@ export class PairFinder {
    * @throws {@link GpuError} if the device is lost or cannot compile the shaders; `RangeError` for an option.
    */
   static async create(device: GPUDevice, options: GpuPairFinderOptions): Promise<PairFinder> {
-    const { dimensions, sorted = false, dispatchGroupSize = 64, drawVertices = 2 } = options;
+    const { dimensions, sorted = false, dispatchGroupSize = 64, drawVertices = 2, timed = false } = options;
     if (dimensions !== 2 && dimensions !== 3) throw new RangeError(`dimensions is ${dimensions}; it must be 2 or 3`);
     if (!(Number.isInteger(dispatchGroupSize) && dispatchGroupSize > 0)) {
       throw new RangeError(`dispatchGroupSize is ${dispatchGroupSize}; it must be a whole number, 1 or more`);
@@ -92,12 +102,13 @@ export class PairFinder {
       throw new RangeError(`drawVertices is ${drawVertices}; it must be a whole number, 0 or more`);
     }
     watch(device);
+    const timer = timed && device.features.has(TIMES) ? new StageTimer(device) : undefined;
     const kernels = await checked(device, () => ({ compiled: compileKernels(device) }))
       .then(({ compiled }) => compiled)
       .catch((error) => {
         throw error instanceof GpuError ? error : new GpuError("DEVICE", `the GPU cannot compile the shaders: ${error}`);
       });
-    return new PairFinder(device, kernels, { dimensions, sorted, dispatchGroupSize, drawVertices });
+    return new PairFinder(device, kernels, timer, { dimensions, sorted, dispatchGroupSize, drawVertices, timed });
   }
 
   /** The most boxes that this device can search, of both sets together: about 3.6 million with WebGPU's default limits. */
@@ -172,9 +183,26 @@ export class PairFinder {
     return read(this.#device, pairs, 8 * written);
   }
 
+  /**
+   * Reads how long each stage of the last search took on the device, in the order of the stages: to show it or to compare
+   * inputs, for the times of one search vary. Searches that are called meanwhile do not wait for it.
+   *
+   * The list is empty where the device does not have the feature `timestamp-query`, which {@link openDevice} asks for, and
+   * before the first search.
+   *
+   * @throws `Error` if the finder was made without the option `timed`; {@link GpuError}.
+   */
+  async stageTimes(): Promise<readonly StageTime[]> {
+    if (!this.#options.timed) throw new Error("stageTimes: the finder does not measure; make it with the option `timed: true`");
+    // In the turn of the call the times are copied. What is not awaited there holds no search up.
+    const { times } = await this.#inTurn(async () => ({ times: this.#timer?.read() }));
+    return times ?? [];
+  }
+
   /** Gives the memory of the finder on the device back. The device stays. The finder must not be used any more. */
   destroy(): void {
     this.#buffers.destroy();
+    this.#timer?.destroy();
   }
 
   /**
@@ -197,7 +225,7 @@ export class PairFinder {
     const { search, summary } = await this.#submit((steps) => {
       const search = this.#prepare(sets, steps);
       this.#count(search, steps);
-      scan(steps, search.tally, search.count + 1, search.sums);
+      this.#sum(search, steps);
       const summary = this.#buffers.get("summary", SUMMARY_BYTES / 4);
       this.#summarize(search, 0, summary, steps);
       return { search, summary };
@@ -225,7 +253,7 @@ export class PairFinder {
       await this.#submit((steps) => {
         const search = this.#prepare(sets, steps);
         this.#count(search, steps);
-        scan(steps, search.tally, search.count + 1, search.sums);
+        this.#sum(search, steps);
         const to = capacity === 0 ? this.#buffers.get("unused", 0) : { buffer: pairs, size: 8 * capacity };
         this.#write(search, capacity, to, { buffer: summary, size: SUMMARY_BYTES }, steps);
       });
@@ -247,6 +275,7 @@ export class PairFinder {
   #prepare(sets: readonly GpuBoxes[], steps: Steps): Search {
     const { dimensions } = this.#options;
     for (const set of sets) checkBoxes(set, dimensions);
+    this.#timer?.restart();
     const count = sets.reduce((sum, set) => sum + set.count, 0);
     const most = this.mostBoxes;
     if (count > most) {
@@ -264,8 +293,10 @@ export class PairFinder {
     const filters = this.#buffers.get("filters", hasFilters ? 2 * count : 0);
     const sums = this.#sums(count);
     this.#load(sets, rows, filters, hasFilters, steps);
+    steps.stage = "order boxes";
     const order = this.#order(rows, count, hasWorlds, sums, steps);
     const nodes = this.#buffers.get("nodes", BOUNDS * begins.at(-1)!);
+    steps.stage = "build the tree";
     steps.forEach("leaves", count, [count], [rows, order, nodes]);
     for (let level = 1; level + 1 < begins.length; level++) {
       const [firstChild, first, end] = begins.slice(level - 1) as [number, number, number];
@@ -326,12 +357,20 @@ export class PairFinder {
 
   /** Adds the step that counts the pairs of each box. */
   #count({ count, params, nodes, order, filters, tally }: Search, steps: Steps): void {
+    steps.stage = "count the pairs";
     steps.forEach("count_pairs", count + 1, params(0), [nodes, order, filters, tally]);
+  }
+
+  /** Adds the steps that turn the numbers of pairs into the places where they belong. */
+  #sum({ count, tally, sums }: Search, steps: Steps): void {
+    steps.stage = "sum the numbers up";
+    scan(steps, tally, count + 1, sums);
   }
 
   /** Adds the steps that write pairs and summary, once it is counted where they belong. */
   #write(search: Search, capacity: number, pairs: Bound, summary: Bound, steps: Steps): void {
     const { count, params, nodes, order, filters, tally } = search;
+    steps.stage = "write the pairs";
     steps.forEach("write_pairs", count, params(capacity), [nodes, order, filters, tally, pairs]);
     this.#summarize(search, capacity, summary, steps);
     if (this.#options.sorted) this.#sortPairs(count, capacity, pairs, summary, steps);
@@ -348,6 +387,7 @@ export class PairFinder {
     const firsts = { now: buffers.get("firsts", capacity), other: buffers.get("otherFirsts", capacity) };
     const seconds = { now: buffers.get("seconds", capacity), other: buffers.get("otherSeconds", capacity) };
     const space = { table: buffers.get("table", tableLength(capacity)), sums: this.#sums(capacity) };
+    steps.stage = "sort the pairs";
     steps.forEach("split_pairs", capacity, [capacity], [summary, pairs, firsts.now, seconds.now]);
     // Enough bits for each index and for one number above all, which stands where there is no pair.
     const bits = 32 - Math.clz32(count);
@@ -363,7 +403,7 @@ export class PairFinder {
       return await checked(this.#device, () => {
         const steps = new Steps();
         const result = build(steps);
-        buffers.params = steps.submit(this.#device, this.#kernels, buffers.params);
+        buffers.params = steps.submit(this.#device, this.#kernels, buffers.params, this.#timer);
         return result;
       });
     } catch (error) {

@@ -9,4 +9,5 @@ export { openDevice } from "./device.js";
 export { GpuError, type GpuErrorCode } from "./errors.js";
 export { findPairs, type GpuFindPairsOptions } from "./find-pairs.js";
 export { type GpuPairFinderOptions, type GpuPairs, PairFinder } from "./finder.js";
+export { type Stage, type StageTime } from "./stages.js";
 export { type Summary, SUMMARY_BYTES, SUMMARY_DISPATCH, SUMMARY_DRAW } from "./summary.js";

@@ -1,4 +1,5 @@
 import type { Kernel, Kernels } from "./kernels.js";
+import type { Stage, StageTimer } from "./stages.js";
 import { Usage } from "./usage.js";
 
 /** Threads of a workgroup, as in `wgsl/common.wgsl`. */
@@ -21,6 +22,7 @@ export interface Bound {
 
 /** One dispatch. */
 interface Step {
+  readonly stage: Stage;
   readonly kernel: Kernel;
   readonly params: readonly number[];
   readonly buffers: readonly Bound[];
@@ -30,13 +32,15 @@ interface Step {
 /** Dispatches in the order in which they run. Each sees what those before it wrote. */
 export class Steps {
   readonly #steps: Step[] = [];
+  /** The stage of the steps that are added. */
+  stage: Stage = "read boxes";
 
   /**
    * Adds a dispatch of this many workgroups. `params` are the fields of the kernel's `Params`, and `buffers` its bindings
    * from 1 on.
    */
   add(kernel: Kernel, params: readonly number[], buffers: readonly Bound[], groups: number): void {
-    this.#steps.push({ kernel, params, buffers, groups });
+    this.#steps.push({ stage: this.stage, kernel, params, buffers, groups });
   }
 
   /** Adds a dispatch of one thread for each of `count` items. */
@@ -44,8 +48,11 @@ export class Steps {
     this.add(kernel, params, buffers, Math.ceil(count / THREADS));
   }
 
-  /** Hands all dispatches to the device. Returns the uniform buffer of their parameters: `params`, if it is large enough. */
-  submit(device: GPUDevice, kernels: Kernels, params: GPUBuffer | undefined): GPUBuffer {
+  /**
+   * Hands all dispatches to the device: in one pass, or with a timer in one for each stage. Returns the uniform buffer of
+   * their parameters: `params`, if it is large enough.
+   */
+  submit(device: GPUDevice, kernels: Kernels, params: GPUBuffer | undefined, timer: StageTimer | undefined): GPUBuffer {
     const numbers = new Uint32Array((SLOT / 4) * this.#steps.length);
     this.#steps.forEach((step, at) => numbers.set(step.params, (SLOT / 4) * at));
     if (!params || params.size < numbers.byteLength) {
@@ -53,8 +60,12 @@ export class Steps {
     }
     device.queue.writeBuffer(params, 0, numbers);
     const encoder = device.createCommandEncoder();
-    const pass = encoder.beginComputePass();
-    for (const [at, { kernel, buffers, groups }] of this.#steps.entries()) {
+    let pass: GPUComputePassEncoder | undefined;
+    for (const [at, { stage, kernel, buffers, groups }] of this.#steps.entries()) {
+      if (!pass || (timer && stage !== this.#steps[at - 1]!.stage)) {
+        pass?.end();
+        pass = encoder.beginComputePass(timer?.pass(stage));
+      }
       const pipeline = kernels.get(kernel)!;
       const uniform = { binding: 0, resource: { buffer: params, offset: SLOT * at, size: PARAMS } };
       const storage = buffers.map(({ buffer, size }, index) => ({ binding: index + 1, resource: { buffer, size } }));
@@ -63,7 +74,8 @@ export class Steps {
       pass.setBindGroup(0, device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries: [uniform, ...storage] }));
       pass.dispatchWorkgroups(columns, Math.ceil(groups / Math.max(columns, 1)));
     }
-    pass.end();
+    pass?.end();
+    timer?.resolve(encoder);
     device.queue.submit([encoder.finish()]);
     return params;
   }

@@ -272,6 +272,67 @@ test("limits, wrong buffers and lost devices are errors that say so", async () =
   assert.deepEqual(results.found, [45, 36]);
 });
 
+test("a finder that measures says how long each stage took, and finds the same pairs", async () => {
+  const sets = [{ bits: bitsOf(randomBoxes(300, 2)) }];
+  const expected = await search({ dimensions: 2, sets });
+  const results = await opened.page.evaluate(async (bits) => {
+    const { library, device, errorOf, finderOf } = /** @type {any} */ (globalThis);
+    const { openDevice, PairFinder, SUMMARY_BYTES } = library;
+    const count = bits.length / 4;
+    /** @param {GPUDevice} on @param {number} size */
+    const bufferOf = (on, size) => on.createBuffer({ size, usage: 0x8c });
+    /** @param {GPUDevice} on */
+    const boxesOf = (on) => {
+      const boxes = bufferOf(on, 4 * bits.length);
+      on.queue.writeBuffer(boxes, 0, new Uint32Array(bits));
+      return { boxes, count };
+    };
+    /** @param {any} finder @param {any} found */
+    const pairsOf = async (finder, found) => Array.from(await finder.readPairs(found.pairs, found));
+
+    const timed = await PairFinder.create(device, { dimensions: 2, timed: true });
+    const before = await timed.stageTimes();
+    const pairs = await pairsOf(timed, await timed.find(boxesOf(device)));
+    const times = await timed.stageTimes();
+    const sorting = await PairFinder.create(device, { dimensions: 2, sorted: true, timed: true });
+    const [own, summary] = [bufferOf(device, 8 * 100_000), bufferOf(device, SUMMARY_BYTES)];
+    // None is awaited: each answer is about the search before it.
+    const [, sorted, , none] = await Promise.all([sorting.findInto(boxesOf(device), own, summary), sorting.stageTimes(), sorting.findInto({ boxes: own, count: 0 }, own, summary), sorting.stageTimes()]);
+    sorting.destroy();
+
+    // A device that cannot measure.
+    const adapter = await navigator.gpu.requestAdapter();
+    const plain = await adapter?.requestDevice();
+    if (!plain) throw new Error("no device");
+    const untimed = await PairFinder.create(plain, { dimensions: 2, timed: true });
+    return {
+      before,
+      pairs,
+      times,
+      sorted,
+      none,
+      asked: (await openDevice()).features.has("timestamp-query"),
+      without: { pairs: await pairsOf(untimed, await untimed.find(boxesOf(plain))), times: await untimed.stageTimes() },
+      error: await errorOf(async () => (await finderOf(device, 0, 2, false)).stageTimes()),
+    };
+  }, sets[0]?.bits ?? []);
+  const stages = ["read boxes", "order boxes", "build the tree", "count the pairs", "sum the numbers up", "write the pairs"];
+  /** @param {{ stage: string }[]} times */
+  const names = (times) => times.map(({ stage }) => stage);
+  assert.ok(results.asked, "openDevice asks for the feature");
+  assert.deepEqual(results.pairs, expected.pairs);
+  assert.deepEqual(results.before, []);
+  assert.deepEqual(names(results.times), stages);
+  assert.deepEqual(names(results.sorted), [...stages, "sort the pairs"]);
+  assert.deepEqual(names(results.none).slice(-1), ["sort the pairs"]);
+  /** @type {{ milliseconds: number }[]} */
+  const all = [...results.times, ...results.sorted];
+  for (const { milliseconds } of all) assert.ok(milliseconds >= 0, String(milliseconds));
+  assert.ok(all.some(({ milliseconds }) => milliseconds > 0));
+  assert.deepEqual(results.without, { pairs: expected.pairs, times: [] });
+  assert.match(results.error?.message ?? "", /timed: true/);
+});
+
 test("findPairs copies boxes to the GPU and pairs back", async () => {
   const results = await opened.page.evaluate(async () => {
     const { library, errorOf } = /** @type {any} */ (globalThis);
