@@ -30,6 +30,7 @@ export const VERSIONS = [
   ["site/package.json", /^( *"version": ")(.*?)(")/m],
   ["site/package.json", /^( *"sweep-and-prune": ")(.*?)(")/m],
   ["site/package.json", /^( *"sweep-and-prune-classroom": ")(.*?)(")/m],
+  ["site/package.json", /^( *"sweep-and-prune-gpu": ")(.*?)(")/m],
   ["CHANGELOG.md", /^(## (?:Unreleased \()?)(\d[^ )\n]*)(\)?.*)$/m],
 ];
 
