@@ -61,17 +61,17 @@ export class GpuBoxes extends PanelElement {
     this.innerHTML = `
       <div class="panel" role="group" aria-label="Boxes on the GPU">
         <div class="panel-stage">
-          <canvas data-part="picture" role="img" aria-label="Moving boxes; those that overlap another are highlighted"></canvas>
+          <canvas data-part="picture" role="img" aria-label="Moving boxes; those that overlap another are highlighted. In 3D, what is farther is dimmer."></canvas>
           <p class="stage-message" role="status" data-part="message"></p>
         </div>
         ${transport(`<button type="button" data-part="check">Check against the processor</button>`)}
         <div class="panel-world">
           ${choice("gpu", "count", "Boxes", counts)}
-          ${choice("gpu", "dimensions", "Dimensions", [["2", "2D"], ["3", "3D, viewed along z"]])}
+          ${choice("gpu", "dimensions", "Dimensions", [["2", "2D"], ["3", "3D"]])}
         </div>
         <div class="gpu-numbers">
           <dl>${counterRows(COUNTERS)}</dl>
-          <h3 data-part="times">Time of each stage of a search</h3>
+          <h3 data-part="times">Stages of a search, median of the last 15</h3>
           <dl>${counterRows(TIMES)}</dl>
         </div>
       </div>`;
@@ -110,6 +110,7 @@ export class GpuBoxes extends PanelElement {
   async #open(): Promise<void> {
     this.#close();
     this.message("Opening the GPU");
+    this.named("message").classList.remove("load-failure");
     this.say("");
     const [count, dimensions] = ["count", "dimensions"].map((part) => Number(this.named<HTMLSelectElement>(part).value)) as [number, 2 | 3];
     const opening = (this.#opening = World.open(this.named<HTMLCanvasElement>("picture"), count, dimensions));
@@ -130,6 +131,8 @@ export class GpuBoxes extends PanelElement {
     this.#world = this.#opening = undefined;
     this.#times.clear();
     this.#steps = 0;
+    showCounters(this, [...COUNTERS, ...TIMES], undefined);
+    this.named("moment").textContent = "Step 0";
   }
 
   /** Says why there is no picture any more, unless it is about a world that is closed. */
@@ -137,6 +140,7 @@ export class GpuBoxes extends PanelElement {
     if (world !== this.#world) return;
     this.#close();
     this.message(SENTENCES[code] ?? "The GPU stopped with an error. It may manage fewer boxes.");
+    this.named("message").classList.add("load-failure");
     if (code === "NO_WEBGPU") return;
     const retry = Object.assign(document.createElement("button"), { type: "button", textContent: "Try again" });
     retry.addEventListener("click", () => {
@@ -166,7 +170,7 @@ export class GpuBoxes extends PanelElement {
     this.named("moment").textContent = `Step ${formatCount(this.#steps)}`;
     for (const { stage, milliseconds } of found.times) this.#times.set(stage, [...(this.#times.get(stage) ?? []).slice(1 - KEPT), milliseconds]);
     showCounters(this, [...COUNTERS, ...TIMES], { found, times: this.#times });
-    if (found.times.length === 0) this.named("times").textContent = "Your browser gives no times of the stages";
+    if (found.times.length === 0) this.named("times").textContent = "Your browser gives no times";
   }
 
   async #check(): Promise<void> {

@@ -29,6 +29,9 @@ export interface Copied {
   readonly highlighted: ArrayBuffer;
 }
 
+/** Buffers by their binding. */
+type Bound = Readonly<Record<number, GPUBuffer>>;
+
 /** How many pairs there is space for at first. */
 const FIRST_CAPACITY = 1024;
 
@@ -117,24 +120,22 @@ export class World {
   }
 
   #step(): void {
-    const { step } = this.#pipelines;
-    this.#submit((encoder) => {
-      const pass = encoder.beginComputePass();
-      pass.setPipeline(step);
-      pass.setBindGroup(0, this.#bind(step, { 0: this.#bodies, 1: this.#boxes }));
-      pass.dispatchWorkgroups(Math.ceil(this.count / 256));
-      pass.end();
-    });
+    const buffers = { 0: this.#bodies, 1: this.#boxes };
+    this.#compute(this.#pipelines.step, buffers, (pass) => pass.dispatchWorkgroups(Math.ceil(this.count / 256)));
   }
 
   #highlight(): void {
-    const { highlight } = this.#pipelines;
+    const buffers = { 2: this.#pairs, 3: this.#summary, 4: this.#highlighted };
+    this.#submit((encoder) => encoder.clearBuffer(this.#highlighted));
+    this.#compute(this.#pipelines.highlight, buffers, (pass) => pass.dispatchWorkgroupsIndirect(this.#summary, SUMMARY_DISPATCH));
+  }
+
+  #compute(pipeline: GPUComputePipeline, buffers: Bound, dispatch: (pass: GPUComputePassEncoder) => void): void {
     this.#submit((encoder) => {
-      encoder.clearBuffer(this.#highlighted);
       const pass = encoder.beginComputePass();
-      pass.setPipeline(highlight);
-      pass.setBindGroup(0, this.#bind(highlight, { 2: this.#pairs, 3: this.#summary, 4: this.#highlighted }));
-      pass.dispatchWorkgroupsIndirect(this.#summary, SUMMARY_DISPATCH);
+      pass.setPipeline(pipeline);
+      pass.setBindGroup(0, this.#bind(pipeline, buffers));
+      dispatch(pass);
       pass.end();
     });
   }
@@ -168,7 +169,7 @@ export class World {
     return this.device.createBuffer({ size, usage });
   }
 
-  #bind(pipeline: GPUComputePipeline | GPURenderPipeline, buffers: Readonly<Record<number, GPUBuffer>>): GPUBindGroup {
+  #bind(pipeline: GPUComputePipeline | GPURenderPipeline, buffers: Bound): GPUBindGroup {
     const entries = Object.entries(buffers).map(([binding, buffer]) => ({ binding: Number(binding), resource: { buffer } }));
     return this.device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries });
   }

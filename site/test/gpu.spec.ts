@@ -1,0 +1,216 @@
+// Moving boxes on the GPU, which here is SwiftShader: it computes in software.
+import { expect, type Locator, type Page, test } from "@playwright/test";
+import config from "../playwright.config.ts";
+import { settled } from "./support/frames.ts";
+import { complaints, cutOff, overflow, tooSmall, violations } from "./support/pages.ts";
+
+// Without the graphics library that the other tests do without, and with Vulkan in software: a canvas needs it.
+const kept = (config.use?.launchOptions?.args ?? []).filter((flag) => flag !== "--disable-gpu");
+const flags = ["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--ignore-gpu-blocklist", "--enable-features=Vulkan", "--use-vulkan=swiftshader"];
+test.use({ launchOptions: { ...config.use?.launchOptions, args: [...kept, ...flags] }, contextOptions: { reducedMotion: "reduce" } });
+
+const gpu = (page: Page): Locator => page.locator("gpu-boxes");
+const part = (page: Page, name: string): Locator => gpu(page).locator(`[data-part="${name}"]`);
+const counter = (page: Page, name: string): Locator => gpu(page).locator(`[data-counter="${name}"] dd`);
+const button = (page: Page, name: string): Locator => gpu(page).getByRole("button", { name, exact: true });
+
+/** Presses Start on a page with this many boxes. */
+async function start(page: Page, count: number): Promise<void> {
+  await page.goto("/playground.html");
+  await gpu(page).evaluate((element, count) => element.setAttribute("count", String(count)), count);
+  await page.getByRole("button", { name: "Start on the GPU" }).click();
+}
+
+/** Opens this many boxes, paused. */
+async function open(page: Page, count: number): Promise<void> {
+  await start(page, count);
+  await expect(part(page, "moment")).toHaveText("Step 0");
+  await expect(counter(page, "pairs")).not.toHaveText("–");
+}
+
+/** The number of pairs of a check that agrees. */
+async function checked(page: Page): Promise<number> {
+  await button(page, "Check against the processor").click();
+  await expect(part(page, "status")).toHaveText(/agree|not/i);
+  const said = (await part(page, "status").textContent()) ?? "";
+  expect(said).toMatch(/^Both agree: the processor finds [\d,]+ pairs too, in the same boxes\.$/);
+  return Number(said.replaceAll(/[^\d]/g, ""));
+}
+
+/** In a page: lets a test change devices as they are opened. */
+async function onDevice(page: Page, change: (device: GPUDevice) => void, without: string[] = []): Promise<void> {
+  await page.addInitScript(`{
+    const request = GPUAdapter.prototype.requestDevice;
+    GPUAdapter.prototype.requestDevice = async function (options) {
+      const requiredFeatures = options.requiredFeatures.filter((name) => !${JSON.stringify(without)}.includes(name));
+      const device = await request.call(this, { ...options, requiredFeatures });
+      (${change})(device);
+      return device;
+    };
+  }`);
+}
+
+test("nothing of it is loaded before the button is pressed", async ({ page }) => {
+  const loaded: string[] = [];
+  page.on("request", (request) => loaded.push(request.url()));
+  const all = async (): Promise<string> => (await Promise.all(loaded.filter((url) => /\.(js|css)$/.test(url)).map(async (url) => (await page.request.get(url)).text()))).join();
+  await page.goto("/playground.html");
+  await expect(page.locator("box-playground")).toHaveAttribute("data-step", "0");
+  const before = await all();
+  expect(before).not.toMatch(/requestAdapter|gpu-numbers/);
+  await open(page, 500);
+  expect(await all()).toMatch(/requestAdapter/);
+});
+
+for (const dimensions of ["2", "3"]) {
+  test(`${dimensions}D: after some steps the processor agrees; the stages have times`, async ({ page }) => {
+    await open(page, 2000);
+    await part(page, "dimensions").selectOption(dimensions);
+    await expect(part(page, "moment")).toHaveText("Step 0");
+    await expect(counter(page, "pairs")).not.toHaveText("–");
+    const before = await checked(page);
+    for (let step = 1; step <= 5; step++) {
+      await button(page, "Step").click();
+      await expect(part(page, "moment")).toHaveText(`Step ${step}`);
+    }
+    const after = await checked(page);
+    expect(Math.min(before, after)).toBeGreaterThan(150);
+    await expect(counter(page, "pairs")).toHaveText(String(after));
+    await button(page, "Play").click();
+    await expect(part(page, "moment")).not.toHaveText("Step 5");
+    await checked(page);
+    await button(page, "Pause").click();
+    // One of five overlaps another, give or take.
+    expect(Number.parseFloat((await counter(page, "overlapping").textContent())!)).toBeGreaterThan(15);
+    expect(Number.parseFloat((await counter(page, "overlapping").textContent())!)).toBeLessThan(25);
+    for (const stage of ["read boxes", "order boxes", "build the tree", "count the pairs", "sum the numbers up", "write the pairs"]) {
+      await expect(counter(page, stage)).toHaveText(/^\d+\.\d ms$/);
+    }
+  });
+}
+
+test("more pairs than there is space for make more space", async ({ page }) => {
+  await open(page, 12_000);
+  expect(await checked(page)).toBeGreaterThan(1024);
+  await button(page, "Step").click();
+  await expect(part(page, "moment")).toHaveText("Step 1");
+  expect(await checked(page)).toBeGreaterThan(1024);
+});
+
+test("it is paused where less motion is wanted, played and paused and moved by a step with keys, and waits out of sight", async ({ page }) => {
+  await open(page, 500);
+  await expect(button(page, "Play")).toBeFocused();
+  const moment = (): Promise<string | null> => part(page, "moment").textContent();
+  expect(await settled(page, moment, "paused at first")).toBe("Step 0");
+  await page.keyboard.press("Tab");
+  await page.keyboard.press("Enter");
+  await expect(part(page, "moment")).toHaveText("Step 1");
+  await page.keyboard.press("Shift+Tab");
+  await page.keyboard.press("Space");
+  await expect(part(page, "moment")).toHaveText(/Step ([4-9]|\d\d)/);
+  await page.keyboard.press("Space");
+  await expect(button(page, "Play")).toBeFocused();
+  await settled(page, moment, "paused");
+  await button(page, "Play").click();
+  await page.evaluate(() => scrollTo(0, 0));
+  const unseen = await settled(page, moment, "out of sight");
+  await gpu(page).scrollIntoViewIfNeeded();
+  await expect(part(page, "moment")).not.toHaveText(unseen!);
+});
+
+test("a GPU that is lost is said, and opened again", async ({ page }) => {
+  await onDevice(page, (device) => Object.assign(globalThis, { device }));
+  await open(page, 500);
+  await page.evaluate(() => (globalThis as unknown as { device: GPUDevice }).device.destroy());
+  await expect(part(page, "message")).toContainText("The GPU was lost.");
+  await button(page, "Check against the processor").click();
+  await expect(part(page, "status")).toHaveText("There are no boxes yet.");
+  await button(page, "Try again").click();
+  await expect(counter(page, "pairs")).not.toHaveText("–");
+  await expect(part(page, "message")).toHaveText("");
+  await checked(page);
+});
+
+test("without WebGPU, without a GPU, and with a small one, a sentence says so", async ({ page }) => {
+  await page.addInitScript(() => {
+    const gpu = navigator.gpu;
+    const { hash } = location;
+    if (hash === "#none") Object.defineProperty(navigator, "gpu", { value: undefined });
+    if (hash === "#adapter") Object.defineProperty(navigator, "gpu", { value: { requestAdapter: async () => null } });
+    Object.assign(globalThis, { restore: () => Object.defineProperty(Navigator.prototype, "gpu", { value: gpu }) });
+  });
+  await page.goto("/playground.html#none");
+  await page.getByRole("button", { name: "Start on the GPU" }).click();
+  await expect(part(page, "message")).toHaveText("This needs WebGPU, which this browser does not have, or has only on secure pages (https or localhost).");
+  await page.goto("about:blank");
+  await page.goto("/playground.html#adapter");
+  await page.getByRole("button", { name: "Start on the GPU" }).click();
+  await expect(part(page, "message")).toContainText("found no GPU that it may use.");
+  await expect(button(page, "Try again")).toBeVisible();
+  await onDevice(page, (device) => Object.defineProperty(device, "limits", { value: { maxStorageBufferBindingSize: 65_536, maxBufferSize: 65_536 } }));
+  await page.goto("about:blank");
+  await start(page, 5000);
+  await expect(part(page, "message")).toContainText("This GPU cannot hold this many boxes in one buffer. Choose fewer.");
+});
+
+test("a browser that gives no times says so", async ({ page }) => {
+  await onDevice(page, () => {}, ["timestamp-query"]);
+  await open(page, 500);
+  await expect(part(page, "times")).toHaveText("Your browser gives no times");
+  await expect(counter(page, "read boxes")).toHaveText("–");
+});
+
+test("a file that does not load is said, and can be tried again", async ({ page }) => {
+  await page.route(/gpu-boxes[^/]*\.js/, (route) => route.abort());
+  await page.goto("/playground.html");
+  await page.getByRole("button", { name: "Start on the GPU" }).click();
+  const failure = page.locator("section[aria-labelledby=gpu-heading] .load-failure");
+  await expect(failure).toContainText("A file of this page did not load");
+  await page.unroute(/gpu-boxes[^/]*\.js/);
+  await failure.getByRole("button", { name: "Try again" }).click();
+  await expect(page.getByRole("button", { name: "Start on the GPU" })).toBeEnabled();
+});
+
+/** How many pixels of the picture have each of two colors of the page. */
+async function painted(page: Page): Promise<{ overlap: number; ground: number }> {
+  const picture = (await part(page, "picture").screenshot()).toString("base64");
+  return gpu(page).evaluate(async (element, picture) => {
+    const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${picture}`)).blob());
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d")!;
+    context.drawImage(bitmap, 0, 0);
+    const pixels = context.getImageData(0, 0, bitmap.width, bitmap.height).data;
+    const of = (name: string): number => {
+      const probe = element.appendChild(document.createElement("i"));
+      probe.style.forcedColorAdjust = "none";
+      probe.style.color = `var(--${name})`;
+      const wanted = getComputedStyle(probe).color.match(/\d+/g)!.map(Number);
+      probe.remove();
+      let count = 0;
+      for (let at = 0; at < pixels.length; at += 4) if (wanted.every((value, channel) => pixels[at + channel] === value)) count++;
+      return count;
+    };
+    return { overlap: of("sap-overlap"), ground: of("stage") };
+  }, picture);
+}
+
+for (const colorScheme of ["light", "dark"] as const) {
+  for (const forcedColors of ["none", "active"] as const) {
+    test(`${colorScheme}, forced colors ${forcedColors}: overlapping boxes have the color of overlaps, and the page is as others are`, async ({ page }) => {
+      const heard = complaints(page);
+      await page.emulateMedia({ colorScheme, forcedColors, reducedMotion: "reduce" });
+      await open(page, 500);
+      const { overlap, ground } = await painted(page);
+      expect(overlap).toBeGreaterThan(500);
+      expect(ground).toBeGreaterThan(10 * overlap);
+      if (forcedColors === "none") expect(await violations(page)).toEqual([]);
+      for (const width of [1280, 390, 320]) {
+        await page.setViewportSize({ width, height: 900 });
+        await expect.poll(() => overflow(page), { message: `at ${width} pixels` }).toBeLessThanOrEqual(0);
+        expect(await cutOff(page), `at ${width} pixels`).toEqual([]);
+      }
+      expect(await tooSmall(page)).toEqual([]);
+      // What Chromium says of a shader that it compiles is not the page's fault.
+      expect(heard.filter((said) => !said.startsWith("Compilation log"))).toEqual([]);
+    });
+  }
+}
