@@ -96,17 +96,6 @@ export abstract class PanelElement extends HTMLElement {
     });
   }
 
-  /** A color of the style sheet, by its custom property, as a canvas takes it: also where the visitor forces other colors. */
-  protected color(name: string): string {
-    const probe = document.createElement("i");
-    probe.style.forcedColorAdjust = "none";
-    probe.style.color = `var(--${name})`;
-    this.append(probe);
-    const { color } = getComputedStyle(probe);
-    probe.remove();
-    return color;
-  }
-
   protected say(text: string): void {
     const status = this.named("status");
     if (status.textContent !== text) status.textContent = text;

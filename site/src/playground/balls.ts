@@ -1,7 +1,8 @@
 // Draws the scene of falling balls: discs or spheres in the place of their boxes.
 
 import type { Balls } from "../experiment/messages.ts";
-import { onThemeChange, readTheme } from "../view/theme.ts";
+import { onThemeChange } from "../shell/theme.ts";
+import { readTheme } from "../view/theme.ts";
 import type { View } from "../view/view.ts";
 
 export class BallsPicture {

@@ -12,6 +12,7 @@ import { PanelElement } from "../panel/panel-element.ts";
 import { LARGEST_SEED } from "../panel/parts.ts";
 import { drawLines } from "../plot/line-plot.ts";
 import { onThemeChange } from "../shell/theme.ts";
+import { colorOf } from "../view/theme.ts";
 import { BallsPicture } from "./balls.ts";
 import { type Format, FORMATS, preview, shortest, type Snapshot, write } from "./export.ts";
 import { Hands, type Shown } from "./hands.ts";
@@ -614,8 +615,9 @@ export class BoxPlayground extends PanelElement {
 
   #readColors(): Colors {
     const lanes = [...this.querySelectorAll("legend")].map((legend) => getComputedStyle(legend).borderTopColor);
-    const boxes = { box: this.color("box"), highlighted: this.color("sap-overlap"), line: this.color("stage"), selected: this.color("sap-chosen") };
-    return { boxes, lanes, ink: this.color("ink"), muted: this.color("muted"), grid: this.color("line") };
+    const color = (name: string): string => colorOf(name, this);
+    const boxes = { box: color("box"), highlighted: color("sap-overlap"), line: color("stage"), selected: color("sap-chosen") };
+    return { boxes, lanes, ink: color("ink"), muted: color("muted"), grid: color("line") };
   }
 
   #drawPlot(): void {

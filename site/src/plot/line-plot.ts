@@ -103,9 +103,12 @@ export function drawLines(canvas: HTMLCanvasElement, width: number, height: numb
   }
 }
 
+/** Physical pixels for one CSS pixel; more than two cannot be seen and cost dearly. */
+export const pixelRatio = (): number => Math.min(devicePixelRatio, 2);
+
 /** The context of a canvas of this size in CSS pixels, sharp on this screen. */
 export function fitted(canvas: HTMLCanvasElement, width: number, height: number): CanvasRenderingContext2D {
-  const ratio = Math.min(devicePixelRatio, 2);
+  const ratio = pixelRatio();
   const [wide, high] = [Math.round(width * ratio), Math.round(height * ratio)];
   if (canvas.width !== wide || canvas.height !== high) [canvas.width, canvas.height] = [wide, high];
   const context = canvas.getContext("2d");

@@ -76,18 +76,14 @@ function frame(page: string, { filename }: IndexHtmlTransformContext): string {
     .replace("</body>", () => `${footer()}</body>`);
 }
 
-/**
- * Character set, icon, style and theme. The dark palette and the script that decides whether it
- * holds stand in the page itself: the first picture already has the right colors.
- */
+/** Character set, icon, style and theme. What the visitor has chosen stands in the page itself: the first picture already has the right colors. */
 function head(): string {
   return `
     <meta charset="utf-8" />
     <meta name="viewport" content="width=device-width, initial-scale=1" />
     <link rel="icon" href="./icon.svg" type="image/svg+xml" />
     <link rel="stylesheet" href="./src/style.css" />
-    <style id="dark" media="(prefers-color-scheme: dark)">${read("dark.css")}</style>
-    <script>${read("theme-first.js")}</script>
+    <script>${readFileSync(new URL("theme-first.js", here), "utf8")}</script>
     <script type="module" src="./src/shell/shell.ts"></script>`;
 }
 
@@ -122,5 +118,3 @@ function footer(): string {
       </p>
     </footer>`;
 }
-
-const read = (file: string): string => readFileSync(new URL(file, here), "utf8");

@@ -8,8 +8,5 @@
   }
   const root = document.documentElement;
   root.classList.add("scripted");
-  if (chosen === "light" || chosen === "dark") {
-    root.dataset.theme = chosen;
-    document.getElementById("dark").media = chosen === "dark" ? "all" : "not all";
-  }
+  if (chosen === "light" || chosen === "dark") root.dataset.theme = chosen;
 }

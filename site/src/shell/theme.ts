@@ -32,8 +32,6 @@ export function onThemeChange(changed: () => void, signal?: AbortSignal): void {
 function apply(chosen: Choice): void {
   if (chosen === "auto") delete root.dataset["theme"];
   else root.dataset["theme"] = chosen;
-  const dark = document.getElementById("dark") as HTMLStyleElement;
-  dark.media = { auto: "(prefers-color-scheme: dark)", light: "not all", dark: "all" }[chosen];
   window.dispatchEvent(new Event("themechange"));
 }
 

@@ -1,5 +1,6 @@
 import type { Theme } from "./theme.ts";
-import { type Picture, pixelRatio, shownHeight, type View, type World } from "./view.ts";
+import { fitted } from "../plot/line-plot.ts";
+import { type Picture, shownHeight, type View, type World } from "./view.ts";
 
 /** Bodies of one shade are drawn as one path: the fewer shades, the fewer paths. */
 const SHADES = 24;
@@ -9,7 +10,7 @@ const PADDING = 10;
 /** Discs on a two-dimensional canvas. */
 export class DiscView implements View {
   readonly #canvas: HTMLCanvasElement;
-  readonly #context: CanvasRenderingContext2D;
+  #size = { width: 0, height: 0 };
   #theme: Theme;
   #world: World = { min: [0, 0], max: [1, 1] };
   #shownHeight = 1;
@@ -19,10 +20,7 @@ export class DiscView implements View {
   #colors: string[] = [];
 
   constructor(canvas: HTMLCanvasElement, theme: Theme) {
-    const context = canvas.getContext("2d");
-    if (!context) throw new Error("This browser cannot draw on a canvas.");
     this.#canvas = canvas;
-    this.#context = context;
     this.#theme = theme;
     this.setTheme(theme);
   }
@@ -41,19 +39,17 @@ export class DiscView implements View {
   }
 
   resize(width: number, height: number): void {
-    this.#canvas.width = Math.round(width * pixelRatio());
-    this.#canvas.height = Math.round(height * pixelRatio());
+    this.#size = { width, height };
   }
 
   draw({ positions, pairs = new Uint32Array() }: Picture): void {
-    const context = this.#context;
-    const { width, height } = this.#canvas;
+    const { width, height } = this.#size;
+    const context = fitted(this.#canvas, width, height);
     const [left = 0, bottom = 0] = this.#world.min;
     const worldWidth = (this.#world.max[0] ?? 1) - left;
-    const padding = PADDING * pixelRatio();
-    const scale = Math.min((width - 2 * padding) / worldWidth, (height - padding) / this.#shownHeight);
+    const scale = Math.min((width - 2 * PADDING) / worldWidth, (height - PADDING) / this.#shownHeight);
     const wall = (width - worldWidth * scale) / 2;
-    const floor = height - padding;
+    const floor = height - PADDING;
     const x = (body: number): number => wall + ((positions[2 * body] ?? 0) - left) * scale;
     const y = (body: number): number => floor - ((positions[2 * body + 1] ?? 0) - bottom) * scale;
 
@@ -64,7 +60,7 @@ export class DiscView implements View {
     context.fillRect(wall + worldWidth * scale, 0, wall, height);
 
     // A hair's breadth between bodies that touch.
-    const gap = Math.min(0.35 * pixelRatio(), 0.1 * (this.#radii[0] ?? 0) * scale);
+    const gap = Math.min(0.35, 0.1 * (this.#radii[0] ?? 0) * scale);
     this.#shades.forEach((bodies, shade) => {
       context.beginPath();
       for (const body of bodies) {
@@ -81,20 +77,14 @@ export class DiscView implements View {
       context.lineTo(x(pairs[at + 1]!), y(pairs[at + 1]!));
     }
     context.strokeStyle = this.#theme.line;
-    context.lineWidth = 1.5 * pixelRatio();
+    context.lineWidth = 1.5;
     context.stroke();
   }
 }
 
-/** The color at `t`, from 0 to 1, of a ramp of colors written `#rrggbb`. */
+/** The color at `t`, from 0 to 1, of a ramp of colors. */
 function mixRamp(ramp: readonly string[], t: number): string {
   const at = t * (ramp.length - 1);
   const below = Math.min(Math.floor(at), ramp.length - 2);
-  const share = at - below;
-  const channels = (stop: number): number[] =>
-    [1, 3, 5].map((i) => Number.parseInt((ramp[stop] ?? "#000000").slice(i, i + 2), 16));
-  const above = channels(below + 1);
-  return `rgb(${channels(below)
-    .map((value, i) => Math.round(value + share * ((above[i] ?? value) - value)))
-    .join(" ")})`;
+  return `color-mix(in srgb, ${ramp[below + 1]} ${100 * (at - below)}%, ${ramp[below]})`;
 }

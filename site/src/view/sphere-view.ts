@@ -18,8 +18,9 @@ import {
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { pixelRatio } from "../plot/line-plot.ts";
 import type { Theme } from "./theme.ts";
-import { type Picture, pixelRatio, shownHeight, type View, type World } from "./view.ts";
+import { type Picture, shownHeight, type View, type World } from "./view.ts";
 
 /** Where the eye is at first, seen from the middle of the world. */
 const DIRECTION = new Vector3(0.5, 0.36, 1).normalize();

@@ -35,6 +35,3 @@ export interface View {
   resize(width: number, height: number): void;
   draw(picture: Picture): void;
 }
-
-/** Physical pixels for one CSS pixel; more than two cannot be seen and cost dearly. */
-export const pixelRatio = (): number => Math.min(devicePixelRatio, 2);
