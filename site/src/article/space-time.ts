@@ -82,9 +82,9 @@ function caption({ orders, crossings }: ReturnType<typeof history>, frame: numbe
 function picture(name: string, frame: number): string {
   const all = history(WORLDS[name]!);
   const edges = WORLDS[name]!.map((_, id) =>
-    (["left", "right"] as const).map((side) => path(all.boxes.map((boxes, at) => [boxes[id]![side], y(at)] as const), `world-line ${side} body-${id}`)).join("") +
+    (["left", "right"] as const).map((side) => path(all.boxes.map((boxes, at) => [boxes[id]![side], y(at)] as const), `world-line ${side}`, id)).join("") +
     text((all.boxes[0]![id]!.left + all.boxes[0]![id]!.right) / 2, TOP + 14, letter(id), "name"));
-  const now = all.boxes[frame]!.map((box) => line(box.left, y(frame), box.right, y(frame), `bar body-${box.id}`)).join("");
+  const now = all.boxes[frame]!.map((box) => line(box.left, y(frame), box.right, y(frame), "bar", box.id)).join("");
   const dots = all.crossings.map(({ frame: at, x, kind }) => `<circle cx="${x.toFixed(1)}" cy="${y(at).toFixed(1)}" r="5" class="swap-${kind}${at > frame ? " later" : ""}"/>`);
   return `${svg("space-time", WIDTH, HEIGHT + 2 * TOP, `Endpoints of four boxes, each a line from top to bottom through time: left ones solid, right ones dashed. The lines cross ${all.crossings.length} times.`,
     edges.join("") + line(0, y(frame), WIDTH, y(frame), "sweep") + now + dots.join(""))}

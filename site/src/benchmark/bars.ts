@@ -1,6 +1,6 @@
 // A table of libraries with their times as bars: in the page, and for what is measured in the browser.
 
-import { duration, type Entry, fastest, fastestOwn, PLAIN, significant, timesOf, type Case } from "./results.ts";
+import { duration, type Entry, fastest, fastestOwn, PLAIN, significant, timed, type Case } from "./results.ts";
 
 /** The shortest bar, in percent; the longest is 100. */
 const SHORTEST = 6;
@@ -9,16 +9,13 @@ const SHORTEST = 6;
 export function bars(one: Case, caption: string, entries: readonly Entry[], labels: Readonly<Record<string, string>> = {}): string {
   const own = fastestOwn(one) ?? NaN;
   const first = fastest(one);
-  const timed = entries.flatMap((entry) => {
-    const times = timesOf(entry);
-    return times ? [{ name: entry.name, isOwn: !entry.alternative && !PLAIN.test(entry.name), ns: times.median_ns }] : [];
-  });
-  timed.sort((a, b) => Number(b.isOwn) - Number(a.isOwn) || a.ns - b.ns);
-  const all = timed.map(({ ns }) => ns);
+  const ranked = timed(entries).map((entry) => ({ ...entry, isOwn: !entry.alternative && !PLAIN.test(entry.name) }));
+  ranked.sort((a, b) => Number(b.isOwn) - Number(a.isOwn));
+  const all = ranked.map(({ ns }) => ns);
   const [least, most] = [Math.min(...all), Math.max(...all)];
   // Logarithmic: one slow library would leave nothing of the other bars.
   const width = (ns: number): number => (most > least ? SHORTEST + ((100 - SHORTEST) * Math.log(ns / least)) / Math.log(most / least) : 100);
-  const rows = timed.map(({ name, isOwn, ns }) => {
+  const rows = ranked.map(({ name, isOwn, ns }) => {
     const ratio = isOwn || Number.isNaN(own) ? "" : `× ${significant(ns / own)}`;
     const last = name === first ? `${ratio} fastest` : ratio;
     const label = labels[name] ?? (PLAIN.test(name) ? "no library: a plain sweep" : name);

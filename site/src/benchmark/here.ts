@@ -2,11 +2,12 @@
 
 import { Scenes } from "../../../bench/js/src/scenes.js";
 import type { Listed } from "../../../bench/js/src/scenes.js";
-import { FINDER, type Library, WORLD } from "../../../bench/js/libraries/index.js";
+import { FINDER, type Library, libraries, WORLD } from "../../../bench/js/libraries/index.js";
 import scenesUrl from "../generated/bench-scenes.wasm?url";
+import { formatCount } from "../panel/counters.ts";
 import { bars } from "./bars.ts";
-import { type Case, count, duration, fastest, fastestOther, fastestOwn, significant } from "./results.ts";
-import { librariesFor, measure } from "./trial-here.ts";
+import { type Case, duration, fastest, fastestOther, fastestOwn, significant } from "./results.ts";
+import { measure } from "./trial-here.ts";
 
 /** The scenes that everybody can be measured on; the others try robustness. */
 const SCENES = ["uniform", "clustered", "mixed", "slab", "tower", "box-pruning", "drift", "fast", "mostly-still", "teleport"];
@@ -15,7 +16,7 @@ const MEASURED = ["plain sweep", "flatbush", "rbush", "box-intersect", "matter-j
 const MOST = 5;
 
 function measured(dimensions: number, task: Listed["task"]): Library[] {
-  const all = librariesFor(dimensions, task);
+  const all = libraries.filter((one) => one.dimensions.includes(dimensions) && one.tasks.includes(task));
   const others = MEASURED.flatMap((name) => all.find((library) => library.name === name) ?? []).slice(0, MOST);
   return [...all.filter(({ name }) => name === FINDER || name === WORLD), ...others];
 }
@@ -40,8 +41,8 @@ export class BenchmarkHere {
 
   private constructor(scenes: readonly Listed[]) {
     this.#scenes = scenes;
-    fill(this.#scene, scenes.map(({ name, task }) => [name, task === "track" ? `${name} (motion)` : name]));
-    this.#dimensions.disabled = this.#run.disabled = false;
+    this.#scene.replaceChildren(...scenes.map(({ name, task }) => new Option(task === "track" ? `${name} (motion)` : name, name)));
+    this.#scene.disabled = this.#dimensions.disabled = this.#run.disabled = false;
     for (const set of this.#form.querySelectorAll("fieldset")) set.disabled = false;
     this.#scene.addEventListener("change", () => this.#offer());
     this.#dimensions.addEventListener("change", () => this.#offer());
@@ -69,20 +70,14 @@ export class BenchmarkHere {
     element("here-alternatives").textContent = `Measured: ${names.join(", ")}.`;
   }
 
-  #checked(name: string): string[] {
-    const boxes = this.#form.querySelectorAll<HTMLInputElement>(`input[name=${name}]:checked`);
-    return [...boxes].map(({ value }) => value);
-  }
-
   async #start(): Promise<void> {
     const { name: scene, task } = this.#listed;
     const dimensions = Number(this.#dimensions.value);
-    const sizes = this.#checked("size").map(Number);
+    const sizes = [...this.#form.querySelectorAll<HTMLInputElement>("input[name=size]:checked")].map(({ value }) => Number(value));
     if (sizes.length === 0) {
       this.#status.textContent = "Choose at least one number of boxes.";
       return;
     }
-    const libraries = measured(dimensions, task);
     const stop = (this.#stop = new AbortController());
     this.#busy(true);
     this.#cases = [];
@@ -91,11 +86,11 @@ export class BenchmarkHere {
       this.#status.textContent = `Measuring: ${what} ...`;
     };
     try {
-      for await (const one of measure({ scene, dimensions, sizes, libraries, isMoving: task === "track" }, progress, stop.signal)) {
+      for await (const one of measure({ scene, dimensions, sizes, libraries: measured(dimensions, task) }, progress, stop.signal)) {
         this.#cases.push(one);
         const results = element("here-results");
         results.hidden = false;
-        results.innerHTML = this.#cases.map((one) => bars(one, `${count(one.boxes)} boxes, ${count(one.pairs)} pairs, checked against ${one.reference}`, one.results)).join("");
+        results.innerHTML = this.#cases.map((one) => bars(one, `${formatCount(one.boxes)} boxes, ${formatCount(one.pairs)} pairs, checked against ${one.reference}`, one.results)).join("");
       }
       this.#progress.value = 1;
       this.#status.textContent = `Done. ${verdict(this.#cases.at(-1))}`;
@@ -124,14 +119,9 @@ function verdict(one: Case | undefined): string {
   const own = one && fastestOwn(one);
   if (!one || !own) return "";
   const alternative = fastestOther(one);
-  const size = `${one.boxes.toLocaleString("en")} boxes`;
-  if (!alternative) return `sweep-and-prune finds the ${one.pairs.toLocaleString("en")} pairs of ${size} in ${duration(own)}.`;
+  const size = `${formatCount(one.boxes)} boxes`;
+  if (!alternative) return `sweep-and-prune finds the ${formatCount(one.pairs)} pairs of ${size} in ${duration(own)}.`;
   return `${size}: ${fastest(one)} is the fastest. sweep-and-prune takes ${duration(own)}; the fastest alternative, ${alternative.name}, takes ${significant(alternative.ratio)} times as long.`;
-}
-
-function fill(choice: HTMLSelectElement, options: readonly (readonly [value: string, text: string])[]): void {
-  choice.replaceChildren(...options.map(([value, text]) => new Option(text, value)));
-  choice.disabled = options.length === 0;
 }
 
 function element(id: string): HTMLElement {

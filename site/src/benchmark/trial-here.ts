@@ -1,6 +1,6 @@
 // A run in this browser: libraries in workers, checked, then timed in rounds.
 
-import { type Library, libraries, FINDER, WORLD } from "../../../bench/js/libraries/index.js";
+import type { Library } from "../../../bench/js/libraries/index.js";
 import { library as bruteForce, REFERENCE_LIMIT } from "../../../bench/js/src/reference.js";
 import type { Answer, Ready, Start, Time } from "./messages.ts";
 import type { Case, Entry } from "./results.ts";
@@ -19,7 +19,6 @@ interface Wish {
   readonly dimensions: number;
   readonly sizes: readonly number[];
   readonly libraries: readonly Library[];
-  readonly isMoving: boolean;
 }
 
 /** Runs it all, a case for each number of boxes; `progress` is told how far it is, from 0 to 1. */
@@ -43,7 +42,7 @@ interface Running {
 }
 
 async function measureOne(
-  { scene, dimensions, libraries: chosen, isMoving }: Wish,
+  { scene, dimensions, libraries }: Wish,
   boxes: number,
   progress: (share: number, what: string) => void,
   signal: AbortSignal,
@@ -80,8 +79,8 @@ async function measureOne(
     const size = boxes.toLocaleString("en");
     progress(0, `the right pairs of ${size} boxes`);
     const right = boxes <= REFERENCE_LIMIT ? await check(bruteForce) : undefined;
-    for (const [at, library] of chosen.entries()) {
-      progress((0.6 * (at + 1)) / (chosen.length + 1), `${library.name} checked on ${size} boxes`);
+    for (const [at, library] of libraries.entries()) {
+      progress((0.6 * (at + 1)) / (libraries.length + 1), `${library.name} checked on ${size} boxes`);
       const one = await check(library);
       if (one) running.push(one);
     }
@@ -107,13 +106,9 @@ async function measureOne(
         one.rounds.push(await one.remote.time({ calls }));
       }
     }
-    const own = (isMoving ? running.find(({ library }) => library.name === WORLD) : undefined) ?? running.find(({ library }) => library.name === FINDER);
-    const timed = running.map(({ library: { name, alternative }, rounds }): Entry => {
-      const ratios = rounds.map((time, round) => time / (own?.rounds[round] ?? NaN));
-      return { name, alternative, outcome: { Timed: { median_ns: median(rounds) * 1e6, ratio: median(ratios), peak_bytes: null } } };
-    });
+    const timed = running.map(({ library: { name, alternative }, rounds }): Entry => ({ name, alternative, outcome: { Timed: { median_ns: median(rounds) * 1e6 } } }));
     const reference = right ? bruteForce.name : agreed ? "two libraries that agree" : "nothing";
-    return { ...setting, pairs: agreed?.ready.pairs ?? 0, reference, load: null, results: [...timed, ...results] };
+    return { ...setting, pairs: agreed?.ready.pairs ?? 0, reference, results: [...timed, ...results] };
   } finally {
     for (const remote of remotes) remote.stop();
   }
@@ -151,39 +146,20 @@ class Remote {
   }
 
   #ask(message: Start | Time): Promise<Answer> {
-    const { promise, resolve, reject } = withResolvers<Answer>();
     const over = new AbortController();
-    const timer = setTimeout(() => reject(new TooLong(`over ${LIMIT / 1000} s`)), LIMIT);
     const { signal } = over;
-    this.#worker.addEventListener(
-      "message",
-      ({ data }: MessageEvent<Answer>) => ("failed" in data ? reject(new Error(data.failed)) : resolve(data)),
-      { signal },
-    );
-    this.#worker.addEventListener("error", ({ message }) => reject(new Error(message || "its worker did not start")), { signal });
-    this.#signal.addEventListener("abort", () => reject(this.#signal.reason), { signal });
-    if (this.#signal.aborted) reject(this.#signal.reason);
-    else this.#worker.postMessage(message);
-    return promise.finally(() => {
-      clearTimeout(timer);
-      over.abort();
-    });
+    return new Promise<Answer>((resolve, reject) => {
+      const timer = setTimeout(() => reject(new TooLong(`over ${LIMIT / 1000} s`)), LIMIT);
+      signal.addEventListener("abort", () => clearTimeout(timer));
+      this.#worker.addEventListener("message", ({ data }: MessageEvent<Answer>) => ("failed" in data ? reject(new Error(data.failed)) : resolve(data)), { signal });
+      this.#worker.addEventListener("error", ({ message }) => reject(new Error(message || "its worker did not start")), { signal });
+      this.#signal.addEventListener("abort", () => reject(this.#signal.reason), { signal });
+      if (this.#signal.aborted) reject(this.#signal.reason);
+      else this.#worker.postMessage(message);
+    }).finally(() => over.abort());
   }
 }
 
-function withResolvers<T>(): { promise: Promise<T>; resolve(value: T): void; reject(reason: unknown): void } {
-  let resolve!: (value: T) => void;
-  let reject!: (reason: unknown) => void;
-  const promise = new Promise<T>((fulfil, refuse) => ([resolve, reject] = [fulfil, refuse]));
-  return { promise, resolve, reject };
-}
-
 function median(numbers: readonly number[]): number {
-  const sorted = numbers.filter((number) => !Number.isNaN(number)).sort((a, b) => a - b);
-  return sorted[sorted.length >> 1] ?? NaN;
-}
-
-/** Those that can take part in a task. */
-export function librariesFor(dimensions: number, task: "find" | "track"): readonly Library[] {
-  return libraries.filter((one) => one.dimensions.includes(dimensions) && one.tasks.includes(task));
+  return numbers.toSorted((a, b) => a - b)[numbers.length >> 1] ?? NaN;
 }

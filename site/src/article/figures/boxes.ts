@@ -1,7 +1,7 @@
 // Boxes and their shadows on the axes.
 
 import { overlaps } from "../../listings/overlaps.js";
-import { letter, line, rect, svg, text, type Box } from "./svg.ts";
+import { body, letter, line, rect, svg, text, type Box } from "./svg.ts";
 
 /** Two boxes that overlap on one axis only, and their shadows. */
 export function boxTest(): string {
@@ -13,8 +13,8 @@ export function boxTest(): string {
   if (overlaps(a, b)) throw new Error("they are meant to be apart");
   const shadows = boxes.map((box, at) =>
     [
-      line(box.left, 250 + 14 * at, box.right, 250 + 14 * at, `bar body-${at}`),
-      line(40 - 14 * at, box.top, 40 - 14 * at, box.bottom, `bar body-${at}`),
+      line(box.left, 250 + 14 * at, box.right, 250 + 14 * at, "bar", at),
+      line(40 - 14 * at, box.top, 40 - 14 * at, box.bottom, "bar", at),
     ].join(""),
   );
   const both = rect({ left: b.left, top: 236, right: a.right, bottom: 276 }, "mark");
@@ -24,7 +24,7 @@ export function boxTest(): string {
     400,
     300,
     "Box A lies above and to the left of box B. Their shadows on the horizontal axis overlap; those on the vertical axis do not, so the boxes are apart.",
-    both + gap + boxes.map(body).join("") + shadows.join("") +
+    both + gap + boxes.map((box) => body(box)).join("") + shadows.join("") +
       text(225, 294, "overlap on x") + text(62, 130, "apart on y", "label", "start"),
   );
 }
@@ -43,16 +43,12 @@ export function transitivity(): string {
   });
   const [a, , c] = boxes as [Box, Box, Box];
   const whole = line(a.right, 222, c.left, 222, "arrow") + text((a.right + c.left) / 2, 240, "so A ends before C begins: no test needed");
-  const bars = boxes.map(({ id, left, right }) => line(left, 178, right, 178, `bar body-${id}`)).join("");
+  const bars = boxes.map(({ id, left, right }) => line(left, 178, right, 178, "bar", id)).join("");
   return svg(
     "transitivity",
     520,
     252,
     "Boxes A, B and C from left to right, with a gap between A and B and a gap between B and C. So there is one between A and C.",
-    boxes.map(body).join("") + gaps.join("") + bars + whole,
+    boxes.map((box) => body(box)).join("") + gaps.join("") + bars + whole,
   );
-}
-
-function body(box: Box): string {
-  return rect(box, `body body-${box.id}`) + text((box.left + box.right) / 2, (box.top + box.bottom) / 2 + 6, letter(box.id), "name");
 }

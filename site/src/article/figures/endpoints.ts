@@ -3,7 +3,7 @@
 import { endpointsOf } from "../../listings/endpoints.js";
 import { quicksort } from "../../listings/quicksort.js";
 import { sweep } from "../../listings/sweep.js";
-import { letter, line, rect, svg, text, type Box } from "./svg.ts";
+import { body, letter, line, rect, svg, text, type Box } from "./svg.ts";
 
 const BOXES: readonly Box[] = [
   { id: 0, left: 30, top: 20, right: 190, bottom: 85 },
@@ -21,12 +21,7 @@ function sorted(): { box: Box; isLeft: boolean; at: number }[] {
   return endpoints;
 }
 
-const bodies = (highlighted: ReadonlySet<number> = new Set()): string =>
-  BOXES.map(
-    (box) =>
-      rect(box, `body body-${box.id}${highlighted.has(box.id) ? " highlighted" : ""}`) +
-      text((box.left + box.right) / 2, (box.top + box.bottom) / 2 + 6, letter(box.id), "name"),
-  ).join("");
+const bodies = (highlighted: readonly Box[] = []): string => BOXES.map((box) => body(box, highlighted.includes(box) ? "body highlighted" : "body")).join("");
 
 export function endpointArray(): string {
   const entries = sorted();
@@ -36,7 +31,7 @@ export function endpointArray(): string {
     return (
       line(at, box.top, at, FLOOR, "drop") +
       line(at, FLOOR, x, 222, "drop") +
-      rect({ left: x - 20, top: 224, right: x + 20, bottom: 256 }, `cell body-${box.id}`) +
+      rect({ left: x - 20, top: 224, right: x + 20, bottom: 256 }, "cell", box.id) +
       text(x, 246, isLeft ? `(${letter(box.id)}` : `${letter(box.id)})`, "mono")
     );
   });
@@ -55,13 +50,13 @@ export function sweepLine(): string {
   const inside = BOXES.filter(({ left, right }) => left <= at && right >= at);
   const pairs: string[] = [];
   sweep(sorted(), (a: Box, b: Box) => pairs.push(`${letter(a.id)}-${letter(b.id)}`));
-  const bars = BOXES.map(({ id, left, right }) => line(left, FLOOR + 14 + 11 * id, right, FLOOR + 14 + 11 * id, `bar body-${id}${left > at ? " later" : ""}`));
+  const bars = BOXES.map(({ id, left, right }) => line(left, FLOOR + 14 + 11 * id, right, FLOOR + 14 + 11 * id, left > at ? "bar later" : "bar", id));
   return svg(
     "sweep-line",
     WIDTH,
     280,
     `A vertical line has just entered box D and touches ${inside.map(({ id }) => letter(id)).join(" and ")}. Pairs found in the whole sweep: ${pairs.join(", ")}.`,
-    bodies(new Set(inside.map(({ id }) => id))) + bars.join("") + line(at, 6, at, 256, "sweep") +
+    bodies(inside) + bars.join("") + line(at, 6, at, 256, "sweep") +
       text(at + 6, 272, `touching = { ${inside.map(({ id }) => letter(id)).join(", ")} }`, "mono"),
   );
 }

@@ -26,10 +26,10 @@ export function allPairs(): string {
 }
 
 const CURVES = [
-  { method: "global pairwise", sort: null, world: "square", name: "global pairwise" },
-  { method: "sorted pairwise", sort: "insertion sort", world: "square", name: "sorted pairwise" },
-  { method: "swap-driven sweep", sort: null, world: "square", name: "swap-driven, one axis" },
-  { method: "swap-driven sweep on every axis", sort: null, world: "square", name: "swap-driven, every axis" },
+  { method: "global pairwise", sort: null, world: "square", name: "global pairwise", color: 4 },
+  { method: "sorted pairwise", sort: "insertion sort", world: "square", name: "sorted pairwise", color: 3 },
+  { method: "swap-driven sweep", sort: null, world: "square", name: "swap-driven, one axis", color: 1 },
+  { method: "swap-driven sweep on every axis", sort: null, world: "square", name: "swap-driven, every axis", color: 0 },
 ] as const;
 
 /** A plot of curves: where it lies, in units of the figure. */
@@ -50,11 +50,11 @@ export function measured(): string {
   const wideCurves = curvesIn(wide);
   // Labels stand in a column at the right, in the order of the curves and far enough apart.
   let below = -Infinity;
-  const beside = wideCurves.map(({ at, endX, endY, name, slope }) => {
+  const beside = wideCurves.map(({ endX, endY, name, slope }) => {
     below = Math.max(endY, below + 54);
     const x = wide.left + wide.width;
     return line(endX + 3, endY, x + 12, below, "leader") +
-      text(x + 18, below + 1, name, `label curve-name-${at}`, "start") +
+      text(x + 18, below + 1, name, "label", "start") +
       text(x + 18, below + 24, `grows like n^${slope.toFixed(2)}`, "label small", "start");
   });
   // A letter at the end of each curve leads to its name: color is not the only sign.
@@ -90,14 +90,14 @@ function gridIn(frame: Frame): string {
 }
 
 /** The curves in a frame, the one that ends highest first. */
-function curvesIn(frame: Frame): { at: number; drawn: string; endX: number; endY: number; name: string; slope: number }[] {
-  const curves = CURVES.map(({ method, sort, world, name }, at) => {
+function curvesIn(frame: Frame): { drawn: string; endX: number; endY: number; name: string; slope: number }[] {
+  const curves = CURVES.map(({ method, sort, world, name, color }) => {
     const variant = complexity.variants.find((found) => found.method === method && (found.sort ?? null) === sort);
     const row = variant?.rows.find((found) => found.world === world);
     if (!row) throw new Error(`docs/complexity.json has no ${method} in a ${world}`);
     const points = row.n.map((n, i) => [xIn(frame, n), yIn(frame, row.operations[i] as number)] as const);
     const [endX, endY] = points.at(-1) as readonly [number, number];
-    return { at, drawn: path(points, `curve curve-${at}`), endX, endY, name, slope: row.slope };
+    return { drawn: path(points, "curve", color), endX, endY, name, slope: row.slope };
   });
   return curves.sort((a, b) => a.endY - b.endY);
 }
