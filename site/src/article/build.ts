@@ -6,6 +6,7 @@ import type { Plugin } from "vite";
 import { figures } from "./figures/index.ts";
 import { legend } from "./legend.ts";
 import { highlight, listing } from "../code/listing.ts";
+import { below, codesIn } from "../code/readme.ts";
 import { withPosters } from "./poster.ts";
 import { spaceTime } from "./space-time.ts";
 import { inside as fastSweep } from "../lanes/picture.ts";
@@ -64,24 +65,13 @@ function section(name: string): { name: string; title: string; html: string } {
   return { name, title, html };
 }
 
-/** How to call the library. */
-const TRIAL = `import { init, findPairs } from "sweep-and-prune";
-
-await init();
-const boxes = new Float32Array([
-  0, 0, 2, 2, // minX, minY, maxX, maxY
-  5, 5, 6, 6,
-  2, 1, 3, 4,
-]);
-findPairs(boxes, { dimensions: 2 }); // 0, 2`;
-
 /** Fills in the listings, legends and drawings. */
 function expand(page: string): string {
   return expandStructures(withPosters(page))
     .replace("<space-time></space-time>", () => `<space-time>${spaceTime()}</space-time>`)
     .replace("<fast-sweep></fast-sweep>", () => `<fast-sweep>${fastSweep(readFileSync(COLUMNS, "utf8"))}</fast-sweep>`)
     .replaceAll("%SITE%", SITE)
-    .replace("<trial-code></trial-code>", () => highlight(TRIAL, "javascript", "how to call the library"))
+    .replace("<trial-code></trial-code>", () => highlight(codesIn(below("js/README.md", "Example"))[0]!.text, "js", "how to call the library"))
     .replace(/<code-listing name="([^"]*)"(?: follows="([^"]*)")?><\/code-listing>/g, (_, name: string, follows?: string) =>
       listing(name, follows),
     )

@@ -10,24 +10,7 @@ interface Interval {
 /** What this file needs of the demo's element. */
 type Demo = Element & { balls: readonly (readonly number[])[] };
 
-/** The results for three intervals. */
-interface Verdict {
-  /** Whether A ends before B begins, and B before C. */
-  readonly ab: boolean;
-  readonly bc: boolean;
-  /** Whether A ends before C begins. */
-  readonly ac: boolean;
-  /** Whether that follows from the other two. */
-  readonly skipped: boolean;
-  readonly why: string;
-}
-
-export function judge(a: Interval, b: Interval, c: Interval): Verdict {
-  const [ab, bc, ac] = [a.right < b.left, b.right < c.left, a.right < c.left];
-  const skipped = ab && bc;
-  return { ab, bc, ac, skipped, why: reason(ab, bc) };
-}
-
+/** Whether the third test is needed, if A ends before B begins or not, and B before C or not. */
 function reason(ab: boolean, bc: boolean): string {
   if (ab && bc) return "A ends before B begins, and B ends before C begins. So A ends before C begins: we can skip the third test.";
   if (ab) return "A ends before B begins, but B does not end before C begins. So we know nothing about A and C: they must be tested.";
@@ -46,11 +29,11 @@ export class TransitivityCode extends HTMLElement {
 
   #show([a, b, c]: readonly Interval[]): void {
     if (!a || !b || !c) return;
-    const { ab, bc, ac, skipped, why } = judge(a, b, c);
-    this.#set("ab", line("A", a, "B", b, ab));
-    this.#set("bc", line("B", b, "C", c, bc));
-    this.#set("ac", skipped ? "// A and C: skipped" : line("A", a, "C", c, ac));
-    this.#set("why", why);
+    const [ab, bc] = [a.right < b.left, b.right < c.left];
+    this.#set("ab", line("A", a, "B", b));
+    this.#set("bc", line("B", b, "C", c));
+    this.#set("ac", ab && bc ? "// A and C: skipped" : line("A", a, "C", c));
+    this.#set("why", reason(ab, bc));
   }
 
   #set(part: string, text: string): void {
@@ -60,6 +43,6 @@ export class TransitivityCode extends HTMLElement {
   }
 }
 
-function line(one: string, { right }: Interval, other: string, { left }: Interval, holds: boolean): string {
-  return `${one}.right < ${other}.left // ${holds}: ${Math.round(right)} < ${Math.round(left)}`;
+function line(one: string, { right }: Interval, other: string, { left }: Interval): string {
+  return `${one}.right < ${other}.left // ${right < left}: ${Math.round(right)} < ${Math.round(left)}`;
 }

@@ -5,10 +5,9 @@
 import { readFileSync } from "node:fs";
 import { createCssVariablesTheme, createHighlighter, type ShikiTransformer } from "shiki";
 
-const LANGUAGES = ["javascript", "rust", "python", "shell", "c", "cpp"] as const;
-export type Language = (typeof LANGUAGES)[number];
+const LANGUAGES = ["javascript", "rust", "python", "shell", "c", "cpp"];
 const colors = createCssVariablesTheme({ name: "css-variables", variablePrefix: "--code-" });
-const highlighter = await createHighlighter({ langs: [...LANGUAGES], themes: [colors] });
+const highlighter = await createHighlighter({ langs: LANGUAGES, themes: [colors] });
 
 /** Tags at the end of a line, with the slashes before them if nothing else stands behind those. */
 const TAGS = /\s*(?:\/\/)?((?:\s+@[a-z]+)+)\s*$/;
@@ -39,7 +38,7 @@ export function listing(name: string, follows: string | undefined): string {
 }
 
 /** Code in color, each line with what it does. */
-export function highlight(code: string, lang: Language, label: string, kinds: readonly string[] = []): string {
+export function highlight(code: string, lang: string, label: string, kinds: readonly string[] = []): string {
   const marks: ShikiTransformer = {
     pre(node) {
       node.properties = { tabindex: "0", role: "region", "aria-label": `Listing: ${label}` };

@@ -9,6 +9,7 @@ import { key } from "../listings/key.js";
 import { overlaps } from "../listings/overlaps.js";
 import { quicksort } from "../listings/quicksort.js";
 import { sweep } from "../listings/sweep.js";
+import { randomFrom } from "../random.ts";
 import { SWAP_WORLDS } from "./swap-worlds.ts";
 
 export interface Verdict {
@@ -32,19 +33,9 @@ function allPairs(boxes: readonly Box[], meets: (a: Box, b: Box) => boolean = ov
   return new Map(boxes.flatMap((a, at) => boxes.slice(at + 1).filter((b) => meets(a, b)).map((b): [string, Pair] => [key(a, b), [a, b]])));
 }
 
-/** Numbers from 0 up to, but not including, 1: the same at each run. */
-function generator(seed: number): () => number {
-  return () => {
-    seed = (seed + 0x6d2b79f5) | 0;
-    let t = Math.imul(seed ^ (seed >>> 15), 1 | seed);
-    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
-    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
-  };
-}
-
 /** A few boxes on so coarse a grid that many touch, coincide or enclose each other: few first, so that a mistake shows in a small world. */
 function world(seed: number): Box[] {
-  const random = generator(seed);
+  const random = randomFrom(seed);
   const whole = (most: number): number => Math.floor(random() * (most + 1));
   return Array.from({ length: 2 + Math.floor(seed / 60) }, (_, id) => {
     const [left, top] = [whole(20), whole(14)];
@@ -124,7 +115,7 @@ function breakKey(exports: Exports): Verdict {
     begin(boxes: Box[]): unknown;
     update(state: unknown): Pair[];
   };
-  const random = generator(3);
+  const random = randomFrom(3);
   const boxes = world(4 * 60).map((box) => ({ ...box }));
   const state = begin(boxes);
   let lost: Verdict | undefined;
@@ -147,7 +138,7 @@ function breakKey(exports: Exports): Verdict {
 
 /** Levels of a game, each with boxes of about one size. */
 function levels(): { name: string; boxes: Box[] }[] {
-  const random = generator(11);
+  const random = randomFrom(11);
   const between = (from: number, to: number): number => Math.round(from + (to - from) * random());
   const level = (name: string, places: readonly (readonly [x: number, y: number])[]): { name: string; boxes: Box[] } => ({
     name,

@@ -1,6 +1,7 @@
 // What the figure of three structures shows: three panels of one world, as html. Written when the site is built, and
 // again whenever a box is moved.
 
+import { rect } from "../article/figures/svg.ts";
 import { type Box, grid, HEIGHT, linesOf, type MemoryArray, type Pair, sweep, tree, WIDTH, type Work, world } from "./structures.ts";
 
 export const structures = [
@@ -66,11 +67,6 @@ function memory(arrays: readonly MemoryArray[]): string {
   const rows = all.map(({ lines, name }) => `<span class="memory-row" title="${name}">${lines.map((isLoaded) => `<i${isLoaded ? ' class="loaded"' : ""}></i>`).join("")}</span>`);
   return `<div class="memory" role="img" aria-label="Memory: ${all.map(({ name, lines }) => `${name}, ${lines.filter(Boolean).length} of ${lines.length} cache lines`).join("; ")}">${rows.join("")}</div>
         <p class="structure-count"><strong data-part="lines">${loaded}</strong> cache lines for this box</p>`;
-}
-
-function rect({ left, top, right, bottom }: Box, kind: string): string {
-  const round = (value: number): number => Math.round(value * 10) / 10;
-  return `<rect x="${round(left)}" y="${round(top)}" width="${round(right - left)}" height="${round(bottom - top)}" class="${kind}"/>`;
 }
 
 function partners(tests: readonly Pair[], id: number): number[] {
