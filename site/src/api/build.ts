@@ -2,23 +2,22 @@
 
 import { existsSync } from "node:fs";
 import type { Plugin } from "vite";
-import { highlight } from "../code/listing.ts";
+import { COPY, highlight } from "../code/listing.ts";
 import { below, type Code, codesIn } from "../code/readme.ts";
 import { REPOSITORY } from "../shell/pages.ts";
 
 /** Whose README begins with how to install it, and with an example. */
 const PACKAGES = { rust: "core/README.md", js: "js/README.md", python: "python/README.md" } as const;
 
-/** Code with a button that copies it. */
-const shown = ({ text, language }: Code, what: string, label: string): string =>
-  `<div class="listing">${highlight(text, language, label)}<button type="button" class="small" data-part="copy" aria-label="Copy ${what}">Copy</button></div>`;
+/** Code below a caption, with a button that copies it. */
+const listing = ({ text, language }: Code, caption: string, label: string, what = "the example"): string =>
+  `<figure class="listing"><figcaption><span>${caption}</span>${COPY.replace(">", ` aria-label="Copy ${what}">`)}</figcaption>${highlight(text, language, label)}</figure>`;
 
 /** How to install a package and how to use it, as its README begins. */
 function beginning(file: string): string {
   const [installation, example] = codesIn(below(file)) as [Code, Code];
-  return `<div class="examples"><p>Install</p>${shown(installation, installation.text, `installation by ${installation.text}`)}<p>Find pairs</p>${shown(example, "the example", `an example in ${example.language}`)}</div>`;
+  return `<div class="examples">${listing(installation, "Install", `installation by ${installation.text}`, installation.text)}${listing(example, "Find pairs", `an example in ${example.language}`)}</div>`;
 }
-
 
 /** What the README of the repository says about whether the packages can be installed by name; nothing once they can. */
 function availability(): string {
@@ -51,7 +50,7 @@ export const api: Plugin = {
       page
         .replace("<api-availability></api-availability>", availability)
         .replace(/<api-example name="(rust|js|python)"><\/api-example>/g, (_, name: keyof typeof PACKAGES) => beginning(PACKAGES[name]))
-        .replace(/<guide-code file="([^"]*)" heading="([^"]*)"><\/guide-code>/g, (_, file: string, heading: string) => shown(codesIn(below(file, heading))[0]!, "the example", `sweep-and-prune: ${heading}`))
+        .replace(/<guide-code file="([^"]*)" heading="([^"]*)"><\/guide-code>/g, (_, file: string, heading: string) => listing(codesIn(below(file, heading))[0]!, heading, `sweep-and-prune: ${heading}`))
         .replace(/<guide-table file="([^"]*)" heading="([^"]*)"><\/guide-table>/g, (_, file: string, heading: string) => tableBelow(file, heading))
         .replace(/<api-link name="(rust|js|python|guide)">(.*?)<\/api-link>/g, (_, name: keyof typeof DOCUMENTATION, text: string) => {
           const path = DOCUMENTATION[name];

@@ -32,10 +32,13 @@ export function listing(name: string, follows: string | undefined): string {
     : "";
   return `
     <figure class="listing"${follows ? ` data-follows="${follows}"` : ""}${edit ? ` data-listing="${name}"` : ""}>
-      <figcaption><span>${name}.js</span>${follow}${edit}<button type="button" class="small" data-part="copy">Copy</button></figcaption>
+      <figcaption><span>${name}.js</span>${follow}${edit}${COPY}</figcaption>
       ${highlight(code, "javascript", `${name}.js`, kinds)}
     </figure>`;
 }
+
+/** The button that copies the code of its listing. */
+export const COPY = `<button type="button" class="small" data-part="copy">Copy</button>`;
 
 /** Code in color, each line with what it does. */
 export function highlight(code: string, lang: string, label: string, kinds: readonly string[] = []): string {
