@@ -2,13 +2,14 @@
 // off, for all listings at once; the choice is stored.
 
 import type { DemoEvent } from "sweep-and-prune-classroom/demo";
+import { store, stored } from "../shell/stored.ts";
 
 const KEY = "follow-demos";
 
 export function followDemos(): void {
   const listings = [...document.querySelectorAll<HTMLElement>(".listing[data-follows]")];
   const buttons = listings.map((listing) => listing.querySelector<HTMLButtonElement>("[data-part=follow]"));
-  let follows = stored();
+  let follows = stored(KEY) !== "off";
 
   const show = (): void => {
     for (const button of buttons) button?.setAttribute("aria-pressed", String(follows));
@@ -18,7 +19,7 @@ export function followDemos(): void {
   for (const button of buttons) {
     button?.addEventListener("click", () => {
       follows = !follows;
-      store(follows);
+      store(KEY, follows ? undefined : "off");
       show();
     });
   }
@@ -35,22 +36,5 @@ function highlight(listing: HTMLElement, event: DemoEvent | undefined): void {
   for (const [at, line] of listing.querySelectorAll<HTMLElement>("pre .line").entries()) {
     const isAtWork = event?.line === undefined ? line.dataset["kinds"]?.split(" ").includes(event?.kind ?? "none") : event.line === at + 1;
     line.classList.toggle("at-work", isAtWork === true);
-  }
-}
-
-function stored(): boolean {
-  try {
-    return localStorage.getItem(KEY) !== "off";
-  } catch {
-    return true;
-  }
-}
-
-function store(follows: boolean): void {
-  try {
-    if (follows) localStorage.removeItem(KEY);
-    else localStorage.setItem(KEY, "off");
-  } catch {
-    // Without storage the choice lasts as long as the page.
   }
 }

@@ -2,7 +2,7 @@
 // Its first picture is written when the site is built; afterwards a moment of it is chosen by hand.
 
 import { endpointsOf, precedes, refresh } from "../listings/endpoints.js";
-import { letter, line, path, svg, text, type Box } from "./figures/svg.ts";
+import { letter, line, path, svg, text, type Box } from "../svg.ts";
 
 const WIDTH = 560;
 const HEIGHT = 300;

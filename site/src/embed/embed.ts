@@ -6,7 +6,7 @@ import { readShared } from "sweep-and-prune-classroom/demo";
 const place = document.querySelector("#demos")!;
 
 function show(): void {
-  if (location.hash === "#three-structures") return void import("../structures/alone.ts").then(({ threeStructures }) => place.replaceChildren(threeStructures()));
+  if (location.hash === "#three-structures") return void import("../structures/alone.ts").then(({ ThreeStructures }) => place.replaceChildren(new ThreeStructures()));
   const demos = location.hash.slice(1).split("|").map(demoOf);
   const [first] = demos;
   if (demos.length === 1) return place.replaceChildren(first!);

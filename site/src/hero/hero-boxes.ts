@@ -291,13 +291,13 @@ export class HeroBoxes extends PanelElement {
     const isEvery = this.#method === "global pairwise";
     const touched = this.#boxes.touchedBy(this.#line * this.#boxes.width);
     const partners = this.#partnersOf(touched.at(-1)).length;
-    this.#set("boxes-value", formatCount(count));
-    this.#set("count", formatCount(tests));
-    this.#set("sort", isEvery ? "no sort" : `and ${formatCount(comparisons)} comparisons to sort`);
-    this.#set("ms", this.#isTooMuch ? `about ${Math.max(1, Math.round(ms)).toLocaleString("en")} ms a frame here, so the picture stands still` : `${ms.toFixed(ms < 10 ? 1 : 0)} ms`);
-    this.#set("pairs", formatCount(pairs));
-    this.#set("at-line", isEvery ? `tested against all ${formatCount(partners)} others` : `tested against ${formatCount(partners)} others that the line still touches`);
-    this.#set("fewer", isEvery ? `${formatCount(count)} boxes make ${formatCount(all)} pairs` : `${formatCount(Math.floor(all / Math.max(tests, 1)))} times fewer than the ${formatCount(all)} pairs`);
+    this.write("boxes-value", formatCount(count));
+    this.write("count", formatCount(tests));
+    this.write("sort", isEvery ? "no sort" : `and ${formatCount(comparisons)} comparisons to sort`);
+    this.write("ms", this.#isTooMuch ? `about ${Math.max(1, Math.round(ms)).toLocaleString("en")} ms a frame here, so the picture stands still` : `${ms.toFixed(ms < 10 ? 1 : 0)} ms`);
+    this.write("pairs", formatCount(pairs));
+    this.write("at-line", isEvery ? `tested against all ${formatCount(partners)} others` : `tested against ${formatCount(partners)} others that the line still touches`);
+    this.write("fewer", isEvery ? `${formatCount(count)} boxes make ${formatCount(all)} pairs` : `${formatCount(Math.floor(all / Math.max(tests, 1)))} times fewer than the ${formatCount(all)} pairs`);
     this.named("bar").style.inlineSize = `${Math.max((100 * tests) / all, 0.3)}%`;
     this.showTransport();
     const line = this.named<HTMLInputElement>("line");
@@ -306,11 +306,6 @@ export class HeroBoxes extends PanelElement {
     this.named("boxes").setAttribute("aria-valuetext", formatCount(count));
     this.dataset["tests"] = String(tests);
     this.dataset["pairs"] = String(pairs);
-  }
-
-  #set(part: string, text: string): void {
-    const element = this.named(part);
-    if (element.textContent !== text) element.textContent = text;
   }
 }
 

@@ -96,9 +96,14 @@ export abstract class PanelElement extends HTMLElement {
     });
   }
 
+  /** Writes the text of a part. What is the same is not written: it would be read out again. */
+  protected write(part: string, text: string): void {
+    const place = this.named(part);
+    if (place.textContent !== text) place.textContent = text;
+  }
+
   protected say(text: string): void {
-    const status = this.named("status");
-    if (status.textContent !== text) status.textContent = text;
+    this.write("status", text);
   }
 
   protected message(text: string): void {

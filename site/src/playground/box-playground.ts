@@ -645,9 +645,7 @@ export class BoxPlayground extends PanelElement {
 
   #showPreview(): void {
     const snapshot = this.#snapshot();
-    const code = this.named("preview");
-    const text = snapshot ? preview(snapshot, this.#format()) : " ";
-    if (code.textContent !== text) code.textContent = text;
+    this.write("preview", snapshot ? preview(snapshot, this.#format()) : " ");
   }
 
   /** Tells what is going on: seldom enough to be read out. */

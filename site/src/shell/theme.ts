@@ -1,5 +1,7 @@
 // Light or dark: what the visitor chose, or else what the system says.
 
+import { store } from "./stored.ts";
+
 export type Choice = "auto" | "light" | "dark";
 
 const system = matchMedia("(prefers-color-scheme: dark)");
@@ -13,12 +15,7 @@ export function choice(): Choice {
 
 /** Chooses, for this page and those visited later. */
 export function choose(chosen: Choice): void {
-  try {
-    if (chosen === "auto") localStorage.removeItem("theme");
-    else localStorage.setItem("theme", chosen);
-  } catch {
-    // Without storage the choice lasts as long as the page.
-  }
+  store("theme", chosen === "auto" ? undefined : chosen);
   apply(chosen);
 }
 

@@ -4,5 +4,4 @@ import "./structures.css";
 import { ThreeStructures } from "./three-structures.ts";
 
 customElements.define("three-structures", ThreeStructures);
-
-export const threeStructures = (): HTMLElement => new ThreeStructures();
+export { ThreeStructures };

@@ -1,7 +1,7 @@
 // What the figure of three structures shows: three panels of one world, as html. Written when the site is built, and
 // again whenever a box is moved.
 
-import { rect } from "../article/figures/svg.ts";
+import { rect } from "../svg.ts";
 import { type Box, grid, HEIGHT, linesOf, type MemoryArray, type Pair, sweep, tree, WIDTH, type Work, world } from "./structures.ts";
 
 export const structures = [
@@ -37,7 +37,7 @@ export function panels(boxes: readonly Box[], chosen: number): string {
         <p class="structure-name"><strong>${name}</strong> ${says}</p>
         ${picture(boxes, work, chosen, ofChosen, `${name}: ${boxes.length} boxes; box ${chosen + 1} is tested against ${ofChosen.size} others.`)}
         ${memory(work.memoryOf(chosen))}
-        <div class="structure-bar" aria-hidden="true"><span style="width:${share.toFixed(1)}%"></span></div>
+        <div class="work-bar" aria-hidden="true"><span style="width:${share.toFixed(1)}%"></span></div>
         <p class="structure-count"><strong data-part="tests">${work.tests.length}</strong> box tests, and ${work.beside}</p>
       </figure>`;
     })

@@ -3,6 +3,7 @@
 import type { Verdict } from "../edit/checks.ts";
 import type { Editor } from "../edit/editor.ts";
 import type { Sandbox } from "../edit/sandbox.ts";
+import { letter, line, rect, text } from "../svg.ts";
 
 let sandbox: Sandbox | undefined;
 
@@ -55,11 +56,9 @@ function picture(boxes: NonNullable<Verdict["boxes"]>, pair: Verdict["pair"]): s
   const center = (id: number): [number, number] => [x((boxes[id]!.left + boxes[id]!.right) / 2), y((boxes[id]!.top + boxes[id]!.bottom) / 2)];
   const shown = boxes.map((box) => {
     const [cx, cy] = center(box.id);
-    const name = box.id < 26 ? `<text x="${cx}" y="${cy + 5}">${String.fromCharCode(65 + box.id)}</text>` : "";
-    return `<rect x="${x(box.left)}" y="${y(box.top)}" width="${scale * (box.right - box.left)}" height="${scale * (box.bottom - box.top)}"/>${name}`;
+    return rect({ left: x(box.left), top: y(box.top), right: x(box.right), bottom: y(box.bottom) }, "box") + (box.id < 26 ? text(cx, cy + 5, letter(box.id)) : "");
   });
-  const [from, to] = pair ? [center(pair[0].id), center(pair[1].id)] : [];
-  const line = from && to ? `<line x1="${from[0]}" y1="${from[1]}" x2="${to[0]}" y2="${to[1]}"/>` : "";
+  const joined = pair ? line(...center(pair[0].id), ...center(pair[1].id), "pair") : "";
   const [width, height] = [x(right) + 8, y(bottom) + 8];
-  return `<svg viewBox="0 0 ${width} ${height}" width="${width}" height="${height}" role="img" aria-label="The boxes in which that shows">${shown.join("")}${line}</svg>`;
+  return `<svg viewBox="0 0 ${width} ${height}" width="${width}" height="${height}" role="img" aria-label="The boxes in which that shows">${shown.join("")}${joined}</svg>`;
 }

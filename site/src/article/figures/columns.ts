@@ -2,7 +2,7 @@
 
 import { overlaps } from "../../listings/overlaps.js";
 import { randomFrom } from "../../random.ts";
-import { line, rect, svg, text, type Box } from "./svg.ts";
+import { line, rect, svg, text, type Box } from "../../svg.ts";
 
 const SIDE = 330;
 const COLUMNS = 6;

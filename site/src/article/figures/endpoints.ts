@@ -3,7 +3,7 @@
 import { endpointsOf } from "../../listings/endpoints.js";
 import { quicksort } from "../../listings/quicksort.js";
 import { sweep } from "../../listings/sweep.js";
-import { body, letter, line, rect, svg, text, type Box } from "./svg.ts";
+import { body, letter, line, rect, svg, text, type Box } from "../../svg.ts";
 
 const BOXES: readonly Box[] = [
   { id: 0, left: 30, top: 20, right: 190, bottom: 85 },

@@ -1,7 +1,7 @@
 // How work grows with the number of boxes: the pairs, and the operations measured in docs/.
 
 import complexity from "../../../../docs/complexity.json" with { type: "json" };
-import { letter, line, path, svg, text } from "./svg.ts";
+import { letter, line, path, svg, text } from "../../svg.ts";
 
 const count = new Intl.NumberFormat("en").format;
 const short = new Intl.NumberFormat("en", { notation: "compact" }).format;
