@@ -120,22 +120,17 @@ export class BoxPlayground extends PanelElement {
       this.message(this.#noPicture);
     });
     this.onResize(["picture", "orbit", "lines"], () => {
-      this.#view = undefined;
       this.#balls.resize();
-      this.requestShow();
+      this.#setView(undefined);
     });
     this.followAwake();
-    const setView = (view: Window2 | undefined): void => {
-      this.#view = view;
-      this.requestShow();
-    };
     const button = (part: string): HTMLButtonElement => this.named<HTMLButtonElement>(part);
     this.#hands = new Hands({
       surface: this.named("surface"),
       buttons: { draw: button("draw"), add: button("add"), delete: button("delete"), undo: button("undo"), clear: button("clear") },
       shown: () => this.#shown,
       view: () => this.#view,
-      setView,
+      setView: (view) => this.#setView(view),
       setHeld: (isHeld) => {
         this.#isHeld = isHeld;
         this.pace();
@@ -143,7 +138,7 @@ export class BoxPlayground extends PanelElement {
       },
       setBoxes: (shown) => this.#setOwn(shown),
       select: (text) => {
-        this.named("selected").textContent = text;
+        this.write("selected", text);
         this.requestShow();
       },
     });
@@ -284,12 +279,9 @@ export class BoxPlayground extends PanelElement {
     const plot = this.named<HTMLSelectElement>("plot");
     const log = this.named<HTMLInputElement>("log");
     log.checked = this.#state.log !== "no";
-    const keep = (key: "plot" | "log", text: string): void => {
-      this.#keep(key, text);
-      this.#drawPlot();
-    };
-    plot.addEventListener("change", () => keep("plot", plot.value));
-    log.addEventListener("change", () => keep("log", log.checked ? "yes" : "no"));
+    plot.addEventListener("change", () => this.#keep("plot", plot.value));
+    log.addEventListener("change", () => this.#keep("log", log.checked ? "yes" : "no"));
+    for (const control of [plot, log]) control.addEventListener("change", () => this.#drawPlot());
   }
 
   /** Shows what the state says, or the default where there is no such thing, or the first. */
@@ -309,10 +301,12 @@ export class BoxPlayground extends PanelElement {
       },
     );
     this.named("links").addEventListener("change", () => this.requestShow());
-    this.onClick("fit", () => {
-      this.#view = undefined;
-      this.requestShow();
-    });
+    this.onClick("fit", () => this.#setView(undefined));
+  }
+
+  #setView(view: Window2 | undefined): void {
+    this.#view = view;
+    this.requestShow();
   }
 
   #bindExport(): void {
@@ -332,37 +326,29 @@ export class BoxPlayground extends PanelElement {
       if (!taken) throw new Error("there are no boxes yet");
       return taken;
     };
-    const reportDone = (text: (taken: Snapshot) => string, work: (taken: Snapshot) => Promise<void>): void => {
-      const output = this.named("exported");
-      const done = async (): Promise<string> => {
-        const taken = await snapshot();
-        await work(taken);
-        return text(taken);
-      };
-      done().then(
-        (text) => (output.textContent = text),
-        (error: unknown) => (output.textContent = `That did not work: ${messageOf(error)}`),
-      );
-    };
-    this.onClick("copy", () =>
-      reportDone(({ step }) => `Step ${formatCount(step)} copied.`, async (taken) => navigator.clipboard.writeText(await write(taken, this.#format()))),
-    );
-    this.onClick("share", () =>
-      reportDone(({ step }) => `Address of step ${formatCount(step)} copied.`, async ({ address }) => {
-        if (address === "") throw new Error(`more than ${MOST_IN_ADDRESS} boxes of your own do not fit into an address; download them instead, and import them there`);
-        await navigator.clipboard.writeText(address);
-      }),
-    );
-    this.onClick("download", () =>
-      reportDone(({ step }) => `Step ${formatCount(step)} downloaded.`, async (taken) => {
-        const { type, file } = FORMATS[this.#format()];
-        const link = document.createElement("a");
-        link.href = URL.createObjectURL(new Blob([await write(taken, this.#format())], { type }));
-        link.download = file;
-        link.click();
-        URL.revokeObjectURL(link.href);
-      }),
-    );
+    const onExport = (part: string, says: (step: string) => string, work: (taken: Snapshot) => Promise<void>): void =>
+      this.onClick(part, async () => {
+        try {
+          const taken = await snapshot();
+          await work(taken);
+          this.write("exported", says(formatCount(taken.step)));
+        } catch (error) {
+          this.write("exported", `That did not work: ${messageOf(error)}`);
+        }
+      });
+    onExport("copy", (step) => `Step ${step} copied.`, async (taken) => navigator.clipboard.writeText(await write(taken, this.#format())));
+    onExport("share", (step) => `Address of step ${step} copied.`, async ({ address }) => {
+      if (address === "") throw new Error(`more than ${MOST_IN_ADDRESS} boxes of your own do not fit into an address; download them instead, and import them there`);
+      await navigator.clipboard.writeText(address);
+    });
+    onExport("download", (step) => `Step ${step} downloaded.`, async (taken) => {
+      const { type, file } = FORMATS[this.#format()];
+      const link = document.createElement("a");
+      link.href = URL.createObjectURL(new Blob([await write(taken, this.#format())], { type }));
+      link.download = file;
+      link.click();
+      URL.revokeObjectURL(link.href);
+    });
   }
 
   /** Boxes come from a file that is chosen or dropped on the picture, or from text. */

@@ -24,8 +24,8 @@ interface Language {
   readonly file: string;
   head(snapshot: Snapshot): string;
   row(corners: readonly string[], dimensions: number): string;
-  /** Between two rows. */
-  readonly comma: string;
+  /** Between two rows, if anything. */
+  readonly comma?: string;
   tail(snapshot: Snapshot): string;
 }
 
@@ -44,7 +44,6 @@ import { findPairs, init } from "sweep-and-prune";
 const boxes = new Float32Array([
 `,
     row: (corners) => `  ${corners.join(", ")},`,
-    comma: "",
     tail: ({ world, pairs }) => `
 ]);
 
@@ -77,7 +76,6 @@ static BOXES: [([f32; ${snapshot.world.dimensions}], [f32; ${snapshot.world.dime
       const floats = corners.map((text) => (/[.e]/.test(text) ? text : `${text}.0`));
       return `    ([${floats.slice(0, dimensions).join(", ")}], [${floats.slice(dimensions).join(", ")}]),`;
     },
-    comma: "",
     tail: () => "\n];\n",
   },
   py: {
@@ -92,7 +90,6 @@ import sweep_and_prune as sap
 boxes = np.array([
 `,
     row: (corners) => `    [${corners.join(", ")}],`,
-    comma: "",
     tail: ({ pairs }) => `
 ], dtype=np.float32)
 
@@ -118,7 +115,6 @@ print(len(pairs))  # ${pairs}
     file: "boxes.csv",
     head: ({ world }) => `${["min", "max"].flatMap((end) => ["x", "y", "z"].slice(0, world.dimensions).map((axis) => `${end}_${axis}`)).join(",")}\n`,
     row: (corners) => corners.join(","),
-    comma: "",
     tail: () => "\n",
   },
 };
@@ -134,7 +130,7 @@ export async function write(snapshot: Snapshot, format: Format): Promise<string>
     if (box % AT_ONCE === AT_ONCE - 1) await new Promise((resolve) => setTimeout(resolve));
     rows.push(row(snapshot, language, box));
   }
-  return language.head(snapshot) + rows.join(`${language.comma}\n`) + language.tail(snapshot);
+  return assembled(snapshot, language, rows);
 }
 
 /** The beginning and the end of it. */
@@ -143,8 +139,10 @@ export function preview(snapshot: Snapshot, format: Format): string {
   const shown = Math.min(snapshot.world.boxes, 3);
   const rows = Array.from({ length: shown }, (_, box) => row(snapshot, language, box));
   if (shown < snapshot.world.boxes) rows.push(`${format === "js" ? "  " : "    "}... ${formatCount(snapshot.world.boxes - shown)} more`);
-  return language.head(snapshot) + rows.join(`${language.comma}\n`) + language.tail(snapshot);
+  return assembled(snapshot, language, rows);
 }
+
+const assembled = (snapshot: Snapshot, { head, comma = "", tail }: Language, rows: readonly string[]): string => head(snapshot) + rows.join(`${comma}\n`) + tail(snapshot);
 
 function row({ boxes, world }: Snapshot, language: Language, box: number): string {
   const length = 2 * world.dimensions;
