@@ -4,6 +4,7 @@ import "sweep-and-prune-classroom/demo.css";
 import { startArticle } from "./article/article.ts";
 import { HeroBoxes } from "./hero/hero-boxes.ts";
 import { showLoadFailure } from "./load-failed.ts";
+import { whenNear } from "./panel/awake.ts";
 
 customElements.define("hero-boxes", HeroBoxes);
 
@@ -23,15 +24,7 @@ function loadDemos(): void {
   });
 }
 
-const near = new IntersectionObserver(
-  (entries) => {
-    if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
-    near.disconnect();
-    loadDemos();
-  },
-  { rootMargin: "300px" },
-);
-for (const element of document.querySelectorAll(DEMOS)) near.observe(element);
+void whenNear(document.querySelectorAll(DEMOS)).then(loadDemos);
 // A link into the article: its demos are fetched before the page is laid out.
 if (document.getElementById(location.hash.slice(1))?.matches(`:has(${DEMOS}), section:has(${DEMOS}) *`)) loadDemos();
 

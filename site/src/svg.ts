@@ -1,13 +1,7 @@
 // What all figures are drawn with. Colors are classes of article.css, so that a figure is light or
 // dark with its page.
 
-export interface Box {
-  readonly id: number;
-  readonly left: number;
-  readonly top: number;
-  readonly right: number;
-  readonly bottom: number;
-}
+import type { Box } from "./box.ts";
 
 /** A whole figure. `description` says what it shows, for readers who do not see it. */
 export function svg(name: string, width: number, height: number, description: string, inside: string): string {

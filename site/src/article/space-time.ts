@@ -1,8 +1,9 @@
 // `<space-time>`: endpoints as lines over time. Where two lines cross, insertion sort swaps, and each swap is one of four cases.
 // Its first picture is written when the site is built; afterwards a moment of it is chosen by hand.
 
+import type { Box } from "../box.ts";
 import { endpointsOf, precedes, refresh } from "../listings/endpoints.js";
-import { letter, line, path, svg, text, type Box } from "../svg.ts";
+import { letter, line, path, svg, text } from "../svg.ts";
 
 const WIDTH = 560;
 const HEIGHT = 300;

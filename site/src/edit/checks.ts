@@ -2,7 +2,8 @@
 
 import { compile as swapDriven } from "virtual:listing/swap-driven";
 import { findPairs as byCenter } from "./by-center.js";
-import type { Box, Compile, Endpoint, Exports } from "./harness.ts";
+import type { Box } from "../box.ts";
+import type { Compile, Endpoint, Exports } from "./harness.ts";
 import { endpointsOf, precedes, refresh } from "../listings/endpoints.js";
 import { insertionSort } from "../listings/insertion-sort.js";
 import { key } from "../listings/key.js";

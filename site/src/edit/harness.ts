@@ -2,19 +2,12 @@
 // under their names, as in the article; some of them report what they do, so that the demo can show it.
 
 import type { DemoProgram, ProgramEvent } from "sweep-and-prune-classroom/demo";
+import type { Box } from "../box.ts";
 import { endpointsOf, precedes, refresh } from "../listings/endpoints.js";
 import { key } from "../listings/key.js";
 import { overlaps } from "../listings/overlaps.js";
 import { quicksort } from "../listings/quicksort.js";
 import { sweep } from "../listings/sweep.js";
-
-export interface Box {
-  readonly id: number;
-  left: number;
-  top: number;
-  right: number;
-  bottom: number;
-}
 
 export interface Endpoint {
   readonly box: Box;

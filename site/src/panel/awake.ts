@@ -18,18 +18,18 @@ export function onAwake(element: Element, changed: (awake: boolean) => void, sig
   signal.addEventListener("abort", () => observer.disconnect());
 }
 
-/** Resolves when an element is on the screen or about to be. */
-export function whenNear(element: Element, signal: AbortSignal): Promise<void> {
+/** Resolves when the first of some elements is on the screen or about to be. */
+export function whenNear(elements: Iterable<Element>, signal?: AbortSignal): Promise<void> {
   return new Promise((resolve) => {
     const observer = new IntersectionObserver(
       (entries) => {
-        if (!entries.at(-1)?.isIntersecting) return;
+        if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
         observer.disconnect();
         resolve();
       },
       { rootMargin: "300px" },
     );
-    observer.observe(element);
-    signal.addEventListener("abort", () => observer.disconnect());
+    for (const element of elements) observer.observe(element);
+    signal?.addEventListener("abort", () => observer.disconnect());
   });
 }

@@ -1,6 +1,8 @@
 import { onAwake } from "./awake.ts";
 import { LARGEST_SEED } from "./parts.ts";
-import { bindSlider } from "./slider.ts";
+
+/** A slider that is being dragged is heard at most this often. */
+const DRAG_MS = 100;
 
 /**
  * What all elements that play share: parts that the built page holds, Play, Step and Reset, and a picture that
@@ -71,8 +73,26 @@ export abstract class PanelElement extends HTMLElement {
     this.named("play").textContent = this.wanted ? "Pause" : "Play";
   }
 
+  /** A slider over a list of values that need not be evenly spaced; begins at the one nearest to `value`. */
   protected bindSlider(part: string, values: readonly number[], value: number, format: (value: number) => string, changed: (value: number) => void): void {
-    bindSlider({ slider: this.named<HTMLInputElement>(part), output: this.named(`${part}-value`), values, value, format, changed });
+    const slider = this.named<HTMLInputElement>(part);
+    const distance = (at: number): number => Math.abs(values[at]! - value);
+    slider.min = "0";
+    slider.max = String(values.length - 1);
+    slider.valueAsNumber = [...values.keys()].reduce((best, at) => (distance(at) < distance(best) ? at : best), 0);
+    const show = (value: number): void => {
+      this.write(`${part}-value`, format(value));
+      slider.setAttribute("aria-valuetext", format(value));
+    };
+    show(value);
+    let timer: ReturnType<typeof setTimeout> | undefined;
+    slider.addEventListener("input", () => {
+      show(values[slider.valueAsNumber] ?? value);
+      timer ??= setTimeout(() => {
+        timer = undefined;
+        changed(values[slider.valueAsNumber] ?? value);
+      }, DRAG_MS);
+    });
   }
 
   protected bindSeed(seed: number, changed: (seed: number) => void): void {

@@ -104,7 +104,7 @@ export class BoxPlayground extends PanelElement {
     this.named("add-algorithm").hidden = lanes === MOST_LANES;
     if (lanes > 1) this.named("lanes").innerHTML = Array.from({ length: lanes }, (_, at) => laneMarkup(at + 1)).join("");
     this.#offerByScene();
-    void whenNear(this, this.signal).then(() => this.#open());
+    void whenNear([this], this.signal).then(() => this.#open());
   }
 
   #open(): void {

@@ -2,17 +2,13 @@
 // The sweep is the library's own, with its trace. The grid and the tree are the plain ones of the textbooks.
 
 import { events, Runner } from "sweep-and-prune-classroom";
+import type { Box as NumberedBox } from "../box.ts";
 import { overlaps } from "../listings/overlaps.js";
 import { randomFrom } from "../random.ts";
 
 export const [WIDTH, HEIGHT] = [480, 240];
 
-export interface Box {
-  left: number;
-  top: number;
-  right: number;
-  bottom: number;
-}
+export type Box = Omit<NumberedBox, "id">;
 
 export type Pair = readonly [number, number];
 

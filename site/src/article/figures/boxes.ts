@@ -1,7 +1,8 @@
 // Boxes and their shadows on the axes.
 
+import type { Box } from "../../box.ts";
 import { overlaps } from "../../listings/overlaps.js";
-import { body, letter, line, rect, svg, text, type Box } from "../../svg.ts";
+import { body, letter, line, rect, svg, text } from "../../svg.ts";
 
 /** Two boxes that overlap on one axis only, and their shadows. */
 export function boxTest(): string {

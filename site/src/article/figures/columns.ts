@@ -1,8 +1,9 @@
 // How the library divides a scene, worked out on a small one: the same rules, the same counts.
 
+import type { Box } from "../../box.ts";
 import { overlaps } from "../../listings/overlaps.js";
 import { randomFrom } from "../../random.ts";
-import { line, rect, svg, text, type Box } from "../../svg.ts";
+import { line, rect, svg, text } from "../../svg.ts";
 
 const SIDE = 330;
 const COLUMNS = 6;

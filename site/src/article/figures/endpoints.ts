@@ -1,9 +1,10 @@
 // The endpoint array, and the line that sweeps over it: both as the listings make them.
 
+import type { Box } from "../../box.ts";
 import { endpointsOf } from "../../listings/endpoints.js";
 import { quicksort } from "../../listings/quicksort.js";
 import { sweep } from "../../listings/sweep.js";
-import { body, letter, line, rect, svg, text, type Box } from "../../svg.ts";
+import { body, letter, line, rect, svg, text } from "../../svg.ts";
 
 const BOXES: readonly Box[] = [
   { id: 0, left: 30, top: 20, right: 190, bottom: 85 },
