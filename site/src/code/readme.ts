@@ -20,6 +20,6 @@ export function below(file: string, heading?: string): string[] {
 export function codesIn(lines: readonly string[]): Code[] {
   return [...lines.join("\n").matchAll(/^```(\w+)\n(.*?)\n```$/gms)].map(([, language = "", code = ""]) => ({
     language,
-    text: language === "rust" ? code.replace(/^# .*\n/gm, "") : code,
+    text: code.split("\n").filter((line) => language !== "rust" || !line.startsWith("# ")).join("\n"),
   }));
 }

@@ -90,14 +90,25 @@ export async function violations(page: Page, rules?: readonly string[]): Promise
   return violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(" ")}`);
 }
 
-/** What hides a part of its own text: a box that clips and is too small. Boxes that scroll are meant to. */
+/** What hides a part of its own text: a box that clips, or a choice, and is too small. Boxes that scroll are meant to. */
 export function cutOff(page: Page): Promise<string[]> {
   return page.evaluate(() => {
+    /** The arrow of a choice, in pixels. */
+    const ARROW = 18;
     const found: string[] = [];
     const look = (root: Document | ShadowRoot): void => {
       for (const element of root.querySelectorAll<HTMLElement>("*")) {
         if (element.shadowRoot) look(element.shadowRoot);
-        const { overflowX, overflowY, clipPath, textOverflow } = getComputedStyle(element);
+        const { overflowX, overflowY, clipPath, textOverflow, font, paddingLeft, paddingRight } = getComputedStyle(element);
+        if (element.matches("select") && element.clientWidth > 1) {
+          const context = new OffscreenCanvas(1, 1).getContext("2d")!;
+          context.font = font;
+          const room = element.clientWidth - Number.parseFloat(paddingLeft) - Number.parseFloat(paddingRight) - ARROW;
+          for (const { text } of (element as HTMLSelectElement).options) {
+            const { width } = context.measureText(text);
+            if (width > room) found.push(`the choice "${text}": ${width.toFixed(0)} px in ${room.toFixed(0)}`);
+          }
+        }
         // What is meant for screen readers alone is clipped; what ends in dots says that there is more.
         if (clipPath !== "none" || textOverflow === "ellipsis" || !element.innerText?.trim() || element.closest("svg")) continue;
         const isOver = (overflowX === "hidden" && element.scrollWidth > element.clientWidth + 1) || (overflowY === "hidden" && element.scrollHeight > element.clientHeight + 2);

@@ -196,7 +196,7 @@ export const styles: CSSResult = css`
   }
   .controls select {
     flex: none;
-    width: 58px;
+    width: 70px;
     padding: 0 2px;
   }
   .guess {
@@ -295,7 +295,7 @@ export const styles: CSSResult = css`
       height: 44px;
     }
     .controls select {
-      flex: 2 0 58px;
+      flex: 2 0 70px;
     }
     /* Each counter is as wide as its name, with the rest between them: equal columns would let names collide. */
     .counters {
