@@ -1,11 +1,16 @@
 // The first picture of a demo as a drawing in the page: for slow starts, for print, and where there are no scripts.
-// It is drawn when the site is built, from the same compiled simulation that the demo runs.
+// It is drawn when the site is built, of the world that the demo itself begins with.
 
 import { readFileSync } from "node:fs";
+import { readOptions, WIDTH } from "../../../classroom/demo/src/element/options.ts";
+import { addVariants } from "../../../classroom/demo/src/element/variants.ts";
+import { World } from "../../../classroom/demo/src/element/world.ts";
 import { Simulation } from "../../../classroom/simulation/wasm/simulation.js";
+import { broken } from "../classroom/broken.ts";
+import { round } from "../svg.ts";
 
-const WIDTH = 600;
 await Simulation.load(readFileSync(new URL("../../../classroom/demo/dist/simulation.wasm", import.meta.url)));
+addVariants(broken);
 
 type Ball = readonly [x: number, y: number, radius: number];
 
@@ -14,34 +19,22 @@ export function withPosters(page: string): string {
   return page.replace(/<sap-demo([^>]*)><\/sap-demo>/g, (_, attributes: string) => `<sap-demo${attributes}>${poster(attributes)}</sap-demo>`);
 }
 
-function poster(attributes: string): string {
-  const attribute = (name: string): string | undefined => new RegExp(`\\b${name}="([^"]*)"`).exec(attributes)?.[1];
-  const height = /\bstrip\b/.test(attributes) ? 160 : 400;
-  const balls = ballsOf(attribute("balls") ?? "5", Number(attribute("seed") ?? 1), height);
-  const walls = attribute("walls")?.split(",").map(Number) ?? [];
-  const labels = attribute("labels")?.split(",") ?? [];
-  const isRainbow = /\brainbow\b/.test(attributes);
+function poster(text: string): string {
+  const attributes = new Map([...text.matchAll(/([\w-]+)(?:="([^"]*)")?/g)].map(([, name, value = ""]) => [name, value]));
+  const { world: begin, labels, isRainbow, predicts } = readOptions((name) => attributes.get(name) ?? null);
+  const { height, walls } = begin;
+  const world = new World(begin);
+  const positions = world.positions();
+  const balls = Array.from(world.radii, (radius, ball): Ball => [round(positions[2 * ball]!), round(positions[2 * ball + 1]!), round(radius)]);
+  world.free();
   const discs = balls.map(([x, y, radius], ball) => {
     if (walls.includes(ball)) return `<rect x="${x - radius}" y="0" width="${2 * radius}" height="${height}"/>`;
     const fill = isRainbow ? ` style="fill:oklch(0.78 0.13 ${Math.round((360 * ball) / balls.length + 20)})"` : "";
-    const label = labels.length === balls.length ? `<text x="${x}" y="${y}" dy=".35em"${isRainbow ? ' style="fill:#1c2126"' : ""}>${labels[ball]}</text>` : "";
+    const label = labels?.length === balls.length ? `<text x="${x}" y="${y}" dy=".35em"${isRainbow ? ' style="fill:#1c2126"' : ""}>${labels![ball]}</text>` : "";
     return `<circle cx="${x}" cy="${y}" r="${radius}"${fill}/>${label}`;
   });
-  const links = overlapping(walls.length > 0 || /\bpredict\b/.test(attributes) ? [] : balls).map(([[ax, ay], [bx, by]]) => `M${ax} ${ay}L${bx} ${by}`);
+  const links = overlapping(walls.length > 0 || predicts ? [] : balls).map(([[ax, ay], [bx, by]]) => `M${ax} ${ay}L${bx} ${by}`);
   return `<svg class="poster" viewBox="0 0 ${WIDTH} ${height}" aria-hidden="true">${discs.join("")}<path d="${links.join("")}"/></svg>`;
-}
-
-/** Given balls, or random ones as `classroom/demo/src/element/world.ts` makes them. */
-function ballsOf(text: string, seed: number, height: number): Ball[] {
-  const rounded = (value: number): number => Math.round(value * 10) / 10;
-  if (text.startsWith("[")) return (JSON.parse(text) as number[][]).map(([x = 0, y = 0, radius = 0]) => [x, y, radius]);
-  const bodies = Number(text);
-  const size = Math.min(height / 10, Math.sqrt((0.2 * WIDTH * height) / (Math.PI * bodies)));
-  const simulation = new Simulation({ scene: "bouncing", bodies, size, spread: 2, seed, width: WIDTH, height, counting: false });
-  const { positions, radii } = simulation;
-  const balls = Array.from(radii, (radius, ball): Ball => [rounded(positions[2 * ball]!), rounded(positions[2 * ball + 1]!), rounded(radius)]);
-  simulation.free();
-  return balls;
 }
 
 /** The pairs whose boxes overlap. */
