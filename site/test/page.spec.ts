@@ -128,6 +128,17 @@ test("users of other libraries find their page from the API page, with what the 
   expect(cells.filter((cell) => cell.startsWith("bedtools "))).toHaveLength(table.split("\n| `bedtools").length - 1);
 });
 
+test("the API page has what the READMEs begin with, and says as they do whether the packages are on the registries", async ({ page }) => {
+  const read = (file: string): string => readFileSync(new URL(`../../${file}`, import.meta.url), "utf8");
+  await page.goto("/api.html");
+  const [says = ""] = /^Version .* not on the registries.*$/m.exec(read("README.md")) ?? [];
+  await expect(page.locator(".lede")).toContainText(`nothing is changed. ${says.replace(/\[(.*?)\]\(.*?\)/, "$1")}`.trim());
+  for (const [section, file] of [["rust", "core/README.md"], ["javascript", "js/README.md"], ["python", "python/README.md"]] as const) {
+    const codes = [...read(file).matchAll(/^```\w+\n(.*?)\n```$/gms)].slice(0, 2).map(([, code]) => code);
+    expect(await page.locator(`section[aria-labelledby=${section}] pre code`).allTextContents()).toEqual(codes);
+  }
+});
+
 test("the guide, and the folder of the crate's documentation, can be reached", async ({ page }) => {
   await page.goto("/api.html");
   await page.getByRole("link", { name: "Guide: detections" }).click();
