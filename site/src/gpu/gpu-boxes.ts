@@ -2,8 +2,9 @@ import { GpuError, type GpuErrorCode, type Stage } from "sweep-and-prune-gpu";
 import { type Counter, counterRows, formatCount, showCounters } from "../panel/counters.ts";
 import { PanelElement } from "../panel/panel-element.ts";
 import { choice, transport } from "../panel/parts.ts";
-import { onThemeChange } from "../view/theme.ts";
-import { pixelRatio } from "../view/view.ts";
+import { onThemeChange } from "../shell/theme.ts";
+import { colorOf } from "../view/theme.ts";
+import { pixelRatio } from "../plot/line-plot.ts";
 import "./gpu-boxes.css";
 import { type Found, type Look, World } from "./world.ts";
 
@@ -197,7 +198,7 @@ export class GpuBoxes extends PanelElement {
   #look(): Look {
     const canvas = this.named<HTMLCanvasElement>("picture");
     const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((size) => Math.max(1, Math.round(size * pixelRatio()))) as [number, number];
-    const [box, highlighted, ground] = ["box", "sap-overlap", "stage"].map((name) => rgba(this.color(name))) as [number[], number[], number[]];
+    const [box, highlighted, ground] = ["box", "sap-overlap", "stage"].map((name) => rgba(colorOf(name, this))) as [number[], number[], number[]];
     return { width, height, box, highlighted, ground };
   }
 }
