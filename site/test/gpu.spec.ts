@@ -207,6 +207,8 @@ for (const colorScheme of ["light", "dark"] as const) {
         await page.setViewportSize({ width, height: 900 });
         await expect.poll(() => overflow(page), { message: `at ${width} pixels` }).toBeLessThanOrEqual(0);
         expect(await cutOff(page), `at ${width} pixels`).toEqual([]);
+        const lefts = await page.locator(":is(box-playground, gpu-boxes) .panel-stage").evaluateAll((stages) => stages.map((stage) => stage.getBoundingClientRect().left));
+        expect(lefts[1], `as far from the edge as the playground, at ${width} pixels`).toBe(lefts[0]);
       }
       expect(await tooSmall(page)).toEqual([]);
       // What Chromium says of a shader that it compiles is not the page's fault.

@@ -15,10 +15,8 @@ for (const path of PAGES.map((path) => MOVED[path] ?? path)) {
       test.slow(); // the whole page at three widths
       const heard = complaints(page);
       const elsewhere = requestsElsewhere(page, baseURL ?? "");
-      let bytes = 0;
-      page.on("response", async (response) => {
-        bytes += gzipSync(await response.body().catch(() => Buffer.alloc(0))).length;
-      });
+      const sizes: Promise<number>[] = [];
+      page.on("response", (response) => sizes.push(response.body().then((body) => gzipSync(body).length, () => 0)));
       for (const width of [1280, 820, 390]) {
         await page.setViewportSize({ width, height: 900 });
         await page.goto("about:blank");
@@ -28,12 +26,14 @@ for (const path of PAGES.map((path) => MOVED[path] ?? path)) {
           await page.waitForLoadState("networkidle");
           // Balls that fall need a second compiled module, that of their motion.
           const most = path === "/index.html" ? 250_000 : path === MOVED["/falling.html"] ? 400_000 : 300_000;
+          const bytes = (await Promise.all(sizes)).reduce((sum, size) => sum + size, 0);
           expect(bytes, "gzipped, before it is scrolled").toBeLessThan(most);
         }
         await scrolledThrough(page);
         const { sum, what } = await shifts();
         expect(sum, `at ${width} pixels:${what}`).toBeLessThan(0.005);
         expect(await overflow(page), `at ${width} pixels`).toBeLessThanOrEqual(0);
+        expect(await cutOff(page), `at ${width} pixels`).toEqual([]);
       }
       expect(await tooSmall(page), "for a finger, or for the eyes").toEqual([]);
       await page.setViewportSize({ width: 320, height: 900 });

@@ -27,7 +27,8 @@ export function whenNear(elements: Iterable<Element>, signal?: AbortSignal): Pro
         observer.disconnect();
         resolve();
       },
-      { rootMargin: "300px" },
+      // The first demo of the article begins 275 px below a window of 1280 by 900 pixels: until it is scrolled, the demos' 193 KB (gzipped) are not loaded.
+      { rootMargin: "150px" },
     );
     for (const element of elements) observer.observe(element);
     signal?.addEventListener("abort", () => observer.disconnect());
