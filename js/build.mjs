@@ -19,7 +19,7 @@ const fast = { all: 3, core: 3, flags: ["-Cllvm-args=-inline-threshold=23", unro
  * One type of box: as fast with less inlined and unrolled, and 3.4 KB smaller (10,000 bodies at rest, drifting and flying, 2026-11-28);
  * with loops unrolled up to 30 flying bodies take 1.1 of the time.
  */
-const fastForOne = { all: 3, core: 3, flags: ["-Cllvm-args=-inline-threshold=20", unrolling(60)] };
+const fastForOne = { all: 3, core: 3, flags: ["-Cllvm-args=-inline-threshold=20", unrolling(50)] };
 
 /**
  * The cores, each a feature of js/wasm/, with budgets in bytes after gzip: what a page downloads

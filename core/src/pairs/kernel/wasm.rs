@@ -103,19 +103,14 @@ unsafe fn pack_four(
         let shared = v128_and(v128_load(dedup.cast()), u32x4_splat(probe.dedup));
         let reported_here = i32x4_bitmask(i32x4_eq(shared, u32x4_splat(0)));
         let reported = hits as usize & usize::from(reported_here);
-        let lanes = i8x16_swizzle(
-            u32x4_splat(FRONT[reported & 15]),
-            u8x16(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3),
-        );
-        let front = i8x16_add(lanes, u8x16(0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3));
-        let first = if probe.ascending {
-            u32x4_min(ids, own)
+        let front = v128_load(FRONT[reported & 15].as_ptr().cast());
+        let (first, second) = if probe.ascending {
+            (u32x4_min(ids, own), u32x4_max(ids, own))
         } else if probe.in_first {
-            ids
+            (ids, own)
         } else {
-            own
+            (own, ids)
         };
-        let second = v128_xor(v128_xor(ids, own), first);
         let (first, second) = (i8x16_swizzle(first, front), i8x16_swizzle(second, front));
         v128_store(out.cast(), i32x4_shuffle::<0, 4, 1, 5>(first, second));
         v128_store(out.add(2).cast(), i32x4_shuffle::<2, 6, 3, 7>(first, second));
@@ -123,15 +118,19 @@ unsafe fn pack_four(
     }
 }
 
-/// Four times the lanes in a mask of four, from the front: where their bytes begin.
-static FRONT: [u32; 16] = {
-    let mut table = [0; 16];
+/// The bytes of the lanes in a mask of four, from the front.
+static FRONT: [[u8; 16]; 16] = {
+    let mut table = [[0; 16]; 16];
     let mut mask = 0;
     while mask < table.len() {
         let (mut lane, mut at) = (0, 0);
         while lane < 4 {
             if mask >> lane & 1 == 1 {
-                table[mask] |= 4 * lane << (8 * at);
+                let mut byte = 0;
+                while byte < 4 {
+                    table[mask][4 * at + byte] = (4 * lane + byte) as u8;
+                    byte += 1;
+                }
                 at += 1;
             }
             lane += 1;
