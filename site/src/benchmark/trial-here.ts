@@ -5,6 +5,7 @@ import { library as bruteForce, REFERENCE_LIMIT } from "../../../bench/js/src/re
 import type { Answer, Ready, Start, Time } from "./messages.ts";
 import type { Case, Entry } from "./results.ts";
 import { messageOf } from "../message-of.ts";
+import { median } from "../median.ts";
 
 /** A worker that does not answer for this long (ms) is stopped. */
 const LIMIT = 10_000;
@@ -158,8 +159,4 @@ class Remote {
       else this.#worker.postMessage(message);
     }).finally(() => over.abort());
   }
-}
-
-function median(numbers: readonly number[]): number {
-  return numbers.toSorted((a, b) => a - b)[numbers.length >> 1] ?? NaN;
 }

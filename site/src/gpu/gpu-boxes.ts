@@ -1,4 +1,5 @@
 import { GpuError, type GpuErrorCode, type Stage } from "sweep-and-prune-gpu";
+import { median } from "../median.ts";
 import { type Counter, counterRows, formatCount, showCounters } from "../panel/counters.ts";
 import { PanelElement } from "../panel/panel-element.ts";
 import { choice, transport } from "../panel/parts.ts";
@@ -33,7 +34,7 @@ const COUNTERS: readonly Counter<Shown>[] = [
   { key: "pairs", label: "Pairs", meaning: "pairs of boxes that overlap", read: ({ found }) => formatCount(found.pairs) },
   { key: "overlapping", label: "Boxes in a pair", meaning: "highlighted", read: ({ found }) => `${((100 * found.overlapping) / found.boxes).toFixed(1)} %` },
 ];
-const TIMES: readonly Counter<Shown>[] = STAGES.map(([key, label, meaning]) => ({ key, label, meaning, read: ({ times }) => median(times.get(key)) }));
+const TIMES: readonly Counter<Shown>[] = STAGES.map(([key, label, meaning]) => ({ key, label, meaning, read: ({ times }) => shown(times.get(key)) }));
 
 const SENTENCES: Partial<Record<GpuErrorCode, string>> = {
   NO_WEBGPU: "This needs WebGPU, which this browser does not have, or has only on secure pages (https or localhost).",
@@ -203,7 +204,8 @@ export class GpuBoxes extends PanelElement {
   }
 }
 
-const median = (times: readonly number[] = []): string | null => (times.length > 0 ? `${[...times].sort((a, b) => a - b)[times.length >> 1]!.toFixed(1)} ms` : null);
+/** The median of times, if there are any. */
+const shown = (times: readonly number[] = []): string | null => (times.length > 0 ? `${median(times).toFixed(1)} ms` : null);
 
 /** The code of an error. The browser's own errors, of a copy that it could not read, are of a device that is lost. */
 const codeOf = (error: unknown, other: GpuErrorCode = "DEVICE_LOST"): GpuErrorCode => (error instanceof GpuError ? error.code : other);

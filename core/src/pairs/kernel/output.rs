@@ -239,11 +239,11 @@ unsafe fn pack<T: Copy, V: Vector<T>>(
     out: *mut [u32; 2],
 ) -> usize {
     let mut count = 0;
-    for at in 0..noted {
+    for note in 0..noted {
         // SAFETY: the note is written, its lanes are positions of its set, and of the space for `noted` vectors of pairs no more
         // than those before it have taken theirs.
         unsafe {
-            let Note { at, bits, id, dedup } = notes.list.get_unchecked(at).assume_init();
+            let Note { at, bits, id, dedup } = notes.list.get_unchecked(note).assume_init();
             let in_first = dedup & IN_FIRST != 0;
             let boxes = sets[usize::from(!in_first)];
             let probe = Reporter { id, dedup: dedup & !IN_FIRST, ascending, in_first };

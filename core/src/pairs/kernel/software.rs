@@ -3,14 +3,10 @@
 
 use super::vector::{Packs, Reporter, Vector};
 
-/// `N` lanes. `PACKS` is [`NEVER`], [`DENSE`] (as in WebAssembly) or [`ALWAYS`] (as on AVX2 and AVX-512).
+/// `N` lanes. `PACKS` is a [`Packs`] as a number, since a parameter of a type cannot be one: `Dense` is as in WebAssembly, `Always`
+/// as on AVX2 and AVX-512.
 #[derive(Clone, Copy)]
 pub struct Lanes<T, const N: usize, const PACKS: usize>([T; N]);
-
-/// When vectors pack: a parameter of a type cannot be a [`Packs`].
-pub const NEVER: usize = 0;
-pub const DENSE: usize = 1;
-pub const ALWAYS: usize = 2;
 
 // SAFETY: reads N coordinates, ids and bitmaps, writes at most N pairs; needs no instructions.
 unsafe impl<T: Copy + PartialOrd, const N: usize, const PACKS: usize> Vector<T>
@@ -143,18 +139,18 @@ mod tests {
 
     #[test]
     fn all_numbers_of_lanes_give_the_pairs_of_scalar_code_in_its_order() {
-        lanes_agree::<Lanes<f32, 2, NEVER>>("2 lanes, noted");
-        lanes_agree::<Lanes<f32, 4, NEVER>>("4 lanes, noted");
-        lanes_agree::<Lanes<f32, 8, NEVER>>("8 lanes, noted");
-        lanes_agree::<Lanes<f32, 16, NEVER>>("16 lanes, noted");
-        lanes_agree::<Lanes<f32, 2, DENSE>>("2 lanes, packed where dense");
-        lanes_agree::<Lanes<f32, 2, ALWAYS>>("2 lanes, packed");
-        lanes_agree::<Lanes<f32, 4, DENSE>>("4 lanes, packed where dense");
-        lanes_agree::<Lanes<f32, 4, ALWAYS>>("4 lanes, packed");
-        lanes_agree::<Lanes<f32, 8, DENSE>>("8 lanes, packed where dense");
-        lanes_agree::<Lanes<f32, 8, ALWAYS>>("8 lanes, packed");
-        lanes_agree::<Lanes<f32, 16, DENSE>>("16 lanes, packed where dense");
-        lanes_agree::<Lanes<f32, 16, ALWAYS>>("16 lanes, packed");
+        lanes_agree::<Lanes<f32, 2, { Packs::Never as usize }>>("2 lanes, noted");
+        lanes_agree::<Lanes<f32, 4, { Packs::Never as usize }>>("4 lanes, noted");
+        lanes_agree::<Lanes<f32, 8, { Packs::Never as usize }>>("8 lanes, noted");
+        lanes_agree::<Lanes<f32, 16, { Packs::Never as usize }>>("16 lanes, noted");
+        lanes_agree::<Lanes<f32, 2, { Packs::Dense as usize }>>("2 lanes, packed where dense");
+        lanes_agree::<Lanes<f32, 2, { Packs::Always as usize }>>("2 lanes, packed");
+        lanes_agree::<Lanes<f32, 4, { Packs::Dense as usize }>>("4 lanes, packed where dense");
+        lanes_agree::<Lanes<f32, 4, { Packs::Always as usize }>>("4 lanes, packed");
+        lanes_agree::<Lanes<f32, 8, { Packs::Dense as usize }>>("8 lanes, packed where dense");
+        lanes_agree::<Lanes<f32, 8, { Packs::Always as usize }>>("8 lanes, packed");
+        lanes_agree::<Lanes<f32, 16, { Packs::Dense as usize }>>("16 lanes, packed where dense");
+        lanes_agree::<Lanes<f32, 16, { Packs::Always as usize }>>("16 lanes, packed");
     }
 
     #[test]
