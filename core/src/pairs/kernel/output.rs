@@ -178,7 +178,7 @@ unsafe fn write<T: Copy, V: Vector<T>, const N: usize>(
 /// Writes the pairs one by one.
 ///
 /// # Safety
-/// That of [`write`].
+/// That of [`write()`].
 #[inline(always)]
 unsafe fn write_each<T, const N: usize>(
     notes: &mut Notes,
@@ -229,7 +229,7 @@ unsafe fn write_each<T, const N: usize>(
 /// Writes the pairs of a note at once, and then those of the next. One set is given twice.
 ///
 /// # Safety
-/// That of [`write`].
+/// That of [`write()`].
 #[inline(never)]
 unsafe fn pack<T: Copy, V: Vector<T>>(
     notes: &Notes,
