@@ -5,7 +5,7 @@ import { spawnSync } from "node:child_process";
 import { copyFileSync, mkdirSync, writeFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
-import { compile } from "../../scripts/npm-package.mjs";
+import { compile, SHORT_INDICES } from "../../scripts/npm-package.mjs";
 
 const root = resolve(dirname(fileURLToPath(import.meta.url)), "../..");
 const target = resolve(root, process.env.CARGO_TARGET_DIR ?? "target");
@@ -19,8 +19,8 @@ const crates = [
 
 /** Each build has a target folder of its own, or each would throw away the other's work. */
 const builds = [
-  { suffix: ".wasm", folder: "wasm-scalar", flags: "" },
-  { suffix: ".simd.wasm", folder: "wasm-simd", flags: "-C target-feature=+simd128" },
+  { suffix: ".wasm", folder: "wasm-scalar", flags: SHORT_INDICES },
+  { suffix: ".simd.wasm", folder: "wasm-simd", flags: `${SHORT_INDICES} -Ctarget-feature=+simd128` },
 ];
 
 mkdirSync(output, { recursive: true });
