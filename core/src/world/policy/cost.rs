@@ -25,6 +25,8 @@ const PAIR: f64 = 0.75;
 const REBUILD: usize = 2;
 /// What a body that flies costs, but for the leaves and bodies of the tree that are read for it, each of which costs 1.
 const FLIGHT: usize = 4;
+/// What it costs to take a body out of the tree because it takes off, or to put it in because it lands.
+const TURN: usize = 8;
 /// For how many updates no body flies once that cost too much.
 const GROUNDED: usize = 256;
 /// For how many updates tracking is skipped, at least and at most. Kept from before.
@@ -55,8 +57,9 @@ pub struct Policy {
     overlaps: usize,
     cost: usize,
     updates: usize,
-    /// How much of the tree the last update read.
+    /// How much of the tree the last update read, and how many bodies flew in it.
     reads: usize,
+    flights: usize,
     /// How many updates in a row read too much, and how much their first half and the others did.
     dear: usize,
     dear_reads: [usize; 2],
@@ -98,9 +101,10 @@ impl Policy {
         bodies / 2 + 3 * self.overlaps
     }
 
-    /// How many leaves and bodies of the tree an update may read.
+    /// How many leaves and bodies of the tree an update may read: for each overlap half a read, which takes twice as long as
+    /// finding a pair from scratch.
     pub fn most_reads(&self, bodies: usize) -> usize {
-        bodies + self.overlaps
+        bodies - bodies / 4 + self.overlaps / 2
     }
 
     /// Whether fast bodies may fly, given how many of the bodies changed.
@@ -120,6 +124,11 @@ impl Policy {
         self.overlaps = count;
     }
 
+    /// Notes how many pairs began and ended.
+    pub fn note_events(&mut self, begun: usize, ended: usize) {
+        self.overlaps = (self.overlaps + begun).saturating_sub(ended);
+    }
+
     /// Notes how many pairs of fat AABBs overlap: not more of the boxes do.
     pub fn note_candidates(&mut self, count: usize) {
         self.overlaps = self.overlaps.min(count);
@@ -137,6 +146,11 @@ impl Policy {
     /// Whether new fat AABBs must not be larger than their bodies.
     pub fn is_tight(&self) -> bool {
         self.tight > 0
+    }
+
+    /// Whether nothing speaks for fat AABBs that are larger than their bodies: the last ones did not last, or there were none.
+    pub fn is_trial(&self) -> bool {
+        self.updates < 2
     }
 
     /// Notes that fat AABBs have too many candidates, or that looking up bodies of which this many fly was given up.
@@ -162,12 +176,16 @@ impl Policy {
         self.updates = self.updates.saturating_add(1);
     }
 
-    /// Notes that `reads` leaves and bodies of the tree were read in an update in which `flights` bodies flew.
-    pub fn note_reads(&mut self, reads: usize, flights: usize, bodies: usize) {
+    /// Notes that `reads` leaves and bodies of the tree were read in an update in which `flights` bodies flew, and `turns` took
+    /// off or landed.
+    pub fn note_reads(&mut self, reads: usize, flights: usize, turns: usize, bodies: usize) {
         self.reads = if flights == 0 { reads } else { 0 };
+        // All take off once; where others do in each update, that costs more than it saves.
+        let turns = if self.flights > 0 { turns } else { 0 };
+        self.flights = flights;
         // What finding all pairs from scratch costs, in reads.
         let from_scratch = bodies + bodies / 4 + self.overlaps / 10;
-        if flights > 0 && flights * FLIGHT + reads > from_scratch {
+        if flights > 0 && flights * FLIGHT + turns * TURN + reads > from_scratch {
             self.grounded = GROUNDED;
         }
     }

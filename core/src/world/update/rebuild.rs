@@ -2,13 +2,21 @@
 
 use alloc::vec::Vec;
 
-use crate::Scalar;
 use crate::memory::{OutOfMemory, preload};
+use crate::sampling::positions;
 use crate::world::bodies::{Bodies, When, flag};
 use crate::world::candidates::push_wanted;
 use crate::world::changes::Events;
+use crate::world::finder::Finder;
 use crate::world::layout::{self, Reorder};
+use crate::world::policy::Policy;
 use crate::world::tracking::Tracking;
+use crate::{Aabb, Scalar};
+
+/// A sample is to have about as many pairs as this, if there are as many as there may be.
+const SAMPLED_PAIRS: usize = 100;
+/// No sample is looked at that has more than one of this many bodies.
+const LEAST_GAIN: usize = 4;
 
 /// Reports what begins and ends, given which bodies changed, escaped and left. Returns how to reorder
 /// storage.
@@ -126,6 +134,10 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         begun: &mut Vec<[u32; 2]>,
     ) -> Result<bool, OutOfMemory> {
         let Self { fat, candidates, finder, policy, scratch, .. } = self;
+        if is_fat && policy.is_trial() && have_too_many(fat, finder, policy, bodies)? {
+            policy.note_excess(0);
+            is_fat = false;
+        }
         loop {
             if !is_fat {
                 fat.copy_from_slice(&bodies.boxes);
@@ -146,6 +158,28 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         }
         Ok(is_fat)
     }
+}
+
+/// Whether fat AABBs seem to have too many candidates, by those of a sample among themselves: where that is so, finding all of
+/// them in vain would take as long as an update. O(sqrt(n)) boxes are searched.
+#[inline(never)]
+fn have_too_many<const D: usize, T: Scalar>(
+    fat: &[Aabb<D, T>],
+    finder: &mut Finder<D, T>,
+    policy: &Policy,
+    bodies: &Bodies<D, T>,
+) -> Result<bool, OutOfMemory> {
+    let flags = &bodies.slots.flags;
+    let most = policy.most_candidates(bodies.slots.live);
+    // One in n bodies has one in n * n of the pairs.
+    let n = (most / SAMPLED_PAIRS).isqrt();
+    if n < LEAST_GAIN {
+        return Ok(false);
+    }
+    let sample = positions(flags.len(), flags.len() / n).map(|index| index as u32);
+    let sample = sample.filter(|&index| flags[index as usize] & flag::LIVE != 0);
+    let excess = (most + most / 4) / (n * n);
+    Ok(finder.find_some(sample, fat, bodies, excess)?.is_none())
 }
 
 /// The tracking state of bodies that were read from a snapshot: the candidates are the pairs of the last update, and the

@@ -62,7 +62,7 @@ fn bodies_that_fly_among_many_pairs_cost_too_much_before_they_read_as_many() {
     for (reads, may_fly) in [(BODIES, true), (3 * BODIES, false)] {
         let mut policy = Policy::default();
         policy.note_overlaps(10 * BODIES);
-        policy.note_reads(reads, 10, BODIES);
+        policy.note_reads(reads, 10, 0, BODIES);
         assert_eq!(policy.may_fly(20, BODIES), may_fly, "{reads}");
     }
 }
@@ -72,7 +72,7 @@ fn updates_that_read(reads: impl IntoIterator<Item = usize>) -> (usize, Policy) 
     let mut policy = Policy::default();
     policy.note_overlaps(10 * BODIES);
     for (update, reads) in reads.into_iter().enumerate() {
-        policy.note_reads(reads, 0, BODIES);
+        policy.note_reads(reads, 0, 0, BODIES);
         if policy.reads_too_much(BODIES / 20, BODIES) {
             return (update + 1, policy);
         }
