@@ -101,10 +101,9 @@ impl Policy {
         bodies / 2 + 3 * self.overlaps
     }
 
-    /// How many leaves and bodies of the tree an update may read: for each overlap half a read, which takes twice as long as
-    /// finding a pair from scratch.
+    /// How many leaves and bodies of the tree an update may read.
     pub fn most_reads(&self, bodies: usize) -> usize {
-        bodies - bodies / 4 + self.overlaps / 2
+        bodies - bodies / 4 + self.overlaps
     }
 
     /// Whether fast bodies may fly, given how many of the bodies changed.
@@ -122,11 +121,6 @@ impl Policy {
     /// Notes how many pairs of boxes overlap.
     pub fn note_overlaps(&mut self, count: usize) {
         self.overlaps = count;
-    }
-
-    /// Notes how many pairs began and ended.
-    pub fn note_events(&mut self, begun: usize, ended: usize) {
-        self.overlaps = (self.overlaps + begun).saturating_sub(ended);
     }
 
     /// Notes how many pairs of fat AABBs overlap: not more of the boxes do.

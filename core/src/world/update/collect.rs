@@ -63,17 +63,6 @@ pub fn collect_escaped<const D: usize, T: Scalar>(
     });
 }
 
-impl<const D: usize, T: Scalar> Tracking<D, T> {
-    /// How many of the bodies that need a new fat AABB are asleep.
-    pub fn count_asleep(&self, bodies: &Bodies<D, T>) -> usize {
-        if self.sleep.count == 0 {
-            return 0;
-        }
-        let escaped = self.scratch.escaped.iter();
-        escaped.filter(|&&index| bodies.slots.has(index, flag::ASLEEP)).count()
-    }
-}
-
 /// Lists the changed and the escaped bodies of a chunk, given which boxes differ from those of the last
 /// update, and which are not within their fat AABBs.
 #[inline(never)]

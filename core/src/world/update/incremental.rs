@@ -79,7 +79,6 @@ pub fn incremental<const D: usize, T: Scalar>(
             tracking.test_candidates(bodies, events, !extends);
         }
         tracking.add_candidates();
-        tracking.policy.note_events(events.begun.len(), events.ended.len());
     } else {
         tracking.give_up(bodies, events, flights);
     }

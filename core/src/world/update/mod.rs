@@ -93,9 +93,7 @@ fn find_events<const D: usize, T: Scalar>(
         collect::collect_escaped(bodies, tracking);
         let flights = tracking.choose_flying(bodies, has_tree);
         let escaped = tracking.scratch.escaped.len() - flights;
-        // What wakes is searched for twice: where it was too.
-        let wakes = tracking.count_asleep(bodies);
-        let moves = escaped + wakes + bodies.edits.leaving().len();
+        let moves = escaped + bodies.edits.leaving().len();
         let rebuilds = tracking.policy.rebuild_pays(moves, changed, live);
         if rebuilds && flights == 0 {
             tracking.policy.note_no_flights();
