@@ -1,6 +1,9 @@
 // Excalibur with another broad phase: one line to switch, and the same contacts. In a browser.
 import * as ex from "excalibur";
-import { replaceBroadPhase } from "./excalibur-adapter.js";
+import { init } from "sweep-and-prune/broad-phase";
+import { replaceBroadPhase } from "sweep-and-prune/excalibur";
+
+await init();
 
 /** The contacts of each of 60 steps, in which 300 actors bounce between the walls of a level. */
 async function bounce(isReplaced) {
@@ -8,7 +11,7 @@ async function bounce(isReplaced) {
   await engine.start();
   engine.clock.stop(); // steps of a fixed time
   const scene = engine.currentScene;
-  if (isReplaced) replaceBroadPhase(scene); // the line to switch
+  if (isReplaced) replaceBroadPhase(scene, ex); // the line to switch
   for (let i = 0; i < 40; i++) scene.add(new ex.Actor({ x: 20 * i, y: 10, width: 20, height: 20, collisionType: ex.CollisionType.Fixed }));
   for (let i = 0; i < 300; i++) {
     const [x, y] = [(i * 37) % 400, 40 + ((i * 53) % 240)];

@@ -1,6 +1,9 @@
 // matter with another broad phase: one line to switch, and bit for bit the same motion.
 import Matter from "matter-js";
-import { collisions } from "./matter-adapter.js";
+import { init } from "sweep-and-prune";
+import { replaceBroadPhase } from "sweep-and-prune/matter-js";
+
+await init();
 
 /** Where the bodies are after two seconds of a pile that falls, and how many contacts there were. */
 function fall() {
@@ -22,6 +25,6 @@ function fall() {
 }
 
 const own = fall();
-Matter.Detector.collisions = collisions; // the line to switch
+replaceBroadPhase(Matter); // the line to switch
 const other = fall();
 console.log(own[0] > 10_000, own.join() === other.join()); // true true

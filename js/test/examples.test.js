@@ -13,11 +13,9 @@ const folder = fileURLToPath(new URL("../examples", import.meta.url));
 const pages = fileURLToPath(new URL("../docs", import.meta.url));
 const examples = readdirSync(folder).filter((name) => name.endsWith(".js"));
 /** Those that need a browser. */
-const inBrowser = ["excalibur-engine.js", "pairs-in-worker.js", "phaser-game.js", "pixi-game.js"];
+const inBrowser = ["excalibur-engine.js", "pairs-in-worker.js", "phaser-game.js", "phaser-overlap.js", "pixi-game.js"];
 /** The workers that they start. */
 const workers = ["pairs-worker.js"];
-/** What they import. */
-const imported = ["cannon-adapter.js", "excalibur-adapter.js", "matter-adapter.js"];
 
 before(() => {
   const lock = readFileSync(join(folder, "package-lock.json"), "utf8");
@@ -35,7 +33,7 @@ function promised(code) {
   return [...code.matchAll(/console\.log\(.*\);\s*\/\/ (.*)/g)].map(([, said]) => said);
 }
 
-for (const name of examples.filter((name) => ![...inBrowser, ...workers, ...imported].includes(name))) {
+for (const name of examples.filter((name) => ![...inBrowser, ...workers].includes(name))) {
   test(`${name} prints what it says`, () => {
     const expected = promised(readFileSync(join(folder, name), "utf8"));
     assert.ok(expected.length > 0);
@@ -76,18 +74,36 @@ test("each page shows examples as they are, and each example has a page", () => 
   assert.deepEqual(shown.sort(), files.sort());
 });
 
-test("in Excalibur pairs, queries and rays are those of brute force in 400 steps in which anything changes", async () => {
-  const { server, address } = await serve([fileURLToPath(new URL("support/excalibur-page.js", import.meta.url))]);
+/**
+ * What a page of support/ leaves in `result`.
+ *
+ * @param {string} name
+ */
+async function resultOfPage(name) {
+  const { server, address } = await serve([fileURLToPath(new URL(`support/${name}`, import.meta.url))]);
   const browser = await startBrowser();
   try {
-    const { differences, pairs, found, hits, colliders, ofExcalibur } = await resultOf(browser, address);
-    assert.deepEqual(differences, []);
-    assert.ok(pairs > 1_000 && found > 500 && hits > 200, `${pairs} pairs, ${found} found, ${hits} hits`);
-    assert.equal(colliders, ofExcalibur, "colliders that are tracked");
+    return await resultOf(browser, address);
   } finally {
     await browser.close();
     server.close();
   }
+}
+
+test("in Excalibur pairs, queries and rays are those of brute force in 400 steps in which anything changes", async () => {
+  const { differences, takenOver, pairs, found, hits, colliders, ofExcalibur } = await resultOfPage("excalibur-page.js");
+  assert.deepEqual(differences, []);
+  assert.ok(pairs > 1_000 && found > 500 && hits > 200, `${pairs} pairs, ${found} found, ${hits} hits`);
+  assert.equal(takenOver, 5, "colliders that were there before");
+  assert.equal(colliders, ofExcalibur, "colliders that are tracked");
+});
+
+test("in Phaser overlaps of groups are those of arcade physics in 150 steps in which anything changes", async () => {
+  const { differences, steps, hits, gone, late } = await resultOfPage("phaser-page.js");
+  assert.deepEqual(differences, []);
+  assert.ok(steps === 150 && hits > 20_000, `${hits} hits in ${steps} steps`);
+  assert.ok(Math.min(...gone) > 5, "a callback removed too few");
+  assert.deepEqual(late, [0, 0], "hits of what a callback removed");
 });
 
 test("the picture is what its script draws", () => {

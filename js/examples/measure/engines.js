@@ -2,10 +2,18 @@
 import * as CANNON from "cannon-es";
 import * as ex from "excalibur";
 import Matter from "matter-js";
-import { SweepAndPruneBroadphase } from "../cannon-adapter.js";
-import { replaceBroadPhase } from "../excalibur-adapter.js";
+import { init } from "sweep-and-prune";
+import { init as initBroadPhase } from "sweep-and-prune/broad-phase";
+import * as forCannon from "sweep-and-prune/cannon-es";
+import * as forExcalibur from "sweep-and-prune/excalibur";
+import * as forMatter from "sweep-and-prune/matter-js";
 import { random } from "../../test/support/boxes.js";
-import { collisions } from "../matter-adapter.js";
+
+await Promise.all([init(), initBroadPhase()]);
+
+const own = Matter.Detector.collisions;
+forMatter.replaceBroadPhase(Matter);
+const replaced = Matter.Detector.collisions;
 
 const MS = 1000 / 60;
 
@@ -14,7 +22,6 @@ export const engines = {
   matter: {
     broadPhases: ["its own", "sweep-and-prune"],
     create(scene, count, broadPhase) {
-      const own = Matter.Detector.collisions;
       const engine = Matter.Engine.create({ gravity: { y: scene === "pile" ? 1 : 0 } });
       const next = random(count);
       const side = 30 * Math.sqrt(count);
@@ -28,9 +35,8 @@ export const engines = {
       });
       Matter.Composite.add(engine.world, [...walls, ...bodies]);
       return () => {
-        if (broadPhase !== "its own") Matter.Detector.collisions = collisions;
+        Matter.Detector.collisions = broadPhase === "its own" ? own : replaced;
         Matter.Engine.update(engine, MS);
-        Matter.Detector.collisions = own;
         return engine.pairs.collisionActive.length + engine.pairs.collisionStart.length;
       };
     },
@@ -38,10 +44,10 @@ export const engines = {
   cannon: {
     broadPhases: ["its sweep", "its default", "sweep-and-prune"],
     create(scene, count, broadPhase) {
-      const broadphase = broadPhase === "its default" ? new CANNON.NaiveBroadphase() : new SweepAndPruneBroadphase();
       const flies = scene === "gas";
-      const world = new CANNON.World({ gravity: new CANNON.Vec3(0, flies ? 0 : -9.82, 0), broadphase });
+      const world = new CANNON.World({ gravity: new CANNON.Vec3(0, flies ? 0 : -9.82, 0) });
       if (broadPhase === "its sweep") world.broadphase = new CANNON.SAPBroadphase(world);
+      if (broadPhase === "sweep-and-prune") forCannon.replaceBroadPhase(world);
       world.solver.iterations = 5;
       const next = random(count);
       const side = (flies ? 4 : 2.5) * Math.cbrt(count);
@@ -77,7 +83,7 @@ export const engines = {
       await engine.start();
       engine.clock.stop();
       const world = engine.currentScene;
-      if (broadPhase !== "its own") replaceBroadPhase(world);
+      if (broadPhase !== "its own") forExcalibur.replaceBroadPhase(world, ex);
       const next = random(count);
       const side = 30 * Math.sqrt(count);
       const wall = (x, y, width, height) => world.add(new ex.Actor({ x, y, width, height, collisionType: ex.CollisionType.Fixed }));

@@ -2,9 +2,10 @@
 import { type BoxObject, type Boxes, checkBoxes, checkDimensions, type Dimensions, isNamed, readAlike, writeRows } from "../boxes/boxes.js";
 import { dimensionsOf } from "../boxes/dimensions-of.js";
 import { describe } from "../wasm/describe.js";
-import { checkFits, Code, Core, type Each, type Engine, type Exports } from "../wasm/engine.js";
+import { checkFits, Code, type Each, type Engine, type Exports } from "../wasm/engine.js";
 import { InterruptedError, InvalidBoxError, OutOfMemoryError } from "../wasm/errors.js";
 import { forgotten, Handle } from "../wasm/handle.js";
+import { Core } from "../wasm/init.js";
 import { checkOptionNames } from "../wasm/options.js";
 import { chunksOf } from "./chunks.js";
 import { dropMissing, renamePairs } from "./missing.js";

@@ -1,4 +1,4 @@
-import { InvalidBoxError, NotInitializedError, OutOfMemoryError, SweepAndPruneError } from "./errors.js";
+import { InvalidBoxError, OutOfMemoryError, SweepAndPruneError } from "./errors.js";
 
 // The types of WebAssembly are not named where declarations show them: not every project has them.
 
@@ -122,30 +122,4 @@ function invalidBox(index: number, axis: number, { boxes = [["boxes", Infinity]]
   let set = 0;
   while (set + 1 < boxes.length && index >= boxes[set]![1]) index -= boxes[set++]![1];
   return new InvalidBoxError(index, axis, boxes[set]![0], ...(read?.(set, index, axis) ?? []));
-}
-
-/** What starting a core needs to know of it. */
-export interface AnyCore {
-  start(module: Module, isDevelopment: boolean): Promise<void>;
-}
-
-/** One of the compiled cores, which is started once. */
-export class Core<E extends Exports> implements AnyCore {
-  #engine: Engine<E> | undefined;
-
-  /** `known` is the name of an export that only this core has, `entry` that of the package's entry. */
-  constructor(
-    readonly known: string & keyof E,
-    readonly entry: string,
-  ) {}
-
-  /** The engine, once {@link start} is done. */
-  engine(): Engine<E> {
-    if (this.#engine === undefined) throw new NotInitializedError(this.entry);
-    return this.#engine;
-  }
-
-  async start(module: Module, isDevelopment: boolean): Promise<void> {
-    this.#engine = await Engine.start<E>(module, this.known, isDevelopment);
-  }
 }

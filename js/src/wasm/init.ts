@@ -1,4 +1,5 @@
-import type { AnyCore } from "./engine.js";
+import { Engine, type Exports, type Module } from "./engine.js";
+import { NotInitializedError } from "./errors.js";
 import { checkOptionNames } from "./options.js";
 
 /**
@@ -31,6 +32,32 @@ export interface InitOptions {
 export interface Started {
   /** Whether it is the build with vector instructions. */
   readonly simd: boolean;
+}
+
+/** What starting a core needs to know of it. */
+interface AnyCore {
+  start(module: Module, isDevelopment: boolean): Promise<void>;
+}
+
+/** One of the compiled cores, which is started once. */
+export class Core<E extends Exports> implements AnyCore {
+  #engine: Engine<E> | undefined;
+
+  /** `known` is the name of an export that only this core has, `entry` that of the package's entry. */
+  constructor(
+    readonly known: string & keyof E,
+    readonly entry: string,
+  ) {}
+
+  /** The engine, once {@link start} is done. */
+  engine(): Engine<E> {
+    if (this.#engine === undefined) throw new NotInitializedError(this.entry);
+    return this.#engine;
+  }
+
+  async start(module: Module, isDevelopment: boolean): Promise<void> {
+    this.#engine = await Engine.start<E>(module, this.known, isDevelopment);
+  }
 }
 
 /** Where the builds of a core are, unless the caller passes one. */

@@ -1,4 +1,5 @@
-import { Core, type Exports } from "../wasm/engine.js";
+import type { Exports } from "../wasm/engine.js";
+import { Core } from "../wasm/init.js";
 import type { FilterWords } from "./filter.js";
 
 /** What js/wasm/src/broad_phase/ exports. The small files, for events only, have no queries, lists of pairs and snapshots. */

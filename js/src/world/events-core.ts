@@ -1,6 +1,6 @@
 import { checkOptions } from "./bodies.js";
 import type { Dimensions } from "../boxes/boxes.js";
-import { Core } from "../wasm/engine.js";
+import { Core } from "../wasm/init.js";
 import type { WorldExports } from "./core.js";
 import { WorldMemory } from "./memory.js";
 import type { EventsOptions } from "./types.js";

@@ -1,5 +1,6 @@
 import { type Boxes, checkBoxes, type Dimensions, writeRows } from "../boxes/boxes.js";
-import { checkFits, Code, type Core, type Engine, type Passed } from "../wasm/engine.js";
+import { checkFits, Code, type Engine, type Passed } from "../wasm/engine.js";
+import type { Core } from "../wasm/init.js";
 import { OutOfMemoryError } from "../wasm/errors.js";
 import { forgotten, Handle } from "../wasm/handle.js";
 import { StaleProxyError } from "./stale-proxy-error.js";

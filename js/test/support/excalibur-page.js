@@ -1,7 +1,10 @@
-// Excalibur with the adapter of the examples, beside brute force and Excalibur's own collision processor, which is told the same.
+// Excalibur with another broad phase, beside brute force and Excalibur's own collision processor, which is told the same.
 import * as ex from "excalibur";
-import { replaceBroadPhase } from "../../examples/excalibur-adapter.js";
+import { init } from "sweep-and-prune/broad-phase";
+import { replaceBroadPhase } from "sweep-and-prune/excalibur";
 import { random } from "./boxes.js";
+
+await init();
 
 const keysOf = (pairs) => pairs.map(({ colliderA, colliderB }) => [colliderA.id.value, colliderB.id.value].sort((a, b) => a - b).join("-")).sort();
 const idsOf = (colliders) => colliders.map(({ id }) => id.value).sort((a, b) => a - b);
@@ -14,9 +17,13 @@ const engine = new ex.Engine({ width: 400, height: 300, suppressPlayButton: true
 await engine.start();
 engine.clock.stop();
 const scene = engine.currentScene;
-replaceBroadPhase(scene);
+for (let i = 0; i < 5; i++) scene.add(new ex.Actor({ x: 80 * i, y: 100, radius: 30 }));
+scene.world.update(ex.SystemType.Update, 1000 / 60);
+replaceBroadPhase(scene, ex);
 const replaced = scene.physics.collisionProcessor;
+const takenOver = replaced.getColliders().length;
 const own = new ex.SparseHashGridCollisionProcessor(scene.physics.config.sparseHashGrid);
+for (const collider of replaced.getColliders()) own.track(collider);
 const differences = [];
 /** Whether a type or a group of an actor has changed. */
 let hasChanged = false;
@@ -47,7 +54,7 @@ function ask(colliders) {
   turn++;
   const [x, y] = [below(400), below(300)];
   const where = [ex.vec(x, y), new ex.BoundingBox(x, y, x + 1 + below(80), y + 1 + below(80))][turn % 2];
-  const found = idsOf(replaced.query(where).filter((collider) => colliders.includes(collider)));
+  const found = idsOf(scene.physics.query(where).filter((collider) => colliders.includes(collider)));
   // Excalibur's own grid answers with all of some cells: what it finds in vain is left out.
   const expected = idsOf(colliders.filter(({ bounds }) => (where instanceof ex.Vector ? bounds.contains(where) : bounds.left <= where.right && where.left <= bounds.right && bounds.top <= where.bottom && where.top <= bounds.bottom)));
   compare("query", found, expected);
@@ -86,8 +93,9 @@ const calm = ["add", "add", "add", "remove", "jump", "shape"];
 const names = ["add", "add", "add", "remove", "jump", "type", "group", "shape"];
 for (let step = 0; step < 400; step++) {
   hasChanged = step >= 200;
+  if (step === 100) scene.physics.config = { ...scene.physics.config }; // after which Excalibur makes another processor of its own
   const offered = hasChanged ? names : calm;
   for (let i = 0; i < 3; i++) actions[offered[below(offered.length)]]();
   scene.world.update(ex.SystemType.Update, 1000 / 60);
 }
-globalThis.result = { differences: differences.slice(0, 5), ...counts, colliders: replaced.getColliders().length, ofExcalibur: own.getColliders().length };
+globalThis.result = { differences: differences.slice(0, 5), takenOver, ...counts, colliders: replaced.getColliders().length, ofExcalibur: own.getColliders().length };

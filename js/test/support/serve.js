@@ -7,8 +7,17 @@ import * as esbuild from "esbuild";
 
 /** The libraries that the examples are used beside. */
 const nodePaths = [fileURLToPath(new URL("../../examples/node_modules", import.meta.url))];
-/** esbuild does not copy the files that a module names: the inline entries carry them. */
-const alias = { "sweep-and-prune": "sweep-and-prune/inline", "sweep-and-prune/broad-phase": "sweep-and-prune/broad-phase/inline" };
+/**
+ * esbuild does not copy the files that a module names: the inline entries carry them.
+ *
+ * @type {esbuild.Plugin}
+ */
+const inline = {
+  name: "inline",
+  setup({ onResolve, resolve }) {
+    onResolve({ filter: /^sweep-and-prune(\/broad-phase)?$/ }, ({ path, ...how }) => resolve(`${path}/inline`, how));
+  },
+};
 
 /**
  * A server of a page that runs the first of these modules; all of them are bundled with what they import.
@@ -16,7 +25,7 @@ const alias = { "sweep-and-prune": "sweep-and-prune/inline", "sweep-and-prune/br
  * @param {string[]} modules
  */
 export async function serve(modules) {
-  const { outputFiles } = await esbuild.build({ entryPoints: modules, bundle: true, format: "esm", write: false, outdir: "/", alias, nodePaths, logLevel: "error" });
+  const { outputFiles } = await esbuild.build({ entryPoints: modules, bundle: true, format: "esm", write: false, outdir: "/", plugins: [inline], nodePaths, logLevel: "error" });
   const files = new Map(outputFiles.map(({ path, contents }) => [path.slice(path.lastIndexOf("/")), contents]));
   const server = createServer((request, response) => {
     // A page with shared memory, which has a finer clock, too.

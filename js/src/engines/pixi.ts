@@ -1,0 +1,68 @@
+import type { BroadPhase } from "../world/broad-phase.js";
+import type { Filter } from "../world/filter.js";
+import { insert, type Kind, move } from "./objects.js";
+
+/** A `Container` of Pixi: a sprite, graphics, a text, or what holds several. */
+export interface PixiObject {
+  /** Its bounds in the coordinates of the stage. */
+  getBounds(skipUpdate?: boolean, bounds?: any): { readonly minX: number; readonly minY: number; readonly maxX: number; readonly maxY: number };
+}
+
+/** One object for the bounds of all calls, which the first call makes. */
+let bounds: ReturnType<PixiObject["getBounds"]> | undefined;
+
+const kind: Kind<2, PixiObject> = {
+  dimensions: 2,
+  name: "a `Container` of Pixi",
+  method: "getBounds",
+  writeBox(object, boxes, at) {
+    bounds = object.getBounds(false, bounds);
+    const { minX, minY, maxX, maxY } = bounds;
+    // What is empty or invisible has these bounds in Pixi, wherever it is.
+    if (minX === 0 && minY === 0 && maxX === 0 && maxY === 0) return false;
+    boxes[at] = minX;
+    boxes[at + 1] = minY;
+    boxes[at + 2] = maxX;
+    boxes[at + 3] = maxY;
+    return true;
+  },
+};
+
+/**
+ * Inserts a body for each sprite or container, whose box is that of `getBounds()`, in the coordinates of the stage, and whose data is the
+ * object. Returns their ids, in the order of the objects. What is empty or invisible pairs with nothing until it has bounds.
+ *
+ * @param filter One filter for all bodies, or an array with one for each.
+ *
+ * @throws `TypeError` if `world` is not a `BroadPhase`, or an object is not a `Container`; `RangeError` if `world` does not have 2 dimensions; otherwise as
+ *   {@link BroadPhase.insertMany}.
+ *
+ * @example
+ * ```js
+ * const world = new BroadPhase({ dimensions: 2 });
+ * insertObjects(world, coins, { category: 2, mask: 1 });
+ * ```
+ */
+export function insertObjects<Data>(world: BroadPhase<2, Data>, objects: readonly (Data & PixiObject)[], filter?: Partial<Filter> | readonly Partial<Filter>[]): Float64Array {
+  return insert(kind, world, objects, filter);
+}
+
+/**
+ * Gives each body whose data is a sprite or a container the bounds that the object has now: call it once in each frame, before
+ * `world.update()` and before queries. Other bodies stay where they are.
+ *
+ * It takes the time of `getBounds()` for each object.
+ *
+ * @throws `TypeError` if `world` is not a `BroadPhase`, `RangeError` if it does not have 2 dimensions, {@link InvalidBoxError} if a box has a NaN.
+ *
+ * @example
+ * ```js
+ * app.ticker.add(() => {
+ *   moveObjects(world);
+ *   for (const [a, b] of world.dataPairs(world.update().begun)) collect(a, b);
+ * });
+ * ```
+ */
+export function moveObjects(world: BroadPhase<2>): void {
+  move(kind, world);
+}
