@@ -76,12 +76,12 @@ describe("The packed package in", { skip }, () => {
     }
   }
 
-  const expected = { simd: true, pairs: [0, 2], begun: 2, inWorker: 45 };
-  const expectedInline = { simd: true, pairs: [0, 2], begun: 2 };
+  const expected = { simd: true, pairs: [0, 2], begun: 2, inEngines: [1, 1], inWorker: 45 };
+  const expectedInline = { simd: true, pairs: [0, 2], begun: 2, inEngines: [1, 1] };
 
   test("Parcel", async () => {
     const folder = page("parcel", "./app.js");
-    for (const name of ["app.js", "worker.js"]) cpSync(join(consumer, name), join(folder, name));
+    for (const name of ["app.js", "engines.js", "worker.js"]) cpSync(join(consumer, name), join(folder, name));
     tool("parcel", "build", join(folder, "index.html"), "--dist-dir", join(folder, "dist"), "--no-cache");
     assert.deepEqual(await shown(join(folder, "dist")), expected);
   });
@@ -94,7 +94,7 @@ describe("The packed package in", { skip }, () => {
 
   test("Vite, whose workers are plain scripts by default", async () => {
     const folder = page("vite", "./app.js");
-    for (const name of ["app.js", "worker.js"]) cpSync(join(consumer, name), join(folder, name));
+    for (const name of ["app.js", "engines.js", "worker.js"]) cpSync(join(consumer, name), join(folder, name));
     tool("vite", "build", folder, "--base", "./", "--logLevel", "error");
     assert.deepEqual(await shown(join(folder, "dist")), expected);
   });
@@ -153,7 +153,8 @@ describe("The packed package in", { skip }, () => {
       join(project, "use.cjs"),
       `const { countPairs, init } = require("sweep-and-prune");
        const { BroadPhase } = require("sweep-and-prune/broad-phase");
-       init().then(() => console.log(countPairs([0, 1, 1, 2], { dimensions: 1 }), new BroadPhase({ dimensions: 2 }).size));`,
+       const { insertObjects } = require("sweep-and-prune/pixi");
+       init().then(() => console.log(countPairs([0, 1, 1, 2], { dimensions: 1 }), insertObjects(new BroadPhase({ dimensions: 2 }), []).length));`,
     );
     assert.equal(run(process.execPath, "--no-warnings", "use.cjs"), "1 0");
   });
@@ -177,9 +178,12 @@ describe("The packed package in", { skip }, () => {
         `import { countPairs, init } from "sweep-and-prune";
          import { BroadPhase } from "sweep-and-prune/broad-phase";
          import { BroadPhase as Events } from "sweep-and-prune/events-2d/inline";
+         import { replaceBroadPhase } from "sweep-and-prune/cannon-es";
          init().then(() => console.log(countPairs([0, 1, 1, 2], { dimensions: 1 }), new BroadPhase({ dimensions: 2 }).size));
          // @ts-expect-error the types are read
-         new Events({ dimensions: 3 });`,
+         new Events({ dimensions: 3 });
+         // @ts-expect-error these too
+         replaceBroadPhase([]);`,
       );
       const compilerOptions = { noEmit: true, strict: true, target: "es2022", lib: ["es2022", "esnext.disposable", "dom"], types: [], module: "node16" };
       writeFileSync(join(project, "tsconfig.json"), JSON.stringify({ compilerOptions, files: ["required.cts"] }));

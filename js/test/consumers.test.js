@@ -38,8 +38,11 @@ after(async () => {
   rmSync(project, { recursive: true, force: true });
 });
 
-const expected = { simd: true, pairs: [0, 2], begun: 2, inWorker: 45 };
-const expectedInline = { simd: true, pairs: [0, 2], begun: 2 };
+const expected = { simd: true, pairs: [0, 2], begun: 2, inEngines: [1, 1], inWorker: 45 };
+const expectedInline = { simd: true, pairs: [0, 2], begun: 2, inEngines: [1, 1] };
+
+/** The entries for engines, which have no core of their own. */
+const engines = ["cannon-es", "excalibur", "matter-js", "phaser", "pixi", "three"];
 
 const types = { ".html": "text/html", ".js": "text/javascript", ".wasm": "application/wasm" };
 
@@ -91,8 +94,10 @@ test("no bundler: a plain script, and a module worker", async () => {
   const base = "./node_modules/sweep-and-prune/dist";
   mkdirSync(folder);
   cpSync(join(project, "node_modules"), join(folder, "node_modules"), { recursive: true });
+  /** @type {Record<string, string>} */
   const entries = { "sweep-and-prune/broad-phase": "broad-phase", "sweep-and-prune": "index" };
-  for (const name of ["app.js", "worker.js"]) {
+  for (const engine of engines) entries[`sweep-and-prune/${engine}`] = engine;
+  for (const name of ["app.js", "engines.js", "worker.js"]) {
     let code = readFileSync(join(project, name), "utf8");
     for (const [entry, file] of Object.entries(entries)) code = code.replaceAll(`"${entry}"`, `"${base}/${file}.js"`);
     writeFileSync(join(folder, name), code);
@@ -147,7 +152,7 @@ test("Vite, in development", async () => {
 /** @param {string} root */
 function viteProject(root) {
   writePage(root, "./app.js");
-  for (const name of ["app.js", "worker.js", "package.json"]) cpSync(join(project, name), join(root, name));
+  for (const name of ["app.js", "engines.js", "worker.js", "package.json"]) cpSync(join(project, name), join(root, name));
   cpSync(installed, join(root, "node_modules/sweep-and-prune"), { recursive: true });
 }
 
@@ -222,6 +227,7 @@ test("Node, and importing it on a server does nothing", () => {
     const loaded = [];
     for (const entry of entries) loaded.push(typeof (await import("sweep-and-prune" + entry)).init);
     for (const file of files) loaded.push(typeof (await import("./node_modules/sweep-and-prune/dist/" + file + ".js")).init);
+    for (const engine of ${JSON.stringify(engines)}) await import("sweep-and-prune/" + engine);
     console.log(loaded.every((type) => type === "function"), Object.keys(globalThis).length === before);`;
   const run = (/** @type {string} */ code) =>
     execFileSync(process.execPath, ["--input-type=module", "--eval", code], { cwd: project, encoding: "utf8" }).trim();
@@ -256,7 +262,7 @@ test("the package holds what it should and nothing else", () => {
 });
 
 test("the declarations are those of the public API", () => {
-  const entries = ["index", "broad-phase", "events-2d", "events-3d"];
+  const entries = ["index", "broad-phase", "events-2d", "events-3d", ...engines];
   const declared = readdirSync(join(installed, "dist")).filter((name) => name.endsWith(".d.ts"));
   assert.deepEqual(declared.filter((name) => !name.startsWith("shared-")).sort(), entries.map((name) => `${name}.d.ts`).sort());
   /** @type {Set<string>} */

@@ -3,9 +3,13 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { existsSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
 import { join } from "node:path";
 import { before, test } from "node:test";
-import { fileURLToPath } from "node:url";
+import { fileURLToPath, pathToFileURL } from "node:url";
+import { BroadPhase, init } from "sweep-and-prune/broad-phase";
+import { insertObjects, moveObjects, pick } from "sweep-and-prune/three";
+import { random } from "./support/boxes.js";
 import { resultOf, startBrowser } from "./support/browser.js";
 import { serve } from "./support/serve.js";
 
@@ -104,6 +108,66 @@ test("in Phaser overlaps of groups are those of arcade physics in 150 steps in w
   assert.ok(steps === 150 && hits > 20_000, `${hits} hits in ${steps} steps`);
   assert.ok(Math.min(...gone) > 5, "a callback removed too few");
   assert.deepEqual(late, [0, 0], "hits of what a callback removed");
+});
+
+test("the boxes of three.js are those of Box3.setFromObject, and picks are those of a Raycaster, for meshes, groups and instances that move", async () => {
+  /** @type {any} */
+  const THREE = await import(pathToFileURL(join(folder, "node_modules/three/build/three.module.js")).href);
+  await init();
+  const next = random(3);
+  const somewhere = () => [10 * next() - 5, 10 * next() - 5, 10 * next() - 5];
+  const geometries = [new THREE.BoxGeometry(1, 2, 0.5), new THREE.SphereGeometry(0.7, 8, 6), new THREE.PlaneGeometry(1, 1)];
+  const material = new THREE.MeshBasicMaterial({ side: THREE.DoubleSide });
+  const mesh = () => new THREE.Mesh(geometries[Math.floor(3 * next())], material);
+  const scene = new THREE.Scene();
+  const empty = new THREE.Group();
+  const instances = new THREE.InstancedMesh(geometries[0], material, 3);
+  for (let i = 0; i < 3; i++) instances.setMatrixAt(i, new THREE.Matrix4().setPosition(2 * i, i, 0));
+  const groups = [0, 1, 2].map(() => new THREE.Group().add(mesh(), new THREE.Group().add(mesh())));
+  const objects = [empty, ...Array.from({ length: 60 }, mesh), instances, ...groups];
+  scene.add(...objects);
+
+  const world = new BroadPhase({ dimensions: 3, precision: "double" });
+  const ids = insertObjects(world, objects);
+  world.insert(-9, -9, -9, 9, 9, 9); // no object: it is not picked
+  const picks = { hits: 0, misses: 0 };
+  for (let step = 0; step < 60; step++) {
+    if (step === 30) empty.add(mesh());
+    for (const object of objects) {
+      object.position.set(...somewhere());
+      object.rotation.set(...somewhere());
+    }
+    scene.updateMatrixWorld();
+    moveObjects(world);
+    for (const [at, object] of objects.entries()) {
+      const { min, max } = new THREE.Box3().setFromObject(object);
+      const id = Number(ids[at]);
+      assert.equal(world.isEnabled(id), object !== empty || step >= 30);
+      if (world.isEnabled(id)) assert.deepEqual(world.box(id), [...min, ...max]);
+    }
+    for (let i = 0; i < 10; i++) {
+      const raycaster = new THREE.Raycaster(new THREE.Vector3(...somewhere()), new THREE.Vector3(...somewhere()).normalize(), 2 * next(), 3 + 9 * next());
+      /** @type {any} */
+      const hit = pick(world, raycaster);
+      assert.equal(hit?.distance, raycaster.intersectObjects(objects)[0]?.distance);
+      picks[hit ? "hits" : "misses"]++;
+      if (!hit) continue;
+      const own = objects.findIndex((object) => object.getObjectById(hit.object.id));
+      const others = raycaster.intersectObjects(objects.filter((_, at) => at !== own))[0];
+      assert.equal(pick(world, raycaster, (id) => id !== ids[own])?.distance, others?.distance);
+    }
+  }
+  assert.ok(picks.hits > 100 && picks.misses > 100, JSON.stringify(picks));
+});
+
+test("TypeScript takes the objects of the engines, as bundlers and as Node resolve", () => {
+  const typescript = join(createRequire(import.meta.url).resolve("typescript/package.json"), "..", "bin/tsc");
+  const options = ["--ignoreConfig", "--noEmit", "--strict", "--exactOptionalPropertyTypes", "--target", "es2022", "--lib", "es2022,dom,dom.iterable,esnext.disposable", "--types", ""];
+  for (const [module, resolution] of [["esnext", "bundler"], ["node16", "node16"]]) {
+    // The libraries' declarations are not ours to check.
+    const how = ["--skipLibCheck", "--module", module ?? "", "--moduleResolution", resolution ?? ""];
+    execFileSync(process.execPath, [typescript, ...options, ...how, "typed.ts"], { cwd: folder, stdio: "pipe", encoding: "utf8" });
+  }
 });
 
 test("the picture is what its script draws", () => {

@@ -32,7 +32,7 @@ interface Detector {
 }
 
 /**
- * Gives matter another broad phase: it replaces `Matter.Detector.collisions`, which `Matter.Engine.update` calls. All engines
+ * Gives matter another broad phase: it replaces `Matter.Detector.collisions`, which each step calls. All engines
  * of this module use it from then on. The collisions are those of matter, in matter's order, so bodies move bit for bit as before.
  *
  * Each step takes O(n log n + pairs) time, and creates garbage as matter does: an array of the collisions.

@@ -2,6 +2,7 @@
 // result in `globalThis.result`.
 import { findPairs, init } from "sweep-and-prune";
 import { BroadPhase } from "sweep-and-prune/broad-phase";
+import { inEngines } from "./engines.js";
 
 async function run() {
   const { simd } = await init();
@@ -14,7 +15,7 @@ async function run() {
     worker.onmessage = ({ data }) => resolve(data);
     worker.onerror = ({ message }) => reject(new Error(message || "the worker did not start"));
   });
-  return { simd, pairs, begun, inWorker };
+  return { simd, pairs, begun, inEngines: inEngines(BroadPhase), inWorker };
 }
 
 run().then(
