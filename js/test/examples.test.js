@@ -164,7 +164,7 @@ test("TypeScript takes the objects of the engines, as bundlers and as Node resol
   const typescript = join(createRequire(import.meta.url).resolve("typescript/package.json"), "..", "bin/tsc");
   const options = ["--ignoreConfig", "--noEmit", "--strict", "--exactOptionalPropertyTypes", "--target", "es2022", "--lib", "es2022,dom,dom.iterable,esnext.disposable", "--types", ""];
   for (const [module, resolution] of [["esnext", "bundler"], ["node16", "node16"]]) {
-    // The libraries' declarations are not ours to check.
+    // Without the declarations of the engines, which have faults of their own.
     const how = ["--skipLibCheck", "--module", module ?? "", "--moduleResolution", resolution ?? ""];
     execFileSync(process.execPath, [typescript, ...options, ...how, "typed.ts"], { cwd: folder, stdio: "pipe", encoding: "utf8" });
   }

@@ -111,14 +111,14 @@ test("the documentation of each language that there is can be reached, and is of
 
 test("users of other libraries find their page from the API page, with what the documents say", async ({ page }) => {
   const read = (file: string): string => readFileSync(new URL(`../../${file}`, import.meta.url), "utf8");
-  for (const [link, name] of [["In the place of the broad phase of matter, cannon or Excalibur", "matter"], ["In the place of the broad phase of Avian", "avian"], ["In the place of the broad phase of Bullet", "bullet"], ["In the place of a manager of FCL", "fcl"], ["For users of bedtools", "bedtools"]] as const) {
+  for (const [link, name] of [["In the place of the broad phase of matter, cannon, Excalibur or Phaser", "matter"], ["In the place of the broad phase of Avian", "avian"], ["In the place of the broad phase of Bullet", "bullet"], ["In the place of a manager of FCL", "fcl"], ["For users of bedtools", "bedtools"]] as const) {
     await page.goto("/api.html");
     await page.getByRole("link", { name: link }).click();
     await expect(page.locator(`#${name}`)).toBeInViewport();
   }
   const documents = ["js/docs/physics.md", "integrations/bevy/README.md", "c/adapters/bullet/README.md", "c/adapters/fcl/README.md"].map(read).join("\n").replaceAll(/^# [^a-z].*\n/gm, "");
   const codes = await page.locator("pre code").evaluateAll((all) => all.map((code) => code.textContent!));
-  expect(codes).toHaveLength(6);
+  expect(codes).toHaveLength(7);
   for (const code of codes) expect(documents).toContain(code);
   const section = read("docs/guide/from-other-libraries.md").split("## bedtools")[1]!.split("\n## ")[0]!;
   const table = section.split("\n").filter((line) => line.startsWith("| ")).join("\n");

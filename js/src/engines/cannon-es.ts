@@ -6,8 +6,13 @@ import { hasMethods, Rows, wrongArgument } from "./common.js";
 export interface CannonWorld {
   /** Its bodies. */
   readonly bodies: readonly object[];
-  /** Its broad phase, whose `collisionPairs` is replaced. */
-  readonly broadphase: { collisionPairs(world: any, first: any[], second: any[]): void; needBroadphaseCollision(a: any, b: any): boolean };
+  /** Its broad phase. */
+  readonly broadphase: {
+    /** Adds the bodies of each pair that may touch to two arrays: what is replaced. */
+    collisionPairs(world: any, first: any[], second: any[]): void;
+    /** Whether two bodies may collide: their filters allow it, and one of them moves. */
+    needBroadphaseCollision(a: any, b: any): boolean;
+  };
 }
 
 /** A body of cannon. */

@@ -4,18 +4,29 @@ import { hasMethods, wrongArgument } from "./common.js";
 
 /** What {@link replaceBroadPhase} needs of a `Scene` of Excalibur. */
 export interface ExcaliburScene {
-  /** Its physics, whose `collisionProcessor` is replaced. */
-  readonly physics: { readonly collisionProcessor: object };
+  /** Its physics. */
+  readonly physics: {
+    /** Its broad phase: what is replaced. */
+    readonly collisionProcessor: object;
+  };
 }
 
 /** What {@link replaceBroadPhase} needs of Excalibur: the module, or an object with these three of its classes. */
 export interface ExcaliburModule {
   /** `ex.BodyComponent`. */
-  readonly BodyComponent: abstract new (...args: any[]) => object;
+  readonly BodyComponent: Function;
   /** `ex.CollisionGroup`. */
-  readonly CollisionGroup: { readonly All: { readonly category: number } };
+  readonly CollisionGroup: {
+    /** The group of bodies that have none. */
+    readonly All: object;
+  };
   /** `ex.Pair`. */
-  readonly Pair: { new (a: any, b: any): object; canCollide(a: any, b: any): boolean };
+  readonly Pair: {
+    /** A pair of colliders. */
+    new (a: any, b: any): object;
+    /** Whether two colliders may collide. */
+    canCollide(a: any, b: any): boolean;
+  };
 }
 
 /** A collider of Excalibur. */
@@ -194,7 +205,7 @@ class Processor implements CollisionProcessor {
   rayCast(ray: Ray, options: RayCastOptions = {}): RayCastHit[] {
     const { maxDistance = Infinity, collisionGroup, collisionMask, searchAllColliders = false, ignoreCollisionGroupAll = false, filter = () => true } = options;
     const { All } = this.#excalibur.CollisionGroup;
-    const mask = collisionGroup?.category ?? collisionMask ?? All.category;
+    const mask = collisionGroup?.category ?? collisionMask ?? (All as Body["group"]).category;
     const along = ray.dir.normalize();
     const hits = this.#world.rayCastAll([ray.pos.x, ray.pos.y], [along.x, along.y], maxDistance).flatMap(({ id }) => {
       const collider = this.#world.data(id)!;

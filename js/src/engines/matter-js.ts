@@ -4,11 +4,22 @@ import { hasMethods, Rows, sortedPairs, wrongArgument } from "./common.js";
 /** What {@link replaceBroadPhase} needs of matter: the module, or an object with these three parts of it. */
 export interface MatterModule {
   /** `Matter.Bounds`. */
-  readonly Bounds: { overlaps(a: any, b: any): boolean };
+  readonly Bounds: {
+    /** Whether two bounds overlap. */
+    overlaps(a: any, b: any): boolean;
+  };
   /** `Matter.Collision`. */
-  readonly Collision: { collides(a: any, b: any, pairs?: any): object | null };
-  /** `Matter.Detector`, whose `collisions` is replaced. */
-  readonly Detector: { canCollide(a: any, b: any): boolean; collisions(detector: any): any[] };
+  readonly Collision: {
+    /** The collision of two bodies, if their shapes overlap. */
+    collides(a: any, b: any, pairs?: any): object | null;
+  };
+  /** `Matter.Detector`. */
+  readonly Detector: {
+    /** Whether the filters of two bodies allow them to collide. */
+    canCollide(a: any, b: any): boolean;
+    /** All collisions of a detector's bodies: what is replaced. */
+    collisions(detector: any): any[];
+  };
 }
 
 /** A body of matter. */

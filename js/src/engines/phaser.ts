@@ -4,7 +4,13 @@ import { hasMethods, Rows, sortedPairs, wrongArgument } from "./common.js";
 /** What {@link replaceBroadPhase} needs of a `Scene` of Phaser with arcade physics. */
 export interface ArcadeScene {
   /** Its arcade physics. */
-  readonly physics: { readonly world: { separate(a: any, b: any, process?: any, context?: any, overlapOnly?: boolean): boolean } };
+  readonly physics: {
+    /** Its world, whose overlaps of groups are replaced. */
+    readonly world: {
+      /** Tests two bodies, and moves them apart unless `overlapOnly`. */
+      separate(a: any, b: any, process?: any, context?: any, overlapOnly?: boolean): boolean;
+    };
+  };
 }
 
 type Callback = ((this: unknown, a: object, b: object) => unknown) | null;

@@ -1,3 +1,4 @@
+import type { EdgesBox } from "../boxes/boxes.js";
 import type { BroadPhase } from "../world/broad-phase.js";
 import type { Filter } from "../world/filter.js";
 import { insert, type Kind, move } from "./objects.js";
@@ -5,7 +6,7 @@ import { insert, type Kind, move } from "./objects.js";
 /** A `Container` of Pixi: a sprite, graphics, a text, or what holds several. */
 export interface PixiObject {
   /** Its bounds in the coordinates of the stage. */
-  getBounds(skipUpdate?: boolean, bounds?: any): { readonly minX: number; readonly minY: number; readonly maxX: number; readonly maxY: number };
+  getBounds(skipUpdate?: boolean, bounds?: any): EdgesBox<2>;
 }
 
 /** One object for the bounds of all calls, which the first call makes. */

@@ -11,10 +11,21 @@ export interface ThreeObject {
   traverse(callback: (part: any) => void): void;
 }
 
+/** An `Intersection` of three.js. */
+export interface ThreeHit {
+  /** How far along the ray it is. */
+  readonly distance: number;
+}
+
 /** What {@link pick} needs of a `Raycaster` of three.js. */
-export interface ThreeRaycaster<Hit extends { readonly distance: number }> {
+export interface ThreeRaycaster<Hit extends ThreeHit> {
   /** Its ray. */
-  readonly ray: { readonly origin: Corner3D; readonly direction: Corner3D };
+  readonly ray: {
+    /** Where it begins. */
+    readonly origin: Corner3D;
+    /** Its direction, of length 1. */
+    readonly direction: Corner3D;
+  };
   /** How far it reaches. */
   readonly far: number;
   /** Tests one object and all that is in it. */
@@ -119,7 +130,7 @@ export function moveObjects(world: BroadPhase<3>): void {
  * if (hit) hit.object.material = highlighted;
  * ```
  */
-export function pick<Hit extends { readonly distance: number }>(world: BroadPhase<3>, raycaster: ThreeRaycaster<Hit>, filter?: QueryFilter): Hit | undefined {
+export function pick<Hit extends ThreeHit>(world: BroadPhase<3>, raycaster: ThreeRaycaster<Hit>, filter?: QueryFilter): Hit | undefined {
   checkWorld(kind, world);
   if (!hasMethods(raycaster, "intersectObject")) throw wrongArgument("raycaster", raycaster, "a `Raycaster` of three.js");
   const { ray, far } = raycaster;

@@ -15,4 +15,4 @@
  * @module
  */
 export * from "./common.js";
-export { insertObjects, moveObjects, pick, type ThreeObject, type ThreeRaycaster } from "../engines/three.js";
+export { insertObjects, moveObjects, pick, type ThreeHit, type ThreeObject, type ThreeRaycaster } from "../engines/three.js";
