@@ -7,7 +7,9 @@ import { createRequire } from "node:module";
 import { join } from "node:path";
 import { before, test } from "node:test";
 import { fileURLToPath, pathToFileURL } from "node:url";
-import { BroadPhase, init } from "sweep-and-prune/broad-phase";
+import { init } from "sweep-and-prune";
+import { BroadPhase } from "sweep-and-prune/broad-phase";
+import { replaceBroadPhase } from "sweep-and-prune/cannon-es";
 import { insertObjects, moveObjects, pick } from "sweep-and-prune/three";
 import { random } from "./support/boxes.js";
 import { resultOf, startBrowser } from "./support/browser.js";
@@ -105,9 +107,41 @@ test("in Excalibur pairs, queries and rays are those of brute force in 400 steps
 test("in Phaser overlaps of groups are those of arcade physics in 150 steps in which anything changes", async () => {
   const { differences, steps, hits, gone, late } = await resultOfPage("phaser-page.js");
   assert.deepEqual(differences, []);
-  assert.ok(steps === 150 && hits > 20_000, `${hits} hits in ${steps} steps`);
+  assert.ok(steps === 150 && hits > 30_000, `${hits} hits in ${steps} steps`);
   assert.ok(Math.min(...gone) > 5, "a callback removed too few");
   assert.deepEqual(late, [0, 0], "hits of what a callback removed");
+});
+
+test("in cannon pairs are those of its own brute force, with filters, sleeping and static bodies, and bodies that are set elsewhere", async () => {
+  /** @type {any} */
+  const CANNON = await import(pathToFileURL(join(folder, "node_modules/cannon-es/dist/cannon-es.js")).href);
+  await init();
+  const next = random(9);
+  const somewhere = () => new CANNON.Vec3(8 * next(), 8 * next(), 8 * next());
+  const world = new CANNON.World();
+  replaceBroadPhase(world);
+  const own = new CANNON.NaiveBroadphase();
+  own.useBoundingBoxes = true;
+  const keysOf = (/** @type {any} */ broadphase) => {
+    /** @type {{ index: number }[][]} */
+    const [first, second] = [[], []];
+    broadphase.collisionPairs(world, first, second);
+    return first?.map((a, at) => [a.index, second?.[at]?.index].sort((x, y) => Number(x) - Number(y)).join("-")).sort();
+  };
+  let found = 0;
+  for (let step = 0; step < 100; step++) {
+    if (step < 60) {
+      const body = new CANNON.Body({ mass: step % 3, shape: new CANNON.Sphere(0.5 + next()), collisionFilterGroup: 1 << step % 2, collisionFilterMask: step % 5 ? 3 : 1 });
+      world.addBody(body);
+    }
+    for (const body of world.bodies) if (next() < 0.5) body.position.copy(somewhere()); // of which cannon takes no note
+    if (step % 4 === 0) world.bodies[Math.floor(next() * world.bodies.length)].sleep();
+    const pairs = keysOf(world.broadphase);
+    for (const body of world.bodies) body.updateAABB();
+    assert.deepEqual(pairs, keysOf(own));
+    found += pairs?.length ?? 0;
+  }
+  assert.ok(found > 1_000, `${found} pairs`);
 });
 
 test("the boxes of three.js are those of Box3.setFromObject, and picks are those of a Raycaster, for meshes, groups and instances that move", async () => {

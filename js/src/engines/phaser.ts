@@ -15,8 +15,10 @@ export interface ArcadeScene {
 
 type Callback = ((this: unknown, a: object, b: object) => unknown) | null;
 
-/** A group of Phaser. */
+/** A group of Phaser. Those of arcade physics have a `physicsType`. */
 interface Group {
+  readonly isParent?: boolean;
+  readonly physicsType?: number;
   getChildren(): readonly { readonly body: Body | null }[];
   contains(child: object): boolean;
 }
@@ -36,17 +38,18 @@ interface Body {
 interface World {
   _total: number;
   canCollide(a: object, b: object): boolean;
-  collideGroupVsGroup(a: Group, b: Group, onHit: Callback, process: Callback, context: unknown, overlapOnly: boolean): void;
+  collideObjects(a: Group, b: Group | undefined, onHit: Callback, process: Callback, context: unknown, overlapOnly: boolean): boolean;
   separate(a: Body, b: Body, process: Callback, context: unknown, overlapOnly: boolean): boolean;
 }
 
 /**
- * Gives the arcade physics of a scene another broad phase for overlaps of two groups, `this.physics.add.overlap(bullets, rocks, onHit)`
- * and `this.physics.overlap(bullets, rocks)`: one search finds the pairs of all bodies of both groups. Arcade physics tests each
- * pair itself, and calls the same callbacks: for each object of the first group, in its order, with those of the second group in
- * their order. Colliders, single sprites and tilemaps stay as they are. Call it in `create`, since each start of a scene makes a world.
+ * Gives the arcade physics of a scene another broad phase for overlaps of its groups, `this.physics.add.overlap(bullets, rocks, onHit)`
+ * and `this.physics.overlap(bullets, rocks)`, also of a group with itself: one search finds the pairs of all bodies. Arcade physics tests
+ * each pair itself, and calls the same callbacks: for each object of the first group, in its order, with those of the second group in
+ * their order. Colliders, single sprites, groups without physics and tilemaps stay as they are. Call it in `create`, since each start
+ * of a scene makes a world.
  *
- * Each overlap of two groups takes O(n log n + pairs) time, and does not use arcade's own tree. If your game has no other
+ * Each overlap of groups takes O(n log n + pairs) time, and does not use arcade's own tree. If your game has no other
  * colliders of dynamic groups, `useTree: false` in its configuration saves the time to build that tree in each step.
  *
  * @throws {@link NotInitializedError} before the `init()` of `sweep-and-prune` is done; `TypeError` if `scene` is not a scene with
@@ -62,29 +65,38 @@ interface World {
  */
 export function replaceBroadPhase(scene: ArcadeScene): void {
   const world = Object(Object(scene).physics).world as World;
-  if (!hasMethods(world, "canCollide", "collideGroupVsGroup", "separate")) {
+  if (!hasMethods(world, "canCollide", "collideObjects", "separate")) {
     throw wrongArgument("scene", scene, "a `Scene` of Phaser with arcade physics, with `physics.world`");
   }
   const finder = new PairFinder({ dimensions: 2 });
   const [rowsA, rowsB] = [new Rows(4), new Rows(4)];
-  const own = world.collideGroupVsGroup;
+  const own = world.collideObjects;
 
-  world.collideGroupVsGroup = (a, b, onHit, process, context, overlapOnly) => {
+  world.collideObjects = (a, b, onHit, process, context, overlapOnly) => {
     // A collider moves bodies apart between two tests, so later pairs are not those that a search finds now.
-    if (!overlapOnly) return own.call(world, a, b, onHit, process, context, overlapOnly);
-    if (!world.canCollide(a, b)) return;
-    const first = bodiesOf(a).filter((body) => world.canCollide(body, b));
-    const second = bodiesOf(b);
-    const pairs = finder.findBetween(boxesOf(first, rowsA), boxesOf(second, rowsB));
+    if (!overlapOnly || !isGroup(a) || !(b === undefined || isGroup(b))) return own.call(world, a, b, onHit, process, context, overlapOnly);
+    world._total = 0;
+    if (b && b !== a && !world.canCollide(a, b)) return false;
+    const first = bodiesOf(a).filter((body) => !b || world.canCollide(body, b));
+    const second = b ? bodiesOf(b) : first;
+    const boxes = boxesOf(first, rowsA);
+    // Without a second group, each pair once.
+    const pairs = b ? finder.findBetween(boxes, boxesOf(second, rowsB)) : finder.find(boxes);
     for (const [i, j] of sortedPairs(pairs, second.length)) {
       const [bodyA, bodyB] = [first[i]!, second[j]!];
       // A callback may have taken it out of its group; `separate` sees that it was destroyed.
-      if (bodyA === bodyB || !b.contains(bodyB.gameObject)) continue;
+      if (bodyA === bodyB || !(b ?? a).contains(bodyB.gameObject)) continue;
       if (!world.separate(bodyA, bodyB, process, context, true)) continue;
       onHit?.call(context, bodyA.gameObject, bodyB.gameObject);
       world._total++;
     }
+    return world._total > 0;
   };
+}
+
+/** Whether it is a group of arcade physics: neither a sprite nor an array, say. */
+function isGroup(group: Group | null): boolean {
+  return group?.isParent === true && group.physicsType !== undefined;
 }
 
 /** The bodies of a group that may touch others. */

@@ -17,7 +17,7 @@ function play(isReplaced, useTree) {
         const next = random(5);
         const below = (limit) => Math.floor(next() * limit);
         const { physics } = this;
-        const groups = { bullets: physics.add.group(), rocks: physics.add.group(), walls: physics.add.staticGroup() };
+        const groups = { bullets: physics.add.group(), rocks: physics.add.group(), coins: physics.add.group(), walls: physics.add.staticGroup() };
         let made = 0;
         const add = (name) => {
           const object = this.add.rectangle(below(400), below(300), 2 + below(20), 2 + below(20)).setName(`${name} ${made++}`);
@@ -26,7 +26,10 @@ function play(isReplaced, useTree) {
           object.body.setVelocity(below(200) - 100, below(200) - 100);
           if (below(3) === 0) object.body.setCircle(object.body.halfWidth);
         };
-        for (const [name, count] of Object.entries({ bullets: 80, rocks: 150, walls: 40 })) for (let i = 0; i < count; i++) add(name);
+        for (const [name, count] of Object.entries({ bullets: 80, rocks: 150, coins: 40, walls: 40 })) for (let i = 0; i < count; i++) add(name);
+
+        groups.coins.collisionMask = 2; // the group could not meet itself, but some of its bodies can
+        groups.coins.getChildren().forEach(({ body }, i) => body.setCollisionCategory(1 + (i % 2)).setCollidesWith([1, 2]));
 
         let hits = [];
         const note = (what) => (a, b) => hits.push(`${what}: ${a.name} ${b.name}`);
@@ -34,6 +37,9 @@ function play(isReplaced, useTree) {
         physics.add.overlap(groups.bullets, groups.rocks, note("rocks"));
         physics.add.overlap(groups.bullets, groups.walls, note("walls"));
         physics.add.overlap(groups.rocks, groups.rocks, note("among rocks"));
+        physics.add.overlap(groups.coins, groups.coins, note("among coins"));
+        physics.add.overlap(groups.rocks, undefined, note("each two rocks once"));
+        physics.add.overlap(groups.bullets, this.add.group(groups.rocks.getChildren().slice(0, 20)), note("a group without physics"));
         physics.add.overlap(groups.bullets, groups.bullets, function (a, b) { note(this.name)(a, b); }, (a) => Number(a.name.split(" ")[1]) % 2 === 0, context);
         physics.add.overlap(this.add.rectangle(200, 150, 100, 100).setName("a sprite"), groups.rocks, note("nothing: it has no body"));
 
@@ -53,19 +59,24 @@ function play(isReplaced, useTree) {
           for (let i = 0; i < 3; i++) Object.values(changes)[below(8)]();
           physics.world.singleStep();
           const flags = groups.bullets.getChildren().map(({ body }) => [body.embedded, body.touching.none].join());
-          steps.push([...hits.sort(), ...flags]);
+          const isAny = physics.overlap(groups.bullets, groups.walls);
+          steps.push([...hits.sort(), ...flags, String(isAny)]);
           seen += hits.length;
           hits = [];
         }
 
         // What a callback destroys, or takes out of its group, is hit no more.
+        for (const name of ["bullets", "rocks"]) for (const { body } of groups[name].getChildren()) body.reset(200 + below(30), 150 + below(30));
         const gone = new Set();
         let late = 0;
         physics.add.overlap(groups.bullets, groups.rocks, (bullet, rock) => {
           if (gone.has(bullet) || gone.has(rock)) late++;
           gone.add(rock);
           if (gone.size % 2) rock.destroy();
-          else groups.rocks.remove(rock);
+          else {
+            groups.rocks.remove(rock);
+            rock.body.enable = true; // as if it were in another group now
+          }
           if (gone.size % 3 === 0) gone.add(bullet) && bullet.destroy();
         });
         physics.world.singleStep();
