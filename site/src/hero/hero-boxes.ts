@@ -280,7 +280,7 @@ export class HeroBoxes extends PanelElement {
   #readColors(): HeroColors {
     const word = (name: string): string => getComputedStyle(this.querySelector(`.is-${name}`) as HTMLElement).color;
     const stage = getComputedStyle(this.#canvas);
-    return { overlap: word("overlap"), test: word("test"), line: word("sweep"), box: stage.backgroundColor, outline: stage.borderTopColor, stage: stage.backgroundColor };
+    return { overlap: word("overlap"), test: word("test"), line: word("sweep"), outline: stage.borderTopColor, stage: stage.backgroundColor };
   }
 
   protected show(): void {
