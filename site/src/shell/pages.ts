@@ -1,6 +1,5 @@
 // The frame of every page, written when the site is built: what stands in the head, the header with
 // the navigation, the footer. A page is `<title>`, its own style and scripts, and `<main id="main">`.
-// `<html data-shell="bare">` asks for the head alone (a demo inside someone else's page).
 
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { basename } from "node:path";
@@ -27,6 +26,9 @@ const GUIDE = existsSync(new URL("public/api/python/guide.html", site)) ? ` Ther
 
 /** What search engines need not know: the frame of an embedded demo, and old addresses that lead to the playground. */
 const UNLISTED: readonly string[] = ["embed.html", "falling.html", "race.html"];
+
+/** Asks for a frame without header and footer: a demo inside someone else's page. */
+const BARE = '<main id="main" data-shell="bare">';
 
 /** Every page there is: each html file of the site's folder. */
 export function pages(): string[] {
@@ -64,27 +66,23 @@ function preview(page: string, file: string): string {
     <meta name="twitter:card" content="summary_large_image" />`;
 }
 
+/** A page in its frame. Its head is what its file has before `<main>`; what the visitor has chosen stands in the page itself, so the first picture already has the right colors. */
 function frame(page: string, { filename }: IndexHtmlTransformContext): string {
-  const bare = /<html[^>]*data-shell="bare"/.test(page);
   const file = basename(filename);
-  const framed = page
-    .replace(/<head>/, () => `<head>${head()}`)
-    .replace("</head>", () => `${preview(page, file)}\n  </head>`);
-  if (bare) return framed;
-  return framed
-    .replace(/<body([^>]*)>/, (tag) => `${tag}${header(file)}`)
-    .replace("</body>", () => `${footer()}</body>`);
-}
-
-/** Character set, icon, style and theme. What the visitor has chosen stands in the page itself: the first picture already has the right colors. */
-function head(): string {
-  return `
+  const [head, main] = page.split(/(?=<main)/, 2) as [string, string];
+  return `<!doctype html>
+<html lang="en">
+  <head>
     <meta charset="utf-8" />
     <meta name="viewport" content="width=device-width, initial-scale=1" />
     <link rel="icon" href="./icon.svg" type="image/svg+xml" />
     <link rel="stylesheet" href="./src/style.css" />
     <script>${readFileSync(new URL("theme-first.js", here), "utf8")}</script>
-    <script type="module" src="./src/shell/shell.ts"></script>`;
+    <script type="module" src="./src/shell/shell.ts"></script>
+    ${head}${preview(page, file)}
+  </head>
+  <body>${main.startsWith(BARE) ? main : `${header(file)}${main}${footer()}`}</body>
+</html>`;
 }
 
 function header(file: string): string {
