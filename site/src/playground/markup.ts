@@ -106,7 +106,7 @@ function markup(isCompact: boolean, isFalling: boolean): string {
 
 /** One algorithm: its choices, its counters, and how to leave it out if it is not the only one. */
 export const laneMarkup = (lane: number): string => `
-    <fieldset class="lane" data-lane="${lane}">
+    <fieldset class="lane" data-lane="${lane}" style="border-color: var(--lane-${lane})">
       <legend>Algorithm ${lane}${lane > 1 ? ` <button type="button" aria-label="Remove algorithm ${lane}">Remove</button>` : ""}</legend>
       ${choice(`lane-${lane}`, "algorithm", "Algorithm")}
       ${choice(`lane-${lane}`, "sort", "Sort")}
