@@ -11,7 +11,7 @@ const PACKAGES = { rust: "core/README.md", js: "js/README.md", python: "python/R
 
 /** Code below a caption, with a button that copies it. */
 const listing = ({ text, language }: Code, caption: string, label: string, what = "the example"): string =>
-  `<figure class="listing"><figcaption><span>${caption}</span>${COPY.replace(">", ` aria-label="Copy ${what}">`)}</figcaption>${highlight(text, language, label)}</figure>`;
+  `<figure class="listing"><figcaption class="row"><span>${caption}</span>${COPY.replace(">", ` aria-label="Copy ${what}">`)}</figcaption>${highlight(text, language, label)}</figure>`;
 
 /** How to install a package and how to use it, as its README begins. */
 function beginning(file: string): string {

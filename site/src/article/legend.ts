@@ -84,5 +84,5 @@ export function legend(names: string): string {
     if (!key) throw new Error(`there is no color key "${name}", only ${Object.keys(KEYS).join(", ")}`);
     return `<li><svg viewBox="0 0 34 16" width="34" height="16" aria-hidden="true">${key.swatch}</svg><span${key.word ? ` class="is-${key.word}"` : ""}>${key.says}</span></li>`;
   });
-  return `<ul class="legend" aria-label="Legend">${items.join("")}</ul>`;
+  return `<ul class="legend row" aria-label="Legend">${items.join("")}</ul>`;
 }

@@ -32,7 +32,7 @@ export function listing(name: string, follows: string | undefined): string {
     : "";
   return `
     <figure class="listing"${follows ? ` data-follows="${follows}"` : ""}${edit ? ` data-listing="${name}"` : ""}>
-      <figcaption><span>${name}.js</span>${follow}${edit}${COPY}</figcaption>
+      <figcaption class="row"><span>${name}.js</span>${follow}${edit}${COPY}</figcaption>
       ${highlight(code, "javascript", `${name}.js`, kinds)}
     </figure>`;
 }

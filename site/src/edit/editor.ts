@@ -54,7 +54,7 @@ export function openEditor(listing: HTMLElement, label: string, changed: (code: 
   const place = document.createElement("div");
   place.className = "editor";
   const said = document.createElement("p");
-  said.className = "editor-said";
+  said.className = "editor-said quiet";
   said.setAttribute("role", "status");
   const again = document.createElement("button");
   again.type = "button";

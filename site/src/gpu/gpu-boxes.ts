@@ -64,7 +64,7 @@ export class GpuBoxes extends PanelElement {
       <div class="panel" role="group" aria-label="Boxes on the GPU">
         <div class="panel-stage">
           <canvas data-part="picture" role="img" aria-label="Moving boxes; those that overlap another are highlighted. In 3D, what is farther is dimmer."></canvas>
-          <p class="stage-message" role="status" data-part="message"></p>
+          <p class="stage-message quiet" role="status" data-part="message"></p>
         </div>
         ${transport(`<button type="button" data-part="check">Check against the processor</button>`)}
         <div class="panel-world">

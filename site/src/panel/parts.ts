@@ -34,7 +34,7 @@ export const seedField = (id: string): string =>
 
 /** Play, Step, Reset, and what goes on in words. */
 export const transport = (more = ""): string =>
-  `<div class="panel-transport">
+  `<div class="panel-transport row">
         <button type="button" class="primary" data-part="play" disabled>Pause</button>
         <button type="button" data-part="step" disabled>Step</button>
         <button type="button" data-part="reset" disabled>Reset</button>

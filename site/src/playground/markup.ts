@@ -38,7 +38,7 @@ function markup(isCompact: boolean, isFalling: boolean): string {
         </div>
         <div class="orbit" data-part="orbit" hidden></div>
         ${isCompact ? still("discs", "Discs of very different sizes that have fallen into a box") : still("playground", "Five hundred boxes in clusters; those that overlap another are highlighted")}
-        <p class="stage-message" data-part="message">Loading</p>
+        <p class="stage-message quiet" data-part="message">Loading</p>
       </div>
       <div class="panel-plot">
         <canvas data-part="lines" role="img" aria-label="The cost of each search, step by step; the numbers are below"></canvas>
@@ -50,13 +50,13 @@ function markup(isCompact: boolean, isFalling: boolean): string {
       </div>
       ${transport(`<button type="button" data-part="fit" ${isFalling ? "hidden " : ""}disabled>Show all</button>
         <label class="switch" data-part="links"${isFalling ? "" : " hidden"}><input type="checkbox" autocomplete="off" disabled /> <span>Pair lines</span></label>`)}
-      <div class="panel-lanes">
+      <div class="panel-lanes row">
         <div class="lanes" data-part="lanes">${laneMarkup(1)}</div>
         <p class="alarm" role="alert" data-part="alarm"></p>
         <button type="button" data-part="add-algorithm" disabled>Add an algorithm</button>
         <a class="button" href="${SPHERES}">10,000 spheres in 3D</a>
       </div>
-      <div class="panel-tools" role="group" aria-label="Change the boxes">
+      <div class="panel-tools row" role="group" aria-label="Change the boxes">
         <button type="button" data-part="draw" aria-pressed="false" disabled>Draw</button>
         <button type="button" data-part="add" disabled>Add a box</button>
         <button type="button" data-part="delete" disabled>Delete</button>
@@ -93,7 +93,7 @@ function markup(isCompact: boolean, isFalling: boolean): string {
         The boxes of the step that is shown, with exact coordinates, and the call that finds their pairs. Copying
         pauses the world, and the address leads back to the same step.
       </p>
-      <div class="export-choice">
+      <div class="export-choice row">
         ${choice("playground", "format", "As", [["js", "JavaScript"], ["rs", "Rust"], ["py", "Python"], ["json", "JSON"], ["csv", "CSV"]])}
         <button type="button" data-part="copy" disabled>Copy</button>
         <button type="button" data-part="download" disabled>Download</button>

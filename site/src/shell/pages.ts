@@ -106,7 +106,7 @@ function header(file: string): string {
 
 function footer(): string {
   return `
-    <footer class="site-footer">
+    <footer class="site-footer quiet">
       <p>
         Based on the article <cite>Sort, sweep, and prune</cite> by Lean and on the lesson about sweep and
         prune in Matthias Müller’s <cite>Ten Minute Physics</cite>. Free software under the MIT or Apache 2.0
