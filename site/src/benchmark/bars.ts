@@ -23,7 +23,7 @@ export function bars(one: Case, caption: string, entries: readonly Entry[], labe
     return `<tr class="${kind}" data-library="${name}"><th scope="row">${label.replace(/[._]/g, "$&<wbr>")}</th><td class="bar" aria-hidden="true"><span style="width: ${width(ns).toFixed(1)}%"></span></td><td>${duration(ns)}</td><td>${last}</td></tr>`;
   });
   const untimed = entries.flatMap(({ name, outcome }) =>
-    "Untimed" in outcome ? [`<tr data-library="${name}"><th scope="row">${labels[name] ?? name}</th><td colspan="3" class="why">${outcome.Untimed.why}</td></tr>`] : [],
+    "Untimed" in outcome ? [`<tr data-library="${name}"><th scope="row">${labels[name] ?? name}</th><td colspan="3" class="why quiet">${outcome.Untimed.why}</td></tr>`] : [],
   );
   return `<table><caption>${caption}</caption><thead class="visually-hidden"><tr><th scope="col">Library</th><td></td><th scope="col">Time</th><th scope="col">Times as long as sweep-and-prune</th></tr></thead><tbody>${[...rows, ...untimed].join("")}</tbody></table>`;
 }

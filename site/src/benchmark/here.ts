@@ -88,9 +88,7 @@ export class BenchmarkHere {
     try {
       for await (const one of measure({ scene, dimensions, sizes, libraries: measured(dimensions, task) }, progress, stop.signal)) {
         this.#cases.push(one);
-        const results = element("here-results");
-        results.hidden = false;
-        results.innerHTML = this.#cases.map((one) => bars(one, `${formatCount(one.boxes)} boxes, ${formatCount(one.pairs)} pairs, checked against ${one.reference}`, one.results)).join("");
+        element("here-results").innerHTML = this.#cases.map((one) => bars(one, `${formatCount(one.boxes)} boxes, ${formatCount(one.pairs)} pairs, checked against ${one.reference}`, one.results)).join("");
       }
       this.#progress.value = 1;
       this.#status.textContent = `Done. ${verdict(this.#cases.at(-1))}`;
