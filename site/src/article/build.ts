@@ -67,7 +67,7 @@ function section(name: string): { name: string; title: string; html: string } {
 
 /** Fills in the listings, legends and drawings. */
 function expand(page: string): string {
-  return expandStructures(withPosters(page))
+  return expandStructures(withPosters(withLegends(page)))
     .replace("<space-time></space-time>", () => `<space-time>${spaceTime()}</space-time>`)
     .replace("<fast-sweep></fast-sweep>", () => `<fast-sweep>${fastSweep(readFileSync(COLUMNS, "utf8"))}</fast-sweep>`)
     .replaceAll("%SITE%", SITE)
@@ -82,6 +82,10 @@ function expand(page: string): string {
       return draw();
     });
 }
+
+/** Below each demo, what its colors mean: those that its `legend` names. */
+const withLegends = (page: string): string =>
+  page.replace(/(<sap-demo[^>]*) legend="([^"]*)"(.*?<\/sap-demo>)/g, (_, demo: string, names: string, rest: string) => `${demo}${rest}${legend(names)}`);
 
 function words(html: string): number {
   return html.replace(/<[^>]*>/g, " ").split(/\s+/).filter(Boolean).length;

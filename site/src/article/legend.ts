@@ -1,5 +1,5 @@
 // The legend of a demo or figure: what each of its colors means, with a swatch of the same shape.
-// `<color-key shows="test overlap"></color-key>` becomes a list. Colors are those of article.css.
+// `<sap-demo legend="test overlap">`, and `<color-key shows="test overlap"></color-key>` elsewhere, become a list.
 
 /** A swatch, drawn as the demo draws the thing, and what it means. */
 interface Key {

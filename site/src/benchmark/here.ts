@@ -22,13 +22,13 @@ function measured(dimensions: number, task: Listed["task"]): Library[] {
 }
 
 export class BenchmarkHere {
-  readonly #form = element("here") as HTMLFormElement;
-  readonly #scene = select("here-scene");
-  readonly #dimensions = select("here-dimensions");
+  readonly #form = element<HTMLFormElement>("here");
+  readonly #scene = element<HTMLSelectElement>("here-scene");
+  readonly #dimensions = element<HTMLSelectElement>("here-dimensions");
   readonly #status = element("here-status");
-  readonly #progress = element("here-progress") as HTMLProgressElement;
-  readonly #run = element("here-run") as HTMLButtonElement;
-  readonly #cancel = element("here-cancel") as HTMLButtonElement;
+  readonly #progress = element<HTMLProgressElement>("here-progress");
+  readonly #run = element<HTMLButtonElement>("here-run");
+  readonly #cancel = element<HTMLButtonElement>("here-cancel");
   readonly #scenes: readonly Listed[];
   #stop: AbortController | undefined;
   #cases: Case[] = [];
@@ -55,9 +55,7 @@ export class BenchmarkHere {
   }
 
   get #listed(): Listed {
-    const found = this.#scenes.find(({ name }) => name === this.#scene.value);
-    if (!found) throw new Error("no scene is chosen");
-    return found;
+    return this.#scenes.find(({ name }) => name === this.#scene.value)!;
   }
 
   /** Offers what there is for the scene. */
@@ -122,10 +120,6 @@ function verdict(one: Case | undefined): string {
   return `${size}: ${fastest(one)} is the fastest. sweep-and-prune takes ${duration(own)}; the fastest alternative, ${alternative.name}, takes ${significant(alternative.ratio)} times as long.`;
 }
 
-function element(id: string): HTMLElement {
-  const found = document.getElementById(id);
-  if (!found) throw new Error(`there is no #${id}`);
-  return found;
+function element<E extends HTMLElement = HTMLElement>(id: string): E {
+  return document.querySelector<E>(`#${id}`)!;
 }
-
-const select = (id: string): HTMLSelectElement => element(id) as HTMLSelectElement;

@@ -20,4 +20,4 @@ export interface Time {
   readonly calls: number;
 }
 
-export type Answer = { readonly ready: Ready } | { readonly time: number } | { readonly failed: string };
+export type Answer = { readonly value: Ready | number } | { readonly failed: string };

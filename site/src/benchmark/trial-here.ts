@@ -64,7 +64,7 @@ async function measureOne(
     const remote = new Remote(signal);
     remotes.push(remote);
     try {
-      const ready = await remote.start({ ...setting, library: library.name });
+      const ready = await remote.ask({ ...setting, library: library.name });
       slow.set(library.name, ready.estimate / boxes);
       return { library, remote, ready, rounds: [] };
     } catch (error) {
@@ -104,7 +104,7 @@ async function measureOne(
         const one = running[(at + round) % running.length];
         if (!one || (round >= 2 && one.ready.estimate > 500)) continue;
         const calls = Math.min(Math.max(1, Math.round(TURN / Math.max(one.ready.estimate, 0.01))), 500);
-        one.rounds.push(await one.remote.time({ calls }));
+        one.rounds.push(await one.remote.ask({ calls }));
       }
     }
     const timed = running.map(({ library: { name, alternative }, rounds }): Entry => ({ name, alternative, outcome: { Timed: { median_ns: median(rounds) * 1e6 } } }));
@@ -131,28 +131,19 @@ class Remote {
     this.#signal = signal;
   }
 
-  async start(message: Start): Promise<Ready> {
-    const answer = await this.#ask(message);
-    if ("ready" in answer) return answer.ready;
-    throw new Error("an answer to another question");
-  }
-
-  async time(message: Time): Promise<number> {
-    const answer = await this.#ask(message);
-    return "time" in answer ? answer.time : NaN;
-  }
-
   stop(): void {
     this.#worker.terminate();
   }
 
-  #ask(message: Start | Time): Promise<Answer> {
+  ask(message: Start): Promise<Ready>;
+  ask(message: Time): Promise<number>;
+  ask(message: Start | Time): Promise<Ready | number> {
     const over = new AbortController();
     const { signal } = over;
-    return new Promise<Answer>((resolve, reject) => {
+    return new Promise<Ready | number>((resolve, reject) => {
       const timer = setTimeout(() => reject(new TooLong(`over ${LIMIT / 1000} s`)), LIMIT);
       signal.addEventListener("abort", () => clearTimeout(timer));
-      this.#worker.addEventListener("message", ({ data }: MessageEvent<Answer>) => ("failed" in data ? reject(new Error(data.failed)) : resolve(data)), { signal });
+      this.#worker.addEventListener("message", ({ data }: MessageEvent<Answer>) => ("failed" in data ? reject(new Error(data.failed)) : resolve(data.value)), { signal });
       this.#worker.addEventListener("error", ({ message }) => reject(new Error(message || "its worker did not start")), { signal });
       this.#signal.addEventListener("abort", () => reject(this.#signal.reason), { signal });
       if (this.#signal.aborted) reject(this.#signal.reason);

@@ -52,18 +52,12 @@ export function openEditor(listing: HTMLElement, label: string, changed: (code: 
   const shown = listing.querySelector("pre")!;
   const original = shown.textContent ?? "";
   const place = document.createElement("div");
-  place.className = "editor";
-  const said = document.createElement("p");
-  said.className = "editor-said quiet";
-  said.setAttribute("role", "status");
-  const again = document.createElement("button");
-  again.type = "button";
-  again.className = "small";
-  again.textContent = "Original code";
+  place.innerHTML = `<div class="editor"></div><p class="editor-said quiet" role="status"></p><button type="button" class="small">Original code</button>`;
+  const [parent, said, again] = place.children as unknown as [Element, Element, Element];
   let timer: ReturnType<typeof setTimeout> | undefined;
   const run = (): void => changed(view.state.doc.toString());
   const view = new EditorView({
-    parent: place,
+    parent,
     state: EditorState.create({
       doc: original,
       extensions: [
@@ -87,7 +81,7 @@ export function openEditor(listing: HTMLElement, label: string, changed: (code: 
   });
   again.addEventListener("click", () => view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: original } }));
   shown.hidden = true;
-  shown.after(place, said, again);
+  shown.after(place);
   const editor: Editor = {
     original,
     get code() {
@@ -104,7 +98,7 @@ export function openEditor(listing: HTMLElement, label: string, changed: (code: 
     close: () => {
       clearTimeout(timer);
       view.destroy();
-      for (const part of [place, said, again]) part.remove();
+      place.remove();
       shown.hidden = false;
     },
   };

@@ -3,6 +3,7 @@
 
 import scalarWasm from "../generated/experiment.wasm?url";
 import simdWasm from "../generated/experiment.simd.wasm?url";
+import type { Counts } from "../panel/counters.ts";
 import { hasSimd } from "../simd.ts";
 
 /** The axes by name. */
@@ -46,17 +47,13 @@ export interface Lists {
   readonly motions: readonly Named[];
 }
 
-/** What one run did. The counts mean the same for every algorithm; `null` is not counted. */
-export interface Report {
+/** What one run did. The counts mean the same for every algorithm. */
+export interface Report extends Counts {
   /** Milliseconds from boxes to the list of all pairs, unobserved. */
   readonly ms: number;
   readonly pairs: number;
   /** 16 hexadecimal digits: the same for the same pairs, in whatever order. */
   readonly fingerprint: string;
-  readonly tests: number | null;
-  readonly axisOverlaps: number | null;
-  readonly comparisons: number | null;
-  readonly swaps: number | null;
 }
 
 /** What a first run would cost. */

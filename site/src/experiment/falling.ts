@@ -1,10 +1,26 @@
 // The scene of balls that fall: their boxes are what the algorithms search, step by step.
 
-import { Simulation } from "../balls/load.ts";
-import { radiusOf } from "../balls/setup.ts";
+import { Simulation } from "../../../classroom/simulation/wasm/simulation.js";
+import scalarWasm from "../generated/simulation.wasm?url";
+import simdWasm from "../generated/simulation.simd.wasm?url";
+import { hasSimd } from "../simd.ts";
 import type { WorldOptions } from "./experiment.ts";
 import { GRAVITIES } from "./scene.ts";
 import type { Balls } from "./messages.ts";
+
+/** What the bodies of size 1 fill together: an area in 2D, a volume in 3D. The box is 10 wide. */
+const FILLED = { 2: 32, 3: 335 } as const;
+
+/** The middle radius of this many bodies. More bodies are smaller bodies: they fill the same space. */
+function radiusOf(bodies: number, dimensions: 2 | 3): number {
+  const each = FILLED[dimensions] / bodies;
+  return dimensions === 2 ? Math.sqrt(each / Math.PI) : Math.cbrt((3 * each) / (4 * Math.PI));
+}
+
+let loaded: Promise<unknown> | undefined;
+
+/** Loads the compiled simulation, once in each thread: `Falling` needs it. */
+export const loadSimulation = (): Promise<unknown> => (loaded ??= Simulation.load(new URL(hasSimd() ? simdWasm : scalarWasm, self.location.href)));
 
 export class Falling {
   readonly #simulation: Simulation;

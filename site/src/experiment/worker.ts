@@ -1,9 +1,8 @@
 // The thread of an experiment: one step of the world, then every runner on the same boxes, one after
 // another, so that none disturbs the clock of another.
 
-import { loadSimulation } from "../balls/load.ts";
 import { Experiment, type RunnerOptions, type Report, type WorldOptions } from "./experiment.ts";
-import { Falling } from "./falling.ts";
+import { Falling, loadSimulation } from "./falling.ts";
 import { formatCount } from "../panel/counters.ts";
 import { FALLING } from "./scene.ts";
 import type { FromExperiment, Lane, ToExperiment } from "./messages.ts";

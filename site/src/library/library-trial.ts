@@ -15,12 +15,8 @@ const side = (n: number): number => 0.5 * Math.cbrt(4 / n);
  */
 export class LibraryTrial extends HTMLElement {
   connectedCallback(): void {
-    const button = this.querySelector("button");
-    const slider = this.querySelector("input");
-    const count = this.querySelector(".value");
-    const result = this.querySelector<HTMLElement>("[role=status]");
-    if (!button || !slider || !count || !result) throw new Error("<library-trial> lacks its parts");
-
+    const [button, slider] = [this.querySelector("button")!, this.querySelector("input")!];
+    const [count, result] = [this.querySelector(".value")!, this.querySelector<HTMLElement>("[role=status]")!];
     slider.max = String(BOXES.length - 1);
     const boxes = (): number => BOXES[slider.valueAsNumber] ?? CHECKED;
     const showCount = (): void => {

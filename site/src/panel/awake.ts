@@ -1,23 +1,3 @@
-/**
- * Says whether an element can be seen: on the screen, in a tab that is not hidden. Called once
- * soon after, and then on every change.
- */
-export function onAwake(element: Element, changed: (awake: boolean) => void, signal: AbortSignal): void {
-  let onScreen = false;
-  let awake: boolean | undefined;
-  const update = (): void => {
-    const now = onScreen && document.visibilityState === "visible";
-    if (now !== awake) changed((awake = now));
-  };
-  const observer = new IntersectionObserver((entries) => {
-    onScreen = entries.at(-1)?.isIntersecting ?? false;
-    update();
-  });
-  observer.observe(element);
-  document.addEventListener("visibilitychange", update, { signal });
-  signal.addEventListener("abort", () => observer.disconnect());
-}
-
 /** Resolves when the first of some elements is on the screen or about to be. */
 export function whenNear(elements: Iterable<Element>, signal?: AbortSignal): Promise<void> {
   return new Promise((resolve) => {

@@ -1,4 +1,3 @@
-import { onAwake } from "./awake.ts";
 import { LARGEST_SEED } from "./parts.ts";
 
 /** A slider that is being dragged is heard at most this often. */
@@ -38,11 +37,20 @@ export abstract class PanelElement extends HTMLElement {
 
   // Controls
 
+  /** From now on, paces it by whether it can be seen: on the screen, in a tab that is not hidden. */
   protected followAwake(): void {
-    onAwake(this, (awake) => {
-      this.awake = awake;
+    let isOnScreen = false;
+    const update = (): void => {
+      this.awake = isOnScreen && document.visibilityState === "visible";
       this.pace();
-    }, this.signal);
+    };
+    const observer = new IntersectionObserver((entries) => {
+      isOnScreen = entries.at(-1)?.isIntersecting ?? false;
+      update();
+    });
+    observer.observe(this);
+    document.addEventListener("visibilitychange", update, { signal: this.signal });
+    this.signal.addEventListener("abort", () => observer.disconnect());
   }
 
   protected onResize(parts: readonly string[], resized: () => void): void {

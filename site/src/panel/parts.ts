@@ -3,34 +3,24 @@
 /** The largest seed of a world. */
 export const LARGEST_SEED = 2 ** 32 - 1;
 
-/** A choice with a label; its options, value and text, may come later by script. */
-export const choice = (
-  id: string,
-  part: string,
-  label: string,
-  options: readonly (readonly [value: string, text: string])[] = [],
-): string =>
+/** A control with its label: the tag that `begin` begins gets what all have, and `end` ends it. */
+const field = (id: string, part: string, label: string, begin: string, end = "/>"): string =>
   `<div class="field">
           <label for="${id}-${part}">${label}</label>
-          <select id="${id}-${part}" data-part="${part}" autocomplete="off" disabled>${options
-            .map(([value, text]) => `<option value="${value}">${text}</option>`)
-            .join("")}</select>
+          ${begin} id="${id}-${part}" data-part="${part}" autocomplete="off" disabled ${end}
         </div>`;
+
+/** A choice; its options, value and text, may come later by script. */
+export const choice = (id: string, part: string, label: string, options: readonly (readonly [value: string, text: string])[] = []): string =>
+  field(id, part, label, "<select", `>${options.map(([value, text]) => `<option value="${value}">${text}</option>`).join("")}</select>`);
 
 /** A slider with its value as text. */
 export const slider = (id: string, part: string, label: string, value: string): string =>
-  `<div class="field">
-          <label for="${id}-${part}">${label}</label>
-          <span class="value" data-part="${part}-value" aria-hidden="true">${value}</span>
-          <input id="${id}-${part}" data-part="${part}" type="range" autocomplete="off" disabled />
-        </div>`;
+  field(id, part, label, `<span class="value" data-part="${part}-value" aria-hidden="true">${value}</span><input type="range"`);
 
 /** The number that makes one world of many. */
 export const seedField = (id: string): string =>
-  `<div class="field">
-          <label for="${id}-seed">Seed</label>
-          <input id="${id}-seed" data-part="seed" type="number" inputmode="numeric" min="0" max="${LARGEST_SEED}" step="1" value="1" autocomplete="off" disabled />
-        </div>`;
+  field(id, "seed", "Seed", `<input type="number" inputmode="numeric" min="0" max="${LARGEST_SEED}" step="1" value="1"`);
 
 /** Play, Step, Reset, and what goes on in words. */
 export const transport = (more = ""): string =>
