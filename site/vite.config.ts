@@ -2,7 +2,6 @@ import { defineConfig, type Plugin, type Rolldown } from "vite";
 import { api } from "./src/api/build.ts";
 import { article } from "./src/article/build.ts";
 import { benchmark, alternatives } from "./src/benchmark/build.ts";
-import { insertComplexity } from "./src/complexity/table.ts";
 import { listings, sandboxWorker } from "./src/edit/build.ts";
 import { hero } from "./src/hero/build.ts";
 import { expandPlayground } from "./src/playground/markup.ts";
@@ -16,12 +15,6 @@ const panels: Plugin = {
   transformIndexHtml: { order: "pre", handler: (page) => expandPlayground(page) },
 };
 
-/** Writes the measured complexity table into the page. */
-const complexity: Plugin = {
-  name: "complexity",
-  transformIndexHtml: { order: "pre", handler: insertComplexity },
-};
-
 /** Warnings about the packages of the alternatives are not for this project to fix. */
 const quiet: Rolldown.InputOptions = {
   checks: { pluginTimings: false },
@@ -33,7 +26,7 @@ const quiet: Rolldown.InputOptions = {
 export default defineConfig({
   base: "./",
   appType: "mpa",
-  plugins: [hero, shell, article, tasks, listings, sandboxWorker, api, panels, complexity, benchmark, offline],
+  plugins: [hero, shell, article, tasks, listings, sandboxWorker, api, panels, benchmark, offline],
   worker: { format: "es", plugins: () => [alternatives()], rolldownOptions: quiet },
   build: {
     target: "es2022",

@@ -9,6 +9,7 @@ import { highlight, listing } from "../code/listing.ts";
 import { below, codesIn } from "../code/readme.ts";
 import { withPosters } from "./poster.ts";
 import { spaceTime } from "./space-time.ts";
+import { complexityTables } from "../complexity/table.ts";
 import { inside as fastSweep } from "../lanes/picture.ts";
 import { expandStructures } from "../structures/build.ts";
 import { SITE } from "../shell/pages.ts";
@@ -70,6 +71,7 @@ function expand(page: string): string {
   return expandStructures(withPosters(withLegends(page)))
     .replace("<space-time></space-time>", () => `<space-time>${spaceTime()}</space-time>`)
     .replace("<fast-sweep></fast-sweep>", () => `<fast-sweep>${fastSweep(readFileSync(COLUMNS, "utf8"))}</fast-sweep>`)
+    .replace("<complexity-table></complexity-table>", complexityTables)
     .replaceAll("%SITE%", SITE)
     .replace("<trial-code></trial-code>", () => highlight(codesIn(below("js/README.md", "Example"))[0]!.text, "js", "how to call the library"))
     .replace(/<code-listing name="([^"]*)"(?: follows="([^"]*)")?><\/code-listing>/g, (_, name: string, follows?: string) =>

@@ -1,7 +1,7 @@
 // What the benchmark page needs when the site is built: the recorded results, and the alternatives, of which those that are not
 // installed are left out.
 
-import { readdirSync, readFileSync } from "node:fs";
+import { existsSync, readdirSync, readFileSync } from "node:fs";
 import type { Plugin } from "vite";
 import { insertFront } from "./front.ts";
 import type { Recorded, Run } from "./results.ts";
@@ -14,28 +14,20 @@ const KEPT = [
   { kind: "javascript", folder: "bench/js/results/" },
 ] as const;
 
-/** The files of results. */
-function files(): { kind: Run["kind"]; text: string }[] {
+/** The runs that were kept. */
+function runs(): Run[] {
   return KEPT.flatMap(({ kind, folder }) => {
     const path = new URL(folder, root);
-    const names = list(path).filter((file) => file.endsWith(".json"));
+    const names = existsSync(path) ? readdirSync(path).filter((file) => file.endsWith(".json")) : [];
     // The newest first: the date is at the end of the name.
     names.sort((a, b) => b.slice(-15).localeCompare(a.slice(-15)));
-    return names.map((file) => ({ kind, text: readFileSync(new URL(file, path), "utf8") }));
+    return names.map((file): Run => ({ kind, ...(JSON.parse(readFileSync(new URL(file, path), "utf8")) as Recorded) }));
   });
-}
-
-function list(folder: URL): string[] {
-  try {
-    return readdirSync(folder);
-  } catch {
-    return []; // nothing was kept yet
-  }
 }
 
 export const benchmark: Plugin = {
   name: "benchmark",
-  transformIndexHtml: (page) => insertFront(page, files().map(({ kind, text }) => ({ kind, ...(JSON.parse(text) as Recorded) }))),
+  transformIndexHtml: (page) => insertFront(page, runs()),
 };
 
 const NO_BUFFER = "virtual:no-buffer";

@@ -125,11 +125,8 @@ class TooLong extends Error {}
 /** A library in its worker. */
 class Remote {
   readonly #worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
-  readonly #signal: AbortSignal;
 
-  constructor(signal: AbortSignal) {
-    this.#signal = signal;
-  }
+  constructor(private readonly cancelled: AbortSignal) {}
 
   stop(): void {
     this.#worker.terminate();
@@ -145,8 +142,8 @@ class Remote {
       signal.addEventListener("abort", () => clearTimeout(timer));
       this.#worker.addEventListener("message", ({ data }: MessageEvent<Answer>) => ("failed" in data ? reject(new Error(data.failed)) : resolve(data.value)), { signal });
       this.#worker.addEventListener("error", ({ message }) => reject(new Error(message || "its worker did not start")), { signal });
-      this.#signal.addEventListener("abort", () => reject(this.#signal.reason), { signal });
-      if (this.#signal.aborted) reject(this.#signal.reason);
+      this.cancelled.addEventListener("abort", () => reject(this.cancelled.reason), { signal });
+      if (this.cancelled.aborted) reject(this.cancelled.reason);
       else this.#worker.postMessage(message);
     }).finally(() => over.abort());
   }

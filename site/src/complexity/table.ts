@@ -7,7 +7,6 @@ type Variant = (typeof complexity.variants)[number];
 type Case = "best" | "average" | "worst";
 
 const CASES: readonly Case[] = ["best", "average", "worst"];
-const PLACE = "<complexity-table></complexity-table>";
 
 /** The rows that are shown at once, in the order of the article. The others are folded away. */
 const SHOWN: readonly (readonly [method: string, sort: string | null])[] = [
@@ -19,12 +18,8 @@ const SHOWN: readonly (readonly [method: string, sort: string | null])[] = [
   ["swap-driven sweep", null],
 ];
 
-/** Puts the tables where the page asks for them. */
-export function insertComplexity(page: string): string {
-  return page.replace(PLACE, tables);
-}
-
-function tables(): string {
+/** Six algorithms in a table, and the others folded away. */
+export function complexityTables(): string {
   const shown = SHOWN.map(([method, sort]) => {
     const found = complexity.variants.find((variant) => variant.method === method && variant.sort === sort);
     if (!found) throw new Error(`docs/complexity.json has no ${method} with ${sort}`);

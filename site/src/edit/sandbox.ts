@@ -26,11 +26,8 @@ const MOST_TICKS = 20;
 
 /** The code is wrong, or has been ended. */
 export class CodeError extends Error {
-  readonly fault: Fault;
-
-  constructor(fault: Fault) {
+  constructor(readonly fault: Fault) {
     super(fault.message);
-    this.fault = fault;
   }
 }
 

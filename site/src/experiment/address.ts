@@ -4,9 +4,7 @@
 /** The texts of the address where it has them, else those of `defaults`. */
 export function readAddress<K extends string>(defaults: Readonly<Record<K, string>>): Record<K, string> {
   const query = new URLSearchParams(location.search);
-  const texts = { ...defaults } as Record<K, string>;
-  for (const key of Object.keys(defaults) as K[]) texts[key] = query.get(key) ?? defaults[key];
-  return texts;
+  return Object.fromEntries(Object.entries<string>(defaults).map(([key, text]) => [key, query.get(key) ?? text])) as Record<K, string>;
 }
 
 /** Writes into the address what differs from the defaults. */

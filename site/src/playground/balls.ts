@@ -6,25 +6,21 @@ import { readTheme } from "../view/theme.ts";
 import type { View } from "../view/view.ts";
 
 export class BallsPicture {
-  /** What holds the canvas: it turns the view of spheres. */
-  readonly #place: HTMLElement;
-  readonly #signal: AbortSignal;
-  readonly #changed: () => void;
-  readonly #failed: (error: unknown) => void;
   #view: View | undefined;
   #dimensions = 0;
   #last: Balls | undefined;
 
-  constructor(place: HTMLElement, signal: AbortSignal, changed: () => void, failed: (error: unknown) => void) {
-    this.#place = place;
-    this.#signal = signal;
-    this.#changed = changed;
-    this.#failed = failed;
-  }
+  /** `place` holds the canvas: it turns the view of spheres. */
+  constructor(
+    private readonly place: HTMLElement,
+    private readonly signal: AbortSignal,
+    private readonly changed: () => void,
+    private readonly failed: (error: unknown) => void,
+  ) {}
 
   /** Shows balls and, of discs, lines for pairs; without balls, hides the picture. */
   show(balls: Balls | undefined, dimensions: 2 | 3, pairs?: Uint32Array): void {
-    this.#place.hidden = balls === undefined;
+    this.place.hidden = balls === undefined;
     if (!balls) return;
     const world = balls.world ?? this.#last?.world;
     const isNew = balls.world !== undefined && balls.world !== this.#last?.world;
@@ -35,7 +31,7 @@ export class BallsPicture {
   }
 
   resize(): void {
-    const { clientWidth, clientHeight } = this.#place;
+    const { clientWidth, clientHeight } = this.place;
     if (clientWidth > 0) this.#view?.resize(clientWidth, clientHeight);
   }
 
@@ -54,12 +50,12 @@ export class BallsPicture {
     this.#view = undefined;
     const canvas = document.createElement("canvas");
     const isTurned = dimensions === 3;
-    this.#place.replaceChildren(canvas);
-    this.#place.tabIndex = isTurned ? 0 : -1;
-    this.#place.setAttribute("role", isTurned ? "application" : "img");
-    this.#place.setAttribute("aria-label", isTurned ? "Spheres falling into a box. Arrow keys turn the view, plus and minus zoom." : "Discs falling into a box");
+    this.place.replaceChildren(canvas);
+    this.place.tabIndex = isTurned ? 0 : -1;
+    this.place.setAttribute("role", isTurned ? "application" : "img");
+    this.place.setAttribute("aria-label", isTurned ? "Spheres falling into a box. Arrow keys turn the view, plus and minus zoom." : "Discs falling into a box");
     const opened = isTurned
-      ? import("../view/sphere-view.ts").then(({ SphereView }): View => new SphereView(canvas, this.#place, readTheme(), this.#changed))
+      ? import("../view/sphere-view.ts").then(({ SphereView }): View => new SphereView(canvas, this.place, readTheme(), this.changed))
       : import("../view/disc-view.ts").then(({ DiscView }): View => new DiscView(canvas, readTheme()));
     opened.then(
       (view) => {
@@ -67,12 +63,12 @@ export class BallsPicture {
         this.#view = view;
         onThemeChange(() => {
           view.setTheme(readTheme());
-          this.#changed();
-        }, this.#signal);
+          this.changed();
+        }, this.signal);
         this.#begin();
-        this.#changed();
+        this.changed();
       },
-      (error: unknown) => this.#failed(isTurned ? new Error("drawing the spheres needs WebGL, which this browser does not offer. The boxes are searched anyway, and the numbers are correct", { cause: error }) : error),
+      (error: unknown) => this.failed(isTurned ? new Error("drawing the spheres needs WebGL, which this browser does not offer. The boxes are searched anyway, and the numbers are correct", { cause: error }) : error),
     );
   }
 }

@@ -17,23 +17,20 @@ export const keysOf = (lane: number): Readonly<Record<keyof RunnerOptions, strin
   lane === 1 ? { algorithm: "algorithm", sort: "sort", axis: "axis" } : { algorithm: String(lane), sort: `${lane}.sort`, axis: `${lane}.axis` };
 
 export class Lanes {
-  readonly #place: HTMLElement;
-  readonly #lists: Lists;
-  readonly #changed: (lanes: readonly RunnerOptions[]) => void;
   #lanes: readonly RunnerOptions[] = [];
 
-  constructor(place: HTMLElement, lists: Lists, changed: (lanes: readonly RunnerOptions[]) => void) {
-    this.#place = place;
-    this.#lists = lists;
-    this.#changed = changed;
-  }
+  constructor(
+    private readonly place: HTMLElement,
+    private readonly lists: Lists,
+    private readonly changed: (lanes: readonly RunnerOptions[]) => void,
+  ) {}
 
   /** Writes the choices of these algorithms. The axes are those of a world with this number of dimensions. */
   set(lanes: readonly RunnerOptions[], dimensions: number): void {
-    const { algorithms, sorts, axes } = this.#lists;
+    const { algorithms, sorts, axes } = this.lists;
     const names = { algorithm: algorithms, sort: sorts, axis: axes.slice(0, axes.length - 3 + dimensions) };
     this.#lanes = lanes.map((lane) => (names.axis.includes(lane.axis) ? lane : { ...lane, axis: names.axis[0] ?? "" }));
-    this.#place.innerHTML = lanes.map((_, at) => laneMarkup(at + 1)).join("");
+    this.place.innerHTML = lanes.map((_, at) => laneMarkup(at + 1)).join("");
     this.#lanes.forEach((lane, at) => {
       for (const choice of CHOICES) {
         const select = this.#select(at, choice);
@@ -43,14 +40,14 @@ export class Lanes {
         select.addEventListener("change", () => {
           this.#lanes = this.#lanes.map((lane, place) => (place === at ? { ...lane, [choice]: select.value } : lane));
           this.#offer(at);
-          this.#changed(this.#lanes);
+          this.changed(this.#lanes);
         });
       }
       this.#offer(at);
       const remove = this.#lane(at).querySelector<HTMLButtonElement>("button");
       remove?.addEventListener("click", () => {
         this.set(this.#lanes.filter((_, place) => place !== at), dimensions);
-        this.#changed(this.#lanes);
+        this.changed(this.#lanes);
       });
     });
   }
@@ -62,7 +59,7 @@ export class Lanes {
   add(dimensions: number): void {
     const algorithm = ADDED.find((name) => this.#lanes.every((lane) => lane.algorithm !== name)) ?? "find pairs";
     this.set([...this.#lanes, { ...this.#lanes[0]!, algorithm }], dimensions);
-    this.#changed(this.#lanes);
+    this.changed(this.#lanes);
     this.#select(this.#lanes.length - 1, "algorithm").focus();
   }
 
@@ -79,13 +76,13 @@ export class Lanes {
   /** A choice that would change nothing is not offered. */
   #offer(at: number): void {
     const algorithm = this.#lanes[at]?.algorithm ?? "";
-    const isPlain = this.#lists.algorithms.slice(0, 3).includes(algorithm);
+    const isPlain = this.lists.algorithms.slice(0, 3).includes(algorithm);
     this.#select(at, "sort").disabled = isPlain;
     this.#select(at, "axis").disabled = isPlain || algorithm.endsWith("every axis");
   }
 
   #lane(at: number): HTMLElement {
-    return this.#place.children[at] as HTMLElement;
+    return this.place.children[at] as HTMLElement;
   }
 
   #select(at: number, choice: keyof RunnerOptions): HTMLSelectElement {

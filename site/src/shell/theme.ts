@@ -8,10 +8,7 @@ const system = matchMedia("(prefers-color-scheme: dark)");
 const root = document.documentElement;
 
 /** What was chosen. */
-export function choice(): Choice {
-  const chosen = root.dataset["theme"];
-  return chosen === "light" || chosen === "dark" ? chosen : "auto";
-}
+export const choice = (): Choice => (root.dataset["theme"] as Choice | undefined) ?? "auto";
 
 /** Chooses, for this page and those visited later. */
 export function choose(chosen: Choice): void {
