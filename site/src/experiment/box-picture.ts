@@ -10,7 +10,7 @@ export interface BoxColors {
   readonly highlighted: string;
   readonly line: string;
   /** Of the frame around the box that is selected. */
-  readonly selected?: string;
+  readonly selected: string;
 }
 
 /** What part of the world is shown, and how large. */
@@ -50,7 +50,7 @@ export function drawBoxes(
   dimensions: number,
   pairs: Uint32Array,
   colors: BoxColors,
-  selected?: number,
+  selected: number | undefined,
 ): void {
   const { width, height } = size;
   const context = fitted(canvas, width, height);
@@ -85,7 +85,7 @@ export function drawBoxes(
   }
   if (!marked) return;
   // Dashed, a little outside: color is not the only sign.
-  context.strokeStyle = colors.selected ?? colors.highlighted;
+  context.strokeStyle = colors.selected;
   context.lineWidth = 2;
   context.setLineDash([5, 3]);
   context.strokeRect(marked[0] - 3, marked[1] - 3, marked[2] + 6, marked[3] + 6);

@@ -1,6 +1,6 @@
 // What `<fast-sweep>` shows of one step: the boxes, the arrays of their column in memory, and the lanes of a vector.
 
-import { LINE, readRecord, type Step, stepsOf } from "./sweep-steps.ts";
+import { columnsOf, LINE, type Step, stepsOf } from "./sweep-steps.ts";
 
 export const WIDTHS = [1, 4, 8, 16] as const;
 const WIDE = 560;
@@ -17,7 +17,7 @@ const rect = (x: number, y: number, width: number, height: number, kind: string)
 
 /** The sweep of the largest column of a recorded search, with vectors of this many lanes. */
 export function sweepOf(record: string, width: number): Shown {
-  const { columns } = readRecord(record);
+  const columns = columnsOf(record);
   const column = columns.reduce((largest, each) => (each.length > largest.length ? each : largest));
   const all = columns.flat();
   const steps = stepsOf(column, width);

@@ -7,25 +7,19 @@ export interface Entry {
   readonly min: number;
   readonly max: number;
   readonly id: number;
-  /** On which cut axes it began in an earlier column. */
-  readonly dedup: number;
 }
 
 type Column = readonly Entry[];
 
-/** The columns and the pairs of the record. */
-export function readRecord(text: string): { readonly columns: readonly Column[]; readonly pairs: readonly (readonly [number, number])[] } {
+/** The columns of the record. */
+export function columnsOf(record: string): readonly Column[] {
   const columns: Entry[][] = [];
-  const pairs: [number, number][] = [];
-  for (const line of text.trim().split("\n")) {
+  for (const line of record.trim().split("\n")) {
+    const [left = 0, right = 0, min = 0, max = 0, id = 0] = line.split(" ").map(Number);
     if (line.startsWith("column")) columns.push([]);
-    else if (line.startsWith("pair")) pairs.push(line.split(" ").slice(1).map(Number) as [number, number]);
-    else {
-      const [left = 0, right = 0, min = 0, max = 0, id = 0, dedup = 0] = line.split(" ").map(Number);
-      columns.at(-1)!.push({ left, right, min, max, id, dedup });
-    }
+    else if (!line.startsWith("pair")) columns.at(-1)!.push({ left, right, min, max, id });
   }
-  return { columns, pairs };
+  return columns;
 }
 
 /** The numbers of a cache line of 64 bytes. */

@@ -46,8 +46,8 @@ export const WORK: readonly Counter<Counts>[] = [
 ];
 
 /** The lines of some counters, as they are written when the site is built. */
-export const counterRows = (counters: readonly Counter<never>[], text = (_: string): string => "–"): string =>
-  counters.map(({ key, label, meaning }) => `<div class="counter" data-counter="${key}"><dt title="${meaning}">${label}</dt><dd>${text(key)}</dd></div>`).join("");
+export const counterRows = (counters: readonly Counter<never>[]): string =>
+  counters.map(({ key, label, meaning }) => `<div class="counter" data-counter="${key}"><dt title="${meaning}">${label}</dt><dd>–</dd></div>`).join("");
 
 /** Fills in the counters under `root`. `missing` says why a number is not there. */
 export function showCounters<T>(root: Element, counters: readonly Counter<T>[], shown: T | undefined, missing = ""): void {

@@ -23,7 +23,7 @@ export const seedField = (id: string): string =>
   field(id, "seed", "Seed", `<input type="number" inputmode="numeric" min="0" max="${LARGEST_SEED}" step="1" value="1"`);
 
 /** Play, Step, Reset, and what goes on in words. */
-export const transport = (more = ""): string =>
+export const transport = (more: string): string =>
   `<div class="panel-transport row">
         <button type="button" class="primary" data-part="play" disabled>Pause</button>
         <button type="button" data-part="step" disabled>Step</button>

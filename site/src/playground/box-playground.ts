@@ -159,7 +159,10 @@ export class BoxPlayground extends PanelElement {
     this.#bindChoice("dimensions");
     this.#bindChoice("scene");
     this.#bindChoice("motion");
-    this.#lanes = new Lanes(this.named("lanes"), lists, (lanes) => this.#setLanes(lanes));
+    this.#lanes = new Lanes(this.named("lanes"), lists, (lanes) => {
+      this.#keepLanes(lanes);
+      this.#change("step", "0");
+    });
     this.#fill(this.#lanesOfAddress(lists));
     this.onClick("add-algorithm", () => this.#lanes.add(this.#world().dimensions));
     this.#bindPlot();
@@ -267,11 +270,6 @@ export class BoxPlayground extends PanelElement {
     // The script in the head of the page has done so before the first picture.
     document.documentElement.classList.toggle("races", lanes.length > 1);
     this.#colors = undefined;
-  }
-
-  #setLanes(lanes: readonly RunnerOptions[]): void {
-    this.#keepLanes(lanes);
-    this.#change("step", "0");
   }
 
   #bindPlot(): void {

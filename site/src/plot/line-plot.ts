@@ -3,7 +3,7 @@
 
 export interface Line {
   /** What stands at its end, if there is room. */
-  readonly name?: string;
+  readonly name: string;
   readonly color: string;
   /** One value a step; `null` leaves a gap. */
   readonly values: readonly (number | null)[];
@@ -35,7 +35,7 @@ const BOTTOM = 34;
 /** Draws a plot that fills the canvas, whose size in CSS pixels is given. */
 export function drawLines(canvas: HTMLCanvasElement, width: number, height: number, options: PlotOptions): void {
   const { lines, first, steps, logarithmic, label, ink, muted, grid } = options;
-  const isNamed = width >= NAMED_FROM && lines.some(({ name }) => name !== undefined);
+  const isNamed = width >= NAMED_FROM;
   const right = isNamed ? NAMES : RIGHT;
   const context = fitted(canvas, width, height);
   context.font = "12px system-ui, sans-serif";
@@ -91,7 +91,7 @@ export function drawLines(canvas: HTMLCanvasElement, width: number, height: numb
     context.beginPath();
     context.arc(x(last), y(newest), 3, 0, 2 * Math.PI);
     context.fill();
-    if (isNamed && name !== undefined) ends.push({ name, color, x: x(last) + 8, y: y(newest) });
+    if (isNamed) ends.push({ name, color, x: x(last) + 8, y: y(newest) });
   }
   // From the top down, each at least a line below the one before.
   context.textBaseline = "middle";

@@ -76,7 +76,8 @@ export function sweep(boxes: readonly Box[]): Work {
 }
 
 /** The cells of a grid, each with the boxes that touch it. */
-export function grid(boxes: readonly Box[], size = 40): Work {
+export function grid(boxes: readonly Box[]): Work {
+  const size = 40;
   const across = Math.ceil(WIDTH / size);
   const cells = Array.from({ length: across * Math.ceil(HEIGHT / size) }, (): number[] => []);
   const cellAt = (x: number, y: number): number => Math.floor(y / size) * across + Math.floor(x / size);
@@ -203,8 +204,7 @@ function ordered(a: number, b: number): Pair {
 
 // Worlds
 
-export const worlds = ["even", "long", "one large"] as const;
-export type WorldName = (typeof worlds)[number];
+export type WorldName = "even" | "long" | "one large";
 
 /** The same boxes at each call. */
 export function world(name: WorldName): Box[] {

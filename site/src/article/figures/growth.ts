@@ -26,10 +26,10 @@ export function allPairs(): string {
 }
 
 const CURVES = [
-  { method: "global pairwise", sort: null, world: "square", name: "global pairwise", color: 4 },
-  { method: "sorted pairwise", sort: "insertion sort", world: "square", name: "sorted pairwise", color: 3 },
-  { method: "swap-driven sweep", sort: null, world: "square", name: "swap-driven, one axis", color: 1 },
-  { method: "swap-driven sweep on every axis", sort: null, world: "square", name: "swap-driven, every axis", color: 0 },
+  { method: "global pairwise", sort: null, name: "global pairwise", color: 4 },
+  { method: "sorted pairwise", sort: "insertion sort", name: "sorted pairwise", color: 3 },
+  { method: "swap-driven sweep", sort: null, name: "swap-driven, one axis", color: 1 },
+  { method: "swap-driven sweep on every axis", sort: null, name: "swap-driven, every axis", color: 0 },
 ] as const;
 
 /** A plot of curves: where it lies, in units of the figure. */
@@ -91,10 +91,10 @@ function gridIn(frame: Frame): string {
 
 /** The curves in a frame, the one that ends highest first. */
 function curvesIn(frame: Frame): { drawn: string; endX: number; endY: number; name: string; slope: number }[] {
-  const curves = CURVES.map(({ method, sort, world, name, color }) => {
+  const curves = CURVES.map(({ method, sort, name, color }) => {
     const variant = complexity.variants.find((found) => found.method === method && (found.sort ?? null) === sort);
-    const row = variant?.rows.find((found) => found.world === world);
-    if (!row) throw new Error(`docs/complexity.json has no ${method} in a ${world}`);
+    const row = variant?.rows.find((found) => found.world === "square");
+    if (!row) throw new Error(`docs/complexity.json has no ${method} in a square`);
     const points = row.n.map((n, i) => [xIn(frame, n), yIn(frame, row.operations[i] as number)] as const);
     const [endX, endY] = points.at(-1) as readonly [number, number];
     return { drawn: path(points, "curve", color), endX, endY, name, slope: row.slope };
