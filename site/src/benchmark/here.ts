@@ -29,7 +29,6 @@ export class BenchmarkHere {
   readonly #progress = element<HTMLProgressElement>("here-progress");
   readonly #run = element<HTMLButtonElement>("here-run");
   readonly #cancel = element<HTMLButtonElement>("here-cancel");
-  readonly #scenes: readonly Listed[];
   #stop: AbortController | undefined;
   #cases: Case[] = [];
 
@@ -39,8 +38,7 @@ export class BenchmarkHere {
     return new BenchmarkHere(SCENES.flatMap((name) => table.find((scene) => scene.name === name) ?? []));
   }
 
-  private constructor(scenes: readonly Listed[]) {
-    this.#scenes = scenes;
+  private constructor(private readonly scenes: readonly Listed[]) {
     this.#scene.replaceChildren(...scenes.map(({ name, task }) => new Option(task === "track" ? `${name} (motion)` : name, name)));
     this.#scene.disabled = this.#dimensions.disabled = this.#run.disabled = false;
     for (const set of this.#form.querySelectorAll("fieldset")) set.disabled = false;
@@ -55,7 +53,7 @@ export class BenchmarkHere {
   }
 
   get #listed(): Listed {
-    return this.#scenes.find(({ name }) => name === this.#scene.value)!;
+    return this.scenes.find(({ name }) => name === this.#scene.value)!;
   }
 
   /** Offers what there is for the scene. */

@@ -16,14 +16,12 @@ export const WORLD_HEIGHT = 100;
 export class MovingBoxes {
   /** Rows of min corner and max corner: what a runner takes. */
   readonly rows: Float64Array;
-  readonly count: number;
   readonly #velocities: Float64Array;
   #width: number;
   /** The box that a hand holds: it does not move by itself. */
   held: number | undefined;
 
-  constructor(count: number, seed: number, width: number) {
-    this.count = count;
+  constructor(readonly count: number, seed: number, width: number) {
     this.#width = width;
     this.rows = new Float64Array(4 * count);
     this.#velocities = new Float64Array(2 * count);

@@ -35,13 +35,11 @@ const ADDED = 48;
 const CLICK = 4;
 
 export class Hands {
-  readonly #playground: Playground;
   #selected: number | undefined;
   #draws = false;
   #past: Shown[] = [];
 
-  constructor(playground: Playground) {
-    this.#playground = playground;
+  constructor(private readonly playground: Playground) {
     const { surface, buttons } = playground;
     // Before the view's own keys: an arrow moves the box that is selected.
     surface.addEventListener("keydown", (event) => this.#press(event));
@@ -67,10 +65,10 @@ export class Hands {
 
   /** Changes the boxes in a way that can be undone. */
   replace(change: (shown: Shown) => Shown, selected?: number): void {
-    const shown = this.#playground.shown();
+    const shown = this.playground.shown();
     if (!shown) return;
     this.#keep(shown);
-    this.#playground.setBoxes(change(shown));
+    this.playground.setBoxes(change(shown));
     this.#select(selected);
   }
 
@@ -78,7 +76,7 @@ export class Hands {
 
   /** What a pointer that goes down here holds: a box, or one that is being drawn. */
   #grab(at: Point, scale: number): Grip | undefined {
-    const shown = this.#playground.shown();
+    const shown = this.playground.shown();
     if (!shown) return undefined;
     const hit = this.#draws ? undefined : boxAt(shown, at, scale);
     if (hit === undefined && !this.#draws) {
@@ -86,9 +84,9 @@ export class Hands {
       return undefined;
     }
     this.#keep(shown);
-    this.#playground.setHeld(true);
+    this.playground.setHeld(true);
     const box = hit ?? shown.boxes.length / (2 * shown.dimensions);
-    if (hit === undefined) this.#playground.setBoxes(withBox(shown, at, at));
+    if (hit === undefined) this.playground.setBoxes(withBox(shown, at, at));
     this.#select(box);
     let last = at;
     let hasMoved = false;
@@ -96,13 +94,13 @@ export class Hands {
       move: (to) => {
         hasMoved = true;
         last = to;
-        this.#playground.setBoxes(hit === undefined ? withBox(shown, at, to) : moved(shown, box, to.x - at.x, to.y - at.y));
+        this.playground.setBoxes(hit === undefined ? withBox(shown, at, to) : moved(shown, box, to.x - at.x, to.y - at.y));
       },
       end: () => {
         const isClick = Math.max(Math.abs(last.x - at.x), Math.abs(last.y - at.y)) * scale < CLICK;
-        if (hit === undefined && isClick) this.#playground.setBoxes(withBox(shown, corner(at, -0.5 * ADDED / scale), corner(at, 0.5 * ADDED / scale)));
+        if (hit === undefined && isClick) this.playground.setBoxes(withBox(shown, corner(at, -0.5 * ADDED / scale), corner(at, 0.5 * ADDED / scale)));
         else if (hit !== undefined && !hasMoved) this.#past.pop();
-        this.#playground.setHeld(false);
+        this.playground.setHeld(false);
         this.#select(box);
       },
     };
@@ -111,10 +109,10 @@ export class Hands {
   // By keys and buttons
 
   #press(event: KeyboardEvent): void {
-    const shown = this.#playground.shown();
-    const view = this.#playground.view();
+    const shown = this.playground.shown();
+    const view = this.playground.view();
     if (!shown || !view) return;
-    const { clientWidth, clientHeight } = this.#playground.surface;
+    const { clientWidth, clientHeight } = this.playground.surface;
     const boxes = shown.boxes.length / (2 * shown.dimensions);
     const [stepX, stepY] = [(KEY_STEP * clientWidth) / view.scale, (KEY_STEP * clientHeight) / view.scale];
     const arrows: Readonly<Record<string, Point>> = {
@@ -143,8 +141,8 @@ export class Hands {
 
   /** A box in the middle of the view. */
   #add(): void {
-    const view = this.#playground.view() ?? { x: 0.5, y: 0.5, scale: 400 };
-    const shown = this.#playground.shown();
+    const view = this.playground.view() ?? { x: 0.5, y: 0.5, scale: 400 };
+    const shown = this.playground.shown();
     if (!shown) return;
     const half = (0.5 * ADDED) / view.scale;
     this.replace((shown) => withBox(shown, corner(view, -half), corner(view, half)), shown.boxes.length / (2 * shown.dimensions));
@@ -158,13 +156,13 @@ export class Hands {
   #undo(): void {
     const before = this.#past.pop();
     if (!before) return;
-    this.#playground.setBoxes(before);
+    this.playground.setBoxes(before);
     this.#select(undefined);
   }
 
   #setDraws(draws: boolean): void {
     this.#draws = draws;
-    const { surface, buttons } = this.#playground;
+    const { surface, buttons } = this.playground;
     buttons.draw.setAttribute("aria-pressed", String(draws));
     surface.classList.toggle("draws", draws);
   }
@@ -176,13 +174,13 @@ export class Hands {
 
   #select(box: number | undefined): void {
     this.#selected = box;
-    const shown = this.#playground.shown();
-    this.#playground.select(box === undefined || !shown ? "" : describe(shown, box));
+    const shown = this.playground.shown();
+    this.playground.select(box === undefined || !shown ? "" : describe(shown, box));
     this.#offer();
   }
 
   #offer(): void {
-    const { buttons } = this.#playground;
+    const { buttons } = this.playground;
     buttons.delete.disabled = this.#selected === undefined;
     buttons.undo.disabled = this.#past.length === 0;
   }

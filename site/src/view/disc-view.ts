@@ -9,7 +9,6 @@ const PADDING = 10;
 
 /** Discs on a two-dimensional canvas. */
 export class DiscView implements View {
-  readonly #canvas: HTMLCanvasElement;
   #size = { width: 0, height: 0 };
   #theme: Theme;
   #world: World = { min: [0, 0], max: [1, 1] };
@@ -19,8 +18,7 @@ export class DiscView implements View {
   #shades: number[][] = [];
   #colors: string[] = [];
 
-  constructor(canvas: HTMLCanvasElement, theme: Theme) {
-    this.#canvas = canvas;
+  constructor(private readonly canvas: HTMLCanvasElement, theme: Theme) {
     this.#theme = theme;
     this.setTheme(theme);
   }
@@ -44,7 +42,7 @@ export class DiscView implements View {
 
   draw({ positions, pairs = new Uint32Array() }: Picture): void {
     const { width, height } = this.#size;
-    const context = fitted(this.#canvas, width, height);
+    const context = fitted(this.canvas, width, height);
     const [left = 0, bottom = 0] = this.#world.min;
     const worldWidth = (this.#world.max[0] ?? 1) - left;
     const scale = Math.min((width - 2 * PADDING) / worldWidth, (height - PADDING) / this.#shownHeight);

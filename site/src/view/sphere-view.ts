@@ -40,7 +40,6 @@ export class SphereView implements View {
   readonly #spheres: Mesh<InstancedBufferGeometry, ShaderMaterial>;
   readonly #floor = new Mesh(new PlaneGeometry(1, 1).rotateX(-Math.PI / 2), new MeshBasicMaterial());
   readonly #edges = new LineSegments(new EdgesGeometry(new BoxGeometry(1, 1, 1)), new LineBasicMaterial());
-  readonly #changed: () => void;
   #framed = false;
   /** The part of the world that is shown: its middle and its sides. */
   readonly #middle = new Vector3();
@@ -50,8 +49,7 @@ export class SphereView implements View {
    * `surface` takes the pointer and the keys that turn the view; `changed` is called when it has
    * turned and must be drawn again.
    */
-  constructor(canvas: HTMLCanvasElement, surface: HTMLElement, theme: Theme, changed: () => void) {
-    this.#changed = changed;
+  constructor(canvas: HTMLCanvasElement, surface: HTMLElement, theme: Theme, private readonly changed: () => void) {
     this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.#spheres = new Mesh(squares(0), sphereMaterial());
     this.#spheres.frustumCulled = false;
@@ -153,7 +151,7 @@ export class SphereView implements View {
     eye.phi = Math.min(Math.max(eye.phi, 0.05), 0.5 * Math.PI);
     this.#camera.position.setFromSpherical(eye).add(target);
     this.#controls.update();
-    this.#changed();
+    this.changed();
   }
 }
 
