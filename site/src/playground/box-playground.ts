@@ -426,9 +426,15 @@ export class BoxPlayground extends PanelElement {
 
   #place(): void {
     this.#isWaiting = false;
-    this.#record = new ExperimentRecord(this.#lanes.all.length);
+    this.#restart({ keep: true });
+  }
+
+  /** Lets the thread begin with the chosen world and algorithms: nothing is known of them yet. */
+  #restart(how: { readonly keep: true } | { readonly steps: number }): void {
+    const runners = this.#lanes.all;
+    this.#record = new ExperimentRecord(runners.length);
     this.#frame = undefined;
-    this.#send({ type: "begin", run: ++this.#run, world: this.#world(), runners: this.#lanes.all, keep: true });
+    this.#send({ type: "begin", run: ++this.#run, world: this.#world(), runners, ...how });
     this.#describe();
   }
 
@@ -482,9 +488,6 @@ export class BoxPlayground extends PanelElement {
   }
 
   #begin(steps = 0): void {
-    const lanes = this.#lanes.all;
-    this.#record = new ExperimentRecord(lanes.length);
-    this.#frame = undefined;
     this.#view = undefined;
     // Nothing of the boxes before stays, however long the first step takes.
     this.message("Working …");
@@ -499,8 +502,7 @@ export class BoxPlayground extends PanelElement {
     const about = [scenes.find(({ name }) => name === this.#state.scene), motions.find(({ name }) => name === this.#state.motion)];
     const brute = `Brute force would test ${formatCount(bruteForceTests(this.#world().boxes))} pairs in each step.`;
     this.named("about").textContent = [...about.flatMap((item) => item?.description ?? []), ...(this.#isFalling ? [brute] : [])].join(" ");
-    this.#send({ type: "begin", run: ++this.#run, world: this.#world(), runners: lanes, steps });
-    this.#describe();
+    this.#restart({ steps });
   }
 
   protected pace(): void {

@@ -1,13 +1,7 @@
 // Boxes of the visitor's own, as text: CSV or JSON, in the forms in which programs write boxes.
 
 import { messageOf } from "../message-of.ts";
-
-/** Boxes that were read. */
-interface Imported {
-  readonly dimensions: 2 | 3;
-  /** Rows of min corner and max corner. */
-  readonly boxes: Float32Array;
-}
+import type { Shown } from "./hands.ts";
 
 /** The most boxes that the playground takes. */
 const MOST_BOXES = 20_000;
@@ -33,7 +27,7 @@ const FORMS = "4 numbers (2D) or 6 (3D), the min corner and then the max corner"
  *
  * @throws `Error` that names the line, or the index of the box, and says what is wrong with it.
  */
-export function readBoxes(text: string): Imported {
+export function readBoxes(text: string): Shown {
   const rows = /^\s*[[{]/.test(text) ? jsonRows(text) : csvRows(text);
   if (rows.length === 0) throw new Error(`There are no boxes in it. Each line or row has to be ${FORMS}.`);
   if (rows.length > MOST_BOXES) throw new Error(`There are ${rows.length} boxes; the playground takes ${MOST_BOXES} at most.`);

@@ -30,7 +30,7 @@ export function bindView(
   grab: (at: Point, scale: number) => Grip | undefined,
 ): void {
   let held: { readonly pointer: number; readonly grip: Grip } | undefined;
-  const fingers = new Map<number, { x: number; y: number }>();
+  const fingers = new Map<number, Point>();
   const move = (dx: number, dy: number): void => {
     const now = view();
     if (now) changed({ ...now, x: now.x - dx / now.scale, y: now.y + dy / now.scale });
@@ -43,7 +43,7 @@ export function bindView(
     if (!(scale > 0 && Number.isFinite(scale))) return;
     changed({ x: now.x + x / now.scale - x / scale, y: now.y - y / now.scale + y / scale, scale });
   };
-  const fromMiddle = ({ x, y }: { x: number; y: number }): [number, number] => {
+  const fromMiddle = ({ x, y }: Point): [number, number] => {
     const { left, top, width, height } = surface.getBoundingClientRect();
     return [x - left - width / 2, y - top - height / 2];
   };
@@ -74,7 +74,7 @@ export function bindView(
     const now = { x: event.clientX, y: event.clientY };
     const other = [...fingers].find(([id]) => id !== event.pointerId)?.[1];
     if (other) {
-      const distance = (finger: { x: number; y: number }): number => Math.max(Math.hypot(finger.x - other.x, finger.y - other.y), 1);
+      const distance = (finger: Point): number => Math.max(Math.hypot(finger.x - other.x, finger.y - other.y), 1);
       zoom(distance(now) / distance(before), ...fromMiddle(other));
     } else {
       move(now.x - before.x, now.y - before.y);
