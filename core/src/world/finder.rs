@@ -69,20 +69,19 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         self.find_in_sets(table, bodies, when, most)
     }
 
-    /// The same of some bodies that are there, now.
+    /// The same of some bodies that are there.
     ///
     /// # Errors
     /// [`OutOfMemory`].
     pub fn find_some(
         &mut self,
-        some: impl Iterator<Item = u32>,
-        table: &[Aabb<D, T>],
+        some: &[u32],
         bodies: &Bodies<D, T>,
         most: usize,
     ) -> Result<Option<&[[u32; 2]]>, OutOfMemory> {
         self.sets.all.clear();
-        self.sets.all.extend(some);
-        self.find_in_sets(table, bodies, When::Now, most)
+        self.sets.all.extend_from_slice(some);
+        self.find_in_sets(&bodies.boxes, bodies, When::Now, most)
     }
 
     #[inline(never)]

@@ -43,6 +43,10 @@ const DEAR_UPDATES: usize = 16;
 /// 10,000 of them; 9 takes up to 1.17 and 0.96 to 1.01.
 const LARGE_LEAVES: usize = 3;
 
+/// Whether an update tries on a sample what it might have to give up. Not in WebAssembly: that takes 560 bytes after gzip, and of
+/// those the smallest files have none left.
+pub const TRIES_SAMPLES: bool = cfg!(not(target_arch = "wasm32"));
+
 /// Whether to keep a tree whose leaves became larger by this factor, and which is searched this often
 /// between two builds.
 pub fn refit_pays(growth: f64, searches: usize, bodies: usize) -> bool {

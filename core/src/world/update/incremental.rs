@@ -16,6 +16,7 @@ use crate::world::bodies::{Bodies, RANDOM_READ, When, flag};
 use crate::world::candidates::{Candidates, push_wanted};
 use crate::world::changes::Events;
 use crate::world::layout;
+use crate::world::policy::TRIES_SAMPLES;
 use crate::world::tracking::{Scratch, Tracking};
 use crate::world::tree::{BATCH, TOGETHER};
 
@@ -66,7 +67,7 @@ pub fn incremental<const D: usize, T: Scalar>(
         layout::note_jumps(&mut tracking.locality_decay, jumped);
         let look_ups = LookUps { count, extends, has_tree };
         let before = most;
-        is_right = !has_tree || tracking.are_few_reads(count, most);
+        is_right = !has_tree || !TRIES_SAMPLES || tracking.are_few_reads(count, most);
         let turns = if has_tree && is_right { tracking.move_in_tree(bodies) } else { 0 };
         is_right = is_right
             && tracking.find_added(bodies, &mut events.begun, look_ups, &mut most)
@@ -232,6 +233,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
 
     /// Whether looking bodies up seems to take at most as many reads as it may, by a sample: where it does not, most of them are
     /// moved in the tree and looked up in vain.
+    #[inline(never)]
     fn are_few_reads(&mut self, count: usize, most: usize) -> bool {
         let Self { tree, scratch: Scratch { queries, sampled, leaves, found, .. }, .. } = self;
         if count < SAMPLED_FROM {

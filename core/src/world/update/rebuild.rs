@@ -9,7 +9,7 @@ use crate::world::candidates::push_wanted;
 use crate::world::changes::Events;
 use crate::world::finder::Finder;
 use crate::world::layout::{self, Reorder};
-use crate::world::policy::Policy;
+use crate::world::policy::{Policy, TRIES_SAMPLES};
 use crate::world::tracking::Tracking;
 use crate::{Aabb, Scalar};
 
@@ -129,12 +129,16 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     /// have too many. Reserves memory for what begins. Returns whether the fat AABBs are larger.
     fn find_candidates(
         &mut self,
-        bodies: &Bodies<D, T>,
+        bodies: &mut Bodies<D, T>,
         mut is_fat: bool,
         begun: &mut Vec<[u32; 2]>,
     ) -> Result<bool, OutOfMemory> {
         let Self { fat, candidates, finder, policy, scratch, .. } = self;
-        if is_fat && policy.is_trial() && have_too_many(fat, finder, policy, bodies)? {
+        if TRIES_SAMPLES
+            && is_fat
+            && policy.is_trial()
+            && have_too_many(fat, finder, policy, bodies)?
+        {
             policy.note_excess(0);
             is_fat = false;
         }
@@ -167,19 +171,23 @@ fn have_too_many<const D: usize, T: Scalar>(
     fat: &[Aabb<D, T>],
     finder: &mut Finder<D, T>,
     policy: &Policy,
-    bodies: &Bodies<D, T>,
+    bodies: &mut Bodies<D, T>,
 ) -> Result<bool, OutOfMemory> {
-    let flags = &bodies.slots.flags;
     let most = policy.most_candidates(bodies.slots.live);
     // One in n bodies has one in n * n of the pairs.
-    let n = (most / SAMPLED_PAIRS).isqrt();
+    let n: usize = 1 << (((most / SAMPLED_PAIRS) | 1).ilog2() / 2);
     if n < LEAST_GAIN {
         return Ok(false);
     }
-    let sample = positions(flags.len(), flags.len() / n).map(|index| index as u32);
-    let sample = sample.filter(|&index| flags[index as usize] & flag::LIVE != 0);
+    let flags = &mut bodies.slots.flags;
+    for index in positions(flags.len(), flags.len() / n) {
+        flags[index] |= (flags[index] & flag::LIVE) * flag::MARKED;
+    }
     let excess = (most + most / 4) / (n * n);
-    Ok(finder.find_some(sample, fat, bodies, excess)?.is_none())
+    let found = finder.find(fat, bodies, [flag::MARKED, 0], When::Now, excess);
+    let is_excess = found.map(|pairs| pairs.is_none());
+    bodies.slots.flags.iter_mut().for_each(|flags| *flags &= !flag::MARKED);
+    is_excess
 }
 
 /// The tracking state of bodies that were read from a snapshot: the candidates are the pairs of the last update, and the
