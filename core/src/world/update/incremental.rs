@@ -28,7 +28,7 @@ const AHEAD: usize = 24;
 /// doing so takes 1.0 to 1.33. Half as much is the same within 2 %.
 const SELECT: usize = 12;
 
-/// Of how many bodies that are looked up the reads are tried, and if so many are.
+/// How many of the bodies that are looked up are tried first, and from how many on.
 const SAMPLE: usize = 64;
 const SAMPLED_FROM: usize = 16 * SAMPLE;
 
