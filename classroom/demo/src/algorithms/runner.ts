@@ -1,9 +1,10 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 import { type Boxes, checkBoxes, checkDimensions, type Dimensions } from "../../../../js/src/boxes/boxes.js";
 import { describe } from "../../../../js/src/wasm/describe.js";
-import { checkFits, Core, type Engine, type Exports } from "../../../../js/src/wasm/engine.js";
+import { checkFits, type Engine, type Exports } from "../../../../js/src/wasm/engine.js";
 import { OutOfMemoryError } from "../../../../js/src/wasm/errors.js";
 import { forgotten, Handle } from "../../../../js/src/wasm/handle.js";
+import { Core } from "../../../../js/src/wasm/init.js";
 import { lengthOf } from "../../../../js/src/wasm/typed.js";
 
 /** What classroom/algorithms/wasm/ exports. */
