@@ -146,6 +146,11 @@ impl Policy {
         self.tight > 0
     }
 
+    /// Whether bodies flew in the last update that looked up any, and that did not cost too much.
+    pub fn has_flown(&self) -> bool {
+        self.flights > 0
+    }
+
     /// Whether nothing speaks for fat AABBs that are larger than their bodies: the last ones did not last, or there were none.
     pub fn is_trial(&self) -> bool {
         self.updates < 2
@@ -154,7 +159,7 @@ impl Policy {
     /// Notes that fat AABBs have too many candidates, or that looking up bodies of which this many fly was given up.
     pub fn note_excess(&mut self, flights: usize) {
         if flights > 0 {
-            self.grounded = GROUNDED;
+            (self.grounded, self.flights) = (GROUNDED, 0);
         }
         self.skip();
         self.tight = self.skipped;
@@ -184,7 +189,7 @@ impl Policy {
         // What finding all pairs from scratch costs, in reads.
         let from_scratch = bodies + bodies / 4 + self.overlaps / 10;
         if flights > 0 && flights * FLIGHT + turns * TURN + reads > from_scratch {
-            self.grounded = GROUNDED;
+            (self.grounded, self.flights) = (GROUNDED, 0);
         }
     }
 

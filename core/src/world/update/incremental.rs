@@ -67,7 +67,8 @@ pub fn incremental<const D: usize, T: Scalar>(
         layout::note_jumps(&mut tracking.locality_decay, jumped);
         let look_ups = LookUps { count, extends, has_tree };
         let before = most;
-        is_right = !has_tree || !TRIES_SAMPLES || tracking.are_few_reads(count, most);
+        let tries = TRIES_SAMPLES && has_tree && !tracking.policy.has_flown();
+        is_right = !tries || tracking.are_few_reads(count, most);
         let turns = if has_tree && is_right { tracking.move_in_tree(bodies) } else { 0 };
         is_right = is_right
             && tracking.find_added(bodies, &mut events.begun, look_ups, &mut most)
