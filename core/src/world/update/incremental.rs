@@ -418,3 +418,27 @@ impl<const D: usize, T: Scalar> Scratch<D, T> {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Aabb, BroadPhase, Filter};
+
+    #[test]
+    fn a_sample_tells_whether_the_tree_would_be_read_too_much() {
+        let count = 2 * SAMPLED_FROM;
+        let boxed = |at: usize, size: f32| Aabb::new([at as f32], [at as f32 + size]);
+        let all: Vec<_> = (0..count).map(|at| boxed(at, 0.5)).collect();
+        let mut world = BroadPhase::<1>::new();
+        world.insert_many(&all, Filter::default()).unwrap();
+        world.queries();
+        let tracking = &mut world.tracking;
+        for (size, expected) in [(0.5, true), (100.0, false)] {
+            let queries = (0..count).map(|at| (at as u32, boxed(at, size)));
+            tracking.scratch.queries = queries.collect();
+            assert_eq!(tracking.are_few_reads(count, 8 * count), expected, "{size}");
+            // A few are looked up at once.
+            assert!(tracking.are_few_reads(SAMPLED_FROM - 1, 8));
+        }
+    }
+}

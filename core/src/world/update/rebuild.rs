@@ -207,3 +207,32 @@ pub fn restore<const D: usize, T: Scalar>(
     policy.note_overlaps(finder.found);
     Ok(tracking)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{BroadPhase, Filter};
+
+    #[test]
+    fn a_sample_tells_whether_fat_aabbs_have_too_many_candidates() {
+        // A grid of boxes apart from each other, and fat AABBs that each overlap a few others, or dozens.
+        let side = 90;
+        let place = |at: usize| [at % side, at / side].map(|at| 2.0 * at as f32);
+        let boxed = |at: usize, more: f32| {
+            Aabb::new(place(at).map(|at| at - more), place(at).map(|at| at + 1.0 + more))
+        };
+        let mut world = BroadPhase::<2>::new();
+        let all: Vec<_> = (0..side * side).map(|at| boxed(at, 0.0)).collect();
+        world.insert_many(&all, Filter::default()).unwrap();
+        world.update();
+        let BroadPhase { bodies, tracking, .. } = &mut world;
+        for (more, expected) in [(0.0, false), (0.4, false), (2.6, true)] {
+            let fat: Vec<_> = (0..side * side).map(|at| boxed(at, more)).collect();
+            let found = have_too_many(&fat, &mut tracking.finder, &tracking.policy, bodies);
+            assert_eq!(found.ok(), Some(expected), "{more}");
+            let few = side * side / 4;
+            assert!(tracking.finder.found < few, "{} found", tracking.finder.found);
+        }
+        assert!(bodies.slots.flags.iter().all(|flags| flags & flag::MARKED == 0));
+    }
+}
