@@ -2,7 +2,7 @@ import type { Boxes } from "../boxes/boxes.js";
 import { BroadPhase } from "../world/broad-phase.js";
 import type { Filter } from "../world/filter.js";
 import type { ProxyId } from "../world/types.js";
-import { hasMethods, wrongArgument } from "./common.js";
+import { hasMethods, Rows, wrongArgument } from "./common.js";
 
 /** How the objects of a renderer become bodies of a `BroadPhase`, whose data they are. */
 export interface Kind<D extends 2 | 3, T> {
@@ -17,6 +17,9 @@ export interface Kind<D extends 2 | 3, T> {
 
 /** The bodies of each broad phase that are disabled because their objects have no box. */
 const withoutBox = new WeakMap<object, Set<ProxyId>>();
+
+/** For the boxes of all objects that move in a frame. */
+const rows = { 2: new Rows(4), 3: new Rows(6) } as const;
 
 /** Inserts a body for each object, with the object as its data, and returns their ids. */
 export function insert<D extends 2 | 3, T, Data>(kind: Kind<D, T>, world: BroadPhase<D, Data>, objects: readonly (Data & T)[], filter?: Partial<Filter> | readonly Partial<Filter>[]): Float64Array {
@@ -41,7 +44,7 @@ export function insert<D extends 2 | 3, T, Data>(kind: Kind<D, T>, world: BroadP
 export function move<D extends 2 | 3, T>(kind: Kind<D, T>, world: BroadPhase<D>): void {
   checkWorld(kind, world);
   const width = 2 * kind.dimensions;
-  const boxes = new Float64Array(width * world.size);
+  const boxes = rows[kind.dimensions].for(world.size);
   const ids: ProxyId[] = [];
   const hidden = new Set<ProxyId>();
   for (const id of Array.from(world.ids())) {
