@@ -3,10 +3,15 @@
 use alloc::vec::Vec;
 
 use super::bodies::{Bodies, flag};
-use super::policy::{Motion, refit_pays};
+use super::policy::{LOOK_UP, Motion, refit_pays};
 use super::tree::Tree;
 use crate::cloning::clone_fields;
 use crate::{Aabb, Scalar};
+
+/// Where all fat AABBs are new, a tree is given up if more than one of this many bodies jumped: moving that in the tree takes as
+/// long as finding all pairs. Second if there were queries since the last update: they would have it built, which takes several
+/// times as long.
+const MOVED: [usize; 2] = [LOOK_UP, LOOK_UP / 8];
 
 /// A tree of fat AABBs.
 #[derive(Debug, Default)]
@@ -133,6 +138,7 @@ impl<const D: usize, T: Scalar> SearchTree<D, T> {
         bodies: &Bodies<D, T>,
         fat: &[Aabb<D, T>],
         motion: &Motion,
+        is_queried: bool,
         moved: &mut Vec<u32>,
     ) {
         if !self.is_built() {
@@ -148,7 +154,7 @@ impl<const D: usize, T: Scalar> SearchTree<D, T> {
                 && (bodies.slots.has(index, flag::NEW)
                     || motion.is_jump(&bodies.previous[row], &bodies.boxes[row]))
         }));
-        if moved.len() * 2 > self.tree.count {
+        if moved.len() * MOVED[usize::from(is_queried)] > self.tree.count {
             self.abandon();
             return;
         }

@@ -25,6 +25,8 @@ pub struct Tracking<const D: usize, T: Scalar> {
     pub flying: Vec<u32>,
     /// Whether there were queries since the last update.
     pub is_queried: bool,
+    /// Within an update: whether to bring the tree closer to holding all bodies when it ends.
+    pub is_tree_due: bool,
     pub motion: Motion,
     pub policy: Policy,
     pub sleep: Sleep,
@@ -37,7 +39,7 @@ pub struct Tracking<const D: usize, T: Scalar> {
 
 clone_fields! {
     [const D: usize, T: Scalar] Tracking<D, T> {
-        fat, is_fat_stale, candidates, tree, flying, is_queried, motion,
+        fat, is_fat_stale, candidates, tree, flying, is_queried, is_tree_due, motion,
         policy, sleep, locality_decay, finder, usage, scratch,
     }
 }
@@ -62,6 +64,7 @@ pub struct Scratch<const D: usize, T: Scalar> {
     pub added: Vec<([u32; 2], bool)>,
     /// Boxes to look up, by index, and what the tree finds.
     pub queries: Vec<(u32, Aabb<D, T>)>,
+    pub sampled: Vec<(u32, Aabb<D, T>)>,
     pub leaves: Vec<[u32; 2]>,
     pub found: Vec<[u32; 2]>,
     pub permutation: Permutation<D, T>,

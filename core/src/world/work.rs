@@ -183,10 +183,15 @@ fn the_list_of_changes_is_compacted_when_it_is_twice_as_long_as_the_bodies() {
 }
 
 #[test]
-fn the_tree_is_built_again_if_more_than_half_of_the_bodies_jumped() {
-    for (moved, expected) in [(50, TreeState::Old), (51, TreeState::Unbuilt)] {
+fn the_tree_is_built_again_if_many_of_the_bodies_jumped_and_more_where_it_is_queried() {
+    const OLD: TreeState = TreeState::Old;
+    const UNBUILT: TreeState = TreeState::Unbuilt;
+    for (is_queried, moved, expected) in
+        [(true, 12, OLD), (true, 13, UNBUILT), (false, 1, OLD), (false, 2, UNBUILT)]
+    {
         let (mut world, ids) = world_of(100);
         world.queries();
+        world.tracking.is_queried = is_queried;
         for &id in &ids[..moved] {
             world.set(id, at(1000 + id.slot() as usize)).expect("the body is there");
         }

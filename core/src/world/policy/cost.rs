@@ -25,6 +25,8 @@ const PAIR: f64 = 0.75;
 const REBUILD: usize = 2;
 /// What a body that flies costs, but for the leaves and bodies of the tree that are read for it, each of which costs 1.
 const FLIGHT: usize = 4;
+/// What it costs to take a body out of the tree because it takes off, or to put it in because it lands.
+const TURN: usize = 8;
 /// For how many updates no body flies once that cost too much.
 const GROUNDED: usize = 256;
 /// For how many updates tracking is skipped, at least and at most. Kept from before.
@@ -41,6 +43,10 @@ const DEAR_UPDATES: usize = 16;
 /// 10,000 of them; 9 takes up to 1.17 and 0.96 to 1.01.
 const LARGE_LEAVES: usize = 3;
 
+/// Whether an update tries on a sample what it might have to give up. Not in WebAssembly: that takes 560 bytes after gzip, and of
+/// those the smallest files have none left.
+pub const TRIES_SAMPLES: bool = cfg!(not(target_arch = "wasm32"));
+
 /// Whether to keep a tree whose leaves became larger by this factor, and which is searched this often
 /// between two builds.
 pub fn refit_pays(growth: f64, searches: usize, bodies: usize) -> bool {
@@ -55,8 +61,9 @@ pub struct Policy {
     overlaps: usize,
     cost: usize,
     updates: usize,
-    /// How much of the tree the last update read.
+    /// How much of the tree the last update read, and how many bodies flew in it.
     reads: usize,
+    flights: usize,
     /// How many updates in a row read too much, and how much their first half and the others did.
     dear: usize,
     dear_reads: [usize; 2],
@@ -100,7 +107,7 @@ impl Policy {
 
     /// How many leaves and bodies of the tree an update may read.
     pub fn most_reads(&self, bodies: usize) -> usize {
-        bodies + self.overlaps
+        bodies - bodies / 4 + self.overlaps
     }
 
     /// Whether fast bodies may fly, given how many of the bodies changed.
@@ -139,10 +146,20 @@ impl Policy {
         self.tight > 0
     }
 
+    /// Whether bodies flew in the last update that looked up any, and that did not cost too much.
+    pub fn has_flown(&self) -> bool {
+        self.flights > 0
+    }
+
+    /// Whether nothing speaks for fat AABBs that are larger than their bodies: the last ones did not last, or there were none.
+    pub fn is_trial(&self) -> bool {
+        self.updates < 2
+    }
+
     /// Notes that fat AABBs have too many candidates, or that looking up bodies of which this many fly was given up.
     pub fn note_excess(&mut self, flights: usize) {
         if flights > 0 {
-            self.grounded = GROUNDED;
+            (self.grounded, self.flights) = (GROUNDED, 0);
         }
         self.skip();
         self.tight = self.skipped;
@@ -162,13 +179,17 @@ impl Policy {
         self.updates = self.updates.saturating_add(1);
     }
 
-    /// Notes that `reads` leaves and bodies of the tree were read in an update in which `flights` bodies flew.
-    pub fn note_reads(&mut self, reads: usize, flights: usize, bodies: usize) {
+    /// Notes that `reads` leaves and bodies of the tree were read in an update in which `flights` bodies flew, and `turns` took
+    /// off or landed.
+    pub fn note_reads(&mut self, reads: usize, flights: usize, turns: usize, bodies: usize) {
         self.reads = if flights == 0 { reads } else { 0 };
+        // All take off once; where others do in each update, that costs more than it saves.
+        let turns = if self.flights > 0 { turns } else { 0 };
+        self.flights = flights;
         // What finding all pairs from scratch costs, in reads.
         let from_scratch = bodies + bodies / 4 + self.overlaps / 10;
-        if flights > 0 && flights * FLIGHT + reads > from_scratch {
-            self.grounded = GROUNDED;
+        if flights > 0 && flights * FLIGHT + turns * TURN + reads > from_scratch {
+            (self.grounded, self.flights) = (GROUNDED, 0);
         }
     }
 

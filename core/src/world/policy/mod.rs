@@ -7,7 +7,7 @@ mod motion;
 mod sleep;
 mod usage;
 
-pub use cost::{LOOK_UP, Policy, refit_pays};
+pub use cost::{LOOK_UP, Policy, TRIES_SAMPLES, refit_pays};
 pub use motion::Motion;
 pub use sleep::Sleep;
 pub use usage::Usage;

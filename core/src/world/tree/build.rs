@@ -16,7 +16,7 @@ const FEW: usize = 16;
 const SAMPLE_OF_SIDES: usize = 512;
 
 /// How deep a step cuts, the first one, which also lists the bodies, and any other.
-const CUTS_A_STEP: [u32; 2] = [1, 5];
+const CUTS_A_STEP: [u32; 2] = [1, 3];
 
 impl<const D: usize, T: Scalar> Tree<D, T> {
     /// Builds the tree of these bodies: from scratch, or if a build has begun, from where it is. O(n log n) time.

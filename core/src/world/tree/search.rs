@@ -23,6 +23,7 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
     /// prefetched, several at once. `most` is how many leaves and bodies may still be listed, and becomes
     /// less; returns false, with some of the bodies missing, if that is not enough.
     #[must_use]
+    #[inline(never)]
     pub fn overlapping_many(
         &self,
         queries: &[(u32, Aabb<D, T>)],

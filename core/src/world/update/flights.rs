@@ -93,7 +93,9 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         if flying.is_empty() {
             return true;
         }
-        let Ok(Some(pairs)) = finder.find_some(flying, bodies, most) else { return false };
+        let Ok(Some(pairs)) = finder.find_some(flying, bodies, most) else {
+            return false;
+        };
         for &pair in pairs {
             scratch.added.push((pair, true));
             if !bodies.was_live(pair) {

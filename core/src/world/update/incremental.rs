@@ -11,10 +11,12 @@ use core::hint::black_box;
 
 use crate::Scalar;
 use crate::memory::{OutOfMemory, prefetch_item, prefetch_pays, preload, reserve_for};
+use crate::sampling::positions;
 use crate::world::bodies::{Bodies, RANDOM_READ, When, flag};
 use crate::world::candidates::{Candidates, push_wanted};
 use crate::world::changes::Events;
 use crate::world::layout;
+use crate::world::policy::TRIES_SAMPLES;
 use crate::world::tracking::{Scratch, Tracking};
 use crate::world::tree::{BATCH, TOGETHER};
 
@@ -25,6 +27,10 @@ const AHEAD: usize = 24;
 /// to 1 %), always testing all takes 1.17 to 1.73 of the time; if the same ones move (up to 10 %), never
 /// doing so takes 1.0 to 1.33. Half as much is the same within 2 %.
 const SELECT: usize = 12;
+
+/// How many of the bodies that are looked up are tried first, and from how many on.
+const SAMPLE: usize = 64;
+const SAMPLED_FROM: usize = 16 * SAMPLE;
 
 /// Reports what begins and ends, given which bodies changed, escaped and left. Returns false, with nothing reported
 /// and the candidates as before, where there would be too many of them, or too much of the tree to read.
@@ -59,15 +65,16 @@ pub fn incremental<const D: usize, T: Scalar>(
     if is_right {
         let [jumped, count] = tracking.list_queries(bodies, extends);
         layout::note_jumps(&mut tracking.locality_decay, jumped);
-        if has_tree {
-            tracking.move_in_tree(bodies);
-        }
         let look_ups = LookUps { count, extends, has_tree };
         let before = most;
-        is_right = tracking.find_added(bodies, &mut events.begun, look_ups, &mut most)
+        let tries = TRIES_SAMPLES && has_tree && !tracking.policy.has_flown();
+        is_right = !tries || tracking.are_few_reads(count, most);
+        let turns = if has_tree && is_right { tracking.move_in_tree(bodies) } else { 0 };
+        is_right = is_right
+            && tracking.find_added(bodies, &mut events.begun, look_ups, &mut most)
             && tracking.find_among_flying(bodies, &mut events.begun, most)
             && tracking.scratch.reserve(&mut tracking.candidates, &mut events.begun).is_ok();
-        tracking.policy.note_reads(before - most, flights, bodies.slots.live);
+        tracking.policy.note_reads(before - most, flights, turns, bodies.slots.live);
     }
     if is_right {
         if !bodies.edits.changed().is_empty() || !bodies.edits.leaving().is_empty() {
@@ -225,9 +232,25 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         [jumped, count]
     }
 
-    /// Removes bodies that left or fly from the tree, and gives it the new fat AABBs.
+    /// Whether looking bodies up seems to take at most as many reads as it may, by a sample: where it does not, most of them are
+    /// moved in the tree and looked up in vain.
     #[inline(never)]
-    fn move_in_tree(&mut self, bodies: &Bodies<D, T>) {
+    fn are_few_reads(&mut self, count: usize, most: usize) -> bool {
+        let Self { tree, scratch: Scratch { queries, sampled, leaves, found, .. }, .. } = self;
+        if count < SAMPLED_FROM {
+            return true;
+        }
+        sampled.clear();
+        sampled.extend(positions(count, SAMPLE).map(|at| queries[at]));
+        let may_read = most.saturating_mul(SAMPLE) / count;
+        tree.tree().overlapping_many(sampled, leaves, found, &mut may_read.clone())
+    }
+
+    /// Removes bodies that left or fly from the tree, and gives it the new fat AABBs. Returns how many
+    /// took off or landed.
+    #[inline(never)]
+    fn move_in_tree(&mut self, bodies: &Bodies<D, T>) -> usize {
+        let mut turns = 0;
         let Self { tree, scratch: Scratch { queries, .. }, .. } = self;
         let tree = tree.tree_mut();
         for &index in bodies.edits.leaving() {
@@ -236,13 +259,16 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         for chunk in queries.chunks(TOGETHER) {
             chunk.iter().for_each(|&(index, _)| tree.prefetch_leaf_of(index));
             for (index, aabb) in chunk {
-                if bodies.slots.has(*index, flag::FLYING) {
+                let flies = bodies.slots.has(*index, flag::FLYING);
+                turns += usize::from(flies == tree.holds(*index));
+                if flies {
                     tree.remove(*index);
                 } else {
                     tree.set(*index, aabb);
                 }
             }
         }
+        turns
     }
 
     /// Finds the candidates of the bodies that are looked up. Returns false if there are too many, also for the memory, or if
@@ -390,5 +416,29 @@ impl<const D: usize, T: Scalar> Scratch<D, T> {
             let is_dropped = DROPS && is_escaped[a as usize] | is_escaped[b as usize];
             (at, (is_live != live[at]) | is_dropped)
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Aabb, BroadPhase, Filter};
+
+    #[test]
+    fn a_sample_tells_whether_the_tree_would_be_read_too_much() {
+        let count = 2 * SAMPLED_FROM;
+        let boxed = |at: usize, size: f32| Aabb::new([at as f32], [at as f32 + size]);
+        let all: Vec<_> = (0..count).map(|at| boxed(at, 0.5)).collect();
+        let mut world = BroadPhase::<1>::new();
+        world.insert_many(&all, Filter::default()).unwrap();
+        world.queries();
+        let tracking = &mut world.tracking;
+        for (size, expected) in [(0.5, true), (100.0, false)] {
+            let queries = (0..count).map(|at| (at as u32, boxed(at, size)));
+            tracking.scratch.queries = queries.collect();
+            assert_eq!(tracking.are_few_reads(count, 8 * count), expected, "{size}");
+            // A few are looked up at once.
+            assert!(tracking.are_few_reads(SAMPLED_FROM - 1, 8));
+        }
     }
 }

@@ -52,6 +52,7 @@ pub fn update<const D: usize, T: Scalar>(
     events.ended.clear();
     bodies.refatten_too_wide();
     let found = find_events(bodies, tracking, events);
+    tracking.is_queried = false;
     if let Ok(mut order) = found {
         let is_level_new = bodies.is_level_new();
         if finish::finish(bodies, tracking, events, is_level_new) && order == Reorder::No {
@@ -61,6 +62,9 @@ pub fn update<const D: usize, T: Scalar>(
         // Loading takes long anyhow; each of the next frames would be late.
         if is_level_new && order != Reorder::Later {
             tracking.ready_tree(bodies);
+        }
+        if core::mem::take(&mut tracking.is_tree_due) {
+            tracking.advance_tree(bodies);
         }
     } else {
         take_back::take_back(bodies, tracking, events);
@@ -77,11 +81,13 @@ fn find_events<const D: usize, T: Scalar>(
     let mut order = Reorder::No;
     let changed = bodies.count_changes();
     let live = bodies.slots.live;
-    let is_queried = core::mem::take(&mut tracking.is_queried);
-    let may_fly = changed > 0 && tracking.policy.may_fly(changed, live) && !is_queried;
-    let has_tree = may_fly && tracking.advance_tree(bodies);
+    let may_fly = changed > 0 && tracking.policy.may_fly(changed, live) && !tracking.is_queried;
+    // Bodies fly where there is a tree already: building one is work for updates that have little else to do.
+    let is_tree_advanced = may_fly && tracking.tree.is_built();
+    let has_tree = is_tree_advanced && tracking.advance_tree(bodies);
     if changed > 0 && !has_tree && tracking.policy.skips_tracking(changed, live) {
         from_scratch::from_scratch(bodies, tracking, events, may_fly)?;
+        tracking.is_tree_due = may_fly;
     } else if changed > 0 {
         tracking.candidates.list()?;
         collect::collect_escaped(bodies, tracking);
@@ -92,7 +98,9 @@ fn find_events<const D: usize, T: Scalar>(
         if rebuilds && flights == 0 {
             tracking.policy.note_no_flights();
         }
-        if rebuilds || !incremental::incremental(bodies, tracking, events, flights, may_fly) {
+        if rebuilds
+            || !incremental::incremental(bodies, tracking, events, flights, is_tree_advanced)
+        {
             order = rebuild::rebuild(bodies, tracking, events)?;
         } else if tracking.policy.reads_too_much(changed, live) {
             order = Reorder::Later;

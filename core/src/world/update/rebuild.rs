@@ -2,13 +2,21 @@
 
 use alloc::vec::Vec;
 
-use crate::Scalar;
 use crate::memory::{OutOfMemory, preload};
+use crate::sampling::positions;
 use crate::world::bodies::{Bodies, When, flag};
 use crate::world::candidates::push_wanted;
 use crate::world::changes::Events;
+use crate::world::finder::Finder;
 use crate::world::layout::{self, Reorder};
+use crate::world::policy::{Policy, TRIES_SAMPLES};
 use crate::world::tracking::Tracking;
+use crate::{Aabb, Scalar};
+
+/// A sample is to have about as many pairs as this, if there are as many as there may be.
+const SAMPLED_PAIRS: usize = 100;
+/// No sample is looked at that has more than one of this many bodies.
+const LEAST_GAIN: usize = 4;
 
 /// Reports what begins and ends, given which bodies changed, escaped and left. Returns how to reorder
 /// storage.
@@ -121,11 +129,19 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     /// have too many. Reserves memory for what begins. Returns whether the fat AABBs are larger.
     fn find_candidates(
         &mut self,
-        bodies: &Bodies<D, T>,
+        bodies: &mut Bodies<D, T>,
         mut is_fat: bool,
         begun: &mut Vec<[u32; 2]>,
     ) -> Result<bool, OutOfMemory> {
         let Self { fat, candidates, finder, policy, scratch, .. } = self;
+        if TRIES_SAMPLES
+            && is_fat
+            && policy.is_trial()
+            && have_too_many(fat, finder, policy, bodies)?
+        {
+            policy.note_excess(0);
+            is_fat = false;
+        }
         loop {
             if !is_fat {
                 fat.copy_from_slice(&bodies.boxes);
@@ -148,6 +164,32 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     }
 }
 
+/// Whether fat AABBs seem to have too many candidates, by those of a sample among themselves: where that is so, finding all of
+/// them in vain would take as long as an update. O(sqrt(n)) boxes are searched.
+#[inline(never)]
+fn have_too_many<const D: usize, T: Scalar>(
+    fat: &[Aabb<D, T>],
+    finder: &mut Finder<D, T>,
+    policy: &Policy,
+    bodies: &mut Bodies<D, T>,
+) -> Result<bool, OutOfMemory> {
+    let most = policy.most_candidates(bodies.slots.live);
+    // One in n bodies has one in n * n of the pairs.
+    let n: usize = 1 << (((most / SAMPLED_PAIRS) | 1).ilog2() / 2);
+    if n < LEAST_GAIN {
+        return Ok(false);
+    }
+    let flags = &mut bodies.slots.flags;
+    for index in positions(flags.len(), flags.len() / n) {
+        flags[index] |= (flags[index] & flag::LIVE) * flag::MARKED;
+    }
+    let excess = (most + most / 4) / (n * n);
+    let found = finder.find(fat, bodies, [flag::MARKED, 0], When::Now, excess);
+    let is_excess = found.map(|pairs| pairs.is_none());
+    bodies.slots.flags.iter_mut().for_each(|flags| *flags &= !flag::MARKED);
+    is_excess
+}
+
 /// The tracking state of bodies that were read from a snapshot: the candidates are the pairs of the last update, and the
 /// fat AABBs the boxes that bodies had then.
 ///
@@ -164,4 +206,33 @@ pub fn restore<const D: usize, T: Scalar>(
     candidates.flag_all_live();
     policy.note_overlaps(finder.found);
     Ok(tracking)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{BroadPhase, Filter};
+
+    #[test]
+    fn a_sample_tells_whether_fat_aabbs_have_too_many_candidates() {
+        // A grid of boxes apart from each other, and fat AABBs that each overlap a few others, or dozens.
+        let side = 90;
+        let place = |at: usize| [at % side, at / side].map(|at| 2.0 * at as f32);
+        let boxed = |at: usize, more: f32| {
+            Aabb::new(place(at).map(|at| at - more), place(at).map(|at| at + 1.0 + more))
+        };
+        let mut world = BroadPhase::<2>::new();
+        let all: Vec<_> = (0..side * side).map(|at| boxed(at, 0.0)).collect();
+        world.insert_many(&all, Filter::default()).unwrap();
+        world.update();
+        let BroadPhase { bodies, tracking, .. } = &mut world;
+        for (more, expected) in [(0.0, false), (0.4, false), (2.6, true)] {
+            let fat: Vec<_> = (0..side * side).map(|at| boxed(at, more)).collect();
+            let found = have_too_many(&fat, &mut tracking.finder, &tracking.policy, bodies);
+            assert_eq!(found.ok(), Some(expected), "{more}");
+            let few = side * side / 4;
+            assert!(tracking.finder.found < few, "{} found", tracking.finder.found);
+        }
+        assert!(bodies.slots.flags.iter().all(|flags| flags & flag::MARKED == 0));
+    }
 }

@@ -35,7 +35,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
 
     /// Notes that all fat AABBs are new.
     pub fn note_new_fat(&mut self, bodies: &Bodies<D, T>) {
-        let Self { tree, fat, motion, scratch, .. } = self;
-        tree.note_new_fat(bodies, fat, motion, &mut scratch.escaped);
+        let Self { tree, fat, motion, is_queried, scratch, .. } = self;
+        tree.note_new_fat(bodies, fat, motion, *is_queried, &mut scratch.escaped);
     }
 }

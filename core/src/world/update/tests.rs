@@ -153,8 +153,8 @@ fn a_tree_is_built_over_several_updates_while_bodies_come_go_and_move() {
         world.update();
         unbuilt += usize::from(!world.world.tracking.tree.is_built());
     }
-    // The first one lists the bodies and cuts them once, the next two five times each: 2,000 go into 167 leaves.
-    assert_eq!(unbuilt, 3);
+    // The first one lists the bodies and cuts them once, the next three three times each: 2,000 go into 167 leaves.
+    assert_eq!(unbuilt, 4);
     let tree = world.world.tracking.tree.tree();
     assert_eq!(tree.count, world.world.len());
     assert!((0..world.boxes.len() as u32).all(|body| tree.holds(body)));
@@ -246,7 +246,7 @@ fn few_fast_bodies_among_many_at_rest_are_not_in_the_tree() {
 #[test]
 fn bodies_that_flew_land_where_they_rest_whatever_else_is_looked_up() {
     // Some are fast, and then rest. As many others are slow as may be looked up in an update.
-    let (side, fast, slow) = (40, 250, 25);
+    let (side, fast, slow) = (40, 200, 25);
     let place = |at: usize| [at % side, at / side].map(|at| 1.5 * at as f32);
     let boxed = |at: usize| Aabb::new(place(at), place(at).map(|at| at + 1.0));
     let mut world = World::new((0..side * side).map(boxed).collect());
@@ -278,7 +278,7 @@ fn where_some_fly_slow_bodies_fly_too_and_land_a_few_at_a_time() {
         let way = |at| if at % 22 == 0 { 0.5 } else { 0.25 + 0.01 * noise(at) };
         world.step(|at| if at % 11 == 0 { [turn * way(at), 0.0] } else { [0.0; 2] });
         let tracking = &world.world.tracking;
-        if frame > 10 {
+        if frame > 16 {
             // The finder never finds all candidates: then no body would fly, and the tree would have to be built again.
             assert!(tracking.tree.is_built(), "{frame}");
             let flags = world.world.bodies.slots.flags.iter();

@@ -62,7 +62,7 @@ fn bodies_that_fly_among_many_pairs_cost_too_much_before_they_read_as_many() {
     for (reads, may_fly) in [(BODIES, true), (3 * BODIES, false)] {
         let mut policy = Policy::default();
         policy.note_overlaps(10 * BODIES);
-        policy.note_reads(reads, 10, BODIES);
+        policy.note_reads(reads, 10, 0, BODIES);
         assert_eq!(policy.may_fly(20, BODIES), may_fly, "{reads}");
     }
 }
@@ -72,7 +72,7 @@ fn updates_that_read(reads: impl IntoIterator<Item = usize>) -> (usize, Policy) 
     let mut policy = Policy::default();
     policy.note_overlaps(10 * BODIES);
     for (update, reads) in reads.into_iter().enumerate() {
-        policy.note_reads(reads, 0, BODIES);
+        policy.note_reads(reads, 0, 0, BODIES);
         if policy.reads_too_much(BODIES / 20, BODIES) {
             return (update + 1, policy);
         }
@@ -97,4 +97,26 @@ fn where_updates_keep_reading_too_much_tracking_is_skipped() {
     assert_eq!(updates_that_read(falling).0, usize::MAX);
     let interrupted = (0..99).map(|update| if update % 10 == 9 { 0 } else { dear });
     assert_eq!(updates_that_read(interrupted).0, usize::MAX);
+}
+
+#[test]
+fn bodies_that_take_off_and_land_in_turn_do_not_fly_for_long() {
+    for (turns, may_fly) in [(BODIES / 40, true), (BODIES / 4, false)] {
+        let mut policy = Policy::default();
+        // All take off once.
+        policy.note_reads(0, BODIES / 10, BODIES / 10, BODIES);
+        assert!(policy.has_flown());
+        policy.note_reads(0, BODIES / 10, turns, BODIES);
+        assert_eq!((policy.has_flown(), policy.may_fly(1, BODIES)), (may_fly, may_fly), "{turns}");
+    }
+}
+
+#[test]
+fn fat_aabbs_are_on_trial_until_they_last() {
+    let mut policy = Policy::default();
+    assert!(policy.is_trial());
+    policy.note_rebuild(BODIES, true, false);
+    assert!(policy.is_trial());
+    policy.note_incremental(1, 0);
+    assert!(!policy.is_trial());
 }
