@@ -6,7 +6,7 @@
  */
 import { entry, type InitOptions, type Started } from "../wasm/init.js";
 import type { EventsOptions } from "../world/types.js";
-import { eventsCore3D } from "../world/events-core.js";
+import { core } from "../world/events-3d.js";
 
 export * from "./events.js";
 /** How a {@link BroadPhase} treats its boxes. */
@@ -14,7 +14,7 @@ export type BroadPhaseOptions<D extends 3 = 3> = EventsOptions<D>;
 export { BroadPhase } from "../world/events-3d.js";
 
 /** Loads and starts the compiled core of this entry point, and those of the others. Otherwise it works as `init` of `sweep-and-prune`. */
-export const init: (options?: InitOptions) => Promise<Started> = entry(eventsCore3D, {
+export const init: (options?: InitOptions) => Promise<Started> = entry(core, {
   simd: () => new URL("./events-3d.simd.wasm", import.meta.url),
   scalar: () => new URL("./events-3d.wasm", import.meta.url),
 });

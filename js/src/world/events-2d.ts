@@ -1,6 +1,11 @@
+import { Core } from "../wasm/init.js";
 import { Bodies } from "./bodies.js";
-import { eventsCore2D, eventsMemory } from "./events-core.js";
+import type { WorldExports } from "./core.js";
+import { eventsMemory } from "./events-memory.js";
 import type { EventsOptions } from "./types.js";
+
+/** The core for events in 1D and 2D. */
+export const core: Core<WorldExports> = new Core("world_new", "sweep-and-prune/events-2d");
 
 /**
  * The `BroadPhase` of `sweep-and-prune/broad-phase` for 1D and 2D in single precision, without queries, casts,
@@ -19,6 +24,6 @@ export class BroadPhase<D extends 1 | 2 = 1 | 2> extends Bodies<D> {
    *   negative, infinite or NaN; `TypeError` if `views` is not a boolean.
    */
   constructor(options: EventsOptions<D>) {
-    super(eventsMemory(eventsCore2D, [1, 2], options));
+    super(eventsMemory(core, [1, 2], options));
   }
 }

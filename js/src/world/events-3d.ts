@@ -1,6 +1,11 @@
+import { Core } from "../wasm/init.js";
 import { Bodies } from "./bodies.js";
-import { eventsCore3D, eventsMemory } from "./events-core.js";
+import type { WorldExports } from "./core.js";
+import { eventsMemory } from "./events-memory.js";
 import type { EventsOptions } from "./types.js";
+
+/** The core for events in 3D. */
+export const core: Core<WorldExports> = new Core("world_new", "sweep-and-prune/events-3d");
 
 /**
  * The `BroadPhase` of `sweep-and-prune/broad-phase` for 3D in single precision, without queries, casts,
@@ -19,6 +24,6 @@ export class BroadPhase<D extends 3 = 3> extends Bodies<D> {
    *   negative, infinite or NaN; `TypeError` if `views` is not a boolean.
    */
   constructor(options: EventsOptions<D>) {
-    super(eventsMemory(eventsCore3D, [3], options));
+    super(eventsMemory(core, [3], options));
   }
 }

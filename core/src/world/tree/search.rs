@@ -5,6 +5,7 @@ use core::ops::ControlFlow;
 
 use super::edit::Tree;
 use super::node::{FAN, NONE, sort_few};
+use crate::memory::reserve_for;
 use crate::{Aabb, Scalar};
 
 /// Random reads are prefetched this many at a time, so that their cache misses overlap. 4 instead takes 1.00
@@ -35,23 +36,25 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         found.clear();
         // Spare capacity, so that steady motion does not allocate.
         let spare = self.count.min(BATCH) * 4 * FAN;
-        scratch.reserve(spare);
-        found.reserve(spare);
+        if reserve_for(scratch, spare).is_err() {
+            return false;
+        }
         if self.root == NONE {
             return true;
         }
         let bounds = self.nodes[self.root as usize].bounds();
         for (index, (_, area)) in queries.iter().enumerate() {
-            if bounds.overlaps_branch_free(area) {
-                self.leaves_in(self.root, index as u32, area, scratch);
-            }
-            if scratch.len() > *most {
+            if bounds.overlaps_branch_free(area)
+                && !self.leaves_in(self.root, index as u32, area, scratch)
+                || scratch.len() > *most
+            {
                 return false;
             }
         }
         *most -= scratch.len();
         for leaves in scratch.chunks(TOGETHER) {
-            if found.len() > *most {
+            let capacity = (found.len() + TOGETHER * FAN).max(spare);
+            if found.len() > *most || reserve_for(found, capacity).is_err() {
                 return false;
             }
             leaves.iter().for_each(|&[_, leaf]| self.nodes[leaf as usize].prefetch());
@@ -68,12 +71,23 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         true
     }
 
-    /// Lists the leaves whose bounds overlap `area`.
-    fn leaves_in(&self, index: u32, number: u32, area: &Aabb<D, T>, leaves: &mut Vec<[u32; 2]>) {
+    /// Lists the leaves whose bounds overlap `area`. Returns false, with some of them missing, if there is no memory for them.
+    fn leaves_in(
+        &self,
+        index: u32,
+        number: u32,
+        area: &Aabb<D, T>,
+        leaves: &mut Vec<[u32; 2]>,
+    ) -> bool {
         let node = &self.nodes[index as usize];
+        if leaves.capacity() - leaves.len() < FAN
+            && reserve_for(leaves, leaves.len() + FAN).is_err()
+        {
+            return false;
+        }
         if node.is_leaf {
             leaves.push([number, index]);
-            return;
+            return true;
         }
         let mut bits = node.overlapping(area);
         while bits != 0 {
@@ -81,10 +95,11 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
             bits &= bits - 1;
             if node.has_leaves {
                 leaves.push([number, node.items[lane]]);
-            } else {
-                self.leaves_in(node.items[lane], number, area, leaves);
+            } else if !self.leaves_in(node.items[lane], number, area, leaves) {
+                return false;
             }
         }
+        true
     }
 
     /// The bodies whose boxes overlap `area`, in no particular order, without allocating: the way back

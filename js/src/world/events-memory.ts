@@ -1,15 +1,9 @@
 import { checkOptions } from "./bodies.js";
 import type { Dimensions } from "../boxes/boxes.js";
-import { Core } from "../wasm/init.js";
+import type { Core } from "../wasm/init.js";
 import type { WorldExports } from "./core.js";
 import { WorldMemory } from "./memory.js";
 import type { EventsOptions } from "./types.js";
-
-/** The core for events in 1D and 2D. */
-export const eventsCore2D: Core<WorldExports> = new Core("world_new", "sweep-and-prune/events-2d");
-
-/** The core for events in 3D. */
-export const eventsCore3D: Core<WorldExports> = new Core("world_new", "sweep-and-prune/events-3d");
 
 /** An empty broad phase of a core that has only these dimensions, in single precision. */
 export function eventsMemory(core: Core<WorldExports>, dimensions: readonly Dimensions[], options: EventsOptions): WorldMemory {
