@@ -21,7 +21,7 @@ use super::in_order::{Spans, is_sorted};
 use super::kernel::{Cursor, Kernel, SortedBoxes};
 use super::lookup::{Lookup, SAMPLED_BOXES, Table, may_pay, move_long, sampled};
 use super::one_by_one::one_by_one;
-use super::parallel::{Helpers, Receiver};
+use super::parallel::{Helpers, Receiver, Team};
 use super::placements::Placements;
 use super::plan::{Among, Plan, SizeSplit, plan};
 use super::probe::Probe;
@@ -298,21 +298,9 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
             }
         });
         self.probe.copied(columns.iter().map(Columns::len).sum());
-        let crowd = most_records(boxes, grid.len());
         let result = filled.and_then(|()| {
-            let Some(filled) = Filled::new(&columns[..sets.len()], grid, crowd) else {
-                return task.done(1.0);
-            };
-            match &mut team {
-                Some(team) => team.search(
-                    self,
-                    |driver| &mut driver.helpers,
-                    &filled,
-                    sink,
-                    |driver, columns, sink| driver.columns(&filled, columns, task, sink),
-                ),
-                None => self.columns(&filled, 0..grid.len(), task, sink),
-            }
+            let columns = &columns[..sets.len()];
+            self.search_columns(columns, grid, boxes, &mut team, task, sink)
         });
         self.columns.try_reserve(1).is_ok().then(|| self.columns.push(columns));
         self.helpers.rest(team);
@@ -320,6 +308,33 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
             return self.without_cut(sets, grid, task, sink);
         }
         result
+    }
+
+    /// Finds the pairs of each column.
+    #[inline(never)]
+    fn search_columns<O: Receiver>(
+        &mut self,
+        columns: &[Columns<D, T>],
+        grid: &Grid<T>,
+        boxes: usize,
+        team: &mut Option<Team<Self>>,
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<(), Stop> {
+        let crowd = most_records(boxes, grid.len());
+        let Some(filled) = Filled::new(columns, grid, crowd) else {
+            return task.done(1.0);
+        };
+        match team {
+            Some(team) => team.search(
+                self,
+                |driver| &mut driver.helpers,
+                &filled,
+                sink,
+                |driver, columns, sink| driver.columns(&filled, columns, task, sink),
+            ),
+            None => self.columns(&filled, 0..grid.len(), task, sink),
+        }
     }
 
     /// Follows another plan if a grid would make too many records, of boxes that the sample has
@@ -424,23 +439,37 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
         task: Task<'_>,
         sink: &mut O,
     ) -> Result<(), Stop> {
-        let nested = |share| task.nested(share, sets.iter().map(|set| set.len()).sum());
         let mut groups = self.groups.pop().unwrap_or_default();
+        let boxes = sets.iter().map(|set| set.len()).sum();
         let result = groups.fill(sets, split).and_then(|()| {
-            let Groups { small, large, other } = &groups;
-            let (small, large, other) = (&small[..], &large[..], &other[..]);
-            if sets.len() == 1 {
-                self.run(&[small], nested(0.4), sink)?;
-                self.run(&[large], nested(0.2), sink)?;
-                return self.run(&[large, small], nested(0.4), sink);
-            }
-            [small, large].into_iter().try_for_each(|group| {
-                let sets = if split.set == 0 { [group, other] } else { [other, group] };
-                self.run(&sets, nested(0.5), sink)
-            })
+            let split = (sets.len() == 2).then_some(split.set);
+            self.search_groups(&groups, split, task.nested(1.0, boxes), sink)
         });
         self.groups.try_reserve(1).is_ok().then(|| self.groups.push(groups));
         result
+    }
+
+    /// Searches the small and the large boxes of one set, and between them; or of two sets, of which one was split, both with
+    /// those of the other.
+    #[inline(never)]
+    fn search_groups<O: Receiver>(
+        &mut self,
+        Groups { small, large, other }: &Groups<D, T>,
+        split: Option<usize>,
+        task: Task<'_>,
+        sink: &mut O,
+    ) -> Result<(), Stop> {
+        let (small, large, other) = (&small[..], &large[..], &other[..]);
+        let part = |share| Task { share: task.share * share, ..task };
+        let Some(split) = split else {
+            self.run(&[small], part(0.4), sink)?;
+            self.run(&[large], part(0.2), sink)?;
+            return self.run(&[large, small], part(0.4), sink);
+        };
+        [small, large].into_iter().try_for_each(|group| {
+            let sets = if split == 0 { [group, other] } else { [other, group] };
+            self.run(&sets, part(0.5), sink)
+        })
     }
 
     fn sweep<'a>(&self, all_axes: bool, task: Task<'a>) -> Sweep<'a> {

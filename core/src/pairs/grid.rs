@@ -5,8 +5,9 @@ use core::any::Any;
 
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 use super::kernel::quantize_by_four;
+use super::source::Source;
+use crate::Scalar;
 use crate::geometry::{Arithmetic, Quantizer};
-use crate::{Aabb, Scalar};
 
 /// Boxes whose cells are computed at a time: few enough for the first-level cache. (With prefetching and
 /// large pages 0.87 of the time of one box at a time, uniform 3D at 10,000 boxes, and 0.82 at 100,000.)
@@ -89,69 +90,70 @@ impl<T: Scalar> Grid<T> {
 
 /// A block of boxes in the grid: for each box the column of its min corner, and how many more cells
 /// it touches on each axis; none on an axis that is not cut.
-pub(super) struct CellCoordinates<T> {
+pub(super) struct CellCoordinates {
     pub column: [u32; BLOCK],
     pub more: [[u32; BLOCK]; 3],
-    /// The intervals of the boxes on one axis.
-    low: [T; BLOCK],
-    high: [T; BLOCK],
 }
 
-impl<T: Scalar> CellCoordinates<T> {
+impl CellCoordinates {
     pub fn new() -> Self {
-        let edges = [T::default(); BLOCK];
-        Self { column: [0; BLOCK], more: [[0; BLOCK]; 3], low: edges, high: edges }
+        Self { column: [0; BLOCK], more: [[0; BLOCK]; 3] }
     }
 
-    /// Computes the cells of up to [`BLOCK`] boxes. False if one of them is inverted or NaN; also if
-    /// one of the last block was, since a block may have fewer boxes than the one before.
-    #[inline(always)]
-    pub fn fill<'a, const D: usize>(
+    /// Computes the cells of up to [`BLOCK`] boxes, and those of zeros behind them. False if one of the boxes is inverted or NaN.
+    /// (Not inline: it is called for each block, from several places.)
+    #[inline(never)]
+    pub fn fill<const D: usize, T: Scalar, S: Source<D, T>>(
         &mut self,
-        boxes: impl Iterator<Item = &'a Aabb<D, T>> + Clone,
+        boxes: &[S],
         grid: &Grid<T>,
     ) -> bool {
         let mut valid = true;
         self.column.fill(0);
         let steps = grid.steps();
+        let (mut low, mut high) = ([T::default(); BLOCK], [T::default(); BLOCK]);
         for (k, Cells { axis, quantizer, count }) in grid.cells.iter().enumerate().skip(3 - D) {
-            let edges = boxes.clone().map(|aabb| (aabb.min[*axis], aabb.max[*axis]));
+            let edges = boxes.iter().map(S::aabb).map(|aabb| (aabb.min[*axis], aabb.max[*axis]));
             if *count == 1 {
                 valid &= edges.fold(true, |valid, (min, max)| valid & (min <= max));
                 continue;
             }
-            for ((low, high), edges) in self.low.iter_mut().zip(&mut self.high).zip(edges) {
+            for ((low, high), edges) in low.iter_mut().zip(&mut high).zip(edges) {
                 (*low, *high) = edges;
             }
-            valid &= self.quantize(quantizer, k, steps[k]);
+            valid &=
+                quantize([&low, &high], quantizer, steps[k], &mut self.column, &mut self.more[k]);
         }
         valid
     }
+}
 
-    /// Adds `step` times the first cell of each interval to the column, and computes how many more
-    /// cells it touches. False if an interval is inverted or NaN; it touches no more.
-    #[inline(always)]
-    fn quantize(&mut self, quantizer: &Quantizer<T>, k: usize, step: u32) -> bool {
-        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-        if T::BYTES == 4 {
-            let (quantizer, cells): (&dyn Any, &mut dyn Any) = (quantizer, self);
-            let (Some(quantizer), Some(cells)) =
-                (quantizer.downcast_ref(), cells.downcast_mut::<CellCoordinates<f32>>())
-            else {
-                unreachable!("4 bytes are an f32")
-            };
-            let CellCoordinates { column, more, low, high } = cells;
-            return quantize_by_four([low, high], quantizer, step, column, &mut more[k]);
-        }
-        let Self { column, more, low, high } = self;
-        let more = &mut more[k];
-        let mut valid = true;
-        for i in 0..BLOCK {
-            valid &= low[i] <= high[i];
-            let first = T::Arithmetic::cell(low[i], quantizer);
-            column[i] += first * step;
-            more[i] = T::Arithmetic::cell(high[i], quantizer).saturating_sub(first);
-        }
-        valid
+/// Adds `step` times the first cell of each interval to the column, and computes how many more
+/// cells it touches. False if an interval is inverted or NaN; it touches no more.
+#[inline(always)]
+fn quantize<T: Scalar>(
+    edges: [&[T; BLOCK]; 2],
+    quantizer: &Quantizer<T>,
+    step: u32,
+    column: &mut [u32; BLOCK],
+    more: &mut [u32; BLOCK],
+) -> bool {
+    #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+    if T::BYTES == 4 {
+        let edges = edges.map(|edges| (edges as &dyn Any).downcast_ref());
+        let quantizer: &dyn Any = quantizer;
+        let ([Some(low), Some(high)], Some(quantizer)) = (edges, quantizer.downcast_ref()) else {
+            unreachable!("4 bytes are an f32")
+        };
+        return quantize_by_four([low, high], quantizer, step, column, more);
     }
+    let [low, high] = edges;
+    let mut valid = true;
+    for i in 0..BLOCK {
+        valid &= low[i] <= high[i];
+        let first = T::Arithmetic::cell(low[i], quantizer);
+        column[i] += first * step;
+        more[i] = T::Arithmetic::cell(high[i], quantizer).saturating_sub(first);
+    }
+    valid
 }

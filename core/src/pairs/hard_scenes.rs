@@ -4,9 +4,10 @@
 use alloc::vec::Vec;
 
 use super::driver::Driver;
-use super::kernel::{Kernel, PairOrder};
+use super::kernel::Kernel;
+use super::near::Near;
+use super::search::run;
 use super::sink::Count;
-use super::task::Task;
 use super::work::Work;
 use crate::{Aabb, Scalar};
 
@@ -37,9 +38,9 @@ fn takes_little_work<const D: usize, T: Scalar>(groups: &[Group<D>]) {
     let used = if sets[1].is_empty() { 1 } else { 2 };
     let slices = sets.each_ref().map(|set| &set[..]);
     let mut driver = Driver::<_, _, Work>::new(Kernel::best());
-    let order = if used == 1 { PairOrder::Ascending } else { PairOrder::BySet };
-    let task = Task::new(order, None);
-    driver.run(&slices[..used], task, &mut Count::default()).expect("the boxes are valid");
+    let near = Some(&mut Near::default());
+    run(&mut driver, near, &slices[..used], None, &mut Count::default())
+        .expect("the boxes are valid");
     let Work { sorted, tests, .. } = driver.probe;
     assert!(sorted < 5 * count, "{sorted} of {count} boxes sorted");
     assert!(tests < 150 * count, "{tests} tests of {count} boxes");

@@ -96,6 +96,7 @@ mod hard_scenes;
 mod in_order;
 mod kernel;
 mod lookup;
+mod near;
 mod one_by_one;
 mod parallel;
 mod parts;

@@ -43,7 +43,7 @@ impl Placements {
         let mut len = 0;
         for start in boxes.clone().step_by(BLOCK) {
             let block = BLOCK.min(boxes.end - start);
-            valid &= cells.fill(source[start..start + block].iter().map(S::aabb), grid);
+            valid &= cells.fill(&source[start..start + block], grid);
             for at in 0..block {
                 if len + 4 > self.all.len() {
                     let size = 2 * self.all.len() + 1024;

@@ -15,12 +15,13 @@ use super::hard_scenes::boxes;
 #[cfg(feature = "parallel")]
 use super::kernel::Cursor;
 use super::kernel::{Kernel, PAD, PairOrder, SortedBoxes};
+use super::near::Near;
 use super::placements::Placements;
 use super::probe::Probe;
+use super::search::run;
 use super::sink::Store;
 use super::sizes::wide_boxes;
 use super::sort::Sorter;
-use super::task::Task;
 use crate::{Aabb, Scalar};
 use sweep_and_prune_scenes::Scene;
 
@@ -80,9 +81,9 @@ fn hash(pairs: &[[u32; 2]]) -> u64 {
 /// Adds a line about a search.
 fn search<const D: usize, T: Scalar>(report: &mut String, name: &str, sets: &[&[Aabb<D, T>]]) {
     let mut driver = Driver::<_, _, Work>::new(Kernel::best());
-    let order = if sets.len() == 1 { PairOrder::Ascending } else { PairOrder::BySet };
     let mut store = Store::default();
-    driver.run(sets, Task::new(order, None), &mut store).expect("the boxes are valid");
+    run(&mut driver, Some(&mut Near::default()), sets, None, &mut store)
+        .expect("the boxes are valid");
     let Work { copied, sorted, tests } = driver.probe;
     let (pairs, hash) = (store.pairs().len(), hash(store.pairs()));
     let counts = sets.iter().map(|set| set.len()).collect::<Vec<_>>();
@@ -251,9 +252,9 @@ mod on_threads {
     fn search(sets: &[&[Aabb<2>]], helpers: usize) -> (Vec<[u32; 2]>, Work, bool) {
         let mut driver = Driver::<_, _, Work>::new(Kernel::best());
         driver.helpers.resize(helpers, || Driver::new(Kernel::best()));
-        let order = if sets.len() == 1 { PairOrder::Ascending } else { PairOrder::BySet };
         let mut store = Store::default();
-        driver.run(sets, Task::new(order, None), &mut store).expect("the boxes are valid");
+        run(&mut driver, Some(&mut Near::default()), sets, None, &mut store)
+            .expect("the boxes are valid");
         let unused = format!("{:?}", Placements::default());
         let helper = driver.helpers.all().first();
         let placed = helper.is_some_and(|helper| format!("{:?}", helper.placements) != unused);

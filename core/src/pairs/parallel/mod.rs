@@ -10,7 +10,7 @@ mod kept;
 mod several;
 
 #[cfg(not(feature = "parallel"))]
-pub(super) use alone::{Helpers, Receiver};
+pub(super) use alone::{Helpers, Receiver, Team};
 pub(super) use kept::{Kept, MAY_SPLIT};
 #[cfg(feature = "parallel")]
 pub(super) use several::*;

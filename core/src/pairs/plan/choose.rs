@@ -21,9 +21,6 @@ const SPLIT_COST_SHARE: f64 = 0.8;
 const DEAR_COST_RATIO: f64 = 3.0;
 /// With fewer boxes, no glance at the sample checks a plan: it takes half a microsecond an axis.
 const MIN_BOXES_TO_GLANCE: f64 = 2048.0;
-/// Where few boxes are searched against many, the fewest columns for each box of the smaller set. (100 against 100,000
-/// boxes took 0.58 of the time.)
-const SPARSE_COLUMNS_PER_BOX: f64 = 4.0;
 /// The most columns for each box of the smaller of two sets, and for each box of the larger. A column
 /// costs 15 to 100 nanoseconds even if it is empty, which the model leaves out. With points, which fit
 /// into columns of any width, it would choose 2^24 columns. (1,000 against 4,000 points in space took 60 to 690 ms on a
@@ -199,26 +196,6 @@ fn cheapest_cut(search: &PlannedSearch<'_>) -> (Cut, f64) {
         let (mut cut, mut cost) = refined(search, uncut);
         if uncut_cost < cost {
             (cut, cost) = (uncut, uncut_cost);
-        }
-        if let [first, second] = shapes {
-            // Of few boxes against many most columns hold none, once there are many more
-            // columns than boxes; until then more columns do not pay.
-            let fewer = lesser(first.count, second.count);
-            let mut sparse = Cut::uncut(sweep);
-            while sparse.len() < SPARSE_COLUMNS_PER_BOX * fewer {
-                for axis in (0..distribution.dimensions)
-                    .filter(|&axis| axis != sweep && distribution.extent(axis) > 0.0)
-                {
-                    sparse.columns[axis] *= 2.0;
-                }
-                if sparse.columns == [1.0; AXES] {
-                    break;
-                }
-            }
-            let (sparse, sparse_cost) = refined(search, sparse);
-            if sparse_cost < CHEAPER_COST_SHARE * cost {
-                (cut, cost) = (sparse, sparse_cost);
-            }
         }
         if cost < CHEAPER_COST_SHARE * best.1 {
             best = (cut, cost);

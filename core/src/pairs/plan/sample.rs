@@ -41,8 +41,18 @@ impl Sample {
 
     /// Draws from a set. (Into an empty sample: one that is returned is copied once more.)
     pub fn draw<const D: usize, T: Scalar, S: Source<D, T>>(&mut self, source: &[S]) {
-        self.count = source.len() as f64;
         let len = (source.len() / SAMPLED_ONE_IN).clamp(LEAST_SAMPLED, MOST_SAMPLED);
+        self.draw_some(source, len);
+    }
+
+    /// Draws this many boxes, or all if there are fewer.
+    #[inline(never)]
+    pub fn draw_some<const D: usize, T: Scalar, S: Source<D, T>>(
+        &mut self,
+        source: &[S],
+        len: usize,
+    ) {
+        self.count = source.len() as f64;
         for i in positions(source.len(), len) {
             let aabb = source[i].aabb();
             for axis in 0..D {
@@ -61,22 +71,29 @@ impl Sample {
     /// Sizes that the largest half, quarter .. of the boxes exceed on an axis. Of boxes of the same size,
     /// all or none do.
     pub fn quantiles(&self, axis: usize) -> impl Iterator<Item = f64> {
-        let mut sizes = [0.0; MOST_SAMPLED];
+        let sizes = self.sorted_sizes(axis);
         let len = self.len;
-        for (i, size) in sizes[..len].iter_mut().enumerate() {
-            *size = self.size(axis, i);
-        }
-        sort(&mut sizes[..len]);
         (1..6).map(move |quantile| {
             let size = sizes[len - 1 - (len >> quantile)];
             let smaller = sizes[..len].partition_point(|&other| other < size);
             smaller.checked_sub(1).map_or(size, |last| 0.5 * (sizes[last] + size))
         })
     }
+
+    /// The sizes of the boxes on an axis, in order; behind the last is nothing of use.
+    #[inline(never)]
+    pub fn sorted_sizes(&self, axis: usize) -> [f64; MOST_SAMPLED] {
+        let mut sizes = [0.0; MOST_SAMPLED];
+        let used = &mut sizes[..self.len];
+        used.iter_mut().enumerate().for_each(|(i, size)| *size = self.size(axis, i));
+        sort(used);
+        sizes
+    }
 }
 
 /// Multiplies the corners of some samples by their [unit](Arithmetic::unit), and clamps them to the limit of the coordinate
 /// type. Returns the unit.
+#[inline(never)]
 pub fn scale<T: Scalar>(samples: &mut [&mut Sample]) -> T {
     let mut most = 0.0;
     for_each_edge(samples, |at| {

@@ -10,6 +10,6 @@ mod threads;
 #[cfg(all(test, feature = "std"))]
 pub use gather::Gather;
 pub use receiver::Receiver;
-pub use team::Helpers;
+pub use team::{Helpers, Team};
 #[cfg(all(test, feature = "std"))]
 pub use {receiver::Chunk, schedule::Schedule};
