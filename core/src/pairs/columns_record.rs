@@ -44,7 +44,7 @@ fn columns_are_those_that_are_recorded() {
     let [low, high] = boxes.iter().fold([f64::INFINITY, -f64::INFINITY], |[low, high], aabb| {
         [low.min(aabb.min[1].into()), high.max(aabb.max[1].into())]
     });
-    let plan = Plan::Cut(Grid::new::<2>(0, [Cells::one(0), Cells::new(1, 1.0, low, high, 3)]));
+    let plan = Plan::Cut(Grid::new(0, &[Cells::one(0), Cells::new(1, 1.0, low, high, 3)]));
     let task = Task::new(PairOrder::Ascending, None);
     driver.run_plan(plan, &[&boxes[..]], task, &mut store).expect("the boxes are valid");
     let Record(mut record) = driver.probe;

@@ -27,7 +27,7 @@ pub fn find_pairs<const D: usize, T: Scalar>(boxes: &[Aabb<D, T>]) -> Result<Vec
         return Ok(few.into_pairs());
     }
     let mut buffers = Buffers::new();
-    store(&mut buffers, &[boxes], None, false)?;
+    store(&mut buffers, &[boxes], None, true)?;
     Ok(buffers.store.into_pairs())
 }
 
@@ -140,7 +140,7 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
     pub fn find(&mut self, boxes: &[Aabb<D, T>]) -> Result<&[[u32; 2]], Error> {
         // A call for a handful of boxes takes little longer than their tests.
         if !find_few(boxes, &mut self.0.store) {
-            store(&mut self.0, &[boxes], None, false)?;
+            store(&mut self.0, &[boxes], None, true)?;
         }
         Ok(self.0.store.pairs())
     }

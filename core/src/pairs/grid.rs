@@ -55,9 +55,9 @@ pub(super) struct Grid<T> {
 
 impl<T: Scalar> Grid<T> {
     /// A grid with these cells on each axis.
-    pub fn new<const D: usize>(sweep: usize, cells: [Cells<T>; D]) -> Self {
+    pub fn new(sweep: usize, cells: &[Cells<T>]) -> Self {
         let mut grid = Self { sweep, cells: [cells[sweep]; 3] };
-        let mut others = (0..D).filter(|&axis| axis != sweep);
+        let mut others = (0..cells.len()).filter(|&axis| axis != sweep);
         grid.cells[1] = others.next().map_or(Cells::one(0), |axis| cells[axis]);
         grid.cells[0] = others.next().map_or(Cells::one(0), |axis| cells[axis]);
         grid

@@ -21,8 +21,12 @@ use crate::{Aabb, Scalar};
 
 /// There must be at least this many boxes for each of the few.
 const MIN_SET_RATIO: usize = 8;
-/// Leaving out takes as long as this many tests, and this many for each of the many boxes.
-const LEAVING_OUT_TESTS: [f64; 2] = [20_000.0, 10.0];
+/// Leaving out takes as long as testing the many boxes against so many,
+const TESTED_AGAINST: usize = 10;
+/// and as this many tests more.
+const TESTS: usize = 20_000;
+/// There is memory for at least this part of the many boxes, as some of the few, and as those near them.
+const SPARE_ONE_IN: [usize; 2] = [64, 4];
 /// Of so many blocks of the many boxes at most half of the boxes may be near.
 const SAMPLED_BLOCKS: usize = 8;
 
@@ -31,7 +35,7 @@ struct Marks {
     /// From a cell to the next on each axis of the grid, and how many cells on most of the many boxes reach there.
     steps: [u32; 3],
     reach: [u32; 3],
-    bits: [u64; MOST_NEAR_CELLS / 64],
+    bits: [u32; MOST_NEAR_CELLS / 32],
 }
 
 impl Marks {
@@ -43,15 +47,15 @@ impl Marks {
         let lens: [u32; 3] = core::array::from_fn(|axis| more[axis] + reach[axis] + 1);
         // Before the first cell of an axis is another one, or none: marked in vain.
         let before: u32 = steps.iter().zip(&*reach).map(|(step, reach)| step * reach).sum();
-        let first = i64::from(column) - i64::from(before);
+        let first = column as i32 - before as i32;
         for i in 0..lens[0] {
             for j in 0..lens[1] {
-                let start = first + i64::from(i * steps[0] + j * steps[1]);
-                let end = (start + i64::from(lens[2])).clamp(0, MOST_NEAR_CELLS as i64) as usize;
+                let start = first + (i * steps[0] + j * steps[1]) as i32;
+                let end = (start + lens[2] as i32).clamp(0, MOST_NEAR_CELLS as i32) as usize;
                 let mut at = start.max(0) as usize;
                 while at < end {
-                    let len = (end - at).min(64 - at % 64);
-                    bits[at / 64] |= u64::MAX >> (64 - len) << (at % 64);
+                    let len = (end - at).min(32 - at % 32);
+                    bits[at / 32] |= u32::MAX >> (32 - len) << (at % 32);
                     at += len;
                 }
             }
@@ -70,8 +74,8 @@ impl Marks {
         let mut near = 0;
         for at in (0..len).rev() {
             let cell = column[at] as usize % MOST_NEAR_CELLS;
-            let is_marked = self.bits[cell / 64] >> (cell % 64) & 1;
-            near = near << 1 | is_marked | u64::from(is_far[at]);
+            let is_marked = self.bits[cell / 32] >> (cell % 32) & 1;
+            near = near << 1 | u64::from(is_marked | is_far[at]);
         }
         near
     }
@@ -91,7 +95,8 @@ impl Marks {
     ) -> Result<bool, Stop> {
         let cells = &mut CellCoordinates::new();
         all_few.clear();
-        all_few.try_reserve(few)?;
+        // Spare capacity, so that updates of a world seldom allocate.
+        all_few.try_reserve(few.max(many / SPARE_ONE_IN[0]))?;
         for start in (0..few).step_by(BLOCK) {
             if !fill(0, start, cells) {
                 return Err(Stop::Invalid);
@@ -110,6 +115,7 @@ impl Marks {
             return Ok(false);
         }
         near.clear();
+        near.try_reserve(many / SPARE_ONE_IN[1])?;
         for start in (0..many).step_by(BLOCK) {
             if !fill(1, start, cells) {
                 return Err(Stop::Invalid);
@@ -123,13 +129,6 @@ impl Marks {
         }
         Ok(true)
     }
-}
-
-/// Whether leaving out may pay, by the numbers of boxes.
-fn may_pay(few: usize, many: usize) -> bool {
-    let brute_force = few as f64 * many as f64;
-    let leaving_out = LEAVING_OUT_TESTS[0] + LEAVING_OUT_TESTS[1] * many as f64;
-    few * MIN_SET_RATIO <= many && leaving_out < brute_force
 }
 
 /// The boxes of one set that are few, and those of another that may lie near one of them.
@@ -152,35 +151,39 @@ impl<const D: usize, T: Scalar> Near<D, T> {
         let &[first, second] = sets else { return Ok(None) };
         let swap = first.len() > second.len();
         let (few, many) = if swap { (second, first) } else { (first, second) };
-        if D == 1 || !may_pay(few.len(), many.len()) {
+        let [few_count, many_count] = [few.len(), many.len()];
+        let are_few = few_count > TESTED_AGAINST
+            && few_count * MIN_SET_RATIO <= many_count
+            && few_count - TESTED_AGAINST > TESTS / many_count;
+        if D == 1 || !are_few {
             return Ok(None);
         }
         let Some((grid, reach)) = near_cells(few, many) else { return Ok(None) };
-        let mut marks = Marks { steps: grid.steps(), reach, bits: [0; MOST_NEAR_CELLS / 64] };
+        let mut marks = Marks { steps: grid.steps(), reach, bits: [0; MOST_NEAR_CELLS / 32] };
         let mut fill = |set: usize, start: usize, cells: &mut CellCoordinates| {
             let boxes = &[few, many][set][start..];
             cells.fill(&boxes[..BLOCK.min(boxes.len())], &grid)
         };
-        let counts = [few.len(), many.len()];
-        if !marks.find(counts, &mut fill, &mut self.listed)? {
+        if !marks.find([few_count, many_count], &mut fill, &mut self.listed)? {
             return Ok(None);
         }
         let Self { few: kept_few, near, listed: [all_few, listed] } = self;
-        copy(kept_few, few, all_few)?;
-        copy(near, many, listed)?;
+        copy(kept_few, few, all_few, all_few.capacity())?;
+        copy(near, many, listed, listed.capacity())?;
         Ok(Some(if swap { [near, kept_few] } else { [kept_few, near] }))
     }
 }
 
-/// Replaces records by those of the boxes with these indices.
+/// Replaces records by those of the boxes with these indices. There is memory for `spare` of them.
 #[inline(never)]
 fn copy<const D: usize, T: Scalar>(
     to: &mut Vec<Record<D, T>>,
     boxes: &[Aabb<D, T>],
     indices: &[u32],
+    spare: usize,
 ) -> Result<(), Stop> {
     to.clear();
-    to.try_reserve(indices.len())?;
+    to.try_reserve(spare)?;
     to.extend(indices.iter().map(|&at| boxes[at as usize].record(at as usize)));
     Ok(())
 }

@@ -13,8 +13,8 @@ use super::driver::Driver;
 use super::grid::{Cells, Grid};
 use super::hard_scenes::boxes;
 #[cfg(feature = "parallel")]
-use super::kernel::Cursor;
-use super::kernel::{Kernel, PAD, PairOrder, SortedBoxes};
+use super::kernel::{Cursor, PairOrder};
+use super::kernel::{Kernel, PAD, SortedBoxes};
 use super::near::Near;
 use super::placements::Placements;
 use super::probe::Probe;
@@ -167,7 +167,7 @@ fn groups(report: &mut String) {
 /// The sizes at which the finder does something else: one box more or less makes the difference.
 #[test]
 fn boxes_are_wide_from_eight_columns_on() {
-    let grid = Grid::new(0, [Cells::one(0), Cells::new(1, 1.0f32, 0.0, 100.0, 10)]);
+    let grid = Grid::new(0, &[Cells::one(0), Cells::new(1, 1.0f32, 0.0, 100.0, 10)]);
     let boxes = [70.0, 90.0].map(|size| Aabb::new([0.0, 0.0], [1.0, size]));
     let split = wide_boxes(&[&boxes[..]], &grid).expect("one of them is wide");
     assert_eq!((split.set, split.axis, split.size.round()), (0, 1, 80.0));
@@ -175,7 +175,7 @@ fn boxes_are_wide_from_eight_columns_on() {
 
 #[test]
 fn a_list_of_placements_that_are_exactly_as_many_as_fit_does_not_grow() {
-    let grid = Grid::new(0, [Cells::one(0), Cells::new(1, 1.0f32, 0.0, 2000.0, 2000)]);
+    let grid = Grid::new(0, &[Cells::one(0), Cells::new(1, 1.0f32, 0.0, 2000.0, 2000)]);
     let boxes = [Aabb::new([0.0, 0.0], [1.0, 1023.5])];
     let mut placements = Placements::default();
     let list = || assert_eq!(placements.list(&boxes, 0..1, &grid, 5000).ok(), Some(1024));

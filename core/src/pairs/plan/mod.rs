@@ -50,7 +50,7 @@ use distribution::Distribution;
 pub(super) use float::greater;
 use float::lesser;
 pub(super) use near::{MOST_NEAR_CELLS, near_cells};
-use sample::{Sample, scale};
+use sample::{AXES, Sample, scale};
 
 use super::grid::{Cells, Grid};
 use super::source::Source;
@@ -83,28 +83,28 @@ pub(super) fn plan<const D: usize, T: Scalar, S: Source<D, T>>(
 ) -> (Plan<T>, f64) {
     let mut first = Sample::empty(D);
     first.draw(sets[0]);
-    let Some(&set) = sets.get(1) else { return plan_of::<D, T>(&mut [&mut first], among) };
+    let Some(&set) = sets.get(1) else { return plan_of::<T>(&mut [&mut first], among) };
     let mut second = Sample::empty(D);
     second.draw(set);
-    plan_of::<D, T>(&mut [&mut first, &mut second], among)
+    plan_of::<T>(&mut [&mut first, &mut second], among)
 }
 
 /// The plan of the sets from which these samples were drawn.
 #[inline(never)]
-fn plan_of<const D: usize, T: Scalar>(samples: &mut [&mut Sample], among: Among) -> (Plan<T>, f64) {
-    let unit = scale(samples);
+fn plan_of<T: Scalar>(samples: &mut [&mut Sample], among: Among) -> (Plan<T>, f64) {
+    let unit: T = scale(samples);
     let samples: &[&Sample] = match samples {
         [first, second] => &[first, second],
         _ => &[samples[0]],
     };
     if let Some((axis, cost)) = sweep_of_few(samples, among) {
-        let cells = core::array::from_fn(Cells::one);
-        return (Plan::Cut(Grid::new::<D>(axis, cells)), cost);
+        let cells: [_; AXES] = core::array::from_fn(Cells::one);
+        return (Plan::Cut(Grid::new(axis, &cells[..samples[0].dimensions])), cost);
     }
     let distribution = Distribution::new(samples);
     let (choice, cost) = cheapest(&distribution, samples, among);
     let plan = match choice {
-        Choice::Cut(cut) => Plan::Cut(grid::<D, T>(&cut, &distribution, unit)),
+        Choice::Cut(cut) => Plan::Cut(grid(&cut, &distribution, unit)),
         Choice::SplitBySize(split) => {
             Plan::SplitBySize(SizeSplit { size: split.size / unit.to_f64(), ..split })
         }
@@ -112,8 +112,8 @@ fn plan_of<const D: usize, T: Scalar>(samples: &mut [&mut Sample], among: Among)
     (plan, cost)
 }
 
-fn grid<const D: usize, T: Scalar>(cut: &Cut, distribution: &Distribution, unit: T) -> Grid<T> {
-    let cells = core::array::from_fn(|axis| {
+fn grid<T: Scalar>(cut: &Cut, distribution: &Distribution, unit: T) -> Grid<T> {
+    let cells: [_; AXES] = core::array::from_fn(|axis| {
         if cut.columns[axis] > 1.0 {
             let count = lesser(cut.columns[axis], MOST_CELLS_PER_AXIS);
             Cells::new(axis, unit, distribution.low[axis], distribution.high[axis], count as u32)
@@ -121,7 +121,7 @@ fn grid<const D: usize, T: Scalar>(cut: &Cut, distribution: &Distribution, unit:
             Cells::one(axis)
         }
     });
-    Grid::new::<D>(cut.sweep, cells)
+    Grid::new(cut.sweep, &cells[..distribution.dimensions])
 }
 
 #[cfg(test)]

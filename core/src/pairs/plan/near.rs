@@ -29,10 +29,15 @@ pub fn near_cells<const D: usize, T: Scalar>(
     let [mut of_few, mut of_many] = [Sample::empty(D), Sample::empty(D)];
     of_few.draw_some(few, SAMPLED);
     of_many.draw_some(many, SAMPLED);
-    let unit: T = scale(&mut [&mut of_few, &mut of_many]);
-    let distribution = Distribution::new(&[&of_few, &of_many]);
-    let (cut, reach) = cut(&of_few, &of_many, &distribution)?;
-    let grid = grid::<D, T>(&cut, &distribution, unit);
+    near_cells_of(&mut of_few, &mut of_many)
+}
+
+#[inline(never)]
+fn near_cells_of<T: Scalar>(few: &mut Sample, many: &mut Sample) -> Option<(Grid<T>, [u32; AXES])> {
+    let unit: T = scale(&mut [few, many]);
+    let distribution = Distribution::new(&[few, many]);
+    let (cut, reach) = cut(few, many, &distribution)?;
+    let grid = grid(&cut, &distribution, unit);
     Some((grid, grid.axes().map(|axis| reach[axis])))
 }
 
@@ -41,7 +46,7 @@ fn cut(few: &Sample, many: &Sample, distribution: &Distribution) -> Option<(Cut,
     let few = Shape::new(few, distribution);
     let (mut cut, mut reach) = (Cut::uncut(0), [1; AXES]);
     let mut near = few.count;
-    for axis in 0..distribution.dimensions {
+    for (axis, reach) in reach.iter_mut().enumerate().take(distribution.dimensions) {
         let extent = distribution.extent(axis);
         let size = many.sorted_sizes(axis)[many.len - 1 - many.len / LARGER_ONE_IN];
         if extent > 0.0 {
@@ -49,8 +54,8 @@ fn cut(few: &Sample, many: &Sample, distribution: &Distribution) -> Option<(Cut,
             cut.columns[axis] = greater(whole(cells), 1.0);
         }
         let cells = cut.columns[axis];
-        reach[axis] += u32::from(size * cells > extent);
-        near *= lesser(1.0 + f64::from(reach[axis]) + few.mean[axis] / extent * cells, cells);
+        *reach += u32::from(size * cells > extent);
+        near *= lesser(1.0 + f64::from(*reach) + few.mean[axis] / extent * cells, cells);
     }
     (near < 0.5 * cut.len()).then_some((cut, reach))
 }
