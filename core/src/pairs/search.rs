@@ -24,8 +24,8 @@ use super::task::{Progress, ProgressCallback, Stop, Task};
 use crate::geometry::check_count;
 use crate::{Aabb, Error, Scalar, validate};
 
-/// Whether updates, too, leave out of many boxes what lies near none of a few. Not in WebAssembly: that takes 2 KB after gzip, and
-/// of those the smallest files have none left. (In what order pairs are found cannot be seen in updates.)
+/// Whether updates, too, leave out of many boxes what lies near none of a few. Not in WebAssembly: that takes 2 KB after gzip,
+/// which the smallest files do not have left. (In what order pairs are found cannot be seen in updates.)
 const LEAVES_OUT_IN_UPDATES: bool = cfg!(not(target_arch = "wasm32"));
 
 /// What a finder keeps between searches.

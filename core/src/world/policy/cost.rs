@@ -37,14 +37,19 @@ const DEAR_READS: [usize; 2] = [4, 10];
 /// After this many of these in a row, of which the second half read nearly as much as the first, tracking is skipped. (Where
 /// bodies tremble in turn, each is looked up as it moves for the first time, and then seldom.)
 const DEAR_UPDATES: usize = 16;
+/// In a world of more bodies the tree does not fit the second-level cache: reading it takes about twice as long.
+const CACHED: usize = 1 << 14;
+/// If more than one of this many bodies is looked up in such a world, the finder does that, not the tree. (Where one of 18 flies,
+/// of 77,000 bodies in the plane, an update takes 0.7 of the time. In smaller worlds it would take up to 2.7 times as long.)
+const FOUND_ONE_IN: usize = 24;
 /// How many times the cost of building a tree for a body a search costs more in a tree whose leaves are
 /// twice too large. Measured with 1, 100 and 10,000 regions asked for in each frame of drift, fast and
 /// teleport, at 10,000 in 2D and 100,000 in 3D: 1 takes 0.89 to 0.99 with one region and up to 1.13 with
 /// 10,000 of them; 9 takes up to 1.17 and 0.96 to 1.01.
 const LARGE_LEAVES: usize = 3;
 
-/// Whether an update tries on a sample what it might have to give up. Not in WebAssembly: that takes 560 bytes after gzip, and of
-/// those the smallest files have none left.
+/// Whether an update tries on a sample what it might have to give up. Not in WebAssembly: that takes 560 bytes after gzip, which
+/// the smallest files do not have left.
 pub const TRIES_SAMPLES: bool = cfg!(not(target_arch = "wasm32"));
 
 /// Whether to keep a tree whose leaves became larger by this factor, and which is searched this often
@@ -105,9 +110,14 @@ impl Policy {
         bodies / 2 + 3 * self.overlaps
     }
 
-    /// How many leaves and bodies of the tree an update may read.
+    /// How many leaves and bodies of the tree an update may read; half of that where it does not fit the cache.
     pub fn most_reads(&self, bodies: usize) -> usize {
-        bodies - bodies / 4 + self.overlaps
+        (bodies - bodies / 4 + self.overlaps) >> usize::from(bodies > CACHED)
+    }
+
+    /// Whether the tree, if there is one, looks up so many bodies sooner than the finder.
+    pub fn tree_pays(look_ups: usize, bodies: usize) -> bool {
+        bodies <= CACHED || look_ups * FOUND_ONE_IN <= bodies
     }
 
     /// Whether fast bodies may fly, given how many of the bodies changed.

@@ -75,13 +75,14 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         count
     }
 
-    /// Finds the pairs that bodies which fly have among themselves. Returns false if there are more than `most`, or than fit into
-    /// memory.
+    /// Finds the pairs that bodies which fly have among themselves, unless these are found already. Returns false if there are more
+    /// than `most`, or than fit into memory.
     #[inline(never)]
     pub fn find_among_flying(
         &mut self,
         bodies: &Bodies<D, T>,
         begun: &mut Vec<[u32; 2]>,
+        are_found: bool,
         most: usize,
     ) -> bool {
         let Self { finder, flying, scratch, .. } = self;
@@ -90,7 +91,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             bodies.slots.flags[*index as usize] & FLY == FLY
         };
         flying.retain(fly);
-        if flying.is_empty() {
+        if flying.is_empty() || are_found {
             return true;
         }
         let Ok(Some(pairs)) = finder.find_some(flying, bodies, most) else {

@@ -16,7 +16,7 @@ use crate::world::bodies::{Bodies, RANDOM_READ, When, flag};
 use crate::world::candidates::{Candidates, push_wanted};
 use crate::world::changes::Events;
 use crate::world::layout;
-use crate::world::policy::TRIES_SAMPLES;
+use crate::world::policy::{Policy, TRIES_SAMPLES};
 use crate::world::tracking::{Scratch, Tracking};
 use crate::world::tree::{BATCH, TOGETHER};
 
@@ -49,30 +49,40 @@ pub fn incremental<const D: usize, T: Scalar>(
     let (escaped, wakes) = (escaped.len(), !woken.is_empty());
     let has_tree = if escaped > 0 || wakes {
         tracking.tree.note_uses(escaped);
-        if is_tree_advanced { tracking.tree.is_fresh() } else { tracking.advance_tree(bodies) }
+        if is_tree_advanced {
+            tracking.tree.is_fresh()
+        } else if tracking.tree.is_built() {
+            tracking.advance_tree(bodies)
+        } else {
+            // This update does without: to build it, and then to read too much of it, took four times as long as finding all pairs.
+            tracking.is_tree_due = true;
+            false
+        }
     } else {
         tracking.tree.is_built()
     };
     let extends = !wakes && flights == 0 && tracking.can_extend(bodies);
     let mut most = tracking.policy.most_reads(bodies.slots.live);
-    if !has_tree {
-        // What the finder finds is stored, all of it.
-        most = most.min(bodies.slots.live);
-    }
     tracking.policy.note_incremental(escaped - flights, flights);
     tracking.scratch.mark(bodies, true);
     let mut is_right = !wakes || tracking.wake(bodies, &mut events.ended, &mut most, has_tree);
     if is_right {
         let [jumped, count] = tracking.list_queries(bodies, extends);
         layout::note_jumps(&mut tracking.locality_decay, jumped);
-        let look_ups = LookUps { count, extends, has_tree };
+        // The finder leaves out what lies near none of them.
+        let by_tree = has_tree && Policy::tree_pays(count, bodies.slots.live);
+        let look_ups = LookUps { count, extends, has_tree: by_tree };
+        if !by_tree {
+            // What the finder finds is stored, all of it.
+            most = most.min(bodies.slots.live);
+        }
         let before = most;
-        let tries = TRIES_SAMPLES && has_tree && !tracking.policy.has_flown();
+        let tries = TRIES_SAMPLES && by_tree && !tracking.policy.has_flown();
         is_right = !tries || tracking.are_few_reads(count, most);
         let turns = if has_tree && is_right { tracking.move_in_tree(bodies) } else { 0 };
         is_right = is_right
             && tracking.find_added(bodies, &mut events.begun, look_ups, &mut most)
-            && tracking.find_among_flying(bodies, &mut events.begun, most)
+            && tracking.find_among_flying(bodies, &mut events.begun, !by_tree, most)
             && tracking.scratch.reserve(&mut tracking.candidates, &mut events.begun).is_ok();
         tracking.policy.note_reads(before - most, flights, turns, bodies.slots.live);
     }

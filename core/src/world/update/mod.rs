@@ -4,7 +4,7 @@
 //! bodies stay within their fat AABBs only candidates can begin or end, and an update tests the list of
 //! them, without those of sleeping bodies. A body that leaves its fat AABB gets a new one, which reaches
 //! ahead in the direction of its motion, and a tree finds what that overlaps (`incremental`), or the finder
-//! while there is no tree: one is built over several updates, since at once it would take several times as
+//! while there is no tree: one is built at the end of several updates, since at once it would take several times as
 //! long as finding all pairs where few boxes overlap. Only where most bodies are new and static, since a level was loaded,
 //! the update puts these to sleep and builds it at once. When many leave theirs, the finder finds all candidates
 //! (`rebuild`). Where that happens again and again, fat AABBs do not pay, and for some updates all pairs of the
@@ -52,6 +52,7 @@ pub fn update<const D: usize, T: Scalar>(
     events.ended.clear();
     bodies.refatten_too_wide();
     let found = find_events(bodies, tracking, events);
+    let is_tree_due = core::mem::take(&mut tracking.is_tree_due);
     tracking.is_queried = false;
     if let Ok(mut order) = found {
         let is_level_new = bodies.is_level_new();
@@ -63,7 +64,7 @@ pub fn update<const D: usize, T: Scalar>(
         if is_level_new && order != Reorder::Later {
             tracking.ready_tree(bodies);
         }
-        if core::mem::take(&mut tracking.is_tree_due) {
+        if is_tree_due {
             tracking.advance_tree(bodies);
         }
     } else {
