@@ -3,7 +3,7 @@
 //! ```text
 //! cut space into cells: most of the many boxes reach no further than one or two cells on
 //! for each of the few boxes
-//!     mark the cells that it touches, and on each axis so many before them
+//!     mark the cells that it touches, and on each axis the one or two before them
 //! for each of the many boxes
 //!     keep it if the cell of its lower corner is marked, or if it reaches further
 //! ```
@@ -23,26 +23,26 @@ use crate::{Aabb, Scalar};
 const MIN_SET_RATIO: usize = 8;
 /// And this many in all: among fewer, to plan takes too long in WebAssembly (100 boxes against 1,000 in space, 1.2 times).
 const LEAST_MANY: usize = 2048;
-/// Leaving out takes as long as testing the many boxes against so many,
+/// Leaving out takes as long as testing all of the many boxes against ten,
 const TESTED_AGAINST: usize = 10;
-/// and as this many tests more.
+/// and as 20,000 tests more.
 const TESTS: usize = 20_000;
 /// There is memory for at least this part of the many boxes, as some of the few, and as those near them.
 const SPARE_ONE_IN: [usize; 2] = [64, 4];
-/// Of so many blocks of the many boxes at most half of the boxes may be near.
+/// Of this many blocks of the many boxes at most half of the boxes may be near.
 const SAMPLED_BLOCKS: usize = 8;
 
 /// Which cells are near one of the few boxes.
-struct Marks {
+struct Bitmap {
     /// From a cell to the next on each axis of the grid, and how many cells on most of the many boxes reach there.
     steps: [u32; 3],
     reach: [u32; 3],
     bits: [u32; MOST_NEAR_CELLS / 32],
 }
 
-impl Marks {
-    /// Marks the cells that a box touches and those so many before them: its first cell, and how many more it touches on
-    /// each axis.
+impl Bitmap {
+    /// Sets the bits of the cells from which boxes reach a box: of those that it touches, and on each axis of those before them.
+    /// `column` is its first cell, and `more` how many more it touches on each axis.
     #[inline(never)]
     fn add(&mut self, column: u32, more: [u32; 3]) {
         let Self { steps, reach, bits } = self;
@@ -82,7 +82,7 @@ impl Marks {
         near
     }
 
-    /// Marks the cells of the few boxes, and lists these and the many that may lie near one of them. `fill` computes the cells of
+    /// Sets the bits of the few boxes, and lists these and the many that may lie near one of them. `fill` computes the cells of
     /// the block of the few or of the many that begins there, and returns whether its boxes are valid. Returns false, with none
     /// of the many listed, if that does not seem to leave out most of them.
     ///
@@ -162,12 +162,12 @@ impl<const D: usize, T: Scalar> Near<D, T> {
             return Ok(None);
         }
         let Some((grid, reach)) = near_cells(few, many) else { return Ok(None) };
-        let mut marks = Marks { steps: grid.steps(), reach, bits: [0; MOST_NEAR_CELLS / 32] };
+        let mut bitmap = Bitmap { steps: grid.steps(), reach, bits: [0; MOST_NEAR_CELLS / 32] };
         let mut fill = |set: usize, start: usize, cells: &mut CellCoordinates| {
             let boxes = &[few, many][set][start..];
             cells.fill(&boxes[..BLOCK.min(boxes.len())], &grid)
         };
-        if !marks.find([few_count, many_count], &mut fill, &mut self.listed)? {
+        if !bitmap.find([few_count, many_count], &mut fill, &mut self.listed)? {
             return Ok(None);
         }
         let Self { few: kept_few, near, listed: [all_few, listed] } = self;

@@ -29,7 +29,7 @@
 //! | `GLANCED_BOXES`, `GLANCE_OVERLAP_RATIO`, `GLANCE_OVERLAP_MARGIN` | noticing that the model is wrong for needless closer looks |
 //! | `MOST_COMPARED`, `OVERLAP_TOLERANCE`, `OVERLAPS_BY_CHANCE` | trust in the model for trust in the overlaps of the sample |
 //! | `SPLIT_COST_SHARE` | three searches instead of one for columns that suit each size |
-//! | `MOST_NEAR_CELLS`, `LARGER_ONE_IN`, `MOST_REACH` | leaving out more of many boxes against few for larger marks |
+//! | `MOST_NEAR_CELLS`, `LARGER_ONE_IN`, `MOST_REACH` | leaving out more of many boxes against few for a larger bitmap |
 //! | `MOST_COLUMNS_PER_BOX`, `MOST_COLUMNS`, `MOST_CELLS_PER_AXIS` | a limit on what the model leaves out: empty columns |
 //! | `RECORDS_PER_SLAB` | more slabs for columns that fit the second-level cache |
 //! | `LEAST_UNCUT_TO_SLAB` | slabs that fit this cache, and that threads share, for no copies |

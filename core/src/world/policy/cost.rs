@@ -115,7 +115,7 @@ impl Policy {
         (bodies - bodies / 4 + self.overlaps) >> usize::from(bodies > CACHED)
     }
 
-    /// Whether the tree, if there is one, looks up so many bodies sooner than the finder.
+    /// Whether the tree, if there is one, looks up this many bodies sooner than the finder does.
     pub fn tree_pays(look_ups: usize, bodies: usize) -> bool {
         bodies <= CACHED || look_ups * FOUND_ONE_IN <= bodies
     }
