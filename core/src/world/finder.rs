@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::bodies::{Bodies, When};
 use super::policy::LOOK_UP;
 use super::sets::Sets;
-use crate::memory::OutOfMemory;
+use crate::memory::{OutOfMemory, reserve_for};
 use crate::pairs::PairFinder;
 use crate::{Aabb, Error, Scalar};
 
@@ -133,6 +133,9 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         let pairs = finder.search(boxes).against(table).pairs_up_to(*most);
         let Ok(Some(pairs)) = pairs else { return false };
         *most = most.saturating_sub(pairs.len());
+        if reserve_for(near, pairs.len()).is_err() {
+            return false;
+        }
         near.extend(pairs.iter().filter(|[_, body]| takes_part(*body)));
         true
     }
@@ -149,6 +152,9 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         let Self { finder, boxes, .. } = self;
         let Ok(Some(pairs)) = finder.search(boxes).pairs_up_to(*most) else { return false };
         *most = most.saturating_sub(pairs.len());
+        if reserve_for(near, near.len() + pairs.len()).is_err() {
+            return false;
+        }
         near.extend(pairs.iter().map(|&[a, b]| {
             let [first, second] = [a, b].map(|at| queries[at as usize].0);
             if first < second { [a, second] } else { [b, first] }
