@@ -2,7 +2,7 @@
 
 /// The positions of up to `len` of `count` items: one at a random place of each of equal chunks, so that no pattern in
 /// the order of the items hides from it. The randomness is the same in every run.
-pub(crate) fn positions(count: usize, len: usize) -> impl ExactSizeIterator<Item = usize> + Clone {
+pub(crate) fn positions(count: usize, len: usize) -> impl ExactSizeIterator<Item = usize> {
     let len = len.min(count);
     // `usize` has 32 bits in WebAssembly.
     let (count, chunks) = (count as u64, len as u64);

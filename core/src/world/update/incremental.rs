@@ -63,6 +63,10 @@ pub fn incremental<const D: usize, T: Scalar>(
     };
     let extends = !wakes && flights == 0 && tracking.can_extend(bodies);
     let mut most = tracking.policy.most_reads(bodies.slots.live);
+    if !has_tree {
+        // What the finder finds is stored, all of it.
+        most = most.min(bodies.slots.live);
+    }
     tracking.policy.note_incremental(escaped - flights, flights);
     tracking.scratch.mark(bodies, true);
     let mut is_right = !wakes || tracking.wake(bodies, &mut events.ended, &mut most, has_tree);
@@ -73,7 +77,6 @@ pub fn incremental<const D: usize, T: Scalar>(
         let by_tree = has_tree && Policy::tree_pays(count, bodies.slots.live);
         let look_ups = LookUps { count, extends, has_tree: by_tree };
         if !by_tree {
-            // What the finder finds is stored, all of it.
             most = most.min(bodies.slots.live);
         }
         let before = most;
