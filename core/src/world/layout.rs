@@ -10,6 +10,9 @@ use crate::Scalar;
 
 /// How many new fat AABBs per body make the order useless.
 const DECAY: usize = 16;
+/// With this many times as many, storage is reordered in an update that found all candidates; until then it waits for one that
+/// takes less time. New bodies, those of a level that was loaded, do not wait.
+const OVERDUE: usize = 2;
 /// With fewer candidates than one for this many bodies the order does not matter.
 const BODIES_A_CANDIDATE: usize = 4;
 /// How much a body decays the order that jumped away from its neighbors in memory, in new fat AABBs.
@@ -32,14 +35,19 @@ pub fn note_jumps(decay: &mut usize, jumped: usize) {
 }
 
 /// Notes that the finder found the candidates of `moved` bodies with new fat AABBs, `new` of them new.
-/// Returns whether to reorder storage, given the numbers of bodies and of candidates.
-pub fn note_rebuild(
-    decay: &mut usize,
-    [moved, new]: [usize; 2],
-    [bodies, candidates]: [usize; 2],
-) -> bool {
-    *decay = decay.saturating_add(moved).saturating_add(2 * DECAY * new);
-    let is_decayed = *decay > DECAY * bodies && candidates * BODIES_A_CANDIDATE > bodies;
+/// Returns whether to reorder storage at once, given the numbers of bodies and of candidates.
+pub fn note_rebuild(decay: &mut usize, [moved, new]: [usize; 2], counts: [usize; 2]) -> bool {
+    *decay = decay.saturating_add(moved).saturating_add(2 * OVERDUE * DECAY * new);
+    is_decayed(decay, OVERDUE, counts)
+}
+
+/// Whether to reorder storage after an update that found few candidates.
+pub fn is_due(decay: &mut usize, counts: [usize; 2]) -> bool {
+    is_decayed(decay, 1, counts)
+}
+
+fn is_decayed(decay: &mut usize, times: usize, [bodies, candidates]: [usize; 2]) -> bool {
+    let is_decayed = *decay > times * DECAY * bodies && candidates * BODIES_A_CANDIDATE > bodies;
     if is_decayed {
         *decay = 0;
     }
@@ -57,7 +65,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
                 bodies.slots.is_reordered = true;
             }
             Reorder::Later => {
-                self.locality_decay = usize::MAX;
+                self.locality_decay = DECAY * bodies.slots.len() + 1;
                 self.tree.abandon();
             }
         }

@@ -49,6 +49,9 @@ impl Sets {
     /// Divides the bodies that take part by the filters that they have.
     #[inline(never)]
     pub fn divide(&mut self, slots: &Slots, rules: &Rules, when: When) {
+        if rules.are_alike(when) {
+            return self.put_all_in_one();
+        }
         let mut buckets = [u8::MAX; BUCKETS];
         self.kinds.clear();
         self.kind_of.clear();
@@ -65,6 +68,16 @@ impl Sets {
             self.bodies.extend(of_set.map(|(index, _)| index));
             self.ends[usize::from(set)] = self.bodies.len();
         }
+    }
+
+    /// One set of all bodies that take part, any of which may pair with any.
+    fn put_all_in_one(&mut self) {
+        core::mem::swap(&mut self.bodies, &mut self.all);
+        self.ends = [self.bodies.len(); SETS];
+        (self.members, self.allowed) = ([1, 0, 0, 0], [1, 0, 0, 0]);
+        self.kinds.clear();
+        let count = self.bodies.len();
+        self.kinds.push(Kind { filter: Filter::ALL, count, set: 0, allowed: 1 });
     }
 
     /// The position of a filter among the kinds. `buckets` has it by hash.

@@ -42,6 +42,8 @@ const CACHED: usize = 1 << 14;
 /// If more than one of this many bodies is looked up in such a world, the finder does that, not the tree. (Where one of 18 flies,
 /// of 77,000 bodies in the plane, an update takes 0.7 of the time. In smaller worlds it would take up to 2.7 times as long.)
 const FOUND_ONE_IN: usize = 24;
+/// In such a world at most one of this many bodies flies: the finder looks more of them up in twice the time of finding all pairs.
+const FLIGHT_ONE_IN: usize = 16;
 /// How many times the cost of building a tree for a body a search costs more in a tree whose leaves are
 /// twice too large. Measured with 1, 100 and 10,000 regions asked for in each frame of drift, fast and
 /// teleport, at 10,000 in 2D and 100,000 in 3D: 1 takes 0.89 to 0.99 with one region and up to 1.13 with
@@ -124,6 +126,17 @@ impl Policy {
     pub fn may_fly(&mut self, changed: usize, bodies: usize) -> bool {
         self.grounded = self.grounded.saturating_sub(1);
         self.grounded == 0 && changed * FLIGHT <= bodies
+    }
+
+    /// Whether so many of the bodies would fly that finding all pairs takes less time. Then none flies for some updates. Bodies that
+    /// fly seldom move here, or only some may fly from the beginning.
+    pub fn too_many_fly(&mut self, flights: usize, bodies: usize) -> bool {
+        let most = bodies / if bodies > CACHED { FLIGHT_ONE_IN } else { FLIGHT };
+        let are_too_many = flights > most;
+        if are_too_many {
+            self.note_excess(flights);
+        }
+        are_too_many
     }
 
     /// Notes that all candidates will be found, and that no body flies. While tracking is to be skipped none may: it would not

@@ -149,7 +149,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             } else {
                 finder.find_near(batch, fat, &are_asleep, found, most)
             };
-            if !is_found {
+            // All that are found, since one body may have many neighbors.
+            if !is_found || reserve_for(ended, ended.len() + found.len()).is_err() {
                 woken.clear();
                 return false;
             }

@@ -33,7 +33,7 @@ pub use rebuild::restore;
 
 use super::bodies::Bodies;
 use super::changes::Events;
-use super::layout::Reorder;
+use super::layout::{self, Reorder};
 use super::tracking::Tracking;
 use crate::Scalar;
 use crate::memory::OutOfMemory;
@@ -95,7 +95,8 @@ fn find_events<const D: usize, T: Scalar>(
         let flights = tracking.choose_flying(bodies, has_tree);
         let escaped = tracking.scratch.escaped.len() - flights;
         let moves = escaped + bodies.edits.leaving().len();
-        let rebuilds = tracking.policy.rebuild_pays(moves, changed, live);
+        let too_many_fly = tracking.policy.too_many_fly(flights, live);
+        let rebuilds = too_many_fly || tracking.policy.rebuild_pays(moves, changed, live);
         if rebuilds && flights == 0 {
             tracking.policy.note_no_flights();
         }
@@ -105,6 +106,9 @@ fn find_events<const D: usize, T: Scalar>(
             order = rebuild::rebuild(bodies, tracking, events)?;
         } else if tracking.policy.reads_too_much(changed, live) {
             order = Reorder::Later;
+        } else if layout::is_due(&mut tracking.locality_decay, [live, tracking.candidates.listed().len()])
+        {
+            order = Reorder::BySpace;
         }
         for pairs in [&mut events.begun, &mut events.ended] {
             bodies.slots.to_slots(pairs);

@@ -1,0 +1,88 @@
+// Many boxes on WebGPU in software: the pairs of the core, compared by a hash of all of them in order.
+import assert from "node:assert/strict";
+import { createHash } from "node:crypto";
+import { after, before, test } from "node:test";
+import { findPairs, init } from "sweep-and-prune";
+import { openPage } from "./support/gpu-page.js";
+
+const COUNT = process.env["TEST_LONG"] ? 1_000_000 : 20_000;
+
+/** @type {Map<string, Uint8Array>} */
+const files = new Map();
+/** @type {Awaited<ReturnType<typeof openPage>>} */
+let opened;
+
+before(async () => {
+  await init();
+  opened = await openPage({ hasGpu: true, files });
+});
+
+after(() => opened?.close());
+
+/** Random numbers from 0 to 1, the same in each run (mulberry32, by Tommy Ettinger). */
+let state = 1;
+function random() {
+  state = (state + 0x6d2b79f5) | 0;
+  let bits = Math.imul(state ^ (state >>> 15), 1 | state);
+  bits = (bits + Math.imul(bits ^ (bits >>> 7), 61 | bits)) ^ bits;
+  return ((bits ^ (bits >>> 14)) >>> 0) / 2 ** 32;
+}
+
+/**
+ * Boxes whose sides are given by a function, at random places between 0 and 1.
+ *
+ * @param {2 | 3} dimensions @param {() => number} side
+ */
+function randomBoxes(dimensions, side) {
+  const boxes = new Float32Array(2 * dimensions * COUNT);
+  for (let at = 0; at < boxes.length; at += 2 * dimensions) {
+    for (let axis = 0; axis < dimensions; axis++) {
+      const min = random();
+      boxes[at + axis] = min;
+      boxes[at + dimensions + axis] = min + side();
+    }
+  }
+  return boxes;
+}
+
+/** Pairs in the order of their indices. @param {Uint32Array} pairs */
+function sorted(pairs) {
+  const keys = Float64Array.from({ length: pairs.length / 2 }, (_, at) => (pairs[2 * at] ?? 0) * 2 ** 32 + (pairs[2 * at + 1] ?? 0)).sort();
+  const ordered = new Uint32Array(pairs.length);
+  keys.forEach((key, at) => ordered.set([Math.floor(key / 2 ** 32), key % 2 ** 32], 2 * at));
+  return ordered;
+}
+
+/** How long a side is where about two boxes overlap each. @param {2 | 3} dimensions */
+const usualSide = (dimensions) => 0.5 * (2 / COUNT) ** (1 / dimensions);
+
+for (const dimensions of /** @type {const} */ ([2, 3])) {
+  const side = usualSide(dimensions);
+  const scenes = {
+    "boxes of one size": randomBoxes(dimensions, () => side),
+    "boxes of sizes over four decades": randomBoxes(dimensions, () => 0.5 * side * 10 ** (4 * random() - 3)),
+  };
+  for (const [name, boxes] of Object.entries(scenes)) {
+    test(`${COUNT} ${name} in ${dimensions}D have the pairs of findPairs`, async () => {
+      files.set("/boxes", new Uint8Array(boxes.buffer));
+      const [length, hash] = await opened.page.evaluate(async (dimensions) => {
+        // @ts-ignore: what the server of the tests has
+        const { openDevice, PairFinder } = await import("/index.js");
+        const device = await openDevice();
+        const finder = await PairFinder.create(device, { dimensions, sorted: true });
+        const bytes = await (await fetch("/boxes")).arrayBuffer();
+        const boxes = device.createBuffer({ size: bytes.byteLength, usage: GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_DST });
+        device.queue.writeBuffer(boxes, 0, bytes);
+        const found = await finder.find({ boxes, count: bytes.byteLength / (8 * dimensions) });
+        const pairs = await finder.readPairs(found.pairs, found);
+        const hash = new Uint8Array(await crypto.subtle.digest("SHA-256", pairs));
+        device.destroy();
+        return /** @type {const} */ ([pairs.length, Array.from(hash, (byte) => byte.toString(16).padStart(2, "0")).join("")]);
+      }, dimensions);
+      const expected = sorted(findPairs(boxes, { dimensions }));
+      assert.ok(expected.length > COUNT / 2);
+      assert.equal(length, expected.length);
+      assert.equal(hash, createHash("sha256").update(expected).digest("hex"));
+    });
+  }
+}
