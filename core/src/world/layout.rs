@@ -34,24 +34,17 @@ pub fn note_jumps(decay: &mut usize, jumped: usize) {
     *decay = decay.saturating_add(jumped.saturating_mul(JUMP_DECAY));
 }
 
-/// Notes that the finder found the candidates of `moved` bodies with new fat AABBs, `new` of them new.
-/// Returns whether to reorder storage at once, given the numbers of bodies and of candidates.
-pub fn note_rebuild(decay: &mut usize, [moved, new]: [usize; 2], counts: [usize; 2]) -> bool {
+/// Notes that the finder found the candidates of `moved` bodies with new fat AABBs, `new` of them new. Returns whether to reorder
+/// storage at once and whether to do so in an update that takes less time, given the numbers of bodies and of candidates.
+pub fn note_rebuild(
+    decay: &mut usize,
+    [moved, new]: [usize; 2],
+    [bodies, candidates]: [usize; 2],
+) -> [bool; 2] {
     *decay = decay.saturating_add(moved).saturating_add(2 * OVERDUE * DECAY * new);
-    is_decayed(decay, OVERDUE, counts)
-}
-
-/// Whether to reorder storage after an update that found few candidates.
-pub fn is_due(decay: &mut usize, counts: [usize; 2]) -> bool {
-    is_decayed(decay, 1, counts)
-}
-
-fn is_decayed(decay: &mut usize, times: usize, [bodies, candidates]: [usize; 2]) -> bool {
-    let is_decayed = *decay > times * DECAY * bodies && candidates * BODIES_A_CANDIDATE > bodies;
-    if is_decayed {
-        *decay = 0;
-    }
-    is_decayed
+    let matters = candidates * BODIES_A_CANDIDATE > bodies;
+    let is_overdue = matters && *decay > OVERDUE * DECAY * bodies;
+    [is_overdue, matters && *decay > DECAY * bodies]
 }
 
 impl<const D: usize, T: Scalar> Tracking<D, T> {
@@ -60,6 +53,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         match reorder {
             Reorder::No => {}
             Reorder::BySpace => {
+                (self.locality_decay, self.is_order_due) = (0, false);
                 self.order_by_space(bodies);
                 self.apply_order(bodies);
                 bodies.slots.is_reordered = true;

@@ -32,6 +32,8 @@ pub struct Tracking<const D: usize, T: Scalar> {
     pub sleep: Sleep,
     /// How much the locality of the storage order decayed by motion.
     pub locality_decay: usize,
+    /// Whether to reorder storage at the end of the next update that finds few candidates.
+    pub is_order_due: bool,
     pub finder: Finder<D, T>,
     pub usage: Usage,
     pub scratch: Scratch<D, T>,
@@ -40,7 +42,7 @@ pub struct Tracking<const D: usize, T: Scalar> {
 clone_fields! {
     [const D: usize, T: Scalar] Tracking<D, T> {
         fat, is_fat_stale, candidates, tree, flying, is_queried, is_tree_due, motion,
-        policy, sleep, locality_decay, finder, usage, scratch,
+        policy, sleep, locality_decay, is_order_due, finder, usage, scratch,
     }
 }
 
@@ -55,7 +57,7 @@ pub struct Scratch<const D: usize, T: Scalar> {
     /// By index: bodies that escaped or left, and bodies that changed.
     pub is_escaped: Vec<bool>,
     pub is_changed: Vec<bool>,
-    /// Positions of candidates to test, and of dropped ones.
+    /// Positions of candidates to test, of some at a time, and of dropped ones.
     pub positions: Vec<usize>,
     pub dropped: Vec<usize>,
     /// The bodies that an update wakes.

@@ -290,23 +290,17 @@ impl Candidates {
         }
     }
 
-    /// Reserves capacity for pairs that are added and for lists of positions, and spare capacity, so that steady motion does not
-    /// allocate.
+    /// Reserves capacity for pairs that are added and for a list of those that are dropped, and spare capacity, so that steady
+    /// motion does not allocate.
     ///
     /// # Errors
     /// [`OutOfMemory`].
-    pub fn reserve(
-        &mut self,
-        added: usize,
-        positions: [&mut Vec<usize>; 2],
-    ) -> Result<(), OutOfMemory> {
+    pub fn reserve(&mut self, added: usize, dropped: &mut Vec<usize>) -> Result<(), OutOfMemory> {
         let count = self.pairs.len();
         if self.pairs.capacity() - count < added.max(count / 4) {
             reserve_for(&mut self.pairs, count + added.max(count))?;
         }
-        let [tested, dropped] = positions;
         reserve_for(&mut self.live, self.pairs.capacity())?;
-        reserve_for(tested, self.pairs.capacity() / 4)?;
         reserve_for(dropped, self.pairs.capacity() / 4)
     }
 

@@ -43,14 +43,13 @@ pub fn free_buffers<const D: usize, T: Scalar>(
     enough: usize,
 ) {
     let Tracking { finder, scratch, .. } = tracking;
-    let Scratch { sorter, sorted, leaves, found, positions, dropped, added, .. } = scratch;
+    let Scratch { sorter, sorted, leaves, found, dropped, added, .. } = scratch;
     let PairSorter { buffer, unsorted, .. } = sorter;
     let Events { begun, ended, .. } = events;
     for buffer in [sorted, leaves, found, buffer, unsorted, begun, ended] {
         free(buffer, enough);
     }
     free(added, enough);
-    free(positions, enough);
     free(dropped, enough);
     if finder.capacity() > enough {
         finder.forget();

@@ -8,6 +8,7 @@
 
 use alloc::vec::Vec;
 use core::hint::black_box;
+use core::ops::Range;
 
 use crate::Scalar;
 use crate::memory::{OutOfMemory, prefetch_item, prefetch_pays, preload, reserve_for};
@@ -27,6 +28,8 @@ const AHEAD: usize = 24;
 /// to 1 %), always testing all takes 1.17 to 1.73 of the time; if the same ones move (up to 10 %), never
 /// doing so takes 1.0 to 1.33. Half as much is the same within 2 %.
 const SELECT: usize = 12;
+/// How many candidates are tested at a time: the list of those that matter stays in the cache, and short.
+const TESTED: usize = 2048;
 
 /// How many of the bodies that are looked up are tried first, and from how many on.
 const SAMPLE: usize = 64;
@@ -186,25 +189,39 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     #[inline(never)]
     fn test_candidates(&mut self, bodies: &Bodies<D, T>, events: &mut Events, drops: bool) {
         let Self { candidates, scratch, .. } = self;
-        match (bodies.edits.changed().len() * SELECT > candidates.listed().len(), drops) {
-            (true, true) => scratch.list_flips::<true>(bodies, candidates),
-            (true, false) => scratch.list_flips::<false>(bodies, candidates),
-            (false, _) => scratch.list_changed(bodies, candidates),
+        let count = candidates.listed().len();
+        let are_few = bodies.edits.changed().len() * SELECT <= count;
+        if are_few {
+            scratch.flag_changed(bodies, true);
+        } else if count * RANDOM_READ > bodies.boxes.len() {
+            preload(&bodies.boxes);
         }
-        let Scratch { is_escaped, positions, dropped, .. } = scratch;
-        for &at in &*positions {
-            let [a, b] = candidates.listed()[at];
-            if drops && is_escaped[a as usize] | is_escaped[b as usize] {
-                dropped.push(at);
-                continue;
+        for start in (0..count).step_by(TESTED) {
+            let some = start..count.min(start + TESTED);
+            match (are_few, drops) {
+                (true, _) => scratch.list_changed(candidates, some),
+                (_, true) => scratch.list_flips::<true>(bodies, candidates, some),
+                (_, false) => scratch.list_flips::<false>(bodies, candidates, some),
             }
-            let is_live = bodies.boxes[a as usize].overlaps_branch_free(&bodies.boxes[b as usize]);
-            if candidates.live()[at] != is_live {
-                candidates.set_live(at, is_live);
-                if is_live { &mut events.begun } else { &mut events.ended }.push([a, b]);
+            let Scratch { is_escaped, positions, dropped, .. } = &mut *scratch;
+            for &at in &*positions {
+                let [a, b] = candidates.listed()[at];
+                if drops && is_escaped[a as usize] | is_escaped[b as usize] {
+                    dropped.push(at);
+                    continue;
+                }
+                let is_live =
+                    bodies.boxes[a as usize].overlaps_branch_free(&bodies.boxes[b as usize]);
+                if candidates.live()[at] != is_live {
+                    candidates.set_live(at, is_live);
+                    if is_live { &mut events.begun } else { &mut events.ended }.push([a, b]);
+                }
             }
         }
-        for &at in &*dropped {
+        if are_few {
+            scratch.flag_changed(bodies, false);
+        }
+        for &at in &scratch.dropped {
             let pair = candidates.listed()[at];
             if candidates.live()[at] && !bodies.is_live(pair) {
                 events.ended.push(pair);
@@ -386,7 +403,7 @@ impl<const D: usize, T: Scalar> Scratch<D, T> {
         begun: &mut Vec<[u32; 2]>,
     ) -> Result<(), OutOfMemory> {
         self.sorter.reserve(begun, begun.len())?;
-        candidates.reserve(self.added.len(), [&mut self.positions, &mut self.dropped])
+        candidates.reserve(self.added.len(), &mut self.dropped)
     }
 
     /// Sets whether the bodies that escaped or left are marked.
@@ -397,38 +414,44 @@ impl<const D: usize, T: Scalar> Scratch<D, T> {
         }
     }
 
-    /// Lists the positions of the candidates of bodies that changed or left.
-    fn list_changed(&mut self, bodies: &Bodies<D, T>, candidates: &Candidates) {
-        let Self { is_changed, positions, .. } = self;
-        let changed = || bodies.edits.changed().iter().chain(bodies.edits.leaving());
-        is_changed.resize(bodies.slots.len(), false);
-        changed().for_each(|&index| is_changed[index as usize] = true);
-        positions.clear();
-        push_wanted(positions, candidates.listed(), |at, [a, b]| {
-            (at, is_changed[a as usize] | is_changed[b as usize])
-        });
-        changed().for_each(|&index| is_changed[index as usize] = false);
+    /// Sets whether the bodies that changed or left are flagged as changed.
+    fn flag_changed(&mut self, bodies: &Bodies<D, T>, is_changed: bool) {
+        self.is_changed.resize(bodies.slots.len(), false);
+        for &index in bodies.edits.changed().iter().chain(bodies.edits.leaving()) {
+            self.is_changed[index as usize] = is_changed;
+        }
     }
 
-    /// Tests all candidates, and lists the positions of those that begin or end and, if `DROPS`, of those
+    /// Lists which of some candidates, by position, are of bodies that are flagged as changed.
+    fn list_changed(&mut self, candidates: &Candidates, some: Range<usize>) {
+        let Self { is_changed, positions, .. } = self;
+        positions.clear();
+        push_wanted(positions, &candidates.listed()[some.clone()], |at, [a, b]| {
+            (some.start + at, is_changed[a as usize] | is_changed[b as usize])
+        });
+    }
+
+    /// Tests some candidates, and lists the positions of those that begin or end and, if `DROPS`, of those
     /// of marked bodies.
-    fn list_flips<const DROPS: bool>(&mut self, bodies: &Bodies<D, T>, candidates: &Candidates) {
+    fn list_flips<const DROPS: bool>(
+        &mut self,
+        bodies: &Bodies<D, T>,
+        candidates: &Candidates,
+        some: Range<usize>,
+    ) {
         let boxes = &bodies.boxes;
-        if candidates.listed().len() * RANDOM_READ > boxes.len() {
-            preload(boxes);
-        }
         let is_far = prefetch_pays(boxes);
-        let (pairs, live) = (candidates.listed(), candidates.live());
+        let (pairs, live) = (candidates.listed(), &candidates.live()[some.clone()]);
         let Self { is_escaped, positions, .. } = self;
         positions.clear();
-        push_wanted(positions, pairs, |at, [a, b]| {
-            if is_far && let Some(&[_, later]) = pairs.get(at + AHEAD) {
+        push_wanted(positions, &pairs[some.clone()], |at, [a, b]| {
+            if is_far && let Some(&[_, later]) = pairs.get(some.start + at + AHEAD) {
                 // The first bodies of neighbors in the list are near each other in memory.
                 prefetch_item(boxes, later as usize);
             }
             let is_live = boxes[a as usize].overlaps_branch_free(&boxes[b as usize]);
             let is_dropped = DROPS && is_escaped[a as usize] | is_escaped[b as usize];
-            (at, (is_live != live[at]) | is_dropped)
+            (some.start + at, (is_live != live[at]) | is_dropped)
         });
     }
 }

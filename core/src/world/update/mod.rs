@@ -33,7 +33,7 @@ pub use rebuild::restore;
 
 use super::bodies::Bodies;
 use super::changes::Events;
-use super::layout::{self, Reorder};
+use super::layout::Reorder;
 use super::tracking::Tracking;
 use crate::Scalar;
 use crate::memory::OutOfMemory;
@@ -106,8 +106,7 @@ fn find_events<const D: usize, T: Scalar>(
             order = rebuild::rebuild(bodies, tracking, events)?;
         } else if tracking.policy.reads_too_much(changed, live) {
             order = Reorder::Later;
-        } else if layout::is_due(&mut tracking.locality_decay, [live, tracking.candidates.listed().len()])
-        {
+        } else if tracking.is_order_due {
             order = Reorder::BySpace;
         }
         for pairs in [&mut events.begun, &mut events.ended] {

@@ -45,10 +45,12 @@ pub fn rebuild<const D: usize, T: Scalar>(
 
     let live = bodies.slots.live;
     let counts = [live, tracking.candidates.listed().len()];
-    let is_decayed = layout::note_rebuild(&mut tracking.locality_decay, [moved, new], counts);
+    let [is_overdue, is_due] =
+        layout::note_rebuild(&mut tracking.locality_decay, [moved, new], counts);
+    tracking.is_order_due = is_due;
     Ok(if tracking.policy.note_rebuild(live, is_fat, (moved - new) * 2 < live) {
         Reorder::Later
-    } else if is_decayed {
+    } else if is_overdue {
         Reorder::BySpace
     } else {
         Reorder::No
