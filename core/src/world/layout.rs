@@ -118,3 +118,22 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         self.tree.tree_mut().rename(permutation.new_indices());
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn storage_is_reordered_at_once_only_if_bodies_are_new_or_it_waited_for_long() {
+        let (bodies, candidates) = (1000, 500);
+        let mut decay = 0;
+        let mut note =
+            |moved: usize, new: usize| note_rebuild(&mut decay, [moved, new], [bodies, candidates]);
+        let rebuilds: Vec<_> = (0..=2 * DECAY).map(|_| note(bodies, 0)).collect();
+        let first = |which: usize| rebuilds.iter().position(|is| is[which]).unwrap();
+        assert_eq!((first(1), first(0)), (DECAY, OVERDUE * DECAY));
+        assert_eq!(note_rebuild(&mut 0, [bodies, bodies], [bodies, candidates]), [true, true]);
+        // Where few bodies have candidates the order does not matter.
+        assert_eq!(note_rebuild(&mut 0, [bodies, bodies], [bodies, 10]), [false, false]);
+    }
+}

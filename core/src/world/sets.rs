@@ -225,6 +225,16 @@ mod tests {
     }
 
     #[test]
+    fn bodies_of_one_filter_are_one_set_whose_pairs_are_not_filtered() {
+        for filter in [Filter::default(), Filter::default().category(2).mask(3)] {
+            let filters = [filter; 100];
+            check(&filters);
+            let (sets, _) = divided(&filters);
+            assert_eq!(sets.meetings().collect::<Vec<_>>(), [([0..100, 0..100], true)]);
+        }
+    }
+
+    #[test]
     fn the_largest_sets_that_do_not_meet_within_are_not_searched_within() {
         let bullet = Filter::default().category(2).mask(4);
         let enemy = Filter::default().category(4);

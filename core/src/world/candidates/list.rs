@@ -378,14 +378,14 @@ pub fn push_wanted<I: Copy, O: Copy + Default>(
     mut choose: impl FnMut(usize, I) -> (O, bool),
 ) {
     const CHUNK: usize = 256;
+    let mut wanted = [O::default(); CHUNK];
     for (chunk, items) in items.chunks(CHUNK).enumerate() {
-        let mut end = out.len();
-        out.resize(end + items.len(), O::default());
+        let mut count = 0;
         for (position, &item) in items.iter().enumerate() {
             let (made, is_wanted) = choose(chunk * CHUNK + position, item);
-            out[end] = made;
-            end += usize::from(is_wanted);
+            wanted[count % CHUNK] = made;
+            count += usize::from(is_wanted);
         }
-        out.truncate(end);
+        out.extend_from_slice(&wanted[..count]);
     }
 }

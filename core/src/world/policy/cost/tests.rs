@@ -112,6 +112,20 @@ fn bodies_that_take_off_and_land_in_turn_do_not_fly_for_long() {
 }
 
 #[test]
+fn where_too_many_would_fly_none_does_for_some_updates() {
+    for bodies in [1000, CACHED, 8 * CACHED] {
+        let most = bodies / if bodies > CACHED { FLIGHT_ONE_IN } else { FLIGHT };
+        for (flights, are_too_many) in [(0, false), (most, false), (most + 1, true)] {
+            let mut policy = Policy::default();
+            assert_eq!(policy.too_many_fly(flights, bodies), are_too_many, "{flights} of {bodies}");
+            assert_eq!(policy.may_fly(1, bodies), !are_too_many);
+            let grounded = (0..2 * GROUNDED).filter(|_| !policy.may_fly(1, bodies)).count();
+            assert_eq!(grounded, if are_too_many { GROUNDED - 2 } else { 0 });
+        }
+    }
+}
+
+#[test]
 fn fat_aabbs_are_on_trial_until_they_last() {
     let mut policy = Policy::default();
     assert!(policy.is_trial());
