@@ -121,6 +121,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
 
 #[cfg(test)]
 mod tests {
+    use alloc::vec::Vec;
+
     use super::*;
 
     #[test]
