@@ -18,6 +18,13 @@ export function startArticle(): void {
   (window.requestIdleCallback ?? setTimeout)(markTogether);
   for (const choices of document.querySelectorAll<HTMLElement>(".choices[data-for]")) applyChoices(choices);
   markContents();
+  document.querySelector("hero-boxes")!.addEventListener("ready", () => layOut([...document.querySelectorAll(".sections > section")]));
+}
+
+/** Lays out the sections that article.css leaves out at first, one a frame: all at once would take a phone half a second. */
+function layOut([next, ...others]: readonly Element[]): void {
+  next?.classList.add("laid-out");
+  if (others.length > 0) requestAnimationFrame(() => layOut(others));
 }
 
 /** A listing can be changed, and its demo runs it. The editor is loaded when the first one is. */

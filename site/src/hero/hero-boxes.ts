@@ -83,6 +83,7 @@ export class HeroBoxes extends PanelElement {
     this.#detect();
     this.show();
     this.dataset["ready"] = "";
+    this.dispatchEvent(new Event("ready"));
   }
 
   /** The boxes as they are: rows of min corner and max corner. */
