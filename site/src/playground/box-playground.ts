@@ -234,9 +234,10 @@ export class BoxPlayground extends PanelElement {
     return !this.#own && this.#state.scene === FALLING;
   }
 
-  /** A picture of balls cannot be moved; lines are drawn between discs. */
+  /** A picture of balls cannot be moved, nor balls by hand; lines are drawn between discs. */
   #offerByScene(): void {
-    this.named("fit").hidden = this.#isFalling;
+    for (const part of ["fit", "hands", "hands-hint"]) this.named(part).hidden = this.#isFalling;
+    this.named("balls-hint").hidden = !this.#isFalling;
     this.named("links").hidden = !this.#isFalling || this.#state.dimensions === "3";
   }
 
@@ -371,9 +372,9 @@ export class BoxPlayground extends PanelElement {
       file.value = "";
     });
     this.onClick("paste", () => take(pasted.value));
-    const surface = this.named("surface");
-    surface.addEventListener("dragover", (event) => event.preventDefault());
-    surface.addEventListener("drop", (event) => {
+    const stage = this.find(".panel-stage");
+    stage.addEventListener("dragover", (event) => event.preventDefault());
+    stage.addEventListener("drop", (event) => {
       event.preventDefault();
       takeFile(event.dataTransfer?.files[0]);
     });
