@@ -1,10 +1,10 @@
 // The API page: highlighted examples, and links to the documentation of each language if it was built.
 
 import { existsSync } from "node:fs";
-import type { Plugin } from "vite";
 import { COPY, highlight } from "../code/listing.ts";
 import { below, type Code, codesIn } from "../code/readme.ts";
 import { REPOSITORY } from "../shell/pages.ts";
+import type { Tags } from "../shell/tags.ts";
 
 /** Whose README begins with how to install it, and with an example. */
 const PACKAGES = { rust: "core/README.md", js: "js/README.md", python: "python/README.md" } as const;
@@ -42,20 +42,14 @@ const DOCUMENTATION = {
   guide: "api/python/guide.html",
 } as const;
 
-export const api: Plugin = {
-  name: "api",
-  transformIndexHtml: {
-    order: "pre",
-    handler: (page) =>
-      page
-        .replace("<api-availability></api-availability>", availability)
-        .replace(/<api-example name="(rust|js|python)"><\/api-example>/g, (_, name: keyof typeof PACKAGES) => beginning(PACKAGES[name]))
-        .replace(/<guide-code file="([^"]*)" heading="([^"]*)"><\/guide-code>/g, (_, file: string, heading: string) => listing(codesIn(below(file, heading))[0]!, heading, `sweep-and-prune: ${heading}`))
-        .replace(/<guide-table file="([^"]*)" heading="([^"]*)"><\/guide-table>/g, (_, file: string, heading: string) => tableBelow(file, heading))
-        .replace(/<api-link name="(rust|js|python|guide)">(.*?)<\/api-link>/g, (_, name: keyof typeof DOCUMENTATION, text: string) => {
-          const path = DOCUMENTATION[name];
-          const exists = existsSync(new URL(`../../public/${path}`, import.meta.url));
-          return exists ? `<p><a href="./${path}">${text}</a></p>` : "";
-        }),
+export const apiTags: Tags = {
+  "api-availability": availability,
+  "api-example": ({ name }) => beginning(PACKAGES[name as keyof typeof PACKAGES]),
+  "guide-code": ({ file = "", heading = "" }) => listing(codesIn(below(file, heading))[0]!, heading, `sweep-and-prune: ${heading}`),
+  "guide-table": ({ file = "", heading = "" }) => tableBelow(file, heading),
+  "api-link": ({ name, says }) => {
+    const path = DOCUMENTATION[name as keyof typeof DOCUMENTATION];
+    const exists = existsSync(new URL(`../../public/${path}`, import.meta.url));
+    return exists ? `<p><a href="./${path}">${says}</a></p>` : "";
   },
 };

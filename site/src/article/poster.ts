@@ -7,6 +7,7 @@ import { addVariants } from "../../../classroom/demo/src/element/variants.ts";
 import { World } from "../../../classroom/demo/src/element/world.ts";
 import { Simulation } from "../../../classroom/simulation/wasm/simulation.js";
 import { broken } from "../classroom/broken.ts";
+import type { Attributes } from "../shell/tags.ts";
 import { round } from "../svg.ts";
 
 await Simulation.load(readFileSync(new URL("../../../classroom/demo/dist/simulation.wasm", import.meta.url)));
@@ -14,14 +15,9 @@ addVariants(broken);
 
 type Ball = readonly [x: number, y: number, radius: number];
 
-/** Puts its poster into each `<sap-demo ...></sap-demo>` of a page. */
-export function withPosters(page: string): string {
-  return page.replace(/<sap-demo([^>]*)><\/sap-demo>/g, (_, attributes: string) => `<sap-demo${attributes}>${poster(attributes)}</sap-demo>`);
-}
-
-function poster(text: string): string {
-  const attributes = new Map([...text.matchAll(/([\w-]+)(?:="([^"]*)")?/g)].map(([, name, value = ""]) => [name, value]));
-  const { world: begin, labels, isRainbow, predicts } = readOptions((name) => attributes.get(name) ?? null);
+/** The poster of a demo with these attributes. */
+export function poster(attributes: Attributes): string {
+  const { world: begin, labels, isRainbow, predicts } = readOptions((name) => attributes[name] ?? null);
   const { height, walls } = begin;
   const world = new World(begin);
   const positions = world.positions();

@@ -3,7 +3,8 @@
 
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import type { Plugin } from "vite";
-import { insertFront } from "./front.ts";
+import type { Tags } from "../shell/tags.ts";
+import { front } from "./front.ts";
 import type { Recorded, Run } from "./results.ts";
 
 const root = new URL("../../../", import.meta.url);
@@ -25,9 +26,9 @@ function runs(): Run[] {
   });
 }
 
-export const benchmark: Plugin = {
-  name: "benchmark",
-  transformIndexHtml: (page) => insertFront(page, runs()),
+export const benchmarkTags: Tags = {
+  "benchmark-sentence": () => front(runs()).sentence,
+  "benchmark-front": () => front(runs()).tables,
 };
 
 const NO_BUFFER = "virtual:no-buffer";

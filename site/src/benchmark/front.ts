@@ -14,19 +14,17 @@ const WELL_KNOWN: Readonly<Record<Run["kind"], Readonly<Record<string, string>>>
   javascript: { flatbush: "flatbush", rbush: "rbush", "matter-js": "Matter.js", "box-intersect": "box-intersect", "rapier 2D, SIMD": "Rapier" },
 };
 
-/** The page with the sentence and the two tables; without them where no run was kept. */
-export function insertFront(page: string, runs: readonly Run[]): string {
-  const { sentence, tables } = front(runs) ?? { sentence: "How fast is sweep-and-prune compared with other libraries? Measure it here.", tables: "" };
-  return page.replace("<benchmark-sentence></benchmark-sentence>", () => sentence).replace("<benchmark-front></benchmark-front>", () => tables);
-}
+/** What the page has where no run was kept. */
+const NOTHING = { sentence: "How fast is sweep-and-prune compared with other libraries? Measure it here.", tables: "" };
 
-function front(runs: readonly Run[]): { sentence: string; tables: string } | undefined {
+/** The sentence and the two tables. */
+export function front(runs: readonly Run[]): { sentence: string; tables: string } {
   const shown = (["native", "javascript"] as const).flatMap((kind) => {
     const run = runs.find((run) => run.kind === kind);
     const one = run?.cases?.find(({ scene, dimensions, boxes }) => scene === SHOWN.scene && dimensions === SHOWN.dimensions && boxes === SHOWN.boxes);
     return run && one ? [{ kind, run, one }] : [];
   });
-  if (shown.length === 0) return undefined;
+  if (shown.length === 0) return NOTHING;
   const parts = shown.map(({ kind, one }) => {
     const other = fastestOther(one);
     const language = kind === "native" ? "Rust" : "JavaScript";

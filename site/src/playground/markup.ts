@@ -6,6 +6,7 @@ import { MEASURES } from "../experiment/record.ts";
 import { FALLING } from "../experiment/scene.ts";
 import { type Counter, counterRows, WORK } from "../panel/counters.ts";
 import { choice, seedField, slider, still, transport } from "../panel/parts.ts";
+import type { Tags } from "../shell/tags.ts";
 
 interface Shown extends Report {
   /** The mean of the last steps. */
@@ -25,9 +26,7 @@ export const COUNTERS: readonly Counter<Shown>[] = [
 /** Ten thousand spheres: one click away. */
 const SPHERES = "./playground.html?scene=falling+balls&amp;dimensions=3&amp;boxes=10000&amp;algorithm=find+pairs";
 
-export function expandPlayground(page: string): string {
-  return page.replace(/<box-playground([^>]*)><\/box-playground>/g, (_, attributes: string) => `<box-playground${attributes}>${markup(/\bcompact\b/.test(attributes), attributes.includes(FALLING))}</box-playground>`);
-}
+export const playgroundTags: Tags = { "box-playground": ({ compact, scene }, text) => `<box-playground${text}>${markup(compact !== undefined, scene === FALLING)}</box-playground>` };
 
 function markup(isCompact: boolean, isFalling: boolean): string {
   return `

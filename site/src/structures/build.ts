@@ -10,11 +10,8 @@ await init();
 
 const SNIPPET = iframeOf(`${SITE}embed.html#three-structures`, "The same boxes in a sweep, a grid and a tree", 936, 968);
 
-export function expandStructures(page: string): string {
+export function threeStructures(): string {
   const text = SNIPPET.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
-  return page.replace(
-    "<three-structures></three-structures>",
-    () => `<three-structures>${inside()}</three-structures>
-      <details class="ask embed-code"><summary>Embed this figure</summary><textarea readonly rows="6" aria-label="Code to embed this figure">${text}</textarea></details>`,
-  );
+  return `<three-structures>${inside()}</three-structures>
+      <details class="ask embed-code"><summary>Embed this figure</summary><textarea readonly rows="6" aria-label="Code to embed this figure">${text}</textarea></details>`;
 }

@@ -1,7 +1,7 @@
 // Writes the tasks into their page, and their answers into the sheet for teachers, when the site is built.
 
-import type { Plugin } from "vite";
 import { highlight } from "../code/listing.ts";
+import type { Tags } from "../shell/tags.ts";
 import { TASKS, type Task } from "./tasks.ts";
 
 function taskHtml({ name, title, asks, start, answer, explains }: Task, at: number): string {
@@ -20,13 +20,7 @@ function taskHtml({ name, title, asks, start, answer, explains }: Task, at: numb
     </section>`;
 }
 
-export const tasks: Plugin = {
-  name: "tasks",
-  transformIndexHtml: {
-    order: "pre",
-    handler: (page) =>
-      page
-        .replace("<code-tasks></code-tasks>", () => TASKS.map(taskHtml).join(""))
-        .replace("<task-answers></task-answers>", () => TASKS.map(({ name, title, asks, explains }) => `<dt><a href="./tasks.html#${name}">${title}</a>: ${asks}</dt><dd>${explains}</dd>`).join("")),
-  },
+export const taskTags: Tags = {
+  "code-tasks": () => TASKS.map(taskHtml).join(""),
+  "task-answers": () => TASKS.map(({ name, title, asks, explains }) => `<dt><a href="./tasks.html#${name}">${title}</a>: ${asks}</dt><dd>${explains}</dd>`).join(""),
 };

@@ -5,7 +5,7 @@ import { columns } from "./columns.ts";
 import { endpointArray, sweepLine } from "./endpoints.ts";
 import { allPairs, measured } from "./growth.ts";
 
-export const figures: Readonly<Record<string, () => string>> = {
+export const figures = {
   "all-pairs": allPairs,
   "box-test": boxTest,
   transitivity,
