@@ -18,10 +18,12 @@ export function startArticle(): void {
   (window.requestIdleCallback ?? setTimeout)(markTogether);
   for (const choices of document.querySelectorAll<HTMLElement>(".choices[data-for]")) applyChoices(choices);
   markContents();
-  document.querySelector("hero-boxes")!.addEventListener("ready", () => layOut([...document.querySelectorAll(".sections > section")]));
+  const begin = (): void => layOut([...document.querySelectorAll(".sections > section")]);
+  document.querySelector("hero-boxes")!.addEventListener("settled", begin, { once: true });
+  addEventListener("scroll", begin, { once: true });
 }
 
-/** Lays out the sections that article.css leaves out at first, one a frame: all at once would take a phone half a second. */
+/** Lays out the sections that article.css leaves out at first, one a frame: all at once takes a phone half a second. */
 function layOut([next, ...others]: readonly Element[]): void {
   next?.classList.add("laid-out");
   if (others.length > 0) requestAnimationFrame(() => layOut(others));

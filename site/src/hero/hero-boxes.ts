@@ -56,7 +56,9 @@ export class HeroBoxes extends PanelElement {
   #size = { width: 0, height: 0 };
 
   protected start(): void {
-    void startAlgorithms().then(() => this.#start(), (error: unknown) => showLoadFailure(this.named("message"), error));
+    void startAlgorithms()
+      .then(() => this.#start(), (error: unknown) => showLoadFailure(this.named("message"), error))
+      .finally(() => this.dispatchEvent(new Event("settled")));
   }
 
   override disconnectedCallback(): void {
@@ -83,7 +85,6 @@ export class HeroBoxes extends PanelElement {
     this.#detect();
     this.show();
     this.dataset["ready"] = "";
-    this.dispatchEvent(new Event("ready"));
   }
 
   /** The boxes as they are: rows of min corner and max corner. */
