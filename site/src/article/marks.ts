@@ -2,6 +2,7 @@
 // endpoints in the array, and the same thing in the picture. By a pointer, or by the keyboard on a legend.
 
 import type { SapDemo } from "sweep-and-prune-classroom/demo";
+import { arrowOf } from "../panel/arrows.ts";
 
 /** The color in a demo, and the kinds of lines of a listing, of each kind of word. */
 const WORDS: Readonly<Record<string, { readonly color: string; readonly kinds: readonly string[] }>> = {
@@ -95,10 +96,10 @@ function makeReachable(legend: HTMLElement): void {
   const entries = [...legend.querySelectorAll<HTMLElement>("li")];
   entries.forEach((entry, at) => (entry.tabIndex = at === 0 ? 0 : -1));
   legend.addEventListener("keydown", (event) => {
-    const by = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
-    if (by === undefined) return;
+    const arrow = arrowOf(event);
+    if (!arrow) return;
     event.preventDefault();
-    const next = entries[(entries.indexOf(document.activeElement as HTMLElement) + by + entries.length) % entries.length]!;
+    const next = entries[(entries.indexOf(document.activeElement as HTMLElement) + arrow[0] + arrow[1] + entries.length) % entries.length]!;
     for (const entry of entries) entry.tabIndex = entry === next ? 0 : -1;
     next.focus();
   });

@@ -111,9 +111,9 @@ export class GpuBoxes extends PanelElement {
   /** Opens a world of what is chosen. */
   async #open(): Promise<void> {
     this.#close();
-    this.message("Opening the GPU");
+    this.write("message", "Opening the GPU");
     this.named("message").classList.remove("load-failure");
-    this.say("");
+    this.write("status", "");
     const [count, dimensions] = ["count", "dimensions"].map((part) => Number(this.named<HTMLSelectElement>(part).value)) as [number, 2 | 3];
     const opening = (this.#opening = World.open(this.named<HTMLCanvasElement>("picture"), count, dimensions));
     try {
@@ -121,7 +121,7 @@ export class GpuBoxes extends PanelElement {
       if (opening !== this.#opening) return world.destroy();
       this.#world = world;
       void world.failed.then((code) => this.#fail(code, world));
-      this.message("");
+      this.write("message", "");
       this.#due();
     } catch (error) {
       if (opening === this.#opening) this.#fail(codeOf(error, "DEVICE"));
@@ -141,7 +141,7 @@ export class GpuBoxes extends PanelElement {
   #fail(code: GpuErrorCode, world?: World): void {
     if (world !== this.#world) return;
     this.#close();
-    this.message(SENTENCES[code] ?? "The GPU stopped with an error. It may manage fewer boxes.");
+    this.write("message", SENTENCES[code] ?? "The GPU stopped with an error. It may manage fewer boxes.");
     this.named("message").classList.add("load-failure");
     if (code === "NO_WEBGPU") return;
     const retry = Object.assign(document.createElement("button"), { type: "button", textContent: "Try again" });
@@ -177,8 +177,8 @@ export class GpuBoxes extends PanelElement {
 
   async #check(): Promise<void> {
     const world = this.#world;
-    if (!world) return this.say("There are no boxes yet.");
-    this.say("Checking ...");
+    if (!world) return this.write("status", "There are no boxes yet.");
+    this.write("status", "Checking ...");
     const worker = new Worker(new URL("./check.ts", import.meta.url), { type: "module" });
     try {
       const found = await world.copy();
@@ -187,9 +187,9 @@ export class GpuBoxes extends PanelElement {
         worker.addEventListener("error", reject);
       });
       worker.postMessage(found);
-      this.say(await answer);
+      this.write("status", await answer);
     } catch {
-      this.say("The check did not finish. Try again.");
+      this.write("status", "The check did not finish. Try again.");
     } finally {
       worker.terminate();
     }

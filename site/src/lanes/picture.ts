@@ -1,5 +1,7 @@
 // What `<fast-sweep>` shows of one step: the boxes, the arrays of their column in memory, and the lanes of a vector.
 
+import type { Box } from "../box.ts";
+import { rect } from "../svg.ts";
 import { columnsOf, LINE, type Step, stepsOf } from "./sweep-steps.ts";
 
 export const WIDTHS = [1, 4, 8, 16] as const;
@@ -12,8 +14,7 @@ export interface Shown {
   readonly html: (step: number) => string;
 }
 
-const rect = (x: number, y: number, width: number, height: number, kind: string): string =>
-  `<rect x="${x.toFixed(1)}" y="${y.toFixed(1)}" width="${width.toFixed(1)}" height="${height.toFixed(1)}" class="${kind}"/>`;
+const cell = (left: number, top: number, width: number, height: number, kind: string): string => rect({ left, top, right: left + width, bottom: top + height }, kind);
 
 /** The sweep of the largest column of a recorded search, with vectors of this many lanes. */
 export function sweepOf(record: string, width: number): Shown {
@@ -22,35 +23,36 @@ export function sweepOf(record: string, width: number): Shown {
   const all = columns.flat();
   const steps = stepsOf(column, width);
   const [left, right] = [Math.min(...all.map((box) => box.left)), Math.max(...all.map((box) => box.right))];
-  const [top, bottom] = [Math.min(...all.map((box) => box.min)), Math.max(...all.map((box) => box.max))];
+  const [top, bottom] = [Math.min(...all.map((box) => box.top)), Math.max(...all.map((box) => box.bottom))];
   const height = 300;
   const x = (at: number): number => ((at - left) * WIDE) / (right - left);
   const y = (at: number): number => ((at - top) * height) / (bottom - top);
+  const shape = (box: Box, kind: string): string => rect({ left: x(box.left), top: y(box.top), right: x(box.right), bottom: y(box.bottom) }, kind);
   const tests = stepsOf(column, 1).length;
 
   const scene = ({ probe, from, lanes, hits }: Step): string => {
-    const others = all.filter((box) => !column.some(({ id }) => id === box.id)).map((box) => rect(x(box.left), y(box.min), x(box.right) - x(box.left), y(box.max) - y(box.min), "other"));
+    const others = all.filter((box) => !column.some(({ id }) => id === box.id)).map((box) => shape(box, "other"));
     const boxes = column.map((box, at) => {
       const kind = at === probe ? "probe" : hits.includes(at) ? "hit" : at >= from && at < from + lanes.length ? "lane" : "box";
-      return rect(x(box.left), y(box.min), x(box.right) - x(box.left), y(box.max) - y(box.min), kind);
+      return shape(box, kind);
     });
     return `<svg viewBox="-2 -2 ${WIDE + 4} ${height + 4}" role="img" aria-label="A column of ${column.length} boxes; box number ${probe + 1} is compared with ${lanes.length === 1 ? "the one" : `the ${lanes.length}`} at ${from + 1}.">${others.join("")}${boxes.join("")}${boxes[probe]}</svg>`;
   };
 
-  const cell = WIDE / (Math.ceil((column.length + 16) / LINE) * LINE + 4);
+  const pitch = WIDE / (Math.ceil((column.length + 16) / LINE) * LINE + 4);
   const memory = ({ probe, from, lanes }: Step): string => {
-    const rows = (["left", "min", "max"] as const).map((name, row) => {
+    const rows = ["left", "top", "bottom"].map((name, row) => {
       const begin = 78;
-      const place = (at: number): number => begin + (at * (WIDE - begin)) / (WIDE / cell) + (Math.floor(at / LINE) * (WIDE - begin)) / WIDE * 3;
-      const size = ((WIDE - begin) * cell) / WIDE;
+      const place = (at: number): number => begin + (at * (WIDE - begin)) / (WIDE / pitch) + (Math.floor(at / LINE) * (WIDE - begin)) / WIDE * 3;
+      const size = ((WIDE - begin) * pitch) / WIDE;
       const loaded = Math.floor((from + lanes.length - 1) / LINE);
       const cells = Array.from({ length: column.length }, (_, at) => {
         const inVector = at >= from && at < from + lanes.length;
         const line = Math.floor(at / LINE);
         const kind = at === probe ? "probe" : inVector ? "lane" : line <= loaded ? "loaded" : "cell";
-        return rect(place(at), 6 + 26 * row, size * 0.86, 18, kind);
+        return cell(place(at), 6 + 26 * row, size * 0.86, 18, kind);
       });
-      return `<text x="0" y="${20 + 26 * row}">${{ left: "left", min: "top", max: "bottom" }[name]}</text>${cells.join("")}`;
+      return `<text x="0" y="${20 + 26 * row}">${name}</text>${cells.join("")}`;
     });
     return `<svg viewBox="0 0 ${WIDE} 86" role="img" aria-label="Three arrays in memory, in cache lines of ${LINE} numbers. A vector of ${lanes.length} from position ${from + 1} is loaded from each.">${rows.join("")}</svg>`;
   };
@@ -65,7 +67,7 @@ export function sweepOf(record: string, width: number): Shown {
     const size = Math.min(30, (WIDE - LABELS) / lanes.length);
     const rows = says.map(([name, holds], row) => {
       const top = 4 + 30 * row + (row === 3 ? 6 : 0);
-      return `<text x="0" y="${top + 18}">${name}</text>${lanes.map((lane, at) => rect(LABELS + size * at, top, size - 3, 24, holds(lane) ? "yes" : "no")).join("")}`;
+      return `<text x="0" y="${top + 18}">${name}</text>${lanes.map((lane, at) => cell(LABELS + size * at, top, size - 3, 24, holds(lane) ? "yes" : "no")).join("")}`;
     });
     const found = hits.length === 0 ? "none overlaps" : hits.length === 1 ? `number ${hits[0]! + 1} overlaps` : `numbers ${hits.map((at) => at + 1).join(" and ")} overlap`;
     return `<svg viewBox="0 0 ${WIDE} 134" role="img" aria-label="The comparisons of the lanes from number ${from + 1} on: ${found}.">${rows.join("")}</svg>`;

@@ -1,23 +1,17 @@
 // The sweep of a column as the kernels of the library do it, step by step: each step loads one vector of each array. The columns
 // are those of a real search, recorded by core/src/pairs/columns_record.rs.
 
-export interface Entry {
-  readonly left: number;
-  readonly right: number;
-  readonly min: number;
-  readonly max: number;
-  readonly id: number;
-}
+import type { Box } from "../box.ts";
 
-type Column = readonly Entry[];
+type Column = readonly Box[];
 
 /** The columns of the record. */
 export function columnsOf(record: string): readonly Column[] {
-  const columns: Entry[][] = [];
+  const columns: Box[][] = [];
   for (const line of record.trim().split("\n")) {
-    const [left = 0, right = 0, min = 0, max = 0, id = 0] = line.split(" ").map(Number);
+    const [left = 0, right = 0, top = 0, bottom = 0, id = 0] = line.split(" ").map(Number);
     if (line.startsWith("column")) columns.push([]);
-    else if (!line.startsWith("pair")) columns.at(-1)!.push({ left, right, min, max, id });
+    else if (!line.startsWith("pair")) columns.at(-1)!.push({ left, right, top, bottom, id });
   }
   return columns;
 }
@@ -44,7 +38,7 @@ export function stepsOf(column: Column, width: number): Step[] {
     for (let from = probe + 1; ; from += width) {
       const lanes = Array.from({ length: width }, (_, lane) => {
         const b = column[from + lane];
-        return { begun: b !== undefined && b.left <= a.right, above: b !== undefined && b.min <= a.max, below: b !== undefined && a.min <= b.max };
+        return { begun: b !== undefined && b.left <= a.right, above: b !== undefined && b.top <= a.bottom, below: b !== undefined && a.top <= b.bottom };
       });
       const hits = lanes.flatMap(({ begun, above, below }, lane) => (begun && above && below ? [from + lane] : []));
       steps.push({ probe, from, lanes, hits });

@@ -130,14 +130,6 @@ export abstract class PanelElement extends HTMLElement {
     if (place.textContent !== text) place.textContent = text;
   }
 
-  protected say(text: string): void {
-    this.write("status", text);
-  }
-
-  protected message(text: string): void {
-    this.named("message").textContent = text;
-  }
-
   protected named<E extends HTMLElement = HTMLElement>(name: string): E {
     return this.find<E>(`[data-part="${name}"]`);
   }

@@ -117,7 +117,7 @@ export class BoxPlayground extends PanelElement {
     }, this.signal);
     this.#balls = new BallsPicture(this.named("orbit"), this.signal, () => this.requestShow(), (error) => {
       this.#noPicture = `There is no picture: ${messageOf(error)}.`;
-      this.message(this.#noPicture);
+      this.write("message", this.#noPicture);
     });
     this.onResize(["picture", "orbit", "lines"], () => {
       this.#balls.resize();
@@ -156,9 +156,7 @@ export class BoxPlayground extends PanelElement {
     const falling = { name: FALLING, description: "Balls fall into a box and bounce off each other; the algorithms search their boxes.", dimensions: [2, 3] } as const;
     const lists = { ...given, scenes: [falling, ...given.scenes] };
     this.#lists = lists;
-    this.#bindChoice("dimensions");
-    this.#bindChoice("scene");
-    this.#bindChoice("motion");
+    for (const key of ["dimensions", "scene", "motion"] as const) this.#bindChoice(key);
     this.#lanes = new Lanes(this.named("lanes"), lists, (lanes) => {
       this.#keepLanes(lanes);
       this.#change("step", "0");
@@ -198,7 +196,7 @@ export class BoxPlayground extends PanelElement {
       this.#fill();
     } catch (error) {
       this.#state.own = "";
-      this.named("imported").textContent = `The boxes of the address were left out. ${messageOf(error)}`;
+      this.write("imported", `The boxes of the address were left out. ${messageOf(error)}`);
     }
   }
 
@@ -355,14 +353,13 @@ export class BoxPlayground extends PanelElement {
     const file = this.named<HTMLInputElement>("file");
     const pasted = this.named<HTMLTextAreaElement>("pasted");
     const take = (text: string): void => {
-      const output = this.named("imported");
       try {
         const imported = readBoxes(text);
         this.#hands.replace(() => imported);
         this.#view = undefined;
-        output.textContent = `${formatCount(imported.boxes.length / (2 * imported.dimensions))} boxes imported.`;
+        this.write("imported", `${formatCount(imported.boxes.length / (2 * imported.dimensions))} boxes imported.`);
       } catch (error) {
-        output.textContent = messageOf(error);
+        this.write("imported", messageOf(error));
       }
     };
     const takeFile = (given: File | undefined): void => void given?.text().then(take);
@@ -491,10 +488,8 @@ export class BoxPlayground extends PanelElement {
   #begin(steps = 0): void {
     this.#view = undefined;
     // Nothing of the boxes before stays, however long the first step takes.
-    this.message("Working …");
-    this.named("moment").textContent = "Working …";
-    this.named("alarm").textContent = "";
-    this.named("verdict").textContent = "";
+    for (const part of ["message", "moment"]) this.write(part, "Working …");
+    for (const part of ["alarm", "verdict"]) this.write(part, "");
     this.#lanes.show(undefined, []);
     const picture = this.named<HTMLCanvasElement>("picture");
     picture.getContext("2d")?.clearRect(0, 0, picture.width, picture.height);
@@ -502,7 +497,7 @@ export class BoxPlayground extends PanelElement {
     const { scenes = [], motions = [] } = this.#lists ?? {};
     const about = [scenes.find(({ name }) => name === this.#state.scene), motions.find(({ name }) => name === this.#state.motion)];
     const brute = `Brute force would test ${formatCount(bruteForceTests(this.#world().boxes))} pairs in each step.`;
-    this.named("about").textContent = [...about.flatMap((item) => item?.description ?? []), ...(this.#isFalling ? [brute] : [])].join(" ");
+    this.write("about", [...about.flatMap((item) => item?.description ?? []), ...(this.#isFalling ? [brute] : [])].join(" "));
     this.#restart({ steps });
   }
 
@@ -527,8 +522,8 @@ export class BoxPlayground extends PanelElement {
         this.#setUp(message.lists);
         break;
       case "refused":
-        this.message(message.reason);
-        this.named("moment").textContent = "Not begun";
+        this.write("message", message.reason);
+        this.write("moment", "Not begun");
         this.dataset["step"] = "refused";
         this.requestShow();
         break;
@@ -547,7 +542,7 @@ export class BoxPlayground extends PanelElement {
   }
 
   #fail(why: string): void {
-    if (this.#lists) this.say(`That did not work: ${why}`);
+    if (this.#lists) this.write("status", `That did not work: ${why}`);
     else showLoadFailure(this.named("message"), why);
   }
 
@@ -558,7 +553,7 @@ export class BoxPlayground extends PanelElement {
     const { disagreed } = this.#record;
     if (disagreed) {
       const lanes = disagreed.lanes.map((at) => `algorithm ${at + 1}`).join(" and ");
-      this.named("alarm").textContent = `In step ${formatCount(disagreed.step)}, ${lanes} found other pairs than the first one. One of them is wrong.`;
+      this.write("alarm", `In step ${formatCount(disagreed.step)}, ${lanes} found other pairs than the first one. One of them is wrong.`);
     }
     if (frame.lanes.some((lane, at) => "out" in lane && wereOut?.[at] === false)) this.#describe();
   }
@@ -623,10 +618,10 @@ export class BoxPlayground extends PanelElement {
     const { step, lanes } = frame;
     const names = this.#lanes.all.map(({ algorithm }) => algorithm);
     this.dataset["step"] = String(step);
-    this.named("moment").textContent = `Step ${formatCount(step)}${frame.balls && step > 0 ? `, moved in ${frame.balls.ms.toFixed(1)} ms` : ""}`;
-    this.message(frame.balls ? this.#noPicture : "");
+    this.write("moment", `Step ${formatCount(step)}${frame.balls && step > 0 ? `, moved in ${frame.balls.ms.toFixed(1)} ms` : ""}`);
+    this.write("message", frame.balls ? this.#noPicture : "");
     this.#lanes.show(lanes, names.map((_, at) => this.#record.level(at, MEASURES[0])));
-    this.named("verdict").textContent = names.length > 1 ? verdict(frame, this.#record, names) : "";
+    this.write("verdict", names.length > 1 ? verdict(frame, this.#record, names) : "");
     for (const part of ["boxes", "size", "spread"]) this.named<HTMLInputElement>(part).disabled = this.#own !== undefined;
   }
 
@@ -644,6 +639,6 @@ export class BoxPlayground extends PanelElement {
     const where = `${what}, by ${names.join(", ")}.`;
     const lane = this.#frame?.lanes.find((lane) => "report" in lane);
     const found = lane && "report" in lane ? ` ${formatCount(lane.report.pairs)} pairs.` : "";
-    this.say(this.wanted ? where : `Paused after step ${formatCount(this.#frame?.step ?? 0)}: ${where}${found}`);
+    this.write("status", this.wanted ? where : `Paused after step ${formatCount(this.#frame?.step ?? 0)}: ${where}${found}`);
   }
 }

@@ -1,6 +1,7 @@
 // Boxes that are drawn, dragged, added and deleted by hand: by pointer, by keys and by buttons.
 
 import type { Window2 } from "../experiment/box-picture.ts";
+import { arrowOf } from "../panel/arrows.ts";
 import { bindView, type Grip, type Point } from "./view.ts";
 
 /** Rows of min corner and max corner, and how long a row is. */
@@ -115,13 +116,8 @@ export class Hands {
     const { clientWidth, clientHeight } = this.playground.surface;
     const boxes = shown.boxes.length / (2 * shown.dimensions);
     const [stepX, stepY] = [(KEY_STEP * clientWidth) / view.scale, (KEY_STEP * clientHeight) / view.scale];
-    const arrows: Readonly<Record<string, Point>> = {
-      ArrowLeft: { x: -stepX, y: 0 },
-      ArrowRight: { x: stepX, y: 0 },
-      ArrowUp: { x: 0, y: stepY },
-      ArrowDown: { x: 0, y: -stepY },
-    };
-    const arrow = arrows[event.key];
+    const [right, down] = arrowOf(event) ?? [];
+    const arrow = right !== undefined && down !== undefined ? { x: right * stepX, y: -down * stepY } : undefined;
     const box = this.#selected;
     if (event.key === "z" && (event.ctrlKey || event.metaKey)) this.#undo();
     else if (event.ctrlKey || event.metaKey || event.altKey) return;

@@ -1,6 +1,7 @@
 // Moving about in a picture, or what is in it: by pointer, wheel and keys.
 
 import type { Window2 } from "../experiment/box-picture.ts";
+import { arrowOf } from "../panel/arrows.ts";
 
 /** A place in the world. */
 export interface Point {
@@ -100,17 +101,12 @@ export function bindView(
     { passive: false },
   );
   surface.addEventListener("keydown", (event) => {
-    const { clientWidth: width, clientHeight: height } = surface;
-    switch (event.key) {
-      case "ArrowLeft": move(KEY_STEP * width, 0); break;
-      case "ArrowRight": move(-KEY_STEP * width, 0); break;
-      case "ArrowUp": move(0, KEY_STEP * height); break;
-      case "ArrowDown": move(0, -KEY_STEP * height); break;
-      case "+": case "=": zoom(KEY_ZOOM); break;
-      case "-": zoom(1 / KEY_ZOOM); break;
-      case "0": changed(undefined); break;
-      default: return;
-    }
+    const arrow = arrowOf(event);
+    if (arrow) move(-KEY_STEP * surface.clientWidth * arrow[0], -KEY_STEP * surface.clientHeight * arrow[1]);
+    else if (event.key === "+" || event.key === "=") zoom(KEY_ZOOM);
+    else if (event.key === "-") zoom(1 / KEY_ZOOM);
+    else if (event.key === "0") changed(undefined);
+    else return;
     event.preventDefault();
   });
 }

@@ -16,13 +16,12 @@ export const offline: Plugin = {
     order: "post",
     handler(_, bundle) {
       const hash = createHash("sha256");
-      const sizeOf = (output: Rolldown.OutputChunk | Rolldown.OutputAsset): number => (output.type === "chunk" ? output.code : output.source).length;
       const files = Object.values(bundle).map((output) => output.fileName);
-      for (const output of Object.values(bundle)) hash.update(output.fileName).update(output.type === "chunk" ? output.code : output.source);
+      for (const output of Object.values(bundle)) hash.update(output.fileName).update(contentOf(output));
       // Beside what is built, the single files that are copied as they are; folders of documentation are not stored.
       const copied = readdirSync(publicFiles, { withFileTypes: true }).filter((entry) => entry.isFile());
       for (const { name } of copied) hash.update(readFileSync(new URL(name, publicFiles)));
-      const article = neededBy("index.html", bundle).filter((name) => sizeOf(bundle[name]!) <= LARGE);
+      const article = neededBy("index.html", bundle).filter((name) => contentOf(bundle[name]!).length <= LARGE);
       const source = readFileSync(new URL("./service-worker.js", import.meta.url), "utf8")
         .replace("__NAME__", `pages-${hash.digest("hex").slice(0, 16)}`)
         .replace("__FILES__", JSON.stringify([...files, ...copied.map(({ name }) => name)].sort()))
@@ -32,6 +31,8 @@ export const offline: Plugin = {
   },
 };
 
+const contentOf = (output: Rolldown.OutputChunk | Rolldown.OutputAsset): string | Uint8Array => (output.type === "chunk" ? output.code : output.source);
+
 /** What the scripts and styles of a page load, and what those load; workers and WebAssembly by their names in the code. */
 function neededBy(page: string, bundle: Rolldown.OutputBundle): string[] {
   const found = new Set<string>();
@@ -39,7 +40,8 @@ function neededBy(page: string, bundle: Rolldown.OutputBundle): string[] {
     const output = bundle[name];
     if (!output || found.has(name)) return;
     found.add(name);
-    const text = typeof (output.type === "chunk" ? output.code : output.source) === "string" ? String(output.type === "chunk" ? output.code : output.source) : "";
+    const content = contentOf(output);
+    const text = typeof content === "string" ? content : "";
     for (const other of Object.keys(bundle)) if (!other.endsWith(".html") && text.includes(other.replace(/^assets\//, ""))) visit(other);
   };
   visit(page);

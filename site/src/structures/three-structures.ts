@@ -2,6 +2,7 @@
 
 import { startAlgorithms } from "../classroom/start.ts";
 import { showLoadFailure } from "../load-failed.ts";
+import { arrowOf } from "../panel/arrows.ts";
 import { countPairs, inside, panels, structures } from "./panels.ts";
 import { type Box, moved, type Pair, WIDTH, world, type WorldName } from "./structures.ts";
 
@@ -99,12 +100,11 @@ export class ThreeStructures extends HTMLElement {
 
   #press(event: KeyboardEvent): void {
     const by = event.shiftKey ? FAR_ARROW : ARROW;
-    const arrows: Record<string, [number, number]> = { ArrowLeft: [-by, 0], ArrowRight: [by, 0], ArrowUp: [0, -by], ArrowDown: [0, by] };
-    const arrow = arrows[event.key];
+    const arrow = arrowOf(event);
     const count = this.#boxes.length;
     if (arrow) {
       const { left, top, right, bottom } = this.#boxes[this.#chosen]!;
-      this.place(this.#chosen, (left + right) / 2 + arrow[0], (top + bottom) / 2 + arrow[1]);
+      this.place(this.#chosen, (left + right) / 2 + by * arrow[0], (top + bottom) / 2 + by * arrow[1]);
     } else if (event.key.toLowerCase() === "b") {
       this.#chosen = (this.#chosen + (event.shiftKey ? count - 1 : 1)) % count;
       this.#show();

@@ -18,6 +18,7 @@ import {
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { arrowOf } from "../panel/arrows.ts";
 import { pixelRatio } from "../plot/line-plot.ts";
 import type { Theme } from "./theme.ts";
 import { type Picture, shownHeight, type View, type World } from "./view.ts";
@@ -138,15 +139,11 @@ export class SphereView implements View {
   #turnByKey(event: KeyboardEvent): void {
     const { target } = this.#controls;
     const eye = new Spherical().setFromVector3(this.#camera.position.clone().sub(target));
-    switch (event.key) {
-      case "ArrowLeft": eye.theta -= 0.1; break;
-      case "ArrowRight": eye.theta += 0.1; break;
-      case "ArrowUp": eye.phi -= 0.1; break;
-      case "ArrowDown": eye.phi += 0.1; break;
-      case "+": case "=": eye.radius *= 0.9; break;
-      case "-": eye.radius /= 0.9; break;
-      default: return;
-    }
+    const arrow = arrowOf(event);
+    if (arrow) [eye.theta, eye.phi] = [eye.theta + 0.1 * arrow[0], eye.phi + 0.1 * arrow[1]];
+    else if (event.key === "+" || event.key === "=") eye.radius *= 0.9;
+    else if (event.key === "-") eye.radius /= 0.9;
+    else return;
     event.preventDefault();
     eye.phi = Math.min(Math.max(eye.phi, 0.05), 0.5 * Math.PI);
     this.#camera.position.setFromSpherical(eye).add(target);
