@@ -150,28 +150,35 @@ test("says so where there is no WebGL, and still counts", async ({ page }) => {
   await expect(root.locator("[data-counter=pairs] dd").first()).not.toHaveText("–");
 });
 
-test("what is drawn by hand is offered where there are boxes, not among falling balls, which say so", async ({ page }) => {
+test("the tools say what they do among falling balls: to draw makes their boxes the visitor's own, and a file takes their place", async ({ page }) => {
   await page.goto(`${SCENE}&dimensions=2&boxes=50`);
   const root = page.locator("box-playground");
   await expect(root).toHaveAttribute("data-step", /^\d+$/);
   const tools = root.getByRole("group", { name: "Change the boxes" });
-  const says = tools.getByText("To draw, drag or add boxes by hand, choose another scene.");
+  const says = tools.getByText("make their boxes yours: they no longer fall");
   await expect(says).toBeVisible();
-  for (const name of ["Draw", "Add a box", "Delete", "Undo", "Clear"]) await expect(tools.getByRole("button", { name, exact: true })).toBeHidden();
-  await expect(tools.getByRole("button", { name: "Import a file" })).toBeEnabled();
-  // A file that is dropped on the balls takes their place.
+  await expect(tools.getByText("Drag a box to move it")).toBeHidden();
+  await tools.getByRole("button", { name: "Draw" }).click();
+  await expect(root.getByLabel("Scene")).toHaveValue("");
+  await expect(says).toBeHidden();
+  // A box is drawn among those of the balls.
+  const surface = root.locator("[data-part=surface]");
+  await expect(surface).toBeVisible();
+  await surface.scrollIntoViewIfNeeded();
+  const { x, y, width, height } = (await surface.boundingBox())!;
+  await page.mouse.move(x + 0.4 * width, y + 0.2 * height);
+  await page.mouse.down();
+  await page.mouse.move(x + 0.6 * width, y + 0.3 * height, { steps: 3 });
+  await page.mouse.up();
+  await expect(tools).toContainText("Box 50:");
+  await root.getByLabel("Scene").selectOption("falling balls");
+  await expect(says).toBeVisible();
   await root.getByRole("img", { name: "Discs falling into a box" }).evaluate((picture) => {
     const dataTransfer = new DataTransfer();
     dataTransfer.items.add(new File(["0,0,2,2\n1,1,3,3\n"], "boxes.csv", { type: "text/csv" }));
     picture.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true }));
   });
   await expect(tools).toContainText("2 boxes imported.");
-  await expect(tools.getByRole("button", { name: "Draw" })).toBeEnabled();
-  await root.getByLabel("Scene").selectOption("falling balls");
-  await expect(tools.getByRole("button", { name: "Draw" })).toBeHidden();
-  await root.getByLabel("Scene").selectOption("clustered");
-  await expect(tools.getByRole("button", { name: "Draw" })).toBeEnabled();
-  await expect(says).toBeHidden();
 });
 
 test("old addresses of falling balls lead to the same scene", async ({ page }) => {

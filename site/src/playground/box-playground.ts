@@ -142,6 +142,8 @@ export class BoxPlayground extends PanelElement {
         this.requestShow();
       },
     });
+    // Among balls there is nothing to draw on: their boxes are the visitor's own from then on.
+    this.onClick("draw", () => this.#isFalling && this.#hands.replace((shown) => shown));
     this.#bindImport();
   }
 
@@ -234,7 +236,7 @@ export class BoxPlayground extends PanelElement {
 
   /** A picture of balls cannot be moved, nor balls by hand; lines are drawn between discs. */
   #offerByScene(): void {
-    for (const part of ["fit", "hands", "hands-hint"]) this.named(part).hidden = this.#isFalling;
+    for (const part of ["fit", "hands-hint"]) this.named(part).hidden = this.#isFalling;
     this.named("balls-hint").hidden = !this.#isFalling;
     this.named("links").hidden = !this.#isFalling || this.#state.dimensions === "3";
   }

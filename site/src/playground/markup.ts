@@ -56,20 +56,18 @@ function markup(isCompact: boolean, isFalling: boolean): string {
         <a class="button" href="${SPHERES}">10,000 spheres in 3D</a>
       </div>
       <div class="panel-tools row" role="group" aria-label="Change the boxes">
-        <div class="row" data-part="hands">
-          <button type="button" data-part="draw" aria-pressed="false" disabled>Draw</button>
-          <button type="button" data-part="add" disabled>Add a box</button>
-          <button type="button" data-part="delete" disabled>Delete</button>
-          <button type="button" data-part="undo" disabled>Undo</button>
-          <button type="button" data-part="clear" disabled>Clear</button>
-        </div>
+        <button type="button" data-part="draw" aria-pressed="false" disabled>Draw</button>
+        <button type="button" data-part="add" disabled>Add a box</button>
+        <button type="button" data-part="delete" disabled>Delete</button>
+        <button type="button" data-part="undo" disabled>Undo</button>
+        <button type="button" data-part="clear" disabled>Clear</button>
         <button type="button" data-part="import" disabled>Import a file</button>
         <input type="file" data-part="file" accept=".csv,.json,.txt,text/csv,application/json,text/plain" aria-label="A file with boxes" hidden />
         <p data-part="selected" role="status"></p>
         <p data-part="imported" role="status"></p>
         <p class="hint">
           <span data-part="hands-hint">Boxes of <span class="is-overlap">this color</span> overlap another. Drag a box to move it, or choose <em>Draw</em> and drag where there is none.</span>
-          <span data-part="balls-hint" hidden>Balls fall by themselves. To draw, drag or add boxes by hand, choose another scene.</span>
+          <span data-part="balls-hint" hidden>Balls fall by themselves. <em>Draw</em> and <em>Add a box</em> make their boxes yours: they no longer fall, and you can drag them.</span>
           Files: CSV or JSON, by the button or dropped on the picture.
         </p>
         <details>
