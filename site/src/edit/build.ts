@@ -3,6 +3,7 @@
 import { fileURLToPath } from "node:url";
 import { build, type Plugin, type Rolldown } from "vite";
 import { readListing } from "../code/listing.ts";
+import { helpers } from "./helpers.ts";
 import { withLines } from "./lines.ts";
 
 const LISTING = "virtual:listing/";
@@ -12,7 +13,7 @@ const WORKER = "virtual:sandbox-worker";
 function listingModule(name: string): string {
   const { code } = readListing(name);
   const exported = [...code.matchAll(/^export function (\w+)/gm)].map(([, name]) => name);
-  const used = ["key", "endpointsOf", "refresh", "quicksort", "overlaps", "precedes", "sweep"].filter((name) => !exported.includes(name));
+  const used = Object.keys(helpers).filter((name) => !exported.includes(name));
   return `export const compile = ({ $line, ${used.join(", ")} }) => {\n${withLines(code).replaceAll("export ", "")}\nreturn { ${exported.join(", ")} };\n};`;
 }
 

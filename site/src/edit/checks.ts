@@ -4,14 +4,12 @@ import { compile as swapDriven } from "virtual:listing/swap-driven";
 import { findPairs as byCenter } from "./by-center.js";
 import type { Box } from "../box.ts";
 import type { Compile, Endpoint, Exports } from "./harness.ts";
-import { endpointsOf, precedes, refresh } from "../listings/endpoints.js";
+import { helpers } from "./helpers.ts";
 import { insertionSort } from "../listings/insertion-sort.js";
-import { key } from "../listings/key.js";
-import { overlaps } from "../listings/overlaps.js";
-import { quicksort } from "../listings/quicksort.js";
-import { sweep } from "../listings/sweep.js";
 import { randomFrom } from "../random.ts";
 import { SWAP_WORLDS } from "./swap-worlds.ts";
+
+const { key, overlaps, precedes } = helpers;
 
 export interface Verdict {
   readonly isSolved: boolean;
@@ -112,7 +110,7 @@ function repair(exports: Exports): Verdict {
 /** A key under which the swap-driven sweep never forgets a pair. */
 function breakKey(exports: Exports): Verdict {
   const mine = functionOf<typeof key>(exports, "key");
-  const { begin, update } = swapDriven({ $line: () => undefined, key: mine, endpointsOf, refresh, quicksort, overlaps, precedes, sweep }) as unknown as {
+  const { begin, update } = swapDriven({ ...helpers, $line: () => undefined, key: mine }) as unknown as {
     begin(boxes: Box[]): unknown;
     update(state: unknown): Pair[];
   };
@@ -190,5 +188,5 @@ const CHECKS: Readonly<Record<string, (exports: Exports) => Verdict>> = { miss, 
 
 /** Whether the code solves a task. Throws what the code throws. */
 export function check(task: string, compile: Compile): Verdict {
-  return CHECKS[task]!(compile({ $line: () => undefined, key, endpointsOf, refresh, quicksort, overlaps, precedes, sweep }));
+  return CHECKS[task]!(compile({ ...helpers, $line: () => undefined }));
 }

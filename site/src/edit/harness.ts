@@ -3,11 +3,9 @@
 
 import type { DemoProgram, ProgramEvent } from "sweep-and-prune-classroom/demo";
 import type { Box } from "../box.ts";
-import { endpointsOf, precedes, refresh } from "../listings/endpoints.js";
-import { key } from "../listings/key.js";
-import { overlaps } from "../listings/overlaps.js";
-import { quicksort } from "../listings/quicksort.js";
-import { sweep } from "../listings/sweep.js";
+import { helpers } from "./helpers.ts";
+
+const { endpointsOf, overlaps, precedes, quicksort, sweep } = helpers;
 
 export interface Endpoint {
   readonly box: Box;
@@ -176,11 +174,8 @@ export type Compile = (helpers: Readonly<Record<string, unknown>>) => Exports;
 export function programOf(name: string, compile: Compile): DemoProgram {
   let recorder = new Recorder();
   const listing = compile({
+    ...helpers,
     $line: (line: number) => (recorder.line = line),
-    key,
-    endpointsOf,
-    refresh,
-    quicksort,
     overlaps: (a: Box, b: Box): boolean => {
       recorder.test(a, b);
       return overlaps(a, b);
