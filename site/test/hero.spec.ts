@@ -35,6 +35,26 @@ function count(rows: number[]): { pairs: number; onX: number } {
   return { pairs, onX };
 }
 
+test("sections out of sight are laid out when the first picture works, and at once where the address leads into them", async ({ page }) => {
+  let answer = (): void => undefined;
+  const held = new Promise<void>((resolve) => (answer = resolve));
+  await page.route("**/algorithms-*.wasm", async (route) => {
+    await held;
+    await route.continue();
+  });
+  const isLaidOut = (): Promise<boolean> => page.locator("#cost > p").first().evaluate((text) => text.checkVisibility());
+  await page.goto("/#cost", { waitUntil: "domcontentloaded" });
+  expect(await isLaidOut()).toBe(true);
+  await expect(page.locator("#cost h2")).toBeInViewport();
+  await page.goto("about:blank");
+  await page.goto("/", { waitUntil: "domcontentloaded" });
+  expect(await isLaidOut()).toBe(false);
+  await expect(page.locator("#naive h2")).toBeVisible();
+  answer();
+  await expect(page.locator("hero-boxes")).toHaveAttribute("data-ready", "");
+  await expect.poll(isLaidOut).toBe(true);
+});
+
 test("400 boxes move; every pair is 79,800 tests, the sweep as many as overlap on x, and both find the same pairs", async ({ page }) => {
   const heard = complaints(page);
   const { hero, tests, rows } = await open(page);
