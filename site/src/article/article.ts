@@ -8,6 +8,8 @@ import { markTogether } from "./marks.ts";
 import { startSpaceTime } from "./space-time.ts";
 import { TransitivityCode } from "./transitivity.ts";
 
+const whenIdle = window.requestIdleCallback ?? setTimeout;
+
 export function startArticle(): void {
   customElements.define("transitivity-code", TransitivityCode);
   for (const listing of document.querySelectorAll<HTMLElement>(".listing")) copyable(listing);
@@ -15,7 +17,7 @@ export function startArticle(): void {
   for (const figure of document.querySelectorAll<HTMLElement>("space-time")) startSpaceTime(figure);
   followDemos();
   // Not while the page loads: nothing is pointed at yet.
-  (window.requestIdleCallback ?? setTimeout)(markTogether);
+  whenIdle(markTogether);
   for (const choices of document.querySelectorAll<HTMLElement>(".choices[data-for]")) applyChoices(choices);
   markContents();
   const begin = (): void => layOut([...document.querySelectorAll(".sections > section")]);
@@ -23,10 +25,10 @@ export function startArticle(): void {
   addEventListener("scroll", begin, { once: true });
 }
 
-/** Lays out the sections that article.css leaves out at first, one a frame: all at once takes a phone half a second. */
+/** Lays out the sections that article.css leaves out at first, one when nothing else is to be done: all at once takes a phone half a second. */
 function layOut([next, ...others]: readonly Element[]): void {
   next?.classList.add("laid-out");
-  if (others.length > 0) requestAnimationFrame(() => layOut(others));
+  if (others.length > 0) whenIdle(() => requestAnimationFrame(() => layOut(others)));
 }
 
 /** A listing can be changed, and its demo runs it. The editor is loaded when the first one is. */
