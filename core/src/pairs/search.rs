@@ -133,14 +133,14 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
 
     /// Finds the pairs as [`pairs`](Self::pairs) does, or gives up as soon as it has found more than so
     /// many, but for a buffer on each thread; then there are none.
-    pub(crate) fn pairs_up_to(self, most: usize) -> Result<Option<&'f [[u32; 2]]>, Error> {
+    pub(crate) fn pairs_up_to(self, most: usize) -> Result<Option<&'f mut [[u32; 2]]>, Error> {
         let Self { buffers, sets, .. } = self;
         buffers.store.most = most;
         let result = store(buffers, sets.as_slice(), None, LEAVES_OUT_IN_UPDATES);
         buffers.store.most = usize::MAX;
         match result {
             Err(Error::Cancelled) => Ok(None),
-            result => result.map(|()| Some(buffers.store.pairs())),
+            result => result.map(|()| Some(buffers.store.pairs_mut())),
         }
     }
 

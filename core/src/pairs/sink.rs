@@ -86,6 +86,11 @@ impl Store {
         &self.buffer[..self.len]
     }
 
+    /// The pairs, to be named otherwise in place.
+    pub fn pairs_mut(&mut self) -> &mut [[u32; 2]] {
+        &mut self.buffer[..self.len]
+    }
+
     /// How many pairs fit the memory that it has.
     pub fn capacity(&self) -> usize {
         self.buffer.capacity()

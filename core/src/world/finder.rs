@@ -60,8 +60,8 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         let takes_part = |flags: u16| (flags & any != 0) & (flags & none == 0);
         if bodies.rules.are_alike(when) && flags.iter().all(|&flags| takes_part(flags)) {
             let pairs = found(self.finder.search(table).pairs_up_to(most))?;
-            self.found = pairs.map_or(0, <[_]>::len);
-            return Ok(pairs);
+            self.found = pairs.as_ref().map_or(0, |pairs| pairs.len());
+            return Ok(pairs.map(|pairs| &*pairs));
         }
         let all = (0..flags.len() as u32).filter(|&index| takes_part(flags[index as usize]));
         self.sets.all.clear();
@@ -93,8 +93,14 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
         most: usize,
     ) -> Result<Option<&[[u32; 2]]>, OutOfMemory> {
         let Self { finder, sets, boxes, pairs, .. } = self;
-        sets.divide(&bodies.slots, &bodies.rules, when);
         boxes.clear();
+        if bodies.rules.are_alike(when) {
+            boxes.extend(sets.all.iter().map(|&index| table[index as usize]));
+            let all = found(finder.search(boxes).pairs_up_to(most))?;
+            self.found = all.as_ref().map_or(0, |pairs| pairs.len());
+            return Ok(all.map(|pairs| sets.name(pairs)));
+        }
+        sets.divide(&bodies.slots, &bodies.rules, when);
         boxes.extend(sets.bodies.iter().map(|&index| table[index as usize]));
         pairs.clear();
         self.found = 0;

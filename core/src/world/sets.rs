@@ -49,9 +49,6 @@ impl Sets {
     /// Divides the bodies that take part by the filters that they have.
     #[inline(never)]
     pub fn divide(&mut self, slots: &Slots, rules: &Rules, when: When) {
-        if rules.are_alike(when) {
-            return self.put_all_in_one();
-        }
         let mut buckets = [u8::MAX; BUCKETS];
         self.kinds.clear();
         self.kind_of.clear();
@@ -70,14 +67,14 @@ impl Sets {
         }
     }
 
-    /// One set of all bodies that take part, any of which may pair with any.
-    fn put_all_in_one(&mut self) {
-        core::mem::swap(&mut self.bodies, &mut self.all);
-        self.ends = [self.bodies.len(); SETS];
-        (self.members, self.allowed) = ([1, 0, 0, 0], [1, 0, 0, 0]);
-        self.kinds.clear();
-        let count = self.bodies.len();
-        self.kinds.push(Kind { filter: Filter::ALL, count, set: 0, allowed: 1 });
+    /// Replaces positions in the list of all that take part by bodies, the smaller index first.
+    #[inline(never)]
+    pub fn name<'p>(&self, pairs: &'p mut [[u32; 2]]) -> &'p [[u32; 2]] {
+        for pair in &mut *pairs {
+            let [a, b] = pair.map(|at| self.all[at as usize]);
+            *pair = [a.min(b), a.max(b)];
+        }
+        pairs
     }
 
     /// The position of a filter among the kinds. `buckets` has it by hash.
@@ -221,16 +218,6 @@ mod tests {
                 })
                 .collect();
             check(&filters);
-        }
-    }
-
-    #[test]
-    fn bodies_of_one_filter_are_one_set_whose_pairs_are_not_filtered() {
-        for filter in [Filter::default(), Filter::default().category(2).mask(3)] {
-            let filters = [filter; 100];
-            check(&filters);
-            let (sets, _) = divided(&filters);
-            assert_eq!(sets.meetings().collect::<Vec<_>>(), [([0..100, 0..100], true)]);
         }
     }
 
