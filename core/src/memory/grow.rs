@@ -53,12 +53,12 @@ pub fn reserve_for<V>(table: &mut Vec<V>, count: usize) -> Result<(), OutOfMemor
     Ok(())
 }
 
-/// Reserves capacity for `more` items, on large pages where they are many: random access to many
+/// Reserves capacity for `more` items, and an eighth of all more, on large pages where they are many: random access to many
 /// small pages costs a walk of the page tables each time.
 #[inline(never)]
 pub fn reserve<V>(table: &mut Vec<V>, more: usize) {
     if table.capacity() - table.len() < more {
-        table.reserve(more);
+        table.reserve_exact(more + (table.len() + more) / 8);
         enlarge_pages(table);
     }
 }
