@@ -128,8 +128,8 @@ impl Policy {
         self.grounded == 0 && changed * FLIGHT <= bodies
     }
 
-    /// Whether so many of the bodies would fly that finding all pairs takes less time. Then none flies for some updates. Bodies that
-    /// fly seldom move here, or only some may fly from the beginning.
+    /// Whether so many bodies would fly that finding all pairs takes less time: mostly bodies that moved once and land a few at a
+    /// time. Then none flies for some updates.
     pub fn too_many_fly(&mut self, flights: usize, bodies: usize) -> bool {
         let most = bodies / if bodies > CACHED { FLIGHT_ONE_IN } else { FLIGHT };
         let are_too_many = flights > most;
