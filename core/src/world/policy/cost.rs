@@ -164,6 +164,11 @@ impl Policy {
         skips
     }
 
+    /// Whether tracking is to be skipped.
+    pub fn is_skipping(&self) -> bool {
+        self.skipped > 0
+    }
+
     /// Whether new fat AABBs must not be larger than their bodies.
     pub fn is_tight(&self) -> bool {
         self.tight > 0

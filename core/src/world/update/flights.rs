@@ -46,7 +46,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
                 slow += usize::from(*flags & flag::FLYING == 0);
             }
         }
-        let may_land_all = slow == escaped.len();
+        // Where tracking is skipped, since too many of them left their fat AABBs, slow ones fly as well, and it need not be.
+        let may_land_all = slow == escaped.len() && !policy.is_skipping();
         let most = policy.most_look_ups(bodies.edits.changed().len(), bodies.slots.live);
         let spared = (escaped.len() - moving).min(most / 2);
         let looked_up = slow + bodies.edits.leaving().len();

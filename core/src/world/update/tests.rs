@@ -292,6 +292,23 @@ fn where_some_fly_slow_bodies_fly_too_and_land_a_few_at_a_time() {
 }
 
 #[test]
+fn slow_bodies_that_move_in_turn_are_soon_tracked() {
+    // Of 11,000 bodies 1,000 move, a quarter of them in each update: more leave their fat AABBs at first than are looked up.
+    let (side, count) = (105, 11_000);
+    let place = |at: usize| [at % side, at / side].map(|at| 1.5 * at as f32);
+    let boxed = |at: usize| Aabb::new(place(at), place(at).map(|at| at + 1.0));
+    let mut world = World::new((0..count).map(boxed).collect());
+    for frame in 0..60 {
+        let turn = if frame % 32 < 16 { 0.1 } else { -0.1 };
+        let moves = |at: usize| at % 11 == 0 && at / 11 % 4 == frame % 4;
+        world.step(|at| if moves(at) { [turn, 0.0] } else { [0.0; 2] });
+        let tracking = &world.world.tracking;
+        assert!(frame < 30 || tracking.tree.is_fresh(), "{frame}");
+        assert!(frame < 30 || !tracking.candidates.is_sorted(), "{frame}");
+    }
+}
+
+#[test]
 fn a_level_that_is_loaded_is_at_rest_in_the_next_update() {
     let statics = 6_000;
     let boxes: Vec<_> = (0..statics).map(|at| somewhere(at, 50.0, [1.0; 3])).collect();
