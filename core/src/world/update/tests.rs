@@ -300,7 +300,7 @@ fn slow_bodies_that_move_in_turn_are_soon_tracked() {
     let mut world = World::new((0..count).map(boxed).collect());
     for frame in 0..60 {
         let turn = if frame % 32 < 16 { 0.1 } else { -0.1 };
-        let moves = |at: usize| at % 11 == 0 && at / 11 % 4 == frame % 4;
+        let moves = |at: usize| at % 44 == 11 * (frame % 4);
         world.step(|at| if moves(at) { [turn, 0.0] } else { [0.0; 2] });
         let tracking = &world.world.tracking;
         assert!(frame < 30 || tracking.tree.is_fresh(), "{frame}");
