@@ -128,8 +128,8 @@ impl Policy {
         self.grounded == 0 && changed * FLIGHT <= bodies
     }
 
-    /// Whether so many bodies would fly that finding all pairs takes less time: mostly bodies that moved once and land a few at a
-    /// time. Then none flies for some updates.
+    /// Whether more bodies would fly than pays, since finding all pairs takes less time: mostly bodies that moved once and land a few
+    /// at a time. Then none flies for some updates.
     pub fn too_many_fly(&mut self, flights: usize, bodies: usize) -> bool {
         let most = bodies / if bodies > CACHED { FLIGHT_ONE_IN } else { FLIGHT };
         let are_too_many = flights > most;
