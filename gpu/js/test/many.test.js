@@ -27,11 +27,13 @@ async function startPage() {
   // @ts-ignore: what the server of the tests has
   const { openDevice, PairFinder } = await import("/index.js");
   const device = await openDevice();
+  // As GPUBufferUsage has it, whose types are not here.
+  const STORAGE_AND_COPY_DST = 0x88;
   const finders = new Map();
   /** How many numbers the pairs of the boxes that the server has consist of, and their hash. @param {2 | 3} dimensions */
   const hashOfPairs = async (dimensions) => {
     const bytes = await (await fetch("/boxes")).arrayBuffer();
-    const boxes = device.createBuffer({ size: bytes.byteLength, usage: GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_DST });
+    const boxes = device.createBuffer({ size: bytes.byteLength, usage: STORAGE_AND_COPY_DST });
     device.queue.writeBuffer(boxes, 0, bytes);
     if (!finders.has(dimensions)) finders.set(dimensions, await PairFinder.create(device, { dimensions, sorted: true }));
     const finder = finders.get(dimensions);
