@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { findPairs, init } from "sweep-and-prune";
+import { sorted } from "../../../js/test/support/boxes.js";
 import { compileScenes, fnv1a } from "../../../js/test/support/scenes.js";
 import { openPage } from "./support/gpu-page.js";
 
@@ -107,12 +108,7 @@ const search = (task) => opened.page.evaluate((task) => /** @type {any} */ (glob
 const bitsOf = (boxes) => Array.from(new Uint32Array(boxes.buffer, boxes.byteOffset, boxes.length));
 
 /** @param {ArrayLike<number>} flat */
-const sortedPairs = (flat) => {
-  /** @type {[number, number][]} */
-  const pairs = [];
-  for (let i = 0; i < flat.length; i += 2) pairs.push([flat[i] ?? 0, flat[i + 1] ?? 0]);
-  return pairs.sort(([a, b], [c, d]) => a - c || b - d).flat();
-};
+const sortedPairs = (flat) => sorted(Uint32Array.from(flat)).flat();
 
 /** Random whole numbers below a limit, the same in each run (a linear congruential generator). */
 let state = 1;

@@ -45,7 +45,11 @@ export const articleTags: Tags = {
   "sap-demo": ({ legend: names, ...attributes }, text) => `<sap-demo${text.replace(/ legend="[^"]*"/, "")}>${poster(attributes)}</sap-demo>${names ? legend(names) : ""}`,
   "code-listing": ({ name = "", follows }) => listing(name, follows),
   "color-key": ({ shows = "" }) => legend(shows),
-  "drawn-figure": ({ name = "" }) => figures[name as keyof typeof figures](),
+  "drawn-figure": ({ name = "" }) => {
+    const draw = figures[name];
+    if (!draw) throw new Error(`there is no figure "${name}"`);
+    return draw();
+  },
   "space-time": () => `<space-time>${spaceTime()}</space-time>`,
   "fast-sweep": () => `<fast-sweep>${fastSweep(readFileSync(COLUMNS, "utf8"))}</fast-sweep>`,
   "complexity-table": complexityTables,

@@ -5,7 +5,7 @@ import { columns } from "./columns.ts";
 import { endpointArray, sweepLine } from "./endpoints.ts";
 import { allPairs, measured } from "./growth.ts";
 
-export const figures = {
+export const figures: Readonly<Record<string, () => string>> = {
   "all-pairs": allPairs,
   "box-test": boxTest,
   transitivity,
