@@ -248,6 +248,25 @@ test("the article has at most 5,200 words, and on a phone at most 45,000 pixels"
   expect(await page.evaluate(() => document.documentElement.scrollHeight)).toBeLessThanOrEqual(45_000);
 });
 
+for (const place of ["#d2", "#wrong-start-demo", "library-trial"]) {
+  test(`${place} is scrolled to before the article is laid out, and stays where it is`, async ({ page }) => {
+    // Nothing is ever idle, and five seconds never pass: only the scrolling lays the sections out.
+    await page.addInitScript(() => {
+      window.requestIdleCallback = () => 0;
+      const { setTimeout } = window;
+      window.setTimeout = ((call: () => void, after?: number) => (after === 5000 ? 0 : setTimeout(call, after))) as typeof setTimeout;
+    });
+    await page.goto("/");
+    const left = page.locator(".from-the-top .sections > section:not(.laid-out)");
+    expect(await left.count()).toBeGreaterThan(0);
+    // Not every browser keeps by itself what is in view.
+    await page.evaluate(() => document.documentElement.style.setProperty("overflow-anchor", "none"));
+    await page.locator(place).scrollIntoViewIfNeeded();
+    await expect(left).toHaveCount(0);
+    await expect(page.locator(place)).toBeInViewport();
+  });
+}
+
 test.describe("listings", () => {
   test("a line lights while the demo does what it says, until that is switched off", async ({ page }) => {
     await page.goto("/");

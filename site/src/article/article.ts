@@ -20,15 +20,23 @@ export function startArticle(): void {
   whenIdle(markTogether);
   for (const choices of document.querySelectorAll<HTMLElement>(".choices[data-for]")) applyChoices(choices);
   markContents();
-  const begin = (): void => layOut([...document.querySelectorAll(".sections > section")]);
-  document.querySelector("hero-boxes")!.addEventListener("settled", begin, { once: true });
-  addEventListener("scroll", begin, { once: true });
+  const sections = [...document.querySelectorAll(".sections > section")];
+  document.querySelector("hero-boxes")!.addEventListener("settled", () => layOutWhenIdle(sections), { once: true });
+  addEventListener("scroll", () => layOutAtOnce(sections), { once: true });
 }
 
 /** Lays out the sections that article.css leaves out at first, one when nothing else is to be done: all at once takes a phone half a second. */
-function layOut([next, ...others]: readonly Element[]): void {
+function layOutWhenIdle([next, ...others]: readonly Element[]): void {
   next?.classList.add("laid-out");
-  if (others.length > 0) whenIdle(() => requestAnimationFrame(() => layOut(others)));
+  if (others.length > 0) whenIdle(() => requestAnimationFrame(() => layOutWhenIdle(others)));
+}
+
+/** Lays them all out, and what was scrolled to stays where it is: it lies in the last section that begins in view. */
+function layOutAtOnce(sections: readonly Element[]): void {
+  const inView = sections.findLast((section) => section.getBoundingClientRect().top < innerHeight);
+  const top = inView?.getBoundingClientRect().top;
+  for (const section of sections) section.classList.add("laid-out");
+  if (inView && top !== undefined) scrollTo({ top: inView.getBoundingClientRect().top + scrollY - top, behavior: "instant" });
 }
 
 /** A listing can be changed, and its demo runs it. The editor is loaded when the first one is. */
