@@ -93,6 +93,12 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         false
     }
 
+    /// Whether a build has begun that is not done.
+    #[cfg(test)]
+    pub fn is_being_built(&self) -> bool {
+        self.building.is_some()
+    }
+
     /// Forgets a build that has begun.
     pub fn forget_build(&mut self) {
         self.building = None;

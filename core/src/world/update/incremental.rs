@@ -175,12 +175,14 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     fn give_up(&mut self, bodies: &mut Bodies<D, T>, events: &mut Events, flights: usize) {
         events.begun.clear();
         events.ended.clear();
-        let Self { sleep, scratch: Scratch { woken, .. }, tree, policy, .. } = self;
+        let Self { sleep, scratch: Scratch { woken, .. }, tree, is_tree_due, policy, .. } = self;
         sleep.count += woken.len();
         sleep.woke -= woken.len();
         woken.iter().for_each(|&index| bodies.slots.raise(index, flag::ASLEEP));
         // It holds some of the fat AABBs that were not made.
         tree.abandon();
+        // What now follows takes long enough.
+        *is_tree_due = false;
         policy.note_excess(flights);
     }
 
