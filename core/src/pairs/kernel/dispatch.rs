@@ -170,38 +170,51 @@ macro_rules! sweeps {
         ) -> usize {
             match instructions {
                 $($(#[$cfg])* Instructions::$instructions => {
-                    /// # Safety
-                    /// The instructions are present; the rest is as [`Kernel::sweep`] asserts.
-                    $(#[target_feature(enable = $feature)])?
-                    #[inline(never)] // One function for all sweeps takes a kilobyte more in WebAssembly.
-                    unsafe fn compiled<const TWO: bool, const K: usize>(
-                        first: &SortedBoxes<$scalar>,
-                        second: &SortedBoxes<$scalar>,
-                        pair_order: PairOrder,
-                        cursor: &mut Cursor,
-                        out: &mut [[u32; 2]],
-                    ) -> usize {
-                        // SAFETY: the caller has the instructions, and sets and a cursor that fit each other.
-                        unsafe {
-                            scan::sweep::<_, $vector, TWO, K>(first, second, pair_order, cursor, out)
-                        }
+                    compiled! {
+                        $scalar, $vector, [$(#[target_feature(enable = $feature)])?],
+                        within_0: false, 0; within_1: false, 1; within_2: false, 2; within_3: false, 3;
+                        between_0: true, 0; between_1: true, 1; between_2: true, 2; between_3: true, 3;
                     }
                     // So a build for boxes of one number of dimensions has the loops of two numbers of axes.
                     let run = match (all_axes, D, second.is_some()) {
-                        (false, 1, false) => compiled::<false, 0>,
-                        (false, 1, true) => compiled::<true, 0>,
-                        (false, 2, false) => compiled::<false, 1>,
-                        (false, 2, true) => compiled::<true, 1>,
-                        (false, _, false) => compiled::<false, 2>,
-                        (false, _, true) => compiled::<true, 2>,
-                        (true, _, false) => compiled::<false, D>,
-                        (true, _, true) => compiled::<true, D>,
+                        (false, 1, false) => within_0,
+                        (false, 1, true) => between_0,
+                        (false, 2, false) | (true, 1, false) => within_1,
+                        (false, 2, true) | (true, 1, true) => between_1,
+                        (false, _, false) | (true, 2, false) => within_2,
+                        (false, _, true) | (true, 2, true) => between_2,
+                        (true, _, false) => within_3,
+                        (true, _, true) => between_3,
                     };
                     // SAFETY: a `Kernel` exists only where its instructions do, and its method, the
                     // only caller, has checked the boxes, the cursor and the output.
                     unsafe { run(first, second.unwrap_or(first), pair_order, cursor, out) }
                 })*
             }
+        }
+    };
+}
+
+/// A function for each number of sets and of axes. None has parameters of its own: it would be compiled with the crate that uses it,
+/// which may be optimized for size. (The file of the finder in WebAssembly is, and searches took up to twice as long.)
+macro_rules! compiled {
+    ($scalar:ty, $vector:ty, $features:tt, $($name:ident: $two:literal, $k:literal;)*) => {
+        $(compiled!(@$name, $scalar, $vector, $features, $two, $k);)*
+    };
+    (@$name:ident, $scalar:ty, $vector:ty, [$($feature:tt)*], $two:literal, $k:literal) => {
+        /// # Safety
+        /// The instructions are present; the rest is as [`Kernel::sweep`] asserts.
+        $($feature)*
+        #[inline(never)] // One function for all sweeps takes a kilobyte more in WebAssembly.
+        unsafe fn $name(
+            first: &SortedBoxes<$scalar>,
+            second: &SortedBoxes<$scalar>,
+            pair_order: PairOrder,
+            cursor: &mut Cursor,
+            out: &mut [[u32; 2]],
+        ) -> usize {
+            // SAFETY: the caller has the instructions, and sets and a cursor that fit each other.
+            unsafe { scan::sweep::<_, $vector, $two, $k>(first, second, pair_order, cursor, out) }
         }
     };
 }
