@@ -43,6 +43,7 @@ const CACHED: usize = 1 << 14;
 /// of 77,000 bodies in the plane, an update takes 0.7 of the time. In smaller worlds it would take up to 2.7 times as long.)
 const FOUND_ONE_IN: usize = 24;
 /// In such a world at most one of this many bodies flies: the finder looks more of them up in twice the time of finding all pairs.
+/// So fewer may where others are looked up.
 const FLIGHT_ONE_IN: usize = 16;
 /// How many times the cost of building a tree for a body a search costs more in a tree whose leaves are
 /// twice too large. Measured with 1, 100 and 10,000 regions asked for in each frame of drift, fast and
@@ -129,10 +130,13 @@ impl Policy {
     }
 
     /// Whether more bodies would fly than pays, since finding all pairs takes less time: mostly bodies that moved once and land a few
-    /// at a time. Then none flies for some updates.
-    pub fn too_many_fly(&mut self, flights: usize, bodies: usize) -> bool {
-        let most = bodies / if bodies > CACHED { FLIGHT_ONE_IN } else { FLIGHT };
-        let are_too_many = flights > most;
+    /// at a time. Then none flies for some updates. In a large world the `moves` that are looked up take about as long.
+    pub fn too_many_fly(&mut self, flights: usize, moves: usize, bodies: usize) -> bool {
+        let are_too_many = if bodies > CACHED {
+            flights * FLIGHT_ONE_IN + moves * (LOOK_UP / 2) > bodies
+        } else {
+            flights * FLIGHT > bodies
+        } && flights > 0;
         if are_too_many {
             self.note_excess(flights);
         }

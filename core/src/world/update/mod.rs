@@ -95,7 +95,7 @@ fn find_events<const D: usize, T: Scalar>(
         let flights = tracking.choose_flying(bodies, has_tree);
         let escaped = tracking.scratch.escaped.len() - flights;
         let moves = escaped + bodies.edits.leaving().len();
-        let too_many_fly = tracking.policy.too_many_fly(flights, live);
+        let too_many_fly = tracking.policy.too_many_fly(flights, moves, live);
         let rebuilds = too_many_fly || tracking.policy.rebuild_pays(moves, changed, live);
         if rebuilds && flights == 0 {
             tracking.policy.note_no_flights();

@@ -117,11 +117,25 @@ fn where_too_many_would_fly_none_does_for_some_updates() {
         let most = bodies / if bodies > CACHED { FLIGHT_ONE_IN } else { FLIGHT };
         for (flights, are_too_many) in [(0, false), (most, false), (most + 1, true)] {
             let mut policy = Policy::default();
-            assert_eq!(policy.too_many_fly(flights, bodies), are_too_many, "{flights} of {bodies}");
+            assert_eq!(
+                policy.too_many_fly(flights, 0, bodies),
+                are_too_many,
+                "{flights} of {bodies}"
+            );
             assert_eq!(policy.may_fly(1, bodies), !are_too_many);
             let grounded = (0..2 * GROUNDED).filter(|_| !policy.may_fly(1, bodies)).count();
             assert_eq!(grounded, if are_too_many { GROUNDED - 2 } else { 0 });
         }
+    }
+}
+
+#[test]
+fn in_a_large_world_fewer_may_fly_where_others_are_looked_up() {
+    for (bodies, are_too_many) in [(1 << 12, false), (1 << 16, true)] {
+        let (flights, moves) = (bodies / 32, bodies / 64);
+        assert!(!Policy::default().too_many_fly(flights, moves, bodies));
+        assert!(!Policy::default().too_many_fly(0, 2 * moves + 1, bodies));
+        assert_eq!(Policy::default().too_many_fly(flights, moves + 1, bodies), are_too_many);
     }
 }
 
