@@ -34,9 +34,12 @@ function layOutWhenIdle([next, ...others]: readonly Element[]): void {
 /** Lays them all out, and what was scrolled to stays where it is: it lies in the last section that begins in view. */
 function layOutAtOnce(sections: readonly Element[]): void {
   const inView = sections.findLast((section) => section.getBoundingClientRect().top < innerHeight);
-  const top = inView?.getBoundingClientRect().top;
+  const top = (): number => inView?.getBoundingClientRect().top ?? 0;
+  const before = top();
   for (const section of sections) section.classList.add("laid-out");
-  if (inView && top !== undefined) scrollTo({ top: inView.getBoundingClientRect().top + scrollY - top, behavior: "instant" });
+  const moved = top() - before;
+  // Where all were laid out already nothing moves, and a smooth scroll is not cut short.
+  if (moved !== 0) scrollBy({ top: moved, behavior: "instant" });
 }
 
 /** A listing can be changed, and its demo runs it. The editor is loaded when the first one is. */
