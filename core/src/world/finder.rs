@@ -43,7 +43,8 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
 
     /// The pairs of overlapping boxes of a table, as indices, of bodies that have one of the flags of
     /// `any` and none of `none`, that were allowed to pair at that moment. The boxes are valid. Within sets of bodies whose
-    /// filters forbid all of them to pair nothing is searched. `None` if more than `most` are found, before filters.
+    /// filters forbid all of them to pair nothing is searched. `None` if more than `most` are found, before filters. That is
+    /// seen when a buffer is full, so there may be more than `most`, by one buffer.
     ///
     /// # Errors
     /// [`OutOfMemory`].

@@ -176,15 +176,15 @@ macro_rules! sweeps {
                         between_0: true, 0; between_1: true, 1; between_2: true, 2; between_3: true, 3;
                     }
                     // So a build for boxes of one number of dimensions has the loops of two numbers of axes.
-                    let run = match (all_axes, D, second.is_some()) {
-                        (false, 1, false) => within_0,
-                        (false, 1, true) => between_0,
-                        (false, 2, false) | (true, 1, false) => within_1,
-                        (false, 2, true) | (true, 1, true) => between_1,
-                        (false, _, false) | (true, 2, false) => within_2,
-                        (false, _, true) | (true, 2, true) => between_2,
-                        (true, _, false) => within_3,
-                        (true, _, true) => between_3,
+                    let run = match (if all_axes { D } else { D - 1 }, second.is_some()) {
+                        (0, false) => within_0,
+                        (0, true) => between_0,
+                        (1, false) => within_1,
+                        (1, true) => between_1,
+                        (2, false) => within_2,
+                        (2, true) => between_2,
+                        (_, false) => within_3,
+                        (_, true) => between_3,
                     };
                     // SAFETY: a `Kernel` exists only where its instructions do, and its method, the
                     // only caller, has checked the boxes, the cursor and the output.

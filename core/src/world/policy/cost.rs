@@ -132,11 +132,9 @@ impl Policy {
     /// Whether more bodies would fly than pays, since finding all pairs takes less time: mostly bodies that moved once and land a few
     /// at a time. Then none flies for some updates. In a large world the `moves` that are looked up take about as long.
     pub fn too_many_fly(&mut self, flights: usize, moves: usize, bodies: usize) -> bool {
-        let are_too_many = if bodies > CACHED {
-            flights * FLIGHT_ONE_IN + moves * (LOOK_UP / 2) > bodies
-        } else {
-            flights * FLIGHT > bodies
-        } && flights > 0;
+        let [flight, look_up] =
+            if bodies > CACHED { [FLIGHT_ONE_IN, LOOK_UP / 2] } else { [FLIGHT, 0] };
+        let are_too_many = flights > 0 && flights * flight + moves * look_up > bodies;
         if are_too_many {
             self.note_excess(flights);
         }

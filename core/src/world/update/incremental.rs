@@ -181,7 +181,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         woken.iter().for_each(|&index| bodies.slots.raise(index, flag::ASLEEP));
         // It holds some of the fat AABBs that were not made.
         tree.abandon();
-        // What now follows takes long enough.
+        // All candidates are found now, which takes long enough without a part of the tree.
         *is_tree_due = false;
         policy.note_excess(flights);
     }
