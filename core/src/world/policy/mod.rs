@@ -8,6 +8,6 @@ mod sleep;
 mod usage;
 
 pub use cost::{LOOK_UP, Policy, TRIES_SAMPLES, refit_pays};
-pub use motion::Motion;
+pub use motion::{Motion, longest_side};
 pub use sleep::Sleep;
 pub use usage::Usage;

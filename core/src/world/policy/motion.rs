@@ -181,7 +181,8 @@ fn displacement<const D: usize, T: Scalar>(before: &Aabb<D, T>, now: &Aabb<D, T>
     sides.map(|(&from, &to)| (to.to_f64() - from.to_f64()).abs()).fold(0.0, f64::max)
 }
 
-fn longest_side<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> f64 {
+/// The length of the longest side.
+pub fn longest_side<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> f64 {
     let sides = aabb.min.iter().zip(&aabb.max);
     sides.map(|(min, max)| max.to_f64() - min.to_f64()).fold(0.0, f64::max)
 }

@@ -9,7 +9,7 @@ use crate::world::candidates::push_wanted;
 use crate::world::changes::Events;
 use crate::world::finder::Finder;
 use crate::world::layout::{self, Reorder};
-use crate::world::policy::{Policy, TRIES_SAMPLES};
+use crate::world::policy::{Policy, TRIES_SAMPLES, longest_side};
 use crate::world::tracking::Tracking;
 use crate::{Aabb, Scalar};
 
@@ -148,7 +148,9 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             if !is_fat {
                 fat.copy_from_slice(&bodies.boxes);
             }
-            let most = if is_fat { policy.most_candidates(bodies.slots.live) } else { usize::MAX };
+            // A sample may be wrong by a quarter: then all that was found is not given up.
+            let most = policy.most_candidates(bodies.slots.live);
+            let most = if is_fat { most + most / 4 } else { usize::MAX };
             if let Some(pairs) = finder.find(fat, bodies, [flag::LIVE, 0], When::Now, most)? {
                 scratch.sorter.reserve_begun(begun, pairs.len(), candidates.len())?;
                 candidates.replace(pairs)?;
@@ -167,7 +169,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
 }
 
 /// Whether fat AABBs seem to have too many candidates, by those of a sample among themselves: where that is so, finding all of
-/// them in vain would take as long as an update. O(sqrt(n)) boxes are searched.
+/// them in vain would take as long as an update. A sample misses a few large boxes, which may have most of the candidates, so
+/// all that are larger than any of it are added. O(sqrt(n)) boxes are searched.
 #[inline(never)]
 fn have_too_many<const D: usize, T: Scalar>(
     fat: &[Aabb<D, T>],
@@ -182,13 +185,27 @@ fn have_too_many<const D: usize, T: Scalar>(
         return Ok(false);
     }
     let flags = &mut bodies.slots.flags;
+    let mut largest = 0.0;
     for index in positions(flags.len(), flags.len() / n) {
-        flags[index] |= (flags[index] & flag::LIVE) * flag::MARKED;
+        if flags[index] & flag::LIVE != 0 {
+            flags[index] |= flag::MARKED;
+            largest = longest_side(&fat[index]).max(largest);
+        }
     }
-    let excess = (most + most / 4) / (n * n);
-    let found = finder.find(fat, bodies, [flag::MARKED, 0], When::Now, excess);
-    // Where boxes are in one column, the finder gives up only when a buffer is full.
-    let is_excess = found.map(|pairs| pairs.is_none_or(|pairs| pairs.len() > excess));
+    let is_large = |index: usize| longest_side(&fat[index]) > largest;
+    for (index, flags) in flags.iter_mut().enumerate() {
+        if *flags & flag::LIVE != 0 && is_large(index) {
+            *flags |= flag::MARKED;
+        }
+    }
+    // Nearly all pairs stand for n, or for n * n.
+    let found = finder.find(fat, bodies, [flag::MARKED, 0], When::Now, most / n);
+    let stands_for = |index: u32| if is_large(index as usize) { 1 } else { n };
+    let is_excess = found.map(|pairs| {
+        pairs.is_none_or(|pairs| {
+            pairs.iter().map(|&[a, b]| stands_for(a) * stands_for(b)).sum::<usize>() > most
+        })
+    });
     bodies.slots.flags.iter_mut().for_each(|flags| *flags &= !flag::MARKED);
     is_excess
 }
@@ -213,6 +230,8 @@ pub fn restore<const D: usize, T: Scalar>(
 
 #[cfg(test)]
 mod tests {
+    use std::mem::replace;
+
     use super::*;
     use crate::{BroadPhase, Filter};
 
@@ -237,6 +256,28 @@ mod tests {
             assert!(tracking.finder.found < few, "{} found", tracking.finder.found);
         }
         assert!(bodies.slots.flags.iter().all(|flags| flags & flag::MARKED == 0));
+    }
+
+    #[test]
+    fn a_sample_does_not_miss_one_large_fat_aabb_with_most_of_the_candidates() {
+        let side = 90;
+        let place = |at: usize| [at % side, at / side].map(|at| 2.0 * at as f32);
+        let boxed = |at: usize| Aabb::new(place(at), place(at).map(|at| at + 1.0));
+        let mut all: Vec<_> = (0..side * side).map(boxed).collect();
+        let mut world = BroadPhase::<2>::new();
+        world.insert_many(&all, Filter::default()).unwrap();
+        world.update();
+        let BroadPhase { bodies, tracking, .. } = &mut world;
+        let Tracking { finder, policy, .. } = tracking;
+        for large in (0..all.len()).step_by(997) {
+            for (reach, expected) in [(0.2, false), (1.0, true)] {
+                let reach = reach * (2 * side) as f32;
+                let before = replace(&mut all[large], Aabb::new([0.0; 2], [reach; 2]));
+                let found = have_too_many(&all, finder, policy, bodies);
+                assert_eq!(found.ok(), Some(expected), "{large} {reach}");
+                all[large] = before;
+            }
+        }
     }
 
     #[test]
