@@ -70,6 +70,10 @@ pub fn incremental<const D: usize, T: Scalar>(
         // What the finder finds is stored, all of it.
         most = most.min(bodies.slots.live);
     }
+    if bodies.rules.allow_all() {
+        // As many as are kept overlap at most: once a crowd has parted, finding all pairs takes less time than in it.
+        tracking.policy.note_candidates(tracking.candidates.len());
+    }
     tracking.policy.note_incremental(escaped - flights, flights);
     tracking.scratch.mark(bodies, true);
     let mut is_right = !wakes || tracking.wake(bodies, &mut events.ended, &mut most, has_tree);

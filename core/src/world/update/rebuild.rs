@@ -152,7 +152,14 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             let most = policy.most_candidates(bodies.slots.live);
             let most = if is_fat { most + most / 4 } else { usize::MAX };
             if let Some(pairs) = finder.find(fat, bodies, [flag::LIVE, 0], When::Now, most)? {
-                scratch.sorter.reserve_begun(begun, pairs.len(), candidates.len())?;
+                let mut most_begun = pairs.len().saturating_sub(candidates.len());
+                // Of fat AABBs far more overlap than of boxes: memory for all of them would not be used.
+                if is_fat && most_begun > begun.capacity() {
+                    let boxes = &bodies.boxes;
+                    let overlap = |[a, b]: [u32; 2]| boxes[a as usize].overlaps(&boxes[b as usize]);
+                    most_begun = pairs.iter().filter(|&&pair| overlap(pair)).count();
+                }
+                scratch.sorter.reserve(begun, most_begun)?;
                 candidates.replace(pairs)?;
                 break;
             }
@@ -278,6 +285,24 @@ mod tests {
                 all[large] = before;
             }
         }
+    }
+
+    #[test]
+    fn no_memory_is_reserved_to_report_candidates_that_do_not_overlap() {
+        // Two by two, bodies that do not touch, but their fat AABBs do.
+        let boxed = |at: usize, more: f32| {
+            let left = (12 * (at / 2)) as f32 + 1.2 * (at % 2) as f32;
+            Aabb::new([left - more], [left + 1.0 + more])
+        };
+        let all: Vec<_> = (0..2_000).map(|at| boxed(at, 0.0)).collect();
+        let mut world = BroadPhase::<1>::new();
+        world.insert_many(&all, Filter::default()).unwrap();
+        world.update();
+        let BroadPhase { bodies, tracking, .. } = &mut world;
+        tracking.fat = (0..2_000).map(|at| boxed(at, 0.2)).collect();
+        let mut begun = Vec::new();
+        assert!(tracking.find_candidates(bodies, true, &mut begun).is_ok_and(|is_fat| is_fat));
+        assert_eq!((tracking.candidates.len(), begun.capacity()), (1_000, 0));
     }
 
     #[test]

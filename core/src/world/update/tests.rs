@@ -335,3 +335,18 @@ fn a_level_that_is_loaded_is_at_rest_in_the_next_update() {
     assert_eq!(world.tracking.sleep.count, 0);
     assert!(!world.tracking.tree.is_fresh());
 }
+
+#[test]
+fn after_a_crowd_has_parted_fewer_bodies_are_looked_up() {
+    // Forty crowds, each at one place, until some bodies in each update go where they are alone.
+    let count = 2_000;
+    let crowded = |at: usize| Aabb::new([(at % 40) as f32; 2], [(at % 40) as f32 + 0.5; 2]);
+    let mut world = World::new((0..count).map(crowded).collect());
+    let most = |world: &World<2>| world.world.tracking.policy.most_look_ups(0, count);
+    assert!(most(&world) > 4 * (count / LOOK_UP));
+    for frame in 0..100 {
+        let goes = |at: usize| at / 20 == frame;
+        world.step(|at| if goes(at) { [100.0 + at as f32, 0.0] } else { [0.0; 2] });
+    }
+    assert_eq!((world.pairs.len(), most(&world)), (0, count / LOOK_UP));
+}
