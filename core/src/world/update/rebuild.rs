@@ -155,9 +155,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
                 let mut most_begun = pairs.len().saturating_sub(candidates.len());
                 // Of fat AABBs far more overlap than of boxes: memory for all of them would not be used.
                 if is_fat && most_begun > begun.capacity() {
-                    let boxes = &bodies.boxes;
-                    let overlap = |[a, b]: [u32; 2]| boxes[a as usize].overlaps(&boxes[b as usize]);
-                    most_begun = pairs.iter().filter(|&&pair| overlap(pair)).count();
+                    most_begun = pairs.iter().filter(|&&pair| bodies.is_live(pair)).count();
                 }
                 scratch.sorter.reserve(begun, most_begun)?;
                 candidates.replace(pairs)?;
