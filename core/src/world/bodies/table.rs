@@ -238,7 +238,8 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
             && self.allows([a, b])
     }
 
-    /// Whether a pair was live at the last update.
+    /// Whether a pair was live at the last update. Compiled once in WebAssembly, where files are to stay small.
+    #[cfg_attr(target_arch = "wasm32", inline(never))]
     pub fn was_live(&self, [a, b]: [u32; 2]) -> bool {
         self.previous[a as usize].overlaps_branch_free(&self.previous[b as usize])
             && self.was_allowed([a, b])
