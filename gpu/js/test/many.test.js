@@ -1,27 +1,15 @@
 // Many boxes on WebGPU in software: the pairs of the core, compared by a hash of all of them in order.
 import assert from "node:assert/strict";
 import { createHash } from "node:crypto";
-import { after, before, test } from "node:test";
+import { after, before, describe, test } from "node:test";
 import { findPairs, init } from "sweep-and-prune";
 import { random, sorted } from "../../../js/test/support/boxes.js";
 import { openPage } from "./support/gpu-page.js";
 
-const COUNT = process.env["TEST_LONG"] ? 1_000_000 : 20_000;
+const COUNT = 1_000_000;
 /** Boxes of many sizes take up to a quarter of an hour in software if they are a million. */
-const COUNT_OF_SIZES = Math.min(COUNT, 200_000);
-
-/** @type {Map<string, Uint8Array>} */
-const files = new Map();
-/** @type {Awaited<ReturnType<typeof openPage>>} */
-let opened;
-
-before(async () => {
-  await init();
-  opened = await openPage({ hasGpu: true, files });
-  await opened.page.evaluate(startPage);
-});
-
-after(() => opened?.close());
+const COUNT_OF_SIZES = 200_000;
+const skip = process.env["TEST_LONG"] ? false : "takes minutes: `./test --long` runs it";
 
 /** In the page: makes the function `hashOfPairs`. Compiling the shaders takes seconds in software, so finders are kept. */
 async function startPage() {
@@ -69,22 +57,37 @@ function randomBoxes(dimensions, count, side) {
 /** How long a side is where about two boxes overlap each. @param {2 | 3} dimensions @param {number} count */
 const usualSide = (dimensions, count) => 0.5 * (2 / count) ** (1 / dimensions);
 
-for (const dimensions of /** @type {const} */ ([2, 3])) {
-  const side = usualSide(dimensions, COUNT);
-  const smallest = usualSide(dimensions, COUNT_OF_SIZES) / 1000;
-  const scenes = {
-    "boxes of one size": randomBoxes(dimensions, COUNT, () => side),
-    "boxes of sizes over four decades": randomBoxes(dimensions, COUNT_OF_SIZES, () => smallest * 10 ** (4 * next())),
-  };
-  for (const [name, boxes] of Object.entries(scenes)) {
-    const count = boxes.length / (2 * dimensions);
-    test(`${count} ${name} in ${dimensions}D have the pairs of findPairs`, async () => {
-      files.set("/boxes", new Uint8Array(boxes.buffer));
-      const [length, hash] = await opened.page.evaluate((dimensions) => /** @type {any} */ (globalThis).hashOfPairs(dimensions), dimensions);
-      const expected = Uint32Array.from(sorted(findPairs(boxes, { dimensions })).flat());
-      assert.ok(expected.length > count / 2);
-      assert.equal(length, expected.length);
-      assert.equal(hash, createHash("sha256").update(expected).digest("hex"));
-    });
+describe("a million boxes", { skip }, () => {
+  /** @type {Map<string, Uint8Array>} */
+  const files = new Map();
+  /** @type {Awaited<ReturnType<typeof openPage>>} */
+  let opened;
+
+  before(async () => {
+    await init();
+    opened = await openPage({ hasGpu: true, files });
+    await opened.page.evaluate(startPage);
+  });
+
+  after(() => opened?.close());
+
+  for (const dimensions of /** @type {const} */ ([2, 3])) {
+    const side = usualSide(dimensions, COUNT);
+    const smallest = usualSide(dimensions, COUNT_OF_SIZES) / 1000;
+    const scenes = {
+      "boxes of one size": randomBoxes(dimensions, COUNT, () => side),
+      "boxes of sizes over four decades": randomBoxes(dimensions, COUNT_OF_SIZES, () => smallest * 10 ** (4 * next())),
+    };
+    for (const [name, boxes] of Object.entries(scenes)) {
+      const count = boxes.length / (2 * dimensions);
+      test(`${count} ${name} in ${dimensions}D have the pairs of findPairs`, async () => {
+        files.set("/boxes", new Uint8Array(boxes.buffer));
+        const [length, hash] = await opened.page.evaluate((dimensions) => /** @type {any} */ (globalThis).hashOfPairs(dimensions), dimensions);
+        const expected = Uint32Array.from(sorted(findPairs(boxes, { dimensions })).flat());
+        assert.ok(expected.length > count / 2);
+        assert.equal(length, expected.length);
+        assert.equal(hash, createHash("sha256").update(expected).digest("hex"));
+      });
+    }
   }
-}
+});
