@@ -10,7 +10,7 @@ use sweep_and_prune_scenes::Random;
 
 /// How many random scenes each test has; `GPU_SCENES` sets another number.
 fn scenes() -> usize {
-    std::env::var("GPU_SCENES").map_or(500, |number| number.parse().expect("a number"))
+    std::env::var("GPU_SCENES").map_or(1000, |number| number.parse().expect("a number"))
 }
 
 /// Scenes that one call searches, each in a world of its own.
