@@ -23,7 +23,7 @@ fn boxes_of<const D: usize>(scene: Scene) -> usize {
     let is_dense =
         matches!(scene, Scene::Coincident | Scene::Nested | Scene::Giants | Scene::Infinite)
             || D == 2 && matches!(scene, Scene::Needles | Scene::Beams);
-    if is_dense { boxes().min(1000) } else { boxes() }
+    if is_dense { (boxes() / 16).min(1000) } else { boxes() }
 }
 
 fn check_scenes<const D: usize>() {

@@ -2,7 +2,7 @@ import { checkBoxes, checkBuffer, type GpuBoxes } from "./boxes.js";
 import { Buffers, mostBytes } from "./buffers.js";
 import { checked, read, TIMES, watch } from "./device.js";
 import { GpuError } from "./errors.js";
-import { compileKernels, type Kernels } from "./kernels.js";
+import { type Kernels, kernelsOf } from "./kernels.js";
 import { scan, scanLevels, sort, tableLength } from "./sort.js";
 import { type StageTime, StageTimer } from "./stages.js";
 import { type Bound, Steps } from "./steps.js";
@@ -88,7 +88,7 @@ export class PairFinder {
   }
 
   /**
-   * Compiles the shaders for a device, which takes a fraction of a second: keep the finder.
+   * Makes a finder. The first of a device compiles the shaders, which takes a fraction of a second; later ones share them.
    *
    * @throws {@link GpuError} if the device is lost or cannot compile the shaders; `RangeError` for an option.
    */
@@ -103,7 +103,7 @@ export class PairFinder {
     }
     watch(device);
     const timer = timed && device.features.has(TIMES) ? new StageTimer(device) : undefined;
-    const kernels = await checked(device, () => ({ compiled: compileKernels(device) }))
+    const kernels = await checked(device, () => ({ compiled: kernelsOf(device) }))
       .then(({ compiled }) => compiled)
       .catch((error) => {
         throw error instanceof GpuError ? error : new GpuError("DEVICE", `the GPU cannot compile the shaders: ${error}`);

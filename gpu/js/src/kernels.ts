@@ -59,12 +59,25 @@ const sources: Record<Kernel, string> = {
 /** All kernels, compiled for one device. */
 export type Kernels = ReadonlyMap<Kernel, GPUComputePipeline>;
 
-/** Compiles all kernels. */
-export async function compileKernels(device: GPUDevice): Promise<Kernels> {
-  const compile = async ([name, source]: [string, string]) => {
+/** The kernels of each device: compiling them takes from a moment to seconds, and all finders of a device share them. */
+const kernels = new WeakMap<GPUDevice, Promise<Kernels>>();
+
+/** The kernels of a device, compiled if no finder has had them compiled before. */
+export function kernelsOf(device: GPUDevice): Promise<Kernels> {
+  const known = kernels.get(device);
+  if (known) return known;
+  const compiled = compile(device);
+  kernels.set(device, compiled);
+  // The next finder tries again.
+  compiled.catch(() => kernels.delete(device));
+  return compiled;
+}
+
+async function compile(device: GPUDevice): Promise<Kernels> {
+  const compileOne = async ([name, source]: [string, string]) => {
     const module = device.createShaderModule({ label: name, code: `${common}\n${source}` });
     const pipeline = await device.createComputePipelineAsync({ label: name, layout: "auto", compute: { module, entryPoint: name } });
     return [name as Kernel, pipeline] as const;
   };
-  return new Map(await Promise.all(Object.entries(sources).map(compile)));
+  return new Map(await Promise.all(Object.entries(sources).map(compileOne)));
 }

@@ -329,6 +329,33 @@ test("a finder that measures says how long each stage took, and finds the same p
   assert.match(results.error?.message ?? "", /timed: true/);
 });
 
+test("finders of a device share the compiled shaders; what failed to compile is compiled again", async () => {
+  const { shaders, ...results } = await opened.page.evaluate(async () => {
+    const { library, errorOf } = /** @type {any} */ (globalThis);
+    const { openDevice, PairFinder } = library;
+    /** @type {GPUDevice} */
+    const device = await openDevice();
+    let compiled = 0;
+    const compile = device.createComputePipelineAsync.bind(device);
+    device.createComputePipelineAsync = async () => {
+      throw new Error("no compiler");
+    };
+    const failed = await errorOf(() => PairFinder.create(device, { dimensions: 2 }));
+    device.createComputePipelineAsync = (descriptor) => {
+      compiled++;
+      return compile(descriptor);
+    };
+    await Promise.all([PairFinder.create(device, { dimensions: 2 }), PairFinder.create(device, { dimensions: 3, sorted: true })]);
+    const first = compiled;
+    await PairFinder.create(device, { dimensions: 3, timed: true });
+    return { failed, shaders: first, later: compiled - first };
+  });
+  assert.equal(results.failed?.code, "DEVICE");
+  assert.match(results.failed?.message ?? "", /cannot compile the shaders: Error: no compiler/);
+  assert.equal(shaders, readFileSync(new URL("../src/kernels.ts", import.meta.url), "utf8").match(/^  \| "\w+"/gm)?.length);
+  assert.equal(results.later, 0);
+});
+
 test("findPairs copies boxes to the GPU and pairs back", async () => {
   const results = await opened.page.evaluate(async () => {
     const { library, errorOf } = /** @type {any} */ (globalThis);

@@ -33,7 +33,7 @@ export interface Copied {
 type Bound = Readonly<Record<number, GPUBuffer>>;
 
 /** How many pairs there is space for at first. */
-const FIRST_CAPACITY = 1024;
+const FIRST_CAPACITY = 256;
 
 /** What buffers and textures may be used for, as WebGPU numbers it. */
 const Usage = { MAP_READ: 1, COPY_SRC: 4, COPY_DST: 8, ATTACHMENT: 0x10, VERTEX: 0x20, UNIFORM: 0x40, STORAGE: 0x80, INDIRECT: 0x100 } as const;
