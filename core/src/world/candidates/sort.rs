@@ -38,19 +38,6 @@ impl PairSorter {
         Ok(())
     }
 
-    /// Reserves memory for the pairs that must begin, given how many were found and how many there were.
-    ///
-    /// # Errors
-    /// [`OutOfMemory`].
-    pub fn reserve_begun(
-        &mut self,
-        begun: &mut Vec<[u32; 2]>,
-        found: usize,
-        known: usize,
-    ) -> Result<(), OutOfMemory> {
-        self.reserve(begun, found.saturating_sub(known))
-    }
-
     /// Sorts pairs of numbers less than `bound`. Copies them, so that each list keeps its own memory: with that of a short one a
     /// long one would have to grow again.
     pub fn sort(&mut self, pairs: &mut Vec<[u32; 2]>, bound: usize) {

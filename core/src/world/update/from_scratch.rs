@@ -40,7 +40,8 @@ pub fn from_scratch<const D: usize, T: Scalar>(
     let pairs = all.unwrap_or_default();
     let before = candidates.sorted();
     sorter.reserve(sorted, pairs.len())?;
-    sorter.reserve_begun(&mut events.begun, pairs.len(), before.len())?;
+    // At least this many begin.
+    sorter.reserve(&mut events.begun, pairs.len().saturating_sub(before.len()))?;
     for &index in bodies.edits.changed() {
         bodies.slots.lower(index, flag::CHANGED | flag::IN_TREE);
     }
