@@ -127,24 +127,21 @@ impl<I: Id> Answer<I> {
     }
 }
 
-/// Answers the queries whose numbers follow each other; what is left over is not read.
+/// Answers the queries whose numbers follow each other; what is left over is not read. `lists` are of the last answer, whose
+/// memory is used again.
 pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
     queries: Queries<'_, D, T>,
     query: Query,
     numbers: &[f64],
+    lists: &mut Lists<ProxyId>,
     answer: &mut Answer<I>,
 ) -> Result<(), Error> {
     answer.clear();
     let rows = Rows { numbers, width: query.width(D) };
-    let mut lists = Lists::new();
     match query {
-        Query::Overlapping => {
-            queries.overlapping_many(&rows.read(aabb::<D, T, f64>), &mut lists)?;
-        }
-        Query::Containing => {
-            queries.containing_many(&rows.read(point::<D, T, f64>), &mut lists)?;
-        }
-        Query::Within => queries.within_many(&rows.read(sphere::<D, T>), &mut lists)?,
+        Query::Overlapping => queries.overlapping_many(&rows.read(aabb::<D, T, f64>), lists)?,
+        Query::Containing => queries.containing_many(&rows.read(point::<D, T, f64>), lists)?,
+        Query::Within => queries.within_many(&rows.read(sphere::<D, T>), lists)?,
         Query::Cast | Query::CastEntering => {
             let casts = casts(&rows, query == Query::CastEntering);
             let mut hits = Vec::new();

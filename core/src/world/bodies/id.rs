@@ -17,13 +17,15 @@ pub struct ProxyId {
 }
 
 /// Up to this many ids are sorted by insertion.
-const FEW: usize = 20;
+const VERY_FEW: usize = 8;
+/// Up to this many are sorted by their ranks, which takes half to a quarter of the time: no branch depends on them.
+const FEW: usize = 64;
 
-/// Sorts ids, as numbers if there are many: each type that the standard library sorts takes a kilobyte of a WebAssembly
-/// file.
+/// Sorts ids of different slots, as numbers if there are many: each type that the standard library sorts takes a kilobyte of a
+/// WebAssembly file.
 #[inline(never)]
 pub fn sort_ids(ids: &mut [ProxyId]) {
-    if ids.len() <= FEW {
+    if ids.len() <= VERY_FEW {
         for end in 1..ids.len() {
             let mut at = end;
             while at > 0 && ids[at] < ids[at - 1] {
@@ -31,6 +33,10 @@ pub fn sort_ids(ids: &mut [ProxyId]) {
                 at -= 1;
             }
         }
+        return;
+    }
+    if ids.len() <= FEW {
+        sort_by_rank(ids);
         return;
     }
     if !cfg!(target_arch = "wasm32") {
@@ -43,6 +49,19 @@ pub fn sort_ids(ids: &mut [ProxyId]) {
     keys.sort_unstable();
     for (id, key) in ids.iter_mut().zip(keys) {
         *id = ProxyId::from_key(key);
+    }
+}
+
+/// Puts each id behind as many others as have a lesser slot. Written so that compilers compare several slots at once.
+fn sort_by_rank(ids: &mut [ProxyId]) {
+    let (mut slots, mut generations) = ([u32::MAX; FEW], [0; FEW]);
+    for ((slot, generation), id) in slots.iter_mut().zip(&mut generations).zip(&*ids) {
+        (*slot, *generation) = (id.slot, id.generation);
+    }
+    let compared = &slots[..ids.len().next_multiple_of(8)];
+    for (&slot, &generation) in slots.iter().zip(&generations).take(ids.len()) {
+        let rank: u32 = compared.iter().map(|&other| u32::from(other < slot)).sum();
+        ids[rank as usize] = ProxyId { slot, generation };
     }
 }
 
@@ -86,5 +105,28 @@ impl ProxyId {
 impl fmt::Display for ProxyId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}v{}", self.slot, self.generation)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_are_sorted_by_slot_however_many_there_are() {
+        let id = |slot: u32| ProxyId { slot, generation: slot % 3 };
+        for count in 0..2 * FEW as u32 {
+            // Up to the last slot that there can be.
+            for offset in [0, u32::MAX - count] {
+                let sorted: Vec<_> = (0..count).map(|slot| id(slot + offset)).collect();
+                let mut ids: Vec<_> =
+                    (0..count).map(|at| sorted[(at * 7 % count) as usize]).collect();
+                if count.is_multiple_of(7) {
+                    ids = sorted.iter().rev().copied().collect();
+                }
+                sort_ids(&mut ids);
+                assert_eq!(ids, sorted, "{count} ids");
+            }
+        }
     }
 }

@@ -128,7 +128,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         lists: &mut Lists<ProxyId>,
     ) -> Result<(), Error> {
         crate::validate(areas)?;
-        self.collect(areas, lists, |area, visit| self.visit_box(area, visit));
+        self.collect(areas, lists, |area, found| self.list_box(area, found));
         Ok(())
     }
 
@@ -184,7 +184,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
     ) -> Result<(), Error> {
         let is_number = |at: T| at <= T::INFINITY && at >= T::NEG_INFINITY;
         check_each(points, |point| fault_in("point", point, is_number))?;
-        self.collect(points, lists, |&at, visit| self.visit_box(&Aabb::new(at, at), visit));
+        self.collect(points, lists, |&at, found| self.list_box(&Aabb::new(at, at), found));
         Ok(())
     }
 
@@ -222,7 +222,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         check_each(spheres, |(center, radius)| {
             fault_in("center", center, is_finite).or(fault_in("radius", &[*radius], is_length))
         })?;
-        self.collect(spheres, lists, |sphere, visit| self.visit_sphere(sphere, visit));
+        self.collect(spheres, lists, |sphere, found| self.list_sphere(sphere, found));
         Ok(())
     }
 
@@ -237,20 +237,17 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         Ok(lists.values)
     }
 
-    /// The bodies in each of many regions, which `search` shows to its visitor.
+    /// The bodies in each of many regions, which `list` appends.
     fn collect<Q>(
         &self,
         regions: &[Q],
         lists: &mut Lists<ProxyId>,
-        search: impl Fn(&Q, &mut dyn FnMut(ProxyId) -> ControlFlow<()>),
+        list: impl Fn(&Q, &mut Vec<ProxyId>),
     ) {
         lists.clear();
         for region in regions {
             let start = lists.values.len();
-            search(region, &mut |id| {
-                lists.values.push(id);
-                ControlFlow::Continue(())
-            });
+            list(region, &mut lists.values);
             if self.is_sorted {
                 sort_ids(&mut lists.values[start..]);
             }
@@ -258,27 +255,39 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         }
     }
 
-    /// Shows the bodies whose boxes overlap a box: all boxes of a node are tested at once, by vectors.
+    /// Appends the bodies whose boxes overlap a box.
+    fn list_box(&self, area: &Aabb<D, T>, found: &mut Vec<ProxyId>) {
+        self.tree.visit_overlapping(area, &mut |index| {
+            if self.is_in_box(index, area) {
+                found.push(self.bodies.slots.id(index));
+            }
+            ControlFlow::Continue(())
+        });
+    }
+
+    /// Shows the bodies whose boxes overlap a box.
     #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     fn visit_box(&self, area: &Aabb<D, T>, visit: &mut dyn FnMut(ProxyId) -> ControlFlow<()>) {
         self.tree.visit_overlapping(area, &mut |index| {
-            if self.bodies.shape(index).overlaps(area) && self.sees(index) {
+            if self.is_in_box(index, area) {
                 visit(self.bodies.slots.id(index))?;
             }
             ControlFlow::Continue(())
         });
     }
 
-    fn visit_sphere(
-        &self,
-        (center, radius): &([T; D], T),
-        visit: &mut dyn FnMut(ProxyId) -> ControlFlow<()>,
-    ) {
+    #[inline]
+    fn is_in_box(&self, index: u32, area: &Aabb<D, T>) -> bool {
+        self.bodies.shape(index).overlaps(area) && self.sees(index)
+    }
+
+    /// Appends the bodies near a point.
+    fn list_sphere(&self, (center, radius): &([T; D], T), found: &mut Vec<ProxyId>) {
         let is_near = |bounds: &Aabb<D, T>| is_within(center, radius.to_f64(), bounds);
         let bound = |bounds: &Aabb<D, T>| is_near(bounds).then_some(0.0);
         self.tree.search(bound, |index| {
             if is_near(self.bodies.shape(index)) && self.sees(index) {
-                visit(self.bodies.slots.id(index))?;
+                found.push(self.bodies.slots.id(index));
             }
             ControlFlow::Continue(())
         });
