@@ -26,7 +26,7 @@ console.log(names(touched), "|", names(touched.filter((id) => isInside(world.box
 const [, , caption] = ids;
 const dragged = [245, 90, 345, 290];
 world.set(caption, ...dragged);
-const near = [...world.overlapping([dragged[0] - 8, dragged[1] - 8, dragged[2] + 8, dragged[3] + 8])];
+const near = world.overlapping([dragged[0] - 8, dragged[1] - 8, dragged[2] + 8, dragged[3] + 8]);
 const edges = near.filter((id) => id !== caption).flatMap((id) => [world.box(id)[0], world.box(id)[2]]);
 const nearest = edges.sort((a, b) => Math.abs(a - dragged[0]) - Math.abs(b - dragged[0]))[0];
 console.log(names(near), nearest); // photo, caption 240

@@ -248,7 +248,7 @@ test("pairs by body are those that `pairsOf` gives for each", () => {
   assert.ok(others.length > 200);
   for (const id of world.ids()) {
     const slot = slotOf(id);
-    assert.deepEqual(others.subarray(starts[slot], starts[slot + 1]), world.pairsOf(id));
+    assert.deepEqual([...others.subarray(starts[slot], starts[slot + 1])], world.pairsOf(id));
   }
   world.free();
 });

@@ -269,9 +269,10 @@ export class BroadPhase<D extends Dimensions = Dimensions, Data = unknown> exten
    *
    * @throws {@link StaleProxyError}.
    */
-  pairsOf(id: ProxyId): Float64Array {
+  pairsOf(id: ProxyId): ProxyId[] {
     checkId(id);
-    return this.memory.answer((exports, world) => exports.world_pairs_of(world, id), { ids: [id] });
+    this.memory.call((exports, world) => exports.world_pairs_of(world, id), { ids: [id] });
+    return this.found();
   }
 
   /**

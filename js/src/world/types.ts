@@ -36,7 +36,7 @@ export interface EventsOptions<D extends Dimensions = Dimensions> {
    */
   prediction?: number;
   /**
-   * Whether arrays of ids are views of WebAssembly's memory, which saves the time of a copy. A view is
+   * Whether each `Float64Array` of ids is a view of WebAssembly's memory, which saves the time of a copy. A view is
    * valid until the next call of anything in this package: that call may overwrite it, or let the memory
    * grow, which leaves the view with length 0. False by default.
    */
