@@ -3,16 +3,13 @@
 use alloc::vec::Vec;
 
 use sweep_and_prune::{
-    BroadPhase, Changes, Error, Filter, Lists, Options, ProxyId, Report, Scalar, validate,
+    BroadPhase, Changes, Error, Filter, Options, ProxyId, Report, Scalar, validate,
 };
 
 use crate::id::Id;
 use crate::kind::Kind;
 use crate::queries::{Answer, Query, ask};
 use crate::rows::{Coordinates, Rows, aabb};
-
-/// Longer lists of bodies found are not kept: a query for so many takes much longer than allocating them.
-const MOST_KEPT: usize = 1000;
 
 /// A broad phase with the rows that it reads. What a method of the same name promises in
 /// [`BroadPhase`] holds here, errors included; after an error nothing has changed.
@@ -145,8 +142,6 @@ pub trait ArrayBroadPhase<I: Id>: AnyBroadPhase<I> {
 pub struct TypedBroadPhase<const D: usize, T: Scalar> {
     world: BroadPhase<D, T>,
     rows: Rows<D, T>,
-    /// What the last query for the bodies in regions found, for its memory.
-    found: Lists<ProxyId>,
 }
 
 impl<const D: usize, T: Scalar> TypedBroadPhase<D, T> {
@@ -162,7 +157,7 @@ impl<const D: usize, T: Scalar> TypedBroadPhase<D, T> {
             }
         };
         let world = BroadPhase::with_options(Options::default().report(report))?;
-        Ok(Self { world, rows: Rows::new(), found: Lists::new() })
+        Ok(Self { world, rows: Rows::new() })
     }
 }
 
@@ -286,12 +281,7 @@ impl<const D: usize, T: Scalar, I: Id> AnyBroadPhase<I> for TypedBroadPhase<D, T
         let queries =
             if excluded.is_empty() { queries } else { queries.with_predicate(&is_wanted) };
         let queries = filter.map_or(queries, |filter| queries.with_filter(filter));
-        let queries = if is_sorted { queries } else { queries.unsorted() };
-        let result = ask(queries, query, numbers, &mut self.found, answer);
-        if self.found.values().len() > MOST_KEPT {
-            self.found = Lists::new();
-        }
-        result
+        ask(if is_sorted { queries } else { queries.unsorted() }, query, numbers, answer)
     }
 
     fn snapshot(&self) -> Vec<u8> {

@@ -98,7 +98,12 @@ pub struct Answer<I> {
     pub faces: Vec<u8>,
     /// Where the bodies of each query end in `ids`, which is where the bodies of the next query begin.
     pub ends: Vec<usize>,
+    /// What the core found in regions, for its memory: single queries in a loop do not allocate.
+    pub found: Lists<ProxyId>,
 }
+
+/// Longer lists are not kept: to find so many takes much longer than to allocate them.
+const MOST_KEPT: usize = 1000;
 
 impl<I: Id> Answer<I> {
     pub(crate) fn clear(&mut self) {
@@ -127,17 +132,16 @@ impl<I: Id> Answer<I> {
     }
 }
 
-/// Answers the queries whose numbers follow each other; what is left over is not read. `lists` are of the last answer, whose
-/// memory is used again.
+/// Answers the queries whose numbers follow each other; what is left over is not read.
 pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
     queries: Queries<'_, D, T>,
     query: Query,
     numbers: &[f64],
-    lists: &mut Lists<ProxyId>,
     answer: &mut Answer<I>,
 ) -> Result<(), Error> {
     answer.clear();
     let rows = Rows { numbers, width: query.width(D) };
+    let lists = &mut answer.found;
     match query {
         Query::Overlapping => queries.overlapping_many(&rows.read(aabb::<D, T, f64>), lists)?,
         Query::Containing => queries.containing_many(&rows.read(point::<D, T, f64>), lists)?,
@@ -175,6 +179,9 @@ pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
     }
     answer.ids.extend(lists.values().iter().map(|&id| I::from_proxy(id)));
     answer.ends.extend_from_slice(lists.ends());
+    if lists.values().len() > MOST_KEPT {
+        *lists = Lists::new();
+    }
     Ok(())
 }
 

@@ -382,7 +382,7 @@ export class PairFinder {
     }
     const chunks: Uint32Array<ArrayBuffer>[] = [];
     this.#search(Chunk.Large, a, b, (at, count) => {
-      chunks.push(copy(new Uint32Array(engine.exports.memory.buffer, at, 2 * count)));
+      chunks.push(copy(new Uint32Array(engine.buffer, at, 2 * count)));
       return true;
     });
     const rest = copy(this.#pairs = this.#rest(this.#pairs));
@@ -392,7 +392,7 @@ export class PairFinder {
   /** A view of the pairs that the core kept at the end of the last search. */
   #rest(last: Uint32Array<ArrayBuffer> | undefined): Uint32Array<ArrayBuffer> {
     const { engine } = this.#owned;
-    return view<Uint32Array<ArrayBuffer>>(Uint32Array, last, engine.exports.memory.buffer, engine.detail(0), 2 * engine.detail(1));
+    return view<Uint32Array<ArrayBuffer>>(Uint32Array, last, engine.buffer, engine.detail(0), 2 * engine.detail(1));
   }
 
   #write(into: PairsInto, a: Boxes, b: Boxes | typeof alone): number {
@@ -401,7 +401,7 @@ export class PairFinder {
     let total = 0;
     const write: Each = (at, count) => {
       const fitting = Math.max(0, Math.min(2 * count, lengthOf(into) - 2 * total));
-      if (fitting > 0) set.call(into, new Uint32Array(engine.exports.memory.buffer, at, fitting), 2 * total);
+      if (fitting > 0) set.call(into, new Uint32Array(engine.buffer, at, fitting), 2 * total);
       total += count;
       return true;
     };
@@ -525,7 +525,7 @@ export class PairFinder {
     checkFits(length * (isDouble ? 8 : 4));
     const at = finder.call((exports, at) => exports.finder_rows(at, set, count)) >>> 0;
     if (at === 0) throw new OutOfMemoryError();
-    const { buffer } = finder.engine.exports.memory;
+    const { buffer } = finder.engine;
     const into = isDouble
       ? view(Float64Array, this.#rows[set], buffer, at, length)
       : view(Float32Array, this.#rows[set], buffer, at, length);

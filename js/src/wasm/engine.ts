@@ -53,7 +53,9 @@ export class Engine<E extends Exports> {
   /** Whether a call threw, so that the stack pointer has yet to be put back; also while a call is under way. */
   isStackLeft = false;
   #statusAt = 0;
+  /** All of memory, as words and as bytes: asking WebAssembly for it takes longer. */
   #words = new Uint32Array(0);
+  #buffer = this.#words.buffer;
   /** How many calls have been made that may overwrite what a view shows; see {@link guard}. */
   calls = 0;
 
@@ -93,8 +95,14 @@ export class Engine<E extends Exports> {
   /** All of memory as words. Call it again after each call of the core, which may let the memory grow. */
   words(): Uint32Array {
     // Growing the memory detaches the view, which leaves it with length 0.
-    if (this.#words.length === 0) this.#words = new Uint32Array(this.exports.memory.buffer);
+    if (this.#words.length === 0) this.#words = new Uint32Array((this.#buffer = this.exports.memory.buffer));
     return this.#words;
+  }
+
+  /** All of memory. Read it again after each call of the core, too. */
+  get buffer(): ArrayBuffer {
+    this.words();
+    return this.#buffer;
   }
 
   /** A word of detail about the last call: which box, which axis, where, how many. */

@@ -4,7 +4,7 @@ import { OutOfMemoryError } from "./errors.js";
 /** The arrays that views of memory are. */
 export type Typed = Float32Array | Float64Array | Uint32Array | Uint8Array;
 
-/** The last view if it still shows this part of memory, which avoids garbage, or a new one. */
+/** The last view of this memory if it still shows this part, which avoids garbage, or a new one. */
 export function view<T extends Typed>(
   Type: new (buffer: ArrayBuffer, at: number, length: number) => T,
   last: Typed | undefined,
@@ -12,8 +12,8 @@ export function view<T extends Typed>(
   at: number,
   length: number,
 ): T {
-  const isSame =
-    last instanceof Type && last.buffer === buffer && last.byteOffset === at && last.length === length;
+  // Growing the memory detaches views, which leaves them with length 0: only of an empty one the length does not tell.
+  const isSame = last instanceof Type && last.length === length && last.byteOffset === at && (length > 0 || last.buffer === buffer);
   return isSame ? last : new Type(buffer, at, length);
 }
 

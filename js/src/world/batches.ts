@@ -120,7 +120,7 @@ export abstract class Batches<D extends Dimensions = Dimensions> extends Queries
     const count = this.#ask(query, parts, filter, readChoices(options, "region"));
     if (count === 0) return { ids: new Float64Array(0), ends: new Uint32Array(0) };
     const { engine, isView } = this.memory;
-    const ends = new Uint32Array(engine.exports.memory.buffer, this.memory.numbers()[2]!, count);
+    const ends = new Uint32Array(engine.buffer, this.memory.numbers()[2]!, count);
     return { ids: this.memory.give(engine.detail(0), engine.detail(1)), ends: isView ? guard(engine, ends) : ends.slice() };
   }
 
@@ -160,7 +160,7 @@ export abstract class Batches<D extends Dimensions = Dimensions> extends Queries
   /** What queries found, where it lies in memory. */
   #found(count: number): { ids: Float64Array; values: Float64Array; faces: Uint8Array; ends: Uint32Array } {
     const { engine } = this.memory;
-    const { buffer } = engine.exports.memory;
+    const { buffer } = engine;
     const [values = 0, faces = 0, ends = 0] = this.memory.numbers();
     const found = count && engine.detail(1);
     return {

@@ -282,7 +282,7 @@ export class BroadPhase<D extends Dimensions = Dimensions, Data = unknown> exten
   snapshot(): Uint8Array<ArrayBuffer> {
     this.memory.call((exports, world) => exports.world_snapshot(world));
     const { engine } = this.memory;
-    return new Uint8Array(engine.exports.memory.buffer, engine.detail(0), engine.detail(1)).slice();
+    return new Uint8Array(engine.buffer, engine.detail(0), engine.detail(1)).slice();
   }
 
   /**
@@ -356,7 +356,7 @@ function restored(bytes: Uint8Array, dimensions: Dimensions, isView: boolean): W
     engine.calls++;
     const at = handle.call((exports, world) => exports.world_bytes(world, length)) >>> 0;
     if (at === 0) throw new OutOfMemoryError();
-    new Uint8Array(engine.exports.memory.buffer, at, length).set(bytes);
+    new Uint8Array(engine.buffer, at, length).set(bytes);
     const code = handle.call((exports, world) => exports.world_restore(world));
     if (code === Code.InvalidSnapshot) throw new SnapshotError(engine.detail(0), engine.detail(1));
     engine.check(code);

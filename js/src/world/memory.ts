@@ -118,7 +118,7 @@ export class WorldMemory {
   /** Numbers that lie in memory, as a call returns them: a copy, which stays valid; or with the option `views` a view. */
   give(at: number, count: number, which = 0): Float64Array {
     const { engine } = this;
-    const given = (this.#given[which] = view(Float64Array, this.#given[which], engine.exports.memory.buffer, at, count));
+    const given = (this.#given[which] = view(Float64Array, this.#given[which], engine.buffer, at, count));
     return this.isView ? guard(engine, given) : copy(given);
   }
 
@@ -136,7 +136,7 @@ export class WorldMemory {
   numbers(): Float64Array {
     this.#handle.checkUsable();
     // Growing the memory detaches the view, which leaves it with length 0.
-    if (this.#numbers.length === 0) this.#numbers = new Float64Array(this.engine.exports.memory.buffer, this.#numbersAt, 16);
+    if (this.#numbers.length === 0) this.#numbers = new Float64Array(this.engine.buffer, this.#numbersAt, 16);
     return this.#numbers;
   }
 
@@ -190,11 +190,8 @@ export class WorldMemory {
     checkFits(length * (this.isDouble ? 8 : 4));
     const at = this.#handle.call((exports, world) => exports.world_rows(world, count)) >>> 0;
     if (at === 0) throw new OutOfMemoryError();
-    const { buffer } = this.engine.exports.memory;
-    return (this.#rows =
-      this.isDouble
-        ? view(Float64Array, this.#rows, buffer, at, length)
-        : view(Float32Array, this.#rows, buffer, at, length));
+    const Floats: FloatsType = this.isDouble ? Float64Array : Float32Array;
+    return (this.#rows = view(Floats, this.#rows, this.engine.buffer, at, length));
   }
 
   /** Writes boxes to the rows, unless they are already there, and returns how many there are. */
@@ -212,7 +209,7 @@ export class WorldMemory {
     checkFits(count * 8);
     const at = this.#handle.call((exports, world) => exports.world_ids_in(world, count)) >>> 0;
     if (at === 0) throw new OutOfMemoryError();
-    return (this.#ids = view(Float64Array, this.#ids, this.engine.exports.memory.buffer, at, count));
+    return (this.#ids = view(Float64Array, this.#ids, this.engine.buffer, at, count));
   }
 
   /** Writes ids that were kept to their array, unless they are already there. */
@@ -228,12 +225,13 @@ export class WorldMemory {
 
   /** The numbers, copied if they lie in memory that may grow, unless they are the array that the core will read. */
   #keep(numbers: Floats, written: Floats | undefined): Floats {
-    const isOutside = bufferOf(numbers) !== this.engine.exports.memory.buffer;
-    return isOutside || numbers === written ? numbers : new Float64Array(numbers);
+    if (numbers === written) return numbers;
+    return bufferOf(numbers) === this.engine.buffer ? new Float64Array(numbers) : numbers;
   }
 }
 
 type Floats = Float32Array | Float64Array;
+type FloatsType = new (buffer: ArrayBuffer, at: number, length: number) => Floats;
 
 /** An empty broad phase of the core. */
 export function newWorld(

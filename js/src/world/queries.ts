@@ -166,12 +166,12 @@ export abstract class Queries<D extends Dimensions = Dimensions> extends Bodies<
 
   #readFloats(): Float64Array {
     // Growing the memory detaches the view, which leaves it with length 0.
-    if (this.#floats.length === 0) this.#floats = new Float64Array(this.memory.engine.exports.memory.buffer);
+    if (this.#floats.length === 0) this.#floats = new Float64Array(this.memory.engine.buffer);
     return this.#floats;
   }
 
   #readBytes(): Uint8Array {
-    if (this.#bytes.length === 0) this.#bytes = new Uint8Array(this.memory.engine.exports.memory.buffer);
+    if (this.#bytes.length === 0) this.#bytes = new Uint8Array(this.memory.engine.buffer);
     return this.#bytes;
   }
 

@@ -111,7 +111,7 @@ export class Player {
   state(): PlayerState {
     const { engine } = this.#handle;
     engine.check(this.#handle.call((exports, player) => exports.player_state(player)));
-    const numbers = new Float64Array(engine.exports.memory.buffer, engine.detail(0), engine.detail(1));
+    const numbers = new Float64Array(engine.buffer, engine.detail(0), engine.detail(1));
     const [axis = 0, arrayAxis = 0, position = -1, edge = -1] = numbers;
     let at = 14;
     const list = (): number[] => {

@@ -183,9 +183,9 @@ export class Runner {
     const { engine } = handle;
     const at = handle.call((exports, runner) => exports.runner_rows(runner, count)) >>> 0;
     if (at === 0) throw new OutOfMemoryError();
-    new Float64Array(engine.exports.memory.buffer, at, length).set(rows);
+    new Float64Array(engine.buffer, at, length).set(rows);
     engine.check(handle.call((exports, runner) => exports.runner_step(runner, count)));
-    const numbers = new Float64Array(engine.exports.memory.buffer, engine.detail(0), engine.detail(1));
+    const numbers = new Float64Array(engine.buffer, engine.detail(0), engine.detail(1));
     const [axis = 0, bytes = 0] = numbers;
     const counts = readCounts(numbers, 2);
     return { pairs: this.#list(0), begun: this.#list(1), ended: this.#list(2), axis, counts, bytes };
@@ -238,14 +238,14 @@ export class Runner {
     const { engine } = this.#handle;
     const text = new TextEncoder().encode(name);
     const at = this.#handle.call((exports, runner) => exports.runner_text(runner, text.length)) >>> 0;
-    new Uint8Array(engine.exports.memory.buffer, at, text.length).set(text);
+    new Uint8Array(engine.buffer, at, text.length).set(text);
     return this.#handle.call((exports, runner) => exports.runner_choose(runner, part, index)) !== 0;
   }
 
   #list(which: number): Uint32Array<ArrayBuffer> {
     const { engine } = this.#handle;
     engine.check(this.#handle.call((exports, runner) => exports.runner_list(runner, which)));
-    return new Uint32Array(engine.exports.memory.buffer, engine.detail(0), engine.detail(1)).slice();
+    return new Uint32Array(engine.buffer, engine.detail(0), engine.detail(1)).slice();
   }
 }
 

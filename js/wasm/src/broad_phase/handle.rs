@@ -5,10 +5,12 @@ use alloc::vec::Vec;
 
 use sweep_and_prune::{Error, ProxyId};
 #[cfg(feature = "broad-phase")]
+use sweep_and_prune_bindings::Answer;
+#[cfg(feature = "broad-phase")]
 use sweep_and_prune_bindings::AnyBroadPhase as Bodies;
+use sweep_and_prune_bindings::Id;
 #[cfg(not(feature = "broad-phase"))]
 use sweep_and_prune_bindings::TrackBodies as Bodies;
-use sweep_and_prune_bindings::{Answer, Id};
 
 use sweep_and_prune_wasm_runtime::call::{self, Running};
 use sweep_and_prune_wasm_runtime::status::{Code, report, report_error};
@@ -45,8 +47,11 @@ pub(super) struct Handle {
     pub numbers: [f64; 16],
     /// The generation of the last body of each slot: the bits that a number leaves out.
     pub generations: Vec<u32>,
+    /// The ids that a call reports, but for those of queries.
+    pub ids_out: Vec<Number>,
     pub ids_in: Vec<f64>,
     pub ids: Vec<ProxyId>,
+    #[cfg(feature = "broad-phase")]
     pub answer: Answer<Number>,
     #[cfg(feature = "broad-phase")]
     pub bytes: Vec<u8>,
@@ -68,6 +73,8 @@ impl Handle {
             generations: Vec::new(),
             ids_in: Vec::new(),
             ids: Vec::new(),
+            ids_out: Vec::new(),
+            #[cfg(feature = "broad-phase")]
             answer: Answer::default(),
             #[cfg(feature = "broad-phase")]
             bytes: Vec::new(),
@@ -100,10 +107,10 @@ impl Handle {
         note(&mut self.generations, id);
     }
 
-    /// Reports the ids in the answer.
+    /// Reports where the ids that go out are, and how many, or an error.
     pub fn answer(&self, result: Result<(), Error>) -> Code {
         match result {
-            Ok(()) => report(Code::Ok, [self.answer.ids.as_ptr().addr(), self.answer.ids.len()]),
+            Ok(()) => report(Code::Ok, [self.ids_out.as_ptr().addr(), self.ids_out.len()]),
             Err(error) => report_error(error),
         }
     }

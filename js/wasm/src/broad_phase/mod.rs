@@ -99,14 +99,14 @@ extern "C" fn world_insert_many(
     is_static: u32,
 ) -> Code {
     run(handle, stack::SMALL, |handle| {
-        handle.answer.ids.clear();
+        handle.ids_out.clear();
         let Some(filter) = filter_of(category, mask, group, is_static) else {
             return report(Code::Internal, [0, 0]);
         };
         let result = handle.world.insert_many(count, filter).map(|ids| {
             for id in ids {
                 handle.note(id);
-                handle.answer.ids.push(Number::from_proxy(id));
+                handle.ids_out.push(Number::from_proxy(id));
             }
         });
         handle.answer(result)
@@ -231,8 +231,8 @@ extern "C" fn world_remove_many(handle: &mut Handle, count: usize) -> Code {
 #[unsafe(no_mangle)]
 extern "C" fn world_update(handle: &mut Handle, failures: u32) -> Code {
     run(handle, stack::LARGE, |handle| {
-        handle.answer.ids.clear();
-        let begun = handle.world.update(failures > 0, &mut handle.answer.ids);
+        handle.ids_out.clear();
+        let begun = handle.world.update(failures > 0, &mut handle.ids_out);
         let result = begun.map(|count| handle.numbers[0] = count as f64);
         handle.answer(result)
     })
@@ -242,8 +242,8 @@ extern "C" fn world_update(handle: &mut Handle, failures: u32) -> Code {
 #[unsafe(no_mangle)]
 extern "C" fn world_ids(handle: &mut Handle) -> Code {
     run(handle, stack::SMALL, |handle| {
-        handle.answer.ids.clear();
-        let ids = &mut handle.answer.ids;
+        handle.ids_out.clear();
+        let ids = &mut handle.ids_out;
         handle.world.for_each_id(&mut |id| ids.push(Number::from_proxy(id)));
         handle.answer(Ok(()))
     })

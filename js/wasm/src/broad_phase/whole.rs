@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use sweep_and_prune_bindings::Query;
+use sweep_and_prune_bindings::{Answer, Query};
 
 use super::filter_of;
 use super::handle::{Handle, id_of, note};
@@ -42,11 +42,11 @@ extern "C" fn world_exclude(handle: &mut Handle, a: f64, b: f64, excluded: u32) 
 extern "C" fn world_pairs(handle: &mut Handle, is_sorted: u32) -> Code {
     let Some(is_sorted) = truth(is_sorted) else { return report(Code::Internal, [0, 0]) };
     run(handle, stack::LARGE, |handle| {
-        handle.answer.ids.clear();
+        handle.ids_out.clear();
         if is_sorted {
-            handle.world.pairs(&mut handle.answer.ids);
+            handle.world.pairs(&mut handle.ids_out);
         } else {
-            handle.world.pairs_unsorted(&mut handle.answer.ids);
+            handle.world.pairs_unsorted(&mut handle.ids_out);
         }
         handle.answer(Ok(()))
     })
@@ -56,9 +56,8 @@ extern "C" fn world_pairs(handle: &mut Handle, is_sorted: u32) -> Code {
 #[unsafe(no_mangle)]
 extern "C" fn world_pairs_of(handle: &mut Handle, id: f64) -> Code {
     run(handle, stack::LARGE, |handle| {
-        handle.answer.ids.clear();
-        let result =
-            handle.id(id, 0).and_then(|id| handle.world.pairs_of(id, &mut handle.answer.ids));
+        handle.ids_out.clear();
+        let result = handle.id(id, 0).and_then(|id| handle.world.pairs_of(id, &mut handle.ids_out));
         handle.answer(result)
     })
 }
@@ -104,12 +103,14 @@ extern "C" fn world_query(
         let (excluded, answer) = (&handle.ids, &mut handle.answer);
         let result = handle.world.query(query, numbers, filter, excluded, is_sorted, answer);
         // After an error JavaScript reads the box that was passed.
-        if result.is_ok() {
-            handle.numbers[0] = handle.answer.values.as_ptr().addr() as f64;
-            handle.numbers[1] = handle.answer.faces.as_ptr().addr() as f64;
-            handle.numbers[2] = handle.answer.ends.as_ptr().addr() as f64;
+        if let Err(error) = result {
+            return report_error(error);
         }
-        handle.answer(result)
+        let Answer { ids, values, faces, ends, .. } = answer;
+        handle.numbers[0] = values.as_ptr().addr() as f64;
+        handle.numbers[1] = faces.as_ptr().addr() as f64;
+        handle.numbers[2] = ends.as_ptr().addr() as f64;
+        report(Code::Ok, [ids.as_ptr().addr(), ids.len()])
     })
 }
 
