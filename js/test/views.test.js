@@ -71,6 +71,20 @@ test("what a finder returns stays as it was, and belongs to JavaScript", () => {
   for (const { buffer } of [pairs, between]) structuredClone(buffer, { transfer: [buffer] });
 });
 
+test("an empty view can be read though memory has grown since the last one", () => {
+  const world = new BroadPhase({ dimensions: 2, views: true });
+  world.insertMany(rows.subarray(0, 8));
+  world.update();
+  const { begun, ended } = world.update();
+  assert.deepEqual([...begun, ...ended], []);
+  for (let count = 10_000; begun.buffer.byteLength > 0; count *= 2) {
+    new BroadPhase({ dimensions: 2 }).insertMany(boxesSpread(random(5), count, 2));
+  }
+  assert.throws(() => [...begun], TypeError); // detached
+  const now = world.update();
+  assert.deepEqual([...now.begun, ...now.ended], []);
+});
+
 test("arrays to write to keep what is written, though memory moves and grows", () => {
   const world = new BroadPhase({ dimensions: 2 });
   const ids = world.insertMany(rows.subarray(0, 8));

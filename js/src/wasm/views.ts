@@ -12,8 +12,8 @@ export function view<T extends Typed>(
   at: number,
   length: number,
 ): T {
-  // Growing the memory detaches views, which leaves them with length 0: only of an empty one the length does not tell.
-  const isSame = last instanceof Type && last.length === length && last.byteOffset === at && (length > 0 || last.buffer === buffer);
+  // Growing the memory detaches views, which leaves them at 0, where nothing lies.
+  const isSame = last instanceof Type && last.byteOffset === at && last.length === length;
   return isSame ? last : new Type(buffer, at, length);
 }
 
