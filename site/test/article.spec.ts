@@ -291,8 +291,14 @@ test.describe("listings", () => {
     // Some listings are folded away.
     await page.locator("details").evaluateAll((all) => all.forEach((details) => details.setAttribute("open", "")));
     for (const listing of await page.locator("figure.listing").all()) {
-      await listing.getByRole("button", { name: "Copy" }).click();
-      await expect(listing.getByRole("button", { name: "Copied" })).toBeVisible();
+      const button = listing.locator("[data-part=copy]");
+      await expect(button).toHaveText("Copy");
+      // It says so for a moment, which a busy machine may miss if it looks now and then.
+      const said = button.evaluate((button) => new Promise((resolve) => {
+        new MutationObserver(() => resolve(button.textContent)).observe(button, { childList: true });
+      }));
+      await button.click();
+      expect(await said).toBe("Copied");
       const copied = await page.evaluate(() => navigator.clipboard.readText());
       const name = await listing.locator("figcaption span").textContent();
       const source = readFileSync(new URL(`../src/listings/${name}`, import.meta.url), "utf8");
