@@ -102,7 +102,7 @@ pub struct Answer<I> {
     pub found: Lists<ProxyId>,
 }
 
-/// Longer lists are not kept: to find so many takes much longer than to allocate them.
+/// Longer lists are not kept: to find that many bodies takes much longer than to allocate a list.
 const MOST_KEPT: usize = 1000;
 
 impl<I: Id> Answer<I> {
