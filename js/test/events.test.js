@@ -76,7 +76,7 @@ for (const [Events, dimensions] of small) {
 test("what they do not have is refused by name, or not there", () => {
   const wrong = [[Events2D, 3], [Events3D, 1], [Events3D, 2]];
   for (const [Events, dimensions] of /** @type {any} */ (wrong)) {
-    assert.throws(() => new Events({ dimensions }), /^RangeError: "sweep-and-prune\/events-.d" has boxes of .* use "sweep-and-prune\/broad-phase"/);
+    assert.throws(() => new Events({ dimensions }), /^RangeError: "sweep-and-prune\/events-.d" has boxes of .* import `BroadPhase` from "sweep-and-prune\/broad-phase"/);
   }
   assert.throws(() => new Events2D(/** @type {any} */ ({ dimensions: 2, precision: "double" })), /in single precision only/);
   assert.throws(() => new Events2D(/** @type {any} */ ({ dimensions: 4 })), /^RangeError: `dimensions` must be 1, 2 or 3, not 4/);

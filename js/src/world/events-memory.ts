@@ -11,7 +11,7 @@ export function eventsMemory(core: Core<WorldExports>, dimensions: readonly Dime
   if (!dimensions.includes(checked.dimensions) || checked.precision === "double") {
     throw new RangeError(
       `"${core.entry}" has boxes of ${dimensions.join(" or ")} dimensions in single precision only: ` +
-        'use "sweep-and-prune/broad-phase"',
+        'import `BroadPhase` from "sweep-and-prune/broad-phase"',
     );
   }
   return WorldMemory.create(core, checked);
