@@ -4,7 +4,7 @@ use crate::kernels::Kernel;
 use crate::steps::{Bound, Steps, THREADS};
 
 /// The numbers that a workgroup of `wgsl/scan.wgsl` sums.
-const BLOCK: u64 = 4 * THREADS;
+const BLOCK: u64 = 16 * THREADS;
 
 /// The keys of a workgroup of `wgsl/sort_count.wgsl` and `wgsl/sort_scatter.wgsl`.
 const TILE: u64 = 16 * THREADS;

@@ -3,7 +3,7 @@
 use crate::kernels::{Kernel, Kernels};
 
 /// Threads of a workgroup, as in `wgsl/common.wgsl`.
-pub const THREADS: u64 = 256;
+pub const THREADS: u64 = 64;
 
 /// The most workgroups in one dimension that every device grants.
 const MOST_GROUPS: u64 = 65_535;

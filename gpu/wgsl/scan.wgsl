@@ -6,13 +6,17 @@ struct Params {
   blocks: u32,
 }
 
-const ITEMS = 4u;
+const ITEMS = 16u;
+// One thread sums up the sums of a part of the threads.
+const PART = 8u;
+const PARTS = THREADS / PART;
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read_write> numbers: array<u32>;
 @group(0) @binding(2) var<storage, read_write> block_sums: array<u32>;
 
-var<workgroup> shared_sums: array<u32, THREADS>;
+var<workgroup> sums: array<u32, THREADS>;
+var<workgroup> part_sums: array<u32, PARTS>;
 
 @compute @workgroup_size(THREADS)
 fn scan(
@@ -30,23 +34,27 @@ fn scan(
   for (var i = begin; i < end; i++) {
     sum = add(sum, numbers[i]);
   }
-  // The sums over this thread and all before it (Hillis and Steele).
-  shared_sums[thread] = sum;
+  sums[thread] = sum;
   workgroupBarrier();
-  for (var distance = 1u; distance < THREADS; distance *= 2u) {
-    if (thread >= distance) {
-      sum = add(sum, shared_sums[thread - distance]);
+  if (thread < PARTS) {
+    var part_sum = 0u;
+    for (var i = thread * PART; i < (thread + 1u) * PART; i++) {
+      part_sum = add(part_sum, sums[i]);
     }
-    workgroupBarrier();
-    shared_sums[thread] = sum;
-    workgroupBarrier();
+    part_sums[thread] = part_sum;
+  }
+  workgroupBarrier();
+  // The sum of the parts before this thread's, and of the threads before it in its part.
+  let own_part = thread / PART;
+  var before = 0u;
+  for (var part = 0u; part < own_part; part++) {
+    before = add(before, part_sums[part]);
+  }
+  for (var i = own_part * PART; i < thread; i++) {
+    before = add(before, sums[i]);
   }
   if (thread == THREADS - 1u) {
-    block_sums[block] = sum;
-  }
-  var before = 0u;
-  if (thread > 0u) {
-    before = shared_sums[thread - 1u];
+    block_sums[block] = add(before, sum);
   }
   for (var i = begin; i < end; i++) {
     let number = numbers[i];

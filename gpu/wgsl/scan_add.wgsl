@@ -5,7 +5,7 @@ struct Params {
 }
 
 // The numbers of a block of scan.wgsl.
-const BLOCK = 4u * THREADS;
+const BLOCK = 16u * THREADS;
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read_write> numbers: array<u32>;

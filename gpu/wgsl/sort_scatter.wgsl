@@ -13,6 +13,9 @@ const ITEMS = 16u;
 const TILE = THREADS * ITEMS;
 // Counts of two digits share a word: a tile has fewer than 2^16 keys.
 const WORDS = 8u;
+// One thread sums up the counts that a part of the threads has of one word.
+const PART = WORDS;
+const PARTS = THREADS / PART;
 
 @group(0) @binding(0) var<uniform> params: Params;
 // Where each tile writes the first of its keys with each digit: digit by digit.
@@ -22,7 +25,10 @@ const WORDS = 8u;
 @group(0) @binding(4) var<storage, read> values: array<u32>;
 @group(0) @binding(5) var<storage, read_write> sorted_values: array<u32>;
 
-var<workgroup> counts: array<array<u32, WORDS>, THREADS>;
+// Word by word, and thread by thread for each word. A thread finds its counts by digit, so registers cannot hold them.
+var<workgroup> counts: array<u32, WORDS * THREADS>;
+// Word by word, and part by part for each word.
+var<workgroup> part_sums: array<u32, WORDS * PARTS>;
 
 // The keys of a thread. Each thread has neighboring keys, so that the order of the threads is the order of the keys.
 struct Range {
@@ -39,37 +45,48 @@ fn digit_of(key: u32) -> u32 {
   return (key >> params.shift) & 15u;
 }
 
-// How many keys of the tile with each digit come before those of a thread.
-fn counts_before(range: Range, thread: u32) -> array<u32, WORDS> {
-  var own: array<u32, WORDS>;
+// Where a thread counts a digit, and the bit at which the count begins.
+fn word_of(digit: u32, thread: u32) -> u32 {
+  return digit / 2u * THREADS + thread;
+}
+
+fn bit_of(digit: u32) -> u32 {
+  return 16u * (digit % 2u);
+}
+
+// Lets `counts` say how many keys of the tile with each digit come before those of each thread.
+fn count_before(range: Range, thread: u32) {
   for (var i = range.begin; i < range.end; i++) {
     let digit = digit_of(keys[i]);
-    own[digit / 2u] += 1u << (16u * (digit % 2u));
+    counts[word_of(digit, thread)] += 1u << bit_of(digit);
   }
-  // The sums over this thread and all before it (Hillis and Steele).
-  var sums = own;
-  for (var distance = 1u; distance < THREADS; distance *= 2u) {
-    counts[thread] = sums;
-    workgroupBarrier();
-    if (thread >= distance) {
-      for (var word = 0u; word < WORDS; word++) {
-        sums[word] += counts[thread - distance][word];
-      }
-    }
-    workgroupBarrier();
+  workgroupBarrier();
+  // From here on a thread has a part of the counts of one word.
+  let begin = thread * PART;
+  var sum = 0u;
+  for (var i = begin; i < begin + PART; i++) {
+    sum += counts[i];
   }
-  for (var word = 0u; word < WORDS; word++) {
-    sums[word] -= own[word];
+  part_sums[thread] = sum;
+  workgroupBarrier();
+  var before = 0u;
+  for (var part = thread - thread % PARTS; part < thread; part++) {
+    before += part_sums[part];
   }
-  return sums;
+  for (var i = begin; i < begin + PART; i++) {
+    let count = counts[i];
+    counts[i] = before;
+    before += count;
+  }
+  workgroupBarrier();
 }
 
 // The place of the next key of a thread; counts the key.
-fn take_place(sums: ptr<function, array<u32, WORDS>>, tile: u32, key: u32) -> u32 {
+fn take_place(tile: u32, thread: u32, key: u32) -> u32 {
   let digit = digit_of(key);
-  let half = 16u * (digit % 2u);
-  let before = ((*sums)[digit / 2u] >> half) & 0xffffu;
-  (*sums)[digit / 2u] += 1u << half;
+  let word = word_of(digit, thread);
+  let before = (counts[word] >> bit_of(digit)) & 0xffffu;
+  counts[word] += 1u << bit_of(digit);
   return table[digit * params.tiles + tile] + before;
 }
 
@@ -84,10 +101,10 @@ fn scatter_keys(
     return;
   }
   let range = range_of(tile, thread);
-  var sums = counts_before(range, thread);
+  count_before(range, thread);
   for (var i = range.begin; i < range.end; i++) {
     let key = keys[i];
-    sorted_keys[take_place(&sums, tile, key)] = key;
+    sorted_keys[take_place(tile, thread, key)] = key;
   }
 }
 
@@ -102,10 +119,10 @@ fn scatter_values(
     return;
   }
   let range = range_of(tile, thread);
-  var sums = counts_before(range, thread);
+  count_before(range, thread);
   for (var i = range.begin; i < range.end; i++) {
     let key = keys[i];
-    let place = take_place(&sums, tile, key);
+    let place = take_place(tile, thread, key);
     sorted_keys[place] = key;
     sorted_values[place] = values[i];
   }

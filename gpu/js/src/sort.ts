@@ -1,7 +1,7 @@
 import { type Bound, type Steps, THREADS } from "./steps.js";
 
 /** The numbers that a workgroup of `wgsl/scan.wgsl` sums. */
-const BLOCK = 4 * THREADS;
+const BLOCK = 16 * THREADS;
 
 /** The keys of a workgroup of `wgsl/sort_count.wgsl` and `wgsl/sort_scatter.wgsl`. */
 const TILE = 16 * THREADS;

@@ -3,7 +3,7 @@ import type { Stage, StageTimer } from "./stages.js";
 import { Usage } from "./usage.js";
 
 /** Threads of a workgroup, as in `wgsl/common.wgsl`. */
-export const THREADS = 256;
+export const THREADS = 64;
 
 /** The most workgroups in one dimension that every device grants. */
 const MOST_GROUPS = 65_535;

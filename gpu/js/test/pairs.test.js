@@ -97,12 +97,15 @@ async function startPage() {
 }
 
 /**
- * Searches in the page.
+ * Searches in the page. Task and answer travel as text: of arrays, Playwright writes number by number.
  *
  * @param {Task} task
  * @returns {Promise<Answer>}
  */
-const search = (task) => opened.page.evaluate((task) => /** @type {any} */ (globalThis).search(task), task);
+async function search(task) {
+  const inPage = async (/** @type {string} */ task) => JSON.stringify(await /** @type {any} */ (globalThis).search(JSON.parse(task)));
+  return JSON.parse(await opened.page.evaluate(inPage, JSON.stringify(task)));
+}
 
 /** @param {Float32Array} boxes */
 const bitsOf = (boxes) => Array.from(new Uint32Array(boxes.buffer, boxes.byteOffset, boxes.length));
