@@ -1,7 +1,5 @@
 //! What the tests share: one device, and the pairs that the core finds.
 
-#![allow(dead_code, reason = "each test file uses a part of it")]
-
 use std::sync::OnceLock;
 
 use sweep_and_prune::Aabb;

@@ -1,9 +1,7 @@
 //! The work of inputs that are hard on trees and grids: tests of nodes and boxes, for each box and pair, against uniform
 //! boxes. `GPU_BOXES` sets the number of boxes.
 
-mod support;
-
-use support::{finder, upload};
+use crate::support::{finder, upload};
 use sweep_and_prune::{Aabb, count_pairs, find_pairs_between};
 use sweep_and_prune_gpu::PairFinder;
 use sweep_and_prune_scenes::{Random, Scene};

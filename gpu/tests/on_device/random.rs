@@ -1,9 +1,7 @@
 //! Random boxes on few distinct coordinates against brute force: many small worlds in one call, filters, two sets and
 //! invalid boxes.
 
-mod support;
-
-use support::{finder, numbers, upload};
+use crate::support::{core_pairs, finder, numbers, upload};
 use sweep_and_prune::Aabb;
 use sweep_and_prune_gpu::PairFinder;
 use sweep_and_prune_scenes::Random;
@@ -203,7 +201,7 @@ fn one_world_of_few_coordinates_has_the_pairs_of_the_core() {
         let boxes: Vec<_> =
             (0..count).map(|_| random_box::<3>(&mut random, Validity::Valid)).collect();
         let found = finder.find(&upload(&boxes)).unwrap().read().unwrap();
-        assert!(found == support::core_pairs(&boxes), "{count} boxes");
+        assert!(found == core_pairs(&boxes), "{count} boxes");
     }
 }
 

@@ -1,11 +1,11 @@
 //! What callers may get wrong, and buffers of their own.
 
-mod support;
-
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use support::{UNTOUCHED, core_pairs, device, filled, finder, numbers, read, upload};
+use crate::support::{
+    UNTOUCHED, core_pairs, core_pairs_between, device, filled, finder, numbers, read, upload,
+};
 use sweep_and_prune::Aabb;
 use sweep_and_prune_gpu::{Boxes, Error, PairFinder, Summary, open_device};
 use sweep_and_prune_scenes::Scene;
@@ -60,7 +60,7 @@ fn two_sets_are_written_to_a_buffer_of_the_caller() {
     let mut finder = finder::<3>();
     finder.find_between_into(&upload(&first), &upload(&second), &pairs, &summary).unwrap();
     let summary = finder.read_summary(&summary).unwrap();
-    let expected = support::core_pairs_between(&first, &second);
+    let expected = core_pairs_between(&first, &second);
     assert!(finder.read_pairs(&pairs, &summary).unwrap() == expected);
 }
 

@@ -1,10 +1,8 @@
 //! The order of the pairs: the same in every run and on every device, as `golden.txt` has it.
 
-mod support;
-
 use std::fmt::Write;
 
-use support::{device, upload};
+use crate::support::{device, upload};
 use sweep_and_prune_gpu::PairFinder;
 use sweep_and_prune_scenes::{Scene, hash_pairs};
 

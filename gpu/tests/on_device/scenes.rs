@@ -1,8 +1,6 @@
 //! Every scene against the core, and its work against that of uniform boxes.
 
-mod support;
-
-use support::{core_pairs, core_pairs_between, finder, upload};
+use crate::support::{core_pairs, core_pairs_between, finder, upload};
 use sweep_and_prune_gpu::{Error, PairFinder};
 use sweep_and_prune_scenes::Scene;
 
