@@ -44,6 +44,24 @@ fn many_pairs_of_one_body_among_few_of_others_are_sorted() {
     }
 }
 
+/// With low bits that take no pass, one, two and three, and with parts that have most pairs or none.
+#[test]
+fn long_lists_are_sorted_part_by_part() {
+    let mut random = random_pairs();
+    let mut sorter = PairSorter::default();
+    for (bound, crowd) in [(2, 0), (300, 7), (100_000, 99_999), (1 << 22, 5), (1 << 32, 1)] {
+        for len in [SPLIT_FROM - 1, SPLIT_FROM, 2 * SPLIT_FROM + 1] {
+            let mut pairs = random(len, bound);
+            // A quarter of them in one place.
+            pairs.iter_mut().step_by(4).for_each(|pair| pair[0] = crowd);
+            let mut expected = pairs.clone();
+            expected.sort_unstable();
+            sorter.sort(&mut pairs, bound as usize);
+            assert!(pairs == expected, "{len} pairs of numbers below {bound}");
+        }
+    }
+}
+
 #[test]
 fn differences_are_what_only_one_list_has() {
     let mut random = random_pairs();
