@@ -11,7 +11,7 @@ const RADIX_FROM: usize = 128;
 /// 100,000 bodies takes 0.94 of the time).
 const PRELOAD_FROM: usize = 1 << 15;
 /// Lists of this length and longer are cut into parts by their first numbers, and each part is sorted in the first-level cache.
-/// (An update from scratch of a million bodies takes 0.76 to 0.84 of the time, of 300,000 0.84 to 1, of 100,000 it would take
+/// (An update from scratch of a million bodies takes 0.69 to 0.84 of the time, of 300,000 0.84 to 1, of 100,000 it would take
 /// 1.02; one core of an AMD EPYC, Zen 3.)
 const SPLIT_FROM: usize = 1 << 18;
 /// How many pairs a part has, about.
