@@ -1,14 +1,14 @@
 //! Random boxes on few distinct coordinates against brute force: many small worlds in one call, filters, two sets and
 //! invalid boxes.
 
-use crate::support::{core_pairs, finder, numbers, upload};
+use crate::support::{core_pairs, finder, numbers, setting, upload};
 use sweep_and_prune::Aabb;
 use sweep_and_prune_gpu::PairFinder;
 use sweep_and_prune_scenes::Random;
 
 /// How many random scenes each test has; `GPU_SCENES` sets another number.
 fn scenes() -> usize {
-    std::env::var("GPU_SCENES").map_or(1000, |number| number.parse().expect("a number"))
+    setting("GPU_SCENES", 1000)
 }
 
 /// Scenes that one call searches, each in a world of its own.

@@ -1,12 +1,12 @@
 //! Every scene against the core, and its work against that of uniform boxes.
 
-use crate::support::{core_pairs, core_pairs_between, finder, upload};
+use crate::support::{core_pairs, core_pairs_between, finder, setting, upload};
 use sweep_and_prune_gpu::{Error, PairFinder};
 use sweep_and_prune_scenes::Scene;
 
 /// Boxes of a scene: enough for several tiles of the sort and several levels of the tree. `GPU_BOXES` sets another number.
 fn boxes() -> usize {
-    std::env::var("GPU_BOXES").map_or(3000, |number| number.parse().expect("a number"))
+    setting("GPU_BOXES", 3000)
 }
 
 /// Every scene. In software a million boxes take half a minute, so of that many only the scenes that differ most.

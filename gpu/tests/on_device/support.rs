@@ -5,6 +5,11 @@ use std::sync::OnceLock;
 use sweep_and_prune::Aabb;
 use sweep_and_prune_gpu::{Boxes, PairFinder, open_device, upload_numbers};
 
+/// The number that an environment variable has, or else this one.
+pub fn setting(variable: &str, otherwise: usize) -> usize {
+    std::env::var(variable).map_or(otherwise, |number| number.parse().expect("a number"))
+}
+
 /// The device of all tests of a process. Without one the tests fail: `./test gpu` installs a software device.
 pub fn device() -> &'static (wgpu::Device, wgpu::Queue) {
     static DEVICE: OnceLock<(wgpu::Device, wgpu::Queue)> = OnceLock::new();

@@ -1,7 +1,7 @@
 //! The work of inputs that are hard on trees and grids: tests of nodes and boxes, for each box and pair, against uniform
 //! boxes. `GPU_BOXES` sets the number of boxes.
 
-use crate::support::{finder, upload};
+use crate::support::{finder, setting, upload};
 use sweep_and_prune::{Aabb, count_pairs, find_pairs_between};
 use sweep_and_prune_gpu::PairFinder;
 use sweep_and_prune_scenes::{Random, Scene};
@@ -9,7 +9,7 @@ use sweep_and_prune_scenes::{Random, Scene};
 type Box3 = Aabb<3, f32>;
 
 fn boxes() -> usize {
-    std::env::var("GPU_BOXES").map_or(6000, |number| number.parse().expect("a number"))
+    setting("GPU_BOXES", 6000)
 }
 
 /// A box by its center and its half sizes.
