@@ -24,52 +24,60 @@ export function orderBySimilarity(binaryen, bytes, features) {
 
 /** The positions of bodies in the order in which they are smallest after gzip, of those that are tried. */
 function smallest(bodies) {
-  const strings = bodies.map(stringsOf);
+  const strings = stringsOf(bodies);
   const orders = MEMORIES.map((memory) => similarNext(bodies, strings, memory));
   const sizes = orders.map((order) => gzipSync(Buffer.concat(order.map((at) => bodies[at])), { level: 9 }).length);
   return orders[sizes.indexOf(Math.min(...sizes))];
 }
 
 /** The positions of bodies: each is followed by the one of which the largest part occurs in those within `memory` bytes before. */
-function similarNext(bodies, strings, memory) {
+function similarNext(bodies, { ofBody, bodiesWith }, memory) {
   const left = new Set(bodies.keys());
   const order = [];
-  // How many of the last functions have a string, and how long they are.
-  const remembered = new Map();
+  // How many of the last functions have a string, and how many of its strings a function has in common with them.
+  const remembered = new Uint32Array(bodiesWith.length);
+  const known = new Uint32Array(bodies.length);
   let [first, size] = [0, 0];
   let next = 0;
   while (next !== undefined) {
     left.delete(next);
     order.push(next);
     size += bodies[next].length;
-    for (const string of strings[next]) remembered.set(string, (remembered.get(string) ?? 0) + 1);
+    for (const string of ofBody[next]) {
+      if (remembered[string]++ === 0) for (const at of bodiesWith[string]) known[at]++;
+    }
     for (; size > memory && first < order.length - 1; first++) {
       size -= bodies[order[first]].length;
-      for (const string of strings[order[first]]) {
-        const count = remembered.get(string) - 1;
-        if (count > 0) remembered.set(string, count);
-        else remembered.delete(string);
+      for (const string of ofBody[order[first]]) {
+        if (--remembered[string] === 0) for (const at of bodiesWith[string]) known[at]--;
       }
     }
     let most = -1;
     next = undefined;
     for (const at of left) {
-      let known = 0;
-      for (const string of strings[at]) known += remembered.has(string) ? 1 : 0;
-      const share = known / (strings[at].length + 3);
+      const share = known[at] / (ofBody[at].length + 3);
       if (share > most) [most, next] = [share, at];
     }
   }
   return order;
 }
 
-/** The different strings of `LENGTH` bytes in a function, as numbers. */
-function stringsOf(body) {
-  const strings = new Set();
-  for (let at = 0; at + LENGTH <= body.length; at++) {
-    strings.add(body.readUIntLE(at, LENGTH));
-  }
-  return [...strings];
+/** The different strings of `LENGTH` bytes, numbered: those in each body, and the bodies in which each is. */
+function stringsOf(bodies) {
+  const numbers = new Map();
+  const bodiesWith = [];
+  const ofBody = bodies.map((body, position) => {
+    const strings = new Set();
+    for (let at = 0; at + LENGTH <= body.length; at++) {
+      const text = body.readUIntLE(at, LENGTH);
+      const string = numbers.get(text) ?? numbers.size;
+      numbers.set(text, string);
+      strings.add(string);
+    }
+    for (const string of strings) (bodiesWith[string] ??= []).push(position);
+    return [...strings];
+  });
+  return { ofBody, bodiesWith };
 }
 
 /** The bodies of the functions of a module. */
