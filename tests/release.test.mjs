@@ -112,3 +112,12 @@ test("dependabot looks at every lock file and list of requirements", () => {
     assert.ok(configured.get(kinds[basename(file)]).includes(folder), file);
   }
 });
+
+test("the scripts that run some JavaScript tests name files that exist", () => {
+  const names = ["scripts/test-portable", "scripts/platforms"].flatMap((script) => {
+    const [, list] = read(script).match(/for name in (.*); do\n.*js\/test\/\$name\.test\.js/) ?? [];
+    assert.ok(list, script);
+    return list.split(" ");
+  });
+  for (const name of names) assert.ok(existsSync(join(root, `js/test/${name}.test.js`)), name);
+});

@@ -1,31 +1,12 @@
-// The class against the compiled module, and the module against the native build: the same bits.
-// Builds the module if cargo is there, so that what is tested is what the sources say.
+// The class against the compiled module, as classroom/demo/ ships it, and the module against the native build: the same bits.
 
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
-import { dirname, join, resolve } from "node:path";
 import { before, describe, test } from "node:test";
-import { fileURLToPath } from "node:url";
 
 import { Simulation, SimulationError } from "../simulation.js";
 
-const root = resolve(dirname(fileURLToPath(import.meta.url)), "../../../..");
-const target = resolve(root, process.env.CARGO_TARGET_DIR ?? "target");
-const golden = readFileSync(join(root, "classroom/simulation/golden.txt"), "utf8").trim().split("\n");
-
-/** The module, with or without vector instructions; each in a target folder of its own. */
-function build(folder, flags) {
-  const name = "sweep-and-prune-simulation-wasm";
-  const folderOfTarget = join(target, folder);
-  execFileSync(
-    "cargo",
-    ["build", "--quiet", "--release", "--target", "wasm32-unknown-unknown", "-p", name, "--target-dir", folderOfTarget],
-    { cwd: root, stdio: "inherit", env: { ...process.env, RUSTFLAGS: flags } },
-  );
-  const file = `wasm32-unknown-unknown/release/${name.replaceAll("-", "_")}.wasm`;
-  return readFileSync(join(folderOfTarget, file));
-}
+const golden = readFileSync(new URL("../../golden.txt", import.meta.url), "utf8").trim().split("\n");
 
 function run(simulation, steps) {
   let report;
@@ -54,12 +35,10 @@ test("nothing works before the module is loaded", () => {
 });
 
 describe("loaded", () => {
-  let scalar;
-
   before(async () => {
-    scalar = build("wasm-scalar", "");
-    const loading = Simulation.load(scalar);
-    assert.equal(Simulation.load(scalar), loading, "loading twice is loading once");
+    const bytes = readFileSync(new URL("../../../demo/dist/simulation.wasm", import.meta.url));
+    const loading = Simulation.load(bytes);
+    assert.equal(Simulation.load(bytes), loading, "loading twice is loading once");
     await loading;
   });
 
@@ -69,20 +48,6 @@ describe("loaded", () => {
       const fromScratch = golden.map((line) => lineFromScratch(line, { algorithm }));
       assert.deepEqual(fromScratch, golden, algorithm);
     }
-  });
-
-  test("vector instructions change nothing", async () => {
-    const bytes = build("wasm-simd", "-C target-feature=+simd128");
-    assert.ok(!bytes.equals(scalar));
-    // A second copy of the class, to load a second module.
-    const { Simulation: Vectored } = await import("../simulation.js?simd");
-    await Vectored.load(bytes);
-    const [first, second] = [Simulation, Vectored].map((Class) => {
-      const simulation = new Class({ bodies: 500, size: 0.3 });
-      run(simulation, 60);
-      return simulation.hash();
-    });
-    assert.equal(first, second);
   });
 
   test("lists what can be chosen", () => {
