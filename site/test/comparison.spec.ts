@@ -36,7 +36,7 @@ for (const [id, methods] of [["d6", 2], ["d13", 3]] as const) {
         expect(states[0]!.tick).toBeGreaterThanOrEqual(last);
         last = states[0]!.tick;
         moments.add(`${last} ${states[0]!.events}`);
-        await frames(page, 6);
+        await frames(page, 3);
       }
       expect(moments.size, "it goes on").toBeGreaterThan(3);
     }
