@@ -39,5 +39,7 @@ fn main() -> ! {
         core::array::from_fn(|at| Aabb::from_center([at as f32; 3], [0.6; 3]));
     assert_eq!(find_pairs(&boxes).map(|pairs| pairs.len()), Ok(99));
     assert!(play().is_ok_and(|bounces| bounces > 10));
-    loop {}
+    loop {
+        core::hint::spin_loop();
+    }
 }
