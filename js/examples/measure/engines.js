@@ -2,11 +2,13 @@
 import * as CANNON from "cannon-es";
 import * as ex from "excalibur";
 import Matter from "matter-js";
+import * as Phaser from "phaser";
 import { init } from "sweep-and-prune";
 import { init as initBroadPhase } from "sweep-and-prune/broad-phase";
 import * as forCannon from "sweep-and-prune/cannon-es";
 import * as forExcalibur from "sweep-and-prune/excalibur";
 import * as forMatter from "sweep-and-prune/matter-js";
+import * as forPhaser from "sweep-and-prune/phaser";
 import { random } from "../../test/support/boxes.js";
 
 await Promise.all([init(), initBroadPhase()]);
@@ -17,7 +19,10 @@ const replaced = Matter.Detector.collisions;
 
 const MS = 1000 / 60;
 
-/** By engine: the names of its broad phases, its own first, and how a world of one is made: a function that does a step and returns the number of contacts. */
+/**
+ * By engine: the names of its broad phases, its own first, its scenes if not a gas and a pile, and how a world of one is made: a
+ * function that does a step and returns the number of contacts.
+ */
 export const engines = {
   matter: {
     broadPhases: ["its own", "sweep-and-prune"],
@@ -107,5 +112,41 @@ export const engines = {
         return contacts;
       };
     },
+  },
+  phaser: {
+    broadPhases: ["its own", "its own without a tree", "sweep-and-prune", "sweep-and-prune without a tree"],
+    // Arcade physics does not stack bodies.
+    scenes: ["gas"],
+    create: (_scene, count, broadPhase) =>
+      new Promise((created) => {
+        const side = 30 * Math.sqrt(count);
+        class Level extends Phaser.Scene {
+          create() {
+            if (broadPhase.startsWith("sweep-and-prune")) forPhaser.replaceBroadPhase(this);
+            const { world } = this.physics;
+            world.setBounds(0, 0, side, side);
+            const next = random(count);
+            const [bullets, rocks] = [this.physics.add.group(), this.physics.add.group()];
+            const add = (group, size, speed) => {
+              const sprite = this.add.rectangle(next() * side, next() * side, size, size);
+              group.add(sprite);
+              sprite.body.setCollideWorldBounds(true, 1, 1).setVelocity(2 * speed * next() - speed, 2 * speed * next() - speed);
+            };
+            // One of eleven is a bullet.
+            for (let i = 0; i < count; i++) add(...(i % 11 === 0 ? [bullets, 6, 400] : [rocks, 20, 100]));
+            let contacts = 0;
+            this.physics.add.overlap(bullets, rocks, () => contacts++);
+            // The game itself makes no steps.
+            this.scene.pause();
+            created(() => {
+              contacts = 0;
+              world.singleStep();
+              return contacts;
+            });
+          }
+        }
+        const arcade = { useTree: !broadPhase.endsWith("without a tree") };
+        new Phaser.Game({ type: Phaser.HEADLESS, width: 800, height: 600, scene: Level, physics: { default: "arcade", arcade }, banner: false });
+      }),
   },
 };

@@ -14,7 +14,7 @@ try {
   await page.waitForFunction("globalThis.ready");
   const wanted = process.argv.length > 2 ? process.argv.slice(2) : await page.evaluate("names");
   for (const engine of wanted) {
-    for (const scene of ["gas", "pile"]) {
+    for (const scene of await page.evaluate(`scenesOf(${JSON.stringify(engine)})`)) {
       for (const count of [200, 1_000, 5_000]) {
         const measured = await page.evaluate(`measure(${JSON.stringify(engine)}, "${scene}", ${count}, ${count === 5_000 ? 45 : 180})`);
         const last = measured.at(-1);

@@ -23,5 +23,6 @@ async function measure(name, scene, count, steps) {
 }
 
 globalThis.measure = measure;
+globalThis.scenesOf = (name) => engines[name].scenes ?? ["gas", "pile"];
 globalThis.names = Object.keys(engines);
 globalThis.ready = true;
