@@ -30,6 +30,7 @@ export const FOLDERS = {
   "bench/src": 30,
   "bench/complexity/src": 6,
   "bench/js/src": 10,
+  "bench/js/frames": 9,
   "bench/js/libraries": 20,
   "python/extension": 8,
   "c/src": 11,

@@ -1,12 +1,19 @@
 import assert from "node:assert/strict";
 
+/**
+ * One way to do a scene. `frame` is the work of a frame, and is timed; `found` says afterwards what it has found, as sorted numbers,
+ * which are the same in all forms.
+ *
+ * @typedef {{ frame: (step: number) => void, found: () => number[] }} Form
+ */
+
 const median = (/** @type {number[]} */ times) => times.sort((a, b) => a - b)[times.length >> 1] ?? 0;
 
 /**
  * The median milliseconds of a frame in each form. They take turns, and have to find the same in every frame, which is looked at
  * between them. The first third lets the compiler settle.
  *
- * @param {{ frames: number, forms: Record<string, () => import("./scenes.js").Form> }} scene
+ * @param {{ frames: number, forms: Record<string, () => Form> }} scene
  */
 export function measure({ frames, forms }) {
   const all = Object.entries(forms).map(([name, create]) => ({ name, ...create(), times: /** @type {number[]} */ ([]) }));

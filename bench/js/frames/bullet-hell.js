@@ -1,0 +1,105 @@
+import RBush from "rbush";
+import { PairFinder } from "sweep-and-prune";
+import { BroadPhase } from "sweep-and-prune/broad-phase";
+import { keysOf, keysOfWorld } from "./keys.js";
+import { copyBox, createItems, indexOf, load, overlap, random } from "./rows.js";
+
+/** @typedef {import("./measure.js").Form} Form */
+
+/** 3,000 bullets and 500 enemies, which move: which bullet hits which enemy? */
+export function bulletHell() {
+  const [BULLETS, ENEMIES] = [3000, 500];
+  const COUNT = BULLETS + ENEMIES;
+
+  /** Bodies that move, bullets first, and their boxes. */
+  function createBodies() {
+    const next = random();
+    const place = Float32Array.from({ length: 2 * COUNT }, (_, at) => next() * (at % 2 ? 720 : 1280));
+    const speed = Float32Array.from({ length: 2 * COUNT }, (_, at) => (at < 2 * BULLETS ? 8 : 1) * (next() - 0.5));
+    const boxes = new Float32Array(4 * COUNT);
+    const move = () => {
+      for (let at = 0; at < 2 * COUNT; at++) {
+        place[at] += speed[at];
+        if (place[at] < 0 || place[at] > (at % 2 ? 720 : 1280)) speed[at] = -speed[at];
+        const radius = at < 2 * BULLETS ? 2 : 12;
+        const row = 4 * (at >> 1) + (at & 1);
+        boxes[row] = place[at] - radius;
+        boxes[row + 2] = place[at] + radius;
+      }
+    };
+    move();
+    return { boxes, move };
+  }
+
+  /** @type {Record<string, () => Form>} */
+  const forms = {
+    "BroadPhase, which reports events": () => {
+      const { boxes, move } = createBodies();
+      const world = new BroadPhase({ dimensions: 2 });
+      const filters = Array.from({ length: COUNT }, (_, at) => (at < BULLETS ? { category: 1, mask: 2 } : { category: 2, mask: 1 }));
+      const ids = world.insertMany(boxes, filters);
+      return {
+        frame: () => (move(), world.setMany(ids, boxes), world.update()),
+        found: () => keysOfWorld(world),
+      };
+    },
+    PairFinder: () => {
+      const { boxes, move } = createBodies();
+      const finder = new PairFinder({ dimensions: 2 });
+      const [bullets, enemies] = [boxes.subarray(0, 4 * BULLETS), boxes.subarray(4 * BULLETS)];
+      let pairs = new Uint32Array();
+      return {
+        frame: () => (move(), (pairs = finder.findBetween(bullets, enemies))),
+        found: () => keysOf(pairs.map((row, at) => (at % 2 ? BULLETS + row : row))),
+      };
+    },
+    rbush: () => {
+      const { boxes, move } = createBodies();
+      const [tree, items, bullet] = [new RBush(), createItems(ENEMIES), createItems(1)[0]];
+      /** @type {number[]} */
+      let pairs = [];
+      return {
+        frame: () => {
+          move();
+          load(tree, items, boxes, BULLETS);
+          pairs = [];
+          for (let at = 0; at < BULLETS; at++) {
+            copyBox(bullet, boxes, at);
+            for (const enemy of tree.search(bullet)) pairs.push(at, BULLETS + enemy.at);
+          }
+        },
+        found: () => keysOf(pairs),
+      };
+    },
+    flatbush: () => {
+      const { boxes, move } = createBodies();
+      /** @type {number[]} */
+      let pairs = [];
+      return {
+        frame: () => {
+          move();
+          const index = indexOf(boxes, BULLETS);
+          pairs = [];
+          for (let at = 0; at < BULLETS; at++) {
+            for (const enemy of index.search(boxes[4 * at], boxes[4 * at + 1], boxes[4 * at + 2], boxes[4 * at + 3])) pairs.push(at, BULLETS + enemy);
+          }
+        },
+        found: () => keysOf(pairs),
+      };
+    },
+    "two loops": () => {
+      const { boxes, move } = createBodies();
+      /** @type {number[]} */
+      let pairs = [];
+      return {
+        frame: () => {
+          move();
+          pairs = [];
+          for (let a = 0; a < BULLETS; a++) for (let b = BULLETS; b < COUNT; b++) if (overlap(boxes, a, boxes, b)) pairs.push(a, b);
+        },
+        found: () => keysOf(pairs),
+      };
+    },
+  };
+  return forms;
+}
