@@ -1,8 +1,9 @@
 import RBush from "rbush";
 import { PairFinder } from "sweep-and-prune";
 import { BroadPhase } from "sweep-and-prune/broad-phase";
+import { random } from "../../../js/test/support/boxes.js";
 import { keysOf, keysOfWorld } from "./keys.js";
-import { copyBox, createItems, indexOf, load, overlap, random } from "./rows.js";
+import { copyBox, createItems, indexOf, load, overlap } from "./rows.js";
 
 /** @typedef {import("./measure.js").Form} Form */
 
@@ -13,7 +14,7 @@ export function bulletHell() {
 
   /** Bodies that move, bullets first, and their boxes. */
   function createBodies() {
-    const next = random();
+    const next = random(1);
     const place = Float32Array.from({ length: 2 * COUNT }, (_, at) => next() * (at % 2 ? 720 : 1280));
     const speed = Float32Array.from({ length: 2 * COUNT }, (_, at) => (at < 2 * BULLETS ? 8 : 1) * (next() - 0.5));
     const boxes = new Float32Array(4 * COUNT);
@@ -31,6 +32,15 @@ export function bulletHell() {
     return { boxes, move };
   }
 
+  /** A form that finds pairs in the rows of all bodies. @type {(prepare: (boxes: Float32Array) => () => ArrayLike<number>) => Form} */
+  const form = (prepare) => {
+    const { boxes, move } = createBodies();
+    const find = prepare(boxes);
+    /** @type {ArrayLike<number>} */
+    let pairs = [];
+    return { frame: () => (move(), (pairs = find())), found: () => keysOf(pairs) };
+  };
+
   /** @type {Record<string, () => Form>} */
   const forms = {
     "BroadPhase, which reports events": () => {
@@ -40,66 +50,44 @@ export function bulletHell() {
       const ids = world.insertMany(boxes, filters);
       return {
         frame: () => (move(), world.setMany(ids, boxes), world.update()),
-        found: () => keysOfWorld(world),
+        found: () => keysOfWorld(world, BULLETS),
       };
     },
     PairFinder: () => {
-      const { boxes, move } = createBodies();
       const finder = new PairFinder({ dimensions: 2 });
-      const [bullets, enemies] = [boxes.subarray(0, 4 * BULLETS), boxes.subarray(4 * BULLETS)];
-      let pairs = new Uint32Array();
-      return {
-        frame: () => (move(), (pairs = finder.findBetween(bullets, enemies))),
-        found: () => keysOf(pairs.map((row, at) => (at % 2 ? BULLETS + row : row))),
-      };
+      return form((boxes) => {
+        const [bullets, enemies] = [boxes.subarray(0, 4 * BULLETS), boxes.subarray(4 * BULLETS)];
+        return () => finder.findBetween(bullets, enemies);
+      });
     },
-    rbush: () => {
-      const { boxes, move } = createBodies();
-      const [tree, items, bullet] = [new RBush(), createItems(ENEMIES), createItems(1)[0]];
-      /** @type {number[]} */
-      let pairs = [];
-      return {
-        frame: () => {
-          move();
+    rbush: () =>
+      form((boxes) => {
+        const [tree, items, bullet] = [new RBush(), createItems(ENEMIES), createItems(1)[0]];
+        return () => {
           load(tree, items, boxes, BULLETS);
-          pairs = [];
+          const pairs = [];
           for (let at = 0; at < BULLETS; at++) {
             copyBox(bullet, boxes, at);
-            for (const enemy of tree.search(bullet)) pairs.push(at, BULLETS + enemy.at);
+            for (const enemy of tree.search(bullet)) pairs.push(at, enemy.at);
           }
-        },
-        found: () => keysOf(pairs),
-      };
-    },
-    flatbush: () => {
-      const { boxes, move } = createBodies();
-      /** @type {number[]} */
-      let pairs = [];
-      return {
-        frame: () => {
-          move();
-          const index = indexOf(boxes, BULLETS);
-          pairs = [];
-          for (let at = 0; at < BULLETS; at++) {
-            for (const enemy of index.search(boxes[4 * at], boxes[4 * at + 1], boxes[4 * at + 2], boxes[4 * at + 3])) pairs.push(at, BULLETS + enemy);
-          }
-        },
-        found: () => keysOf(pairs),
-      };
-    },
-    "two loops": () => {
-      const { boxes, move } = createBodies();
-      /** @type {number[]} */
-      let pairs = [];
-      return {
-        frame: () => {
-          move();
-          pairs = [];
-          for (let a = 0; a < BULLETS; a++) for (let b = BULLETS; b < COUNT; b++) if (overlap(boxes, a, boxes, b)) pairs.push(a, b);
-        },
-        found: () => keysOf(pairs),
-      };
-    },
+          return pairs;
+        };
+      }),
+    flatbush: () =>
+      form((boxes) => () => {
+        const index = indexOf(boxes, BULLETS);
+        const pairs = [];
+        for (let at = 0; at < BULLETS; at++) {
+          for (const enemy of index.search(boxes[4 * at], boxes[4 * at + 1], boxes[4 * at + 2], boxes[4 * at + 3])) pairs.push(at, enemy);
+        }
+        return pairs;
+      }),
+    "two loops": () =>
+      form((boxes) => () => {
+        const pairs = [];
+        for (let a = 0; a < BULLETS; a++) for (let b = BULLETS; b < COUNT; b++) if (overlap(boxes, a, boxes, b)) pairs.push(a, b - BULLETS);
+        return pairs;
+      }),
   };
   return forms;
 }

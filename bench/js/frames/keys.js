@@ -8,5 +8,9 @@ export function keysOf(pairs) {
   return keys.sort((a, b) => a - b);
 }
 
-/** The keys of the pairs of a world, whose slots are the positions of its bodies. @type {(world: import("sweep-and-prune/broad-phase").BroadPhase) => number[]} */
-export const keysOfWorld = (world) => keysOf([...world.pairs()].map(slotOf));
+/**
+ * The keys of the pairs of a world, whose slots are the positions of its bodies. The second of each pair is counted from `from`.
+ *
+ * @type {(world: import("sweep-and-prune/broad-phase").BroadPhase, from?: number) => number[]}
+ */
+export const keysOfWorld = (world, from = 0) => keysOf(Array.from(world.pairs(), (id, at) => slotOf(id) - (at % 2) * from));

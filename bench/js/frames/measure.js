@@ -1,4 +1,5 @@
 import assert from "node:assert/strict";
+import { median } from "../src/record.js";
 
 /**
  * One way to do a scene. `frame` is the work of a frame, and is timed; `found` says afterwards what it has found, as sorted numbers,
@@ -6,8 +7,6 @@ import assert from "node:assert/strict";
  *
  * @typedef {{ frame: (step: number) => void, found: () => number[] }} Form
  */
-
-const median = (/** @type {number[]} */ times) => times.sort((a, b) => a - b)[times.length >> 1] ?? 0;
 
 /**
  * The median milliseconds of a frame in each form. They take turns, and have to find the same in every frame, which is looked at

@@ -4,8 +4,8 @@ import { PairFinder } from "sweep-and-prune";
 import { BroadPhase } from "sweep-and-prune/broad-phase";
 import { insertObjects, moveObjects } from "sweep-and-prune/three";
 import { Box3, Mesh, Scene, SphereGeometry } from "three";
+import { random } from "../../../js/test/support/boxes.js";
 import { keysOf, keysOfWorld } from "./keys.js";
-import { random } from "./rows.js";
 
 /** @typedef {import("./measure.js").Form} Form */
 
@@ -14,7 +14,7 @@ export function meshes() {
   const COUNT = 5000;
 
   function createMeshes() {
-    const next = random();
+    const next = random(1);
     const [scene, geometry] = [new Scene(), new SphereGeometry(0.5, 8, 6)];
     geometry.computeBoundingBox();
     const all = Array.from({ length: COUNT }, () => {

@@ -3,11 +3,6 @@ import Flatbush from "flatbush";
 
 /** @typedef {{ minX: number, minY: number, maxX: number, maxY: number, at: number }} Item */
 
-/** Random numbers from 0 to 1, the same for each form. */
-export function random(seed = 1) {
-  return () => (seed = (seed * 48271) % 2147483647) / 2147483647;
-}
-
 /** Whether two boxes of rows overlap. @type {(a: ArrayLike<number>, i: number, b: ArrayLike<number>, j: number) => boolean} */
 export const overlap = (a, i, b, j) =>
   a[4 * i] <= b[4 * j + 2] && b[4 * j] <= a[4 * i + 2] && a[4 * i + 1] <= b[4 * j + 3] && b[4 * j + 1] <= a[4 * i + 3];

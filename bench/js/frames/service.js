@@ -1,8 +1,9 @@
 import RBush from "rbush";
 import { PairFinder } from "sweep-and-prune";
 import { BroadPhase, slotOf } from "sweep-and-prune/broad-phase";
+import { random } from "../../../js/test/support/boxes.js";
 import { keysOf } from "./keys.js";
-import { copyBox, createItems, indexOf, load, overlap, random } from "./rows.js";
+import { copyBox, createItems, indexOf, load, overlap } from "./rows.js";
 
 /** @typedef {import("./measure.js").Form} Form */
 
@@ -12,7 +13,7 @@ export function service() {
 
   /** The boxes of parcels, and of the zones of a request. */
   function createLayers() {
-    const next = random();
+    const next = random(1);
     const rows = (/** @type {number} */ count, /** @type {number} */ size) => {
       const boxes = new Float64Array(4 * count);
       for (let at = 0; at < count; at++) {
