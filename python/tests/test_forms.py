@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -243,6 +244,25 @@ def test_masked_values_are_missing_and_not_ignored() -> None:
     assert same(sap.find_pairs(masked, missing="skip"), PAIRS[~np.isin(PAIRS, [3]).any(axis=1)])
     with pytest.raises(ValueError, match="masked"):
         sap.find_pairs(np.ma.array([[0, 1], [0, 1]], mask=[[True, False], [False, False]]))
+    assert same(sap.find_pairs(list(masked[4:])), PAIRS[(PAIRS >= 4).all(axis=1)] - 4)
+    for lists in (list(masked), tuple(masked), [[row[:2], row[2:]] for row in masked]):
+        with pytest.raises(ValueError, match=r"boxes has masked values in a list: pass one masked array"):
+            sap.find_pairs(lists)
+
+
+def test_reading_an_array_leaves_the_filters_of_warnings_alone() -> None:
+    """All threads share them: changed for a moment, they make a warning in another thread an error there."""
+
+    class Boxes(list[Any]):
+        def __array__(self, *_args: Any, **_options: Any) -> Any:
+            seen.append((warnings.filters, list(warnings.filters)))
+            return BOXES
+
+    seen: list[Any] = []
+    for boxes in (Boxes(BOXES.tolist()), Boxes([])):
+        assert same(sap.find_pairs(boxes))
+    assert seen
+    assert all(filters is warnings.filters and copy == warnings.filters for filters, copy in seen)
 
 
 def test_a_tuple_of_two_arrays_is_not_read_as_boxes() -> None:

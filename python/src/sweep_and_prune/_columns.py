@@ -7,7 +7,6 @@ integers beside unsigned ones, large decimals) becomes an array of Python's own 
 from __future__ import annotations
 
 import datetime as dt
-import warnings
 from collections.abc import Sequence
 from decimal import Decimal
 from fractions import Fraction
@@ -164,16 +163,30 @@ def as_array(values: Any, name: str) -> NDArray[Any]:
         values = values.detach().cpu()
     elif hasattr(values, "__dlpack__") and not hasattr(values, "__array__") and hasattr(np, "from_dlpack"):
         return np.from_dlpack(values)
+    # (No filter of warnings here: Python has one list of them for all threads.)
+    is_list = isinstance(values, (list, tuple))
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")  # NumPy up to 1.23 only warns of rows of different lengths
-            return np.asarray(values)
-    except (Warning, ValueError) as error:
-        if isinstance(values, (list, tuple)):
+        array = np.asarray(values)
+    except ValueError:
+        if is_list:
             _refuse_unequal(values, name)
-        if isinstance(error, Warning):
-            raise ValueError(f"{name} must be an array: {error}") from None
         raise
+    if is_list and _has_masked(values, array.ndim):  # NumPy reads the values under a mask
+        raise ValueError(
+            f"{name} has masked values in a list: pass one masked array, such as np.ma.stack({name}), or drop them"
+        )
+    return array
+
+
+def _has_masked(rows: Any, dimensions: int) -> bool:
+    """Whether nested lists of so many dimensions have an array with masked values in them."""
+    for row in rows:
+        if isinstance(row, np.ma.MaskedArray):
+            if np.ma.getmaskarray(row).any():
+                return True
+        elif dimensions > 2 and isinstance(row, (list, tuple)) and _has_masked(row, dimensions - 1):
+            return True
+    return False
 
 
 def _refuse_unequal(rows: Sequence[Any], name: str) -> None:
