@@ -17,7 +17,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cpu_time::ThreadTime;
-use sweep_and_prune::{Aabb, BroadPhase, PairFinder, ProxyId, Scalar};
+use sweep_and_prune::{Aabb, BroadPhase, Lists, PairFinder, ProxyId, Scalar};
 use sweep_and_prune_scenes::Random;
 
 /// An update may take this many times as long as finding all pairs of its boxes and sorting them, if not said
@@ -349,7 +349,22 @@ fn world<const D: usize, T: Scalar>(seed: u64, most: usize, most_time: f64) -> O
         }
         outcome.pairs = outcome.pairs.max(most_pairs);
     }
+    check_queries(&mut world, seed);
     outcome
+}
+
+/// Very many queries of a large world are answered at once, and some of them one by one: both find the same.
+fn check_queries<const D: usize, T: Scalar>(world: &mut BroadPhase<D, T>, seed: u64) {
+    let ids: Vec<_> = world.ids().collect();
+    let areas: Vec<_> = ids.iter().map(|&id| world.aabb(id).expect("the body lives")).collect();
+    let (mut all, mut some) = (Lists::new(), Lists::new());
+    let queries = world.queries();
+    queries.overlapping_many(&areas, &mut all).expect("the boxes are valid");
+    let mut lists = all.iter();
+    for areas in areas.chunks(1000) {
+        queries.overlapping_many(areas, &mut some).expect("the boxes are valid");
+        assert!(some.iter().eq(lists.by_ref().take(areas.len())), "seed {seed}: queries at once");
+    }
 }
 
 fn run(seed: u64, most: usize, most_time: f64) -> Outcome {

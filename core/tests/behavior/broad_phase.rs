@@ -2,9 +2,10 @@
 //! are a target of `fuzz/`.)
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use sweep_and_prune::{
-    Aabb, BroadPhase, Cast, Error, Filter, Hit, Options, PairFinder, ProxyId, Report,
+    Aabb, BroadPhase, Cast, Error, Filter, Hit, Lists, Options, PairFinder, ProxyId, Report,
     SnapshotFault, SnapshotInfo,
 };
 use sweep_and_prune_fuzz::{Model, Pair};
@@ -671,6 +672,85 @@ fn thousands_of_bodies_that_come_and_go_between_queries_are_found() {
         if step % 20 == 0 {
             let expected = bodies.iter().filter(|(_, other)| other.overlaps(&aabb));
             assert_eq!(found, sorted(expected.map(|&(id, _)| id)), "{step}");
+        }
+    }
+}
+
+/// One query for every fourth body is answered at once, a few hundred are answered one by one.
+#[test]
+fn thousands_of_queries_at_once_find_what_each_finds_alone() {
+    for report in [Report::Exact, Report::Fat { margin: 0.01, prediction: 1.0 }] {
+        let mut world = BroadPhase::<2>::with_options(Options::default().report(report)).unwrap();
+        let mut random = Random::new(9);
+        let mut draw = |size: f64| {
+            // On a lattice, so that many touch.
+            let min: [f64; 2] = random.point().map(|at: f64| (at * 256.0).floor() / 256.0);
+            let max = min.map(|at| at + (random.unit() * size * 4.0).floor() / 1024.0);
+            Aabb::new(min.map(|at| at as f32), max.map(|at| at as f32))
+        };
+        let boxes: Vec<_> = (0..40_000).map(|_| draw(4.0)).collect();
+        let filter = |at: usize| Filter::default().category(1 << (at % 3));
+        let mut bodies: Vec<_> = (0..boxes.len())
+            .map(|at| (world.insert_with(boxes[at], filter(at)).unwrap(), boxes[at], at))
+            .collect();
+        world.update();
+        // Free slots, slots with a new body, and bodies that moved.
+        for at in (0..1000).map(|at| at * 7) {
+            world.remove(bodies[at].0).unwrap();
+        }
+        bodies.retain(|&(.., at)| at % 7 != 0 || at >= 7000);
+        world.update();
+        for at in 0..500 {
+            let aabb = draw(4.0);
+            bodies.push((world.insert_with(aabb, filter(at)).unwrap(), aabb, at));
+            bodies[at].1 = draw(50.0);
+            world.set(bodies[at].0, bodies[at].1).unwrap();
+        }
+        let areas: Vec<_> = (0..10_500).map(|_| draw(8.0)).collect();
+        let points: Vec<_> = areas.iter().map(|area| area.min).collect();
+        let asked = Filter::default().mask(0b11);
+        let is_odd = |id: ProxyId| id.slot() % 2 == 1;
+        let queries = world.queries();
+        let kinds =
+            [queries, queries.unsorted(), queries.with_filter(asked).with_predicate(&is_odd)];
+        for (kind, queries) in kinds.into_iter().enumerate() {
+            let (mut all, mut some) = (Lists::new(), Lists::new());
+            for are_points in [false, true] {
+                let ask = |range: Range<usize>, lists: &mut Lists<ProxyId>| {
+                    if are_points {
+                        queries.containing_many(&points[range], lists).unwrap();
+                    } else {
+                        queries.overlapping_many(&areas[range], lists).unwrap();
+                    }
+                };
+                ask(0..areas.len(), &mut all);
+                assert_eq!(all.len(), areas.len());
+                for start in (0..areas.len()).step_by(500) {
+                    ask(start..start + 500, &mut some);
+                    for (at, list) in some.iter().enumerate() {
+                        let found = &all[start + at];
+                        if kind == 1 {
+                            assert_eq!(sorted(found.iter()), sorted(list.iter()));
+                        } else {
+                            assert_eq!(found, list);
+                        }
+                    }
+                }
+                for at in (0..areas.len()).step_by(150) {
+                    let area =
+                        if are_points { Aabb::new(points[at], points[at]) } else { areas[at] };
+                    let expected = bodies.iter().filter(|&&(id, aabb, at)| {
+                        aabb.overlaps(&area)
+                            && (kind < 2 || filter(at).category & 0b11 != 0 && is_odd(id))
+                    });
+                    let expected = sorted(expected.map(|&(id, ..)| id));
+                    assert_eq!(
+                        sorted(all[at].iter().copied()),
+                        expected,
+                        "{kind} {are_points} {at}"
+                    );
+                }
+            }
         }
     }
 }

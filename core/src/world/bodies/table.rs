@@ -65,12 +65,17 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
         }
     }
 
+    /// The boxes as given, by slot, of free slots those of their last bodies.
+    pub fn shapes(&self) -> &[Aabb<D, T>] {
+        match self.options.report {
+            Report::Exact => &self.boxes,
+            Report::Fat { .. } => self.displacements.shapes(),
+        }
+    }
+
     /// The box of a body as given.
     pub fn shape(&self, index: u32) -> &Aabb<D, T> {
-        match self.options.report {
-            Report::Exact => &self.boxes[index as usize],
-            Report::Fat { .. } => &self.displacements.shapes()[index as usize],
-        }
+        &self.shapes()[index as usize]
     }
 
     /// Writes all that is known of a body whose index is that of an existing row or the next.
