@@ -9,6 +9,7 @@ Prints the number of points, and where something was wrong.
 
 from __future__ import annotations
 
+import functools
 import os
 import signal
 import sys
@@ -22,6 +23,11 @@ from sweep_and_prune import _signals
 
 NAMES = ["a.npy", "p.csv"]
 PLACES = sys.argv[4:]
+
+
+@functools.cache
+def is_place(path: str) -> bool:
+    return any(place in path for place in PLACES)
 
 
 def is_taken(number: int) -> bool:
@@ -38,7 +44,7 @@ def run(number: int, points: list[int]) -> int:
 
     def trace(frame: Any, event: str, _: Any) -> Any:
         nonlocal passed
-        if not any(place in frame.f_code.co_filename for place in PLACES):
+        if not is_place(frame.f_code.co_filename):
             return None
         frame.f_trace_opcodes = True
         if event == "opcode" and is_taken(number):

@@ -178,13 +178,13 @@ def as_array(values: Any, name: str) -> NDArray[Any]:
     return array
 
 
-def _has_masked(rows: Any, dimensions: int) -> bool:
-    """Whether nested lists of so many dimensions have an array with masked values in them."""
+def _has_masked(rows: Any, depth: int) -> bool:
+    """Whether nested lists, of this depth, have an array with masked values in them."""
     for row in rows:
         if isinstance(row, np.ma.MaskedArray):
             if np.ma.getmaskarray(row).any():
                 return True
-        elif dimensions > 2 and isinstance(row, (list, tuple)) and _has_masked(row, dimensions - 1):
+        elif depth > 2 and isinstance(row, (list, tuple)) and _has_masked(row, depth - 1):
             return True
     return False
 
