@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections import namedtuple
 from typing import Any
 
 import numpy as np
@@ -248,6 +249,45 @@ def test_masked_values_are_missing_and_not_ignored() -> None:
     for lists in (list(masked), tuple(masked), [[row[:2], row[2:]] for row in masked]):
         with pytest.raises(ValueError, match=r"boxes has masked values in a list: pass one masked array"):
             sap.find_pairs(lists)
+
+
+def test_more_than_double_precision_is_refused_where_it_would_be_rounded() -> None:
+    step = np.finfo(np.longdouble).eps
+    if step == np.finfo(float).eps:
+        pytest.skip("here it is double precision")
+    assert same(sap.find_pairs(BOXES.astype(np.longdouble)))
+    apart = np.array([[0, 1], [1, 2]], np.longdouble)
+    apart[1, 0] += step  # which double precision rounds to 1
+    for boxes in (apart, apart.tolist(), list(apart), {"start": apart[:, 0], "end": apart[:, 1]}):
+        for find in (sap.find_pairs, sap.count_pairs, sap.count_overlaps, sap.BroadPhase(1).insert_many):
+            with pytest.raises(ValueError, match=r"which double precision does not have: round it, as .*astype"):
+                find(boxes)
+    with pytest.raises(ValueError, match=r"^margin is .*, which double precision does not have"):
+        sap.find_pairs([[0, 1], [2, 3]], margin=np.longdouble(1) - step)
+
+
+def test_named_tuples_are_read_by_their_fields() -> None:
+    Sides = namedtuple("Sides", "minx maxx miny maxy")
+    Rectangle = namedtuple("Rectangle", "x y w h")
+    Corners = namedtuple("Corners", "a b c d")
+    sides = [Sides(*row) for row in BOXES[:, [0, 2, 1, 3]].tolist()]
+    assert same(sap.find_pairs(sides))
+    assert same(sap.find_pairs(tuple(sides)))
+    assert same(sap.find_pairs([Corners(*row) for row in BOXES.tolist()]))
+    rectangles = [Rectangle(*row) for row in np.hstack([BOXES[:, :2], BOXES[:, 2:] - BOXES[:, :2]]).tolist()]
+    assert len(sap.find_pairs(rectangles, format="xywh")) == len(PAIRS)
+    with pytest.raises(ValueError, match=r'boxes has no columns that are known as boxes.*pass format="xywh"'):
+        sap.find_pairs(rectangles)
+    with pytest.raises(ValueError, match=r"boxes\[60\] does not have the fields of boxes\[0\]: minx, maxx, miny, maxy"):
+        sap.find_pairs([*sides, (0, 0, 1, 1)])
+    world = sap.BroadPhase(2, dtype=np.float64)
+    ids = world.insert_many(sides)
+    assert np.array_equal([world.box(id) for id in ids], BOXES)
+    world.set(ids[0], sides[1])
+    assert np.array_equal(world.box(ids[0]), BOXES[1])
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.DataFrame(BOXES[:, [3, 0, 1, 2]], columns=["maxy", "minx", "miny", "maxx"])
+    assert same(sap.find_pairs(list(frame.itertuples())))
 
 
 def test_reading_an_array_leaves_the_filters_of_warnings_alone() -> None:

@@ -10,7 +10,7 @@ from typing import Any, Protocol, Union
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from ._columns import as_array
+from ._columns import as_array, in_double
 from ._errors import StaleProxyError
 from ._inputs import Raw, intervals, raw_boxes
 
@@ -101,7 +101,7 @@ def real(value: object, name: str) -> float:
 
 def numbers(values: ArrayLike, name: str, dtype: np.dtype[Any] | None = None) -> Floats:
     """An array of coordinates of any shape: of `dtype`, or else of its own precision."""
-    array = as_array(values, name)
+    array = in_double(as_array(values, name), name)
     if array.dtype.kind not in "iuf":
         raise TypeError(f"{name} must be numbers, not of dtype {array.dtype}")
     if dtype is None:

@@ -1361,6 +1361,9 @@ class BroadPhase:
         return f"<BroadPhase of {len(self)} bodies, dimensions={self._dimensions}, dtype={self._dtype}>"
 
     def _row(self, box: ArrayLike, name: str) -> Floats:
+        if isinstance(box, tuple) and hasattr(box, "_fields"):  # the fields may have another order
+            rows: Boxes = [box]
+            return box_rows(rows, name, self._dtype, self._dimensions)
         return row(box, name, self._dtype, 2 * self._dimensions)
 
     def _rows(self, boxes: Boxes, name: str) -> Floats:

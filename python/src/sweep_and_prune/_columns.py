@@ -556,6 +556,22 @@ def one_type(arrays: Sequence[NDArray[Any]]) -> list[NDArray[Any]]:
     return [array.astype(dtype, copy=False) for array in arrays]
 
 
+def in_double(array: NDArray[Any], name: str) -> NDArray[Any]:
+    """Numbers of more than double precision in double precision, which must have them; others as they are."""
+    if array.dtype.kind != "f" or array.dtype.itemsize <= 8:
+        return array
+    with np.errstate(over="ignore", invalid="ignore"):
+        rounded = array.astype(np.float64)
+        differs = np.flatnonzero((rounded != array) & (array == array))
+    if len(differs):
+        at = "".join(f"[{index}]" for index in np.unravel_index(differs[0], array.shape))
+        raise ValueError(
+            f"{name}{at} is {array.flat[differs[0]]!r}, which double precision does not have: "
+            f"round it, as {name}.astype(float) does"
+        )
+    return rounded
+
+
 def is_rounded(array: NDArray[Any]) -> bool:
     """Whether it has integers that double precision may round."""
     if array.dtype.kind not in "iu" or array.dtype.itemsize < 8 or array.size == 0:

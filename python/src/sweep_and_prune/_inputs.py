@@ -10,7 +10,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ._columns import Column, arrow_array, as_array, exact_numbers, is_rounded, read_column, read_groups, side_by_side
+from ._columns import (
+    Column,
+    arrow_array,
+    as_array,
+    exact_numbers,
+    in_double,
+    is_rounded,
+    read_column,
+    read_groups,
+    side_by_side,
+)
 
 _AXES = "xyz"
 FORMATS = ("xyxy", "xywh", "cxcywh")
@@ -69,10 +79,14 @@ def raw_boxes(values: Any, name: str, format: str | None = "xyxy") -> Raw:
     Forms that are not known are left to the caller.
     """
     if type(values) is np.ndarray and values.dtype.kind in "iuf" and values.ndim == 2 and format == "xyxy":
-        return Raw(values)  # the common case, without further questions
+        return Raw(in_double(values, name))  # the common case, without further questions
     if isinstance(values, Raw):  # columns of a file, which have been read already
         return _corners(values, format, name)
-    values = with_rows(values)
+    raw = _raw_boxes(_by_field(with_rows(values), name), name, format)
+    return raw._replace(array=in_double(raw.array, name))
+
+
+def _raw_boxes(values: Any, name: str, format: str | None) -> Raw:
     ends = intervals(values)
     if ends is not None:
         columns = [read_column(side, name) for side in (ends.left, ends.right)]
@@ -111,6 +125,17 @@ def raw_boxes(values: Any, name: str, format: str | None = "xyxy") -> Raw:
     if array.ndim == 3 and array.shape[1] == 2 and 1 <= array.shape[2] <= 3:
         array = array.reshape(len(array), 2 * array.shape[2])  # -1 is not known without boxes
     return _corners(Raw(array), format, name)
+
+
+def _by_field(rows: Any, name: str) -> Any:
+    """Named tuples whose fields are known as boxes, as columns: their order does not matter. Anything else as it is."""
+    fields = getattr(rows[0], "_fields", None) if isinstance(rows, (list, tuple)) and len(rows) else None
+    if fields is None or not any(box_columns(fields, format) for format in FORMATS):
+        return rows
+    for index, row in enumerate(rows):
+        if getattr(row, "_fields", None) != fields:
+            raise ValueError(f"{name}[{index}] does not have the fields of {name}[0]: {', '.join(fields)}")
+    return dict(zip(fields, zip(*rows)))
 
 
 def listed(columns: Sequence[object], whose: str = "") -> str:

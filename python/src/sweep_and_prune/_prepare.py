@@ -19,6 +19,7 @@ from ._columns import (
     as_array,
     exact_numbers,
     group_codes,
+    in_double,
     in_one_unit,
     in_simple_unit,
     is_rounded,
@@ -408,7 +409,7 @@ def _extended(arrays: list[NDArray[Any]], margin: object) -> list[NDArray[Any]]:
     if arrays[0].dtype.kind in "mM":
         *arrays, add = _counts(in_one_unit([*arrays, duration(margin)]))
     else:
-        add = exact_numbers(margin, as_array(margin, "margin"))
+        add = in_double(exact_numbers(margin, as_array(margin, "margin")), "margin")
         if add.dtype.kind not in "iuf" and not _are_integers(add):
             raise TypeError(f"margin must be a number, not {margin!r}")
         if add.dtype.kind == "O" and arrays[0].dtype.kind == "f":
