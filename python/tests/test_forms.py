@@ -266,7 +266,7 @@ def test_more_than_double_precision_is_refused_where_it_would_be_rounded() -> No
         sap.find_pairs([[0, 1], [2, 3]], margin=np.longdouble(1) - step)
 
 
-def test_named_tuples_are_read_by_their_fields() -> None:
+def test_rows_with_names_are_read_by_them() -> None:
     Sides = namedtuple("Sides", "minx maxx miny maxy")
     Rectangle = namedtuple("Rectangle", "x y w h")
     Corners = namedtuple("Corners", "a b c d")
@@ -287,7 +287,17 @@ def test_named_tuples_are_read_by_their_fields() -> None:
     assert np.array_equal(world.box(ids[0]), BOXES[1])
     pandas = pytest.importorskip("pandas")
     frame = pandas.DataFrame(BOXES[:, [3, 0, 1, 2]], columns=["maxy", "minx", "miny", "maxx"])
-    assert same(sap.find_pairs(list(frame.itertuples())))
+    rows = [row for _, row in frame.iterrows()]
+    for boxes in (list(frame.itertuples()), rows, list(frame.to_records())):
+        assert same(sap.find_pairs(boxes))
+    for box in (rows[5], frame.to_records()[5]):
+        world.set(ids[0], box)
+        assert np.array_equal(world.box(ids[0]), BOXES[5])
+
+
+def test_ranges_are_not_read_as_what_is_in_them() -> None:
+    with pytest.raises(TypeError, match=r"boxes is a list of ranges: pass \[\[each\.start, each\.stop\]"):
+        sap.find_pairs([range(2), range(1, 3)])
 
 
 def test_reading_an_array_leaves_the_filters_of_warnings_alone() -> None:

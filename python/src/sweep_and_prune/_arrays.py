@@ -62,8 +62,10 @@ def index_dtype(dtype: DTypeLike) -> str:
 def checked_closed(closed: object, *sets: Any) -> bool:
     """Whether intervals contain both their ends. An IntervalIndex says so itself, unless the argument is given."""
     if closed is None:
-        own = {getattr(intervals(boxes), "closed", "both") for boxes in sets}
-        closed = own.pop() if len(own) == 1 else own
+        own = [getattr(intervals(boxes), "closed", "both") for boxes in sets]
+        if len(set(own)) > 1:
+            raise ValueError(f'one set is closed "{own[0]}" and one "{own[1]}": pass the closed that counts')
+        closed = own[0]
     if not (isinstance(closed, str) and closed in ("both", "left", "right", "neither")):
         raise ValueError(f'closed must be "both", "left", "right" or "neither", not {closed!r}')
     return closed == "both"

@@ -27,6 +27,7 @@ from ._arrays import (
 from ._columns import as_array
 from ._errors import InvalidQueryError, StaleProxyError
 from ._filter import Filter, words
+from ._inputs import fields_of
 from ._native import World
 
 
@@ -1361,9 +1362,9 @@ class BroadPhase:
         return f"<BroadPhase of {len(self)} bodies, dimensions={self._dimensions}, dtype={self._dtype}>"
 
     def _row(self, box: ArrayLike, name: str) -> Floats:
-        if isinstance(box, tuple) and hasattr(box, "_fields"):  # the fields may have another order
-            rows: Boxes = [box]
-            return box_rows(rows, name, self._dtype, self._dimensions)
+        if type(box) not in (list, tuple, np.ndarray) and fields_of(box) is not None:  # they may have another order
+            named: Any = [box]
+            return box_rows(named, name, self._dtype, self._dimensions)
         return row(box, name, self._dtype, 2 * self._dimensions)
 
     def _rows(self, boxes: Boxes, name: str) -> Floats:

@@ -106,6 +106,8 @@ def _raw_boxes(values: Any, name: str, format: str | None) -> Raw:
         return _corners(nested, format, name)
     if isinstance(values, list) and values and all(isinstance(one, dict) for one in values):
         raise TypeError(f"{name} is a list of dicts: pass a data frame of them, such as pandas.DataFrame({name})")
+    if isinstance(values, (list, tuple)) and values and isinstance(values[0], range):  # NumPy reads what is in them
+        raise TypeError(f"{name} is a list of ranges: pass [[each.start, each.stop] for each in {name}]")
     array = as_array(values, name)
     if array.dtype.kind in "OS" and array.ndim == 1 and array.size and isinstance(array[0], bytes):
         raise TypeError(f"{name} is bytes, not numbers: for well-known binary (WKB), pass shapely.from_wkb({name})")
@@ -127,15 +129,26 @@ def _raw_boxes(values: Any, name: str, format: str | None) -> Raw:
     return _corners(Raw(array), format, name)
 
 
+def fields_of(row: Any) -> tuple[str, ...] | None:
+    """The names in a named tuple, or in a row of a data frame or of a structured array; None for anything else."""
+    names = getattr(row, "_fields", None)
+    if isinstance(row, np.void):
+        names = row.dtype.names
+    elif hasattr(row, "iloc"):
+        names = row.index
+    return None if names is None else tuple(map(str, names))
+
+
 def _by_field(rows: Any, name: str) -> Any:
-    """Named tuples whose fields are known as boxes, as columns: their order does not matter. Anything else as it is."""
-    fields = getattr(rows[0], "_fields", None) if isinstance(rows, (list, tuple)) and len(rows) else None
+    """Rows whose fields are known as boxes, as columns: their order does not matter. Anything else as it is."""
+    first = rows[0] if isinstance(rows, (list, tuple)) and len(rows) and not _is_pair_of_arrays(rows) else None
+    fields = fields_of(first)
     if fields is None or not any(box_columns(fields, format) for format in FORMATS):
         return rows
     for index, row in enumerate(rows):
-        if getattr(row, "_fields", None) != fields:
+        if fields_of(row) != fields:
             raise ValueError(f"{name}[{index}] does not have the fields of {name}[0]: {', '.join(fields)}")
-    return dict(zip(fields, zip(*rows)))
+    return dict(zip(fields, zip(*map(tuple, rows))))
 
 
 def listed(columns: Sequence[object], whose: str = "") -> str:
