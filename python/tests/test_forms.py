@@ -295,6 +295,43 @@ def test_rows_with_names_are_read_by_them() -> None:
         assert np.array_equal(world.box(ids[0]), BOXES[5])
 
 
+def test_points_with_names_are_read_by_them() -> None:
+    pandas = pytest.importorskip("pandas")
+    Point = namedtuple("Point", "y x")
+    world = sap.BroadPhase(2)
+    world.insert_many([[0, 5, 1, 6], [5, 0, 6, 1]])
+    frame = pandas.DataFrame({"y": [5.5, 0.5], "X": [0.5, 5.5], "name": ["a", "b"]})
+    points: Any
+    for points in (frame, dict(frame), frame.to_records(), [Point(5.5, 0.5), Point(0.5, 5.5)]):
+        assert world.containing_many(points).ids.tolist() == [0, 1]
+        assert world.within_many(points, 0.1).ids.tolist() == [0, 1]
+    for point, body in (
+        (Point(5.5, 0.5), 0),
+        (frame[["y", "X"]].iloc[1], 1),
+        ((5.5, 0.5), 1),
+        (np.array([0.5, 5.5]), 0),
+    ):
+        assert world.containing(point).tolist() == [body]
+    Pair = namedtuple("Pair", "a b")
+    assert world.containing(Pair(0.5, 5.5)).tolist() == [0]
+    with pytest.raises(ValueError, match="points must have one column for each of x, y: its columns are y, name"):
+        world.containing_many(frame[["y", "name"]])
+
+
+def test_groups_with_the_labels_of_the_boxes_in_another_order_are_refused() -> None:
+    pandas = pytest.importorskip("pandas")
+    boxes = pandas.DataFrame(BOXES, columns=["minx", "miny", "maxx", "maxy"], index=range(100, 160))
+    by = pandas.Series(np.arange(60) % 3, index=boxes.index)
+    wanted = in_order(sap.find_pairs(boxes, by=by))
+    for keys in (by[::-1], by[::-1].to_frame()):
+        with pytest.raises(
+            ValueError, match=r"by has the labels of boxes in another order: pass by\.loc\[boxes\.index\]"
+        ):
+            sap.find_pairs(boxes, by=keys)
+    assert same(sap.find_pairs(boxes, by=by[::-1].loc[boxes.index]), wanted)
+    assert same(sap.find_pairs(boxes, by=by.reset_index(drop=True)), wanted)  # other labels
+
+
 def test_ranges_are_not_read_as_what_is_in_them() -> None:
     with pytest.raises(TypeError, match=r"boxes is a list of ranges: pass \[\[each\.start, each\.stop\]"):
         sap.find_pairs([range(2), range(1, 3)])

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ._columns import as_array, in_double
 from ._errors import StaleProxyError
-from ._inputs import Raw, intervals, raw_boxes
+from ._inputs import Raw, fields_of, intervals, point_rows, raw_boxes
 
 
 class ArrowData(Protocol):
@@ -165,6 +165,9 @@ def same_width(first: NDArray[Any], second: NDArray[Any]) -> tuple[NDArray[Any],
 
 def row(values: ArrayLike, name: str, dtype: np.dtype[Any], width: int) -> Floats:
     """One box, point or direction, as an array of one row."""
+    if type(values) not in (list, tuple, np.ndarray) and fields_of(values) is not None:
+        named: Any = [values]
+        return rows(named, name, dtype, width)
     array = as_array(values, name)
     if array.shape != (width,):
         raise ValueError(f"{name} must be {width} numbers, not of shape {array.shape}")
@@ -173,7 +176,7 @@ def row(values: ArrayLike, name: str, dtype: np.dtype[Any], width: int) -> Float
 
 def rows(values: ArrayLike, name: str, dtype: np.dtype[Any], width: int) -> Floats:
     """Points or directions as rows."""
-    array = as_array(values, name)
+    array = as_array(point_rows(values, name, width), name)
     if array.ndim == 1 and array.size == 0:
         array = array.reshape(0, width)
     if array.ndim != 2 or array.shape[1] != width:

@@ -151,6 +151,21 @@ def _by_field(rows: Any, name: str) -> Any:
     return dict(zip(fields, zip(*map(tuple, rows))))
 
 
+def point_rows(values: Any, name: str, width: int) -> Any:
+    """Points or directions in columns or rows with the names x, y and z, by these; anything else as it is."""
+    labels = _labels(values)
+    is_list = isinstance(values, (list, tuple)) and len(values) > 0
+    names = [*map(str, labels)] if labels else list(fields_of(values[0]) or []) if is_list else []
+    axes = list(_AXES[:width])
+    at = [[one for one, each in enumerate(names) if each.lower() == axis] for axis in axes]
+    if any(len(found) != 1 for found in at):
+        if labels:
+            raise ValueError(f"{name} must have one column for each of {', '.join(axes)}: {listed(names)}")
+        return values
+    columns = [values[labels[one]] if labels else [row[one] for row in map(tuple, values)] for [one] in at]
+    return side_by_side([read_column(column, name) for column in columns], axes, name)[0]
+
+
 def listed(columns: Sequence[object], whose: str = "") -> str:
     """The names of a table's columns for a message, not all of them if they are many."""
     if len(columns) == 0:

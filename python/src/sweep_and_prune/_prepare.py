@@ -544,6 +544,16 @@ def _are_several(by: Any, count: int) -> bool:
     return all(hasattr(key, "__len__") and not isinstance(key, (str, bytes)) and len(key) == count for key in by)
 
 
+def _refuse_another_order(by: Any, boxes: Any, name: str) -> None:
+    """Refuses groups whose rows have the labels of the boxes in another order: rows count by position here."""
+    own: Any = getattr(boxes, "index", None)
+    other: Any = getattr(by, "index", None)
+    if not (hasattr(own, "equals") and hasattr(other, "equals")) or len(own) != len(other) or own.equals(other):
+        return
+    if own.is_unique and own.isin(other).all():
+        raise ValueError(f"by has the labels of {name} in another order: pass by.loc[{name}.index], or by.to_numpy()")
+
+
 def _group_columns(by: Any, boxes: Any, name: str, count: int) -> list[Column]:
     """The columns that make the groups of a set: those that are named, or values for each box."""
     if isinstance(by, NAME):
@@ -552,6 +562,7 @@ def _group_columns(by: Any, boxes: Any, name: str, count: int) -> list[Column]:
         return by  # those of a file, which have been read already
     if isinstance(by, (list, tuple)) and by and all(type(one) is str for one in by) and has_columns(boxes):
         return [named_column(boxes, one, name) for one in by]
+    _refuse_another_order(by, boxes, name)
     if has_columns(by):
         return every_column(by)
     if _are_several(by, count):
