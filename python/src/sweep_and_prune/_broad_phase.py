@@ -953,7 +953,7 @@ class BroadPhase:
         """Finds the bodies whose boxes contain each of many points.
 
         Args:
-            points: `(n, dimensions)` numbers.
+            points: `(n, dimensions)` numbers, or a table with columns `x`, `y` and `z`.
             filter: as in `overlapping`.
             sorted: as in `overlapping`.
             exclude: as in `overlapping`.
@@ -1089,7 +1089,7 @@ class BroadPhase:
         """Finds the `k` bodies nearest to each of many points.
 
         Args:
-            points: `(n, dimensions)` numbers.
+            points: `(n, dimensions)` numbers, or a table with columns `x`, `y` and `z`.
             k: how many; 0 or more.
             filter: as in `overlapping`.
             max_distance: as in `nearest`.
