@@ -28,6 +28,10 @@ const searches = [
   ["no x", () => any.findPairs([{ minX: undefined, minY: 0, maxY: 1 }]), /^TypeError: boxes\[0\] has `minY` but no `minX`/],
   ["no y", () => any.findPairs([{ minX: 0, minZ: 0, maxX: 1, maxZ: 1 }]), /^TypeError: boxes\[0\] has `minZ` but no `minY`/],
   ["an edge that is undefined", () => any.findPairs([{ minX: undefined }]), /^TypeError: minX of boxes\[0\] must be a number, not undefined/],
+  ["a sprite of Phaser", () => any.findPairs([{ x: 0, y: 0, width: 2, height: 2, originX: 0.5, originY: 0.5 }]), /^TypeError: boxes\[0\] does not begin at its position: pass its `getBounds\(\)`/],
+  ["a sprite of Pixi", () => any.findPairs([{ x: 0, y: 0, width: 2, height: 2, anchor: { x: 0, y: 1 } }]), /^TypeError: boxes\[0\] does not begin at its position/],
+  ["a sprite as a body", () => any.world().insert({ x: 0, y: 0, width: 2, height: 2, originX: 0, originY: 0.5 }), /^TypeError: `box` does not begin at its position/],
+  ["sprites as bodies", () => any.world().insertMany([{ x: 0, y: 0, width: 2, height: 2, originX: 1, originY: 0 }]), /^TypeError: boxes\[0\] does not begin at its position/],
   ["2D and 3D", () => any.findPairs([box, cube]), /^TypeError: boxes\[1\] is in 3D and others in 2D/],
   ["3D and 2D", () => any.findPairs([cube, box]), /^TypeError: minZ of boxes\[1\] must be a number, not undefined/],
   ["2D and 3D in two sets", () => any.findPairsBetween([box], [cube]), /^TypeError: b\[0\] is in 3D and others in 2D/],
@@ -58,6 +62,7 @@ const searches = [
   ["a misspelt way to treat what is missing", () => any.findPairs(flat, { dimensions: 2, missing: "ignore" }), /^RangeError: `missing` must be "raise" or "skip", not a string/],
 ];
 any.finder = () => new PairFinder({ dimensions: 2 });
+any.world = () => new BroadPhase({ dimensions: 2 });
 
 for (const [what, call, message] of searches) test(`search: ${what}`, () => assert.throws(call, message));
 

@@ -158,6 +158,7 @@ export function isNamed(value: unknown): value is object {
  */
 export function readBox(box: object, dimensions: Dimensions, name: string, into: Float64Array, at: number, index: number): Form {
   const form = formOf(box, name, index);
+  if (form === rectangle && index <= 0) refuseOrigin(box, name, index);
   for (const corner of [0, 1] as const) {
     for (let axis = 0; axis < dimensions; axis++, at++) {
       const value = form.read(box, corner, axis);
@@ -168,6 +169,12 @@ export function readBox(box: object, dimensions: Dimensions, name: string, into:
     }
   }
   return form;
+}
+
+/** Throws for a sprite that has its origin (Phaser) or anchor (Pixi) at its `x` and `y`. Of many, which are alike, the first is looked at. */
+function refuseOrigin(box: object, name: string, index: number): void {
+  const { originX, originY, anchor } = box as { originX?: unknown; originY?: unknown; anchor?: Corner | null };
+  if (originX || originY || anchor?.x || anchor?.y) throw new TypeError(`${labelOf(name, index)} does not begin at its position: pass its \`getBounds()\``);
 }
 
 /** Throws if a box has other axes than those before it. */
