@@ -312,6 +312,8 @@ def test_points_with_names_are_read_by_them() -> None:
         (np.array([0.5, 5.5]), 0),
     ):
         assert world.containing(point).tolist() == [body]
+    with pytest.raises(ValueError, match=r"points\[1\] does not have the fields of points\[0\]: y, x"):
+        world.containing_many([Point(5.5, 0.5), (0.5, 5.5)])
     Pair = namedtuple("Pair", "a b")
     assert world.containing(Pair(0.5, 5.5)).tolist() == [0]
     with pytest.raises(ValueError, match="points must have one column for each of x, y: its columns are y, name"):

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ._columns import as_array, in_double
 from ._errors import StaleProxyError
-from ._inputs import Raw, fields_of, intervals, point_rows, raw_boxes
+from ._inputs import Raw, intervals, is_named, point_rows, raw_boxes
 
 
 class ArrowData(Protocol):
@@ -165,7 +165,7 @@ def same_width(first: NDArray[Any], second: NDArray[Any]) -> tuple[NDArray[Any],
 
 def row(values: ArrayLike, name: str, dtype: np.dtype[Any], width: int) -> Floats:
     """One box, point or direction, as an array of one row."""
-    if type(values) not in (list, tuple, np.ndarray) and fields_of(values) is not None:
+    if is_named(values):
         named: Any = [values]
         return rows(named, name, dtype, width)
     array = as_array(values, name)

@@ -27,7 +27,7 @@ from ._arrays import (
 from ._columns import as_array
 from ._errors import InvalidQueryError, StaleProxyError
 from ._filter import Filter, words
-from ._inputs import fields_of
+from ._inputs import is_named
 from ._native import World
 
 
@@ -1362,7 +1362,7 @@ class BroadPhase:
         return f"<BroadPhase of {len(self)} bodies, dimensions={self._dimensions}, dtype={self._dtype}>"
 
     def _row(self, box: ArrayLike, name: str) -> Floats:
-        if type(box) not in (list, tuple, np.ndarray) and fields_of(box) is not None:  # they may have another order
+        if is_named(box):
             named: Any = [box]
             return box_rows(named, name, self._dtype, self._dimensions)
         return row(box, name, self._dtype, 2 * self._dimensions)

@@ -139,31 +139,42 @@ def fields_of(row: Any) -> tuple[str, ...] | None:
     return None if names is None else tuple(map(str, names))
 
 
-def _by_field(rows: Any, name: str) -> Any:
-    """Rows whose fields are known as boxes, as columns: their order does not matter. Anything else as it is."""
-    first = rows[0] if isinstance(rows, (list, tuple)) and len(rows) and not _is_pair_of_arrays(rows) else None
-    fields = fields_of(first)
-    if fields is None or not any(box_columns(fields, format) for format in FORMATS):
-        return rows
+def is_named(row: Any) -> bool:
+    """Whether one box or point has names, whose order is not that of an array."""
+    return type(row) not in (list, tuple, np.ndarray) and fields_of(row) is not None
+
+
+def _fields_of_rows(rows: Any) -> tuple[str, ...]:
+    """The names in the first one of a list of rows; none for anything else."""
+    is_list = isinstance(rows, (list, tuple)) and len(rows) > 0
+    return (fields_of(rows[0]) if is_list else None) or ()
+
+
+def _as_columns(rows: Any, fields: tuple[str, ...], name: str) -> dict[str, Any]:
+    """Rows that all have these names, as columns."""
     for index, row in enumerate(rows):
         if fields_of(row) != fields:
             raise ValueError(f"{name}[{index}] does not have the fields of {name}[0]: {', '.join(fields)}")
     return dict(zip(fields, zip(*map(tuple, rows))))
 
 
+def _by_field(rows: Any, name: str) -> Any:
+    """Rows whose fields are known as boxes, as columns: their order does not matter. Anything else as it is."""
+    fields = () if _is_pair_of_arrays(rows) else _fields_of_rows(rows)
+    return _as_columns(rows, fields, name) if any(box_columns(fields, format) for format in FORMATS) else rows
+
+
 def point_rows(values: Any, name: str, width: int) -> Any:
     """Points or directions in columns or rows with the names x, y and z, by these; anything else as it is."""
-    labels = _labels(values)
-    is_list = isinstance(values, (list, tuple)) and len(values) > 0
-    names = [*map(str, labels)] if labels else list(fields_of(values[0]) or []) if is_list else []
-    axes = list(_AXES[:width])
-    at = [[one for one, each in enumerate(names) if each.lower() == axis] for axis in axes]
-    if any(len(found) != 1 for found in at):
+    axes, labels, fields = list(_AXES[:width]), _labels(values), _fields_of_rows(values)
+    names = [str(one).lower() for one in labels or fields]
+    if any(names.count(axis) != 1 for axis in axes):
         if labels:
-            raise ValueError(f"{name} must have one column for each of {', '.join(axes)}: {listed(names)}")
+            raise ValueError(f"{name} must have one column for each of {', '.join(axes)}: {listed(labels)}")
         return values
-    columns = [values[labels[one]] if labels else [row[one] for row in map(tuple, values)] for [one] in at]
-    return side_by_side([read_column(column, name) for column in columns], axes, name)[0]
+    columns = values if labels else _as_columns(values, fields, name)
+    known = dict(zip(names, labels or fields))
+    return side_by_side([read_column(columns[known[axis]], name) for axis in axes], axes, name)[0]
 
 
 def listed(columns: Sequence[object], whose: str = "") -> str:
