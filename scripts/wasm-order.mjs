@@ -7,13 +7,20 @@ const MEMORIES = [16_000, 22_000, 28_000];
 /** The length of the byte strings that are compared. */
 const LENGTH = 6;
 
+/** How many functions are tried as the first one, and how many orders as whole modules: in another order functions have other numbers. */
+const [STARTS, MODULES] = [16, 6];
+
 /** The bytes of a module, as `binaryen` writes it without names, with its functions in another order. */
 export function orderBySimilarity(binaryen, bytes, features) {
-  const bodies = bodiesOf(bytes);
+  return smallest(ordersOf(bodiesOf(bytes)).map((order) => inOrder(order, binaryen, bytes, features)))[0];
+}
+
+/** A module with its functions in this order. */
+function inOrder(order, binaryen, bytes, features) {
   const imported = WebAssembly.Module.imports(new WebAssembly.Module(bytes)).filter(({ kind }) => kind === "function").length;
-  const names = new Array(imported + bodies.length);
+  const names = new Array(imported + order.length);
   for (let at = 0; at < imported; at++) names[at] = `a${String(at).padStart(6, "0")}`;
-  smallest(bodies).forEach((at, rank) => (names[imported + at] = `b${String(rank).padStart(6, "0")}`));
+  order.forEach((at, rank) => (names[imported + at] = `b${String(rank).padStart(6, "0")}`));
   const module = binaryen.readBinary(Buffer.concat([bytes, nameSection(names)]));
   module.setFeatures(features);
   module.runPasses(["reorder-functions-by-name", "strip-debug"]);
@@ -22,23 +29,29 @@ export function orderBySimilarity(binaryen, bytes, features) {
   return Buffer.from(ordered);
 }
 
-/** The positions of bodies in the order in which they are smallest after gzip, of those that are tried. */
-function smallest(bodies) {
+/** The orders, as positions of bodies, in which bodies are smallest after gzip, of those that are tried. */
+function ordersOf(bodies) {
   const strings = stringsOf(bodies);
-  const orders = MEMORIES.map((memory) => similarNext(bodies, strings, memory));
-  const sizes = orders.map((order) => gzipSync(Buffer.concat(order.map((at) => bodies[at])), { level: 9 }).length);
-  return orders[sizes.indexOf(Math.min(...sizes))];
+  const starts = Array.from({ length: STARTS }, (_, start) => Math.floor((start * bodies.length) / STARTS));
+  const orders = MEMORIES.flatMap((memory) => starts.map((start) => similarNext(bodies, strings, memory, start)));
+  return smallest(orders, (order) => Buffer.concat(order.map((at) => bodies[at]))).slice(0, MODULES);
 }
 
-/** The positions of bodies: each is followed by the one of which the largest part occurs in those within `memory` bytes before. */
-function similarNext(bodies, { ofBody, bodiesWith }, memory) {
+/** Sorts what has such bytes by their size after gzip. */
+function smallest(all, bytesOf = (bytes) => bytes) {
+  const sizes = new Map(all.map((each) => [each, gzipSync(bytesOf(each), { level: 9 }).length]));
+  return all.toSorted((a, b) => sizes.get(a) - sizes.get(b));
+}
+
+/** The positions of bodies from `start` on: each is followed by the one of which the largest part occurs in those within `memory` bytes before. */
+function similarNext(bodies, { ofBody, bodiesWith }, memory, start) {
   const left = new Set(bodies.keys());
   const order = [];
   // How many of the last functions have a string, and how many of its strings a function has in common with them.
   const remembered = new Uint32Array(bodiesWith.length);
   const known = new Uint32Array(bodies.length);
   let [first, size] = [0, 0];
-  let next = 0;
+  let next = start;
   while (next !== undefined) {
     left.delete(next);
     order.push(next);

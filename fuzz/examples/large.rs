@@ -354,17 +354,24 @@ fn world<const D: usize, T: Scalar>(seed: u64, most: usize, most_time: f64) -> O
     outcome
 }
 
-/// Very many queries of a large world are answered at once, and some of them one by one: both find the same.
+/// Very many queries of a large world are answered at once, and some of them one by one: both find the same. Asked again, the
+/// bodies are sorted, then few of them move, and then many.
 fn check_queries<const D: usize, T: Scalar>(world: &mut BroadPhase<D, T>, seed: u64) {
     let ids: Vec<_> = world.ids().collect();
     let areas: Vec<_> = ids.iter().map(|&id| world.aabb(id).expect("the body lives")).collect();
     let (mut all, mut some) = (Lists::new(), Lists::new());
-    let queries = world.queries();
-    queries.overlapping_many(&areas, &mut all).expect("the boxes are valid");
-    let mut lists = all.iter();
-    for areas in areas.chunks(1000) {
-        queries.overlapping_many(areas, &mut some).expect("the boxes are valid");
-        assert!(some.iter().eq(lists.by_ref().take(areas.len())), "seed {seed}: queries at once");
+    for moves_one_in in [None, None, None, Some(1000), Some(64), Some(8)] {
+        for at in (0..ids.len()).step_by(moves_one_in.unwrap_or(usize::MAX)).skip(1) {
+            world.set(ids[at], areas[at / 2]).expect("the body lives");
+        }
+        let queries = world.queries();
+        queries.overlapping_many(&areas, &mut all).expect("the boxes are valid");
+        let mut lists = all.iter();
+        for areas in areas.chunks(1000) {
+            queries.overlapping_many(areas, &mut some).expect("the boxes are valid");
+            let is_same = some.iter().eq(lists.by_ref().take(areas.len()));
+            assert!(is_same, "seed {seed}: queries at once, {moves_one_in:?}");
+        }
     }
 }
 

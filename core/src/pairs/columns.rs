@@ -8,6 +8,7 @@ use super::grid::Grid;
 use super::kernel::{ColumnSlots, CountedPlacements, Placement, assign_slots};
 use super::parallel::Kept;
 use super::placements::Placements;
+use super::sort::Sorter;
 use super::source::{Record, Source};
 use super::task::Stop;
 use crate::memory::grow_to;
@@ -47,6 +48,22 @@ impl<const D: usize, T: Scalar> Columns<D, T> {
         }
         let mut counted = [placements.count(&mut self.ends)?];
         self.records.slots(&mut counted)?.for_each(|slots| write(source, slots));
+        Ok(())
+    }
+
+    /// Sorts each column of the grid by left edge, and gives back spare memory.
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn sort(&mut self, grid: &Grid<T>, sorter: &mut Sorter<T>) -> Result<(), TryReserveError> {
+        let mut sorted = Vec::new();
+        sorted.try_reserve_exact(self.len())?;
+        for column in (0..grid.len()).map(|column| self.column(column)) {
+            if !column.is_empty() {
+                sorted.extend(sorter.order(column, grid.sweep)?.map(|at| column[at]));
+            }
+        }
+        self.records.array = sorted;
         Ok(())
     }
 

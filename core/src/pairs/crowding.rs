@@ -43,6 +43,11 @@ pub(super) fn tests<T: Scalar>(sorted: &[SortedBoxes<T>], boxes: usize) -> Optio
     (boxes >= MIN_BOXES_TO_PROBE).then(|| count_tests(sorted, FEW_PROBES))
 }
 
+/// Whether there are enough tests for this many boxes that another plan may pay.
+pub(super) fn are_crowded(tests: u64, boxes: usize) -> bool {
+    tests > CROWDED_TESTS_PER_BOX * boxes as u64
+}
+
 /// Whether this many tests are few for this many boxes.
 pub(super) fn are_sparse<T: Scalar>(tests: u64, boxes: usize) -> bool {
     tests < (SPARSE_BYTES_PER_BOX / T::BYTES * boxes) as u64
@@ -58,12 +63,11 @@ pub(super) fn better_plan<const D: usize, T: Scalar, S: Source<D, T>>(
     among: Among,
 ) -> Option<Plan<T>> {
     let boxes: usize = sets.iter().map(|set| set.len()).sum();
-    let crowd = CROWDED_TESTS_PER_BOX * boxes as u64;
-    if tests <= crowd {
+    if !are_crowded(tests, boxes) {
         return None;
     }
     let tests = count_tests(sorted, MANY_PROBES);
-    if tests <= crowd {
+    if !are_crowded(tests, boxes) {
         return None;
     }
     let (plan, cost) = plan(sets, among);

@@ -60,13 +60,13 @@ struct OnLine<T> {
 #[derive(Debug)]
 pub(super) struct Driver<const D: usize, T: Scalar, P = ()> {
     pub kernel: Kernel,
-    sorter: Sorter<T>,
-    sorted: [SortedBoxes<T>; 2],
+    pub sorter: Sorter<T>,
+    pub sorted: [SortedBoxes<T>; 2],
     /// None or one, so that drivers of other boxes are small.
     on_line: Vec<OnLine<T>>,
     pub placements: Placements,
     /// Spare columns and groups by size, one for each level at which plans were ever nested, if memory allows.
-    columns: Vec<[Columns<D, T>; 2]>,
+    pub columns: Vec<[Columns<D, T>; 2]>,
     groups: Vec<Groups<D, T>>,
     /// The drivers of the other threads.
     pub helpers: Helpers<Self>,

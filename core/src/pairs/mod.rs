@@ -55,6 +55,9 @@
 //! **Few boxes against many**: boxes of the larger set are copied only to columns that hold boxes of the
 //! smaller one. The number of columns is limited by the number of boxes, since empty ones cost time too.
 //!
+//! **A set that many searches have in common** (`sorted_set.rs`) is copied to columns and sorted once: for queries of a broad
+//! phase whose bodies rest.
+//!
 //! # Why it is the same everywhere
 //! Cells come from one monotone function of a coordinate, so that no box begins after it ends, whatever
 //! rounds, overflows or is infinite. Cells decide where a pair is found. Only comparisons of the given
@@ -108,6 +111,7 @@ mod search;
 mod sink;
 mod sizes;
 mod sort;
+mod sorted_set;
 mod source;
 mod sweep;
 mod task;
@@ -118,3 +122,4 @@ pub use finder::{PairFinder, count_pairs, find_pairs, find_pairs_between};
 pub use kernel::Kernel;
 pub use parts::InParts;
 pub use search::Search;
+pub use sorted_set::SortedSet;

@@ -52,19 +52,31 @@ impl<T: Scalar> Sorter<T> {
         self.sort_keys(source, axis)?;
         boxes.reset(source.len(), D - 1)?;
         for (at, &key) in self.sorted[..source.len()].iter().enumerate() {
-            let i = T::Arithmetic::position(key) as usize;
-            let Aabb { min, max } = source[i].aabb();
-            boxes.left[at] = min[axis];
-            boxes.right[at] = max[axis];
-            let mut other = axis;
-            for k in 0..D - 1 {
-                other = if other + 1 == D { 0 } else { other + 1 };
-                boxes.min[k][at] = min[other];
-                boxes.max[k][at] = max[other];
-            }
-            boxes.id[at] = source[i].id(i);
-            boxes.dedup[at] = source[i].dedup();
+            put(source, T::Arithmetic::position(key) as usize, axis, boxes, at);
         }
+        Ok(())
+    }
+
+    /// The positions of the boxes in the source by left edge on `axis`, then by position.
+    pub fn order<const D: usize, S: Source<D, T>>(
+        &mut self,
+        source: &[S],
+        axis: usize,
+    ) -> Result<impl Iterator<Item = usize>, TryReserveError> {
+        self.sort_keys(source, axis)?;
+        let keys = self.sorted[..source.len()].iter();
+        Ok(keys.map(|&key| T::Arithmetic::position(key) as usize))
+    }
+
+    /// Fills `boxes` with those of `source`, which come by left edge on `axis`.
+    pub fn in_order<const D: usize, S: Source<D, T>>(
+        source: &[S],
+        axis: usize,
+        boxes: &mut SortedBoxes<T>,
+    ) -> Result<(), TryReserveError> {
+        boxes.reset(source.len(), D - 1)?;
+        // A call for each box takes hardly more time, and 0.7 KB less of WebAssembly.
+        (0..source.len()).for_each(|at| put_same(source, at, axis, boxes));
         Ok(())
     }
 
@@ -160,6 +172,39 @@ impl<T: Scalar> Sorter<T> {
         }
         Ok(())
     }
+}
+
+/// Puts box `i` of the source, to be swept on an axis, at a position of `boxes`.
+#[inline(always)]
+fn put<const D: usize, T: Scalar, S: Source<D, T>>(
+    source: &[S],
+    i: usize,
+    axis: usize,
+    boxes: &mut SortedBoxes<T>,
+    at: usize,
+) {
+    let Aabb { min, max } = source[i].aabb();
+    boxes.left[at] = min[axis];
+    boxes.right[at] = max[axis];
+    let mut other = axis;
+    for k in 0..D - 1 {
+        other = if other + 1 == D { 0 } else { other + 1 };
+        boxes.min[k][at] = min[other];
+        boxes.max[k][at] = max[other];
+    }
+    boxes.id[at] = source[i].id(i);
+    boxes.dedup[at] = source[i].dedup();
+}
+
+/// Puts box `at` of the source at its own position.
+#[inline(never)]
+fn put_same<const D: usize, T: Scalar, S: Source<D, T>>(
+    source: &[S],
+    at: usize,
+    axis: usize,
+    boxes: &mut SortedBoxes<T>,
+) {
+    put(source, at, axis, boxes, at);
 }
 
 /// Cuts the line between two coordinates into `count` equal intervals.

@@ -377,6 +377,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         Queries {
             bodies,
             tree: tracking.tree.tree(),
+            sorted: &tracking.sorted,
             filter: None,
             predicate: None,
             is_sorted: true,

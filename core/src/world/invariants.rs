@@ -14,6 +14,7 @@
 //! | `FLYING`, `flying` | an update in which it was fast | an update in which it is slow, or queries | the tree is fresh and does not hold it |
 //! | `fat` | an update in which it left its own | the same | contains the box of the last update, unless `is_fat_stale` |
 //! | `tree` | updates and queries | updates that replace all fat AABBs | unless unbuilt, the tree holds all bodies that are not `NEW` and do not fly |
+//! | `sorted` | queries, after calls with very many boxes | such a call that finds it useless, or none for long | nothing: each call compares the boxes |
 //! | `candidates.listed()` | updates | updates | pairs of fat AABBs that overlap, at least one body of each awake, with a flag that says whether they are a pair |
 //! | `candidates.asleep_pairs()` | the end of an update | updates in which one wakes | they are pairs |
 //! | `candidates.sorted()` | updates from scratch | the next other update | all pairs, sorted; none is listed, no body asleep, and indices are slots |

@@ -8,6 +8,7 @@ use super::candidates::{Candidates, PairSorter};
 use super::finder::Finder;
 use super::permutation::Permutation;
 use super::policy::{Motion, Policy, Sleep, Usage};
+use super::queries::SortedBodies;
 use super::search_tree::SearchTree;
 use crate::cloning::clone_fields;
 use crate::{Aabb, Scalar};
@@ -37,12 +38,14 @@ pub struct Tracking<const D: usize, T: Scalar> {
     pub finder: Finder<D, T>,
     pub usage: Usage,
     pub scratch: Scratch<D, T>,
+    /// For many queries at once.
+    pub sorted: SortedBodies<D, T>,
 }
 
 clone_fields! {
     [const D: usize, T: Scalar] Tracking<D, T> {
         fat, is_fat_stale, candidates, tree, flying, is_queried, is_tree_due, motion,
-        policy, sleep, locality_decay, is_order_due, finder, usage, scratch,
+        policy, sleep, locality_decay, is_order_due, finder, usage, scratch, sorted,
     }
 }
 

@@ -31,6 +31,7 @@ fn give_back<const D: usize, T: Scalar>(
     events: &mut Events,
     enough: usize,
 ) {
+    tracking.sorted.give_back();
     tracking.candidates.shrink(enough);
     free_buffers(tracking, events, enough);
 }

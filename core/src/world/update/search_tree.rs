@@ -31,6 +31,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         self.ready_tree(bodies);
         self.land_in_tree(bodies);
         self.tree.add_changes(bodies, &self.fat);
+        self.sorted.prepare(bodies.shapes());
     }
 
     /// Notes that all fat AABBs are new.
