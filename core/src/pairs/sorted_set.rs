@@ -7,7 +7,7 @@
 //! ```
 
 use super::columns::Columns;
-use super::crowding::{are_crowded, most_records, tests};
+use super::crowding::{are_crowded, tests};
 use super::driver::Driver;
 use super::finder::PairFinder;
 use super::grid::Grid;
@@ -18,6 +18,7 @@ use super::sink::Store;
 use super::sort::Sorter;
 use super::sweep::Sweep;
 use super::task::{Stop, Task};
+use crate::memory::only_item;
 use crate::{Aabb, Error, Scalar};
 
 /// The boxes of a set in columns, by left edge in each.
@@ -28,8 +29,8 @@ pub struct SortedSet<const D: usize, T> {
 }
 
 impl<const D: usize, T: Scalar> SortedSet<D, T> {
-    /// Sorts valid boxes, with the buffers of a finder. None if one grid does not divide them well, since their sizes differ much
-    /// or they are crowded, or if there is not enough memory.
+    /// Sorts valid boxes, with the buffers of a finder. None if one grid does not divide them well, since their sizes differ much,
+    /// or if there is not enough memory.
     #[inline(never)]
     pub fn new(boxes: &[Aabb<D, T>], finder: &mut PairFinder<D, T>) -> Option<Self> {
         if boxes.is_empty() {
@@ -40,10 +41,6 @@ impl<const D: usize, T: Scalar> SortedSet<D, T> {
         let Driver { sorter, placements, .. } = &mut finder.0.driver;
         let mut columns = Columns::default();
         columns.fill(boxes, &grid, None, placements).ok()?;
-        let crowd = most_records(boxes.len(), grid.len());
-        if (0..grid.len()).any(|column| columns.column(column).len() > crowd) {
-            return None;
-        }
         columns.sort(&grid, sorter).ok()?;
         Some(Self { grid, columns })
     }
@@ -76,8 +73,7 @@ impl<const D: usize, T: Scalar> SortedSet<D, T> {
         let axis = self.grid.sweep;
         let task = Task::new(PairOrder::BySet, None);
         let sweep = Sweep { kernel: *kernel, all_axes: false, task };
-        columns.resize_with(1, Default::default);
-        let others = &mut columns[0][0];
+        let others = &mut only_item(columns)?[0];
         others.fill(boxes, &self.grid, None, placements)?;
         store.clear();
         for column in 0..self.grid.len() {
@@ -146,7 +142,7 @@ mod tests {
         pairs_are_those_of_the_finder::<3, f64>();
     }
 
-    /// A set along a line, which is swept along it, and boxes that are as long.
+    /// A set along a line, which is swept along it, and boxes that are as long; a crowd.
     #[test]
     fn boxes_that_are_crowded_in_a_column_are_left_to_another_plan() {
         let (at, finder) = (|x: u16, y: f32| [f32::from(x), y], &mut PairFinder::new());
@@ -157,6 +153,12 @@ mod tests {
         assert!(matches!(sorted.pairs_with(&with, finder), Ok(None)));
         let few = sorted.pairs_with(&with[..5], finder).unwrap().expect("they are not crowded");
         assert_eq!(few.len(), 4000);
+
+        let crowd = [Aabb::new([0.0; 2], [1.0; 2]); 20_000];
+        let sorted = SortedSet::new(&crowd, finder).expect("one column is enough");
+        assert!(matches!(sorted.pairs_with(&crowd, finder), Ok(None)));
+        let far = [Aabb::new([2.0; 2], [3.0; 2])];
+        assert!(matches!(sorted.pairs_with(&far, finder), Ok(Some([]))));
     }
 
     #[test]
@@ -168,9 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn crowds_and_boxes_of_very_different_sizes_are_not_sorted() {
-        let crowd = [Aabb::new([0.0; 2], [1.0; 2]); 20_000];
-        assert!(SortedSet::<2, f32>::new(&crowd, &mut PairFinder::new()).is_none());
+    fn boxes_of_very_different_sizes_are_not_sorted() {
         let mut sizes = boxes::<3, f32>(20_000, 2.0, &mut 7);
         sizes.iter_mut().step_by(10).for_each(|each| *each = Aabb::new([0.0; 3], [64.0; 3]));
         assert!(SortedSet::new(&sizes, &mut PairFinder::new()).is_none());

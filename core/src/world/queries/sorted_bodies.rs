@@ -256,13 +256,17 @@ mod tests {
     #[test]
     fn boxes_that_no_grid_divides_are_not_sorted_again_and_again() {
         let mut sorted = SortedBodies::default();
-        let crowd = vec![Aabb::new([0.0; 2], [1.0; 2]); 20_000];
-        let areas = [Aabb::new([5.0; 2], [6.0; 2])];
+        // Unit boxes in space, 2 apart, of which one in ten is as large as all.
+        let at = |x: u16| [x % 27, x / 27 % 27, x / 729].map(|at| 2.0 * f32::from(at));
+        let bodies = (0..27 * 27 * 27).map(|x| Aabb::new(at(x), at(x).map(|at| at + 1.0)));
+        let mut bodies: Vec<_> = bodies.collect();
+        bodies.iter_mut().step_by(10).for_each(|each| *each = Aabb::new([0.0; 3], [53.0; 3]));
+        let areas = [Aabb::new([5.0; 3], [6.0; 3])];
         let mut tries = 0;
         for _ in 0..100 {
-            assert!(sorted.pairs_with(&areas, &crowd, &mut PairFinder::new()).is_none());
+            assert!(sorted.pairs_with(&areas, &bodies, &mut PairFinder::new()).is_none());
             let misses = *sorted.misses.get_mut();
-            sorted.prepare(&crowd);
+            sorted.prepare(&bodies);
             tries += usize::from(*sorted.misses.get_mut() < misses);
         }
         assert_eq!(tries, 5); // after 2, 4, 8, 16 and 32 misses
