@@ -220,13 +220,22 @@ inline void check_lengths(std::size_t ids, std::size_t boxes) {
     fail(failure);
 }
 
-/// Fills a vector by a function that takes an array, its capacity and a place for the count.
+/// Fills a vector by a function that takes an array, its capacity and a place for the count. If that throws, it has written
+/// nothing, and the vector is as before.
 template <class T, class List> void fill(std::vector<T> &items, List list) {
+    struct sized {
+        std::vector<T> &items;
+        std::size_t size;
+        ~sized() { items.resize(size); }
+    } result{items, items.size()};
     if (items.capacity() < 16) items.reserve(16);
     for (std::size_t count = 0;; items.reserve(count)) {
         items.resize(items.capacity());
         list(items.data(), items.size(), &count);
-        if (count <= items.size()) return items.resize(count);
+        if (count <= items.size()) {
+            result.size = count;
+            return;
+        }
     }
 }
 
@@ -290,7 +299,8 @@ public:
     owner() noexcept = default;
     owner(owner &&other) noexcept : handle(std::exchange(other.handle, nullptr)) {}
     owner &operator=(owner &&other) noexcept {
-        std::swap(handle, other.handle);
+        owner moved(std::move(other));
+        std::swap(handle, moved.handle);
         return *this;
     }
     ~owner() { destroy(&handle); }

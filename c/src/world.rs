@@ -1,5 +1,6 @@
 //! A broad phase with its threads, and what it has reported.
 
+use std::mem::take;
 use std::ptr::null;
 
 use sweep_and_prune::{BroadPhase, Error, Options, Queries, Report, Scalar};
@@ -36,14 +37,16 @@ impl<const D: usize, T: Scalar> World<D, T> {
     /// The same world once more.
     pub fn copy(&self) -> Result<Self, Failure> {
         let threads = Threads::new(self.threads.count() as u32)?;
-        let copy = Self::of(self.bodies.clone(), threads);
-        Ok(Self { changes: self.changes.clone(), is_due: self.is_due, ..copy })
+        Ok(Self { is_due: self.is_due, ..Self::of(self.bodies.clone(), threads) })
     }
 
-    /// Becomes equal to another world.
+    /// Becomes equal to another world, with its own threads. The pairs that it reported stay: the user may still read them.
     pub fn assign(&mut self, from: &Self) {
         self.bodies.clone_from(&from.bodies);
-        self.changes.clone_from(&from.changes);
+        let count = self.threads.count();
+        if from.threads.count() != count {
+            self.bodies = take(&mut self.bodies).threads(count);
+        }
         self.is_due = from.is_due;
     }
 

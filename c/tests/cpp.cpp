@@ -127,7 +127,12 @@ template <std::size_t D, class T> struct tests {
         CHECK(copy.size() == 297 && !copy.contains(ids[0]) && world.contains(ids[0]));
         copy.clear();
         CHECK(copy.size() == 0 && copy.state_hash() != hash);
+        // What an update reported stays until the next one.
+        const auto changes = copy.update();
+        const std::vector<sap::id_pair> ended(changes.ended.begin(), changes.ended.end());
         copy.assign(world);
+        const auto same = [](const sap::id_pair &a, const sap::id_pair &b) { return a.a == b.a && a.b == b.b; };
+        CHECK(!ended.empty() && std::equal(ended.begin(), ended.end(), changes.ended.begin(), changes.ended.end(), same));
         copy.shrink_to_fit();
         CHECK(copy.state_hash() == hash);
 
@@ -138,6 +143,8 @@ template <std::size_t D, class T> struct tests {
         CHECK(status_of([&] { world.restore(sap::span<const std::uint8_t>()); }) == SAP_ERROR_INVALID_SNAPSHOT);
         auto moved = std::move(world);
         CHECK(moved.size() == 300 && status_of([&] { world.size(); }) == SAP_ERROR_INVALID_ARGUMENT);
+        copy = std::move(moved);
+        CHECK(copy.size() == 300 && status_of([&] { moved.size(); }) == SAP_ERROR_INVALID_ARGUMENT);
     }
 
     void queries(world &world, const std::vector<aabb> &boxes, const std::vector<sap::id> &ids) {
@@ -152,6 +159,9 @@ template <std::size_t D, class T> struct tests {
         world.each_overlapping(area, [&](sap::id id) { found.push_back(id); });
         std::sort(found.begin(), found.end());
         CHECK(found == expected);
+        aabb inverted = area;
+        inverted.max[0] = inverted.min[0] - 1;
+        CHECK(status_of([&] { world.overlapping(inverted, found); }) == SAP_ERROR_INVALID_BOX && found == expected);
         try {
             world.each_overlapping(area, [](sap::id id) { throw id; });
             CHECK(false);

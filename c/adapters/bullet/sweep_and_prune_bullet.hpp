@@ -62,6 +62,10 @@ public:
     void setAabb(btBroadphaseProxy *proxy, const btVector3 &min, const btVector3 &max, btDispatcher *) override {
         // Bullet sets all boxes in each step, those of bodies at rest too.
         if (proxy->m_aabbMin == min && proxy->m_aabbMax == max) return;
+        if (!(min[0] <= max[0] && min[1] <= max[1] && min[2] <= max[2])) {
+            // The world refuses it at once: among those that are set later it would be in the way of all others.
+            world.set(static_cast<proxy_type *>(proxy)->id, box_of(min, max));
+        }
         proxy->m_aabbMin = min;
         proxy->m_aabbMax = max;
         moved_ids.push_back(static_cast<proxy_type *>(proxy)->id);

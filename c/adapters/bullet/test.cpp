@@ -197,6 +197,26 @@ static void random_calls(bool has_callback) {
     CHECK(region(broadphase, btVector3(-99, -99, -99), btVector3(99, 99, 99)).empty());
 }
 
+/// A box that is NaN is refused at once, and is in the way of no other.
+static void bad_boxes() {
+    sap::bullet_broadphase broadphase;
+    const btVector3 low(0, 0, 0), high(1, 1, 1), far(9, 9, 9), nan(std::nanf(""), 0, 0);
+    auto *bad = broadphase.createProxy(low, high, 0, nullptr, 1, -1, nullptr);
+    auto *good = broadphase.createProxy(far, far, 0, nullptr, 1, -1, nullptr);
+    bool is_refused = false;
+    try {
+        broadphase.setAabb(bad, nan, high, nullptr);
+    } catch (const sap::error &) {
+        is_refused = true;
+    }
+    CHECK(is_refused);
+    broadphase.setAabb(good, low, high, nullptr);
+    broadphase.calculateOverlappingPairs(nullptr);
+    CHECK(broadphase.getOverlappingPairCache()->getNumOverlappingPairs() == 1);
+    broadphase.destroyProxy(bad, nullptr);
+    broadphase.destroyProxy(good, nullptr);
+}
+
 int main(int count, char **arguments) {
     const int steps = count > 1 ? std::atoi(arguments[1]) : 150;
     btDbvtBroadphase tree;
@@ -205,4 +225,5 @@ int main(int count, char **arguments) {
     falling_boxes(broadphase, 300, 60, steps);
     random_calls(false);
     random_calls(true);
+    bad_boxes();
 }
