@@ -18,9 +18,9 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use crate::pairs::{PairFinder, SortedSet};
 use crate::{Aabb, Scalar};
 
-/// Boxes are sorted after this many misses, after twice as many for each time that they were sorted in vain,
+/// Boxes are sorted after this many misses, and after twice as many for each time in a row that they were sorted in vain.
 const MISSES: u32 = 2;
-/// but doubled no more often than this.
+/// No more often than this that number is doubled.
 const MOST_DOUBLINGS: u32 = 9;
 /// Sorted boxes are of use while at most one in this many has changed.
 const CHANGED_ONE_IN: usize = 16;
@@ -31,7 +31,7 @@ pub struct SortedBodies<const D: usize, T> {
     sorted: Option<Box<Sorted<D, T>>>,
     misses: AtomicU32,
     doublings: u32,
-    /// How many calls used the sorted boxes, and how many of these are known.
+    /// How many calls used the sorted boxes, and how many had when it was last asked to give them back.
     uses: AtomicU32,
     known_uses: u32,
 }
@@ -65,7 +65,7 @@ impl<const D: usize, T: Scalar> SortedBodies<D, T> {
         }
     }
 
-    /// Gives the sorted boxes up if no call used them since it was asked to last.
+    /// Gives up the sorted boxes if no call used them since it was last asked to.
     pub fn give_back(&mut self) {
         let known_uses = core::mem::replace(&mut self.known_uses, *self.uses.get_mut());
         if self.known_uses == known_uses {
