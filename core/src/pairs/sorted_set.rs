@@ -97,34 +97,31 @@ impl<const D: usize, T: Scalar> SortedSet<D, T> {
 mod tests {
     use alloc::vec::Vec;
 
+    use sweep_and_prune_scenes::Random;
+
     use super::*;
     use crate::pairs::find_pairs_between;
-
-    fn next(state: &mut u64) -> f64 {
-        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        (*state >> 40) as f64 / f64::from(1u32 << 24)
-    }
 
     /// Boxes with few distinct coordinates, so that many touch.
     fn boxes<const D: usize, T: Scalar>(
         count: usize,
         size: f64,
-        state: &mut u64,
+        random: &mut Random,
     ) -> Vec<Aabb<D, T>> {
         let mut aabb = || {
-            let min: [f64; D] = core::array::from_fn(|_| (next(state) * 64.0).floor());
-            let max = min.map(|at| at + (next(state) * size).floor());
+            let min: [f64; D] = core::array::from_fn(|_| (random.unit() * 64.0).floor());
+            let max = min.map(|at| at + (random.unit() * size).floor());
             Aabb::new(min.map(T::from_f64), max.map(T::from_f64))
         };
         (0..count).map(|_| aabb()).collect()
     }
 
     fn pairs_are_those_of_the_finder<const D: usize, T: Scalar>() {
-        let (state, mut finder) = (&mut 7, PairFinder::new());
-        let set = boxes::<D, T>(6000, 2.0, state);
+        let (random, mut finder) = (&mut Random::new(7), PairFinder::new());
+        let set = boxes::<D, T>(6000, 2.0, random);
         let sorted = SortedSet::new(&set, &mut finder).expect("a grid divides them");
         for (count, size) in [(0, 2.0), (1, 2.0), (500, 3.0), (6000, 2.0), (50, 12.0)] {
-            let with = boxes(count, size, state);
+            let with = boxes(count, size, random);
             let found = sorted.pairs_with(&with, &mut finder).unwrap();
             let found = found.expect("the boxes touch few columns");
             found.sort_unstable();
@@ -163,7 +160,8 @@ mod tests {
 
     #[test]
     fn boxes_that_touch_very_many_columns_are_left_to_another_plan() {
-        let (set, finder) = (boxes::<3, f32>(20_000, 2.0, &mut 7), &mut PairFinder::new());
+        let (set, finder) =
+            (boxes::<3, f32>(20_000, 2.0, &mut Random::new(7)), &mut PairFinder::new());
         let sorted = SortedSet::new(&set, finder).expect("a grid divides them");
         let all = [Aabb::new([-1.0; 3], [70.0; 3]); 50];
         assert!(matches!(sorted.pairs_with(&all, finder), Ok(None)));
@@ -171,7 +169,7 @@ mod tests {
 
     #[test]
     fn boxes_of_very_different_sizes_are_not_sorted() {
-        let mut sizes = boxes::<3, f32>(20_000, 2.0, &mut 7);
+        let mut sizes = boxes::<3, f32>(20_000, 2.0, &mut Random::new(7));
         sizes.iter_mut().step_by(10).for_each(|each| *each = Aabb::new([0.0; 3], [64.0; 3]));
         assert!(SortedSet::new(&sizes, &mut PairFinder::new()).is_none());
         assert!(SortedSet::<2, f32>::new(&[], &mut PairFinder::new()).is_none());
