@@ -50,13 +50,17 @@ impl<const D: usize, T: Scalar> World<D, T> {
         self.is_due = from.is_due;
     }
 
-    /// Updates, and says what changed. After an error the next update says it.
+    /// Updates, and says what changed. If there is no memory to say it, the next call says it.
     pub fn update(&mut self) -> Result<sap_changes, Failure> {
         let Self { bodies, threads, changes, is_due, .. } = self;
         if !*is_due {
             threads.run(|| bodies.try_update().map(|_| ()))?;
         }
         let (begun, ended) = (bodies.changes().begun(), bodies.changes().ended());
+        // Where it has to grow, without the old ones beside it.
+        if changes.capacity() < begun.len() + ended.len() {
+            *changes = Vec::new();
+        }
         changes.clear();
         *is_due = changes.try_reserve(begun.len() + ended.len()).is_err();
         if *is_due {

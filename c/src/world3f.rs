@@ -390,8 +390,7 @@ pub unsafe extern "C" fn sap_world3f_clear(
 ///
 /// Takes time in proportion to the bodies that changed and their neighbors.
 ///
-/// Errors: `SAP_ERROR_OUT_OF_MEMORY` if the pairs of a crowd do not fit; then the world is as before, and the next call finds what
-/// this one should have.
+/// Errors: `SAP_ERROR_OUT_OF_MEMORY` if the pairs of a crowd do not fit. The next call then reports what this one should have.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sap_world3f_update(
     world: *mut sap_world3f,

@@ -116,7 +116,7 @@ impl<const D: usize> PairFinder<D> {
     }
 
     /// Whether pairs are sorted by their first index, then by their second. Off by default: it takes up to 16 more passes
-    /// over the pairs.
+    /// over the pairs, or over all for which a buffer of yours has space.
     #[must_use]
     pub fn sorted(mut self, is_sorted: bool) -> Self {
         self.is_sorted = is_sorted;

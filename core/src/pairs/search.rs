@@ -131,8 +131,8 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
         Ok(buffers.store.pairs())
     }
 
-    /// Finds the pairs as [`pairs`](Self::pairs) does, or gives up as soon as it has found more than so
-    /// many, but for a buffer on each thread; then there are none.
+    /// Finds the pairs as [`pairs`](Self::pairs) does, unless there are more than so many: then it gives up when it has found
+    /// these and a buffer more on each thread, and there are none.
     pub(crate) fn pairs_up_to(self, most: usize) -> Result<Option<&'f mut [[u32; 2]]>, Error> {
         let Self { buffers, sets, .. } = self;
         buffers.store.most = most;
@@ -140,7 +140,8 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
         buffers.store.most = usize::MAX;
         match result {
             Err(Error::Cancelled) => Ok(None),
-            result => result.map(|()| Some(buffers.store.pairs_mut())),
+            // A buffer of an earlier search may have had space for more, on which the result must not depend.
+            result => result.map(|()| (buffers.store.len <= most).then(|| buffers.store.pairs_mut())),
         }
     }
 
@@ -411,4 +412,25 @@ fn check<const D: usize, T: Scalar>(sets: &[&[Aabb<D, T>]]) -> Result<(), Error>
             error => error,
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Aabb, PairFinder};
+
+    #[test]
+    fn whether_there_are_too_many_pairs_depends_on_the_boxes_alone() {
+        // All pairs fit in the first buffer.
+        let few = [Aabb::new([0.0; 2], [1.0; 2]); 20];
+        let many = [few[0]; 100];
+        let mut used = PairFinder::new();
+        used.find(&many).unwrap();
+        for finder in [&mut PairFinder::new(), &mut used] {
+            for (most, expected) in [(0, None), (189, None), (190, Some(190)), (usize::MAX, Some(190))] {
+                let found = finder.search(&few).pairs_up_to(most).unwrap();
+                assert_eq!(found.map(|pairs| pairs.len()), expected, "at most {most}");
+            }
+            assert_eq!(finder.find(&few).unwrap().len(), 190);
+        }
+    }
 }

@@ -75,7 +75,7 @@ impl<T: Scalar> Sorter<T> {
         boxes: &mut SortedBoxes<T>,
     ) -> Result<(), TryReserveError> {
         boxes.reset(source.len(), D - 1)?;
-        // A call for each box takes hardly more time, and 0.7 KB less of WebAssembly.
+        // A call for each box takes hardly more time, and 1.9 KB less of WebAssembly.
         (0..source.len()).for_each(|at| put_same(source, at, axis, boxes));
         Ok(())
     }

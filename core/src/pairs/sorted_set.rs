@@ -46,7 +46,8 @@ impl<const D: usize, T: Scalar> SortedSet<D, T> {
     }
 
     /// The pairs of one of these valid boxes and one of the set, as `[index of the box, index in the set]`. None, with no pair
-    /// of use, if another grid is better for them: they touch very many columns of this one, or are crowded in one.
+    /// of use, if there are many more than `most`, or if another grid is better for them: they touch very many columns of this
+    /// one, or are crowded in one.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -54,11 +55,15 @@ impl<const D: usize, T: Scalar> SortedSet<D, T> {
     pub fn pairs_with<'f>(
         &self,
         boxes: &[Aabb<D, T>],
+        most: usize,
         finder: &'f mut PairFinder<D, T>,
     ) -> Result<Option<&'f mut [[u32; 2]]>, Error> {
         let Buffers { driver, store, .. } = &mut finder.0;
-        match self.search(boxes, driver, store) {
-            Err(Stop::TooMany) => Ok(None),
+        store.most = most;
+        let result = self.search(boxes, driver, store);
+        store.most = usize::MAX;
+        match result {
+            Err(Stop::TooMany | Stop::Cancelled) => Ok(None),
             Err(stop) => Err(error(stop)),
             Ok(()) => Ok(Some(store.pairs_mut())),
         }
@@ -122,7 +127,7 @@ mod tests {
         let sorted = SortedSet::new(&set, &mut finder).expect("a grid divides them");
         for (count, size) in [(0, 2.0), (1, 2.0), (500, 3.0), (6000, 2.0), (50, 12.0)] {
             let with = boxes(count, size, random);
-            let found = sorted.pairs_with(&with, &mut finder).unwrap();
+            let found = sorted.pairs_with(&with, usize::MAX, &mut finder).unwrap();
             let found = found.expect("the boxes touch few columns");
             found.sort_unstable();
             let mut expected = find_pairs_between(&with, &set).unwrap();
@@ -147,15 +152,15 @@ mod tests {
         let sorted = SortedSet::new(&set, finder).expect("one column is enough");
         let long = |y: u16| Aabb::new([0.0, f32::from(y)], [4000.0, f32::from(y) + 0.5]);
         let with: Vec<_> = (1..1000).map(long).collect();
-        assert!(matches!(sorted.pairs_with(&with, finder), Ok(None)));
-        let few = sorted.pairs_with(&with[..5], finder).unwrap().expect("they are not crowded");
+        assert!(matches!(sorted.pairs_with(&with, usize::MAX, finder), Ok(None)));
+        let few = sorted.pairs_with(&with[..5], usize::MAX, finder).unwrap().expect("they are not crowded");
         assert_eq!(few.len(), 4000);
 
         let crowd = [Aabb::new([0.0; 2], [1.0; 2]); 20_000];
         let sorted = SortedSet::new(&crowd, finder).expect("one column is enough");
-        assert!(matches!(sorted.pairs_with(&crowd, finder), Ok(None)));
+        assert!(matches!(sorted.pairs_with(&crowd, usize::MAX, finder), Ok(None)));
         let far = [Aabb::new([2.0; 2], [3.0; 2])];
-        assert!(matches!(sorted.pairs_with(&far, finder), Ok(Some([]))));
+        assert!(matches!(sorted.pairs_with(&far, usize::MAX, finder), Ok(Some([]))));
     }
 
     #[test]
@@ -164,7 +169,7 @@ mod tests {
             (boxes::<3, f32>(20_000, 2.0, &mut Random::new(7)), &mut PairFinder::new());
         let sorted = SortedSet::new(&set, finder).expect("a grid divides them");
         let all = [Aabb::new([-1.0; 3], [70.0; 3]); 50];
-        assert!(matches!(sorted.pairs_with(&all, finder), Ok(None)));
+        assert!(matches!(sorted.pairs_with(&all, usize::MAX, finder), Ok(None)));
     }
 
     #[test]

@@ -450,7 +450,8 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     }
 
     /// Gives back memory that is not needed now, and changes no result. Updates give back the memory of a crowd by
-    /// themselves, at most 128 updates after it is gone.
+    /// themselves, at most 128 updates after it is gone. Not given back is what the world keeps for as many bodies as it once had
+    /// at the same time, which an update of most bodies looks through: after a much larger level, begin a new world.
     ///
     /// Takes O(n + pairs) time, and meanwhile as much memory again as the world needs.
     pub fn shrink_to_fit(&mut self) {

@@ -7,6 +7,8 @@ use alloc::vec::Vec;
 pub const NOW: u8 = 1;
 /// Excluded at the last update.
 pub const BEFORE: u8 = 2;
+/// Listed as edited.
+const LISTED: u8 = 4;
 /// The size of the smallest hash table.
 const FEWEST: usize = 16;
 /// No pair: the slots of a pair differ, the smaller first.
@@ -19,7 +21,7 @@ pub struct Exclusions {
     table: Vec<Entry>,
     /// How many entries are taken, also by pairs that are excluded no more.
     taken: usize,
-    /// The pairs of which it changed since the last update whether they are excluded now, at least once each.
+    /// The pairs of which it changed since the last update whether they are excluded now, each once.
     edited: Vec<[u32; 2]>,
 }
 
@@ -32,7 +34,7 @@ clone_fields! {
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     pair: [u32; 2],
-    /// Bits: [`NOW`], [`BEFORE`].
+    /// Bits: [`NOW`], [`BEFORE`], [`LISTED`].
     when: u8,
 }
 
@@ -55,10 +57,12 @@ impl Exclusions {
             self.grow();
         }
         let at = self.position(pair);
-        self.taken += usize::from(self.table[at].pair == NOTHING);
-        self.table[at].pair = pair;
-        self.table[at].when ^= when;
-        self.edited.push(pair);
+        let entry = &mut self.table[at];
+        self.taken += usize::from(entry.pair == NOTHING);
+        if entry.when & LISTED == 0 {
+            self.edited.push(pair);
+        }
+        *entry = Entry { pair, when: (entry.when ^ when) | LISTED };
     }
 
     /// Makes what is excluded now what was at the last update.
@@ -73,15 +77,15 @@ impl Exclusions {
     #[inline(never)]
     pub fn retain(&mut self, is_kept: &dyn Fn(u32) -> bool) {
         for Entry { pair, when } in &mut self.table {
-            if *when != 0 && !pair.iter().all(|&slot| is_kept(slot)) {
-                *when = 0;
+            if *when & (NOW | BEFORE) != 0 && !pair.iter().all(|&slot| is_kept(slot)) {
+                *when &= LISTED;
             }
         }
     }
 
     /// All of them as numbers in the order of pairs, unsorted.
     pub fn keys(&self) -> impl Iterator<Item = u64> + '_ {
-        let excluded = self.table.iter().filter(|entry| entry.when != 0);
+        let excluded = self.table.iter().filter(|entry| entry.when & (NOW | BEFORE) != 0);
         excluded.map(|entry| u64::from(entry.pair[0]) << 32 | u64::from(entry.pair[1]))
     }
 
@@ -96,7 +100,7 @@ impl Exclusions {
         at
     }
 
-    /// Enlarges the table so that one more fits, and drops the pairs that are excluded no more.
+    /// Enlarges the table so that one more fits, and drops the pairs that are excluded no more, nor listed.
     fn grow(&mut self) {
         let kept: Vec<_> = self.table.iter().copied().filter(|entry| entry.when != 0).collect();
         self.taken = kept.len();
@@ -157,6 +161,7 @@ mod tests {
                     model.keys().map(|[a, b]| u64::from(*a) << 32 | u64::from(*b)).collect();
                 assert_eq!(keys, expected);
                 assert!(exclusions.taken * 2 <= exclusions.table.len());
+                assert!(exclusions.edited.len() <= exclusions.taken, "each once");
             }
         }
     }

@@ -16,6 +16,10 @@ const PAYS: &[[usize; 2]] = &[[1 << 15, 4], [1 << 17, 12]];
 /// 0.13 to 0.65, one for 4 0.12 to 0.28.
 const PAYS_SORTED: &[[usize; 2]] = &[[1 << 13, 4], [1 << 15, 12], [1 << 17, 32]];
 
+/// With many more pairs than this for each query and body, queries are asked one by one: pairs of bodies that are removed or
+/// disabled are found, too, and those of all queries at once might not fit in memory.
+const MOST_FOR_EACH: usize = 64;
+
 /// Whether queries may take less time at once than one by one.
 pub fn may_pay<const D: usize, T: Scalar>(bodies: &Bodies<D, T>, queries: usize) -> bool {
     are_enough(bodies.shapes().len(), queries, PAYS_SORTED)
@@ -26,7 +30,7 @@ fn are_enough(bodies: usize, queries: usize, pays: &[[usize; 2]]) -> bool {
 }
 
 /// Lists for each of many boxes, which are valid, the visible bodies whose boxes overlap it, in no particular order. Returns
-/// false if it takes less time one by one, or if there is not enough memory for all pairs at once.
+/// false if it takes less time one by one, or if the pairs of all are too many at once.
 #[inline(never)]
 pub fn list<const D: usize, T: Scalar>(
     areas: &[Aabb<D, T>],
@@ -36,10 +40,11 @@ pub fn list<const D: usize, T: Scalar>(
     lists: &mut Lists<ProxyId>,
 ) -> bool {
     let (shapes, mut finder) = (bodies.shapes(), PairFinder::new());
-    let mut found = sorted.pairs_with(areas, shapes, &mut finder);
+    let most = MOST_FOR_EACH * (areas.len() + shapes.len());
+    let mut found = sorted.pairs_with(areas, shapes, most, &mut finder);
     if found.is_none() && are_enough(shapes.len(), areas.len(), PAYS) {
-        let search = finder.search(areas).against(shapes).pairs_up_to(usize::MAX);
-        found = search.is_ok().then(|| finder.take_pairs());
+        let search = finder.search(areas).against(shapes).pairs_up_to(most);
+        found = matches!(search, Ok(Some(_))).then(|| finder.take_pairs());
     }
     let Some(mut pairs) = found else { return false };
     pairs.retain(|&[_, body]| is_visible(body));

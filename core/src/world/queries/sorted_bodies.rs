@@ -74,17 +74,18 @@ impl<const D: usize, T: Scalar> SortedBodies<D, T> {
     }
 
     /// The pairs of boxes, which are valid, and bodies, whose boxes these are by index, in no particular order. None if there
-    /// are no sorted boxes, or they are of no use, or there is not enough memory.
+    /// are no sorted boxes, or they are of no use, or there are many more pairs than `most`, or not enough memory.
     pub fn pairs_with(
         &self,
         areas: &[Aabb<D, T>],
         shapes: &[Aabb<D, T>],
+        most: usize,
         finder: &mut PairFinder<D, T>,
     ) -> Option<Vec<[u32; 2]>> {
         let pairs = self.sorted.as_ref().and_then(|sorted| {
             let changes = Changes::between(&sorted.boxes, shapes)?;
-            sorted.set.pairs_with(areas, finder).ok()??;
-            changes.replace(finder, areas, shapes)
+            sorted.set.pairs_with(areas, most, finder).ok()??;
+            changes.replace(finder, areas, shapes, most)
         });
         let counter = if pairs.is_some() { &self.uses } else { &self.misses };
         counter.fetch_add(1, Ordering::Relaxed);
@@ -147,18 +148,19 @@ impl Changes {
         pairs.retain(|&[_, index]| self.bits[index as usize / 64] >> (index % 64) & 1 == 0);
     }
 
-    /// Replaces the pairs with old boxes by those with new ones. None if there is not enough memory.
+    /// Replaces the pairs with old boxes by those with new ones. None if there are too many, or not enough memory.
     fn replace<const D: usize, T: Scalar>(
         &self,
         finder: &mut PairFinder<D, T>,
         areas: &[Aabb<D, T>],
         shapes: &[Aabb<D, T>],
+        most: usize,
     ) -> Option<Vec<[u32; 2]>> {
         let mut pairs = finder.take_pairs();
         if !self.listed.is_empty() {
             self.drop_from(&mut pairs);
             let changed: Vec<_> = self.listed.iter().map(|&index| shapes[index as usize]).collect();
-            let more = finder.search(areas).against(&changed).pairs_up_to(usize::MAX).ok()??;
+            let more = finder.search(areas).against(&changed).pairs_up_to(most).ok()??;
             more.iter_mut().for_each(|[_, at]| *at = self.listed[*at as usize]);
             pairs.try_reserve(more.len()).ok()?;
             pairs.extend_from_slice(more);
@@ -191,7 +193,7 @@ mod tests {
     fn ask(sorted: &mut SortedBodies<2, f32>, bodies: &[Aabb<2>]) -> bool {
         sorted.prepare(bodies);
         let (areas, mut finder) = (boxes(4096, 0.5), PairFinder::new());
-        let Some(mut pairs) = sorted.pairs_with(&areas, bodies, &mut finder) else { return false };
+        let Some(mut pairs) = sorted.pairs_with(&areas, bodies, usize::MAX, &mut finder) else { return false };
         let mut expected = finder.find_between(&areas, bodies).unwrap().to_vec();
         pairs.sort_unstable();
         expected.sort_unstable();
@@ -264,7 +266,7 @@ mod tests {
         let areas = [Aabb::new([5.0; 3], [6.0; 3])];
         let mut tries = 0;
         for _ in 0..100 {
-            assert!(sorted.pairs_with(&areas, &bodies, &mut PairFinder::new()).is_none());
+            assert!(sorted.pairs_with(&areas, &bodies, usize::MAX, &mut PairFinder::new()).is_none());
             let misses = *sorted.misses.get_mut();
             sorted.prepare(&bodies);
             tries += usize::from(*sorted.misses.get_mut() < misses);
