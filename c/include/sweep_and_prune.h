@@ -656,8 +656,7 @@ sap_status sap_world3f_clear(struct sap_world3f *world, struct sap_error *error)
 ///
 /// Takes time in proportion to the bodies that changed and their neighbors.
 ///
-/// Errors: `SAP_ERROR_OUT_OF_MEMORY` if the pairs of a crowd do not fit; then the world is as before, and the next call finds what
-/// this one should have.
+/// Errors: `SAP_ERROR_OUT_OF_MEMORY` if the pairs of a crowd do not fit. The next call then reports what this one should have.
 sap_status sap_world3f_update(struct sap_world3f *world,
                               struct sap_changes *changes,
                               struct sap_error *error);
@@ -1101,8 +1100,7 @@ sap_status sap_world2f_clear(struct sap_world2f *world, struct sap_error *error)
 ///
 /// Takes time in proportion to the bodies that changed and their neighbors.
 ///
-/// Errors: `SAP_ERROR_OUT_OF_MEMORY` if the pairs of a crowd do not fit; then the world is as before, and the next call finds what
-/// this one should have.
+/// Errors: `SAP_ERROR_OUT_OF_MEMORY` if the pairs of a crowd do not fit. The next call then reports what this one should have.
 sap_status sap_world2f_update(struct sap_world2f *world,
                               struct sap_changes *changes,
                               struct sap_error *error);
@@ -1546,8 +1544,7 @@ sap_status sap_world3d_clear(struct sap_world3d *world, struct sap_error *error)
 ///
 /// Takes time in proportion to the bodies that changed and their neighbors.
 ///
-/// Errors: `SAP_ERROR_OUT_OF_MEMORY` if the pairs of a crowd do not fit; then the world is as before, and the next call finds what
-/// this one should have.
+/// Errors: `SAP_ERROR_OUT_OF_MEMORY` if the pairs of a crowd do not fit. The next call then reports what this one should have.
 sap_status sap_world3d_update(struct sap_world3d *world,
                               struct sap_changes *changes,
                               struct sap_error *error);
@@ -1991,8 +1988,7 @@ sap_status sap_world2d_clear(struct sap_world2d *world, struct sap_error *error)
 ///
 /// Takes time in proportion to the bodies that changed and their neighbors.
 ///
-/// Errors: `SAP_ERROR_OUT_OF_MEMORY` if the pairs of a crowd do not fit; then the world is as before, and the next call finds what
-/// this one should have.
+/// Errors: `SAP_ERROR_OUT_OF_MEMORY` if the pairs of a crowd do not fit. The next call then reports what this one should have.
 sap_status sap_world2d_update(struct sap_world2d *world,
                               struct sap_changes *changes,
                               struct sap_error *error);

@@ -52,8 +52,9 @@ public:
     constexpr span() noexcept = default;
     constexpr span(T *items, std::size_t count) noexcept : items(items), count(count) {}
     template <std::size_t N> constexpr span(T (&array)[N]) noexcept : items(array), count(N) {}
-    /// The items of a vector, an array or another span.
-    template <class C, class = std::enable_if_t<std::is_convertible_v<decltype(std::declval<C &>().data()), T *>>>
+    /// The items of a vector, an array or another span, of the same type: those of a derived class are larger.
+    template <class C, class Items = std::remove_pointer_t<decltype(std::declval<C &>().data())>,
+              class = std::enable_if_t<std::is_convertible_v<Items (*)[], T (*)[]>>>
     constexpr span(C &&container) noexcept : items(container.data()), count(container.size()) {}
 
     constexpr T *data() const noexcept { return items; }

@@ -224,6 +224,16 @@ template <std::size_t D, class T> void test() {
     tests.tracks();
 }
 
+// A vector of a derived class has larger items, so no span can see it.
+struct tagged : sap_aabb3f {
+    int tag;
+};
+static_assert(std::is_constructible_v<sap::span<const sap_aabb3f>, const std::vector<sap_aabb3f> &>);
+static_assert(std::is_constructible_v<sap::span<const sap_aabb3f>, std::vector<sap_aabb3f> &>);
+static_assert(!std::is_constructible_v<sap::span<sap_aabb3f>, const std::vector<sap_aabb3f> &>);
+static_assert(!std::is_constructible_v<sap::span<const sap_aabb3f>, const std::vector<tagged> &>);
+static_assert(!std::is_constructible_v<sap::span<const sap_aabb3f>, double>);
+
 int main() {
     test<3, float>();
     test<2, float>();

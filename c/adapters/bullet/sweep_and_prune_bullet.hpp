@@ -6,6 +6,12 @@
 // Pairs are those whose AABBs overlap, as Bullet set them, and change in btBroadphaseInterface::calculateOverlappingPairs, once a
 // step, in an order that is the same on every platform. Errors are exceptions: a box that is NaN or inverted, which Bullet itself does
 // not set.
+//
+// A group or mask that is changed in a proxy counts from the next time on that Bullet sets its box. The filter callback of the pair
+// cache is asked once for each overlap that begins, and for all again when it is replaced. A pair that is taken out of the cache comes
+// back in the next step if its boxes still overlap.
+//
+// Between two changes several threads may call rayTest and aabbTest at the same time, as btDiscreteDynamicsWorldMt does.
 #ifndef SWEEP_AND_PRUNE_BULLET_HPP
 #define SWEEP_AND_PRUNE_BULLET_HPP
 
@@ -13,6 +19,9 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <mutex>
+#include <shared_mutex>
+#include <type_traits>
 #include <vector>
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>
@@ -28,6 +37,7 @@ class bullet_broadphase : public btBroadphaseInterface {
     struct proxy_type : btBroadphaseProxy {
         using btBroadphaseProxy::btBroadphaseProxy;
         sap::id id = no_id; // of a proxy that exists
+        int known_group = 0, known_mask = 0; // those that the world has
     };
 
 public:
@@ -41,6 +51,9 @@ public:
                                    btDispatcher *) override {
         proxy_type made(min, max, object, group, mask);
         made.id = world.insert(box_of(min, max), filter_of(made));
+        made.known_group = group;
+        made.known_mask = mask;
+        are_queries_due = true;
         made.m_uniqueId = ++last_unique_id;
         try {
             while (blocks.size() <= slot(made.id) / block_size) blocks.push_back(std::make_unique<block>());
@@ -54,21 +67,26 @@ public:
     void destroyProxy(btBroadphaseProxy *proxy, btDispatcher *dispatcher) override {
         auto &gone = static_cast<proxy_type &>(*proxy);
         flush();
+        const int pairs = cache.getNumOverlappingPairs();
         cache.removeOverlappingPairsContainingProxy(proxy, dispatcher);
+        cached_pairs -= pairs - cache.getNumOverlappingPairs();
         world.remove(gone.id);
+        are_queries_due = true;
         gone.id = no_id;
     }
 
     void setAabb(btBroadphaseProxy *proxy, const btVector3 &min, const btVector3 &max, btDispatcher *) override {
+        auto &moved = static_cast<proxy_type &>(*proxy);
+        if (moved.known_group != moved.m_collisionFilterGroup || moved.known_mask != moved.m_collisionFilterMask) read_filter(moved);
         // Bullet sets all boxes in each step, those of bodies at rest too.
         if (proxy->m_aabbMin == min && proxy->m_aabbMax == max) return;
         if (!(min[0] <= max[0] && min[1] <= max[1] && min[2] <= max[2])) {
             // The world refuses it at once: among those that are set later it would be in the way of all others.
-            world.set(static_cast<proxy_type *>(proxy)->id, box_of(min, max));
+            world.set(moved.id, box_of(min, max));
         }
         proxy->m_aabbMin = min;
         proxy->m_aabbMax = max;
-        moved_ids.push_back(static_cast<proxy_type *>(proxy)->id);
+        moved_ids.push_back(moved.id);
         moved_boxes.push_back(box_of(min, max));
     }
 
@@ -78,25 +96,30 @@ public:
     }
 
     void calculateOverlappingPairs(btDispatcher *dispatcher) override {
+        btOverlapFilterCallback *const callback = cache.getOverlapFilterCallback();
         // A callback decides instead of groups and masks, so with one no pair may be left out because of them.
-        const bool wants_all = cache.getOverlapFilterCallback() != nullptr;
-        if (wants_all != ignores_masks) {
-            ignores_masks = wants_all;
-            for_each_proxy([&](const proxy_type &proxy) { world.set_filter(proxy.id, filter_of(proxy)); });
+        if ((callback != nullptr) != ignores_masks) {
+            ignores_masks = callback != nullptr;
+            for_each_proxy([&](proxy_type &proxy) { read_filter(proxy); });
         }
         flush();
         const auto changes = world.update();
-        for (const auto &pair : changes.ended) {
-            // The pairs of a proxy that was destroyed were removed then.
-            proxy_type *const a = find(pair.a), *const b = find(pair.b);
-            if (a && b) cache.removeOverlappingPair(a, b, dispatcher);
+        are_queries_due = true;
+        // Something else than this broad phase took pairs out.
+        const bool any_missing = cache.getNumOverlappingPairs() < cached_pairs;
+        for_each_pair(changes.ended, [&](proxy_type *a, proxy_type *b) { cache.removeOverlappingPair(a, b, dispatcher); });
+        for_each_pair(changes.begun, [&](proxy_type *a, proxy_type *b) { cache.addOverlappingPair(a, b); });
+        if (any_missing || callback != last_callback) {
+            for_each_pair(world.pairs(), [&](proxy_type *a, proxy_type *b) {
+                if (!cache.addOverlappingPair(a, b)) cache.removeOverlappingPair(a, b, dispatcher);
+            });
         }
-        for (const auto &pair : changes.begun) cache.addOverlappingPair(find(pair.a), find(pair.b));
+        last_callback = callback;
+        cached_pairs = cache.getNumOverlappingPairs();
     }
 
     void rayTest(const btVector3 &from, const btVector3 &to, btBroadphaseRayCallback &callback,
                  const btVector3 &min = btVector3(0, 0, 0), const btVector3 &max = btVector3(0, 0, 0)) override {
-        flush();
         world_type::cast_type cast{};
         for (int axis = 0; axis < 3; axis++) {
             // A moving box is rounded outwards.
@@ -105,18 +128,11 @@ public:
             cast.direction[axis] = to[axis] - from[axis];
         }
         cast.limit = 1;
-        std::vector<world_type::hit> found = std::move(hits); // the callback may ask, too
-        world.cast_all(cast, found);
-        for (const auto &hit : found) callback.process(find(hit.id));
-        hits = std::move(found);
+        for (const auto &hit : ask([&] { return world.cast_all(cast); })) process(hit.id, callback);
     }
 
     void aabbTest(const btVector3 &min, const btVector3 &max, btBroadphaseAabbCallback &callback) override {
-        flush();
-        std::vector<sap::id> found = std::move(ids); // the callback may ask, too
-        world.overlapping(box_of(min, max), found);
-        for (const sap::id id : found) callback.process(find(id));
-        ids = std::move(found);
+        for (const sap::id id : ask([&] { return world.overlapping(box_of(min, max)); })) process(id, callback);
     }
 
     btOverlappingPairCache *getOverlappingPairCache() override { return &cache; }
@@ -144,6 +160,7 @@ public:
         world = world_type(options(threads));
         blocks.clear();
         last_unique_id = 0;
+        are_queries_due = true;
     }
 
     void printStats() override {}
@@ -176,13 +193,48 @@ private:
     template <class Call>
     void for_each_proxy(Call call) const {
         for (const auto &block : blocks)
-            for (const proxy_type &proxy : *block)
+            for (proxy_type &proxy : *block)
                 if (proxy.id != no_id) call(proxy);
+    }
+    /// Calls back with the proxies of each pair, but for those that were destroyed, whose pairs were removed then.
+    template <class Pairs, class Call>
+    void for_each_pair(const Pairs &pairs, Call call) const {
+        for (const auto &pair : pairs) {
+            proxy_type *const a = find(pair.a), *const b = find(pair.b);
+            if (a && b) call(a, b);
+        }
+    }
+    /// Has the world use the group and mask of a proxy as they are now.
+    void read_filter(proxy_type &proxy) {
+        world.set_filter(proxy.id, filter_of(proxy));
+        are_queries_due = true;
+        proxy.known_group = proxy.m_collisionFilterGroup;
+        proxy.known_mask = proxy.m_collisionFilterMask;
+    }
+    /// Calls back with a proxy that a query found, unless an earlier call destroyed it.
+    template <class Callback>
+    void process(sap::id id, Callback &callback) const {
+        if (const proxy_type *const found = find(id)) callback.process(found);
+    }
+    /// What a query finds in the world, which several threads may ask at the same time.
+    template <class Query>
+    std::invoke_result_t<Query> ask(Query query) {
+        for (;;) {
+            {
+                std::shared_lock<std::shared_mutex> lock(asking);
+                if (moved_ids.empty() && !are_queries_due) return query();
+            }
+            std::unique_lock<std::shared_mutex> lock(asking);
+            flush();
+            if (are_queries_due) world.prepare_queries();
+            are_queries_due = false;
+        }
     }
     /// Sets the boxes that Bullet set: all at once takes less time than one by one.
     void flush() {
         if (moved_ids.empty()) return;
         world.set_many(moved_ids, moved_boxes);
+        are_queries_due = true;
         moved_ids.clear();
         moved_boxes.clear();
     }
@@ -196,10 +248,12 @@ private:
     std::vector<std::unique_ptr<block>> blocks;
     std::vector<sap::id> moved_ids;
     std::vector<aabb> moved_boxes;
-    std::vector<sap::id> ids;
-    std::vector<world_type::hit> hits;
     int last_unique_id = 0;
-    bool ignores_masks = false;
+    btOverlapFilterCallback *last_callback = nullptr;
+    bool ignores_masks = false; // as the last callback wants
+    int cached_pairs = 0;       // in the cache, if nothing else takes any out
+    std::shared_mutex asking; // alone: while the world is prepared for queries
+    bool are_queries_due = false;
 };
 
 } // namespace sap

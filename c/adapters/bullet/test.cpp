@@ -1,10 +1,12 @@
 // The adapter beside Bullet's own broad phases: the same pairs, rays and regions in each step of falling boxes; proxies that come
 // and go; groups, masks and a filter callback.
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <random>
 #include <set>
+#include <thread>
 
 #include "../../tests/check.h"
 #include "scene.hpp"
@@ -138,17 +140,21 @@ static void falling_boxes(btBroadphaseInterface &driver, int moving, int fixed, 
     CHECK(third.getOverlappingPairCache()->getNumOverlappingPairs() == 0);
 }
 
-// Proxies come, move and go in random order; groups and masks decide, or a callback.
+// Proxies come, move and go in random order; groups and masks decide, which change, or callbacks, which are replaced. Pairs are
+// taken out of the cache.
 static void random_calls(bool has_callback) {
-    struct only_even : btOverlapFilterCallback {
+    struct only_with_rest : btOverlapFilterCallback {
         bool needBroadphaseCollision(btBroadphaseProxy *a, btBroadphaseProxy *b) const override {
-            return (a->m_collisionFilterGroup + b->m_collisionFilterGroup) % 2 == 0;
+            return (a->getUid() + b->getUid()) % 2 == rest;
         }
-    } callback;
+        int rest = 0;
+    } callbacks[2];
+    callbacks[1].rest = 1;
+    const btOverlapFilterCallback *callback = nullptr;
     btDefaultCollisionConfiguration configuration;
     btCollisionDispatcher dispatcher(&configuration);
     sap::bullet_broadphase broadphase;
-    if (has_callback) broadphase.getOverlappingPairCache()->setOverlapFilterCallback(&callback);
+    auto &cache = *broadphase.getOverlappingPairCache();
     std::vector<btBroadphaseProxy *> proxies;
     std::mt19937 random(2);
     const auto below = [&](unsigned limit) { return int(random() % limit); };
@@ -167,8 +173,19 @@ static void random_calls(bool has_callback) {
             std::swap(proxies[std::size_t(below(unsigned(proxies.size())))], proxies.back());
             broadphase.destroyProxy(proxies.back(), &dispatcher);
             proxies.pop_back();
+        } else if (what == 3 && has_callback && below(20) == 0) {
+            const int which = below(3);
+            cache.setOverlapFilterCallback(which < 2 ? &callbacks[which] : nullptr);
+            callback = which < 2 ? &callbacks[which] : nullptr;
+        } else if (what == 3 && cache.getNumOverlappingPairs() > 0) {
+            if (below(2)) cache.removeOverlappingPairsContainingProxy(cache.getOverlappingPairArrayPtr()->m_pProxy0, &dispatcher);
         } else if (what < 9 && !proxies.empty()) {
             auto *proxy = proxies[std::size_t(below(unsigned(proxies.size())))];
+            if (what == 4) {
+                proxy->m_collisionFilterGroup = 1 + below(4);
+                proxy->m_collisionFilterMask = below(4);
+                if (below(2)) broadphase.getAabb(proxy, min, max); // it rests
+            }
             broadphase.setAabb(proxy, min, max, &dispatcher);
             broadphase.getAabb(proxy, min, max);
             CHECK(min == proxy->m_aabbMin && max == proxy->m_aabbMax);
@@ -177,9 +194,9 @@ static void random_calls(bool has_callback) {
             pairs expected;
             for (auto *a : proxies)
                 for (auto *b : proxies) {
-                    const bool allowed = has_callback ? callback.needBroadphaseCollision(a, b)
-                                                      : (a->m_collisionFilterGroup & b->m_collisionFilterMask) &&
-                                                            (b->m_collisionFilterGroup & a->m_collisionFilterMask);
+                    const bool allowed = callback ? callback->needBroadphaseCollision(a, b)
+                                                  : (a->m_collisionFilterGroup & b->m_collisionFilterMask) &&
+                                                        (b->m_collisionFilterGroup & a->m_collisionFilterMask);
                     const void *x = a, *y = b;
                     if (a < b && allowed && overlap(*a, *b)) expected.insert({x, y});
                 }
@@ -217,6 +234,58 @@ static void bad_boxes() {
     broadphase.destroyProxy(good, nullptr);
 }
 
+/// Several threads ask at the same time, the first of them after a change; a callback may destroy what is found.
+static void queries_of_threads() {
+    sap::bullet_broadphase broadphase;
+    std::mt19937 random(3);
+    const auto anywhere = [&] { return btVector3(btScalar(random() % 40), btScalar(random() % 40), btScalar(random() % 40)); };
+    std::vector<btBroadphaseProxy *> proxies;
+    for (int i = 0; i < 3000; i++) {
+        const btVector3 at = anywhere();
+        proxies.push_back(broadphase.createProxy(at, at + btVector3(1, 1, 1), 0, nullptr, 1, -1, nullptr));
+        proxies.back()->m_clientObject = proxies.back();
+    }
+    for (int round = 0; round < 20; round++) {
+        for (int i = 0; i < 100; i++) {
+            const btVector3 at = anywhere();
+            broadphase.setAabb(proxies[random() % proxies.size()], at, at + btVector3(2, 2, 2), nullptr);
+        }
+        if (round % 2) broadphase.calculateOverlappingPairs(nullptr);
+        std::vector<std::thread> threads;
+        std::atomic<int> wrong{0}, begun{0};
+        for (int thread = 0; thread < 4; thread++)
+            threads.emplace_back([&, thread] {
+                for (begun++; begun < 4;) std::this_thread::yield();
+                for (int i = 0; i < 20; i++) {
+                    const btVector3 min(btScalar(i), btScalar(thread), 5), max = min + btVector3(3, 3, 3);
+                    std::set<const void *> expected;
+                    for (const auto *proxy : proxies)
+                        if (TestAabbAgainstAabb2(min, max, proxy->m_aabbMin, proxy->m_aabbMax)) expected.insert(proxy);
+                    if (region(broadphase, min, max) != expected) wrong++;
+                    const auto hit = ray(broadphase, min, max);
+                    if (!std::includes(expected.begin(), expected.end(), hit.begin(), hit.end())) wrong++;
+                }
+            });
+        for (auto &thread : threads) thread.join();
+        CHECK(wrong == 0);
+    }
+    struct : btBroadphaseAabbCallback {
+        sap::bullet_broadphase *from;
+        std::vector<btBroadphaseProxy *> *proxies;
+        std::size_t calls = 0;
+        bool process(const btBroadphaseProxy *) override {
+            calls++;
+            for (auto *proxy : *proxies) from->destroyProxy(proxy, nullptr);
+            proxies->clear();
+            return true;
+        }
+    } destroy_all;
+    destroy_all.from = &broadphase;
+    destroy_all.proxies = &proxies;
+    broadphase.aabbTest(btVector3(0, 0, 0), btVector3(40, 40, 40), destroy_all);
+    CHECK(destroy_all.calls == 1);
+}
+
 int main(int count, char **arguments) {
     const int steps = count > 1 ? std::atoi(arguments[1]) : 150;
     btDbvtBroadphase tree;
@@ -226,4 +295,5 @@ int main(int count, char **arguments) {
     random_calls(false);
     random_calls(true);
     bad_boxes();
+    queries_of_threads();
 }

@@ -45,7 +45,7 @@ public:
     fcl_manager(const fcl_manager &) = delete;
     fcl_manager &operator=(const fcl_manager &) = delete;
 
-    /// Adds all.objects. Those that are registered stay as they are.
+    /// Adds objects. Those that are registered stay as they are.
     void registerObjects(const std::vector<object *> &added) override {
         std::vector<object *> fresh;
         std::vector<aabb> fresh_boxes;
@@ -92,7 +92,7 @@ public:
     /// Nothing is left to do: what a query needs is made when it is asked.
     void setup() override {}
 
-    /// Reads the AABBs of all all.objects.
+    /// Reads the AABBs of all objects.
     void update() override { read(all.objects); }
     void update(object *moved) override { read({moved}); }
     /// Reads the AABBs of these objects; those that are not registered are left out.
@@ -326,7 +326,9 @@ private:
         const sap::id self = id_of(asked);
         std::size_t left = size() - (self != no_id);
         std::array<S, 3> center;
-        for (int axis = 0; axis < 3; axis++) center[axis] = box.min[axis] / 2 + box.max[axis] / 2;
+        // Of an infinite AABB any point will do: it only says where to look first.
+        const auto finite = [&](S at) { return std::clamp(at, -unknown, unknown); };
+        for (int axis = 0; axis < 3; axis++) center[axis] = finite(box.min[axis]) / 2 + finite(box.max[axis]) / 2;
 
         std::size_t first = none;
         if (least == unknown && left > 0) {

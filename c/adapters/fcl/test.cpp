@@ -286,6 +286,17 @@ static void extremes() {
     nearest nearest{distance_of::aabbs};
     manager.distance(&ground, &nearest, measure);
     CHECK(nearest.least == 0 && nearest.asked.size() == 1);
+    // Turned, its AABB is infinite.
+    ground.setQuatRotation(fcl::Quaternion<S>(1, S(0.2), S(0.1), 0).normalized());
+    ground.computeAABB();
+    CHECK(std::isinf(ground.getAABB().min_[0]));
+    for (const bool is_asked : {true, false}) {
+        struct nearest found{distance_of::aabbs};
+        if (is_asked) manager.distance(&ground, &found, measure);
+        else manager.distance(&found, measure);
+        CHECK(found.least == 0);
+        manager.update(&ground);
+    }
     sap::fcl_manager<S> none;
     none.collide(&ground, nullptr, note);
     none.collide(nullptr, note);
