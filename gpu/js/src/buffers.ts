@@ -63,17 +63,12 @@ export class Buffers {
     return { buffer, size };
   }
 
-  /** Forgets all buffers, after an error: some may be invalid. */
-  clear(): void {
-    this.#slots.clear();
-    this.params = undefined;
-  }
-
-  /** Gives the memory of all buffers back. */
+  /** Gives the memory of all buffers back. They are made again when they are needed. */
   destroy(): void {
     for (const buffer of this.#slots.values()) buffer.destroy();
     this.params?.destroy();
-    this.clear();
+    this.#slots.clear();
+    this.params = undefined;
   }
 }
 

@@ -27,7 +27,7 @@ const finders = new WeakMap<GPUDevice, Map<number, Promise<PairFinder>>>();
 /**
  * Finds all overlapping pairs of boxes on the GPU and copies them back: `a` and `b` in turn, `a < b`. Boxes are rows of
  * the min corner and then the max corner, as in `sweep-and-prune`. Boxes that stay on the GPU are found faster with
- * {@link PairFinder}.
+ * {@link PairFinder}. They are copied at the call, so they may be changed while it waits.
  *
  * @throws {@link GpuError}; `RangeError` for an invalid box, with its index, and for a length or an option; `TypeError` for
  * anything but a `Float32Array`.
@@ -40,6 +40,8 @@ export async function findPairs(boxes: Float32Array, options: GpuFindPairsOption
   if (boxes.length % (2 * dimensions) !== 0) {
     throw new RangeError(`boxes has ${boxes.length} numbers; a box has ${2 * dimensions}`);
   }
+  // The caller may change its boxes while this waits.
+  boxes = boxes.slice();
   let device: GPUDevice;
   try {
     device = options.device ?? (await defaultDevice());

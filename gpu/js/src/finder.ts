@@ -19,12 +19,15 @@ const WORLD_LANE = 3;
 /** The greatest number that a kernel counts to. */
 const MOST = 0xffff_ffff;
 
+/** How many boxes there are in all sets. */
+const countOf = (sets: readonly GpuBoxes[]): number => sets.reduce((sum, { count }) => sum + count, 0);
+
 /** Options of {@link PairFinder.create}. */
 export interface GpuPairFinderOptions {
   /** 2 or 3. */
   readonly dimensions: 2 | 3;
 
-  /** Whether pairs are sorted by their first index, then by their second; takes up to 16 more passes over the pairs. Default false. */
+  /** Whether pairs are sorted by their first index, then by their second; takes up to 16 more passes over the pairs, or over all for which a buffer of yours has space. Default false. */
   readonly sorted?: boolean;
 
   /** The size of a workgroup of the indirect dispatch in the summary: one thread for each pair. Default 64. */
@@ -67,6 +70,9 @@ interface Search {
  * crowded the boxes are. The pairs and their order are the same in every run and on every device. Invalid boxes (NaN, or
  * inverted) are counted and have no pairs.
  *
+ * A call hands its commands to the device at once if all earlier calls of the finder are done, else after them. Await it
+ * before you submit commands that change its boxes or use its results.
+ *
  * Make it with {@link PairFinder.create}.
  */
 export class PairFinder {
@@ -76,8 +82,8 @@ export class PairFinder {
   readonly #options: Required<GpuPairFinderOptions>;
   /** Missing if nothing is measured, or the device cannot. */
   readonly #timer: StageTimer | undefined;
-  /** Searches use the same buffers, so they are done one after the other. */
-  #last: Promise<unknown> = Promise.resolve();
+  /** Searches use the same buffers, so they are done one after the other: the last one, until it is done. */
+  #last: Promise<unknown> | undefined;
 
   private constructor(device: GPUDevice, kernels: Kernels, timer: StageTimer | undefined, options: Required<GpuPairFinderOptions>) {
     this.#device = device;
@@ -222,6 +228,7 @@ export class PairFinder {
   }
 
   async #findNow(sets: readonly GpuBoxes[]): Promise<GpuPairs> {
+    this.#check(sets);
     const { search, summary } = await this.#submit((steps) => {
       const search = this.#prepare(sets, steps);
       this.#count(search, steps);
@@ -249,6 +256,7 @@ export class PairFinder {
     return this.#inTurn(async () => {
       checkBuffer("pairs", pairs, 0, Usage.STORAGE);
       checkBuffer("summary", summary, SUMMARY_BYTES, Usage.STORAGE);
+      this.#check(sets);
       const capacity = Math.min(Math.floor(pairs.size / 8), this.mostPairs);
       await this.#submit((steps) => {
         const search = this.#prepare(sets, steps);
@@ -271,17 +279,21 @@ export class PairFinder {
     return counts.reduce((sum, found) => sum + found, 0);
   }
 
-  /** Adds the steps from boxes to the tree. */
-  #prepare(sets: readonly GpuBoxes[], steps: Steps): Search {
-    const { dimensions } = this.#options;
-    for (const set of sets) checkBoxes(set, dimensions);
-    this.#timer?.restart();
-    const count = sets.reduce((sum, set) => sum + set.count, 0);
+  /** Checks the boxes of a search, before anything of the finder changes. */
+  #check(sets: readonly GpuBoxes[]): void {
+    for (const set of sets) checkBoxes(set, this.#options.dimensions);
+    const count = countOf(sets);
     const most = this.mostBoxes;
     if (count > most) {
       const message = `${count} boxes are too many: this device can search ${most}; request a larger maxStorageBufferBindingSize and maxBufferSize`;
       throw new GpuError("TOO_MANY_BOXES", message, count);
     }
+  }
+
+  /** Adds the steps from boxes to the tree. */
+  #prepare(sets: readonly GpuBoxes[], steps: Steps): Search {
+    this.#timer?.restart();
+    const count = countOf(sets);
     const begins = levels(count);
     const hasFilters = sets.some(({ filters }) => filters);
     const hasWorlds = sets.some(({ worlds }) => worlds);
@@ -396,7 +408,7 @@ export class PairFinder {
     steps.forEach("merge_pairs", capacity, [capacity], [summary, firsts.now, seconds.now, pairs]);
   }
 
-  /** Builds steps and hands them to the device. After an error the buffers are made again by the next call. */
+  /** Builds steps and hands them to the device. After an error of the device the buffers are made again by the next call. */
   async #submit<R>(build: (steps: Steps) => R): Promise<R> {
     const buffers = this.#buffers;
     try {
@@ -407,15 +419,20 @@ export class PairFinder {
         return result;
       });
     } catch (error) {
-      buffers.clear();
+      // Some may be invalid.
+      buffers.destroy();
       throw error;
     }
   }
 
-  /** Runs a search after those before it. */
+  /** Runs a search: at once, or after those before it. */
   #inTurn<R>(run: () => Promise<R>): Promise<R> {
-    const result = this.#last.then(run);
-    this.#last = result.catch(() => {});
+    const result = this.#last ? this.#last.then(run) : run();
+    const done = () => {
+      if (this.#last === last) this.#last = undefined;
+    };
+    const last = result.then(done, done);
+    this.#last = last;
     return result;
   }
 

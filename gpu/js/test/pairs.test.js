@@ -382,6 +382,55 @@ test("findPairs copies boxes to the GPU and pairs back", async () => {
   assert.match(results.dimensions?.message ?? "", /dimensions is undefined; it must be 2 or 3/);
 });
 
+test("a search sees its boxes as they were at the call, and a refused call changes nothing", async () => {
+  const results = await opened.page.evaluate(async () => {
+    const { library, device, errorOf, finderOf } = /** @type {any} */ (globalThis);
+    /** @param {number[]} numbers */
+    const bufferOf = (numbers) => {
+      const buffer = device.createBuffer({ size: 4 * numbers.length, usage: 0x8c });
+      device.queue.writeBuffer(buffer, 0, new Float32Array(numbers));
+      return buffer;
+    };
+    /** @param {GPUBuffer} buffer */
+    const copyOf = (buffer) => {
+      const copy = device.createBuffer({ size: buffer.size, usage: 0x8c });
+      const encoder = device.createCommandEncoder();
+      encoder.copyBufferToBuffer(buffer, 0, copy, 0, buffer.size);
+      device.queue.submit([encoder.finish()]);
+      return copy;
+    };
+    const apart = new Float32Array([0, 0, 1, 1, 5, 5, 6, 6]);
+    const own = new Float32Array([0, 0, 1, 1, 1, 1, 2, 2]);
+    const searching = library.findPairs(own, { dimensions: 2 });
+    own.set(apart);
+    const changed = Array.from(await searching);
+
+    // No earlier call is open: what is submitted after the call comes after the search.
+    const finder = await finderOf(device, 0, 2, false);
+    const boxes = bufferOf([0, 0, 1, 1, 1, 1, 2, 2]);
+    await finder.find({ boxes, count: 2 });
+    const [pairs, summary] = [bufferOf([7, 7]), bufferOf(new Array(library.SUMMARY_BYTES / 4).fill(0))];
+    const writing = finder.findInto({ boxes, count: 2 }, pairs, summary);
+    const copy = copyOf(pairs);
+    device.queue.writeBuffer(boxes, 0, apart);
+    await writing;
+    const copied = Array.from(await finder.readPairs(copy, { written: 1 }));
+    const { found: later } = await finder.find({ boxes, count: 2 });
+
+    // After a call that is refused, the results of the one before can be read, and its buffers are used again.
+    device.queue.writeBuffer(boxes, 0, new Float32Array([0, 0, 1, 1, 1, 1, 2, 2]));
+    const before = await finder.find({ boxes, count: 2 });
+    const refused = [await errorOf(() => finder.find({ boxes, count: 3 })), await errorOf(() => finder.findInto({ boxes, count: -1 }, pairs, summary))];
+    const kept = Array.from(await finder.readPairs(before.pairs, before));
+    const isSame = (await finder.find({ boxes, count: 2 })).pairs === before.pairs;
+    return { changed, copied, later, refused, kept, isSame };
+  });
+  assert.deepEqual(results.changed, [0, 1]);
+  assert.deepEqual([results.copied, results.later], [[0, 1], 0]);
+  assert.ok(results.refused.every((error) => error));
+  assert.deepEqual([results.kept, results.isSame], [[0, 1], true]);
+});
+
 test("without a GPU there is an error, or the fallback that the caller chose", async () => {
   const { page, close } = await openPage({ hasGpu: false });
   try {
